@@ -1,0 +1,81 @@
+#include "vesalius/derive_joints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vesalius {
+namespace {
+
+constexpr float kLeastWeight = 0.5F;
+
+struct Neighbour {
+  const SkeletonPart* part = nullptr;
+  float length_m = 0.F;
+};
+
+/// Observed parts linked to `index`.
+std::vector<Neighbour> observed_neighbours(const BodyModel& body, const Skeleton& skeleton, int index) {
+  std::vector<Neighbour> found;
+  for (const BodyLink& link : body.links) {
+    const int other = link.parent == index ? link.child : link.child == index ? link.parent : -1;
+    if (other < 0) continue;
+    const SkeletonPart& part = skeleton.parts[static_cast<std::size_t>(other)];
+    if (part.state == State::observed) found.push_back({&part, link.length_m});
+  }
+  return found;
+}
+
+Joint derive(const JointDefinition& definition, const Skeleton& skeleton) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  Joint joint{State::none, Eigen::Vector3f::Constant(kNaN), 0.F};
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  float weight = 0.F;
+  float confidence = 0.F;
+  bool all_observed = true;
+  for (std::size_t i = 0; i < definition.parts.size(); ++i) {
+    const SkeletonPart& part = skeleton.parts[static_cast<std::size_t>(definition.parts[i])];
+    if (part.state == State::none) {
+      all_observed = false;
+      continue;
+    }
+    all_observed = all_observed && part.state == State::observed;
+    sum += definition.weights[i] * part.centre;
+    weight += definition.weights[i];
+    confidence += definition.weights[i] * part.confidence;
+  }
+  if (definition.parts.empty() || weight < kLeastWeight) return joint;
+  const Eigen::Vector3f surface = sum / weight;
+  joint.position = surface + definition.depth_offset_m * surface.normalized();
+  joint.confidence = std::clamp(confidence, 0.F, 1.F);  // of the whole weight: missing parts count as unsure
+  joint.state = all_observed ? State::observed : State::predicted;
+  return joint;
+}
+
+}  // namespace
+
+void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {
+  std::vector<SkeletonPart> predicted = skeleton.parts;
+  for (int i = 0; i < body.part_count(); ++i) {
+    SkeletonPart& part = predicted[static_cast<std::size_t>(i)];
+    if (part.state != State::none) continue;
+    const std::vector<Neighbour> around = observed_neighbours(body, skeleton, i);
+    if (around.size() != 2) continue;
+    const float share = around[0].length_m / (around[0].length_m + around[1].length_m);
+    part.state = State::predicted;
+    part.centre = around[0].part->centre + share * (around[1].part->centre - around[0].part->centre);
+    part.confidence = 0.5F * std::min(around[0].part->confidence, around[1].part->confidence);
+  }
+  skeleton.parts = std::move(predicted);
+}
+
+std::vector<std::vector<Joint>> derive_joints(const BodyModel& body, const Skeleton& skeleton) {
+  std::vector<std::vector<Joint>> sets;
+  for (const JointSet& set : body.joint_sets) {
+    std::vector<Joint>& joints = sets.emplace_back();
+    for (const JointDefinition& definition : set.joints) joints.push_back(derive(definition, skeleton));
+  }
+  return sets;
+}
+
+}  // namespace vesalius

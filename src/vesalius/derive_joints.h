@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+#include "vesalius/search_skeletons.h"
+
+namespace vesalius {
+
+/// A joint of one of the body model's joint sets.
+struct Joint {
+  State state = State::none;
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< metres, optical frame; NaN where state is none
+  float confidence = 0.F;                              ///< 0-1
+};
+
+/// Fills in parts that were not seen but lie between two that were, on the line between them in the proportion of the
+/// link lengths; state predicted, half the confidence of the weaker neighbour.
+void predict_missing_parts(const BodyModel& body, Skeleton& skeleton);
+
+/// All joint sets of the body model, [set][joint]. A joint needs parts that carry at least half of its weight.
+std::vector<std::vector<Joint>> derive_joints(const BodyModel& body, const Skeleton& skeleton);
+
+}  // namespace vesalius

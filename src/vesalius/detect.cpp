@@ -1,0 +1,291 @@
+#include "vesalius/detect.h"
+
+#include <algorithm>
+
+#include "vesalius/parallel.h"
+
+namespace vesalius {
+namespace {
+
+Box bounding_box(const Mask& mask) {
+  int left = mask.width(), right = -1, top = mask.height(), bottom = -1;
+  for (int v = 0; v < mask.height(); ++v) {
+    for (int u = 0; u < mask.width(); ++u) {
+      if (mask(u, v) == 0) continue;
+      left = std::min(left, u);
+      right = std::max(right, u);
+      top = std::min(top, v);
+      bottom = v;
+    }
+  }
+  return right < 0 ? Box{} : Box{left, top, right - left + 1, bottom - top + 1};
+}
+
+DepthImage without(const DepthImage& depth, const Mask& mask) {
+  DepthImage out = depth;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (mask[i] != 0) out[i] = 0;
+  }
+  return out;
+}
+
+/// Depth of the mask's pixels inside the box; the rest counts as far.
+DepthImage keep_only(const DepthImage& depth, const Mask& mask, const Box& box) {
+  DepthImage out(box.width, box.height, 0);
+  for (int v = 0; v < box.height; ++v) {
+    for (int u = 0; u < box.width; ++u) {
+      if (mask(box.u + u, box.v + v) != 0) out(u, v) = depth(box.u + u, box.v + v);
+    }
+  }
+  return out;
+}
+
+Camera cropped(Camera camera, const Box& box) {
+  camera.width = box.width;
+  camera.height = box.height;
+  camera.cx -= static_cast<float>(box.u);
+  camera.cy -= static_cast<float>(box.v);
+  return camera;
+}
+
+/// `part` of a picture put back at its place in one of the frame's size.
+LabelImage uncropped(const LabelImage& part, const Box& box, int width, int height) {
+  LabelImage out(width, height, kBackground);
+  for (int v = 0; v < box.height; ++v) std::copy_n(part.row(v), box.width, out.row(box.v + v) + box.u);
+  return out;
+}
+
+/// The method on one frame, stage after stage.
+class Pipeline {
+ public:
+  using Candidate = Trace::Candidate;
+
+  Pipeline(const PixelLabeller& labeller, const DetectOptions& options, const Frame& frame)
+      : labeller_(labeller),
+        body_(labeller.body()),
+        options_(options),
+        frame_(frame),
+        grower_(frame, body_, options.grow) {}
+
+  std::vector<Person> run(Trace* trace) {
+    first_pass(trace);
+    std::vector<Candidate> candidates = grow_candidates();
+    parallel_for(static_cast<int>(candidates.size()), [&](int i) { refine(candidates[static_cast<std::size_t>(i)]); });
+    std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    std::vector<Person> people = choose_people(candidates);
+    if (trace != nullptr) {
+      trace->labels = std::move(labels_);
+      trace->clusters = std::move(clusters_);
+      trace->rough = std::move(rough_);
+      trace->flat = grower_.flat();
+      trace->candidates = std::move(candidates);
+    }
+    return people;
+  }
+
+ private:
+  bool by_mode() const { return options_.smooth.mode || !labeller_.has_distributions(); }
+
+  LabelImage choose(const Posteriors& posteriors, const DepthImage& depth, const Mask* prior) const {
+    const LabelChoice choice{body_.part_count(), labeller_.has_background(), prior};
+    LabelImage labels = choose_labels(posteriors, depth, choice, options_.label);
+    return by_mode() ? mode_filter(labels, depth, options_.smooth) : labels;
+  }
+
+  /// Sections 4 to 6 on the whole scene. A forest that never saw a background takes walls and floor for bodies: it
+  /// is shown the scene without them.
+  void first_pass(Trace* trace) {
+    const DepthImage depth = labeller_.has_background() ? frame_.depth : without(frame_.depth, grower_.flat());
+    Posteriors raw = labeller_.label(depth, frame_.camera);
+    if (trace != nullptr) {
+      const LabelChoice choice{body_.part_count(), labeller_.has_background(), nullptr};
+      trace->raw_labels = choose_labels(raw, depth, choice, options_.label);
+    }
+    posteriors_ = by_mode() ? std::move(raw) : mean_filter(raw, depth, options_.smooth);
+    labels_ = choose(posteriors_, depth, nullptr);
+    clusters_ = find_clusters(labels_, depth, frame_.camera, body_, options_.cluster);
+    rough_ = search_skeletons(clusters_.items, body_, options_.search);
+  }
+
+  /// Section 7. Every rough skeleton grows alone; the likelier ones also against each other, which keeps people apart
+  /// who touch. Which of the two was right, the second pass tells.
+  std::vector<Candidate> grow_candidates() const {
+    std::vector<Candidate> candidates;
+    const auto count = std::min(rough_.size(), static_cast<std::size_t>(options_.refine.max_candidates));
+    std::vector<Skeleton> rivals;
+    for (std::size_t i = 0; i < count; ++i) {  // best first, so rivals are the first ones
+      if (rough_[i].score < options_.refine.rival_likelihood * static_cast<float>(body_.part_count())) break;
+      rivals.push_back(rough_[i]);
+    }
+    if (rivals.size() > 1) {
+      for (Mask& mask : grower_.grow(rivals, clusters_)) {
+        candidates.push_back(make_candidate(static_cast<int>(candidates.size()), std::move(mask)));
+      }
+    }
+    std::vector<Mask> alone(count);
+    parallel_for(static_cast<int>(count), [&](int i) {
+      alone[static_cast<std::size_t>(i)] = std::move(grower_.grow({rough_[static_cast<std::size_t>(i)]}, clusters_)[0]);
+    });
+    const std::size_t against = candidates.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i < against && candidates[i].grown == alone[i]) continue;
+      candidates.push_back(make_candidate(static_cast<int>(i), std::move(alone[i])));
+    }
+    return candidates;
+  }
+
+  static Candidate make_candidate(int rough, Mask mask) {
+    Candidate candidate;
+    candidate.rough = rough;
+    candidate.grown = std::move(mask);
+    return candidate;
+  }
+
+  /// Second iteration: the same stages on one person, and the better of its two skeletons.
+  void refine(Candidate& candidate) const {
+    const Skeleton& rough = rough_[static_cast<std::size_t>(candidate.rough)];
+    const Box box = bounding_box(candidate.grown);
+    if (box.width == 0) return;
+    if (options_.refine.second_pass) {
+      second_pass(box, candidate);
+    } else {
+      candidate.labels = labels_;
+    }
+    if (candidate.refined.found == 0 || candidate.refined.score < rough.score) candidate.refined = rough;
+    candidate.evidence =
+        gather_evidence(frame_, candidate.grown, candidate.labels, candidate.refined, body_, options_.score);
+    candidate.score = person_score(candidate.evidence, options_.score);
+  }
+
+  void second_pass(const Box& box, Candidate& candidate) const {
+    ClusterOptions cluster = options_.cluster;
+    cluster.min_area_cm2 *= options_.refine.area_scale;
+    cluster.min_pixels =
+        std::max(1, static_cast<int>(static_cast<float>(cluster.min_pixels) * options_.refine.area_scale));
+    Clusters clusters;
+    if (labeller_.has_background()) {
+      // Its own label already tells what is no person: keep the scene, take the mask as what is known now.
+      candidate.labels = choose(posteriors_, frame_.depth, &candidate.grown);
+      clusters = find_clusters(candidate.labels, frame_.depth, frame_.camera, body_, cluster);
+    } else {
+      const DepthImage alone = keep_only(frame_.depth, candidate.grown, box);
+      const Camera camera = cropped(frame_.camera, box);
+      Posteriors posteriors = labeller_.label(alone, camera);
+      if (!by_mode()) posteriors = mean_filter(posteriors, alone, options_.smooth);
+      const LabelImage labels = choose(posteriors, alone, nullptr);
+      clusters = find_clusters(labels, alone, camera, body_, cluster);
+      candidate.labels = uncropped(labels, box, frame_.camera.width, frame_.camera.height);
+    }
+    std::vector<Skeleton> found = search_skeletons(clusters.items, body_, options_.search);
+    if (!found.empty()) candidate.refined = std::move(found.front());
+  }
+
+  /// Surest first; who mostly repeats a surer one is dropped, shared pixels stay with the surer.
+  std::vector<Person> choose_people(std::vector<Candidate>& candidates) const {
+    std::vector<Person> people;
+    Mask taken(frame_.camera.width, frame_.camera.height, 0);
+    for (Candidate& candidate : candidates) {
+      if (candidate.score < options_.refine.min_score || candidate.refined.found < options_.refine.min_parts) continue;
+      long pixels = 0;
+      long shared = 0;
+      for (std::size_t i = 0; i < taken.size(); ++i) {
+        pixels += candidate.grown[i] != 0 ? 1 : 0;
+        shared += candidate.grown[i] != 0 && taken[i] != 0 ? 1 : 0;
+      }
+      if (static_cast<float>(shared) > options_.refine.max_overlap * static_cast<float>(pixels)) continue;
+      candidate.accepted = true;
+      people.push_back(make_person(candidate, taken));
+      for (std::size_t i = 0; i < taken.size(); ++i) taken[i] |= people.back().mask[i];
+    }
+    return people;
+  }
+
+  Person make_person(const Candidate& candidate, const Mask& taken) const {
+    Person person;
+    person.skeleton = candidate.refined;
+    predict_missing_parts(body_, person.skeleton);
+    person.joints = derive_joints(body_, person.skeleton);
+    person.score = candidate.score;
+    person.mask = candidate.grown;
+    person.labels = candidate.labels;
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      if (taken[i] != 0) person.mask[i] = 0;
+      if (person.mask[i] == 0) person.labels[i] = kBackground;
+    }
+    person.box = bounding_box(person.mask);
+    return person;
+  }
+
+  const PixelLabeller& labeller_;
+  const BodyModel& body_;
+  const DetectOptions& options_;
+  const Frame& frame_;
+  PersonGrower grower_;
+  Posteriors posteriors_;  ///< pass 1, smoothed unless labels are
+  LabelImage labels_;      ///< pass 1
+  Clusters clusters_;      ///< pass 1
+  std::vector<Skeleton> rough_;
+};
+
+void visit_options(const std::string& prefix, RefineOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "second-pass", o.second_pass,
+                 {"", 0, 1, "Whether each person is labelled and searched again."});
+  visitor.option(prefix + "area-scale", o.area_scale,
+                 {"", 0.01, 10.0, "Factor on the smallest area of a part in the second pass."});
+  visitor.option(prefix + "max-candidates", o.max_candidates,
+                 {"", 1, 1000, "Most rough skeletons refined in one frame."});
+  visitor.option(prefix + "rival-likelihood", o.rival_likelihood,
+                 {"per part", 0.0, 1.0, "Rough skeletons at least this likely grow against each other."});
+  visitor.option(prefix + "min-parts", o.min_parts, {"", 1, 200, "Fewest parts of a person after the second pass."});
+  visitor.option(prefix + "min-score", o.min_score, {"", 0.0, 1.0, "Lowest score of a person."});
+  visitor.option(prefix + "max-overlap", o.max_overlap,
+                 {"", 0.0, 1.0, "Share of its mask that a person may have in common with a surer one."});
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, DetectOptions& o, OptionVisitor& visitor) {
+  visit_options(prefix + "label.", o.label, visitor);
+  visit_options(prefix + "smooth.", o.smooth, visitor);
+  visit_options(prefix + "cluster.", o.cluster, visitor);
+  visit_options(prefix + "search.", o.search, visitor);
+  visit_options(prefix + "grow.", o.grow, visitor);
+  visit_options(prefix + "refine.", o.refine, visitor);
+  visit_options(prefix + "score.", o.score, visitor);
+}
+
+Detector::Detector(Forest forest, DetectOptions options)
+    : Detector(std::make_shared<ForestLabeller>(std::move(forest)), options) {}
+
+Detector::Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options)
+    : labeller_(std::move(labeller)), options_(options) {
+  RangeCheck check;
+  visit_options("", options_, check);
+}
+
+std::vector<Person> Detector::detect(const Frame& frame, Trace* trace) const {
+  check(frame);
+  return Pipeline(*labeller_, options_, frame).run(trace);
+}
+
+Image<std::uint8_t> body_index_map(const std::vector<Person>& people, int width, int height) {
+  Image<std::uint8_t> map(width, height, kBackground);
+  for (std::size_t p = 0; p < people.size() && p < kBackground; ++p) {
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      if (people[p].mask[i] != 0) map[i] = static_cast<std::uint8_t>(p);
+    }
+  }
+  return map;
+}
+
+LabelImage part_label_map(const std::vector<Person>& people, int width, int height) {
+  LabelImage map(width, height, kBackground);
+  for (const Person& person : people) {
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      if (person.mask[i] != 0) map[i] = person.labels[i];
+    }
+  }
+  return map;
+}
+
+}  // namespace vesalius

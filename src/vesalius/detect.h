@@ -1,0 +1,103 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vesalius/derive_joints.h"
+#include "vesalius/find_clusters.h"
+#include "vesalius/forest.h"
+#include "vesalius/frame.h"
+#include "vesalius/grow_person.h"
+#include "vesalius/image.h"
+#include "vesalius/label_pixels.h"
+#include "vesalius/score_person.h"
+#include "vesalius/search_skeletons.h"
+#include "vesalius/smooth_labels.h"
+
+namespace vesalius {
+
+/// Second iteration and acceptance (section 7).
+struct RefineOptions {
+  bool second_pass = true;        ///< off: the rough skeleton and its grown mask are the result
+  float area_scale = 0.5F;        ///< multiplies the smallest area of a part in the second pass
+  int max_candidates = 12;        ///< most rough skeletons refined in one frame
+  float rival_likelihood = 0.2F;  ///< rough skeletons of at least this likelihood a part grow against each other
+  int min_parts = 6;              ///< fewest parts of a person after the second pass
+  float min_score = 0.5F;         ///< lowest score of a person
+  float max_overlap = 0.3F;       ///< share of its mask that a person may have in common with a surer one
+};
+
+struct DetectOptions {
+  LabelOptions label;
+  SmoothOptions smooth;
+  ClusterOptions cluster;
+  SearchOptions search;
+  GrowOptions grow;
+  RefineOptions refine;
+  ScoreOptions score;
+};
+void visit_options(const std::string& prefix, DetectOptions& options, OptionVisitor& visitor);
+
+/// Upright rectangle of pixels.
+struct Box {
+  int u = 0, v = 0, width = 0, height = 0;
+};
+
+/// Everything found about one person.
+struct Person {
+  Skeleton skeleton;                       ///< parts with 3-D centre, extent, confidence and state
+  std::vector<std::vector<Joint>> joints;  ///< [joint set of the body model][joint]
+  Mask mask;                               ///< 1 on the person's pixels
+  LabelImage labels;                       ///< part of each of the person's pixels, kBackground elsewhere
+  Box box;                                 ///< smallest around the mask
+  float score = 0.F;                       ///< 0-1, higher is surer
+};
+
+/// Every intermediate of one detection, for pictures and evaluation.
+struct Trace {
+  LabelImage raw_labels;        ///< pass 1, before smoothing
+  LabelImage labels;            ///< pass 1, smoothed
+  Clusters clusters;            ///< pass 1
+  std::vector<Skeleton> rough;  ///< pass 1, best first
+  Mask flat;                    ///< pixels of floor, walls and other large flat surfaces
+
+  /// A rough skeleton grown and refined; a rough skeleton has two where growing against its rivals differs from
+  /// growing alone.
+  struct Candidate {
+    int rough = -1;  ///< index in `rough`
+    Mask grown;
+    LabelImage labels;  ///< pass 2, smoothed
+    Skeleton refined;   ///< pass 2; found = 0 if there was none
+    Evidence evidence;
+    float score = 0.F;
+    bool accepted = false;
+  };
+  std::vector<Candidate> candidates;  ///< surest first
+};
+
+/// The whole method: people of one frame. Stateless between frames; safe to call from several threads.
+class Detector {
+ public:
+  /// Throws Error for an inconsistent forest, UsageError for an option outside its range.
+  explicit Detector(Forest forest, DetectOptions options = {});
+  explicit Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options = {});
+
+  /// People in the frame, surest first; empty when nobody is in view. Throws Error for a frame whose images do not
+  /// fit its camera.
+  std::vector<Person> detect(const Frame& frame, Trace* trace = nullptr) const;
+
+  const BodyModel& body() const { return labeller_->body(); }
+
+ private:
+  std::shared_ptr<const PixelLabeller> labeller_;
+  DetectOptions options_;
+};
+
+/// uint8 map of the people: index in `people`, kBackground elsewhere (of the frame's size).
+Image<std::uint8_t> body_index_map(const std::vector<Person>& people, int width, int height);
+
+/// Part labels of all people in one picture, kBackground elsewhere.
+LabelImage part_label_map(const std::vector<Person>& people, int width, int height);
+
+}  // namespace vesalius

@@ -1,0 +1,153 @@
+#include "vesalius/find_clusters.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace vesalius {
+namespace {
+
+/// Sums over the pixels of one cluster, double so that far clusters keep their covariance.
+struct Moments {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+
+  void add(const Eigen::Vector3f& point) {
+    const Eigen::Vector3d p = point.cast<double>();
+    sum += p;
+    products += p * p.transpose();
+  }
+};
+
+class ClusterFinder {
+ public:
+  ClusterFinder(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
+                const ClusterOptions& options)
+      : labels_(labels), depth_(depth), camera_(camera), body_(body), options_(options) {}
+
+  Clusters run() {
+    Clusters out;
+    out.index = Image<std::int32_t>(labels_.width(), labels_.height(), kNone);
+    std::vector<PartCluster> kept;
+    for (int v = 0; v < labels_.height(); ++v) {
+      for (int u = 0; u < labels_.width(); ++u) {
+        if (out.index(u, v) != kNone || !labelled(u, v)) continue;
+        const PartCluster cluster = fill(u, v, static_cast<std::int32_t>(kept.size()), out.index);
+        if (feasible(cluster)) {
+          kept.push_back(cluster);
+        } else {
+          for (const int pixel : queue_) out.index[static_cast<std::size_t>(pixel)] = kDropped;
+        }
+      }
+    }
+    renumber(kept, out);
+    return out;
+  }
+
+ private:
+  static constexpr std::int32_t kNone = -1;
+  static constexpr std::int32_t kDropped = -2;
+
+  bool labelled(int u, int v) const { return labels_(u, v) < body_.part_count() && depth_(u, v) != 0; }
+
+  Eigen::Vector3f point(int u, int v) const {
+    return camera_.point(static_cast<float>(u), static_cast<float>(v), static_cast<float>(depth_(u, v)) * 1e-3F);
+  }
+
+  bool connected(const Eigen::Vector3f& a, const Eigen::Vector3f& b) const {
+    const float gap = options_.max_gap_m + options_.max_gap_per_z2 * a.z() * b.z();
+    return (a - b).squaredNorm() <= gap * gap;
+  }
+
+  /// Breadth-first search from (u, v); leaves the cluster's pixels in queue_.
+  PartCluster fill(int u, int v, std::int32_t id, Image<std::int32_t>& index) {
+    PartCluster cluster;
+    cluster.label = labels_(u, v);
+    cluster.first_pixel = v * labels_.width() + u;
+    Moments moments;
+    double area = 0.0;
+    queue_.assign(1, cluster.first_pixel);
+    index(u, v) = id;
+    for (std::size_t head = 0; head < queue_.size(); ++head) {
+      const int pu = queue_[head] % labels_.width();
+      const int pv = queue_[head] / labels_.width();
+      const Eigen::Vector3f here = point(pu, pv);
+      moments.add(here);
+      area += static_cast<double>(here.z()) * static_cast<double>(here.z());
+      for (int nv = std::max(0, pv - 1); nv <= std::min(labels_.height() - 1, pv + 1); ++nv) {
+        for (int nu = std::max(0, pu - 1); nu <= std::min(labels_.width() - 1, pu + 1); ++nu) {
+          if (index(nu, nv) != kNone || labels_(nu, nv) != cluster.label || !labelled(nu, nv)) continue;
+          if (!connected(here, point(nu, nv))) continue;
+          index(nu, nv) = id;
+          queue_.push_back(nv * labels_.width() + nu);
+        }
+      }
+    }
+    cluster.pixels = static_cast<int>(queue_.size());
+    cluster.area_m2 = static_cast<float>(area / (static_cast<double>(camera_.fx) * static_cast<double>(camera_.fy)));
+    summarise(moments, cluster);
+    return cluster;
+  }
+
+  static void summarise(const Moments& moments, PartCluster& cluster) {
+    const double n = cluster.pixels;
+    const Eigen::Vector3d mean = moments.sum / n;
+    const Eigen::Matrix3d covariance = moments.products / n - mean * mean.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+    cluster.centroid = mean.cast<float>();
+    cluster.covariance = covariance.cast<float>();
+    cluster.eigenvalues = solver.eigenvalues().reverse().cwiseMax(0.0).cast<float>();
+    cluster.extent_m = std::sqrt(12.F * cluster.eigenvalues.x());
+  }
+
+  bool feasible(const PartCluster& cluster) const {
+    const BodyPart& part = body_.parts[static_cast<std::size_t>(cluster.label)];
+    return cluster.pixels >= options_.min_pixels && cluster.area_m2 * 1e4F >= options_.min_area_cm2 &&
+           cluster.extent_m <= part.max_extent_m * options_.max_extent_scale;
+  }
+
+  static void renumber(const std::vector<PartCluster>& kept, Clusters& out) {
+    std::vector<std::size_t> order(kept.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
+      const PartCluster &x = kept[a], &y = kept[b];
+      if (x.label != y.label) return x.label < y.label;
+      if (x.area_m2 != y.area_m2) return x.area_m2 > y.area_m2;
+      return x.first_pixel < y.first_pixel;
+    });
+    std::vector<std::int32_t> rank(kept.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      rank[order[i]] = static_cast<std::int32_t>(i);
+      out.items.push_back(kept[order[i]]);
+    }
+    for (std::int32_t& id : out.index) id = id >= 0 ? rank[static_cast<std::size_t>(id)] : -1;
+  }
+
+  const LabelImage& labels_;
+  const DepthImage& depth_;
+  const Camera& camera_;
+  const BodyModel& body_;
+  const ClusterOptions& options_;
+  std::vector<int> queue_;  ///< row-major pixels of the cluster being filled
+};
+
+}  // namespace
+
+void visit_options(const std::string& prefix, ClusterOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "max-gap", o.max_gap_m,
+                 {"m", 0.0, 1.0, "3-D distance that neighbouring pixels of a part may have."});
+  visitor.option(prefix + "max-gap-per-z2", o.max_gap_per_z2,
+                 {"m per m^2", 0.0, 0.1, "Added to the gap times depth squared: the sensor's depth step."});
+  visitor.option(prefix + "min-area", o.min_area_cm2, {"cm^2", 0.0, 10000.0, "Smallest visible area of a part."});
+  visitor.option(prefix + "min-pixels", o.min_pixels, {"px", 1, 1000000, "Smallest part at any distance."});
+  visitor.option(prefix + "max-extent-scale", o.max_extent_scale,
+                 {"", 0.1, 10.0, "Factor on each part's largest feasible length."});
+}
+
+Clusters find_clusters(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
+                       const ClusterOptions& options) {
+  return ClusterFinder(labels, depth, camera, body, options).run();
+}
+
+}  // namespace vesalius

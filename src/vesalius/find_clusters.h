@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vesalius/body_model.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
+#include "vesalius/options.h"
+
+namespace vesalius {
+
+struct ClusterOptions {
+  float max_gap_m = 0.05F;        ///< 3-D distance that neighbouring pixels may have
+  float max_gap_per_z2 = 0.003F;  ///< added per square metre of depth: a structured-light sensor's depth step
+  float min_area_cm2 = 20.F;      ///< smallest visible area of a part
+  int min_pixels = 20;            ///< smallest cluster at any distance
+  float max_extent_scale = 1.F;   ///< multiplies each part's largest feasible length
+};
+void visit_options(const std::string& prefix, ClusterOptions& options, OptionVisitor& visitor);
+
+/// A part proposal: a connected set of pixels of one label (section 5). Metres, optical frame.
+struct PartCluster {
+  int label = -1;
+  int pixels = 0;
+  int first_pixel = -1;  ///< row-major index of its first pixel
+  float area_m2 = 0.F;   ///< sum of the pixels' areas across the viewing direction
+  Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
+  Eigen::Vector3f eigenvalues = Eigen::Vector3f::Zero();  ///< of the covariance, largest first, square metres
+  float extent_m = 0.F;  ///< length of the rod with the variance of the first axis: sqrt(12 * eigenvalue)
+};
+
+struct Clusters {
+  std::vector<PartCluster> items;  ///< largest area first within each label, labels ascending
+  Image<std::int32_t> index;       ///< item that each pixel belongs to, -1 = none
+};
+
+/// Part proposals by breadth-first search over the 8-neighbourhood (section 5): neighbours of equal label closer than
+/// the gap are one cluster; clusters too small, or longer than their part can be, are dropped.
+Clusters find_clusters(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
+                       const ClusterOptions& options);
+
+}  // namespace vesalius

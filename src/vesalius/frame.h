@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
+
+namespace vesalius {
+
+/// One RGB-D picture: depth, colour registered to it (or none), and the camera of the depth grid.
+struct Frame {
+  std::string name;     ///< file stem or time stamp; unique within a source
+  double time_s = 0.0;  ///< seconds; 0 where the source has no times
+  Camera camera;
+  DepthImage depth;
+  ColourImage colour;  ///< empty, or the size of `depth`
+};
+
+/// Throws Error unless depth has the camera's size and colour is empty or has it too.
+void check(const Frame& frame);
+
+/// Whether joints or parts were seen, or inferred from others.
+enum class State { none, predicted, observed };
+const char* to_string(State state);
+
+/// A frame with its truth: what training and evaluation consume.
+struct LabelledFrame {
+  Frame frame;
+  LabelImage labels;                                ///< true part of every pixel; kBackground elsewhere
+  Image<std::uint8_t> person;                       ///< true person index of every pixel; kBackground elsewhere
+  std::vector<std::vector<Eigen::Vector3f>> parts;  ///< [person][part]: centre of the part's volume, metres
+};
+
+}  // namespace vesalius

@@ -1,0 +1,225 @@
+#include "vesalius/grow_person.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vesalius {
+namespace {
+
+/// Fewest pixels that a colour is learned from.
+constexpr int kLeastColourSamples = 200;
+
+/// Blurs `values[begin, begin + count)` with a box of `reach` bins each way.
+void blur(std::array<float, ColourModel::kBins>& values, int begin, int count, int reach, bool wraps) {
+  const auto source = values;
+  for (int i = 0; i < count; ++i) {
+    float sum = 0.F;
+    for (int d = -reach; d <= reach; ++d) {
+      int j = i + d;
+      if (wraps) j = ((j % count) + count) % count;
+      if (j >= 0 && j < count) sum += source[static_cast<std::size_t>(begin + j)];
+    }
+    values[static_cast<std::size_t>(begin + i)] = sum / static_cast<float>(2 * reach + 1);
+  }
+}
+
+/// Furthest that the body extends around each observed part: further where parts beyond it were not seen.
+std::vector<float> reach_of_parts(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
+  std::vector<float> reach(body.parts.size(), options.reach_m);
+  for (const BodyLink& link : body.links) {
+    const auto a = static_cast<std::size_t>(link.parent);
+    const auto b = static_cast<std::size_t>(link.child);
+    const bool has_a = rough.parts[a].state == State::observed;
+    const bool has_b = rough.parts[b].state == State::observed;
+    if (has_a == has_b) continue;
+    float& r = reach[has_a ? a : b];
+    r = std::max(r, options.reach_m + options.missing_reach_m);
+  }
+  return reach;
+}
+
+/// Where a colour that the seeds do not have may be the person's all the same: close to any part, and where parts that
+/// were not seen must be (hair, hands, shoes).
+std::vector<float> any_colour_radius(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
+  std::vector<float> radius(body.parts.size(), options.own_colour_m);
+  for (const BodyLink& link : body.links) {
+    for (const auto& [from, to] : {std::pair{link.parent, link.child}, std::pair{link.child, link.parent}}) {
+      if (rough.parts[static_cast<std::size_t>(to)].state == State::observed) continue;
+      float& r = radius[static_cast<std::size_t>(from)];
+      r = std::max(r, link.length_m + options.own_colour_m);
+    }
+  }
+  return radius;
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, GrowOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "radius", o.radius_m,
+                 {"m", 0.0, 1.0, "3-D distance that neighbouring pixels of a person may have."});
+  visitor.option(prefix + "radius-per-z2", o.radius_per_z2,
+                 {"m per m^2", 0.0, 0.1, "Added to the radius times depth squared: the sensor's depth step."});
+  visitor.option(prefix + "reach", o.reach_m, {"m", 0.0, 3.0, "How far a person extends around a part's centre."});
+  visitor.option(prefix + "missing-reach", o.missing_reach_m,
+                 {"m", 0.0, 3.0, "Added to the reach of a part next to one that was not seen."});
+  visitor.option(prefix + "hue-tolerance", o.hue_tolerance_deg, {"degrees", 0.0, 180.0, "Blur of the learned hues."});
+  visitor.option(prefix + "lightness-tolerance", o.lightness_tolerance,
+                 {"of 255", 0.0, 255.0, "Blur of the learned lightness of greys."});
+  visitor.option(prefix + "min-saturation", o.min_saturation, {"", 0.0, 1.0, "Colours less saturated count as greys."});
+  visitor.option(
+      prefix + "colour-veto", o.colour_veto,
+      {"log ratio", 0.0, 100.0, "A colour this much likelier elsewhere than on the person stops the growth."});
+  visitor.option(prefix + "own-colour", o.own_colour_m,
+                 {"m", 0.0, 3.0, "This near to a part's centre any colour is the person's."});
+  visitor.option(prefix + "use-colour", o.use_colour, {"", 0, 1, "Whether colour takes part where there is any."});
+  visit_options(prefix + "plane-", o.plane, visitor);
+}
+
+int ColourModel::bin(Rgb c, float min_saturation) {
+  const int high = std::max({c.r, c.g, c.b});
+  const int low = std::min({c.r, c.g, c.b});
+  const int span = high - low;
+  if (high < 24 || static_cast<float>(span) < min_saturation * static_cast<float>(high)) {
+    return kHues + std::min(kGreys - 1, high * kGreys / 256);
+  }
+  float sixth = 0.F;  // position on the colour circle, in sixths
+  if (high == c.r) {
+    sixth = static_cast<float>(c.g - c.b) / static_cast<float>(span);
+  } else if (high == c.g) {
+    sixth = 2.F + static_cast<float>(c.b - c.r) / static_cast<float>(span);
+  } else {
+    sixth = 4.F + static_cast<float>(c.r - c.g) / static_cast<float>(span);
+  }
+  const int hue = static_cast<int>(std::floor(sixth * static_cast<float>(kHues) / 6.F + 0.5F));
+  return (hue + kHues) % kHues;
+}
+
+void ColourModel::finish(const GrowOptions& options) {
+  for (std::size_t i = 0; i < counts_.size(); ++i) probabilities_[i] = static_cast<float>(counts_[i]);
+  const auto steps = [](float tolerance, float bin) { return static_cast<int>(std::lround(tolerance / bin)); };
+  blur(probabilities_, 0, kHues, std::min(kHues / 2 - 1, steps(options.hue_tolerance_deg, 360.F / kHues)), true);
+  blur(probabilities_, kHues, kGreys, std::min(kGreys - 1, steps(options.lightness_tolerance, 256.F / kGreys)), false);
+  float total = 0.F;
+  for (const float p : probabilities_) total += p;
+  // A share for the unseen keeps ratios finite.
+  constexpr float kUnseen = 0.05F;
+  for (float& p : probabilities_) p = (total > 0.F ? (1.F - kUnseen) * p / total : 0.F) + kUnseen / kBins;
+}
+
+PersonGrower::PersonGrower(const Frame& frame, const BodyModel& body, const GrowOptions& options)
+    : frame_(frame), body_(body), options_(options), flat_(flat_pixels(frame.depth, frame.camera, options.plane)) {}
+
+Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>& reach) const {
+  Mask out(frame_.depth.width(), frame_.depth.height(), 0);
+  for (std::size_t i = 0; i < rough.parts.size(); ++i) {
+    if (rough.parts[i].state != State::observed || reach[i] <= 0.F) continue;
+    const Eigen::Vector3f& centre = rough.parts[i].centre;
+    // Picture rows and columns that the sphere can project to; nearer than its own radius it may fill the picture.
+    const float nearest = std::max(0.1F, centre.z() - reach[i]);
+    const Eigen::Vector2f middle = frame_.camera.pixel(centre);
+    const float ru =
+        reach[i] / nearest * frame_.camera.fx + std::abs(middle.x() - frame_.camera.cx) * reach[i] / nearest;
+    const float rv =
+        reach[i] / nearest * frame_.camera.fy + std::abs(middle.y() - frame_.camera.cy) * reach[i] / nearest;
+    const int left = std::max(0, static_cast<int>(middle.x() - ru));
+    const int right = std::min(out.width() - 1, static_cast<int>(middle.x() + ru) + 1);
+    const int top = std::max(0, static_cast<int>(middle.y() - rv));
+    const int bottom = std::min(out.height() - 1, static_cast<int>(middle.y() + rv) + 1);
+    for (int v = top; v <= bottom; ++v) {
+      for (int u = left; u <= right; ++u) {
+        const float z = static_cast<float>(frame_.depth(u, v)) * 1e-3F;
+        if (z <= 0.F || out(u, v) != 0) continue;
+        const Eigen::Vector3f p = frame_.camera.point(static_cast<float>(u), static_cast<float>(v), z);
+        if ((p - centre).squaredNorm() <= reach[i] * reach[i]) out(u, v) = 1;
+      }
+    }
+  }
+  return out;
+}
+
+Mask PersonGrower::refused_colours(const Skeleton& rough, const Mask& seeds, const Mask& reach) const {
+  Mask refused(seeds.width(), seeds.height(), 0);
+  if (!options_.use_colour || frame_.colour.empty()) return refused;
+  ColourModel person, rest;
+  int person_count = 0, rest_count = 0;
+  std::vector<std::uint8_t> bins(seeds.size(), 0);
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    bins[i] = static_cast<std::uint8_t>(ColourModel::bin(frame_.colour[i], options_.min_saturation));
+    if (seeds[i] != 0) {
+      person.add(bins[i]);
+      ++person_count;
+    } else if (reach[i] == 0 || flat_[i] != 0) {
+      rest.add(bins[i]);
+      ++rest_count;
+    }
+  }
+  if (person_count < kLeastColourSamples || rest_count < kLeastColourSamples) return refused;
+  person.finish(options_);
+  rest.finish(options_);
+  const Mask any_colour = around_parts(rough, any_colour_radius(rough, body_, options_));
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    if (reach[i] == 0 || seeds[i] != 0 || any_colour[i] != 0) continue;
+    const float elsewhere = std::max(rest.probability(bins[i]), 1.F / ColourModel::kBins);
+    if (std::log(elsewhere / person.probability(bins[i])) > options_.colour_veto) refused[i] = 1;
+  }
+  return refused;
+}
+
+std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const Clusters& clusters) const {
+  const int width = frame_.depth.width();
+  const int height = frame_.depth.height();
+  Mask nobody(width, height, 0);
+  std::vector<Mask> grown(people.size(), nobody);
+  std::vector<Mask> allowed;  // within reach, not refused by colour
+  std::vector<int> owner_of(clusters.items.size(), -1);
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    for (const SkeletonPart& part : people[i].parts) {
+      if (part.cluster >= 0) owner_of[static_cast<std::size_t>(part.cluster)] = static_cast<int>(i);
+    }
+  }
+  struct Front {
+    int pixel;
+    int person;
+  };
+  std::vector<Front> queue;
+  Mask taken = flat_;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    const std::int32_t cluster = clusters.index[i];
+    const int owner = cluster < 0 ? -1 : owner_of[static_cast<std::size_t>(cluster)];
+    if (owner < 0 || taken[i] != 0) continue;
+    taken[i] = 1;
+    grown[static_cast<std::size_t>(owner)][i] = 1;
+    queue.push_back({static_cast<int>(i), owner});
+  }
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    allowed.push_back(around_parts(people[i], reach_of_parts(people[i], body_, options_)));
+    const Mask refused = refused_colours(people[i], grown[i], allowed.back());
+    for (std::size_t k = 0; k < refused.size(); ++k) {
+      if (refused[k] != 0) allowed.back()[k] = 0;
+    }
+  }
+  const auto point = [&](int u, int v) {
+    return frame_.camera.point(static_cast<float>(u), static_cast<float>(v),
+                               static_cast<float>(frame_.depth(u, v)) * 1e-3F);
+  };
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const auto [pixel, person] = queue[head];
+    const int u = pixel % width;
+    const int v = pixel / width;
+    const Eigen::Vector3f here = point(u, v);
+    const float radius = options_.radius_m + options_.radius_per_z2 * here.z() * here.z();
+    const auto who = static_cast<std::size_t>(person);
+    for (int nv = std::max(0, v - 1); nv <= std::min(height - 1, v + 1); ++nv) {
+      for (int nu = std::max(0, u - 1); nu <= std::min(width - 1, u + 1); ++nu) {
+        if (taken(nu, nv) != 0 || allowed[who](nu, nv) == 0) continue;
+        if ((point(nu, nv) - here).squaredNorm() > radius * radius) continue;
+        taken(nu, nv) = 1;
+        grown[who](nu, nv) = 1;
+        queue.push_back({nv * width + nu, person});
+      }
+    }
+  }
+  return grown;
+}
+
+}  // namespace vesalius

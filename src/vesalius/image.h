@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace vesalius {
+
+/// 8-bit colour, sRGB.
+struct Rgb {
+  std::uint8_t r = 0, g = 0, b = 0;
+  friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+
+/// Row-major picture of `width` x `height` values; u counts columns from the left, v rows from the top.
+template <class T>
+class Image {
+ public:
+  Image() = default;
+  Image(int width, int height, T fill = T{})
+      : width_(width),
+        height_(height),
+        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool empty() const { return pixels_.empty(); }
+  std::size_t size() const { return pixels_.size(); }
+
+  T& operator()(int u, int v) { return pixels_[index(u, v)]; }
+  const T& operator()(int u, int v) const { return pixels_[index(u, v)]; }
+  T& operator[](std::size_t i) { return pixels_[i]; }
+  const T& operator[](std::size_t i) const { return pixels_[i]; }
+
+  T* row(int v) { return pixels_.data() + index(0, v); }
+  const T* row(int v) const { return pixels_.data() + index(0, v); }
+  T* data() { return pixels_.data(); }
+  const T* data() const { return pixels_.data(); }
+
+  bool contains(int u, int v) const { return u >= 0 && v >= 0 && u < width_ && v < height_; }
+  template <class U>
+  bool same_size(const Image<U>& other) const {
+    return width_ == other.width() && height_ == other.height();
+  }
+  void fill(T value) { std::fill(pixels_.begin(), pixels_.end(), value); }
+
+  auto begin() { return pixels_.begin(); }
+  auto end() { return pixels_.end(); }
+  auto begin() const { return pixels_.begin(); }
+  auto end() const { return pixels_.end(); }
+  friend bool operator==(const Image&, const Image&) = default;
+
+ private:
+  std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u);
+  }
+
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<T> pixels_;
+};
+
+/// Millimetres along the optical axis; 0 = no reading.
+using DepthImage = Image<std::uint16_t>;
+/// Index of a body part; `kBackground` where there is none.
+using LabelImage = Image<std::uint8_t>;
+/// Non-zero inside.
+using Mask = Image<std::uint8_t>;
+using ColourImage = Image<Rgb>;
+
+/// Label of pixels that belong to no body part, and body index of pixels that belong to no person.
+inline constexpr std::uint8_t kBackground = 255;
+
+}  // namespace vesalius

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vesalius/camera.h"
+#include "vesalius/forest.h"
+#include "vesalius/image.h"
+#include "vesalius/options.h"
+
+namespace vesalius {
+
+/// P(c | x) of every pixel as sums over the trees of probabilities in 1/255: `classes` values a pixel, pixel after
+/// pixel. Body parts first, then the background where the forest has one. All zero where depth has no reading.
+struct Posteriors {
+  int width = 0;
+  int height = 0;
+  int classes = 0;
+  int trees = 0;  ///< sums / (255 * trees) are probabilities
+  std::vector<std::uint16_t> sums;
+
+  const std::uint16_t* at(int u, int v) const {
+    return sums.data() + (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)) *
+                             static_cast<std::size_t>(classes);
+  }
+  std::uint16_t* at(int u, int v) { return const_cast<std::uint16_t*>(std::as_const(*this).at(u, v)); }
+};
+
+struct LabelOptions {
+  float background_weight = 1.F;  ///< multiplies the background's posterior; a run-time correction of its prior
+  float person_weight = 1.F;      ///< multiplies the parts' posteriors
+  float unsure_margin = 0.05F;    ///< difference in probability below which neighbours decide
+};
+void visit_options(const std::string& prefix, LabelOptions& options, OptionVisitor& visitor);
+
+/// Gives every pixel of a depth image its part posteriors. `Forest` is the one shipped; tests and experiments bring
+/// their own (the truth, a network).
+class PixelLabeller {
+ public:
+  virtual ~PixelLabeller() = default;
+  virtual Posteriors label(const DepthImage& depth, const Camera& camera) const = 0;
+  virtual const BodyModel& body() const = 0;
+  virtual bool has_background() const = 0;
+  /// Whether posteriors carry more than a vote per tree.
+  virtual bool has_distributions() const = 0;
+};
+
+/// Section 4.3, eq. 2: the mean over trees of the distributions in the leaves that each pixel reaches.
+class ForestLabeller : public PixelLabeller {
+ public:
+  /// Throws Error if the forest is inconsistent (check(Forest)).
+  explicit ForestLabeller(Forest forest);
+  Posteriors label(const DepthImage& depth, const Camera& camera) const override;
+  const BodyModel& body() const override { return forest_.body; }
+  bool has_background() const override { return forest_.has_background; }
+  bool has_distributions() const override { return distributions_; }
+  const Forest& forest() const { return forest_; }
+
+ private:
+  Forest forest_;
+  bool distributions_;
+};
+
+/// Which classes a pixel may take.
+struct LabelChoice {
+  int part_count = 0;
+  bool has_background = false;
+  /// Optional: outside it pixels are background, inside the best part wins whatever the background says.
+  const Mask* prior = nullptr;
+};
+
+/// The most likely class of each pixel, background written as kBackground. A pixel whose two best classes lie closer
+/// than `unsure_margin` (in probability) takes that one of the near-best which most of its eight neighbours have
+/// (section 4.3). Pixels without reading are background.
+LabelImage choose_labels(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice,
+                         const LabelOptions& options);
+
+}  // namespace vesalius

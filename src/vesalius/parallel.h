@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+namespace vesalius {
+
+/// Runs `work(i)` for i in [0, count), in any order, on all threads allowed. Results must not depend on the order.
+/// The first exception thrown by any call is rethrown.
+void parallel_for(int count, const std::function<void(int)>& work);
+
+/// Splits [0, count) into ranges of about `grain` and runs `work(begin, end)` on each.
+void parallel_ranges(int count, int grain, const std::function<void(int, int)>& work);
+
+/// While it lives, parallel work of this process uses at most `threads` threads (1 = none beside the caller;
+/// 0 = as many as the machine has). Nest at will: the smallest limit holds.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Threads that parallel work may use now.
+int thread_count();
+
+}  // namespace vesalius

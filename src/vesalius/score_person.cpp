@@ -1,0 +1,128 @@
+#include "vesalius/score_person.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace vesalius {
+namespace {
+
+/// Readings looked through for one beyond a hole: silhouettes have a rim without any.
+constexpr int kRim = 5;
+
+bool near_part(const Skeleton& skeleton, int part, const Eigen::Vector3f& point, float radius_m) {
+  const SkeletonPart& found = skeleton.parts[static_cast<std::size_t>(part)];
+  return found.state == State::observed && (found.centre - point).squaredNorm() <= radius_m * radius_m;
+}
+
+float share_explained(const Frame& frame, const Mask& mask, const LabelImage& labels, const Skeleton& skeleton,
+                      const BodyModel& body, float radius_m) {
+  long pixels = 0;
+  long explained = 0;
+  for (int v = 0; v < mask.height(); ++v) {
+    for (int u = 0; u < mask.width(); ++u) {
+      if (mask(u, v) == 0) continue;
+      ++pixels;
+      const int label = labels(u, v);
+      if (label >= body.part_count()) continue;
+      const Eigen::Vector3f point = frame.camera.point(static_cast<float>(u), static_cast<float>(v),
+                                                       static_cast<float>(frame.depth(u, v)) * 1e-3F);
+      // Seen from the side a labelling mixes left and right; either is an explanation.
+      const int mirror = body.parts[static_cast<std::size_t>(label)].mirror;
+      if (near_part(skeleton, label, point, radius_m) || near_part(skeleton, mirror, point, radius_m)) ++explained;
+    }
+  }
+  return pixels > 0 ? static_cast<float>(explained) / static_cast<float>(pixels) : 0.F;
+}
+
+float share_open(const Frame& frame, const Mask& mask, float step_m) {
+  const int step_mm = static_cast<int>(std::lround(step_m * 1e3F));
+  constexpr std::array<std::array<int, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+  long open = 0;
+  long closed = 0;
+  for (int v = 0; v < mask.height(); ++v) {
+    for (int u = 0; u < mask.width(); ++u) {
+      if (mask(u, v) == 0) continue;
+      for (const auto& [du, dv] : kSides) {
+        if (!mask.contains(u + du, v + dv) || mask(u + du, v + dv) != 0) continue;
+        int beyond = 0;
+        for (int k = 1; k <= kRim && beyond == 0 && mask.contains(u + k * du, v + k * dv); ++k) {
+          beyond = frame.depth(u + k * du, v + k * dv);
+        }
+        const int here = frame.depth(u, v);
+        if (beyond == 0 || beyond > here + step_mm) {
+          ++open;
+        } else if (beyond >= here - step_mm) {
+          ++closed;  // nearer: occluded, says nothing
+        }
+      }
+    }
+  }
+  return open + closed > 0 ? static_cast<float>(open) / static_cast<float>(open + closed) : 0.F;
+}
+
+float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
+  std::vector<char> core(body.parts.size(), 0);
+  for (const int root : body.roots) {
+    core[static_cast<std::size_t>(root)] = 1;
+    for (const BodyLink& link : body.links) {
+      if (link.parent == root) core[static_cast<std::size_t>(link.child)] = 1;
+      if (link.child == root) core[static_cast<std::size_t>(link.parent)] = 1;
+    }
+  }
+  float all = 0.F;
+  float found = 0.F;
+  for (std::size_t i = 0; i < core.size(); ++i) {
+    if (core[i] == 0) continue;
+    all += 1.F;
+    if (skeleton.parts[i].state == State::observed) found += 1.F;
+  }
+  return all > 0.F ? found / all : 0.F;
+}
+
+float share_of_area(const Skeleton& skeleton, const BodyModel& body) {
+  float seen = 0.F;
+  float typical = 0.F;
+  for (std::size_t i = 0; i < skeleton.parts.size(); ++i) {
+    if (skeleton.parts[i].state != State::observed) continue;
+    seen += skeleton.parts[i].area_m2;
+    typical += body.parts[i].typical_area_m2;
+  }
+  return typical > 0.F ? std::min(1.F, seen / typical) : 0.F;
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, ScoreOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "likelihood-weight", o.likelihood_weight,
+                 {"", -100.0, 100.0, "Weight of the skeleton's likelihood in a person's score."});
+  visitor.option(prefix + "explained-weight", o.explained_weight,
+                 {"", -100.0, 100.0, "Weight of the share of the mask that the skeleton explains."});
+  visitor.option(prefix + "open-weight", o.open_weight,
+                 {"", -100.0, 100.0, "Weight of the share of the outline that stands free."});
+  visitor.option(prefix + "core-weight", o.core_weight,
+                 {"", -100.0, 100.0, "Weight of the share of head, neck and chest parts found."});
+  visitor.option(prefix + "substance-weight", o.substance_weight,
+                 {"", -100.0, 100.0, "Weight of the found parts' visible area over their typical area."});
+  visitor.option(prefix + "bias", o.bias, {"", -100.0, 100.0, "Constant of the score."});
+  visitor.option(prefix + "explained-radius", o.explained_radius_m,
+                 {"m", 0.0, 10.0, "A pixel is explained by an observed part of its label this near."});
+  visitor.option(prefix + "open-step", o.open_step_m,
+                 {"m", 0.0, 10.0, "An outline stands free where what lies behind is this much further."});
+}
+
+Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Skeleton& skeleton,
+                         const BodyModel& body, const ScoreOptions& options) {
+  return {skeleton.score / static_cast<float>(body.part_count()),
+          share_explained(frame, mask, labels, skeleton, body, options.explained_radius_m),
+          share_open(frame, mask, options.open_step_m), share_of_core(skeleton, body), share_of_area(skeleton, body)};
+}
+
+float person_score(const Evidence& e, const ScoreOptions& o) {
+  const float sum = o.likelihood_weight * e.likelihood + o.explained_weight * e.explained + o.open_weight * e.open +
+                    o.core_weight * e.core + o.substance_weight * e.substance + o.bias;
+  return 1.F / (1.F + std::exp(-sum));
+}
+
+}  // namespace vesalius

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
+#include "vesalius/options.h"
+#include "vesalius/search_skeletons.h"
+
+namespace vesalius {
+
+struct ScoreOptions {
+  float likelihood_weight = 9.5F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
+  float explained_weight = 5.4F;   ///< of the share of the mask that the skeleton explains
+  float open_weight = 6.9F;        ///< of the share of the outline that stands free
+  float core_weight = 10.8F;       ///< of the share of head, neck and chest parts found
+  float substance_weight = 0.F;    ///< of the parts' visible area, as a share of what they typically show
+  float bias = -18.5F;
+  float explained_radius_m = 0.25F;  ///< a pixel is explained by an observed part of its label this near
+  float open_step_m = 0.1F;          ///< an outline stands free where what lies behind is this much further
+};
+void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisitor& visitor);
+
+/// What speaks for a grown mask and its skeleton being a person; all 0-1.
+struct Evidence {
+  float likelihood = 0.F;  ///< accumulated likelihood of the skeleton over the number of the body's parts
+  float explained = 0.F;   ///< share of the mask whose label's part, or its mirror partner, was found nearby
+  float open = 0.F;        ///< share of the outline, occluded and cut-off outline apart, with nothing close behind
+  float core = 0.F;        ///< share found of the search's roots and the parts next to them
+  float substance = 0.F;   ///< visible area of the found parts over their typical area
+};
+
+/// `labels` are the part labels inside `mask`; images of the frame's size.
+Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Skeleton& skeleton,
+                         const BodyModel& body, const ScoreOptions& options);
+
+/// How surely it is a person, 0-1: a logistic function whose weights were fitted to frames with and without people.
+float person_score(const Evidence& evidence, const ScoreOptions& options);
+
+}  // namespace vesalius

@@ -1,0 +1,84 @@
+#include "vesalius/smooth_labels.h"
+
+#include <array>
+#include <cstdlib>
+
+#include "vesalius/parallel.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kRowGrain = 8;
+
+/// Calls `use(nu, nv)` for every neighbour of (u, v), itself included, inside window, picture and depth gate.
+template <class Use>
+void for_neighbours(const DepthImage& depth, int u, int v, const SmoothOptions& options, Use&& use) {
+  const int reach = options.window / 2;
+  const int z = depth(u, v);
+  const int top = std::max(0, v - reach), bottom = std::min(depth.height() - 1, v + reach);
+  const int left = std::max(0, u - reach), right = std::min(depth.width() - 1, u + reach);
+  for (int nv = top; nv <= bottom; ++nv) {
+    const std::uint16_t* row = depth.row(nv);
+    for (int nu = left; nu <= right; ++nu) {
+      if (row[nu] != 0 && std::abs(row[nu] - z) <= options.depth_gate_mm) use(nu, nv);
+    }
+  }
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "window", o.window, {"px", 1, 31, "Side of the smoothing window; an odd number, 1 = none."});
+  visitor.option(prefix + "depth-gate", o.depth_gate_mm,
+                 {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
+  visitor.option(prefix + "mode", o.mode,
+                 {"", 0, 1, "Smooth labels by their mode even if the forest has distributions."});
+}
+
+LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
+  LabelImage out(labels.width(), labels.height(), kBackground);
+  parallel_ranges(labels.height(), kRowGrain, [&](int begin, int end) {
+    std::array<std::uint16_t, 256> count{};
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < labels.width(); ++u) {
+        if (depth(u, v) == 0) continue;
+        for_neighbours(depth, u, v, options, [&](int nu, int nv) { ++count[labels(nu, nv)]; });
+        std::uint8_t best = labels(u, v);
+        for_neighbours(depth, u, v, options, [&](int nu, int nv) {
+          const std::uint8_t label = labels(nu, nv);
+          const bool beats_tie = count[label] == count[best] && best != labels(u, v) && label < best;
+          if (count[label] > count[best] || beats_tie) best = label;
+        });
+        out(u, v) = best;
+        for_neighbours(depth, u, v, options, [&](int nu, int nv) { count[labels(nu, nv)] = 0; });
+      }
+    }
+  });
+  return out;
+}
+
+Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options) {
+  Posteriors out{posteriors.width, posteriors.height, posteriors.classes, posteriors.trees, {}};
+  out.sums.assign(posteriors.sums.size(), 0);
+  const auto classes = static_cast<std::size_t>(posteriors.classes);
+  parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
+    std::vector<std::uint32_t> total(classes);
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < posteriors.width; ++u) {
+        if (depth(u, v) == 0) continue;
+        std::fill(total.begin(), total.end(), 0U);
+        std::uint32_t neighbours = 0;
+        for_neighbours(depth, u, v, options, [&](int nu, int nv) {
+          const std::uint16_t* sums = posteriors.at(nu, nv);
+          for (std::size_t c = 0; c < classes; ++c) total[c] += sums[c];
+          ++neighbours;
+        });
+        std::uint16_t* mean = out.at(u, v);
+        for (std::size_t c = 0; c < classes; ++c) mean[c] = static_cast<std::uint16_t>(total[c] / neighbours);
+      }
+    }
+  });
+  return out;
+}
+
+}  // namespace vesalius

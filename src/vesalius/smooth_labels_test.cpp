@@ -1,0 +1,111 @@
+#include "vesalius/smooth_labels.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "vesalius/parallel.h"
+#include "vesalius/random.h"
+
+namespace vesalius {
+namespace {
+
+struct Picture {
+  LabelImage labels{37, 23};
+  DepthImage depth{37, 23};
+};
+
+Picture random_picture(std::uint64_t seed) {
+  Random random(seed);
+  Picture p;
+  for (auto& l : p.labels) l = random.below(5) == 0 ? kBackground : static_cast<std::uint8_t>(random.below(4));
+  for (auto& z : p.depth) z = random.below(6) == 0 ? 0 : static_cast<std::uint16_t>(1000 + random.below(700));
+  return p;
+}
+
+template <class Use>
+void neighbours(const DepthImage& depth, int u, int v, const SmoothOptions& o, Use use) {
+  for (int dv = -o.window / 2; dv <= o.window / 2; ++dv) {
+    for (int du = -o.window / 2; du <= o.window / 2; ++du) {
+      if (!depth.contains(u + du, v + dv) || depth(u + du, v + dv) == 0) continue;
+      if (std::abs(depth(u + du, v + dv) - depth(u, v)) <= o.depth_gate_mm) use(u + du, v + dv);
+    }
+  }
+}
+
+std::uint8_t slow_mode(const Picture& p, int u, int v, const SmoothOptions& o) {
+  if (p.depth(u, v) == 0) return kBackground;
+  std::map<std::uint8_t, int> count;
+  neighbours(p.depth, u, v, o, [&](int nu, int nv) { ++count[p.labels(nu, nv)]; });
+  int most = 0;
+  for (const auto& [label, n] : count) most = std::max(most, n);
+  if (count[p.labels(u, v)] == most) return p.labels(u, v);
+  for (const auto& [label, n] : count) {
+    if (n == most) return label;  // lowest first
+  }
+  return kBackground;
+}
+
+class Windows : public testing::TestWithParam<int> {};
+
+TEST_P(Windows, ModeAgreesWithCounting) {
+  const SmoothOptions options{GetParam(), 300, true};
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const Picture p = random_picture(seed);
+    const LabelImage fast = mode_filter(p.labels, p.depth, options);
+    for (int v = 0; v < p.depth.height(); ++v) {
+      for (int u = 0; u < p.depth.width(); ++u) {
+        ASSERT_EQ(int{fast(u, v)}, int{slow_mode(p, u, v, options)}) << "seed " << seed << " at " << u << ' ' << v;
+      }
+    }
+  }
+}
+
+TEST_P(Windows, MeanAgreesWithSumming) {
+  const SmoothOptions options{GetParam(), 300, false};
+  const Picture p = random_picture(9);
+  Posteriors in{37, 23, 6, 3, {}};
+  Random random(1);
+  for (std::size_t i = 0; i < p.depth.size() * 6; ++i) {
+    in.sums.push_back(p.depth[i / 6] == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(random.below(766)));
+  }
+  const Posteriors out = mean_filter(in, p.depth, options);
+  EXPECT_EQ(out.trees, 3);
+  for (int v = 0; v < p.depth.height(); ++v) {
+    for (int u = 0; u < p.depth.width(); ++u) {
+      for (int c = 0; c < 6; ++c) {
+        int sum = 0, n = 0;
+        if (p.depth(u, v) != 0) {
+          neighbours(p.depth, u, v, options, [&](int nu, int nv) {
+            sum += in.at(nu, nv)[c];
+            ++n;
+          });
+        }
+        ASSERT_EQ(out.at(u, v)[c], n > 0 ? sum / n : 0) << u << ' ' << v << " class " << c;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Windows, testing::Values(1, 3, 5, 9));
+
+TEST(ModeFilter, RemovesASpeckleButNotAcrossADepthStep) {
+  LabelImage labels(7, 7, 3);
+  DepthImage depth(7, 7, 1500);
+  labels(3, 3) = 8;
+  EXPECT_EQ(mode_filter(labels, depth, {})(3, 3), 3);
+  depth(3, 3) = 1900;  // 400 mm behind: alone in its gate
+  EXPECT_EQ(mode_filter(labels, depth, {})(3, 3), 8);
+}
+
+TEST(ModeFilter, SameBytesForAnyThreadCount) {
+  const Picture p = random_picture(4);
+  const ThreadLimit one(1);
+  const LabelImage alone = mode_filter(p.labels, p.depth, {});
+  const ThreadLimit many(8);
+  EXPECT_EQ(alone, mode_filter(p.labels, p.depth, {}));
+}
+
+}  // namespace
+}  // namespace vesalius
