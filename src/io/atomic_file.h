@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace vesalius {
+
+/// A file being written beside its final place: `commit` renames it there, the destructor removes what was not
+/// committed. For writers that need a path of their own; others use `write_file_atomically`.
+class TemporaryFile {
+ public:
+  /// The temporary name is the final one, ".tmp", a number unique on this machine, and `extension`.
+  explicit TemporaryFile(std::string final_path, const std::string& extension = "");
+  ~TemporaryFile();
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  const std::string& final_path() const { return final_path_; }
+  /// Throws Error naming the final path when it cannot be renamed.
+  void commit();
+
+ private:
+  std::string final_path_;
+  std::string path_;
+  bool committed_ = false;
+};
+
+/// Writes `bytes` so that a reader sees the old file or the whole new one; what is no regular file (a pipe, a device)
+/// is written directly. Throws Error with the path and the system's reason, leaving no temporary file.
+void write_file_atomically(const std::string& path, std::string_view bytes);
+
+}  // namespace vesalius
