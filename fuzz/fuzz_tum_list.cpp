@@ -1,0 +1,17 @@
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "io/tum.h"
+#include "vesalius/error.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    const std::size_t half = size / 2;
+    vesalius::associate(vesalius::parse_tum_list(text.substr(0, half), "depth.txt"),
+                        vesalius::parse_tum_list(text.substr(half), "rgb.txt"), 0.02);
+  } catch (const vesalius::Error&) {
+  }
+  return 0;
+}

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace vesalius::cli {
+
+// Each adds its subcommand to the program, with a callback that does the work and throws Error where it cannot.
+
+void add_detect(CLI::App& program);
+void add_info(CLI::App& program);
+void add_convert(CLI::App& program);
+void add_options(CLI::App& program);
+void add_completion(CLI::App& program);
+
+}  // namespace vesalius::cli

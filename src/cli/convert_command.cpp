@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/progress.h"
+#include "cli/source_flags.h"
+#include "io/model_file.h"
+#include "io/write_frames.h"
+#include "vesalius/error.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr const char* kModelExtension = ".forest";
+
+struct Arguments {
+  std::vector<std::string> paths;
+  std::string format;
+  SourceOptions camera;
+  bool quiet = false;
+};
+
+void convert_trees(std::vector<std::string> paths, bool quiet) {
+  const std::string out = paths.back();
+  paths.pop_back();
+  if (!out.ends_with(kModelExtension)) {
+    throw UsageError(
+        fmt::format("{}: expected a name that ends in {} (frames are converted with --to)", out, kModelExtension));
+  }
+  const Forest forest = import_text_trees(paths);
+  save_model(forest, out);
+  if (!quiet) fmt::print(stderr, "{}: {} trees\n", out, forest.trees.size());
+}
+
+void convert_frames(const Arguments& arguments) {
+  if (arguments.paths.size() != 2) throw UsageError("--to expects a source and one folder to write");
+  const FrameFormat format = parse_frame_format(arguments.format);
+  const auto source = open_source(arguments.paths[0], arguments.camera);
+  const auto writer = make_frame_writer(format, arguments.paths[1]);
+  if (!arguments.quiet) {
+    for (const std::string& note : source->notes()) fmt::print(stderr, "note: {}\n", note);
+  }
+  Progress progress(source->size(), !arguments.quiet);
+  while (const auto frame = source->next()) {
+    writer->write(*frame);
+    progress.step();
+  }
+  writer->close();
+  progress.clear();
+  if (!arguments.quiet) fmt::print(stderr, "{}: {} frames\n", arguments.paths[1], progress.done());
+}
+
+}  // namespace
+
+void add_convert(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("convert", "Turn text trees into a model, or frames into another layout");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("PATH", arguments->paths,
+                   "Text trees (.txt or .txt.bz2) and the .forest to write; with --to a source and a folder")
+      ->required()
+      ->expected(2, 257);
+  command->add_option("--to", arguments->format, "Write frames in this layout")
+      ->check(CLI::IsMember({"folder", "tum", "pcd"}));
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  add_camera_flags(*command, arguments->camera);
+  command->footer(R"(
+Examples:
+  vesalius convert tree_1.txt.bz2 tree_2.txt.bz2 released.forest
+  vesalius convert tum:walking frames/ --to folder)");
+  command->callback([arguments] {
+    if (arguments->format.empty()) {
+      convert_trees(arguments->paths, arguments->quiet);
+    } else {
+      convert_frames(*arguments);
+    }
+  });
+}
+
+}  // namespace vesalius::cli

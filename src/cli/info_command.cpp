@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/text_sink.h"
+#include "io/model_file.h"
+#include "io/read_file.h"
+#include "vesalius/parallel.h"
+
+namespace vesalius::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> cpu_features() {
+  std::vector<std::string> found;
+#if defined(__x86_64__)
+  const auto add = [&](const char* name, int supported) {
+    if (supported != 0) found.emplace_back(name);
+  };
+  add("sse4.2", __builtin_cpu_supports("sse4.2"));
+  add("avx", __builtin_cpu_supports("avx"));
+  add("avx2", __builtin_cpu_supports("avx2"));
+  add("avx512f", __builtin_cpu_supports("avx512f"));
+#endif
+  return found;
+}
+
+Json program_facts() {
+  return {
+      {"program", "vesalius"},
+      {"version", VESALIUS_VERSION},
+      {"build", VESALIUS_BUILD_TYPE},
+      {"compiler",
+#if defined(__clang__)
+       std::string("clang ") + __clang_version__
+#else
+       std::string("gcc ") + __VERSION__
+#endif
+      },
+      {"cpu_features", cpu_features()},
+      {"threads", thread_count()},
+      {"model_format", kModelVersion},
+      {"parts_of_this_build",
+       {{"openni2", "absent"}, {"realsense", "absent"}, {"k4a", "absent"}, {"cuda", "absent"}, {"viewer", "absent"}}}};
+}
+
+Json tree_facts(const Tree& tree) {
+  return {{"depth", depth(tree)}, {"nodes", tree.nodes.size()}, {"leaves", tree.leaves.size()}};
+}
+
+Json body_facts(const BodyModel& body) {
+  Json parts = Json::array();
+  for (const BodyPart& part : body.parts) parts.push_back(part.name);
+  Json sets = Json::array();
+  for (const JointSet& set : body.joint_sets) sets.push_back(set.name);
+  return {{"name", body.name}, {"parts", std::move(parts)}, {"joint_sets", std::move(sets)}};
+}
+
+Json model_facts(const std::string& path) {
+  const std::string bytes = read_file(path);
+  const Forest forest = parse_model(bytes, path);
+  Json trees = Json::array();
+  for (const Tree& tree : forest.trees) trees.push_back(tree_facts(tree));
+  const FeatureConvention& c = forest.convention;
+  return {{"model", path},
+          {"size_bytes", bytes.size()},
+          {"checksum", model_checksum(bytes)},
+          {"recipe", forest.recipe},
+          {"body", body_facts(forest.body)},
+          {"background_class", forest.has_background},
+          {"distributions", has_distributions(forest)},
+          {"features",
+           {{"offset_unit_px_m", c.offset_unit},
+            {"reference_focal_px", c.reference_focal_px},
+            {"hole_mm", c.hole_mm},
+            {"outside_mm", c.outside_mm},
+            {"clip_mm", c.clip_mm}}},
+          {"trees", std::move(trees)}};
+}
+
+std::string plain(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_object()) return value.dump();
+  std::string text;
+  for (const auto& [key, inner] : value.items()) text += (text.empty() ? "" : ", ") + key + " " + plain(inner);
+  return text;
+}
+
+/// "key: value" lines, inner objects indented, lists of words on one line.
+void append_text(std::string& text, const Json& object, const std::string& indent) {
+  for (const auto& [key, value] : object.items()) {
+    text += indent + key + ":";
+    if (value.is_object()) {
+      text += '\n';
+      append_text(text, value, indent + "  ");
+      continue;
+    }
+    if (value.is_array()) {
+      for (const Json& item : value) text += (item.is_object() ? "\n" + indent + "  " : " ") + plain(item);
+    } else {
+      text += " " + plain(value);
+    }
+    text += '\n';
+  }
+}
+
+}  // namespace
+
+void add_info(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("info", "Describe this build, or a model");
+  const auto model = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
+  command->add_option("MODEL", *model, "Model file; without it the build is described");
+  command->add_flag("--json", *json, "As JSON");
+  command->callback([model, json] {
+    const Json facts = model->empty() ? program_facts() : model_facts(*model);
+    std::string text;
+    if (*json) {
+      text = facts.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    } else {
+      append_text(text, facts, "");
+    }
+    print(text);
+  });
+}
+
+}  // namespace vesalius::cli

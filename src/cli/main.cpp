@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/text_sink.h"
+#include "io/options_file.h"
+#include "vesalius/error.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+int complain(std::string message, int exit_code) {
+  std::ranges::replace(message, '\n', ' ');
+  std::fprintf(stderr, "vesalius: %s\n", message.c_str());
+  return exit_code;
+}
+
+void describe(CLI::App& program) {
+  program.name("vesalius");
+  program.description(
+      "Finds people in RGB-D frames: 3-D body parts and joints, a part label for every pixel, a mask per person.");
+  program.set_version_flag("--version", "vesalius " VESALIUS_VERSION, "Print the version and end");
+  program.get_option("--help")->description("Print this help and end");
+  program.footer(R"(
+Examples:
+  vesalius detect frames/ --model capsule.forest                    what is found, a line per frame
+  vesalius detect frames/ --model capsule.forest --json people.jsonl --out pictures/
+  vesalius info capsule.forest                                      what is in a model
+  vesalius detect --help                                            everything about one command
+
+Exit codes: 0 done, 1 failed, 2 wrong usage.)");
+  program.require_subcommand(1);
+  add_detect(program);
+  add_info(program);
+  add_convert(program);
+  add_options(program);
+  add_completion(program);
+}
+
+std::vector<std::string> names_in(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// What to say of a command line that CLI11 refused. Of a misspelt word it may only say what it misses instead.
+std::string explain(const CLI::App& program, const CLI::ParseError& error) {
+  const auto chosen = program.get_subcommands();
+  const CLI::App& command = chosen.empty() ? program : *chosen.front();
+  const std::string help = fmt::format(" (see vesalius {}--help)", chosen.empty() ? "" : command.get_name() + " ");
+  const std::vector<std::string> unknown = command.remaining();
+  if (unknown.empty()) return error.what() + help;
+  const std::string nearest = nearest_name(unknown.front(), names_in(command));
+  return fmt::format("unknown argument {}{}{}", unknown.front(),
+                     nearest.empty() ? "" : fmt::format(", did you mean {}?", nearest), help);
+}
+
+int run(int argc, char** argv) {
+  CLI::App program;
+  describe(program);
+  try {
+    if (argc < 2) {
+      std::fputs(program.help().c_str(), stderr);
+      return kUsage;
+    }
+    program.parse(argc, argv);
+    finish_stdout();
+    return 0;
+  } catch (const CLI::Success& e) {  // --help and --version
+    program.exit(e);
+    finish_stdout();
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    return complain(explain(program, e), kUsage);
+  }
+}
+
+int guarded(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const BrokenPipe&) {
+    return kFailed;  // the reader left: nobody is there to be told
+  } catch (const UsageError& e) {
+    return complain(e.what(), kUsage);
+  } catch (const Error& e) {
+    return complain(e.what(), kFailed);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory", kFailed);
+  } catch (const std::exception& e) {
+    return complain(std::string("internal error: ") + e.what(), kFailed);
+  }
+}
+
+}  // namespace
+}  // namespace vesalius::cli
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // so that a closed pipe unwinds and temporary files go
+  return vesalius::cli::guarded(argc, argv);
+}

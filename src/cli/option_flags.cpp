@@ -1,0 +1,82 @@
+#include "cli/option_flags.h"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+namespace vesalius::cli {
+
+struct OptionFlags::Flag {
+  const CLI::Option* option;
+  std::variant<const float*, const int*, const bool*> value;
+};
+
+namespace {
+
+constexpr const char* kHidden = "";
+
+std::string described(const OptionInfo& info) {
+  const std::string unit = *info.unit == '\0' ? "" : fmt::format(" {}", info.unit);
+  return fmt::format("{} ({} to {}{})", info.help, info.low, info.high, unit);
+}
+
+template <class Flag>
+class Adder : public OptionVisitor {
+ public:
+  Adder(CLI::App& command, std::vector<Flag>& flags) : command_(command), flags_(flags) {}
+
+  void option(const std::string& name, float& value, const OptionInfo& info) override {
+    keep(command_.add_option("--" + name, value, described(info)), &value);
+  }
+  void option(const std::string& name, int& value, const OptionInfo& info) override {
+    keep(command_.add_option("--" + name, value, described(info)), &value);
+  }
+  void option(const std::string& name, bool& value, const OptionInfo& info) override {
+    keep(command_.add_flag(fmt::format("--{0},!--no-{0}", name), value, info.help), &value);
+  }
+
+ private:
+  template <class T>
+  void keep(CLI::Option* option, const T* value) {
+    option->group(kHidden);
+    flags_.push_back({option, value});
+  }
+
+  CLI::App& command_;
+  std::vector<Flag>& flags_;
+};
+
+/// Visits in the order in which the flags were added.
+template <class Flag>
+class Copier : public OptionVisitor {
+ public:
+  explicit Copier(const std::vector<Flag>& flags) : next_(flags.begin()) {}
+  void option(const std::string& /*name*/, float& value, const OptionInfo& /*info*/) override { copy(value); }
+  void option(const std::string& /*name*/, int& value, const OptionInfo& /*info*/) override { copy(value); }
+  void option(const std::string& /*name*/, bool& value, const OptionInfo& /*info*/) override { copy(value); }
+
+ private:
+  template <class T>
+  void copy(T& value) {
+    if (next_->option->count() > 0) value = *std::get<const T*>(next_->value);
+    ++next_;
+  }
+
+  typename std::vector<Flag>::const_iterator next_;
+};
+
+}  // namespace
+
+OptionFlags::OptionFlags(CLI::App& command) {
+  Adder<Flag> adder(command, flags_);
+  visit_options("", values_, adder);
+}
+
+OptionFlags::~OptionFlags() = default;
+
+void OptionFlags::apply(DetectOptions& options) const {
+  Copier<Flag> copier(flags_);
+  visit_options("", options, copier);
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,44 @@
+#include "cli/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace vesalius::cli {
+namespace {
+
+constexpr double kTerminalPeriod_s = 0.1;
+constexpr double kPlainPeriod_s = 10.0;
+
+}  // namespace
+
+Progress::Progress(int total, bool shown) : total_(total), shown_(shown), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() { clear(); }
+
+double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+void Progress::clear() {
+  if (width_ > 0) fmt::print(stderr, "\r{:{}}\r", "", width_);
+  width_ = 0;
+}
+
+void Progress::step() {
+  ++done_;
+  const Clock::time_point now = Clock::now();
+  const double waited = std::chrono::duration<double>(now - last_shown_).count();
+  if (!shown_ || waited < (terminal_ ? kTerminalPeriod_s : kPlainPeriod_s)) return;
+  last_shown_ = now;
+  const double rate = done_ / seconds();
+  std::string line = fmt::format("{} frames, {:.1f} frames/s", done_, rate);
+  if (total_ >= 0) {
+    line = fmt::format("{} of {} frames, {:.1f} frames/s, {:.0f} s left", done_, total_, rate, (total_ - done_) / rate);
+  }
+  clear();
+  fmt::print(stderr, "{}{}", line, terminal_ ? "" : "\n");
+  if (terminal_) width_ = line.size();
+  std::fflush(stderr);
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,24 @@
+#include "cli/source_flags.h"
+
+namespace vesalius::cli {
+
+void add_camera_flags(CLI::App& command, SourceOptions& options) {
+  const std::string group = "Camera, where the files do not say";
+  const auto add = [&](const char* name, std::optional<float>& value, const char* unit, const char* help) {
+    return command.add_option(name, value, help)->type_name(unit)->group(group);
+  };
+  add("--fx", options.fx, "PX", "Focal length, horizontal")->check(CLI::PositiveNumber);
+  add("--fy", options.fy, "PX", "Focal length, vertical (default: fx)")->check(CLI::PositiveNumber);
+  add("--cx", options.cx, "PX", "Principal point, column (default: centre)");
+  add("--cy", options.cy, "PX", "Principal point, row (default: centre)");
+  add("--depth-scale", options.depth_scale, "N", "Stored depth units per metre: 1000 = millimetres, 5000 = TUM")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--camera", options.camera_file, "meta.json or ROS camera_info YAML")
+      ->type_name("FILE")
+      ->group(group);
+  command.add_option("--colour,--color", options.colour_file, "Colour picture of a single depth PNG")
+      ->type_name("FILE")
+      ->group(group);
+}
+
+}  // namespace vesalius::cli

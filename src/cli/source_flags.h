@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "io/open_source.h"
+
+namespace vesalius::cli {
+
+/// SOURCE and what its files may leave open: --fx --fy --cx --cy --depth-scale --camera --colour.
+void add_camera_flags(CLI::App& command, SourceOptions& options);
+
+/// What SOURCE may be, for --help.
+inline constexpr const char* kSourceHelp =
+    "Frames: a folder (depth/*.png with meta.json or camera_info.yaml, TUM RGB-D, PNG or PCD files), a 16-bit depth "
+    "PNG "
+    "or an organised PCD file; tum:FOLDER:SCALE and the like say which";
+
+}  // namespace vesalius::cli

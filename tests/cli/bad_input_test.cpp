@@ -1,0 +1,116 @@
+#include <gmock/gmock.h>
+
+#include "io/image_file.h"
+#include "run_program.h"
+#include "small_world.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class BadInput : public SmallWorld {
+ protected:
+  /// One line on standard error, nothing on standard output, no file left behind.
+  static void expect_refused(const Outcome& run, int exit_code, const std::string& reason) {
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_THAT(run.err, StartsWith("vesalius: "));
+    EXPECT_THAT(run.err, HasSubstr(reason));
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+  }
+  static void detect(const std::string& source, const std::string& used_model, const std::string& more, int exit_code,
+                     const std::string& reason) {
+    SCOPED_TRACE(source + " " + used_model + more);
+    expect_refused(run_program("detect " + source + " -q -m " + used_model + more), exit_code, reason);
+  }
+};
+
+TEST_F(BadInput, Models) {
+  const std::string good = bytes_of(model());
+  write("cut.forest", good.substr(0, good.size() / 2));
+  std::string newer = good;
+  newer[8] = 2;
+  write("newer.forest", newer);
+  std::string damaged = good;
+  damaged[good.size() / 2] = static_cast<char>(damaged[good.size() / 2] ^ 1);
+  write("damaged.forest", damaged);
+  write("empty.forest", "");
+  write("text.forest", "20\n 1 2 3 4 5\n");
+  detect(frames(), path("none.forest"), "", 1, "none.forest");
+  detect(frames(), path(""), "", 1, "");
+  detect(frames(), path("cut.forest"), "", 1, "truncated model");
+  detect(frames(), path("newer.forest"), "", 1, "written by a newer version: format 2, this program reads up to 1");
+  detect(frames(), path("damaged.forest"), "", 1, "checksum does not match");
+  detect(frames(), path("empty.forest"), "", 1, "empty file");
+  detect(frames(), path("text.forest"), "", 1, "not a vesalius model");
+}
+
+TEST_F(BadInput, Bodies) {
+  std::string other = bytes_of(std::string(VESALIUS_SOURCE_DIR) + "/data/bodies/paper25.toml");
+  for (std::size_t at = 0; (at = other.find("\"neck\"", at)) != std::string::npos; ++at)
+    other.replace(at, 6, "\"nape\"");
+  write("other.toml", other);
+  write("broken.toml", "name = \n");
+  detect(frames(), model(), " --body " + path("other.toml"), 1, "part 10 is nape, in the model neck");
+  detect(frames(), model(), " --body " + path("broken.toml"), 1, "broken.toml:1: not valid TOML");
+}
+
+TEST_F(BadInput, Frames) {
+  fs::create_directories(path("empty"));
+  write_png(Image<std::uint8_t>(320, 240, 9), path("eight.png"));
+  write_png(Image<std::uint16_t>(123, 77, 2000), path("odd.png"));
+  fs::copy(frames(), path("mixed"), fs::copy_options::recursive);
+  write_png(Image<std::uint16_t>(64, 48, 2000), path("mixed/depth/b.png"));
+  write_png(ColourImage(64, 48), path("small.png"));
+  write_png(Image<std::uint16_t>(64, 50, 2000), path("tall.png"));
+  detect(path("nowhere"), model(), "", 1, "nowhere");
+  detect(path("empty"), model(), "", 1, "empty");
+  detect(path("eight.png"), model(), " --fx 500", 1, "eight.png");
+  detect(path("odd.png"), model(), "", 1, "odd.png");
+  detect(path("mixed"), model(), "", 1, "b.png: 64x48 pixels");
+  detect(path("tall.png"), model(), " --fx 50 --colour " + path("small.png"), 1, "small.png");
+}
+
+TEST_F(BadInput, Options) {
+  write("unknown.toml", "serach.min-parts = 3\n");
+  write("range.toml", "search.min-parts = 0\n");
+  detect(frames(), model(), " --options " + path("unknown.toml"), 1, "did you mean \"search.min-parts\"?");
+  detect(frames(), model(), " --options " + path("range.toml"), 1, "range.toml:1: option search.min-parts is 0");
+  detect(frames(), model(), " --search.min-parts 0", 2, "option search.min-parts is 0");
+  detect(frames(), model(), " --cluster.max-gap nan", 2, "option cluster.max-gap is nan");
+  detect(frames(), model(), " --search.min-parts few", 2, "few");
+}
+
+TEST_F(BadInput, CommandLines) {
+  detect(frames(), model(), " --save mask", 2, "--save needs --out");
+  detect(frames(), model(), " --out x --save masks", 2, "masks");
+  detect(frames(), model(), " --threads -1", 2, "--threads");
+  detect(frames(), model(), " --fx 0", 2, "--fx");
+  detect(frames(), model(), " --jsno -", 2, "unknown argument --jsno, did you mean --json?");
+  detect("", model(), "", 2, "SOURCE is required");
+  expect_refused(run_program("detcet"), 2, "unknown argument detcet, did you mean detect?");
+  expect_refused(run_program("detect " + frames()), 2, "--model is required");
+  expect_refused(run_program("completion tcsh"), 2, "tcsh");
+  expect_refused(run_program("convert one.txt two.txt"), 2, "two.txt: expected a name that ends in .forest");
+  expect_refused(run_program("convert a b c --to tum"), 2, "--to expects a source and one folder");
+}
+
+TEST_F(BadInput, PlacesThatCannotBeWritten) {
+  write("file", "");
+  detect(frames(), model(), " --json /dev/full", 1, "/dev/full: cannot be written: No space left on device");
+  detect(frames(), model(), " --json " + path("no/such/folder.jsonl"), 1, "folder.jsonl");
+  detect(frames(), model(), " --out " + path("file"), 1, "file: cannot make the folder");
+  expect_refused(run_program("options >/dev/full"), 1, "standard output: cannot be written: No space left on device");
+  expect_refused(run_program("--help >/dev/full"), 1, "standard output: cannot be written");
+}
+
+TEST_F(BadInput, AReaderThatLeavesEndsTheProgramQuietly) {
+  const Outcome run = run_program("detect " + frames() + " -m " + model() + " -q --json - | true");
+  EXPECT_EQ(run.err, "");
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,119 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/model_file.h"
+#include "run_program.h"
+#include "small_world.h"
+
+namespace vesalius {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Commands : public SmallWorld {};
+
+TEST_F(Commands, HelpAndVersion) {
+  const Outcome help = run_program("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, HasSubstr("vesalius detect frames/"));
+  const Outcome version = run_program("--version");
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_THAT(version.out, testing::MatchesRegex("vesalius [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  const Outcome nothing = run_program("");
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_EQ(nothing.out, "");
+  EXPECT_EQ(nothing.err, help.out);
+}
+
+TEST_F(Commands, EveryCommandHasHelp) {
+  for (const char* command : {"detect", "info", "convert", "options", "completion"}) {
+    const Outcome run = run_program(std::string(command) + " --help");
+    EXPECT_EQ(run.exit_code, 0) << command;
+    EXPECT_THAT(run.out, HasSubstr(std::string("Usage: vesalius ") + command));
+  }
+}
+
+TEST_F(Commands, InfoDescribesTheBuild) {
+  const Outcome run = run_program("info --json");
+  ASSERT_EQ(run.exit_code, 0);
+  const json facts = json::parse(run.out);
+  EXPECT_EQ(facts.at("model_format"), kModelVersion);
+  EXPECT_GE(facts.at("threads"), 1);
+  EXPECT_EQ(facts.at("parts_of_this_build").at("cuda"), "absent");
+  EXPECT_THAT(run_program("info").out, HasSubstr("compiler: "));
+}
+
+TEST_F(Commands, InfoDescribesAModel) {
+  const Outcome run = run_program("info --json " + model());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json facts = json::parse(run.out);
+  const std::string bytes = bytes_of(model());
+  const Forest forest = parse_model(bytes, "m");
+  EXPECT_EQ(facts.at("size_bytes"), bytes.size());
+  EXPECT_EQ(facts.at("checksum"), model_checksum(bytes));
+  EXPECT_EQ(facts.at("recipe"), forest.recipe);
+  EXPECT_EQ(facts.at("background_class"), forest.has_background);
+  EXPECT_EQ(facts.at("body").at("parts").size(), 25U);
+  ASSERT_EQ(facts.at("trees").size(), forest.trees.size());
+  EXPECT_EQ(facts.at("trees").at(1).at("nodes"), forest.trees[1].nodes.size());
+  EXPECT_EQ(facts.at("trees").at(1).at("depth"), depth(forest.trees[1]));
+  EXPECT_THAT(run_program("info " + model()).out, HasSubstr("  depth "));
+}
+
+TEST_F(Commands, PrintedOptionsAreAnOptionsFile) {
+  const Outcome run = run_program("options");
+  ASSERT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out, HasSubstr("\nsearch.min-parts = 4\n"));
+  write("printed.toml", run.out);
+  const std::string detect = "detect " + frames() + " -q --json - -m " + model();
+  const Outcome with = run_program(detect + " --options " + path("printed.toml"));
+  EXPECT_EQ(with.exit_code, 0) << with.err;
+  EXPECT_EQ(with.out, run_program(detect).out) << "the defaults, once more";
+}
+
+TEST_F(Commands, ConvertMakesAModelOfTextTrees) {
+  write("one.txt", "1\n10 0 0 0 5\n3\n4\n");
+  write("two.txt", "0\n24\n");
+  const Outcome run = run_program("convert -q " + path("one.txt") + " " + path("two.txt") + " " + path("text.forest"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Forest forest = load_model(path("text.forest"));
+  EXPECT_EQ(forest.trees, import_text_trees({path("one.txt"), path("two.txt")}).trees);
+  const Outcome bad = run_program("convert " + frames() + "/meta.json " + path("bad.forest"));
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, StartsWith("vesalius: "));
+  EXPECT_FALSE(std::filesystem::exists(path("bad.forest")));
+}
+
+TEST_F(Commands, ConvertedFramesGiveTheSamePeople) {
+  const std::string flags = " -q --json - -m " + model();
+  const auto people = [&](const std::string& source) {
+    std::vector<json> found;
+    std::istringstream in(run_program("detect " + source + flags).out);
+    for (std::string line; std::getline(in, line);) found.push_back(json::parse(line).at("people"));
+    return found;
+  };
+  const auto expected = people(frames());
+  ASSERT_EQ(expected.size(), 3U);
+  for (const std::string layout : {"folder", "tum", "pcd"}) {
+    const std::string folder = path("as_" + layout);
+    const Outcome run = run_program("convert -q " + frames() + " " + folder + " --to " + layout);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(people(folder), expected) << layout;
+    const Outcome again = run_program("convert -q " + frames() + " " + folder + " --to " + layout);
+    EXPECT_EQ(again.exit_code, 1) << "a folder with files in it is left alone";
+  }
+}
+
+TEST_F(Commands, CompletionPrintsAScriptForEachShell) {
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    const Outcome run = run_program(std::string("completion ") + shell);
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_THAT(run.out, HasSubstr("vesalius")) << shell;
+  }
+}
+
+}  // namespace
+}  // namespace vesalius

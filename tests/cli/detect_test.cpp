@@ -1,0 +1,177 @@
+#include <gmock/gmock.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "io/image_file.h"
+#include "run_program.h"
+#include "small_world.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::StartsWith;
+
+class Detect : public SmallWorld {
+ protected:
+  static Outcome detect(const std::string& more) { return run_program("detect " + frames() + " -m " + model() + more); }
+
+  static std::vector<json> lines(const std::string& text) {
+    std::vector<json> parsed;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) parsed.push_back(json::parse(line));
+    return parsed;
+  }
+
+  /// Every file under a folder, by its path within.
+  static std::map<std::string, std::string> contents(const std::string& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      if (!entry.is_regular_file()) continue;
+      files[fs::relative(entry.path(), folder).string()] = bytes_of(entry.path().string());
+    }
+    return files;
+  }
+};
+
+TEST_F(Detect, PrintsALineAFrame) {
+  const Outcome run = detect("");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out, MatchesRegex("a: 1 person: [0-9]+ parts at 2\\.[0-9]+ m .score [0-9.]+.\nb: 1 person: .*\nc: "
+                                    "nobody\n"));
+  EXPECT_THAT(run.err, StartsWith("3 frames, people in 2 of them (2 in all)"));
+}
+
+TEST_F(Detect, QuietPrintsNothing) {
+  const Outcome run = detect(" -q");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.out + run.err, "");
+}
+
+void expect_point(const json& point) {
+  const std::string state = point.at("state");
+  EXPECT_EQ(point.size(), 3U);
+  EXPECT_EQ(point.at("xyz_m").is_null(), state == "none");
+  EXPECT_TRUE(state == "none" || state == "predicted" || state == "observed") << state;
+  if (state != "none") {
+    EXPECT_EQ(point.at("xyz_m").size(), 3U);
+  }
+  EXPECT_GE(point.at("confidence"), 0.0);
+  EXPECT_LE(point.at("confidence"), 1.0);
+}
+
+TEST_F(Detect, JsonOnStandardOutputIsNothingElse) {
+  const Outcome run = detect(" --json -");
+  EXPECT_EQ(run.exit_code, 0);
+  const std::vector<json> found = lines(run.out);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].at("frame"), "a");
+  EXPECT_EQ(found[2], json::parse(R"({"frame":"c","time_s":0.0,"people":[]})"));
+  ASSERT_EQ(found[0].at("people").size(), 1U);
+  const json& person = found[0].at("people").at(0);
+  EXPECT_EQ(person.size(), 5U);
+  EXPECT_EQ(person.at("index"), 0);
+  EXPECT_EQ(person.at("box_px").size(), 4U);
+  EXPECT_EQ(person.at("parts").size(), 25U);
+  for (const auto& part : person.at("parts")) expect_point(part);
+  ASSERT_EQ(person.at("joints").size(), 3U);
+  EXPECT_EQ(person.at("joints").at("nite15").size(), 15U);
+  for (const auto& set : person.at("joints")) {
+    for (const auto& joint : set) expect_point(joint);
+  }
+}
+
+TEST_F(Detect, FindsTheRenderedPersonWhereItStands) {
+  const json person = lines(detect(" --json -").out).at(0).at("people").at(0);
+  const json& chest = person.at("parts").at("l_chest");
+  ASSERT_EQ(chest.at("state"), "observed");
+  EXPECT_NEAR(chest.at("xyz_m").at(2), 2.4, 0.2);  // the feet stand at 2.5 m, the chest's surface before
+  EXPECT_GT(chest.at("xyz_m").at(0), 0.0) << "the left of a person who faces the camera is on the right";
+}
+
+TEST_F(Detect, SameBytesForAnyNumberOfThreads) {
+  std::map<std::string, std::string> first;
+  for (const std::string threads : {"1", "2", "8"}) {
+    const std::string out = path("threads" + threads);
+    const Outcome run = detect(" -q --threads " + threads + " --out " + out + " --json " + out +
+                               ".jsonl --save overlay,labels,mask,cloud");
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    auto all = contents(out);
+    all["json"] = bytes_of(out + ".jsonl");
+    if (first.empty()) first = all;
+    EXPECT_EQ(all.size(), 14U);  // four kinds for three frames, labels.json and the people
+    EXPECT_TRUE(all == first) << threads << " threads";
+  }
+}
+
+TEST_F(Detect, SavesWhatIsAskedFor) {
+  const std::string out = path("saved");
+  const Outcome run = detect(" --out " + out + " --save mask,labels,video");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Image<std::uint8_t> mask = read_png8(out + "/mask/a.png");
+  const LabelImage labels = read_png8(out + "/labels/a.png");
+  EXPECT_EQ(mask.width(), 320);
+  EXPECT_EQ(mask.height(), 240);
+  int inside = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    EXPECT_TRUE(mask[i] == 0 || mask[i] == kBackground);
+    EXPECT_TRUE(labels[i] < 25 || labels[i] == kBackground);
+    if (labels[i] != kBackground) {
+      EXPECT_EQ(mask[i], 0) << "a labelled pixel belongs to a person";
+    }
+    inside += mask[i] == 0 ? 1 : 0;
+  }
+  EXPECT_GT(inside, 1000);
+  EXPECT_EQ(json::parse(bytes_of(out + "/labels.json")).at("parts").size(), 25U);
+  EXPECT_EQ(bytes_of(out + "/overlay.avi").substr(0, 4), "RIFF");
+  EXPECT_FALSE(fs::exists(out + "/overlay"));
+  for (const auto& file : contents(out)) EXPECT_EQ(file.first.find(".tmp"), std::string::npos) << file.first;
+}
+
+TEST_F(Detect, OutAloneSavesOverlays) {
+  const std::string out = path("pictures");
+  ASSERT_EQ(detect(" --out " + out).exit_code, 0);
+  EXPECT_EQ(contents(out).size(), 3U);
+  EXPECT_TRUE(fs::exists(out + "/overlay/c.png"));
+}
+
+TEST_F(Detect, FlagsWinOverTheOptionsFile) {
+  write("strict.toml", "[search]\nmin-parts = 25\nmax-mean-error = 0.0001\n");
+  const std::string file = " --json - --options " + path("strict.toml");
+  const auto people = [](const Outcome& run) { return lines(run.out).at(0).at("people").size(); };
+  EXPECT_EQ(people(detect(file)), 0U);
+  EXPECT_EQ(people(detect(file + " --search.min-parts 4 --search.max-mean-error 1")), 1U);
+}
+
+TEST_F(Detect, KeepGoingPassesOverDamagedFrames) {
+  fs::copy(frames(), path("damaged"), fs::copy_options::recursive);
+  write("damaged/depth/b.png", "no picture");
+  const std::string command = "detect " + path("damaged") + " -q -m " + model() + " --json " + path("people.jsonl");
+  const Outcome stopped = run_program(command);
+  EXPECT_EQ(stopped.exit_code, 1);
+  EXPECT_THAT(stopped.err, HasSubstr("b.png"));
+  EXPECT_FALSE(fs::exists(path("people.jsonl"))) << "half a result is none";
+  const Outcome kept = run_program(command + " --keep-going");
+  EXPECT_EQ(kept.exit_code, 1);
+  EXPECT_THAT(kept.err, HasSubstr("1 of 3 frames failed"));
+  const auto found = lines(bytes_of(path("people.jsonl")));
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[1].at("frame"), "c");
+}
+
+TEST_F(Detect, AnotherBodyMayHaveOtherJointsForTheSameParts) {
+  std::string body = bytes_of(std::string(VESALIUS_SOURCE_DIR) + "/data/bodies/paper25.toml");
+  const std::size_t second_set = body.find("[[joint_set]]", body.find("[[joint_set]]") + 1);
+  write("one_set.toml", body.substr(0, second_set));
+  const Outcome run = detect(" --json - --body " + path("one_set.toml"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(lines(run.out).at(0).at("people").at(0).at("joints").size(), 1U);
+}
+
+}  // namespace
+}  // namespace vesalius
