@@ -135,36 +135,92 @@ Plane refit(const std::vector<Sample>& samples, const Plane& plane, const PlaneO
   return oriented(solver.eigenvectors().col(0).cast<float>(), mean.cast<float>());
 }
 
-/// Drops connected pieces of the mask with less surface than `min_area_m2`; `plane_of` numbers each pixel's plane.
-void drop_small_pieces(const DepthImage& depth, const Camera& camera, const std::vector<Plane>& planes,
-                       const Image<std::uint8_t>& plane_of, float min_area_m2, Mask& mask) {
-  const Surface surface(depth, camera);
-  Mask seen(mask.width(), mask.height(), 0);
-  std::vector<int> piece;
-  for (int first = 0; first < static_cast<int>(mask.size()); ++first) {
-    if (mask[static_cast<std::size_t>(first)] == 0 || seen[static_cast<std::size_t>(first)] != 0) continue;
-    piece.assign(1, first);
+/// Takes apart the flat pixels into connected pieces and drops those that are rather part of a body: small, and ending
+/// by themselves. A piece of floor between two legs is small too, but ends where the legs hide it.
+class PieceFilter {
+ public:
+  PieceFilter(const DepthImage& depth, const Camera& camera, const std::vector<Plane>& planes,
+              const Image<std::uint8_t>& plane_of, const Mask& mask)
+      : depth_(depth), camera_(camera), planes_(planes), plane_of_(plane_of), mask_(mask) {}
+
+  Mask keep(float min_area_m2) {
+    Mask out = mask_;
+    Mask seen(mask_.width(), mask_.height(), 0);
+    for (int first = 0; first < static_cast<int>(mask_.size()); ++first) {
+      if (mask_[static_cast<std::size_t>(first)] == 0 || seen[static_cast<std::size_t>(first)] != 0) continue;
+      collect(first, seen);
+      if (area_m2() >= min_area_m2 || share_unhidden() <= kMostUnhidden) continue;
+      for (const int pixel : piece_) out[static_cast<std::size_t>(pixel)] = 0;
+    }
+    return out;
+  }
+
+ private:
+  static constexpr std::array<std::array<int, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+  static constexpr float kMostUnhidden = 0.5F;  // share of the outline
+  static constexpr int kBeyond = 3;             // pixels past the outline: single noisy ones do not count
+  static constexpr int kRim = 10;               // pixels looked through for one with a reading
+
+  bool connected(int u, int v, int nu, int nv) const {
+    return std::abs(depth_(nu, nv) - depth_(u, v)) <= kPieceGapMm + depth_(u, v) / kPieceGapShare;
+  }
+
+  void collect(int first, Mask& seen) {
+    piece_.assign(1, first);
     seen[static_cast<std::size_t>(first)] = 1;
-    double area = 0.0;
-    for (std::size_t head = 0; head < piece.size(); ++head) {
-      const int u = piece[head] % mask.width();
-      const int v = piece[head] / mask.width();
-      const Eigen::Vector3f p = surface.point(u, v);
-      const float slant = std::abs(planes[plane_of(u, v)].normal.dot(p)) / p.norm();
-      area += static_cast<double>(p.z() * p.z() / std::max(slant, kMostSlant));
-      const std::array<std::array<int, 2>, 4> neighbours{{{u - 1, v}, {u + 1, v}, {u, v - 1}, {u, v + 1}}};
-      for (const auto& [nu, nv] : neighbours) {
-        if (!mask.contains(nu, nv) || mask(nu, nv) == 0 || seen(nu, nv) != 0) continue;
-        if (std::abs(depth(nu, nv) - depth(u, v)) > kPieceGapMm + depth(u, v) / kPieceGapShare) continue;
+    for (std::size_t head = 0; head < piece_.size(); ++head) {
+      const int u = piece_[head] % mask_.width();
+      const int v = piece_[head] / mask_.width();
+      for (const auto& [du, dv] : kSides) {
+        const int nu = u + du, nv = v + dv;
+        if (!mask_.contains(nu, nv) || mask_(nu, nv) == 0 || seen(nu, nv) != 0) continue;
+        if (!connected(u, v, nu, nv)) continue;
         seen(nu, nv) = 1;
-        piece.push_back(nv * mask.width() + nu);
+        piece_.push_back(nv * mask_.width() + nu);
       }
     }
-    if (area < static_cast<double>(min_area_m2 * camera.fx * camera.fy)) {
-      for (const int pixel : piece) mask[static_cast<std::size_t>(pixel)] = 0;
-    }
   }
-}
+
+  float area_m2() const {
+    const Surface surface(depth_, camera_);
+    double area = 0.0;
+    for (const int pixel : piece_) {
+      const int u = pixel % mask_.width(), v = pixel / mask_.width();
+      const Eigen::Vector3f p = surface.point(u, v);
+      const float slant = std::abs(planes_[plane_of_(u, v)].normal.dot(p)) / p.norm();
+      area += static_cast<double>(p.z() * p.z() / std::max(slant, kMostSlant));
+    }
+    return static_cast<float>(area / static_cast<double>(camera_.fx * camera_.fy));
+  }
+
+  /// Of the outline, what is not due to something nearer in front.
+  float share_unhidden() const {
+    long hidden = 0;
+    long unhidden = 0;
+    for (const int pixel : piece_) {
+      const int u = pixel % mask_.width(), v = pixel / mask_.width();
+      for (const auto& [du, dv] : kSides) {
+        if (!mask_.contains(u + du, v + dv) || mask_(u + du, v + dv) != 0) continue;
+        int beyond = 0;
+        for (int k = kBeyond; k <= kRim && beyond == 0 && mask_.contains(u + k * du, v + k * dv); ++k) {
+          if (mask_(u + k * du, v + k * dv) != 0) break;  // a noisy pixel, no end
+          beyond = depth_(u + k * du, v + k * dv);
+        }
+        if (beyond == 0) continue;
+        const int nearer = depth_(u, v) - (kPieceGapMm + depth_(u, v) / kPieceGapShare);
+        (beyond < nearer ? hidden : unhidden) += 1;
+      }
+    }
+    return hidden + unhidden > 0 ? static_cast<float>(unhidden) / static_cast<float>(hidden + unhidden) : 0.F;
+  }
+
+  const DepthImage& depth_;
+  const Camera& camera_;
+  const std::vector<Plane>& planes_;
+  const Image<std::uint8_t>& plane_of_;
+  const Mask& mask_;
+  std::vector<int> piece_;  ///< row-major pixels of the piece looked at
+};
 
 }  // namespace
 
@@ -176,7 +232,7 @@ void visit_options(const std::string& prefix, PlaneOptions& o, OptionVisitor& vi
   visitor.option(prefix + "thickness-per-z2", o.thickness_per_z2,
                  {"m per m^2", 0.0, 0.1, "Added to the thickness times depth squared: sensor noise."});
   visitor.option(prefix + "min-piece", o.min_piece_m2,
-                 {"m^2", 0.0, 100.0, "Smallest connected piece of such a surface."});
+                 {"m^2", 0.0, 100.0, "Smaller connected pieces of such a surface may be part of a body."});
   visitor.option(prefix + "max", o.max_planes, {"", 0, 64, "Most flat surfaces looked for."});
 }
 
@@ -240,8 +296,7 @@ Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptio
       }
     }
   });
-  drop_small_pieces(depth, camera, planes, plane_of, options.min_piece_m2, out);
-  return out;
+  return PieceFilter(depth, camera, planes, plane_of, out).keep(options.min_piece_m2);
 }
 
 }  // namespace vesalius

@@ -12,11 +12,11 @@
 namespace vesalius {
 
 struct PlaneOptions {
-  float min_area_m2 = 1.F;           ///< smallest surface that counts: no person shows this much flat
+  float min_area_m2 = 1.F;          ///< smallest surface that counts: no person shows this much flat
   float thickness_m = 0.02F;        ///< distance from the plane that still belongs to it
   float thickness_per_z2 = 0.003F;  ///< added per square metre of depth: sensor noise
   int max_planes = 8;
-  float min_piece_m2 = 0.6F;  ///< smallest connected piece of such a surface
+  float min_piece_m2 = 0.6F;  ///< smaller connected pieces of such a surface may be part of a body
 };
 void visit_options(const std::string& prefix, PlaneOptions& options, OptionVisitor& visitor);
 
@@ -34,7 +34,7 @@ struct Plane {
 std::vector<Plane> find_planes(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);
 
 /// 1 on the pixels of those surfaces. A pixel is on one if it lies in it and the surface about it is turned the same
-/// way, as part of a large enough connected piece: where a plane runs on through a person, the person is not on it.
+/// way. Where a plane runs on through a person, the person is not on it.
 Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);
 
 }  // namespace vesalius

@@ -74,6 +74,37 @@ TEST(FlatPixels, APlaneThatRunsOnThroughAPersonLeavesThemAlone) {
   EXPECT_LT(person_flat, 0.05 * static_cast<double>(person));
 }
 
+TEST(FlatPixels, FloorBetweenTheFeetIsFloor) {
+  CapsuleScene scene;
+  scene.people.emplace_back();
+  scene.people[0].feet = {0.F, 1.2F, 2.F};
+  scene.people[0].pose.l_leg.spread = 0.2F;
+  scene.people[0].pose.r_leg.spread = 0.2F;
+  scene.floor_y_m = 1.2F;
+  scene.pitch = 0.25F;
+  LabelledFrame truth = render(scene, kCamera, paper_body());
+  add_sensor_noise(truth.frame, 1);
+  const Mask flat = flat_pixels(truth.frame.depth, kCamera, {});
+  // Rows in which the picture shows person, floor and person again.
+  long between = 0, between_flat = 0;
+  for (int v = 0; v < kCamera.height; ++v) {
+    int first = kCamera.width, last = -1;
+    for (int u = 0; u < kCamera.width; ++u) {
+      if (truth.person(u, v) == kBackground) continue;
+      first = std::min(first, u);
+      last = u;
+    }
+    for (int u = first; u < last; ++u) {
+      const float z = static_cast<float>(truth.frame.depth(u, v)) * 1e-3F;
+      if (truth.person(u, v) != kBackground || z <= 0.F || z > 2.6F || v < kCamera.height / 2) continue;
+      ++between;
+      between_flat += flat(u, v);
+    }
+  }
+  ASSERT_GT(between, 300);
+  EXPECT_GT(between_flat, 0.85 * static_cast<double>(between));
+}
+
 TEST(FlatPixels, SameBytesForAnyThreadCount) {
   CapsuleScene scene;
   scene.people.emplace_back();

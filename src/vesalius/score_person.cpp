@@ -1,6 +1,5 @@
 #include "vesalius/score_person.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -81,17 +80,6 @@ float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
   return all > 0.F ? found / all : 0.F;
 }
 
-float share_of_area(const Skeleton& skeleton, const BodyModel& body) {
-  float seen = 0.F;
-  float typical = 0.F;
-  for (std::size_t i = 0; i < skeleton.parts.size(); ++i) {
-    if (skeleton.parts[i].state != State::observed) continue;
-    seen += skeleton.parts[i].area_m2;
-    typical += body.parts[i].typical_area_m2;
-  }
-  return typical > 0.F ? std::min(1.F, seen / typical) : 0.F;
-}
-
 }  // namespace
 
 void visit_options(const std::string& prefix, ScoreOptions& o, OptionVisitor& visitor) {
@@ -103,8 +91,6 @@ void visit_options(const std::string& prefix, ScoreOptions& o, OptionVisitor& vi
                  {"", -100.0, 100.0, "Weight of the share of the outline that stands free."});
   visitor.option(prefix + "core-weight", o.core_weight,
                  {"", -100.0, 100.0, "Weight of the share of head, neck and chest parts found."});
-  visitor.option(prefix + "substance-weight", o.substance_weight,
-                 {"", -100.0, 100.0, "Weight of the found parts' visible area over their typical area."});
   visitor.option(prefix + "bias", o.bias, {"", -100.0, 100.0, "Constant of the score."});
   visitor.option(prefix + "explained-radius", o.explained_radius_m,
                  {"m", 0.0, 10.0, "A pixel is explained by an observed part of its label this near."});
@@ -116,12 +102,12 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage&
                          const BodyModel& body, const ScoreOptions& options) {
   return {skeleton.score / static_cast<float>(body.part_count()),
           share_explained(frame, mask, labels, skeleton, body, options.explained_radius_m),
-          share_open(frame, mask, options.open_step_m), share_of_core(skeleton, body), share_of_area(skeleton, body)};
+          share_open(frame, mask, options.open_step_m), share_of_core(skeleton, body)};
 }
 
 float person_score(const Evidence& e, const ScoreOptions& o) {
   const float sum = o.likelihood_weight * e.likelihood + o.explained_weight * e.explained + o.open_weight * e.open +
-                    o.core_weight * e.core + o.substance_weight * e.substance + o.bias;
+                    o.core_weight * e.core + o.bias;
   return 1.F / (1.F + std::exp(-sum));
 }
 

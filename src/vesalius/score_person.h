@@ -11,12 +11,11 @@
 namespace vesalius {
 
 struct ScoreOptions {
-  float likelihood_weight = 9.5F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
-  float explained_weight = 5.4F;   ///< of the share of the mask that the skeleton explains
-  float open_weight = 6.9F;        ///< of the share of the outline that stands free
-  float core_weight = 10.8F;       ///< of the share of head, neck and chest parts found
-  float substance_weight = 0.F;    ///< of the parts' visible area, as a share of what they typically show
-  float bias = -18.5F;
+  float likelihood_weight = 8.6F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
+  float explained_weight = 3.4F;   ///< of the share of the mask that the skeleton explains
+  float open_weight = 7.3F;        ///< of the share of the outline that stands free
+  float core_weight = 8.1F;        ///< of the share of head, neck and chest parts found
+  float bias = -17.F;
   float explained_radius_m = 0.25F;  ///< a pixel is explained by an observed part of its label this near
   float open_step_m = 0.1F;          ///< an outline stands free where what lies behind is this much further
 };
@@ -28,7 +27,6 @@ struct Evidence {
   float explained = 0.F;   ///< share of the mask whose label's part, or its mirror partner, was found nearby
   float open = 0.F;        ///< share of the outline, occluded and cut-off outline apart, with nothing close behind
   float core = 0.F;        ///< share found of the search's roots and the parts next to them
-  float substance = 0.F;   ///< visible area of the found parts over their typical area
 };
 
 /// `labels` are the part labels inside `mask`; images of the frame's size.

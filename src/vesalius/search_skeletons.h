@@ -29,7 +29,6 @@ struct SkeletonPart {
   int cluster = -1;                                    ///< proposal it was made from, -1 unless observed
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();    ///< metres, optical frame
   Eigen::Vector3f extent_m = Eigen::Vector3f::Zero();  ///< standard deviations along its own axes, largest first
-  float area_m2 = 0.F;                                 ///< visible area, square metres
   float error = 0.F;                                   ///< normalised distance to the part it hangs on, 0 for the root
   float confidence = 0.F;                              ///< 0-1
 };

@@ -1,0 +1,73 @@
+// Time of each stage of the detector and of the whole, on all processors. `./dev bench --help` lists the flags.
+
+#include <benchmark/benchmark.h>
+
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <string>
+
+#include "bench/bench_scenes.h"
+
+namespace vesalius {
+namespace {
+
+void add(const std::string& stage, const BenchScene& scene, std::function<void()> work) {
+  benchmark::RegisterBenchmark((stage + "/" + scene.name).c_str(),
+                               [work = std::move(work)](benchmark::State& state) {
+                                 for (auto _ : state) work();
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
+}
+
+template <class T>
+void keep(T&& value) {
+  benchmark::DoNotOptimize(value);
+}
+
+void add_labelling(const BenchScene& s) {
+  const auto labeller = std::make_shared<ForestLabeller>(s.forest);
+  add("label_pixels", s, [&s, labeller] { keep(labeller->label(s.frame.depth, s.frame.camera)); });
+  const LabelChoice choice{.part_count = s.forest.body.part_count(), .has_background = s.forest.has_background};
+  add("choose_labels", s, [&s, choice] { keep(choose_labels(s.posteriors, s.frame.depth, choice, LabelOptions())); });
+  add("mode_filter", s, [&s] { keep(mode_filter(s.labels, s.frame.depth, SmoothOptions())); });
+  add("mean_filter", s, [&s] { keep(mean_filter(s.posteriors, s.frame.depth, SmoothOptions())); });
+}
+
+void add_search(const BenchScene& s) {
+  add("find_clusters", s,
+      [&s] { keep(find_clusters(s.labels, s.frame.depth, s.frame.camera, s.forest.body, ClusterOptions())); });
+  add("search_skeletons", s, [&s] { keep(search_skeletons(s.clusters.items, s.forest.body, SearchOptions())); });
+  add("find_planes", s, [&s] { keep(flat_pixels(s.frame.depth, s.frame.camera, PlaneOptions())); });
+  add("grow_person", s, [&s] {
+    const GrowOptions options;
+    keep(PersonGrower(s.frame, s.forest.body, options).grow(s.rough, s.clusters));
+  });
+}
+
+void add_detect(const BenchScene& s) {
+  const auto detector = std::make_shared<Detector>(s.forest);
+  add("detect", s, [&s, detector] { keep(detector->detect(s.frame)); });
+}
+
+}  // namespace
+}  // namespace vesalius
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  try {
+    const auto scenes = vesalius::bench_scenes();
+    for (const vesalius::BenchScene& scene : scenes) {
+      vesalius::add_labelling(scene);
+      vesalius::add_search(scene);
+      vesalius::add_detect(scene);
+    }
+    benchmark::RunSpecifiedBenchmarks();
+  } catch (const std::exception& e) {
+    std::cerr << "vesalius_bench: " << e.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,222 @@
+#include "draw/draw.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "draw/canvas.h"
+#include "vesalius/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kSubpixelBits = 4;  // OpenCV draws at 1/16 pixel
+
+// Seven colours that people with colour-blindness can tell apart (Okabe and Ito, 2008).
+constexpr std::array<Rgb, 7> kPersonColours{
+    {{86, 180, 233}, {230, 159, 0}, {0, 158, 115}, {204, 121, 167}, {240, 228, 66}, {0, 114, 178}, {213, 94, 0}}};
+
+struct DepthRange {
+  int near_mm = 0;
+  int far_mm = 0;
+
+  /// 0 at the near end, 1 at the far end.
+  float place(int depth_mm) const {
+    if (far_mm == near_mm) return 0.F;
+    const float t = static_cast<float>(depth_mm - near_mm) / static_cast<float>(far_mm - near_mm);
+    return std::clamp(t, 0.F, 1.F);
+  }
+};
+
+DepthRange depth_range(const DepthImage& depth) {
+  std::vector<std::uint16_t> readings;
+  readings.reserve(depth.size());
+  std::copy_if(depth.begin(), depth.end(), std::back_inserter(readings), [](std::uint16_t d) { return d != 0; });
+  if (readings.empty()) return {};
+  const auto percentile = [&readings](std::size_t percent) {
+    const auto at = readings.begin() + static_cast<std::ptrdiff_t>((readings.size() - 1) * percent / 100);
+    std::nth_element(readings.begin(), at, readings.end());
+    return static_cast<int>(*at);
+  };
+  return {percentile(1), percentile(99)};
+}
+
+std::array<Rgb, 256> turbo_colours() {
+  cv::Mat ramp(1, 256, CV_8UC1);
+  for (int i = 0; i < 256; ++i) ramp.at<std::uint8_t>(0, i) = static_cast<std::uint8_t>(i);
+  cv::Mat bgr;
+  cv::applyColorMap(ramp, bgr, cv::COLORMAP_TURBO);
+  std::array<Rgb, 256> colours;
+  for (int i = 0; i < 256; ++i) {
+    const auto& c = bgr.at<cv::Vec3b>(0, i);
+    colours[static_cast<std::size_t>(i)] = {c[2], c[1], c[0]};
+  }
+  return colours;
+}
+
+/// Grey from near (lighter) to far (darker), dark enough for part colours to stand out; holes black.
+ColourImage dark_depth(const DepthImage& depth) {
+  const DepthRange range = depth_range(depth);
+  ColourImage picture(depth.width(), depth.height());
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (depth[i] == 0) continue;
+    const auto grey = static_cast<std::uint8_t>(std::lround(110.F - 80.F * range.place(depth[i])));
+    picture[i] = {grey, grey, grey};
+  }
+  return picture;
+}
+
+/// The picture with the parts' names beside it, in columns as tall as it.
+ColourImage with_legend(const ColourImage& picture, const BodyModel& body) {
+  constexpr int kSwatch = 12;
+  constexpr int kMargin = 6;
+  int name_width = 0;
+  for (const BodyPart& part : body.parts) name_width = std::max(name_width, text_width(part.name));
+  const int column_width = kSwatch + name_width + 3 * kMargin;
+  const int rows = std::max(1, picture.height() / kTextRow);
+  const int columns = (body.part_count() + rows - 1) / rows;
+  ColourImage result(picture.width() + columns * column_width, std::max(picture.height(), kTextRow), {24, 24, 24});
+  for (int v = 0; v < picture.height(); ++v) std::copy(picture.row(v), picture.row(v) + picture.width(), result.row(v));
+  for (int i = 0; i < body.part_count(); ++i) {
+    const BodyPart& part = body.parts[static_cast<std::size_t>(i)];
+    const int left = picture.width() + i / rows * column_width + kMargin;
+    const int top = i % rows * kTextRow;
+    cv::rectangle(view(result), cv::Rect(left, top + 2, kSwatch, kSwatch), scalar(part.colour), cv::FILLED);
+    draw_text(result, part.name, left + kSwatch + kMargin, top + kSwatch, {255, 255, 255});
+  }
+  return result;
+}
+
+/// Tints the pixels of the mask and outlines them on their own side.
+void draw_mask(ColourImage& picture, const Mask& mask, Rgb colour) {
+  const auto inside = [&mask](int u, int v) { return mask.contains(u, v) && mask(u, v) != 0; };
+  for (int v = 0; v < mask.height(); ++v) {
+    for (int u = 0; u < mask.width(); ++u) {
+      if (mask(u, v) == 0) continue;
+      const bool edge = !inside(u - 1, v) || !inside(u + 1, v) || !inside(u, v - 1) || !inside(u, v + 1);
+      picture(u, v) = edge ? colour : mix(picture(u, v), colour, 0.35F);
+    }
+  }
+}
+
+/// Where a part's centre lies on the canvas, in 1/16 pixel; nothing where it cannot be drawn.
+std::optional<cv::Point> place_on_canvas(const SkeletonPart& part, const Camera& camera, int scale) {
+  if (part.state == State::none || !part.centre.allFinite() || part.centre.z() <= 0.F) return std::nullopt;
+  const Eigen::Vector2f pixel = camera.pixel(part.centre);
+  // Further out than a picture's size nothing of a disc or a plausible link would show, and integers overflow.
+  const auto near = [](float at, int size) {
+    return at > -static_cast<float>(size) && at < 2.F * static_cast<float>(size);
+  };
+  if (!near(pixel.x(), camera.width) || !near(pixel.y(), camera.height)) return std::nullopt;
+  const auto fixed = [scale](float at) {
+    const float on_canvas = (at + 0.5F) * static_cast<float>(scale) - 0.5F;  // pixel centres are at integers
+    return static_cast<int>(std::lround(on_canvas * static_cast<float>(1 << kSubpixelBits)));
+  };
+  return cv::Point(fixed(pixel.x()), fixed(pixel.y()));
+}
+
+struct Strokes {
+  int thin, thick, radius;
+
+  explicit Strokes(int canvas_width)
+      : thin(std::max(1, canvas_width / 640)),
+        thick(std::max(2, canvas_width / 250)),
+        radius(std::max(3, canvas_width / 110)) {}
+};
+
+void draw_skeleton(ColourImage& picture, const Skeleton& skeleton, const Camera& camera, const BodyModel& body,
+                   int scale) {
+  const Strokes strokes(picture.width());
+  std::vector<std::optional<cv::Point>> at;
+  for (const SkeletonPart& part : skeleton.parts) at.push_back(place_on_canvas(part, camera, scale));
+  const auto seen = [&skeleton](int part) {
+    return skeleton.parts[static_cast<std::size_t>(part)].state == State::observed;
+  };
+  cv::Mat canvas = view(picture);
+  for (const BodyLink& link : body.links) {
+    const auto& from = at[static_cast<std::size_t>(link.parent)];
+    const auto& to = at[static_cast<std::size_t>(link.child)];
+    if (!from || !to) continue;
+    const int thickness = seen(link.parent) && seen(link.child) ? strokes.thick : strokes.thin;
+    cv::line(canvas, *from, *to, {255, 255, 255}, thickness, cv::LINE_AA, kSubpixelBits);
+  }
+  for (int i = 0; i < body.part_count(); ++i) {
+    const auto& centre = at[static_cast<std::size_t>(i)];
+    if (!centre) continue;
+    const int radius = strokes.radius << kSubpixelBits;
+    const cv::Scalar colour = scalar(body.parts[static_cast<std::size_t>(i)].colour);
+    if (seen(i)) {
+      cv::circle(canvas, *centre, radius, colour, cv::FILLED, cv::LINE_AA, kSubpixelBits);
+      cv::circle(canvas, *centre, radius, {0, 0, 0}, 1, cv::LINE_AA, kSubpixelBits);
+    } else {
+      cv::circle(canvas, *centre, radius, colour, strokes.thin, cv::LINE_AA, kSubpixelBits);
+    }
+  }
+}
+
+void draw_score(ColourImage& picture, const Person& person, std::size_t index, Rgb colour, int scale) {
+  std::array<char, 48> text;
+  std::snprintf(text.data(), text.size(), "%zu: %.2f", index, static_cast<double>(person.score));
+  draw_tag(picture, text.data(), person.box.u * scale, person.box.v * scale - 2, colour);
+}
+
+void check_fits(const Frame& frame, const Person& person, std::size_t index, const BodyModel& body) {
+  const std::string who = "draw_people: person " + std::to_string(index);
+  if (!person.mask.same_size(frame.depth))
+    throw Error(who + " has a mask of " + std::to_string(person.mask.width()) + "x" +
+                std::to_string(person.mask.height()) + " pixels, expected the frame's size");
+  if (person.skeleton.parts.size() != body.parts.size())
+    throw Error(who + " has " + std::to_string(person.skeleton.parts.size()) + " parts, expected the body's " +
+                std::to_string(body.parts.size()));
+}
+
+}  // namespace
+
+ColourImage draw_depth(const DepthImage& depth) {
+  static const std::array<Rgb, 256> colours = turbo_colours();
+  const DepthRange range = depth_range(depth);
+  ColourImage picture(depth.width(), depth.height());
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (depth[i] == 0) continue;
+    // Turbo's two ends are nearly black; its middle nine tenths are not.
+    picture[i] = colours[static_cast<std::size_t>(std::lround(243.F - 230.F * range.place(depth[i])))];
+  }
+  return picture;
+}
+
+ColourImage draw_labels(const LabelImage& labels, const DepthImage& depth, const BodyModel& body, bool legend) {
+  if (!labels.same_size(depth)) throw Error("draw_labels: labels and depth differ in size");
+  ColourImage picture = dark_depth(depth);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] == kBackground) continue;
+    if (labels[i] >= body.parts.size())
+      throw Error("draw_labels: label " + std::to_string(labels[i]) + ", expected less than the body's " +
+                  std::to_string(body.parts.size()) + " parts");
+    picture[i] = body.parts[labels[i]].colour;
+  }
+  picture = enlarge(picture, legible_scale(picture.width()));
+  return legend ? with_legend(picture, body) : picture;
+}
+
+ColourImage draw_people(const Frame& frame, const std::vector<Person>& people, const BodyModel& body) {
+  check(frame);
+  const int scale = legible_scale(frame.depth.width());
+  ColourImage picture = enlarge(frame.colour.empty() ? draw_depth(frame.depth) : frame.colour, scale);
+  const auto colour_of = [](std::size_t index) { return kPersonColours[index % kPersonColours.size()]; };
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    check_fits(frame, people[i], i, body);
+    draw_mask(picture, enlarge(people[i].mask, scale), colour_of(i));
+  }
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    draw_skeleton(picture, people[i].skeleton, frame.camera, body, scale);
+    draw_score(picture, people[i], i, colour_of(i), scale);
+  }
+  return picture;
+}
+
+}  // namespace vesalius

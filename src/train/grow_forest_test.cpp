@@ -1,0 +1,172 @@
+#include "train/grow_forest.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "vesalius/capsule_person.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
+#include "vesalius/tree_walk.h"
+
+namespace vesalius {
+namespace {
+
+const Camera kCamera{160, 120, 131.F, 131.F, 79.5F, 59.5F};
+
+GrowForestOptions small_options() {
+  GrowForestOptions options;
+  options.trees = 3;
+  options.max_depth = 10;
+  options.sample.pixels_per_frame = 300;
+  options.split.candidates = 20;
+  options.split.min_leaf_pixels = 5;
+  return options;
+}
+
+std::vector<LabelledFrame> standing_people(int count) {
+  std::vector<LabelledFrame> frames;
+  for (int i = 0; i < count; ++i) {
+    CapsuleScene scene;
+    CapsulePerson person;
+    person.feet = {-0.5F + 0.1F * static_cast<float>(i % 11), 1.F, 2.F + 0.05F * static_cast<float>(i % 20)};
+    person.pose.yaw = 0.05F * static_cast<float>(i % 9 - 4);
+    person.pose.l_arm.raise = 0.2F * static_cast<float>(i % 7);
+    scene.people.push_back(person);
+    frames.push_back(render(scene, kCamera, paper_body()));
+  }
+  return frames;
+}
+
+int likeliest(const Forest& forest, const LabelledFrame& frame, int u, int v) {
+  const OffsetScaler scaler(forest.convention, frame.frame.camera);
+  std::vector<int> sums(static_cast<std::size_t>(forest.class_count()), 0);
+  for (const Tree& tree : forest.trees) {
+    const TreeLeaf& leaf = walk(tree, frame.frame.depth, forest.convention, scaler.at(frame.frame.depth(u, v)), u, v);
+    for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) sums[leaf.label[k]] += leaf.probability[k];
+  }
+  return static_cast<int>(std::ranges::max_element(sums) - sums.begin());
+}
+
+double share_right(const Forest& forest, const std::vector<LabelledFrame>& frames) {
+  int right = 0, all = 0;
+  for (const LabelledFrame& frame : frames) {
+    for (int v = 0; v < kCamera.height; ++v) {
+      for (int u = 0; u < kCamera.width; ++u) {
+        if (frame.labels(u, v) == kBackground) continue;
+        right += likeliest(forest, frame, u, v) == frame.labels(u, v);
+        ++all;
+      }
+    }
+  }
+  return static_cast<double>(right) / all;
+}
+
+TEST(GrowForest, LearnsToLabelAStandingPerson) {
+  const std::vector<LabelledFrame> all = standing_people(60);
+  const std::vector<LabelledFrame> seen(all.begin(), all.begin() + 50), unseen(all.begin() + 50, all.end());
+  const Forest forest = grow_forest(seen, paper_body(), small_options());
+  EXPECT_TRUE(forest.has_background);
+  EXPECT_EQ(forest.trees.size(), 3U);
+  EXPECT_TRUE(has_distributions(forest));
+  EXPECT_GT(share_right(forest, unseen), 0.85);
+}
+
+// The shelf's upper half is one part, its lower half another: told apart by what lies above and below.
+TEST(GrowForest, SolvesAToyProblem) {
+  BodyModel body;
+  body.parts.resize(2);
+  LabelledFrame frame;
+  frame.frame.camera = {64, 48, 60.F, 60.F, 31.5F, 23.5F};
+  frame.frame.depth = DepthImage(64, 48, 2000);
+  frame.labels = LabelImage(64, 48, 0);
+  for (int v = 24; v < 48; ++v) {
+    for (int u = 0; u < 64; ++u) frame.labels(u, v) = 1;
+  }
+  for (int v = 12; v < 36; ++v) {
+    for (int u = 0; u < 64; ++u) frame.frame.depth(u, v) = static_cast<std::uint16_t>(v < 24 ? 1500 : 1700);
+  }
+  GrowForestOptions options = small_options();
+  options.sample.background_share = 0.F;
+  options.split.candidates = 100;
+  const Forest forest = grow_forest({frame}, body, options);
+  EXPECT_FALSE(forest.has_background);
+  int wrong = 0;
+  for (int v = 0; v < 48; ++v) {
+    for (int u = 0; u < 64; ++u) wrong += likeliest(forest, frame, u, v) != frame.labels(u, v);
+  }
+  EXPECT_LE(wrong, 64 * 48 / 50);
+}
+
+TEST(GrowForest, SameForestForAnyNumberOfThreads) {
+  const std::vector<LabelledFrame> frames = standing_people(6);
+  const auto grow = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return grow_forest(frames, paper_body(), small_options()).trees;
+  };
+  EXPECT_EQ(grow(1), grow(2));
+}
+
+TEST(GrowForest, TreesAndSeedsDiffer) {
+  const std::vector<LabelledFrame> frames = standing_people(3);
+  GrowForestOptions options = small_options();
+  const Forest forest = grow_forest(frames, paper_body(), options);
+  EXPECT_NE(forest.trees[0], forest.trees[1]);
+  options.seed = 2;
+  EXPECT_NE(grow_forest(frames, paper_body(), options).trees, forest.trees);
+}
+
+TEST(GrowForest, KeepsToItsLimits) {
+  const std::vector<LabelledFrame> frames = standing_people(6);
+  GrowForestOptions options = small_options();
+  options.max_depth = 4;
+  for (const Tree& tree : grow_forest(frames, paper_body(), options).trees) {
+    EXPECT_LE(depth(tree), 4);
+    EXPECT_EQ(tree.leaves.size(), tree.nodes.size() + 1);
+  }
+  options.max_depth = 0;
+  for (const Tree& tree : grow_forest(frames, paper_body(), options).trees) EXPECT_TRUE(tree.nodes.empty());
+  options.max_depth = 20;
+  options.split.min_leaf_pixels = 200;
+  for (const Tree& tree : grow_forest(frames, paper_body(), options).trees) EXPECT_LE(tree.leaves.size(), 9U);
+}
+
+TEST(GrowForest, LeafHoldsTheLargestShares) {
+  std::vector<TrainingPixel> pixels;
+  const auto add = [&](int count, std::uint8_t label) {
+    for (int i = 0; i < count; ++i) pixels.emplace_back().label = label;
+  };
+  add(10, 2);
+  add(50, 7);
+  add(25, 4);
+  add(10, 1);
+  add(5, 0);
+  const TreeLeaf leaf = make_leaf(pixels, 9);
+  EXPECT_THAT(leaf.label, testing::ElementsAre(7, 4, 1, 2));
+  EXPECT_THAT(leaf.probability, testing::ElementsAre(127, 63, 25, 25));  // floor(255 share)
+}
+
+TEST(GrowForest, LeafOfOneClassIsCertain) {
+  std::vector<TrainingPixel> pixels(3);
+  for (TrainingPixel& pixel : pixels) pixel.label = 6;
+  const TreeLeaf leaf = make_leaf(pixels, 9);
+  EXPECT_EQ(leaf.label[0], 6);
+  EXPECT_THAT(leaf.probability, testing::ElementsAre(255, 0, 0, 0));
+}
+
+TEST(GrowForest, UnusableInputIsAnError) {
+  EXPECT_THROW(grow_forest({}, paper_body(), {}), Error);
+  EXPECT_THROW(grow_forest(standing_people(1), BodyModel{}, {}), Error);
+  std::vector<LabelledFrame> holes = standing_people(1);
+  holes[0].frame.depth.fill(0);
+  EXPECT_THROW(grow_forest(holes, paper_body(), {}), Error);
+  GrowForestOptions options;
+  options.max_depth = 31;
+  EXPECT_THROW(grow_forest(standing_people(1), paper_body(), options), UsageError);
+  options = {};
+  options.sample.background_share = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(grow_forest(standing_people(1), paper_body(), options), UsageError);
+}
+
+}  // namespace
+}  // namespace vesalius
