@@ -1,0 +1,152 @@
+// The released trees with default options, one setting for all, on real frames. Each test prints what it counted.
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cstdlib>
+#include <iostream>
+#include <map>
+#include <set>
+
+#include "shared_frames.h"
+#include "vesalius/detect.h"
+#include "vesalius/parallel.h"
+
+namespace vesalius {
+namespace {
+
+Detector released_detector(const std::filesystem::path& shared) { return Detector(load_released_trees(shared)); }
+
+/// Sanitizers make a frame take seconds: every nth frame is enough for them.
+int stride() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return 25;
+#else
+  return 1;
+#endif
+}
+
+std::vector<RealFrame> some_of(std::vector<RealFrame> frames) {
+  std::vector<RealFrame> kept;
+  for (std::size_t i = 0; i < frames.size(); i += static_cast<std::size_t>(stride()))
+    kept.push_back(std::move(frames[i]));
+  return kept;
+}
+
+TEST(RealFrames, OneWalkingAndWavingPerson) {
+  VESALIUS_NEEDS_SHARED();
+  const Detector detector = released_detector(shared);
+  int with = 0, empty = 0, found = 0, false_people = 0;
+  double iou = 0.0;
+  std::map<std::string, int> parts;
+  for (const RealFrame& real : some_of(load_real_set(shared, "alina_wave"))) {
+    const std::vector<Person> people = detector.detect(real.frame);
+    if (real.people == 0) {
+      ++empty;
+      false_people += static_cast<int>(people.size());
+      continue;
+    }
+    ++with;
+    if (people.empty()) continue;
+    ++found;
+    false_people += static_cast<int>(people.size()) - 1;
+    iou += mask_iou(people[0].mask, real.mask, real.frame.depth);
+    for (int i = 0; i < detector.body().part_count(); ++i) {
+      if (people[0].skeleton.parts[static_cast<std::size_t>(i)].state == State::observed) {
+        ++parts[detector.body().parts[static_cast<std::size_t>(i)].name];
+      }
+    }
+  }
+  std::cout << "alina_wave: a person in " << found << " of " << with << " frames with one, " << false_people
+            << " people too many in these and " << empty << " empty ones, mask IoU " << iou / found << '\n';
+  for (const auto& [name, n] : parts) std::cout << "  " << name << ' ' << n << '\n';
+  EXPECT_GE(found, with - 1);
+  EXPECT_EQ(false_people, 0);
+  EXPECT_GE(iou / found, 0.95);
+  EXPECT_GE(parts["l_upper_arm"], 0.8 * with);
+  EXPECT_GE(parts["r_upper_arm"], 0.8 * with);
+}
+
+TEST(RealFrames, NobodyWhereNobodyIs) {
+  VESALIUS_NEEDS_SHARED();
+  const Detector detector = released_detector(shared);
+  int frames = 0, with_person = 0;
+  for (const char* set : {"neg_7scenes_kitchen", "neg_aims", "neg_leezl_tabletop", "neg_pcl"}) {
+    for (const RealFrame& real : some_of(load_real_set(shared, set))) {
+      ++frames;
+      if (detector.detect(real.frame).empty()) continue;
+      ++with_person;
+      std::cout << "  " << set << '/' << real.frame.name << '\n';
+    }
+  }
+  std::cout << "neg_*: a person in " << with_person << " of " << frames << " frames\n";
+  EXPECT_LE(with_person, 2);
+}
+
+TEST(RealFrames, FivePeopleFromBehind) {
+  VESALIUS_NEEDS_SHARED();
+  const Detector detector = released_detector(shared);
+  // A pixel on each trunk, left to right.
+  const std::array<std::array<int, 2>, 5> trunks{{{90, 230}, {190, 260}, {345, 230}, {430, 230}, {560, 230}}};
+  for (const RealFrame& real : load_real_set(shared, "pcl")) {
+    if (real.people != 5) continue;
+    const std::vector<Person> people = detector.detect(real.frame);
+    std::set<std::size_t> matched;
+    for (const auto& [u, v] : trunks) {
+      for (std::size_t p = 0; p < people.size(); ++p) {
+        if (people[p].mask(u, v) != 0) matched.insert(p);
+      }
+    }
+    std::cout << "five_people: " << matched.size() << " of 5, " << people.size() - matched.size() << " other\n";
+    EXPECT_GE(matched.size(), 4U);
+    EXPECT_EQ(people.size(), matched.size());
+  }
+}
+
+TEST(RealFrames, MasksOfOtherRooms) {
+  VESALIUS_NEEDS_SHARED();
+  const Detector detector = released_detector(shared);
+  for (const char* set : {"uc3m", "uva_person"}) {
+    int frames = 0, found = 0;
+    double iou = 0.0;
+    for (const RealFrame& real : some_of(load_real_set(shared, set))) {
+      if (real.mask.empty()) continue;
+      ++frames;
+      Mask all(real.mask.width(), real.mask.height(), 0);
+      const std::vector<Person> people = detector.detect(real.frame);
+      for (const Person& person : people) {
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] |= person.mask[i];
+      }
+      found += people.empty() ? 0 : 1;
+      iou += people.empty() ? 0.0 : mask_iou(all, real.mask, real.frame.depth);
+    }
+    std::cout << set << ": a person in " << found << " of " << frames << " frames, mask IoU where found "
+              << iou / std::max(1, found) << '\n';
+    EXPECT_GE(found, frames / 2);
+    EXPECT_GE(iou / std::max(1, found), 0.75);
+  }
+}
+
+TEST(RealFrames, SameResultForAnyThreadCount) {
+  VESALIUS_NEEDS_SHARED();
+  const Detector detector = released_detector(shared);
+  const std::vector<RealFrame> frames = load_real_set(shared, "tue_people");
+  for (const RealFrame& real : frames) {
+    std::vector<std::vector<Person>> results;
+    for (const int threads : {1, 2, 8, 8}) {
+      const ThreadLimit limit(threads);
+      results.push_back(detector.detect(real.frame));
+    }
+    for (std::size_t r = 1; r < results.size(); ++r) {
+      ASSERT_EQ(results[r].size(), results[0].size());
+      for (std::size_t p = 0; p < results[0].size(); ++p) {
+        EXPECT_EQ(results[r][p].mask, results[0][p].mask);
+        EXPECT_EQ(results[r][p].labels, results[0][p].labels);
+        EXPECT_EQ(results[r][p].score, results[0][p].score);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vesalius
