@@ -136,9 +136,11 @@ void add_output_flags(CLI::App& command, OutputRequest& outputs) {
       ->group(group);
   command.add_option("--out", outputs.folder, "Folder for pictures; made if missing")->type_name("DIR")->group(group);
   command
-      .add_option("--save", outputs.save,
-                  "What to put into --out, separated by commas: overlay (default), labels (part of each pixel), mask "
-                  "(person of each pixel), cloud (labelled PLY), video")
+      .add_option(
+          "--save", outputs.save,
+          "What to put into --out, separated by commas: overlay (default) and parts, pictures of skeletons and of "
+          "body parts; labels (part of each pixel) and mask (person of each pixel) as numbers; cloud (labelled "
+          "PLY); video")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(kSaveKinds))

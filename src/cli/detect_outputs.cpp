@@ -74,6 +74,10 @@ void DetectOutputs::write_pictures(const Frame& frame, const std::vector<Person>
     if (wants("overlay")) write_png(overlay, path("overlay", frame, ".png"));
     if (video_) video_->write(overlay);
   }
+  if (wants("parts")) {
+    write_png(draw_labels(part_label_map(people, width, height), frame.depth, body_, true),
+              path("parts", frame, ".png"));
+  }
   if (wants("mask")) write_png(body_index_map(people, width, height), path("mask", frame, ".png"));
   if (wants("labels")) write_png(part_label_map(people, width, height), path("labels", frame, ".png"));
   if (wants("cloud")) {

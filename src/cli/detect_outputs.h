@@ -20,7 +20,7 @@ struct OutputRequest {
   bool lines = true;              ///< a line of text per frame on standard output
 };
 
-inline const std::set<std::string> kSaveKinds = {"overlay", "labels", "mask", "cloud", "video"};
+inline const std::set<std::string> kSaveKinds = {"overlay", "parts", "labels", "mask", "cloud", "video"};
 
 /// Throws UsageError for a request that cannot be meant.
 void check(const OutputRequest& request);

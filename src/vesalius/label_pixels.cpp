@@ -67,6 +67,48 @@ std::array<std::uint8_t, 256> count_neighbours(const LabelImage& labels, int u, 
   return count;
 }
 
+/// Pixels that walk a tree side by side: while one waits for memory, the others go on.
+class PixelGroup {
+ public:
+  static constexpr int kMost = 16;
+
+  bool full() const { return size_ == kMost; }
+  void clear() { size_ = 0; }
+  void add(int u, int v, OffsetScale scale) { pixels_[static_cast<std::size_t>(size_++)] = {u, v, scale, 0}; }
+
+  /// Adds the distributions of the leaves that the pixels reach to their sums.
+  void walk_all(const Tree& tree, const DepthImage& depth, const FeatureConvention& convention, Posteriors& out) {
+    for (int i = 0; i < size_; ++i) at(i).node = tree.nodes.empty() ? ~0 : 0;
+    for (bool walking = !tree.nodes.empty(); walking;) {
+      walking = false;
+      for (int i = 0; i < size_; ++i) {
+        Pixel& p = at(i);
+        if (p.node < 0) continue;
+        p.node = step(tree, p.node, depth, convention, p.scale, p.u, p.v);
+        walking = walking || p.node >= 0;
+      }
+    }
+    for (int i = 0; i < size_; ++i) {
+      const TreeLeaf& leaf = tree.leaves[static_cast<std::size_t>(~at(i).node)];
+      std::uint16_t* sums = out.at(at(i).u, at(i).v);
+      for (std::size_t k = 0; k < TreeLeaf::kClasses && leaf.probability[k] != 0; ++k) {
+        sums[leaf.label[k]] = static_cast<std::uint16_t>(sums[leaf.label[k]] + leaf.probability[k]);
+      }
+    }
+  }
+
+ private:
+  struct Pixel {
+    int u, v;
+    OffsetScale scale;
+    std::int32_t node;
+  };
+  Pixel& at(int i) { return pixels_[static_cast<std::size_t>(i)]; }
+
+  std::array<Pixel, kMost> pixels_;
+  int size_ = 0;
+};
+
 }  // namespace
 
 void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& visitor) {
@@ -88,17 +130,19 @@ Posteriors ForestLabeller::label(const DepthImage& depth, const Camera& camera) 
   out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
   const OffsetScaler scaler(forest_.convention, camera);
   parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
+    PixelGroup group;
     for (const Tree& tree : forest_.trees) {  // tree by tree: its upper nodes stay in the cache
       for (int v = begin; v < end; ++v) {
         for (int u = 0; u < depth.width(); ++u) {
           if (depth(u, v) == 0) continue;
-          const TreeLeaf& leaf = walk(tree, depth, forest_.convention, scaler.at(depth(u, v)), u, v);
-          std::uint16_t* sums = out.at(u, v);
-          for (std::size_t k = 0; k < TreeLeaf::kClasses && leaf.probability[k] != 0; ++k) {
-            sums[leaf.label[k]] = static_cast<std::uint16_t>(sums[leaf.label[k]] + leaf.probability[k]);
-          }
+          group.add(u, v, scaler.at(depth(u, v)));
+          if (!group.full()) continue;
+          group.walk_all(tree, depth, forest_.convention, out);
+          group.clear();
         }
       }
+      group.walk_all(tree, depth, forest_.convention, out);
+      group.clear();
     }
   });
   return out;

@@ -74,7 +74,10 @@ Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, co
           ++neighbours;
         });
         std::uint16_t* mean = out.at(u, v);
-        for (std::size_t c = 0; c < classes; ++c) mean[c] = static_cast<std::uint16_t>(total[c] / neighbours);
+        // In double, which vectorises: exact, since quotients are whole or at least 1/neighbours from the next whole.
+        for (std::size_t c = 0; c < classes; ++c) {
+          mean[c] = static_cast<std::uint16_t>(static_cast<double>(total[c]) / static_cast<double>(neighbours));
+        }
       }
     }
   });

@@ -64,14 +64,18 @@ inline int feature_mm(const DepthImage& depth, const FeatureConvention& conventi
   return first - second;
 }
 
-/// Leaf that pixel (u, v), which must have a reading, reaches.
+/// The child of an inner node that pixel (u, v), which must have a reading, goes to: a node, or ~leaf.
+inline std::int32_t step(const Tree& tree, std::int32_t at, const DepthImage& depth,
+                         const FeatureConvention& convention, OffsetScale scale, int u, int v) {
+  const TreeNode& node = tree.nodes[static_cast<std::size_t>(at)];
+  return feature_mm(depth, convention, scale, u, v, node) <= node.threshold_mm ? node.left : node.right;
+}
+
+/// Leaf that the pixel reaches.
 inline const TreeLeaf& walk(const Tree& tree, const DepthImage& depth, const FeatureConvention& convention,
                             OffsetScale scale, int u, int v) {
   std::int32_t at = tree.nodes.empty() ? ~0 : 0;
-  while (at >= 0) {
-    const TreeNode& node = tree.nodes[static_cast<std::size_t>(at)];
-    at = feature_mm(depth, convention, scale, u, v, node) <= node.threshold_mm ? node.left : node.right;
-  }
+  while (at >= 0) at = step(tree, at, depth, convention, scale, u, v);
   return tree.leaves[static_cast<std::size_t>(~at)];
 }
 

@@ -99,12 +99,12 @@ TEST_F(Detect, SameBytesForAnyNumberOfThreads) {
   for (const std::string threads : {"1", "2", "8"}) {
     const std::string out = path("threads" + threads);
     const Outcome run = detect(" -q --threads " + threads + " --out " + out + " --json " + out +
-                               ".jsonl --save overlay,labels,mask,cloud");
+                               ".jsonl --save overlay,parts,labels,mask,cloud");
     ASSERT_EQ(run.exit_code, 0) << run.err;
     auto all = contents(out);
     all["json"] = bytes_of(out + ".jsonl");
     if (first.empty()) first = all;
-    EXPECT_EQ(all.size(), 14U);  // four kinds for three frames, labels.json and the people
+    EXPECT_EQ(all.size(), 17U);  // five kinds for three frames, labels.json and the people
     EXPECT_TRUE(all == first) << threads << " threads";
   }
 }
