@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "vesalius/frame.h"
+
 namespace vesalius {
 namespace {
 
@@ -51,9 +53,7 @@ class ClusterFinder {
 
   bool labelled(int u, int v) const { return labels_(u, v) < body_.part_count() && depth_(u, v) != 0; }
 
-  Eigen::Vector3f point(int u, int v) const {
-    return camera_.point(static_cast<float>(u), static_cast<float>(v), static_cast<float>(depth_(u, v)) * 1e-3F);
-  }
+  Eigen::Vector3f point(int u, int v) const { return point_at(camera_, depth_, u, v); }
 
   bool connected(const Eigen::Vector3f& a, const Eigen::Vector3f& b) const {
     const float gap = options_.max_gap_m + options_.max_gap_per_z2 * a.z() * b.z();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "vesalius/frame.h"
 #include "vesalius/parallel.h"
 #include "vesalius/random.h"
 
@@ -43,9 +44,7 @@ class Surface {
   Surface(const DepthImage& depth, const Camera& camera) : depth_(depth), camera_(camera) {}
 
   bool known(int u, int v) const { return depth_.contains(u, v) && depth_(u, v) != 0; }
-  Eigen::Vector3f point(int u, int v) const {
-    return camera_.point(static_cast<float>(u), static_cast<float>(v), static_cast<float>(depth_(u, v)) * 1e-3F);
-  }
+  Eigen::Vector3f point(int u, int v) const { return point_at(camera_, depth_, u, v); }
 
   /// Normal from neighbours so far apart that the sensor's depth step tilts it by a quarter at most; zero where the
   /// surface ends or bends within that.

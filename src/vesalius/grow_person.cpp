@@ -127,9 +127,8 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
     const int bottom = std::min(out.height() - 1, static_cast<int>(middle.y() + rv) + 1);
     for (int v = top; v <= bottom; ++v) {
       for (int u = left; u <= right; ++u) {
-        const float z = static_cast<float>(frame_.depth(u, v)) * 1e-3F;
-        if (z <= 0.F || out(u, v) != 0) continue;
-        const Eigen::Vector3f p = frame_.camera.point(static_cast<float>(u), static_cast<float>(v), z);
+        if (frame_.depth(u, v) == 0 || out(u, v) != 0) continue;
+        const Eigen::Vector3f p = point_at(frame_.camera, frame_.depth, u, v);
         if ((p - centre).squaredNorm() <= reach[i] * reach[i]) out(u, v) = 1;
       }
     }
@@ -198,10 +197,7 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
       if (refused[k] != 0) allowed.back()[k] = 0;
     }
   }
-  const auto point = [&](int u, int v) {
-    return frame_.camera.point(static_cast<float>(u), static_cast<float>(v),
-                               static_cast<float>(frame_.depth(u, v)) * 1e-3F);
-  };
+  const auto point = [&](int u, int v) { return point_at(frame_.camera, frame_.depth, u, v); };
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const auto [pixel, person] = queue[head];
     const int u = pixel % width;

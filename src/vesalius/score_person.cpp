@@ -25,8 +25,7 @@ float share_explained(const Frame& frame, const Mask& mask, const LabelImage& la
       ++pixels;
       const int label = labels(u, v);
       if (label >= body.part_count()) continue;
-      const Eigen::Vector3f point = frame.camera.point(static_cast<float>(u), static_cast<float>(v),
-                                                       static_cast<float>(frame.depth(u, v)) * 1e-3F);
+      const Eigen::Vector3f point = point_at(frame.camera, frame.depth, u, v);
       // Seen from the side a labelling mixes left and right; either is an explanation.
       const int mirror = body.parts[static_cast<std::size_t>(label)].mirror;
       if (near_part(skeleton, label, point, radius_m) || near_part(skeleton, mirror, point, radius_m)) ++explained;

@@ -1,0 +1,108 @@
+#include "vesalius/score_person.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace vesalius {
+namespace {
+
+const Camera kCamera{40, 30, 100.F, 100.F, 19.5F, 14.5F};
+
+/// A square of 10 x 10 pixels, 2 m away, before something at `behind_mm`.
+struct Square {
+  explicit Square(std::uint16_t behind_mm) {
+    frame.camera = kCamera;
+    frame.depth = DepthImage(40, 30, behind_mm);
+    for (int v = 10; v < 20; ++v) {
+      for (int u = 15; u < 25; ++u) {
+        frame.depth(u, v) = 2000;
+        mask(u, v) = 1;
+      }
+    }
+    skeleton.parts.resize(paper_body().parts.size());
+  }
+  Evidence evidence(const ScoreOptions& options = {}) const {
+    return gather_evidence(frame, mask, labels, skeleton, paper_body(), options);
+  }
+  void observe(const char* part, const Eigen::Vector3f& centre) {
+    SkeletonPart& p = skeleton.parts[static_cast<std::size_t>(paper_body().find_part(part))];
+    p.state = State::observed;
+    p.centre = centre;
+  }
+
+  Frame frame;
+  Mask mask{40, 30, 0};
+  LabelImage labels{40, 30, kBackground};
+  Skeleton skeleton;
+};
+
+TEST(GatherEvidence, OutlineIsOpenBeforeAFarWallAndClosedOnIt) {
+  EXPECT_FLOAT_EQ(Square(3000).evidence().open, 1.F);
+  EXPECT_FLOAT_EQ(Square(0).evidence().open, 1.F);  // holes are far
+  EXPECT_FLOAT_EQ(Square(2050).evidence().open, 0.F);
+}
+
+TEST(GatherEvidence, ARimWithoutReadingIsLookedThrough) {
+  Square s(2050);
+  for (int v = 8; v < 22; ++v) {
+    for (int u = 13; u < 27; ++u) {
+      if (s.mask(u, v) == 0) s.frame.depth(u, v) = 0;
+    }
+  }
+  EXPECT_FLOAT_EQ(s.evidence().open, 0.F);
+}
+
+TEST(GatherEvidence, OutlineBehindAnOccluderDoesNotCount) {
+  Square s(3000);
+  for (int u = 15; u < 25; ++u) s.frame.depth(u, 20) = 1500;  // something in front of its lower edge
+  EXPECT_FLOAT_EQ(s.evidence().open, 1.F);
+  for (int u = 15; u < 25; ++u) s.frame.depth(u, 9) = 2010;  // and something it touches above
+  EXPECT_NEAR(s.evidence().open, 20.F / 30.F, 1e-5);
+}
+
+TEST(GatherEvidence, ExplainedByTheLabelsPartOrItsPartnerNearby) {
+  Square s(3000);
+  const auto knee = static_cast<std::uint8_t>(paper_body().find_part("l_knee"));
+  for (int v = 10; v < 20; ++v) {
+    for (int u = 15; u < 20; ++u) s.labels(u, v) = knee;
+  }
+  EXPECT_FLOAT_EQ(s.evidence().explained, 0.F);
+  s.observe("r_knee", {0.F, 0.F, 2.F});
+  EXPECT_FLOAT_EQ(s.evidence().explained, 0.5F);
+  s.observe("r_knee", {0.F, 0.F, 2.5F});
+  EXPECT_FLOAT_EQ(s.evidence().explained, 0.F);
+}
+
+TEST(GatherEvidence, CoreIsTheRootsAndWhatIsNextToThem) {
+  Square s(3000);
+  EXPECT_FLOAT_EQ(s.evidence().core, 0.F);
+  s.observe("neck", {0.F, 0.F, 2.F});
+  s.observe("l_face_top", {0.F, 0.F, 2.F});
+  s.observe("l_foot", {0.F, 0.F, 2.F});           // is not
+  EXPECT_FLOAT_EQ(s.evidence().core, 2.F / 7.F);  // neck, four face quarters, two chest halves
+}
+
+TEST(PersonScore, IsALogisticSum) {
+  ScoreOptions options;
+  options.likelihood_weight = 2.F;
+  options.explained_weight = 0.F;
+  options.open_weight = 1.F;
+  options.core_weight = 0.F;
+  options.bias = -1.F;
+  EXPECT_FLOAT_EQ(person_score({0.5F, 0.9F, 0.F, 0.9F}, options), 0.5F);
+  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F}, options), 1.0 / (1.0 + std::exp(-1.0)), 1e-6);
+}
+
+TEST(PersonScore, EachEvidenceSpeaksForAPerson) {
+  const Evidence some{0.5F, 0.6F, 0.6F, 0.7F};
+  const float before = person_score(some, {});
+  for (float Evidence::*field : {&Evidence::likelihood, &Evidence::explained, &Evidence::open, &Evidence::core}) {
+    Evidence more = some;
+    more.*field += 0.1F;
+    EXPECT_GT(person_score(more, {}), before);
+  }
+}
+
+}  // namespace
+}  // namespace vesalius
