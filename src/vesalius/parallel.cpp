@@ -20,13 +20,14 @@ void parallel_ranges(int count, int grain, const std::function<void(int, int)>& 
 }
 
 struct ThreadLimit::State {
+  // Made in place: oneTBB knows the control by its address, and a copy would end the limit with the original.
+  explicit State(int threads)
+      : control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)) {}
   tbb::global_control control;
 };
 
 ThreadLimit::ThreadLimit(int threads)
-    : state_(std::make_unique<State>(State{
-          tbb::global_control(tbb::global_control::max_allowed_parallelism,
-                              static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency()))})) {}
+    : state_(std::make_unique<State>(threads > 0 ? threads : tbb::info::default_concurrency())) {}
 
 ThreadLimit::~ThreadLimit() = default;
 
