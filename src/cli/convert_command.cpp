@@ -3,8 +3,10 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/interrupts.h"
 #include "cli/progress.h"
 #include "cli/source_flags.h"
+#include "cli/text_sink.h"
 #include "io/model_file.h"
 #include "io/write_frames.h"
 #include "vesalius/error.h"
@@ -30,25 +32,27 @@ void convert_trees(std::vector<std::string> paths, bool quiet) {
   }
   const Forest forest = import_text_trees(paths);
   save_model(forest, out);
-  if (!quiet) fmt::print(stderr, "{}: {} trees\n", out, forest.trees.size());
+  if (!quiet) say(fmt::format("{}: {} trees", out, forest.trees.size()));
 }
 
 void convert_frames(const Arguments& arguments) {
   if (arguments.paths.size() != 2) throw UsageError("--to expects a source and one folder to write");
   const FrameFormat format = parse_frame_format(arguments.format);
   const auto source = open_source(arguments.paths[0], arguments.camera);
+  watch_interrupts();
   const auto writer = make_frame_writer(format, arguments.paths[1]);
   if (!arguments.quiet) {
-    for (const std::string& note : source->notes()) fmt::print(stderr, "note: {}\n", note);
+    for (const std::string& note : source->notes()) say("note: " + note);
   }
   Progress progress(source->size(), !arguments.quiet);
   while (const auto frame = source->next()) {
     writer->write(*frame);
     progress.step();
+    if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
   }
   writer->close();
   progress.clear();
-  if (!arguments.quiet) fmt::print(stderr, "{}: {} frames\n", arguments.paths[1], progress.done());
+  if (!arguments.quiet) say(fmt::format("{}: {} frames", arguments.paths[1], progress.done()));
 }
 
 }  // namespace

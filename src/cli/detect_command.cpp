@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <memory>
 
 #include "cli/commands.h"
 #include "cli/detect_outputs.h"
+#include "cli/interrupts.h"
 #include "cli/option_flags.h"
 #include "cli/progress.h"
 #include "cli/source_flags.h"
@@ -30,17 +30,6 @@ struct Arguments {
   bool keep_going = false;
   bool quiet = false;
 };
-
-volatile std::sig_atomic_t interrupted = 0;
-
-/// Ctrl-C ends the work after the frame at hand, so that no temporary file stays; a second one at once.
-void watch_interrupts() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { interrupted = 1; };
-  action.sa_flags = SA_RESETHAND;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 /// Another kinematic tree or other joints for the same parts.
 void replace_body(Forest& forest, const std::string& path) {
@@ -89,7 +78,7 @@ bool detect_next(FrameSource& source, const Detector& detector, DetectOutputs& o
 Totals detect_all(const Arguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,
                   Progress& progress) {
   Totals totals;
-  for (bool more = true; more && interrupted == 0;) {
+  for (bool more = true; more && !interrupted();) {
     try {
       more = detect_next(source, detector, outputs, totals);
     } catch (const BrokenPipe&) {
@@ -97,7 +86,7 @@ Totals detect_all(const Arguments& arguments, FrameSource& source, const Detecto
     } catch (const Error& e) {
       if (!arguments.keep_going) throw;
       progress.clear();
-      fmt::print(stderr, "vesalius: {}\n", e.what());
+      say(std::string("vesalius: ") + e.what());
       ++totals.failed;
     }
     if (more) progress.step();
@@ -111,20 +100,21 @@ void run(const Arguments& arguments) {
   const Detector detector = make_detector(arguments);
   const auto source = open_source(arguments.source, arguments.camera);
   if (!arguments.quiet) {
-    for (const std::string& note : source->notes()) fmt::print(stderr, "note: {}\n", note);
+    for (const std::string& note : source->notes()) say("note: " + note);
   }
   OutputRequest request = arguments.outputs;
   request.lines = !arguments.quiet && request.json != "-";
-  DetectOutputs outputs(request, detector.body());
   watch_interrupts();
+  DetectOutputs outputs(request, detector.body());
   Progress progress(source->size(), !arguments.quiet);
   const Totals totals = detect_all(arguments, *source, detector, outputs, progress);
   progress.clear();
-  if (interrupted != 0) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
   outputs.finish();
   if (!arguments.quiet) {
-    fmt::print(stderr, "{} frames, people in {} of them ({} in all), {:.1f} s, {:.1f} frames/s\n", progress.done(),
-               totals.frames_with_people, totals.people, progress.seconds(), progress.done() / progress.seconds());
+    say(fmt::format("{} frames, people in {} of them ({} in all), {:.1f} s, {:.1f} frames/s", progress.done(),
+                    totals.frames_with_people, totals.people, progress.seconds(),
+                    progress.done() / progress.seconds()));
   }
   if (totals.failed > 0) throw Error(fmt::format("{} of {} frames failed", totals.failed, progress.done()));
 }

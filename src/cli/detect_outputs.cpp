@@ -63,12 +63,16 @@ std::string DetectOutputs::path(const char* kind, const Frame& frame, const char
 void DetectOutputs::write(const Frame& frame, const std::vector<Person>& people) {
   write_pictures(frame, people);
   if (json_) json_->line(frame_json(frame, people, body_));
-  if (request_.lines) print(describe(frame, people) + "\n");
+  if (request_.lines) print(one_line(describe(frame, people)) + "\n");
 }
 
 void DetectOutputs::write_pictures(const Frame& frame, const std::vector<Person>& people) {
   const int width = frame.depth.width();
   const int height = frame.depth.height();
+  if (!kinds_.empty() && !names_.insert(frame.name).second) {
+    throw Error(
+        fmt::format("frame \"{}\": its pictures would replace those of another frame of this name", frame.name));
+  }
   if (wants("overlay") || video_) {
     const ColourImage overlay = draw_people(frame, people, body_);
     if (wants("overlay")) write_png(overlay, path("overlay", frame, ".png"));
@@ -89,6 +93,7 @@ void DetectOutputs::write_pictures(const Frame& frame, const std::vector<Person>
 void DetectOutputs::finish() {
   if (video_) video_->close();
   if (json_) json_->finish();
+  if (request_.lines) finish_stdout();
 }
 
 std::string describe(const Frame& frame, const std::vector<Person>& people) {

@@ -40,6 +40,7 @@ class DetectOutputs {
 
   OutputRequest request_;
   std::set<std::string> kinds_;
+  std::set<std::string> names_;  ///< of frames with pictures
   const BodyModel& body_;
   std::optional<TextSink> json_;
   std::optional<VideoWriter> video_;

@@ -1,10 +1,11 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.h"
@@ -18,10 +19,19 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 
-int complain(std::string message, int exit_code) {
-  std::ranges::replace(message, '\n', ' ');
-  std::fprintf(stderr, "vesalius: %s\n", message.c_str());
+int complain(const std::string& message, int exit_code) {
+  say("vesalius: " + message);
   return exit_code;
+}
+
+/// An empty value is a variable that the caller's shell did not have, not the wish for none.
+void refuse_empty_values(CLI::App& program) {
+  const auto check = [](const std::string& value) { return value.empty() ? "expected a value, found none" : ""; };
+  for (CLI::App* command : program.get_subcommands({})) {
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_items_expected_max() > 0) option->check(check);
+    }
+  }
 }
 
 void describe(CLI::App& program) {
@@ -44,6 +54,7 @@ Exit codes: 0 done, 1 failed, 2 wrong usage.)");
   add_convert(program);
   add_options(program);
   add_completion(program);
+  refuse_empty_values(program);
 }
 
 std::vector<std::string> names_in(const CLI::App& app) {
@@ -89,6 +100,14 @@ int run(int argc, char** argv) {
   }
 }
 
+/// A file opened while one of the three standard streams is closed would get its number, and their text.
+void occupy_standard_streams() {
+  for (const auto& [fd, mode] : {std::pair(0, O_WRONLY), std::pair(1, O_RDONLY), std::pair(2, O_RDONLY)}) {
+    // The lowest free number is taken; the mode makes each use fail as with a closed one.
+    if (::fcntl(fd, F_GETFD) < 0) ::open("/dev/null", mode);
+  }
+}
+
 int guarded(int argc, char** argv) {
   try {
     return run(argc, argv);
@@ -110,5 +129,7 @@ int guarded(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // so that a closed pipe unwinds and temporary files go
+  std::signal(SIGXFSZ, SIG_IGN);  // the same for a file over the shell's limit
+  vesalius::cli::occupy_standard_streams();
   return vesalius::cli::guarded(argc, argv);
 }

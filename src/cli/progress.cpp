@@ -20,7 +20,7 @@ Progress::~Progress() { clear(); }
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
 void Progress::clear() {
-  if (width_ > 0) fmt::print(stderr, "\r{:{}}\r", "", width_);
+  if (width_ > 0) std::fputs(fmt::format("\r{:{}}\r", "", width_).c_str(), stderr);
   width_ = 0;
 }
 
@@ -36,7 +36,7 @@ void Progress::step() {
     line = fmt::format("{} of {} frames, {:.1f} frames/s, {:.0f} s left", done_, total_, rate, (total_ - done_) / rate);
   }
   clear();
-  fmt::print(stderr, "{}{}", line, terminal_ ? "" : "\n");
+  std::fputs((line + (terminal_ ? "" : "\n")).c_str(), stderr);
   if (terminal_) width_ = line.size();
   std::fflush(stderr);
 }

@@ -7,12 +7,11 @@ void add_camera_flags(CLI::App& command, SourceOptions& options) {
   const auto add = [&](const char* name, std::optional<float>& value, const char* unit, const char* help) {
     return command.add_option(name, value, help)->type_name(unit)->group(group);
   };
-  add("--fx", options.fx, "PX", "Focal length, horizontal")->check(CLI::PositiveNumber);
-  add("--fy", options.fy, "PX", "Focal length, vertical (default: fx)")->check(CLI::PositiveNumber);
+  add("--fx", options.fx, "PX", "Focal length, horizontal");
+  add("--fy", options.fy, "PX", "Focal length, vertical (default: fx)");
   add("--cx", options.cx, "PX", "Principal point, column (default: centre)");
   add("--cy", options.cy, "PX", "Principal point, row (default: centre)");
-  add("--depth-scale", options.depth_scale, "N", "Stored depth units per metre: 1000 = millimetres, 5000 = TUM")
-      ->check(CLI::PositiveNumber);
+  add("--depth-scale", options.depth_scale, "N", "Stored depth units per metre: 1000 = millimetres, 5000 = TUM");
   command.add_option("--camera", options.camera_file, "meta.json or ROS camera_info YAML")
       ->type_name("FILE")
       ->group(group);

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
-#include <filesystem>
 #include <system_error>
 
 namespace vesalius::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kStdoutName = "standard output";
 
@@ -24,13 +23,6 @@ void write(std::FILE* stream, std::string_view text, const std::string& name) {
   if (std::fwrite(text.data(), 1, text.size(), stream) != text.size()) fail(name);
 }
 
-/// Devices and pipes, and what the shell opened, cannot be replaced by a new file.
-bool written_as_it_comes(const std::string& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  return path.starts_with("/dev/") || (fs::exists(status) && !fs::is_regular_file(status));
-}
-
 }  // namespace
 
 TextSink::TextSink(const std::string& path) : name_(path) {
@@ -39,7 +31,7 @@ TextSink::TextSink(const std::string& path) : name_(path) {
     stream_.reset(stdout);
     return;
   }
-  if (!written_as_it_comes(path)) temporary_.emplace(path);
+  if (!written_directly(path)) temporary_.emplace(path);
   stream_.reset(std::fopen((temporary_ ? temporary_->path() : path).c_str(), "wb"));
   if (!stream_) fail(name_);
 }
@@ -58,6 +50,14 @@ void TextSink::finish() {
 }
 
 void print(std::string_view text) { write(stdout, text, kStdoutName); }
+
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  return text;
+}
+
+void say(std::string text) { std::fputs((one_line(std::move(text)) + "\n").c_str(), stderr); }
 
 void finish_stdout() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) fail(kStdoutName);

@@ -40,6 +40,12 @@ class TextSink {
 /// Writes to standard output; throws like TextSink.
 void print(std::string_view text);
 
+/// Writes a line to standard error, control characters as spaces. Where that cannot be written nobody can be told.
+void say(std::string text);
+
+/// `text` as one line for a terminal: control characters become spaces.
+std::string one_line(std::string text);
+
 /// Throws when not all that was printed arrived.
 void finish_stdout();
 

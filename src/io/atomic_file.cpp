@@ -36,14 +36,6 @@ int write_and_close(int fd, std::string_view bytes) {
   return error;
 }
 
-/// Devices, pipes and /dev/stdout (a link to whatever the shell opened) must keep being what they are.
-bool written_directly(const std::string& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  const bool inherited = path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/");
-  return inherited || (fs::exists(status) && !fs::is_regular_file(status));
-}
-
 /// A link stays a link: the file that it names is replaced.
 std::string behind_links(const std::string& path) {
   std::error_code error;
@@ -53,6 +45,13 @@ std::string behind_links(const std::string& path) {
 }
 
 }  // namespace
+
+bool written_directly(const std::string& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  const bool inherited = path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/");
+  return inherited || (fs::exists(status) && !fs::is_regular_file(status));
+}
 
 TemporaryFile::TemporaryFile(std::string final_path, const std::string& extension)
     : final_path_(std::move(final_path)) {

@@ -5,6 +5,10 @@
 
 namespace vesalius {
 
+/// Whether `path` is a device, a pipe or /dev/stdout (a link to whatever the shell opened): these must keep being what
+/// they are.
+bool written_directly(const std::string& path);
+
 /// A file being written beside its final place: `commit` renames it there, the destructor removes what was not
 /// committed. For writers that need a path of their own; others use `write_file_atomically`.
 class TemporaryFile {

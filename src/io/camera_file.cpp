@@ -127,6 +127,20 @@ CameraFacts read_camera_file(const std::string& path) {
   return parse_meta(text, path);
 }
 
+/// What the caller gave; there a wrong value is wrong usage.
+CameraFacts facts_given(const SourceOptions& options) try {
+  CameraFacts facts;
+  const std::string name = "options";
+  if (options.fx) facts.fx = checked_focal(*options.fx, name, "fx");
+  if (options.fy) facts.fy = checked_focal(*options.fy, name, "fy");
+  if (options.cx) facts.cx = checked_centre(*options.cx, name, "cx");
+  if (options.cy) facts.cy = checked_centre(*options.cy, name, "cy");
+  if (options.depth_scale) facts.depth_scale = checked_scale(*options.depth_scale, name, "depth_scale");
+  return facts;
+} catch (const Error& e) {
+  throw UsageError(e.what());
+}
+
 CameraFacts facts_in_folder(const std::string& folder) {
   CameraFacts facts;
   for (const char* file : {"meta.json", "camera_info.yaml", "camera_info.yml"}) {
@@ -244,13 +258,7 @@ std::string serialise_meta(const Camera& camera, float depth_scale) {
 }
 
 CameraFacts find_camera_facts(const SourceOptions& options, const std::vector<std::string>& folders) {
-  CameraFacts facts;
-  const std::string name = "options";
-  if (options.fx) facts.fx = checked_focal(*options.fx, name, "fx");
-  if (options.fy) facts.fy = checked_focal(*options.fy, name, "fy");
-  if (options.cx) facts.cx = checked_centre(*options.cx, name, "cx");
-  if (options.cy) facts.cy = checked_centre(*options.cy, name, "cy");
-  if (options.depth_scale) facts.depth_scale = checked_scale(*options.depth_scale, name, "depth_scale");
+  CameraFacts facts = facts_given(options);
   if (!options.camera_file.empty()) {
     facts.fill_from(read_camera_file(options.camera_file));
     return facts;

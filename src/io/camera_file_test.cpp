@@ -209,6 +209,7 @@ TEST(FindCameraFacts, BadOptionsAreErrors) {
   SourceOptions options;
   options.fx = -3.F;
   EXPECT_THAT(error_of([&] { find_camera_facts(options, {}); }), HasSubstr("options: \"fx\""));
+  EXPECT_THROW(find_camera_facts(options, {}), UsageError) << "no file is at fault";
 }
 
 }  // namespace

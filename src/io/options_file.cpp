@@ -16,7 +16,8 @@
 namespace vesalius {
 namespace {
 
-constexpr std::size_t kMaxOptionsBytes = std::size_t{1} << 20;
+// A key of n dots nests n tables, and the TOML library frees them by recursion: this much cannot exhaust the stack.
+constexpr std::size_t kMaxOptionsBytes = std::size_t{1} << 14;
 constexpr std::size_t kMaxShown = 64;
 
 std::string printable(std::string_view text) {

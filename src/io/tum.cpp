@@ -35,7 +35,8 @@ TumEntry parse_line(std::string_view line, const std::string& name, int number) 
   entry.file = std::string(trimmed(line.substr(gap)));
   const char* end = entry.stamp.data() + entry.stamp.size();
   const auto [stop, error] = std::from_chars(entry.stamp.data(), end, entry.time_s);
-  if (error != std::errc() || stop != end || !std::isfinite(entry.time_s) || entry.file.empty()) {
+  const bool named = !entry.file.empty() && entry.file.find('\0') == entry.file.npos;
+  if (error != std::errc() || stop != end || !std::isfinite(entry.time_s) || !named) {
     throw Error(fmt::format("{}:{}: expected \"timestamp file\"", name, number));
   }
   return entry;

@@ -33,6 +33,7 @@ TEST(ParseTumList, NamesFileAndLine) {
   EXPECT_THAT(message("1x a.png"), HasSubstr("depth.txt:1"));
   EXPECT_THAT(message("nan a.png"), HasSubstr("depth.txt:1"));
   EXPECT_THAT(message("1e999 a.png"), HasSubstr("depth.txt:1"));
+  EXPECT_THAT(error_of([] { parse_tum_list({"1 a\0.png", 9}, "depth.txt"); }), HasSubstr("depth.txt:1"));
   EXPECT_THAT(message("1.0 a.png\n2 b.png\n1.00 c.png"), HasSubstr("depth.txt: time 1.0 occurs twice"));
 }
 

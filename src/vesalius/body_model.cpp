@@ -262,7 +262,22 @@ void read_joint_sets(const Reader& reader, const toml::table& root, BodyModel& b
   }
 }
 
+/// A key of many thousand dotted levels, which only a very long line can hold, overruns the parser's stack.
+void check_lines(std::string_view text, const std::string& source) {
+  constexpr std::size_t kLongestLine = 4096;
+  std::size_t begin = 0;
+  for (int line = 1; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > kLongestLine) {
+      throw Error(source + ":" + std::to_string(line) + ": line of " + std::to_string(end - begin) +
+                  " characters, expected at most " + std::to_string(kLongestLine));
+    }
+    begin = end + 1;
+  }
+}
+
 toml::table parse_toml(std::string_view text, const std::string& source) {
+  check_lines(text, source);
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {

@@ -244,5 +244,12 @@ TEST(BodyModel, AnyPrefixIsReadOrRefused) {
   }
 }
 
+TEST(ParseBodyModel, EndlessKeyIsAnErrorNotACrash) {
+  std::string endless = "name = \"x\"\na";
+  for (int i = 0; i < 100000; ++i) endless += ".a";
+  EXPECT_THAT([&] { parse_body_model(endless + " = 1\n", "b.toml"); },
+              ThrowsMessage<Error>("b.toml:2: line of 200005 characters, expected at most 4096"));
+}
+
 }  // namespace
 }  // namespace vesalius

@@ -8,8 +8,13 @@
 namespace vesalius {
 namespace {
 
-void check_range(const std::string& name, double value, const OptionInfo& info) {
-  if (std::isfinite(value) && value >= info.low && value <= info.high) return;
+/// `low` and `high` in the value's own precision, so that the ends of the range are in it.
+template <class T>
+void check_range(const std::string& name, T value, const OptionInfo& info) {
+  if (std::isfinite(static_cast<double>(value)) && value >= static_cast<T>(info.low) &&
+      value <= static_cast<T>(info.high)) {
+    return;
+  }
   std::ostringstream message;
   message << "option " << name << " is " << value << ", expected " << info.low << " to " << info.high;
   if (*info.unit != '\0') message << ' ' << info.unit;
@@ -19,7 +24,7 @@ void check_range(const std::string& name, double value, const OptionInfo& info) 
 }  // namespace
 
 void RangeCheck::option(const std::string& name, float& value, const OptionInfo& info) {
-  check_range(name, static_cast<double>(value), info);
+  check_range(name, value, info);
 }
 
 void RangeCheck::option(const std::string& name, int& value, const OptionInfo& info) { check_range(name, value, info); }

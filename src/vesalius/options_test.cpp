@@ -22,6 +22,13 @@ TEST(RangeCheck, AcceptsTheRangeWithItsEnds) {
   for (const int value : {1, 13, 25}) EXPECT_NO_THROW(check_count(value));
 }
 
+TEST(RangeCheck, AnEndWithoutExactFloatIsInTheRange) {
+  float low = 0.1F;
+  float high = 0.3F;
+  EXPECT_NO_THROW(RangeCheck().option("x", low, {"", 0.1, 0.3, "A share."}));
+  EXPECT_NO_THROW(RangeCheck().option("x", high, {"", 0.1, 0.3, "A share."}));
+}
+
 TEST(RangeCheck, NamesOptionValueRangeAndUnit) {
   EXPECT_THAT([] { check_real(2.5F); }, ThrowsMessage<UsageError>("option grow.radius is 2.5, expected 0 to 2 m"));
   EXPECT_THAT([] { check_count(0); }, ThrowsMessage<UsageError>("option search.parts is 0, expected 1 to 25"));

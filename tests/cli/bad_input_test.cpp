@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+
 #include "io/image_file.h"
 #include "run_program.h"
 #include "small_world.h"
@@ -77,6 +79,10 @@ TEST_F(BadInput, Frames) {
 TEST_F(BadInput, Options) {
   write("unknown.toml", "serach.min-parts = 3\n");
   write("range.toml", "search.min-parts = 0\n");
+  std::string deep = "a";
+  for (int i = 0; i < 50000; ++i) deep += ".a";
+  write("deep.toml", deep + " = 1\n");
+  detect(frames(), model(), " --options " + path("deep.toml"), 1, "deep.toml: 100006 bytes, expected at most 16384");
   detect(frames(), model(), " --options " + path("unknown.toml"), 1, "did you mean \"search.min-parts\"?");
   detect(frames(), model(), " --options " + path("range.toml"), 1, "range.toml:1: option search.min-parts is 0");
   detect(frames(), model(), " --search.min-parts 0", 2, "option search.min-parts is 0");
@@ -88,7 +94,13 @@ TEST_F(BadInput, CommandLines) {
   detect(frames(), model(), " --save mask", 2, "--save needs --out");
   detect(frames(), model(), " --out x --save masks", 2, "masks");
   detect(frames(), model(), " --threads -1", 2, "--threads");
-  detect(frames(), model(), " --fx 0", 2, "--fx");
+  for (const char* value : {"0", "-1", "nan", "inf", "1e30"}) {
+    detect(frames(), model(), std::string(" --fx ") + value, 2, "\"fx\": expected a positive number of pixels");
+  }
+  detect(frames(), model(), " --cx nan", 2, "\"cx\": expected a number of pixels");
+  detect(frames(), model(), " --depth-scale 0", 2, "\"depth_scale\": expected stored units per metre");
+  detect(frames(), model(), " --out ''", 2, "--out: expected a value, found none");
+  detect("''", model(), "", 2, "SOURCE: expected a value, found none");
   detect(frames(), model(), " --jsno -", 2, "unknown argument --jsno, did you mean --json?");
   detect("", model(), "", 2, "SOURCE is required");
   expect_refused(run_program("detcet"), 2, "unknown argument detcet, did you mean detect?");
@@ -105,6 +117,52 @@ TEST_F(BadInput, PlacesThatCannotBeWritten) {
   detect(frames(), model(), " --out " + path("file"), 1, "file: cannot make the folder");
   expect_refused(run_program("options >/dev/full"), 1, "standard output: cannot be written: No space left on device");
   expect_refused(run_program("--help >/dev/full"), 1, "standard output: cannot be written");
+}
+
+TEST_F(BadInput, OutputThatCannotArriveIsToldBeforeSuccessIs) {
+  expect_refused(run_program("detect " + frames() + " -m " + model() + " >/dev/full"), 1,
+                 "standard output: cannot be written: No space left on device");
+}
+
+TEST_F(BadInput, NamesCannotControlTheTerminal) {
+  fs::create_directories(path("odd"));
+  write("odd/depth.txt", "1 \x1b[31m.png\n");
+  detect(path("odd"), model(), " --fx 50", 1, "/odd/ [31m.png: cannot be read");
+}
+
+TEST_F(BadInput, NoPictureReplacesThatOfAnotherFrame) {
+  fs::copy(frames(), path("twins"), fs::copy_options::recursive);
+  fs::copy(path("twins/depth/a.png"), path("twins/depth/a.PNG"));
+  detect(path("twins"), model(), " --out " + path("twins_out"), 1, "frame \"a\": its pictures would replace");
+}
+
+TEST_F(BadInput, FilesOverTheShellsLimitLeaveNothingBehind) {
+  const std::string command = "ulimit -f 1; '" VESALIUS_PROGRAM "' detect " + frames() + " -q -m " + model() +
+                              " --json " + path("limited.jsonl") + " 2>" + path("limited.err");
+  EXPECT_NE(std::system(("(" + command + ")").c_str()), 0);
+  EXPECT_THAT(bytes_of(path("limited.err")), HasSubstr("limited.jsonl: cannot be written: File too large"));
+  for (const auto& entry : fs::directory_iterator(path(""))) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with("limited.jsonl")) << entry.path();
+  }
+}
+
+TEST_F(BadInput, InterruptsLeaveNothingHalfWritten) {
+  std::string list;  // longer than the test lasts
+  for (int i = 0; i < 100000; ++i) list += std::to_string(i) + " ../frames/depth/c.png\n";
+  fs::create_directories(path("long"));
+  write("long/depth.txt", list);
+  const auto interrupted = [](const std::string& signal, const std::string& arguments) {
+    const std::string err = path("interrupted.err");
+    const std::string command = "timeout -s " + signal + " 2 '" VESALIUS_PROGRAM "' " + arguments + " -q 2>" + err;
+    EXPECT_NE(std::system(command.c_str()), 0);
+    EXPECT_THAT(bytes_of(err), HasSubstr("interrupted after"));
+  };
+  fs::create_directories(path("stopped"));
+  for (const std::string signal : {"INT", "HUP"}) {
+    interrupted(signal, "detect " + path("long") + " --fx 262 -m " + model() + " --json " + path("stopped/p.jsonl"));
+    EXPECT_TRUE(fs::is_empty(path("stopped"))) << signal;
+  }
+  interrupted("INT", "convert " + path("long") + " " + path("converted") + " --fx 262 --to pcd");
 }
 
 TEST_F(BadInput, AReaderThatLeavesEndsTheProgramQuietly) {

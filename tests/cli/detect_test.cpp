@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -162,6 +163,27 @@ TEST_F(Detect, KeepGoingPassesOverDamagedFrames) {
   const auto found = lines(bytes_of(path("people.jsonl")));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[1].at("frame"), "c");
+}
+
+TEST_F(Detect, WhatNobodyCanReadStopsNothing) {
+  const Outcome full = detect(" 2>/dev/full");
+  EXPECT_EQ(full.exit_code, 0);
+  EXPECT_EQ(std::ranges::count(full.out, '\n'), 3);
+  EXPECT_EQ(detect(" 2>&-").exit_code, 0);
+}
+
+TEST_F(Detect, ClosedStreamsDoNotSpillIntoFiles) {
+  fs::copy(frames(), path("spilt"), fs::copy_options::recursive);
+  write("spilt/depth/b.png", "no picture");
+  const std::string people = path("spilt.jsonl");
+  run_program("detect " + path("spilt") + " -m " + model() + " --keep-going --json " + people + " 2>&-");
+  EXPECT_EQ(lines(bytes_of(people)).size(), 2U);
+}
+
+TEST_F(Detect, AFrameIsALineWhateverItsName) {
+  fs::create_directories(path("names"));
+  fs::copy(frames() + "/depth/c.png", path("names/one\ntwo.png"));
+  EXPECT_EQ(run_program("detect " + path("names") + " --fx 262 -m " + model()).out, "one two: nobody\n");
 }
 
 TEST_F(Detect, AnotherBodyMayHaveOtherJointsForTheSameParts) {
