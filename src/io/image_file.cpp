@@ -103,7 +103,7 @@ std::string encode_png(const Image<std::uint8_t>& image) { return encode_grey(im
 std::string encode_png(const ColourImage& image) {
   cv::Mat mat(image.height(), image.width(), CV_8UC3);
   for (int v = 0; v < image.height(); ++v) {
-    cv::Vec3b* bgr = mat.ptr<cv::Vec3b>(v);
+    auto* bgr = mat.ptr<cv::Vec3b>(v);
     const Rgb* rgb = image.row(v);
     for (int u = 0; u < image.width(); ++u) bgr[u] = {rgb[u].b, rgb[u].g, rgb[u].r};
   }
