@@ -68,7 +68,7 @@ float scale_of_units(const json& units, const std::string& name) {
   if (word == "mm") return 1000.F;
   if (word == "cm") return 100.F;
   if (word == "m") return 1.F;
-  fail(name, "units", "\"mm\", \"cm\" or \"m\", or else \"depth_scale\" in units per metre");
+  fail(name, "units", R"("mm", "cm" or "m", or else "depth_scale" in units per metre)");
 }
 
 std::vector<double> numbers(const YAML::Node& node, std::size_t count, const std::string& name,

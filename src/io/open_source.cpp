@@ -113,7 +113,7 @@ Frame make_frame(const Camera& camera, const std::uint16_t* depth_mm, std::size_
   check(camera);
   if (std::int64_t{camera.width} * camera.height > kMaxPixels) throw Error("frame buffers: more pixels than supported");
   if (depth_mm == nullptr) throw Error("frame buffers: no depth, expected a pointer to its first value");
-  const std::size_t width = static_cast<std::size_t>(camera.width);
+  const auto width = static_cast<std::size_t>(camera.width);
   const std::size_t depth_bytes = width * sizeof(std::uint16_t);
   const std::size_t rgb_bytes = width * 3;
   if (depth_stride == 0) depth_stride = depth_bytes;

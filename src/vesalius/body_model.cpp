@@ -72,7 +72,7 @@ class Reader {
   /// Names end up in JSON, pictures and file names.
   std::string name(const toml::table& table, std::string_view key) const {
     const toml::node& node = need(table, key);
-    const std::string value = string(node, key);
+    std::string value = string(node, key);
     const auto allowed = [](unsigned char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
     };

@@ -161,7 +161,7 @@ std::vector<Eigen::Vector3f> centres_in(const std::vector<BodySolid>& solids, co
   for (std::size_t p = 0; p < sum.size(); ++p) {
     const Vector3d mean =
         count[p] > 0 ? Vector3d(sum[p] / count[p]) : Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    result.push_back(mean.cast<float>());
+    result.emplace_back(mean.cast<float>());
   }
   return result;
 }
