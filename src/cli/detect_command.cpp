@@ -25,7 +25,7 @@ struct Arguments {
   std::string source, model, body, options_file;
   SourceOptions camera;
   OutputRequest outputs;
-  OptionFlags detector_flags;
+  OptionFlags<DetectOptions> detector_flags;
   int threads = 0;
   bool keep_going = false;
   bool quiet = false;

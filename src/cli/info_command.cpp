@@ -4,9 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/synth_assets.h"
 #include "cli/text_sink.h"
+#include "io/asset_list.h"
+#include "io/assets.h"
 #include "io/model_file.h"
 #include "io/read_file.h"
+#include "synth/render.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius::cli {
@@ -28,23 +32,37 @@ std::vector<std::string> cpu_features() {
   return found;
 }
 
+/// Which packages of `vesalius assets` are where it puts them.
+Json asset_facts() {
+  Json facts = Json::object();
+  for (const AssetPackage& package : asset_packages()) {
+    facts[package.name] = has_assets(package, default_assets_folder()) ? "present" : "absent";
+  }
+  return facts;
+}
+
 Json program_facts() {
-  return {
-      {"program", "vesalius"},
-      {"version", VESALIUS_VERSION},
-      {"build", VESALIUS_BUILD_TYPE},
-      {"compiler",
+  return {{"program", "vesalius"},
+          {"version", VESALIUS_VERSION},
+          {"build", VESALIUS_BUILD_TYPE},
+          {"compiler",
 #if defined(__clang__)
-       std::string("clang ") + __clang_version__
+           std::string("clang ") + __clang_version__
 #else
-       std::string("gcc ") + __VERSION__
+           std::string("gcc ") + __VERSION__
 #endif
-      },
-      {"cpu_features", cpu_features()},
-      {"threads", thread_count()},
-      {"model_format", kModelVersion},
-      {"parts_of_this_build",
-       {{"openni2", "absent"}, {"realsense", "absent"}, {"k4a", "absent"}, {"cuda", "absent"}, {"viewer", "absent"}}}};
+          },
+          {"cpu_features", cpu_features()},
+          {"threads", thread_count()},
+          {"model_format", kModelVersion},
+          {"parts_of_this_build",
+           {{"renderer", synth::renderer_version()},
+            {"openni2", "absent"},
+            {"realsense", "absent"},
+            {"k4a", "absent"},
+            {"cuda", "absent"},
+            {"viewer", "absent"}}},
+          {"assets", asset_facts()}};
 }
 
 Json tree_facts(const Tree& tree) {

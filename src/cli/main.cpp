@@ -52,6 +52,8 @@ Exit codes: 0 done, 1 failed, 2 wrong usage.)");
   add_detect(program);
   add_info(program);
   add_convert(program);
+  add_synth(program);
+  add_assets(program);
   add_options(program);
   add_completion(program);
   refuse_empty_values(program);

@@ -6,9 +6,9 @@
 
 namespace vesalius::cli {
 
-struct OptionFlags::Flag {
+struct FlagSet::Flag {
   const CLI::Option* option;
-  std::variant<const float*, const int*, const bool*> value;
+  std::variant<const float*, const int*, const bool*, const std::string*> value;
 };
 
 namespace {
@@ -34,6 +34,9 @@ class Adder : public OptionVisitor {
   void option(const std::string& name, bool& value, const OptionInfo& info) override {
     keep(command_.add_flag(fmt::format("--{0},!--no-{0}", name), value, info.help), &value);
   }
+  void option(const std::string& name, std::string& value, const OptionInfo& info) override {
+    keep(command_.add_option("--" + name, value, info.help), &value);
+  }
 
  private:
   template <class T>
@@ -54,6 +57,7 @@ class Copier : public OptionVisitor {
   void option(const std::string& /*name*/, float& value, const OptionInfo& /*info*/) override { copy(value); }
   void option(const std::string& /*name*/, int& value, const OptionInfo& /*info*/) override { copy(value); }
   void option(const std::string& /*name*/, bool& value, const OptionInfo& /*info*/) override { copy(value); }
+  void option(const std::string& /*name*/, std::string& value, const OptionInfo& /*info*/) override { copy(value); }
 
  private:
   template <class T>
@@ -67,16 +71,16 @@ class Copier : public OptionVisitor {
 
 }  // namespace
 
-OptionFlags::OptionFlags(CLI::App& command) {
+FlagSet::FlagSet(CLI::App& command, const VisitAll& visit) {
   Adder<Flag> adder(command, flags_);
-  visit_options("", values_, adder);
+  visit(adder);
 }
 
-OptionFlags::~OptionFlags() = default;
+FlagSet::~FlagSet() = default;
 
-void OptionFlags::apply(DetectOptions& options) const {
+void FlagSet::apply(const VisitAll& visit) const {
   Copier<Flag> copier(flags_);
-  visit_options("", options, copier);
+  visit(copier);
 }
 
 }  // namespace vesalius::cli

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "vesalius/detect.h"
+
 namespace vesalius::cli {
 namespace {
 
 TEST(OptionFlags, OverwriteOnlyWhatTheCommandLineGave) {
   CLI::App app;
-  const OptionFlags flags(app);
+  const OptionFlags<DetectOptions> flags(app);
   app.parse("--search.min-parts 9 --smooth.mode");
   DetectOptions options;
   options.search.max_mean_error = 0.25F;  // as from a file
@@ -21,7 +23,7 @@ TEST(OptionFlags, OverwriteOnlyWhatTheCommandLineGave) {
 
 TEST(OptionFlags, SwitchesCanBeTurnedOff) {
   CLI::App app;
-  const OptionFlags flags(app);
+  const OptionFlags<DetectOptions> flags(app);
   app.parse("--no-smooth.mode");
   DetectOptions options;
   options.smooth.mode = true;
@@ -31,7 +33,7 @@ TEST(OptionFlags, SwitchesCanBeTurnedOff) {
 
 TEST(OptionFlags, RefuseWhatIsNoValue) {
   CLI::App app;
-  const OptionFlags flags(app);
+  const OptionFlags<DetectOptions> flags(app);
   EXPECT_THROW(app.parse("--search.min-parts many"), CLI::ParseError);
   EXPECT_THROW(app.parse("--search.min-part 3"), CLI::ParseError);
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <sstream>
 
 #include "io/atomic_file.h"
 #include "io/read_file.h"
@@ -70,6 +71,9 @@ class NameCollector : public OptionVisitor {
   void option(const std::string& name, float& /*value*/, const OptionInfo& /*info*/) override { names.push_back(name); }
   void option(const std::string& name, int& /*value*/, const OptionInfo& /*info*/) override { names.push_back(name); }
   void option(const std::string& name, bool& /*value*/, const OptionInfo& /*info*/) override { names.push_back(name); }
+  void option(const std::string& name, std::string& /*value*/, const OptionInfo& /*info*/) override {
+    names.push_back(name);
+  }
 
   std::vector<std::string> names;
 };
@@ -99,6 +103,13 @@ class Setter : public OptionVisitor {
     if (!read) values_.fail(*node, name + ": expected true or false");
     value = *read;
   }
+  void option(const std::string& name, std::string& value, const OptionInfo& /*info*/) override {
+    const toml::node* node = values_.find(name);
+    if (node == nullptr) return;
+    const auto read = node->value_exact<std::string>();
+    if (!read) values_.fail(*node, name + ": expected a text in quotes");
+    value = *read;
+  }
 
  private:
   template <class T>
@@ -126,6 +137,11 @@ class TomlWriter : public OptionVisitor {
   }
   void option(const std::string& name, bool& value, const OptionInfo& info) override {
     line(name, value ? "true" : "false", info, false);
+  }
+  void option(const std::string& name, std::string& value, const OptionInfo& info) override {
+    std::ostringstream quoted;
+    quoted << toml::value<std::string>(value);
+    line(name, quoted.str(), info, false);
   }
 
   std::string text;

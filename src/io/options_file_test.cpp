@@ -21,6 +21,7 @@ struct TestOptions {
   int parts = 4;
   bool mode = false;
   float tiny = 1e-6F;
+  std::string word = "plain";
 };
 
 VisitAll visit(TestOptions& o) {
@@ -29,6 +30,7 @@ VisitAll visit(TestOptions& o) {
     v.option("search.parts", o.parts, {"", 1, 25, "Parts."});
     v.option("search.mode", o.mode, {"", 0, 1, "A switch."});
     v.option("cluster.tiny", o.tiny, {"", 0.0, 1.0, "Small."});
+    v.option("cluster.word", o.word, {"", 0, 0, "A word."});
   };
 }
 
@@ -66,17 +68,19 @@ TEST(OptionsFile, RefusesWithLineAndReason) {
   EXPECT_THAT(parse("cluster.gap = nan"), ThrowsMessage<Error>(StartsWith("o.toml:1: option cluster.gap is nan")));
   EXPECT_THAT(parse("cluster.gap = \"1\""), ThrowsMessage<Error>("o.toml:1: cluster.gap: expected a number"));
   EXPECT_THAT(parse("search.mode = 1"), ThrowsMessage<Error>("o.toml:1: search.mode: expected true or false"));
+  EXPECT_THAT(parse("cluster.word = 1"), ThrowsMessage<Error>("o.toml:1: cluster.word: expected a text in quotes"));
   EXPECT_THAT(parse("search = 1"), ThrowsMessage<Error>(HasSubstr("no option is called \"search\"")));
   EXPECT_THAT(parse("x = [\n"), ThrowsMessage<Error>(HasSubstr("not valid TOML")));
 }
 
 TEST(OptionsFile, WritesWhatItReads) {
-  TestOptions written{.gap = 0.1F, .parts = 9, .mode = true, .tiny = 3e-7F};
+  TestOptions written{.gap = 0.1F, .parts = 9, .mode = true, .tiny = 3e-7F, .word = "a \"b\" \\ c"};
   const TestOptions again = parsed(options_toml(visit(written)));
   EXPECT_EQ(again.gap, written.gap);
   EXPECT_EQ(again.parts, written.parts);
   EXPECT_EQ(again.mode, written.mode);
   EXPECT_EQ(again.tiny, written.tiny);
+  EXPECT_EQ(again.word, written.word);
 }
 
 TEST(OptionsFile, DescribesEveryOption) {

@@ -15,6 +15,7 @@ namespace vesalius {
 namespace {
 
 constexpr std::size_t kMaxParts = 200;
+constexpr std::size_t kMaxSurfaceRules = 4000;
 constexpr std::size_t kMaxName = 64;
 
 constexpr std::string_view kPaperBody =
@@ -262,6 +263,38 @@ void read_joint_sets(const Reader& reader, const toml::table& root, BodyModel& b
   }
 }
 
+SurfaceRule::Side read_side(const Reader& reader, const toml::table& table) {
+  const toml::node* node = table.get("side");
+  if (node == nullptr) return SurfaceRule::Side::both;
+  const std::string side = reader.string(*node, "side");
+  if (side == "both") return SurfaceRule::Side::both;
+  if (side == "left") return SurfaceRule::Side::left;
+  if (side == "right") return SurfaceRule::Side::right;
+  reader.fail(*node, "side " + quoted(side) + ": expected \"both\", \"left\" or \"right\"");
+}
+
+void read_surface(const Reader& reader, const toml::table& root, BodyModel& body) {
+  if (!root.contains("surface")) return;
+  const toml::array& array = reader.array(root, "surface");
+  if (array.size() > kMaxSurfaceRules) {
+    reader.fail(array, "surface: expected at most " + std::to_string(kMaxSurfaceRules) + " rules, found " +
+                           std::to_string(array.size()));
+  }
+  for (const toml::node& node : array) {
+    const toml::table& table = reader.table(node, "surface");
+    reader.expect_keys(table, {"part", "bone", "from", "to", "side"});
+    SurfaceRule rule;
+    rule.part = reader.part(body, reader.need(table, "part"), "part");
+    rule.bone = reader.name(table, "bone");
+    rule.from = reader.number(table, "from", 0.0, 1.0);
+    rule.to = reader.number(table, "to", 0.0, 1.0);
+    if (rule.to <= rule.from) reader.fail(table, "surface: expected \"to\" to be larger than \"from\"");
+    rule.side = read_side(reader, table);
+    rule.line = static_cast<int>(table.source().begin.line);
+    body.surface.push_back(std::move(rule));
+  }
+}
+
 /// A key of many thousand dotted levels, which only a very long line can hold, overruns the parser's stack.
 void check_lines(std::string_view text, const std::string& source) {
   constexpr std::size_t kLongestLine = 4096;
@@ -296,13 +329,14 @@ int BodyModel::find_part(std::string_view part_name) const {
 BodyModel parse_body_model(std::string_view toml, const std::string& source) {
   const toml::table root = parse_toml(toml, source);
   const Reader reader(source);
-  reader.expect_keys(root, {"name", "roots", "part", "link", "joint_set"});
+  reader.expect_keys(root, {"name", "roots", "part", "link", "joint_set", "surface"});
   BodyModel body;
   body.name = reader.name(root, "name");
   read_parts(reader, root, body);
   read_links(reader, root, body);
   read_roots(reader, root, body);
   read_joint_sets(reader, root, body);
+  read_surface(reader, root, body);
   body.toml = toml;
   return body;
 }

@@ -40,6 +40,20 @@ struct JointSet {
   std::vector<JointDefinition> joints;
 };
 
+/// Which triangles of a synthetic body's surface belong to a part: those that move with `bone` of the synthetic
+/// skeleton and lie from `from` to `to` along it. What lies before the bone's head or beyond its tail counts as 0 or 1.
+struct SurfaceRule {
+  /// Half of the body cut by its middle plane; left is the person's own.
+  enum class Side { both, left, right };
+
+  int part = -1;
+  std::string bone;  ///< name in synth's skeleton, e.g. "l_thigh"; synth checks it
+  float from = 0.F;  ///< 0: the bone's head (nearer to the trunk), 1: its tail
+  float to = 1.F;    ///< above `from`
+  Side side = Side::both;
+  int line = 0;  ///< in the body's TOML, for messages
+};
+
 /// The body as data: parts, kinematic tree, joints. Read from TOML (docs/formats.md); nothing else in the program
 /// knows how many parts there are or what they are called.
 struct BodyModel {
@@ -48,7 +62,8 @@ struct BodyModel {
   std::vector<BodyLink> links;  ///< a tree over all parts
   std::vector<int> roots;       ///< parts a search may start from, the steadiest first
   std::vector<JointSet> joint_sets;
-  std::string toml;  ///< the text this was read from, embedded in model files
+  std::vector<SurfaceRule> surface;  ///< for training on synthetic people; may be empty: detection needs none
+  std::string toml;                  ///< the text this was read from, embedded in model files
 
   int part_count() const { return static_cast<int>(parts.size()); }
   /// Index of the part, -1 where there is none of that name.

@@ -144,6 +144,55 @@ TEST(BodyModel, PaperBodyMirrorsOntoItself) {
   }
 }
 
+const std::string kSurface = R"([[surface]]
+part = "l_arm"
+bone = "l_forearm"
+from = 0.25
+to = 1
+[[surface]]
+part = "trunk"
+bone = "chest"
+from = 0
+to = 0.5
+side = "left"
+)";
+
+TEST(BodyModel, ReadsSurfaceRules) {
+  const BodyModel body = parse_body_model(kSmall + kSurface, "small.toml");
+  ASSERT_EQ(body.surface.size(), 2U);
+  EXPECT_EQ(body.surface[0].part, 1);
+  EXPECT_EQ(body.surface[0].bone, "l_forearm");
+  EXPECT_EQ(body.surface[0].from, 0.25F);
+  EXPECT_EQ(body.surface[0].to, 1.F);
+  EXPECT_EQ(body.surface[0].side, SurfaceRule::Side::both);
+  EXPECT_EQ(body.surface[1].side, SurfaceRule::Side::left);
+  EXPECT_EQ(body.surface[1].line, 49);
+  EXPECT_TRUE(parse_body_model(kSmall, "small.toml").surface.empty());
+}
+
+TEST(BodyModel, NamesTheLineOfABadSurfaceRule) {
+  const auto expect = [](const std::string& from, const std::string& to, const std::string& message) {
+    std::string text = kSmall + kSurface;
+    const std::size_t at = text.find(from, text.find("[[surface]]"));
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    EXPECT_THAT([&] { parse_body_model(text, "b"); }, ThrowsMessage<Error>(StartsWith(message))) << to;
+  };
+  expect("l_arm", "l_leg", "b:45: part: no part is called \"l_leg\"");
+  expect("0.25", "-0.25", "b:47: from: expected a number from 0 to 1");
+  expect("to = 1", "to = 0.25", "b:44: surface: expected \"to\" to be larger than \"from\"");
+  expect("\"left\"", "\"west\"", "b:54: side \"west\": expected \"both\", \"left\" or \"right\"");
+  expect("side =", "sides =", "b:54: unknown key \"sides\"");
+  expect("bone = \"chest\"\n", "", "b:49: missing key \"bone\"");
+}
+
+TEST(BodyModel, PaperBodyHasASurfaceRuleForEveryPart) {
+  const BodyModel& body = paper_body();
+  std::set<int> parts;
+  for (const SurfaceRule& rule : body.surface) parts.insert(rule.part);
+  EXPECT_EQ(parts.size(), 25U);
+}
+
 std::string without_last_link() {
   std::string text = kSmall;
   const std::size_t at = text.rfind("[[link]]");

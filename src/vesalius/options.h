@@ -19,6 +19,8 @@ class OptionVisitor {
   virtual void option(const std::string& name, float& value, const OptionInfo& info) = 0;
   virtual void option(const std::string& name, int& value, const OptionInfo& info) = 0;
   virtual void option(const std::string& name, bool& value, const OptionInfo& info) = 0;
+  /// A word; the range does not apply. Whoever uses it checks it.
+  virtual void option(const std::string& name, std::string& value, const OptionInfo& info) = 0;
 };
 
 /// Throws UsageError naming the first option outside its range or not finite. Works for every struct that has
@@ -28,6 +30,7 @@ class RangeCheck : public OptionVisitor {
   void option(const std::string& name, float& value, const OptionInfo& info) override;
   void option(const std::string& name, int& value, const OptionInfo& info) override;
   void option(const std::string& /*name*/, bool& /*value*/, const OptionInfo& /*info*/) override {}
+  void option(const std::string& /*name*/, std::string& /*value*/, const OptionInfo& /*info*/) override {}
 };
 
 }  // namespace vesalius

@@ -29,7 +29,7 @@ TEST_F(Commands, HelpAndVersion) {
 }
 
 TEST_F(Commands, EveryCommandHasHelp) {
-  for (const char* command : {"detect", "info", "convert", "options", "completion"}) {
+  for (const char* command : {"detect", "info", "convert", "assets", "options", "completion"}) {
     const Outcome run = run_program(std::string(command) + " --help");
     EXPECT_EQ(run.exit_code, 0) << command;
     EXPECT_THAT(run.out, HasSubstr(std::string("Usage: vesalius ") + command));

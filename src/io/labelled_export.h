@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "io/write_frames.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+
+namespace vesalius {
+
+/// Writes labelled frames as plain files that any program reads: depth/, rgb/ and meta.json as `open_source` reads
+/// them, labels/NAME.png and person/NAME.png (8-bit, 255 = background), truth/NAME.json (part centres in metres,
+/// optical frame), and body.toml, which names the labels.
+class LabelledExporter {
+ public:
+  /// Makes `folder`; throws Error when it cannot or when it has files in it already.
+  LabelledExporter(const std::string& folder, const BodyModel& body);
+
+  /// Throws Error as FrameWriter::write does, and for truth that does not fit the frame or the body.
+  void write(const LabelledFrame& labelled);
+
+ private:
+  std::string folder_;
+  const BodyModel& body_;
+  std::unique_ptr<FrameWriter> frames_;
+};
+
+}  // namespace vesalius

@@ -1,0 +1,197 @@
+#include "synth/build_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "synth/furnish.h"
+#include "synth/palette.h"
+#include "synth/people_group.h"
+#include "synth/place_people.h"
+#include "synth/room.h"
+#include "vesalius/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+using Eigen::Isometry3f;
+using Eigen::Vector3f;
+
+/// Upright box of the room's frame that holds the camera, some of what it looks at, people and what they sit on.
+Eigen::AlignedBox3f extent_of(const Stage& stage, const std::vector<PeopleGroup>& groups,
+                              const Isometry3f& room_from_world, Random& random) {
+  constexpr float kEyeClear_m = 0.12F;
+  Eigen::AlignedBox3f extent;
+  const Vector3f eye = room_from_world * Vector3f(0.F, stage.camera.height_m, 0.F);
+  extent.extend(eye + Vector3f::Constant(kEyeClear_m));
+  extent.extend(eye - Vector3f::Constant(kEyeClear_m));
+  extent.extend(room_from_world * Vector3f(0.F, 0.F, -between(1.5, 5.0, random)));
+  for (const PlacedGroup& placed : stage.groups) {
+    const PeopleGroup& group = groups[static_cast<std::size_t>(placed.group)];
+    const Isometry3f room_from_group = room_from_world * placed.world_from_group;
+    for (const GroupMember& member : group.members) {
+      const Isometry3f room_from_body = room_from_group * member.group_from_body;
+      for (const Vector3f& p : member.body.vertices) extent.extend(room_from_body * p);
+    }
+    for (const Furniture& piece : group.furniture) {
+      for (const Vector3f& p : piece.mesh.vertices) extent.extend(room_from_group * p);
+    }
+  }
+  return extent;
+}
+
+/// The walls stand about all that is there, some near, some far.
+RoomShape draw_room(const SceneOptions& options, const Stage& stage, const std::vector<PeopleGroup>& groups,
+                    Random& random) {
+  constexpr float kWallGap_m = 0.02F, kSmallest_m = 1.8F;
+  RoomShape room;
+  room.open = chance(static_cast<double>(options.open_share), random);
+  float yaw = between(-std::numbers::pi / 4, std::numbers::pi / 4, random);
+  if (!stage.groups.empty() && chance(0.5, random)) {  // furniture in use tends to stand square to the walls
+    const Vector3f front = stage.groups[0].world_from_group.linear().col(2);
+    yaw = std::atan2(front.x(), front.z());
+  }
+  room.world_from_room = Isometry3f(Eigen::AngleAxisf(yaw, Vector3f::UnitY()));
+  const Eigen::AlignedBox3f extent = extent_of(stage, groups, room.world_from_room.inverse(), random);
+  const auto spare = [&] { return kWallGap_m + (chance(0.25, random) ? 0.F : between(0.0, 3.0, random)); };
+  const float left = spare(), back = spare(), right = spare(), front = spare();
+  room.low = {extent.min().x() - left, extent.min().z() - back};
+  room.high = {extent.max().x() + right, extent.max().z() + front};
+  room.high = room.high.cwiseMax(room.low + Eigen::Vector2f::Constant(kSmallest_m));
+  room.height_m = std::max(between(2.3, 3.2, random), extent.max().y() + 0.05F);
+  return room;
+}
+
+/// Lamps below the ceiling, some of the light from everywhere.
+void add_lights(const RoomShape& room, Scene& scene, Random& random) {
+  constexpr float kFromWall_m = 0.5F;
+  scene.ambient = between(0.3, 0.6, random);
+  const int count = 1 + static_cast<int>(random.below(3));
+  const float each = between(2.5, 5.0, random) / static_cast<float>(count);
+  for (int i = 0; i < count; ++i) {
+    Vector3f at{between(-3.0, 3.0, random), room.height_m - between(0.1, 0.5, random), between(-4.5, 0.5, random)};
+    if (!room.open) {
+      at.x() = between(room.low.x() + kFromWall_m, room.high.x() - kFromWall_m, random);
+      at.z() = between(room.low.y() + kFromWall_m, room.high.y() - kFromWall_m, random);
+      at = room.world_from_room * at;
+    }
+    scene.lights.push_back({at, each * between(0.7, 1.3, random)});
+  }
+}
+
+SceneMesh person_mesh(const PersonPlan& plan, const PosedBody& body, int person) {
+  const BodyTopology& topology = *plan.poser->mesh().topology;
+  SceneMesh mesh;
+  mesh.vertices = body.vertices;
+  mesh.triangles = topology.triangles;
+  mesh.part = topology.part;
+  mesh.material.reserve(topology.fabric.size());
+  for (const Fabric fabric : topology.fabric) mesh.material.push_back(static_cast<std::uint8_t>(fabric));
+  mesh.materials.assign(plan.look.begin(), plan.look.end());
+  mesh.person = person;
+  return mesh;
+}
+
+PosedBody moved(PosedBody body, const Isometry3f& motion) {
+  for (auto* points : {&body.vertices, &body.parts}) {
+    for (Vector3f& p : *points) p = motion * p;
+  }
+  for (auto* points : {&body.joints, &body.ends}) {
+    for (Vector3f& p : *points) p = motion * p;
+  }
+  return body;
+}
+
+void add_people(const std::vector<PersonPlan>& plans, std::vector<PeopleGroup>& groups, const Stage& stage,
+                BuiltScene& built) {
+  for (const PlacedGroup& placed : stage.groups) {
+    PeopleGroup& group = groups[static_cast<std::size_t>(placed.group)];
+    for (GroupMember& member : group.members) {
+      PlacedPerson person;
+      person.world_from_body = placed.world_from_group * member.group_from_body;
+      person.body = moved(std::move(member.body), person.world_from_body);
+      person.plan = member.plan;
+      person.mesh = static_cast<int>(built.scene.meshes.size());
+      const int number = static_cast<int>(built.people.size());
+      built.scene.meshes.push_back(person_mesh(plans[static_cast<std::size_t>(member.plan)], person.body, number));
+      built.people.push_back(std::move(person));
+    }
+    for (Furniture& piece : group.furniture) {
+      move(piece, placed.world_from_group);
+      built.scene.meshes.push_back(std::move(piece.mesh));
+    }
+  }
+}
+
+void check_arguments(const SceneOptions& options, const CameraPlacement& placement, const Camera& intrinsics,
+                     const std::vector<PersonPlan>& plans) {
+  check(options);
+  check(placement);
+  vesalius::check(intrinsics);
+  if (plans.size() >= kBackground) throw Error(fmt::format("{} people in a scene, at most 254", plans.size()));
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    if (plans[i].poser == nullptr) throw Error(fmt::format("person {} of a scene has no body", i));
+  }
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "open-share", o.open_share, {"", 0.0, 1.0, "Share of scenes in a hall without walls."});
+  visitor.option(prefix + "furniture-min", o.furniture_min, {"", 0, 50, "Fewest pieces of furniture."});
+  visitor.option(prefix + "furniture-max", o.furniture_max, {"", 0, 50, "Most pieces of furniture."});
+  visitor.option(prefix + "mannequin-share", o.mannequin_share,
+                 {"", 0.0, 1.0, "Share of furniture that resembles people: coats on stands, mannequins, pillars."});
+  visitor.option(prefix + "occluder-probability", o.occluder_probability,
+                 {"", 0.0, 1.0, "Probability that something stands between the camera and a person."});
+  visitor.option(prefix + "table-probability", o.table_probability,
+                 {"", 0.0, 1.0, "Probability of a table in front of a sitting person."});
+  visitor.option(prefix + "sofa-probability", o.sofa_probability,
+                 {"", 0.0, 1.0, "Probability that two sitting people try to share a sofa."});
+  visitor.option(prefix + "bed-probability", o.bed_probability,
+                 {"", 0.0, 1.0, "Probability that a lying person has a bed rather than the floor."});
+  visitor.option(prefix + "frontal-share", o.frontal_share,
+                 {"", 0.0, 1.0, "Share of people made to face the camera; the others face anywhere."});
+  visitor.option(prefix + "frontal-range", o.frontal_range_deg,
+                 {"deg", 0.0, 180.0, "Largest angle to the camera of those who face it."});
+  visitor.option(prefix + "min-visible", o.min_visible,
+                 {"", 0.0, 1.0, "Least share of a person's bones within the picture."});
+}
+
+void check(const SceneOptions& options) {
+  SceneOptions copy = options;
+  RangeCheck ranges;
+  visit_options("scene.", copy, ranges);
+  if (options.furniture_min > options.furniture_max) {
+    throw UsageError(fmt::format("option scene.furniture-min is {}, above scene.furniture-max {}",
+                                 options.furniture_min, options.furniture_max));
+  }
+}
+
+BuiltScene build_scene(const SceneOptions& options, const CameraPlacement& placement, const Camera& intrinsics,
+                       const std::vector<PersonPlan>& plans, const std::vector<SceneMesh>& models, Random random) {
+  check_arguments(options, placement, intrinsics, plans);
+  std::vector<PeopleGroup> groups = make_groups(options, plans, random);
+  Stage stage = place_people(options, placement, intrinsics, plans, groups, random);
+  const RoomShape room = draw_room(options, stage, groups, random);
+  stage.occupancy.set_room(room);
+
+  BuiltScene built;
+  built.view = {intrinsics, stage.camera.world_from_camera().inverse()};
+  built.scene.meshes.push_back(make_room(room, random));
+  add_people(plans, groups, stage, built);
+  std::vector<Vector3f> people;
+  for (const PlacedPerson& person : built.people) people.push_back(person.body.joints[index(Bone::chest)]);
+  const Vector3f eye(0.F, stage.camera.height_m, 0.F);
+  for (Furniture& piece : furnish(options, room, models, people, eye, stage.occupancy, random)) {
+    built.scene.meshes.push_back(std::move(piece.mesh));
+  }
+  add_lights(room, built.scene, random);
+  built.room = room;
+  built.solids = stage.occupancy.solids();
+  return built;
+}
+
+}  // namespace vesalius::synth

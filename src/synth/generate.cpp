@@ -1,0 +1,179 @@
+#include "synth/generate.h"
+
+#include <fmt/format.h>
+
+#include <mutex>
+#include <numeric>
+
+#include "synth/builtin_body.h"
+#include "synth/dress.h"
+#include "synth/mix_poses.h"
+#include "synth/render.h"
+#include "synth/sensor_noise.h"
+#include "vesalius/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+/// What a stream of random numbers is for: each has its own, so that a change of one leaves the others alone.
+enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise };
+constexpr std::uint64_t kPurposes = 8;
+
+Random random_for(std::uint64_t seed, Purpose purpose, std::uint64_t index) {
+  return Random(seed * kPurposes + static_cast<std::uint64_t>(purpose), index);
+}
+
+/// Index drawn with probability proportional to its weight.
+std::size_t draw(const std::vector<float>& weights, Random& random) {
+  double left = random.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    left -= weights[i];
+    if (left < 0.0) return i;
+  }
+  return weights.size() - 1;
+}
+
+/// Renderers hold a device, so each thread borrows one.
+class RendererPool {
+ public:
+  template <class F>
+  auto with(F&& work) {
+    std::unique_ptr<Renderer> renderer = take();
+    auto result = work(*renderer);
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(renderer));
+    return result;
+  }
+
+ private:
+  std::unique_ptr<Renderer> take() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!idle_.empty()) {
+        std::unique_ptr<Renderer> renderer = std::move(idle_.back());
+        idle_.pop_back();
+        return renderer;
+      }
+    }
+    return std::make_unique<Renderer>();
+  }
+
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Renderer>> idle_;
+};
+
+bool wants_makehuman(const Recipe& recipe, const Assets& assets) {
+  if (recipe.body.kind == "makehuman" && assets.makehuman == nullptr) {
+    throw Error("body.kind is makehuman, but its files are not there; `vesalius assets makehuman` fetches them");
+  }
+  return recipe.body.kind != "builtin" && assets.makehuman != nullptr;
+}
+
+}  // namespace
+
+struct Generator::State {
+  Recipe recipe;
+  Assets assets;
+  BodyModel body;
+  std::uint64_t seed = 0;
+  Sensor sensor;
+  bool makehuman = false;
+
+  mutable std::vector<std::once_flag> made;
+  mutable std::vector<std::unique_ptr<Poser>> posers;
+  mutable RendererPool renderers;
+
+  State(const Recipe& the_recipe, Assets the_assets, const BodyModel& the_body, std::uint64_t the_seed)
+      : recipe(the_recipe),
+        assets(std::move(the_assets)),
+        body(the_body),
+        seed(the_seed),
+        made(static_cast<std::size_t>(the_recipe.body.count)),
+        posers(static_cast<std::size_t>(the_recipe.body.count)) {
+    check(recipe);
+    sensor = sensor_of(recipe.sensor);
+    makehuman = wants_makehuman(recipe, assets);
+  }
+
+  /// Body number k with its clothes: a function of (recipe, assets, seed, k).
+  std::unique_ptr<Poser> make_poser(std::size_t k) const {
+    Random random = random_for(seed, Purpose::body, k);
+    const BodyMesh naked = makehuman ? make_body(*assets.makehuman, sample_factors(random), body)
+                                     : make_builtin_body(sample_builtin_shape(random), body);
+    const Outfit outfit = sample_outfit(recipe.outfit, random);
+    return std::make_unique<Poser>(std::make_shared<const BodyMesh>(dress(naked, outfit, body, random)), body);
+  }
+
+  const Poser& poser(std::size_t k) const {
+    std::call_once(made[k], [&] { posers[k] = make_poser(k); });
+    return *posers[k];
+  }
+
+  SampledPose draw_pose(Random& random) const {
+    const PoseOptions& o = recipe.pose;
+    if (!assets.captured.empty() && random.uniform() < o.captured) {
+      return synth::draw_pose(assets.captured, o.mixed, o.mirrored, random);
+    }
+    SampledPose drawn = sample_pose(o.sampler, random);
+    if (random.uniform() < o.mirrored) drawn.pose = mirrored(drawn.pose);
+    return drawn;
+  }
+
+  PersonPlan draw_person(Random& random) const {
+    PersonPlan plan;
+    plan.poser = &poser(random.below(static_cast<std::uint32_t>(recipe.body.count)));
+    const SampledPose drawn = draw_pose(random);
+    plan.pose = drawn.pose;
+    plan.posture = drawn.posture;
+    plan.look = sample_look(random);
+    return plan;
+  }
+
+  std::vector<PersonPlan> draw_people(Random& random) const {
+    const PeopleOptions& p = recipe.people;
+    std::vector<PersonPlan> plans(draw({p.none, p.one, p.two, p.three, p.four}, random));
+    for (PersonPlan& plan : plans) plan = draw_person(random);
+    return plans;
+  }
+};
+
+Generator::Generator(const Recipe& recipe, Assets assets, const BodyModel& body, std::uint64_t seed)
+    : state_(std::make_unique<State>(recipe, std::move(assets), body, seed)) {}
+
+Generator::~Generator() = default;
+
+const Camera& Generator::camera() const { return state_->sensor.camera; }
+
+LabelledFrame Generator::frame(std::uint64_t index) const {
+  const State& s = *state_;
+  Random plan_random = random_for(s.seed, Purpose::plan, index);
+  const std::vector<PersonPlan> plans = s.draw_people(plan_random);
+  const BuiltScene built = build_scene(s.recipe.scene, s.recipe.camera, s.sensor.camera, plans, s.assets.models,
+                                       random_for(s.seed, Purpose::scene, index));
+  RenderOptions options;
+  options.colour = s.recipe.sensor.colour;
+  options.projector = projector_of(s.sensor);
+  Rendering seen =
+      s.renderers.with([&](Renderer& renderer) { return renderer.render(built.scene, built.view, options); });
+
+  LabelledFrame result;
+  result.frame.name = fmt::format("{:08}", index);
+  result.frame.camera = s.sensor.camera;
+  const Random noise = random_for(s.seed, Purpose::noise, index);
+  Image<std::uint32_t> source;
+  result.frame.depth = sense(seen, s.sensor, noise, &source);
+  result.labels = as_read(seen.labels, source);
+  result.person = as_read(seen.person, source);
+  result.frame.colour = std::move(seen.colour);
+  if (s.recipe.sensor.noise && !result.frame.colour.empty()) {
+    add_colour_noise(result.frame.colour, random_for(s.seed, Purpose::colour_noise, index));
+  }
+  for (const PlacedPerson& person : built.people) {
+    std::vector<Eigen::Vector3f> parts;
+    for (const Eigen::Vector3f& p : person.body.parts) parts.emplace_back(built.view.camera_from_world * p);
+    result.parts.push_back(std::move(parts));
+  }
+  return result;
+}
+
+}  // namespace vesalius::synth

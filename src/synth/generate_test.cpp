@@ -1,0 +1,132 @@
+#include "synth/generate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
+
+namespace vesalius::synth {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// Small pictures and few bodies, so that tests are quick.
+Recipe small_recipe() {
+  Recipe recipe;
+  recipe.sensor.width = 160;
+  recipe.sensor.height = 120;
+  recipe.body.kind = "builtin";
+  recipe.body.count = 4;
+  return recipe;
+}
+
+void expect_same(const LabelledFrame& a, const LabelledFrame& b) {
+  EXPECT_EQ(a.frame.name, b.frame.name);
+  EXPECT_EQ(a.frame.depth, b.frame.depth);
+  EXPECT_EQ(a.frame.colour, b.frame.colour);
+  EXPECT_EQ(a.labels, b.labels);
+  EXPECT_EQ(a.person, b.person);
+  ASSERT_EQ(a.parts.size(), b.parts.size());
+  for (std::size_t p = 0; p < a.parts.size(); ++p) EXPECT_EQ(a.parts[p], b.parts[p]);
+}
+
+std::vector<LabelledFrame> frames_of(const Generator& generator, std::uint64_t first, int count) {
+  std::vector<LabelledFrame> all(static_cast<std::size_t>(count));
+  parallel_for(
+      count, [&](int i) { all[static_cast<std::size_t>(i)] = generator.frame(first + static_cast<std::uint64_t>(i)); });
+  return all;
+}
+
+TEST(GenerateThreads, AnyNumberGivesTheSameFrames) {
+  const Generator generator(small_recipe(), {}, paper_body(), 7);
+  const std::vector<LabelledFrame> all = frames_of(generator, 0, 24);
+  ASSERT_EQ(all.size(), 24U);
+  for (const int threads : {1, 8}) {
+    const ThreadLimit limit(threads);
+    const Generator again(small_recipe(), {}, paper_body(), 7);
+    const std::vector<LabelledFrame> others = frames_of(again, 0, 24);
+    ASSERT_EQ(others.size(), all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) expect_same(all[i], others[i]);
+  }
+}
+
+TEST(Generate, AFrameCanBeMadeAlone) {
+  const Generator generator(small_recipe(), {}, paper_body(), 7);
+  const LabelledFrame in_a_row = frames_of(generator, 10, 6).back();
+  const Generator other(small_recipe(), {}, paper_body(), 7);
+  expect_same(other.frame(15), in_a_row);
+}
+
+TEST(Generate, SeedsGiveOtherFrames) {
+  const Generator a(small_recipe(), {}, paper_body(), 1), b(small_recipe(), {}, paper_body(), 2);
+  EXPECT_NE(a.frame(0).frame.depth, b.frame(0).frame.depth);
+  EXPECT_NE(a.frame(0).frame.depth, a.frame(1).frame.depth);
+}
+
+TEST(Generate, TruthIsWhereTheDepthIs) {
+  Recipe recipe = small_recipe();
+  recipe.people = {.none = 0.F, .one = 1.F, .two = 1.F, .three = 0.F, .four = 0.F};
+  recipe.sensor.noise = false;
+  const Generator generator(recipe, {}, paper_body(), 3);
+  int seen_parts = 0, near_parts = 0;
+  std::set<int> labels;
+  for (const LabelledFrame& labelled : frames_of(generator, 0, 40)) {
+    const Frame& frame = labelled.frame;
+    for (std::size_t i = 0; i < labelled.labels.size(); ++i) {
+      if (labelled.labels[i] == kBackground) continue;
+      labels.insert(labelled.labels[i]);
+      ASSERT_LT(labelled.person[i], labelled.parts.size()) << "a labelled pixel is somebody's";
+      const auto u = static_cast<int>(i % frame.depth.width()), v = static_cast<int>(i / frame.depth.width());
+      const Eigen::Vector3f& part = labelled.parts[labelled.person[i]][labelled.labels[i]];
+      ++seen_parts;
+      near_parts += (point_at(frame.camera, frame.depth, u, v) - part).norm() < 0.35F;
+    }
+  }
+  EXPECT_GT(near_parts, 0.97 * seen_parts) << "of " << seen_parts;
+  EXPECT_EQ(labels.size(), 25U) << "every part is seen from somewhere";
+}
+
+TEST(Generate, PicturesHaveAsManyPeopleAsAskedFor) {
+  Recipe recipe = small_recipe();
+  recipe.people = {.none = 1.F, .one = 0.F, .two = 0.F, .three = 0.F, .four = 0.F};
+  const Generator empty(recipe, {}, paper_body(), 3);
+  for (const LabelledFrame& frame : frames_of(empty, 0, 8)) {
+    EXPECT_TRUE(frame.parts.empty());
+    EXPECT_TRUE(std::ranges::all_of(frame.labels, [](std::uint8_t label) { return label == kBackground; }));
+  }
+  recipe.people = {.none = 0.F, .one = 0.F, .two = 0.F, .three = 0.F, .four = 1.F};
+  const Generator crowd(recipe, {}, paper_body(), 3);
+  std::size_t people = 0;
+  for (const LabelledFrame& frame : frames_of(crowd, 0, 20)) people += frame.parts.size();
+  EXPECT_GE(people, 60U) << "of 80: some find no place";
+}
+
+TEST(Generate, RefusesWhatCannotBeMeant) {
+  const auto make = [](auto change) {
+    return [change] {
+      Recipe recipe = small_recipe();
+      change(recipe);
+      Generator(recipe, {}, paper_body(), 1);
+    };
+  };
+  EXPECT_THAT(make([](Recipe& r) { r.sensor.preset = "kinekt"; }), ThrowsMessage<UsageError>(HasSubstr("kinect-v1")));
+  EXPECT_THAT(make([](Recipe& r) { r.mounting = "roof"; }), ThrowsMessage<UsageError>(HasSubstr("ceiling")));
+  EXPECT_THAT(make([](Recipe& r) { r.body.kind = "android"; }), ThrowsMessage<UsageError>(HasSubstr("builtin")));
+  EXPECT_THAT(make([](Recipe& r) { r.body.kind = "makehuman"; }),
+              ThrowsMessage<Error>(HasSubstr("vesalius assets makehuman")));
+  EXPECT_THAT(make([](Recipe& r) {
+                r.people = {0.F, 0.F, 0.F, 0.F, 0.F};
+              }),
+              ThrowsMessage<UsageError>(HasSubstr("expected a weight above 0")));
+  EXPECT_THAT(make([](Recipe& r) { r.people.one = -1.F; }), ThrowsMessage<UsageError>(HasSubstr("people.one")));
+  EXPECT_THAT(make([](Recipe& r) { r.sensor.height = 0; }), ThrowsMessage<UsageError>(HasSubstr("both or neither")));
+}
+
+}  // namespace
+}  // namespace vesalius::synth

@@ -1,0 +1,43 @@
+#include "synth/recipe.h"
+
+#include <gtest/gtest.h>
+
+#include "vesalius/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+TEST(Recipe, DefaultsAreAllowed) { EXPECT_NO_THROW(check(Recipe{})); }
+
+TEST(Recipe, IntrinsicsWinOverThePreset) {
+  SensorOptions options;
+  options.preset = "kinect-v1";
+  const Camera native = sensor_of(options).camera;
+  options.width = native.width / 2;
+  options.height = native.height / 2;
+  EXPECT_NEAR(sensor_of(options).camera.fx, native.fx / 2.F, 1e-3F);
+  options.fx = 300.F;
+  options.cx = 10.F;
+  const Camera own = sensor_of(options).camera;
+  EXPECT_EQ(own.fx, 300.F);
+  EXPECT_EQ(own.fy, 300.F);
+  EXPECT_EQ(own.cx, 10.F);
+  EXPECT_EQ(own.width, native.width / 2);
+}
+
+TEST(Recipe, WithoutNoiseTheSensorIsPerfect) {
+  SensorOptions options;
+  options.noise = false;
+  EXPECT_EQ(sensor_of(options).kind, SensorKind::perfect);
+}
+
+TEST(Recipe, ListsOfWordsAreCutAtCommas) {
+  PoseOptions options;
+  EXPECT_EQ(motion_choice(options).exclude, MotionChoice{}.exclude);
+  EXPECT_TRUE(motion_choice(options).include.empty());
+  options.include = " walk, sit down ,,";
+  EXPECT_EQ(motion_choice(options).include, (std::vector<std::string>{"walk", "sit down"}));
+}
+
+}  // namespace
+}  // namespace vesalius::synth

@@ -1,0 +1,151 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/image_file.h"
+#include "io/labelled_dataset.h"
+#include "io/open_source.h"
+#include "run_program.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A folder of this test's own, gone afterwards.
+class SynthProgram : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("vesalius_synth_") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Small frames of few built-in bodies.
+  static std::string synth(const std::string& more) {
+    return "synth -q --sensor.width 80 --sensor.height 60 --body.kind builtin --body.count 2 --seed 5 " + more;
+  }
+  static void expect_done(const Outcome& run) { EXPECT_EQ(run.exit_code, 0) << run.err; }
+
+  /// Name and bytes of every file of a folder.
+  static std::vector<std::pair<std::string, std::string>> contents(const std::string& folder) {
+    std::vector<std::pair<std::string, std::string>> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      if (entry.is_regular_file()) {
+        files.emplace_back(fs::relative(entry.path(), folder).string(), bytes_of(entry.path().string()));
+      }
+    }
+    std::ranges::sort(files);
+    return files;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(SynthProgram, WritesFramesThatTheReaderGives) {
+  expect_done(run_program(synth("--count 12 --out " + path("d"))));
+  const DatasetReader reader(path("d"));
+  ASSERT_EQ(reader.size(), 12);
+  const LabelledFrame frame = reader.read(11);
+  EXPECT_EQ(frame.frame.camera.width, 80);
+  EXPECT_EQ(frame.labels.height(), 60);
+  EXPECT_EQ(frame.frame.name, "00000011");
+}
+
+TEST_F(SynthProgram, ThreadsDoNotChangeTheBytes) {
+  expect_done(run_program(synth("--count 20 --threads 1 --out " + path("one"))));
+  expect_done(run_program(synth("--count 20 --threads 8 --out " + path("eight"))));
+  EXPECT_EQ(contents(path("one")), contents(path("eight")));
+}
+
+TEST_F(SynthProgram, GoesOnAfterAKillWithTheSameBytes) {
+  const std::string frames = "--count 60 --shard 10 --out ";
+  expect_done(run_program(synth(frames + path("whole"))));
+  // Killed when the first shard is there, however slow the machine.
+  const std::string kill = synth(frames + path("killed")) + " & pid=$!; i=0; while [ $i -lt 600 ] && ! ls " +
+                           path("killed") +
+                           " 2>/dev/null | grep -q shard; do sleep 0.05; i=$((i + 1)); done; kill -9 $pid; wait $pid";
+  run_program(kill);
+  ASSERT_LT(contents(path("killed")).size(), contents(path("whole")).size()) << "killed before the end";
+  expect_done(run_program(synth(frames + path("killed"))));
+  EXPECT_EQ(contents(path("killed")), contents(path("whole")));
+}
+
+TEST_F(SynthProgram, RefusesToGoOnWithAnotherRecipe) {
+  expect_done(run_program(synth("--count 4 --out " + path("d"))));
+  const auto before = contents(path("d"));
+  const Outcome run = run_program(synth("--count 8 --people.none 1 --out " + path("d")));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("another recipe"));
+  EXPECT_EQ(contents(path("d")), before);
+}
+
+TEST_F(SynthProgram, ExportsFoldersThatDetectReads) {
+  expect_done(run_program(synth("--count 3 --format folder --out " + path("f"))));
+  const auto source = open_source(path("f"));
+  ASSERT_EQ(source->size(), 3);
+  const auto frame = source->next();
+  EXPECT_EQ(frame->depth.width(), 80);
+  EXPECT_FALSE(frame->colour.empty());
+}
+
+TEST_F(SynthProgram, OneFrameCanBeMadeAgainAlone) {
+  expect_done(run_program(synth("--count 12 --out " + path("d"))));
+  expect_done(run_program(synth("--first 11 --count 1 --out " + path("alone"))));
+  const LabelledFrame in_a_row = DatasetReader(path("d")).read(11), alone = DatasetReader(path("alone")).read(0);
+  EXPECT_EQ(alone.frame.name, "00000011");
+  EXPECT_EQ(alone.frame.depth, in_a_row.frame.depth);
+  EXPECT_EQ(alone.labels, in_a_row.labels);
+}
+
+TEST_F(SynthProgram, PreviewIsAPicture) {
+  expect_done(run_program(synth("--preview 6 --out " + path("sheet.png"))));
+  const ColourImage sheet = read_colour(path("sheet.png"));
+  EXPECT_GT(sheet.width(), 300);
+}
+
+TEST_F(SynthProgram, RecipesRoundTrip) {
+  const Outcome options = run_program("options synth");
+  expect_done(options);
+  EXPECT_THAT(options.out, HasSubstr("sensor.preset = \"kinect-v1\""));
+  expect_done(run_program("options synth > " + path("r.toml")));
+  expect_done(run_program("synth -q --recipe " + path("r.toml") +
+                          " --sensor.width 80 --sensor.height 60 --body.kind builtin --body.count 2 --seed 5 --count 4 "
+                          "--out " +
+                          path("a")));
+  expect_done(run_program(synth("--count 4 --out " + path("b"))));
+  EXPECT_EQ(contents(path("a")), contents(path("b")));
+}
+
+TEST_F(SynthProgram, BadInputIsOneClearLine) {
+  const auto refused = [&](const std::string& arguments, int exit_code, const std::string& reason) {
+    SCOPED_TRACE(arguments);
+    const Outcome run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(reason));
+  };
+  refused("synth", 2, "--count or --preview");
+  refused(synth("--count 3"), 2, "--out");
+  refused(synth("--count 3 --preset kinekt --out " + path("x")), 2, "kinect-v1");
+  refused(synth("--count 3 --mounting roof --out " + path("x")), 2, "ceiling");
+  refused(synth("--count 0 --out " + path("x")), 2, "--count");
+  refused(synth("--count 3 --people.one -1 --out " + path("x")), 2, "people.one");
+  refused(synth("--count 3 --recipe " + path("none.toml") + " --out " + path("x")), 1, "none.toml");
+  refused(synth("--count 3 --models " + path("none.obj") + " --out " + path("x")), 1, "none.obj");
+  refused("synth -q --body.kind makehuman --count 1 --assets " + path("nowhere") + " --out " + path("x"), 1,
+          "vesalius assets makehuman");
+  EXPECT_FALSE(fs::exists(path("x")));
+}
+
+}  // namespace
+}  // namespace vesalius

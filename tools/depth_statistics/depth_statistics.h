@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "vesalius/image.h"
+
+namespace vesalius {
+
+/// Distances at which noise and steps are measured, metres.
+inline constexpr std::array<float, 4> kDistances_m = {1.F, 2.F, 3.F, 4.F};
+
+/// What tells one depth sensor's pictures from another's. NaN where nothing was measured.
+struct DepthFigures {
+  double holes = 0.0;           ///< share of pixels without reading
+  double border_px = 0.0;       ///< mean number of columns at the left and right without any reading, both together
+  double edge_pixels = 0.0;     ///< share of readings with a 4-neighbour more than 5 % farther or nearer
+  double holes_at_steps = 0.0;  ///< share of steps along a row, over 10 % of the distance, with a hole in between
+  double hole_width_px = 0.0;   ///< median width of those holes
+  std::array<double, kDistances_m.size()> noise_mm{};  ///< median residual (RMS) to planes fitted in 7 x 7 pixels
+  std::array<double, kDistances_m.size()> step_mm{};   ///< median distance of neighbouring depth values that occur
+};
+
+/// Gathers figures over frames of one sensor.
+class DepthStatistics {
+ public:
+  void add(const DepthImage& depth);
+  DepthFigures figures() const;
+
+ private:
+  void add_rows(const DepthImage& depth);
+  void add_planes(const DepthImage& depth);
+
+  std::int64_t pixels_ = 0, holes_ = 0, readings_ = 0, edges_ = 0, frames_ = 0, border_ = 0, steps_ = 0;
+  std::vector<int> step_holes_px_;
+  std::array<std::vector<float>, kDistances_m.size()> residuals_mm_;
+  std::vector<std::int64_t> seen_ = std::vector<std::int64_t>(65536, 0);  ///< how often each depth value occurs
+};
+
+}  // namespace vesalius
