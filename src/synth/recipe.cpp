@@ -68,7 +68,9 @@ std::vector<std::string> words_of(const std::string& list) {
 
 void visit_options(const std::string& prefix, Recipe& recipe, OptionVisitor& visitor) {
   visitor.option(prefix + "mounting", recipe.mounting,
-                 {"", 0, 0, "Where the camera is: room, ceiling or wheelchair; sets the camera options below."});
+                 {"", 0, 0,
+                  "room, ceiling or wheelchair: gives the camera options their defaults; a recipe that changes it "
+                  "leaves those out."});
   visit(prefix + "sensor.", recipe.sensor, visitor);
   visit(prefix + "people.", recipe.people, visitor);
   visit(prefix + "body.", recipe.body, visitor);

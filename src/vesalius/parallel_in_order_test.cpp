@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 namespace vesalius {
 namespace {
@@ -18,7 +19,7 @@ TEST(ParallelInOrderThreads, HandsOverInOrderInTheCallersThread) {
     parallel_in_order(
         100, [](int i) { return std::to_string(i); },
         [&](int i, std::string item) {
-          EXPECT_EQ(std::this_thread::get_id(), caller);
+          EXPECT_TRUE(std::this_thread::get_id() == caller);
           EXPECT_EQ(item, std::to_string(i));
           taken.push_back(std::move(item));
           return true;

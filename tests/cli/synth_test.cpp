@@ -100,11 +100,12 @@ TEST_F(SynthProgram, ExportsFoldersThatDetectReads) {
 
 TEST_F(SynthProgram, OneFrameCanBeMadeAgainAlone) {
   expect_done(run_program(synth("--count 12 --out " + path("d"))));
-  expect_done(run_program(synth("--first 11 --count 1 --out " + path("alone"))));
-  const LabelledFrame in_a_row = DatasetReader(path("d")).read(11), alone = DatasetReader(path("alone")).read(0);
-  EXPECT_EQ(alone.frame.name, "00000011");
-  EXPECT_EQ(alone.frame.depth, in_a_row.frame.depth);
-  EXPECT_EQ(alone.labels, in_a_row.labels);
+  expect_done(run_program(synth("--first 11 --count 1 --format folder --out " + path("alone"))));
+  const LabelledFrame in_a_row = DatasetReader(path("d")).read(11);
+  const auto alone = open_source(path("alone"))->next();
+  EXPECT_EQ(alone->name, "00000011");
+  EXPECT_EQ(alone->depth, in_a_row.frame.depth);
+  EXPECT_EQ(read_png8(path("alone/labels/00000011.png")), in_a_row.labels);
 }
 
 TEST_F(SynthProgram, PreviewIsAPicture) {
@@ -116,7 +117,7 @@ TEST_F(SynthProgram, PreviewIsAPicture) {
 TEST_F(SynthProgram, RecipesRoundTrip) {
   const Outcome options = run_program("options synth");
   expect_done(options);
-  EXPECT_THAT(options.out, HasSubstr("sensor.preset = \"kinect-v1\""));
+  EXPECT_THAT(options.out, HasSubstr("sensor.preset = 'kinect-v1'"));
   expect_done(run_program("options synth > " + path("r.toml")));
   expect_done(run_program("synth -q --recipe " + path("r.toml") +
                           " --sensor.width 80 --sensor.height 60 --body.kind builtin --body.count 2 --seed 5 --count 4 "
