@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "io/atomic_file.h"
+#include "io/byte_stream.h"
 #include "io/read_file.h"
 #include "vesalius/error.h"
 
@@ -37,71 +38,25 @@ std::uint64_t checksum(std::string_view bytes) {
   return XXH64_digest(&state);
 }
 
-class Writer {
+class Writer : public ByteWriter {
  public:
-  template <class T>
-  void number(T value) {
-    for (std::size_t i = 0; i < sizeof(T); ++i) bytes_ += static_cast<char>((value >> (8 * i)) & 0xFFU);
-  }
-  void real(float value) { number(std::bit_cast<std::uint32_t>(value)); }
-  void text(std::string_view value) {
-    number(static_cast<std::uint32_t>(value.size()));
-    bytes_ += value;
-  }
-  /// Seven bits a byte, the lowest first; the high bit says that more follow.
-  void varint(std::uint32_t value) {
-    for (; value >= 0x80; value >>= 7U) bytes_ += static_cast<char>((value & 0x7FU) | 0x80U);
-    bytes_ += static_cast<char>(value);
-  }
   /// Small numbers of either sign stay short: 0, -1, 1, -2 ... become 0, 1, 2, 3 ...
   void signed_varint(int value) { varint((static_cast<std::uint32_t>(value) << 1U) ^ (value < 0 ? 0xFFFFFFFFU : 0U)); }
   template <class T>
   void overwrite(std::size_t at, T value) {
-    Writer field;
+    ByteWriter field;
     field.number(value);
-    bytes_.replace(at, sizeof(T), field.bytes_);
+    bytes().replace(at, sizeof(T), field.bytes());
   }
-  std::size_t size() const { return bytes_.size(); }
-  std::string& bytes() { return bytes_; }
-
- private:
-  std::string bytes_;
+  std::size_t size() { return bytes().size(); }
 };
 
-class Reader {
+class Reader : public ByteReader {
  public:
-  Reader(std::string_view bytes, std::size_t at, const std::string& name) : bytes_(bytes), at_(at), name_(name) {}
+  Reader(std::string_view bytes, std::size_t at, const std::string& name) : ByteReader(bytes, name) {
+    take(at, "header");
+  }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: byte {}: {}", name_, at_, what));
-  }
-  std::string_view take(std::size_t count, const char* what) {
-    if (count > left()) fail(fmt::format("expected {} bytes of {}, {} are left", count, what, left()));
-    at_ += count;
-    return bytes_.substr(at_ - count, count);
-  }
-  template <class T>
-  T number(const char* what) {
-    T value = 0;
-    unsigned shift = 0;
-    for (const char c : take(sizeof(T), what)) {
-      value = static_cast<T>(value | static_cast<T>(static_cast<T>(static_cast<unsigned char>(c)) << shift));
-      shift += 8;
-    }
-    return value;
-  }
-  float real(const char* what) { return std::bit_cast<float>(number<std::uint32_t>(what)); }
-  std::string_view text(const char* what) { return take(number<std::uint32_t>(what), what); }
-  std::uint32_t varint(const char* what) {
-    std::uint32_t value = 0;
-    for (unsigned shift = 0; shift < 35; shift += 7) {
-      const auto byte = number<std::uint8_t>(what);
-      if (shift == 28 && byte > 0x0F) break;
-      value |= static_cast<std::uint32_t>(byte & 0x7FU) << shift;
-      if ((byte & 0x80U) == 0) return value;
-    }
-    fail(fmt::format("{}: number does not fit 32 bits", what));
-  }
   std::int16_t int16(const char* what) {
     const std::uint32_t code = varint(what);
     if (code > 0xFFFF) fail(fmt::format("{}: number does not fit 16 bits", what));
@@ -113,12 +68,6 @@ class Reader {
     if (value > left() / smallest) fail(fmt::format("{} {} cannot be in the {} bytes left", value, what, left()));
     return value;
   }
-  std::size_t left() const { return bytes_.size() - at_; }
-
- private:
-  std::string_view bytes_;
-  std::size_t at_;
-  const std::string& name_;
 };
 
 /// Children in the order of the file, so that both sides agree on which is the next.
@@ -279,8 +228,8 @@ Forest parse_model(std::string_view bytes, const std::string& name) {
   forest.has_background = flags == kFlagBackground;
   forest.body = parse_body_model(in.text("body model"), name + ": body model");
   forest.recipe = in.text("recipe");
-  forest.convention.offset_unit = in.real("convention");
-  forest.convention.reference_focal_px = in.real("convention");
+  forest.convention.offset_unit = in.real32("convention");
+  forest.convention.reference_focal_px = in.real32("convention");
   forest.convention.hole_mm = in.number<std::uint16_t>("convention");
   forest.convention.outside_mm = in.number<std::uint16_t>("convention");
   forest.convention.clip_mm = in.number<std::uint16_t>("convention");

@@ -38,7 +38,7 @@ Sensor registered_kinect() {
   s.lateral_px = 0.8F;
   s.window_px = 7.F;
   s.fatten_px = 2.F;
-  s.max_angle_rad = 80.F * kDegree;
+  s.max_angle_rad = 84.F * kDegree;
   s.min_infrared = 0.01F;
   s.edge_px = 6.F;
   s.edge_loss = 0.2F;

@@ -23,7 +23,7 @@ constexpr float kLargestAngle = 1.55F;
 constexpr float kDarkReference_m = 2.F;  // where Sensor::min_infrared holds
 // How fast readings vanish, in sigma of the noise that decides: per doubling of the signal, per radian.
 constexpr float kKeptPerDoubling = 1.2F;
-constexpr float kKeptPerRad = 1.F / 0.087F;  // 5 degrees
+constexpr float kKeptPerRad = 1.F / 0.052F;  // 3 degrees
 // A hole's rim is rough: share of the deciding noise that is independent from pixel to pixel.
 constexpr float kLossGrain = 0.08F;
 // Holes are larger than what errors hang together over.
