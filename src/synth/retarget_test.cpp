@@ -2,8 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <regex>
-
+#include "synth/test_text.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {
@@ -63,9 +62,8 @@ TEST(Retarget, PointsBonesWhereTheMotionDoes) {
 }
 
 TEST(Retarget, ABoneCanTakeTheTurnOfAnotherAndLieBetweenTwoJoints) {
-  std::string text =
-      std::regex_replace(toml(), std::regex("\\[\"l_shin\"\\], rest = \"same\""), "[\"l_shin\"], rest = \"l_thigh\"");
-  text = std::regex_replace(text, std::regex("from = \\[\"neck\"\\]"), "from = [\"neck\", \"head\"]");
+  std::string text = replaced(toml(), "[\"l_shin\"], rest = \"same\"", "[\"l_shin\"], rest = \"l_thigh\"");
+  text = replaced(text, "from = [\"neck\"]", "from = [\"neck\", \"head\"]");
   Motion motion = still_motion(2);
   motion.world[kBoneCount + index(Bone::head)] = turn(60.F, Eigen::Vector3f::UnitX());
   const Pose pose = retarget(motion, parse_convention(text, "c.toml"))[0];
@@ -117,11 +115,11 @@ TEST(Convention, RefusesWithLineAndReason) {
   EXPECT_THAT(parsing("name = \"t\"\nskip_frames = -1\n[bones]\n"),
               ThrowsMessage<Error>(HasSubstr("c.toml:2: skip_frames")));
   EXPECT_THAT(parsing("name = [\n"), ThrowsMessage<Error>(HasSubstr("not valid TOML")));
-  EXPECT_THAT(parsing(std::regex_replace(toml(), std::regex("rest = \"aim\""), "rest = \"l_shinn\"")),
+  EXPECT_THAT(parsing(replaced(toml(), "rest = \"aim\"", "rest = \"l_shinn\"")),
               ThrowsMessage<Error>(HasSubstr("no bone is called \"l_shinn\"")));
-  EXPECT_THAT(parsing(std::regex_replace(toml(), std::regex("rest = \"aim\""), "rest = \"l_thigh\"")),
+  EXPECT_THAT(parsing(replaced(toml(), "rest = \"aim\"", "rest = \"l_thigh\"")),
               ThrowsMessage<Error>(HasSubstr("expected a bone with \"same\" or \"aim\"")));
-  EXPECT_THAT(parsing(std::regex_replace(toml(), std::regex("from = \\[\"head\"\\]"), "from = []")),
+  EXPECT_THAT(parsing(replaced(toml(), "from = [\"head\"]", "from = []")),
               ThrowsMessage<Error>(HasSubstr("from: expected an array of one or two joints")));
   EXPECT_THAT(parsing(std::string(20000, '#')), ThrowsMessage<Error>(HasSubstr("expected at most 16384 bytes")));
 }
