@@ -85,7 +85,7 @@ TEST(Bvh, AppliesChannelsInTheirOrder) {
 }
 
 TEST(Bvh, TakesOtherLineEndsAndJointsThatMove) {
-  const std::string crlf = replaced(kFile, "\n", "\r\n");
+  const std::string crlf = synth::replaced(kFile, "\n", "\r\n");
   EXPECT_EQ(parse_bvh(crlf, "m.bvh").frame_count(), 2);
   std::string moving = replaced("CHANNELS 0", "CHANNELS 3 Zposition Xposition Yposition");
   moving.resize(moving.find("1 2 3"));
