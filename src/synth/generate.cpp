@@ -142,8 +142,6 @@ Generator::Generator(const Recipe& recipe, Assets assets, const BodyModel& body,
 
 Generator::~Generator() = default;
 
-const Camera& Generator::camera() const { return state_->sensor.camera; }
-
 LabelledFrame Generator::frame(std::uint64_t index) const {
   const State& s = *state_;
   Random plan_random = random_for(s.seed, Purpose::plan, index);

@@ -29,8 +29,6 @@ class Generator {
 
   LabelledFrame frame(std::uint64_t index) const;
 
-  const Camera& camera() const;
-
  private:
   struct State;
   std::unique_ptr<State> state_;

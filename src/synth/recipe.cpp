@@ -109,11 +109,12 @@ Sensor sensor_of(const SensorOptions& options) {
     throw UsageError("options sensor.width and sensor.height are given both or neither");
   }
   if (options.width > 0) sensor = resized(sensor, options.width, options.height);
-  Camera& camera = sensor.camera;
+  Camera camera = sensor.camera;
   if (options.fx > 0.F) camera.fx = camera.fy = options.fx;
   if (options.fy > 0.F) camera.fy = options.fy;
   if (options.cx >= 0.F) camera.cx = options.cx;
   if (options.cy >= 0.F) camera.cy = options.cy;
+  sensor = with_camera(sensor, camera);
   if (!options.noise) sensor.kind = SensorKind::perfect;
   return sensor;
 }

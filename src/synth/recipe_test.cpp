@@ -23,6 +23,8 @@ TEST(Recipe, IntrinsicsWinOverThePreset) {
   EXPECT_EQ(own.fy, 300.F);
   EXPECT_EQ(own.cx, 10.F);
   EXPECT_EQ(own.width, native.width / 2);
+  EXPECT_FLOAT_EQ(sensor_of(options).lateral_px, find_sensor("kinect-v1").lateral_px * 300.F / native.fx)
+      << "noise in pixels follows the focal length";
 }
 
 TEST(Recipe, WithoutNoiseTheSensorIsPerfect) {
