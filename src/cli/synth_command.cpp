@@ -59,8 +59,9 @@ void set_camera(synth::SensorOptions& sensor, const std::string& path) {
 
 /// Defaults, then the mounting's, then the file, then flags.
 synth::Recipe make_recipe(const Arguments& arguments) {
-  const std::string text = arguments.recipe.empty() ? "" : read_file(arguments.recipe);
-  const auto apply_file = [&](synth::Recipe& to) { parse_options(text, arguments.recipe, all_options(to)); };
+  const auto apply_file = [&](synth::Recipe& to) {
+    if (!arguments.recipe.empty()) read_options(arguments.recipe, all_options(to));
+  };
   synth::Recipe asked;
   apply_file(asked);
   arguments.recipe_flags.apply(asked);

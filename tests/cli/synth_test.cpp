@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/atomic_file.h"
 #include "io/image_file.h"
 #include "io/labelled_dataset.h"
 #include "io/open_source.h"
@@ -142,6 +143,10 @@ TEST_F(SynthProgram, BadInputIsOneClearLine) {
   refused(synth("--count 0 --out " + path("x")), 2, "--count");
   refused(synth("--count 3 --people.one -1 --out " + path("x")), 2, "people.one");
   refused(synth("--count 3 --recipe " + path("none.toml") + " --out " + path("x")), 1, "none.toml");
+  std::string deep = "a";  // as many tables in each other: freeing them would exhaust the stack
+  for (int i = 0; i < 200000; ++i) deep += ".a";
+  write_file_atomically(path("deep.toml"), deep + " = 1\n");
+  refused(synth("--count 3 --recipe " + path("deep.toml") + " --out " + path("x")), 1, "deep.toml");
   refused(synth("--count 3 --models " + path("none.obj") + " --out " + path("x")), 1, "none.obj");
   refused("synth -q --body.kind makehuman --count 1 --assets " + path("nowhere") + " --out " + path("x"), 1,
           "vesalius assets makehuman");
