@@ -20,12 +20,12 @@ using testing::HasSubstr;
 
 TEST(Loss, TakesHalfAtTheLargestAngle) {
   const Sensor sensor = resized(sensor_named("kinect-v1"), 80, 60);
-  const auto lost_at = [&](float degrees) {
-    return statistics_of(sensor, 2.F, [&](Rendering& r) { tilt(r, degrees * 3.14159265F / 180.F); }).share_lost;
+  const auto lost_at = [&](float radians) {
+    return statistics_of(sensor, 2.F, [&](Rendering& r) { tilt(r, radians); }).share_lost;
   };
-  EXPECT_LT(lost_at(60.F), 0.01);
-  EXPECT_NEAR(lost_at(80.F), 0.5, 0.12);
-  EXPECT_GT(lost_at(88.5F), 0.9);
+  EXPECT_LT(lost_at(1.05F), 0.01);
+  EXPECT_NEAR(lost_at(sensor.max_angle_rad), 0.5, 0.12);
+  EXPECT_GT(lost_at(1.545F), 0.9);
 }
 
 TEST(Loss, TakesHalfOfWhatIsAsDarkAsTheLimit) {
