@@ -1,4 +1,5 @@
-// Time of each stage of the detector and of the whole, on all processors. `./dev bench --help` lists the flags.
+// Time of each stage of the detector and of the whole, on all processors, and of making synthetic frames on one. `./dev
+// bench --help` lists the flags.
 
 #include <benchmark/benchmark.h>
 
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "bench/bench_scenes.h"
+#include "bench/bench_synth.h"
 
 namespace vesalius {
 namespace {
@@ -64,6 +66,7 @@ int main(int argc, char** argv) {
       vesalius::add_search(scene);
       vesalius::add_detect(scene);
     }
+    vesalius::add_synth_benchmarks();
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& e) {
     std::cerr << "vesalius_bench: " << e.what() << '\n';

@@ -1,11 +1,14 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <string>
 
 #include "io/model_file.h"
+#include "io/model_trees.h"
+#include "io/packed.h"
 #include "vesalius/error.h"
 
 namespace {
@@ -21,6 +24,36 @@ std::string with_fitting_header(std::string bytes) {
   return bytes;
 }
 
+/// A tree whose sizes and columns are the input's, the columns then compressed: nor can it guess a zstd frame.
+std::string packed_tree(std::string_view input) {
+  vesalius::ByteWriter out, columns;
+  const auto byte = [&] {
+    const std::uint8_t value = input.empty() ? 0 : static_cast<std::uint8_t>(input.front());
+    input.remove_prefix(std::min<std::size_t>(1, input.size()));
+    return value;
+  };
+  out.number(std::uint32_t{1});
+  out.number(std::uint32_t{byte()});
+  out.number(std::uint32_t{byte()});
+  while (!input.empty()) {
+    const std::size_t size = std::min<std::size_t>(byte(), input.size());
+    columns.bytes() += vesalius::pack(input.substr(0, size), 1);
+    input.remove_prefix(size);
+  }
+  out.text(columns.bytes());
+  return out.bytes();
+}
+
+void read_and_write_trees(const std::string& bytes) {
+  const std::string name = "fuzz";
+  vesalius::ByteReader in(bytes, name);
+  vesalius::Forest forest;
+  forest.body = vesalius::paper_body();
+  forest.trees = vesalius::read_trees(in);
+  check(forest);
+  vesalius::serialise_model(forest);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -30,6 +63,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       vesalius::serialise_model(vesalius::parse_model(file, "fuzz"));
     } catch (const vesalius::Error&) {
     }
+  }
+  try {
+    read_and_write_trees(packed_tree(bytes));
+  } catch (const vesalius::Error&) {
   }
   return 0;
 }

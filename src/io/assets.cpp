@@ -35,6 +35,10 @@ class Workplace {
  public:
   explicit Workplace(const std::string& folder) : unfinished_(folder + "/" + kUnfinished) {
     std::error_code error;
+    for (fs::path path = fs::path(folder).lexically_normal(); !path.empty() && !fs::exists(path, error);
+         path = path.parent_path()) {
+      if (path.has_filename()) made_.push_back(path);  // not so "D/", which names D again
+    }
     fs::create_directories(folder, error);
     if (error) fail(folder, error.value());
     lock_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -53,6 +57,10 @@ class Workplace {
   }
   ~Workplace() {
     clear();
+    // What this one made goes again where nothing got into it; a folder with files in it cannot be removed so.
+    for (const fs::path& path : made_) {
+      if (::rmdir(path.c_str()) != 0) break;
+    }
     ::close(lock_);
   }
   Workplace(const Workplace&) = delete;
@@ -70,6 +78,7 @@ class Workplace {
   }
 
   std::string unfinished_;
+  std::vector<fs::path> made_;  ///< folders that were not there, innermost first
   int lock_ = -1;
 };
 

@@ -156,6 +156,19 @@ TEST_F(Assets, RefusesWrongBytes) {
   EXPECT_THAT(error_from(mirror()), HasSubstr("mirror/p/sub/z: not found"));
 }
 
+TEST_F(Assets, LeaveNoEmptyFolderWhenNothingCame) {
+  EXPECT_NE(error_from(folder_ / "nowhere"), "");
+  EXPECT_FALSE(fs::exists(home()));
+  FetchOptions options;
+  options.tries = 1;
+  const std::string deep = folder_ / "a/b/c/";
+  EXPECT_NE(test::error_of([&] { install_assets(package_, deep, folder_ / "nowhere", {}, options); }), "");
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
+  fs::create_directory(home());
+  EXPECT_NE(error_from(folder_ / "nowhere"), "");
+  EXPECT_TRUE(fs::exists(home())) << "it was there before";
+}
+
 TEST_F(Assets, RefusesArchivesThatDoNotFit) {
   const auto with_archive = [&](const std::vector<test::ArchiveEntry>& entries) {
     fs::remove_all(home());

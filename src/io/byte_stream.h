@@ -11,6 +11,14 @@
 
 namespace vesalius {
 
+/// Numbers of either sign as small ones: 0, -1, 1, -2 ... become 0, 1, 2, 3 ...
+inline std::uint32_t zigzag(std::int32_t value) {
+  return (static_cast<std::uint32_t>(value) << 1U) ^ (value < 0 ? 0xFFFFFFFFU : 0U);
+}
+inline std::int32_t unzigzag(std::uint32_t code) {
+  return static_cast<std::int32_t>((code >> 1U) ^ ((code & 1U) != 0 ? 0xFFFFFFFFU : 0U));
+}
+
 /// Appends numbers, little endian, and texts to a string.
 class ByteWriter {
  public:

@@ -31,13 +31,24 @@ std::string text_of(const Json& json, const char* key, const std::string& name) 
   return found->get<std::string>();
 }
 
+std::vector<std::string> joints_of(const Json& json, const std::string& name) {
+  const auto found = json.find("joints");
+  std::vector<std::string> joints;
+  if (found == json.end() || !found->is_array()) throw Error(name + ": joints: expected a list of names");
+  for (const Json& joint : *found) {
+    if (!joint.is_string()) throw Error(name + ": joints: expected a list of names");
+    joints.push_back(joint.get<std::string>());
+  }
+  return joints;
+}
+
 std::string hash_text(const DatasetInfo& info) { return fmt::format("{:016x}", dataset_hash(info)); }
 
 }  // namespace
 
 std::uint64_t dataset_hash(const DatasetInfo& info) {
   ByteWriter hashed;
-  hashed.number(static_cast<std::uint32_t>(kDatasetVersion));
+  hashed.number(static_cast<std::uint32_t>(info.version));
   hashed.text(info.body_toml);
   hashed.text(info.recipe);
   hashed.number(info.seed);
@@ -67,15 +78,27 @@ void check(const DatasetInfo& info) {
   if (info.frames_per_shard == 0 || info.frames_per_shard > kMostFramesPerShard) {
     throw UsageError(fmt::format("{} frames per shard, expected 1 to {}", info.frames_per_shard, kMostFramesPerShard));
   }
+  if (info.joints.size() > kMostJoints) {
+    throw UsageError(fmt::format("{} joints, expected at most {}", info.joints.size(), kMostJoints));
+  }
   parse_body_model(info.body_toml, "body of the dataset");
 }
 
+void check_joint_count(const LabelledFrame& labelled, const DatasetInfo& info) {
+  for (const auto& joints : labelled.joints) {
+    if (joints.size() == info.joints.size()) continue;
+    throw Error(fmt::format("person with {} joints, expected the {} that the dataset names", joints.size(),
+                            info.joints.size()));
+  }
+}
+
 std::string serialise_description(const DatasetInfo& info) {
-  const Json json = {{"format", std::uint64_t{kDatasetVersion}},
+  const Json json = {{"format", static_cast<std::uint64_t>(info.version)},
                      {"frames", info.frames},
                      {"frames_per_shard", info.frames_per_shard},
                      {"seed", info.seed},
                      {"hash", hash_text(info)},
+                     {"joints", info.joints},
                      {"body", info.body_toml},
                      {"recipe", info.recipe}};
   try {
@@ -93,6 +116,7 @@ DatasetInfo parse_description(std::string_view text, const std::string& name) {
     throw Error(fmt::format("{}: written by a newer version: format {}, this program reads up to {}", name, version,
                             kDatasetVersion));
   }
+  if (version == 0) throw Error(name + ": format 0, expected 1 or more");
   DatasetInfo info;
   info.frames = number_of(json, "frames", name);
   info.seed = number_of(json, "seed", name);
@@ -101,6 +125,8 @@ DatasetInfo parse_description(std::string_view text, const std::string& name) {
   info.frames_per_shard = static_cast<std::uint32_t>(per_shard);
   info.body_toml = text_of(json, "body", name);
   info.recipe = text_of(json, "recipe", name);
+  info.version = static_cast<int>(version);
+  if (version >= 2) info.joints = joints_of(json, name);
   if (text_of(json, "hash", name) != hash_text(info)) throw Error(name + ": hash does not fit the other values");
   try {
     check(info);

@@ -14,6 +14,9 @@ std::string shard_path(const std::string& folder, std::uint64_t shard);
 std::uint64_t shard_count(const DatasetInfo& info);
 FrameRange frames_of_shard(const DatasetInfo& info, std::uint64_t shard);
 
+/// Throws Error where people have joints, but not as many as the dataset names.
+void check_joint_count(const LabelledFrame& labelled, const DatasetInfo& info);
+
 /// Throws UsageError for numbers out of range and a body that is none.
 void check(const DatasetInfo& info);
 

@@ -1,10 +1,6 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -49,32 +45,15 @@ bool tidy(const std::string& folder) {
 DatasetWriter::DatasetWriter(std::string folder, const DatasetInfo& info)
     : folder_(std::move(folder)), info_(info), hash_(dataset_hash(info)) {
   check(info);
+  if (info.version != kDatasetVersion) {
+    throw UsageError(fmt::format("dataset of format {}, this program writes {}", info.version, kDatasetVersion));
+  }
   part_count_ = parse_body_model(info.body_toml, "body of the dataset").part_count();
-  lock();
-  try {
-    start();
-  } catch (...) {
-    ::close(lock_);
-    throw;
-  }
+  lock_.emplace(folder_);
+  start();
 }
 
-DatasetWriter::~DatasetWriter() { ::close(lock_); }
-
-void DatasetWriter::lock() {
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) throw Error(folder_ + ": folder cannot be made: " + error.message());
-  lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ < 0) {
-    throw Error(fmt::format("{}: folder cannot be read: {}", folder_, std::generic_category().message(errno)));
-  }
-  if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
-  const int cause = errno;
-  ::close(lock_);
-  if (cause == EWOULDBLOCK) throw Error(folder_ + ": another process is writing there");
-  throw Error(fmt::format("{}: folder cannot be locked: {}", folder_, std::generic_category().message(cause)));
-}
+DatasetWriter::~DatasetWriter() = default;
 
 void DatasetWriter::start() {
   const bool has_files = tidy(folder_);
@@ -84,7 +63,11 @@ void DatasetWriter::start() {
   }
   if (has_files) {
     const DatasetInfo there = parse_description(read_file(path), path);
-    if (dataset_hash(there) != hash_) {
+    if (there.version != info_.version) {
+      throw Error(fmt::format("{}: has frames of format {}, this program writes {}; expected a new or empty folder",
+                              folder_, there.version, info_.version));
+    }
+    if (dataset_hash(there) != hash_ || there.joints != info_.joints) {
       throw Error(folder_ + ": has frames of another recipe, body, seed or shard size; expected a new or empty folder");
     }
   }
@@ -112,6 +95,7 @@ bool DatasetWriter::complete(std::uint64_t shard) const {
 }
 
 void DatasetWriter::write(std::uint64_t index, const LabelledFrame& labelled) {
+  check_joint_count(labelled, info_);
   write_encoded(index, encode_frame({index, info_.seed, labelled}, part_count_));
 }
 

@@ -51,10 +51,12 @@ LabelledFrame DatasetReader::read(std::uint64_t index, bool with_colour) const {
   }
   const std::string path = shard_path(folder_, index / info_.frames_per_shard);
   const std::string bytes = ShardFile(path).frame(entries_[index], index);
-  DatasetFrame frame = decode_frame(bytes, body_.part_count(), fmt::format("{}: frame {}", path, index), with_colour);
+  const std::string name = fmt::format("{}: frame {}", path, index);
+  DatasetFrame frame = decode_frame(bytes, body_.part_count(), name, with_colour, info_.version);
   if (frame.index != index || frame.seed != info_.seed) {
     throw Error(fmt::format("{}: frame {}: holds frame {} of seed {}", path, index, frame.index, frame.seed));
   }
+  with_context(name, [&] { check_joint_count(frame.labelled, info_); });
   return std::move(frame.labelled);
 }
 

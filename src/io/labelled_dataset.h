@@ -1,18 +1,20 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/dataset_shard.h"
+#include "io/folder_lock.h"
 #include "io/labelled_frame_codec.h"
 #include "vesalius/body_model.h"
 
 namespace vesalius {
 
-/// Version of shards that this program writes and the newest it reads.
-inline constexpr int kDatasetVersion = 1;
+/// Version of datasets that this program writes and the newest it reads. 1: without joints.
+inline constexpr int kDatasetVersion = kFrameVersion;
 
 /// What all frames of a dataset share.
 struct DatasetInfo {
@@ -21,10 +23,12 @@ struct DatasetInfo {
   std::uint64_t seed = 0;                ///< of the run
   std::uint64_t frames = 0;              ///< in the whole dataset
   std::uint32_t frames_per_shard = 256;  ///< 1 to 4096
+  std::vector<std::string> joints = {};  ///< names of each person's joints, of a dataset that has any; at most 255
+  int version = kDatasetVersion;         ///< of the files; a dataset read may be older
 };
 
-/// Names what frames depend on: XXH64 over body, recipe, seed and shard size, but not over the number of frames, so
-/// that a dataset can grow.
+/// Names what frames depend on: XXH64 over version, body, recipe, seed and shard size, but not over the number of
+/// frames, so that a dataset can grow.
 std::uint64_t dataset_hash(const DatasetInfo& info);
 
 /// Frames [first, first + count).
@@ -50,13 +54,13 @@ class DatasetWriter {
   const std::vector<FrameRange>& missing() const { return missing_; }
 
   /// Adds the next frame of a missing range, from its first on; after the last one the shard is written. Throws Error
-  /// for another frame than the next of a range, as `encode_frame` does, and when the shard cannot be written.
+  /// for another frame than the next of a range, for another number of joints than the description names, as
+  /// `encode_frame` does, and when the shard cannot be written.
   void write(std::uint64_t index, const LabelledFrame& labelled);
   /// The same for bytes that `encode_frame` made, on whatever thread.
   void write_encoded(std::uint64_t index, std::string bytes);
 
  private:
-  void lock();
   void start();
   bool complete(std::uint64_t shard) const;
   void finish_shard();
@@ -65,7 +69,7 @@ class DatasetWriter {
   DatasetInfo info_;
   std::uint64_t hash_;
   int part_count_;
-  int lock_ = -1;
+  std::optional<FolderLock> lock_;
   std::vector<FrameRange> missing_;
   FrameRange shard_;  ///< being collected
   std::vector<std::string> frames_;

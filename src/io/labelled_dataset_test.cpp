@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "io/byte_stream.h"
+#include "io/dataset_folder.h"
 #include "io/test_dataset.h"
 
 namespace vesalius {
@@ -50,6 +52,54 @@ TEST(Dataset, GivesFramesBackInAnyOrder) {
   EXPECT_THAT(error_of([&] { reader.read(10); }), HasSubstr("frame 10, expected one below 10"));
 }
 
+/// A shard as version 1 wrote it.
+std::string old_shard(const DatasetInfo& info, const std::vector<std::string>& frames) {
+  std::string bytes = serialise_shard(dataset_hash(info), 0, frames);
+  const std::size_t checked = 40 + 12 * frames.size();
+  bytes[8] = 1;
+  ByteWriter checksum;
+  checksum.number(checksum_of(std::string_view(bytes).substr(0, checked)));
+  return bytes.replace(checked, 8, checksum.bytes());
+}
+
+TEST(Dataset, OfVersionOneIsReadAndNotWritten) {
+  DatasetInfo info = small_info(2, 4);
+  info.joints.clear();
+  info.version = 1;
+  std::vector<LabelledFrame> labelled;
+  std::vector<std::string> frames;
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    labelled.push_back(random_labelled(i));
+    labelled.back().joints.clear();
+    frames.push_back(test::as_version_one(encode_frame({i, info.seed, labelled[i]}, 25), labelled[i]));
+  }
+  test::TemporaryFolder folder;
+  std::string description = serialise_description(info);
+  const std::size_t joints_at = description.find(" \"joints\": [],\n");
+  ASSERT_NE(joints_at, std::string::npos);
+  description.erase(joints_at, std::string_view(" \"joints\": [],\n").size());
+  test::put(folder / "dataset.json", description);
+  test::put(folder / "000000.shard", old_shard(info, frames));
+  const DatasetReader reader(folder / "");
+  EXPECT_EQ(reader.info().version, 1);
+  EXPECT_THAT(reader.info().joints, IsEmpty());
+  for (std::uint64_t i = 0; i < 2; ++i) test::expect_same(reader.read(i), labelled[i]);
+  EXPECT_THAT(error_of([&] { DatasetWriter(folder / "", small_info(2, 4)); }), HasSubstr("has frames of format 1"));
+  EXPECT_THAT(error_of([&] { DatasetWriter(folder / "new", info); }), HasSubstr("this program writes 2"));
+}
+
+TEST(Dataset, NamesTheJointsOfItsPeople) {
+  const Whole whole;
+  EXPECT_EQ(DatasetReader(whole.path()).info().joints, test::kJoints);
+  test::TemporaryFolder folder;
+  DatasetInfo info = small_info();
+  info.joints.pop_back();
+  DatasetWriter writer(folder / "set", info);
+  EXPECT_THAT(error_of([&] { writer.write(0, random_labelled(0)); }),
+              HasSubstr("person with 3 joints, expected the 2 that the dataset names"));
+  EXPECT_THAT(error_of([&] { DatasetWriter(whole.path(), info); }), HasSubstr("another recipe"));
+}
+
 TEST(Dataset, HasTheSameBytesHoweverItWasInterrupted) {
   const Whole whole;
   test::TemporaryFolder folder;
@@ -76,7 +126,7 @@ TEST(Dataset, HasTheSameBytesHoweverItWasInterrupted) {
 
 TEST(Dataset, MakesDamagedCutAndForeignShardsAgain) {
   const Whole whole;
-  const Whole other({paper_body().toml, "people = 3\n", 7, 10, 4});
+  const Whole other({paper_body().toml, "people = 3\n", 7, 10, 4, test::kJoints});
   std::string damaged = test::get(whole.shard(0));
   damaged[damaged.size() - 20] ^= 1;
   test::put(whole.shard(0), damaged);
@@ -183,7 +233,10 @@ TEST(DatasetReader, ChecksItsDescription) {
     test::put(path, changed);
     return error_of([&] { DatasetReader reader(whole.path()); });
   };
-  EXPECT_THAT(complaint("\"format\": 1", "\"format\": 2"), HasSubstr("newer version: format 2"));
+  EXPECT_THAT(complaint("\"format\": 2", "\"format\": 3"), HasSubstr("newer version: format 3"));
+  EXPECT_THAT(complaint("\"format\": 2", "\"format\": 0"), HasSubstr("format 0, expected 1 or more"));
+  EXPECT_THAT(complaint("\"joints\"", "\"joint\""), HasSubstr("joints: expected a list of names"));
+  EXPECT_THAT(complaint("\"hip\"", "7"), HasSubstr("joints: expected a list of names"));
   EXPECT_THAT(complaint("\"frames\": 10", "\"frames\": -1"), HasSubstr("frames: expected a whole number"));
   EXPECT_THAT(complaint("\"frames\": 10", "\"frames\": 0"), HasSubstr("dataset of 0 frames"));
   EXPECT_THAT(complaint("\"frames\": 10", "\"frames\": 4000000000"), HasSubstr("000002.shard: 2 frames"));

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 TEST(LabelledExport, IsReadAsAFolderOfFrames) {
   test::TemporaryFolder folder;
-  LabelledExporter exporter(folder / "out", paper_body());
+  LabelledExporter exporter(folder / "out", paper_body(), test::kJoints);
   for (const std::uint64_t i : {1U, 2U}) exporter.write(random_labelled(i));
   const auto source = open_source(folder / "out");
   for (const std::uint64_t i : {1U, 2U}) {
@@ -37,7 +37,7 @@ TEST(LabelledExport, IsReadAsAFolderOfFrames) {
 TEST(LabelledExport, NamesThePartsAndSaysWhichAreMissing) {
   test::TemporaryFolder folder;
   const LabelledFrame labelled = random_labelled(1);
-  LabelledExporter(folder / "out", paper_body()).write(labelled);
+  LabelledExporter(folder / "out", paper_body(), test::kJoints).write(labelled);
   const auto json = nlohmann::json::parse(test::get(folder / "out/truth/frame_1.json"));
   EXPECT_EQ(json["frame"], "frame_1");
   ASSERT_EQ(json["people"].size(), 2U);
@@ -48,21 +48,29 @@ TEST(LabelledExport, NamesThePartsAndSaysWhichAreMissing) {
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(knee[static_cast<std::size_t>(axis)].get<float>(), labelled.parts[0][index][axis], 6e-5F);
   }
+  const auto& foot = json["people"][1]["joints_m"]["foot"];
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(foot[static_cast<std::size_t>(axis)].get<float>(), labelled.joints[1][2][axis], 6e-5F);
+  }
   EXPECT_EQ(test::get(folder / "out/body.toml"), paper_body().toml);
 }
 
 TEST(LabelledExport, RefusesWhatItCannotWrite) {
   test::TemporaryFolder folder;
-  LabelledExporter exporter(folder / "out", paper_body());
+  LabelledExporter exporter(folder / "out", paper_body(), test::kJoints);
   LabelledFrame wrong = random_labelled(1);
   wrong.labels[0] = 99;
   EXPECT_THAT(error_of([&] { exporter.write(wrong); }), HasSubstr("frame frame_1: label 99"));
+  LabelledFrame unnamed = random_labelled(1);
+  for (auto& joints : unnamed.joints) joints.pop_back();
+  EXPECT_THAT(error_of([&] { exporter.write(unnamed); }), HasSubstr("person with 2 joints, expected 3"));
   LabelledFrame escaping = random_labelled(1);
   escaping.frame.name = "../../escaped";
   EXPECT_THAT(error_of([&] { exporter.write(escaping); }), HasSubstr("expected a file name"));
   exporter.write(random_labelled(1));
   EXPECT_THAT(error_of([&] { exporter.write(random_labelled(1)); }), HasSubstr("two frames named"));
-  EXPECT_THAT(error_of([&] { LabelledExporter again(folder / "out", paper_body()); }), HasSubstr("has files in it"));
+  EXPECT_THAT(error_of([&] { LabelledExporter again(folder / "out", paper_body(), test::kJoints); }),
+              HasSubstr("has files in it"));
 }
 
 }  // namespace

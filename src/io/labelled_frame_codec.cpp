@@ -30,25 +30,52 @@ Camera read_camera(ByteReader& in) {
   return camera;
 }
 
-void write_people(ByteWriter& out, const LabelledFrame& labelled) {
-  out.number(static_cast<std::uint8_t>(labelled.parts.size()));
-  for (const auto& parts : labelled.parts) {
-    for (const Eigen::Vector3f& p : parts) {
-      for (int axis = 0; axis < 3; ++axis) out.real(p[axis]);
-    }
+void write_points(ByteWriter& out, const std::vector<Eigen::Vector3f>& points) {
+  for (const Eigen::Vector3f& p : points) {
+    for (int axis = 0; axis < 3; ++axis) out.real(p[axis]);
   }
 }
 
-std::vector<std::vector<Eigen::Vector3f>> read_people(ByteReader& in, int part_count) {
-  std::vector<std::vector<Eigen::Vector3f>> people(in.number<std::uint8_t>("people"));
-  for (auto& parts : people) {
-    for (int p = 0; p < part_count; ++p) {
-      const float x = in.real32("part centre");
-      const float y = in.real32("part centre");
-      parts.emplace_back(x, y, in.real32("part centre"));
+std::vector<Eigen::Vector3f> read_points(ByteReader& in, std::size_t count, const char* what) {
+  std::vector<Eigen::Vector3f> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = in.real32(what);
+    const float y = in.real32(what);
+    points.emplace_back(x, y, in.real32(what));
+  }
+  return points;
+}
+
+void write_people(ByteWriter& out, const LabelledFrame& labelled) {
+  out.number(static_cast<std::uint8_t>(labelled.parts.size()));
+  for (const auto& parts : labelled.parts) write_points(out, parts);
+  out.number(static_cast<std::uint8_t>(labelled.joints.empty() ? 0 : labelled.joints[0].size()));
+  for (const auto& joints : labelled.joints) write_points(out, joints);
+}
+
+void read_people(ByteReader& in, int part_count, int version, LabelledFrame& labelled) {
+  const auto people = in.number<std::uint8_t>("people");
+  for (int i = 0; i < people; ++i) {
+    labelled.parts.push_back(read_points(in, static_cast<std::size_t>(part_count), "part centre"));
+  }
+  if (version < 2) return;
+  const auto joints = in.number<std::uint8_t>("joints");
+  for (int i = 0; joints > 0 && i < people; ++i) labelled.joints.push_back(read_points(in, joints, "joint"));
+}
+
+void check_joints(const LabelledFrame& labelled) {
+  if (labelled.joints.empty()) return;
+  if (labelled.joints.size() != labelled.parts.size()) {
+    throw Error(fmt::format("joints of {} people, expected {} or none", labelled.joints.size(), labelled.parts.size()));
+  }
+  const std::size_t count = labelled.joints[0].size();
+  if (count == 0 || count > kMostJoints) throw Error(fmt::format("{} joints, expected 1 to {}", count, kMostJoints));
+  for (const auto& joints : labelled.joints) {
+    if (joints.size() != count) throw Error(fmt::format("person with {} joints, expected {}", joints.size(), count));
+    for (const Eigen::Vector3f& p : joints) {
+      if (!p.allFinite()) throw Error("joint is not finite");
     }
   }
-  return people;
 }
 
 }  // namespace
@@ -79,6 +106,7 @@ void check_truth(const LabelledFrame& labelled, int part_count) {
       if (p.array().isInf().any()) throw Error("part centre is infinite, expected a point or NaN");
     }
   }
+  check_joints(labelled);
 }
 
 std::string encode_frame(const DatasetFrame& frame, int part_count) {
@@ -99,7 +127,8 @@ std::string encode_frame(const DatasetFrame& frame, int part_count) {
   return std::move(out.bytes());
 }
 
-DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::string& name, bool with_colour) {
+DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::string& name, bool with_colour,
+                          int version) {
   ByteReader in(bytes, name);
   DatasetFrame frame;
   frame.index = in.number<std::uint64_t>("index");
@@ -110,7 +139,7 @@ DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::str
   labelled.frame.name = in.text("name");
   labelled.frame.time_s = in.real64("time");
   labelled.frame.camera = read_camera(in);
-  labelled.parts = read_people(in, part_count);
+  read_people(in, part_count, version, labelled);
   const auto [width, height] = std::pair(labelled.frame.camera.width, labelled.frame.camera.height);
   labelled.frame.depth = read_depth_plane(in, width, height);
   labelled.labels = read_byte_plane(in, width, height);

@@ -35,9 +35,24 @@ TEST(FrameCodec, LeavesColourOutWhereNotWanted) {
 TEST(FrameCodec, KeepsEmptyRooms) {
   LabelledFrame labelled = random_labelled(3);
   labelled.parts.clear();
+  labelled.joints.clear();
   labelled.labels.fill(kBackground);
   labelled.person.fill(kBackground);
   test::expect_same(decode_frame(encode_frame({1, 2, labelled}, kParts), kParts, "test").labelled, labelled);
+}
+
+TEST(FrameCodec, KeepsPeopleWithoutJoints) {
+  LabelledFrame labelled = random_labelled(3);
+  labelled.joints.clear();
+  test::expect_same(decode_frame(encode_frame({1, 2, labelled}, kParts), kParts, "test").labelled, labelled);
+}
+
+TEST(FrameCodec, ReadsFramesOfVersionOne) {
+  LabelledFrame labelled = random_labelled(3);
+  labelled.joints.clear();
+  const std::string old = test::as_version_one(encode_frame({1, 2, labelled}, kParts), labelled);
+  test::expect_same(decode_frame(old, kParts, "test", true, 1).labelled, labelled);
+  EXPECT_THAT(error_of([&] { decode_frame(old, kParts, "test"); }), HasSubstr("test: "));
 }
 
 TEST(FrameCodec, RefusesTruthThatDoesNotFit) {
@@ -52,6 +67,11 @@ TEST(FrameCodec, RefusesTruthThatDoesNotFit) {
   EXPECT_THAT(complaint([](auto& f) { f.parts[1].pop_back(); }), HasSubstr("person with 24 parts, expected 25"));
   EXPECT_THAT(complaint([](auto& f) { f.parts[0][0].x() = std::numeric_limits<float>::infinity(); }),
               HasSubstr("infinite"));
+  EXPECT_THAT(complaint([](auto& f) { f.joints.pop_back(); }), HasSubstr("joints of 1 people, expected 2 or none"));
+  EXPECT_THAT(complaint([](auto& f) { f.joints[1].pop_back(); }), HasSubstr("person with 2 joints, expected 3"));
+  EXPECT_THAT(complaint([](auto& f) { f.joints[0].resize(256); }), HasSubstr("256 joints, expected 1 to 255"));
+  EXPECT_THAT(complaint([](auto& f) { f.joints[0][0].y() = std::numeric_limits<float>::quiet_NaN(); }),
+              HasSubstr("joint is not finite"));
   EXPECT_THAT(complaint([](auto& f) { f.frame.name = std::string(256, 'x'); }), HasSubstr("name of more than 255"));
   EXPECT_THAT(complaint([](auto& f) { f.parts.resize(255, f.parts[0]); }), HasSubstr("255 people"));
 }

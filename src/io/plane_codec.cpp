@@ -1,10 +1,9 @@
 #include "io/plane_codec.h"
 
-#include <zstd.h>
-
 #include <algorithm>
-#include <memory>
 #include <vector>
+
+#include "io/packed.h"
 
 namespace vesalius {
 namespace {
@@ -14,35 +13,7 @@ constexpr std::size_t kValues = 65536;
 constexpr std::size_t kWidestNumber = 3;  // bytes of a varint of at most 2 x 65536
 constexpr unsigned kEscape = 255;         // symbol whose number follows in the wide stream
 
-struct FreeContext {
-  void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
-  void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
-};
-
-/// A stream: u32 size, u32 compressed size, zstd frame.
-void write_packed(ByteWriter& out, std::string_view raw) {
-  thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
-  std::string packed(ZSTD_compressBound(raw.size()), '\0');
-  const std::size_t size =
-      ZSTD_compressCCtx(context.get(), packed.data(), packed.size(), raw.data(), raw.size(), kLevel);
-  if (ZSTD_isError(size)) throw Error(fmt::format("zstd: {}", ZSTD_getErrorName(size)));
-  packed.resize(size);
-  out.number(static_cast<std::uint32_t>(raw.size()));
-  out.text(packed);
-}
-
-std::string read_packed(ByteReader& in, std::size_t smallest, std::size_t largest, const char* what) {
-  const auto size = in.number<std::uint32_t>(what);
-  if (size < smallest || size > largest) {
-    in.fail(fmt::format("{}: {} bytes, expected {} to {}", what, size, smallest, largest));
-  }
-  const std::string_view packed = in.text(what);
-  thread_local const std::unique_ptr<ZSTD_DCtx, FreeContext> context(ZSTD_createDCtx());
-  std::string raw(size, '\0');
-  const std::size_t got = ZSTD_decompressDCtx(context.get(), raw.data(), raw.size(), packed.data(), packed.size());
-  if (ZSTD_isError(got) || got != size) in.fail(fmt::format("{}: cannot be decompressed", what));
-  return raw;
-}
+void write_packed(ByteWriter& out, std::string_view raw) { out.bytes() += pack(raw, kLevel); }
 
 std::size_t pixels(int width, int height) { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 
@@ -69,9 +40,6 @@ class Prediction {
   const std::uint16_t* above_;
   int last_ = 1;
 };
-
-unsigned zigzag(int value) { return (static_cast<unsigned>(value) << 1U) ^ (value < 0 ? 0xFFFFFFFFU : 0U); }
-int unzigzag(unsigned code) { return static_cast<int>((code >> 1U) ^ ((code & 1U) != 0 ? 0xFFFFFFFFU : 0U)); }
 
 std::uint8_t predicted_byte(const std::uint8_t* here, const std::uint8_t* above, int u) {
   const int left = u > 0 ? here[u - 1] : above != nullptr ? above[u] : 0;
@@ -105,11 +73,11 @@ Image<std::uint8_t> from_residual(const std::string& residual, int width, int he
 
 /// The values that occur, ascending; holes left out.
 std::vector<std::uint16_t> values_of(const DepthImage& depth) {
-  std::vector<bool> occurs(kValues, false);
-  for (const std::uint16_t value : depth) occurs[value] = true;
+  std::vector<std::uint8_t> occurs(kValues, 0);
+  for (const std::uint16_t value : depth) occurs[value] = 1;
   std::vector<std::uint16_t> values;
   for (std::size_t value = 1; value < kValues; ++value) {
-    if (occurs[value]) values.push_back(static_cast<std::uint16_t>(value));
+    if (occurs[value] != 0) values.push_back(static_cast<std::uint16_t>(value));
   }
   return values;
 }

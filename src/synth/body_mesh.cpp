@@ -56,6 +56,11 @@ Eigen::Quaternionf blended(const RigBone& bone, const std::array<Eigen::Quaterni
   return from.slerp(bone.blend, to);
 }
 
+/// What without_yaw() takes off.
+Eigen::Quaternionf heading(const Eigen::Quaternionf& rotation) {
+  return (rotation * without_yaw(rotation).conjugate()).normalized();
+}
+
 /// Turns of each rig bone out of the body's own rest pose.
 std::vector<Eigen::Quaternionf> rig_rotations(const std::vector<RigBone>& rig, const Pose& pose) {
   const auto world = world_rotations(pose);
@@ -68,7 +73,8 @@ std::vector<Eigen::Quaternionf> rig_rotations(const std::vector<RigBone>& rig, c
       const float grip = bone.grip == Grip::left ? pose.l_grip : pose.r_grip;
       curls[b] = curls[b] * Eigen::Quaternionf(Eigen::AngleAxisf(grip * bone.curl_rad, bone.curl_axis));
     }
-    rotations[b] = (blended(bone, world) * bone.t_from_rest * curls[b]).normalized();
+    rotations[b] = bone.hangs ? heading(world[static_cast<std::size_t>(bone.from)])
+                              : (blended(bone, world) * bone.t_from_rest * curls[b]).normalized();
   }
   return rotations;
 }

@@ -31,6 +31,7 @@ struct RigBone {
   Bone from = Bone::pelvis;  ///< its rotation is slerp(world[from], world[to], blend) of the pose
   Bone to = Bone::pelvis;
   float blend = 0.F;
+  bool hangs = false;       ///< stays upright whatever its parent does, and takes the heading alone from `from`
   bool twist_only = false;  ///< blend the turn about `from`'s own axis alone: a forearm follows the hand's twist
   /// pose-rest_from_body-rest: turns the bone from the body's own rest pose into the T of `Pose`.
   Eigen::Quaternionf t_from_rest = Eigen::Quaternionf::Identity();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "synth/furnish.h"
@@ -81,16 +82,42 @@ void add_lights(const RoomShape& room, Scene& scene, Random& random) {
   }
 }
 
-SceneMesh person_mesh(const PersonPlan& plan, const PosedBody& body, int person) {
+/// How far the surface of a person in the world may stray: so many pixels where they are nearest to the camera.
+float tolerance_m(const View& view, const PosedBody& body, float detail_px) {
+  constexpr float kFlesh_m = 0.3F;  // nearer than the bones
+  float nearest_m = std::numeric_limits<float>::max();
+  for (const auto* points : {&body.joints, &body.ends}) {
+    for (const Vector3f& p : *points) nearest_m = std::min(nearest_m, (view.camera_from_world * p).z());
+  }
+  return detail_px * std::max(0.F, nearest_m - kFlesh_m) / std::max(view.camera.fx, view.camera.fy);
+}
+
+/// By day more often than by night; out of sight in a hall it is dim.
+Rgb draw_sky(const RoomShape& room, Random& random) {
+  const bool day = !room.open && chance(0.7, random);
+  const float light = day ? between(0.7, 1.0, random) : between(0.02, 0.2, random);
+  const float haze = between(0.8, 1.0, random);
+  const auto level = [&](float share) { return static_cast<std::uint8_t>(255.F * light * share); };
+  return {level(haze), level(0.5F * (1.F + haze)), level(1.F)};
+}
+
+SceneMesh person_mesh(const PersonPlan& plan, const PosedBody& body, const CoarseSurface* coarse) {
   const BodyTopology& topology = *plan.poser->mesh().topology;
   SceneMesh mesh;
+  mesh.materials.assign(plan.look.begin(), plan.look.end());
+  if (coarse != nullptr) {
+    mesh.vertices.reserve(coarse->vertex.size());
+    for (const std::uint32_t v : coarse->vertex) mesh.vertices.push_back(body.vertices[v]);
+    mesh.triangles = coarse->triangles;
+    mesh.part = coarse->part;
+    mesh.material = coarse->fabric;
+    return mesh;
+  }
   mesh.vertices = body.vertices;
   mesh.triangles = topology.triangles;
   mesh.part = topology.part;
   mesh.material.reserve(topology.fabric.size());
   for (const Fabric fabric : topology.fabric) mesh.material.push_back(static_cast<std::uint8_t>(fabric));
-  mesh.materials.assign(plan.look.begin(), plan.look.end());
-  mesh.person = person;
   return mesh;
 }
 
@@ -104,8 +131,8 @@ PosedBody moved(PosedBody body, const Isometry3f& motion) {
   return body;
 }
 
-void add_people(const std::vector<PersonPlan>& plans, std::vector<PeopleGroup>& groups, const Stage& stage,
-                BuiltScene& built) {
+void add_people(const std::vector<PersonPlan>& plans, float detail_px, std::vector<PeopleGroup>& groups,
+                const Stage& stage, BuiltScene& built) {
   for (const PlacedGroup& placed : stage.groups) {
     PeopleGroup& group = groups[static_cast<std::size_t>(placed.group)];
     for (GroupMember& member : group.members) {
@@ -114,8 +141,12 @@ void add_people(const std::vector<PersonPlan>& plans, std::vector<PeopleGroup>& 
       person.body = moved(std::move(member.body), person.world_from_body);
       person.plan = member.plan;
       person.mesh = static_cast<int>(built.scene.meshes.size());
-      const int number = static_cast<int>(built.people.size());
-      built.scene.meshes.push_back(person_mesh(plans[static_cast<std::size_t>(member.plan)], person.body, number));
+      const PersonPlan& plan = plans[static_cast<std::size_t>(member.plan)];
+      const float tolerance = tolerance_m(built.view, person.body, detail_px);
+      SceneMesh mesh =
+          person_mesh(plan, person.body, plan.detail != nullptr ? plan.detail->within(tolerance) : nullptr);
+      mesh.person = static_cast<int>(built.people.size());
+      built.scene.meshes.push_back(std::move(mesh));
       built.people.push_back(std::move(person));
     }
     for (Furniture& piece : group.furniture) {
@@ -158,6 +189,8 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
                  {"deg", 0.0, 180.0, "Largest angle to the camera of those who face it."});
   visitor.option(prefix + "min-visible", o.min_visible,
                  {"", 0.0, 1.0, "Least share of a person's bones within the picture."});
+  visitor.option(prefix + "detail", o.detail_px,
+                 {"px", 0.0, 4.0, "How far the surface of people far away may be simplified; 0: not at all."});
 }
 
 void check(const SceneOptions& options) {
@@ -181,7 +214,7 @@ BuiltScene build_scene(const SceneOptions& options, const CameraPlacement& place
   BuiltScene built;
   built.view = {intrinsics, stage.camera.world_from_camera().inverse()};
   built.scene.meshes.push_back(make_room(room, random));
-  add_people(plans, groups, stage, built);
+  add_people(plans, options.detail_px, groups, stage, built);
   std::vector<Vector3f> people;
   for (const PlacedPerson& person : built.people) people.push_back(person.body.joints[index(Bone::chest)]);
   const Vector3f eye(0.F, stage.camera.height_m, 0.F);
@@ -189,6 +222,7 @@ BuiltScene build_scene(const SceneOptions& options, const CameraPlacement& place
     built.scene.meshes.push_back(std::move(piece.mesh));
   }
   add_lights(room, built.scene, random);
+  built.scene.sky = draw_sky(room, random);
   built.room = room;
   built.solids = stage.occupancy.solids();
   return built;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "synth/body_detail.h"
 #include "synth/body_mesh.h"
 #include "synth/camera_pose.h"
 #include "synth/oriented_box.h"
@@ -27,6 +28,7 @@ struct SceneOptions {
   float frontal_share = 0.45F;  ///< of people who face the camera within `frontal_range_deg`; others face anywhere
   float frontal_range_deg = 60.F;
   float min_visible = 0.3F;  ///< share of a person's bones within the picture
+  float detail_px = 0.35F;   ///< how far a coarser surface of somebody far away may stray from the full one; 0: none
 };
 
 void visit_options(const std::string& prefix, SceneOptions& options, OptionVisitor& visitor);
@@ -36,7 +38,8 @@ void check(const SceneOptions& options);
 
 /// A person who is to be in the picture.
 struct PersonPlan {
-  const Poser* poser = nullptr;  ///< must outlive the call
+  const Poser* poser = nullptr;        ///< must outlive the call
+  const BodyDetail* detail = nullptr;  ///< its coarser surfaces, must outlive the call; none: always the full one
   Pose pose;
   Posture posture = Posture::standing;
   std::array<Material, kFabricCount> look;

@@ -156,6 +156,28 @@ TEST(Dress, ThingsCarriedBelongToNobodyAndMoveWithTheirBone) {
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(gap(poser.pose(random_pose(random, 1.F))), at_rest, 1e-4F);
 }
 
+TEST(Dress, ABagInAHandHangsWhateverTheArmDoes) {
+  Outfit outfit;
+  outfit.bag = Bag::in_hand;
+  outfit.left_hand = true;
+  const auto mesh = std::make_shared<const BodyMesh>(dressed(outfit));
+  const Poser poser(mesh, paper_body());
+  Random random(6);
+  for (int i = 0; i < 20; ++i) {
+    Pose pose = random_pose(random, 1.2F);
+    pose[Bone::pelvis] = Eigen::AngleAxisf(0.3F * static_cast<float>(i), Vector3f::UnitY());  // upright, any heading
+    const PosedBody body = poser.pose(pose);
+    const Vector3f hand = body.ends[static_cast<std::size_t>(Bone::l_hand)];
+    Vector3f middle = Vector3f::Zero();
+    for (std::size_t v = bare().vertices.size(); v < body.vertices.size(); ++v) {
+      middle += body.vertices[v] / static_cast<float>(body.vertices.size() - bare().vertices.size());
+      EXPECT_LT(body.vertices[v].y(), hand.y() + 1e-3F);
+    }
+    EXPECT_NEAR(middle.x(), hand.x(), 1e-3F);
+    EXPECT_NEAR(middle.z(), hand.z(), 1e-3F);
+  }
+}
+
 TEST(Dress, WhatIsCarriedDoesNotLiftThePersonOffTheFloor) {
   Outfit outfit;
   outfit.bag = Bag::in_hand;

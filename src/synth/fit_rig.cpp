@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "synth/rig_map.h"
-#include "synth/text_lines.h"
+#include "synth/text_scanner.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {

@@ -42,6 +42,9 @@ class Wardrobe {
   using SkinAt = std::function<SkinWeights(const Eigen::Vector3f&)>;
   void add_sheet(const Sheet& sheet, const SkinAt& skin, const PartAt& part, Fabric fabric);
   void add_box(const Eigen::Vector3f& centre, const Eigen::Matrix3f& half_axes, Bone bone);
+  void add_box(const Eigen::Vector3f& centre, const Eigen::Matrix3f& half_axes, const SkinWeights& weights);
+  /// Moved by a new rig bone that hangs from a hand at a point.
+  SkinWeights hanging(Bone hand, const Eigen::Vector3f& from);
   void add_cylinder(const Eigen::Vector3f& centre, const Eigen::Vector3f& half_axis, float radius_m, Bone bone);
 
   struct Influence {

@@ -4,12 +4,14 @@
 
 #include <mutex>
 #include <numeric>
+#include <optional>
 
 #include "synth/builtin_body.h"
 #include "synth/dress.h"
 #include "synth/mix_poses.h"
 #include "synth/render.h"
 #include "synth/sensor_noise.h"
+#include "synth/skeleton_joints.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {
@@ -62,6 +64,16 @@ class RendererPool {
   std::vector<std::unique_ptr<Renderer>> idle_;
 };
 
+/// A body with its clothes.
+struct Dressed {
+  Poser poser;
+  std::optional<BodyDetail> detail;  ///< where the recipe wants any
+
+  Dressed(Poser the_poser, float detail_px) : poser(std::move(the_poser)) {
+    if (detail_px > 0.F) detail.emplace(poser);
+  }
+};
+
 bool wants_makehuman(const Recipe& recipe, const Assets& assets) {
   if (recipe.body.kind == "makehuman" && assets.makehuman == nullptr) {
     throw Error("body.kind is makehuman, but its files are not there; `vesalius assets makehuman` fetches them");
@@ -80,7 +92,7 @@ struct Generator::State {
   bool makehuman = false;
 
   mutable std::vector<std::once_flag> made;
-  mutable std::vector<std::unique_ptr<Poser>> posers;
+  mutable std::vector<std::unique_ptr<Dressed>> people;
   mutable RendererPool renderers;
 
   State(const Recipe& the_recipe, Assets the_assets, const BodyModel& the_body, std::uint64_t the_seed)
@@ -89,24 +101,25 @@ struct Generator::State {
         body(the_body),
         seed(the_seed),
         made(static_cast<std::size_t>(the_recipe.body.count)),
-        posers(static_cast<std::size_t>(the_recipe.body.count)) {
+        people(static_cast<std::size_t>(the_recipe.body.count)) {
     check(recipe);
     sensor = sensor_of(recipe.sensor);
     makehuman = wants_makehuman(recipe, assets);
   }
 
   /// Body number k with its clothes: a function of (recipe, assets, seed, k).
-  std::unique_ptr<Poser> make_poser(std::size_t k) const {
+  std::unique_ptr<Dressed> make_person(std::size_t k) const {
     Random random = random_for(seed, Purpose::body, k);
     const BodyMesh naked = makehuman ? make_body(*assets.makehuman, sample_factors(random), body)
                                      : make_builtin_body(sample_builtin_shape(random), body);
     const Outfit outfit = sample_outfit(recipe.outfit, random);
-    return std::make_unique<Poser>(std::make_shared<const BodyMesh>(dress(naked, outfit, body, random)), body);
+    return std::make_unique<Dressed>(Poser(std::make_shared<const BodyMesh>(dress(naked, outfit, body, random)), body),
+                                     recipe.scene.detail_px);
   }
 
-  const Poser& poser(std::size_t k) const {
-    std::call_once(made[k], [&] { posers[k] = make_poser(k); });
-    return *posers[k];
+  const Dressed& person(std::size_t k) const {
+    std::call_once(made[k], [&] { people[k] = make_person(k); });
+    return *people[k];
   }
 
   SampledPose draw_pose(Random& random) const {
@@ -121,7 +134,9 @@ struct Generator::State {
 
   PersonPlan draw_person(Random& random) const {
     PersonPlan plan;
-    plan.poser = &poser(random.below(static_cast<std::uint32_t>(recipe.body.count)));
+    const Dressed& dressed = person(random.below(static_cast<std::uint32_t>(recipe.body.count)));
+    plan.poser = &dressed.poser;
+    if (dressed.detail) plan.detail = &*dressed.detail;
     const SampledPose drawn = draw_pose(random);
     plan.pose = drawn.pose;
     plan.posture = drawn.posture;
@@ -142,12 +157,17 @@ Generator::Generator(const Recipe& recipe, Assets assets, const BodyModel& body,
 
 Generator::~Generator() = default;
 
-LabelledFrame Generator::frame(std::uint64_t index) const {
+BuiltScene Generator::scene(std::uint64_t index) const {
   const State& s = *state_;
   Random plan_random = random_for(s.seed, Purpose::plan, index);
   const std::vector<PersonPlan> plans = s.draw_people(plan_random);
-  const BuiltScene built = build_scene(s.recipe.scene, s.recipe.camera, s.sensor.camera, plans, s.assets.models,
-                                       random_for(s.seed, Purpose::scene, index));
+  return build_scene(s.recipe.scene, s.recipe.camera, s.sensor.camera, plans, s.assets.models,
+                     random_for(s.seed, Purpose::scene, index));
+}
+
+LabelledFrame Generator::frame(std::uint64_t index) const {
+  const State& s = *state_;
+  const BuiltScene built = scene(index);
   RenderOptions options;
   options.colour = s.recipe.sensor.colour;
   options.projector = projector_of(s.sensor);
@@ -170,6 +190,7 @@ LabelledFrame Generator::frame(std::uint64_t index) const {
     std::vector<Eigen::Vector3f> parts;
     for (const Eigen::Vector3f& p : person.body.parts) parts.emplace_back(built.view.camera_from_world * p);
     result.parts.push_back(std::move(parts));
+    result.joints.push_back(joint_points(person.body, built.view.camera_from_world));
   }
   return result;
 }

@@ -27,7 +27,10 @@ class Generator {
   Generator(const Generator&) = delete;
   Generator& operator=(const Generator&) = delete;
 
+  /// With parts, and joints as joint_names() lists them.
   LabelledFrame frame(std::uint64_t index) const;
+  /// What that frame looks at.
+  BuiltScene scene(std::uint64_t index) const;
 
  private:
   struct State;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "synth/skeleton_joints.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
 
@@ -32,6 +33,7 @@ void expect_same(const LabelledFrame& a, const LabelledFrame& b) {
   EXPECT_EQ(a.frame.colour, b.frame.colour);
   EXPECT_EQ(a.labels, b.labels);
   EXPECT_EQ(a.person, b.person);
+  EXPECT_EQ(a.joints, b.joints);
   ASSERT_EQ(a.parts.size(), b.parts.size());
   for (std::size_t p = 0; p < a.parts.size(); ++p) EXPECT_EQ(a.parts[p], b.parts[p]);
 }
@@ -67,6 +69,58 @@ TEST(Generate, SeedsGiveOtherFrames) {
   const Generator a(small_recipe(), {}, paper_body(), 1), b(small_recipe(), {}, paper_body(), 2);
   EXPECT_NE(a.frame(0).frame.depth, b.frame(0).frame.depth);
   EXPECT_NE(a.frame(0).frame.depth, a.frame(1).frame.depth);
+}
+
+TEST(Generate, JointsAreBehindTheirPersonsSurface) {
+  Recipe recipe = small_recipe();
+  recipe.people = {.none = 0.F, .one = 1.F, .two = 1.F, .three = 0.F, .four = 0.F};
+  recipe.sensor.noise = false;
+  const Generator generator(recipe, {}, paper_body(), 5);
+  int seen = 0;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const LabelledFrame labelled = generator.frame(i);
+    ASSERT_EQ(labelled.joints.size(), labelled.parts.size());
+    for (std::size_t person = 0; person < labelled.joints.size(); ++person) {
+      ASSERT_EQ(labelled.joints[person].size(), joint_names().size());
+      for (std::size_t j = 0; j < joint_names().size(); ++j) {
+        const Eigen::Vector3f& p = labelled.joints[person][j];
+        if (p.z() < 0.2F || joint_names()[j].ends_with("hand_end")) continue;  // closed hands end before theirs
+        const Eigen::Vector2f pixel = labelled.frame.camera.pixel(p);
+        const int u = static_cast<int>(std::lround(pixel.x())), v = static_cast<int>(std::lround(pixel.y()));
+        if (!labelled.person.contains(u, v) || labelled.person(u, v) != person) continue;
+        const float surface_m = 1e-3F * static_cast<float>(labelled.frame.depth(u, v));
+        EXPECT_GT(p.z(), surface_m - 0.03F) << "frame " << i;
+        ++seen;
+      }
+    }
+  }
+  EXPECT_GT(seen, 150);
+}
+
+TEST(Generate, CoarserSurfacesAreHardlyVisible) {
+  Recipe recipe = small_recipe();
+  recipe.sensor.noise = false;
+  recipe.sensor.colour = false;
+  recipe.people = {.none = 0.F, .one = 1.F, .two = 0.F, .three = 0.F, .four = 0.F};
+  ASSERT_GT(recipe.scene.detail_px, 0.F);
+  const Generator coarse(recipe, {}, paper_body(), 9);
+  recipe.scene.detail_px = 0.F;
+  const Generator full(recipe, {}, paper_body(), 9);
+  std::size_t of_people = 0, relabelled = 0, moved = 0, fewer = 0;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    fewer += coarse.scene(i).scene.meshes[1].triangles.size() < full.scene(i).scene.meshes[1].triangles.size() ? 1 : 0;
+    const LabelledFrame a = coarse.frame(i), b = full.frame(i);
+    EXPECT_EQ(a.joints, b.joints);
+    for (std::size_t k = 0; k < a.labels.size(); ++k) {
+      if (b.labels[k] == kBackground) continue;
+      ++of_people;
+      relabelled += a.labels[k] != b.labels[k] ? 1 : 0;
+      moved += std::abs(a.frame.depth[k] - b.frame.depth[k]) > 10 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(fewer, 8U);
+  EXPECT_LT(relabelled, of_people * 4 / 100);
+  EXPECT_LT(moved, of_people * 4 / 100);
 }
 
 TEST(Generate, TruthIsWhereTheDepthIs) {

@@ -44,12 +44,17 @@ TEST(ParseObj, CutsPolygonsIntoFans) {
 }
 
 TEST(ParseObj, NamesTheLineOfWhatItCannotUse) {
-  expect_obj_error(changed(kObj, "v 1 0 0", "v 1 x 0"), "base.obj:3: \"x\": expected a number");
-  expect_obj_error(changed(kObj, "v 1 0 0", "v nan 0 0"), "base.obj:3: \"nan\"");
-  expect_obj_error(changed(kObj, "v 1 0 0", "v 1 0"), "base.obj:3: \"\": expected a number");
-  expect_obj_error(changed(kObj, "f 2 3 4", "f 2 3 6"), "base.obj:13: \"6\": expected a vertex number from 1 to 5");
-  expect_obj_error(changed(kObj, "f 2 3 4", "f 0 3 4"), "base.obj:13: \"0\": expected a vertex number");
+  expect_obj_error(changed(kObj, "v 1 0 0", "v 1 x 0"),
+                   "base.obj:3: expected a coordinate (a number up to 1e+06), found \"x\"");
+  expect_obj_error(changed(kObj, "v 1 0 0", "v nan 0 0"), "found \"nan\"");
+  expect_obj_error(changed(kObj, "v 1 0 0", "v 1 0"),
+                   "base.obj:3: expected three coordinates, found the end of the line");
+  expect_obj_error(changed(kObj, "f 2 3 4", "f 2 3 6"),
+                   "base.obj:13: expected a vertex number from 1 to 5, found \"6\"");
+  expect_obj_error(changed(kObj, "f 2 3 4", "f 0 3 4"),
+                   "base.obj:13: expected a vertex number from 1 to 5, found \"0\"");
   expect_obj_error(changed(kObj, "f 2 3 4", "f 2 3"), "base.obj:13: face of 2 corners");
+  expect_obj_error(changed(kObj, "v 1 0 0", "v 1 0 2000"), "base.obj:3: expected a coordinate below 1000 in size");
   expect_obj_error("", "no faces in group \"body\"");
 }
 
@@ -71,11 +76,11 @@ TEST(ParseTarget, NamesTheLineOfWhatItCannotUse) {
   const auto expect = [](const std::string& text, const std::string& message) {
     EXPECT_THAT([&] { parse_target(text, "a.target", 5); }, ThrowsMessage<Error>(HasSubstr(message)));
   };
-  expect("0 0 0 0\n5 0 0 0\n", "a.target:2: vertex 5, expected 0 to 4");
-  expect("0 0 0\n", "a.target:1: \"\": expected a number");
-  expect("0 0 0 0 0\n", "a.target:1: more than 4 words");
-  expect("-1 0 0 0\n", "a.target:1: \"-1\": expected a whole number");
-  expect("1 nan 0 0\n", "a.target:1: \"nan\"");
+  expect("0 0 0 0\n5 0 0 0\n", "a.target:2: expected a vertex (a whole number from 0 to 4), found \"5\"");
+  expect("0 0 0\n", "a.target:1: expected three coordinates, found the end of the line");
+  expect("0 0 0 0 0\n", "a.target:1: expected the end of the line");
+  expect("-1 0 0 0\n", "a.target:1: expected a vertex (a whole number from 0 to 4), found \"-1\"");
+  expect("1 nan 0 0\n", "a.target:1: expected a coordinate (a number up to 1e+06), found \"nan\"");
 }
 
 const std::string kSkeleton =

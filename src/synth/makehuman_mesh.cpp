@@ -2,34 +2,46 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "synth/makehuman_files.h"
-#include "synth/text_lines.h"
+#include "synth/text_scanner.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {
 
 constexpr std::size_t kMostVertices = 1'000'000;
-constexpr float kFarthest = 1000.F;  // decimetres; keeps later arithmetic finite
+constexpr double kFarthest = 1000.0;  // decimetres; keeps later arithmetic finite
 
 /// Vertex of a face's corner, "12" or "12/3" or "12/3/4", counted from 0.
-std::uint32_t corner(const TextLines& lines, std::string_view word, std::size_t vertex_count) {
+std::uint32_t corner(const TextScanner& scan, std::string_view word, std::size_t vertex_count) {
   const std::string_view digits = word.substr(0, word.find('/'));
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size() || value < 1 || value > vertex_count) {
-    lines.fail(fmt::format("\"{}\": expected a vertex number from 1 to {}", shown(word), vertex_count));
+    scan.fail(fmt::format("expected a vertex number from 1 to {}, found {}", vertex_count, quoted(word)));
   }
   return value - 1;
 }
 
-void add_face(TextLines& lines, ObjGroup& mesh) {
-  std::vector<std::uint32_t> corners;
-  for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
-    corners.push_back(corner(lines, word, mesh.vertices.size()));
+/// The rest of a line as three coordinates, or more where `more` follows them.
+Eigen::Vector3f point(TextScanner& scan, bool more) {
+  Eigen::Vector3f p;
+  for (float& x : p) {
+    if (scan.at_line_end()) scan.fail("expected three coordinates, found the end of the line");
+    const double value = scan.number("a coordinate");
+    if (!(std::abs(value) < kFarthest)) scan.fail(fmt::format("expected a coordinate below {} in size", kFarthest));
+    x = static_cast<float>(value);
   }
-  if (corners.size() < 3) lines.fail(fmt::format("face of {} corners, expected at least 3", corners.size()));
+  if (!more && !scan.at_line_end()) scan.fail("expected the end of the line after three coordinates");
+  return p;
+}
+
+void add_face(TextScanner& scan, ObjGroup& mesh) {
+  std::vector<std::uint32_t> corners;
+  while (!scan.at_line_end()) corners.push_back(corner(scan, scan.word("a vertex"), mesh.vertices.size()));
+  if (corners.size() < 3) scan.fail(fmt::format("face of {} corners, expected at least 3", corners.size()));
   for (std::size_t k = 2; k < corners.size(); ++k) {
     mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
   }
@@ -54,19 +66,18 @@ bool closed(const std::vector<Triangle>& triangles) {
 ObjGroup parse_obj(std::string_view text, const std::string& name, std::string_view group) {
   ObjGroup mesh;
   bool wanted = false;
-  TextLines lines(text, name);
-  while (lines.next_line()) {
-    const std::string_view what = lines.word();
+  TextScanner scan(text, name);
+  while (!scan.at_end()) {
+    const std::string_view what = scan.word("a word");
     if (what == "v") {
-      if (mesh.vertices.size() == kMostVertices) lines.fail(fmt::format("more than {} vertices", kMostVertices));
-      const float x = lines.number(kFarthest);
-      const float y = lines.number(kFarthest);
-      mesh.vertices.emplace_back(x, y, lines.number(kFarthest));
+      if (mesh.vertices.size() == kMostVertices) scan.fail(fmt::format("more than {} vertices", kMostVertices));
+      mesh.vertices.push_back(point(scan, true));
     } else if (what == "g") {
-      wanted = lines.word() == group;
+      wanted = !scan.at_line_end() && scan.word("a group") == group;
     } else if (what == "f" && wanted) {
-      add_face(lines, mesh);
+      add_face(scan, mesh);
     }
+    while (!scan.at_line_end()) scan.word("a word");
   }
   if (mesh.triangles.empty()) throw Error(fmt::format("{}: no faces in group \"{}\", expected some", name, group));
   if (!closed(mesh.triangles)) {
@@ -77,19 +88,14 @@ ObjGroup parse_obj(std::string_view text, const std::string& name, std::string_v
 
 MorphTarget parse_target(std::string_view text, const std::string& name, std::size_t vertex_count) {
   MorphTarget target;
-  TextLines lines(text, name);
-  while (lines.next_line()) {
-    TextLines rest = lines;
-    const std::string_view first = rest.word();
-    if (first.empty() || first.front() == '#') continue;
-    const std::uint32_t vertex = lines.index();
-    if (vertex >= vertex_count) lines.fail(fmt::format("vertex {}, expected 0 to {}", vertex, vertex_count - 1));
-    const float x = lines.number(kFarthest);
-    const float y = lines.number(kFarthest);
-    const float z = lines.number(kFarthest);
-    if (!lines.word().empty()) lines.fail("more than 4 words, expected \"vertex x y z\"");
-    target.vertex.push_back(vertex);
-    target.offset.emplace_back(x, y, z);
+  TextScanner scan(text, name);
+  while (!scan.at_end()) {
+    if (scan.peek().front() == '#') {
+      scan.skip_line();
+      continue;
+    }
+    target.vertex.push_back(static_cast<std::uint32_t>(scan.whole("a vertex", 0, static_cast<int>(vertex_count) - 1)));
+    target.offset.push_back(point(scan, false));
   }
   return target;
 }

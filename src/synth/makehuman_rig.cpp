@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "synth/makehuman_files.h"
-#include "synth/text_lines.h"
+#include "synth/text_scanner.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "synth/stature.h"
-#include "synth/text_lines.h"
+#include "synth/text_scanner.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {

@@ -132,7 +132,7 @@ TEST(MakeHuman, NamesTheFileThatIsWrong) {
   };
   expect("d/3dobjs/base.obj", "f 1 5 8 4\n", "", "d/3dobjs/base.obj: group \"body\" is not a closed surface");
   expect("d/3dobjs/base.obj", "f 1 5 8 4", "f 1 5 8 900", "d/3dobjs/base.obj:");
-  expect("d/male.target", "8 1", "9999 1", "d/male.target:5: vertex 9999");
+  expect("d/male.target", "8 1", "9999 1", "d/male.target:5: expected a vertex");
   expect("d/rigs/default.mhskel", "wrist.L\":[", "wrist.X\":[", "d/rigs/default.mhskel: joint \"wrist.L\"");
   expect("d/rigs/default_weights.mhw", "[3,1]", "[3,0.4]", "vertex 3: its weights sum to 0.4");
   expect("d/rigs/default_weights.mhw", "\"root\"", "\"tail\"", "weights of bone \"tail\"");

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "synth/noise_angle.h"
 #include "synth/noise_occlusion.h"
 
 namespace vesalius::synth {
@@ -62,6 +63,7 @@ Aim::Aim(const Rendering& rendering, const Sensor& sensor, Random& random)
       edge_threshold_(exceeded_by(sensor.edge_loss)),
       seen_m_(seen_depth(rendering, sensor)),
       near_silhouette_(near_jumps(seen_m_, kSmallestJump_m, influence_px(sensor, reach_px_))),
+      nearest_m_(nearest_within(rendering.depth_m, reach_px_)),
       shift_u_(width_, height_, sensor.window_px, random),
       shift_v_(width_, height_, sensor.window_px, random) {
   row_.z.resize(width_);
@@ -122,7 +124,7 @@ float Aim::slope_m(const Spot& spot, float distance_px) const {
 /// is left in place, for its axial noise was measured with the jitter in it.
 Aim::Spot Aim::displaced(const Spot& spot) const {
   if (sensor_.lateral_px == 0.F) return spot;
-  const float angle = std::acos(spot.cosine);
+  const float angle = angle_of(spot.cosine);
   const float sigma_px = sensor_.lateral_px * (1.F + kLateralGrowth * angle / (kHalfPi - angle));
   const int du = whole_px(sigma_px * shift_u_.at(spot.u, spot.v));
   const int dv = whole_px(sigma_px * shift_v_.at(spot.u, spot.v));
@@ -137,13 +139,7 @@ Aim::Spot Aim::displaced(const Spot& spot) const {
 bool Aim::beyond_silhouette(const Spot& spot) const {
   const float limit =
       spot.z > 0.F ? spot.z - slope_m(spot, static_cast<float>(reach_px_)) : std::numeric_limits<float>::max();
-  for (int v = std::max(0, spot.v - reach_px_); v <= std::min(height_ - 1, spot.v + reach_px_); ++v) {
-    const float* row = in_.depth_m.row(v);
-    for (int u = std::max(0, spot.u - reach_px_); u <= std::min(width_ - 1, spot.u + reach_px_); ++u) {
-      if (row[u] > 0.F && row[u] < limit) return true;
-    }
-  }
-  return false;
+  return nearest_m_[spot.at] < limit;
 }
 
 /// The nearest surface that the matching window around the spot covers: it wins over what is behind it, and fills the

@@ -56,6 +56,7 @@ class Aim {
   float edge_threshold_;
   Image<float> seen_m_;  ///< depth of what light and eye both reach, 0 elsewhere
   Mask near_silhouette_;
+  Image<float> nearest_m_;  ///< depth of the nearest surface within reach
   NoiseField shift_u_, shift_v_;
   AimedRow row_;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 
 namespace vesalius::synth {
@@ -13,13 +12,27 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 // A slanted plane's columns are evenly spaced; rounding alone must not hide one behind its neighbour.
 constexpr float kSlack_px = 1e-3F;
 
-/// Sets all within `radius` of (u, v).
-void mark_around(Mask& mask, int u, int v, int radius) {
-  const int left = std::max(0, u - radius);
-  const int right = std::min(mask.width() - 1, u + radius);
-  for (int y = std::max(0, v - radius); y <= std::min(mask.height() - 1, v + radius); ++y) {
-    std::memset(mask.row(y) + left, 1, static_cast<std::size_t>(right - left + 1));
+/// Each pixel joined with all within `radius` of it, to left and right and then up and down.
+template <class T, class Join>
+Image<T> spread(const Image<T>& image, int radius, Join join) {
+  const int width = image.width(), height = image.height();
+  const auto join_row = [&](const T* in, T* out, int count) {
+    for (int i = 0; i < count; ++i) out[i] = join(out[i], in[i]);
+  };
+  Image<T> level = image;
+  for (int v = 0; v < height; ++v) {
+    for (int shift = 1; shift <= std::min(radius, width - 1); ++shift) {
+      join_row(image.row(v) + shift, level.row(v), width - shift);
+      join_row(image.row(v), level.row(v) + shift, width - shift);
+    }
   }
+  Image<T> all = level;
+  for (int v = 0; v < height; ++v) {
+    for (int y = std::max(0, v - radius); y <= std::min(height - 1, v + radius); ++y) {
+      if (y != v) join_row(level.row(y), all.row(v), width);
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -45,17 +58,25 @@ Mask hidden_from_eye(const Image<float>& depth_m, const Camera& camera, float ey
 }
 
 Mask near_jumps(const Image<float>& depth_m, float jump_m, int radius) {
-  Mask near(depth_m.width(), depth_m.height(), 0);
-  const auto jumps = [&](float a, float b) { return std::abs(a - b) > jump_m || (a == 0.F) != (b == 0.F); };
+  const int width = depth_m.width();
+  Mask jumping(width, depth_m.height(), 0);
+  const auto jumps = [&](float a, float b) {
+    return static_cast<std::uint8_t>((std::abs(a - b) > jump_m) | ((a == 0.F) != (b == 0.F)));
+  };
   for (int v = 0; v < depth_m.height(); ++v) {
     const float* row = depth_m.row(v);
     const float* below = depth_m.row(std::min(v + 1, depth_m.height() - 1));
-    for (int u = 0; u < depth_m.width(); ++u) {
-      const int beside = std::min(u + 1, depth_m.width() - 1);
-      if (jumps(row[u], row[beside]) || jumps(row[u], below[u])) mark_around(near, u, v, radius);
-    }
+    std::uint8_t* out = jumping.row(v);
+    for (int u = 0; u + 1 < width; ++u) out[u] = jumps(row[u], row[u + 1]) | jumps(row[u], below[u]);
+    out[width - 1] = jumps(row[width - 1], below[width - 1]);
   }
-  return near;
+  return spread(jumping, radius, [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a | b); });
+}
+
+Image<float> nearest_within(const Image<float>& depth_m, int radius) {
+  Image<float> surfaces = depth_m;
+  for (float& z : surfaces) z = z > 0.F ? z : kNothing;
+  return spread(surfaces, radius, [](float a, float b) { return b < a ? b : a; });
 }
 
 }  // namespace vesalius::synth

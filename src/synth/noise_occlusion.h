@@ -13,4 +13,7 @@ Mask hidden_from_eye(const Image<float>& depth_m, const Camera& camera, float ey
 /// one has no surface.
 Mask near_jumps(const Image<float>& depth_m, float jump_m, int radius);
 
+/// Depth of the nearest surface within `radius` pixels (a square); infinity where there is none.
+Image<float> nearest_within(const Image<float>& depth_m, int radius);
+
 }  // namespace vesalius::synth

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 
 #include "vesalius/random.h"
 
@@ -78,6 +79,58 @@ TEST(NearJumps, AgreesWithBruteForce) {
     }
   }
   EXPECT_EQ(near_jumps(depth, 0.1F, kRadius), expected);
+}
+
+/// Three levels and holes at random.
+Image<float> patches(int width, int height, std::uint64_t seed) {
+  Random random(seed);
+  Image<float> depth(width, height, kFar_m);
+  for (float& z : depth) {
+    if (random.below(20) == 0) z = random.below(2) == 0 ? 0.F : kNear_m;
+  }
+  return depth;
+}
+
+TEST(NearestWithin, IsTheSmallestDepthOfASquare) {
+  for (const auto& [width, height] : {std::pair(40, 30), {3, 2}, {1, 9}}) {
+    const Image<float> depth = patches(width, height, 5);
+    for (const int radius : {0, 1, 3}) {
+      const Image<float> nearest = nearest_within(depth, radius);
+      for (int v = 0; v < height; ++v) {
+        for (int u = 0; u < width; ++u) {
+          float expected = std::numeric_limits<float>::infinity();
+          for (int y = v - radius; y <= v + radius; ++y) {
+            for (int x = u - radius; x <= u + radius; ++x) {
+              if (depth.contains(x, y) && depth(x, y) > 0.F) expected = std::min(expected, depth(x, y));
+            }
+          }
+          ASSERT_EQ(nearest(u, v), expected) << u << ' ' << v << " radius " << radius;
+        }
+      }
+    }
+  }
+}
+
+TEST(NearJumps, MarksTheSquaresAroundJumps) {
+  const Image<float> depth = patches(40, 30, 6);
+  const auto jumps = [&](int u, int v, int x, int y) {
+    if (!depth.contains(u, v) || !depth.contains(x, y)) return false;
+    return std::abs(depth(u, v) - depth(x, y)) > 0.1F || (depth(u, v) == 0.F) != (depth(x, y) == 0.F);
+  };
+  for (const int radius : {0, 2}) {
+    const Mask near = near_jumps(depth, 0.1F, radius);
+    for (int v = 0; v < 30; ++v) {
+      for (int u = 0; u < 40; ++u) {
+        bool expected = false;
+        for (int y = v - radius; y <= v + radius; ++y) {
+          for (int x = u - radius; x <= u + radius; ++x) {
+            expected = expected || jumps(x, y, x + 1, y) || jumps(x, y, x, y + 1);
+          }
+        }
+        ASSERT_EQ(near(u, v) != 0, expected) << u << ' ' << v << " radius " << radius;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -108,7 +108,10 @@ Sensor sensor_of(const SensorOptions& options) {
   if ((options.width == 0) != (options.height == 0)) {
     throw UsageError("options sensor.width and sensor.height are given both or neither");
   }
-  if (options.width > 0) sensor = resized(sensor, options.width, options.height);
+  if (options.width > 0) {
+    const bool own = options.fx > 0.F;  // a camera of one's own may see more than the preset's
+    sensor = (own ? reframed : resized)(sensor, options.width, options.height);
+  }
   Camera camera = sensor.camera;
   if (options.fx > 0.F) camera.fx = camera.fy = options.fx;
   if (options.fy > 0.F) camera.fy = options.fy;

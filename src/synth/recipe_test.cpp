@@ -27,6 +27,24 @@ TEST(Recipe, IntrinsicsWinOverThePreset) {
       << "noise in pixels follows the focal length";
 }
 
+TEST(Recipe, OwnIntrinsicsMayBeTallerThanThePreset) {
+  SensorOptions options;
+  options.width = 480;
+  options.height = 640;
+  EXPECT_THROW(sensor_of(options), UsageError);
+  options.fx = 525.F;
+  const Camera own = sensor_of(options).camera;
+  EXPECT_EQ(own.width, 480);
+  EXPECT_EQ(own.height, 640);
+  EXPECT_EQ(own.fx, 525.F);
+  EXPECT_EQ(own.fy, 525.F);
+  EXPECT_NEAR(own.cy, 319.5F, 20.F) << "about the middle row, as the preset's";
+  options.cy = 300.F;
+  EXPECT_EQ(sensor_of(options).camera.cy, 300.F);
+  options.height = 100000;
+  EXPECT_THROW(sensor_of(options), UsageError);
+}
+
 TEST(Recipe, WithoutNoiseTheSensorIsPerfect) {
   SensorOptions options;
   options.noise = false;

@@ -61,8 +61,9 @@ struct Met {
     face = geometry.faces[hit / 2][hit & 1U];
   }
 
-  float depth_of(const Eigen::Vector3f& ray) const {
-    const double along = normal.x() * ray.x() + normal.y() * ray.y() + normal.z();
+  /// Where the ray (x, y, 1) meets its plane.
+  float depth_of(float ray_x, float ray_y) const {
+    const double along = normal.x() * static_cast<double>(ray_x) + normal.y() * static_cast<double>(ray_y) + normal.z();
     return std::clamp(static_cast<float>(offset / along), near_m, far_m);
   }
 };
@@ -83,12 +84,15 @@ struct Renderer::State {
 void Renderer::State::fill_surfaces(Rendering& out) const {
   const Camera& camera = out.view.camera;
   Met met;  // neighbours often meet the same
+  std::vector<float> ray_x;
+  for (int u = 0; u < camera.width; ++u) ray_x.push_back(camera.point(static_cast<float>(u), 0.F, 1.F).x());
   for (int v = 0; v < camera.height; ++v) {
+    const float ray_y = camera.point(0.F, static_cast<float>(v), 1.F).y();
     for (int u = 0; u < camera.width; ++u) {
       const std::uint32_t hit = hits(u, v);
       if (hit == EmbreeScene::kNothing) continue;
       if (hit != met.hit) met.look_up(geometry, hit);
-      const float depth_m = met.depth_of(camera.point(static_cast<float>(u), static_cast<float>(v), 1.F));
+      const float depth_m = met.depth_of(ray_x[static_cast<std::size_t>(u)], ray_y);
       if (!(depth_m > 0.F && met.towards.allFinite())) continue;  // a triangle without area, met on its edge
       out.depth_m(u, v) = depth_m;
       out.normal(u, v) = met.towards;
@@ -102,7 +106,7 @@ void Renderer::State::fill_surfaces(Rendering& out) const {
 void Renderer::State::fill_colour(const Scene& scene, Rendering& out) const {
   const Camera& camera = out.view.camera;
   const Eigen::Isometry3f world_from_camera = out.view.camera_from_world.inverse();
-  out.colour = ColourImage(camera.width, camera.height);
+  out.colour = ColourImage(camera.width, camera.height, scene.sky);
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       if (out.depth_m(u, v) == 0.F) continue;

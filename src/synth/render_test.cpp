@@ -3,96 +3,17 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <thread>
 
-#include "vesalius/error.h"
+#include "synth/test_scenes.h"
 #include "vesalius/parallel.h"
-#include "vesalius/random.h"
 
 namespace vesalius::synth {
 namespace {
 
+using namespace test;
+
 using Eigen::Vector3f;
-using testing::HasSubstr;
-using testing::ThrowsMessage;
-
-constexpr std::uint8_t kPart = 7;
-
-View view_of(int width, int height, float focal_px) {
-  View view;
-  view.camera = {
-      width, height, focal_px, focal_px, static_cast<float>(width - 1) / 2.F, static_cast<float>(height - 1) / 2.F};
-  return view;
-}
-
-SceneMesh quad(const Vector3f& corner, const Vector3f& along, const Vector3f& up) {
-  SceneMesh mesh;
-  mesh.vertices = {corner, corner + along, corner + along + up, corner + up};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  return mesh;
-}
-
-/// Wide square facing the camera.
-SceneMesh wall(float z_m, float left_m = -50.F) {
-  return quad({left_m, -50.F, z_m}, {50.F - left_m, 0.F, 0.F}, {0.F, 100.F, 0.F});
-}
-
-SceneMesh sphere(const Vector3f& centre, float radius_m, int rings) {
-  SceneMesh mesh;
-  const int columns = 2 * rings;
-  for (int i = 0; i <= rings; ++i) {
-    const float polar = std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(rings);
-    for (int j = 0; j < columns; ++j) {
-      const float turn = 2.F * std::numbers::pi_v<float> * static_cast<float>(j) / static_cast<float>(columns);
-      mesh.vertices.emplace_back(centre + radius_m * Vector3f(std::sin(polar) * std::cos(turn), std::cos(polar),
-                                                              std::sin(polar) * std::sin(turn)));
-    }
-  }
-  for (int i = 0; i < rings; ++i) {
-    for (int j = 0; j < columns; ++j) {
-      const auto at = [&](int ring, int column) {
-        return static_cast<std::uint32_t>(ring * columns + column % columns);
-      };
-      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
-      mesh.triangles.push_back({at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
-    }
-  }
-  return mesh;
-}
-
-SceneMesh of_person(SceneMesh mesh, int person) {
-  mesh.person = person;
-  mesh.part.assign(mesh.triangles.size(), kPart);
-  return mesh;
-}
-
-/// Random triangles of random parts in front of the camera.
-Scene confetti(int count) {
-  Random random(5);
-  SceneMesh mesh;
-  mesh.person = 1;
-  const auto within = [&](double reach) { return static_cast<float>(random.uniform(-reach, reach)); };
-  for (int t = 0; t < count; ++t) {
-    const Vector3f centre(within(1.5), within(1.2), 3.F + within(1.0));
-    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (int k = 0; k < 3; ++k) mesh.vertices.emplace_back(centre + Vector3f(within(0.3), within(0.3), within(0.3)));
-    mesh.triangles.push_back({base, base + 1, base + 2});
-    mesh.part.push_back(static_cast<std::uint8_t>(random.below(25)));
-  }
-  Scene scene;
-  scene.meshes = {mesh};
-  return scene;
-}
-
-Scene mirrored(Scene scene) {
-  for (SceneMesh& mesh : scene.meshes) {
-    for (Vector3f& p : mesh.vertices) p.x() = -p.x();
-    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  }
-  return scene;
-}
 
 TEST(Render, PlaneHasItsDepthAndNormalInEveryPixel) {
   View view = view_of(64, 48, 60.F);
@@ -254,6 +175,16 @@ TEST(Render, ARendererLeavesOtherThreadsTheirWork) {
   EXPECT_EQ(thread_count(), before);
 }
 
+TEST(Render, TheSkyIsWhereThereIsNoSurface) {
+  Scene scene;
+  scene.sky = {10, 20, 30};
+  scene.meshes = {wall(2.F, 0.F)};
+  const Rendering out = Renderer().render(scene, view_of(8, 8, 10.F));
+  EXPECT_EQ(out.colour(0, 4), scene.sky);
+  EXPECT_NE(out.colour(7, 4), scene.sky);
+  EXPECT_EQ(out.depth_m(0, 4), 0.F);
+}
+
 TEST(Render, ColourIsLambertsLaw) {
   const View view = view_of(3, 3, 10.F);
   Scene scene;
@@ -270,75 +201,6 @@ TEST(Render, ColourIsLambertsLaw) {
   plain.colour = false;
   EXPECT_TRUE(Renderer().render(scene, view, plain).colour.empty());
   EXPECT_TRUE(Renderer().render(scene, view, plain).lit.empty());
-}
-
-TEST(Render, TrianglesOfAPersonWithoutAPartAreNobodys) {
-  const View view = view_of(8, 8, 10.F);
-  Scene scene;
-  scene.meshes = {of_person(wall(2.F), 2)};
-  scene.meshes[0].part = {kBackground, kBackground};
-  const Rendering out = Renderer().render(scene, view);
-  EXPECT_EQ(out.person(4, 4), kBackground);
-  EXPECT_EQ(out.labels(4, 4), kBackground);
-  EXPECT_EQ(out.depth_m(4, 4), 2.F);
-}
-
-TEST(Render, AnEmptySceneIsEmpty) {
-  const Rendering out = Renderer().render(Scene{}, view_of(8, 6, 10.F), {true, Vector3f(0.1F, 0.F, 0.F)});
-  for (std::size_t i = 0; i < out.depth_m.size(); ++i) {
-    ASSERT_EQ(out.depth_m[i], 0.F);
-    ASSERT_EQ(out.lit[i], 0);
-  }
-}
-
-TEST(Render, SeesNothingBehindTheCamera) {
-  Scene scene;
-  scene.meshes = {wall(-1.F), quad({-1.F, 1.F, -5.F}, {2.F, 0.F, 0.F}, {0.F, 0.F, 10.F})};  // a floor passing below
-  const View view = view_of(40, 31, 20.F);
-  const Rendering out = Renderer().render(scene, view);
-  for (int v = 0; v < 15; ++v) ASSERT_EQ(out.depth_m(20, v), 0.F);
-  EXPECT_NEAR(out.depth_m(20, 30), 20.F / 15.F, 1e-5F);
-}
-
-void expect_error(const Scene& scene, const View& view, const std::string& words) {
-  EXPECT_THAT([&] { Renderer().render(scene, view); }, ThrowsMessage<Error>(HasSubstr(words)));
-}
-
-TEST(Render, SaysWhatIsWrongWithAScene) {
-  const View view = view_of(8, 6, 10.F);
-  Scene good;
-  good.meshes = {wall(1.F), wall(2.F)};
-  Scene bad = good;
-  bad.meshes[1].triangles[1][2] = 4;
-  expect_error(bad, view, "scene mesh 1: triangle 1 has vertex 4, expected less than 4");
-  bad = good;
-  bad.meshes[1].vertices[2].y() = std::numeric_limits<float>::quiet_NaN();
-  expect_error(bad, view, "scene mesh 1: vertex 2 is not finite");
-  bad = good;
-  bad.meshes[0].part = {1};
-  expect_error(bad, view, "scene mesh 0: 1 parts for 2 triangles");
-  bad = good;
-  bad.meshes[0].material = {0, 1};
-  expect_error(bad, view, "material 1, expected less than 1");
-  bad = good;
-  bad.meshes[0].person = 255;
-  expect_error(bad, view, "person 255, expected -1 to 254");
-  bad = good;
-  bad.meshes[0].materials = {Material{}};
-  bad.meshes[0].materials[0].infrared = 1.5F;
-  expect_error(bad, view, "infrared must be 0 to 1");
-  bad = good;
-  bad.lights = {Light{{0.F, std::numeric_limits<float>::infinity(), 0.F}, 1.F}};
-  expect_error(bad, view, "light 0");
-  View no_camera = view;
-  no_camera.camera.fx = 0.F;
-  EXPECT_THROW(Renderer().render(good, no_camera), Error);
-  View huge = view;
-  huge.camera.width = huge.camera.height = 1 << 20;
-  expect_error(good, huge, "at most 67108864");
-  View lost = view;
-  lost.camera_from_world.translation().x() = std::numeric_limits<float>::quiet_NaN();
-  expect_error(good, lost, "camera_from_world");
 }
 
 }  // namespace

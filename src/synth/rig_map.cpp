@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "synth/text_lines.h"
+#include "synth/text_scanner.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {

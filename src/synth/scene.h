@@ -43,6 +43,7 @@ struct Scene {
   std::vector<SceneMesh> meshes;
   std::vector<Light> lights;
   float ambient = 0.35F;  ///< brightness of a white surface without any light
+  Rgb sky{0, 0, 0};       ///< what colour pictures show where there is no surface: through windows
 };
 
 /// A camera standing in the world. camera frame: x right, y down, z forward.

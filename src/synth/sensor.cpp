@@ -183,6 +183,24 @@ Sensor with_camera(const Sensor& sensor, const Camera& camera) {
   return other;
 }
 
+Sensor reframed(const Sensor& sensor, int width, int height) {
+  if (width < kSmallest || width > kLargest || height < kSmallest || height > kLargest) {
+    throw UsageError(fmt::format("sensor {}: picture of {}x{}, expected sides of {} to {}", sensor.name, width, height,
+                                 kSmallest, kLargest));
+  }
+  const float scale = static_cast<float>(width) / static_cast<float>(sensor.camera.width);
+  const int full = scaled(sensor.camera.height, scale);
+  Camera camera = sensor.camera.resized(width, full);
+  camera.fy = sensor.camera.fy * scale;  // square pixels stay square where the full height was rounded
+  camera.cy -= static_cast<float>(full - height) * 0.5F;
+  camera.height = height;
+  Sensor other = with_camera(sensor, camera);
+  const int cut = std::max(0, full - height) / 2;
+  for (int* rows : {&other.border_low.top, &other.border_low.bottom, &other.border_high.top, &other.border_high.bottom})
+    *rows = std::max(0, *rows - cut);
+  return other;
+}
+
 Sensor resized(const Sensor& sensor, int width, int height) {
   const float scale = static_cast<float>(width) / static_cast<float>(sensor.camera.width);
   const int full = scaled(sensor.camera.height, scale);
@@ -191,15 +209,7 @@ Sensor resized(const Sensor& sensor, int width, int height) {
                                  sensor.name, width, height, kSmallest, kLargest, kSmallest,
                                  std::max(kSmallest, full)));
   }
-  Camera camera = sensor.camera.resized(width, full);
-  camera.fy = sensor.camera.fy * scale;  // square pixels stay square where the full height was rounded
-  camera.cy -= static_cast<float>(full - height) * 0.5F;
-  camera.height = height;
-  Sensor other = with_camera(sensor, camera);
-  const int cut = (full - height) / 2;
-  for (int* rows : {&other.border_low.top, &other.border_low.bottom, &other.border_high.top, &other.border_high.bottom})
-    *rows = std::max(0, *rows - cut);
-  return other;
+  return reframed(sensor, width, height);
 }
 
 }  // namespace vesalius::synth

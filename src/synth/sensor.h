@@ -61,6 +61,10 @@ const Sensor& find_sensor(std::string_view name);
 /// cannot be.
 Sensor with_camera(const Sensor& sensor, const Camera& camera);
 
+/// The sensor binned to another width, with rows cut off or added above and below alike: what intrinsics of one's own
+/// start from. Throws UsageError unless both sides are 16 to 8192.
+Sensor reframed(const Sensor& sensor, int width, int height);
+
 /// The sensor binned to another width and cropped to `height` around the middle row: focal length and pixel quantities
 /// scale with the width. Throws UsageError unless both are 16 to 8192 and the height is at most that of the binned
 /// picture.

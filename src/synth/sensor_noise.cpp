@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "synth/noise_aim.h"
+#include "synth/noise_angle.h"
 #include "synth/noise_field.h"
 #include "vesalius/error.h"
 
@@ -60,11 +61,6 @@ void check_sizes(const Rendering& rendering, const Sensor& sensor) {
 std::uint16_t millimetres(const Sensor& sensor, float z_m) {
   if (!(z_m >= sensor.near_m && z_m <= sensor.far_m)) return 0;
   return static_cast<std::uint16_t>(std::min(65535.F, z_m * 1000.F + 0.5F));
-}
-
-/// Angle from its cosine in [0, 1]: Abramowitz and Stegun 4.4.45, error below 7e-5.
-Array angle_of(const Array& c) {
-  return (1.F - c).sqrt() * (1.5707288F + c * (-0.2121144F + c * (0.0742610F - 0.0187293F * c)));
 }
 
 /// One frame being read, row by row.

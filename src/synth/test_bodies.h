@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -48,6 +49,37 @@ inline bool is_inside(const std::vector<Eigen::Vector3f>& vertices, const std::v
     if (a.dot((b - a).cross(c - a)) / (u + v + w) > 0) winding += out ? 1 : -1;
   }
   return winding > 0;
+}
+
+/// Distance of a point from a triangle (Ericson, "Real-Time Collision Detection", 5.1.5).
+inline float distance_to(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
+                         const Eigen::Vector3f& p) {
+  const Eigen::Vector3f ab = b - a, ac = c - a;
+  const auto at = [&](float v, float w) { return (p - (a + v * ab + w * ac)).norm(); };
+  const float d1 = ab.dot(p - a), d2 = ac.dot(p - a), d3 = ab.dot(p - b), d4 = ac.dot(p - b), d5 = ab.dot(p - c),
+              d6 = ac.dot(p - c);
+  if (d1 <= 0.F && d2 <= 0.F) return at(0.F, 0.F);
+  if (d3 >= 0.F && d4 <= d3) return at(1.F, 0.F);
+  if (d6 >= 0.F && d5 <= d6) return at(0.F, 1.F);
+  const float va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.F && d1 >= 0.F && d3 <= 0.F) return at(d1 / (d1 - d3), 0.F);
+  if (vb <= 0.F && d2 >= 0.F && d6 <= 0.F) return at(0.F, d2 / (d2 - d6));
+  if (va <= 0.F && d4 - d3 >= 0.F && d5 - d6 >= 0.F) {
+    const float w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return at(1.F - w, w);
+  }
+  return at(vb / (va + vb + vc), vc / (va + vb + vc));
+}
+
+/// Distance of a point from the nearest of the first `count` triangles.
+inline float distance_to(const std::vector<Eigen::Vector3f>& vertices, const std::vector<Triangle>& triangles,
+                         std::size_t count, const Eigen::Vector3f& p) {
+  float nearest = std::numeric_limits<float>::max();
+  for (std::size_t t = 0; t < count; ++t) {
+    const Triangle& tri = triangles[t];
+    nearest = std::min(nearest, distance_to(vertices[tri[0]], vertices[tri[1]], vertices[tri[2]], p));
+  }
+  return nearest;
 }
 
 /// Whether every edge is used as often in one direction as in the other.

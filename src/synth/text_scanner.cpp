@@ -25,11 +25,14 @@ std::string_view without_plus(std::string_view word) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text.substr(0, kMaxShown)) out += (c >= ' ' && c != '\x7f') ? c : '?';
-  return out + (text.size() > kMaxShown ? "...\"" : "\"");
+std::string shown(std::string_view text) {
+  std::string out(text.substr(0, kMaxShown));
+  std::ranges::replace_if(
+      out, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text.size() > kMaxShown ? out + "..." : out;
 }
+
+std::string quoted(std::string_view text) { return fmt::format("\"{}\"", shown(text)); }
 
 bool same_word(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });

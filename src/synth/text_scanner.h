@@ -41,7 +41,8 @@ class TextScanner {
   int word_line_ = 1;  ///< of the last word
 };
 
-/// Text of a stranger's file between quotes, fit for a one-line message.
+/// A stranger's text cut to a length and characters fit for a one-line message, bare and between quotes.
+std::string shown(std::string_view text);
 std::string quoted(std::string_view text);
 
 /// Whether the two are the same but for the case of ASCII letters.

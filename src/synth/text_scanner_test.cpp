@@ -55,6 +55,12 @@ TEST(TextScanner, NamesLineAndExpectation) {
   EXPECT_THAT([&] { scan.expect("MOTION"); }, ThrowsMessage<Error>("t:1: expected MOTION, found \"x?\""));
 }
 
+TEST(TextScanner, ShowsStrangersTextOnOneShortLine) {
+  EXPECT_EQ(shown("a\nb\x1b[1m\xff"), "a?b?[1m?");
+  EXPECT_EQ(shown(std::string(100, 'x')), std::string(40, 'x') + "...");
+  EXPECT_EQ(quoted("a\tb"), "\"a?b\"");
+}
+
 TEST(TextScanner, ComparesWordsWhateverTheirCase) {
   EXPECT_TRUE(same_word("Xrotation", "XROTATION"));
   EXPECT_FALSE(same_word("Xrotation", "Xrotatio"));

@@ -52,10 +52,9 @@ void Wardrobe::add_bag(Bag bag, bool left, Random& random) {
     add_box({left ? side : -side, y, 0.F}, diagonal(thick, high, wide), Bone::pelvis);
     return;
   }
-  const Matrix3f axes = hand_axes(left);
-  const BoneSegment& hand = segment(left ? Bone::l_hand : Bone::r_hand);
-  // Arms hang as a rule, and so does the bag: along the fingers.
-  add_box(hand.tail + high * axes.col(0), axes * diagonal(high, thick, wide), left ? Bone::l_hand : Bone::r_hand);
+  const Bone bone = left ? Bone::l_hand : Bone::r_hand;
+  const Vector3f fingers = segment(bone).tail;
+  add_box(fingers - Vector3f(0.F, high, 0.F), diagonal(thick, high, wide), hanging(bone, fingers));
 }
 
 void Wardrobe::add_held(Held held, bool left, Random& random) {
@@ -126,7 +125,22 @@ void Wardrobe::add_sheet(const Sheet& sheet, const SkinAt& skin_at, const PartAt
   }
 }
 
+SkinWeights Wardrobe::hanging(Bone hand, const Vector3f& from) {
+  RigBone bone;
+  bone.name = "bag";
+  bone.parent = carrier_[static_cast<std::size_t>(hand)];
+  bone.head = from;
+  bone.tail = from - Vector3f::UnitY();
+  bone.hangs = true;
+  mesh_.rig.push_back(bone);
+  return {{static_cast<std::uint16_t>(mesh_.rig.size() - 1)}, {1.F}};
+}
+
 void Wardrobe::add_box(const Vector3f& centre, const Matrix3f& half_axes, Bone bone) {
+  add_box(centre, half_axes, skin({{bone, 1.F}}));
+}
+
+void Wardrobe::add_box(const Vector3f& centre, const Matrix3f& half_axes, const SkinWeights& weights) {
   // Twelve triangles over corners numbered by the signs of x, y, z; outwards where the axes are right-handed.
   constexpr std::array<Triangle, 12> kFaces{{{0, 2, 3},
                                              {0, 3, 1},
@@ -145,7 +159,7 @@ void Wardrobe::add_box(const Vector3f& centre, const Matrix3f& half_axes, Bone b
   for (unsigned corner = 0; corner < 8; ++corner) {
     const auto sign = [&](unsigned bit) { return (corner >> bit & 1U) != 0 ? 1.F : -1.F; };
     mesh_.vertices.push_back(centre + half_axes * Vector3f(sign(0), sign(1), sign(2)));
-    topology_.skin.push_back(skin({{bone, 1.F}}));
+    topology_.skin.push_back(weights);
   }
   for (Triangle t : kFaces) {
     if (left_handed) std::swap(t[1], t[2]);

@@ -36,6 +36,9 @@ struct LabelledFrame {
   LabelImage labels;                                ///< true part of every pixel; kBackground elsewhere
   Image<std::uint8_t> person;                       ///< true person index of every pixel; kBackground elsewhere
   std::vector<std::vector<Eigen::Vector3f>> parts;  ///< [person][part]: centre of the part's volume, metres
+  /// [person][joint]: where joints of the skeleton are, metres, optical frame; empty where nobody knows. Whoever makes
+  /// the frames names them, the same ones in all (synth/skeleton_joints.h; DatasetInfo::joints).
+  std::vector<std::vector<Eigen::Vector3f>> joints;
 };
 
 }  // namespace vesalius

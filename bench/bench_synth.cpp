@@ -1,0 +1,151 @@
+#include "bench/bench_synth.h"
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/synth_assets.h"
+#include "io/asset_list.h"
+#include "io/assets.h"
+#include "io/labelled_frame_codec.h"
+#include "synth/body_detail.h"
+#include "synth/builtin_body.h"
+#include "synth/dress.h"
+#include "synth/generate.h"
+#include "synth/render.h"
+#include "synth/sensor_noise.h"
+
+namespace vesalius {
+namespace {
+
+using namespace synth;
+
+constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kFrames = 64;  ///< that the stages go round, so that a mean over scenes is measured
+constexpr std::uint64_t kBodies = 20;
+
+/// A value made when it is first asked for: only what the filter selects costs its preparation.
+template <class T>
+class Later {
+ public:
+  explicit Later(std::function<T()> make) : make_(std::move(make)) {}
+  T& operator*() {
+    if (value_ == nullptr) value_ = std::make_unique<T>(make_());
+    return *value_;
+  }
+
+ private:
+  std::function<T()> make_;
+  std::unique_ptr<T> value_;
+};
+using AssetsLater = std::shared_ptr<Later<Assets>>;
+
+/// Frames of a recipe, with what each stage of making them takes in.
+struct Stages {
+  Sensor sensor;
+  std::unique_ptr<Generator> generator;
+  std::vector<BuiltScene> scenes;
+  std::vector<Rendering> renderings;
+  std::vector<LabelledFrame> frames;
+  Renderer renderer;
+
+  Stages(const Assets& assets, int width, int height) {
+    Recipe recipe;
+    recipe.body.count = static_cast<int>(kBodies);
+    recipe.sensor.width = width;
+    recipe.sensor.height = height;
+    recipe.sensor.colour = false;
+    sensor = sensor_of(recipe.sensor);
+    generator = std::make_unique<Generator>(recipe, assets, paper_body(), kSeed);
+    for (std::uint64_t i = 0; i < kFrames; ++i) {
+      scenes.push_back(generator->scene(i));
+      renderings.push_back(render(i));
+      frames.push_back(generator->frame(i));
+    }
+  }
+  Rendering render(std::uint64_t i) {
+    return renderer.render(scenes[i].scene, scenes[i].view, {.colour = false, .projector = projector_of(sensor)});
+  }
+};
+
+/// Times `work(i)`, i going round below `count`.
+template <class Work>
+void add(const std::string& name, std::uint64_t count, Work work) {
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    work(0);  // prepares what the work needs
+    std::uint64_t i = 0;
+    for (auto _ : state) benchmark::DoNotOptimize(work(i++ % count));
+  })->Unit(benchmark::kMillisecond);
+}
+
+void add_stages(const std::string& kind, const AssetsLater& assets, int width, int height) {
+  const auto stages = std::make_shared<Later<Stages>>([=] { return Stages(**assets, width, height); });
+  const std::string place = "/" + kind + "/" + std::to_string(width);
+  add("synth_frame" + place, kFrames, [=](std::uint64_t i) { return (**stages).generator->frame(i); });
+  add("synth_scene" + place, kFrames, [=](std::uint64_t i) { return (**stages).generator->scene(i); });
+  add("synth_render" + place, kFrames, [=](std::uint64_t i) { return (**stages).render(i); });
+  add("synth_sense" + place, kFrames, [=](std::uint64_t i) {
+    Stages& s = **stages;
+    Image<std::uint32_t> source;
+    return sense(s.renderings[i], s.sensor, Random(kSeed, i), &source);
+  });
+  add("synth_encode" + place, kFrames, [=](std::uint64_t i) {
+    return encode_frame({i, kSeed, (**stages).frames[i]}, paper_body().part_count());
+  });
+}
+
+/// The steps that a new body takes.
+void add_body_steps(const std::string& kind, const AssetsLater& assets) {
+  const auto bare = [assets](Random& random) {
+    const Assets& a = **assets;
+    return a.makehuman == nullptr ? make_builtin_body(sample_builtin_shape(random), paper_body())
+                                  : make_body(*a.makehuman, sample_factors(random), paper_body());
+  };
+  const auto dressed = [bare](std::uint64_t k) {
+    Random random(kSeed, k);
+    const BodyMesh mesh = bare(random);
+    return std::make_shared<const BodyMesh>(dress(mesh, sample_outfit({}, random), paper_body(), random));
+  };
+  const auto posers = std::make_shared<Later<std::vector<Poser>>>([dressed] {
+    std::vector<Poser> made;
+    for (std::uint64_t k = 0; k < kBodies; ++k) made.emplace_back(dressed(k), paper_body());
+    return made;
+  });
+  add("synth_body_shape/" + kind, kBodies, [bare](std::uint64_t k) {
+    Random random(kSeed, k);
+    return bare(random);
+  });
+  add("synth_body_dressed/" + kind, kBodies, dressed);
+  add("synth_body_shares/" + kind, kBodies,
+      [posers](std::uint64_t k) { return part_shares((**posers)[k].mesh(), paper_body().part_count()); });
+  add("synth_body_detail/" + kind, kBodies, [posers](std::uint64_t k) { return BodyDetail((**posers)[k]); });
+}
+
+void add_kind(const std::string& kind, const AssetsLater& assets) {
+  add_body_steps(kind, assets);
+  add_stages(kind, assets, 320, 240);
+  add_stages(kind, assets, 640, 480);
+}
+
+}  // namespace
+
+void add_synth_benchmarks() {
+  add_kind("builtin", std::make_shared<Later<Assets>>([] { return Assets(); }));
+  const std::string folder = cli::default_assets_folder();
+  for (const char* package : {"makehuman", "mocap"}) {
+    if (has_assets(asset_package(package), folder)) continue;
+    std::cerr << "no MakeHuman bodies in captured poses: " << package << " is not in \"" << folder << "\"\n";
+    return;
+  }
+  add_kind("makehuman", std::make_shared<Later<Assets>>([folder] {
+             return cli::load_assets(Recipe(), {folder, {}, {}}).assets;
+           }));
+}
+
+}  // namespace vesalius

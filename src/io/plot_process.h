@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vesalius {
+
+struct ProcessResult {
+  int exit_code = 0;  ///< 128 + signal for a program that was ended by one
+  std::string out;    ///< standard output
+  std::string err;    ///< standard error
+};
+
+/// Runs a program found in PATH with `input` as its standard input and waits for its end. Throws Error naming it where
+/// it is not found, writes more than 64 MiB, or has not closed its outputs and ended within `limit_s` seconds; it is
+/// killed then.
+ProcessResult run_process(const std::vector<std::string>& command, const std::string& input, double limit_s);
+
+}  // namespace vesalius

@@ -1,0 +1,101 @@
+#include "io/truth_source.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "io/labelled_dataset.h"
+#include "io/truth_folder.h"
+#include "vesalius/error.h"
+
+namespace vesalius {
+namespace {
+
+class FolderTruth final : public TruthSource {
+ public:
+  FolderTruth(const std::string& uri, const std::string& folder, int step, const SourceOptions& options)
+      : source_(open_source(uri, options)), truth_(folder), step_(step) {}
+
+  std::optional<TrueFrame> next() override {
+    for (;;) {
+      const bool wanted = passed_++ % step_ == 0;
+      std::optional<Frame> frame = source_->next();
+      if (!frame) return std::nullopt;
+      if (!wanted) continue;
+      FrameTruth truth = truth_.truth_of(*frame);
+      return TrueFrame{std::move(*frame), std::move(truth)};
+    }
+  }
+  int size() const override {
+    const int all = source_->size();
+    return all < 0 ? all : (all + step_ - 1) / step_;
+  }
+  std::vector<std::string> notes() const override { return source_->notes(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  TruthFolder truth_;
+  int step_;
+  int passed_ = 0;
+};
+
+class DatasetTruth final : public TruthSource {
+ public:
+  DatasetTruth(const std::string& folder, int step) : reader_(folder), step_(static_cast<std::uint64_t>(step)) {
+    if (reader_.size() > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) {
+      throw Error(folder + ": more frames than can be counted");
+    }
+  }
+
+  std::optional<TrueFrame> next() override {
+    if (next_ >= reader_.size()) return std::nullopt;
+    const std::uint64_t index = std::exchange(next_, next_ + step_);
+    LabelledFrame labelled = reader_.read(index);
+    TrueFrame result;
+    FrameTruth& truth = result.truth;
+    truth.people = static_cast<int>(labelled.parts.size());
+    truth.mask = Mask(labelled.person.width(), labelled.person.height(), 0);
+    for (std::size_t i = 0; i < truth.mask.size(); ++i) truth.mask[i] = labelled.person[i] == kBackground ? 0 : 1;
+    truth.joint_names = part_names();
+    truth.joints = std::move(labelled.parts);
+    truth.person = std::move(labelled.person);
+    truth.labels = std::move(labelled.labels);
+    result.frame = std::move(labelled.frame);
+    return result;
+  }
+  int size() const override { return static_cast<int>((reader_.size() + step_ - 1) / step_); }
+  std::vector<std::string> part_names() const override {
+    std::vector<std::string> names;
+    for (const BodyPart& part : reader_.body().parts) names.push_back(part.name);
+    return names;
+  }
+
+ private:
+  DatasetReader reader_;
+  std::uint64_t step_;
+  std::uint64_t next_ = 0;
+};
+
+/// "tum:walking:5000" and the like name the folder in the middle.
+std::string folder_of(const std::string& uri) {
+  for (const std::string_view scheme : {"folder:", "pcd:", "png:", "tum:"}) {
+    if (!uri.starts_with(scheme)) continue;
+    std::string path = uri.substr(scheme.size());
+    const std::size_t colon = path.rfind(':');
+    const bool scaled = scheme == "tum:" && colon != path.npos && colon + 1 < path.size() &&
+                        std::ranges::all_of(path.substr(colon + 1), [](char c) { return c >= '0' && c <= '9'; });
+    if (scaled) path.resize(colon);
+    return path;
+  }
+  return uri;
+}
+
+}  // namespace
+
+std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step, const SourceOptions& options) {
+  if (step < 1) throw UsageError("every 0th frame, expected a step of at least 1");
+  if (is_dataset(uri)) return std::make_unique<DatasetTruth>(uri, step);
+  return std::make_unique<FolderTruth>(uri, folder_of(uri), step, options);
+}
+
+}  // namespace vesalius

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/open_source.h"
+#include "vesalius/frame_truth.h"
+
+namespace vesalius {
+
+/// Frames with their truth, one after the other.
+class TruthSource {
+ public:
+  virtual ~TruthSource() = default;
+  /// The next frame, or nothing at the end. Throws Error for one that cannot be read; the next call passes over it.
+  virtual std::optional<TrueFrame> next() = 0;
+  /// Number of frames in all, -1 where not known.
+  virtual int size() const = 0;
+  virtual std::vector<std::string> notes() const { return {}; }
+  /// Names of the parts that labels are numbers of; empty where there are no labels.
+  virtual std::vector<std::string> part_names() const { return {}; }
+};
+
+/// Opens a labelled dataset (joints: the parts' centres, under the parts' names), or any folder that `open_source`
+/// opens and that TruthFolder knows something about. Of every `step` frames the first is given out. Throws Error as
+/// those do.
+std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step = 1, const SourceOptions& options = {});
+
+}  // namespace vesalius
