@@ -1,12 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "train/best_split.h"
-#include "train/sample_pixels.h"
+#include "train/grow_tree.h"
+#include "train/training_set.h"
 #include "vesalius/body_model.h"
 #include "vesalius/forest.h"
 #include "vesalius/frame.h"
@@ -14,25 +12,30 @@
 
 namespace vesalius {
 
-struct GrowForestOptions {
-  int trees = 4;
-  int max_depth = 14;
-  int seed = 1;
+struct TrainOptions {
+  int trees = 8;
+  int hard_trees = 2;        ///< trees of the first round, which finds hard negatives; 0 = no such round
+  float probe_clip_m = 1.F;  ///< probes are clamped to the centre's depth +- this; 0 = not
   SampleOptions sample;
-  SplitOptions split;
+  GrowTreeOptions grow;
 };
-void visit_options(const std::string& prefix, GrowForestOptions& options, OptionVisitor& visitor);
+void visit_options(const std::string& prefix, TrainOptions& options, OptionVisitor& visitor);
 
-/// Probes within 1 m of the pixel's depth, holes and the world outside the picture far.
-FeatureConvention training_convention();
+/// Throws UsageError naming the first option out of its range.
+void check(const TrainOptions& options);
 
-/// Class shares of a leaf: the four largest (the lower label on a tie), in 1/255, rounded down.
-TreeLeaf make_leaf(std::span<const TrainingPixel> pixels, int classes);
+/// How features are to be read: holes and the world outside the picture far, probes clamped as the options say.
+FeatureConvention training_convention(const TrainOptions& options);
 
-/// Trains a forest (section 4.2): each tree draws pixels of its own; each node takes the pair of offsets and the
-/// threshold that gain most information about the label. With a background class unless `background_share` is 0.
-/// One tree per thread; the same forest for any number of threads, since every node draws from a generator of its own,
-/// seeded by (seed, tree, node). Throws Error for unusable frames, UsageError for an option outside its range.
-Forest grow_forest(const std::vector<LabelledFrame>& frames, const BodyModel& body, const GrowForestOptions& options);
+/// Numbers of the trees of the first round begin here, so that they draw other tests than those that are kept.
+inline constexpr int kFirstHardTree = 1000;
+
+/// A forest of these trees for what `set` describes; `recipe` says how it was made.
+Forest assemble_forest(const TrainingSet& set, std::vector<Tree> trees, std::string recipe);
+
+/// Trains a forest in memory, in one call (section 4.2):
+///   fill the set; grow trees of a first round; add as samples what they take for a body by mistake; grow the trees.
+/// The same forest for any number of threads. Throws Error for unusable frames, UsageError for an option out of range.
+Forest grow_forest(const std::vector<LabelledFrame>& frames, const BodyModel& body, const TrainOptions& options);
 
 }  // namespace vesalius

@@ -14,13 +14,13 @@ namespace {
 
 const Camera kCamera{160, 120, 131.F, 131.F, 79.5F, 59.5F};
 
-GrowForestOptions small_options() {
-  GrowForestOptions options;
+TrainOptions small_options() {
+  TrainOptions options;
   options.trees = 3;
-  options.max_depth = 10;
+  options.grow.leaf.max_depth = 10;
   options.sample.pixels_per_frame = 300;
-  options.split.candidates = 20;
-  options.split.min_leaf_pixels = 5;
+  options.grow.split.candidates = 20;
+  options.grow.leaf.min_samples = 5;
   return options;
 }
 
@@ -86,9 +86,9 @@ TEST(GrowForest, SolvesAToyProblem) {
   for (int v = 12; v < 36; ++v) {
     for (int u = 0; u < 64; ++u) frame.frame.depth(u, v) = static_cast<std::uint16_t>(v < 24 ? 1500 : 1700);
   }
-  GrowForestOptions options = small_options();
+  TrainOptions options = small_options();
   options.sample.background_share = 0.F;
-  options.split.candidates = 100;
+  options.grow.split.candidates = 100;
   const Forest forest = grow_forest({frame}, body, options);
   EXPECT_FALSE(forest.has_background);
   int wrong = 0;
@@ -109,49 +109,26 @@ TEST(GrowForest, SameForestForAnyNumberOfThreads) {
 
 TEST(GrowForest, TreesAndSeedsDiffer) {
   const std::vector<LabelledFrame> frames = standing_people(3);
-  GrowForestOptions options = small_options();
+  TrainOptions options = small_options();
   const Forest forest = grow_forest(frames, paper_body(), options);
   EXPECT_NE(forest.trees[0], forest.trees[1]);
-  options.seed = 2;
+  options.grow.seed = 2;
   EXPECT_NE(grow_forest(frames, paper_body(), options).trees, forest.trees);
 }
 
 TEST(GrowForest, KeepsToItsLimits) {
   const std::vector<LabelledFrame> frames = standing_people(6);
-  GrowForestOptions options = small_options();
-  options.max_depth = 4;
+  TrainOptions options = small_options();
+  options.grow.leaf.max_depth = 4;
   for (const Tree& tree : grow_forest(frames, paper_body(), options).trees) {
     EXPECT_LE(depth(tree), 4);
     EXPECT_EQ(tree.leaves.size(), tree.nodes.size() + 1);
   }
-  options.max_depth = 0;
+  options.grow.leaf.max_depth = 0;
   for (const Tree& tree : grow_forest(frames, paper_body(), options).trees) EXPECT_TRUE(tree.nodes.empty());
-  options.max_depth = 20;
-  options.split.min_leaf_pixels = 200;
+  options.grow.leaf.max_depth = 20;
+  options.grow.leaf.min_samples = 200;
   for (const Tree& tree : grow_forest(frames, paper_body(), options).trees) EXPECT_LE(tree.leaves.size(), 9U);
-}
-
-TEST(GrowForest, LeafHoldsTheLargestShares) {
-  std::vector<TrainingPixel> pixels;
-  const auto add = [&](int count, std::uint8_t label) {
-    for (int i = 0; i < count; ++i) pixels.emplace_back().label = label;
-  };
-  add(10, 2);
-  add(50, 7);
-  add(25, 4);
-  add(10, 1);
-  add(5, 0);
-  const TreeLeaf leaf = make_leaf(pixels, 9);
-  EXPECT_THAT(leaf.label, testing::ElementsAre(7, 4, 1, 2));
-  EXPECT_THAT(leaf.probability, testing::ElementsAre(127, 63, 25, 25));  // floor(255 share)
-}
-
-TEST(GrowForest, LeafOfOneClassIsCertain) {
-  std::vector<TrainingPixel> pixels(3);
-  for (TrainingPixel& pixel : pixels) pixel.label = 6;
-  const TreeLeaf leaf = make_leaf(pixels, 9);
-  EXPECT_EQ(leaf.label[0], 6);
-  EXPECT_THAT(leaf.probability, testing::ElementsAre(255, 0, 0, 0));
 }
 
 TEST(GrowForest, UnusableInputIsAnError) {
@@ -160,8 +137,8 @@ TEST(GrowForest, UnusableInputIsAnError) {
   std::vector<LabelledFrame> holes = standing_people(1);
   holes[0].frame.depth.fill(0);
   EXPECT_THROW(grow_forest(holes, paper_body(), {}), Error);
-  GrowForestOptions options;
-  options.max_depth = 31;
+  TrainOptions options;
+  options.grow.leaf.max_depth = 31;
   EXPECT_THROW(grow_forest(standing_people(1), paper_body(), options), UsageError);
   options = {};
   options.sample.background_share = std::numeric_limits<float>::quiet_NaN();

@@ -1,13 +1,15 @@
 #include "train/sample_pixels.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <string>
 
 #include "vesalius/error.h"
-#include "vesalius/random.h"
 
 namespace vesalius {
 namespace {
+
+constexpr int kEmptyFramePool = 4;  ///< a frame without people offers this many times as much background
 
 /// Indices of the pixels of one frame that have a reading.
 struct PixelPools {
@@ -16,97 +18,120 @@ struct PixelPools {
   std::vector<int> background;
 };
 
-void check_frame(const LabelledFrame& labelled, std::size_t index) {
+PixelPools make_pools(const LabelledFrame& labelled, int part_count, std::vector<std::uint64_t>& class_pixels,
+                      const std::string& where) {
   check(labelled.frame);
-  const std::string where = "training frame " + std::to_string(index) + " (" + labelled.frame.name + ")";
-  if (!labelled.labels.same_size(labelled.frame.depth)) throw Error(where + ": labels and depth differ in size");
-  constexpr int kLargest = 32767;
-  if (labelled.labels.width() > kLargest || labelled.labels.height() > kLargest) {
-    throw Error(where + ": at most " + std::to_string(kLargest) + " pixels a side");
+  if (!labelled.labels.same_size(labelled.frame.depth)) {
+    throw Error(fmt::format("{}: labels and depth differ in size", where));
   }
-}
-
-PixelPools make_pools(const LabelledFrame& labelled, const BodyModel& body, std::size_t index) {
-  check_frame(labelled, index);
   PixelPools pools;
-  std::vector<std::vector<int>> by_part(body.parts.size());
+  std::vector<std::vector<int>> by_part(static_cast<std::size_t>(part_count));
   for (std::size_t i = 0; i < labelled.labels.size(); ++i) {
     if (labelled.frame.depth[i] == 0) continue;
     const std::uint8_t label = labelled.labels[i];
     if (label == kBackground) {
       pools.background.push_back(static_cast<int>(i));
-    } else if (label < by_part.size()) {
+    } else if (label < part_count) {
       by_part[label].push_back(static_cast<int>(i));
       pools.body.push_back(static_cast<int>(i));
     } else {
-      throw Error("training frame " + std::to_string(index) + ": label " + std::to_string(label) + " at pixel " +
-                  std::to_string(i) + ", the body has " + std::to_string(by_part.size()) + " parts");
+      throw Error(fmt::format("{}: label {} at pixel ({}, {}), the body has {} parts", where, label,
+                              static_cast<int>(i) % labelled.labels.width(),
+                              static_cast<int>(i) / labelled.labels.width(), part_count));
     }
   }
-  for (std::vector<int>& pool : by_part) {
-    if (!pool.empty()) pools.parts.push_back(std::move(pool));
-  }
+  for (std::size_t part = 0; part < by_part.size(); ++part) class_pixels[part] = by_part[part].size();
+  class_pixels.back() = pools.background.size();
+  std::erase_if(by_part, [](const std::vector<int>& pool) { return pool.empty(); });
+  pools.parts = std::move(by_part);
   return pools;
 }
 
-int draw(const std::vector<int>& pool, Random& random) {
-  return pool[random.below(static_cast<std::uint32_t>(pool.size()))];
-}
+/// Draws from one frame.
+class Drawer {
+ public:
+  Drawer(const LabelledFrame& labelled, const PixelPools& pools, const SampleOptions& options, int part_count,
+         Random& random)
+      : labelled_(labelled), pools_(pools), options_(options), part_count_(part_count), random_(random) {}
 
-int draw_body(const PixelPools& pools, float balanced_share, Random& random) {
-  if (random.uniform() >= balanced_share) return draw(pools.body, random);
-  return draw(pools.parts[random.below(static_cast<std::uint32_t>(pools.parts.size()))], random);
-}
-
-/// A background pixel beside a person: where furniture, floor and walls are taken for limbs. Any where none is met.
-int draw_near(const LabelledFrame& labelled, const PixelPools& pools, int near_px, Random& random) {
-  constexpr int kTries = 10;
-  const int width = labelled.labels.width();
-  for (int i = 0; i < kTries; ++i) {
-    const int at = draw(pools.body, random);
-    const int u = at % width + static_cast<int>(std::lround(random.uniform(-near_px, near_px)));
-    const int v = at / width + static_cast<int>(std::lround(random.uniform(-near_px, near_px)));
-    if (labelled.labels.contains(u, v) && labelled.labels(u, v) == kBackground && labelled.frame.depth(u, v) != 0) {
-      return v * width + u;
+  std::vector<TrainingSample> ordinary() {
+    const auto background =
+        static_cast<int>(std::lround(static_cast<double>(options_.background_share) * options_.pixels_per_frame));
+    std::vector<TrainingSample> samples;
+    for (int i = 0; i < options_.pixels_per_frame; ++i) {
+      const bool behind = i < background;
+      if (behind ? pools_.background.empty() : pools_.body.empty()) continue;
+      samples.push_back(sample_at(behind ? draw_background() : draw_body()));
     }
+    return samples;
   }
-  return draw(pools.background, random);
-}
 
-int draw_background(const LabelledFrame& labelled, const PixelPools& pools, const SampleOptions& options,
-                    Random& random) {
-  const bool near = random.uniform() < options.near_share && !pools.body.empty();
-  return near ? draw_near(labelled, pools, options.near_px, random) : draw(pools.background, random);
-}
+  std::vector<TrainingSample> pool() {
+    std::vector<TrainingSample> samples;
+    if (pools_.background.empty() || options_.background_share <= 0.F) return samples;
+    const int count = options_.hard_pool * (pools_.body.empty() ? kEmptyFramePool : 1);
+    for (int i = 0; i < count; ++i) samples.push_back(sample_at(draw(pools_.background)));
+    return samples;
+  }
+
+ private:
+  int draw(const std::vector<int>& from) { return from[random_.below(static_cast<std::uint32_t>(from.size()))]; }
+
+  int draw_body() {
+    if (random_.uniform() >= static_cast<double>(options_.balanced_share)) return draw(pools_.body);
+    return draw(pools_.parts[random_.below(static_cast<std::uint32_t>(pools_.parts.size()))]);
+  }
+
+  int draw_background() {
+    const bool near = random_.uniform() < static_cast<double>(options_.near_share) && !pools_.body.empty();
+    return near ? draw_near() : draw(pools_.background);
+  }
+
+  /// Beside a person, where furniture, floor and walls are taken for limbs. Any background where none is met.
+  int draw_near() {
+    constexpr int kTries = 10;
+    const int width = labelled_.labels.width();
+    for (int i = 0; i < kTries; ++i) {
+      const int at = draw(pools_.body);
+      const int u = at % width + static_cast<int>(std::lround(random_.uniform(-options_.near_px, options_.near_px)));
+      const int v = at / width + static_cast<int>(std::lround(random_.uniform(-options_.near_px, options_.near_px)));
+      if (labelled_.labels.contains(u, v) && labelled_.labels(u, v) == kBackground &&
+          labelled_.frame.depth(u, v) != 0) {
+        return v * width + u;
+      }
+    }
+    return draw(pools_.background);
+  }
+
+  TrainingSample sample_at(int index) const {
+    const int width = labelled_.labels.width();
+    TrainingSample sample;
+    sample.u = static_cast<std::int16_t>(index % width);
+    sample.v = static_cast<std::int16_t>(index / width);
+    sample.depth_mm = labelled_.frame.depth(sample.u, sample.v);
+    const std::uint8_t label = labelled_.labels(sample.u, sample.v);
+    sample.label = label == kBackground ? static_cast<std::uint8_t>(part_count_) : label;
+    return sample;
+  }
+
+  const LabelledFrame& labelled_;
+  const PixelPools& pools_;
+  const SampleOptions& options_;
+  int part_count_;
+  Random& random_;
+};
 
 }  // namespace
 
-std::vector<TrainingPixel> sample_pixels(const std::vector<LabelledFrame>& frames, const BodyModel& body,
-                                         const FeatureConvention& convention, const SampleOptions& options,
-                                         std::uint64_t seed, std::uint64_t tree) {
-  const int background =
-      static_cast<int>(std::lround(static_cast<double>(options.background_share) * options.pixels_per_frame));
-  std::vector<TrainingPixel> pixels;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    const LabelledFrame& labelled = frames[f];
-    const PixelPools pools = make_pools(labelled, body, f);
-    const OffsetScaler scaler(convention, labelled.frame.camera);
-    Random random(seed, (tree << 32U) | f);
-    for (int i = 0; i < options.pixels_per_frame; ++i) {
-      const bool behind = i < background;
-      if (behind ? pools.background.empty() : pools.body.empty()) continue;
-      const int at =
-          behind ? draw_background(labelled, pools, options, random) : draw_body(pools, options.balanced_share, random);
-      TrainingPixel pixel;
-      pixel.frame = static_cast<std::int32_t>(f);
-      pixel.u = static_cast<std::int16_t>(at % labelled.labels.width());
-      pixel.v = static_cast<std::int16_t>(at / labelled.labels.width());
-      pixel.scale = scaler.at(labelled.frame.depth(pixel.u, pixel.v));
-      pixel.label = behind ? static_cast<std::uint8_t>(body.part_count()) : labelled.labels(pixel.u, pixel.v);
-      pixels.push_back(pixel);
-    }
-  }
-  return pixels;
+DrawnSamples draw_samples(const LabelledFrame& labelled, const BodyModel& body, const SampleOptions& options,
+                          Random& random, const std::string& where) {
+  DrawnSamples drawn;
+  drawn.class_pixels.assign(body.parts.size() + 1, 0);
+  const PixelPools pools = make_pools(labelled, body.part_count(), drawn.class_pixels, where);
+  Drawer drawer(labelled, pools, options, body.part_count(), random);
+  drawn.samples = drawer.ordinary();
+  drawn.pool = drawer.pool();
+  return drawn;
 }
 
 }  // namespace vesalius

@@ -13,31 +13,30 @@ namespace {
 
 const Camera kCamera{160, 120, 131.F, 131.F, 79.5F, 59.5F};
 
-std::vector<LabelledFrame> one_frame(bool person = true) {
+LabelledFrame one_frame(bool person = true) {
   CapsuleScene scene;
   if (person) scene.people.emplace_back();
-  return {render(scene, kCamera, paper_body())};
+  return render(scene, kCamera, paper_body());
 }
 
-std::vector<TrainingPixel> sample(const std::vector<LabelledFrame>& frames, const SampleOptions& options,
-                                  std::uint64_t seed = 1, std::uint64_t tree = 0) {
-  return sample_pixels(frames, paper_body(), {}, options, seed, tree);
+std::vector<TrainingSample> sample(const LabelledFrame& frame, const SampleOptions& options, std::uint64_t seed = 1) {
+  Random random(seed);
+  return draw_samples(frame, paper_body(), options, random, "frame").samples;
 }
 
-std::map<int, int> count_labels(const std::vector<TrainingPixel>& pixels) {
+std::map<int, int> count_labels(const std::vector<TrainingSample>& samples) {
   std::map<int, int> counts;
-  for (const TrainingPixel& pixel : pixels) ++counts[pixel.label];
+  for (const TrainingSample& each : samples) ++counts[each.label];
   return counts;
 }
 
-TEST(SamplePixels, LabelsAndScalesAreThoseOfTheFrame) {
-  const std::vector<LabelledFrame> frames = one_frame();
-  const OffsetScaler scaler({}, kCamera);
-  for (const TrainingPixel& pixel : sample(frames, {})) {
-    const int truth = frames[0].labels(pixel.u, pixel.v);
-    EXPECT_EQ(pixel.label, truth == kBackground ? 25 : truth);
-    ASSERT_NE(frames[0].frame.depth(pixel.u, pixel.v), 0);
-    EXPECT_EQ(pixel.scale.u, scaler.at(frames[0].frame.depth(pixel.u, pixel.v)).u);
+TEST(SamplePixels, LabelsAndDepthAreThoseOfTheFrame) {
+  const LabelledFrame frame = one_frame();
+  for (const TrainingSample& each : sample(frame, {})) {
+    const int truth = frame.labels(each.u, each.v);
+    EXPECT_EQ(each.label, truth == kBackground ? 25 : truth);
+    ASSERT_NE(each.depth_mm, 0);
+    EXPECT_EQ(each.depth_mm, frame.frame.depth(each.u, each.v));
   }
 }
 
@@ -65,43 +64,61 @@ TEST(SamplePixels, BalancedPartsComeEquallyOften) {
 }
 
 TEST(SamplePixels, NearBackgroundLiesBesidePeople) {
-  const std::vector<LabelledFrame> frames = one_frame();
+  const LabelledFrame frame = one_frame();
   SampleOptions options;
   options.background_share = 1.F;
   options.near_share = 1.F;
   options.near_px = 5;
-  const auto beside = [&](const TrainingPixel& pixel) {
+  const auto beside = [&](const TrainingSample& each) {
     for (int dv = -5; dv <= 5; ++dv) {
       for (int du = -5; du <= 5; ++du) {
-        const int u = pixel.u + du, v = pixel.v + dv;
-        if (frames[0].labels.contains(u, v) && frames[0].labels(u, v) != kBackground) return true;
+        const int u = each.u + du, v = each.v + dv;
+        if (frame.labels.contains(u, v) && frame.labels(u, v) != kBackground) return true;
       }
     }
     return false;
   };
-  const std::vector<TrainingPixel> pixels = sample(frames, options);
-  EXPECT_GT(std::ranges::count_if(pixels, beside), 0.9 * static_cast<double>(pixels.size()));
+  const std::vector<TrainingSample> samples = sample(frame, options);
+  EXPECT_GT(std::ranges::count_if(samples, beside), 0.9 * static_cast<double>(samples.size()));
 }
 
-TEST(SamplePixels, DependOnSeedAndTreeAlone) {
-  const std::vector<LabelledFrame> frames = one_frame();
-  const auto places = [&](std::uint64_t seed, std::uint64_t tree) {
-    std::vector<int> result;
-    for (const TrainingPixel& pixel : sample(frames, {}, seed, tree)) result.push_back(pixel.v * 160 + pixel.u);
-    return result;
-  };
-  EXPECT_EQ(places(1, 0), places(1, 0));
-  EXPECT_NE(places(1, 0), places(1, 1));
-  EXPECT_NE(places(1, 0), places(2, 0));
+TEST(SamplePixels, PoolIsBackgroundAndLargerInEmptyRooms) {
+  SampleOptions options;
+  options.hard_pool = 50;
+  Random random(1);
+  const DrawnSamples with = draw_samples(one_frame(), paper_body(), options, random, "frame");
+  EXPECT_EQ(with.pool.size(), 50U);
+  EXPECT_EQ(count_labels(with.pool)[25], 50);
+  EXPECT_EQ(draw_samples(one_frame(false), paper_body(), options, random, "frame").pool.size(), 200U);
 }
 
-TEST(SamplePixels, UnusableFramesAreErrors) {
-  std::vector<LabelledFrame> frames = one_frame();
-  frames[0].labels(3, 4) = 25;
-  EXPECT_THROW(sample(frames, {}), Error);
-  frames = one_frame();
-  frames[0].labels = LabelImage(10, 10);
-  EXPECT_THROW(sample(frames, {}), Error);
+TEST(SamplePixels, CountsReadingsOfEveryClass) {
+  LabelledFrame frame = one_frame();
+  frame.frame.depth(0, 0) = 0;
+  frame.frame.depth(1, 0) = 1000;
+  frame.labels(1, 0) = 3;
+  std::vector<std::uint64_t> truth(26, 0);
+  for (std::size_t i = 0; i < frame.labels.size(); ++i) {
+    if (frame.frame.depth[i] != 0) ++truth[frame.labels[i] == kBackground ? 25 : frame.labels[i]];
+  }
+  Random random(1);
+  EXPECT_EQ(draw_samples(frame, paper_body(), {}, random, "frame").class_pixels, truth);
+}
+
+TEST(SamplePixels, UnusableFramesAreErrorsThatNameThem) {
+  Random random(1);
+  LabelledFrame frame = one_frame();
+  frame.labels(3, 4) = 25;
+  frame.frame.depth(3, 4) = 1000;
+  try {
+    draw_samples(frame, paper_body(), {}, random, "training frame 7");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("training frame 7: label 25 at pixel (3, 4)"));
+  }
+  frame = one_frame();
+  frame.labels = LabelImage(10, 10);
+  EXPECT_THROW(draw_samples(frame, paper_body(), {}, random, "frame"), Error);
 }
 
 }  // namespace

@@ -38,9 +38,9 @@ void SmallWorld::SetUpTestSuite() {
     writer->write(frames[i].frame);
   }
   writer->close();
-  GrowForestOptions options;
+  TrainOptions options;
   options.trees = 2;
-  options.max_depth = 10;
+  options.grow.leaf.max_depth = 10;
   options.sample.pixels_per_frame = 3000;
   save_model(grow_forest(frames, paper_body(), options), model());
 }

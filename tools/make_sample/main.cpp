@@ -36,7 +36,7 @@ void print(const PixelScore& score, const BodyModel& body) {
   }
 }
 
-void make_forest(const std::string& path, int frames, const GrowForestOptions& options) {
+void make_forest(const std::string& path, int frames, const TrainOptions& options) {
   const Forest forest = grow_forest(random_frames(frames, kTrainingSeed), paper_body(), options);
   std::filesystem::create_directories(std::filesystem::path(path).parent_path());
   save_model(forest, path);
@@ -56,19 +56,19 @@ int run(int argc, char** argv) {
   std::string out;
   int frames = 2500;
   bool only_sample = false;
-  GrowForestOptions options;
+  TrainOptions options;
   options.trees = 6;
-  options.max_depth = 18;
+  options.grow.leaf.max_depth = 18;
   options.sample.pixels_per_frame = 300;
-  options.split.candidates = 40;
-  options.split.min_leaf_pixels = 25;
+  options.grow.split.candidates = 40;
+  options.grow.leaf.min_samples = 25;
   app.add_option("OUT", out, "New folder: gets models/capsule.forest and sample/")->required();
   app.add_option("--frames", frames, "Scenes to learn from")->check(CLI::Range(1, 100000));
   app.add_option("--trees", options.trees);
-  app.add_option("--depth", options.max_depth);
+  app.add_option("--depth", options.grow.leaf.max_depth);
   app.add_option("--pixels", options.sample.pixels_per_frame);
-  app.add_option("--candidates", options.split.candidates);
-  app.add_option("--min-leaf", options.split.min_leaf_pixels);
+  app.add_option("--candidates", options.grow.split.candidates);
+  app.add_option("--min-leaf", options.grow.leaf.min_samples);
   app.add_flag("--only-sample", only_sample, "Do not train");
   CLI11_PARSE(app, argc, argv);
   make_sequence(out + "/sample");

@@ -1,0 +1,136 @@
+#include "train/estimate_training.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "train/walk_samples.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
+
+namespace vesalius {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kPilotSamples = 400000.0;   ///< some seconds, and more frames than caches hold
+constexpr double kLargestPilotShare = 0.25;  ///< of the real run: else it could as well be done
+constexpr int kFirstPilotTree = 2000;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+struct Pilot {
+  TrainingSet set;
+  TrainOptions options;  ///< the run's, with fewer split_pixels
+  double scale = 1.0;    ///< samples of the run for each of the pilot
+};
+
+Pilot make_pilot(const std::vector<LabelledFrame>& frames, const BodyModel& body, double samples,
+                 const TrainOptions& options) {
+  TrainOptions own = options;
+  own.sample.held_out_share = 0.F;
+  Pilot pilot{TrainingSet(body, training_convention(own), own.sample, static_cast<std::uint64_t>(own.grow.seed)), own,
+              1.0};
+  const double wanted = std::min(kPilotSamples, samples * kLargestPilotShare);
+  const std::size_t most = frames.size() * 1000;  // frames that give no sample would go on for ever
+  for (std::size_t i = 0; i < most && static_cast<double>(pilot.set.samples().size()) < wanted; ++i) {
+    pilot.set.add(frames[i % frames.size()]);
+  }
+  if (pilot.set.samples().empty()) throw Error("training: no pixel with a label and a reading in the first frames");
+  pilot.scale = std::max(1.0, samples / static_cast<double>(pilot.set.samples().size()));
+  pilot.options.grow.split.split_pixels =
+      std::max(2, static_cast<int>(std::lround(options.grow.split.split_pixels / pilot.scale)));
+  return pilot;
+}
+
+/// Samples evaluated for each candidate by one tree of the pilot, and of the run.
+struct TreeWork {
+  double pilot = 0.0;
+  double run = 0.0;
+};
+
+/// Samples at each node and leaf, and how deep the leaves lie.
+struct TreeShape {
+  std::vector<double> leaves, nodes;
+  std::vector<int> leaf_level;
+};
+
+TreeShape shape_of(const Tree& tree, const TrainingSet& set) {
+  TreeShape shape{std::vector<double>(tree.leaves.size(), 0.0), std::vector<double>(tree.nodes.size(), 0.0),
+                  std::vector<int>(tree.leaves.size(), 0)};
+  for (const TrainingSample& sample : set.samples()) shape.leaves[leaf_of(tree, set.frames(), sample)] += 1.0;
+  std::vector<int> level(tree.nodes.size(), 0);
+  for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+    for (const std::int32_t child : {tree.nodes[n].left, tree.nodes[n].right}) {
+      (child >= 0 ? level[static_cast<std::size_t>(child)] : shape.leaf_level[static_cast<std::size_t>(~child)]) =
+          level[n] + 1;
+    }
+  }
+  for (std::size_t n = tree.nodes.size(); n-- > 0;) {  // children come after their parent
+    for (const std::int32_t child : {tree.nodes[n].left, tree.nodes[n].right}) {
+      shape.nodes[n] +=
+          child >= 0 ? shape.nodes[static_cast<std::size_t>(child)] : shape.leaves[static_cast<std::size_t>(~child)];
+    }
+  }
+  return shape;
+}
+
+/// Levels that it took the pilot to halve the samples of a node, on average over samples: splits are not even.
+double levels_per_halving(const TreeShape& shape, double samples) {
+  double levels = 0.0, halvings = 0.0;
+  for (std::size_t l = 0; l < shape.leaves.size(); ++l) {
+    if (shape.leaves[l] <= 0.0) continue;
+    levels += shape.leaves[l] * shape.leaf_level[l];
+    halvings += shape.leaves[l] * std::log2(samples / shape.leaves[l]);
+  }
+  return halvings > 0.0 ? levels / halvings : 1.0;
+}
+
+TreeWork work_of(const Tree& tree, const Pilot& pilot) {
+  const TreeShape shape = shape_of(tree, pilot.set);
+  const GrowTreeOptions& grow = pilot.options.grow;
+  TreeWork work;
+  for (const double samples : shape.nodes) {
+    work.pilot += std::min(samples, static_cast<double>(grow.split.split_pixels));
+  }
+  work.run = work.pilot * pilot.scale;
+  const double more =
+      std::log2(pilot.scale) * levels_per_halving(shape, static_cast<double>(pilot.set.samples().size()));
+  for (std::size_t l = 0; l < tree.leaves.size(); ++l) {
+    if (tree.leaves[l].probability[0] == 255) continue;
+    const double most = grow.leaf.max_depth - shape.leaf_level[l];
+    work.run += shape.leaves[l] * pilot.scale * std::min(more, most);
+  }
+  return work;
+}
+
+}  // namespace
+
+GrowthEstimate estimate_growth(const std::vector<LabelledFrame>& frames, const BodyModel& body, std::uint64_t samples,
+                               const TrainOptions& options, int trees_at_once) {
+  Pilot pilot = make_pilot(frames, body, static_cast<double>(samples), options);
+  GrowProgress progress;
+  std::vector<Tree> trees(static_cast<std::size_t>(trees_at_once));
+  const Clock::time_point start = Clock::now();
+  parallel_for(trees_at_once, [&](int t) {
+    trees[static_cast<std::size_t>(t)] = grow_tree(pilot.set, pilot.options.grow, kFirstPilotTree + t, &progress);
+  });
+  GrowthEstimate estimate;
+  const auto done = static_cast<double>(progress.evaluations);
+  estimate.evaluations_per_s = done / seconds_since(start);
+  const TreeWork work = work_of(trees.front(), pilot);
+  const double of_a_tree = work.pilot > 0.0 ? done / trees_at_once * work.run / work.pilot : done / trees_at_once;
+  estimate.evaluations = of_a_tree * options.trees;
+  if (options.hard_trees == 0 || !pilot.set.has_background()) return estimate;
+
+  const auto before = static_cast<double>(pilot.set.samples().size());
+  const Clock::time_point search_start = Clock::now();
+  const auto added = static_cast<double>(
+      pilot.set.add_hard_negatives(assemble_forest(pilot.set, {std::move(trees.front())}, "pilot")));
+  estimate.hard_search_s = seconds_since(search_start) * pilot.scale * options.hard_trees;
+  estimate.evaluations *= 1.0 + added / before;
+  estimate.evaluations += of_a_tree * options.hard_trees;
+  return estimate;
+}
+
+}  // namespace vesalius

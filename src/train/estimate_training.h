@@ -1,0 +1,36 @@
+#pragma once
+
+// How long growing will take, from a small tree grown now.
+//
+// A pilot of S' samples out of whole frames grows trees that look at split_pixels x S'/S samples where a node chooses
+// its split, S being the samples of the real run. Its tree then stands for the upper part of a real one: a pilot node
+// of n' samples for a real one of n' S/S'. Below it, each leaf of several classes goes on until its samples are as few
+// as the pilot's, for k log2(S/S') levels, though not deeper than `depth`; k is how many levels the pilot itself took
+// to halve a node. So
+//   evaluations = candidates x S/S' x (sum over inner nodes of min(n', split_pixels S'/S)
+//                                      + sum over mixed leaves of n' x min(k log2(S/S'), depth - level))
+// scaled by what the first sum says of the pilot beside what it did. The rate is the pilot's: grow_tree reads frames in
+// order once a level, so it matters that the pilot's frames outgrow the caches, not that they are as many as the run's.
+
+#include <cstdint>
+#include <vector>
+
+#include "train/grow_forest.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+
+namespace vesalius {
+
+struct GrowthEstimate {
+  double evaluations = 0.0;        ///< values of eq. 1, of all trees of both rounds
+  double evaluations_per_s = 0.0;  ///< of all threads allowed together
+  double hard_search_s = 0.0;      ///< TrainingSet::add_hard_negatives
+  double seconds() const { return evaluations / evaluations_per_s + hard_search_s; }
+};
+
+/// Grows a pilot for some seconds on `frames`, repeated where they are few, and says what `samples` of such frames
+/// would take, `trees_at_once` trees at a time. Throws Error as TrainingSet::add and grow_tree do.
+GrowthEstimate estimate_growth(const std::vector<LabelledFrame>& frames, const BodyModel& body, std::uint64_t samples,
+                               const TrainOptions& options, int trees_at_once);
+
+}  // namespace vesalius

@@ -1,0 +1,131 @@
+#include "train/feature_rows.h"
+
+#include <gmock/gmock.h>
+#include <hwy/targets.h>
+
+#include <limits>
+
+#include "train/walk_samples.h"
+#include "vesalius/error.h"
+#include "vesalius/random.h"
+#include "vesalius/tree_walk.h"
+
+namespace vesalius {
+namespace {
+
+/// Noise with holes: every probe reads something else.
+DepthImage random_depth(int width, int height, Random& random) {
+  DepthImage depth(width, height, 0);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    depth[i] = random.below(5) == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(400 + random.below(65000));
+  }
+  return depth;
+}
+
+TrainingSample random_sample(const DepthImage& depth, Random& random) {
+  TrainingSample sample;
+  do {
+    sample.u = static_cast<std::int16_t>(random.below(static_cast<std::uint32_t>(depth.width())));
+    sample.v = static_cast<std::int16_t>(random.below(static_cast<std::uint32_t>(depth.height())));
+    sample.depth_mm = depth(sample.u, sample.v);
+  } while (sample.depth_mm == 0);
+  return sample;
+}
+
+/// What detection computes, brought into the range of a row.
+std::int16_t truth(const DepthImage& depth, const Camera& camera, const FeatureConvention& convention,
+                   const TrainingSample& sample, const TreeNode& node) {
+  const OffsetScale scale = OffsetScaler(convention, camera).at(sample.depth_mm);
+  const int value = feature_mm(depth, convention, scale, sample.u, sample.v, node);
+  using Limits = std::numeric_limits<std::int16_t>;
+  return static_cast<std::int16_t>(std::clamp<int>(value, Limits::min(), Limits::max()));
+}
+
+/// Runs the rest of the test for every instruction set of this machine.
+template <class Work>
+void for_each_target(const Work& work) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    work();
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+TEST(FeatureRows, AreWhatDetectionComputesOnEveryInstructionSet) {
+  FeatureConvention clipped;
+  clipped.clip_mm = 1000;
+  FeatureConvention odd;
+  odd.hole_mm = 9000;
+  odd.outside_mm = 60000;
+  Random random(11);
+  for (const FeatureConvention& convention : {FeatureConvention{}, clipped, odd}) {
+    for (const auto& [width, height] : {std::pair{64, 48}, std::pair{37, 21}, std::pair{1, 1}}) {
+      const Camera camera{
+          width, height, 60.F, 55.F, 0.5F * static_cast<float>(width), 0.5F * static_cast<float>(height)};
+      DepthImage depth = random_depth(width, height, random);
+      depth[0] = 700;
+      FrameStore store(convention);
+      store.add(camera, depth);
+      SplitOptions options;
+      options.max_offset_m = 20.F;
+      const CandidateTable table = draw_candidates(convention, options, 37, random);
+      std::vector<std::int16_t> values(static_cast<std::size_t>(table.padded));
+      for_each_target([&] {
+        for (int s = 0; s < 20; ++s) {
+          const TrainingSample sample = random_sample(depth, random);
+          evaluate_candidates(store[0], convention, sample, table.offsets.data(), table.padded, values.data());
+          for (int c = 0; c < table.count; ++c) {
+            ASSERT_EQ(values[static_cast<std::size_t>(c)], truth(depth, camera, convention, sample, table.node(c)))
+                << training_target() << " candidate " << c;
+          }
+        }
+      });
+    }
+  }
+}
+
+TEST(WalkSamples, FeatureIsWhatDetectionComputes) {
+  Random random(12);
+  FeatureConvention convention;
+  convention.clip_mm = 800;
+  const Camera camera{50, 40, 50.F, 50.F, 25.F, 20.F};
+  const DepthImage depth = random_depth(50, 40, random);
+  FrameStore store(convention);
+  store.add(camera, depth);
+  const CandidateTable table = draw_candidates(convention, {}, 50, random);
+  for (int c = 0; c < table.count; ++c) {
+    const TrainingSample sample = random_sample(depth, random);
+    EXPECT_EQ(feature_of(store[0], convention, sample, table.node(c)),
+              feature_mm(depth, convention, OffsetScaler(convention, camera).at(sample.depth_mm), sample.u, sample.v,
+                         table.node(c)));
+  }
+}
+
+TEST(FrameStore, GivesBackEveryPixelOfFramesOfAnySize) {
+  Random random(13);
+  FrameStore store{FeatureConvention{}};
+  std::vector<DepthImage> frames;
+  for (const auto& [width, height] : {std::pair{320, 240}, std::pair{1, 1}, std::pair{9, 5}, std::pair{640, 480}}) {
+    frames.push_back(random_depth(width, height, random));
+    EXPECT_EQ(store.add({width, height, 300.F, 300.F, 0.F, 0.F}, frames.back()), frames.size() - 1);
+  }
+  std::size_t bytes = 0;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    bytes += FrameStore::frame_bytes(frames[f].width(), frames[f].height());
+    for (int v = 0; v < frames[f].height(); ++v) {
+      for (int u = 0; u < frames[f].width(); ++u) ASSERT_EQ(store[f].depth_mm(u, v), frames[f](u, v));
+    }
+  }
+  EXPECT_EQ(store.bytes(), bytes);
+  EXPECT_EQ(FrameStore::frame_bytes(320, 240), 320U * 240U * 2U);
+}
+
+TEST(FrameStore, RefusesDepthOfAnotherSizeThanItsCamera) {
+  FrameStore store{FeatureConvention{}};
+  EXPECT_THROW(store.add({10, 10, 1.F, 1.F, 0.F, 0.F}, DepthImage(10, 9, 0)), Error);
+  EXPECT_THROW(store.add({0, 0, 1.F, 1.F, 0.F, 0.F}, DepthImage(0, 0, 0)), Error);
+  EXPECT_EQ(store.size(), 0U);
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,310 @@
+#include "train/grow_tree.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "train/leaf_shares.h"
+#include "train/prune_tree.h"
+#include "train/split_candidates.h"
+#include "train/split_histogram.h"
+#include "vesalius/capsule_person.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
+#include "vesalius/tree_walk.h"
+
+namespace vesalius {
+namespace {
+
+/// The trainer written down as plainly as it can be: node by node, pixel by pixel, on depth images, with the code of
+/// detection.
+class ObviousTrainer {
+ public:
+  ObviousTrainer(const TrainingSet& set, const std::vector<LabelledFrame>& frames, const GrowTreeOptions& options,
+                 int tree)
+      : set_(set), frames_(frames), options_(options), tree_(tree), shares_(set, options.leaf.prior_correction) {}
+
+  Tree grow() {
+    grow_node({set_.samples().begin(), set_.samples().end()}, 1, 0);
+    return pruned_tree(nodes_);
+  }
+
+ private:
+  using Samples = std::vector<TrainingSample>;
+  struct Choice {
+    TreeNode node;
+    double gain = 0.0;
+  };
+
+  int feature(const TrainingSample& sample, const TreeNode& node) const {
+    const Frame& frame = frames_[sample.frame].frame;
+    const OffsetScale scale = OffsetScaler(set_.convention(), frame.camera).at(sample.depth_mm);
+    return std::clamp(feature_mm(frame.depth, set_.convention(), scale, sample.u, sample.v, node), -32768, 32767);
+  }
+
+  std::size_t grow_node(const Samples& samples, std::uint32_t number, int depth) {
+    const std::size_t at = nodes_.size();
+    nodes_.emplace_back();
+    std::vector<std::int64_t> counts(static_cast<std::size_t>(set_.class_count()), 0);
+    for (const TrainingSample& sample : samples) ++counts[sample.label];
+    nodes_[at].leaf = shares_.leaf(counts.data());
+    const bool pure = std::ranges::count_if(counts, [](std::int64_t n) { return n > 0; }) < 2;
+    if (pure || depth >= options_.leaf.max_depth || std::ssize(samples) < 2 * options_.leaf.min_samples) return at;
+    const Choice choice = choose(samples, number);
+    if (choice.gain <= 0.0) return at;
+    Samples left, right;
+    for (const TrainingSample& sample : samples) {
+      (feature(sample, choice.node) <= choice.node.threshold_mm ? left : right).push_back(sample);
+    }
+    const std::size_t left_at = grow_node(left, 2 * number, depth + 1);
+    const std::size_t right_at = grow_node(right, 2 * number + 1, depth + 1);
+    nodes_[at].split = choice.node;
+    nodes_[at].left = left_at;
+    nodes_[at].right = right_at;
+    return at;
+  }
+
+  /// Evenly spaced samples, at most `split_pixels`.
+  Samples counted(const Samples& samples) const {
+    const auto size = std::ssize(samples);
+    const auto most = std::min<std::ptrdiff_t>(size, options_.split.split_pixels);
+    Samples result;
+    for (std::ptrdiff_t i = 0; i < size; ++i) {
+      if ((i + 1) * most / size > i * most / size) result.push_back(samples[static_cast<std::size_t>(i)]);
+    }
+    return result;
+  }
+
+  Choice choose(const Samples& samples, std::uint32_t number) const {
+    const Samples some = counted(samples);
+    const auto least = (options_.leaf.min_samples * std::ssize(some) + std::ssize(samples) - 1) / std::ssize(samples);
+    Choice best;
+    for (int block = 0; block < candidate_blocks(options_.split); ++block) {
+      const Choice choice = choose_of_block(some, node_candidates(set_.convention(), options_, tree_, number, block),
+                                            static_cast<int>(least));
+      if (choice.gain >= static_cast<double>(options_.split.min_gain) && choice.gain > best.gain) best = choice;
+    }
+    return best;
+  }
+
+  /// The candidate whose best edge between bins scores highest, then the best of all thresholds beside that edge.
+  Choice choose_of_block(const Samples& samples, const CandidateTable& table, int least) const {
+    int best_candidate = -1, best_bin = 0;
+    std::int64_t best_score = std::numeric_limits<std::int64_t>::min();
+    for (int c = 0; c < table.count; ++c) {
+      const std::vector<int> values = values_of(samples, table.node(c));
+      const Binning binning = binning_of(values);
+      for (int b = 0; b + 1 < binning.bins; ++b) {
+        const std::int64_t score = score_of(samples, values, binning.last_value(0, b), least);
+        if (score > best_score) {
+          best_score = score;
+          best_candidate = c;
+          best_bin = b;
+        }
+      }
+    }
+    if (best_candidate < 0) return {};
+    Choice choice{table.node(best_candidate), 0.0};
+    const std::vector<int> values = values_of(samples, choice.node);
+    const Binning binning = binning_of(values);
+    const int low = best_bin > 0 ? binning.last_value(0, best_bin - 1) : std::numeric_limits<int>::min();
+    const int high = binning.last_value(0, best_bin + 1);
+    std::vector<int> sorted;
+    std::ranges::copy_if(values, std::back_inserter(sorted), [&](int v) { return v > low && v <= high; });
+    std::ranges::sort(sorted);
+    best_score = std::numeric_limits<std::int64_t>::min();
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      const int next = i + 1 < sorted.size() ? sorted[i + 1] : sorted[i] + 1;
+      const std::int64_t score = score_of(samples, values, sorted[i], least);
+      if (next == sorted[i] || score <= best_score) continue;
+      best_score = score;
+      choice.node.threshold_mm = static_cast<std::int16_t>(std::floor((sorted[i] + next) / 2.0));
+    }
+    const std::int64_t before = score_of(samples, values, std::numeric_limits<int>::max(), 0);
+    choice.gain = static_cast<double>(best_score - before) / (1024.0 * static_cast<double>(samples.size()));
+    return choice;
+  }
+
+  std::vector<int> values_of(const Samples& samples, const TreeNode& node) const {
+    std::vector<int> values;
+    for (const TrainingSample& sample : samples) values.push_back(feature(sample, node));
+    return values;
+  }
+
+  Binning binning_of(const std::vector<int>& values) const {
+    const auto [low, high] = std::ranges::minmax(values);
+    ValueRanges ranges(1);
+    ranges.low[0] = static_cast<std::int16_t>(low);
+    ranges.high[0] = static_cast<std::int16_t>(high);
+    return {ranges, bins_for(std::ssize(values), options_.split.bins)};
+  }
+
+  std::int64_t score_of(const Samples& samples, const std::vector<int>& values, int threshold, int least) const {
+    const auto classes = static_cast<std::size_t>(set_.class_count());
+    std::vector<int> left(classes, 0), right(classes, 0);
+    int n_left = 0, n_right = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      ++(values[i] <= threshold ? left : right)[samples[i].label];
+      ++(values[i] <= threshold ? n_left : n_right);
+    }
+    if (std::min(n_left, n_right) < least) return std::numeric_limits<std::int64_t>::min();
+    std::int64_t score = -entropy_(n_left) - entropy_(n_right);
+    for (std::size_t c = 0; c < classes; ++c) score += entropy_(left[c]) + entropy_(right[c]);
+    return score;
+  }
+
+  const TrainingSet& set_;
+  const std::vector<LabelledFrame>& frames_;
+  GrowTreeOptions options_;
+  int tree_;
+  LeafShares shares_;
+  EntropyTable entropy_;
+  std::vector<GrownNode> nodes_;
+};
+
+const Camera kCamera{80, 60, 66.F, 66.F, 39.5F, 29.5F};
+
+std::vector<LabelledFrame> people(int count) {
+  std::vector<LabelledFrame> frames;
+  for (int i = 0; i < count; ++i) {
+    CapsuleScene scene;
+    CapsulePerson person;
+    person.feet = {-0.3F + 0.1F * static_cast<float>(i % 7), 1.F, 2.F + 0.1F * static_cast<float>(i % 5)};
+    person.pose.yaw = 0.3F * static_cast<float>(i % 5 - 2);
+    person.pose.r_arm.raise = 0.3F * static_cast<float>(i % 6);
+    scene.people.push_back(person);
+    frames.push_back(render(scene, kCamera, paper_body()));
+    for (std::size_t p = static_cast<std::size_t>(i); p < frames.back().frame.depth.size(); p += 31) {
+      frames.back().frame.depth[p] = 0;  // holes
+    }
+  }
+  return frames;
+}
+
+TrainingSet set_of(const std::vector<LabelledFrame>& frames, int pixels) {
+  SampleOptions sample;
+  sample.pixels_per_frame = pixels;
+  sample.held_out_share = 0.F;
+  FeatureConvention convention;
+  convention.clip_mm = 1000;
+  TrainingSet set(paper_body(), convention, sample, 5);
+  for (const LabelledFrame& frame : frames) set.add(frame);
+  return set;
+}
+
+TEST(GrowTree, IsThatOfTheObviousTrainer) {
+  const std::vector<LabelledFrame> frames = people(8);
+  const TrainingSet set = set_of(frames, 300);
+  GrowTreeOptions options;
+  options.split.candidates = 12;
+  options.leaf.max_depth = 7;
+  options.leaf.min_samples = 6;
+  EXPECT_EQ(grow_tree(set, options, 3), ObviousTrainer(set, frames, options, 3).grow());
+  options.split.split_pixels = 150;  // most nodes choose by some of their samples
+  options.split.bins = 5;
+  options.leaf.prior_correction = 1.F;
+  EXPECT_EQ(grow_tree(set, options, 4), ObviousTrainer(set, frames, options, 4).grow());
+}
+
+TEST(GrowTree, IsThatOfTheObviousTrainerForMoreThanOneBlockOfCandidates) {
+  const std::vector<LabelledFrame> frames = people(2);
+  const TrainingSet set = set_of(frames, 150);
+  GrowTreeOptions options;
+  options.leaf.max_depth = 4;
+  options.leaf.min_samples = 6;
+  options.split.candidates = kBlockCandidates + 9;
+  EXPECT_EQ(grow_tree(set, options, 0), ObviousTrainer(set, frames, options, 0).grow());
+  options.split.shared_features = kBlockCandidates + 20;
+  EXPECT_EQ(grow_tree(set, options, 0), ObviousTrainer(set, frames, options, 0).grow());
+}
+
+TEST(GrowTree, SharedFeaturesAreAllThatNodesTest) {
+  const std::vector<LabelledFrame> frames = people(3);
+  const TrainingSet set = set_of(frames, 300);
+  GrowTreeOptions options;
+  options.leaf.max_depth = 8;
+  options.split.shared_features = 5;
+  const CandidateTable list = node_candidates(set.convention(), options, 0, 1, 0);
+  const Tree tree = grow_tree(set, options, 0);
+  ASSERT_GT(tree.nodes.size(), 10U);
+  for (const TreeNode& node : tree.nodes) {
+    bool listed = false;
+    for (int c = 0; c < list.count; ++c) {
+      const TreeNode each = list.node(c);
+      listed |= each.du1 == node.du1 && each.dv1 == node.dv1 && each.du2 == node.du2 && each.dv2 == node.dv2;
+    }
+    EXPECT_TRUE(listed);
+  }
+}
+
+TEST(GrowTree, SameTreeForAnyNumberOfThreads) {
+  const std::vector<LabelledFrame> frames = people(10);
+  const TrainingSet set = set_of(frames, 2000);  // more samples than one thread takes at a time
+  const auto grow = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return grow_tree(set, {}, 1);
+  };
+  const Tree alone = grow(1);
+  EXPECT_GT(alone.nodes.size(), 50U);
+  EXPECT_EQ(alone, grow(2));
+  EXPECT_EQ(alone, grow(4));
+}
+
+TEST(GrowTree, LeavesHoldTheSharesOfTheSamplesThatReachThem) {
+  const std::vector<LabelledFrame> frames = people(6);
+  const TrainingSet set = set_of(frames, 400);
+  GrowTreeOptions options;
+  options.leaf.max_depth = 5;
+  const Tree tree = grow_tree(set, options, 0);
+  std::vector<std::vector<int>> counts(tree.leaves.size(), std::vector<int>(26, 0));
+  for (const TrainingSample& sample : set.samples()) {
+    const Frame& frame = frames[sample.frame].frame;
+    const OffsetScale scale = OffsetScaler(set.convention(), frame.camera).at(sample.depth_mm);
+    const TreeLeaf& leaf = walk(tree, frame.depth, set.convention(), scale, sample.u, sample.v);
+    ++counts[static_cast<std::size_t>(&leaf - tree.leaves.data())][sample.label];
+  }
+  for (std::size_t l = 0; l < counts.size(); ++l) {
+    int total = 0;
+    for (const int n : counts[l]) total += n;
+    ASSERT_GE(total, options.leaf.min_samples);
+    for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) {
+      if (tree.leaves[l].probability[k] == 0) continue;
+      EXPECT_EQ(tree.leaves[l].probability[k], counts[l][tree.leaves[l].label[k]] * 255 / total);
+    }
+  }
+}
+
+TEST(GrowTree, CountsWhatItDoes) {
+  const std::vector<LabelledFrame> frames = people(4);
+  const TrainingSet set = set_of(frames, 400);
+  GrowTreeOptions options;
+  options.leaf.max_depth = 6;
+  GrowProgress progress;
+  const Tree tree = grow_tree(set, options, 0, &progress);
+  EXPECT_EQ(progress.settled, set.samples().size() * 6U);
+  EXPECT_GE(progress.nodes, tree.nodes.size()) << "pruning takes some away";
+  EXPECT_GT(progress.evaluations, set.samples().size() * 50U);
+}
+
+TEST(GrowTree, StopsWhenAsked) {
+  const std::vector<LabelledFrame> frames = people(1);
+  const TrainingSet set = set_of(frames, 400);
+  GrowProgress progress;
+  progress.stop = true;
+  EXPECT_THROW(grow_tree(set, {}, 0, &progress), Error);
+}
+
+TEST(GrowTree, RefusesSetsWithoutSamplesAndBadOptions) {
+  TrainingSet empty(paper_body(), {}, {}, 1);
+  EXPECT_THROW(grow_tree(empty, {}, 0), Error);
+  const std::vector<LabelledFrame> frames = people(1);
+  const TrainingSet set = set_of(frames, 40);
+  GrowTreeOptions options;
+  options.split.split_pixels = 70000;
+  EXPECT_THROW(grow_tree(set, options, 0), UsageError);
+}
+
+}  // namespace
+}  // namespace vesalius

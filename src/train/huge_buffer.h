@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+
+namespace vesalius {
+
+/// Zeroed memory straight from the system, in huge pages where it has them: random reads over gigabytes wait for the
+/// page table otherwise.
+class HugeBuffer {
+ public:
+  /// Throws std::bad_alloc.
+  explicit HugeBuffer(std::size_t bytes);
+  ~HugeBuffer();
+  HugeBuffer(HugeBuffer&& other) noexcept;
+  HugeBuffer& operator=(HugeBuffer&& other) noexcept;
+
+  std::byte* data() const { return memory_; }
+  std::size_t size() const { return bytes_; }
+
+ private:
+  std::byte* memory_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace vesalius

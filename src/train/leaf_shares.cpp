@@ -1,0 +1,46 @@
+#include "train/leaf_shares.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace vesalius {
+
+LeafShares::LeafShares(const TrainingSet& set, float prior_correction) {
+  const auto classes = static_cast<std::size_t>(set.class_count());
+  std::vector<double> sampled(classes, 0.0);
+  for (const TrainingSample& sample : set.samples()) sampled[sample.label] += 1.0;
+  std::vector<double> factors(classes, 0.0);
+  for (std::size_t c = 0; c < classes; ++c) {
+    if (sampled[c] == 0.0) continue;
+    const double pixels = std::max<double>(static_cast<double>(set.class_pixels()[c]), 1.0);
+    factors[c] = std::pow(pixels / sampled[c], static_cast<double>(prior_correction));
+  }
+  constexpr double kLargest = 16777216.0;
+  const double largest = *std::ranges::max_element(factors);
+  for (const double factor : factors) {
+    weights_.push_back(static_cast<std::uint64_t>(std::max(1.0, std::round(kLargest * factor / largest))));
+  }
+}
+
+TreeLeaf LeafShares::leaf(const std::int64_t* counts) const {
+  std::vector<std::uint64_t> shares(weights_.size());
+  for (std::size_t c = 0; c < shares.size(); ++c) shares[c] = static_cast<std::uint64_t>(counts[c]) * weights_[c];
+  const std::uint64_t total = std::accumulate(shares.begin(), shares.end(), std::uint64_t{0});
+  std::vector<std::size_t> order(shares.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::size_t kept = std::min<std::size_t>(TreeLeaf::kClasses, order.size());
+  std::partial_sort(
+      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept), order.end(),
+      [&](std::size_t a, std::size_t b) { return shares[a] != shares[b] ? shares[a] > shares[b] : a < b; });
+  TreeLeaf leaf;
+  for (std::size_t k = 0; k < kept; ++k) {
+    const std::uint64_t share = shares[order[k]] * 255 / total;
+    if (share == 0) break;
+    leaf.label[k] = static_cast<std::uint8_t>(order[k]);
+    leaf.probability[k] = static_cast<std::uint8_t>(share);
+  }
+  return leaf;
+}
+
+}  // namespace vesalius

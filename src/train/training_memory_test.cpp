@@ -1,0 +1,75 @@
+#include "train/training_memory.h"
+
+#include <gtest/gtest.h>
+
+#include "vesalius/capsule_person.h"
+
+namespace vesalius {
+namespace {
+
+constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
+
+TEST(TrainingMemory, HundredThousandFramesFitSixteenGigabytes) {
+  const FrameGroup group{100000, 320, 240, false};
+  const TrainingMemory memory = training_memory({&group, 1}, {}, 26);
+  EXPECT_EQ(memory.depth, 100000ULL * 320 * 240 * 2);
+  EXPECT_LT(memory.total(1), 20 * kGiB);
+}
+
+TEST(TrainingMemory, GrowsWithFramesPixelsAndTrees) {
+  const FrameGroup some{1000, 320, 240, false};
+  const FrameGroup more{2000, 320, 240, false};
+  TrainOptions dense;
+  dense.sample.pixels_per_frame = 1000;
+  const TrainingMemory base = training_memory({&some, 1}, {}, 26);
+  EXPECT_GT(training_memory({&more, 1}, {}, 26).total(1), 1.9 * static_cast<double>(base.total(1)));
+  EXPECT_GT(training_memory({&some, 1}, dense, 26).samples, base.samples);
+  EXPECT_EQ(base.total(3) - base.total(1), 2 * base.tree);
+}
+
+TEST(TrainingMemory, CoversWhatASetTakes) {
+  CapsuleScene scene;
+  scene.people = {CapsulePerson{}};
+  const LabelledFrame person = render(scene, {160, 120, 131.F, 131.F, 79.5F, 59.5F}, paper_body());
+  const LabelledFrame empty = render({}, {160, 120, 131.F, 131.F, 79.5F, 59.5F}, paper_body());
+  const TrainOptions options;
+  TrainingSet set(paper_body(), training_convention(options), options.sample, 1);
+  for (int i = 0; i < 90; ++i) set.add(person);
+  for (int i = 0; i < 10; ++i) set.add(empty);
+  const FrameGroup group{100, 160, 120, false};
+  const TrainingMemory memory = training_memory({&group, 1}, options, set.class_count());
+  EXPECT_EQ(memory.depth, set.frames().bytes());
+  EXPECT_GE(memory.depth + memory.samples, set.bytes());
+  EXPECT_NEAR(static_cast<double>(expected_samples({&group, 1}, options)), static_cast<double>(set.samples().size()),
+              0.1 * static_cast<double>(set.samples().size()));
+}
+
+TEST(TrainingFit, WhatIsSaidToFitFitsAndMoreDoesNot) {
+  const FrameGroup group{40000, 640, 480, false};
+  const TrainOptions options;
+  const std::uint64_t bytes = 8 * kGiB;
+  ASSERT_GT(training_memory({&group, 1}, options, 26).total(1), bytes);
+  const TrainingFit fit = training_fit({&group, 1}, options, 26, bytes);
+  const auto total_of = [&](double share) {
+    const FrameGroup fewer{static_cast<std::uint64_t>(40000 * share), 640, 480, false};
+    return training_memory({&fewer, 1}, options, 26).total(1);
+  };
+  EXPECT_LE(total_of(fit.frame_share), bytes);
+  EXPECT_GT(total_of(fit.frame_share + 0.01), bytes);
+  EXPECT_EQ(fit.pixels, 0) << "depth alone is too much";
+}
+
+TEST(TrainingFit, FewerPixelsDoWhereDepthFits) {
+  const FrameGroup group{40000, 160, 120, false};
+  TrainOptions options;
+  options.sample.pixels_per_frame = 20000;
+  const TrainingFit fit = training_fit({&group, 1}, options, 26, 8 * kGiB);
+  ASSERT_GT(fit.pixels, 0);
+  options.sample.pixels_per_frame = fit.pixels;
+  EXPECT_LE(training_memory({&group, 1}, options, 26).total(1), 8 * kGiB);
+  options.sample.pixels_per_frame = fit.pixels + 1;
+  EXPECT_GT(training_memory({&group, 1}, options, 26).total(1), 8 * kGiB);
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "train/frame_store.h"
+#include "train/training_set.h"
+#include "vesalius/forest.h"
+
+namespace vesalius {
+
+/// Eq. 1 at a sample, as `feature_mm` computes it from a depth image.
+inline int feature_of(const FrameStore::View& view, const FeatureConvention& convention, const TrainingSample& sample,
+                      const TreeNode& node) {
+  const OffsetScale scale = view.scaler.at(sample.depth_mm);
+  const auto probe = [&](int du, int dv) -> int {
+    const int u = sample.u + ((du * scale.u + 32768) >> 16);
+    const int v = sample.v + ((dv * scale.v + 32768) >> 16);
+    if (u < 0 || v < 0 || u >= view.width || v >= view.height) return convention.outside_mm;
+    const int read = view.depth_mm(u, v);
+    return read != 0 ? read : convention.hole_mm;
+  };
+  int first = probe(node.du1, node.dv1);
+  int second = probe(node.du2, node.dv2);
+  if (convention.clip_mm != 0) {
+    const int low = sample.depth_mm - convention.clip_mm;
+    const int high = sample.depth_mm + convention.clip_mm;
+    first = std::clamp(first, low, high);
+    second = std::clamp(second, low, high);
+  }
+  return first - second;
+}
+
+/// Index of the leaf that a sample reaches.
+inline std::size_t leaf_of(const Tree& tree, const FrameStore& frames, const TrainingSample& sample) {
+  const FrameStore::View& view = frames[sample.frame];
+  std::int32_t at = tree.nodes.empty() ? ~0 : 0;
+  while (at >= 0) {
+    const TreeNode& node = tree.nodes[static_cast<std::size_t>(at)];
+    at = feature_of(view, frames.convention(), sample, node) <= node.threshold_mm ? node.left : node.right;
+  }
+  return static_cast<std::size_t>(~at);
+}
+
+}  // namespace vesalius
