@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "eval/people_figures.h"
+
+namespace vesalius {
+
+/// One proposal of one frame, judged.
+struct JudgedProposal {
+  float score = 0.F;
+  int parts = 0;  ///< observed
+  bool person = false;
+  PartCounts counts;  ///< against the person it shows
+};
+
+/// What curves are made from: every proposal of a set of frames.
+struct DetectionLog {
+  long frames = 0;
+  long expected = 0;  ///< true people
+  std::vector<JudgedProposal> proposals;
+};
+
+/// What is left at one threshold. Shares are NaN where there is nothing to share.
+struct DetectionPoint {
+  double threshold = 0.0;
+  double rate = 0.0;             ///< share of the true people found
+  double false_per_frame = 0.0;  ///< people who are none
+  double part_rate = 0.0;        ///< of the people found: share of the visible parts that are right
+  double upper_part_rate = 0.0;  ///< of the upper body's
+};
+
+/// With at least 1, 2, ... `max_parts` parts, of proposals of at least `min_score` (the paper's Figs 9 to 14).
+std::vector<DetectionPoint> sweep_parts(const DetectionLog& log, int max_parts, double min_score);
+
+/// With scores of at least 0, 1/steps, ... 1, of proposals of at least `min_parts` parts.
+std::vector<DetectionPoint> sweep_score(const DetectionLog& log, int steps, int min_parts);
+
+}  // namespace vesalius

@@ -1,0 +1,178 @@
+#include "eval/score_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "eval/label_scene.h"
+#include "eval/match_people.h"
+#include "vesalius/error.h"
+
+namespace vesalius {
+namespace {
+
+/// Value of a term of this frame; `fallback` where it has none.
+double term_or(const FigureTerms& terms, std::string_view name, double fallback) {
+  const auto found = std::ranges::find(terms, name, &FigureTerm::name);
+  if (found == terms.end() || found->denominator <= 0.0) return fallback;
+  return found->numerator / found->denominator;
+}
+
+void say_what_went_wrong(FrameScore& score, bool labels_only) {
+  std::string& wrong = score.what_went_wrong;
+  const auto add = [&](double badness, const std::string& text) {
+    score.badness += badness;
+    wrong += (wrong.empty() ? "" : ", ") + text;
+  };
+  const FigureTerms& terms = score.terms;
+  const double missed = score.expected * (1.0 - term_or(terms, "people.found", 1.0));
+  const double excess = term_or(terms, "people.false", 0.0);
+  if (missed > 0.0) add(missed, fmt::format("{:.0f} of {} people missed", missed, score.expected));
+  if (excess > 0.0) add(excess, fmt::format("{:.0f} found who are none", excess));
+  const char* overlap = labels_only ? "pixels.person_iou" : "mask.iou_where_found";
+  const double iou = term_or(terms, overlap, 1.0);
+  if (iou < 0.9) add(1.0 - iou, fmt::format("{} IoU {:.2f}", labels_only ? "pixel" : "mask", iou));
+  const double body = term_or(terms, "pixels.body_on_empty", 0.0);
+  if (body > 0.003) add(body, fmt::format("{:.1f} % of the empty frame taken for a body", 100.0 * body));
+  const double joints = term_or(terms, "joints.at_10cm", 1.0);
+  if (joints < 0.9) add(1.0 - joints, fmt::format("{:.0f} % of the joints within 10 cm", 100.0 * joints));
+}
+
+void append(FigureTerms& terms, FigureTerms more) {
+  terms.insert(terms.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+/// Throws Error unless the truth fits the frame and itself.
+void check_truth(const TrueFrame& frame) {
+  const FrameTruth& truth = frame.truth;
+  const auto fits = [&](const Image<std::uint8_t>& image) {
+    return image.empty() || image.same_size(frame.frame.depth);
+  };
+  if (!fits(truth.mask) || !fits(truth.person) || !fits(truth.labels)) {
+    throw Error(fmt::format("truth of frame {}: a mask or labels of another size than the depth, {}x{}",
+                            frame.frame.name, frame.frame.depth.width(), frame.frame.depth.height()));
+  }
+  if (!truth.labels.empty() && truth.person.empty()) {
+    throw Error(fmt::format("truth of frame {}: labels without the persons they belong to", frame.frame.name));
+  }
+  for (const auto& joints : truth.joints) {
+    if (joints.size() == truth.joint_names.size()) continue;
+    throw Error(fmt::format("truth of frame {}: {} joints, expected {}", frame.frame.name, joints.size(),
+                            truth.joint_names.size()));
+  }
+}
+
+/// The found person of each true one, null where it was missed.
+std::vector<const Person*> found_of_each(const std::vector<Person>& people, const std::vector<Match>& matches,
+                                         int expected) {
+  std::vector<const Person*> found(static_cast<std::size_t>(expected), nullptr);
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (matches[i].kind == Match::Kind::person) found[static_cast<std::size_t>(matches[i].person)] = &people[i];
+  }
+  return found;
+}
+
+/// The skeleton that a perfect labelling of this person gives: joints fitted to it do not depend on any model.
+Skeleton as_seen(const TrueFrame& frame, int person, const BodyModel& body) {
+  Skeleton skeleton;
+  for (const Eigen::Vector3f& centre : visible_parts(frame, person, body)) {
+    SkeletonPart& part = skeleton.parts.emplace_back();
+    if (centre.hasNaN()) continue;
+    part.state = State::observed;
+    part.centre = centre;
+  }
+  return skeleton;
+}
+
+}  // namespace
+
+FrameScorer::FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options)
+    : labeller_(labeller), options_(std::move(options)), detector_(std::move(labeller), options_.detect) {}
+
+FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
+  check(frame.frame);
+  check_truth(frame);
+  put_visible_people_first(frame);
+  FrameScore score;
+  score.expected = expected_people(frame.truth);
+  if (!options_.labels_only) find_people(frame, fit_joints, score);
+  judge_labels(frame, score);
+  say_what_went_wrong(score, options_.labels_only);
+  return score;
+}
+
+void FrameScorer::find_people(const TrueFrame& frame, bool fit_joints, FrameScore& score) const {
+  Trace trace;
+  score.people = detector_.detect(frame.frame, &trace);
+  score.labels = std::move(trace.labels);
+  const std::vector<Match> matches = match_people(accepted_proposals(score.people), frame.truth, frame.frame.depth);
+  append(score.terms, people_terms(frame, score.people, matches, body()));
+  const std::vector<const Person*> of_person = found_of_each(score.people, matches, score.expected);
+  append(score.terms, visible_part_terms(frame, of_person, body()));
+  log_proposals(frame, trace, score);
+  judge_joints(frame, of_person, fit_joints, score);
+}
+
+void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, FrameScore& score) const {
+  const auto proposals = distinct_proposals(trace, options_.detect.refine.max_overlap);
+  const std::vector<Match> matches = match_people(proposals, frame.truth, frame.frame.depth);
+  for (std::size_t i = 0; i < proposals.size(); ++i) {
+    if (matches[i].kind == Match::Kind::ignored) continue;
+    JudgedProposal judged{proposals[i].score, proposals[i].skeleton->found, matches[i].kind == Match::Kind::person, {}};
+    if (judged.person) {
+      std::vector<Eigen::Vector3f> visible;
+      if (!frame.truth.labels.empty()) visible = visible_parts(frame, matches[i].person, body());
+      judged.counts = count_parts(*proposals[i].skeleton, visible, body());
+    }
+    score.proposals.push_back(judged);
+  }
+}
+
+void FrameScorer::judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
+                               FrameScore& score) const {
+  const FrameTruth& truth = frame.truth;
+  const JointSet* set = truth.joint_names.empty() ? nullptr : find_joint_set(body(), truth.joint_names);
+  if (set == nullptr) return;
+  const auto index = static_cast<std::size_t>(set - body().joint_sets.data());
+  for (std::size_t who = 0; who < of_person.size() && who < truth.joints.size(); ++who) {
+    std::vector<Joint> joints;
+    if (fit && !truth.labels.empty()) {
+      joints = derive_joints(body(), as_seen(frame, static_cast<int>(who), body()))[index];
+    } else if (of_person[who] != nullptr) {
+      joints = of_person[who]->joints[index];
+    }
+    const JointPair pair{truth.joints[who], joints_by_name(truth.joint_names, *set, joints)};
+    if (fit) {
+      const std::vector<JointOffset> offsets = joint_offsets(pair, truth.joint_names, *set);
+      score.offsets.insert(score.offsets.end(), offsets.begin(), offsets.end());
+    } else {
+      append(score.terms, joint_terms(pair, truth.joint_names));
+      score.joint_errors_m.push_back(joint_errors(pair));
+    }
+  }
+}
+
+void FrameScorer::judge_labels(const TrueFrame& frame, FrameScore& score) const {
+  const FrameTruth& truth = frame.truth;
+  const DepthImage& depth = frame.frame.depth;
+  if (truth.labels.empty()) {
+    if (score.labels.empty()) score.labels = label_scene(*labeller_, options_.detect, frame.frame).labels;
+    append(score.terms, mask_terms(truth, score.labels, depth));
+    return;
+  }
+  Mask in_body(depth.width(), depth.height(), 0);
+  std::ranges::transform(truth.labels, in_body.begin(),
+                         [](std::uint8_t l) -> std::uint8_t { return l != kBackground; });
+  SceneLabels labels = label_scene(*labeller_, options_.detect, frame.frame, &in_body);
+  if (score.labels.empty()) score.labels = std::move(labels.labels);
+  PixelConfusion inside(body().part_count());
+  inside.add(truth.labels, labels.inside, depth);
+  score.confusion.emplace(body().part_count());
+  score.confusion->add(truth.labels, score.labels, depth);
+  append(score.terms, pixel_terms(*score.confusion, inside, body()));
+  if (truth.people == 0) append(score.terms, mask_terms(truth, score.labels, depth));
+}
+
+}  // namespace vesalius

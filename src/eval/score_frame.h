@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/detection_curve.h"
+#include "eval/figure_table.h"
+#include "eval/joint_figures.h"
+#include "eval/pixel_figures.h"
+#include "vesalius/detect.h"
+#include "vesalius/frame_truth.h"
+
+namespace vesalius {
+
+/// Everything that one frame adds to the figures of its set, and what shows why.
+struct FrameScore {
+  FigureTerms terms;
+  int expected = 0;  ///< true people
+  std::vector<JudgedProposal> proposals;
+  std::vector<std::vector<double>> joint_errors_m;  ///< of each true person (joint_errors)
+  std::optional<PixelConfusion> confusion;          ///< where the true labels are known
+  std::vector<JointOffset> offsets;                 ///< of a frame to fit joints on
+
+  std::string what_went_wrong;  ///< empty where nothing did
+  double badness = 0.0;         ///< 0 = all is right; ranks the frames worth looking at
+  std::vector<Person> people;
+  LabelImage labels;  ///< first pass, smoothed
+};
+
+/// Runs the detector over frames whose truth is known and judges what it finds. Safe to call from several threads.
+class FrameScorer {
+ public:
+  struct Options {
+    DetectOptions detect;
+    bool labels_only = false;  ///< only the pixel figures of the first pass: much faster
+  };
+
+  /// Throws as Detector does.
+  FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options);
+
+  /// `fit_joints`: joint offsets instead of joint figures; from the true labels where these are known, else from the
+  /// people found. Throws Error where truth and frame do not fit together.
+  FrameScore score(TrueFrame frame, bool fit_joints) const;
+
+  const BodyModel& body() const { return labeller_->body(); }
+  const Options& options() const { return options_; }
+
+ private:
+  void find_people(const TrueFrame& frame, bool fit_joints, FrameScore& score) const;
+  void log_proposals(const TrueFrame& frame, const Trace& trace, FrameScore& score) const;
+  void judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
+                    FrameScore& score) const;
+  void judge_labels(const TrueFrame& frame, FrameScore& score) const;
+
+  std::shared_ptr<const PixelLabeller> labeller_;
+  Options options_;
+  Detector detector_;
+};
+
+}  // namespace vesalius
