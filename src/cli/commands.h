@@ -12,6 +12,9 @@ void add_convert(CLI::App& program);
 void add_assets(CLI::App& program);
 void add_options(CLI::App& program);
 void add_synth(CLI::App& program);
+void add_train(CLI::App& program);
+void add_evaluate(CLI::App& program);
+void add_compare(CLI::App& program);
 void add_completion(CLI::App& program);
 
 }  // namespace vesalius::cli

@@ -23,14 +23,15 @@ struct Arguments {
   bool quiet = false;
 };
 
-void convert_trees(std::vector<std::string> paths, bool quiet) {
+void convert_model(std::vector<std::string> paths, bool quiet) {
   const std::string out = paths.back();
   paths.pop_back();
   if (!out.ends_with(kModelExtension)) {
     throw UsageError(
         fmt::format("{}: expected a name that ends in {} (frames are converted with --to)", out, kModelExtension));
   }
-  const Forest forest = import_text_trees(paths);
+  const bool is_model = paths.size() == 1 && paths[0].ends_with(kModelExtension);
+  const Forest forest = is_model ? load_model(paths[0]) : import_text_trees(paths);
   save_model(forest, out);
   if (!quiet) say(fmt::format("{}: {} trees", out, forest.trees.size()));
 }
@@ -58,11 +59,14 @@ void convert_frames(const Arguments& arguments) {
 }  // namespace
 
 void add_convert(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("convert", "Turn text trees into a model, or frames into another layout");
+  CLI::App* command = program.add_subcommand(
+      "convert", "Turn text trees or an older model into a model, or frames into another layout");
   const auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option("PATH", arguments->paths,
-                   "Text trees (.txt or .txt.bz2) and the .forest to write; with --to a source and a folder")
+      ->add_option(
+          "PATH", arguments->paths,
+          "Text trees (.txt or .txt.bz2), or a .forest of an older version, and the .forest to write; with --to a "
+          "source and a folder")
       ->required()
       ->expected(2, 257);
   command->add_option("--to", arguments->format, "Write frames in this layout")
@@ -72,10 +76,11 @@ void add_convert(CLI::App& program) {
   command->footer(R"(
 Examples:
   vesalius convert tree_1.txt.bz2 tree_2.txt.bz2 released.forest
+  vesalius convert old.forest new.forest
   vesalius convert tum:walking frames/ --to folder)");
   command->callback([arguments] {
     if (arguments->format.empty()) {
-      convert_trees(arguments->paths, arguments->quiet);
+      convert_model(arguments->paths, arguments->quiet);
     } else {
       convert_frames(*arguments);
     }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -69,6 +70,12 @@ Json tree_facts(const Tree& tree) {
   return {{"depth", depth(tree)}, {"nodes", tree.nodes.size()}, {"leaves", tree.leaves.size()}};
 }
 
+/// Of the file, leaves and all included; null for a forest without nodes.
+Json bytes_per_node(std::size_t bytes, std::size_t nodes) {
+  if (nodes == 0) return nullptr;
+  return std::round(100.0 * static_cast<double>(bytes) / static_cast<double>(nodes)) / 100.0;
+}
+
 Json body_facts(const BodyModel& body) {
   Json parts = Json::array();
   for (const BodyPart& part : body.parts) parts.push_back(part.name);
@@ -81,7 +88,12 @@ Json model_facts(const std::string& path) {
   const std::string bytes = read_file(path);
   const Forest forest = parse_model(bytes, path);
   Json trees = Json::array();
-  for (const Tree& tree : forest.trees) trees.push_back(tree_facts(tree));
+  std::size_t nodes = 0, leaves = 0;
+  for (const Tree& tree : forest.trees) {
+    trees.push_back(tree_facts(tree));
+    nodes += tree.nodes.size();
+    leaves += tree.leaves.size();
+  }
   const FeatureConvention& c = forest.convention;
   return {{"model", path},
           {"size_bytes", bytes.size()},
@@ -96,6 +108,9 @@ Json model_facts(const std::string& path) {
             {"hole_mm", c.hole_mm},
             {"outside_mm", c.outside_mm},
             {"clip_mm", c.clip_mm}}},
+          {"nodes", nodes},
+          {"leaves", leaves},
+          {"bytes_per_node", bytes_per_node(bytes.size(), nodes)},
           {"trees", std::move(trees)}};
 }
 

@@ -8,16 +8,15 @@
 #include "cli/option_flags.h"
 #include "cli/progress.h"
 #include "cli/synth_assets.h"
+#include "cli/synth_recipe.h"
 #include "cli/text_sink.h"
 #include "draw/contact_sheet.h"
-#include "io/camera_file.h"
 #include "io/image_file.h"
 #include "io/labelled_dataset.h"
 #include "io/labelled_export.h"
 #include "io/labelled_frame_codec.h"
-#include "io/open_source.h"
-#include "io/options_file.h"
 #include "io/read_file.h"
+#include "synth/skeleton_joints.h"
 #include "vesalius/parallel.h"
 #include "vesalius/parallel_in_order.h"
 
@@ -40,49 +39,8 @@ struct Arguments {
   bool quiet = false;
 };
 
-VisitAll all_options(synth::Recipe& recipe) {
-  return [&recipe](OptionVisitor& visitor) { visit_options("", recipe, visitor); };
-}
-
-void set_camera(synth::SensorOptions& sensor, const std::string& path) {
-  SourceOptions options;
-  options.camera_file = path;
-  const CameraFacts facts = find_camera_facts(options, {});
-  if (!facts.fx) throw Error(path + ": expected a focal length, fx");
-  sensor.width = facts.width.value_or(sensor.width);
-  sensor.height = facts.height.value_or(sensor.height);
-  sensor.fx = *facts.fx;
-  sensor.fy = facts.fy.value_or(*facts.fx);
-  sensor.cx = facts.cx.value_or(sensor.cx);
-  sensor.cy = facts.cy.value_or(sensor.cy);
-}
-
-/// Defaults, then the mounting's, then the file, then flags.
-synth::Recipe make_recipe(const Arguments& arguments) {
-  const auto apply_file = [&](synth::Recipe& to) {
-    if (!arguments.recipe.empty()) read_options(arguments.recipe, all_options(to));
-  };
-  synth::Recipe asked;
-  apply_file(asked);
-  arguments.recipe_flags.apply(asked);
-  synth::Recipe recipe;
-  recipe.camera = synth::camera_placement(asked.mounting);
-  apply_file(recipe);
-  if (!arguments.sensor.empty()) recipe.sensor.preset = arguments.sensor;
-  if (!arguments.camera.empty()) set_camera(recipe.sensor, arguments.camera);
-  arguments.recipe_flags.apply(recipe);
-  check(recipe);
-  return recipe;
-}
-
 BodyModel body_of(const Arguments& arguments) {
   return arguments.body.empty() ? paper_body() : parse_body_model(read_file(arguments.body), arguments.body);
-}
-
-/// The recipe and what it was made with, as text: whoever has these files gets these frames.
-std::string full_recipe(synth::Recipe recipe, const LoadedAssets& loaded) {
-  return fmt::format("{}\n# vesalius {}\n# files: sha256 {}\n", options_toml(all_options(recipe)), VESALIUS_VERSION,
-                     loaded.sum);
 }
 
 /// Frames of the given range in order; `prepare` runs on all threads, `take` in this one.
@@ -131,7 +89,7 @@ void write_shards(const Arguments& arguments, const synth::Generator& generator,
 }
 
 void write_folder(const Arguments& arguments, const synth::Generator& generator, const BodyModel& body) {
-  LabelledExporter exporter(arguments.out, body);
+  LabelledExporter exporter(arguments.out, body, synth::joint_names());
   Progress progress(arguments.count, !arguments.quiet);
   make_frames(generator, static_cast<std::uint64_t>(arguments.first), arguments.count, progress, as_it_is,
               [&](std::uint64_t /*index*/, const LabelledFrame& frame) { exporter.write(frame); });
@@ -161,7 +119,10 @@ void check(const Arguments& arguments) {
 void run(const Arguments& arguments) {
   check(arguments);
   const ThreadLimit limit(arguments.threads);
-  const synth::Recipe recipe = make_recipe(arguments);
+  const synth::Recipe recipe = make_recipe({.file = arguments.recipe,
+                                            .sensor = arguments.sensor,
+                                            .camera = arguments.camera,
+                                            .flags = &arguments.recipe_flags});
   const BodyModel body = body_of(arguments);
   const LoadedAssets loaded =
       load_assets(recipe, {.folder = arguments.assets.empty() ? default_assets_folder() : arguments.assets,
@@ -179,6 +140,7 @@ void run(const Arguments& arguments) {
   info.recipe = full_recipe(recipe, loaded);
   info.seed = arguments.seed;
   info.frames = static_cast<std::uint64_t>(arguments.count);
+  info.joints = synth::joint_names();
   info.frames_per_shard = static_cast<std::uint32_t>(arguments.shard);
   write_shards(arguments, generator, info, body.part_count());
 }

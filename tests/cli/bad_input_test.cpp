@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "io/image_file.h"
+#include "io/model_file.h"
 #include "run_program.h"
 #include "small_world.h"
 
@@ -34,7 +35,7 @@ TEST_F(BadInput, Models) {
   const std::string good = bytes_of(model());
   write("cut.forest", good.substr(0, good.size() / 2));
   std::string newer = good;
-  newer[8] = 2;
+  newer[8] = static_cast<char>(kModelVersion + 1);
   write("newer.forest", newer);
   std::string damaged = good;
   damaged[good.size() / 2] = static_cast<char>(damaged[good.size() / 2] ^ 1);
@@ -44,7 +45,7 @@ TEST_F(BadInput, Models) {
   detect(frames(), path("none.forest"), "", 1, "none.forest");
   detect(frames(), path(""), "", 1, "");
   detect(frames(), path("cut.forest"), "", 1, "truncated model");
-  detect(frames(), path("newer.forest"), "", 1, "written by a newer version: format 2, this program reads up to 1");
+  detect(frames(), path("newer.forest"), "", 1, "written by a newer version: format 3, this program reads up to 2");
   detect(frames(), path("damaged.forest"), "", 1, "checksum does not match");
   detect(frames(), path("empty.forest"), "", 1, "empty file");
   detect(frames(), path("text.forest"), "", 1, "not a vesalius model");

@@ -59,6 +59,11 @@ TEST_F(Commands, InfoDescribesAModel) {
   EXPECT_EQ(facts.at("body").at("parts").size(), 25U);
   ASSERT_EQ(facts.at("trees").size(), forest.trees.size());
   EXPECT_EQ(facts.at("trees").at(1).at("nodes"), forest.trees[1].nodes.size());
+  std::size_t nodes = 0, leaves = 0;
+  for (const Tree& tree : forest.trees) nodes += tree.nodes.size(), leaves += tree.leaves.size();
+  EXPECT_EQ(facts.at("nodes"), nodes);
+  EXPECT_EQ(facts.at("leaves"), leaves);
+  EXPECT_NEAR(facts.at("bytes_per_node"), static_cast<double>(bytes.size()) / static_cast<double>(nodes), 0.0051);
   EXPECT_EQ(facts.at("trees").at(1).at("depth"), depth(forest.trees[1]));
   EXPECT_THAT(run_program("info " + model()).out, HasSubstr("  depth "));
 }
@@ -85,6 +90,12 @@ TEST_F(Commands, ConvertMakesAModelOfTextTrees) {
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_THAT(bad.err, StartsWith("vesalius: "));
   EXPECT_FALSE(std::filesystem::exists(path("bad.forest")));
+}
+
+TEST_F(Commands, ConvertWritesAModelAnew) {
+  const Outcome run = run_program("convert -q " + model() + " " + path("again.forest"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(bytes_of(path("again.forest")), bytes_of(model()));
 }
 
 TEST_F(Commands, ConvertedFramesGiveTheSamePeople) {

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/evaluate_set.h"
+#include "vesalius/body_model.h"
+#include "vesalius/detect.h"
+
+namespace vesalius::cli {
+
+/// Version of report.json that is written and the newest that is read.
+inline constexpr int kEvaluationVersion = 1;
+
+/// One run of `vesalius evaluate`.
+struct Evaluation {
+  std::string command;  ///< that repeats it
+  std::string model;    ///< path
+  std::string model_checksum;
+  DetectOptions options;
+  BodyModel body;
+  bool labels_only = false;
+  std::vector<SetResult> sets;
+};
+
+/// What a figure is called in tables, and its value: "97.2 %", "0.041 m".
+std::string figure_text(const Estimate& estimate);
+/// The same with its interval: "97.2 % (95.1-98.4)".
+std::string figure_with_interval(const Estimate& estimate);
+
+/// What a set came to, for standard output: one line, and one for each group of shares (parts, postures, joints).
+std::string summary_lines(const SetResult& set);
+
+/// report.json (docs/metrics.md): everything as numbers, what `vesalius compare` reads.
+std::string evaluation_json(const Evaluation& evaluation);
+/// One line for each figure of each set.
+std::string evaluation_csv(const Evaluation& evaluation);
+
+/// Makes `folder` if missing. Throws Error where it cannot, or where plots cannot be made: an evaluation takes long,
+/// and that should not turn out at its end.
+void prepare_report(const std::string& folder);
+
+/// Writes report.html, report.md with its pictures, report.json and figures.csv into a folder that was prepared.
+void write_report(const Evaluation& evaluation, const std::string& folder);
+
+/// The joint sets that the sets' truth was compared with, with the depth offsets fitted on the frames left out of the
+/// joints' figures (medians), as TOML. Throws Error where there was nothing to fit.
+std::string fitted_joints_toml(const Evaluation& evaluation);
+
+}  // namespace vesalius::cli

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
+
+namespace vesalius {
+
+/// What is known about a frame; what is not known is empty.
+struct FrameTruth {
+  int people = -1;             ///< exact number in view; -1: at least one
+  std::string posture;         ///< a word for what they do
+  Mask mask;                   ///< non-zero on the pixels of all people
+  Image<std::uint8_t> person;  ///< index of each pixel's person, kBackground elsewhere
+  LabelImage labels;           ///< part of each pixel, kBackground elsewhere
+  std::vector<std::string> joint_names;
+  std::vector<std::vector<Eigen::Vector3f>> joints;  ///< [person][joint]: metres, optical frame; NaN = not known
+};
+
+/// A frame with whatever is known about it.
+struct TrueFrame {
+  Frame frame;
+  FrameTruth truth;
+};
+
+}  // namespace vesalius

@@ -1,0 +1,212 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "io/image_file.h"
+#include "io/labelled_dataset.h"
+#include "run_program.h"
+#include "small_world.h"
+#include "vesalius/capsule_person.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null") == 0; }
+
+/// The small world's frames with a table of the people in them.
+class Evaluate : public SmallWorld {
+ protected:
+  void SetUp() override { write("frames/frames.csv", "frame,people,posture\na,1,standing\nb,1,\nc,0,empty\n"); }
+  void TearDown() override {
+    fs::remove_all(path("frames/mask"));
+    fs::remove_all(path("out"));
+  }
+
+  static Outcome evaluate(const std::string& more) {
+    return run_program("evaluate " + frames() + " -q -m " + model() + more);
+  }
+
+  /// A dataset of one frame with a person and one without.
+  static std::string dataset() {
+    const std::string folder = path("dataset");
+    if (fs::exists(folder)) return folder;
+    DatasetWriter writer(folder, {paper_body().toml, "two frames", 1, 2, 2});
+    const Camera camera{160, 120, 131.25F, 131.25F, 79.5F, 59.5F};
+    CapsuleScene scene;
+    scene.people.emplace_back();
+    writer.write(0, render(scene, camera, paper_body()));
+    writer.write(1, render({}, camera, paper_body()));
+    return folder;
+  }
+};
+
+TEST_F(Evaluate, PrintsWhatASetCameTo) {
+  const Outcome run = evaluate("");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out,
+              StartsWith("frames: 3 frames, people 2 of 2, false 0, somebody in 0 of 1 empty, body on empty "));
+  EXPECT_THAT(run.out, ContainsRegex("parts seen, %: l_foot [0-9]+, l_leg "));
+  EXPECT_THAT(run.out, HasSubstr("found by posture, %: standing 100\n"));
+}
+
+TEST_F(Evaluate, StepTakesTheFirstOfEveryN) {
+  EXPECT_THAT(evaluate(" --step 2").out, StartsWith("frames: 2 frames, people 1 of 1"));
+}
+
+TEST_F(Evaluate, LabelsOnly) {
+  const Outcome run = evaluate(" --labels-only");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, StartsWith("frames: 3 frames, body on empty "));
+  EXPECT_THAT(run.out, Not(HasSubstr("people")));
+}
+
+TEST_F(Evaluate, WritesReportWithPictures) {
+  if (!has_gnuplot()) GTEST_SKIP() << "no program gnuplot (Debian: gnuplot-nox)";
+  // So that somebody is missed:
+  const Outcome run = evaluate(" --refine.min-score 1 --no-refine.second-pass --report " + path("out"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string html = bytes_of(path("out/report.html"));
+  EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64,"));
+  EXPECT_THAT(html, HasSubstr("src=\"data:image/svg+xml;base64,"));
+  EXPECT_THAT(html, HasSubstr("1 of 1 people missed"));
+  EXPECT_THAT(html, HasSubstr("vesalius evaluate --no-refine.second-pass --refine.min-score 1 " + frames() +
+                              " --model " + model() + " --report " + path("out") + " --quiet"));
+  EXPECT_THAT(bytes_of(path("out/report.md")), HasSubstr("(<pictures/frames_a.png>)"));
+  EXPECT_FALSE(read_colour(path("out/pictures/frames_a.png")).empty());
+  EXPECT_THAT(bytes_of(path("out/pictures/frames_parts.svg")), HasSubstr("</svg>"));
+  EXPECT_THAT(bytes_of(path("out/figures.csv")), HasSubstr("\nframes,people.found,0,0,0.65"));
+  EXPECT_EQ(json::parse(bytes_of(path("out/report.json"))).at("sets").size(), 1U);
+}
+
+TEST_F(Evaluate, SameFiguresForAnyThreadCount) {
+  std::vector<json> sets;
+  for (const char* threads : {"1", "2", "5"}) {
+    ASSERT_EQ(evaluate(" --json " + path("t.json") + " --threads " + threads).exit_code, 0);
+    sets.push_back(json::parse(bytes_of(path("t.json"))).at("sets").at(0));
+    sets.back().erase("seconds");
+  }
+  EXPECT_EQ(sets[0], sets[1]);
+  EXPECT_EQ(sets[0], sets[2]);
+}
+
+TEST_F(Evaluate, DatasetsHaveFiguresOfPixelsPartsAndJoints) {
+  const Outcome run = run_program("evaluate " + dataset() + " -q -m " + model() + " --json " + path("d.json"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json set = json::parse(bytes_of(path("d.json"))).at("sets").at(0);
+  const json& figures = set.at("figures");
+  EXPECT_GT(figures.at("pixels.mean_recall_inside").at("value"), 0.2);
+  EXPECT_GE(figures.at("pixels.mean_recall_inside").at("value"), figures.at("pixels.mean_recall").at("value"));
+  EXPECT_GT(figures.at("pixels.person_iou").at("value"), 0.5);
+  EXPECT_TRUE(figures.contains("parts.right"));
+  EXPECT_FALSE(figures.contains("joints.at_10cm"));  // the only person is in a frame for fitting
+  EXPECT_EQ(set.at("confusion").size(), 26U);
+  EXPECT_EQ(set.at("curve_over_parts").size(), 25U);
+}
+
+TEST_F(Evaluate, AModelOfOtherParts) {
+  std::string toml = paper_body().toml;
+  for (std::size_t at = toml.find("l_foot"); at != toml.npos; at = toml.find("l_foot", at + 1)) toml[at + 2] = 'g';
+  DatasetWriter(path("other"), {toml, "", 1, 1, 1}).write(0, render({}, {16, 12, 10, 10, 8, 6}, paper_body()));
+  const Outcome run = run_program("evaluate " + path("other") + " -q -m " + model());
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("part 0 is l_goot, in the model l_foot"));
+}
+
+TEST_F(Evaluate, ADamagedFrameInTheMiddle) {
+  const std::string file = path("frames/depth/b.png");
+  const std::string good = bytes_of(file);
+  write("frames/depth/b.png", good.substr(0, good.size() / 2));
+  const Outcome stops = evaluate(" --json " + path("out.json"));
+  const Outcome goes_on = evaluate(" --keep-going --json " + path("out.json") + ".2");
+  write("frames/depth/b.png", good);
+  EXPECT_EQ(stops.exit_code, 1);
+  EXPECT_THAT(stops.err, HasSubstr("b.png: "));
+  EXPECT_EQ(stops.out, "");
+  EXPECT_FALSE(fs::exists(path("out.json")));
+  EXPECT_EQ(goes_on.exit_code, 1);
+  EXPECT_THAT(goes_on.err, HasSubstr("b.png: "));
+  EXPECT_THAT(goes_on.err, HasSubstr("1 frames failed"));
+  EXPECT_THAT(goes_on.out, StartsWith("frames: 2 frames, people 1 of 1, false 0, somebody in 0 of 1 empty, 1 failed"));
+  const json set = json::parse(bytes_of(path("out.json.2"))).at("sets").at(0);
+  EXPECT_EQ(set.at("failed"), 1);
+  EXPECT_THAT(set.at("failures").at(0).get<std::string>(), HasSubstr("b.png"));
+}
+
+TEST_F(Evaluate, TruthThatCannotBeUsed) {
+  const auto error = [](const std::string& more) {
+    const Outcome run = evaluate(more);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    return run.err;
+  };
+  write("frames/frames.csv", "frame,persons\na,1\n");
+  EXPECT_THAT(error(""), HasSubstr("frames.csv: no column \"people\" in the header"));
+  write("frames/frames.csv", "frame,people\na,1\nc,0\n");
+  EXPECT_THAT(error(""), HasSubstr("nothing is known of frame b"));
+  fs::remove(path("frames/frames.csv"));
+  EXPECT_THAT(error(""), HasSubstr("no truth, expected frames.csv"));
+  SetUp();
+  fs::create_directories(path("frames/mask"));
+  write_png(Image<std::uint8_t>(8, 6, 1), path("frames/mask/b.png"));
+  EXPECT_THAT(error(""), HasSubstr("mask/b.png: 8x6 pixels, expected those of the frame, 320x240"));
+  EXPECT_EQ(run_program("evaluate " + frames() + " " + frames() + " -m " + model()).exit_code, 2);
+  EXPECT_THAT(run_program("evaluate /nowhere -m " + model()).err, HasSubstr("/nowhere: "));
+}
+
+TEST_F(Evaluate, JointsAreFittedOnFramesThatDoNotCount) {
+  write("frames/joints.csv",
+        "frame,joint,x_m,y_m,z_m\na,head,0,-0.6,2.5\na,l_knee,0.1,0.5,2.5\nb,head,0,-0.6,2.5\nb,l_knee,0.1,0.5,2.5\n");
+  const Outcome run = evaluate(" --json " + path("j.json") + " --fit-joints " + path("j.toml"));
+  fs::remove(path("frames/joints.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json figures = json::parse(bytes_of(path("j.json"))).at("sets").at(0).at("figures");
+  EXPECT_EQ(figures.at("joints.at_10cm").at("denominator"), 2.0);  // of frame b
+  const std::string toml = bytes_of(path("j.toml"));
+  EXPECT_THAT(toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
+  const BodyModel body = parse_body_model(
+      paper_body().toml + "\n" + bytes_of(VESALIUS_SOURCE_DIR "/data/joints/evaluation.toml"), "joints");
+  EXPECT_EQ(body.joint_sets.size(), paper_body().joint_sets.size() + 2);
+}
+
+class Compare : public Evaluate {};
+
+TEST_F(Compare, SaysWhatGotWorse) {
+  ASSERT_EQ(evaluate(" --json " + path("good.json")).exit_code, 0);
+  ASSERT_EQ(evaluate(" --json " + path("bad.json") + " --refine.min-score 1").exit_code, 0);
+  const Outcome same = run_program("compare " + path("good.json") + " " + path("good.json"));
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.out, HasSubstr("\n0 better, 0 worse, "));
+  const Outcome worse = run_program("compare " + path("good.json") + " " + path("bad.json"));
+  EXPECT_THAT(worse.out, ContainsRegex("people.found +100.00 % -> +0.00 % +-100.00 % .* WORSE"));
+  EXPECT_THAT(run_program("compare --all " + path("good.json") + " " + path("bad.json")).out, HasSubstr("  same\n"));
+}
+
+TEST_F(Compare, RefusesWhatIsNoEvaluation) {
+  ASSERT_EQ(evaluate(" --json " + path("good.json")).exit_code, 0);
+  const auto error = [](const std::string& text) {
+    write("x.json", text);
+    const Outcome run = run_program("compare " + path("good.json") + " " + path("x.json"));
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    return run.err;
+  };
+  EXPECT_THAT(error(""), HasSubstr("x.json: no evaluation"));
+  EXPECT_THAT(error("[1]"), HasSubstr("x.json: no evaluation"));
+  EXPECT_THAT(error(R"({"vesalius_evaluation": 99})"), HasSubstr("x.json: version 99, expected 1"));
+  EXPECT_THAT(error(R"({"vesalius_evaluation": 1})"), HasSubstr("x.json: damaged evaluation"));
+  EXPECT_THAT(error(R"({"vesalius_evaluation": 1, "sets": []})"), HasSubstr("no set in common"));
+  EXPECT_THAT(
+      error(R"({"vesalius_evaluation": 1, "sets": [{"name": "frames", "frames_key": "0", "figures": {"a": 3}}]})"),
+      HasSubstr("damaged evaluation"));
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,95 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "io/model_file.h"
+#include "run_program.h"
+#include "small_frames.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Runs the commands of docs/retrain.md in a folder of its own, on frames few and small enough for a test.
+class Retrain : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / ("vesalius_retrain_" + std::to_string(::getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    fs::copy(fs::path(VESALIUS_SOURCE_DIR) / "data/bodies/upper_body.toml", folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Lines that begin with "vesalius" within the blocks of the tutorial, without that word.
+  static std::vector<std::string> commands() {
+    std::ifstream file(fs::path(VESALIUS_SOURCE_DIR) / "docs/retrain.md");
+    std::vector<std::string> commands;
+    bool block = false;
+    for (std::string line; std::getline(file, line);) {
+      if (line.starts_with("```")) block = !block;
+      if (block && line.starts_with("vesalius ")) commands.push_back(line.substr(9));
+    }
+    return commands;
+  }
+
+  /// The command at the size of a test, its files in the test's folder; nothing is fetched.
+  std::string small(std::string command) const {
+    for (const char* name :
+         {"ceiling/", "empty/", "unseen/", "upper/", "people/", "found/", "report/", "look.png", "parts.png",
+          "people.jsonl", "hands.jsonl", "ceiling.forest", "upper.forest", "upper_body.toml"}) {
+      replace_word(command, name, path(name));
+    }
+    replace_word(command, "20000", "150");
+    replace_word(command, "100", "3");
+    replace_word(command, "24", "3");
+    if (command.starts_with("synth ")) command += std::string(" -q") + kSmallFrames + kEasyFrames;
+    if (command.starts_with("train ")) command += " --trees 3 --hard-trees 1 --depth 10 --held-out-share 0.1";
+    return command;
+  }
+
+ private:
+  static void replace_word(std::string& text, const std::string& word, const std::string& by) {
+    std::istringstream words(text);
+    std::string replaced;
+    for (std::string each; words >> each;) replaced += (replaced.empty() ? "" : " ") + (each == word ? by : each);
+    text = replaced;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Retrain, TheTutorialsCommandsWork) {
+  ASSERT_EQ(
+      run_program("synth -q --count 5 --seed 9 --format folder --out " + path("empty/") + kSmallFrames + kEmptyFrames)
+          .exit_code,
+      0);
+  int trained = 0;
+  for (const std::string& command : commands()) {
+    if (command.starts_with("assets ")) continue;
+    SCOPED_TRACE(command);
+    const Outcome run = run_program(small(command));
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    if (!command.starts_with("train ") || command.ends_with("--estimate")) continue;
+    EXPECT_GT(accuracy_in(run.err), 0.25) << "chance is at most 0.06: " << run.err;
+    ++trained;
+  }
+  EXPECT_EQ(trained, 2);
+  EXPECT_EQ(load_model(path("ceiling.forest")).body.name, "paper25");
+  EXPECT_EQ(load_model(path("upper.forest")).body.name, "upper_body");
+  for (const char* made : {"look.png", "parts.png", "report/report.html", "people.jsonl", "hands.jsonl"}) {
+    EXPECT_FALSE(bytes_of(path(made)).empty()) << made;
+  }
+}
+
+}  // namespace
+}  // namespace vesalius
