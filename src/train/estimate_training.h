@@ -11,6 +11,8 @@
 //                                      + sum over mixed leaves of n' x min(k log2(S/S'), depth - level))
 // scaled by what the first sum says of the pilot beside what it did. The rate is the pilot's: grow_tree reads frames in
 // order once a level, so it matters that the pilot's frames outgrow the caches, not that they are as many as the run's.
+// Trainings on 1000, 2000, 4000, 6000 and 8000 frames of 320x240 (synthetic, depth 20, 50 candidates) made 3 to 7 %
+// more or less evaluations than this says.
 
 #include <cstdint>
 #include <vector>
