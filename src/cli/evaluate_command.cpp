@@ -63,7 +63,11 @@ bool has_set(const BodyModel& body, const std::string& name) {
 
 /// The joints that data sets have, put to the body's own; a body of other parts goes without.
 BodyModel with_joints(const BodyModel& body, const std::string& joints_file) {
-  if (!joints_file.empty()) return parse_body_model(body.toml + "\n" + read_file(joints_file), joints_file);
+  if (!joints_file.empty()) {
+    const auto lines = std::ranges::count(body.toml, '\n') + 1;
+    return parse_body_model(body.toml + "\n" + read_file(joints_file),
+                            fmt::format("{}, after the {} lines of the model's body", joints_file, lines));
+  }
   if (has_set(body, "kinect20") || has_set(body, "part_centres")) return body;
   for (const BodyPart& part : paper_body().parts) {
     if (body.find_part(part.name) < 0) return body;

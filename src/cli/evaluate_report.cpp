@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kScoreSteps = 50;
-
 /// Figures of the table at the top.
 constexpr std::array<std::pair<const char*, const char*>, 9> kOverview{
     {{"people.found", "people found"},

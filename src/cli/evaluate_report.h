@@ -12,6 +12,9 @@ namespace vesalius::cli {
 /// Version of report.json that is written and the newest that is read.
 inline constexpr int kEvaluationVersion = 1;
 
+/// Steps of the curve over the score.
+inline constexpr int kScoreSteps = 50;
+
 /// One run of `vesalius evaluate`.
 struct Evaluation {
   std::string command;  ///< that repeats it

@@ -46,9 +46,9 @@ struct SetRequest {
   std::size_t worst = 3;  ///< how many frames to keep
 };
 
-/// Scores all frames of a source on all threads allowed; what it holds does not grow with their number, but for 20
-/// bytes a proposal. Throws Error for a source that cannot be opened, for labels of other parts than the model's, for
-/// the first frame that fails (unless it is to keep going) and when interrupted.
+/// Scores all frames of a source on all threads allowed; what it holds does not grow with their number, but for the
+/// 28 bytes of a judged proposal. Throws Error for a source that cannot be opened, for labels of other parts than the
+/// model's, for the first frame that fails (unless it is to keep going) and when interrupted.
 SetResult evaluate_set(const SetRequest& request, const FrameScorer& scorer, Progress& progress);
 
 }  // namespace vesalius::cli

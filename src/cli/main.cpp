@@ -45,6 +45,7 @@ Examples:
   vesalius detect frames/ --model capsule.forest                    what is found, a line per frame
   vesalius detect frames/ --model capsule.forest --json people.jsonl --out pictures/
   vesalius info capsule.forest                                      what is in a model
+  vesalius train --data train/ --out my.forest                      a model of your own
   vesalius detect --help                                            everything about one command
 
 Exit codes: 0 done, 1 failed, 2 wrong usage.)");

@@ -32,7 +32,7 @@ constexpr std::array<Style, 8> kStyles{{{"#000000", 1, 7},
                                         {"#555555", 4, 12}}};
 
 /// A gnuplot string: in single quotes nothing but the quote itself means anything.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "'";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -79,8 +79,8 @@ std::string header(const LinePlot& plot) {
       "set encoding utf8\n"
       "set terminal svg size 720,440 dynamic noenhanced background rgb 'white' font 'sans-serif,13'\n"
       "set grid lc rgb '#cccccc' lw 0.6 dt 1\nset border 3\nset tics nomirror\n";
-  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(plot.title), quoted(plot.x_label),
-                        quoted(plot.y_label));
+  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", in_quotes(plot.title), in_quotes(plot.x_label),
+                        in_quotes(plot.y_label));
   script += plot.series.size() > 1 ? "set key outside right top reverse Left samplen 4\n" : "set key off\n";
   if (plot.log_x) script += "set logscale x\n";
   if (plot.x_range) script += fmt::format("set xrange [{}:{}]\n", plot.x_range->low, plot.x_range->high);
@@ -101,9 +101,9 @@ std::string drawn(const PlotSeries& series, std::size_t index) {
   const Style& style = kStyles[index % kStyles.size()];
   const std::string look =
       fmt::format("with linespoints lw 1.6 dt {} pt {} ps 0.6 lc rgb '{}'", style.dash, style.point, style.colour);
-  if (!has_points(series)) return fmt::format("keyentry {} title {}", look, quoted(series.name));
+  if (!has_points(series)) return fmt::format("keyentry {} title {}", look, in_quotes(series.name));
   return fmt::format("$s{} using 1:2 {} pointinterval {} title {}", index, look, series.points.size() / kMarks + 1,
-                     quoted(series.name));
+                     in_quotes(series.name));
 }
 
 std::string gnuplot_script(const LinePlot& plot) {

@@ -55,7 +55,7 @@ AsfSkeleton AsfParser::parse() {
     } else if (word[0] == ':') {
       section(word);
     } else {
-      scan_.fail(fmt::format("expected a section such as :bonedata, found {}", quoted(word)));
+      scan_.fail(fmt::format("expected a section such as :bonedata, found {}", in_quotes(word)));
     }
   }
   if (!has_root_) scan_.fail("expected a section :root before the end");
@@ -90,7 +90,7 @@ void AsfParser::units() {
     const std::string_view value = scan_.word("the value of a unit");
     if (key != "angle") continue;
     if (!value.starts_with("deg") && !value.starts_with("rad")) {
-      scan_.fail(fmt::format("angle: expected deg or rad, found {}", quoted(value)));
+      scan_.fail(fmt::format("angle: expected deg or rad, found {}", in_quotes(value)));
     }
     skeleton_.degrees = value.starts_with("deg");
   }
@@ -111,7 +111,7 @@ void AsfParser::root() {
     } else if (key == "orientation") {
       orientation = triple("the root's orientation");
     } else {
-      scan_.fail(fmt::format("expected order, axis, position or orientation, found {}", quoted(key)));
+      scan_.fail(fmt::format("expected order, axis, position or orientation, found {}", in_quotes(key)));
     }
   }
   bone.axis = turned(orientation, bone.turn_order);
@@ -134,7 +134,7 @@ void AsfParser::bone() {
     bone_value(key, read);
   }
   if (read.name.empty()) scan_.fail("a bone without a name");
-  if (find(read.name) >= 0) scan_.fail(fmt::format("a second bone called {}", quoted(read.name)));
+  if (find(read.name) >= 0) scan_.fail(fmt::format("a second bone called {}", in_quotes(read.name)));
   if (skeleton_.bones.size() == kMaxMotionJoints) scan_.fail(fmt::format("more than {} bones", kMaxMotionJoints));
   skeleton_.bones.push_back(std::move(read));
 }
@@ -158,13 +158,13 @@ void AsfParser::bone_value(std::string_view key, AsfBone& bone) {
   } else if (std::ranges::find(kBoneKeys, key) != kBoneKeys.end()) {
     while (!scan_.at_end() && std::ranges::find(kBoneKeys, scan_.peek()) == kBoneKeys.end()) scan_.word(key);
   } else {
-    scan_.fail(fmt::format("expected a property of a bone such as axis, found {}", quoted(key)));
+    scan_.fail(fmt::format("expected a property of a bone such as axis, found {}", in_quotes(key)));
   }
 }
 
 int AsfParser::dof(std::string_view word) const {
   const auto* found = std::ranges::find_if(kDofs, [&](auto known) { return same_word(word, known); });
-  if (found == kDofs.end()) scan_.fail(fmt::format("expected tx, ty, tz, rx, ry, rz or l, found {}", quoted(word)));
+  if (found == kDofs.end()) scan_.fail(fmt::format("expected tx, ty, tz, rx, ry, rz or l, found {}", in_quotes(word)));
   return static_cast<int>(found - kDofs.begin());
 }
 
@@ -175,7 +175,7 @@ std::array<int, 3> AsfParser::turn_order() {
   std::array<int, 3> sorted = order;
   std::ranges::sort(sorted);
   if (word.size() != 3 || sorted != std::array<int, 3>{0, 1, 2}) {
-    scan_.fail(fmt::format("expected an order of axes such as XYZ, found {}", quoted(word)));
+    scan_.fail(fmt::format("expected an order of axes such as XYZ, found {}", in_quotes(word)));
   }
   return order;
 }
@@ -205,7 +205,7 @@ void AsfParser::hierarchy() {
   while (scan_.peek() != "end") {
     const std::string_view word = scan_.word("a bone or end");
     const int parent = find(word);
-    if (parent < 0) scan_.fail(fmt::format("no bone is called {}", quoted(word)));
+    if (parent < 0) scan_.fail(fmt::format("no bone is called {}", in_quotes(word)));
     while (!scan_.at_line_end()) link(parent, scan_.word("a bone"));
   }
   scan_.expect("end");
@@ -213,9 +213,9 @@ void AsfParser::hierarchy() {
 
 void AsfParser::link(int parent, std::string_view child) {
   const int found = find(child);
-  if (found < 0) scan_.fail(fmt::format("no bone is called {}", quoted(child)));
+  if (found < 0) scan_.fail(fmt::format("no bone is called {}", in_quotes(child)));
   AsfBone& bone = skeleton_.bones[static_cast<std::size_t>(found)];
-  if (found == 0 || bone.parent >= 0) scan_.fail(fmt::format("bone {} hangs from two others", quoted(child)));
+  if (found == 0 || bone.parent >= 0) scan_.fail(fmt::format("bone {} hangs from two others", in_quotes(child)));
   bone.parent = parent;
   children_[static_cast<std::size_t>(parent)].push_back(found);
 }
@@ -234,7 +234,7 @@ void AsfParser::sort_parents_first() {
   }
   for (std::size_t i = 0; i < new_index.size(); ++i) {
     if (new_index[i] < 0)
-      scan_.fail(fmt::format("bone {} does not hang from the root", quoted(skeleton_.bones[i].name)));
+      scan_.fail(fmt::format("bone {} does not hang from the root", in_quotes(skeleton_.bones[i].name)));
   }
   skeleton_.bones = std::move(sorted);
 }

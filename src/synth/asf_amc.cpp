@@ -87,20 +87,20 @@ void AmcParser::bone_line() {
   const std::string_view name = scan_.word("a bone");
   const auto found = index_.find(name);
   if (found == index_.end()) {
-    scan_.fail(fmt::format("bone {} is not in the skeleton {}", quoted(name), skeleton_.name));
+    scan_.fail(fmt::format("bone {} is not in the skeleton {}", in_quotes(name), skeleton_.name));
   }
   Values& values = values_[found->second];
-  if (values.given) scan_.fail(fmt::format("bone {} stands twice in a frame", quoted(name)));
+  if (values.given) scan_.fail(fmt::format("bone {} stands twice in a frame", in_quotes(name)));
   values.given = true;
   const std::vector<int>& dofs = skeleton_.bones[found->second].dofs;
   for (std::size_t i = 0; i < dofs.size(); ++i) {
     if (scan_.at_line_end()) {
-      scan_.fail(fmt::format("bone {}: expected {} numbers, found {}", quoted(name), dofs.size(), i));
+      scan_.fail(fmt::format("bone {}: expected {} numbers, found {}", in_quotes(name), dofs.size(), i));
     }
     values.by_dof[static_cast<std::size_t>(dofs[i])] = scan_.number("an angle or a position");
   }
   if (!scan_.at_line_end()) {
-    scan_.fail(fmt::format("bone {}: expected {} numbers, found more", quoted(name), dofs.size()));
+    scan_.fail(fmt::format("bone {}: expected {} numbers, found more", in_quotes(name), dofs.size()));
   }
 }
 

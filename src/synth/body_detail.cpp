@@ -31,8 +31,8 @@ Pose half_bent() {
 }  // namespace
 
 BodyDetail::BodyDetail(const Poser& poser) {
-  levels_ =
-      simplify(*poser.mesh().topology, poser.pose(half_bent()).vertices, {0.0005F, 0.0008F, 0.0013F, 0.002F, 0.0032F});
+  levels_ = simplify(*poser.mesh().topology, poser.pose(half_bent()).vertices,
+                     {0.0005F, 0.0008F, 0.0013F, 0.002F, 0.0032F, 0.005F});
 }
 
 const CoarseSurface* BodyDetail::within(float error_m) const {

@@ -63,7 +63,7 @@ void BvhParser::hierarchy() {
     } else if (word == "}") {
       open.pop_back();
     } else {
-      scan_.fail(fmt::format("expected JOINT, End or }}, found {}", quoted(word)));
+      scan_.fail(fmt::format("expected JOINT, End or }}, found {}", in_quotes(word)));
     }
   }
 }
@@ -74,7 +74,7 @@ void BvhParser::joint(int parent) {
   }
   MotionJoint read;
   read.name = scan_.word("the name of a joint");
-  if (motion_.find_joint(read.name) >= 0) scan_.fail(fmt::format("a second joint called {}", quoted(read.name)));
+  if (motion_.find_joint(read.name) >= 0) scan_.fail(fmt::format("a second joint called {}", in_quotes(read.name)));
   read.parent = parent;
   scan_.expect("{");
   read.offset = offset();
@@ -105,7 +105,7 @@ void BvhParser::channels() {
     const auto* found = std::ranges::find_if(kChannelNames, [&](auto known) { return same_word(word, known); });
     if (found == kChannelNames.end()) {
       scan_.fail(
-          fmt::format("channel {} of {}: expected Xposition ... Zrotation, found {}", i + 1, count, quoted(word)));
+          fmt::format("channel {} of {}: expected Xposition ... Zrotation, found {}", i + 1, count, in_quotes(word)));
     }
     const int channel = static_cast<int>(found - kChannelNames.begin());
     if (std::ranges::find(read, channel) != read.end()) scan_.fail(fmt::format("channel {} stands twice", word));

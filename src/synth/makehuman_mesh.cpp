@@ -20,7 +20,7 @@ std::uint32_t corner(const TextScanner& scan, std::string_view word, std::size_t
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size() || value < 1 || value > vertex_count) {
-    scan.fail(fmt::format("expected a vertex number from 1 to {}, found {}", vertex_count, quoted(word)));
+    scan.fail(fmt::format("expected a vertex number from 1 to {}, found {}", vertex_count, in_quotes(word)));
   }
   return value - 1;
 }

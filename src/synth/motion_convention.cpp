@@ -53,7 +53,7 @@ class ConventionReader {
       if (std::ranges::find(known, key.str()) != known.end()) continue;
       std::string list;
       for (const std::string_view k : known) list.append(list.empty() ? "" : ", ").append(k);
-      fail(node, fmt::format("unknown key {}, expected {}", quoted(key.str()), list));
+      fail(node, fmt::format("unknown key {}, expected {}", in_quotes(key.str()), list));
     }
   }
   const toml::node& need(const toml::table& table, std::string_view key) const {
@@ -68,7 +68,7 @@ class ConventionReader {
   }
   int bone(const toml::node& node, std::string_view bone_name) const {
     const int found = find_bone(bone_name);
-    if (found < 0) fail(node, fmt::format("no bone is called {}", quoted(bone_name)));
+    if (found < 0) fail(node, fmt::format("no bone is called {}", in_quotes(bone_name)));
     return found;
   }
   BoneSource source(const toml::node& node) const {
@@ -115,7 +115,7 @@ MotionConvention parse_convention(std::string_view toml, const std::string& name
   try {
     root = toml::parse(toml);
   } catch (const toml::parse_error& e) {
-    throw Error(fmt::format("{}:{}: not valid TOML: {}", name, e.source().begin.line, quoted(e.description())));
+    throw Error(fmt::format("{}:{}: not valid TOML: {}", name, e.source().begin.line, in_quotes(e.description())));
   }
   return ConventionReader(name).read(root);
 }

@@ -100,7 +100,7 @@ float fps_of(const CsvRows& rows, const std::string& text) {
   float fps = 0.F;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), fps);
   if (error != std::errc() || end != text.data() + text.size() || !(fps > 0.F && fps <= 1e4F)) {
-    rows.fail(fmt::format("fps: expected a number above 0, found {}", quoted(text)));
+    rows.fail(fmt::format("fps: expected a number above 0, found {}", in_quotes(text)));
   }
   return fps;
 }

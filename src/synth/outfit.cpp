@@ -42,8 +42,9 @@ Material cloth(Random& random) {
               : pattern < 0.85F ? Texture::checks
                                 : Texture::speckle;
   m.period_m = uniform(random, 0.015F, 0.12F);
-  m.infrared = uniform(random, 0.35F, 0.9F);                             // dyes let infrared through
-  if (chance(random, 0.08F)) m.infrared = uniform(random, 0.05F, 0.2F);  // leather and some blacks do not
+  m.infrared = uniform(random, 0.35F, 0.9F);  // dyes let infrared through
+  // Leather and many blacks do not: trousers without any depth are common in public frames.
+  if (chance(random, 0.2F)) m.infrared = std::exp(uniform(random, std::log(0.01F), std::log(0.2F)));
   return m;
 }
 

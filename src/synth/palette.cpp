@@ -62,6 +62,10 @@ Material sample_material(Stuff stuff, Random& random) {
   material.colour = from_hsv(hue, saturation, value);
   material.second = material.colour;
   material.infrared = between(range.infrared_low, range.infrared_high, random);
+  // Leather and black cloth: whole sofas are without depth in real frames.
+  if (stuff == Stuff::cloth && chance(0.2, random)) {
+    material.infrared = static_cast<float>(std::exp(random.uniform(std::log(0.01), std::log(0.2))));
+  }
   material.period_m = between(range.period_low_m, range.period_high_m, random);
   if (!chance(range.pattern, random)) return material;
   constexpr std::array<Texture, 3> kPatterns = {Texture::stripes, Texture::checks, Texture::speckle};

@@ -65,14 +65,14 @@ Pose pose_of(const Motion& motion, const Sources& sources, int frame) {
 void check_fit(const Motion& motion, const MotionConvention& convention) {
   const std::string missing = missing_joint(motion, convention);
   if (!missing.empty()) {
-    throw Error(fmt::format("{}: no joint is called {}, which convention {} expects", motion.name, quoted(missing),
+    throw Error(fmt::format("{}: no joint is called {}, which convention {} expects", motion.name, in_quotes(missing),
                             convention.name));
   }
   for (const BoneSource& bone : convention.bones) {
     if (bone.rest != RestRule::aim) continue;
     if (motion.joints[static_cast<std::size_t>(motion.find_joint(bone.from[0]))].along.isZero()) {
       throw Error(fmt::format("{}: joint {} has no direction: expected a child apart from it", motion.name,
-                              quoted(bone.from[0])));
+                              in_quotes(bone.from[0])));
     }
   }
 }
@@ -82,7 +82,7 @@ const MotionConvention& find_convention(const Motion& motion, const std::vector<
   for (const MotionConvention& convention : conventions) {
     const std::string missing = missing_joint(motion, convention);
     if (missing.empty()) return convention;
-    tried += fmt::format("{}{} (no joint {})", tried.empty() ? "" : ", ", convention.name, quoted(missing));
+    tried += fmt::format("{}{} (no joint {})", tried.empty() ? "" : ", ", convention.name, in_quotes(missing));
   }
   throw Error(fmt::format("{}: its joints fit none of the conventions known: {}", motion.name, tried));
 }

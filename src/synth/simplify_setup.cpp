@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "synth/simplifier.h"
 
 namespace vesalius::synth {
@@ -28,10 +30,13 @@ Simplifier::Simplifier(const BodyTopology& topology, const std::vector<Eigen::Ve
 }
 
 void Simplifier::link_corners() {
+  std::ranges::fill(first_, kNone);
   for (std::uint32_t c = 0; c < next_.size(); ++c) {
+    if (alive_[c / 3] == 0) continue;
     const std::uint32_t v = triangles_[c / 3][c % 3];
     (first_[v] == kNone ? first_[v] : next_[last_[v]]) = c;
     last_[v] = c;
+    next_[c] = kNone;
   }
 }
 

@@ -32,7 +32,7 @@ std::string shown(std::string_view text) {
   return text.size() > kMaxShown ? out + "..." : out;
 }
 
-std::string quoted(std::string_view text) { return fmt::format("\"{}\"", shown(text)); }
+std::string in_quotes(std::string_view text) { return fmt::format("\"{}\"", shown(text)); }
 
 bool same_word(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
@@ -67,7 +67,7 @@ std::string_view TextScanner::word(std::string_view what) {
 
 void TextScanner::expect(std::string_view expected) {
   const std::string_view found = word(expected);
-  if (found != expected) fail(fmt::format("expected {}, found {}", expected, quoted(found)));
+  if (found != expected) fail(fmt::format("expected {}, found {}", expected, in_quotes(found)));
 }
 
 double TextScanner::number(std::string_view what) {
@@ -80,7 +80,7 @@ double TextScanner::number(std::string_view what) {
     return 0.0;
   }
   if (error != std::errc() || end != found.data() + found.size() || !(std::abs(value) <= kMaxNumber)) {
-    fail(fmt::format("expected {} (a number up to {:g}), found {}", what, kMaxNumber, quoted(found)));
+    fail(fmt::format("expected {} (a number up to {:g}), found {}", what, kMaxNumber, in_quotes(found)));
   }
   return value;
 }
@@ -90,7 +90,7 @@ int TextScanner::whole(std::string_view what, int low, int high) {
   int value = 0;
   const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
   if (error != std::errc() || end != found.data() + found.size() || value < low || value > high) {
-    fail(fmt::format("expected {} (a whole number from {} to {}), found {}", what, low, high, quoted(found)));
+    fail(fmt::format("expected {} (a whole number from {} to {}), found {}", what, low, high, in_quotes(found)));
   }
   return value;
 }

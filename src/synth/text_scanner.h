@@ -43,7 +43,7 @@ class TextScanner {
 
 /// A stranger's text cut to a length and characters fit for a one-line message, bare and between quotes.
 std::string shown(std::string_view text);
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// Whether the two are the same but for the case of ASCII letters.
 bool same_word(std::string_view a, std::string_view b);

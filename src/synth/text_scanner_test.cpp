@@ -58,7 +58,7 @@ TEST(TextScanner, NamesLineAndExpectation) {
 TEST(TextScanner, ShowsStrangersTextOnOneShortLine) {
   EXPECT_EQ(shown("a\nb\x1b[1m\xff"), "a?b?[1m?");
   EXPECT_EQ(shown(std::string(100, 'x')), std::string(40, 'x') + "...");
-  EXPECT_EQ(quoted("a\tb"), "\"a?b\"");
+  EXPECT_EQ(in_quotes("a\tb"), "\"a?b\"");
 }
 
 TEST(TextScanner, ComparesWordsWhateverTheirCase) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "train/grow_forest.h"
@@ -51,9 +52,11 @@ class SampleAccuracyTest : public testing::Test {
 TEST_F(SampleAccuracyTest, CountsWhatTheDetectorsLabellerSays) {
   const ForestLabeller labeller(forest_);
   Confusion all(26), parts(25);
+  std::map<std::uint32_t, Posteriors> of_frame;
   for (const TrainingSample& sample : set_->held_out()) {
-    const LabelledFrame& frame = frames_[sample.frame];
-    const Posteriors posteriors = labeller.label(frame.frame.depth, frame.frame.camera);
+    const Frame& frame = frames_[sample.frame].frame;
+    if (!of_frame.contains(sample.frame)) of_frame[sample.frame] = labeller.label(frame.depth, frame.camera);
+    const Posteriors& posteriors = of_frame[sample.frame];
     const std::uint16_t* sums = posteriors.at(sample.u, sample.v);
     ++all.at(sample.label, static_cast<int>(std::max_element(sums, sums + 26) - sums));
     if (sample.label < 25) ++parts.at(sample.label, static_cast<int>(std::max_element(sums, sums + 25) - sums));

@@ -6,15 +6,16 @@
 
 #include "train/frame_store.h"
 #include "train/prune_tree.h"
+#include "train/split_histogram.h"
 
 namespace vesalius {
 namespace {
 
 constexpr std::uint64_t kGrowing = 2;  ///< capacity of a vector for each element in it, at worst
 constexpr std::uint64_t kMostRowBytes = std::uint64_t{512} << 20U;  ///< values that grow_tree holds at a time
-constexpr std::uint64_t kRowBytes = 128 + 5;     ///< a sample's values for 64 candidates; its label, number
-constexpr std::uint64_t kPerSample = 4 + 4 + 1;  ///< its node, row and side
-constexpr double kEmptyShare = 0.2;              ///< of synthetic frames, at most; their pool is larger
+constexpr std::uint64_t kRowBytes = 2 * kBlockCandidates + 5;       ///< a sample's values; its label and number
+constexpr std::uint64_t kPerSample = 4 + 4 + 1;                     ///< its node, row and side
+constexpr double kEmptyShare = 0.2;  ///< of synthetic frames, at most; their pool is larger
 constexpr double kEmptyPool = 4.0;
 
 double background_share(const FrameGroup& group, const TrainOptions& options) {

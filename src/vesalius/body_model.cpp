@@ -23,7 +23,7 @@ constexpr std::string_view kPaperBody =
     ;
 
 /// Text of a stranger's file, fit for a one-line message.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text.substr(0, kMaxName)) out += (c >= ' ' && c != '\x7f') ? c : '?';
   return out + (text.size() > kMaxName ? "...\"" : "\"");
@@ -43,7 +43,7 @@ class Reader {
       if (std::ranges::find(known, key.str()) != known.end()) continue;
       std::string list;
       for (const std::string_view k : known) list.append(list.empty() ? "" : ", ").append(k);
-      fail(node, "unknown key " + quoted(key.str()) + ", expected " + list);
+      fail(node, "unknown key " + in_quotes(key.str()) + ", expected " + list);
     }
   }
 
@@ -78,7 +78,7 @@ class Reader {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
     };
     if (value.empty() || value.size() > kMaxName || !std::ranges::all_of(value, allowed)) {
-      fail(node, std::string(key) + " " + quoted(value) + ": expected 1 to 64 letters, digits, '_' or '-'");
+      fail(node, std::string(key) + " " + in_quotes(value) + ": expected 1 to 64 letters, digits, '_' or '-'");
     }
     return value;
   }
@@ -108,7 +108,7 @@ class Reader {
   int part(const BodyModel& body, const toml::node& node, std::string_view what) const {
     const std::string value = string(node, what);
     const int index = body.find_part(value);
-    if (index < 0) fail(node, std::string(what) + ": no part is called " + quoted(value));
+    if (index < 0) fail(node, std::string(what) + ": no part is called " + in_quotes(value));
     return index;
   }
 
@@ -145,7 +145,7 @@ void read_parts(const Reader& reader, const toml::table& root, BodyModel& body) 
     reader.expect_keys(table, {"name", "colour", "mirror", "max_extent", "area", "upper_body"});
     BodyPart part;
     part.name = reader.name(table, "name");
-    if (body.find_part(part.name) >= 0) reader.fail(table, "part: the name " + quoted(part.name) + " is used twice");
+    if (body.find_part(part.name) >= 0) reader.fail(table, "part: the name " + in_quotes(part.name) + " is used twice");
     part.colour = read_colour(reader, table);
     part.max_extent_m = reader.number(table, "max_extent", kSmallest, kLargest);
     part.typical_area_m2 = reader.number(table, "area", 1e-6, kLargest);
@@ -158,7 +158,7 @@ void read_parts(const Reader& reader, const toml::table& root, BodyModel& body) 
   for (std::size_t i = 0; i < array.size(); ++i) {
     const BodyPart& partner = body.parts[static_cast<std::size_t>(body.parts[i].mirror)];
     if (partner.mirror != static_cast<int>(i)) {
-      reader.fail(*array.get(i), "part " + quoted(body.parts[i].name) + ": its mirror " + quoted(partner.name) +
+      reader.fail(*array.get(i), "part " + in_quotes(body.parts[i].name) + ": its mirror " + in_quotes(partner.name) +
                                      " does not name it in return");
     }
   }
@@ -172,7 +172,7 @@ void check_no_ring(const Reader& reader, const toml::array& array, const BodyMod
     for (int steps = 0; at >= 0; ++steps, at = parent[static_cast<std::size_t>(at)]) {
       if (steps > body.part_count()) {
         const std::string& name = body.parts[static_cast<std::size_t>(body.links[link].child)].name;
-        reader.fail(*array.get(link), "link: " + quoted(name) + " hangs in a ring, expected a tree");
+        reader.fail(*array.get(link), "link: " + in_quotes(name) + " hangs in a ring, expected a tree");
       }
     }
   }
@@ -192,8 +192,8 @@ void read_links(const Reader& reader, const toml::table& root, BodyModel& body) 
     link.tolerance_m = reader.number(table, "tolerance", kSmallest, kLargest);
     int& known = parent[static_cast<std::size_t>(link.child)];
     const std::string& child = body.parts[static_cast<std::size_t>(link.child)].name;
-    if (link.child == link.parent) reader.fail(table, "link: " + quoted(child) + " cannot be its own parent");
-    if (known >= 0) reader.fail(table, "link: " + quoted(child) + " has a second parent, expected a tree");
+    if (link.child == link.parent) reader.fail(table, "link: " + in_quotes(child) + " cannot be its own parent");
+    if (known >= 0) reader.fail(table, "link: " + in_quotes(child) + " has a second parent, expected a tree");
     known = link.parent;
     body.links.push_back(link);
   }
@@ -212,7 +212,7 @@ void read_roots(const Reader& reader, const toml::table& root, BodyModel& body) 
   for (const toml::node& node : array) {
     const int index = reader.part(body, node, "roots");
     if (std::ranges::find(body.roots, index) != body.roots.end()) {
-      reader.fail(node, "roots: " + quoted(body.parts[static_cast<std::size_t>(index)].name) + " is listed twice");
+      reader.fail(node, "roots: " + in_quotes(body.parts[static_cast<std::size_t>(index)].name) + " is listed twice");
     }
     body.roots.push_back(index);
   }
@@ -250,13 +250,13 @@ void read_joint_sets(const Reader& reader, const toml::table& root, BodyModel& b
     reader.expect_keys(table, {"name", "joint"});
     JointSet set;
     set.name = reader.name(table, "name");
-    if (!set_names.insert(set.name).second) reader.fail(table, "joint_set: " + quoted(set.name) + " is used twice");
+    if (!set_names.insert(set.name).second) reader.fail(table, "joint_set: " + in_quotes(set.name) + " is used twice");
     std::set<std::string> joint_names;
     for (const toml::node& joint : reader.array(table, "joint")) {
       set.joints.push_back(read_joint(reader, joint, body));
       const std::string& name = set.joints.back().name;
       if (!joint_names.insert(name).second) {
-        reader.fail(joint, "joint_set " + quoted(set.name) + ": the joint " + quoted(name) + " is used twice");
+        reader.fail(joint, "joint_set " + in_quotes(set.name) + ": the joint " + in_quotes(name) + " is used twice");
       }
     }
     body.joint_sets.push_back(std::move(set));
@@ -270,7 +270,7 @@ SurfaceRule::Side read_side(const Reader& reader, const toml::table& table) {
   if (side == "both") return SurfaceRule::Side::both;
   if (side == "left") return SurfaceRule::Side::left;
   if (side == "right") return SurfaceRule::Side::right;
-  reader.fail(*node, "side " + quoted(side) + ": expected \"both\", \"left\" or \"right\"");
+  reader.fail(*node, "side " + in_quotes(side) + ": expected \"both\", \"left\" or \"right\"");
 }
 
 void read_surface(const Reader& reader, const toml::table& root, BodyModel& body) {
