@@ -7,8 +7,8 @@ target_compile_options(vesalius_settings INTERFACE -ffp-contract=off)
 if(VESALIUS_WERROR)
   target_compile_options(vesalius_settings INTERFACE -Werror)
 endif()
-if(VESALIUS_PCH)
-  # GCC 12 takes the strings of a precompiled <string> for too short (its bug 105651); builds without one keep these on.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # Its bug 105651: it warns of std::string's own copying.
   target_compile_options(vesalius_settings INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
 endif()
 if(VESALIUS_SANITIZE)
@@ -17,12 +17,12 @@ if(VESALIUS_SANITIZE)
   target_link_options(vesalius_settings INTERFACE -fsanitize=${VESALIUS_SANITIZE})
 endif()
 
-# What tests are compiled with besides, after all else: VESALIUS_TEST_FLAGS.
+# What tests (and the program, in builds with sanitizers) are compiled with besides, after all else: VESALIUS_TEST_FLAGS.
 add_library(vesalius_test_settings INTERFACE)
 target_compile_options(vesalius_test_settings INTERFACE ${VESALIUS_TEST_FLAGS})
 
-# vesalius_precompile(TARGET header...): reads what most of its files include once. Only the presets that build everything
-# ask for it (VESALIUS_PCH); the others show which includes are missing.
+# vesalius_precompile(TARGET header...): reads what most of its files include once, where VESALIUS_PCH asks for it; a build
+# without (preset fuzz) shows which includes are missing.
 function(vesalius_precompile target)
   if(VESALIUS_PCH)
     target_precompile_headers(
