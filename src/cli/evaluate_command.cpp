@@ -68,7 +68,7 @@ BodyModel with_joints(const BodyModel& body, const std::string& joints_file) {
     return parse_body_model(body.toml + "\n" + read_file(joints_file),
                             fmt::format("{}, after the {} lines of the model's body", joints_file, lines));
   }
-  if (has_set(body, "kinect20") || has_set(body, "part_centres")) return body;
+  if (has_set(body, "kinect20") || has_set(body, "itop15") || has_set(body, "part_centres")) return body;
   for (const BodyPart& part : paper_body().parts) {
     if (body.find_part(part.name) < 0) return body;
   }
@@ -181,10 +181,9 @@ void add_evaluate(CLI::App& program) {
   CLI::App* command = program.add_subcommand("evaluate", "Measure a model against frames whose truth is known");
   const auto arguments = std::make_shared<Arguments>(*command);
   command
-      ->add_option(
-          "SOURCE", arguments->sources,
-          "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/ or joints.csv, or a "
-          "folder of such folders with one frames.csv")
+      ->add_option("SOURCE", arguments->sources,
+                   "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/, joints.csv or "
+                   "truth_bvh.toml, a folder of such folders with one frames.csv, or ITOP_..._depth_map.h5")
       ->required();
   command->add_option("-m,--model", arguments->model, "Trained forest")->type_name("FILE")->required();
   command->add_option("--report", arguments->report, "Folder for report.html, report.md, report.json and figures.csv")

@@ -8,6 +8,7 @@
 
 #include "cli/interrupts.h"
 #include "cli/text_sink.h"
+#include "cli/truth_bvh.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
 
@@ -28,7 +29,10 @@ struct Item {
 class SetEvaluation {
  public:
   SetEvaluation(const SetRequest& request, const FrameScorer& scorer, Progress& progress)
-      : request_(request), scorer_(scorer), progress_(progress), source_(open_truth(request.source, request.step)) {
+      : request_(request),
+        scorer_(scorer),
+        progress_(progress),
+        source_(open_evaluation_truth(request.source, request.step)) {
     result_.name = request.name;
     result_.source = request.source;
     result_.notes = source_->notes();

@@ -93,3 +93,4 @@ std::string summary_lines(const SetResult& set) {
 }
 
 }  // namespace vesalius::cli
+  text += group_line(estimates, "found by camera motion", "motion.", "");

@@ -31,7 +31,8 @@ FigureKind kind_of(std::string_view name) {
   kind.higher_is_better =
       !kind.metres && name != "people.false" && name != "frames.empty_with_person" && name != "pixels.body_on_empty";
   kind.trials = name == "people.found" || name == "frames.empty_with_person" || name.starts_with("posture.") ||
-                name.starts_with("part.seen.") || (name.starts_with("joint.") && name.ends_with(".at_10cm"));
+                name.starts_with("motion.") || name.starts_with("part.seen.") ||
+                (name.starts_with("joint.") && name.ends_with(".at_10cm"));
   return kind;
 }
 

@@ -83,14 +83,17 @@ std::vector<Eigen::Vector3f> joints_by_name(const std::vector<std::string>& name
   return positions;
 }
 
-const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names) {
+const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names, std::string_view wanted) {
+  const JointSet* first = nullptr;
   for (const JointSet& set : body.joint_sets) {
     const auto has = [&](const std::string& name) {
       return std::ranges::find(set.joints, name, &JointDefinition::name) != set.joints.end();
     };
-    if (std::ranges::all_of(names, has)) return &set;
+    if (!std::ranges::all_of(names, has)) continue;
+    if (set.name == wanted) return &set;
+    if (first == nullptr) first = &set;
   }
-  return nullptr;
+  return first;
 }
 
 std::vector<double> joint_errors(const JointPair& pair) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "eval/figure_table.h"
@@ -26,8 +27,9 @@ struct JointPair {
 std::vector<Eigen::Vector3f> joints_by_name(const std::vector<std::string>& names, const JointSet& set,
                                             const std::vector<Joint>& joints);
 
-/// The first set that has all of these joints; null for none.
-const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names);
+/// The set called `wanted` if it has all of these joints, else the first one that does; null for none.
+const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names,
+                               std::string_view wanted = "");
 
 /// Distance of each joint, metres; NaN where the truth is not known; infinity for joints not found.
 std::vector<double> joint_errors(const JointPair& pair);

@@ -123,6 +123,8 @@ TEST(JointsByName, OrderOfTheTruth) {
   EXPECT_THROW(joints_by_name({"tail"}, set, joints), Error);
   EXPECT_EQ(find_joint_set(paper_body(), {"head", "torso"})->name, "nite15");
   EXPECT_EQ(find_joint_set(paper_body(), {"nose"})->name, "k4abt32");
+  EXPECT_EQ(find_joint_set(paper_body(), {"head"}, "k4abt32")->name, "k4abt32");
+  EXPECT_EQ(find_joint_set(paper_body(), {"torso"}, "k4abt32")->name, "nite15");  // which has no torso
   EXPECT_EQ(find_joint_set(paper_body(), {"tail"}), nullptr);
 }
 

@@ -116,6 +116,10 @@ FigureTerms people_terms(const TrueFrame& frame, const std::vector<Person>& peop
     add_mask_terms(frame, people, found > 0.0, terms);
     add_part_terms(people, matches, expected, body, terms);
   }
+  if (frame.truth.camera_motion != CameraMotion::unknown && expected > 0) {
+    const bool still = frame.truth.camera_motion == CameraMotion::still;
+    terms.push_back({still ? "motion.still" : "motion.moving", found, static_cast<double>(expected)});
+  }
   if (!frame.truth.posture.empty() && expected > 0) {
     terms.push_back({"posture." + frame.truth.posture, found, static_cast<double>(expected)});
   }

@@ -35,8 +35,8 @@ PartCounts count_parts(const Skeleton& skeleton, const std::vector<Eigen::Vector
 FigureTerms visible_part_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person,
                                const BodyModel& body);
 
-/// People found, false people, empty frames with somebody in them, rate of the frame's posture, mask IoU, and how often
-/// each part was observed on the true people.
+/// People found, false people, empty frames with somebody in them, rates of the frame's posture and of its camera's
+/// motion, mask IoU, and how often each part was observed on the true people.
 FigureTerms people_terms(const TrueFrame& frame, const std::vector<Person>& people, const std::vector<Match>& matches,
                          const BodyModel& body);
 

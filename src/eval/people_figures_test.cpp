@@ -87,6 +87,7 @@ TEST(PeopleTerms, ByHand) {
   frame.truth.person = {};
   frame.truth.people = 2;
   frame.truth.posture = "sitting";
+  frame.truth.camera_motion = CameraMotion::moving;
   frame.truth.mask = Mask(4, 1, 1);
   Mask half(4, 1, 0);
   half(0, 0) = half(1, 0) = 1;
@@ -96,6 +97,8 @@ TEST(PeopleTerms, ByHand) {
   EXPECT_DOUBLE_EQ(value(terms, "people.found"), 0.5);
   EXPECT_DOUBLE_EQ(value(terms, "people.false"), 1.0);
   EXPECT_DOUBLE_EQ(value(terms, "posture.sitting"), 0.5);
+  EXPECT_DOUBLE_EQ(value(terms, "motion.moving"), 0.5);
+  EXPECT_TRUE(std::isnan(value(terms, "motion.still")));
   EXPECT_DOUBLE_EQ(value(terms, "mask.iou"), 0.5);
   EXPECT_DOUBLE_EQ(value(terms, "mask.iou_where_found"), 0.5);
   EXPECT_DOUBLE_EQ(value(terms, "part.seen.neck"), 0.5);
@@ -108,6 +111,7 @@ TEST(PeopleTerms, NobodyThere) {
   frame.truth = {};
   frame.truth.people = 0;
   frame.truth.posture = "empty";
+  frame.truth.camera_motion = CameraMotion::still;
   const FigureTerms quiet = people_terms(frame, {}, {}, paper_body());
   EXPECT_DOUBLE_EQ(value(quiet, "frames.empty_with_person"), 0.0);
   EXPECT_EQ(quiet.size(), 2U);

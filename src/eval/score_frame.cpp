@@ -133,7 +133,8 @@ void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, Fram
 void FrameScorer::judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
                                FrameScore& score) const {
   const FrameTruth& truth = frame.truth;
-  const JointSet* set = truth.joint_names.empty() ? nullptr : find_joint_set(body(), truth.joint_names);
+  const JointSet* set =
+      truth.joint_names.empty() ? nullptr : find_joint_set(body(), truth.joint_names, truth.joint_set);
   if (set == nullptr) return;
   const auto index = static_cast<std::size_t>(set - body().joint_sets.data());
   for (std::size_t who = 0; who < of_person.size() && who < truth.joints.size(); ++who) {

@@ -66,6 +66,7 @@ TruthFolder::TruthFolder(const std::string& folder) : folder_(folder) {
     read_people((path.parent_path() / "frames.csv").string(), path.filename().string());
   }
   if (is_file(path / "joints.csv")) read_joints((path / "joints.csv").string());
+  if (is_file(path / "groundtruth.txt")) camera_ = Trajectory::read((path / "groundtruth.txt").string());
   if (facts_.empty() && joints_.empty() && !has_masks_) {
     throw Error(
         fmt::format("{}: no truth, expected frames.csv (in it, or beside it naming it), joints.csv or mask/", folder));
@@ -127,6 +128,7 @@ FrameTruth TruthFolder::truth_of(const Frame& frame) const {
     truth.people = facts->second.people;
     truth.posture = facts->second.posture;
   }
+  if (camera_) truth.camera_motion = camera_->motion(frame.time_s);
   const auto joints = joints_.find(frame.name);
   if (joints != joints_.end()) {
     if (facts == facts_.end()) truth.people = 1;

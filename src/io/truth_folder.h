@@ -1,15 +1,18 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "io/tum_trajectory.h"
 #include "vesalius/frame_truth.h"
 
 namespace vesalius {
 
 /// What a folder of frames says about them, apart from the pictures (docs/metrics.md): `frames.csv` in it or beside it
-/// with the number of people and their posture, `mask/*.png` with their pixels, `joints.csv` with one person's joints.
+/// with the number of people and their posture, `mask/*.png` with their pixels, `joints.csv` with one person's joints,
+/// `groundtruth.txt` with the camera's poses (TUM RGB-D), from which it follows whether the camera moved.
 class TruthFolder {
  public:
   /// Throws Error naming file and line for tables that cannot be used, and the folder where there is no truth at all.
@@ -30,6 +33,7 @@ class TruthFolder {
   std::string folder_;
   bool has_masks_ = false;
   std::map<std::string, Facts> facts_;  ///< by the frame's name
+  std::optional<Trajectory> camera_;
   std::vector<std::string> joint_names_;
   std::map<std::string, std::vector<Eigen::Vector3f>> joints_;  ///< likewise
 };

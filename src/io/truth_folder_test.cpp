@@ -69,6 +69,22 @@ TEST(TruthFolder, Joints) {
   EXPECT_EQ(b.joints[0][1], Eigen::Vector3f(1, 2, 3));
 }
 
+TEST(TruthFolder, WhetherTheCameraMoves) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "frames.csv", "frame,people\na,1\n");
+  EXPECT_EQ(TruthFolder(folder.path()).truth_of(frame("a")).camera_motion, CameraMotion::unknown);
+  test::put(folder / "groundtruth.txt", "7.0 0 0 0 0 0 0 1\n7.1 0 0 0 0 0 0 1\n7.2 0.1 0 0 0 0 0 1\n");
+  const TruthFolder truth(folder.path());
+  const auto motion_at = [&](double time_s) {
+    Frame at = frame("a");
+    at.time_s = time_s;
+    return truth.truth_of(at).camera_motion;
+  };
+  EXPECT_EQ(motion_at(7.05), CameraMotion::still);
+  EXPECT_EQ(motion_at(7.14), CameraMotion::moving);
+  EXPECT_EQ(motion_at(0.0), CameraMotion::unknown);
+}
+
 TEST(TruthFolder, SaysWhatIsMissingOrWrong) {
   const test::TemporaryFolder folder;
   const auto error = [&](const std::string& file, const std::string& text) {
@@ -83,6 +99,9 @@ TEST(TruthFolder, SaysWhatIsMissingOrWrong) {
   EXPECT_THAT(error("frames.csv", "frame,people\na,many\n"), HasSubstr("frames.csv:2: column people: \"many\""));
   EXPECT_THAT(error("frames.csv", "frame,people\na,-2\n"), HasSubstr("expected a whole number from -1 to 1000"));
   EXPECT_THAT(error("frames.csv", "frame,people\na,1\na.png,1\n"), HasSubstr("frames.csv:3: frame a comes twice"));
+  test::put(folder / "mask/a.png", "");
+  EXPECT_THAT(error("groundtruth.txt", "1 2 3\n"), HasSubstr("groundtruth.txt:1: expected \"timestamp tx"));
+  std::filesystem::remove_all(folder / "mask");
   EXPECT_THAT(error("joints.csv", "frame,joint,x_m,y_m\na,head,0,0\n"), HasSubstr("no column \"z_m\""));
   EXPECT_THAT(error("joints.csv", "frame,joint,x_m,y_m,z_m\na,head,0,0,nan\n"),
               HasSubstr("\"nan\", expected a finite"));

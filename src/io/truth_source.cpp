@@ -6,6 +6,7 @@
 
 #include "io/labelled_dataset.h"
 #include "io/truth_folder.h"
+#include "io/truth_itop.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -95,6 +96,7 @@ std::string folder_of(const std::string& uri) {
 std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step, const SourceOptions& options) {
   if (step < 1) throw UsageError("every 0th frame, expected a step of at least 1");
   if (is_dataset(uri)) return std::make_unique<DatasetTruth>(uri, step);
+  if (is_itop(uri)) return open_itop(uri, step);
   return std::make_unique<FolderTruth>(uri, folder_of(uri), step, options);
 }
 

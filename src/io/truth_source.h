@@ -23,9 +23,9 @@ class TruthSource {
   virtual std::vector<std::string> part_names() const { return {}; }
 };
 
-/// Opens a labelled dataset (joints: the parts' centres, under the parts' names), or any folder that `open_source`
-/// opens and that TruthFolder knows something about. Of every `step` frames the first is given out. Throws Error as
-/// those do.
+/// Opens a labelled dataset (joints: the parts' centres, under the parts' names), depth maps of ITOP (truth_itop.h), or
+/// any folder that `open_source` opens and that TruthFolder knows something about. Of every `step` frames the first is
+/// given out. Throws Error as those do.
 std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step = 1, const SourceOptions& options = {});
 
 }  // namespace vesalius

@@ -173,7 +173,7 @@ TEST_F(Evaluate, JointsAreFittedOnFramesThatDoNotCount) {
   EXPECT_THAT(toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
   const BodyModel body = parse_body_model(
       paper_body().toml + "\n" + bytes_of(VESALIUS_SOURCE_DIR "/data/joints/evaluation.toml"), "joints");
-  EXPECT_EQ(body.joint_sets.size(), paper_body().joint_sets.size() + 2);
+  EXPECT_EQ(body.joint_sets.size(), paper_body().joint_sets.size() + 3);
 }
 
 class Compare : public Evaluate {};
