@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "cli/ablation.h"
 #include "cli/commands.h"
+#include "cli/evaluate_ablation.h"
 #include "cli/evaluate_report.h"
 #include "cli/evaluate_set.h"
 #include "cli/interrupts.h"
@@ -42,6 +44,7 @@ struct Arguments {
   int step = 1;
   int threads = 0;
   bool labels_only = false;
+  bool ablation = false;
   bool keep_going = false;
   bool quiet = false;
 };
@@ -136,9 +139,10 @@ std::string command_line(const CLI::App& command) {
   return one_line(line);
 }
 
-SetResult evaluate_shown(const SetRequest& request, const FrameScorer& scorer, bool quiet) {
+SetResult evaluate_shown(const SetRequest& request, const FrameScorer& scorer, const std::vector<Variant>& variants,
+                         bool quiet) {
   Progress progress(-1, !quiet);
-  return evaluate_set(request, scorer, progress);
+  return evaluate_set(request, scorer, variants, progress);
 }
 
 void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
@@ -159,6 +163,8 @@ void run(const Arguments& arguments, const std::string& command) {
   evaluation.command = command;
   evaluation.model = arguments.model;
   evaluation.model_checksum = model_checksum(bytes);
+  std::vector<Variant> variants;
+  if (arguments.ablation) variants = ablation_variants(forest, evaluation.options);
   const FrameScorer scorer(std::make_shared<ForestLabeller>(std::move(forest)),
                            {evaluation.options, arguments.labels_only});
   evaluation.body = scorer.body();
@@ -166,9 +172,9 @@ void run(const Arguments& arguments, const std::string& command) {
   watch_interrupts();
   int failed = 0;
   for (const SetRequest& request : requests) {
-    evaluation.sets.push_back(evaluate_shown(request, scorer, arguments.quiet));
+    evaluation.sets.push_back(evaluate_shown(request, scorer, variants, arguments.quiet));
     failed += evaluation.sets.back().failed;
-    print(summary_lines(evaluation.sets.back()));
+    print(summary_lines(evaluation.sets.back()) + ablation_lines(evaluation.sets.back()));
     std::fflush(stdout);  // a set can take minutes
   }
   write_outputs(arguments, evaluation);
@@ -186,14 +192,21 @@ void add_evaluate(CLI::App& program) {
                    "truth_bvh.toml, a folder of such folders with one frames.csv, or ITOP_..._depth_map.h5")
       ->required();
   command->add_option("-m,--model", arguments->model, "Trained forest")->type_name("FILE")->required();
-  command->add_option("--report", arguments->report, "Folder for report.html, report.md, report.json and figures.csv")
+  command
+      ->add_option("--report", arguments->report,
+                   "Folder for report.html, report.md, report.json, figures.csv (and ablation.csv)")
       ->type_name("DIR");
   command->add_option("--json", arguments->json, "Figures as JSON, for `vesalius compare`")->type_name("FILE");
   command->add_option("--options", arguments->options_file, "TOML file of detector options")->type_name("FILE");
   command->add_option("--step", arguments->step, "Only the first of every N frames")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxStep));
-  command->add_flag("--labels-only", arguments->labels_only, "Only the pixel labels of the first pass: much faster");
+  CLI::Option* labels_only = command->add_flag("--labels-only", arguments->labels_only,
+                                               "Only the pixel labels of the first pass: much faster");
+  command
+      ->add_flag("--ablation", arguments->ablation,
+                 "Also without each part of the method in turn, with time a frame: some fifteen times as long")
+      ->excludes(labels_only);
   command
       ->add_option("--joints", arguments->joints_file,
                    "TOML with joint sets named as the truth names its joints, instead of those built in")

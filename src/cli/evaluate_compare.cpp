@@ -66,21 +66,14 @@ std::vector<StoredSet> read_evaluation(const std::string& path) {
   }
 }
 
-std::string number_text(const std::string& name, double value, bool sign) {
-  const bool plain = kind_of(name).metres || name == "people.false";
-  const double scaled = plain ? value : 100.0 * value;
-  const int digits = plain ? 3 : 2;
-  const std::string text = sign ? fmt::format("{:+.{}f}", scaled, digits) : fmt::format("{:.{}f}", scaled, digits);
-  return text + (kind_of(name).metres ? " m" : plain ? "" : " %");
-}
-
 std::string line(const Comparison& c) {
   const char* verdict = c.verdict == Comparison::Verdict::better  ? "better"
                         : c.verdict == Comparison::Verdict::worse ? "WORSE"
                                                                   : "same";
-  return fmt::format("  {:<34} {:>10} -> {:>10}  {:>10} ({} to {})  {}\n", c.name, number_text(c.name, c.first, false),
-                     number_text(c.name, c.second, false), number_text(c.name, c.difference, true),
-                     number_text(c.name, c.interval.low, true), number_text(c.name, c.interval.high, true), verdict);
+  return fmt::format("  {:<34} {:>10} -> {:>10}  {:>10} ({} to {})  {}\n", c.name,
+                     figure_number(c.name, c.first, false), figure_number(c.name, c.second, false),
+                     figure_number(c.name, c.difference, true), figure_number(c.name, c.interval.low, true),
+                     figure_number(c.name, c.interval.high, true), verdict);
 }
 
 struct Tally {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/evaluate_ablation.h"
 #include "cli/evaluate_machine.h"
 #include "cli/evaluate_report.h"
 #include "io/options_file.h"
@@ -80,6 +81,7 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
     json["curve_over_score"] = curve_json(sweep_score(set.log, kScoreSteps, refine.min_parts));
   }
   if (set.joint_curve.joints > 0) json["joints_within_cm"] = joint_curve_json(set.joint_curve);
+  if (!set.ablation.empty()) json["ablation"] = ablation_json(set);
   if (set.confusion) json["confusion"] = confusion_json(*set.confusion);
   Json worst = Json::array();
   for (const WorstFrame& frame : set.worst) {

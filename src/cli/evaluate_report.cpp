@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "cli/evaluate_ablation.h"
 #include "cli/evaluate_machine.h"
 #include "draw/draw.h"
 #include "eval/document.h"
@@ -198,14 +199,14 @@ ColourImage picture_of(const WorstFrame& worst, const BodyModel& body) {
 
 void add_set(const SetResult& set, const Evaluation& evaluation, Document& document) {
   document.heading(2, set.name);
-  document.paragraph(fmt::format("{} frames of {}{}, {:.1f} frames a second.", set.frames, set.source,
-                                 set.failed > 0 ? fmt::format(" ({} more failed)", set.failed) : "",
-                                 set.frames / std::max(1e-9, set.seconds)));
+  document.paragraph(fmt::format("{} frames of {}{}, {}.", set.frames, set.source,
+                                 set.failed > 0 ? fmt::format(" ({} more failed)", set.failed) : "", speed_text(set)));
   for (const std::string& note : set.notes) document.paragraph("Note: " + note);
   for (const std::string& failure : set.failures) document.paragraph("Failed: " + failure);
   add_tables(set.figures.estimates(), document);
   add_detection_curves(set, evaluation, document);
   add_joint_curve(set, document);
+  add_ablation(set, document);
   if (set.confusion) add_confusion(*set.confusion, evaluation.body, document);
   for (const WorstFrame& worst : set.worst) {
     document.picture(set.name + "_" + worst.frame.name, encode_png(picture_of(worst, evaluation.body)),
@@ -250,6 +251,10 @@ void write_report(const Evaluation& evaluation, const std::string& folder) {
   write_file_atomically((path / "report.md").string(), document.markdown("pictures"));
   write_file_atomically((path / "report.html").string(), document.html());
   write_file_atomically((path / "figures.csv").string(), evaluation_csv(evaluation));
+  const auto has_ablation = [](const SetResult& set) { return !set.ablation.empty(); };
+  if (std::ranges::any_of(evaluation.sets, has_ablation)) {
+    write_file_atomically((path / "ablation.csv").string(), ablation_csv(evaluation.sets));
+  }
   write_file_atomically((path / "report.json").string(), evaluation_json(evaluation));
 }
 

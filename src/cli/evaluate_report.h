@@ -31,6 +31,12 @@ std::string figure_text(const Estimate& estimate);
 /// The same with its interval: "97.2 % (95.1-98.4)".
 std::string figure_with_interval(const Estimate& estimate);
 
+/// A value of a figure of that name in its unit; `sign`: a difference, "+1.20 %".
+std::string figure_number(const std::string& name, double value, bool sign);
+
+/// "12.3 frames/s", or where frames were timed one by one, "41.0 ms a frame".
+std::string speed_text(const SetResult& set);
+
 /// What a set came to, for standard output: one line, and one for each group of shares (parts, postures, joints).
 std::string summary_lines(const SetResult& set);
 

@@ -23,15 +23,35 @@ struct Item {
   TrueFrame frame;
   int index = 0;
   FrameScore score;
+  std::vector<FrameScore> of_variants;
   std::string failure;
 };
 
+/// What a variant's frames came to so far.
+struct VariantSums {
+  FigureTable figures;
+  std::vector<float> frame_ms;
+};
+
+/// 0 for none.
+double median(std::vector<float> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return static_cast<double>(*middle);
+}
+
+float milliseconds(const FrameScore& score) { return static_cast<float>(1e3 * score.detect_s); }
+
 class SetEvaluation {
  public:
-  SetEvaluation(const SetRequest& request, const FrameScorer& scorer, Progress& progress)
+  SetEvaluation(const SetRequest& request, const FrameScorer& scorer, const std::vector<Variant>& variants,
+                Progress& progress)
       : request_(request),
         scorer_(scorer),
+        variants_(variants),
         progress_(progress),
+        of_variants_(variants.size()),
         source_(open_evaluation_truth(request.source, request.step)) {
     result_.name = request.name;
     result_.source = request.source;
@@ -43,12 +63,17 @@ class SetEvaluation {
     const auto start = std::chrono::steady_clock::now();
     const std::size_t batch = kFramesPerThread * static_cast<std::size_t>(std::max(1, thread_count()));
     for (std::vector<Item> items = read(batch); !items.empty(); items = read(batch)) {
-      parallel_for(static_cast<int>(items.size()), [&](int i) { score(items[static_cast<std::size_t>(i)]); });
+      score_all(items);
       for (Item& item : items) take(std::move(item));
       if (interrupted()) throw Error(fmt::format("{}: interrupted after {} frames", result_.name, index_));
     }
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result_.frames == 0) throw Error(fmt::format("{}: no frame that could be evaluated", request_.source));
+    result_.frame_ms = median(std::move(frame_ms_));
+    for (std::size_t v = 0; v < variants_.size(); ++v) {
+      VariantSums& sums = of_variants_[v];
+      result_.ablation.push_back({variants_[v].name, sums.figures.estimates(), median(std::move(sums.frame_ms))});
+    }
     return std::move(result_);
   }
 
@@ -72,7 +97,7 @@ class SetEvaluation {
       try {
         std::optional<TrueFrame> frame = source_->next();
         if (!frame) break;
-        items.push_back({std::move(*frame), index_, {}, {}});
+        items.push_back({std::move(*frame), index_, {}, {}, {}});
       } catch (const Error& e) {
         fail(e.what());
       }
@@ -81,9 +106,24 @@ class SetEvaluation {
     return items;
   }
 
+  /// Frames beside each other take each other's threads, so that only all of them together can be timed.
+  void score_all(std::vector<Item>& items) const {
+    if (variants_.empty()) {
+      parallel_for(static_cast<int>(items.size()), [&](int i) { score(items[static_cast<std::size_t>(i)]); });
+    } else {
+      for (Item& item : items) score(item);
+    }
+  }
+
   void score(Item& item) const {
     try {
-      item.score = scorer_.score(item.frame, item.index % kFitEvery == 0);
+      const bool fit = item.index % kFitEvery == 0;
+      item.score = scorer_.score(item.frame, fit);
+      for (const Variant& variant : variants_) {
+        FrameScore& score = item.of_variants.emplace_back(variant.scorer->score(item.frame, fit));
+        score.people.clear();  // only figures are kept of a variant; pictures of all would fill the memory
+        score.labels = {};
+      }
     } catch (const Error& e) {
       item.failure = e.what();
     }
@@ -104,7 +144,13 @@ class SetEvaluation {
       return fail(fmt::format("{}: frame {}: {}", request_.source, item.frame.frame.name, item.failure));
     ++result_.frames;
     FrameScore& score = item.score;
-    result_.figures.add(frame_key(result_.name.c_str(), item.frame.frame.name.c_str()), score.terms);
+    const std::uint64_t key = frame_key(result_.name.c_str(), item.frame.frame.name.c_str());
+    result_.figures.add(key, score.terms);
+    if (!variants_.empty()) frame_ms_.push_back(milliseconds(score));
+    for (std::size_t v = 0; v < variants_.size(); ++v) {
+      of_variants_[v].figures.add(key, item.of_variants[v].terms);
+      of_variants_[v].frame_ms.push_back(milliseconds(item.of_variants[v]));
+    }
     ++result_.log.frames;
     result_.log.expected += score.expected;
     result_.log.proposals.insert(result_.log.proposals.end(), score.proposals.begin(), score.proposals.end());
@@ -129,7 +175,10 @@ class SetEvaluation {
 
   const SetRequest& request_;
   const FrameScorer& scorer_;
+  const std::vector<Variant>& variants_;
   Progress& progress_;
+  std::vector<VariantSums> of_variants_;
+  std::vector<float> frame_ms_;
   std::unique_ptr<TruthSource> source_;
   int index_ = 0;
   int done_ = 0;
@@ -138,8 +187,9 @@ class SetEvaluation {
 
 }  // namespace
 
-SetResult evaluate_set(const SetRequest& request, const FrameScorer& scorer, Progress& progress) {
-  return SetEvaluation(request, scorer, progress).run();
+SetResult evaluate_set(const SetRequest& request, const FrameScorer& scorer, const std::vector<Variant>& variants,
+                       Progress& progress) {
+  return SetEvaluation(request, scorer, variants, progress).run();
 }
 
 }  // namespace vesalius::cli

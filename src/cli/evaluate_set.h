@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/ablation.h"
 #include "cli/progress.h"
 #include "eval/score_frame.h"
 #include "io/truth_source.h"
@@ -21,6 +22,13 @@ struct WorstFrame {
   FrameScore score;
 };
 
+/// What a source came to with one thing of the method changed.
+struct AblationRow {
+  std::string variant;
+  std::vector<Estimate> figures;
+  double frame_ms = 0.0;  ///< as SetResult's
+};
+
 /// What `vesalius evaluate` found out about one source.
 struct SetResult {
   std::string name;
@@ -28,6 +36,7 @@ struct SetResult {
   int frames = 0;
   int failed = 0;
   double seconds = 0.0;
+  double frame_ms = 0.0;  ///< median time of the detector on a frame, all threads on it; only with variants
   std::vector<std::string> notes;
   std::vector<std::string> failures;  ///< the first ones, a line each
   FigureTable figures;
@@ -36,6 +45,7 @@ struct SetResult {
   std::optional<PixelConfusion> confusion;
   std::map<std::string, std::map<std::string, std::vector<double>>> offsets_m;  ///< [joint set][joint]
   std::vector<WorstFrame> worst;                                                ///< the worst first
+  std::vector<AblationRow> ablation;                                            ///< the same frames by each variant
 };
 
 struct SetRequest {
@@ -47,8 +57,11 @@ struct SetRequest {
 };
 
 /// Scores all frames of a source on all threads allowed; what it holds does not grow with their number, but for the
-/// 28 bytes of a judged proposal. Throws Error for a source that cannot be opened, for labels of other parts than the
-/// model's, for the first frame that fails (unless it is to keep going) and when interrupted.
-SetResult evaluate_set(const SetRequest& request, const FrameScorer& scorer, Progress& progress);
+/// 28 bytes of a judged proposal. With `variants` frames come one after the other, each through `scorer` and all
+/// variants in turn, and are timed (4 bytes each): times of one frame compare even where the machine's pace changes.
+/// Throws Error for a source that cannot be opened, for labels of other parts than the model's, for the first frame
+/// that fails (unless it is to keep going) and when interrupted.
+SetResult evaluate_set(const SetRequest& request, const FrameScorer& scorer, const std::vector<Variant>& variants,
+                       Progress& progress);
 
 }  // namespace vesalius::cli

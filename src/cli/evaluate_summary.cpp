@@ -62,6 +62,14 @@ std::string group_line(const std::vector<Estimate>& estimates, const std::string
 
 }  // namespace
 
+std::string figure_number(const std::string& name, double value, bool sign) {
+  const bool plain = kind_of(name).metres || name == "people.false";
+  const double scaled = plain ? value : 100.0 * value;
+  const int digits = plain ? 3 : 2;
+  const std::string text = sign ? fmt::format("{:+.{}f}", scaled, digits) : fmt::format("{:.{}f}", scaled, digits);
+  return text + (kind_of(name).metres ? " m" : plain ? "" : " %");
+}
+
 std::string figure_text(const Estimate& estimate) {
   if (kind_of(estimate.name).metres) return fmt::format("{:.3f} m", estimate.value);
   if (estimate.name == "people.false") return fmt::format("{:.3f} a frame", estimate.value);
@@ -76,6 +84,11 @@ std::string figure_with_interval(const Estimate& estimate) {
                      scale * estimate.interval.high, digits);
 }
 
+std::string speed_text(const SetResult& set) {
+  if (!set.ablation.empty()) return fmt::format("{:.1f} ms a frame", set.frame_ms);
+  return fmt::format("{:.1f} frames/s", set.frames / std::max(1e-9, set.seconds));
+}
+
 std::string summary_lines(const SetResult& set) {
   const std::vector<Estimate> estimates = set.figures.estimates();
   std::string text = fmt::format("{}: {} frames{}", set.name, set.frames, people_text(set, estimates));
@@ -84,13 +97,13 @@ std::string summary_lines(const SetResult& set) {
       text += fmt::format(", {} {}", shown.label, figure_text(*estimate));
     }
   }
-  text += fmt::format(", {:.1f} frames/s\n", set.frames / std::max(1e-9, set.seconds));
+  text += ", " + speed_text(set) + "\n";
   text += group_line(estimates, "parts seen", "part.seen.", "");
   text += group_line(estimates, "found by posture", "posture.", "");
+  text += group_line(estimates, "found by camera motion", "motion.", "");
   text += group_line(estimates, "joints at 10 cm", "joint.", ".at_10cm");
   text += group_line(estimates, "recall of parts", "pixels.recall_inside.", "");
   return text;
 }
 
 }  // namespace vesalius::cli
-  text += group_line(estimates, "found by camera motion", "motion.", "");

@@ -8,6 +8,7 @@
 #include "eval/detection_curve.h"
 #include "eval/figure_table.h"
 #include "eval/joint_figures.h"
+#include "eval/label_scene.h"
 #include "eval/pixel_figures.h"
 #include "vesalius/detect.h"
 #include "vesalius/frame_truth.h"
@@ -24,6 +25,7 @@ struct FrameScore {
   std::vector<JointOffset> offsets;                 ///< of a frame to fit joints on
 
   std::string what_went_wrong;  ///< empty where nothing did
+  double detect_s = 0.0;        ///< time that the detector took; 0 where only labels were asked for
   double badness = 0.0;         ///< 0 = all is right; ranks the frames worth looking at
   std::vector<Person> people;
   LabelImage labels;  ///< first pass, smoothed
@@ -35,6 +37,7 @@ class FrameScorer {
   struct Options {
     DetectOptions detect;
     bool labels_only = false;  ///< only the pixel figures of the first pass: much faster
+    int shrink = 1;            ///< the detector sees every so many pixels (shrink_frame.h) and is judged on all
   };
 
   /// Throws as Detector does.
@@ -48,6 +51,8 @@ class FrameScorer {
   const Options& options() const { return options_; }
 
  private:
+  std::vector<Person> detect(const Frame& frame, Trace& trace) const;
+  SceneLabels label(const Frame& frame, const Mask* body = nullptr) const;
   void find_people(const TrueFrame& frame, bool fit_joints, FrameScore& score) const;
   void log_proposals(const TrueFrame& frame, const Trace& trace, FrameScore& score) const;
   void judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,

@@ -128,6 +128,7 @@ class SkeletonSearch {
     one_step_.resize(clusters_.size());
     two_step_.resize(clusters_.size());
     for (const BodyLink& link : body_.links) add_pairs(link.parent, link.child, span_of(link), one_step_);
+    if (!options_.grandparents) return;
     for (std::size_t i = 0; i < body_.links.size(); ++i) {
       for (std::size_t j = i + 1; j < body_.links.size(); ++j) {
         const BodyLink &a = body_.links[i], &b = body_.links[j];
@@ -279,6 +280,8 @@ void visit_options(const std::string& prefix, SearchOptions& o, OptionVisitor& v
                  {"", 0.0, 10.0, "Share of the proposals' own variance that excuses a deviation."});
   visitor.option(prefix + "gap-tolerance", o.gap_tolerance_m,
                  {"m", 0.001, 10.0, "Empty space between linked parts that counts as one unit of error."});
+  visitor.option(prefix + "grandparents", o.grandparents,
+                 {"", 0, 1, "Whether parts hang together past one that was not seen."});
   visitor.option(prefix + "size-tolerance", o.size_tolerance,
                  {"", 0.01, 100.0, "Deviation of log(area) from a part's range that halves its gain."});
 }

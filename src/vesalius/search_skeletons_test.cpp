@@ -207,6 +207,17 @@ TEST(SearchSkeletons, BridgesOneMissingPartButNotTwo) {
   EXPECT_EQ(found[0].parts[3].state, State::observed);  // left hangs on the neck
 }
 
+TEST(SearchSkeletons, WithoutGrandparentsNothingHangsPastAMissingPart) {
+  std::vector<PartCluster> clusters = people({{0.F, 0.F, 2.F}});
+  SearchOptions options;
+  options.grandparents = false;
+  EXPECT_EQ(search_skeletons(clusters, small_body(), options).at(0).found, 6);
+  std::erase_if(clusters, [](const PartCluster& c) { return c.label == 4; });
+  const Skeleton without = search_skeletons(clusters, small_body(), options).at(0);
+  EXPECT_EQ(without.parts[5].state, State::none);
+  EXPECT_EQ(without.found, 4);
+}
+
 TEST(SearchSkeletons, RootsAtAFaceWhenTheNeckIsHidden) {
   std::vector<PartCluster> clusters = people({{0.F, 0.F, 2.F}});
   std::erase_if(clusters, [](const PartCluster& c) { return c.label == 1; });

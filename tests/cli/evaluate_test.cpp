@@ -86,6 +86,27 @@ TEST_F(Evaluate, WritesReportWithPictures) {
   EXPECT_EQ(json::parse(bytes_of(path("out/report.json"))).at("sets").size(), 1U);
 }
 
+TEST_F(Evaluate, WritesWhatEachPartOfTheMethodIsWorth) {
+  if (!has_gnuplot()) GTEST_SKIP() << "no program gnuplot (Debian: gnuplot-nox)";
+  const Outcome run = evaluate(" --ablation --step 3 --report " + path("out"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, ContainsRegex("  half resolution +[0-9.]+ ms, [0-9.]+ of it; people found "));
+  const std::string page = bytes_of(path("out/report.md"));
+  EXPECT_THAT(page, ContainsRegex("\\| as it is \\| 100.00 % \\|"));
+  EXPECT_THAT(page, HasSubstr("| no second iteration |"));
+  EXPECT_THAT(bytes_of(path("out/ablation.csv")), HasSubstr("\nframes,root neck alone,people.found,"));
+  const json set = json::parse(bytes_of(path("out/report.json"))).at("sets").at(0);
+  const json& rows = set.at("ablation");
+  EXPECT_GT(rows.size(), 6U);
+  for (const json& row : rows) {
+    EXPECT_GT(row.at("frame_ms"), 0.0) << row.at("variant");
+    const json& found = row.at("figures").at("people.found");
+    const double whole = set.at("figures").at("people.found").at("value");
+    EXPECT_NEAR(found.at("value").get<double>() - found.at("difference").get<double>(), whole, 1e-9);
+  }
+  EXPECT_EQ(evaluate(" --ablation --labels-only").exit_code, 2);
+}
+
 TEST_F(Evaluate, SameFiguresForAnyThreadCount) {
   std::vector<json> sets;
   for (const char* threads : {"1", "2", "5"}) {
