@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "eval/pixel_figures.h"
 #include "shared_frames.h"
 #include "vesalius/detect.h"
 #include "vesalius/parallel.h"

@@ -67,15 +67,4 @@ Forest load_released_trees(const std::filesystem::path& shared) {
   return import_text_trees(paths);
 }
 
-double mask_iou(const Mask& a, const Mask& b, const DepthImage& depth) {
-  long both = 0;
-  long either = 0;
-  for (std::size_t i = 0; i < depth.size(); ++i) {
-    if (depth[i] == 0) continue;
-    both += a[i] != 0 && b[i] != 0 ? 1 : 0;
-    either += a[i] != 0 || b[i] != 0 ? 1 : 0;
-  }
-  return either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 0.0;
-}
-
 }  // namespace vesalius

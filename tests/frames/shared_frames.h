@@ -29,9 +29,6 @@ std::vector<RealFrame> load_real_set(const std::filesystem::path& shared, const 
 /// The three trees that the paper's authors released.
 Forest load_released_trees(const std::filesystem::path& shared);
 
-/// Intersection over union of two masks on the pixels with a reading.
-double mask_iou(const Mask& a, const Mask& b, const DepthImage& depth);
-
 }  // namespace vesalius
 
 /// Skips the test, saying why, where the real frames are absent; else defines `shared`.

@@ -1,9 +1,12 @@
 // Makes data/models/capsule.forest and data/sample: see data/models/README.md.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
+#include "io/atomic_file.h"
+#include "io/image_file.h"
 #include "io/model_file.h"
 #include "io/write_frames.h"
 #include "pixel_score.h"
@@ -44,10 +47,21 @@ void make_forest(const std::string& path, int frames, const TrainOptions& option
   print(score_pixels(forest, random_frames(kTestFrames, kTestSeed)), forest.body);
 }
 
+/// The frames with their truth for `vesalius evaluate`: how many people, and their pixels.
 void make_sequence(const std::string& folder) {
   const auto writer = make_frame_writer(FrameFormat::folder, folder);
-  for (const Frame& frame : sample_sequence()) writer->write(frame);
+  std::filesystem::create_directories(std::filesystem::path(folder) / "mask");
+  std::string table = "frame,people\n";
+  for (const LabelledFrame& labelled : sample_sequence()) {
+    writer->write(labelled.frame);
+    table += labelled.frame.name + "," + std::to_string(labelled.parts.size()) + "\n";
+    Image<std::uint8_t> mask(labelled.person.width(), labelled.person.height());
+    std::ranges::transform(labelled.person, mask.begin(),
+                           [](std::uint8_t who) -> std::uint8_t { return who == kBackground ? 0 : 255; });
+    write_png(mask, folder + "/mask/" + labelled.frame.name + ".png");
+  }
   writer->close();
+  write_file_atomically(folder + "/frames.csv", table);
   std::cout << folder << ": written\n";
 }
 

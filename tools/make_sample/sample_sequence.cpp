@@ -51,9 +51,9 @@ CapsulePerson half_hidden() {
 
 }  // namespace
 
-std::vector<Frame> sample_sequence() {
+std::vector<LabelledFrame> sample_sequence() {
   const Camera camera{640, 480, 525.F, 525.F, 319.5F, 239.5F};
-  std::vector<Frame> frames;
+  std::vector<LabelledFrame> frames;
   for (int i = 0; i < kFrames; ++i) {
     const float time_s = static_cast<float>(i) / kFramesPerSecond;
     CapsuleScene scene;
@@ -63,11 +63,11 @@ std::vector<Frame> sample_sequence() {
     scene.people = {waving(time_s), walking(time_s), half_hidden()};
     scene.boxes.push_back({{0.75F, kFloorY - 0.75F, 2.3F}, {1.5F, kFloorY, 2.5F}, {150, 120, 90}});
     scene.boxes.push_back({{-2.4F, kFloorY - 0.9F, 3.7F}, {-1.9F, kFloorY, 4.2F}, {110, 90, 70}});
-    Frame frame = render(scene, camera, paper_body()).frame;
-    frame.name = "00" + std::to_string(i);
-    frame.time_s = i / static_cast<double>(kFramesPerSecond);
-    add_sensor_noise(frame, static_cast<std::uint64_t>(i));
-    frames.push_back(std::move(frame));
+    LabelledFrame labelled = render(scene, camera, paper_body());
+    labelled.frame.name = "00" + std::to_string(i);
+    labelled.frame.time_s = i / static_cast<double>(kFramesPerSecond);
+    add_sensor_noise(labelled.frame, static_cast<std::uint64_t>(i));
+    frames.push_back(std::move(labelled));
   }
   return frames;
 }

@@ -8,6 +8,6 @@ namespace vesalius {
 
 /// Eight frames of 640x480 at 10 per second, with sensor noise: one person waves, one walks across the room, one stands
 /// half hidden by a box.
-std::vector<Frame> sample_sequence();
+std::vector<LabelledFrame> sample_sequence();
 
 }  // namespace vesalius
