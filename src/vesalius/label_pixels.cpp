@@ -1,10 +1,12 @@
 #include "vesalius/label_pixels.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "vesalius/parallel.h"
 #include "vesalius/tree_walk.h"
+#include "vesalius/walk_kernels.h"
 
 namespace vesalius {
 namespace {
@@ -67,47 +69,38 @@ std::array<std::uint8_t, 256> count_neighbours(const LabelImage& labels, int u, 
   return count;
 }
 
-/// Pixels that walk a tree side by side: while one waits for memory, the others go on.
-class PixelGroup {
- public:
-  static constexpr int kMost = 16;
+void add_leaf(const TreeLeaf& leaf, std::uint16_t* sums) {
+  for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) {
+    sums[leaf.label[k]] = static_cast<std::uint16_t>(sums[leaf.label[k]] + leaf.probability[k]);
+  }
+}
 
-  bool full() const { return size_ == kMost; }
-  void clear() { size_ = 0; }
-  void add(int u, int v, OffsetScale scale) { pixels_[static_cast<std::size_t>(size_++)] = {u, v, scale, 0}; }
+/// Sums of the rows' pixels, which are still zero.
+void label_rows(const std::vector<PackedTree>& trees, const PaddedDepth& depth, const WalkPixels& pixels,
+                Posteriors& out) {
+  const std::size_t stride = pixels.padded_size();
+  std::vector<std::uint32_t> leaves(trees.size() * stride);
+  for (std::size_t t = 0; t < trees.size(); ++t) walk_pixels(trees[t], depth, pixels, leaves.data() + t * stride);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    std::uint16_t* sums = out.at(pixels.column(WalkPixels::kU)[i], pixels.column(WalkPixels::kV)[i]);
+    for (std::size_t t = 0; t < trees.size(); ++t) add_leaf(trees[t].leaves[leaves[t * stride + i]], sums);
+  }
+}
 
-  /// Adds the distributions of the leaves that the pixels reach to their sums.
-  void walk_all(const Tree& tree, const DepthImage& depth, const FeatureConvention& convention, Posteriors& out) {
-    for (int i = 0; i < size_; ++i) at(i).node = tree.nodes.empty() ? ~0 : 0;
-    for (bool walking = !tree.nodes.empty(); walking;) {
-      walking = false;
-      for (int i = 0; i < size_; ++i) {
-        Pixel& p = at(i);
-        if (p.node < 0) continue;
-        p.node = step(tree, p.node, depth, convention, p.scale, p.u, p.v);
-        walking = walking || p.node >= 0;
-      }
-    }
-    for (int i = 0; i < size_; ++i) {
-      const TreeLeaf& leaf = tree.leaves[static_cast<std::size_t>(~at(i).node)];
-      std::uint16_t* sums = out.at(at(i).u, at(i).v);
-      for (std::size_t k = 0; k < TreeLeaf::kClasses && leaf.probability[k] != 0; ++k) {
-        sums[leaf.label[k]] = static_cast<std::uint16_t>(sums[leaf.label[k]] + leaf.probability[k]);
+/// The same one pixel after the other, for pictures of any size.
+void label_rows_plainly(const Forest& forest, const std::vector<PackedTree>& packed, const DepthImage& depth, int begin,
+                        int end, const OffsetScaler& scaler, Posteriors& out) {
+  for (int v = begin; v < end; ++v) {
+    for (int u = 0; u < depth.width(); ++u) {
+      if (depth(u, v) == 0) continue;
+      for (std::size_t t = 0; t < packed.size(); ++t) {
+        const Tree& tree = forest.trees[t];
+        const TreeLeaf& leaf = walk(tree, depth, forest.convention, scaler.at(depth(u, v)), u, v);
+        add_leaf(packed[t].leaves[static_cast<std::size_t>(&leaf - tree.leaves.data())], out.at(u, v));
       }
     }
   }
-
- private:
-  struct Pixel {
-    int u, v;
-    OffsetScale scale;
-    std::int32_t node;
-  };
-  Pixel& at(int i) { return pixels_[static_cast<std::size_t>(i)]; }
-
-  std::array<Pixel, kMost> pixels_;
-  int size_ = 0;
-};
+}
 
 }  // namespace
 
@@ -123,27 +116,25 @@ void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& vi
 ForestLabeller::ForestLabeller(Forest forest) : forest_(std::move(forest)) {
   check(forest_);
   distributions_ = vesalius::has_distributions(forest_);
+  packed_.resize(forest_.trees.size());
+  parallel_for(static_cast<int>(packed_.size()), [&](int t) {
+    const auto i = static_cast<std::size_t>(t);
+    packed_[i] = pack(forest_.trees[i], forest_.convention);
+  });
 }
 
 Posteriors ForestLabeller::label(const DepthImage& depth, const Camera& camera) const {
   Posteriors out{depth.width(), depth.height(), forest_.class_count(), static_cast<int>(forest_.trees.size()), {}};
   out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
   const OffsetScaler scaler(forest_.convention, camera);
+  if (std::max(depth.width(), depth.height()) > PaddedDepth::kMaxSide) {
+    parallel_ranges(depth.height(), kRowGrain,
+                    [&](int begin, int end) { label_rows_plainly(forest_, packed_, depth, begin, end, scaler, out); });
+    return out;
+  }
+  const PaddedDepth padded(depth, forest_.convention);
   parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
-    PixelGroup group;
-    for (const Tree& tree : forest_.trees) {  // tree by tree: its upper nodes stay in the cache
-      for (int v = begin; v < end; ++v) {
-        for (int u = 0; u < depth.width(); ++u) {
-          if (depth(u, v) == 0) continue;
-          group.add(u, v, scaler.at(depth(u, v)));
-          if (!group.full()) continue;
-          group.walk_all(tree, depth, forest_.convention, out);
-          group.clear();
-        }
-      }
-      group.walk_all(tree, depth, forest_.convention, out);
-      group.clear();
-    }
+    label_rows(packed_, padded, WalkPixels(depth, begin, end, scaler, forest_.convention), out);
   });
   return out;
 }

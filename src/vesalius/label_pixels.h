@@ -9,6 +9,7 @@
 #include "vesalius/forest.h"
 #include "vesalius/image.h"
 #include "vesalius/options.h"
+#include "vesalius/packed_tree.h"
 
 namespace vesalius {
 
@@ -60,6 +61,7 @@ class ForestLabeller : public PixelLabeller {
 
  private:
   Forest forest_;
+  std::vector<PackedTree> packed_;
   bool distributions_;
 };
 

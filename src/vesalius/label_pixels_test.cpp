@@ -7,6 +7,7 @@
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
 #include "vesalius/random.h"
+#include "vesalius/tree_walk.h"
 
 namespace vesalius {
 namespace {
@@ -54,8 +55,8 @@ Tree random_tree(Random& random, int levels, int classes) {
   return tree;
 }
 
-DepthImage random_depth(Random& random) {
-  DepthImage depth(kCamera.width, kCamera.height);
+DepthImage random_depth(Random& random, int width = kCamera.width, int height = kCamera.height) {
+  DepthImage depth(width, height);
   for (auto& z : depth) z = random.below(8) == 0 ? 0 : static_cast<std::uint16_t>(500 + random.below(3000));
   return depth;
 }
@@ -106,6 +107,47 @@ TEST(ForestLabeller, AgreesWithThePlainDefinition) {
   }
   // Fixed point rounds a probe that falls on the border of two pixels its own way.
   EXPECT_LE(differing, 3072 / 200);
+}
+
+/// Eq. 2 by the walk of one pixel after the other.
+std::vector<std::uint16_t> walked_sums(const Forest& forest, const DepthImage& depth, const Camera& camera) {
+  const auto classes = static_cast<std::size_t>(forest.class_count());
+  std::vector<std::uint16_t> sums(depth.size() * classes, 0);
+  const OffsetScaler scaler(forest.convention, camera);
+  for (int v = 0; v < depth.height(); ++v) {
+    for (int u = 0; u < depth.width(); ++u) {
+      if (depth(u, v) == 0) continue;
+      const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(depth.width()) + u;
+      for (const Tree& tree : forest.trees) {
+        const TreeLeaf& leaf = walk(tree, depth, forest.convention, scaler.at(depth(u, v)), u, v);
+        for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) {
+          if (leaf.probability[k] != 0) sums[pixel * classes + leaf.label[k]] += leaf.probability[k];
+        }
+      }
+    }
+  }
+  return sums;
+}
+
+TEST(ForestLabeller, SumsTheLeavesOfThePlainWalkForAnySizeAndThreadCount) {
+  Random random(17);
+  for (const bool background : {false, true}) {
+    Forest forest = empty_forest(background);
+    for (int t = 0; t < 3; ++t) forest.trees.push_back(random_tree(random, 6, forest.class_count()));
+    forest.trees.push_back(leaf_tree({{3, 200, 4, 0}, {100, 0, 50, 0}}));  // an unused slot may hold anything
+    const ForestLabeller labeller(forest);
+    // The last two are larger than the kernel takes.
+    for (const auto& [width, height] :
+         {std::pair{0, 0}, std::pair{1, 1}, std::pair{53, 31}, std::pair{16001, 2}, std::pair{1, 16001}}) {
+      const DepthImage depth = random_depth(random, width, height);
+      const Camera camera{width, height, 60.F, 50.F, 0.F, 0.F};
+      const std::vector<std::uint16_t> expected = walked_sums(forest, depth, camera);
+      for (const int threads : {1, 3}) {
+        const ThreadLimit limit(threads);
+        EXPECT_EQ(labeller.label(depth, camera).sums, expected) << width << 'x' << height << ", " << threads;
+      }
+    }
+  }
 }
 
 TEST(ForestLabeller, AveragesTheTrees) {

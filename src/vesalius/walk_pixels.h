@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "vesalius/image.h"
+#include "vesalius/tree_walk.h"
+
+namespace vesalius {
+
+/// The pixels with a reading in some rows of a picture, row by row, as the kernel takes them: a column for each
+/// property.
+class WalkPixels {
+ public:
+  /// Pixels that the kernel takes at a time.
+  static constexpr std::size_t kBlock = 64;
+  enum Column { kU, kV, kScaleU, kScaleV, kLow, kHigh, kColumns };
+
+  /// Rows `begin` to `end` - 1.
+  WalkPixels(const DepthImage& depth, int begin, int end, const OffsetScaler& scaler,
+             const FeatureConvention& convention);
+
+  std::size_t size() const { return size_; }
+  /// `size()` brought up to a multiple of kBlock. Behind the last pixel columns hold zeros.
+  std::size_t padded_size() const { return (size_ + kBlock - 1) / kBlock * kBlock; }
+  /// `kLow` and `kHigh` are what probes are clamped to, biased as PaddedDepth, in both halves of a value.
+  const std::int32_t* column(Column c) const { return columns_[c].data(); }
+
+ private:
+  std::array<std::vector<std::int32_t>, kColumns> columns_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace vesalius
