@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "vesalius/mean_kernel.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius {
@@ -25,6 +26,63 @@ void for_neighbours(const DepthImage& depth, int u, int v, const SmoothOptions& 
   }
 }
 
+/// Whether a whole window holds one label, whatever the depth: most of a picture needs no counting.
+class EvenWindows {
+ public:
+  /// For windows around the pixels of rows `begin` to `end` - 1.
+  EvenWindows(const LabelImage& labels, int window, int begin, int end)
+      : labels_(labels),
+        reach_(window / 2),
+        first_row_(std::max(0, begin - reach_)),
+        run_(labels.width(), std::min(labels.height(), end + reach_) - first_row_) {
+    for (int v = 0; v < run_.height(); ++v) {
+      const std::uint8_t* row = labels.row(first_row_ + v);
+      std::uint8_t* run = run_.row(v);
+      for (int u = 0; u < labels.width(); ++u) {
+        const bool goes_on = u > 0 && row[u] == row[u - 1];
+        run[u] = goes_on ? static_cast<std::uint8_t>(std::min(run[u - 1] + 1, 255)) : std::uint8_t{1};
+      }
+    }
+  }
+
+  bool operator()(int u, int v) const {
+    if (u < reach_ || v < reach_ || u + reach_ >= labels_.width() || v + reach_ >= labels_.height()) return false;
+    for (int nv = v - reach_; nv <= v + reach_; ++nv) {
+      if (run_(u + reach_, nv - first_row_) <= 2 * reach_ || labels_(u, nv) != labels_(u, v)) return false;
+    }
+    return true;
+  }
+
+ private:
+  const LabelImage& labels_;
+  int reach_;
+  int first_row_;
+  Image<std::uint8_t> run_;  ///< equal labels in a row that end here, at most 255
+};
+
+/// mean_filter for windows and forests whose sums need 32 bits, and for few classes.
+void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options, int begin,
+                       int end, Posteriors& out) {
+  std::vector<std::uint32_t> total(static_cast<std::size_t>(posteriors.classes));
+  for (int v = begin; v < end; ++v) {
+    for (int u = 0; u < posteriors.width; ++u) {
+      if (depth(u, v) == 0) continue;
+      std::fill(total.begin(), total.end(), 0U);
+      std::uint32_t neighbours = 0;
+      for_neighbours(depth, u, v, options, [&](int nu, int nv) {
+        const std::uint16_t* sums = posteriors.at(nu, nv);
+        for (std::size_t c = 0; c < total.size(); ++c) total[c] += sums[c];
+        ++neighbours;
+      });
+      std::uint16_t* mean = out.at(u, v);
+      // In double, which vectorises: exact, since quotients are whole or at least 1/neighbours from the next whole.
+      for (std::size_t c = 0; c < total.size(); ++c) {
+        mean[c] = static_cast<std::uint16_t>(static_cast<double>(total[c]) / static_cast<double>(neighbours));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& visitor) {
@@ -38,10 +96,15 @@ void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& v
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
   LabelImage out(labels.width(), labels.height(), kBackground);
   parallel_ranges(labels.height(), kRowGrain, [&](int begin, int end) {
+    const EvenWindows even(labels, options.window, begin, end);
     std::array<std::uint16_t, 256> count{};
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < labels.width(); ++u) {
         if (depth(u, v) == 0) continue;
+        if (even(u, v)) {
+          out(u, v) = labels(u, v);
+          continue;
+        }
         for_neighbours(depth, u, v, options, [&](int nu, int nv) { ++count[labels(nu, nv)]; });
         std::uint8_t best = labels(u, v);
         for_neighbours(depth, u, v, options, [&](int nu, int nv) {
@@ -60,25 +123,12 @@ LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const 
 Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options) {
   Posteriors out{posteriors.width, posteriors.height, posteriors.classes, posteriors.trees, {}};
   out.sums.assign(posteriors.sums.size(), 0);
-  const auto classes = static_cast<std::size_t>(posteriors.classes);
+  const bool fits = mean_rows_fit(posteriors, options.window);
   parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
-    std::vector<std::uint32_t> total(classes);
-    for (int v = begin; v < end; ++v) {
-      for (int u = 0; u < posteriors.width; ++u) {
-        if (depth(u, v) == 0) continue;
-        std::fill(total.begin(), total.end(), 0U);
-        std::uint32_t neighbours = 0;
-        for_neighbours(depth, u, v, options, [&](int nu, int nv) {
-          const std::uint16_t* sums = posteriors.at(nu, nv);
-          for (std::size_t c = 0; c < classes; ++c) total[c] += sums[c];
-          ++neighbours;
-        });
-        std::uint16_t* mean = out.at(u, v);
-        // In double, which vectorises: exact, since quotients are whole or at least 1/neighbours from the next whole.
-        for (std::size_t c = 0; c < classes; ++c) {
-          mean[c] = static_cast<std::uint16_t>(static_cast<double>(total[c]) / static_cast<double>(neighbours));
-        }
-      }
+    if (fits) {
+      mean_rows(posteriors, depth, options.window, options.depth_gate_mm, begin, end, out);
+    } else {
+      mean_rows_plainly(posteriors, depth, options, begin, end, out);
     }
   });
   return out;

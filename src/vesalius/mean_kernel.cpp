@@ -1,0 +1,180 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vesalius/mean_kernel.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+// clang-format off
+#include <hwy/highway.h>
+// clang-format on
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+
+#include "vesalius/mean_kernel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vesalius::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Capped, so that the classes of the paper's body fill it; the last vector of a pixel overlaps the one before.
+using Lanes = hn::CappedTag<std::uint16_t, 16>;
+using Uint16 = hn::Vec<Lanes>;
+
+/// Division of 16-bit numbers by a product and shifts, exact (Granlund and Montgomery 1994, figure 4.1).
+class Divider {
+ public:
+  explicit Divider(std::uint32_t divisor) {
+    const int bits = std::bit_width(divisor - 1);
+    const std::uint32_t factor = 65536U * ((1U << static_cast<unsigned>(bits)) - divisor) / divisor + 1;
+    factor_ = static_cast<std::uint16_t>(factor);
+    first_shift_ = std::min(bits, 1);
+    second_shift_ = std::max(bits - 1, 0);
+  }
+  HWY_INLINE Uint16 operator()(Uint16 x) const {
+    const Uint16 high = hn::MulHigh(x, hn::Set(Lanes(), factor_));
+    const Uint16 rest = hn::ShiftRightSame(hn::Sub(x, high), first_shift_);
+    return hn::ShiftRightSame(hn::Add(high, rest), second_shift_);
+  }
+
+ private:
+  std::uint16_t factor_;
+  int first_shift_;
+  int second_shift_;
+};
+
+class RowMean {
+ public:
+  RowMean(const Posteriors& posteriors, const DepthImage& depth, int window, int gate_mm, Posteriors& out)
+      : in_(posteriors),
+        depth_(depth),
+        window_(window),
+        reach_(window / 2),
+        gate_(gate_mm),
+        out_(out),
+        classes_(static_cast<std::size_t>(posteriors.classes)),
+        columns_(static_cast<std::size_t>(depth.width()) * classes_),
+        nearest_(static_cast<std::size_t>(depth.width())),
+        furthest_(nearest_.size()),
+        neighbours_(static_cast<std::size_t>(window * window)) {
+    for (int n = 1; n <= window * window; ++n) dividers_.emplace_back(static_cast<std::uint32_t>(n));
+  }
+
+  void Run(int v) {
+    const bool whole = v >= reach_ && v + reach_ < depth_.height() && depth_.width() >= window_;
+    if (whole) SumColumns(v);
+    for (int u = 0; u < depth_.width(); ++u) {
+      if (depth_(u, v) == 0) continue;
+      const bool inside = whole && u >= reach_ && u + reach_ < depth_.width() && AllNear(u, depth_(u, v));
+      const std::size_t count = inside ? ColumnsAround(u) : NeighboursOf(u, v);
+      Mean(count, inside ? dividers_.back() : dividers_[count - 1], out_.at(u, v));
+    }
+  }
+
+ private:
+  /// For every column of the window's rows: sum of the posteriors, nearest and furthest depth (a hole counts as 0).
+  void SumColumns(int v) {
+    std::copy_n(depth_.row(v - reach_), nearest_.size(), nearest_.begin());
+    furthest_ = nearest_;
+    std::copy_n(in_.at(0, v - reach_), columns_.size(), columns_.begin());
+    for (int nv = v - reach_ + 1; nv <= v + reach_; ++nv) {
+      const std::uint16_t* HWY_RESTRICT row = depth_.row(nv);
+      Merge(row, nearest_, [](auto a, auto b) { return hn::Min(a, b); });
+      Merge(row, furthest_, [](auto a, auto b) { return hn::Max(a, b); });
+      Merge(in_.at(0, nv), columns_, [](auto a, auto b) { return hn::Add(a, b); });
+    }
+  }
+
+  /// all[i] = merge(all[i], row[i])
+  template <class Operation>
+  static HWY_INLINE void Merge(const std::uint16_t* HWY_RESTRICT row, std::vector<std::uint16_t>& all,
+                               const Operation& merge) {
+    const auto each = [&](auto d, std::size_t i) {
+      hn::StoreU(merge(hn::LoadU(d, all.data() + i), hn::LoadU(d, row + i)), d, all.data() + i);
+    };
+    const hn::ScalableTag<std::uint16_t> wide;
+    const std::size_t step = hn::Lanes(wide);
+    std::size_t i = 0;
+    for (; i + step <= all.size(); i += step) each(wide, i);
+    for (; i < all.size(); ++i) each(hn::CappedTag<std::uint16_t, 1>(), i);
+  }
+
+  bool AllNear(int u, int mm) const {
+    int nearest = 65535, furthest = 0;
+    for (std::size_t n = static_cast<std::size_t>(u - reach_); n <= static_cast<std::size_t>(u + reach_); ++n) {
+      nearest = std::min<int>(nearest, nearest_[n]);
+      furthest = std::max<int>(furthest, furthest_[n]);
+    }
+    return nearest != 0 && mm - nearest <= gate_ && furthest - mm <= gate_;
+  }
+
+  std::size_t ColumnsAround(int u) {
+    const std::uint16_t* first = columns_.data() + static_cast<std::size_t>(u - reach_) * classes_;
+    const auto count = static_cast<std::size_t>(window_);
+    for (std::size_t n = 0; n < count; ++n) neighbours_[n] = first + n * classes_;
+    return count;
+  }
+
+  std::size_t NeighboursOf(int u, int v) {
+    const int mm = depth_(u, v);
+    const int left = std::max(0, u - reach_), right = std::min(depth_.width() - 1, u + reach_);
+    std::size_t count = 0;
+    for (int nv = std::max(0, v - reach_); nv <= std::min(depth_.height() - 1, v + reach_); ++nv) {
+      const std::uint16_t* row = depth_.row(nv);
+      for (int nu = left; nu <= right; ++nu) {
+        if (row[nu] != 0 && std::abs(row[nu] - mm) <= gate_) neighbours_[count++] = in_.at(nu, nv);
+      }
+    }
+    return count;
+  }
+
+  /// Sum of what the first `count` of `neighbours_` point to, divided.
+  HWY_INLINE void Mean(std::size_t count, const Divider& divide, std::uint16_t* to) const {
+    const Lanes d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t c = 0;; c = std::min(c + lanes, classes_ - lanes)) {
+      Uint16 sum = hn::LoadU(d, neighbours_[0] + c);
+      for (std::size_t n = 1; n < count; ++n) sum = hn::Add(sum, hn::LoadU(d, neighbours_[n] + c));
+      hn::StoreU(divide(sum), d, to + c);
+      if (c + lanes == classes_) return;
+    }
+  }
+
+  const Posteriors& in_;
+  const DepthImage& depth_;
+  int window_, reach_, gate_;
+  Posteriors& out_;
+  std::size_t classes_;
+  std::vector<std::uint16_t> columns_;
+  std::vector<std::uint16_t> nearest_, furthest_;
+  std::vector<const std::uint16_t*> neighbours_;
+  std::vector<Divider> dividers_;
+};
+
+std::size_t LaneCount() { return hn::Lanes(Lanes()); }
+
+void MeanRows(const Posteriors& posteriors, const DepthImage& depth, int window, int gate_mm, int begin, int end,
+              Posteriors& out) {
+  RowMean mean(posteriors, depth, window, gate_mm, out);
+  for (int v = begin; v < end; ++v) mean.Run(v);
+}
+
+}  // namespace vesalius::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vesalius {
+
+HWY_EXPORT(LaneCount);
+HWY_EXPORT(MeanRows);
+
+bool mean_rows_fit(const Posteriors& posteriors, int window) {
+  return posteriors.trees * 255 * window * window <= 65535 &&
+         posteriors.classes >= static_cast<int>(HWY_DYNAMIC_DISPATCH(LaneCount)());
+}
+
+void mean_rows(const Posteriors& posteriors, const DepthImage& depth, int window, int gate_mm, int begin, int end,
+               Posteriors& out) {
+  HWY_DYNAMIC_DISPATCH(MeanRows)(posteriors, depth, window, gate_mm, begin, end, out);
+}
+
+}  // namespace vesalius
+#endif

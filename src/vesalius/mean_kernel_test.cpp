@@ -1,0 +1,86 @@
+#include "vesalius/mean_kernel.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cstdlib>
+
+#include "vesalius/random.h"
+
+namespace vesalius {
+namespace {
+
+struct Picture {
+  DepthImage depth;
+  Posteriors posteriors;
+};
+
+/// A wall with a few steps and holes, so that windows of every kind occur; posteriors up to the largest.
+Picture random_picture(Random& random, int width, int height, int classes, int trees) {
+  Picture p{DepthImage(width, height, 1500), {width, height, classes, trees, {}}};
+  for (std::uint16_t& mm : p.depth) {
+    const std::uint32_t kind = random.below(60);
+    mm = kind == 0 ? 0 : static_cast<std::uint16_t>((kind == 1 ? 1800 : 1500) + random.below(kind == 2 ? 301 : 20));
+  }
+  const auto most = static_cast<std::uint32_t>(255 * trees);
+  for (std::size_t i = 0; i < p.depth.size() * static_cast<std::size_t>(classes); ++i) {
+    p.posteriors.sums.push_back(static_cast<std::uint16_t>(random.below(4) == 0 ? most : random.below(most + 1)));
+  }
+  return p;
+}
+
+std::vector<std::uint16_t> plain_means(const Picture& p, int window, int gate_mm) {
+  const int reach = window / 2;
+  std::vector<std::uint16_t> means(p.posteriors.sums.size(), 0);
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    const int c = static_cast<int>(i % static_cast<std::size_t>(p.posteriors.classes));
+    const int pixel = static_cast<int>(i) / p.posteriors.classes;
+    const int u = pixel % p.depth.width(), v = pixel / p.depth.width();
+    if (p.depth(u, v) == 0) continue;
+    int sum = 0, count = 0;
+    for (int nv = v - reach; nv <= v + reach; ++nv) {
+      for (int nu = u - reach; nu <= u + reach; ++nu) {
+        if (!p.depth.contains(nu, nv) || p.depth(nu, nv) == 0) continue;
+        if (std::abs(p.depth(nu, nv) - p.depth(u, v)) > gate_mm) continue;
+        sum += p.posteriors.at(nu, nv)[c];
+        ++count;
+      }
+    }
+    means[i] = static_cast<std::uint16_t>(sum / count);
+  }
+  return means;
+}
+
+TEST(MeanKernel, IsThePlainMeanOnEveryInstructionSet) {
+  Random random(31);
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{4, 9}, std::pair{5, 5}, std::pair{41, 23}}) {
+    for (const int window : {1, 3, 5}) {
+      for (const int classes : {16, 26, 40}) {
+        const Picture p = random_picture(random, width, height, classes, 10);
+        const std::vector<std::uint16_t> expected = plain_means(p, window, 300);
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+          hwy::SetSupportedTargetsForTest(target);
+          ASSERT_TRUE(mean_rows_fit(p.posteriors, window));
+          Posteriors out = p.posteriors;
+          std::ranges::fill(out.sums, std::uint16_t{0});
+          mean_rows(p.posteriors, p.depth, window, 300, 0, height / 2, out);
+          mean_rows(p.posteriors, p.depth, window, 300, height / 2, height, out);
+          EXPECT_EQ(out.sums, expected) << hwy::TargetName(target) << ' ' << width << 'x' << height << " window "
+                                        << window << ", " << classes << " classes";
+        }
+        hwy::SetSupportedTargetsForTest(0);
+      }
+    }
+  }
+}
+
+TEST(MeanKernel, FitsWhereSumsOfAWindowAre16Bits) {
+  Posteriors posteriors{10, 10, 26, 10, {}};
+  EXPECT_TRUE(mean_rows_fit(posteriors, 5));  // 255 * 10 * 25 = 63750
+  posteriors.trees = 11;
+  EXPECT_FALSE(mean_rows_fit(posteriors, 5));
+  EXPECT_TRUE(mean_rows_fit(posteriors, 3));
+}
+
+}  // namespace
+}  // namespace vesalius
