@@ -68,6 +68,9 @@ std::vector<BenchScene> bench_scenes() {
   for (const char* number : {"1", "2", "3"})
     trees.push_back((shared / "reference/pcl_tree_").string() + number + ".txt.bz2");
   scenes.push_back(run_stages("alina_wave", alina_frame(depth_file), import_text_trees(trees)));
+  if (const char* model = std::getenv("VESALIUS_BENCH_MODEL")) {
+    scenes.push_back(run_stages("model", alina_frame(depth_file), load_model(model)));
+  }
   return scenes;
 }
 

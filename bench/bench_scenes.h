@@ -21,8 +21,8 @@ struct BenchScene {
 };
 
 /// Two capsule people in a room, 640x480 with sensor noise, and the sample's forest; and where VESALIUS_SHARED or the
-/// folder `shared` beside the repository has them, a real frame with the reference trees. Throws Error for a file that
-/// cannot be read.
+/// folder `shared` beside the repository has them, a real frame with the reference trees and, where
+/// VESALIUS_BENCH_MODEL names one, with that model ("model"). Throws Error for a file that cannot be read.
 std::vector<BenchScene> bench_scenes();
 
 }  // namespace vesalius

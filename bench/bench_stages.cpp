@@ -2,6 +2,7 @@
 // bench --help` lists the flags.
 
 #include <benchmark/benchmark.h>
+#include <hwy/targets.h>
 
 #include <exception>
 #include <functional>
@@ -10,6 +11,8 @@
 
 #include "bench/bench_scenes.h"
 #include "bench/bench_synth.h"
+#include "vesalius/parallel.h"
+#include "vesalius/tree_walk.h"
 
 namespace vesalius {
 namespace {
@@ -28,9 +31,48 @@ void keep(T&& value) {
   benchmark::DoNotOptimize(value);
 }
 
+/// Section 4.3 as it is written down: what the kernels are measured against.
+Posteriors label_plainly(const Forest& forest, const DepthImage& depth, const Camera& camera) {
+  Posteriors out{depth.width(), depth.height(), forest.class_count(), static_cast<int>(forest.trees.size()), {}};
+  out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
+  const OffsetScaler scaler(forest.convention, camera);
+  parallel_for(depth.height(), [&](int v) {
+    for (int u = 0; u < depth.width(); ++u) {
+      if (depth(u, v) == 0) continue;
+      const OffsetScale scale = scaler.at(depth(u, v));
+      for (const Tree& tree : forest.trees) {
+        const TreeLeaf& leaf = walk(tree, depth, forest.convention, scale, u, v);
+        for (std::size_t k = 0; k < TreeLeaf::kClasses && leaf.probability[k] != 0; ++k) {
+          std::uint16_t& sum = out.at(u, v)[leaf.label[k]];
+          sum = static_cast<std::uint16_t>(sum + leaf.probability[k]);
+        }
+      }
+    }
+  });
+  return out;
+}
+
+/// The kernels of labelling and smoothing on every instruction set of this machine, and the plain code.
+void add_targets(const BenchScene& s, const std::shared_ptr<const ForestLabeller>& labeller) {
+  add("label_pixels:plain", s, [&s] { keep(label_plainly(s.forest, s.frame.depth, s.frame.camera)); });
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    const auto on_target = [target](const auto& work) {
+      hwy::SetSupportedTargetsForTest(target);
+      work();
+      hwy::SetSupportedTargetsForTest(0);
+    };
+    const std::string name = hwy::TargetName(target);
+    add("label_pixels:" + name, s,
+        [=, &s] { on_target([&] { keep(labeller->label(s.frame.depth, s.frame.camera)); }); });
+    add("mean_filter:" + name, s,
+        [=, &s] { on_target([&] { keep(mean_filter(s.posteriors, s.frame.depth, SmoothOptions())); }); });
+  }
+}
+
 void add_labelling(const BenchScene& s) {
   const auto labeller = std::make_shared<ForestLabeller>(s.forest);
   add("label_pixels", s, [&s, labeller] { keep(labeller->label(s.frame.depth, s.frame.camera)); });
+  add_targets(s, labeller);
   const LabelChoice choice{.part_count = s.forest.body.part_count(), .has_background = s.forest.has_background};
   add("choose_labels", s, [&s, choice] { keep(choose_labels(s.posteriors, s.frame.depth, choice, LabelOptions())); });
   add("mode_filter", s, [&s] { keep(mode_filter(s.labels, s.frame.depth, SmoothOptions())); });
