@@ -20,6 +20,8 @@ endif()
 # What tests (and the program, in builds with sanitizers) are compiled with besides, after all else: VESALIUS_TEST_FLAGS.
 add_library(vesalius_test_settings INTERFACE)
 target_compile_options(vesalius_test_settings INTERFACE ${VESALIUS_TEST_FLAGS})
+# Tests of kernels call Highway; its definitions must be the same in all tests to share one precompiled header.
+target_link_libraries(vesalius_test_settings INTERFACE hwy::hwy)
 
 # vesalius_precompile(TARGET header...): reads what most of its files include once, where VESALIUS_PCH asks for it; a build
 # without (preset fuzz) shows which includes are missing.

@@ -28,7 +28,7 @@ struct SceneOptions {
   float frontal_share = 0.45F;  ///< of people who face the camera within `frontal_range_deg`; others face anywhere
   float frontal_range_deg = 60.F;
   float min_visible = 0.3F;  ///< share of a person's bones within the picture
-  float detail_px = 0.5F;    ///< how far a coarser surface of somebody far away may stray from the full one; 0: none
+  float detail_px = 0.35F;   ///< how far a coarser surface of somebody far away may stray from the full one; 0: none
 };
 
 void visit_options(const std::string& prefix, SceneOptions& options, OptionVisitor& visitor);
