@@ -6,7 +6,7 @@ set(VESALIUS_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/vesalius)
 
 # Headers for users. The core's include each other, so all of them; of a satellite only what it is meant for.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/vesalius DESTINATION ${VESALIUS_INCLUDE_DIR} FILES_MATCHING PATTERN "*.h"
-        PATTERN "*_inl.h" EXCLUDE)
+        PATTERN "*_inl.h" EXCLUDE PATTERN "for_each_target.h" EXCLUDE)
 set(VESALIUS_io_HEADERS atomic_file camera_file image_file model_file open_source options_file pcd ply video write_frames)
 set(VESALIUS_draw_HEADERS draw)
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cli/evaluate_report.h"
+#include "cli/json_number.h"
 #include "eval/compare_figures.h"
 
 namespace vesalius::cli {
@@ -25,17 +26,13 @@ constexpr std::array<std::pair<const char*, const char*>, 8> kColumns{
      {"parts.right", "visible parts right"},
      {"part.mean_seen", "parts seen"}}};
 
-const Estimate* find(const std::vector<Estimate>& figures, std::string_view name) {
-  const auto found = std::ranges::find(figures, name, &Estimate::name);
-  return found == figures.end() ? nullptr : &*found;
-}
-
 /// Columns for which the set has figures.
 std::vector<std::pair<const char*, const char*>> columns_of(const std::vector<Estimate>& figures) {
   std::vector<std::pair<const char*, const char*>> columns;
   for (const auto& column : kColumns) {
-    const bool doubled = std::string_view(column.first) == "part.mean_seen" && find(figures, "parts.right") != nullptr;
-    if (find(figures, column.first) != nullptr && !doubled) columns.push_back(column);
+    const bool doubled =
+        std::string_view(column.first) == "part.mean_seen" && find_estimate(figures, "parts.right") != nullptr;
+    if (find_estimate(figures, column.first) != nullptr && !doubled) columns.push_back(column);
   }
   return columns;
 }
@@ -51,7 +48,7 @@ std::string difference_text(const Comparison& c) {
 std::vector<Comparison> comparisons(const std::vector<Estimate>& whole, const AblationRow& row) {
   std::vector<Comparison> all;
   for (const Estimate& figure : row.figures) {
-    if (const Estimate* before = find(whole, figure.name)) all.push_back(compare(*before, figure, true));
+    if (const Estimate* before = find_estimate(whole, figure.name)) all.push_back(compare(*before, figure, true));
   }
   return all;
 }
@@ -59,8 +56,6 @@ std::vector<Comparison> comparisons(const std::vector<Estimate>& whole, const Ab
 std::string time_text(const SetResult& set, const AblationRow& row) {
   return fmt::format("{:.1f} ms, {:.2f} of it", row.frame_ms, row.frame_ms / std::max(1e-9, set.frame_ms));
 }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 const char* to_string(Comparison::Verdict verdict) {
   return verdict == Comparison::Verdict::better ? "better" : verdict == Comparison::Verdict::worse ? "worse" : "same";
@@ -76,17 +71,18 @@ void add_ablation(const SetResult& set, Document& document) {
   std::vector<std::vector<std::string>> rows{{"as it is"}};
   for (const auto& [name, title] : columns) {
     header.emplace_back(title);
-    rows.front().push_back(figure_text(*find(whole, name)));
+    rows.front().push_back(figure_text(*find_estimate(whole, name)));
   }
   header.emplace_back("time a frame");
   rows.front().push_back(fmt::format("{:.1f} ms", set.frame_ms));
   for (const AblationRow& row : set.ablation) {
     std::vector<std::string>& cells = rows.emplace_back(std::vector<std::string>{row.variant});
     for (const auto& [name, title] : columns) {
-      const Estimate* figure = find(row.figures, name);
-      cells.push_back(figure == nullptr ? ""
-                                        : fmt::format("{}, {}", figure_text(*figure),
-                                                      difference_text(compare(*find(whole, name), *figure, true))));
+      const Estimate* figure = find_estimate(row.figures, name);
+      cells.push_back(figure == nullptr
+                          ? ""
+                          : fmt::format("{}, {}", figure_text(*figure),
+                                        difference_text(compare(*find_estimate(whole, name), *figure, true))));
     }
     cells.push_back(time_text(set, row));
   }
@@ -103,9 +99,9 @@ std::string ablation_lines(const SetResult& set) {
   for (const AblationRow& row : set.ablation) {
     text += fmt::format("  {:<28} {}", row.variant, time_text(set, row));
     for (const auto& [name, title] : columns_of(whole)) {
-      const Estimate* figure = find(row.figures, name);
+      const Estimate* figure = find_estimate(row.figures, name);
       if (figure == nullptr) continue;
-      text += fmt::format("; {} {}", title, difference_text(compare(*find(whole, name), *figure, true)));
+      text += fmt::format("; {} {}", title, difference_text(compare(*find_estimate(whole, name), *figure, true)));
     }
     text += "\n";
   }
@@ -116,14 +112,12 @@ std::string ablation_csv(const std::vector<SetResult>& sets) {
   std::string csv = "set,variant,figure,value,difference,low,high,verdict\n";
   for (const SetResult& set : sets) {
     if (set.ablation.empty()) continue;
-    std::string name = set.name;
-    std::ranges::replace(name, ',', ';');
+    const std::string name = csv_field(set.name);
     const std::vector<Estimate> whole = set.figures.estimates();
     for (const Estimate& e : whole) csv += fmt::format("{},,{},{:.6g},,,,\n", name, e.name, e.value);
     csv += fmt::format("{},,frame_ms,{:.6g},,,,\n", name, set.frame_ms);
     for (const AblationRow& row : set.ablation) {
-      std::string variant = row.variant;
-      std::ranges::replace(variant, ',', ';');
+      const std::string variant = csv_field(row.variant);
       for (const Comparison& c : comparisons(whole, row)) {
         csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", name, variant, c.name, c.second, c.difference,
                            c.interval.low, c.interval.high, to_string(c.verdict));
@@ -140,10 +134,10 @@ Json ablation_json(const SetResult& set) {
   for (const AblationRow& row : set.ablation) {
     Json figures = Json::object();
     for (const Comparison& c : comparisons(whole, row)) {
-      figures[c.name] = {{"value", number(c.second)},
-                         {"difference", number(c.difference)},
-                         {"low", number(c.interval.low)},
-                         {"high", number(c.interval.high)},
+      figures[c.name] = {{"value", json_number(c.second)},
+                         {"difference", json_number(c.difference)},
+                         {"low", json_number(c.interval.low)},
+                         {"high", json_number(c.interval.high)},
                          {"verdict", to_string(c.verdict)}};
     }
     rows.push_back({{"variant", row.variant},

@@ -86,8 +86,8 @@ std::string compare_sets(const StoredSet& first, const StoredSet& second, bool a
   const bool paired = first.frames_key == second.frames_key;
   std::string text = fmt::format("{}{}\n", first.name, paired ? "" : " (not the same frames: wider intervals)");
   for (const Estimate& figure : first.figures) {
-    const auto other = std::ranges::find(second.figures, figure.name, &Estimate::name);
-    if (other == second.figures.end()) continue;
+    const Estimate* other = find_estimate(second.figures, figure.name);
+    if (other == nullptr) continue;
     const Comparison comparison = compare(figure, *other, paired);
     tally.better += comparison.verdict == Comparison::Verdict::better ? 1 : 0;
     tally.worse += comparison.verdict == Comparison::Verdict::worse ? 1 : 0;

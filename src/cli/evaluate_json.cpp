@@ -8,6 +8,7 @@
 #include "cli/evaluate_ablation.h"
 #include "cli/evaluate_machine.h"
 #include "cli/evaluate_report.h"
+#include "cli/json_number.h"
 #include "io/options_file.h"
 #include "vesalius/error.h"
 
@@ -16,18 +17,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no NaN.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json figure_json(const Estimate& estimate) {
   Json replicates = Json::array();
   for (const double value : estimate.replicates) {
     // Five digits are plenty for the spread of a mean and keep the file small.
-    replicates.push_back(std::isfinite(value) ? Json(std::round(value * 1e5) / 1e5) : Json(nullptr));
+    replicates.push_back(json_number(std::round(value * 1e5) / 1e5));
   }
-  return {{"value", number(estimate.value)},
-          {"low", number(estimate.interval.low)},
-          {"high", number(estimate.interval.high)},
+  return {{"value", json_number(estimate.value)},
+          {"low", json_number(estimate.interval.low)},
+          {"high", json_number(estimate.interval.high)},
           {"numerator", estimate.numerator},
           {"denominator", estimate.denominator},
           {"better", kind_of(estimate.name).higher_is_better ? "higher" : "lower"},
@@ -38,17 +36,17 @@ Json curve_json(const std::vector<DetectionPoint>& curve) {
   Json points = Json::array();
   for (const DetectionPoint& point : curve) {
     points.push_back({{"threshold", point.threshold},
-                      {"rate", number(point.rate)},
-                      {"false_per_frame", number(point.false_per_frame)},
-                      {"part_rate", number(point.part_rate)},
-                      {"upper_part_rate", number(point.upper_part_rate)}});
+                      {"rate", json_number(point.rate)},
+                      {"false_per_frame", json_number(point.false_per_frame)},
+                      {"part_rate", json_number(point.part_rate)},
+                      {"upper_part_rate", json_number(point.upper_part_rate)}});
   }
   return points;
 }
 
 Json joint_curve_json(const JointCurve& curve) {
   Json shares = Json::array();
-  for (int cm = 1; cm <= kJointCurve_cm; ++cm) shares.push_back(number(curve.share(cm)));
+  for (int cm = 1; cm <= kJointCurve_cm; ++cm) shares.push_back(json_number(curve.share(cm)));
   return shares;
 }
 
@@ -114,8 +112,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
 std::string evaluation_csv(const Evaluation& evaluation) {
   std::string csv = "set,figure,value,low,high,numerator,denominator,better\n";
   for (const SetResult& set : evaluation.sets) {
-    std::string name = set.name;
-    std::ranges::replace(name, ',', ';');
+    const std::string name = csv_field(set.name);
     for (const Estimate& e : set.figures.estimates()) {
       csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.10g},{:.10g},{}\n", name, e.name, e.value, e.interval.low,
                          e.interval.high, e.numerator, e.denominator,

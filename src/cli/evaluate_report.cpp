@@ -35,8 +35,8 @@ constexpr std::array<std::pair<const char*, const char*>, 9> kOverview{
      {"joints.at_10cm", "joints at 10 cm"}}};
 
 std::string cell(const std::vector<Estimate>& estimates, std::string_view name) {
-  const auto found = std::ranges::find(estimates, name, &Estimate::name);
-  return found == estimates.end() ? "" : figure_text(*found);
+  const Estimate* found = find_estimate(estimates, name);
+  return found == nullptr ? "" : figure_text(*found);
 }
 
 void add_overview(const Evaluation& evaluation, Document& document) {

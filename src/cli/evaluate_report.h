@@ -34,6 +34,9 @@ std::string figure_with_interval(const Estimate& estimate);
 /// A value of a figure of that name in its unit; `sign`: a difference, "+1.20 %".
 std::string figure_number(const std::string& name, double value, bool sign);
 
+/// Text as a field of a CSV line: commas become semicolons.
+std::string csv_field(std::string text);
+
 /// "12.3 frames/s", or where frames were timed one by one, "41.0 ms a frame".
 std::string speed_text(const SetResult& set);
 

@@ -29,19 +29,15 @@ constexpr std::array<Shown, 14> kLine{{{"mask.iou_where_found", "mask IoU"},
                                        {"joints.procrustes_error_m", "Procrustes"},
                                        {"part.mean_seen", "parts seen"}}};
 
-const Estimate* find(const std::vector<Estimate>& estimates, std::string_view name) {
-  const auto found = std::ranges::find(estimates, name, &Estimate::name);
-  return found == estimates.end() ? nullptr : &*found;
-}
-
 /// "people 56 of 56, false 0".
 std::string people_text(const SetResult& set, const std::vector<Estimate>& estimates) {
   std::string text;
-  if (const Estimate* found = find(estimates, "people.found")) {
+  if (const Estimate* found = find_estimate(estimates, "people.found")) {
     text += fmt::format(", people {:.0f} of {:.0f}", found->numerator, found->denominator);
   }
-  if (const Estimate* wrong = find(estimates, "people.false")) text += fmt::format(", false {:.0f}", wrong->numerator);
-  if (const Estimate* empty = find(estimates, "frames.empty_with_person")) {
+  if (const Estimate* wrong = find_estimate(estimates, "people.false"))
+    text += fmt::format(", false {:.0f}", wrong->numerator);
+  if (const Estimate* empty = find_estimate(estimates, "frames.empty_with_person")) {
     text += fmt::format(", somebody in {:.0f} of {:.0f} empty", empty->numerator, empty->denominator);
   }
   if (set.failed > 0) text += fmt::format(", {} failed", set.failed);
@@ -84,6 +80,11 @@ std::string figure_with_interval(const Estimate& estimate) {
                      scale * estimate.interval.high, digits);
 }
 
+std::string csv_field(std::string text) {
+  std::ranges::replace(text, ',', ';');
+  return text;
+}
+
 std::string speed_text(const SetResult& set) {
   if (!set.ablation.empty()) return fmt::format("{:.1f} ms a frame", set.frame_ms);
   return fmt::format("{:.1f} frames/s", set.frames / std::max(1e-9, set.seconds));
@@ -93,7 +94,7 @@ std::string summary_lines(const SetResult& set) {
   const std::vector<Estimate> estimates = set.figures.estimates();
   std::string text = fmt::format("{}: {} frames{}", set.name, set.frames, people_text(set, estimates));
   for (const Shown& shown : kLine) {
-    if (const Estimate* estimate = find(estimates, shown.name)) {
+    if (const Estimate* estimate = find_estimate(estimates, shown.name)) {
       text += fmt::format(", {} {}", shown.label, figure_text(*estimate));
     }
   }

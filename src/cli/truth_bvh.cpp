@@ -6,12 +6,12 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <optional>
 
 #include "io/open_source.h"
 #include "io/options_file.h"
 #include "io/read_file.h"
+#include "io/stepped_source.h"
 #include "io/tum_trajectory.h"
 #include "synth/bvh.h"
 #include "synth/text_scanner.h"
@@ -118,8 +118,7 @@ class BvhTruth final : public TruthSource {
   BvhTruth(const std::string& folder, int step)
       : path_((fs::path(folder) / kFile).string()),
         options_(read_bvh_options(path_)),
-        source_(open_source(folder)),
-        step_(step) {
+        source_(open_source(folder), step) {
     const auto file = [&](const std::string& name) { return (fs::path(folder) / name).string(); };
     motion_ = synth::parse_bvh(read_file(file(options_.motion), kMaxMotionBytes), file(options_.motion));
     start_s_ = parse_seconds(options_.start_s, path_ + ": start");
@@ -137,20 +136,13 @@ class BvhTruth final : public TruthSource {
   }
 
   std::optional<TrueFrame> next() override {
-    for (;;) {
-      const int index = passed_++;
-      std::optional<Frame> frame = source_->next();
-      if (!frame) return std::nullopt;
-      if (index % step_ != 0) continue;
-      FrameTruth truth = truth_of(*frame, index);
-      return TrueFrame{std::move(*frame), std::move(truth)};
-    }
+    auto step = source_.next();
+    if (!step) return std::nullopt;
+    FrameTruth truth = truth_of(step->frame, step->index);
+    return TrueFrame{std::move(step->frame), std::move(truth)};
   }
-  int size() const override {
-    const int all = source_->size();
-    return all < 0 ? all : (all + step_ - 1) / step_;
-  }
-  std::vector<std::string> notes() const override { return source_->notes(); }
+  int size() const override { return source_.size(); }
+  std::vector<std::string> notes() const override { return source_.notes(); }
 
  private:
   /// -1 where the motion does not reach.
@@ -189,9 +181,7 @@ class BvhTruth final : public TruthSource {
 
   std::string path_;
   BvhTruthOptions options_;
-  std::unique_ptr<FrameSource> source_;
-  int step_;
-  int passed_ = 0;
+  SteppedSource source_;
   double start_s_ = 0.0;
   synth::Motion motion_;
   std::vector<NamedJoint> joints_;

@@ -36,6 +36,11 @@ FigureKind kind_of(std::string_view name) {
   return kind;
 }
 
+const Estimate* find_estimate(const std::vector<Estimate>& estimates, std::string_view name) {
+  const auto found = std::ranges::find(estimates, name, &Estimate::name);
+  return found == estimates.end() ? nullptr : &*found;
+}
+
 void FigureTable::add(std::uint64_t key, const FigureTerms& terms) {
   for (const FigureTerm& term : terms) {
     if (std::isfinite(term.numerator) && std::isfinite(term.denominator) && term.denominator >= 0.0) continue;

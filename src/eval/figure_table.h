@@ -37,6 +37,9 @@ struct Estimate {
   std::vector<double> replicates;  ///< kReplicates values of the resampled set; NaN where it held no term
 };
 
+/// The one of that name; null for none.
+const Estimate* find_estimate(const std::vector<Estimate>& estimates, std::string_view name);
+
 /// Sums the terms of a set's frames; its size does not depend on their number.
 class FigureTable {
  public:

@@ -12,8 +12,8 @@ namespace vesalius {
 namespace {
 
 const Estimate& get(const std::vector<Estimate>& estimates, const std::string& name) {
-  const auto found = std::ranges::find(estimates, name, &Estimate::name);
-  if (found == estimates.end()) throw Error(name + " is missing");
+  const Estimate* found = find_estimate(estimates, name);
+  if (found == nullptr) throw Error(name + " is missing");
   return *found;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/labelled_dataset.h"
+#include "io/stepped_source.h"
 #include "io/truth_folder.h"
 #include "io/truth_itop.h"
 #include "vesalius/error.h"
@@ -15,29 +16,20 @@ namespace {
 class FolderTruth final : public TruthSource {
  public:
   FolderTruth(const std::string& uri, const std::string& folder, int step, const SourceOptions& options)
-      : source_(open_source(uri, options)), truth_(folder), step_(step) {}
+      : source_(open_source(uri, options), step), truth_(folder) {}
 
   std::optional<TrueFrame> next() override {
-    for (;;) {
-      const bool wanted = passed_++ % step_ == 0;
-      std::optional<Frame> frame = source_->next();
-      if (!frame) return std::nullopt;
-      if (!wanted) continue;
-      FrameTruth truth = truth_.truth_of(*frame);
-      return TrueFrame{std::move(*frame), std::move(truth)};
-    }
+    auto step = source_.next();
+    if (!step) return std::nullopt;
+    FrameTruth truth = truth_.truth_of(step->frame);
+    return TrueFrame{std::move(step->frame), std::move(truth)};
   }
-  int size() const override {
-    const int all = source_->size();
-    return all < 0 ? all : (all + step_ - 1) / step_;
-  }
-  std::vector<std::string> notes() const override { return source_->notes(); }
+  int size() const override { return source_.size(); }
+  std::vector<std::string> notes() const override { return source_.notes(); }
 
  private:
-  std::unique_ptr<FrameSource> source_;
+  SteppedSource source_;
   TruthFolder truth_;
-  int step_;
-  int passed_ = 0;
 };
 
 class DatasetTruth final : public TruthSource {

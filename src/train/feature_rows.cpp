@@ -74,8 +74,6 @@ void EvaluateCandidates(const FrameStore::View& view, const FeatureConvention& c
   }
 }
 
-const char* TrainingTargetName() { return hwy::TargetName(HWY_TARGET); }
-
 }  // namespace vesalius::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -83,14 +81,11 @@ HWY_AFTER_NAMESPACE();
 namespace vesalius {
 
 HWY_EXPORT(EvaluateCandidates);
-HWY_EXPORT(TrainingTargetName);
 
 void evaluate_candidates(const FrameStore::View& view, const FeatureConvention& convention,
                          const TrainingSample& sample, const std::int16_t* offsets, int padded, std::int16_t* values) {
   HWY_DYNAMIC_DISPATCH(EvaluateCandidates)(view, convention, sample, offsets, padded, values);
 }
-
-const char* training_target() { return HWY_DYNAMIC_DISPATCH(TrainingTargetName)(); }
 
 }  // namespace vesalius
 #endif

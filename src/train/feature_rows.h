@@ -13,7 +13,4 @@ namespace vesalius {
 void evaluate_candidates(const FrameStore::View& view, const FeatureConvention& convention,
                          const TrainingSample& sample, const std::int16_t* offsets, int padded, std::int16_t* values);
 
-/// Name of the instruction set that `evaluate_candidates` runs on here, e.g. AVX3.
-const char* training_target();
-
 }  // namespace vesalius

@@ -1,12 +1,12 @@
 #include "train/feature_rows.h"
 
 #include <gmock/gmock.h>
-#include <hwy/targets.h>
 
 #include <limits>
 
 #include "train/walk_samples.h"
 #include "vesalius/error.h"
+#include "vesalius/for_each_target.h"
 #include "vesalius/random.h"
 #include "vesalius/tree_walk.h"
 
@@ -41,16 +41,6 @@ std::int16_t truth(const DepthImage& depth, const Camera& camera, const FeatureC
   return static_cast<std::int16_t>(std::clamp<int>(value, Limits::min(), Limits::max()));
 }
 
-/// Runs the rest of the test for every instruction set of this machine.
-template <class Work>
-void for_each_target(const Work& work) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    work();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
-
 TEST(FeatureRows, AreWhatDetectionComputesOnEveryInstructionSet) {
   FeatureConvention clipped;
   clipped.clip_mm = 1000;
@@ -70,13 +60,13 @@ TEST(FeatureRows, AreWhatDetectionComputesOnEveryInstructionSet) {
       options.max_offset_m = 20.F;
       const CandidateTable table = draw_candidates(convention, options, 37, random);
       std::vector<std::int16_t> values(static_cast<std::size_t>(table.padded));
-      for_each_target([&] {
+      for_each_target([&](const char* target) {
         for (int s = 0; s < 20; ++s) {
           const TrainingSample sample = random_sample(depth, random);
           evaluate_candidates(store[0], convention, sample, table.offsets.data(), table.padded, values.data());
           for (int c = 0; c < table.count; ++c) {
             ASSERT_EQ(values[static_cast<std::size_t>(c)], truth(depth, camera, convention, sample, table.node(c)))
-                << training_target() << " candidate " << c;
+                << target << " candidate " << c;
           }
         }
       });

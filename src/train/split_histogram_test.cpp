@@ -1,12 +1,12 @@
 #include "train/split_histogram.h"
 
 #include <gmock/gmock.h>
-#include <hwy/targets.h>
 
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "vesalius/for_each_target.h"
 #include "vesalius/random.h"
 
 namespace vesalius {
@@ -117,8 +117,7 @@ TEST(Binning, FewValuesHaveABinEach) {
 TEST(SplitHistogram, CountsEveryRowOnceInItsBinOnEveryInstructionSet) {
   Random random(2);
   const Rows rows = random_rows(500, 48, random);
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
+  for_each_target([&](const char* target) {
     const ClassIndex classes = index_classes(rows.view(), kClasses + 1);
     const Binning binning = binning_of(rows, 16);
     SplitHistogram histogram;
@@ -131,9 +130,8 @@ TEST(SplitHistogram, CountsEveryRowOnceInItsBinOnEveryInstructionSet) {
         ++truth[static_cast<std::size_t>(row * kBlockCandidates + c)];
       }
     }
-    EXPECT_EQ(histogram.counts, truth) << hwy::TargetName(target);
-  }
-  hwy::SetSupportedTargetsForTest(0);
+    EXPECT_EQ(histogram.counts, truth) << target;
+  });
 }
 
 TEST(SplitHistogram, ShardsAddUpToTheWhole) {
@@ -184,8 +182,7 @@ BinSplit obvious_split(const Rows& rows, const Binning& binning, int candidates,
 TEST(BestSplit, IsThatOfTryingEveryThresholdOnEveryInstructionSet) {
   const EntropyTable entropy;
   Random random(4);
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
+  for_each_target([&](const char* target) {
     for (const auto& [count, candidates, bins, least] :
          {std::array{400, 60, 32, 1}, std::array{90, 17, 8, 30}, std::array{50, 64, 16, 26}}) {
       const Rows rows = random_rows(static_cast<std::size_t>(count), (candidates + 15) / 16 * 16, random);
@@ -196,13 +193,12 @@ TEST(BestSplit, IsThatOfTryingEveryThresholdOnEveryInstructionSet) {
       histogram.add(rows.view(), binning, classes);
       const BinSplit truth = obvious_split(rows, binning, candidates, least, entropy);
       const BinSplit found = best_split(histogram, candidates, classes, least, entropy);
-      EXPECT_EQ(found.candidate, truth.candidate) << hwy::TargetName(target);
+      EXPECT_EQ(found.candidate, truth.candidate) << target;
       if (truth.candidate < 0) continue;
       EXPECT_EQ(found.bin, truth.bin);
       EXPECT_EQ(found.score, truth.score);
     }
-  }
-  hwy::SetSupportedTargetsForTest(0);
+  });
 }
 
 TEST(RefineSplit, FindsTheBestThresholdOfBothBins) {

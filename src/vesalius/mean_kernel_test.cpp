@@ -1,10 +1,10 @@
 #include "vesalius/mean_kernel.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cstdlib>
 
+#include "vesalius/for_each_target.h"
 #include "vesalius/random.h"
 
 namespace vesalius {
@@ -58,17 +58,15 @@ TEST(MeanKernel, IsThePlainMeanOnEveryInstructionSet) {
       for (const int classes : {16, 26, 40}) {
         const Picture p = random_picture(random, width, height, classes, 10);
         const std::vector<std::uint16_t> expected = plain_means(p, window, 300);
-        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-          hwy::SetSupportedTargetsForTest(target);
+        for_each_target([&](const char* target) {
           ASSERT_TRUE(mean_rows_fit(p.posteriors, window));
           Posteriors out = p.posteriors;
           std::ranges::fill(out.sums, std::uint16_t{0});
           mean_rows(p.posteriors, p.depth, window, 300, 0, height / 2, out);
           mean_rows(p.posteriors, p.depth, window, 300, height / 2, height, out);
-          EXPECT_EQ(out.sums, expected) << hwy::TargetName(target) << ' ' << width << 'x' << height << " window "
-                                        << window << ", " << classes << " classes";
-        }
-        hwy::SetSupportedTargetsForTest(0);
+          EXPECT_EQ(out.sums, expected) << target << ' ' << width << 'x' << height << " window " << window << ", "
+                                        << classes << " classes";
+        });
       }
     }
   }

@@ -178,8 +178,6 @@ void WalkPixelsOn(const PackedTree& tree, const PaddedDepth& depth, const WalkPi
 
 #endif
 
-const char* WalkTargetName() { return hwy::TargetName(HWY_TARGET); }
-
 }  // namespace vesalius::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -187,13 +185,10 @@ HWY_AFTER_NAMESPACE();
 namespace vesalius {
 
 HWY_EXPORT(WalkPixelsOn);
-HWY_EXPORT(WalkTargetName);
 
 void walk_pixels(const PackedTree& tree, const PaddedDepth& depth, const WalkPixels& pixels, std::uint32_t* leaves) {
   HWY_DYNAMIC_DISPATCH(WalkPixelsOn)(tree, depth, pixels, leaves);
 }
-
-const char* walk_target() { return HWY_DYNAMIC_DISPATCH(WalkTargetName)(); }
 
 }  // namespace vesalius
 #endif

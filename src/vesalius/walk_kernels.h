@@ -12,7 +12,4 @@ namespace vesalius {
 /// `pixels.padded_size()` values, of which the first `pixels.size()` count. The same from every instruction set.
 void walk_pixels(const PackedTree& tree, const PaddedDepth& depth, const WalkPixels& pixels, std::uint32_t* leaves);
 
-/// Name of the instruction set that `walk_pixels` runs on here, e.g. AVX3.
-const char* walk_target();
-
 }  // namespace vesalius

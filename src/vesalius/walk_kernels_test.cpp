@@ -1,8 +1,8 @@
 #include "vesalius/walk_kernels.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
+#include "vesalius/for_each_target.h"
 #include "vesalius/random.h"
 
 namespace vesalius {
@@ -82,16 +82,6 @@ DepthImage random_depth(Random& random, int width, int height) {
   return depth;
 }
 
-/// Runs `work` for every instruction set of this machine.
-template <class Work>
-void for_each_target(const Work& work) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    work();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
-
 void expect_leaves_of_walk(const Tree& tree, const FeatureConvention& convention, const DepthImage& depth,
                            const Camera& camera) {
   const OffsetScaler scaler(convention, camera);
@@ -107,11 +97,11 @@ void expect_leaves_of_walk(const Tree& tree, const FeatureConvention& convention
     }
   }
   ASSERT_EQ(pixels.size(), expected.size());
-  for_each_target([&] {
+  for_each_target([&](const char* target) {
     std::vector<std::uint32_t> leaves(pixels.padded_size(), 12345);
     walk_pixels(packed, padded, pixels, leaves.data());
     leaves.resize(pixels.size());
-    EXPECT_EQ(leaves, expected) << walk_target() << (packed.wide ? " wide " : " compact ") << depth.width() << 'x'
+    EXPECT_EQ(leaves, expected) << target << (packed.wide ? " wide " : " compact ") << depth.width() << 'x'
                                 << depth.height() << " clip " << convention.clip_mm;
   });
 }
