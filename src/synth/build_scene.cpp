@@ -156,6 +156,17 @@ void add_people(const std::vector<PersonPlan>& plans, float detail_px, std::vect
   }
 }
 
+/// Whole pieces of black leather or lacquer, which depth cameras see in blotches or not at all.
+void darken_furniture(float share, Scene& scene, Random& random) {
+  constexpr std::size_t kRoom = 0;
+  for (std::size_t i = kRoom + 1; i < scene.meshes.size(); ++i) {
+    SceneMesh& mesh = scene.meshes[i];
+    if (mesh.person >= 0 || !chance(static_cast<double>(share), random)) continue;
+    const auto factor = static_cast<float>(std::exp(random.uniform(std::log(0.015), std::log(0.15))));
+    for (Material& material : mesh.materials) material.infrared *= factor;
+  }
+}
+
 void check_arguments(const SceneOptions& options, const CameraPlacement& placement, const Camera& intrinsics,
                      const std::vector<PersonPlan>& plans) {
   check(options);
@@ -177,12 +188,16 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
                  {"", 0.0, 1.0, "Share of furniture that resembles people: coats on stands, mannequins, pillars."});
   visitor.option(prefix + "occluder-probability", o.occluder_probability,
                  {"", 0.0, 1.0, "Probability that something stands between the camera and a person."});
+  visitor.option(prefix + "near-probability", o.near_probability,
+                 {"", 0.0, 1.0, "Probability that something large, such as a door leaf, stands close to the camera."});
   visitor.option(prefix + "table-probability", o.table_probability,
                  {"", 0.0, 1.0, "Probability of a table in front of a sitting person."});
   visitor.option(prefix + "sofa-probability", o.sofa_probability,
                  {"", 0.0, 1.0, "Probability that two sitting people try to share a sofa."});
   visitor.option(prefix + "bed-probability", o.bed_probability,
                  {"", 0.0, 1.0, "Probability that a lying person has a bed rather than the floor."});
+  visitor.option(prefix + "dark-furniture", o.dark_furniture,
+                 {"", 0.0, 1.0, "Share of furniture that sends back next to no infrared light, as black leather."});
   visitor.option(prefix + "frontal-share", o.frontal_share,
                  {"", 0.0, 1.0, "Share of people made to face the camera; the others face anywhere."});
   visitor.option(prefix + "frontal-range", o.frontal_range_deg,
@@ -223,6 +238,7 @@ BuiltScene build_scene(const SceneOptions& options, const CameraPlacement& place
   }
   add_lights(room, built.scene, random);
   built.scene.sky = draw_sky(room, random);
+  darken_furniture(options.dark_furniture, built.scene, random);
   built.room = room;
   built.solids = stage.occupancy.solids();
   return built;

@@ -110,6 +110,51 @@ TEST(BuildScene, CamerasStandAsMounted) {
   }
 }
 
+TEST(BuildScene, DarkensWholePiecesAndNothingElse) {
+  SceneOptions options;
+  options.furniture_min = 4;
+  options.dark_furniture = 0.F;
+  const BuiltScene pale = build_scene(options, {}, kCamera, {plan_of({}, 0)}, {}, Random(9));
+  options.dark_furniture = 1.F;
+  const BuiltScene dark = build_scene(options, {}, kCamera, {plan_of({}, 0)}, {}, Random(9));
+  ASSERT_EQ(pale.scene.meshes.size(), dark.scene.meshes.size());
+  int pieces = 0;
+  for (std::size_t i = 0; i < pale.scene.meshes.size(); ++i) {
+    const SceneMesh& before = pale.scene.meshes[i];
+    const SceneMesh& after = dark.scene.meshes[i];
+    EXPECT_EQ(before.vertices, after.vertices);
+    const bool piece = i > 0 && before.person < 0;  // 0 is the room
+    pieces += piece ? 1 : 0;
+    for (std::size_t m = 0; m < before.materials.size(); ++m) {
+      EXPECT_EQ(before.materials[m].colour, after.materials[m].colour);
+      if (piece) {
+        EXPECT_LE(after.materials[m].infrared, 0.1501F * before.materials[m].infrared);
+      } else {
+        EXPECT_EQ(after.materials[m].infrared, before.materials[m].infrared);
+      }
+    }
+  }
+  EXPECT_GE(pieces, 2);
+}
+
+TEST(BuildScene, SomethingLargeStandsCloseAsOftenAsAsked) {
+  SceneOptions options;
+  options.furniture_max = 0;
+  options.occluder_probability = 0.F;
+  const auto near_pieces = [&](float probability) {
+    int near = 0;
+    options.near_probability = probability;
+    for (std::uint64_t i = 0; i < 60; ++i) {
+      const BuiltScene built = build_scene(options, {}, kCamera, {}, {}, Random(10, i));
+      const Vector3f eye = built.view.camera_from_world.inverse().translation();
+      for (const OrientedBox& box : built.solids) near += (box.pose.translation() - eye).norm() < 2.5F ? 1 : 0;
+    }
+    return near;
+  };
+  EXPECT_EQ(near_pieces(0.F), 0);
+  EXPECT_GE(near_pieces(1.F), 40);
+}
+
 TEST(BuildScene, UsesTheModelsGiven) {
   SceneMesh model;
   model.vertices = {{-0.2F, 0.F, -0.2F}, {0.2F, 0.F, -0.2F}, {0.2F, 0.F, 0.2F}, {0.F, 0.5F, 0.F}};

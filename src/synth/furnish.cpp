@@ -45,6 +45,20 @@ class Furnisher {
     }
   }
 
+  /// Something large right in front of the camera, at the side.
+  void loom() {
+    constexpr std::array<FurnitureKind, 5> kKinds = {FurnitureKind::panel, FurnitureKind::panel, FurnitureKind::panel,
+                                                     FurnitureKind::wardrobe, FurnitureKind::desk};
+    constexpr float kMostHidden = 0.5F;
+    const Furniture piece = make_furniture(kKinds[random_.below(kKinds.size())], random_);
+    for (int i = 0; i < kTries; ++i) {
+      const float far = between(0.45, 1.3, random_);
+      const float bearing = between(0.15, 0.8, random_) * (chance(0.5, random_) ? 1.F : -1.F);
+      const Isometry3f pose = standing_at(far * std::sin(bearing), 0.F, -far * std::cos(bearing), any_turn());
+      if (put(piece, pose, kMostHidden, true)) return;
+    }
+  }
+
   std::vector<Furniture> take() { return std::move(placed_); }
 
  private:
@@ -99,10 +113,11 @@ class Furnisher {
     });
   }
 
-  bool put(const Furniture& piece, const Isometry3f& pose, float most_hidden) {
+  bool put(const Furniture& piece, const Isometry3f& pose, float most_hidden, bool may_loom = false) {
     std::vector<OrientedBox> solids;
     for (const OrientedBox& box : piece.solids) solids.push_back(moved(box, pose));
-    if (looms(solids) || !occupancy_.free_for(solids) || occupancy_.hidden_share(solids) > most_hidden) return false;
+    if ((!may_loom && looms(solids)) || !occupancy_.free_for(solids) || occupancy_.hidden_share(solids) > most_hidden)
+      return false;
     occupancy_.add(solids);
     placed_.push_back(piece);
     move(placed_.back(), pose);
@@ -130,6 +145,7 @@ std::vector<Furniture> furnish(const SceneOptions& options, const RoomShape& roo
   const int span = options.furniture_max - options.furniture_min + 1;
   const int count = options.furniture_min + static_cast<int>(random.below(static_cast<std::uint32_t>(span)));
   for (int i = 0; i < count; ++i) furnisher.add_piece();
+  if (chance(static_cast<double>(options.near_probability), random)) furnisher.loom();
   return furnisher.take();
 }
 

@@ -156,6 +156,18 @@ Furniture make_pillar(Random& random) {
   return std::move(pillar.piece);
 }
 
+Furniture make_panel(Random& random) {
+  FurnitureBuilder panel(random);
+  const std::uint8_t board = panel.stuff(chance(0.5, random) ? Stuff::wall : Stuff::wood);
+  const float width = between(0.3, 1.4, random), height = between(0.5, 2.4, random);
+  const float thickness = between(0.02, 0.08, random);
+  const float lean = chance(0.4, random) ? between(-0.3, 0.3, random) : 0.F;
+  Eigen::Isometry3f pose(Eigen::AngleAxisf(lean, Vector3f::UnitZ()));
+  pose.translation().y() = 0.5F * (height * std::cos(lean) + width * std::abs(std::sin(lean)));
+  panel.box(pose, {width, height, thickness}, board);
+  return std::move(panel.piece);
+}
+
 }  // namespace
 
 void move(Furniture& piece, const Eigen::Isometry3f& motion) {
@@ -239,6 +251,8 @@ Furniture make_furniture(FurnitureKind kind, Random& random) {
       return make_coat_stand(random);
     case FurnitureKind::mannequin:
       return make_mannequin(random);
+    case FurnitureKind::panel:
+      return make_panel(random);
   }
   return {};
 }

@@ -37,9 +37,10 @@ enum class FurnitureKind : std::uint8_t {
   beanbag,
   pillar,
   coat_stand,  ///< resembles a person: a hanging coat, perhaps a hat
-  mannequin    ///< resembles a person: a torso on a pole
+  mannequin,   ///< resembles a person: a torso on a pole
+  panel        ///< door leaf, partition, board: upright or leaning
 };
-inline constexpr int kFurnitureKindCount = 16;
+inline constexpr int kFurnitureKindCount = 17;
 
 /// A piece of random size and look.
 Furniture make_furniture(FurnitureKind kind, Random& random);

@@ -18,7 +18,7 @@ namespace vesalius::synth {
 namespace {
 
 /// What a stream of random numbers is for: each has its own, so that a change of one leaves the others alone.
-enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise };
+enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise, cut_out };
 constexpr std::uint64_t kPurposes = 8;
 
 Random random_for(std::uint64_t seed, Purpose purpose, std::uint64_t index) {
@@ -73,6 +73,12 @@ struct Dressed {
     if (detail_px > 0.F) detail.emplace(poser);
   }
 };
+
+void cut_people_out(DepthImage& depth, const LabelImage& labels) {
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (labels[i] == kBackground) depth[i] = 0;
+  }
+}
 
 bool wants_makehuman(const Recipe& recipe, const Assets& assets) {
   if (recipe.body.kind == "makehuman" && assets.makehuman == nullptr) {
@@ -140,7 +146,7 @@ struct Generator::State {
     const SampledPose drawn = draw_pose(random);
     plan.pose = drawn.pose;
     plan.posture = drawn.posture;
-    plan.look = sample_look(random);
+    plan.look = sample_look(recipe.outfit, random);
     return plan;
   }
 
@@ -182,6 +188,9 @@ LabelledFrame Generator::frame(std::uint64_t index) const {
   result.frame.depth = sense(seen, s.sensor, noise, &source);
   result.labels = as_read(seen.labels, source);
   result.person = as_read(seen.person, source);
+  if (!built.people.empty() && random_for(s.seed, Purpose::cut_out, index).uniform() < s.recipe.people.cut_out) {
+    cut_people_out(result.frame.depth, result.labels);
+  }
   result.frame.colour = std::move(seen.colour);
   if (s.recipe.sensor.noise && !result.frame.colour.empty()) {
     add_colour_noise(result.frame.colour, random_for(s.seed, Purpose::colour_noise, index));

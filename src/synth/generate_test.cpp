@@ -45,6 +45,26 @@ std::vector<LabelledFrame> frames_of(const Generator& generator, std::uint64_t f
   return all;
 }
 
+TEST(Generate, CutsPeopleOutOfTheirSurroundings) {
+  Recipe recipe = small_recipe();
+  const Generator whole(recipe, {}, paper_body(), 7);
+  recipe.people.cut_out = 1.F;
+  const Generator cut(recipe, {}, paper_body(), 7);
+  long person_pixels = 0;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const LabelledFrame a = whole.frame(i);
+    const LabelledFrame b = cut.frame(i);
+    EXPECT_EQ(a.labels, b.labels);
+    EXPECT_EQ(a.joints, b.joints);
+    for (std::size_t k = 0; k < a.labels.size(); ++k) {
+      const bool person = a.labels[k] != kBackground;
+      person_pixels += person ? 1 : 0;
+      ASSERT_EQ(b.frame.depth[k], person || a.parts.empty() ? a.frame.depth[k] : 0);
+    }
+  }
+  EXPECT_GT(person_pixels, 1000);
+}
+
 TEST(GenerateThreads, AnyNumberGivesTheSameFrames) {
   const Generator generator(small_recipe(), {}, paper_body(), 7);
   const std::vector<LabelledFrame> all = frames_of(generator, 0, 24);

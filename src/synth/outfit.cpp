@@ -32,7 +32,7 @@ Rgb cloth_colour(Random& random) {
   return {channel(0.F), channel(2.F), channel(4.F)};
 }
 
-Material cloth(Random& random) {
+Material cloth(const OutfitOptions& options, Random& random) {
   Material m;
   m.colour = cloth_colour(random);
   m.second = chance(random, 0.5F) ? cloth_colour(random) : mix(m.colour, {255, 255, 255}, 0.25F);
@@ -44,7 +44,7 @@ Material cloth(Random& random) {
   m.period_m = uniform(random, 0.015F, 0.12F);
   m.infrared = uniform(random, 0.35F, 0.9F);  // dyes let infrared through
   // Leather and many blacks do not: trousers without any depth are common in public frames.
-  if (chance(random, 0.2F)) m.infrared = std::exp(uniform(random, std::log(0.01F), std::log(0.2F)));
+  if (chance(random, options.dark_cloth)) m.infrared = std::exp(uniform(random, std::log(0.01F), std::log(0.2F)));
   return m;
 }
 
@@ -55,7 +55,11 @@ Material plain(const Rgb& colour, float infrared) {
   return m;
 }
 
-Material hair(Random& random) {
+Material hair(const OutfitOptions& options, Random& random) {
+  if (chance(random, options.dark_hair)) {
+    const float shade = uniform(random, 0.F, 1.F);
+    return plain(mix({12, 10, 10}, {60, 40, 30}, shade), std::exp(uniform(random, std::log(0.01F), std::log(0.08F))));
+  }
   const float kind = uniform(random, 0.F, 1.F);
   const float shade = uniform(random, 0.F, 1.F);
   if (kind < 0.6F) return plain(mix({20, 16, 14}, {70, 48, 34}, shade), uniform(random, 0.05F, 0.3F));
@@ -85,6 +89,10 @@ void visit_options(const std::string& prefix, OutfitOptions& o, OptionVisitor& v
   visitor.option(prefix + "held", o.held, {"", 0, 1, "Share of people who hold a cup, phone, stick or box."});
   visitor.option(prefix + "max-cloth", o.max_cloth_m, {"m", 0, 0.05, "Thickest cloth over the skin."});
   visitor.option(prefix + "max-hair", o.max_hair_m, {"m", 0, 0.1, "Thickest hair over the skull."});
+  visitor.option(prefix + "dark-cloth", o.dark_cloth,
+                 {"", 0, 1, "Share of cloth that sends back next to no infrared light: leather, many blacks."});
+  visitor.option(prefix + "dark-hair", o.dark_hair,
+                 {"", 0, 1, "Share of hair that sends back next to no infrared light."});
 }
 
 Outfit sample_outfit(const OutfitOptions& options, Random& random) {
@@ -120,17 +128,17 @@ Outfit sample_outfit(const OutfitOptions& options, Random& random) {
   return o;
 }
 
-std::array<Material, kFabricCount> sample_look(Random& random) {
+std::array<Material, kFabricCount> sample_look(const OutfitOptions& options, Random& random) {
   std::array<Material, kFabricCount> look;
   const auto of = [&](Fabric fabric) -> Material& { return look[static_cast<std::size_t>(fabric)]; };
   of(Fabric::skin) = plain(mix({70, 45, 32}, {240, 205, 185}, uniform(random, 0.F, 1.F)), uniform(random, 0.45F, 0.7F));
-  of(Fabric::hair) = hair(random);
-  of(Fabric::top) = cloth(random);
-  of(Fabric::bottom) = cloth(random);
+  of(Fabric::hair) = hair(options, random);
+  of(Fabric::top) = cloth(options, random);
+  of(Fabric::bottom) = cloth(options, random);
   if (chance(random, 0.5F)) of(Fabric::bottom).texture = Texture::plain;
   of(Fabric::shoes) =
       plain(mix({15, 15, 18}, cloth_colour(random), uniform(random, 0.F, 0.6F)), uniform(random, 0.08F, 0.6F));
-  of(Fabric::accessory) = cloth(random);
+  of(Fabric::accessory) = cloth(options, random);
   return look;
 }
 

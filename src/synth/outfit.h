@@ -25,6 +25,8 @@ struct OutfitOptions {
   float held = 0.15F;         ///< a cup, phone, stick or box in a hand
   float max_cloth_m = 0.02F;  ///< thickest cloth over the skin
   float max_hair_m = 0.05F;   ///< thickest hair over the skull
+  float dark_cloth = 0.2F;    ///< sends back next to no infrared light: leather, many blacks
+  float dark_hair = 0.3F;     ///< does so
 };
 void visit_options(const std::string& prefix, OutfitOptions& options, OptionVisitor& visitor);
 
@@ -55,8 +57,8 @@ struct Outfit {
 /// Throws UsageError for options out of range.
 Outfit sample_outfit(const OutfitOptions& options, Random& random);
 
-/// Colours, patterns and infrared reflectance of a person's fabrics, by Fabric. Dark hair sends back as little as 0.05
-/// of a depth sensor's light, most cloth more than half whatever its colour.
-std::array<Material, kFabricCount> sample_look(Random& random);
+/// Colours, patterns and infrared reflectance of a person's fabrics, by Fabric. Dark hair and dark cloth send back as
+/// little as 0.01 of a depth sensor's light, other cloth more than a third whatever its colour.
+std::array<Material, kFabricCount> sample_look(const OutfitOptions& options, Random& random);
 
 }  // namespace vesalius::synth

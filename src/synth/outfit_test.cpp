@@ -49,7 +49,7 @@ TEST(Look, ReflectsAsPeopleDo) {
   int dark_hair = 0;
   for (std::uint64_t i = 0; i < 500; ++i) {
     Random random(8, i);
-    const auto look = sample_look(random);
+    const auto look = sample_look({}, random);
     for (const Material& m : look) {
       EXPECT_TRUE(m.infrared >= 0.01F && m.infrared <= 1.F);
       EXPECT_GT(m.period_m, 0.F);
@@ -63,10 +63,30 @@ TEST(Look, ReflectsAsPeopleDo) {
   EXPECT_GT(dark_hair, 250);  // most hair is dark
 }
 
+TEST(Look, DarkClothAndHairSendBackNextToNothing) {
+  const auto share_dark = [](const OutfitOptions& options, Fabric fabric, float limit) {
+    int dark = 0;
+    for (std::uint64_t i = 0; i < 300; ++i) {
+      Random random(9, i);
+      if (sample_look(options, random)[static_cast<std::size_t>(fabric)].infrared < limit) ++dark;
+    }
+    return static_cast<float>(dark) / 300.F;
+  };
+  OutfitOptions options;
+  options.dark_cloth = 0.F;
+  options.dark_hair = 1.F;
+  EXPECT_EQ(share_dark(options, Fabric::bottom, 0.3F), 0.F);
+  EXPECT_EQ(share_dark(options, Fabric::hair, 0.081F), 1.F);
+  options.dark_cloth = 0.5F;
+  options.dark_hair = 0.F;
+  EXPECT_NEAR(share_dark(options, Fabric::bottom, 0.201F), 0.5F, 0.09F);  // three standard deviations
+  EXPECT_EQ(share_dark(options, Fabric::hair, 0.049F), 0.F);
+}
+
 TEST(Look, SameRandomSameLook) {
   Random a(5, 1);
   Random b(5, 1);
-  EXPECT_EQ(sample_look(a)[2].colour, sample_look(b)[2].colour);
+  EXPECT_EQ(sample_look({}, a)[2].colour, sample_look({}, b)[2].colour);
 }
 
 }  // namespace

@@ -33,6 +33,9 @@ void visit(const std::string& prefix, PeopleOptions& o, OptionVisitor& visitor) 
   visitor.option(prefix + "two", o.two, {"", 0, 1000, "Weight of pictures with two people."});
   visitor.option(prefix + "three", o.three, {"", 0, 1000, "Weight of pictures with three people."});
   visitor.option(prefix + "four", o.four, {"", 0, 1000, "Weight of pictures with four people."});
+  visitor.option(
+      prefix + "cut-out", o.cut_out,
+      {"", 0, 1, "Share of pictures with people from which all else is taken away, as background removal does."});
 }
 
 void visit(const std::string& prefix, BodyOptions& o, OptionVisitor& visitor) {

@@ -15,6 +15,7 @@ namespace vesalius::synth {
 /// How many people are in a picture: weights, of any sum above 0.
 struct PeopleOptions {
   float none = 0.08F, one = 0.57F, two = 0.23F, three = 0.08F, four = 0.04F;
+  float cut_out = 0.F;  ///< share of pictures with people from which all else is taken away
 };
 
 struct BodyOptions {
