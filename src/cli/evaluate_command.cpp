@@ -39,7 +39,7 @@ struct Arguments {
   explicit Arguments(CLI::App& command) : detector_flags(command) {}
 
   std::vector<std::string> sources;
-  std::string model, options_file, report, json, joints_file, fit_joints;
+  std::string model, options_file, report, json, joints_file, fit_joints, fit_score;
   OptionFlags<DetectOptions> detector_flags;
   int step = 1;
   int threads = 0;
@@ -149,6 +149,7 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.json.empty()) write_file_atomically(arguments.json, evaluation_json(evaluation));
   if (!arguments.report.empty()) write_report(evaluation, arguments.report);
   if (!arguments.fit_joints.empty()) write_file_atomically(arguments.fit_joints, fitted_joints_toml(evaluation));
+  if (!arguments.fit_score.empty()) write_fitted_score(evaluation, arguments.fit_score);
 }
 
 void run(const Arguments& arguments, const std::string& command) {
@@ -215,6 +216,11 @@ void add_evaluate(CLI::App& program) {
       ->add_option("--fit-joints", arguments->fit_joints,
                    "Write the joint sets used, with depth offsets fitted on every 10th frame")
       ->type_name("FILE");
+  command
+      ->add_option("--fit-score", arguments->fit_score,
+                   "Write the detector options used, with the weights of the person score fitted to these frames")
+      ->type_name("FILE")
+      ->excludes(labels_only);
   command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The figures are the same")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads));
@@ -226,7 +232,8 @@ the figures mean.
 
 Examples:
   vesalius evaluate held_out/ -m adult.forest --report out/
-  vesalius evaluate real/room real/hall -m adult.forest --json a.json)");
+  vesalius evaluate real/room real/hall -m adult.forest --json a.json
+  vesalius evaluate held_out/ empty_rooms/ -m adult.forest --fit-score detector.toml)");
   command->callback([arguments, command] { run(*arguments, command_line(*command)); });
 }
 

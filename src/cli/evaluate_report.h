@@ -59,4 +59,8 @@ void write_report(const Evaluation& evaluation, const std::string& folder);
 /// joints' figures (medians), as TOML. Throws Error where there was nothing to fit.
 std::string fitted_joints_toml(const Evaluation& evaluation);
 
+/// Writes the detector options of the evaluation, with the score fitted to all its sets (fit_score.h), as TOML, and
+/// prints what that is worth. Throws Error as fit_score and write_options do.
+void write_fitted_score(const Evaluation& evaluation, const std::string& path);
+
 }  // namespace vesalius::cli

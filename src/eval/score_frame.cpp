@@ -138,6 +138,7 @@ void FrameScorer::find_people(const TrueFrame& frame, bool fit_joints, FrameScor
 }
 
 void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, FrameScore& score) const {
+  score.samples = score_samples(trace, frame.truth, frame.frame.depth);
   const auto proposals = distinct_proposals(trace, options_.detect.refine.max_overlap);
   const std::vector<Match> matches = match_people(proposals, frame.truth, frame.frame.depth);
   for (std::size_t i = 0; i < proposals.size(); ++i) {

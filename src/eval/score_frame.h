@@ -7,6 +7,7 @@
 
 #include "eval/detection_curve.h"
 #include "eval/figure_table.h"
+#include "eval/fit_score.h"
 #include "eval/joint_figures.h"
 #include "eval/label_scene.h"
 #include "eval/pixel_figures.h"
@@ -20,6 +21,7 @@ struct FrameScore {
   FigureTerms terms;
   int expected = 0;  ///< true people
   std::vector<JudgedProposal> proposals;
+  std::vector<ScoreSample> samples;  ///< to fit the score on
   std::vector<std::vector<double>> joint_errors_m;  ///< of each true person (joint_errors)
   std::optional<PixelConfusion> confusion;          ///< where the true labels are known
   std::vector<JointOffset> offsets;                 ///< of a frame to fit joints on

@@ -1,0 +1,159 @@
+#include "eval/fit_score.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "eval/match_people.h"
+#include "vesalius/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kFeatures = 4;
+using Features = Eigen::Matrix<double, kFeatures, 1>;
+using Weights = Eigen::Matrix<double, kFeatures + 1, 1>;  // the bias last
+using Curvature = Eigen::Matrix<double, kFeatures + 1, kFeatures + 1>;
+
+constexpr double kRidge = 1e-3;  // per unit of the samples' weight, on standardised features
+constexpr int kMostSteps = 100;
+constexpr double kSmallestStep = 1e-10;
+constexpr double kSmallestSpread = 1e-6;
+
+Features features(const Evidence& e) {
+  return {static_cast<double>(e.likelihood), static_cast<double>(e.explained), static_cast<double>(e.open),
+          static_cast<double>(e.core)};
+}
+
+/// Largest IoU with one person, or the share on the mask of all, in units of what a match needs.
+double likeness(const Mask& mask, const FrameTruth& truth, const DepthImage& depth) {
+  std::array<long, 256> of_person{};
+  std::array<long, 256> shared{};
+  long pixels = 0;
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (depth[i] == 0) continue;
+    const std::size_t who = !truth.person.empty() ? truth.person[i] : truth.mask[i] != 0 ? 0 : kBackground;
+    ++of_person[who];
+    if (mask[i] == 0) continue;
+    ++shared[who];
+    ++pixels;
+  }
+  if (pixels == 0) return 0.0;
+  if (truth.person.empty()) return static_cast<double>(shared[0]) / static_cast<double>(pixels) / kShareOnMask;
+  double best = 0.0;
+  for (std::size_t who = 0; who < kBackground; ++who) {
+    const auto either = static_cast<double>(of_person[who] + pixels - shared[who]);
+    best = std::max(best, static_cast<double>(shared[who]) / either);
+  }
+  return best / kMatchIou;
+}
+
+struct Weighted {
+  Features x;
+  bool person;
+  double weight;
+};
+
+std::vector<Weighted> weighted(const std::vector<std::vector<ScoreSample>>& sets) {
+  std::vector<Weighted> all;
+  for (const std::vector<ScoreSample>& set : sets) {
+    const auto people = static_cast<double>(std::ranges::count(set, true, &ScoreSample::person));
+    const double nobodies = static_cast<double>(set.size()) - people;
+    for (const ScoreSample& sample : set) {
+      all.push_back({features(sample.evidence), sample.person, 1.0 / std::sqrt(sample.person ? people : nobodies)});
+    }
+  }
+  return all;
+}
+
+/// Share of the pairs of a person and a nobody of which the person has more; half a pair where they are equal.
+double area_under_curve(const std::vector<Weighted>& samples, const ScoreOptions& options) {
+  std::vector<std::pair<float, bool>> scored;
+  for (const Weighted& s : samples) {
+    const Evidence e{static_cast<float>(s.x[0]), static_cast<float>(s.x[1]), static_cast<float>(s.x[2]),
+                     static_cast<float>(s.x[3])};
+    scored.emplace_back(person_score(e, options), s.person);
+  }
+  std::ranges::sort(scored);
+  double pairs = 0.0, nobodies = 0.0, people = 0.0;
+  for (std::size_t i = 0; i < scored.size();) {
+    double equal_people = 0.0, equal_nobodies = 0.0;
+    for (const float score = scored[i].first; i < scored.size() && scored[i].first == score; ++i) {
+      (scored[i].second ? equal_people : equal_nobodies) += 1.0;
+    }
+    pairs += equal_people * (nobodies + 0.5 * equal_nobodies);
+    nobodies += equal_nobodies;
+    people += equal_people;
+  }
+  return pairs / (people * nobodies);
+}
+
+/// Newton's method on standardised features.
+Weights logistic_weights(const std::vector<Weighted>& samples) {
+  Features mean = Features::Zero(), spread = Features::Zero();
+  double total = 0.0;
+  for (const Weighted& s : samples) {
+    mean += s.x;
+    total += s.weight;
+  }
+  mean /= static_cast<double>(samples.size());
+  for (const Weighted& s : samples) spread += (s.x - mean).cwiseAbs2();
+  spread = (spread / static_cast<double>(samples.size())).cwiseSqrt().cwiseMax(kSmallestSpread);
+
+  Curvature ridge = Curvature::Zero();
+  ridge.diagonal().head<kFeatures>().setConstant(kRidge * total);
+  Weights w = Weights::Zero();
+  for (int step = 0; step < kMostSteps; ++step) {
+    Weights slope = -(ridge * w);
+    Curvature curvature = ridge;
+    for (const Weighted& s : samples) {
+      Weights x;
+      x << (s.x - mean).cwiseQuotient(spread), 1.0;
+      const double p = 1.0 / (1.0 + std::exp(-w.dot(x)));
+      slope += s.weight * ((s.person ? 1.0 : 0.0) - p) * x;
+      curvature += s.weight * p * (1.0 - p) * x * x.transpose();
+    }
+    const Weights change = curvature.ldlt().solve(slope);
+    w += change;
+    if (change.norm() < kSmallestStep) break;
+  }
+  w.head<kFeatures>() = w.head<kFeatures>().cwiseQuotient(spread);
+  w[kFeatures] -= w.head<kFeatures>().dot(mean);
+  return w;
+}
+
+}  // namespace
+
+std::vector<ScoreSample> score_samples(const Trace& trace, const FrameTruth& truth, const DepthImage& depth) {
+  std::vector<ScoreSample> samples;
+  const bool known = !truth.person.empty() || !truth.mask.empty();
+  if (truth.people != 0 && !known) return samples;
+  for (const Trace::Candidate& candidate : trace.candidates) {
+    if (candidate.refined.found == 0) continue;
+    const double share = truth.people == 0 ? 0.0 : likeness(candidate.grown, truth, depth);
+    if (share >= 1.0 || share < 0.5) samples.push_back({candidate.evidence, share >= 1.0});
+  }
+  return samples;
+}
+
+ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const ScoreOptions& start) {
+  const std::vector<Weighted> samples = weighted(sets);
+  ScoreFit fit;
+  fit.options = start;
+  fit.people = std::ranges::count(samples, true, &Weighted::person);
+  fit.nobodies = static_cast<long>(samples.size()) - fit.people;
+  if (fit.people == 0) throw Error("fitting the score: the frames have no candidate that is known to be a person");
+  if (fit.nobodies == 0) throw Error("fitting the score: the frames have no candidate that is known to be nobody");
+  const Weights w = logistic_weights(samples);
+  fit.options.likelihood_weight = static_cast<float>(w[0]);
+  fit.options.explained_weight = static_cast<float>(w[1]);
+  fit.options.open_weight = static_cast<float>(w[2]);
+  fit.options.core_weight = static_cast<float>(w[3]);
+  fit.options.bias = static_cast<float>(w[kFeatures]);
+  fit.area_before = area_under_curve(samples, start);
+  fit.area_after = area_under_curve(samples, fit.options);
+  return fit;
+}
+
+}  // namespace vesalius
