@@ -1,6 +1,8 @@
 #include "io/labelled_frame_codec.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "io/image_bytes.h"
 #include "io/plane_codec.h"
@@ -63,6 +65,17 @@ void read_people(ByteReader& in, int part_count, int version, LabelledFrame& lab
   for (int i = 0; joints > 0 && i < people; ++i) labelled.joints.push_back(read_points(in, joints, "joint"));
 }
 
+/// The first value that is neither background nor below `count`. Most often there is none: no early way out of the
+/// loop, so that it runs on vectors.
+std::optional<std::uint8_t> first_beyond(const Image<std::uint8_t>& plane, std::size_t count) {
+  const auto limit = static_cast<std::uint8_t>(std::min<std::size_t>(count, kBackground));
+  const auto beyond = [limit](std::uint8_t value) { return value >= limit && value != kBackground; };
+  std::uint8_t any = 0;
+  for (const std::uint8_t value : plane) any |= static_cast<std::uint8_t>(beyond(value));
+  if (any == 0) return std::nullopt;
+  return *std::find_if(plane.begin(), plane.end(), beyond);
+}
+
 void check_joints(const LabelledFrame& labelled) {
   if (labelled.joints.empty()) return;
   if (labelled.joints.size() != labelled.parts.size()) {
@@ -88,15 +101,11 @@ void check_truth(const LabelledFrame& labelled, int part_count) {
   if (labelled.frame.name.size() > kMaxName) throw Error(fmt::format("name of more than {} bytes", kMaxName));
   const std::size_t people = labelled.parts.size();
   if (people >= kBackground) throw Error(fmt::format("{} people, expected at most 254", people));
-  for (const std::uint8_t label : labelled.labels) {
-    if (label != kBackground && label >= part_count) {
-      throw Error(fmt::format("label {}, expected one below {} or {}", label, part_count, kBackground));
-    }
+  if (const auto label = first_beyond(labelled.labels, static_cast<std::size_t>(part_count))) {
+    throw Error(fmt::format("label {}, expected one below {} or {}", *label, part_count, kBackground));
   }
-  for (const std::uint8_t person : labelled.person) {
-    if (person != kBackground && person >= people) {
-      throw Error(fmt::format("person {} in the picture, expected one below {} or {}", person, people, kBackground));
-    }
+  if (const auto person = first_beyond(labelled.person, people)) {
+    throw Error(fmt::format("person {} in the picture, expected one below {} or {}", *person, people, kBackground));
   }
   for (const auto& parts : labelled.parts) {
     if (parts.size() != static_cast<std::size_t>(part_count)) {

@@ -31,8 +31,7 @@ class Prediction {
     if (above == 0) return left;
     const int corner = u > 0 ? above_[u - 1] : 0;
     if (corner == 0) return (left + above) / 2;
-    const auto [low, high] = std::minmax(left, above);
-    return std::clamp(left + above - corner, low, high);
+    return std::max(std::min(left, above), std::min(std::max(left, above), left + above - corner));
   }
 
  private:
@@ -73,10 +72,12 @@ Image<std::uint8_t> from_residual(const std::string& residual, int width, int he
 
 /// The values that occur, ascending; holes left out.
 std::vector<std::uint16_t> values_of(const DepthImage& depth) {
-  std::vector<std::uint8_t> occurs(kValues, 0);
+  std::uint16_t largest = 0;
+  for (const std::uint16_t value : depth) largest = std::max(largest, value);
+  std::vector<std::uint8_t> occurs(std::size_t{largest} + 1, 0);
   for (const std::uint16_t value : depth) occurs[value] = 1;
   std::vector<std::uint16_t> values;
-  for (std::size_t value = 1; value < kValues; ++value) {
+  for (std::size_t value = 1; value < occurs.size(); ++value) {
     if (occurs[value] != 0) values.push_back(static_cast<std::uint16_t>(value));
   }
   return values;
@@ -107,7 +108,7 @@ Image<std::uint8_t> channel(const ColourImage& colour, std::uint8_t (*get)(const
 
 void write_depth_plane(ByteWriter& out, const DepthImage& depth) {
   const std::vector<std::uint16_t> values = values_of(depth);
-  std::vector<std::uint16_t> rank_of(kValues, 0);
+  std::vector<std::uint16_t> rank_of(values.empty() ? 1 : std::size_t{values.back()} + 1, 0);
   ByteWriter steps;
   for (std::size_t i = 0; i < values.size(); ++i) {
     rank_of[values[i]] = static_cast<std::uint16_t>(i + 1);
@@ -118,13 +119,14 @@ void write_depth_plane(ByteWriter& out, const DepthImage& depth) {
 
   std::string symbols(depth.size(), '\0');
   ByteWriter wide;
-  auto next = symbols.begin();
+  char* next = symbols.data();
   for (int v = 0; v < depth.height(); ++v) {
     Prediction prediction(ranks, v);
+    const std::uint16_t* here = ranks.row(v);
     for (int u = 0; u < depth.width(); ++u, ++next) {
       const int expected = prediction.at(u);
-      if (ranks(u, v) == 0) continue;  // a hole is symbol 0
-      const unsigned code = zigzag(ranks(u, v) - expected) + 1;
+      if (here[u] == 0) continue;  // a hole is symbol 0
+      const unsigned code = zigzag(here[u] - expected) + 1;
       *next = static_cast<char>(std::min(code, kEscape));
       if (code >= kEscape) wide.varint(code - kEscape);
     }

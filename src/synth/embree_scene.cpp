@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "synth/camera_rays.h"
 #include "synth/embree_api.h"
 #include "vesalius/error.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr int kPacket = 16;
 constexpr int kTile = 4;  ///< pixels; a packet covers a square of the picture
+static_assert(kTile - 1 == CameraRays::kBeyond && kTile * kTile == kPacket);
 
 void check(RTCDevice device) {
   const RTCError code = rtcGetDeviceError(device);
@@ -22,24 +24,27 @@ void check(RTCDevice device) {
                           code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : ""));
 }
 
+/// Rays from one point; only what differs between them is written anew for each packet.
 struct Packet {
   alignas(64) std::array<int, kPacket> valid{};
-  alignas(64) RTCRayHit16 rays;
-};
+  alignas(64) RTCRayHit16 rays{};
 
-void set_up(RTCRay16& ray, int i, const Eigen::Vector3f& from, const Eigen::Vector3f& direction, float far) {
-  ray.org_x[i] = from.x();
-  ray.org_y[i] = from.y();
-  ray.org_z[i] = from.z();
-  ray.dir_x[i] = direction.x();
-  ray.dir_y[i] = direction.y();
-  ray.dir_z[i] = direction.z();
-  ray.tnear[i] = 0.F;
-  ray.tfar[i] = far;
-  ray.time[i] = 0.F;
-  ray.mask[i] = 0xFFFFFFFFU;
-  ray.flags[i] = 0;
-}
+  explicit Packet(const Eigen::Vector3f& from) {
+    std::fill_n(rays.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
+    for (int i = 0; i < kPacket; ++i) {
+      rays.ray.org_x[i] = from.x();
+      rays.ray.org_y[i] = from.y();
+      rays.ray.org_z[i] = from.z();
+      rays.ray.mask[i] = 0xFFFFFFFFU;
+    }
+  }
+  void aim(int i, float x, float y, float z, float far) {
+    rays.ray.dir_x[i] = x;
+    rays.ray.dir_y[i] = y;
+    rays.ray.dir_z[i] = z;
+    rays.ray.tfar[i] = far;
+  }
+};
 
 }  // namespace
 
@@ -92,39 +97,36 @@ void EmbreeScene::build(const SceneGeometry& geometry) {
 }
 
 void EmbreeScene::cast(const Camera& camera, Image<std::uint32_t>& hits) {
-  Packet packet;
-  const Eigen::Vector3f eye = Eigen::Vector3f::Zero();
+  Packet packet(Eigen::Vector3f::Zero());
+  packet.valid.fill(-1);
+  const CameraRays rays(camera);
+  std::array<std::uint32_t, kPacket> met;
   for (int top = 0; top < camera.height; top += kTile) {
     for (int left = 0; left < camera.width; left += kTile) {
       for (int i = 0; i < kPacket; ++i) {
-        const int u = left + i % kTile, v = top + i / kTile;
-        packet.valid[static_cast<std::size_t>(i)] = hits.contains(u, v) ? -1 : 0;
-        const Eigen::Vector3f ray = camera.point(static_cast<float>(u), static_cast<float>(v), 1.F);
-        set_up(packet.rays.ray, i, eye, ray, std::numeric_limits<float>::infinity());
+        packet.aim(i, rays.x(left + i % kTile), rays.y(top + i / kTile), 1.F, std::numeric_limits<float>::infinity());
         packet.rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        packet.rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       }
       intersect_packet(packet.valid.data(), state_->scene, packet.rays);
       const RTCHit16& hit = packet.rays.hit;
       for (int i = 0; i < kPacket; ++i) {
-        if (packet.valid[static_cast<std::size_t>(i)] == 0) continue;
-        const bool second = hit.u[i] + hit.v[i] > 1.F;
-        hits(left + i % kTile, top + i / kTile) = hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
-                                                      ? kNothing
-                                                      : 2 * hit.primID[i] + static_cast<std::uint32_t>(second);
+        const std::uint32_t triangle = 2 * hit.primID[i] + static_cast<std::uint32_t>(hit.u[i] + hit.v[i] > 1.F);
+        met[static_cast<std::size_t>(i)] = hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? kNothing : triangle;
       }
+      const int columns = std::min(kTile, camera.width - left), rows = std::min(kTile, camera.height - top);
+      for (int v = 0; v < rows; ++v) std::copy_n(met.data() + v * kTile, columns, hits.row(top + v) + left);
     }
   }
 }
 
 void EmbreeScene::light(const std::vector<ShadowRay>& rays, const Eigen::Vector3f& projector, Mask& lit) {
-  Packet packet;
+  Packet packet(projector);
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const int count = static_cast<int>(std::min<std::size_t>(kPacket, rays.size() - first));
     for (int i = 0; i < kPacket; ++i) {
       packet.valid[static_cast<std::size_t>(i)] = i < count ? -1 : 0;
       const Eigen::Vector3f& from = rays[first + static_cast<std::size_t>(i < count ? i : 0)].from;
-      set_up(packet.rays.ray, i, projector, from - projector, 1.F);
+      packet.aim(i, from.x() - projector.x(), from.y() - projector.y(), from.z() - projector.z(), 1.F);
     }
     occlude_packet(packet.valid.data(), state_->scene, packet.rays.ray);
     for (int i = 0; i < count; ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "synth/noise_angle.h"
@@ -29,7 +30,8 @@ float exceeded_by(float p) {
   return low;
 }
 
-int whole_px(float pixels) { return static_cast<int>(std::lround(pixels)); }
+/// Halves away from zero, as std::lround(), which is a call that costs more than all else here.
+int whole_px(float pixels) { return static_cast<int>(pixels + std::copysign(0.5F, pixels)); }
 
 /// How far a silhouette makes itself felt.
 int influence_px(const Sensor& sensor, int reach_px) {
@@ -39,14 +41,10 @@ int influence_px(const Sensor& sensor, int reach_px) {
 /// Depth of the surfaces that the sensor's light and eye both reach; 0 elsewhere.
 Image<float> seen_depth(const Rendering& rendering, const Sensor& sensor) {
   Image<float> seen = rendering.depth_m;
-  for (std::size_t i = 0; i < rendering.lit.size(); ++i) {
-    if (rendering.lit[i] == 0) seen[i] = 0.F;
-  }
+  for (std::size_t i = 0; i < rendering.lit.size(); ++i) seen[i] = rendering.lit[i] != 0 ? seen[i] : 0.F;
   if (sensor.eye_m == 0.F) return seen;
   const Mask hidden = hidden_from_eye(rendering.depth_m, rendering.view.camera, sensor.eye_m);
-  for (std::size_t i = 0; i < hidden.size(); ++i) {
-    if (hidden[i] != 0) seen[i] = 0.F;
-  }
+  for (std::size_t i = 0; i < hidden.size(); ++i) seen[i] = hidden[i] == 0 ? seen[i] : 0.F;
   return seen;
 }
 
@@ -58,6 +56,7 @@ Aim::Aim(const Rendering& rendering, const Sensor& sensor, Random& random)
       random_(random),
       width_(rendering.depth_m.width()),
       height_(rendering.depth_m.height()),
+      rays_(rendering.view.camera),
       fatten_px_(whole_px(sensor.fatten_px)),
       reach_px_(std::max(whole_px(sensor.edge_px), fatten_px_)),
       edge_threshold_(exceeded_by(sensor.edge_loss)),
@@ -65,7 +64,7 @@ Aim::Aim(const Rendering& rendering, const Sensor& sensor, Random& random)
       near_silhouette_(near_jumps(seen_m_, kSmallestJump_m, influence_px(sensor, reach_px_))),
       nearest_m_(nearest_within(rendering.depth_m, reach_px_)),
       shift_u_(width_, height_, sensor.window_px, random),
-      shift_v_(width_, height_, sensor.window_px, random) {
+      shift_v_(shift_u_, random) {
   row_.z.resize(width_);
   row_.cosine.resize(width_);
   row_.infrared.resize(width_);
@@ -74,20 +73,16 @@ Aim::Aim(const Rendering& rendering, const Sensor& sensor, Random& random)
 }
 
 const AimedRow& Aim::row(int v, const Eigen::ArrayXf& losses) {
-  const Camera& camera = in_.view.camera;
-  const float y = (static_cast<float>(v) - camera.cy) / camera.fy;
-  const float* seen = seen_m_.row(v);
+  const float y = rays_.y(v);
   const Eigen::Vector3f* normals = in_.normal.row(v);
-  const float* infrared = in_.infrared.row(v);
-  const auto first = static_cast<std::uint32_t>(v * width_);
   for (int u = 0; u < width_; ++u) {
-    const float x = (static_cast<float>(u) - camera.cx) / camera.fx;
+    const float x = rays_.x(u);
     row_.fall_off[u] = x * x + y * y + 1.F;
     row_.cosine[u] = -(normals[u].x() * x + normals[u].y() * y + normals[u].z());
-    row_.infrared[u] = infrared[u];
-    row_.z[u] = seen[u];
-    row_.source[static_cast<std::size_t>(u)] = first + static_cast<std::uint32_t>(u);
   }
+  std::copy_n(in_.infrared.row(v), width_, row_.infrared.data());
+  std::copy_n(seen_m_.row(v), width_, row_.z.data());
+  std::iota(row_.source.begin(), row_.source.end(), static_cast<std::uint32_t>(v * width_));
   row_.cosine = (row_.cosine * row_.fall_off.rsqrt()).max(kSmallestCosine).min(1.F);
   row_.fall_off = row_.fall_off.square().inverse();
   const std::uint8_t* near = near_silhouette_.row(v);
@@ -105,9 +100,7 @@ const AimedRow& Aim::row(int v, const Eigen::ArrayXf& losses) {
 }
 
 Aim::Spot Aim::look(int u, int v) const {
-  const Camera& camera = in_.view.camera;
-  const float x = (static_cast<float>(u) - camera.cx) / camera.fx;
-  const float y = (static_cast<float>(v) - camera.cy) / camera.fy;
+  const float x = rays_.x(u), y = rays_.y(v);
   const auto at = static_cast<std::uint32_t>(v * width_ + u);
   const Eigen::Vector3f& normal = in_.normal[at];
   const float facing = -(normal.x() * x + normal.y() * y + normal.z()) / std::sqrt(x * x + y * y + 1.F);

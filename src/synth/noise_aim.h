@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "synth/camera_rays.h"
 #include "synth/noise_field.h"
 #include "synth/render.h"
 #include "synth/sensor.h"
@@ -52,6 +53,7 @@ class Aim {
   const Sensor& sensor_;
   Random& random_;
   int width_, height_;
+  CameraRays rays_;
   int fatten_px_, reach_px_;
   float edge_threshold_;
   Image<float> seen_m_;  ///< depth of what light and eye both reach, 0 elsewhere

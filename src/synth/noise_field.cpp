@@ -19,7 +19,8 @@ std::vector<NoiseField::Tap> NoiseField::taps(int count, float spacing) {
                               f * f * f};
     float square = 0.F;
     for (const float w : weights) square += w * w;
-    std::transform(weights, weights + 4, tap.weight, [&](float w) { return w / std::sqrt(square); });
+    const float norm = std::sqrt(square);
+    std::transform(weights, weights + 4, tap.weight, [norm](float w) { return w / norm; });
   }
   return taps;
 }
@@ -29,8 +30,14 @@ NoiseField::NoiseField(int width, int height, float window_px, Random& random)
   assert(width > 0 && height > 0 && window_px >= 1.F);
   lattice_width_ = columns_.back().first + 4;
   lattice_.resize(lattice_width_ * (rows_.back().first + 4));
-  for (float& value : lattice_) value = quick_normal(random);
   row_.resize(width);
+  draw(random);
+}
+
+NoiseField::NoiseField(const NoiseField& like, Random& random) : NoiseField(like) { draw(random); }
+
+void NoiseField::draw(Random& random) {
+  for (float& value : lattice_) value = quick_normal(random);
 }
 
 float NoiseField::at(int u, int v) const {

@@ -24,6 +24,8 @@ class NoiseField {
  public:
   /// `window_px` from 1.
   NoiseField(int width, int height, float window_px, Random& random);
+  /// Another one of the same size and window.
+  NoiseField(const NoiseField& like, Random& random);
 
   float at(int u, int v) const;
   /// The values of row v: `width` of them.
@@ -35,6 +37,7 @@ class NoiseField {
     float weight[4];
   };
   static std::vector<Tap> taps(int count, float spacing);
+  void draw(Random& random);
 
   std::vector<Tap> columns_, rows_;
   std::size_t lattice_width_;

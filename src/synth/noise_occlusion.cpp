@@ -44,13 +44,13 @@ Mask hidden_from_eye(const Image<float>& depth_m, const Camera& camera, float ey
   for (int v = 0; v < depth_m.height(); ++v) {
     // What is near moves against the eye: walking with that motion, a column that falls behind one before is covered.
     float front = to_right ? kNothing : -kNothing;
+    const float* row = depth_m.row(v);
+    std::uint8_t* out = hidden.row(v);
     for (int i = 0; i < depth_m.width(); ++i) {
       const int u = to_right ? depth_m.width() - 1 - i : i;
-      const float z = depth_m(u, v);
-      if (z <= 0.F) continue;
-      const float column = static_cast<float>(u) - shift / z;
-      const bool covered = to_right ? column > front + kSlack_px : column < front - kSlack_px;
-      hidden(u, v) = covered ? 1 : 0;
+      if (row[u] <= 0.F) continue;
+      const float column = static_cast<float>(u) - shift / row[u];
+      out[u] = (to_right ? column > front + kSlack_px : column < front - kSlack_px) ? 1 : 0;
       front = to_right ? std::min(front, column) : std::max(front, column);
     }
   }

@@ -21,16 +21,19 @@ class RowScan {
   void mark(const float* depth_m, std::uint8_t* maybe) {
     constexpr float kSlackPx = 0.6F;  // less than the 1 px by which a level surface stays below its neighbour's ray
     constexpr float kStepPx = 0.5F;
-    for (int u = 0; u < width_; ++u) {
-      disparity_[at(u)] = depth_m[u] > 0.F ? scale_px_m_ / depth_m[u] : 0.F;
-    }
-    float highest = -std::numeric_limits<float>::infinity();
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    for (int u = 0; u < width_; ++u) disparity_[at(u)] = scale_px_m_ / (depth_m[u] > 0.F ? depth_m[u] : kFar);
+    float highest = -kFar;
+    float before = disparity_[at(start_)];
     for (int i = 0, u = start_; i < width_; ++i, u += step_) {
+      const float here = disparity_[at(u)];
+      const bool step = std::abs(before - here) > kStepPx;
+      before = here;
       if (!(depth_m[u] > 0.F)) continue;
-      const float value = disparity_[at(u)] + static_cast<float>(i);
-      const bool leaves = static_cast<float>(i) < scale_px_m_ / kNearestBlocker_m - disparity_[at(u)];
-      const bool step = i > 0 && std::abs(disparity_[at(u - step_)] - disparity_[at(u)]) > kStepPx;
-      if (leaves || step || highest >= value - kSlackPx) maybe[u] = 1;
+      const float value = here + static_cast<float>(i);
+      const bool leaves = static_cast<float>(i) < scale_px_m_ / kNearestBlocker_m - here;
+      maybe[u] = static_cast<std::uint8_t>(static_cast<unsigned>(leaves) | static_cast<unsigned>(step) |
+                                           static_cast<unsigned>(highest >= value - kSlackPx));
       highest = std::max(highest, value);
     }
   }
@@ -47,13 +50,16 @@ class RowScan {
 /// Where a shadow ends within a pixel is for the neighbours to say.
 void widen(const Mask& marked, const Image<float>& depth_m, Mask& wide) {
   constexpr int kReach = 2;
+  const int width = marked.width();
   for (int v = 0; v < marked.height(); ++v) {
-    for (int u = 0; u < marked.width(); ++u) {
-      if (marked(u, v) == 0) continue;
-      for (int x = std::max(0, u - kReach); x <= std::min(marked.width() - 1, u + kReach); ++x) {
-        if (depth_m(x, v) > 0.F) wide(x, v) = 1;
-      }
+    const std::uint8_t* in = marked.row(v);
+    const float* depth = depth_m.row(v);
+    std::uint8_t* out = wide.row(v);
+    for (int shift = 1; shift <= std::min(kReach, width - 1); ++shift) {
+      for (int u = 0; u < width - shift; ++u) out[u] |= in[u + shift];
+      for (int u = shift; u < width; ++u) out[u] |= in[u - shift];
     }
+    for (int u = 0; u < width; ++u) out[u] = depth[u] > 0.F ? out[u] : std::uint8_t{0};
   }
 }
 

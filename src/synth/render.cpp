@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "synth/camera_rays.h"
 #include "synth/embree_scene.h"
 #include "synth/projector_shadow.h"
 #include "synth/scene_geometry.h"
@@ -42,7 +43,9 @@ struct Met {
   Face face;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of any length
   double offset = 0.0;
-  float near_m = 0.F, far_m = 0.F;                    ///< extent along the optical axis
+  float near_m = 0.F, far_m = 0.F;  ///< extent along the optical axis
+  bool has_area = false;
+  float infrared = 0.F;
   Eigen::Vector3f towards = Eigen::Vector3f::Zero();  ///< unit normal, to the camera's side
 
   void look_up(const SceneGeometry& geometry, std::uint32_t of) {
@@ -58,7 +61,9 @@ struct Met {
     near_m = std::min({a.z(), b.z(), c.z()});
     far_m = std::max({a.z(), b.z(), c.z()});
     towards = (normal * ((offset > 0.0 ? -1.0 : 1.0) / normal.norm())).cast<float>();
+    has_area = towards.allFinite();
     face = geometry.faces[hit / 2][hit & 1U];
+    infrared = geometry.materials[face.material].infrared;
   }
 
   /// Where the ray (x, y, 1) meets its plane.
@@ -83,22 +88,25 @@ struct Renderer::State {
 
 void Renderer::State::fill_surfaces(Rendering& out) const {
   const Camera& camera = out.view.camera;
+  const CameraRays rays(camera);
   Met met;  // neighbours often meet the same
-  std::vector<float> ray_x;
-  for (int u = 0; u < camera.width; ++u) ray_x.push_back(camera.point(static_cast<float>(u), 0.F, 1.F).x());
   for (int v = 0; v < camera.height; ++v) {
-    const float ray_y = camera.point(0.F, static_cast<float>(v), 1.F).y();
+    const std::uint32_t* hit = hits.row(v);
+    float* depth = out.depth_m.row(v);
+    float* infrared = out.infrared.row(v);
+    Eigen::Vector3f* normal = out.normal.row(v);
+    std::uint8_t* label = out.labels.row(v);
+    std::uint8_t* person = out.person.row(v);
     for (int u = 0; u < camera.width; ++u) {
-      const std::uint32_t hit = hits(u, v);
-      if (hit == EmbreeScene::kNothing) continue;
-      if (hit != met.hit) met.look_up(geometry, hit);
-      const float depth_m = met.depth_of(ray_x[static_cast<std::size_t>(u)], ray_y);
-      if (!(depth_m > 0.F && met.towards.allFinite())) continue;  // a triangle without area, met on its edge
-      out.depth_m(u, v) = depth_m;
-      out.normal(u, v) = met.towards;
-      out.labels(u, v) = met.face.part;
-      out.person(u, v) = met.face.person;
-      out.infrared(u, v) = geometry.materials[met.face.material].infrared;
+      if (hit[u] == EmbreeScene::kNothing) continue;
+      if (hit[u] != met.hit) met.look_up(geometry, hit[u]);
+      const float depth_m = met.depth_of(rays.x(u), rays.y(v));
+      if (!(depth_m > 0.F && met.has_area)) continue;  // a triangle without area, met on its edge
+      depth[u] = depth_m;
+      normal[u] = met.towards;
+      label[u] = met.face.part;
+      person[u] = met.face.person;
+      infrared[u] = met.infrared;
     }
   }
 }
@@ -124,21 +132,30 @@ void Renderer::State::fill_colour(const Scene& scene, Rendering& out) const {
 void Renderer::State::fill_lit(const Eigen::Vector3f& projector, Rendering& out) {
   const Camera& camera = out.view.camera;
   const bool beside = projector.y() == 0.F && projector.z() == 0.F && projector.x() != 0.F;
-  const Mask uncertain = beside ? maybe_shaded(out.depth_m, camera, projector.x()) : Mask();
+  const CameraRays rays(camera);
+  const auto at = [&](int u, int v, float depth_m) {
+    return Eigen::Vector3f(rays.x(u) * depth_m, rays.y(v) * depth_m, depth_m);
+  };
   out.lit = Mask(camera.width, camera.height);
-  shadow_rays.clear();
   for (int v = 0; v < camera.height; ++v) {
+    const float* depth_m = out.depth_m.row(v);
+    const Eigen::Vector3f* normal = out.normal.row(v);  // zero where there is no surface
+    std::uint8_t* lit = out.lit.row(v);
+    for (int u = 0; u < camera.width; ++u) lit[u] = normal[u].dot(projector - at(u, v, depth_m[u])) > 0.F ? 1 : 0;
+  }
+  const Mask uncertain = beside ? maybe_shaded(out.depth_m, camera, projector.x()) : out.lit;
+  shadow_rays.clear();
+  // Column by column within some rows: rays of one packet then run close together, which makes it twice as fast.
+  constexpr int kRows = 4;
+  for (int top = 0; top < camera.height; top += kRows) {
+    const int bottom = std::min(top + kRows, camera.height);
     for (int u = 0; u < camera.width; ++u) {
-      const float depth_m = out.depth_m(u, v);
-      if (depth_m == 0.F) continue;
-      const Eigen::Vector3f at = camera.point(static_cast<float>(u), static_cast<float>(v), depth_m);
-      const Eigen::Vector3f& normal = out.normal(u, v);
-      if (normal.dot(projector - at) <= 0.F) continue;
-      if (beside && uncertain(u, v) == 0) {
-        out.lit(u, v) = 1;
-        continue;
+      for (int v = top; v < bottom; ++v) {
+        if ((uncertain(u, v) & out.lit(u, v)) == 0) continue;
+        out.lit(u, v) = 0;
+        shadow_rays.push_back({at(u, v, out.depth_m(u, v)) + kOffSurface_m * out.normal(u, v),
+                               static_cast<std::uint32_t>(v * camera.width + u)});
       }
-      shadow_rays.push_back({at + kOffSurface_m * normal, static_cast<std::uint32_t>(v * camera.width + u)});
     }
   }
   embree.light(shadow_rays, projector, out.lit);
