@@ -197,6 +197,26 @@ TEST_F(Evaluate, JointsAreFittedOnFramesThatDoNotCount) {
   EXPECT_EQ(body.joint_sets.size(), paper_body().joint_sets.size() + 3);
 }
 
+TEST_F(Evaluate, TheScoreIsFittedToFramesWithPeopleAndWithout) {
+  // Somebody in b, too, who is to be taken for nobody.
+  write("frames/frames.csv", "frame,people,posture\na,1,\nb,0,\nc,0,\n");
+  fs::create_directories(path("frames/mask"));
+  write_png(Image<std::uint8_t>(320, 240, 255), path("frames/mask/a.png"));
+  const Outcome run = evaluate(" --search.min-parts 5 --fit-score " + path("fitted.toml"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, ContainsRegex("score fitted to [1-9][0-9]* candidates that were people and [1-9][0-9]* that "));
+  const std::string toml = bytes_of(path("fitted.toml"));
+  EXPECT_THAT(toml, HasSubstr("search.min-parts = 5\n"));
+  EXPECT_THAT(toml, HasSubstr("score.core-weight = "));
+  EXPECT_EQ(evaluate(" --options " + path("fitted.toml")).exit_code, 0);
+
+  write("frames/frames.csv", "frame,people,posture\na,0,\nb,0,\nc,0,\n");
+  const Outcome alone = evaluate(" --fit-score " + path("none.toml"));
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.err, HasSubstr("have no candidate that is known to be a person"));
+  EXPECT_FALSE(fs::exists(path("none.toml")));
+}
+
 class Compare : public Evaluate {};
 
 TEST_F(Compare, SaysWhatGotWorse) {
