@@ -29,6 +29,7 @@ namespace {
 
 constexpr int kMaxThreads = 1024;
 constexpr int kMaxStep = 1000000;
+constexpr int kMaxCount = 1000000000;
 constexpr std::size_t kWorstFrames = 3;
 
 constexpr const char* kEvaluationJoints =
@@ -38,7 +39,8 @@ constexpr const char* kEvaluationJoints =
 struct Arguments {
   explicit Arguments(CLI::App& command) : detector_flags(command) {}
 
-  std::vector<std::string> sources;
+  std::vector<std::string> sources, recipes;
+  RenderedTruth rendered;
   std::string model, options_file, report, json, joints_file, fit_joints, fit_score;
   OptionFlags<DetectOptions> detector_flags;
   int step = 1;
@@ -100,9 +102,17 @@ std::vector<SetRequest> set_requests(const Arguments& arguments) {
       if (!paths.insert(path.string()).second) throw UsageError(fmt::format("{}: given twice", set));
       std::string name = clean(path.filename().string());
       if (!names.insert(name).second) name = clean(path.string());
-      requests.push_back({name, set, arguments.step, arguments.keep_going, kWorstFrames});
+      requests.push_back({name, set, arguments.step, arguments.keep_going, kWorstFrames, {}});
     }
   }
+  for (const std::string& recipe : arguments.recipes) {
+    const std::filesystem::path path = whole_path(recipe);
+    if (!paths.insert(path.string()).second) throw UsageError(fmt::format("{}: given twice", recipe));
+    std::string name = clean(path.stem().string());
+    if (!names.insert(name).second) name = clean(path.string());
+    requests.push_back({name, recipe, arguments.step, arguments.keep_going, kWorstFrames, arguments.rendered});
+  }
+  if (requests.empty()) throw UsageError("expected a source or --recipe to measure on");
   return requests;
 }
 
@@ -187,11 +197,19 @@ void run(const Arguments& arguments, const std::string& command) {
 void add_evaluate(CLI::App& program) {
   CLI::App* command = program.add_subcommand("evaluate", "Measure a model against frames whose truth is known");
   const auto arguments = std::make_shared<Arguments>(*command);
+  command->add_option("SOURCE", arguments->sources,
+                      "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/, joints.csv or "
+                      "truth_bvh.toml, a folder of such folders with one frames.csv, or ITOP_..._depth_map.h5");
   command
-      ->add_option("SOURCE", arguments->sources,
-                   "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/, joints.csv or "
-                   "truth_bvh.toml, a folder of such folders with one frames.csv, or ITOP_..._depth_map.h5")
-      ->required();
+      ->add_option("--recipe", arguments->recipes,
+                   "Frames rendered from this recipe and not kept, as `vesalius synth --recipe` makes them")
+      ->type_name("FILE");
+  command->add_option("--count", arguments->rendered.count, "Frames of each recipe")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxCount));
+  command->add_option("--render-seed", arguments->rendered.seed, "Seed of the recipes' frames")->type_name("N");
+  command->add_option("--assets", arguments->rendered.assets.folder, "Where `vesalius assets` put its files")
+      ->type_name("DIR");
   command->add_option("-m,--model", arguments->model, "Trained forest")->type_name("FILE")->required();
   command
       ->add_option("--report", arguments->report,
@@ -232,6 +250,7 @@ the figures mean.
 
 Examples:
   vesalius evaluate held_out/ -m adult.forest --report out/
+  vesalius evaluate --recipe data/protocol/cluttered.toml --count 5000 -m adult.forest
   vesalius evaluate real/room real/hall -m adult.forest --json a.json
   vesalius evaluate held_out/ empty_rooms/ -m adult.forest --fit-score detector.toml)");
   command->callback([arguments, command] { run(*arguments, command_line(*command)); });

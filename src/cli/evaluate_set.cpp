@@ -52,7 +52,8 @@ class SetEvaluation {
         variants_(variants),
         progress_(progress),
         of_variants_(variants.size()),
-        source_(open_evaluation_truth(request.source, request.step)) {
+        source_(request.rendered ? open_recipe_truth(request.source, *request.rendered, request.step, scorer.body())
+                                 : open_evaluation_truth(request.source, request.step)) {
     result_.name = request.name;
     result_.source = request.source;
     result_.notes = source_->notes();

@@ -8,6 +8,7 @@
 
 #include "cli/ablation.h"
 #include "cli/progress.h"
+#include "cli/truth_recipe.h"
 #include "eval/score_frame.h"
 #include "io/truth_source.h"
 
@@ -54,7 +55,8 @@ struct SetRequest {
   std::string source;
   int step = 1;
   bool keep_going = false;
-  std::size_t worst = 3;  ///< how many frames to keep
+  std::size_t worst = 3;                  ///< how many frames to keep
+  std::optional<RenderedTruth> rendered;  ///< the source is a recipe, not frames
 };
 
 /// Scores all frames of a source on all threads allowed; what it holds does not grow with their number, but for the

@@ -43,25 +43,10 @@ class DatasetTruth final : public TruthSource {
   std::optional<TrueFrame> next() override {
     if (next_ >= reader_.size()) return std::nullopt;
     const std::uint64_t index = std::exchange(next_, next_ + step_);
-    LabelledFrame labelled = reader_.read(index);
-    TrueFrame result;
-    FrameTruth& truth = result.truth;
-    truth.people = static_cast<int>(labelled.parts.size());
-    truth.mask = Mask(labelled.person.width(), labelled.person.height(), 0);
-    for (std::size_t i = 0; i < truth.mask.size(); ++i) truth.mask[i] = labelled.person[i] == kBackground ? 0 : 1;
-    truth.joint_names = part_names();
-    truth.joints = std::move(labelled.parts);
-    truth.person = std::move(labelled.person);
-    truth.labels = std::move(labelled.labels);
-    result.frame = std::move(labelled.frame);
-    return result;
+    return as_true_frame(reader_.read(index), part_names());
   }
   int size() const override { return static_cast<int>((reader_.size() + step_ - 1) / step_); }
-  std::vector<std::string> part_names() const override {
-    std::vector<std::string> names;
-    for (const BodyPart& part : reader_.body().parts) names.push_back(part.name);
-    return names;
-  }
+  std::vector<std::string> part_names() const override { return part_names_of(reader_.body()); }
 
  private:
   DatasetReader reader_;
@@ -84,6 +69,26 @@ std::string folder_of(const std::string& uri) {
 }
 
 }  // namespace
+
+TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& part_names) {
+  TrueFrame result;
+  FrameTruth& truth = result.truth;
+  truth.people = static_cast<int>(labelled.parts.size());
+  truth.mask = Mask(labelled.person.width(), labelled.person.height(), 0);
+  for (std::size_t i = 0; i < truth.mask.size(); ++i) truth.mask[i] = labelled.person[i] == kBackground ? 0 : 1;
+  truth.joint_names = part_names;
+  truth.joints = std::move(labelled.parts);
+  truth.person = std::move(labelled.person);
+  truth.labels = std::move(labelled.labels);
+  result.frame = std::move(labelled.frame);
+  return result;
+}
+
+std::vector<std::string> part_names_of(const BodyModel& body) {
+  std::vector<std::string> names;
+  for (const BodyPart& part : body.parts) names.push_back(part.name);
+  return names;
+}
 
 std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step, const SourceOptions& options) {
   if (step < 1) throw UsageError("every 0th frame, expected a step of at least 1");

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "io/open_source.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
 #include "vesalius/frame_truth.h"
 
 namespace vesalius {
@@ -27,5 +29,11 @@ class TruthSource {
 /// any folder that `open_source` opens and that TruthFolder knows something about. Of every `step` frames the first is
 /// given out. Throws Error as those do.
 std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step = 1, const SourceOptions& options = {});
+
+/// A labelled frame as truth: joints are the parts' centres, under the parts' names.
+TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& part_names);
+
+/// Names of a body's parts, in order.
+std::vector<std::string> part_names_of(const BodyModel& body);
 
 }  // namespace vesalius

@@ -197,6 +197,36 @@ TEST_F(Evaluate, JointsAreFittedOnFramesThatDoNotCount) {
   EXPECT_EQ(body.joint_sets.size(), paper_body().joint_sets.size() + 3);
 }
 
+TEST_F(Evaluate, FramesOfARecipeAreThoseThatSynthWrites) {
+  write("small.toml",
+        "sensor.width = 80\nsensor.height = 60\nsensor.colour = false\nbody.kind = 'builtin'\nbody.count = 2\n"
+        "pose.captured = 0.0\n");
+  const std::string recipe = path("small.toml");
+  const Outcome made = run_program("synth -q --recipe " + recipe + " --count 5 --seed 3 --out " + path("made"));
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto figures = [&](const std::string& source) {
+    const Outcome run = run_program("evaluate -q --step 2 " + source + " -m " + model() + " --json " + path("r.json"));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return json::parse(bytes_of(path("r.json"))).at("sets").at(0);
+  };
+  const json stored = figures(path("made"));
+  const json rendered = figures("--recipe " + recipe + " --count 5 --render-seed 3");
+  EXPECT_EQ(rendered.at("frames"), 3);
+  EXPECT_EQ(rendered.at("name"), "small");
+  for (const auto& [name, figure] : stored.at("figures").items()) {
+    EXPECT_EQ(rendered.at("figures").at(name).at("value"), figure.at("value")) << name;
+  }
+  EXPECT_EQ(rendered.at("confusion"), stored.at("confusion"));
+}
+
+TEST_F(Evaluate, ARecipeNeedsACount) {
+  write("small.toml", "body.kind = 'builtin'\n");
+  const Outcome run = run_program("evaluate --recipe " + path("small.toml") + " -m " + model());
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--recipe expects --count"));
+  EXPECT_EQ(run_program("evaluate -m " + model()).exit_code, 2);
+}
+
 TEST_F(Evaluate, TheScoreIsFittedToFramesWithPeopleAndWithout) {
   // Somebody in b, too, who is to be taken for nobody.
   write("frames/frames.csv", "frame,people,posture\na,1,\nb,0,\nc,0,\n");
