@@ -101,6 +101,9 @@ std::string summary_lines(const SetResult& set) {
   text += ", " + speed_text(set) + "\n";
   text += group_line(estimates, "parts seen", "part.seen.", "");
   text += group_line(estimates, "found by posture", "posture.", "");
+  text += group_line(estimates, "found by distance", "distance.", "");
+  text += group_line(estimates, "found by heading", "heading.", "");
+  text += group_line(estimates, "found by parts visible", "visible.", "");
   text += group_line(estimates, "found by camera motion", "motion.", "");
   text += group_line(estimates, "joints at 10 cm", "joint.", ".at_10cm");
   text += group_line(estimates, "recall of parts", "pixels.recall_inside.", "");

@@ -31,6 +31,7 @@ FigureKind kind_of(std::string_view name) {
   kind.higher_is_better =
       !kind.metres && name != "people.false" && name != "frames.empty_with_person" && name != "pixels.body_on_empty";
   kind.trials = name == "people.found" || name == "frames.empty_with_person" || name.starts_with("posture.") ||
+                name.starts_with("distance.") || name.starts_with("heading.") || name.starts_with("visible.") ||
                 name.starts_with("motion.") || name.starts_with("part.seen.") ||
                 (name.starts_with("joint.") && name.ends_with(".at_10cm"));
   return kind;

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "eval/breakdown_figures.h"
 #include "eval/match_people.h"
 #include "eval/shrink_frame.h"
 #include "vesalius/error.h"
@@ -133,6 +134,7 @@ void FrameScorer::find_people(const TrueFrame& frame, bool fit_joints, FrameScor
   append(score.terms, people_terms(frame, score.people, matches, body()));
   const std::vector<const Person*> of_person = found_of_each(score.people, matches, score.expected);
   append(score.terms, visible_part_terms(frame, of_person, body()));
+  append(score.terms, breakdown_terms(frame, of_person, body()));
   log_proposals(frame, trace, score);
   judge_joints(frame, of_person, fit_joints, score);
 }

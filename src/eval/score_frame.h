@@ -21,7 +21,7 @@ struct FrameScore {
   FigureTerms terms;
   int expected = 0;  ///< true people
   std::vector<JudgedProposal> proposals;
-  std::vector<ScoreSample> samples;  ///< to fit the score on
+  std::vector<ScoreSample> samples;                 ///< to fit the score on
   std::vector<std::vector<double>> joint_errors_m;  ///< of each true person (joint_errors)
   std::optional<PixelConfusion> confusion;          ///< where the true labels are known
   std::vector<JointOffset> offsets;                 ///< of a frame to fit joints on
