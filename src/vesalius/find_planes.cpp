@@ -3,11 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "vesalius/flat_pieces.h"
 #include "vesalius/frame.h"
 #include "vesalius/parallel.h"
+#include "vesalius/plane_kernel.h"
 #include "vesalius/random.h"
 
 namespace vesalius {
@@ -18,10 +19,8 @@ constexpr int kHypotheses = 150;     // tried for each plane
 constexpr float kMostSlant = 0.25F;  // cosine below which a pixel's surface is not stretched further
 constexpr int kRefits = 4;           // least-squares steps from the best hypothesis
 constexpr float kLeastRefit = 0.9F;  // share of its surface that a step may not lose
-constexpr int kPieceGapMm = 30;      // depth step within a connected piece, plus a share of the depth
-constexpr int kPieceGapShare = 50;
-constexpr int kCellReach = 3;      // a plane reaches this many steps beyond its samples
-constexpr float kAligned = 0.85F;  // cosine above which a sample's surface is turned like the plane
+constexpr int kCellReach = 3;        // a plane reaches this many steps beyond its samples
+constexpr float kAligned = 0.85F;    // cosine above which a sample's surface is turned like the plane
 
 /// Distance from its plane within which a point at depth z counts as lying on it.
 float thickness(const PlaneOptions& options, float z_m) {
@@ -85,15 +84,12 @@ std::vector<Sample> take_samples(const DepthImage& depth, const Camera& camera) 
   return samples;
 }
 
-/// Area of the samples on the plane, stretched by their slant.
-float support(const std::vector<Sample>& samples, const Plane& plane, const PlaneOptions& options) {
-  double area = 0.0;
-  for (const Sample& s : samples) {
-    if (!s.on(plane, options)) continue;
-    const float slant = std::abs(plane.normal.dot(s.point)) / s.point.norm();
-    area += static_cast<double>(s.area_m2 / std::max(slant, kMostSlant));
-  }
-  return static_cast<float>(area);
+/// The samples as the kernel takes them.
+SurfaceColumns columns_of(const std::vector<Sample>& samples, const PlaneOptions& options) {
+  SurfaceColumns columns;
+  columns.reserve(samples.size());
+  for (const Sample& s : samples) columns.add(s.point, s.normal, thickness(options, s.point.z()), s.area_m2);
+  return columns;
 }
 
 Plane oriented(const Eigen::Vector3f& normal, const Eigen::Vector3f& through) {
@@ -134,93 +130,6 @@ Plane refit(const std::vector<Sample>& samples, const Plane& plane, const PlaneO
   return oriented(solver.eigenvectors().col(0).cast<float>(), mean.cast<float>());
 }
 
-/// Takes apart the flat pixels into connected pieces and drops those that are rather part of a body: small, and ending
-/// by themselves. A piece of floor between two legs is small too, but ends where the legs hide it.
-class PieceFilter {
- public:
-  PieceFilter(const DepthImage& depth, const Camera& camera, const std::vector<Plane>& planes,
-              const Image<std::uint8_t>& plane_of, const Mask& mask)
-      : depth_(depth), camera_(camera), planes_(planes), plane_of_(plane_of), mask_(mask) {}
-
-  Mask keep(float min_area_m2) {
-    Mask out = mask_;
-    Mask seen(mask_.width(), mask_.height(), 0);
-    for (int first = 0; first < static_cast<int>(mask_.size()); ++first) {
-      if (mask_[static_cast<std::size_t>(first)] == 0 || seen[static_cast<std::size_t>(first)] != 0) continue;
-      collect(first, seen);
-      if (area_m2() >= min_area_m2 || share_unhidden() <= kMostUnhidden) continue;
-      for (const int pixel : piece_) out[static_cast<std::size_t>(pixel)] = 0;
-    }
-    return out;
-  }
-
- private:
-  static constexpr std::array<std::array<int, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
-  static constexpr float kMostUnhidden = 0.5F;  // share of the outline
-  static constexpr int kBeyond = 3;             // pixels past the outline: single noisy ones do not count
-  static constexpr int kRim = 10;               // pixels looked through for one with a reading
-
-  bool connected(int u, int v, int nu, int nv) const {
-    return std::abs(depth_(nu, nv) - depth_(u, v)) <= kPieceGapMm + depth_(u, v) / kPieceGapShare;
-  }
-
-  void collect(int first, Mask& seen) {
-    piece_.assign(1, first);
-    seen[static_cast<std::size_t>(first)] = 1;
-    for (std::size_t head = 0; head < piece_.size(); ++head) {
-      const int u = piece_[head] % mask_.width();
-      const int v = piece_[head] / mask_.width();
-      for (const auto& [du, dv] : kSides) {
-        const int nu = u + du, nv = v + dv;
-        if (!mask_.contains(nu, nv) || mask_(nu, nv) == 0 || seen(nu, nv) != 0) continue;
-        if (!connected(u, v, nu, nv)) continue;
-        seen(nu, nv) = 1;
-        piece_.push_back(nv * mask_.width() + nu);
-      }
-    }
-  }
-
-  float area_m2() const {
-    const Surface surface(depth_, camera_);
-    double area = 0.0;
-    for (const int pixel : piece_) {
-      const int u = pixel % mask_.width(), v = pixel / mask_.width();
-      const Eigen::Vector3f p = surface.point(u, v);
-      const float slant = std::abs(planes_[plane_of_(u, v)].normal.dot(p)) / p.norm();
-      area += static_cast<double>(p.z() * p.z() / std::max(slant, kMostSlant));
-    }
-    return static_cast<float>(area / static_cast<double>(camera_.fx * camera_.fy));
-  }
-
-  /// Of the outline, what is not due to something nearer in front.
-  float share_unhidden() const {
-    long hidden = 0;
-    long unhidden = 0;
-    for (const int pixel : piece_) {
-      const int u = pixel % mask_.width(), v = pixel / mask_.width();
-      for (const auto& [du, dv] : kSides) {
-        if (!mask_.contains(u + du, v + dv) || mask_(u + du, v + dv) != 0) continue;
-        int beyond = 0;
-        for (int k = kBeyond; k <= kRim && beyond == 0 && mask_.contains(u + k * du, v + k * dv); ++k) {
-          if (mask_(u + k * du, v + k * dv) != 0) break;  // a noisy pixel, no end
-          beyond = depth_(u + k * du, v + k * dv);
-        }
-        if (beyond == 0) continue;
-        const int nearer = depth_(u, v) - (kPieceGapMm + depth_(u, v) / kPieceGapShare);
-        (beyond < nearer ? hidden : unhidden) += 1;
-      }
-    }
-    return hidden + unhidden > 0 ? static_cast<float>(unhidden) / static_cast<float>(hidden + unhidden) : 0.F;
-  }
-
-  const DepthImage& depth_;
-  const Camera& camera_;
-  const std::vector<Plane>& planes_;
-  const Image<std::uint8_t>& plane_of_;
-  const Mask& mask_;
-  std::vector<int> piece_;  ///< row-major pixels of the piece looked at
-};
-
 }  // namespace
 
 void visit_options(const std::string& prefix, PlaneOptions& o, OptionVisitor& visitor) {
@@ -235,24 +144,40 @@ void visit_options(const std::string& prefix, PlaneOptions& o, OptionVisitor& vi
   visitor.option(prefix + "max", o.max_planes, {"", 0, 64, "Most flat surfaces looked for."});
 }
 
-std::vector<Plane> find_planes(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
+namespace {
+
+/// The plane with the largest support of those that seeded sampling comes upon.
+Plane best_hypothesis(const std::vector<Sample>& samples, const SurfaceColumns& columns, const Surface& surface,
+                      int reach, Random& random) {
+  std::vector<Plane> tried;
+  for (int i = 0; i < kHypotheses; ++i) {
+    const Plane plane = hypothesis(samples, surface, reach, random);
+    if (plane.area_m2 >= 0.F) tried.push_back(plane);
+  }
+  parallel_for(static_cast<int>(tried.size()), [&](int i) {
+    Plane& plane = tried[static_cast<std::size_t>(i)];
+    plane.area_m2 = columns.support(plane.normal, plane.offset, kAligned, kMostSlant);
+  });
+  Plane best{Eigen::Vector3f::UnitZ(), 0.F, 0.F};
+  for (const Plane& plane : tried) {
+    if (plane.area_m2 > best.area_m2) best = plane;
+  }
+  return best;
+}
+
+std::vector<Plane> planes_of(std::vector<Sample> samples, const DepthImage& depth, const Camera& camera,
+                             const PlaneOptions& options) {
   std::vector<Plane> planes;
-  std::vector<Sample> samples = take_samples(depth, camera);
   const Surface surface(depth, camera);
   const int reach = std::max(6, depth.width() / 12);
   Random random(1);
   while (static_cast<int>(planes.size()) < options.max_planes && samples.size() >= 3) {
-    Plane best{Eigen::Vector3f::UnitZ(), 0.F, 0.F};
-    for (int i = 0; i < kHypotheses; ++i) {
-      Plane plane = hypothesis(samples, surface, reach, random);
-      if (plane.area_m2 < 0.F) continue;
-      plane.area_m2 = support(samples, plane, options);
-      if (plane.area_m2 > best.area_m2) best = plane;
-    }
+    const SurfaceColumns columns = columns_of(samples, options);
+    Plane best = best_hypothesis(samples, columns, surface, reach, random);
     if (best.area_m2 < options.min_area_m2) break;
     for (int i = 0; i < kRefits; ++i) {
       Plane fitted = refit(samples, best, options);
-      fitted.area_m2 = support(samples, fitted, options);
+      fitted.area_m2 = columns.support(fitted.normal, fitted.offset, kAligned, kMostSlant);
       if (fitted.area_m2 < kLeastRefit * best.area_m2) break;
       best = fitted;
     }
@@ -263,28 +188,49 @@ std::vector<Plane> find_planes(const DepthImage& depth, const Camera& camera, co
   return planes;
 }
 
-Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
-  Mask out(depth.width(), depth.height(), 0);
-  Image<std::uint8_t> plane_of(depth.width(), depth.height(), 0);
-  const std::vector<Plane> planes = find_planes(depth, camera, options);
-  if (planes.empty()) return out;
-  // Cells around the samples that lie on each plane, as a bit a plane.
-  Image<std::uint64_t> aligned(depth.width() / kStep + 1, depth.height() / kStep + 1, 0);
-  for (const Sample& s : take_samples(depth, camera)) {
+/// Cells of kStep x kStep pixels within kCellReach of a sample that lies on a plane, as a bit a plane.
+Image<std::uint64_t> cells_near(const std::vector<Sample>& samples, const std::vector<Plane>& planes,
+                                const DepthImage& depth, const PlaneOptions& options) {
+  Image<std::uint64_t> cells(depth.width() / kStep + 1, depth.height() / kStep + 1, 0);
+  for (const Sample& s : samples) {
     for (std::size_t i = 0; i < planes.size(); ++i) {
-      if (!s.on(planes[i], options)) continue;
-      for (int v = s.v / kStep - kCellReach; v <= s.v / kStep + kCellReach; ++v) {
-        for (int u = s.u / kStep - kCellReach; u <= s.u / kStep + kCellReach; ++u) {
-          if (aligned.contains(u, v)) aligned(u, v) |= std::uint64_t{1} << i;
+      if (s.on(planes[i], options)) cells(s.u / kStep, s.v / kStep) |= std::uint64_t{1} << i;
+    }
+  }
+  Image<std::uint64_t> wide(cells.width(), cells.height(), 0);
+  const auto spread = [](const Image<std::uint64_t>& from, int du, int dv, Image<std::uint64_t>& to) {
+    for (int v = 0; v < from.height(); ++v) {
+      for (int u = 0; u < from.width(); ++u) {
+        for (int k = -kCellReach; from(u, v) != 0 && k <= kCellReach; ++k) {
+          if (to.contains(u + k * du, v + k * dv)) to(u + k * du, v + k * dv) |= from(u, v);
         }
       }
     }
-  }
+  };
+  spread(cells, 1, 0, wide);
+  cells.fill(0);
+  spread(wide, 0, 1, cells);
+  return cells;
+}
+
+}  // namespace
+
+std::vector<Plane> find_planes(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
+  return planes_of(take_samples(depth, camera), depth, camera, options);
+}
+
+Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
+  Mask out(depth.width(), depth.height(), 0);
+  const std::vector<Sample> samples = take_samples(depth, camera);
+  const std::vector<Plane> planes = planes_of(samples, depth, camera, options);
+  if (planes.empty()) return out;
+  Image<std::uint8_t> plane_of(depth.width(), depth.height(), 0);
+  const Image<std::uint64_t> cells = cells_near(samples, planes, depth, options);
   const Surface surface(depth, camera);
   parallel_ranges(depth.height(), 16, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < depth.width(); ++u) {
-        const std::uint64_t bits = aligned(u / kStep, v / kStep);
+        const std::uint64_t bits = cells(u / kStep, v / kStep);
         if (bits == 0 || depth(u, v) == 0) continue;
         const Eigen::Vector3f p = surface.point(u, v);
         for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -295,7 +241,19 @@ Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptio
       }
     }
   });
-  return PieceFilter(depth, camera, planes, plane_of, out).keep(options.min_piece_m2);
+  const auto area_m2 = [&](const std::vector<int>& pixels) {
+    double area = 0.0;
+    for (const int pixel : pixels) {
+      const int u = pixel % depth.width(), v = pixel / depth.width();
+      const Eigen::Vector3f p = surface.point(u, v);
+      const float slant = std::abs(planes[plane_of(u, v)].normal.dot(p)) / p.norm();
+      area += static_cast<double>(p.z() * p.z() / std::max(slant, kMostSlant));
+    }
+    return static_cast<float>(area / static_cast<double>(camera.fx * camera.fy));
+  };
+  const double surely_large_mm2 = 1.001e6 * static_cast<double>(options.min_piece_m2 * camera.fx * camera.fy);
+  return without_body_pieces(depth, out, surely_large_mm2,
+                             [&](const std::vector<int>& pixels) { return area_m2(pixels) >= options.min_piece_m2; });
 }
 
 }  // namespace vesalius

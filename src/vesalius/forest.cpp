@@ -75,7 +75,9 @@ int depth(const Tree& tree) {
     const int below = depth_of[n] + 1;
     deepest = std::max(deepest, below);
     for (const std::int32_t child : {tree.nodes[n].left, tree.nodes[n].right}) {
-      if (child >= 0) depth_of[static_cast<std::size_t>(child)] = below;
+      if (child < 0) continue;
+      int& child_depth = depth_of[static_cast<std::size_t>(child)];
+      child_depth = std::max(child_depth, below);  // nodes may share it
     }
   }
   return deepest;

@@ -40,6 +40,7 @@ class Packer {
       }
     }
     packed_.link_bits = 32 - threshold_bits;
+    packed_.levels = depth(tree);
     packed_.wide = packed_.wide || tree.nodes.size() >> static_cast<unsigned>(packed_.link_bits) != 0;
   }
 

@@ -20,6 +20,7 @@ struct PackedTree {
   /// v2, threshold, link.
   bool wide = false;
   int link_bits = 0;
+  int levels = 0;  ///< edges from the root to the deepest leaf
   std::vector<std::uint32_t> words;
   std::vector<TreeLeaf> leaves;  ///< as the tree's, unused slots with label 0: adding all four slots does no harm
 

@@ -20,6 +20,7 @@ TEST(PackedTree, PutsChildrenSideBySide) {
   const PackedTree packed = pack(small_tree(), {});
   EXPECT_FALSE(packed.wide);
   EXPECT_EQ(packed.link_bits, 28) << "-3 and 5 take four bits";
+  EXPECT_EQ(packed.levels, 2);
   const std::uint32_t root = 0x00FF7E81, plain = 0x80808080;
   EXPECT_THAT(packed.words, ElementsAre(root, 0xD0000001, 0, 0,   // root; never reached
                                         2, 0, plain, 0x50000002,  // its children, link 1
@@ -46,11 +47,22 @@ TEST(PackedTree, IsWideWhereOffsetsOrLinksNeedIt) {
   EXPECT_FALSE(pack(chain, {.clip_mm = 1000}).wide) << "a feature is at least -2000 then";
 }
 
+TEST(PackedTree, LevelsAreThoseOfTheLongestWay) {
+  Tree tree = small_tree();  // the last node hangs on the first and on the second
+  tree.nodes[0].left = 2;
+  tree.nodes[1].left = 2;
+  tree.nodes.push_back({.left = ~0, .right = ~1});
+  EXPECT_EQ(pack(tree, {}).levels, 3);
+  std::swap(tree.nodes[0].left, tree.nodes[0].right);
+  EXPECT_EQ(pack(tree, {}).levels, 3);
+}
+
 TEST(PackedTree, WithoutNodesIsALeaf) {
   Tree tree;
   tree.leaves = {{{7, 99, 99, 3}, {200, 0, 0, 50}}};
   const PackedTree packed = pack(tree, {});
   EXPECT_THAT(packed.words, ElementsAre(0, 0, 0, 0));
+  EXPECT_EQ(packed.levels, 0);
   EXPECT_THAT(packed.leaves[0].label, ElementsAre(7, 0, 0, 3)) << "slots without probability name no class";
 }
 

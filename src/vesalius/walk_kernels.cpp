@@ -76,17 +76,19 @@ class Walker {
         nodes_(reinterpret_cast<const char*>(tree.words.data())),
         values_(reinterpret_cast<const char*>(depth.values())),
         border_(hn::BitCast(UHalves(), SetHalves(depth.border_v(), depth.border_u()))),
-        value_bytes_(SetHalves(2 * depth.stride(), 2)) {}
+        value_bytes_(SetHalves(2 * depth.stride(), 2)),
+        levels_(tree.levels) {}
 
   /// From the root to the leaves: those of pixels `begin` to `begin` + kBlock - 1.
   void Run(std::size_t begin, std::uint32_t* leaves) {
     begin_ = begin;
     Start();
-    do {
+    for (int level = 0; level < levels_; ++level) {
       Format::Fetch(nodes_, b_);
       PlaceProbes();
       ReadProbes();
-    } while (!Descend());
+      if (Descend()) break;
+    }
     for (std::size_t i = 0; i < kBlock; ++i) {
       std::memcpy(&leaves[begin + i], nodes_ + static_cast<std::uint32_t>(b_.at[i]), sizeof(leaves[0]));
     }
@@ -158,6 +160,7 @@ class Walker {
   const char* values_;
   hn::Vec<UHalves> border_;
   Int16 value_bytes_;
+  int levels_;
   std::size_t begin_ = 0;
   Block b_;
 };
