@@ -5,7 +5,8 @@ namespace vesalius {
 SceneLabels label_scene(const PixelLabeller& labeller, const DetectOptions& options, const Frame& frame,
                         const Mask* body) {
   const bool by_mode = options.smooth.mode || !labeller.has_distributions();
-  Posteriors posteriors = labeller.label(frame.depth, frame.camera);
+  Posteriors posteriors;
+  labeller.label_into(frame.depth, frame.camera, options.label.half, posteriors);
   if (!by_mode) posteriors = mean_filter(posteriors, frame.depth, options.smooth);
   const auto choose = [&](const Mask* prior) {
     const LabelChoice choice{labeller.body().part_count(), labeller.has_background(), prior};

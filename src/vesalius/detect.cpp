@@ -1,6 +1,7 @@
 #include "vesalius/detect.h"
 
 #include <algorithm>
+#include <mutex>
 
 #include "vesalius/parallel.h"
 
@@ -55,24 +56,61 @@ LabelImage uncropped(const LabelImage& part, const Box& box, int width, int heig
   return out;
 }
 
+}  // namespace
+
+/// Large memory of frames past, which the next ones use again: new pages cost as much as a small stage.
+class Workspaces {
+ public:
+  struct Workspace {
+    Posteriors raw;     ///< pass 1
+    Posteriors smooth;  ///< pass 1, unless labels are smoothed
+  };
+
+  std::unique_ptr<Workspace> take() {
+    const std::scoped_lock lock(mutex_);
+    if (free_.empty()) return std::make_unique<Workspace>();
+    std::unique_ptr<Workspace> workspace = std::move(free_.back());
+    free_.pop_back();
+    return workspace;
+  }
+  void give_back(std::unique_ptr<Workspace> workspace) {
+    const std::scoped_lock lock(mutex_);
+    free_.push_back(std::move(workspace));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Workspace>> free_;
+};
+
+namespace {
+
 /// The method on one frame, stage after stage.
 class Pipeline {
  public:
   using Candidate = Trace::Candidate;
 
-  Pipeline(const PixelLabeller& labeller, const DetectOptions& options, const Frame& frame)
-      : labeller_(labeller),
+  Pipeline(const PixelLabeller& labeller, const DetectOptions& options, const Frame& frame,
+           Workspaces::Workspace& workspace, StageTimes* times)
+      : clock_(times),
+        workspace_(workspace),
+        labeller_(labeller),
         body_(labeller.body()),
         options_(options),
         frame_(frame),
-        grower_(frame, body_, options.grow) {}
+        grower_(frame, body_, options.grow) {
+    clock_.lap(Stage::planes);
+  }
 
   std::vector<Person> run(Trace* trace) {
     first_pass(trace);
     std::vector<Candidate> candidates = grow_candidates();
+    clock_.lap(Stage::grow);
     parallel_for(static_cast<int>(candidates.size()), [&](int i) { refine(candidates[static_cast<std::size_t>(i)]); });
+    clock_.lap(Stage::second_pass);
     std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
     std::vector<Person> people = choose_people(candidates);
+    clock_.lap(Stage::people);
     if (trace != nullptr) {
       trace->labels = std::move(labels_);
       trace->clusters = std::move(clusters_);
@@ -86,6 +124,9 @@ class Pipeline {
  private:
   bool by_mode() const { return options_.smooth.mode || !labeller_.has_distributions(); }
 
+  /// Of pass 1, smoothed unless labels are.
+  const Posteriors& posteriors() const { return by_mode() ? workspace_.raw : workspace_.smooth; }
+
   LabelImage choose(const Posteriors& posteriors, const DepthImage& depth, const Mask* prior) const {
     const LabelChoice choice{body_.part_count(), labeller_.has_background(), prior};
     LabelImage labels = choose_labels(posteriors, depth, choice, options_.label);
@@ -96,15 +137,21 @@ class Pipeline {
   /// is shown the scene without them.
   void first_pass(Trace* trace) {
     const DepthImage depth = labeller_.has_background() ? frame_.depth : without(frame_.depth, grower_.flat());
-    Posteriors raw = labeller_.label(depth, frame_.camera);
+    Posteriors& raw = workspace_.raw;
+    labeller_.label_into(depth, frame_.camera, options_.label.half, raw);
     if (trace != nullptr) {
       const LabelChoice choice{body_.part_count(), labeller_.has_background(), nullptr};
       trace->raw_labels = choose_labels(raw, depth, choice, options_.label);
     }
-    posteriors_ = by_mode() ? std::move(raw) : mean_filter(raw, depth, options_.smooth);
-    labels_ = choose(posteriors_, depth, nullptr);
+    clock_.lap(Stage::label);
+    if (!by_mode()) mean_filter(raw, depth, options_.smooth, workspace_.smooth);
+    clock_.lap(Stage::smooth);
+    labels_ = choose(posteriors(), depth, nullptr);
+    clock_.lap(Stage::choose);
     clusters_ = find_clusters(labels_, depth, frame_.camera, body_, options_.cluster);
+    clock_.lap(Stage::cluster);
     rough_ = search_skeletons(clusters_.items, body_, options_.search);
+    clock_.lap(Stage::search);
   }
 
   /// Section 7. Every rough skeleton grows alone; the likelier ones also against each other, which keeps people apart
@@ -165,12 +212,13 @@ class Pipeline {
     Clusters clusters;
     if (labeller_.has_background()) {
       // Its own label already tells what is no person: keep the scene, take the mask as what is known now.
-      candidate.labels = choose(posteriors_, frame_.depth, &candidate.grown);
+      candidate.labels = choose(posteriors(), frame_.depth, &candidate.grown);
       clusters = find_clusters(candidate.labels, frame_.depth, frame_.camera, body_, cluster);
     } else {
       const DepthImage alone = keep_only(frame_.depth, candidate.grown, box);
       const Camera camera = cropped(frame_.camera, box);
-      Posteriors posteriors = labeller_.label(alone, camera);
+      Posteriors posteriors;
+      labeller_.label_into(alone, camera, options_.label.half, posteriors);
       if (!by_mode()) posteriors = mean_filter(posteriors, alone, options_.smooth);
       const LabelImage labels = choose(posteriors, alone, nullptr);
       clusters = find_clusters(labels, alone, camera, body_, cluster);
@@ -216,14 +264,15 @@ class Pipeline {
     return person;
   }
 
+  StageClock clock_;  ///< made first: making the grower is a stage
+  Workspaces::Workspace& workspace_;
   const PixelLabeller& labeller_;
   const BodyModel& body_;
   const DetectOptions& options_;
   const Frame& frame_;
   PersonGrower grower_;
-  Posteriors posteriors_;  ///< pass 1, smoothed unless labels are
-  LabelImage labels_;      ///< pass 1
-  Clusters clusters_;      ///< pass 1
+  LabelImage labels_;  ///< pass 1
+  Clusters clusters_;  ///< pass 1
   std::vector<Skeleton> rough_;
 };
 
@@ -258,14 +307,17 @@ Detector::Detector(Forest forest, DetectOptions options)
     : Detector(std::make_shared<ForestLabeller>(std::move(forest)), options) {}
 
 Detector::Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options)
-    : labeller_(std::move(labeller)), options_(options) {
+    : labeller_(std::move(labeller)), options_(options), workspaces_(std::make_shared<Workspaces>()) {
   RangeCheck check;
   visit_options("", options_, check);
 }
 
-std::vector<Person> Detector::detect(const Frame& frame, Trace* trace) const {
+std::vector<Person> Detector::detect(const Frame& frame, Trace* trace, StageTimes* times) const {
   check(frame);
-  return Pipeline(*labeller_, options_, frame).run(trace);
+  std::unique_ptr<Workspaces::Workspace> workspace = workspaces_->take();
+  std::vector<Person> people = Pipeline(*labeller_, options_, frame, *workspace, times).run(trace);
+  workspaces_->give_back(std::move(workspace));
+  return people;
 }
 
 Image<std::uint8_t> body_index_map(const std::vector<Person>& people, int width, int height) {

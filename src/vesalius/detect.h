@@ -14,6 +14,7 @@
 #include "vesalius/score_person.h"
 #include "vesalius/search_skeletons.h"
 #include "vesalius/smooth_labels.h"
+#include "vesalius/stage_times.h"
 
 namespace vesalius {
 
@@ -76,22 +77,26 @@ struct Trace {
   std::vector<Candidate> candidates;  ///< surest first
 };
 
-/// The whole method: people of one frame. Stateless between frames; safe to call from several threads.
+class Workspaces;
+
+/// The whole method: people of one frame. Keeps only memory between frames, and copies of it share that; safe to call
+/// from several threads.
 class Detector {
  public:
   /// Throws Error for an inconsistent forest, UsageError for an option outside its range.
   explicit Detector(Forest forest, DetectOptions options = {});
   explicit Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options = {});
 
-  /// People in the frame, surest first; empty when nobody is in view. Throws Error for a frame whose images do not
-  /// fit its camera.
-  std::vector<Person> detect(const Frame& frame, Trace* trace = nullptr) const;
+  /// People in the frame, surest first; empty when nobody is in view. To `times` is added what each stage took. Throws
+  /// Error for a frame whose images do not fit its camera.
+  std::vector<Person> detect(const Frame& frame, Trace* trace = nullptr, StageTimes* times = nullptr) const;
 
   const BodyModel& body() const { return labeller_->body(); }
 
  private:
   std::shared_ptr<const PixelLabeller> labeller_;
   DetectOptions options_;
+  std::shared_ptr<Workspaces> workspaces_;
 };
 
 /// uint8 map of the people: index in `people`, kBackground elsewhere (of the frame's size).

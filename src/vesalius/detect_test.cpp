@@ -270,5 +270,44 @@ TEST(Detector, RefusesWhatCannotBeMeant) {
   EXPECT_THROW(detect_truth(wrong, true), Error);
 }
 
+/// Notes what memory it is given to write into.
+class MemoryWatch : public TruthLabeller {
+ public:
+  using TruthLabeller::TruthLabeller;
+  void label_into(const DepthImage& depth, const Camera& camera, bool /*half*/, Posteriors& out) const override {
+    given.push_back(out.sums.data());
+    const Posteriors found = label(depth, camera);
+    out.resize_like(found);
+    std::ranges::copy(found.sums, out.sums.begin());
+  }
+  mutable std::vector<const std::uint16_t*> given;
+};
+
+TEST(Detector, FramesUseTheMemoryOfThoseBefore) {
+  const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
+  const auto labeller = std::make_shared<MemoryWatch>(truth.labels, paper_body(), true);
+  const Detector detector(labeller);
+  const Detector copy = detector;
+  std::vector<std::size_t> people;
+  for (int i = 0; i < 3; ++i) people.push_back((i < 2 ? detector : copy).detect(truth.frame).size());
+  EXPECT_THAT(people, testing::Each(1U));
+  ASSERT_EQ(labeller->given.size(), 3U);
+  EXPECT_EQ(labeller->given[0], nullptr);
+  EXPECT_NE(labeller->given[1], nullptr);
+  EXPECT_EQ(labeller->given[1], labeller->given[2]);
+}
+
+TEST(Detector, TimesOfStagesAddUp) {
+  const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
+  const Detector detector(std::make_shared<TruthLabeller>(truth.labels, paper_body(), true));
+  StageTimes times;
+  detector.detect(truth.frame, nullptr, &times);
+  for (const double ms : times.ms) EXPECT_GE(ms, 0.0);
+  EXPECT_GT(times[Stage::label], 0.0);
+  const double once = times.total();
+  detector.detect(truth.frame, nullptr, &times);
+  EXPECT_GT(times.total(), once);
+}
+
 }  // namespace
 }  // namespace vesalius

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
+#include "vesalius/choose_kernel.h"
 #include "vesalius/parallel.h"
 #include "vesalius/tree_walk.h"
 #include "vesalius/walk_kernels.h"
@@ -26,17 +28,19 @@ class Weights {
   }
   static constexpr float kOne = 1024.F;
 
+  /// What all of the first `classes` classes are multiplied by, 0 where that differs.
+  long common(int classes) const { return classes <= parts_ || background_ == person_ ? person_ : 0; }
+
  private:
   long person_;
   long background_;
   int parts_;
 };
 
-/// What a pixel would take by itself, and the lowest weighted posterior that still rivals it.
+/// What a pixel would take by itself.
 struct Candidate {
   std::uint8_t best = kBackground;
   bool unsure = false;
-  std::int64_t near_best = 0;
 };
 
 Candidate best_class(const std::uint16_t* sums, int classes, const Weights& weight, std::int64_t margin) {
@@ -54,26 +58,112 @@ Candidate best_class(const std::uint16_t* sums, int classes, const Weights& weig
     }
   }
   if (best < 0) return {};
-  return {static_cast<std::uint8_t>(best), second > 0 && first - second < margin,
-          std::max<std::int64_t>(1, first - margin + 1)};
+  return {static_cast<std::uint8_t>(best), second > 0 && first - second < margin};
 }
 
-/// How many of the eight neighbours have each label.
-std::array<std::uint8_t, 256> count_neighbours(const LabelImage& labels, int u, int v) {
-  std::array<std::uint8_t, 256> count{};
+/// How many of the eight neighbours have a label.
+int count_neighbours(const LabelImage& labels, int u, int v, std::uint8_t label) {
+  int count = 0;
   for (int nv = v - 1; nv <= v + 1; ++nv) {
     for (int nu = u - 1; nu <= u + 1; ++nu) {
-      if ((nu != u || nv != v) && labels.contains(nu, nv)) ++count[labels(nu, nv)];
+      if ((nu != u || nv != v) && labels.contains(nu, nv) && labels(nu, nv) == label) ++count;
     }
   }
   return count;
 }
+
+/// Section 4.3 for one picture: every pixel by itself first, then the unsure ones by their neighbours. Until the end
+/// the background is class part_count.
+class Chooser {
+ public:
+  Chooser(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice, const LabelOptions& options)
+      : posteriors_(posteriors),
+        depth_(depth),
+        choice_(choice),
+        weight_(choice, options),
+        classes_(choice.part_count + (choice.has_background && choice.prior == nullptr ? 1 : 0)),
+        margin_(static_cast<std::int64_t>(
+            std::ceil(static_cast<double>(options.unsure_margin) * 255.0 * posteriors.trees * Weights::kOne))),
+        common_(weight_.common(classes_)),
+        on_vectors_(common_ > 0 && margin_ / common_ <= 65535 && best_classes_fit(classes_)),
+        first_(depth.width(), depth.height(), kBackground),
+        unsure_(depth.width(), depth.height(), 0) {}
+
+  LabelImage run() {
+    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) {
+      std::vector<std::uint8_t> skip(static_cast<std::size_t>(depth_.width()));
+      for (int v = begin; v < end; ++v) choose_alone(v, skip);
+    });
+    LabelImage out(depth_.width(), depth_.height(), kBackground);
+    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) {
+      for (int v = begin; v < end; ++v) {
+        for (int u = 0; u < depth_.width(); ++u) {
+          const std::uint8_t label = unsure_(u, v) != 0 ? ask_neighbours(u, v) : first_(u, v);
+          out(u, v) = label < choice_.part_count ? label : kBackground;
+        }
+      }
+    });
+    return out;
+  }
+
+ private:
+  /// `skip` becomes 1 where no part may be.
+  void choose_alone(int v, std::vector<std::uint8_t>& skip) {
+    const std::uint16_t* depth = depth_.row(v);
+    const std::uint8_t* prior = choice_.prior != nullptr ? choice_.prior->row(v) : nullptr;
+    for (std::size_t u = 0; u < skip.size(); ++u) {
+      skip[u] = depth[u] == 0 || (prior != nullptr && prior[u] == 0) ? 1 : 0;
+    }
+    if (on_vectors_) {
+      const auto margin = static_cast<std::uint32_t>((margin_ + common_ - 1) / common_);  // equal weights cancel
+      best_classes(posteriors_.at(0, v), static_cast<std::size_t>(posteriors_.classes), classes_, skip.data(),
+                   depth_.width(), margin, first_.row(v), unsure_.row(v));
+      return;
+    }
+    for (int u = 0; u < depth_.width(); ++u) {
+      if (skip[static_cast<std::size_t>(u)] != 0) continue;
+      const Candidate c = best_class(posteriors_.at(u, v), classes_, weight_, margin_);
+      first_(u, v) = c.best;
+      unsure_(u, v) = c.unsure ? 1 : 0;
+    }
+  }
+
+  /// That class of the near-best which most neighbours have.
+  std::uint8_t ask_neighbours(int u, int v) const {
+    const std::uint16_t* sums = posteriors_.at(u, v);
+    std::uint8_t label = first_(u, v);
+    const std::int64_t rival = std::max<std::int64_t>(1, weight_(sums, label) - margin_ + 1);
+    int most = count_neighbours(first_, u, v, label);
+    for (int c = 0; c < classes_; ++c) {
+      if (weight_(sums, c) < rival) continue;
+      const int count = count_neighbours(first_, u, v, static_cast<std::uint8_t>(c));
+      if (count <= most) continue;
+      most = count;
+      label = static_cast<std::uint8_t>(c);
+    }
+    return label;
+  }
+
+  const Posteriors& posteriors_;
+  const DepthImage& depth_;
+  const LabelChoice& choice_;
+  Weights weight_;
+  int classes_;
+  std::int64_t margin_;
+  std::int64_t common_;
+  bool on_vectors_;
+  LabelImage first_;
+  Mask unsure_;
+};
 
 void add_leaf(const TreeLeaf& leaf, std::uint16_t* sums) {
   for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) {
     sums[leaf.label[k]] = static_cast<std::uint16_t>(sums[leaf.label[k]] + leaf.probability[k]);
   }
 }
+
+/// Just before they are written, while they are in the cache.
+void clear_rows(int begin, int end, Posteriors& out) { std::fill(out.at(0, begin), out.at(0, end), std::uint16_t{0}); }
 
 /// Sums of the rows' pixels, which are still zero.
 void label_rows(const std::vector<PackedTree>& trees, const PaddedDepth& depth, const WalkPixels& pixels,
@@ -90,6 +180,7 @@ void label_rows(const std::vector<PackedTree>& trees, const PaddedDepth& depth, 
 /// The same one pixel after the other, for pictures of any size.
 void label_rows_plainly(const Forest& forest, const std::vector<PackedTree>& packed, const DepthImage& depth, int begin,
                         int end, const OffsetScaler& scaler, Posteriors& out) {
+  clear_rows(begin, end, out);
   for (int v = begin; v < end; ++v) {
     for (int u = 0; u < depth.width(); ++u) {
       if (depth(u, v) == 0) continue;
@@ -102,6 +193,31 @@ void label_rows_plainly(const Forest& forest, const std::vector<PackedTree>& pac
   }
 }
 
+/// Of half resolution.
+bool on_grid(int u, int v) { return u % 2 == 0 && v % 2 == 0; }
+
+/// Largest difference in depth to a neighbour whose posteriors a pixel takes over: parts of a body a hand's breadth
+/// apart are not one surface.
+constexpr int kGuideMm = 50;
+
+/// Gives a pixel between those of the grid the sums of that neighbour on it whose depth is nearest. False where none is
+/// near enough.
+bool take_from_grid(const DepthImage& depth, int u, int v, Posteriors& out) {
+  const std::uint16_t* nearest = nullptr;
+  int least = kGuideMm + 1;
+  for (int nv = v - v % 2; nv <= v + v % 2; nv += 2) {
+    for (int nu = u - u % 2; nu <= u + u % 2; nu += 2) {
+      if (!depth.contains(nu, nv) || depth(nu, nv) == 0) continue;
+      const int difference = std::abs(depth(nu, nv) - depth(u, v));
+      if (difference >= least) continue;
+      least = difference;
+      nearest = out.at(nu, nv);
+    }
+  }
+  if (nearest != nullptr) std::copy_n(nearest, out.classes, out.at(u, v));
+  return nearest != nullptr;
+}
+
 }  // namespace
 
 void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& visitor) {
@@ -111,6 +227,9 @@ void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& vi
                  {"", 0.0, 100.0, "Factor on the posteriors of all body parts."});
   visitor.option(prefix + "unsure-margin", o.unsure_margin,
                  {"", 0.0, 1.0, "Where the two best labels' probabilities differ by less, neighbours decide."});
+  visitor.option(
+      prefix + "half", o.half,
+      {"", 0, 1, "Ask the forest at half resolution; other pixels take over what a neighbour of like depth has."});
 }
 
 ForestLabeller::ForestLabeller(Forest forest) : forest_(std::move(forest)) {
@@ -124,63 +243,54 @@ ForestLabeller::ForestLabeller(Forest forest) : forest_(std::move(forest)) {
 }
 
 Posteriors ForestLabeller::label(const DepthImage& depth, const Camera& camera) const {
-  Posteriors out{depth.width(), depth.height(), forest_.class_count(), static_cast<int>(forest_.trees.size()), {}};
-  out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
+  Posteriors out;
+  label_into(depth, camera, false, out);
+  return out;
+}
+
+void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, bool half, Posteriors& out) const {
+  out.resize_like({depth.width(), depth.height(), forest_.class_count(), static_cast<int>(forest_.trees.size()), {}});
   const OffsetScaler scaler(forest_.convention, camera);
   if (std::max(depth.width(), depth.height()) > PaddedDepth::kMaxSide) {
     parallel_ranges(depth.height(), kRowGrain,
                     [&](int begin, int end) { label_rows_plainly(forest_, packed_, depth, begin, end, scaler, out); });
-    return out;
+    return;
+  }
+  if (half) {
+    label_half(depth, scaler, out);
+    return;
   }
   const PaddedDepth padded(depth, forest_.convention);
   parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
+    clear_rows(begin, end, out);
     label_rows(packed_, padded, WalkPixels(depth, begin, end, scaler, forest_.convention), out);
   });
-  return out;
+}
+
+void ForestLabeller::label_half(const DepthImage& depth, const OffsetScaler& scaler, Posteriors& out) const {
+  const PaddedDepth padded(depth, forest_.convention);
+  const auto in_rows = [&](int begin, int end, const auto& wanted) {
+    WalkPixels pixels(static_cast<std::size_t>(depth.width()) * static_cast<std::size_t>(end - begin), scaler,
+                      forest_.convention);
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < depth.width(); ++u) {
+        if (depth(u, v) != 0 && wanted(u, v)) pixels.add(u, v, depth(u, v));
+      }
+    }
+    label_rows(packed_, padded, pixels, out);
+  };
+  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
+    clear_rows(begin, end, out);
+    in_rows(begin, end, [](int u, int v) { return on_grid(u, v); });
+  });
+  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
+    in_rows(begin, end, [&](int u, int v) { return !on_grid(u, v) && !take_from_grid(depth, u, v, out); });
+  });
 }
 
 LabelImage choose_labels(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice,
                          const LabelOptions& options) {
-  const Weights weight(choice, options);
-  const int classes = choice.part_count + (choice.has_background && choice.prior == nullptr ? 1 : 0);
-  const auto margin = static_cast<std::int64_t>(
-      std::ceil(static_cast<double>(options.unsure_margin) * 255.0 * posteriors.trees * Weights::kOne));
-  const auto may_have_part = [&](int u, int v) {
-    return depth(u, v) != 0 && (choice.prior == nullptr || (*choice.prior)(u, v) != 0);
-  };
-  // Inner numbering while choosing: the background is class part_count.
-  LabelImage first(depth.width(), depth.height(), kBackground);
-  Mask unsure(depth.width(), depth.height(), 0);
-  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v) {
-      for (int u = 0; u < depth.width(); ++u) {
-        if (!may_have_part(u, v)) continue;
-        const Candidate c = best_class(posteriors.at(u, v), classes, weight, margin);
-        first(u, v) = c.best;
-        unsure(u, v) = c.unsure ? 1 : 0;
-      }
-    }
-  });
-  LabelImage out(depth.width(), depth.height(), kBackground);
-  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v) {
-      for (int u = 0; u < depth.width(); ++u) {
-        std::uint8_t label = first(u, v);
-        if (unsure(u, v) != 0) {
-          const std::uint16_t* sums = posteriors.at(u, v);
-          const std::int64_t rival = best_class(sums, classes, weight, margin).near_best;
-          const auto count = count_neighbours(first, u, v);
-          for (int c = 0; c < classes; ++c) {
-            if (weight(sums, c) >= rival && count[static_cast<std::size_t>(c)] > count[label]) {
-              label = static_cast<std::uint8_t>(c);
-            }
-          }
-        }
-        out(u, v) = label < choice.part_count ? label : kBackground;
-      }
-    }
-  });
-  return out;
+  return Chooser(posteriors, depth, choice, options).run();
 }
 
 }  // namespace vesalius

@@ -10,6 +10,7 @@
 #include "vesalius/image.h"
 #include "vesalius/options.h"
 #include "vesalius/packed_tree.h"
+#include "vesalius/tree_walk.h"
 
 namespace vesalius {
 
@@ -27,12 +28,22 @@ struct Posteriors {
                              static_cast<std::size_t>(classes);
   }
   std::uint16_t* at(int u, int v) { return const_cast<std::uint16_t*>(std::as_const(*this).at(u, v)); }
+
+  /// Room for the same numbers; what they are is left open.
+  void resize_like(const Posteriors& other) {
+    width = other.width;
+    height = other.height;
+    classes = other.classes;
+    trees = other.trees;
+    sums.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(classes));
+  }
 };
 
 struct LabelOptions {
   float background_weight = 1.F;  ///< multiplies the background's posterior; a run-time correction of its prior
   float person_weight = 1.F;      ///< multiplies the parts' posteriors
   float unsure_margin = 0.05F;    ///< difference in probability below which neighbours decide
+  bool half = false;  ///< ask the forest at every second pixel of every second row, guided by depth elsewhere
 };
 void visit_options(const std::string& prefix, LabelOptions& options, OptionVisitor& visitor);
 
@@ -42,6 +53,11 @@ class PixelLabeller {
  public:
   virtual ~PixelLabeller() = default;
   virtual Posteriors label(const DepthImage& depth, const Camera& camera) const = 0;
+  /// The same into `out`, whose memory may be used again. `half` allows it to work on every second pixel of every
+  /// second row and to give the others what a neighbour of like depth has.
+  virtual void label_into(const DepthImage& depth, const Camera& camera, bool /*half*/, Posteriors& out) const {
+    out = label(depth, camera);
+  }
   virtual const BodyModel& body() const = 0;
   virtual bool has_background() const = 0;
   /// Whether posteriors carry more than a vote per tree.
@@ -54,12 +70,15 @@ class ForestLabeller : public PixelLabeller {
   /// Throws Error if the forest is inconsistent (check(Forest)).
   explicit ForestLabeller(Forest forest);
   Posteriors label(const DepthImage& depth, const Camera& camera) const override;
+  void label_into(const DepthImage& depth, const Camera& camera, bool half, Posteriors& out) const override;
   const BodyModel& body() const override { return forest_.body; }
   bool has_background() const override { return forest_.has_background; }
   bool has_distributions() const override { return distributions_; }
   const Forest& forest() const { return forest_; }
 
  private:
+  void label_half(const DepthImage& depth, const OffsetScaler& scaler, Posteriors& out) const;
+
   Forest forest_;
   std::vector<PackedTree> packed_;
   bool distributions_;

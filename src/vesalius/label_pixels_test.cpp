@@ -176,6 +176,36 @@ TEST(ForestLabeller, SameBytesForAnyThreadCount) {
   EXPECT_EQ(results[0], results[2]);
 }
 
+TEST(ForestLabeller, AtHalfResolutionTakesOverWhatANeighbourOfLikeDepthHas) {
+  Random random(29);
+  Forest forest = empty_forest(true);
+  for (int t = 0; t < 3; ++t) forest.trees.push_back(random_tree(random, 6, forest.class_count()));
+  const ForestLabeller labeller(forest);
+  DepthImage depth(53, 31);
+  for (auto& mm : depth) mm = random.below(8) == 0 ? 0 : static_cast<std::uint16_t>(1000 + 100 * random.below(3));
+  const Camera camera{53, 31, 60.F, 50.F, 26.F, 15.F};
+  const Posteriors whole = labeller.label(depth, camera);
+  for (const int threads : {1, 3}) {
+    const ThreadLimit limit(threads);
+    Posteriors half = whole;  // whatever was there before
+    std::ranges::fill(half.sums, std::uint16_t{7});
+    labeller.label_into(depth, camera, true, half);
+    for (int v = 0; v < depth.height(); ++v) {
+      for (int u = 0; u < depth.width(); ++u) {
+        // Depths are equal or a step apart: the first of the grid's neighbours with the same depth, or the pixel
+        // itself.
+        const std::uint16_t* expected = whole.at(u, v);
+        for (int nv = v + v % 2; nv >= v - v % 2; nv -= 2) {
+          for (int nu = u + u % 2; nu >= u - u % 2; nu -= 2) {
+            if (depth.contains(nu, nv) && depth(nu, nv) == depth(u, v)) expected = whole.at(nu, nv);
+          }
+        }
+        ASSERT_TRUE(std::equal(expected, expected + whole.classes, half.at(u, v))) << u << ' ' << v;
+      }
+    }
+  }
+}
+
 TEST(ForestLabeller, RefusesAnInconsistentForest) {
   Forest forest = empty_forest(false);
   forest.trees.push_back(leaf_tree({{25, 0, 0, 0}, {255, 0, 0, 0}}));  // class 25 is the background it lacks

@@ -54,18 +54,27 @@ class RowMean {
         columns_(static_cast<std::size_t>(depth.width()) * classes_),
         nearest_(static_cast<std::size_t>(depth.width())),
         furthest_(nearest_.size()),
+        sums_(classes_ + 2 * hn::Lanes(Lanes())),
         neighbours_(static_cast<std::size_t>(window * window)) {
     for (int n = 1; n <= window * window; ++n) dividers_.emplace_back(static_cast<std::uint32_t>(n));
   }
 
+  /// Rows one after the other are quicker: sums slide.
   void Run(int v) {
     const bool whole = v >= reach_ && v + reach_ < depth_.height() && depth_.width() >= window_;
     if (whole) SumColumns(v);
+    int summed = -2;  // pixel whose window is in `sums_`
     for (int u = 0; u < depth_.width(); ++u) {
-      if (depth_(u, v) == 0) continue;
-      const bool inside = whole && u >= reach_ && u + reach_ < depth_.width() && AllNear(u, depth_(u, v));
-      const std::size_t count = inside ? ColumnsAround(u) : NeighboursOf(u, v);
-      Mean(count, inside ? dividers_.back() : dividers_[count - 1], out_.at(u, v));
+      std::uint16_t* to = out_.at(u, v);
+      if (depth_(u, v) == 0) {
+        std::fill_n(to, classes_, std::uint16_t{0});
+      } else if (whole && u >= reach_ && u + reach_ < depth_.width() && AllNear(u, depth_(u, v))) {
+        MeanOfColumns(u, summed == u - 1, to);
+        summed = u;
+      } else {
+        const std::size_t count = NeighboursOf(u, v);
+        Mean(count, dividers_[count - 1], to);
+      }
     }
   }
 
@@ -74,13 +83,20 @@ class RowMean {
   void SumColumns(int v) {
     std::copy_n(depth_.row(v - reach_), nearest_.size(), nearest_.begin());
     furthest_ = nearest_;
-    std::copy_n(in_.at(0, v - reach_), columns_.size(), columns_.begin());
     for (int nv = v - reach_ + 1; nv <= v + reach_; ++nv) {
       const std::uint16_t* HWY_RESTRICT row = depth_.row(nv);
       Merge(row, nearest_, [](auto a, auto b) { return hn::Min(a, b); });
       Merge(row, furthest_, [](auto a, auto b) { return hn::Max(a, b); });
-      Merge(in_.at(0, nv), columns_, [](auto a, auto b) { return hn::Add(a, b); });
     }
+    const auto add = [](auto a, auto b) { return hn::Add(a, b); };
+    if (v == summed_row_ + 1) {
+      Merge(in_.at(0, v - reach_ - 1), columns_, [](auto a, auto b) { return hn::Sub(a, b); });
+      Merge(in_.at(0, v + reach_), columns_, add);
+    } else {
+      std::copy_n(in_.at(0, v - reach_), columns_.size(), columns_.begin());
+      for (int nv = v - reach_ + 1; nv <= v + reach_; ++nv) Merge(in_.at(0, nv), columns_, add);
+    }
+    summed_row_ = v;
   }
 
   /// all[i] = merge(all[i], row[i])
@@ -106,11 +122,28 @@ class RowMean {
     return nearest != 0 && mm - nearest <= gate_ && furthest - mm <= gate_;
   }
 
-  std::size_t ColumnsAround(int u) {
+  /// Mean over a whole window around column u; `slides` where `sums_` are those around u - 1. Sums of 16 bits may run
+  /// over on the way, never at the end.
+  HWY_INLINE void MeanOfColumns(int u, bool slides, std::uint16_t* to) {
+    const Lanes d;
+    const std::size_t lanes = hn::Lanes(d);
     const std::uint16_t* first = columns_.data() + static_cast<std::size_t>(u - reach_) * classes_;
-    const auto count = static_cast<std::size_t>(window_);
-    for (std::size_t n = 0; n < count; ++n) neighbours_[n] = first + n * classes_;
-    return count;
+    const std::uint16_t* last = first + static_cast<std::size_t>(window_ - 1) * classes_;
+    std::uint16_t* sums = sums_.data();  // the last vector has sums of its own: classes of the one before are in it too
+    for (std::size_t c = 0;; c = std::min(c + lanes, classes_ - lanes), sums += lanes) {
+      Uint16 sum;
+      if (slides) {
+        sum = hn::Add(hn::Sub(hn::LoadU(d, sums), hn::LoadU(d, first - classes_ + c)), hn::LoadU(d, last + c));
+      } else {
+        sum = hn::LoadU(d, first + c);
+        for (const std::uint16_t* at = first + classes_; at <= last; at += classes_) {
+          sum = hn::Add(sum, hn::LoadU(d, at + c));
+        }
+      }
+      hn::StoreU(sum, d, sums);
+      hn::StoreU(dividers_.back()(sum), d, to + c);
+      if (c + lanes == classes_) return;
+    }
   }
 
   std::size_t NeighboursOf(int u, int v) {
@@ -144,7 +177,9 @@ class RowMean {
   Posteriors& out_;
   std::size_t classes_;
   std::vector<std::uint16_t> columns_;
+  int summed_row_ = -2;  ///< whose columns are summed
   std::vector<std::uint16_t> nearest_, furthest_;
+  std::vector<std::uint16_t> sums_;  ///< vectors of MeanOfColumns
   std::vector<const std::uint16_t*> neighbours_;
   std::vector<Divider> dividers_;
 };

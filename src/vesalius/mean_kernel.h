@@ -12,8 +12,8 @@ namespace vesalius {
 bool mean_rows_fit(const Posteriors& posteriors, int window);
 
 /// Rows `begin` to `end` - 1 of mean_filter (smooth_labels.h): over neighbours in a `window` x `window` square whose
-/// depth differs by at most `gate_mm`, rounded down. Values of `out`, of the same size, must be zero before. The same
-/// from every instruction set.
+/// depth differs by at most `gate_mm`, rounded down; zero without a reading. `out` is of the same size. The same from
+/// every instruction set.
 void mean_rows(const Posteriors& posteriors, const DepthImage& depth, int window, int gate_mm, int begin, int end,
                Posteriors& out);
 

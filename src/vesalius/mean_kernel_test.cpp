@@ -61,7 +61,6 @@ TEST(MeanKernel, IsThePlainMeanOnEveryInstructionSet) {
         for_each_target([&](const char* target) {
           ASSERT_TRUE(mean_rows_fit(p.posteriors, window));
           Posteriors out = p.posteriors;
-          std::ranges::fill(out.sums, std::uint16_t{0});
           mean_rows(p.posteriors, p.depth, window, 300, 0, height / 2, out);
           mean_rows(p.posteriors, p.depth, window, 300, height / 2, height, out);
           EXPECT_EQ(out.sums, expected) << target << ' ' << width << 'x' << height << " window " << window << ", "

@@ -66,7 +66,11 @@ void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, co
   std::vector<std::uint32_t> total(static_cast<std::size_t>(posteriors.classes));
   for (int v = begin; v < end; ++v) {
     for (int u = 0; u < posteriors.width; ++u) {
-      if (depth(u, v) == 0) continue;
+      std::uint16_t* mean = out.at(u, v);
+      if (depth(u, v) == 0) {
+        std::fill_n(mean, total.size(), std::uint16_t{0});
+        continue;
+      }
       std::fill(total.begin(), total.end(), 0U);
       std::uint32_t neighbours = 0;
       for_neighbours(depth, u, v, options, [&](int nu, int nv) {
@@ -74,7 +78,6 @@ void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, co
         for (std::size_t c = 0; c < total.size(); ++c) total[c] += sums[c];
         ++neighbours;
       });
-      std::uint16_t* mean = out.at(u, v);
       // In double, which vectorises: exact, since quotients are whole or at least 1/neighbours from the next whole.
       for (std::size_t c = 0; c < total.size(); ++c) {
         mean[c] = static_cast<std::uint16_t>(static_cast<double>(total[c]) / static_cast<double>(neighbours));
@@ -120,9 +123,8 @@ LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const 
   return out;
 }
 
-Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options) {
-  Posteriors out{posteriors.width, posteriors.height, posteriors.classes, posteriors.trees, {}};
-  out.sums.assign(posteriors.sums.size(), 0);
+void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options, Posteriors& out) {
+  out.resize_like(posteriors);
   const bool fits = mean_rows_fit(posteriors, options.window);
   parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
     if (fits) {
@@ -131,6 +133,11 @@ Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, co
       mean_rows_plainly(posteriors, depth, options, begin, end, out);
     }
   });
+}
+
+Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options) {
+  Posteriors out;
+  mean_filter(posteriors, depth, options, out);
   return out;
 }
 

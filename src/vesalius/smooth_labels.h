@@ -23,5 +23,7 @@ LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const 
 /// The sum of the posteriors over the same neighbours, rescaled to the range of one pixel's sums (rounded down), so
 /// that choose_labels reads both alike.
 Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options);
+/// The same into `out`, whose memory is used again; not `posteriors` itself.
+void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options, Posteriors& out);
 
 }  // namespace vesalius
