@@ -1,9 +1,9 @@
 #include "vesalius/detect.h"
 
 #include <algorithm>
-#include <mutex>
 
 #include "vesalius/parallel.h"
+#include "vesalius/workspaces.h"
 
 namespace vesalius {
 namespace {
@@ -55,35 +55,6 @@ LabelImage uncropped(const LabelImage& part, const Box& box, int width, int heig
   for (int v = 0; v < box.height; ++v) std::copy_n(part.row(v), box.width, out.row(box.v + v) + box.u);
   return out;
 }
-
-}  // namespace
-
-/// Large memory of frames past, which the next ones use again: new pages cost as much as a small stage.
-class Workspaces {
- public:
-  struct Workspace {
-    Posteriors raw;     ///< pass 1
-    Posteriors smooth;  ///< pass 1, unless labels are smoothed
-  };
-
-  std::unique_ptr<Workspace> take() {
-    const std::scoped_lock lock(mutex_);
-    if (free_.empty()) return std::make_unique<Workspace>();
-    std::unique_ptr<Workspace> workspace = std::move(free_.back());
-    free_.pop_back();
-    return workspace;
-  }
-  void give_back(std::unique_ptr<Workspace> workspace) {
-    const std::scoped_lock lock(mutex_);
-    free_.push_back(std::move(workspace));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Workspace>> free_;
-};
-
-namespace {
 
 /// The method on one frame, stage after stage.
 class Pipeline {
@@ -276,32 +247,7 @@ class Pipeline {
   std::vector<Skeleton> rough_;
 };
 
-void visit_options(const std::string& prefix, RefineOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "second-pass", o.second_pass,
-                 {"", 0, 1, "Whether each person is labelled and searched again."});
-  visitor.option(prefix + "area-scale", o.area_scale,
-                 {"", 0.01, 10.0, "Factor on the smallest area of a part in the second pass."});
-  visitor.option(prefix + "max-candidates", o.max_candidates,
-                 {"", 1, 1000, "Most rough skeletons refined in one frame."});
-  visitor.option(prefix + "rival-likelihood", o.rival_likelihood,
-                 {"per part", 0.0, 1.0, "Rough skeletons at least this likely grow against each other."});
-  visitor.option(prefix + "min-parts", o.min_parts, {"", 1, 200, "Fewest parts of a person after the second pass."});
-  visitor.option(prefix + "min-score", o.min_score, {"", 0.0, 1.0, "Lowest score of a person."});
-  visitor.option(prefix + "max-overlap", o.max_overlap,
-                 {"", 0.0, 1.0, "Share of its mask that a person may have in common with a surer one."});
-}
-
 }  // namespace
-
-void visit_options(const std::string& prefix, DetectOptions& o, OptionVisitor& visitor) {
-  visit_options(prefix + "label.", o.label, visitor);
-  visit_options(prefix + "smooth.", o.smooth, visitor);
-  visit_options(prefix + "cluster.", o.cluster, visitor);
-  visit_options(prefix + "search.", o.search, visitor);
-  visit_options(prefix + "grow.", o.grow, visitor);
-  visit_options(prefix + "refine.", o.refine, visitor);
-  visit_options(prefix + "score.", o.score, visitor);
-}
 
 Detector::Detector(Forest forest, DetectOptions options)
     : Detector(std::make_shared<ForestLabeller>(std::move(forest)), options) {}
