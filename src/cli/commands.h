@@ -9,6 +9,7 @@ namespace vesalius::cli {
 void add_detect(CLI::App& program);
 void add_info(CLI::App& program);
 void add_convert(CLI::App& program);
+void add_bench(CLI::App& program);
 void add_assets(CLI::App& program);
 void add_options(CLI::App& program);
 void add_synth(CLI::App& program);

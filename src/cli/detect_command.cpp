@@ -1,86 +1,62 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <chrono>
 #include <memory>
+#include <sstream>
 
 #include "cli/commands.h"
 #include "cli/detect_outputs.h"
+#include "cli/detect_stream.h"
+#include "cli/detector_flags.h"
 #include "cli/interrupts.h"
-#include "cli/option_flags.h"
+#include "cli/latency.h"
 #include "cli/progress.h"
 #include "cli/source_flags.h"
-#include "io/model_file.h"
-#include "io/options_file.h"
-#include "io/read_file.h"
+#include "cli/text_sink.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {
 
-constexpr int kMaxThreads = 1024;
-
 struct Arguments {
-  explicit Arguments(CLI::App& command) : detector_flags(command) {}
+  explicit Arguments(CLI::App& command) : detector(command) {}
 
-  std::string source, model, body, options_file;
+  std::string source;
   SourceOptions camera;
   OutputRequest outputs;
-  OptionFlags<DetectOptions> detector_flags;
+  DetectorFlags detector;
+  StreamOptions stream;
   int threads = 0;
+  bool timing = false;
   bool keep_going = false;
   bool quiet = false;
 };
-
-/// Another kinematic tree or other joints for the same parts.
-void replace_body(Forest& forest, const std::string& path) {
-  BodyModel body = parse_body_model(read_file(path), path);
-  const auto& trained = forest.body.parts;
-  for (std::size_t p = 0; p < std::max(body.parts.size(), trained.size()); ++p) {
-    const std::string ours = p < body.parts.size() ? body.parts[p].name : "missing";
-    const std::string theirs = p < trained.size() ? trained[p].name : "missing";
-    if (ours == theirs) continue;
-    throw Error(fmt::format("{}: part {} is {}, in the model {}; a body must have the model's parts in its order", path,
-                            p, ours, theirs));
-  }
-  forest.body = std::move(body);
-}
-
-Detector make_detector(const Arguments& arguments) {
-  DetectOptions options;
-  if (!arguments.options_file.empty()) {
-    read_options(arguments.options_file, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
-  }
-  arguments.detector_flags.apply(options);
-  RangeCheck check;
-  visit_options("", options, check);
-  Forest forest = load_model(arguments.model);
-  if (!arguments.body.empty()) replace_body(forest, arguments.body);
-  return Detector(std::move(forest), options);
-}
 
 struct Totals {
   int people = 0;
   int frames_with_people = 0;
   int failed = 0;
+  int dropped = 0;
+  FrameTimes times;
 };
 
-/// One frame from source to outputs; false at the end of the source.
-bool detect_next(FrameSource& source, const Detector& detector, DetectOutputs& outputs, Totals& totals) {
-  const std::optional<Frame> frame = source.next();
-  if (!frame) return false;
-  const std::vector<Person> people = detector.detect(*frame);
-  outputs.write(*frame, people);
-  totals.people += static_cast<int>(people.size());
-  totals.frames_with_people += people.empty() ? 0 : 1;
-  return true;
+/// What was found in one frame to the outputs. Throws what reading or detecting threw.
+void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals) {
+  if (found.error) std::rethrow_exception(found.error);
+  const auto start = std::chrono::steady_clock::now();
+  outputs.write(*found.frame, found.people);
+  const std::chrono::duration<double, std::milli> written = std::chrono::steady_clock::now() - start;
+  totals.times.add(found.times, found.read_ms, written.count());
+  totals.people += static_cast<int>(found.people.size());
+  totals.frames_with_people += found.people.empty() ? 0 : 1;
 }
 
 Totals detect_all(const Arguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,
                   Progress& progress) {
   Totals totals;
-  for (bool more = true; more && !interrupted();) {
+  totals.dropped = stream_frames(source, detector, arguments.stream, [&](const FoundFrame& found) {
     try {
-      more = detect_next(source, detector, outputs, totals);
+      write_found(found, outputs, totals);
     } catch (const BrokenPipe&) {
       throw;
     } catch (const Error& e) {
@@ -89,15 +65,27 @@ Totals detect_all(const Arguments& arguments, FrameSource& source, const Detecto
       say(std::string("vesalius: ") + e.what());
       ++totals.failed;
     }
-    if (more) progress.step();
-  }
+    progress.step();
+    return true;
+  });
   return totals;
+}
+
+void say_totals(const Arguments& arguments, const Totals& totals, const Progress& progress) {
+  say(fmt::format("{} frames, people in {} of them ({} in all), {:.1f} s, {:.1f} frames/s{}", progress.done(),
+                  totals.frames_with_people, totals.people, progress.seconds(), progress.done() / progress.seconds(),
+                  arguments.stream.realtime ? fmt::format(", {} dropped", totals.dropped) : ""));
+}
+
+void say_times(const FrameTimes& times) {
+  std::istringstream lines(table(times));
+  for (std::string line; std::getline(lines, line);) say(line);
 }
 
 void run(const Arguments& arguments) {
   check(arguments.outputs);
   const ThreadLimit limit(arguments.threads);
-  const Detector detector = make_detector(arguments);
+  const Detector detector = arguments.detector.make();
   const auto source = open_source(arguments.source, arguments.camera);
   if (!arguments.quiet) {
     for (const std::string& note : source->notes()) say("note: " + note);
@@ -111,11 +99,8 @@ void run(const Arguments& arguments) {
   progress.clear();
   if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
   outputs.finish();
-  if (!arguments.quiet) {
-    say(fmt::format("{} frames, people in {} of them ({} in all), {:.1f} s, {:.1f} frames/s", progress.done(),
-                    totals.frames_with_people, totals.people, progress.seconds(),
-                    progress.done() / progress.seconds()));
-  }
+  if (!arguments.quiet) say_totals(arguments, totals, progress);
+  if (arguments.timing) say_times(totals.times);
   if (totals.failed > 0) throw Error(fmt::format("{} of {} frames failed", totals.failed, progress.done()));
 }
 
@@ -142,28 +127,33 @@ void add_output_flags(CLI::App& command, OutputRequest& outputs) {
       ->group(group);
 }
 
+void add_time_flags(CLI::App& command, Arguments& arguments) {
+  const std::string group = "Time";
+  command.add_flag("--timing", arguments.timing, "Print at the end how long each stage took")->group(group);
+  command
+      .add_flag("--realtime", arguments.stream.realtime,
+                "Take frames at the times at which the camera took them, drop those that come too fast, count them")
+      ->group(group);
+  command.add_option("--rate", arguments.stream.rate, "Frames per second in real time of a source without times")
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str()
+      ->group(group);
+}
+
 }  // namespace
 
 void add_detect(CLI::App& program) {
   CLI::App* command = program.add_subcommand("detect", "Find people in frames");
   const auto arguments = std::make_shared<Arguments>(*command);
   command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
-  command->add_option("-m,--model", arguments->model, "Trained forest, e.g. capsule.forest")
-      ->type_name("FILE")
-      ->required();
   add_output_flags(*command, arguments->outputs);
   add_camera_flags(*command, arguments->camera);
-  const std::string group = "Detector";
-  command->add_option("--options", arguments->options_file, "TOML file of detector options")
-      ->type_name("FILE")
-      ->group(group);
-  command->add_option("--body", arguments->body, "Body model with another tree or other joints for the same parts")
-      ->type_name("FILE")
-      ->group(group);
   command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The result is the same")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads))
-      ->group(group);
+      ->group(kDetectorGroup);
+  add_time_flags(*command, *arguments);
   command->add_flag("--keep-going", arguments->keep_going, "Pass over frames that fail; exit code 1 at the end");
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(

@@ -57,6 +57,7 @@ Exit codes: 0 done, 1 failed, 2 wrong usage.)");
   add_train(program);
   add_evaluate(program);
   add_compare(program);
+  add_bench(program);
   add_assets(program);
   add_options(program);
   add_completion(program);

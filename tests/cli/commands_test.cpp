@@ -29,7 +29,7 @@ TEST_F(Commands, HelpAndVersion) {
 }
 
 TEST_F(Commands, EveryCommandHasHelp) {
-  for (const char* command : {"detect", "info", "convert", "assets", "options", "completion"}) {
+  for (const char* command : {"detect", "bench", "info", "convert", "assets", "options", "completion"}) {
     const Outcome run = run_program(std::string(command) + " --help");
     EXPECT_EQ(run.exit_code, 0) << command;
     EXPECT_THAT(run.out, HasSubstr(std::string("Usage: vesalius ") + command));
@@ -44,6 +44,24 @@ TEST_F(Commands, InfoDescribesTheBuild) {
   EXPECT_GE(facts.at("threads"), 1);
   EXPECT_EQ(facts.at("parts_of_this_build").at("cuda"), "absent");
   EXPECT_THAT(run_program("info").out, HasSubstr("compiler: "));
+}
+
+TEST_F(Commands, BenchMeasuresStages) {
+  const Outcome run = run_program("bench " + frames() + " -q -m " + model() + " --frames 4 --threads both --json -");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json figures = json::parse(run.out);
+  EXPECT_EQ(figures.at("frames"), 4) << "the three over again";
+  EXPECT_EQ(figures.at("size_px"), (json{320, 240}));
+  EXPECT_GT(figures.at("peak_memory_mb"), 1.0);
+  EXPECT_EQ(figures.at("runs").at(0).at("threads"), 1);
+  for (const json& one : figures.at("runs")) {
+    EXPECT_GT(one.at("frames_per_s"), 0.0);
+    const json& detect = one.at("stages").at("detect");
+    EXPECT_LE(detect.at("median_ms"), detect.at("p99_ms"));
+    EXPECT_GE(detect.at("median_ms"), one.at("stages").at("label").at("median_ms"));
+  }
+  EXPECT_THAT(run_program("bench " + frames() + " -m " + model() + " --threads 1").out, HasSubstr("\n1 thread: "));
+  EXPECT_EQ(run_program("bench " + frames() + " -m " + model() + " --threads many").exit_code, 2);
 }
 
 TEST_F(Commands, InfoDescribesAModel) {

@@ -195,5 +195,31 @@ TEST_F(Detect, AnotherBodyMayHaveOtherJointsForTheSameParts) {
   EXPECT_EQ(lines(run.out).at(0).at("people").at(0).at("joints").size(), 1U);
 }
 
+TEST_F(Detect, TimingIsATableOfStages) {
+  const Outcome run = detect(" -q --timing");
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, StartsWith("ms a frame"));
+  for (const char* stage : {"read", "label", "second pass", "detect", "write"}) EXPECT_THAT(run.err, HasSubstr(stage));
+}
+
+TEST_F(Detect, InRealTimeEveryFrameIsWrittenOrCounted) {
+  for (const std::string rate : {"4", "1000"}) {
+    const Outcome run = detect(" --realtime --rate " + rate);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const auto written = std::ranges::count(run.out, '\n');
+    EXPECT_GE(written, 1);
+    EXPECT_THAT(run.err, HasSubstr(std::to_string(3 - written) + " dropped"));
+  }
+}
+
+TEST_F(Detect, InRealTimeErrorsStopItToo) {
+  fs::copy(frames(), path("broken"), fs::copy_options::recursive);
+  write("broken/depth/a.png", "no picture");
+  const Outcome run = run_program("detect " + path("broken") + " -q --realtime -m " + model());
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("a.png"));
+}
+
 }  // namespace
 }  // namespace vesalius

@@ -1,0 +1,55 @@
+#include "cli/detector_flags.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "io/model_file.h"
+#include "io/options_file.h"
+#include "io/read_file.h"
+#include "vesalius/error.h"
+
+namespace vesalius::cli {
+namespace {
+
+/// Another kinematic tree or other joints for the same parts.
+void replace_body(Forest& forest, const std::string& path) {
+  BodyModel body = parse_body_model(read_file(path), path);
+  const auto& trained = forest.body.parts;
+  for (std::size_t p = 0; p < std::max(body.parts.size(), trained.size()); ++p) {
+    const std::string ours = p < body.parts.size() ? body.parts[p].name : "missing";
+    const std::string theirs = p < trained.size() ? trained[p].name : "missing";
+    if (ours == theirs) continue;
+    throw Error(fmt::format("{}: part {} is {}, in the model {}; a body must have the model's parts in its order", path,
+                            p, ours, theirs));
+  }
+  forest.body = std::move(body);
+}
+
+}  // namespace
+
+DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
+  command.add_option("-m,--model", model_, "Trained forest, e.g. capsule.forest")->type_name("FILE")->required();
+  command.add_option("--options", options_file_, "TOML file of detector options")
+      ->type_name("FILE")
+      ->group(kDetectorGroup);
+  command.add_option("--body", body_, "Body model with another tree or other joints for the same parts")
+      ->type_name("FILE")
+      ->group(kDetectorGroup);
+}
+
+Detector DetectorFlags::make() const {
+  DetectOptions options;
+  if (!options_file_.empty()) {
+    read_options(options_file_, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
+  }
+  options_.apply(options);
+  RangeCheck check;
+  visit_options("", options, check);
+  Forest forest = load_model(model_);
+  if (!body_.empty()) replace_body(forest, body_);
+  return Detector(std::move(forest), options);
+}
+
+}  // namespace vesalius::cli
