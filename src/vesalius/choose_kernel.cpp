@@ -18,24 +18,22 @@ namespace hn = hwy::HWY_NAMESPACE;
 using SumLanes = hn::CappedTag<std::uint16_t, 16>;
 using Sums = hn::Vec<SumLanes>;
 
-struct TopTwo {
-  std::uint32_t first = 0, second = 0;
-  std::size_t best = 0;
-};
-
-#if HWY_TARGET == HWY_SCALAR
-
-TopTwo FindTopTwo(const std::uint16_t* sums, std::size_t classes) {
+/// Class by class: for few of them, or where there are no vectors.
+TopTwo PlainTopTwo(const std::uint16_t* sums, std::size_t classes) {
   TopTwo top;
   for (std::size_t c = 0; c < classes; ++c) {
     if (sums[c] > top.first) {
-      top = {sums[c], top.first, c};
+      top = {sums[c], top.first, static_cast<std::uint16_t>(c)};
     } else {
-      top.second = std::max<std::uint32_t>(top.second, sums[c]);
+      top.second = std::max(top.second, sums[c]);
     }
   }
   return top;
 }
+
+#if HWY_TARGET == HWY_SCALAR
+
+TopTwo FindTopTwo(const std::uint16_t* sums, std::size_t classes) { return PlainTopTwo(sums, classes); }
 
 #else
 
@@ -52,6 +50,7 @@ struct Largest {
 HWY_INLINE TopTwo FindTopTwo(const std::uint16_t* HWY_RESTRICT sums, std::size_t classes) {
   const SumLanes d;
   const std::size_t lanes = hn::Lanes(d);
+  if (classes < lanes) return PlainTopTwo(sums, classes);
   const Sums zero = hn::Zero(d);
   Largest all{hn::LoadU(d, sums), zero};
   std::size_t c = lanes;
@@ -69,7 +68,7 @@ HWY_INLINE TopTwo FindTopTwo(const std::uint16_t* HWY_RESTRICT sums, std::size_t
   for (c = 0;; c = std::min(c + lanes, last)) {
     const auto found = hn::FindFirstTrue(d, hn::Eq(hn::LoadU(d, sums + c), all.first));
     if (found >= 0) {
-      top.best = c + static_cast<std::size_t>(found);
+      top.best = static_cast<std::uint16_t>(c + static_cast<std::size_t>(found));
       return top;
     }
   }
@@ -77,20 +76,12 @@ HWY_INLINE TopTwo FindTopTwo(const std::uint16_t* HWY_RESTRICT sums, std::size_t
 
 #endif
 
-void BestClasses(const std::uint16_t* sums, std::size_t stride, int classes, const std::uint8_t* skip, int count,
-                 std::uint32_t margin, std::uint8_t* best, std::uint8_t* unsure) {
+void FindTopTwoOfRow(const std::uint16_t* sums, std::size_t stride, int classes, const std::uint8_t* skip, int count,
+                     TopTwo* top) {
   for (int i = 0; i < count; ++i, sums += stride) {
-    best[i] = kBackground;
-    unsure[i] = 0;
-    if (skip[i] != 0) continue;
-    const TopTwo top = FindTopTwo(sums, static_cast<std::size_t>(classes));
-    if (top.first == 0) continue;
-    best[i] = static_cast<std::uint8_t>(top.best);
-    unsure[i] = top.second > 0 && top.first - top.second < margin ? 1 : 0;
+    top[i] = skip[i] != 0 ? TopTwo{} : FindTopTwo(sums, static_cast<std::size_t>(classes));
   }
 }
-
-std::size_t SumLaneCount() { return hn::Lanes(SumLanes()); }
 
 }  // namespace vesalius::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -98,14 +89,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vesalius {
 
-HWY_EXPORT(BestClasses);
-HWY_EXPORT(SumLaneCount);
+HWY_EXPORT(FindTopTwoOfRow);
 
-bool best_classes_fit(int classes) { return classes >= static_cast<int>(HWY_DYNAMIC_DISPATCH(SumLaneCount)()); }
-
-void best_classes(const std::uint16_t* sums, std::size_t stride, int classes, const std::uint8_t* skip, int count,
-                  std::uint32_t margin, std::uint8_t* best, std::uint8_t* unsure) {
-  HWY_DYNAMIC_DISPATCH(BestClasses)(sums, stride, classes, skip, count, margin, best, unsure);
+void find_top_two(const std::uint16_t* sums, std::size_t stride, int classes, const std::uint8_t* skip, int count,
+                  TopTwo* top) {
+  HWY_DYNAMIC_DISPATCH(FindTopTwoOfRow)(sums, stride, classes, skip, count, top);
 }
 
 }  // namespace vesalius

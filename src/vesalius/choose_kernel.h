@@ -5,13 +5,16 @@
 
 namespace vesalius {
 
-/// Whether `best_classes` can do it: the classes fill a vector.
-bool best_classes_fit(int classes);
+/// The two largest sums of a pixel; all 0 where all are.
+struct TopTwo {
+  std::uint16_t first = 0;
+  std::uint16_t second = 0;  ///< as large as the first where two are
+  std::uint16_t best = 0;    ///< class of the first, the lowest of equal ones
+};
 
-/// For `count` pixels in a row, `stride` sums each, of which the first `classes` count: the class of the largest sum,
-/// the lowest of equal ones, and 1 in `unsure` where the second largest is above zero and less than `margin` below it.
-/// Where all are zero or `skip` is 1 `best` becomes kBackground and `unsure` 0. The same from every instruction set.
-void best_classes(const std::uint16_t* sums, std::size_t stride, int classes, const std::uint8_t* skip, int count,
-                  std::uint32_t margin, std::uint8_t* best, std::uint8_t* unsure);
+/// Of `count` pixels in a row, `stride` sums each, of which the first `classes` (at least 1) count; nothing where
+/// `skip` is 1. The same from every instruction set.
+void find_top_two(const std::uint16_t* sums, std::size_t stride, int classes, const std::uint8_t* skip, int count,
+                  TopTwo* top);
 
 }  // namespace vesalius

@@ -24,42 +24,18 @@ class Weights {
         parts_(choice.part_count) {}
 
   std::int64_t operator()(const std::uint16_t* sums, int c) const {
-    return sums[c] * static_cast<std::int64_t>(c < parts_ ? person_ : background_);
+    return c < parts_ ? of_part(sums[c]) : of_background(sums[c]);
   }
   static constexpr float kOne = 1024.F;
 
-  /// What all of the first `classes` classes are multiplied by, 0 where that differs.
-  long common(int classes) const { return classes <= parts_ || background_ == person_ ? person_ : 0; }
+  std::int64_t of_part(std::uint16_t sum) const { return sum * static_cast<std::int64_t>(person_); }
+  std::int64_t of_background(std::uint16_t sum) const { return sum * static_cast<std::int64_t>(background_); }
 
  private:
   long person_;
   long background_;
   int parts_;
 };
-
-/// What a pixel would take by itself.
-struct Candidate {
-  std::uint8_t best = kBackground;
-  bool unsure = false;
-};
-
-Candidate best_class(const std::uint16_t* sums, int classes, const Weights& weight, std::int64_t margin) {
-  std::int64_t first = 0;
-  std::int64_t second = 0;
-  int best = -1;
-  for (int c = 0; c < classes; ++c) {
-    const std::int64_t p = weight(sums, c);
-    if (p > first) {
-      second = first;
-      first = p;
-      best = c;
-    } else if (p > second) {
-      second = p;
-    }
-  }
-  if (best < 0) return {};
-  return {static_cast<std::uint8_t>(best), second > 0 && first - second < margin};
-}
 
 /// How many of the eight neighbours have a label.
 int count_neighbours(const LabelImage& labels, int u, int v, std::uint8_t label) {
@@ -84,15 +60,14 @@ class Chooser {
         classes_(choice.part_count + (choice.has_background && choice.prior == nullptr ? 1 : 0)),
         margin_(static_cast<std::int64_t>(
             std::ceil(static_cast<double>(options.unsure_margin) * 255.0 * posteriors.trees * Weights::kOne))),
-        common_(weight_.common(classes_)),
-        on_vectors_(common_ > 0 && margin_ / common_ <= 65535 && best_classes_fit(classes_)),
         first_(depth.width(), depth.height(), kBackground),
         unsure_(depth.width(), depth.height(), 0) {}
 
   LabelImage run() {
     parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) {
       std::vector<std::uint8_t> skip(static_cast<std::size_t>(depth_.width()));
-      for (int v = begin; v < end; ++v) choose_alone(v, skip);
+      std::vector<TopTwo> parts(skip.size());
+      for (int v = begin; v < end; ++v) choose_alone(v, skip, parts);
     });
     LabelImage out(depth_.width(), depth_.height(), kBackground);
     parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) {
@@ -107,25 +82,34 @@ class Chooser {
   }
 
  private:
-  /// `skip` becomes 1 where no part may be.
-  void choose_alone(int v, std::vector<std::uint8_t>& skip) {
+  /// `skip` becomes 1 where no part may be, `parts` what the parts have elsewhere.
+  void choose_alone(int v, std::vector<std::uint8_t>& skip, std::vector<TopTwo>& parts) {
     const std::uint16_t* depth = depth_.row(v);
     const std::uint8_t* prior = choice_.prior != nullptr ? choice_.prior->row(v) : nullptr;
     for (std::size_t u = 0; u < skip.size(); ++u) {
       skip[u] = depth[u] == 0 || (prior != nullptr && prior[u] == 0) ? 1 : 0;
     }
-    if (on_vectors_) {
-      const auto margin = static_cast<std::uint32_t>((margin_ + common_ - 1) / common_);  // equal weights cancel
-      best_classes(posteriors_.at(0, v), static_cast<std::size_t>(posteriors_.classes), classes_, skip.data(),
-                   depth_.width(), margin, first_.row(v), unsure_.row(v));
-      return;
-    }
+    find_top_two(posteriors_.at(0, v), static_cast<std::size_t>(posteriors_.classes), choice_.part_count, skip.data(),
+                 depth_.width(), parts.data());
+    const bool rivalled = classes_ > choice_.part_count;
     for (int u = 0; u < depth_.width(); ++u) {
       if (skip[static_cast<std::size_t>(u)] != 0) continue;
-      const Candidate c = best_class(posteriors_.at(u, v), classes_, weight_, margin_);
-      first_(u, v) = c.best;
-      unsure_(u, v) = c.unsure ? 1 : 0;
+      const TopTwo& top = parts[static_cast<std::size_t>(u)];
+      choose_between(top, rivalled ? posteriors_.at(u, v)[choice_.part_count] : std::uint16_t{0}, first_(u, v),
+                     unsure_(u, v));
     }
+  }
+
+  /// The best part or the background, whichever weighs more; a part where they weigh the same.
+  void choose_between(const TopTwo& parts, std::uint16_t background_sum, std::uint8_t& label,
+                      std::uint8_t& unsure) const {
+    const std::int64_t part = weight_.of_part(parts.first);
+    const std::int64_t background = weight_.of_background(background_sum);
+    const std::int64_t first = std::max(part, background);
+    if (first == 0) return;
+    label = static_cast<std::uint8_t>(background > part ? choice_.part_count : parts.best);
+    const std::int64_t second = std::max(std::min(part, background), weight_.of_part(parts.second));
+    unsure = second > 0 && first - second < margin_ ? 1 : 0;
   }
 
   /// That class of the near-best which most neighbours have.
@@ -150,8 +134,6 @@ class Chooser {
   Weights weight_;
   int classes_;
   std::int64_t margin_;
-  std::int64_t common_;
-  bool on_vectors_;
   LabelImage first_;
   Mask unsure_;
 };
