@@ -128,6 +128,8 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
     for (int v = top; v <= bottom; ++v) {
       for (int u = left; u <= right; ++u) {
         if (frame_.depth(u, v) == 0 || out(u, v) != 0) continue;
+        const float dz = static_cast<float>(frame_.depth(u, v)) * 1e-3F - centre.z();
+        if (dz * dz > reach[i] * reach[i]) continue;  // most of them, before x and y cost their divisions
         const Eigen::Vector3f p = point_at(frame_.camera, frame_.depth, u, v);
         if ((p - centre).squaredNorm() <= reach[i] * reach[i]) out(u, v) = 1;
       }
