@@ -171,6 +171,7 @@ void run(const Arguments& arguments, const std::string& command) {
   Evaluation evaluation;
   evaluation.options = detect_options(arguments);
   evaluation.labels_only = arguments.labels_only;
+  evaluation.has_background = forest.has_background;
   evaluation.command = command;
   evaluation.model = arguments.model;
   evaluation.model_checksum = model_checksum(bytes);

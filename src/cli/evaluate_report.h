@@ -23,6 +23,7 @@ struct Evaluation {
   DetectOptions options;
   BodyModel body;
   bool labels_only = false;
+  bool has_background = false;  ///< the model has a background class
   std::vector<SetResult> sets;
 };
 

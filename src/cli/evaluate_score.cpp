@@ -18,11 +18,12 @@ float rounded(float weight) { return std::round(weight * 100.F) / 100.F; }
 void write_fitted_score(const Evaluation& evaluation, const std::string& path) {
   std::vector<std::vector<ScoreSample>> sets;
   for (const SetResult& set : evaluation.sets) sets.push_back(set.samples);
-  const ScoreFit fit = fit_score(sets, evaluation.options.score);
   DetectOptions options = evaluation.options;
-  options.score = fit.options;
-  for (float* weight : {&options.score.likelihood_weight, &options.score.explained_weight, &options.score.open_weight,
-                        &options.score.core_weight, &options.score.bias}) {
+  ScoreOptions& score = evaluation.has_background ? options.score : options.score_without_background;
+  const ScoreFit fit = fit_score(sets, score);
+  score = fit.options;
+  for (float* weight : {&score.likelihood_weight, &score.explained_weight, &score.open_weight, &score.core_weight,
+                        &score.body_weight, &score.size_weight, &score.bias}) {
     *weight = rounded(*weight);
   }
   write_options([&](OptionVisitor& visitor) { visit_options("", options, visitor); }, path);

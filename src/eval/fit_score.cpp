@@ -11,23 +11,32 @@
 namespace vesalius {
 namespace {
 
-constexpr int kFeatures = 4;
+constexpr int kFeatures = 6;
 using Features = Eigen::Matrix<double, kFeatures, 1>;
 using Weights = Eigen::Matrix<double, kFeatures + 1, 1>;  // the bias last
 using Curvature = Eigen::Matrix<double, kFeatures + 1, kFeatures + 1>;
 
+/// A false person costs as much as so many missed ones.
+constexpr double kCostOfFalse = 3.0;
 constexpr double kRidge = 1e-3;  // per unit of the samples' weight, on standardised features
 constexpr int kMostSteps = 100;
 constexpr double kSmallestStep = 1e-10;
-constexpr double kSmallestSpread = 1e-6;
+constexpr double kSmallestSpread = 0.1;  // of evidence: what hardly differs among few candidates tells nothing
 
 Features features(const Evidence& e) {
-  return {static_cast<double>(e.likelihood), static_cast<double>(e.explained), static_cast<double>(e.open),
-          static_cast<double>(e.core)};
+  Features x;
+  x << static_cast<double>(e.likelihood), static_cast<double>(e.explained), static_cast<double>(e.open),
+      static_cast<double>(e.core), static_cast<double>(e.body), static_cast<double>(e.size);
+  return x;
 }
 
-/// Largest IoU with one person, or the share on the mask of all, in units of what a match needs.
-double likeness(const Mask& mask, const FrameTruth& truth, const DepthImage& depth) {
+/// What a candidate has in common with people, in units of what a match needs.
+struct Likeness {
+  double as_person = 0.0;  ///< IoU with one person, or the larger share with the mask of all
+  double on_people = 0.0;  ///< share of its pixels on people
+};
+
+Likeness likeness(const Mask& mask, const FrameTruth& truth, const DepthImage& depth) {
   std::array<long, 256> of_person{};
   std::array<long, 256> shared{};
   long pixels = 0;
@@ -39,14 +48,19 @@ double likeness(const Mask& mask, const FrameTruth& truth, const DepthImage& dep
     ++shared[who];
     ++pixels;
   }
-  if (pixels == 0) return 0.0;
-  if (truth.person.empty()) return static_cast<double>(shared[0]) / static_cast<double>(pixels) / kShareOnMask;
+  if (pixels == 0) return {};
+  const double on_people =
+      static_cast<double>(pixels - shared[kBackground]) / static_cast<double>(pixels) / kShareOnMask;
+  if (truth.person.empty()) {
+    const double smaller = static_cast<double>(std::max(1L, std::min(pixels, of_person[0])));
+    return {static_cast<double>(shared[0]) / smaller / kShareOnMask, on_people};
+  }
   double best = 0.0;
   for (std::size_t who = 0; who < kBackground; ++who) {
     const auto either = static_cast<double>(of_person[who] + pixels - shared[who]);
     best = std::max(best, static_cast<double>(shared[who]) / either);
   }
-  return best / kMatchIou;
+  return {best / kMatchIou, on_people};
 }
 
 struct Weighted {
@@ -61,7 +75,8 @@ std::vector<Weighted> weighted(const std::vector<std::vector<ScoreSample>>& sets
     const auto people = static_cast<double>(std::ranges::count(set, true, &ScoreSample::person));
     const double nobodies = static_cast<double>(set.size()) - people;
     for (const ScoreSample& sample : set) {
-      all.push_back({features(sample.evidence), sample.person, 1.0 / std::sqrt(sample.person ? people : nobodies)});
+      all.push_back({features(sample.evidence), sample.person,
+                     sample.person ? 1.0 / std::sqrt(people) : kCostOfFalse / std::sqrt(nobodies)});
     }
   }
   return all;
@@ -72,7 +87,7 @@ double area_under_curve(const std::vector<Weighted>& samples, const ScoreOptions
   std::vector<std::pair<float, bool>> scored;
   for (const Weighted& s : samples) {
     const Evidence e{static_cast<float>(s.x[0]), static_cast<float>(s.x[1]), static_cast<float>(s.x[2]),
-                     static_cast<float>(s.x[3])};
+                     static_cast<float>(s.x[3]), static_cast<float>(s.x[4]), static_cast<float>(s.x[5])};
     scored.emplace_back(person_score(e, options), s.person);
   }
   std::ranges::sort(scored);
@@ -131,8 +146,9 @@ std::vector<ScoreSample> score_samples(const Trace& trace, const FrameTruth& tru
   if (truth.people != 0 && !known) return samples;
   for (const Trace::Candidate& candidate : trace.candidates) {
     if (candidate.refined.found == 0) continue;
-    const double share = truth.people == 0 ? 0.0 : likeness(candidate.grown, truth, depth);
-    if (share >= 1.0 || share < 0.5) samples.push_back({candidate.evidence, share >= 1.0});
+    const Likeness like = truth.people == 0 ? Likeness{} : likeness(candidate.grown, truth, depth);
+    const bool person = like.as_person >= 1.0;
+    if (person || std::max(like.as_person, like.on_people) < 0.5) samples.push_back({candidate.evidence, person});
   }
   return samples;
 }
@@ -150,6 +166,8 @@ ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const Scor
   fit.options.explained_weight = static_cast<float>(w[1]);
   fit.options.open_weight = static_cast<float>(w[2]);
   fit.options.core_weight = static_cast<float>(w[3]);
+  fit.options.body_weight = static_cast<float>(w[4]);
+  fit.options.size_weight = static_cast<float>(w[5]);
   fit.options.bias = static_cast<float>(w[kFeatures]);
   fit.area_before = area_under_curve(samples, start);
   fit.area_after = area_under_curve(samples, fit.options);

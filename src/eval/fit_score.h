@@ -15,9 +15,10 @@ struct ScoreSample {
 };
 
 /// The candidates of a frame that can be told: each by itself, however many show the same person. A person has a mask
-/// of IoU kMatchIou with a true one, or where only the mask of all people is known, kShareOnMask of its pixels there;
-/// nobody less than half of that, or stands in a frame without people. What lies between is left out, and so are frames
-/// with people of whose masks nothing is known.
+/// of IoU kMatchIou with a true one, or where only the mask of all people is known, kShareOnMask of its pixels there or
+/// of that mask's among its own; nobody less than half of either, and less than half of kShareOnMask on people, or is
+/// in a frame without people. What lies between is left out, and so are frames with people of whose masks nothing is
+/// known.
 std::vector<ScoreSample> score_samples(const Trace& trace, const FrameTruth& truth, const DepthImage& depth);
 
 struct ScoreFit {

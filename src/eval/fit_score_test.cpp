@@ -15,8 +15,8 @@ using testing::ThrowsMessage;
 
 Evidence random_evidence(Random& random) {
   const auto draw = [&] { return static_cast<float>(random.uniform()); };
-  const float a = draw(), b = draw(), c = draw(), d = draw();
-  return {a, b, c, d};
+  const float a = draw(), b = draw(), c = draw(), d = draw(), e = draw(), f = draw();
+  return {a, b, c, d, e, f};
 }
 
 /// Candidates that are people with the probability that the score gives them.
@@ -36,15 +36,19 @@ TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
   truth.explained_weight = 2.F;
   truth.open_weight = -1.F;
   truth.core_weight = 3.F;
+  truth.body_weight = 1.F;
+  truth.size_weight = -2.F;
   truth.bias = -4.F;
   const ScoreFit fit = fit_score({drawn(truth, 40000, 3)}, {});
-  // People and nobodies weigh differently where there are more of one: only the bias feels it.
+  // People and nobodies weigh differently: only the bias feels it.
   EXPECT_NEAR(fit.options.likelihood_weight, truth.likelihood_weight, 0.25);
   EXPECT_NEAR(fit.options.explained_weight, truth.explained_weight, 0.25);
   EXPECT_NEAR(fit.options.open_weight, truth.open_weight, 0.25);
   EXPECT_NEAR(fit.options.core_weight, truth.core_weight, 0.25);
+  EXPECT_NEAR(fit.options.body_weight, truth.body_weight, 0.25);
+  EXPECT_NEAR(fit.options.size_weight, truth.size_weight, 0.25);
   const double odds = static_cast<double>(fit.people) / static_cast<double>(fit.nobodies);
-  EXPECT_NEAR(fit.options.bias, truth.bias - std::log(std::sqrt(odds)), 0.25);
+  EXPECT_NEAR(fit.options.bias, truth.bias - std::log(3.0 * std::sqrt(odds)), 0.3);
   EXPECT_EQ(fit.people + fit.nobodies, 40000);
   EXPECT_GE(fit.area_after, fit.area_before);
 }
@@ -52,7 +56,7 @@ TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
 TEST(FitScore, SetsThatALinePartsGiveFiniteWeightsThatPartThem) {
   std::vector<ScoreSample> samples;
   for (int i = 0; i < 20; ++i) {
-    const float x = 0.05F * static_cast<float>(i);
+    const float x = (i < 10 ? 0.F : 0.4F) + 0.03F * static_cast<float>(i);
     samples.push_back({{x, 0.5F, 0.5F, 0.5F}, i >= 10});
   }
   const ScoreFit fit = fit_score({samples}, {});
@@ -109,6 +113,7 @@ TEST(ScoreSamples, AreJudgedByTheirOverlap) {
   EXPECT_THAT(kinds(truth, 0, 4), testing::ElementsAre(1));
   EXPECT_THAT(kinds(truth, 2, 4), testing::ElementsAre(1));  // IoU 0.5
   EXPECT_THAT(kinds(truth, 2, 6), testing::IsEmpty());       // 1/3: not to be told
+  EXPECT_THAT(kinds(truth, 0, 1), testing::IsEmpty());       // a piece of somebody
   EXPECT_THAT(kinds(truth, 5, 9), testing::ElementsAre(0));
 
   FrameTruth mask_only;
@@ -117,6 +122,7 @@ TEST(ScoreSamples, AreJudgedByTheirOverlap) {
   for (int u = 0; u < 4; ++u) mask_only.mask(u, 0) = 255;
   EXPECT_THAT(kinds(mask_only, 2, 6), testing::ElementsAre(1));
   EXPECT_THAT(kinds(mask_only, 3, 6), testing::IsEmpty());
+  EXPECT_THAT(kinds(mask_only, 2, 10), testing::ElementsAre(1));  // covers half of the mask
   EXPECT_THAT(kinds(mask_only, 4, 6), testing::ElementsAre(0));
 
   FrameTruth empty;

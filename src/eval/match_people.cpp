@@ -45,13 +45,15 @@ Match match_by_iou(const Proposal& proposal, const FrameTruth& truth, const Dept
 
 bool lies_on(const Mask& found, const Mask& truth, const DepthImage& depth) {
   long pixels = 0;
+  long true_pixels = 0;
   long inside = 0;
   for (std::size_t i = 0; i < depth.size(); ++i) {
-    if (depth[i] == 0 || found[i] == 0) continue;
-    ++pixels;
-    inside += truth[i] != 0 ? 1 : 0;
+    if (depth[i] == 0) continue;
+    pixels += found[i] != 0 ? 1 : 0;
+    true_pixels += truth[i] != 0 ? 1 : 0;
+    inside += found[i] != 0 && truth[i] != 0 ? 1 : 0;
   }
-  return pixels > 0 && static_cast<double>(inside) >= kShareOnMask * static_cast<double>(pixels);
+  return inside > 0 && static_cast<double>(inside) >= kShareOnMask * static_cast<double>(std::min(pixels, true_pixels));
 }
 
 /// Visible surface across the viewing direction of each person with joints.

@@ -10,7 +10,8 @@ namespace vesalius {
 
 /// Mask IoU from which a found person is a true one where each true person's pixels are known.
 inline constexpr double kMatchIou = 0.5;
-/// Share of a found person's pixels that must lie on the mask where only that of all people together is known.
+/// Share of a found person's pixels that must lie on the mask where only that of all people together is known, or of
+/// the mask that the person must cover: masks made by taking the background away lack what did not move.
 inline constexpr double kShareOnMask = 0.5;
 
 /// A person that the detector proposes, whether it accepts it or not.
@@ -44,8 +45,8 @@ int expected_people(const FrameTruth& truth);
 
 /// Judges proposals, surest first. Where each true person's pixels are known, a proposal is that person of whose mask
 /// its own has the largest IoU, at least kMatchIou, and who is not taken yet. Where the mask of all is known it must
-/// have kShareOnMask of its pixels there; else it is not looked where it is. At most as many as there are people are
-/// right.
+/// have kShareOnMask of its pixels there or cover as much of it; else it is not looked where it is. At most as many as
+/// there are people are right.
 std::vector<Match> match_people(const std::vector<Proposal>& proposals, const FrameTruth& truth,
                                 const DepthImage& depth);
 

@@ -77,7 +77,10 @@ TrueFrame labelled(const std::vector<float>& people_x_m) {
 }
 
 FrameScorer scorer(const TrueFrame& frame, bool half_blind, bool labels_only = false) {
-  return FrameScorer(std::make_shared<Labeller>(frame.truth.labels, half_blind), {{}, labels_only});
+  FrameScorer::Options options;
+  options.detect.label.background_weight = 1.F;
+  options.labels_only = labels_only;
+  return FrameScorer(std::make_shared<Labeller>(frame.truth.labels, half_blind), options);
 }
 
 double value(const FrameScore& score, const std::string& name) {

@@ -93,6 +93,10 @@ class Pipeline {
   }
 
  private:
+  const ScoreOptions& score_options() const {
+    return labeller_.has_background() ? options_.score : options_.score_without_background;
+  }
+
   bool by_mode() const { return options_.smooth.mode || !labeller_.has_distributions(); }
 
   /// Of pass 1, smoothed unless labels are.
@@ -170,9 +174,9 @@ class Pipeline {
       candidate.labels = labels_;
     }
     if (candidate.refined.found == 0 || candidate.refined.score < rough.score) candidate.refined = rough;
-    candidate.evidence =
-        gather_evidence(frame_, candidate.grown, candidate.labels, candidate.refined, body_, options_.score);
-    candidate.score = person_score(candidate.evidence, options_.score);
+    candidate.evidence = gather_evidence(frame_, candidate.grown, candidate.labels, posteriors(), candidate.refined,
+                                         body_, score_options());
+    candidate.score = person_score(candidate.evidence, score_options());
   }
 
   void second_pass(const Box& box, Candidate& candidate) const {

@@ -36,7 +36,8 @@ struct DetectOptions {
   SearchOptions search;
   GrowOptions grow;
   RefineOptions refine;
-  ScoreOptions score;
+  ScoreOptions score;  ///< with forests that have a background class
+  ScoreOptions score_without_background = vesalius::score_without_background();  ///< with others
 };
 void visit_options(const std::string& prefix, DetectOptions& options, OptionVisitor& visitor);
 

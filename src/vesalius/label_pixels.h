@@ -40,9 +40,9 @@ struct Posteriors {
 };
 
 struct LabelOptions {
-  float background_weight = 1.F;  ///< multiplies the background's posterior; a run-time correction of its prior
-  float person_weight = 1.F;      ///< multiplies the parts' posteriors
-  float unsure_margin = 0.05F;    ///< difference in probability below which neighbours decide
+  float background_weight = 0.65F;  ///< multiplies the background's posterior; a run-time correction of its prior
+  float person_weight = 1.F;        ///< multiplies the parts' posteriors
+  float unsure_margin = 0.05F;      ///< difference in probability below which neighbours decide
   bool half = false;  ///< ask the forest at every second pixel of every second row, guided by depth elsewhere
 };
 void visit_options(const std::string& prefix, LabelOptions& options, OptionVisitor& visitor);

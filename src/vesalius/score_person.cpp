@@ -1,7 +1,9 @@
 #include "vesalius/score_person.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace vesalius {
@@ -60,6 +62,36 @@ float share_open(const Frame& frame, const Mask& mask, float step_m) {
   return open + closed > 0 ? static_cast<float>(open) / static_cast<float>(open + closed) : 0.F;
 }
 
+/// 1 where there is no background class.
+float share_of_body(const Mask& mask, const Posteriors& posteriors, int parts) {
+  if (posteriors.classes == parts) return 1.F;
+  double sum = 0.0;
+  long pixels = 0;
+  for (int v = 0; v < mask.height(); ++v) {
+    for (int u = 0; u < mask.width(); ++u) {
+      if (mask(u, v) == 0) continue;
+      const std::uint16_t* sums = posteriors.at(u, v);
+      const double body = std::accumulate(sums, sums + parts, 0.0);
+      const double all = std::accumulate(sums + parts, sums + posteriors.classes, body);
+      if (all == 0.0) continue;  // no reading
+      sum += body / all;
+      ++pixels;
+    }
+  }
+  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
+}
+
+float likeness_of_area(const Frame& frame, const Mask& mask, float usual_m2) {
+  double area_m2 = 0.0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] == 0) continue;
+    const double z = 1e-3 * frame.depth[i];
+    area_m2 += z * z / (static_cast<double>(frame.camera.fx) * static_cast<double>(frame.camera.fy));
+  }
+  const double usual = static_cast<double>(usual_m2);
+  return static_cast<float>(std::min(area_m2, usual) / std::max(area_m2, usual));
+}
+
 float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
   std::vector<char> core(body.parts.size(), 0);
   for (const int root : body.roots) {
@@ -83,30 +115,50 @@ float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
 
 void visit_options(const std::string& prefix, ScoreOptions& o, OptionVisitor& visitor) {
   visitor.option(prefix + "likelihood-weight", o.likelihood_weight,
-                 {"", -100.0, 100.0, "Weight of the skeleton's likelihood in a person's score."});
+                 {"", -1000.0, 1000.0, "Weight of the skeleton's likelihood in a person's score."});
   visitor.option(prefix + "explained-weight", o.explained_weight,
-                 {"", -100.0, 100.0, "Weight of the share of the mask that the skeleton explains."});
+                 {"", -1000.0, 1000.0, "Weight of the share of the mask that the skeleton explains."});
   visitor.option(prefix + "open-weight", o.open_weight,
-                 {"", -100.0, 100.0, "Weight of the share of the outline that stands free."});
+                 {"", -1000.0, 1000.0, "Weight of the share of the outline that stands free."});
   visitor.option(prefix + "core-weight", o.core_weight,
-                 {"", -100.0, 100.0, "Weight of the share of head, neck and chest parts found."});
-  visitor.option(prefix + "bias", o.bias, {"", -100.0, 100.0, "Constant of the score."});
+                 {"", -1000.0, 1000.0, "Weight of the share of head, neck and chest parts found."});
+  visitor.option(prefix + "body-weight", o.body_weight,
+                 {"", -1000.0, 1000.0, "Weight of how sure the forest is that the mask is body."});
+  visitor.option(prefix + "size-weight", o.size_weight,
+                 {"", -1000.0, 1000.0, "Weight of how near the mask's area is to a person's."});
+  visitor.option(prefix + "bias", o.bias, {"", -1000.0, 1000.0, "Constant of the score."});
   visitor.option(prefix + "explained-radius", o.explained_radius_m,
                  {"m", 0.0, 10.0, "A pixel is explained by an observed part of its label this near."});
   visitor.option(prefix + "open-step", o.open_step_m,
                  {"m", 0.0, 10.0, "An outline stands free where what lies behind is this much further."});
+  visitor.option(prefix + "usual-area", o.usual_area_m2, {"m^2", 0.001, 10.0, "Usual area of a person's mask."});
 }
 
-Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Skeleton& skeleton,
-                         const BodyModel& body, const ScoreOptions& options) {
+ScoreOptions score_without_background() {
+  ScoreOptions options;
+  options.likelihood_weight = 8.6F;
+  options.explained_weight = 3.4F;
+  options.open_weight = 7.3F;
+  options.core_weight = 8.1F;
+  options.body_weight = 0.F;
+  options.size_weight = 0.F;
+  options.bias = -17.F;
+  return options;
+}
+
+Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
+                         const Skeleton& skeleton, const BodyModel& body, const ScoreOptions& options) {
   return {skeleton.score / static_cast<float>(body.part_count()),
           share_explained(frame, mask, labels, skeleton, body, options.explained_radius_m),
-          share_open(frame, mask, options.open_step_m), share_of_core(skeleton, body)};
+          share_open(frame, mask, options.open_step_m),
+          share_of_core(skeleton, body),
+          share_of_body(mask, posteriors, body.part_count()),
+          likeness_of_area(frame, mask, options.usual_area_m2)};
 }
 
 float person_score(const Evidence& e, const ScoreOptions& o) {
   const float sum = o.likelihood_weight * e.likelihood + o.explained_weight * e.explained + o.open_weight * e.open +
-                    o.core_weight * e.core + o.bias;
+                    o.core_weight * e.core + o.body_weight * e.body + o.size_weight * e.size + o.bias;
   return 1.F / (1.F + std::exp(-sum));
 }
 

@@ -5,21 +5,29 @@
 #include "vesalius/body_model.h"
 #include "vesalius/frame.h"
 #include "vesalius/image.h"
+#include "vesalius/label_pixels.h"
 #include "vesalius/options.h"
 #include "vesalius/search_skeletons.h"
 
 namespace vesalius {
 
 struct ScoreOptions {
-  float likelihood_weight = 8.6F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
-  float explained_weight = 3.4F;   ///< of the share of the mask that the skeleton explains
-  float open_weight = 7.3F;        ///< of the share of the outline that stands free
-  float core_weight = 8.1F;        ///< of the share of head, neck and chest parts found
-  float bias = -17.F;
+  float likelihood_weight = 4.49F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
+  float explained_weight = 7.84F;   ///< of the share of the mask that the skeleton explains
+  float open_weight = 0.53F;        ///< of the share of the outline that stands free
+  float core_weight = 4.58F;        ///< of the share of head, neck and chest parts found
+  float body_weight = 10.27F;       ///< of how sure the forest is that the mask is body
+  float size_weight = 3.99F;        ///< of how near the mask's area is to a person's
+  float bias = -21.62F;
   float explained_radius_m = 0.25F;  ///< a pixel is explained by an observed part of its label this near
   float open_step_m = 0.1F;          ///< an outline stands free where what lies behind is this much further
+  float usual_area_m2 = 0.45F;       ///< of a person's mask; a standing adult's front
 };
 void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisitor& visitor);
+
+/// Defaults for forests without background class, fitted with the paper's released trees: furniture cut out looks like
+/// a body, so the outline tells more.
+ScoreOptions score_without_background();
 
 /// What speaks for a grown mask and its skeleton being a person; all 0-1.
 struct Evidence {
@@ -27,11 +35,13 @@ struct Evidence {
   float explained = 0.F;   ///< share of the mask whose label's part, or its mirror partner, was found nearby
   float open = 0.F;        ///< share of the outline, occluded and cut-off outline apart, with nothing close behind
   float core = 0.F;        ///< share found of the search's roots and the parts next to them
+  float body = 0.F;        ///< mean over the mask of the parts' share of the posterior; 1 without background class
+  float size = 0.F;        ///< the mask's area over the usual one, or the other way round: the smaller of the two
 };
 
-/// `labels` are the part labels inside `mask`; images of the frame's size.
-Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Skeleton& skeleton,
-                         const BodyModel& body, const ScoreOptions& options);
+/// `labels` are the part labels inside `mask`, `posteriors` those of the first pass; images of the frame's size.
+Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
+                         const Skeleton& skeleton, const BodyModel& body, const ScoreOptions& options);
 
 /// How surely it is a person, 0-1: a logistic function whose weights were fitted to frames with and without people.
 float person_score(const Evidence& evidence, const ScoreOptions& options);

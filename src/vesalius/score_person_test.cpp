@@ -23,7 +23,7 @@ struct Square {
     skeleton.parts.resize(paper_body().parts.size());
   }
   Evidence evidence(const ScoreOptions& options = {}) const {
-    return gather_evidence(frame, mask, labels, skeleton, paper_body(), options);
+    return gather_evidence(frame, mask, labels, posteriors, skeleton, paper_body(), options);
   }
   void observe(const char* part, const Eigen::Vector3f& centre) {
     SkeletonPart& p = skeleton.parts[static_cast<std::size_t>(paper_body().find_part(part))];
@@ -34,6 +34,7 @@ struct Square {
   Frame frame;
   Mask mask{40, 30, 0};
   LabelImage labels{40, 30, kBackground};
+  Posteriors posteriors{40, 30, 26, 1, std::vector<std::uint16_t>(std::size_t{40} * 30 * 26, 0)};
   Skeleton skeleton;
 };
 
@@ -83,15 +84,43 @@ TEST(GatherEvidence, CoreIsTheRootsAndWhatIsNextToThem) {
   EXPECT_FLOAT_EQ(s.evidence().core, 2.F / 7.F);  // neck, four face quarters, two chest halves
 }
 
+TEST(GatherEvidence, BodyIsThePartsShareOfThePosterior) {
+  Square s(3000);
+  for (int v = 10; v < 20; ++v) {
+    for (int u = 15; u < 25; ++u) {
+      s.posteriors.at(u, v)[3] = 50;
+      s.posteriors.at(u, v)[7] = 100;
+      s.posteriors.at(u, v)[25] = u < 20 ? 50 : 150;  // the background: 0.25 and 0.5
+    }
+  }
+  EXPECT_FLOAT_EQ(s.evidence().body, 0.5F * (0.75F + 0.5F));
+  s.posteriors = {40, 30, 25, 1, std::vector<std::uint16_t>(std::size_t{40} * 30 * 25, 7)};
+  EXPECT_FLOAT_EQ(s.evidence().body, 1.F);  // without background
+}
+
+TEST(GatherEvidence, SizeIsOneForTheUsualAreaAndLessForMoreAndLess) {
+  const Square s(3000);  // 100 pixels of 4 cm^2
+  ScoreOptions options;
+  options.usual_area_m2 = 0.04F;
+  EXPECT_NEAR(s.evidence(options).size, 1.F, 1e-5F);
+  options.usual_area_m2 = 0.08F;
+  EXPECT_NEAR(s.evidence(options).size, 0.5F, 1e-5F);
+  options.usual_area_m2 = 0.02F;
+  EXPECT_NEAR(s.evidence(options).size, 0.5F, 1e-5F);
+}
+
 TEST(PersonScore, IsALogisticSum) {
   ScoreOptions options;
   options.likelihood_weight = 2.F;
   options.explained_weight = 0.F;
   options.open_weight = 1.F;
   options.core_weight = 0.F;
+  options.body_weight = 0.F;
+  options.size_weight = 0.5F;
   options.bias = -1.F;
-  EXPECT_FLOAT_EQ(person_score({0.5F, 0.9F, 0.F, 0.9F}, options), 0.5F);
-  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F}, options), 1.0 / (1.0 + std::exp(-1.0)), 1e-6);
+  EXPECT_FLOAT_EQ(person_score({0.5F, 0.9F, 0.F, 0.9F, 0.9F, 0.F}, options), 0.5F);
+  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 0.F}, options), 1.0 / (1.0 + std::exp(-1.0)), 1e-6);
+  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 1.F}, options), 1.0 / (1.0 + std::exp(-1.5)), 1e-6);
 }
 
 TEST(PersonScore, EachEvidenceSpeaksForAPerson) {
