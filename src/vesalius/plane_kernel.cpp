@@ -79,7 +79,7 @@ void SurfaceColumns::add(const Eigen::Vector3f& point, const Eigen::Vector3f& no
 }
 
 bool SurfaceColumns::sums_are_exact(float most_slant) const {
-  if (!(smallest_ > 0.F) || !std::isfinite(total_)) return false;
+  if (size() == 0 || !(smallest_ > 0.F) || !std::isfinite(total_)) return false;
   // A float holds 24 bits from its highest down, a double 53; one bit more at either end for what is rounded here.
   const double largest_sum = 2.0 * total_ / static_cast<double>(most_slant);
   return std::ilogb(largest_sum) - (std::ilogb(smallest_) - 1 - 23) < 53;
