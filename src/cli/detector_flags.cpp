@@ -29,6 +29,17 @@ void replace_body(Forest& forest, const std::string& path) {
 
 }  // namespace
 
+DetectOptions detect_options(const std::string& options_file, const OptionFlags<DetectOptions>& flags) {
+  DetectOptions options;
+  if (!options_file.empty()) {
+    read_options(options_file, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
+  }
+  flags.apply(options);
+  RangeCheck check;
+  visit_options("", options, check);
+  return options;
+}
+
 DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
   command.add_option("-m,--model", model_, "Trained forest, e.g. capsule.forest")->type_name("FILE")->required();
   command.add_option("--options", options_file_, "TOML file of detector options")
@@ -40,13 +51,7 @@ DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
 }
 
 Detector DetectorFlags::make() const {
-  DetectOptions options;
-  if (!options_file_.empty()) {
-    read_options(options_file_, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
-  }
-  options_.apply(options);
-  RangeCheck check;
-  visit_options("", options, check);
+  const DetectOptions options = detect_options(options_file_, options_);
   Forest forest = load_model(model_);
   if (!body_.empty()) replace_body(forest, body_);
   return Detector(std::move(forest), options);

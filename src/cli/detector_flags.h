@@ -8,6 +8,10 @@
 
 namespace vesalius::cli {
 
+/// The defaults, what the TOML file (empty: none) says, then the flags. Throws Error for a file that cannot be used,
+/// UsageError for options outside their range.
+DetectOptions detect_options(const std::string& options_file, const OptionFlags<DetectOptions>& flags);
+
 /// Flags that say which detector: --model, --body, --options and one for every detector option.
 class DetectorFlags {
  public:
@@ -23,8 +27,6 @@ class DetectorFlags {
   OptionFlags<DetectOptions> options_;
 };
 
-/// --threads of every command: how many there may be.
-inline constexpr int kMaxThreads = 1024;
 inline constexpr const char* kDetectorGroup = "Detector";
 
 }  // namespace vesalius::cli

@@ -10,6 +10,7 @@
 
 #include "cli/ablation.h"
 #include "cli/commands.h"
+#include "cli/detector_flags.h"
 #include "cli/evaluate_ablation.h"
 #include "cli/evaluate_report.h"
 #include "cli/evaluate_set.h"
@@ -19,7 +20,6 @@
 #include "cli/text_sink.h"
 #include "io/atomic_file.h"
 #include "io/model_file.h"
-#include "io/options_file.h"
 #include "io/read_file.h"
 #include "io/truth_folder.h"
 #include "vesalius/parallel.h"
@@ -27,7 +27,6 @@
 namespace vesalius::cli {
 namespace {
 
-constexpr int kMaxThreads = 1024;
 constexpr int kMaxStep = 1000000;
 constexpr int kMaxCount = 1000000000;
 constexpr std::size_t kWorstFrames = 3;
@@ -50,17 +49,6 @@ struct Arguments {
   bool keep_going = false;
   bool quiet = false;
 };
-
-DetectOptions detect_options(const Arguments& arguments) {
-  DetectOptions options;
-  if (!arguments.options_file.empty()) {
-    read_options(arguments.options_file, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
-  }
-  arguments.detector_flags.apply(options);
-  RangeCheck check;
-  visit_options("", options, check);
-  return options;
-}
 
 bool has_set(const BodyModel& body, const std::string& name) {
   return std::ranges::find(body.joint_sets, name, &JointSet::name) != body.joint_sets.end();
@@ -169,7 +157,7 @@ void run(const Arguments& arguments, const std::string& command) {
   Forest forest = parse_model(bytes, arguments.model);
   forest.body = with_joints(forest.body, arguments.joints_file);
   Evaluation evaluation;
-  evaluation.options = detect_options(arguments);
+  evaluation.options = detect_options(arguments.options_file, arguments.detector_flags);
   evaluation.labels_only = arguments.labels_only;
   evaluation.has_background = forest.has_background;
   evaluation.command = command;

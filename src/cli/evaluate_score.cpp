@@ -22,10 +22,8 @@ void write_fitted_score(const Evaluation& evaluation, const std::string& path) {
   ScoreOptions& score = evaluation.has_background ? options.score : options.score_without_background;
   const ScoreFit fit = fit_score(sets, score);
   score = fit.options;
-  for (float* weight : {&score.likelihood_weight, &score.explained_weight, &score.open_weight, &score.core_weight,
-                        &score.body_weight, &score.size_weight, &score.bias}) {
-    *weight = rounded(*weight);
-  }
+  for (const EvidenceWeight& piece : kEvidenceWeights) score.*piece.weight = rounded(score.*piece.weight);
+  score.bias = rounded(score.bias);
   write_options([&](OptionVisitor& visitor) { visit_options("", options, visitor); }, path);
   print(fmt::format(
       "score fitted to {} candidates that were people and {} that were not: area under the curve {:.3f}, was {:.3f}\n",

@@ -8,6 +8,9 @@
 
 namespace vesalius::cli {
 
+/// --threads of every command: how many there may be.
+inline constexpr int kMaxThreads = 1024;
+
 /// A flag for every option that `visit` shows, e.g. --search.min-parts; `visit` and what it shows must live as long as
 /// the command. They are left out of --help (there are many; `vesalius options` lists them) and known to completion.
 class FlagSet {

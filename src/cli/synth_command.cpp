@@ -23,7 +23,6 @@
 namespace vesalius::cli {
 namespace {
 
-constexpr int kMaxThreads = 1024;
 constexpr int kMaxFrames = 1'000'000'000;
 constexpr int kMaxPreview = 200;
 constexpr int kPreviewColumns = 3;

@@ -18,7 +18,6 @@
 namespace vesalius::cli {
 namespace {
 
-constexpr int kMaxThreads = 1024;
 constexpr int kMaxFrames = 100'000'000;
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
 

@@ -11,7 +11,7 @@
 namespace vesalius {
 namespace {
 
-constexpr int kFeatures = 6;
+constexpr int kFeatures = static_cast<int>(kEvidenceWeights.size());
 using Features = Eigen::Matrix<double, kFeatures, 1>;
 using Weights = Eigen::Matrix<double, kFeatures + 1, 1>;  // the bias last
 using Curvature = Eigen::Matrix<double, kFeatures + 1, kFeatures + 1>;
@@ -25,8 +25,8 @@ constexpr double kSmallestSpread = 0.1;  // of evidence: what hardly differs amo
 
 Features features(const Evidence& e) {
   Features x;
-  x << static_cast<double>(e.likelihood), static_cast<double>(e.explained), static_cast<double>(e.open),
-      static_cast<double>(e.core), static_cast<double>(e.body), static_cast<double>(e.size);
+  for (int i = 0; i < kFeatures; ++i)
+    x[i] = static_cast<double>(e.*kEvidenceWeights[static_cast<std::size_t>(i)].evidence);
   return x;
 }
 
@@ -86,8 +86,9 @@ std::vector<Weighted> weighted(const std::vector<std::vector<ScoreSample>>& sets
 double area_under_curve(const std::vector<Weighted>& samples, const ScoreOptions& options) {
   std::vector<std::pair<float, bool>> scored;
   for (const Weighted& s : samples) {
-    const Evidence e{static_cast<float>(s.x[0]), static_cast<float>(s.x[1]), static_cast<float>(s.x[2]),
-                     static_cast<float>(s.x[3]), static_cast<float>(s.x[4]), static_cast<float>(s.x[5])};
+    Evidence e;
+    for (int i = 0; i < kFeatures; ++i)
+      e.*kEvidenceWeights[static_cast<std::size_t>(i)].evidence = static_cast<float>(s.x[i]);
     scored.emplace_back(person_score(e, options), s.person);
   }
   std::ranges::sort(scored);
@@ -162,12 +163,9 @@ ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const Scor
   if (fit.people == 0) throw Error("fitting the score: the frames have no candidate that is known to be a person");
   if (fit.nobodies == 0) throw Error("fitting the score: the frames have no candidate that is known to be nobody");
   const Weights w = logistic_weights(samples);
-  fit.options.likelihood_weight = static_cast<float>(w[0]);
-  fit.options.explained_weight = static_cast<float>(w[1]);
-  fit.options.open_weight = static_cast<float>(w[2]);
-  fit.options.core_weight = static_cast<float>(w[3]);
-  fit.options.body_weight = static_cast<float>(w[4]);
-  fit.options.size_weight = static_cast<float>(w[5]);
+  for (int i = 0; i < kFeatures; ++i) {
+    fit.options.*kEvidenceWeights[static_cast<std::size_t>(i)].weight = static_cast<float>(w[i]);
+  }
   fit.options.bias = static_cast<float>(w[kFeatures]);
   fit.area_before = area_under_curve(samples, start);
   fit.area_after = area_under_curve(samples, fit.options);

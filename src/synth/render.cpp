@@ -145,7 +145,7 @@ void Renderer::State::fill_lit(const Eigen::Vector3f& projector, Rendering& out)
   }
   const Mask uncertain = beside ? maybe_shaded(out.depth_m, camera, projector.x()) : out.lit;
   shadow_rays.clear();
-  // Column by column within some rows: rays of one packet then run close together, which makes it twice as fast.
+  // Column by column within some rows: rays of one packet then run close together, which is quicker.
   constexpr int kRows = 4;
   for (int top = 0; top < camera.height; top += kRows) {
     const int bottom = std::min(top + kRows, camera.height);

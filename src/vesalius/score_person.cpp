@@ -157,8 +157,9 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage&
 }
 
 float person_score(const Evidence& e, const ScoreOptions& o) {
-  const float sum = o.likelihood_weight * e.likelihood + o.explained_weight * e.explained + o.open_weight * e.open +
-                    o.core_weight * e.core + o.body_weight * e.body + o.size_weight * e.size + o.bias;
+  float sum = 0.F;
+  for (const auto& [evidence, weight] : kEvidenceWeights) sum += o.*weight * e.*evidence;
+  sum += o.bias;
   return 1.F / (1.F + std::exp(-sum));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "vesalius/body_model.h"
@@ -38,6 +39,19 @@ struct Evidence {
   float body = 0.F;        ///< mean over the mask of the parts' share of the posterior; 1 without background class
   float size = 0.F;        ///< the mask's area over the usual one, or the other way round: the smaller of the two
 };
+
+/// A piece of evidence and what it weighs.
+struct EvidenceWeight {
+  float Evidence::*evidence;
+  float ScoreOptions::*weight;
+};
+inline constexpr std::array<EvidenceWeight, 6> kEvidenceWeights{
+    {{&Evidence::likelihood, &ScoreOptions::likelihood_weight},
+     {&Evidence::explained, &ScoreOptions::explained_weight},
+     {&Evidence::open, &ScoreOptions::open_weight},
+     {&Evidence::core, &ScoreOptions::core_weight},
+     {&Evidence::body, &ScoreOptions::body_weight},
+     {&Evidence::size, &ScoreOptions::size_weight}}};
 
 /// `labels` are the part labels inside `mask`, `posteriors` those of the first pass; images of the frame's size.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
