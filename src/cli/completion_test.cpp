@@ -1,6 +1,7 @@
 #include "cli/completion.h"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -37,7 +38,8 @@ class Completion : public testing::Test {
   Completion() { describe(app); }
 
   std::string write(const std::string& name, const std::string& script) const {
-    const std::string path = testing::TempDir() + "/vesalius_completion_test_" + name;
+    const std::string path =
+        testing::TempDir() + "/vesalius_completion_test_" + std::to_string(::getpid()) + "_" + name;
     std::ofstream(path) << script;
     return path;
   }

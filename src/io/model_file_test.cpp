@@ -6,10 +6,10 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 #include "io/model_trees.h"
+#include "io/test_files.h"
 #include "io/test_forest.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
@@ -17,7 +17,6 @@
 namespace vesalius {
 namespace {
 
-namespace fs = std::filesystem;
 using test::random_forest;
 using test::tiny_forest;
 using testing::HasSubstr;
@@ -169,17 +168,15 @@ TEST(ModelFile, InconsistentForestIsNotWritten) {
 }
 
 TEST(ModelFile, SavesAndLoads) {
-  const fs::path folder = fs::path(testing::TempDir()) / "vesalius_model_file_test";
-  fs::create_directories(folder);
-  const std::string path = (folder / "m.forest").string();
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "m.forest";
   const Forest forest = random_forest(8);
   save_model(forest, path);
   EXPECT_EQ(load_model(path).trees, forest.trees);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "nothing else is left in the folder";
+  EXPECT_EQ(folder.file_count(), 1U) << "nothing else is left in the folder";
   EXPECT_THAT([] { load_model("/nowhere/m.forest"); }, ThrowsMessage<Error>(HasSubstr("/nowhere/m.forest")));
   EXPECT_THAT([&] { save_model(forest, "/nowhere/m.forest"); }, ThrowsMessage<Error>(HasSubstr("/nowhere/m.forest")));
   EXPECT_THAT([&] { save_model(forest, "/dev/full"); }, ThrowsMessage<Error>(HasSubstr("/dev/full")));
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -2,16 +2,13 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <fstream>
-
+#include "io/test_files.h"
 #include "vesalius/detect.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
 using testing::ThrowsMessage;
@@ -91,9 +88,8 @@ TEST(OptionsFile, DescribesEveryOption) {
 }
 
 TEST(OptionsFile, DetectorOptionsRoundTripThroughAFile) {
-  const fs::path folder = fs::path(testing::TempDir()) / "vesalius_options_file_test";
-  fs::create_directories(folder);
-  const std::string path = (folder / "o.toml").string();
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "o.toml";
   DetectOptions changed;
   changed.search.min_parts = 9;
   changed.cluster.max_gap_m = 0.125F;
@@ -106,7 +102,6 @@ TEST(OptionsFile, DetectorOptionsRoundTripThroughAFile) {
   EXPECT_EQ(options_toml(all), options_toml([&](OptionVisitor& v) { visit_options("", changed, v); }));
   RangeCheck check;
   EXPECT_NO_THROW(visit_options("", again, check)) << "defaults lie in their ranges";
-  fs::remove_all(folder);
 }
 
 TEST(NearestName, FindsSlipsOnly) {

@@ -10,6 +10,7 @@
 #include "io/model_file.h"
 #include "io/open_source.h"
 #include "io/read_file.h"
+#include "io/test_files.h"
 #include "vesalius/error.h"
 #include "vesalius/random.h"
 #include "vesalius/tree_walk.h"
@@ -153,11 +154,8 @@ TEST(TextTree, SaysLineAndExpectation) {
 
 class TextTreeFiles : public testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
   std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return (folder_ / name).string();
+    return test::put(folder_ / name, bytes);
   }
   static std::string pack(std::string text) {
     std::string packed(text.size() + 1000, '\0');
@@ -167,7 +165,7 @@ class TextTreeFiles : public testing::Test {
   }
 
  private:
-  fs::path folder_ = fs::path(testing::TempDir()) / "vesalius_text_trees_test";
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(TextTreeFiles, PlainAndPackedGiveTheSameTrees) {

@@ -1,6 +1,7 @@
 #include "synth/makehuman.h"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -144,8 +145,8 @@ std::optional<std::filesystem::path> unpacked_makehuman() {
   const std::filesystem::path shared = set != nullptr ? set : VESALIUS_SOURCE_DIR "/../shared";
   const std::filesystem::path archive = shared / "assets" / "makehuman.tar.xz";
   if (!std::filesystem::exists(archive)) return std::nullopt;
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "vesalius_makehuman_test";
-  std::filesystem::remove_all(folder);
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("vesalius_makehuman_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   const std::string command = "tar -C '" + folder.string() + "' -xf '" + archive.string() + "'";
   if (std::system(command.c_str()) != 0) return std::nullopt;

@@ -1,6 +1,7 @@
 #include "synth/pose_library.h"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -160,7 +161,7 @@ TEST(PoseLibrary, OfRealMotionsIsPlausible) {
   const fs::path shared = given != nullptr ? fs::path(given) : fs::path(VESALIUS_SOURCE_DIR) / "../shared";
   const fs::path archive = shared / "assets/mocap.tar.xz";
   if (!fs::exists(archive)) GTEST_SKIP() << "no motion captures: set VESALIUS_SHARED";
-  const fs::path folder = fs::path(testing::TempDir()) / "vesalius_pose_library_test";
+  const fs::path folder = fs::path(testing::TempDir()) / ("vesalius_pose_library_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   const std::string command = "tar -xJf '" + archive.string() + "' -C '" + folder.string() + "'";
   ASSERT_EQ(std::system(command.c_str()), 0) << command;  // NOLINT(concurrency-mt-unsafe)

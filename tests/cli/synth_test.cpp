@@ -10,6 +10,7 @@
 #include "io/image_file.h"
 #include "io/labelled_dataset.h"
 #include "io/open_source.h"
+#include "io/test_files.h"
 #include "run_program.h"
 
 namespace vesalius {
@@ -18,17 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A folder of this test's own, gone afterwards.
 class SynthProgram : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("vesalius_synth_") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_ / name; }
 
   /// Small frames of few built-in bodies.
   static std::string synth(const std::string& more) {
@@ -49,7 +42,7 @@ class SynthProgram : public testing::Test {
   }
 
  private:
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(SynthProgram, WritesFramesThatTheReaderGives) {
