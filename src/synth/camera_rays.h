@@ -19,6 +19,7 @@ class CameraRays {
     for (int v = 0; v < camera.height + kBeyond; ++v) y_.push_back(camera.point(0.F, static_cast<float>(v), 1.F).y());
   }
 
+  const float* x() const { return x_.data(); }
   float x(int u) const { return x_[static_cast<std::size_t>(u)]; }
   float y(int v) const { return y_[static_cast<std::size_t>(v)]; }
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "synth/noise_angle.h"
+#include "synth/noise_kernel.h"
 #include "synth/noise_occlusion.h"
 
 namespace vesalius::synth {
@@ -14,7 +14,6 @@ namespace {
 
 constexpr float kHalfPi = 1.57079633F;
 constexpr float kLateralGrowth = 0.035F / 0.8F;  // Nguyen et al. 2012: sigma = 0.8 + 0.035 angle / (pi/2 - angle) px
-constexpr float kSmallestCosine = 0.02F;
 constexpr float kSmallestJump_m = 0.08F;
 constexpr float kFurthestJitter = 3.F;  // sigma
 constexpr float kSmallestLight = 1e-6F;
@@ -32,6 +31,11 @@ float exceeded_by(float p) {
 
 /// Halves away from zero, as std::lround(), which is a call that costs more than all else here.
 int whole_px(float pixels) { return static_cast<int>(pixels + std::copysign(0.5F, pixels)); }
+
+/// Angle (rad) from its cosine in [0, 1]: Abramowitz and Stegun 4.4.45, error below 7e-5.
+float angle_of(float c) {
+  return std::sqrt(1.F - c) * (1.5707288F + c * (-0.2121144F + c * (0.0742610F - 0.0187293F * c)));
+}
 
 /// How far a silhouette makes itself felt.
 int influence_px(const Sensor& sensor, int reach_px) {
@@ -65,26 +69,17 @@ Aim::Aim(const Rendering& rendering, const Sensor& sensor, Random& random)
       nearest_m_(nearest_within(rendering.depth_m, reach_px_)),
       shift_u_(width_, height_, sensor.window_px, random),
       shift_v_(shift_u_, random) {
-  row_.z.resize(width_);
-  row_.cosine.resize(width_);
-  row_.infrared.resize(width_);
-  row_.fall_off.resize(width_);
+  for (Eigen::ArrayXf* padded : {&row_.z, &row_.cosine, &row_.infrared, &row_.fall_off}) {
+    *padded = Eigen::ArrayXf::Zero(padded_width(width_));
+  }
   row_.source.resize(static_cast<std::size_t>(width_));
 }
 
 const AimedRow& Aim::row(int v, const Eigen::ArrayXf& losses) {
-  const float y = rays_.y(v);
-  const Eigen::Vector3f* normals = in_.normal.row(v);
-  for (int u = 0; u < width_; ++u) {
-    const float x = rays_.x(u);
-    row_.fall_off[u] = x * x + y * y + 1.F;
-    row_.cosine[u] = -(normals[u].x() * x + normals[u].y() * y + normals[u].z());
-  }
+  face_row(in_.normal.row(v), rays_.x(), rays_.y(v), width_, row_.cosine.data(), row_.fall_off.data());
   std::copy_n(in_.infrared.row(v), width_, row_.infrared.data());
   std::copy_n(seen_m_.row(v), width_, row_.z.data());
   std::iota(row_.source.begin(), row_.source.end(), static_cast<std::uint32_t>(v * width_));
-  row_.cosine = (row_.cosine * row_.fall_off.rsqrt()).max(kSmallestCosine).min(1.F);
-  row_.fall_off = row_.fall_off.square().inverse();
   const std::uint8_t* near = near_silhouette_.row(v);
   for (int u = 0; u < width_; ++u) {
     if (near[u] == 0) continue;

@@ -12,10 +12,10 @@
 
 namespace vesalius::synth {
 
-/// What the pixels of one row of a sensor read, as arrays for the formulas that follow.
+/// What the pixels of one row of a sensor read, as padded arrays for the formulas that follow (noise_kernel.h).
 struct AimedRow {
   Eigen::ArrayXf z;         ///< metres; 0: nothing
-  Eigen::ArrayXf cosine;    ///< of the angle between ray and normal, 0.02-1
+  Eigen::ArrayXf cosine;    ///< of the angle between ray and normal, kSmallestCosine to 1
   Eigen::ArrayXf infrared;  ///< share of light sent back
   Eigen::ArrayXf fall_off;  ///< fourth power of the cosine between ray and optical axis: share of light off the axis
   std::vector<std::uint32_t> source;  ///< pixel of the rendering, row-major

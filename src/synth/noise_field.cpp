@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "synth/noise_kernel.h"
+
 namespace vesalius::synth {
 
 std::vector<NoiseField::Tap> NoiseField::taps(int count, float spacing) {
@@ -30,7 +32,7 @@ NoiseField::NoiseField(int width, int height, float window_px, Random& random)
   assert(width > 0 && height > 0 && window_px >= 1.F);
   lattice_width_ = columns_.back().first + 4;
   lattice_.resize(lattice_width_ * (rows_.back().first + 4));
-  row_.resize(width);
+  row_ = Eigen::ArrayXf::Zero(padded_width(width));
   draw(random);
 }
 

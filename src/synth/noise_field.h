@@ -28,7 +28,7 @@ class NoiseField {
   NoiseField(const NoiseField& like, Random& random);
 
   float at(int u, int v) const;
-  /// The values of row v: `width` of them.
+  /// The values of row v, padded as noise_kernel.h wants it.
   const Eigen::ArrayXf& row(int v);
 
  private:

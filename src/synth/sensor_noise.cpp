@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "synth/noise_aim.h"
-#include "synth/noise_angle.h"
 #include "synth/noise_field.h"
+#include "synth/noise_kernel.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {
@@ -16,22 +16,10 @@ namespace {
 
 using Array = Eigen::ArrayXf;
 
-constexpr float kHalfPi = 1.57079633F;
-// Nguyen et al. 2012: axial sigma += 0.0001 / sqrt(z) t^2, t = angle / (pi/2 - angle), cut where it grows without
-// bound.
-constexpr float kGrazing = 0.0001F;
-constexpr float kLargestAngle = 1.55F;
-constexpr float kDarkReference_m = 2.F;  // where Sensor::min_infrared holds
-// How fast readings vanish, in sigma of the noise that decides: per doubling of the signal, per radian.
-constexpr float kKeptPerDoubling = 1.2F;
-constexpr float kKeptPerRad = 1.F / 0.052F;  // 3 degrees
 // A hole's rim is rough: share of the deciding noise that is independent from pixel to pixel.
 constexpr float kLossGrain = 0.08F;
 // Holes are larger than what errors hang together over.
 constexpr float kLossWindows = 2.F;
-constexpr float kNearest_m = 0.1F;
-constexpr float kSmallestAmplitude = 1e-4F;
-constexpr float kPerLog2 = 1.44269504F;  // 1 / ln 2
 
 Border draw_border(const Sensor& sensor, Random& random) {
   const auto draw = [&](int low, int high) {
@@ -72,15 +60,6 @@ class Reading {
  private:
   const Array& losses(int v);
   const Array& errors(int v);
-  Array kept(const AimedRow& row, const Array& angle) const;
-  Array measured(const AimedRow& row, const Array& angle, const Array& error) const;
-  Array structured_light(const Array& z, const Array& angle, const Array& error) const;
-  Array stereo(const Array& z, const Array& error) const;
-  Array time_of_flight(const AimedRow& row, const Array& error) const;
-  Array quantised(const Array& disparity_px) const;
-  Array axial_sigma(const Array& z) const {
-    return sensor_.axial_base_m + sensor_.axial_z2 * (z - sensor_.axial_z0_m).square();
-  }
 
   const Sensor& sensor_;
   Random& random_;
@@ -88,7 +67,8 @@ class Reading {
   Border border_;
   Aim aim_;
   NoiseField error_, loss_;
-  Array white_, grainy_;  ///< scratch
+  Array white_, grainy_;  ///< scratch, padded
+  std::vector<std::uint16_t> read_mm_;
 };
 
 Reading::Reading(const Rendering& rendering, const Sensor& sensor, Random& random)
@@ -100,82 +80,41 @@ Reading::Reading(const Rendering& rendering, const Sensor& sensor, Random& rando
       aim_(rendering, sensor, random),
       error_(width_, height_, sensor.window_px, random),
       loss_(width_, height_, kLossWindows * sensor.window_px, random),
-      white_(width_),
-      grainy_(width_) {}
+      white_(Array::Zero(padded_width(width_))),
+      grainy_(Array::Zero(padded_width(width_))),
+      read_mm_(static_cast<std::size_t>(padded_width(width_))) {}
 
 DepthImage Reading::run(Image<std::uint32_t>* source) {
   DepthImage depth(width_, height_, 0);
+  const auto at = [](int u) { return static_cast<std::size_t>(u); };
+  const int right = std::max(border_.left, width_ - border_.right);
   for (int v = border_.top; v < height_ - border_.bottom; ++v) {
     const Array& loss = losses(v);
     const AimedRow& row = aim_.row(v, loss);
-    const Array angle = angle_of(row.cosine);
-    const Array keep = kept(row, angle);
-    const Array z = measured(row, angle, errors(v));
-    for (int u = border_.left; u < width_ - border_.right; ++u) {
-      if (row.z[u] == 0.F || loss[u] > keep[u]) continue;
-      depth(u, v) = millimetres(sensor_, z[u]);
-      if (source != nullptr && depth(u, v) != 0) (*source)(u, v) = row.source[static_cast<std::size_t>(u)];
-    }
+    read_row(sensor_,
+             {row.z.data(), row.cosine.data(), row.infrared.data(), row.fall_off.data(), loss.data(), errors(v).data()},
+             width_, read_mm_.data());
+    std::copy(read_mm_.begin() + border_.left, read_mm_.begin() + right, depth.row(v) + border_.left);
+    if (source == nullptr) continue;
+    std::uint32_t* from = source->row(v);
+    for (int u = border_.left; u < right; ++u) from[u] = read_mm_[at(u)] != 0 ? row.source[at(u)] : from[u];
   }
   return depth;
 }
 
 /// Normal noise that decides which readings are lost: smooth, so that holes are blotches, with rough rims.
 const Array& Reading::losses(int v) {
-  for (float& value : grainy_) value = kLossGrain * quick_normal(random_);
-  grainy_ += std::sqrt(1.F - kLossGrain * kLossGrain) * loss_.row(v);
+  const float smooth = std::sqrt(1.F - kLossGrain * kLossGrain);
+  const Array& field = loss_.row(v);
+  for (int u = 0; u < width_; ++u) grainy_[u] = kLossGrain * quick_normal(random_) + smooth * field[u];
   return grainy_;
 }
 
 /// Normal noise of the depth: alike within a matching window; with time of flight each pixel measures for itself.
 const Array& Reading::errors(int v) {
   if (sensor_.kind != SensorKind::time_of_flight) return error_.row(v);
-  for (float& value : white_) value = quick_normal(random_);
+  std::generate_n(white_.data(), width_, [&] { return quick_normal(random_); });
   return white_;
-}
-
-/// Largest loss noise at which there still is a reading: the surface must send back enough light and not be too flat.
-Array Reading::kept(const AimedRow& row, const Array& angle) const {
-  const Array signal = row.infrared * row.cosine * row.fall_off * (kDarkReference_m / row.z).square();
-  const Array doublings = (signal * (1.F / sensor_.min_infrared)).log() * kPerLog2;
-  return (kKeptPerDoubling * doublings).min((sensor_.max_angle_rad - angle) * kKeptPerRad);
-}
-
-/// Metres; 0 = no reading.
-Array Reading::measured(const AimedRow& row, const Array& angle, const Array& error) const {
-  switch (sensor_.kind) {
-    case SensorKind::structured_light:
-      return structured_light(row.z, angle, error);
-    case SensorKind::stereo:
-      return stereo(row.z, error);
-    default:
-      return time_of_flight(row, error);
-  }
-}
-
-Array Reading::structured_light(const Array& z, const Array& angle, const Array& error) const {
-  const Array limited = angle.min(kLargestAngle);
-  const Array t = limited / (kHalfPi - limited);
-  const Array sigma = axial_sigma(z) + kGrazing * z.sqrt().inverse() * t.square();
-  // The formula was measured behind the quantisation, whose share must not count twice.
-  const Array step = z.square() * (sensor_.disparity_step_px / sensor_.disparity_px_m);
-  const Array before = (sigma.square() - step.square() / 12.F).max(0.F).sqrt();
-  return quantised(sensor_.disparity_px_m / (z + before * error).max(kNearest_m));
-}
-
-Array Reading::stereo(const Array& z, const Array& error) const {
-  return quantised(sensor_.disparity_px_m / z + sensor_.matching_px * error);
-}
-
-Array Reading::time_of_flight(const AimedRow& row, const Array& error) const {
-  const Array amplitude = (row.infrared * row.cosine * row.fall_off).max(kSmallestAmplitude);
-  return row.z + (axial_sigma(row.z) + sensor_.amplitude_z2 * row.z.square() / amplitude) * error;
-}
-
-/// Depth of disparities that come in steps.
-Array Reading::quantised(const Array& disparity_px) const {
-  const float step = sensor_.disparity_step_px;
-  return sensor_.disparity_px_m / ((disparity_px * (1.F / step) + 0.5F).floor() * step);
 }
 
 }  // namespace
