@@ -161,6 +161,21 @@ void add_joint_curve(const SetResult& set, Document& document) {
   add_plot(plot, set.name + "_joints", "Share of joints within a distance of the truth", document);
 }
 
+/// Average precision over all people proposed.
+void add_joint_precision(const SetResult& set, Document& document) {
+  const auto averages = set.joint_precision.averages();
+  if (averages.empty()) return;
+  std::vector<std::vector<std::string>> rows;
+  double sum = 0.0;
+  for (const auto& [joint, precision] : averages) {
+    rows.push_back({joint, fmt::format("{:.1f} %", 100.0 * precision)});
+    sum += precision;
+  }
+  rows.push_back({"mean", fmt::format("{:.1f} %", 100.0 * sum / static_cast<double>(averages.size()))});
+  document.paragraph("Average precision of the joints of all people proposed, within 10 cm:");
+  document.table({"joint", "average precision"}, rows);
+}
+
 /// The classes that a class is most often taken for.
 void add_confusion(const PixelConfusion& confusion, const BodyModel& body, Document& document) {
   const auto name = [&](int label) {
@@ -206,6 +221,7 @@ void add_set(const SetResult& set, const Evaluation& evaluation, Document& docum
   add_tables(set.figures.estimates(), document);
   add_detection_curves(set, evaluation, document);
   add_joint_curve(set, document);
+  add_joint_precision(set, document);
   add_ablation(set, document);
   if (set.confusion) add_confusion(*set.confusion, evaluation.body, document);
   for (const WorstFrame& worst : set.worst) {

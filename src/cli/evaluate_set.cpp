@@ -157,6 +157,7 @@ class SetEvaluation {
     result_.log.proposals.insert(result_.log.proposals.end(), score.proposals.begin(), score.proposals.end());
     result_.samples.insert(result_.samples.end(), score.samples.begin(), score.samples.end());
     for (const auto& errors_m : score.joint_errors_m) result_.joint_curve.add(errors_m);
+    result_.joint_precision.add(score.joint_precision);
     for (const JointOffset& offset : score.offsets)
       result_.offsets_m[offset.set][offset.joint].push_back(offset.behind_m);
     if (score.confusion) {

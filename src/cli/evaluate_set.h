@@ -43,6 +43,7 @@ struct SetResult {
   FigureTable figures;
   DetectionLog log;
   JointCurve joint_curve;
+  JointPrecision joint_precision;
   std::optional<PixelConfusion> confusion;
   std::map<std::string, std::map<std::string, std::vector<double>>> offsets_m;  ///< [joint set][joint]
   std::vector<ScoreSample> samples;                                             ///< to fit the score on
@@ -60,10 +61,10 @@ struct SetRequest {
 };
 
 /// Scores all frames of a source on all threads allowed; what it holds does not grow with their number, but for the
-/// 28 bytes of a judged proposal and the 20 of a sample. With `variants` frames come one after the other, each through
-/// `scorer` and all variants in turn, and are timed (4 bytes each): times of one frame compare even where the machine's
-/// pace changes. Throws Error for a source that cannot be opened, for labels of other parts than the model's, for the
-/// first frame that fails (unless it is to keep going) and when interrupted.
+/// 28 bytes of a judged proposal, the 8 of each of its joints and the 20 of a sample. With `variants` frames come one
+/// after the other, each through `scorer` and all variants in turn, and are timed (4 bytes each): times of one frame
+/// compare even where the machine's pace changes. Throws Error for a source that cannot be opened, for labels of other
+/// parts than the model's, for the first frame that fails (unless it is to keep going) and when interrupted.
 SetResult evaluate_set(const SetRequest& request, const FrameScorer& scorer, const std::vector<Variant>& variants,
                        Progress& progress);
 

@@ -6,7 +6,7 @@ SceneLabels label_scene(const PixelLabeller& labeller, const DetectOptions& opti
                         const Mask* body) {
   const bool by_mode = options.smooth.mode || !labeller.has_distributions();
   Posteriors posteriors;
-  labeller.label_into(frame.depth, frame.camera, options.label.half, posteriors);
+  labeller.label_into(frame.depth, frame.camera, options.label, posteriors);
   if (!by_mode) posteriors = mean_filter(posteriors, frame.depth, options.smooth);
   const auto choose = [&](const Mask* prior) {
     const LabelChoice choice{labeller.body().part_count(), labeller.has_background(), prior};

@@ -135,13 +135,14 @@ void FrameScorer::find_people(const TrueFrame& frame, bool fit_joints, FrameScor
   const std::vector<const Person*> of_person = found_of_each(score.people, matches, score.expected);
   append(score.terms, visible_part_terms(frame, of_person, body()));
   append(score.terms, breakdown_terms(frame, of_person, body()));
-  log_proposals(frame, trace, score);
+  log_proposals(frame, trace, fit_joints, score);
   judge_joints(frame, of_person, fit_joints, score);
 }
 
-void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, FrameScore& score) const {
+void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const {
   score.samples = score_samples(trace, frame.truth, frame.frame.depth);
   const auto proposals = distinct_proposals(trace, options_.detect.refine.max_overlap);
+  if (!fit_joints) judge_joint_proposals(frame, proposals, score);
   const std::vector<Match> matches = match_people(proposals, frame.truth, frame.frame.depth);
   for (std::size_t i = 0; i < proposals.size(); ++i) {
     if (matches[i].kind == Match::Kind::ignored) continue;
@@ -153,6 +154,23 @@ void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, Fram
     }
     score.proposals.push_back(judged);
   }
+}
+
+void FrameScorer::judge_joint_proposals(const TrueFrame& frame, const std::vector<Proposal>& proposals,
+                                        FrameScore& score) const {
+  const FrameTruth& truth = frame.truth;
+  const JointSet* set =
+      truth.joint_names.empty() ? nullptr : find_joint_set(body(), truth.joint_names, truth.joint_set);
+  if (set == nullptr) return;
+  std::vector<JointProposals> judged;
+  for (const Proposal& proposal : proposals) {
+    Skeleton skeleton = *proposal.skeleton;
+    predict_missing_parts(body(), skeleton);
+    const auto index = static_cast<std::size_t>(set - body().joint_sets.data());
+    judged.push_back({proposal.score, joints_by_name(truth.joint_names, *set, derive_joints(body(), skeleton)[index])});
+  }
+  score.joint_precision.add(truth.joint_names, std::move(judged), truth.joints,
+                            static_cast<std::size_t>(score.expected));
 }
 
 void FrameScorer::judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,

@@ -9,6 +9,7 @@
 #include "eval/figure_table.h"
 #include "eval/fit_score.h"
 #include "eval/joint_figures.h"
+#include "eval/joint_precision.h"
 #include "eval/label_scene.h"
 #include "eval/pixel_figures.h"
 #include "vesalius/detect.h"
@@ -23,6 +24,7 @@ struct FrameScore {
   std::vector<JudgedProposal> proposals;
   std::vector<ScoreSample> samples;                 ///< to fit the score on
   std::vector<std::vector<double>> joint_errors_m;  ///< of each true person (joint_errors)
+  JointPrecision joint_precision;                   ///< of all people proposed, whatever their score
   std::optional<PixelConfusion> confusion;          ///< where the true labels are known
   std::vector<JointOffset> offsets;                 ///< of a frame to fit joints on
 
@@ -56,7 +58,8 @@ class FrameScorer {
   std::vector<Person> detect(const Frame& frame, Trace& trace) const;
   SceneLabels label(const Frame& frame, const Mask* body = nullptr) const;
   void find_people(const TrueFrame& frame, bool fit_joints, FrameScore& score) const;
-  void log_proposals(const TrueFrame& frame, const Trace& trace, FrameScore& score) const;
+  void log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const;
+  void judge_joint_proposals(const TrueFrame& frame, const std::vector<Proposal>& proposals, FrameScore& score) const;
   void judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
                     FrameScore& score) const;
   void judge_labels(const TrueFrame& frame, FrameScore& score) const;

@@ -14,8 +14,12 @@
 namespace vesalius {
 namespace {
 
+using ::testing::_;
+using ::testing::Each;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Pair;
 using ::testing::ThrowsMessage;
 
 const Camera kCamera{160, 120, 131.25F, 131.25F, 79.5F, 59.5F};
@@ -106,6 +110,8 @@ TEST(FrameScorer, PerfectLabelsGivePerfectFigures) {
   EXPECT_GT(value(score, "parts.right"), 0.8);
   EXPECT_DOUBLE_EQ(value(score, "joints.at_10cm"), 1.0);
   EXPECT_LT(value(score, "joints.error_m"), 0.06);
+  EXPECT_THAT(score.joint_precision.averages(),
+              ElementsAre(Pair("neck", 1.0), Pair("l_elbow", 1.0), Pair("r_hand", 1.0)));
   EXPECT_THAT(score.what_went_wrong, IsEmpty());
   ASSERT_EQ(score.proposals.size(), 1U);
   EXPECT_TRUE(score.proposals[0].person);
@@ -153,6 +159,7 @@ TEST(FrameScorer, MissedAndSurplusPeople) {
   EXPECT_DOUBLE_EQ(value(missed, "people.found"), 0.5);
   EXPECT_DOUBLE_EQ(value(missed, "part.seen.neck"), 0.5);
   EXPECT_DOUBLE_EQ(value(missed, "joints.at_10cm"), 0.5);
+  EXPECT_THAT(missed.joint_precision.averages(), Each(Pair(_, 0.5)));
   EXPECT_THAT(missed.what_went_wrong, HasSubstr("1 of 2 people missed"));
   EXPECT_GE(missed.badness, 1.0);
   frame.truth = {};
@@ -169,6 +176,7 @@ TEST(FrameScorer, FitsJointsInsteadOfScoringThem) {
   const FrameScore score = scorer(frame, false).score(frame, true);
   EXPECT_TRUE(std::isnan(value(score, "joints.at_10cm")));
   EXPECT_THAT(score.joint_errors_m, IsEmpty());
+  EXPECT_THAT(score.joint_precision.averages(), IsEmpty());
   ASSERT_EQ(score.offsets.size(), 3U);
   for (const JointOffset& offset : score.offsets) {
     EXPECT_GT(offset.behind_m, 0.0);  // the middle of a part lies behind its surface

@@ -8,20 +8,6 @@
 namespace vesalius {
 namespace {
 
-Box bounding_box(const Mask& mask) {
-  int left = mask.width(), right = -1, top = mask.height(), bottom = -1;
-  for (int v = 0; v < mask.height(); ++v) {
-    for (int u = 0; u < mask.width(); ++u) {
-      if (mask(u, v) == 0) continue;
-      left = std::min(left, u);
-      right = std::max(right, u);
-      top = std::min(top, v);
-      bottom = v;
-    }
-  }
-  return right < 0 ? Box{} : Box{left, top, right - left + 1, bottom - top + 1};
-}
-
 DepthImage without(const DepthImage& depth, const Mask& mask) {
   DepthImage out = depth;
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -32,10 +18,10 @@ DepthImage without(const DepthImage& depth, const Mask& mask) {
 
 /// Depth of the mask's pixels inside the box; the rest counts as far.
 DepthImage keep_only(const DepthImage& depth, const Mask& mask, const Box& box) {
-  DepthImage out(box.width, box.height, 0);
+  DepthImage out = crop(depth, box);
   for (int v = 0; v < box.height; ++v) {
     for (int u = 0; u < box.width; ++u) {
-      if (mask(box.u + u, box.v + v) != 0) out(u, v) = depth(box.u + u, box.v + v);
+      if (mask(box.u + u, box.v + v) == 0) out(u, v) = 0;
     }
   }
   return out;
@@ -102,8 +88,9 @@ class Pipeline {
   /// Of pass 1, smoothed unless labels are.
   const Posteriors& posteriors() const { return by_mode() ? workspace_.raw : workspace_.smooth; }
 
-  LabelImage choose(const Posteriors& posteriors, const DepthImage& depth, const Mask* prior) const {
-    const LabelChoice choice{body_.part_count(), labeller_.has_background(), prior};
+  LabelImage choose(const Posteriors& posteriors, const DepthImage& depth, const Mask* prior,
+                    const Box* box = nullptr) const {
+    const LabelChoice choice{body_.part_count(), labeller_.has_background(), prior, box};
     LabelImage labels = choose_labels(posteriors, depth, choice, options_.label);
     return by_mode() ? mode_filter(labels, depth, options_.smooth) : labels;
   }
@@ -113,7 +100,7 @@ class Pipeline {
   void first_pass(Trace* trace) {
     const DepthImage depth = labeller_.has_background() ? frame_.depth : without(frame_.depth, grower_.flat());
     Posteriors& raw = workspace_.raw;
-    labeller_.label_into(depth, frame_.camera, options_.label.half, raw);
+    labeller_.label_into(depth, frame_.camera, options_.label, raw);
     if (trace != nullptr) {
       const LabelChoice choice{body_.part_count(), labeller_.has_background(), nullptr};
       trace->raw_labels = choose_labels(raw, depth, choice, options_.label);
@@ -187,13 +174,14 @@ class Pipeline {
     Clusters clusters;
     if (labeller_.has_background()) {
       // Its own label already tells what is no person: keep the scene, take the mask as what is known now.
-      candidate.labels = choose(posteriors(), frame_.depth, &candidate.grown);
-      clusters = find_clusters(candidate.labels, frame_.depth, frame_.camera, body_, cluster);
+      candidate.labels = choose(posteriors(), frame_.depth, &candidate.grown, &box);
+      clusters = find_clusters(crop(candidate.labels, box), crop(frame_.depth, box), cropped(frame_.camera, box), body_,
+                               cluster);
     } else {
       const DepthImage alone = keep_only(frame_.depth, candidate.grown, box);
       const Camera camera = cropped(frame_.camera, box);
       Posteriors posteriors;
-      labeller_.label_into(alone, camera, options_.label.half, posteriors);
+      labeller_.label_into(alone, camera, options_.label, posteriors);
       if (!by_mode()) posteriors = mean_filter(posteriors, alone, options_.smooth);
       const LabelImage labels = choose(posteriors, alone, nullptr);
       clusters = find_clusters(labels, alone, camera, body_, cluster);

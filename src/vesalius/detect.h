@@ -41,11 +41,6 @@ struct DetectOptions {
 };
 void visit_options(const std::string& prefix, DetectOptions& options, OptionVisitor& visitor);
 
-/// Upright rectangle of pixels.
-struct Box {
-  int u = 0, v = 0, width = 0, height = 0;
-};
-
 /// Everything found about one person.
 struct Person {
   Skeleton skeleton;                       ///< parts with 3-D centre, extent, confidence and state

@@ -274,7 +274,8 @@ TEST(Detector, RefusesWhatCannotBeMeant) {
 class MemoryWatch : public TruthLabeller {
  public:
   using TruthLabeller::TruthLabeller;
-  void label_into(const DepthImage& depth, const Camera& camera, bool /*half*/, Posteriors& out) const override {
+  void label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& /*options*/,
+                  Posteriors& out) const override {
     given.push_back(out.sums.data());
     const Posteriors found = label(depth, camera);
     out.resize_like(found);

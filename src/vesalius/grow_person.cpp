@@ -138,14 +138,24 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
   return out;
 }
 
+const std::vector<std::uint8_t>& PersonGrower::colour_bins() const {
+  // Nothing in parallel inside: a thread that waits could come back here.
+  std::call_once(binned_, [&] {
+    colour_bins_.reserve(frame_.colour.size());
+    for (const Rgb colour : frame_.colour) {
+      colour_bins_.push_back(static_cast<std::uint8_t>(ColourModel::bin(colour, options_.min_saturation)));
+    }
+  });
+  return colour_bins_;
+}
+
 Mask PersonGrower::refused_colours(const Skeleton& rough, const Mask& seeds, const Mask& reach) const {
   Mask refused(seeds.width(), seeds.height(), 0);
   if (!options_.use_colour || frame_.colour.empty()) return refused;
   ColourModel person, rest;
   int person_count = 0, rest_count = 0;
-  std::vector<std::uint8_t> bins(seeds.size(), 0);
+  const std::vector<std::uint8_t>& bins = colour_bins();
   for (std::size_t i = 0; i < seeds.size(); ++i) {
-    bins[i] = static_cast<std::uint8_t>(ColourModel::bin(frame_.colour[i], options_.min_saturation));
     if (seeds[i] != 0) {
       person.add(bins[i]);
       ++person_count;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -66,12 +67,16 @@ class PersonGrower {
  private:
   /// 1 on pixels within `radius_m[part]` of each observed part's centre; 0 = not at all.
   Mask around_parts(const Skeleton& rough, const std::vector<float>& radius_m) const;
+  /// Of every pixel: worked out when first asked for, for most frames have nobody.
+  const std::vector<std::uint8_t>& colour_bins() const;
   Mask refused_colours(const Skeleton& rough, const Mask& seeds, const Mask& reach) const;
 
   const Frame& frame_;
   const BodyModel& body_;
   const GrowOptions& options_;
   Mask flat_;
+  mutable std::once_flag binned_;
+  mutable std::vector<std::uint8_t> colour_bins_;
 };
 
 }  // namespace vesalius

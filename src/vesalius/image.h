@@ -66,6 +66,19 @@ class Image {
   std::vector<T> pixels_;
 };
 
+/// Upright rectangle of pixels.
+struct Box {
+  int u = 0, v = 0, width = 0, height = 0;
+};
+
+/// The part of a picture inside a box, which lies within it.
+template <class T>
+Image<T> crop(const Image<T>& image, const Box& box) {
+  Image<T> part(box.width, box.height);
+  for (int v = 0; v < box.height; ++v) std::copy_n(image.row(box.v + v) + box.u, box.width, part.row(v));
+  return part;
+}
+
 /// Millimetres along the optical axis; 0 = no reading.
 using DepthImage = Image<std::uint16_t>;
 /// Index of a body part; `kBackground` where there is none.
@@ -73,6 +86,24 @@ using LabelImage = Image<std::uint8_t>;
 /// Non-zero inside.
 using Mask = Image<std::uint8_t>;
 using ColourImage = Image<Rgb>;
+
+/// The smallest box around what is inside; empty where nothing is.
+inline Box bounding_box(const Mask& mask) {
+  int left = mask.width(), right = -1, top = mask.height(), bottom = -1;
+  const auto inside = [](std::uint8_t value) { return value != 0; };
+  for (int v = 0; v < mask.height(); ++v) {
+    const std::uint8_t* row = mask.row(v);
+    const auto first = static_cast<int>(std::find_if(row, row + mask.width(), inside) - row);
+    if (first == mask.width()) continue;
+    int last = mask.width() - 1;
+    while (row[last] == 0) --last;
+    left = std::min(left, first);
+    right = std::max(right, last);
+    top = std::min(top, v);
+    bottom = v;
+  }
+  return right < 0 ? Box{} : Box{left, top, right - left + 1, bottom - top + 1};
+}
 
 /// Label of pixels that belong to no body part, and body index of pixels that belong to no person.
 inline constexpr std::uint8_t kBackground = 255;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "vesalius/choose_kernel.h"
+#include "vesalius/grid_posteriors.h"
 #include "vesalius/parallel.h"
 #include "vesalius/tree_walk.h"
 #include "vesalius/walk_kernels.h"
@@ -60,19 +60,20 @@ class Chooser {
         classes_(choice.part_count + (choice.has_background && choice.prior == nullptr ? 1 : 0)),
         margin_(static_cast<std::int64_t>(
             std::ceil(static_cast<double>(options.unsure_margin) * 255.0 * posteriors.trees * Weights::kOne))),
+        box_(choice.box != nullptr ? *choice.box : Box{0, 0, depth.width(), depth.height()}),
         first_(depth.width(), depth.height(), kBackground),
         unsure_(depth.width(), depth.height(), 0) {}
 
   LabelImage run() {
-    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) {
-      std::vector<std::uint8_t> skip(static_cast<std::size_t>(depth_.width()));
+    parallel_ranges(box_.height, kRowGrain, [&](int begin, int end) {
+      std::vector<std::uint8_t> skip(static_cast<std::size_t>(box_.width));
       std::vector<TopTwo> parts(skip.size());
-      for (int v = begin; v < end; ++v) choose_alone(v, skip, parts);
+      for (int v = box_.v + begin; v < box_.v + end; ++v) choose_alone(v, skip, parts);
     });
     LabelImage out(depth_.width(), depth_.height(), kBackground);
-    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) {
-      for (int v = begin; v < end; ++v) {
-        for (int u = 0; u < depth_.width(); ++u) {
+    parallel_ranges(box_.height, kRowGrain, [&](int begin, int end) {
+      for (int v = box_.v + begin; v < box_.v + end; ++v) {
+        for (int u = box_.u; u < box_.u + box_.width; ++u) {
           const std::uint8_t label = unsure_(u, v) != 0 ? ask_neighbours(u, v) : first_(u, v);
           out(u, v) = label < choice_.part_count ? label : kBackground;
         }
@@ -84,18 +85,23 @@ class Chooser {
  private:
   /// `skip` becomes 1 where no part may be, `parts` what the parts have elsewhere.
   void choose_alone(int v, std::vector<std::uint8_t>& skip, std::vector<TopTwo>& parts) {
-    const std::uint16_t* depth = depth_.row(v);
-    const std::uint8_t* prior = choice_.prior != nullptr ? choice_.prior->row(v) : nullptr;
-    for (std::size_t u = 0; u < skip.size(); ++u) {
-      skip[u] = depth[u] == 0 || (prior != nullptr && prior[u] == 0) ? 1 : 0;
-    }
-    find_top_two(posteriors_.at(0, v), static_cast<std::size_t>(posteriors_.classes), choice_.part_count, skip.data(),
-                 depth_.width(), parts.data());
+    const std::uint16_t* depth = depth_.row(v) + box_.u;
+    const std::uint8_t* prior = choice_.prior != nullptr ? choice_.prior->row(v) + box_.u : nullptr;
     const bool rivalled = classes_ > choice_.part_count;
-    for (int u = 0; u < depth_.width(); ++u) {
-      if (skip[static_cast<std::size_t>(u)] != 0) continue;
-      const TopTwo& top = parts[static_cast<std::size_t>(u)];
-      choose_between(top, rivalled ? posteriors_.at(u, v)[choice_.part_count] : std::uint16_t{0}, first_(u, v),
+    const std::uint8_t* settled =
+        rivalled && !posteriors_.settled.empty() ? posteriors_.settled.row(v) + box_.u : nullptr;
+    for (std::size_t i = 0; i < skip.size(); ++i) {
+      skip[i] = depth[i] == 0 || (prior != nullptr && prior[i] == 0) ? 1 : 0;
+      if (settled == nullptr || settled[i] == 0) continue;
+      skip[i] = 1;
+      first_(box_.u + static_cast<int>(i), v) = static_cast<std::uint8_t>(choice_.part_count);
+    }
+    find_top_two(posteriors_.at(box_.u, v), static_cast<std::size_t>(posteriors_.classes), choice_.part_count,
+                 skip.data(), box_.width, parts.data());
+    for (std::size_t i = 0; i < skip.size(); ++i) {
+      if (skip[i] != 0) continue;
+      const int u = box_.u + static_cast<int>(i);
+      choose_between(parts[i], rivalled ? posteriors_.at(u, v)[choice_.part_count] : std::uint16_t{0}, first_(u, v),
                      unsure_(u, v));
     }
   }
@@ -134,6 +140,7 @@ class Chooser {
   Weights weight_;
   int classes_;
   std::int64_t margin_;
+  Box box_;
   LabelImage first_;
   Mask unsure_;
 };
@@ -175,31 +182,6 @@ void label_rows_plainly(const Forest& forest, const std::vector<PackedTree>& pac
   }
 }
 
-/// Of half resolution.
-bool on_grid(int u, int v) { return u % 2 == 0 && v % 2 == 0; }
-
-/// Largest difference in depth to a neighbour whose posteriors a pixel takes over: parts of a body a hand's breadth
-/// apart are not one surface.
-constexpr int kGuideMm = 50;
-
-/// Gives a pixel between those of the grid the sums of that neighbour on it whose depth is nearest. False where none is
-/// near enough.
-bool take_from_grid(const DepthImage& depth, int u, int v, Posteriors& out) {
-  const std::uint16_t* nearest = nullptr;
-  int least = kGuideMm + 1;
-  for (int nv = v - v % 2; nv <= v + v % 2; nv += 2) {
-    for (int nu = u - u % 2; nu <= u + u % 2; nu += 2) {
-      if (!depth.contains(nu, nv) || depth(nu, nv) == 0) continue;
-      const int difference = std::abs(depth(nu, nv) - depth(u, v));
-      if (difference >= least) continue;
-      least = difference;
-      nearest = out.at(nu, nv);
-    }
-  }
-  if (nearest != nullptr) std::copy_n(nearest, out.classes, out.at(u, v));
-  return nearest != nullptr;
-}
-
 }  // namespace
 
 void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& visitor) {
@@ -209,6 +191,10 @@ void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& vi
                  {"", 0.0, 100.0, "Factor on the posteriors of all body parts."});
   visitor.option(prefix + "unsure-margin", o.unsure_margin,
                  {"", 0.0, 1.0, "Where the two best labels' probabilities differ by less, neighbours decide."});
+  visitor.option(prefix + "gate", o.gate,
+                 {"", 0.5, 2.0,
+                  "Where the forest, asked at every fourth pixel of every fourth row, gives the background this "
+                  "probability all around, it is not asked about pixels between; above 1 it is asked about all."});
   visitor.option(
       prefix + "half", o.half,
       {"", 0, 1, "Ask the forest at half resolution; other pixels take over what a neighbour of like depth has."});
@@ -226,20 +212,22 @@ ForestLabeller::ForestLabeller(Forest forest) : forest_(std::move(forest)) {
 
 Posteriors ForestLabeller::label(const DepthImage& depth, const Camera& camera) const {
   Posteriors out;
-  label_into(depth, camera, false, out);
+  label_into(depth, camera, {.gate = 2.F, .half = false}, out);
   return out;
 }
 
-void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, bool half, Posteriors& out) const {
-  out.resize_like({depth.width(), depth.height(), forest_.class_count(), static_cast<int>(forest_.trees.size()), {}});
+void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& options,
+                                Posteriors& out) const {
+  out.resize_like(
+      {depth.width(), depth.height(), forest_.class_count(), static_cast<int>(forest_.trees.size()), {}, {}});
   const OffsetScaler scaler(forest_.convention, camera);
   if (std::max(depth.width(), depth.height()) > PaddedDepth::kMaxSide) {
     parallel_ranges(depth.height(), kRowGrain,
                     [&](int begin, int end) { label_rows_plainly(forest_, packed_, depth, begin, end, scaler, out); });
     return;
   }
-  if (half) {
-    label_half(depth, scaler, out);
+  if (options.half || (options.gate <= 1.F && forest_.has_background)) {
+    label_sparsely(depth, scaler, options, out);
     return;
   }
   const PaddedDepth padded(depth, forest_.convention);
@@ -249,24 +237,54 @@ void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, b
   });
 }
 
-void ForestLabeller::label_half(const DepthImage& depth, const OffsetScaler& scaler, Posteriors& out) const {
+/// Ever finer: the gate's grid, what it leaves of the picture or of the next finer grid, the pixels between.
+void ForestLabeller::label_sparsely(const DepthImage& depth, const OffsetScaler& scaler, const LabelOptions& options,
+                                    Posteriors& out) const {
   const PaddedDepth padded(depth, forest_.convention);
-  const auto in_rows = [&](int begin, int end, const auto& wanted) {
+  const bool gated = options.gate <= 1.F && forest_.has_background;
+  const int step = options.half ? 2 : 1;
+  Mask done(depth.width(), depth.height(), 0);
+  const auto ask = [&](int begin, int end, const auto& wanted) {
     WalkPixels pixels(static_cast<std::size_t>(depth.width()) * static_cast<std::size_t>(end - begin), scaler,
                       forest_.convention);
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < depth.width(); ++u) {
-        if (depth(u, v) != 0 && wanted(u, v)) pixels.add(u, v, depth(u, v));
+        if (depth(u, v) == 0 || done(u, v) != 0 || !wanted(u, v)) continue;
+        pixels.add(u, v, depth(u, v));
+        std::fill_n(out.at(u, v), out.classes, std::uint16_t{0});
+        done(u, v) = 1;
       }
     }
     label_rows(packed_, padded, pixels, out);
   };
-  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
-    clear_rows(begin, end, out);
-    in_rows(begin, end, [](int u, int v) { return on_grid(u, v); });
+  const auto in_rows = [&](const auto& work) { parallel_ranges(depth.height(), kRowGrain, work); };
+  in_rows([&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < depth.width(); ++u) {
+        if (depth(u, v) == 0) std::fill_n(out.at(u, v), out.classes, std::uint16_t{0});
+      }
+    }
+    if (gated) ask(begin, end, [](int u, int v) { return on_grid(BackgroundGate::kStep, u, v); });
   });
-  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
-    in_rows(begin, end, [&](int u, int v) { return !on_grid(u, v) && !take_from_grid(depth, u, v, out); });
+  if (gated) {
+    const BackgroundGate gate(depth, out, options.gate);
+    out.settled = Mask(depth.width(), depth.height(), 0);
+    in_rows([&](int begin, int end) {
+      std::vector<std::uint8_t> shut(static_cast<std::size_t>(depth.width()));
+      for (int v = begin; v < end; ++v) {
+        gate.row(v, shut.data());
+        for (int u = 0; u < depth.width(); ++u) {
+          if (shut[static_cast<std::size_t>(u)] == 0 || depth(u, v) == 0 || done(u, v) != 0) continue;
+          out.settled(u, v) = take_from_grid(depth, BackgroundGate::kStep, u, v, out) ? 1 : 0;
+          done(u, v) = out.settled(u, v);
+        }
+      }
+    });
+  }
+  in_rows([&](int begin, int end) { ask(begin, end, [&](int u, int v) { return on_grid(step, u, v); }); });
+  if (!options.half) return;
+  in_rows([&](int begin, int end) {
+    ask(begin, end, [&](int u, int v) { return !take_from_grid(depth, step, u, v, out); });
   });
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "vesalius/camera.h"
@@ -10,39 +8,18 @@
 #include "vesalius/image.h"
 #include "vesalius/options.h"
 #include "vesalius/packed_tree.h"
+#include "vesalius/posteriors.h"
 #include "vesalius/tree_walk.h"
 
 namespace vesalius {
-
-/// P(c | x) of every pixel as sums over the trees of probabilities in 1/255: `classes` values a pixel, pixel after
-/// pixel. Body parts first, then the background where the forest has one. All zero where depth has no reading.
-struct Posteriors {
-  int width = 0;
-  int height = 0;
-  int classes = 0;
-  int trees = 0;  ///< sums / (255 * trees) are probabilities
-  std::vector<std::uint16_t> sums;
-
-  const std::uint16_t* at(int u, int v) const {
-    return sums.data() + (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)) *
-                             static_cast<std::size_t>(classes);
-  }
-  std::uint16_t* at(int u, int v) { return const_cast<std::uint16_t*>(std::as_const(*this).at(u, v)); }
-
-  /// Room for the same numbers; what they are is left open.
-  void resize_like(const Posteriors& other) {
-    width = other.width;
-    height = other.height;
-    classes = other.classes;
-    trees = other.trees;
-    sums.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(classes));
-  }
-};
 
 struct LabelOptions {
   float background_weight = 0.65F;  ///< multiplies the background's posterior; a run-time correction of its prior
   float person_weight = 1.F;        ///< multiplies the parts' posteriors
   float unsure_margin = 0.05F;      ///< difference in probability below which neighbours decide
+  /// Probability of the background from which a forest that is sure of it at every fourth pixel of every fourth row is
+  /// not asked about those between, where depth goes on; above 1 it is asked about all.
+  float gate = 0.9F;
   bool half = false;  ///< ask the forest at every second pixel of every second row, guided by depth elsewhere
 };
 void visit_options(const std::string& prefix, LabelOptions& options, OptionVisitor& visitor);
@@ -53,9 +30,10 @@ class PixelLabeller {
  public:
   virtual ~PixelLabeller() = default;
   virtual Posteriors label(const DepthImage& depth, const Camera& camera) const = 0;
-  /// The same into `out`, whose memory may be used again. `half` allows it to work on every second pixel of every
-  /// second row and to give the others what a neighbour of like depth has.
-  virtual void label_into(const DepthImage& depth, const Camera& camera, bool /*half*/, Posteriors& out) const {
+  /// The same into `out`, whose memory may be used again. `options.gate` and `options.half` allow it to leave pixels
+  /// out and to give them what a neighbour of like depth has.
+  virtual void label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& /*options*/,
+                          Posteriors& out) const {
     out = label(depth, camera);
   }
   virtual const BodyModel& body() const = 0;
@@ -70,14 +48,16 @@ class ForestLabeller : public PixelLabeller {
   /// Throws Error if the forest is inconsistent (check(Forest)).
   explicit ForestLabeller(Forest forest);
   Posteriors label(const DepthImage& depth, const Camera& camera) const override;
-  void label_into(const DepthImage& depth, const Camera& camera, bool half, Posteriors& out) const override;
+  void label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& options,
+                  Posteriors& out) const override;
   const BodyModel& body() const override { return forest_.body; }
   bool has_background() const override { return forest_.has_background; }
   bool has_distributions() const override { return distributions_; }
   const Forest& forest() const { return forest_; }
 
  private:
-  void label_half(const DepthImage& depth, const OffsetScaler& scaler, Posteriors& out) const;
+  void label_sparsely(const DepthImage& depth, const OffsetScaler& scaler, const LabelOptions& options,
+                      Posteriors& out) const;
 
   Forest forest_;
   std::vector<PackedTree> packed_;
@@ -90,6 +70,8 @@ struct LabelChoice {
   bool has_background = false;
   /// Optional: outside it pixels are background, inside the best part wins whatever the background says.
   const Mask* prior = nullptr;
+  /// Optional: pixels outside it are background and cost nothing.
+  const Box* box = nullptr;
 };
 
 /// The most likely class of each pixel, background written as kBackground. A pixel whose two best classes lie closer

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "vesalius/error.h"
+#include "vesalius/grid_posteriors.h"
 #include "vesalius/parallel.h"
 #include "vesalius/random.h"
 #include "vesalius/tree_walk.h"
@@ -189,7 +190,7 @@ TEST(ForestLabeller, AtHalfResolutionTakesOverWhatANeighbourOfLikeDepthHas) {
     const ThreadLimit limit(threads);
     Posteriors half = whole;  // whatever was there before
     std::ranges::fill(half.sums, std::uint16_t{7});
-    labeller.label_into(depth, camera, true, half);
+    labeller.label_into(depth, camera, {.gate = 2.F, .half = true}, half);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
         // Depths are equal or a step apart: the first of the grid's neighbours with the same depth, or the pixel
@@ -203,6 +204,63 @@ TEST(ForestLabeller, AtHalfResolutionTakesOverWhatANeighbourOfLikeDepthHas) {
         ASSERT_TRUE(std::equal(expected, expected + whole.classes, half.at(u, v))) << u << ' ' << v;
       }
     }
+  }
+}
+
+/// Background on the left half of the depths' range, parts on the right.
+Forest forest_by_depth(Random& random) {
+  Forest forest = empty_forest(true);
+  for (int t = 0; t < 2; ++t) {
+    Tree tree;
+    TreeNode node;  // probe of the reading itself against one far to the right: nearer than what is there, or not
+    node.du2 = 100;
+    node.threshold_mm = 0;
+    node.left = ~0;
+    node.right = ~1;
+    tree.nodes = {node};
+    tree.leaves = {random_leaf(random, 25), {{25, 0, 0, 0}, {255, 0, 0, 0}}};
+    forest.trees.push_back(tree);
+  }
+  return forest;
+}
+
+TEST(ForestLabeller, GateLeavesOutWhatIsSurelyBackgroundOnly) {
+  Random random(31);
+  const ForestLabeller labeller(forest_by_depth(random));
+  const int background = 25;
+  DepthImage depth(97, 61);
+  for (int v = 0; v < depth.height(); ++v) {
+    for (int u = 0; u < depth.width(); ++u) {
+      const int mm = u < 50 ? 3000 + 30 * (u % 9) : 1500 + 200 * static_cast<int>(random.below(3));
+      depth(u, v) = random.below(9) == 0 ? 0 : static_cast<std::uint16_t>(mm);
+    }
+  }
+  const Camera camera{97, 61, 60.F, 60.F, 48.F, 30.F};
+  const Posteriors whole = labeller.label(depth, camera);
+  for (const bool half : {false, true}) {
+    Posteriors without;
+    labeller.label_into(depth, camera, {.gate = 2.F, .half = half}, without);
+    int taken = 0;
+    for (const int threads : {1, 3}) {
+      const ThreadLimit limit(threads);
+      Posteriors gated = whole;
+      std::ranges::fill(gated.sums, std::uint16_t{7});  // whatever was there before
+      labeller.label_into(depth, camera, {.gate = 1.F, .half = half}, gated);
+      const BackgroundGate gate(depth, whole, 1.F);
+      std::vector<std::uint8_t> shut(97);
+      for (int v = 0; v < depth.height(); ++v) {
+        gate.row(v, shut.data());
+        for (int u = 0; u < depth.width(); ++u) {
+          const std::uint16_t* found = gated.at(u, v);
+          if (std::equal(found, found + whole.classes, without.at(u, v))) continue;
+          ++taken;
+          // At half resolution what was left out is handed on to neighbours.
+          ASSERT_TRUE(half || shut[static_cast<std::size_t>(u)] == 1) << u << ' ' << v;
+          ASSERT_EQ(found[background], 510) << "taken over from where the forest is sure";
+        }
+      }
+    }
+    EXPECT_GT(taken, 20) << "somewhere the forest alone thinks otherwise";
   }
 }
 
@@ -257,6 +315,32 @@ TEST_F(ChooseLabels, WeightsMoveTheBackground) {
   EXPECT_EQ(choose()(1, 1), kBackground);
   options.person_weight = 2.F;
   EXPECT_EQ(choose()(1, 1), 0);
+}
+
+TEST_F(ChooseLabels, OutsideItsBoxIsBackgroundAndInsideAsWithout) {
+  set_all({10, 200, 0, 40});
+  set(1, 2, {100, 99, 0, 0});  // unsure: its neighbours decide, those outside the box no longer
+  const LabelImage whole = choose();
+  const Box box{1, 1, 2, 2};
+  const LabelImage labels = choose_labels(posteriors, depth, {3, true, nullptr, &box}, options);
+  for (int v = 0; v < 3; ++v) {
+    for (int u = 0; u < 3; ++u) {
+      EXPECT_EQ(labels(u, v), u >= 1 && v >= 1 ? whole(u, v) : kBackground) << u << ' ' << v;
+    }
+  }
+}
+
+TEST_F(ChooseLabels, SettledPixelsAreBackgroundUnlessThePriorSaysOtherwise) {
+  set_all({0, 200, 0, 40});
+  posteriors.settled = Mask(3, 3, 0);
+  posteriors.settled(1, 1) = posteriors.settled(2, 1) = 1;
+  EXPECT_EQ(choose()(1, 1), kBackground);
+  EXPECT_EQ(choose()(0, 1), 1);
+  Mask prior(3, 3, 0);
+  prior(1, 1) = 1;
+  const LabelImage labels = choose(&prior);
+  EXPECT_EQ(labels(1, 1), 1);
+  EXPECT_EQ(labels(2, 1), kBackground);
 }
 
 TEST_F(ChooseLabels, PriorDecidesAboutTheBackground) {

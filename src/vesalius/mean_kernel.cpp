@@ -66,7 +66,9 @@ class RowMean {
     int summed = -2;  // pixel whose window is in `sums_`
     for (int u = 0; u < depth_.width(); ++u) {
       std::uint16_t* to = out_.at(u, v);
-      if (depth_(u, v) == 0) {
+      if (!in_.settled.empty() && in_.settled(u, v) != 0) {
+        std::copy_n(in_.at(u, v), classes_, to);
+      } else if (depth_(u, v) == 0) {
         std::fill_n(to, classes_, std::uint16_t{0});
       } else if (whole && u >= reach_ && u + reach_ < depth_.width() && AllNear(u, depth_(u, v))) {
         MeanOfColumns(u, summed == u - 1, to);

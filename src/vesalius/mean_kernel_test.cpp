@@ -71,6 +71,22 @@ TEST(MeanKernel, IsThePlainMeanOnEveryInstructionSet) {
   }
 }
 
+TEST(MeanKernel, LeavesSettledPixelsAsTheyAre) {
+  Random random(33);
+  Picture p = random_picture(random, 41, 23, 26, 10);
+  p.posteriors.settled = Mask(41, 23, 0);
+  for (std::uint8_t& settled : p.posteriors.settled) settled = random.below(3) == 0 ? 1 : 0;
+  std::vector<std::uint16_t> expected = plain_means(p, 5, 300);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (p.posteriors.settled[i / 26] != 0) expected[i] = p.posteriors.sums[i];
+  }
+  for_each_target([&](const char* target) {
+    Posteriors out = p.posteriors;
+    mean_rows(p.posteriors, p.depth, 5, 300, 0, 23, out);
+    EXPECT_EQ(out.sums, expected) << target;
+  });
+}
+
 TEST(MeanKernel, FitsWhereSumsOfAWindowAre16Bits) {
   Posteriors posteriors{10, 10, 26, 10, {}};
   EXPECT_TRUE(mean_rows_fit(posteriors, 5));  // 255 * 10 * 25 = 63750

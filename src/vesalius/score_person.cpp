@@ -12,82 +12,94 @@ namespace {
 /// Readings looked through for one beyond a hole: silhouettes have a rim without any.
 constexpr int kRim = 5;
 
+/// The pixels of a mask.
+class Inside {
+ public:
+  explicit Inside(const Mask& mask) : mask_(mask), box_(bounding_box(mask)) {}
+  const Mask& mask() const { return mask_; }
+
+  /// Calls `use(u, v)` for each, row by row.
+  template <class Use>
+  void each(Use&& use) const {
+    for (int v = box_.v; v < box_.v + box_.height; ++v) {
+      for (int u = box_.u; u < box_.u + box_.width; ++u) {
+        if (mask_(u, v) != 0) use(u, v);
+      }
+    }
+  }
+
+ private:
+  const Mask& mask_;
+  Box box_;
+};
+
 bool near_part(const Skeleton& skeleton, int part, const Eigen::Vector3f& point, float radius_m) {
   const SkeletonPart& found = skeleton.parts[static_cast<std::size_t>(part)];
   return found.state == State::observed && (found.centre - point).squaredNorm() <= radius_m * radius_m;
 }
 
-float share_explained(const Frame& frame, const Mask& mask, const LabelImage& labels, const Skeleton& skeleton,
+float share_explained(const Frame& frame, const Inside& inside, const LabelImage& labels, const Skeleton& skeleton,
                       const BodyModel& body, float radius_m) {
   long pixels = 0;
   long explained = 0;
-  for (int v = 0; v < mask.height(); ++v) {
-    for (int u = 0; u < mask.width(); ++u) {
-      if (mask(u, v) == 0) continue;
-      ++pixels;
-      const int label = labels(u, v);
-      if (label >= body.part_count()) continue;
-      const Eigen::Vector3f point = point_at(frame.camera, frame.depth, u, v);
-      // Seen from the side a labelling mixes left and right; either is an explanation.
-      const int mirror = body.parts[static_cast<std::size_t>(label)].mirror;
-      if (near_part(skeleton, label, point, radius_m) || near_part(skeleton, mirror, point, radius_m)) ++explained;
-    }
-  }
+  inside.each([&](int u, int v) {
+    ++pixels;
+    const int label = labels(u, v);
+    if (label >= body.part_count()) return;
+    const Eigen::Vector3f point = point_at(frame.camera, frame.depth, u, v);
+    // Seen from the side a labelling mixes left and right; either is an explanation.
+    const int mirror = body.parts[static_cast<std::size_t>(label)].mirror;
+    if (near_part(skeleton, label, point, radius_m) || near_part(skeleton, mirror, point, radius_m)) ++explained;
+  });
   return pixels > 0 ? static_cast<float>(explained) / static_cast<float>(pixels) : 0.F;
 }
 
-float share_open(const Frame& frame, const Mask& mask, float step_m) {
+float share_open(const Frame& frame, const Inside& inside, float step_m) {
+  const Mask& mask = inside.mask();
   const int step_mm = static_cast<int>(std::lround(step_m * 1e3F));
   constexpr std::array<std::array<int, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
   long open = 0;
   long closed = 0;
-  for (int v = 0; v < mask.height(); ++v) {
-    for (int u = 0; u < mask.width(); ++u) {
-      if (mask(u, v) == 0) continue;
-      for (const auto& [du, dv] : kSides) {
-        if (!mask.contains(u + du, v + dv) || mask(u + du, v + dv) != 0) continue;
-        int beyond = 0;
-        for (int k = 1; k <= kRim && beyond == 0 && mask.contains(u + k * du, v + k * dv); ++k) {
-          beyond = frame.depth(u + k * du, v + k * dv);
-        }
-        const int here = frame.depth(u, v);
-        if (beyond == 0 || beyond > here + step_mm) {
-          ++open;
-        } else if (beyond >= here - step_mm) {
-          ++closed;  // nearer: occluded, says nothing
-        }
+  inside.each([&](int u, int v) {
+    for (const auto& [du, dv] : kSides) {
+      if (!mask.contains(u + du, v + dv) || mask(u + du, v + dv) != 0) continue;
+      int beyond = 0;
+      for (int k = 1; k <= kRim && beyond == 0 && mask.contains(u + k * du, v + k * dv); ++k) {
+        beyond = frame.depth(u + k * du, v + k * dv);
+      }
+      const int here = frame.depth(u, v);
+      if (beyond == 0 || beyond > here + step_mm) {
+        ++open;
+      } else if (beyond >= here - step_mm) {
+        ++closed;  // nearer: occluded, says nothing
       }
     }
-  }
+  });
   return open + closed > 0 ? static_cast<float>(open) / static_cast<float>(open + closed) : 0.F;
 }
 
 /// 1 where there is no background class.
-float share_of_body(const Mask& mask, const Posteriors& posteriors, int parts) {
+float share_of_body(const Inside& inside, const Posteriors& posteriors, int parts) {
   if (posteriors.classes == parts) return 1.F;
   double sum = 0.0;
   long pixels = 0;
-  for (int v = 0; v < mask.height(); ++v) {
-    for (int u = 0; u < mask.width(); ++u) {
-      if (mask(u, v) == 0) continue;
-      const std::uint16_t* sums = posteriors.at(u, v);
-      const double body = std::accumulate(sums, sums + parts, 0.0);
-      const double all = std::accumulate(sums + parts, sums + posteriors.classes, body);
-      if (all == 0.0) continue;  // no reading
-      sum += body / all;
-      ++pixels;
-    }
-  }
+  inside.each([&](int u, int v) {
+    const std::uint16_t* sums = posteriors.at(u, v);
+    const double body = std::accumulate(sums, sums + parts, 0.0);
+    const double all = std::accumulate(sums + parts, sums + posteriors.classes, body);
+    if (all == 0.0) return;  // no reading
+    sum += body / all;
+    ++pixels;
+  });
   return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
 }
 
-float likeness_of_area(const Frame& frame, const Mask& mask, float usual_m2) {
+float likeness_of_area(const Frame& frame, const Inside& inside, float usual_m2) {
   double area_m2 = 0.0;
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (mask[i] == 0) continue;
-    const double z = 1e-3 * frame.depth[i];
+  inside.each([&](int u, int v) {
+    const double z = 1e-3 * frame.depth(u, v);
     area_m2 += z * z / (static_cast<double>(frame.camera.fx) * static_cast<double>(frame.camera.fy));
-  }
+  });
   const double usual = static_cast<double>(usual_m2);
   return static_cast<float>(std::min(area_m2, usual) / std::max(area_m2, usual));
 }
@@ -148,12 +160,13 @@ ScoreOptions score_without_background() {
 
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
                          const Skeleton& skeleton, const BodyModel& body, const ScoreOptions& options) {
+  const Inside inside(mask);
   return {skeleton.score / static_cast<float>(body.part_count()),
-          share_explained(frame, mask, labels, skeleton, body, options.explained_radius_m),
-          share_open(frame, mask, options.open_step_m),
+          share_explained(frame, inside, labels, skeleton, body, options.explained_radius_m),
+          share_open(frame, inside, options.open_step_m),
           share_of_core(skeleton, body),
-          share_of_body(mask, posteriors, body.part_count()),
-          likeness_of_area(frame, mask, options.usual_area_m2)};
+          share_of_body(inside, posteriors, body.part_count()),
+          likeness_of_area(frame, inside, options.usual_area_m2)};
 }
 
 float person_score(const Evidence& e, const ScoreOptions& o) {

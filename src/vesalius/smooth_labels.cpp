@@ -67,6 +67,10 @@ void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, co
   for (int v = begin; v < end; ++v) {
     for (int u = 0; u < posteriors.width; ++u) {
       std::uint16_t* mean = out.at(u, v);
+      if (!posteriors.settled.empty() && posteriors.settled(u, v) != 0) {
+        std::copy_n(posteriors.at(u, v), total.size(), mean);
+        continue;
+      }
       if (depth(u, v) == 0) {
         std::fill_n(mean, total.size(), std::uint16_t{0});
         continue;

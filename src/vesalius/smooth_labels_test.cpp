@@ -101,6 +101,19 @@ TEST_P(Windows, MeanAgreesWithSumming) {
   }
 }
 
+TEST(MeanFilter, LeavesSettledPixelsAsTheyAre) {
+  const DepthImage depth(9, 9, 1000);
+  Posteriors in{9, 9, 6, 1, std::vector<std::uint16_t>(9 * 9 * 6, 0)};
+  in.settled = Mask(9, 9, 0);
+  in.settled(4, 4) = 1;
+  in.at(4, 4)[5] = in.at(1, 4)[5] = 250;
+  const Posteriors out = mean_filter(in, depth, {});
+  EXPECT_EQ(out.settled, in.settled);
+  EXPECT_EQ(out.at(4, 4)[5], 250);
+  EXPECT_EQ(out.at(1, 4)[5], 250 / 20) << "a window of 5 cut by the border";
+  EXPECT_EQ(out.at(5, 4)[5], 10) << "counts for its neighbours";
+}
+
 INSTANTIATE_TEST_SUITE_P(Sizes, Windows, testing::Values(1, 3, 5, 9));
 
 TEST(ModeFilter, RemovesASpeckleButNotAcrossADepthStep) {

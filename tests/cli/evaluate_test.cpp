@@ -188,8 +188,9 @@ TEST_F(Evaluate, JointsAreFittedOnFramesThatDoNotCount) {
   const Outcome run = evaluate(" --json " + path("j.json") + " --fit-joints " + path("j.toml"));
   fs::remove(path("frames/joints.csv"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const json figures = json::parse(bytes_of(path("j.json"))).at("sets").at(0).at("figures");
-  EXPECT_EQ(figures.at("joints.at_10cm").at("denominator"), 2.0);  // of frame b
+  const json set = json::parse(bytes_of(path("j.json"))).at("sets").at(0);
+  EXPECT_EQ(set.at("figures").at("joints.at_10cm").at("denominator"), 2.0);  // of frame b
+  EXPECT_EQ(set.at("joint_precision").size(), 2U);
   const std::string toml = bytes_of(path("j.toml"));
   EXPECT_THAT(toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
   const BodyModel body = parse_body_model(
