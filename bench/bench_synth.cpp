@@ -18,8 +18,10 @@
 #include "synth/builtin_body.h"
 #include "synth/dress.h"
 #include "synth/generate.h"
+#include "synth/pose_sampler.h"
 #include "synth/render.h"
 #include "synth/sensor_noise.h"
+#include "synth/thin_poses.h"
 
 namespace vesalius {
 namespace {
@@ -133,9 +135,42 @@ void add_kind(const std::string& kind, const AssetsLater& assets) {
   add_stages(kind, assets, 640, 480);
 }
 
+/// Poses of `steps` each along motions that start at sampled ones and turn every joint a degree or so a step.
+std::vector<Pose> motion_poses(std::size_t count, int steps) {
+  Random random(kSeed);
+  std::vector<Pose> poses;
+  while (poses.size() < count) {
+    Pose pose = sample_pose({}, random).pose;
+    for (int i = 0; i < steps; ++i) {
+      for (Eigen::Quaternionf& q : pose.local) {
+        const Eigen::Vector3d step(random.normal(), random.normal(), random.normal());
+        const Eigen::Vector3f small = 0.012F * step.cast<float>();
+        q = (q * Eigen::Quaternionf(1.F, small.x(), small.y(), small.z())).normalized();
+      }
+      poses.push_back(pose);
+    }
+  }
+  poses.resize(count);
+  return poses;
+}
+
+void add_thinning(const std::string& kind, int steps) {
+  constexpr std::size_t kPoses = 100000;
+  constexpr float kFiveDegrees = 0.0872664626F;
+  const auto poses = std::make_shared<Later<std::vector<Pose>>>([=] { return motion_poses(kPoses, steps); });
+  benchmark::RegisterBenchmark(("thin_poses/" + kind).c_str(), [=](benchmark::State& state) {
+    const std::vector<Pose>& all = **poses;
+    std::size_t kept = 0;
+    for (auto _ : state) kept = thin_poses(all, kFiveDegrees).size();
+    state.counters["kept"] = static_cast<double>(kept);
+  })->Unit(benchmark::kMillisecond);
+}
+
 }  // namespace
 
 void add_synth_benchmarks() {
+  add_thinning("motions", 25);
+  add_thinning("single", 1);
   add_kind("builtin", std::make_shared<Later<Assets>>([] { return Assets(); }));
   const std::string folder = cli::default_assets_folder();
   for (const char* package : {"makehuman", "mocap"}) {
