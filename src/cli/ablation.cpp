@@ -11,6 +11,7 @@ namespace {
 
 /// Depth steps up to this join neighbouring pixels where the look is colour alone: any within a person's reach.
 constexpr float kAnyStep_m = 1.F;
+constexpr float kAskEverywhere = 2.F;  ///< a probability that no background has
 
 class VariantList {
  public:
@@ -45,6 +46,13 @@ class VariantList {
     }
     add(options_.search.grandparents ? "no links past unseen parts" : "links past unseen parts",
         [](Options& o) { o.detect.search.grandparents = !o.detect.search.grandparents; });
+    if (labeller_->has_background()) {
+      const bool gated = options_.label.gate <= 1.F;
+      add(gated ? "forest asked everywhere" : "gate",
+          [&](Options& o) { o.detect.label.gate = gated ? kAskEverywhere : LabelOptions().gate; });
+    }
+    add(options_.label.half ? "labels at full resolution" : "labels at half resolution",
+        [](Options& o) { o.detect.label.half = !o.detect.label.half; });
     add("half resolution", [](Options& o) { o.shrink = 2; });
   }
 
