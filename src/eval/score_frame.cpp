@@ -156,17 +156,20 @@ void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool
   }
 }
 
+const JointSet* FrameScorer::joint_set_of(const FrameTruth& truth) const {
+  return truth.joint_names.empty() ? nullptr : find_joint_set(body(), truth.joint_names, truth.joint_set);
+}
+
 void FrameScorer::judge_joint_proposals(const TrueFrame& frame, const std::vector<Proposal>& proposals,
                                         FrameScore& score) const {
   const FrameTruth& truth = frame.truth;
-  const JointSet* set =
-      truth.joint_names.empty() ? nullptr : find_joint_set(body(), truth.joint_names, truth.joint_set);
+  const JointSet* set = joint_set_of(truth);
   if (set == nullptr) return;
+  const auto index = static_cast<std::size_t>(set - body().joint_sets.data());
   std::vector<JointProposals> judged;
   for (const Proposal& proposal : proposals) {
     Skeleton skeleton = *proposal.skeleton;
     predict_missing_parts(body(), skeleton);
-    const auto index = static_cast<std::size_t>(set - body().joint_sets.data());
     judged.push_back({proposal.score, joints_by_name(truth.joint_names, *set, derive_joints(body(), skeleton)[index])});
   }
   score.joint_precision.add(truth.joint_names, std::move(judged), truth.joints,
@@ -176,8 +179,7 @@ void FrameScorer::judge_joint_proposals(const TrueFrame& frame, const std::vecto
 void FrameScorer::judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
                                FrameScore& score) const {
   const FrameTruth& truth = frame.truth;
-  const JointSet* set =
-      truth.joint_names.empty() ? nullptr : find_joint_set(body(), truth.joint_names, truth.joint_set);
+  const JointSet* set = joint_set_of(truth);
   if (set == nullptr) return;
   const auto index = static_cast<std::size_t>(set - body().joint_sets.data());
   for (std::size_t who = 0; who < of_person.size() && who < truth.joints.size(); ++who) {

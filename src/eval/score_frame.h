@@ -59,6 +59,8 @@ class FrameScorer {
   SceneLabels label(const Frame& frame, const Mask* body = nullptr) const;
   void find_people(const TrueFrame& frame, bool fit_joints, FrameScore& score) const;
   void log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const;
+  /// The body's joint set that has all of the truth's joints; null where there are none.
+  const JointSet* joint_set_of(const FrameTruth& truth) const;
   void judge_joint_proposals(const TrueFrame& frame, const std::vector<Proposal>& proposals, FrameScore& score) const;
   void judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
                     FrameScore& score) const;

@@ -32,9 +32,9 @@ float exceeded_by(float p) {
 /// Halves away from zero, as std::lround(), which is a call that costs more than all else here.
 int whole_px(float pixels) { return static_cast<int>(pixels + std::copysign(0.5F, pixels)); }
 
-/// Angle (rad) from its cosine in [0, 1]: Abramowitz and Stegun 4.4.45, error below 7e-5.
 float angle_of(float c) {
-  return std::sqrt(1.F - c) * (1.5707288F + c * (-0.2121144F + c * (0.0742610F - 0.0187293F * c)));
+  const auto& a = kAngleSeries;
+  return std::sqrt(1.F - c) * (a[0] + c * (a[1] + c * (a[2] + a[3] * c)));
 }
 
 /// How far a silhouette makes itself felt.

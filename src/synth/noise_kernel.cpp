@@ -23,10 +23,9 @@ HWY_INLINE Vec Square(Vec x) { return hn::Mul(x, x); }
 HWY_INLINE Vec Plus(Vec x, float y) { return hn::Add(x, Number(y)); }
 HWY_INLINE Vec Times(Vec x, float y) { return hn::Mul(x, Number(y)); }
 
-/// Angle (rad) from its cosine in [0, 1]: Abramowitz and Stegun 4.4.45, error below 7e-5.
 HWY_INLINE Vec AngleOf(Vec c) {
-  const Vec series =
-      Plus(hn::Mul(c, Plus(hn::Mul(c, hn::Sub(Number(0.0742610F), Times(c, 0.0187293F))), -0.2121144F)), 1.5707288F);
+  const auto& a = kAngleSeries;
+  const Vec series = Plus(hn::Mul(c, Plus(hn::Mul(c, Plus(Times(c, a[3]), a[2])), a[1])), a[0]);
   return hn::Mul(hn::Sqrt(hn::Sub(Number(1.F), c)), series);
 }
 

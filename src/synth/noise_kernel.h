@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,6 +20,9 @@ constexpr Eigen::Index padded_width(int width) {
 }
 
 constexpr float kSmallestCosine = 0.02F;
+/// Angle (rad) of a cosine c in [0, 1] = sqrt(1 - c) times the polynomial with these coefficients, lowest first:
+/// Abramowitz and Stegun 4.4.45, error below 7e-5.
+constexpr std::array<float, 4> kAngleSeries{1.5707288F, -0.2121144F, 0.0742610F, -0.0187293F};
 
 /// Cosine of the angle between each ray (x, y, 1) and its unit normal, kSmallestCosine to 1, and the fourth power of
 /// that between ray and optical axis. The outputs are padded.
