@@ -24,9 +24,11 @@ class VariantList {
     variants_.push_back({name, std::make_unique<FrameScorer>(labeller_, options)});
   }
 
-  void add(const std::string& name, Forest forest) {
+  void add(const std::string& name, Forest forest) { add(name, std::move(forest), options_); }
+
+  void add(const std::string& name, Forest forest, const DetectOptions& options) {
     variants_.push_back({name, std::make_unique<FrameScorer>(std::make_shared<ForestLabeller>(std::move(forest)),
-                                                             FrameScorer::Options{options_})});
+                                                             FrameScorer::Options{options})});
   }
 
   void add_options() {
@@ -46,7 +48,11 @@ class VariantList {
     }
     add(options_.search.grandparents ? "no links past unseen parts" : "links past unseen parts",
         [](Options& o) { o.detect.search.grandparents = !o.detect.search.grandparents; });
+    add(options_.search.any_root ? "roots of the body alone" : "any part as root",
+        [](Options& o) { o.detect.search.any_root = !o.detect.search.any_root; });
     if (labeller_->has_background()) {
+      add("proposals with the labels' background",
+          [](Options& o) { o.detect.label.proposal_weight = o.detect.label.background_weight; });
       const bool gated = options_.label.gate <= 1.F;
       add(gated ? "forest asked everywhere" : "gate",
           [&](Options& o) { o.detect.label.gate = gated ? kAskEverywhere : LabelOptions().gate; });
@@ -58,10 +64,13 @@ class VariantList {
 
   void add_forests() {
     if (forest_.body.roots.size() > 1) {
+      DetectOptions options = options_;
+      options.search.any_root = false;
       for (const int root : forest_.body.roots) {
         Forest one_root = forest_;
         one_root.body.roots = {root};
-        add(fmt::format("root {} alone", forest_.body.parts[static_cast<std::size_t>(root)].name), std::move(one_root));
+        add(fmt::format("root {} alone", forest_.body.parts[static_cast<std::size_t>(root)].name), std::move(one_root),
+            options);
       }
     }
     // Votes cannot be smoothed by their mean: the mode comes with them.

@@ -37,7 +37,8 @@ TEST(AblationVariants, OneThingEach) {
   const auto variants = ablation_variants(forest, options);
   EXPECT_THAT(names(variants),
               ElementsAre("no second iteration", "look by depth alone", "look by colour alone", "no smoothing",
-                          "smoothing by mode", "no links past unseen parts", "forest asked everywhere",
+                          "smoothing by mode", "no links past unseen parts", "roots of the body alone",
+                          "proposals with the labels' background", "forest asked everywhere",
                           "labels at half resolution", "half resolution", "root neck alone", "root l_face_bottom alone",
                           "root r_face_bottom alone", "votes, smoothed by mode", "1 tree", "2 trees", "4 trees"));
   EXPECT_FALSE(find(variants, "no second iteration").options().detect.refine.second_pass);
@@ -45,10 +46,14 @@ TEST(AblationVariants, OneThingEach) {
   EXPECT_FALSE(find(variants, "look by depth alone").options().detect.grow.use_colour);
   EXPECT_TRUE(find(variants, "smoothing by mode").options().detect.smooth.mode);
   EXPECT_FALSE(find(variants, "no links past unseen parts").options().detect.search.grandparents);
+  EXPECT_FALSE(find(variants, "roots of the body alone").options().detect.search.any_root);
+  EXPECT_EQ(find(variants, "proposals with the labels' background").options().detect.label.proposal_weight,
+            options.label.background_weight);
   EXPECT_GT(find(variants, "forest asked everywhere").options().detect.label.gate, 1.F);
   EXPECT_TRUE(find(variants, "labels at half resolution").options().detect.label.half);
   EXPECT_EQ(find(variants, "half resolution").options().shrink, 2);
   EXPECT_EQ(find(variants, "root neck alone").body().roots.size(), 1U);
+  EXPECT_FALSE(find(variants, "root neck alone").options().detect.search.any_root);
   EXPECT_TRUE(find(variants, "1 tree").options().detect.refine.second_pass);
 }
 
@@ -58,11 +63,12 @@ TEST(AblationVariants, NothingThatChangesNothing) {
   options.grow.use_colour = false;
   options.smooth.window = 1;
   options.search.grandparents = false;
+  options.search.any_root = false;
   options.label.half = true;
   Forest votes = forest_of(2, {{3}, {255}});
   votes.body.roots.resize(1);
   EXPECT_THAT(names(ablation_variants(votes, options)),
-              ElementsAre("second iteration", "look by depth and colour", "links past unseen parts",
+              ElementsAre("second iteration", "look by depth and colour", "links past unseen parts", "any part as root",
                           "labels at full resolution", "half resolution", "1 tree"));
 }
 

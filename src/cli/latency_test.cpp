@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <thread>
+
 namespace vesalius::cli {
 namespace {
 
@@ -46,6 +49,17 @@ TEST(StageClock, AddsToStagesAndBearsNull) {
   EXPECT_GE(times[Stage::grow], 0.0);
   EXPECT_EQ(times.total(), times[Stage::grow]);
   StageClock(nullptr).lap(Stage::label);
+}
+
+TEST(StageClock, StagesSideBySideShareWhatPassed) {
+  StageTimes times;
+  StageClock clock(&times);
+  const double passed = elapsed_ms([] { std::this_thread::sleep_for(std::chrono::milliseconds(4)); });
+  EXPECT_GE(passed, 4.0);
+  clock.lap({Stage::planes, Stage::label}, {1.0, 3.0});
+  EXPECT_GE(times.total(), passed);
+  EXPECT_NEAR(times[Stage::label], 3.0 * times[Stage::planes], 1e-9);
+  StageClock(nullptr).lap({Stage::planes, Stage::label}, {0.0, 0.0});
 }
 
 }  // namespace

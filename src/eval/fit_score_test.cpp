@@ -15,8 +15,8 @@ using testing::ThrowsMessage;
 
 Evidence random_evidence(Random& random) {
   const auto draw = [&] { return static_cast<float>(random.uniform()); };
-  const float a = draw(), b = draw(), c = draw(), d = draw(), e = draw(), f = draw();
-  return {a, b, c, d, e, f};
+  const float a = draw(), b = draw(), c = draw(), d = draw(), e = draw(), f = draw(), g = draw(), h = draw();
+  return {a, b, c, d, e, f, g, h};
 }
 
 /// Candidates that are people with the probability that the score gives them.
@@ -38,6 +38,8 @@ TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
   truth.core_weight = 3.F;
   truth.body_weight = 1.F;
   truth.size_weight = -2.F;
+  truth.occluded_weight = 3.F;
+  truth.near_weight = 1.5F;
   truth.bias = -4.F;
   const ScoreFit fit = fit_score({drawn(truth, 40000, 3)}, {});
   // People and nobodies weigh differently: only the bias feels it.
@@ -47,6 +49,8 @@ TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
   EXPECT_NEAR(fit.options.core_weight, truth.core_weight, 0.25);
   EXPECT_NEAR(fit.options.body_weight, truth.body_weight, 0.25);
   EXPECT_NEAR(fit.options.size_weight, truth.size_weight, 0.25);
+  EXPECT_NEAR(fit.options.occluded_weight, truth.occluded_weight, 0.25);
+  EXPECT_NEAR(fit.options.near_weight, truth.near_weight, 0.25);
   const double odds = static_cast<double>(fit.people) / static_cast<double>(fit.nobodies);
   EXPECT_NEAR(fit.options.bias, truth.bias - std::log(3.0 * std::sqrt(odds)), 0.3);
   EXPECT_EQ(fit.people + fit.nobodies, 40000);

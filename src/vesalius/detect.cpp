@@ -1,6 +1,8 @@
 #include "vesalius/detect.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "vesalius/parallel.h"
 #include "vesalius/workspaces.h"
@@ -54,10 +56,7 @@ class Pipeline {
         labeller_(labeller),
         body_(labeller.body()),
         options_(options),
-        frame_(frame),
-        grower_(frame, body_, options.grow) {
-    clock_.lap(Stage::planes);
-  }
+        frame_(frame) {}
 
   std::vector<Person> run(Trace* trace) {
     first_pass(trace);
@@ -69,10 +68,9 @@ class Pipeline {
     std::vector<Person> people = choose_people(candidates);
     clock_.lap(Stage::people);
     if (trace != nullptr) {
-      trace->labels = std::move(labels_);
       trace->clusters = std::move(clusters_);
       trace->rough = std::move(rough_);
-      trace->flat = grower_.flat();
+      trace->flat = grower_->flat();
       trace->candidates = std::move(candidates);
     }
     return people;
@@ -88,29 +86,48 @@ class Pipeline {
   /// Of pass 1, smoothed unless labels are.
   const Posteriors& posteriors() const { return by_mode() ? workspace_.raw : workspace_.smooth; }
 
-  LabelImage choose(const Posteriors& posteriors, const DepthImage& depth, const Mask* prior,
-                    const Box* box = nullptr) const {
+  LabelImage choose(const Posteriors& posteriors, const DepthImage& depth, const LabelOptions& options,
+                    const Mask* prior = nullptr, const Box* box = nullptr) const {
     const LabelChoice choice{body_.part_count(), labeller_.has_background(), prior, box};
-    LabelImage labels = choose_labels(posteriors, depth, choice, options_.label);
+    LabelImage labels = choose_labels(posteriors, depth, choice, options);
     return by_mode() ? mode_filter(labels, depth, options_.smooth) : labels;
   }
 
+  void find_planes() { grower_.emplace(frame_, body_, options_.grow); }
+  void label(const DepthImage& depth) { labeller_.label_into(depth, frame_.camera, options_.label, workspace_.raw); }
+
   /// Sections 4 to 6 on the whole scene. A forest that never saw a background takes walls and floor for bodies: it
-  /// is shown the scene without them.
+  /// is shown the scene without them. Others need not wait for the planes.
   void first_pass(Trace* trace) {
-    const DepthImage depth = labeller_.has_background() ? frame_.depth : without(frame_.depth, grower_.flat());
+    DepthImage without_planes;
+    if (labeller_.has_background()) {
+      std::array<double, 2> took_ms{};
+      parallel_for(2, [&](int i) {
+        took_ms[static_cast<std::size_t>(i)] = elapsed_ms([&] { i == 0 ? find_planes() : label(frame_.depth); });
+      });
+      clock_.lap({Stage::planes, Stage::label}, took_ms);
+    } else {
+      find_planes();
+      clock_.lap(Stage::planes);
+      without_planes = without(frame_.depth, grower_->flat());
+      label(without_planes);
+      clock_.lap(Stage::label);
+    }
+    const DepthImage& depth = labeller_.has_background() ? frame_.depth : without_planes;
     Posteriors& raw = workspace_.raw;
-    labeller_.label_into(depth, frame_.camera, options_.label, raw);
     if (trace != nullptr) {
       const LabelChoice choice{body_.part_count(), labeller_.has_background(), nullptr};
       trace->raw_labels = choose_labels(raw, depth, choice, options_.label);
     }
-    clock_.lap(Stage::label);
     if (!by_mode()) mean_filter(raw, depth, options_.smooth, workspace_.smooth);
     clock_.lap(Stage::smooth);
-    labels_ = choose(posteriors(), depth, nullptr);
+    // What may be a part is taken for one; the score of the whole tells people from what is none.
+    LabelOptions propose = options_.label;
+    propose.background_weight = options_.label.proposal_weight;
+    proposals_ = choose(posteriors(), depth, propose);
+    if (trace != nullptr) trace->labels = choose(posteriors(), depth, options_.label);
     clock_.lap(Stage::choose);
-    clusters_ = find_clusters(labels_, depth, frame_.camera, body_, options_.cluster);
+    clusters_ = find_clusters(proposals_, depth, frame_.camera, body_, options_.cluster);
     clock_.lap(Stage::cluster);
     rough_ = search_skeletons(clusters_.items, body_, options_.search);
     clock_.lap(Stage::search);
@@ -127,13 +144,14 @@ class Pipeline {
       rivals.push_back(rough_[i]);
     }
     if (rivals.size() > 1) {
-      for (Mask& mask : grower_.grow(rivals, clusters_)) {
+      for (Mask& mask : grower_->grow(rivals, clusters_)) {
         candidates.push_back(make_candidate(static_cast<int>(candidates.size()), std::move(mask)));
       }
     }
     std::vector<Mask> alone(count);
     parallel_for(static_cast<int>(count), [&](int i) {
-      alone[static_cast<std::size_t>(i)] = std::move(grower_.grow({rough_[static_cast<std::size_t>(i)]}, clusters_)[0]);
+      alone[static_cast<std::size_t>(i)] =
+          std::move(grower_->grow({rough_[static_cast<std::size_t>(i)]}, clusters_)[0]);
     });
     const std::size_t against = candidates.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -158,7 +176,7 @@ class Pipeline {
     if (options_.refine.second_pass) {
       second_pass(box, candidate);
     } else {
-      candidate.labels = labels_;
+      candidate.labels = proposals_;
     }
     if (candidate.refined.found == 0 || candidate.refined.score < rough.score) candidate.refined = rough;
     candidate.evidence = gather_evidence(frame_, candidate.grown, candidate.labels, posteriors(), candidate.refined,
@@ -174,7 +192,7 @@ class Pipeline {
     Clusters clusters;
     if (labeller_.has_background()) {
       // Its own label already tells what is no person: keep the scene, take the mask as what is known now.
-      candidate.labels = choose(posteriors(), frame_.depth, &candidate.grown, &box);
+      candidate.labels = choose(posteriors(), frame_.depth, options_.label, &candidate.grown, &box);
       clusters = find_clusters(crop(candidate.labels, box), crop(frame_.depth, box), cropped(frame_.camera, box), body_,
                                cluster);
     } else {
@@ -183,7 +201,7 @@ class Pipeline {
       Posteriors posteriors;
       labeller_.label_into(alone, camera, options_.label, posteriors);
       if (!by_mode()) posteriors = mean_filter(posteriors, alone, options_.smooth);
-      const LabelImage labels = choose(posteriors, alone, nullptr);
+      const LabelImage labels = choose(posteriors, alone, options_.label);
       clusters = find_clusters(labels, alone, camera, body_, cluster);
       candidate.labels = uncropped(labels, box, frame_.camera.width, frame_.camera.height);
     }
@@ -227,15 +245,15 @@ class Pipeline {
     return person;
   }
 
-  StageClock clock_;  ///< made first: making the grower is a stage
+  StageClock clock_;
   Workspaces::Workspace& workspace_;
   const PixelLabeller& labeller_;
   const BodyModel& body_;
   const DetectOptions& options_;
   const Frame& frame_;
-  PersonGrower grower_;
-  LabelImage labels_;  ///< pass 1
-  Clusters clusters_;  ///< pass 1
+  std::optional<PersonGrower> grower_;  ///< once the planes are known
+  LabelImage proposals_;                ///< pass 1, of what may be a part
+  Clusters clusters_;                   ///< pass 1
   std::vector<Skeleton> rough_;
 };
 

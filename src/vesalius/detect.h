@@ -55,7 +55,7 @@ struct Person {
 struct Trace {
   LabelImage raw_labels;        ///< pass 1, before smoothing
   LabelImage labels;            ///< pass 1, smoothed
-  Clusters clusters;            ///< pass 1
+  Clusters clusters;            ///< pass 1, of labels with the proposals' weight of the background
   std::vector<Skeleton> rough;  ///< pass 1, best first
   Mask flat;                    ///< pixels of floor, walls and other large flat surfaces
 

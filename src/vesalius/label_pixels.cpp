@@ -187,6 +187,9 @@ void label_rows_plainly(const Forest& forest, const std::vector<PackedTree>& pac
 void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& visitor) {
   visitor.option(prefix + "background-weight", o.background_weight,
                  {"", 0.0, 100.0, "Factor on the background's posterior; above 1 finds fewer and thinner people."});
+  visitor.option(
+      prefix + "proposal-weight", o.proposal_weight,
+      {"", 0.0, 100.0, "The same where part proposals are looked for: less finds more of what may be people."});
   visitor.option(prefix + "person-weight", o.person_weight,
                  {"", 0.0, 100.0, "Factor on the posteriors of all body parts."});
   visitor.option(prefix + "unsure-margin", o.unsure_margin,

@@ -15,6 +15,7 @@ namespace vesalius {
 
 struct LabelOptions {
   float background_weight = 0.65F;  ///< multiplies the background's posterior; a run-time correction of its prior
+  float proposal_weight = 0.35F;    ///< the same, multiplied instead where part proposals are looked for
   float person_weight = 1.F;        ///< multiplies the parts' posteriors
   float unsure_margin = 0.05F;      ///< difference in probability below which neighbours decide
   /// Probability of the background from which a forest that is sure of it at every fourth pixel of every fourth row is

@@ -54,12 +54,24 @@ float share_explained(const Frame& frame, const Inside& inside, const LabelImage
   return pixels > 0 ? static_cast<float>(explained) / static_cast<float>(pixels) : 0.F;
 }
 
-float share_open(const Frame& frame, const Inside& inside, float step_m) {
+/// What lies beyond the sides of a mask's pixels that are its outline.
+struct Outline {
+  long open = 0;      ///< further away, or nothing
+  long closed = 0;    ///< as far away
+  long occluded = 0;  ///< nearer
+
+  float share_open() const { return share(open, open + closed); }
+  float share_occluded() const { return share(occluded, open + closed + occluded); }
+
+ private:
+  static float share(long some, long all) { return all > 0 ? static_cast<float>(some) / static_cast<float>(all) : 0.F; }
+};
+
+Outline look_around(const Frame& frame, const Inside& inside, float step_m) {
   const Mask& mask = inside.mask();
   const int step_mm = static_cast<int>(std::lround(step_m * 1e3F));
   constexpr std::array<std::array<int, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
-  long open = 0;
-  long closed = 0;
+  Outline outline;
   inside.each([&](int u, int v) {
     for (const auto& [du, dv] : kSides) {
       if (!mask.contains(u + du, v + dv) || mask(u + du, v + dv) != 0) continue;
@@ -69,13 +81,15 @@ float share_open(const Frame& frame, const Inside& inside, float step_m) {
       }
       const int here = frame.depth(u, v);
       if (beyond == 0 || beyond > here + step_mm) {
-        ++open;
+        ++outline.open;
       } else if (beyond >= here - step_mm) {
-        ++closed;  // nearer: occluded, says nothing
+        ++outline.closed;
+      } else {
+        ++outline.occluded;
       }
     }
   });
-  return open + closed > 0 ? static_cast<float>(open) / static_cast<float>(open + closed) : 0.F;
+  return outline;
 }
 
 /// 1 where there is no background class.
@@ -94,15 +108,31 @@ float share_of_body(const Inside& inside, const Posteriors& posteriors, int part
   return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
 }
 
-float likeness_of_area(const Frame& frame, const Inside& inside, float usual_m2) {
+/// How large it is and how far away.
+struct Extent {
   double area_m2 = 0.0;
+  double mean_depth_m = 0.0;  ///< 0 without pixels
+};
+
+Extent extent_of(const Frame& frame, const Inside& inside) {
+  Extent extent;
+  long pixels = 0;
   inside.each([&](int u, int v) {
     const double z = 1e-3 * frame.depth(u, v);
-    area_m2 += z * z / (static_cast<double>(frame.camera.fx) * static_cast<double>(frame.camera.fy));
+    extent.area_m2 += z * z / (static_cast<double>(frame.camera.fx) * static_cast<double>(frame.camera.fy));
+    extent.mean_depth_m += z;
+    ++pixels;
   });
-  const double usual = static_cast<double>(usual_m2);
-  return static_cast<float>(std::min(area_m2, usual) / std::max(area_m2, usual));
+  if (pixels > 0) extent.mean_depth_m /= static_cast<double>(pixels);
+  return extent;
 }
+
+float likeness_of_area(const Extent& extent, float usual_m2) {
+  const double usual = static_cast<double>(usual_m2);
+  return static_cast<float>(std::min(extent.area_m2, usual) / std::max(extent.area_m2, usual));
+}
+
+float nearness(const Extent& extent) { return static_cast<float>(1.0 / std::max(1.0, extent.mean_depth_m)); }
 
 float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
   std::vector<char> core(body.parts.size(), 0);
@@ -138,6 +168,9 @@ void visit_options(const std::string& prefix, ScoreOptions& o, OptionVisitor& vi
                  {"", -1000.0, 1000.0, "Weight of how sure the forest is that the mask is body."});
   visitor.option(prefix + "size-weight", o.size_weight,
                  {"", -1000.0, 1000.0, "Weight of how near the mask's area is to a person's."});
+  visitor.option(prefix + "occluded-weight", o.occluded_weight,
+                 {"", -1000.0, 1000.0, "Weight of the share of the outline that something nearer cuts off."});
+  visitor.option(prefix + "near-weight", o.near_weight, {"", -1000.0, 1000.0, "Weight of how near the camera it is."});
   visitor.option(prefix + "bias", o.bias, {"", -1000.0, 1000.0, "Constant of the score."});
   visitor.option(prefix + "explained-radius", o.explained_radius_m,
                  {"m", 0.0, 10.0, "A pixel is explained by an observed part of its label this near."});
@@ -154,6 +187,8 @@ ScoreOptions score_without_background() {
   options.core_weight = 8.1F;
   options.body_weight = 0.F;
   options.size_weight = 0.F;
+  options.occluded_weight = 0.F;
+  options.near_weight = 0.F;
   options.bias = -17.F;
   return options;
 }
@@ -161,12 +196,16 @@ ScoreOptions score_without_background() {
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
                          const Skeleton& skeleton, const BodyModel& body, const ScoreOptions& options) {
   const Inside inside(mask);
+  const Outline outline = look_around(frame, inside, options.open_step_m);
+  const Extent extent = extent_of(frame, inside);
   return {skeleton.score / static_cast<float>(body.part_count()),
           share_explained(frame, inside, labels, skeleton, body, options.explained_radius_m),
-          share_open(frame, inside, options.open_step_m),
+          outline.share_open(),
           share_of_core(skeleton, body),
           share_of_body(inside, posteriors, body.part_count()),
-          likeness_of_area(frame, inside, options.usual_area_m2)};
+          likeness_of_area(extent, options.usual_area_m2),
+          outline.share_occluded(),
+          nearness(extent)};
 }
 
 float person_score(const Evidence& e, const ScoreOptions& o) {

@@ -13,13 +13,15 @@
 namespace vesalius {
 
 struct ScoreOptions {
-  float likelihood_weight = 4.49F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
-  float explained_weight = 7.84F;   ///< of the share of the mask that the skeleton explains
-  float open_weight = 0.53F;        ///< of the share of the outline that stands free
-  float core_weight = 4.58F;        ///< of the share of head, neck and chest parts found
-  float body_weight = 10.27F;       ///< of how sure the forest is that the mask is body
-  float size_weight = 3.99F;        ///< of how near the mask's area is to a person's
-  float bias = -21.62F;
+  float likelihood_weight = 4.5F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
+  float explained_weight = 1.41F;  ///< of the share of the mask that the skeleton explains
+  float open_weight = 0.25F;       ///< of the share of the outline that stands free
+  float core_weight = 1.02F;       ///< of the share of head, neck and chest parts found
+  float body_weight = 10.55F;      ///< of how sure the forest is that the mask is body
+  float size_weight = 3.35F;       ///< of how near the mask's area is to a person's
+  float occluded_weight = 3.73F;   ///< of the share of the outline that something nearer cuts off
+  float near_weight = 3.11F;       ///< of how near the camera it is
+  float bias = -15.31F;
   float explained_radius_m = 0.25F;  ///< a pixel is explained by an observed part of its label this near
   float open_step_m = 0.1F;          ///< an outline stands free where what lies behind is this much further
   float usual_area_m2 = 0.45F;       ///< of a person's mask; a standing adult's front
@@ -38,6 +40,8 @@ struct Evidence {
   float core = 0.F;        ///< share found of the search's roots and the parts next to them
   float body = 0.F;        ///< mean over the mask of the parts' share of the posterior; 1 without background class
   float size = 0.F;        ///< the mask's area over the usual one, or the other way round: the smaller of the two
+  float occluded = 0.F;    ///< share of the outline with something nearer beyond it: it excuses what is missing
+  float near = 0.F;        ///< one metre over the mean depth, at most 1: what is far is told from a body less surely
 };
 
 /// A piece of evidence and what it weighs.
@@ -45,13 +49,15 @@ struct EvidenceWeight {
   float Evidence::*evidence;
   float ScoreOptions::*weight;
 };
-inline constexpr std::array<EvidenceWeight, 6> kEvidenceWeights{
+inline constexpr std::array<EvidenceWeight, 8> kEvidenceWeights{
     {{&Evidence::likelihood, &ScoreOptions::likelihood_weight},
      {&Evidence::explained, &ScoreOptions::explained_weight},
      {&Evidence::open, &ScoreOptions::open_weight},
      {&Evidence::core, &ScoreOptions::core_weight},
      {&Evidence::body, &ScoreOptions::body_weight},
-     {&Evidence::size, &ScoreOptions::size_weight}}};
+     {&Evidence::size, &ScoreOptions::size_weight},
+     {&Evidence::occluded, &ScoreOptions::occluded_weight},
+     {&Evidence::near, &ScoreOptions::near_weight}}};
 
 /// `labels` are the part labels inside `mask`, `posteriors` those of the first pass; images of the frame's size.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,

@@ -62,6 +62,28 @@ TEST(GatherEvidence, OutlineBehindAnOccluderDoesNotCount) {
   EXPECT_NEAR(s.evidence().open, 20.F / 30.F, 1e-5);
 }
 
+TEST(GatherEvidence, OccludedIsTheShareOfTheOutlineBehindSomethingNearer) {
+  Square s(3000);
+  EXPECT_FLOAT_EQ(s.evidence().occluded, 0.F);
+  for (int u = 15; u < 25; ++u) s.frame.depth(u, 20) = 1500;
+  EXPECT_FLOAT_EQ(s.evidence().occluded, 0.25F);
+  for (int u = 15; u < 25; ++u) s.frame.depth(u, 20) = 1950;  // touches
+  EXPECT_FLOAT_EQ(s.evidence().occluded, 0.F);
+}
+
+TEST(GatherEvidence, NearFallsWithTheMeanDepthBeyondAMetre) {
+  Square s(3000);
+  EXPECT_FLOAT_EQ(s.evidence().near, 0.5F);
+  for (int v = 10; v < 20; ++v) {
+    for (int u = 15; u < 25; ++u) s.frame.depth(u, v) = u < 20 ? 3000 : 5000;
+  }
+  EXPECT_FLOAT_EQ(s.evidence().near, 0.25F);
+  for (int v = 10; v < 20; ++v) {
+    for (int u = 15; u < 25; ++u) s.frame.depth(u, v) = 700;
+  }
+  EXPECT_FLOAT_EQ(s.evidence().near, 1.F);
+}
+
 TEST(GatherEvidence, ExplainedByTheLabelsPartOrItsPartnerNearby) {
   Square s(3000);
   const auto knee = static_cast<std::uint8_t>(paper_body().find_part("l_knee"));
@@ -117,10 +139,14 @@ TEST(PersonScore, IsALogisticSum) {
   options.core_weight = 0.F;
   options.body_weight = 0.F;
   options.size_weight = 0.5F;
+  options.occluded_weight = 0.25F;
+  options.near_weight = 0.F;
   options.bias = -1.F;
   EXPECT_FLOAT_EQ(person_score({0.5F, 0.9F, 0.F, 0.9F, 0.9F, 0.F}, options), 0.5F);
   EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 0.F}, options), 1.0 / (1.0 + std::exp(-1.0)), 1e-6);
   EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 1.F}, options), 1.0 / (1.0 + std::exp(-1.5)), 1e-6);
+  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 1.F, 1.F, 0.9F}, options), 1.0 / (1.0 + std::exp(-1.75)),
+              1e-6);
 }
 
 TEST(PersonScore, EachEvidenceSpeaksForAPerson) {

@@ -90,6 +90,9 @@ class SkeletonSearch {
       gains_.push_back(gain(clusters[i]));
     }
     for (const int root : body.roots) trees_.push_back(root_tree(body, root));
+    for (int part = 0; options.any_root && part < body.part_count(); ++part) {
+      if (std::ranges::find(body.roots, part) == body.roots.end()) trees_.push_back(root_tree(body, part));
+    }
     find_consistent_pairs();
   }
 
@@ -282,6 +285,8 @@ void visit_options(const std::string& prefix, SearchOptions& o, OptionVisitor& v
                  {"m", 0.001, 10.0, "Empty space between linked parts that counts as one unit of error."});
   visitor.option(prefix + "grandparents", o.grandparents,
                  {"", 0, 1, "Whether parts hang together past one that was not seen."});
+  visitor.option(prefix + "any-root", o.any_root,
+                 {"", 0, 1, "Whether a person may be found from any part, or only from the body's roots."});
   visitor.option(prefix + "size-tolerance", o.size_tolerance,
                  {"", 0.01, 100.0, "Deviation of log(area) from a part's range that halves its gain."});
 }

@@ -20,6 +20,7 @@ struct SearchOptions {
   float covariance_share = 0.25F;  ///< how much of the parts' own variance along their line excuses a deviation
   float gap_tolerance_m = 0.08F;   ///< empty space between two linked parts that counts as one unit of error
   bool grandparents = true;        ///< whether a part that was not seen may be passed over (two degrees of separation)
+  bool any_root = true;            ///< whether a tree may start from any part, or only from the body's roots
   float size_tolerance = 0.7F;     ///< deviation of log(area) from the part's range that halves its gain
 };
 void visit_options(const std::string& prefix, SearchOptions& options, OptionVisitor& visitor);

@@ -59,7 +59,9 @@ class Exhaustive {
 
   float best() {
     float best = 0.F;
-    for (const int root : body_.roots) {
+    std::vector<int> roots = body_.roots;
+    for (int part = 0; options_.any_root && part < body_.part_count(); ++part) roots.push_back(part);
+    for (const int root : roots) {
       for (int i = 0; i < static_cast<int>(clusters_.size()); ++i) {
         if (clusters_[static_cast<std::size_t>(i)].label != root) continue;
         std::vector<int> chosen(body_.parts.size(), -1);
@@ -142,9 +144,10 @@ class Exhaustive {
   const SearchOptions& options_;
 };
 
-TEST(SearchSkeletons, FindsTheBestTreeThatExhaustiveSearchFinds) {
+void expect_what_exhaustive_search_finds(bool any_root) {
   const BodyModel body = small_body();
   SearchOptions options;
+  options.any_root = any_root;
   options.min_parts = 1;
   options.max_mean_error = 100.F;
   options.max_total_error = 1000.F;
@@ -168,6 +171,12 @@ TEST(SearchSkeletons, FindsTheBestTreeThatExhaustiveSearchFinds) {
     with_several_parts += found[0].found >= 3 ? 1 : 0;
   }
   EXPECT_GT(with_several_parts, 30);  // the cases are worth something
+}
+
+TEST(SearchSkeletons, FindsTheBestTreeThatExhaustiveSearchFinds) { expect_what_exhaustive_search_finds(true); }
+
+TEST(SearchSkeletons, FromTheBodysRootsFindsTheBestTreeThatExhaustiveSearchFinds) {
+  expect_what_exhaustive_search_finds(false);
 }
 
 std::vector<PartCluster> people(const std::vector<Vector3f>& places) {
@@ -225,6 +234,21 @@ TEST(SearchSkeletons, RootsAtAFaceWhenTheNeckIsHidden) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].root, 2);
   EXPECT_EQ(found[0].found, 5);
+}
+
+TEST(SearchSkeletons, SomebodyWithoutHeadAndNeckIsFoundUnlessRootedThere) {
+  std::vector<PartCluster> clusters = people({{0.F, 0.F, 2.F}});
+  std::erase_if(clusters, [](const PartCluster& c) { return c.label == 1 || c.label == 2; });
+  SearchOptions options;
+  const std::vector<Skeleton> found = search_skeletons(clusters, small_body(), options);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].found, 4);
+  options.any_root = false;
+  EXPECT_TRUE(search_skeletons(clusters, small_body(), options).empty());
+}
+
+TEST(SearchSkeletons, WhoIsWhollySeenIsRootedInTheBody) {
+  EXPECT_EQ(search_skeletons(people({{0.F, 0.F, 2.F}}), small_body(), {}).at(0).root, 1);
 }
 
 TEST(SearchSkeletons, EveryAcceptanceParameterRejects) {

@@ -20,20 +20,41 @@ struct StageTimes {
   double total() const { return std::accumulate(ms.begin(), ms.end(), 0.0); }
 };
 
+/// How long `work` takes, by the clock on the wall.
+template <class Work>
+double elapsed_ms(Work&& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
 /// Adds what has passed since the last `lap`, or since it was made, to a stage; does nothing for null.
 class StageClock {
  public:
   explicit StageClock(StageTimes* times) : times_(times) {}
 
-  void lap(Stage stage) {
-    if (times_ == nullptr) return;
-    const Clock::time_point now = Clock::now();
-    (*times_)[stage] += std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
+  void lap(Stage stage) { add_to(stage, since_last()); }
+
+  /// The same for two stages that ran side by side: each gets what it took for itself, as a share of what both did.
+  void lap(const std::array<Stage, 2>& stages, const std::array<double, 2>& took_ms) {
+    const double passed = since_last();
+    const double sum = took_ms[0] + took_ms[1];
+    for (std::size_t i = 0; i < 2; ++i) add_to(stages[i], sum > 0.0 ? passed * took_ms[i] / sum : passed / 2.0);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  double since_last() {
+    const Clock::time_point now = Clock::now();
+    const double passed = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return passed;
+  }
+
+  void add_to(Stage stage, double ms) {
+    if (times_ != nullptr) (*times_)[stage] += ms;
+  }
 
   StageTimes* times_;
   Clock::time_point last_ = Clock::now();
