@@ -94,7 +94,7 @@ class LevelGrower {
         tree_(tree),
         progress_(progress),
         classes_(static_cast<std::size_t>(set.class_count())),
-        shares_(set, options.leaf.prior_correction),
+        shares_(set, options.leaf.prior_correction, options.leaf.part_balance),
         node_of_(samples_.size(), 0),
         row_of_(samples_.size(), kNoRow),
         on_right_(samples_.size(), 0) {}
@@ -363,6 +363,8 @@ void visit_options(const std::string& prefix, GrowTreeOptions& options, OptionVi
   visitor.option(prefix + "min-samples", leaf.min_samples, {"", 1, 1000000, "Fewest samples of a leaf"});
   visitor.option(prefix + "prior-correction", leaf.prior_correction,
                  {"", 0, 1, "How far leaves undo what sampling did to the shares of the classes; 1: wholly"});
+  visitor.option(prefix + "part-balance", leaf.part_balance,
+                 {"", 0, 1, "How far leaves make up for the parts' sizes, so that small ones are seen; 1: wholly"});
 }
 
 Tree grow_tree(const TrainingSet& set, const GrowTreeOptions& options, int tree, GrowProgress* progress) {

@@ -28,6 +28,7 @@ struct LeafOptions {
   int max_depth = 20;            ///< decisions on the way to the deepest leaf
   int min_samples = 30;          ///< fewest samples of a leaf
   float prior_correction = 0.F;  ///< 0: shares as sampled; 1: as in the pictures; between: a power between
+  float part_balance = 0.5F;     ///< the same towards equal shares of all parts; the background keeps its own
 };
 
 struct GrowTreeOptions {

@@ -24,7 +24,11 @@ class ObviousTrainer {
  public:
   ObviousTrainer(const TrainingSet& set, const std::vector<LabelledFrame>& frames, const GrowTreeOptions& options,
                  int tree)
-      : set_(set), frames_(frames), options_(options), tree_(tree), shares_(set, options.leaf.prior_correction) {}
+      : set_(set),
+        frames_(frames),
+        options_(options),
+        tree_(tree),
+        shares_(set, options.leaf.prior_correction, options.leaf.part_balance) {}
 
   Tree grow() {
     grow_node({set_.samples().begin(), set_.samples().end()}, 1, 0);

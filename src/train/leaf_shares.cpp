@@ -6,7 +6,22 @@
 
 namespace vesalius {
 
-LeafShares::LeafShares(const TrainingSet& set, float prior_correction) {
+namespace {
+
+/// In proportion to `factors`, the largest 2^24 and none 0.
+std::vector<std::uint64_t> fixed_point(const std::vector<double>& factors) {
+  constexpr double kLargest = 16777216.0;
+  const double largest = factors.empty() ? 1.0 : *std::ranges::max_element(factors);
+  std::vector<std::uint64_t> weights;
+  for (const double factor : factors) {
+    weights.push_back(static_cast<std::uint64_t>(std::max(1.0, std::round(kLargest * factor / largest))));
+  }
+  return weights;
+}
+
+}  // namespace
+
+LeafShares::LeafShares(const TrainingSet& set, float prior_correction, float part_balance) {
   const auto classes = static_cast<std::size_t>(set.class_count());
   std::vector<double> sampled(classes, 0.0);
   for (const TrainingSample& sample : set.samples()) sampled[sample.label] += 1.0;
@@ -16,16 +31,34 @@ LeafShares::LeafShares(const TrainingSet& set, float prior_correction) {
     const double pixels = std::max<double>(static_cast<double>(set.class_pixels()[c]), 1.0);
     factors[c] = std::pow(pixels / sampled[c], static_cast<double>(prior_correction));
   }
-  constexpr double kLargest = 16777216.0;
-  const double largest = *std::ranges::max_element(factors);
-  for (const double factor : factors) {
-    weights_.push_back(static_cast<std::uint64_t>(std::max(1.0, std::round(kLargest * factor / largest))));
+  weights_ = fixed_point(factors);
+  if (part_balance == 0.F) return;
+  factors.resize(set.body().parts.size());
+  for (std::size_t c = 0; c < factors.size(); ++c) {
+    if (sampled[c] > 0.0) factors[c] *= std::pow(sampled[c], -static_cast<double>(part_balance));
+  }
+  balance_ = fixed_point(factors);
+}
+
+/// Shares the parts' sum out anew.
+void LeafShares::balance_parts(const std::int64_t* counts, std::vector<std::uint64_t>& shares) const {
+  std::uint64_t before = 0;
+  std::uint64_t after = 0;
+  for (std::size_t c = 0; c < balance_.size(); ++c) {
+    before += shares[c];
+    after += static_cast<std::uint64_t>(counts[c]) * balance_[c];
+  }
+  if (after == 0) return;
+  const double scale = static_cast<double>(before) / static_cast<double>(after);
+  for (std::size_t c = 0; c < balance_.size(); ++c) {
+    shares[c] = static_cast<std::uint64_t>(scale * static_cast<double>(counts[c]) * static_cast<double>(balance_[c]));
   }
 }
 
 TreeLeaf LeafShares::leaf(const std::int64_t* counts) const {
   std::vector<std::uint64_t> shares(weights_.size());
   for (std::size_t c = 0; c < shares.size(); ++c) shares[c] = static_cast<std::uint64_t>(counts[c]) * weights_[c];
+  if (!balance_.empty()) balance_parts(counts, shares);
   const std::uint64_t total = std::accumulate(shares.begin(), shares.end(), std::uint64_t{0});
   std::vector<std::size_t> order(shares.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

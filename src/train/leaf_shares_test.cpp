@@ -38,7 +38,7 @@ TEST(LeafShares, AreTheLargestFourRoundedDown) {
   body.parts.resize(8);
   const TrainingSet set(body, {}, {}, 1);
   const std::vector<std::int64_t> counts{5, 10, 10, 0, 25, 0, 0, 50, 0};
-  const TreeLeaf leaf = LeafShares(set, 0.F).leaf(counts.data());
+  const TreeLeaf leaf = LeafShares(set, 0.F, 0.F).leaf(counts.data());
   EXPECT_THAT(leaf.label, testing::ElementsAre(7, 4, 1, 2));
   EXPECT_THAT(leaf.probability, testing::ElementsAre(127, 63, 25, 25));  // floor(255 share)
 }
@@ -46,7 +46,7 @@ TEST(LeafShares, AreTheLargestFourRoundedDown) {
 TEST(LeafShares, OfOneClassAreCertain) {
   const TrainingSet set = set_with(100, half_background());
   const std::vector<std::int64_t> counts{0, 3, 0};
-  const TreeLeaf leaf = LeafShares(set, 0.5F).leaf(counts.data());
+  const TreeLeaf leaf = LeafShares(set, 0.5F, 0.F).leaf(counts.data());
   EXPECT_EQ(leaf.label[0], 1);
   EXPECT_THAT(leaf.probability, testing::ElementsAre(255, 0, 0, 0));
 }
@@ -55,7 +55,7 @@ TEST(LeafShares, UndoSamplingWhenAsked) {
   const TrainingSet set = set_with(102, half_background());  // 9 + 11 of 1020 readings are body, half of the samples
   const std::vector<std::int64_t> counts{0, 50, 50};
   const auto share_of_background = [&](float correction) {
-    const TreeLeaf leaf = LeafShares(set, correction).leaf(counts.data());
+    const TreeLeaf leaf = LeafShares(set, correction, 0.F).leaf(counts.data());
     return (leaf.label[0] == 2 ? leaf.probability[0] : leaf.probability[1]) / 255.0;
   };
   EXPECT_NEAR(share_of_background(0.F), 0.5, 0.005);
@@ -63,6 +63,28 @@ TEST(LeafShares, UndoSamplingWhenAsked) {
   EXPECT_NEAR(share_of_background(1.F), 1000.0 / 1020.0, 0.01);
   const double root = std::sqrt(50.0);
   EXPECT_NEAR(share_of_background(0.5F), root / (root + 1.0), 0.02);
+}
+
+TEST(LeafShares, PartsCountAlikeWhenAskedAndTheBackgroundStays) {
+  const TrainingSet set = set_with(102, half_background());
+  std::vector<std::int64_t> drawn(3, 0);
+  for (const TrainingSample& sample : set.samples()) ++drawn[sample.label];
+  ASSERT_GT(drawn[1], drawn[0]);
+  const auto shares = [&](float balance) {
+    const TreeLeaf leaf = LeafShares(set, 0.F, balance).leaf(drawn.data());
+    std::vector<double> of(3, 0.0);
+    for (std::size_t k = 0; k < 3; ++k) of[leaf.label[k]] = leaf.probability[k] / 255.0;
+    return of;
+  };
+  const double body = static_cast<double>(drawn[0] + drawn[1]) / static_cast<double>(set.samples().size());
+  const double odds = static_cast<double>(drawn[1]) / static_cast<double>(drawn[0]);
+  EXPECT_NEAR(shares(0.F)[1] / shares(0.F)[0], odds, 0.05);
+  EXPECT_NEAR(shares(0.5F)[1] / shares(0.5F)[0], std::sqrt(odds), 0.05);
+  EXPECT_NEAR(shares(1.F)[1], shares(1.F)[0], 0.005);
+  for (const float balance : {0.F, 0.5F, 1.F}) {
+    EXPECT_NEAR(shares(balance)[0] + shares(balance)[1], body, 0.01) << balance;
+    EXPECT_NEAR(shares(balance)[2], 1.0 - body, 0.005) << balance;
+  }
 }
 
 TEST(PrunedTree, MergesLeavesThatSayTheSameAllTheWayUp) {

@@ -76,6 +76,7 @@ int run(int argc, char** argv) {
   options.sample.pixels_per_frame = 300;
   options.grow.split.candidates = 40;
   options.grow.leaf.min_samples = 25;
+  options.grow.leaf.part_balance = 0.F;
   app.add_option("OUT", out, "New folder: gets models/capsule.forest and sample/")->required();
   app.add_option("--frames", frames, "Scenes to learn from")->check(CLI::Range(1, 100000));
   app.add_option("--trees", options.trees);
