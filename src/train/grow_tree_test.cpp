@@ -261,6 +261,7 @@ TEST(GrowTree, LeavesHoldTheSharesOfTheSamplesThatReachThem) {
   const TrainingSet set = set_of(frames, 400);
   GrowTreeOptions options;
   options.leaf.max_depth = 5;
+  options.leaf.part_balance = 0.F;
   const Tree tree = grow_tree(set, options, 0);
   std::vector<std::vector<int>> counts(tree.leaves.size(), std::vector<int>(26, 0));
   for (const TrainingSample& sample : set.samples()) {
