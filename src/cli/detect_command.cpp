@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
 #include <sstream>
 
@@ -14,6 +13,7 @@
 #include "cli/source_flags.h"
 #include "cli/text_sink.h"
 #include "vesalius/parallel.h"
+#include "vesalius/stage_times.h"
 
 namespace vesalius::cli {
 namespace {
@@ -43,10 +43,8 @@ struct Totals {
 /// What was found in one frame to the outputs. Throws what reading or detecting threw.
 void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals) {
   if (found.error) std::rethrow_exception(found.error);
-  const auto start = std::chrono::steady_clock::now();
-  outputs.write(*found.frame, found.people);
-  const std::chrono::duration<double, std::milli> written = std::chrono::steady_clock::now() - start;
-  totals.times.add(found.times, found.read_ms, written.count());
+  const double write_ms = elapsed_ms([&] { outputs.write(*found.frame, found.people); });
+  totals.times.add(found.times, found.read_ms, write_ms);
   totals.people += static_cast<int>(found.people.size());
   totals.frames_with_people += found.people.empty() ? 0 : 1;
 }

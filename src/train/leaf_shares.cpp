@@ -5,7 +5,6 @@
 #include <numeric>
 
 namespace vesalius {
-
 namespace {
 
 /// In proportion to `factors`, the largest 2^24 and none 0.

@@ -91,7 +91,8 @@ class SkeletonSearch {
     }
     for (const int root : body.roots) trees_.push_back(root_tree(body, root));
     for (int part = 0; options.any_root && part < body.part_count(); ++part) {
-      if (std::ranges::find(body.roots, part) == body.roots.end()) trees_.push_back(root_tree(body, part));
+      const bool proposed = !by_part_[static_cast<std::size_t>(part)].empty();
+      if (proposed && std::ranges::find(body.roots, part) == body.roots.end()) trees_.push_back(root_tree(body, part));
     }
     find_consistent_pairs();
   }
