@@ -33,7 +33,9 @@ BenchScene run_stages(std::string name, Frame frame, Forest forest) {
   scene.forest = std::move(forest);
   scene.posteriors = ForestLabeller(scene.forest).label(scene.frame.depth, scene.frame.camera);
   Trace trace;
-  Detector(scene.forest).detect(scene.frame, &trace);
+  DetectOptions options;
+  options.grid.step = 1;
+  Detector(scene.forest, options).detect(scene.frame, &trace);
   scene.labels = std::move(trace.labels);
   scene.clusters = std::move(trace.clusters);
   scene.rough = std::move(trace.rough);

@@ -57,9 +57,8 @@ class VariantList {
       add(gated ? "forest asked everywhere" : "gate",
           [&](Options& o) { o.detect.label.gate = gated ? kAskEverywhere : LabelOptions().gate; });
     }
-    add(options_.label.half ? "labels at full resolution" : "labels at half resolution",
-        [](Options& o) { o.detect.label.half = !o.detect.label.half; });
-    add("half resolution", [](Options& o) { o.shrink = 2; });
+    if (options_.grid.step != 1) add("every pixel", [](Options& o) { o.detect.grid.step = 1; });
+    if (options_.grid.step != 2) add("every second pixel", [](Options& o) { o.detect.grid.step = 2; });
   }
 
   void add_forests() {

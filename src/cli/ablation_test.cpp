@@ -38,8 +38,8 @@ TEST(AblationVariants, OneThingEach) {
   EXPECT_THAT(names(variants),
               ElementsAre("no second iteration", "look by depth alone", "look by colour alone", "no smoothing",
                           "smoothing by mode", "no links past unseen parts", "roots of the body alone",
-                          "proposals with the labels' background", "forest asked everywhere",
-                          "labels at half resolution", "half resolution", "root neck alone", "root l_face_bottom alone",
+                          "proposals with the labels' background", "forest asked everywhere", "every pixel",
+                          "every second pixel", "root neck alone", "root l_face_bottom alone",
                           "root r_face_bottom alone", "votes, smoothed by mode", "1 tree", "2 trees", "4 trees"));
   EXPECT_FALSE(find(variants, "no second iteration").options().detect.refine.second_pass);
   EXPECT_TRUE(find(variants, "no second iteration").options().detect.grow.use_colour);
@@ -50,8 +50,8 @@ TEST(AblationVariants, OneThingEach) {
   EXPECT_EQ(find(variants, "proposals with the labels' background").options().detect.label.proposal_weight,
             options.label.background_weight);
   EXPECT_GT(find(variants, "forest asked everywhere").options().detect.label.gate, 1.F);
-  EXPECT_TRUE(find(variants, "labels at half resolution").options().detect.label.half);
-  EXPECT_EQ(find(variants, "half resolution").options().shrink, 2);
+  EXPECT_EQ(find(variants, "every pixel").options().detect.grid.step, 1);
+  EXPECT_EQ(find(variants, "every second pixel").options().detect.grid.step, 2);
   EXPECT_EQ(find(variants, "root neck alone").body().roots.size(), 1U);
   EXPECT_FALSE(find(variants, "root neck alone").options().detect.search.any_root);
   EXPECT_TRUE(find(variants, "1 tree").options().detect.refine.second_pass);
@@ -64,12 +64,12 @@ TEST(AblationVariants, NothingThatChangesNothing) {
   options.smooth.window = 1;
   options.search.grandparents = false;
   options.search.any_root = false;
-  options.label.half = true;
+  options.grid.step = 2;
   Forest votes = forest_of(2, {{3}, {255}});
   votes.body.roots.resize(1);
   EXPECT_THAT(names(ablation_variants(votes, options)),
               ElementsAre("second iteration", "look by depth and colour", "links past unseen parts", "any part as root",
-                          "labels at full resolution", "half resolution", "1 tree"));
+                          "every pixel", "1 tree"));
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 
 #include "eval/breakdown_figures.h"
 #include "eval/match_people.h"
-#include "eval/shrink_frame.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -105,29 +104,10 @@ FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
   return score;
 }
 
-std::vector<Person> FrameScorer::detect(const Frame& frame, Trace& trace) const {
-  if (options_.shrink == 1) return detector_.detect(frame, &trace);
-  std::vector<Person> people = detector_.detect(shrink(frame, options_.shrink), &trace);
-  enlarge(people, options_.shrink, frame.camera.width, frame.camera.height);
-  enlarge(trace, options_.shrink, frame.camera.width, frame.camera.height);
-  return people;
-}
-
-SceneLabels FrameScorer::label(const Frame& frame, const Mask* body) const {
-  if (options_.shrink == 1) return label_scene(*labeller_, options_.detect, frame, body);
-  const int width = frame.camera.width, height = frame.camera.height;
-  const Mask small_body = body != nullptr ? shrink(*body, options_.shrink) : Mask{};
-  SceneLabels labels =
-      label_scene(*labeller_, options_.detect, shrink(frame, options_.shrink), body != nullptr ? &small_body : nullptr);
-  labels.labels = enlarge(labels.labels, options_.shrink, width, height);
-  if (body != nullptr) labels.inside = enlarge(labels.inside, options_.shrink, width, height);
-  return labels;
-}
-
 void FrameScorer::find_people(const TrueFrame& frame, bool fit_joints, FrameScore& score) const {
   Trace trace;
   const auto start = std::chrono::steady_clock::now();
-  score.people = detect(frame.frame, trace);
+  score.people = detector_.detect(frame.frame, &trace);
   score.detect_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   score.labels = std::move(trace.labels);
   const std::vector<Match> matches = match_people(accepted_proposals(score.people), frame.truth, frame.frame.depth);
@@ -204,14 +184,14 @@ void FrameScorer::judge_labels(const TrueFrame& frame, FrameScore& score) const 
   const FrameTruth& truth = frame.truth;
   const DepthImage& depth = frame.frame.depth;
   if (truth.labels.empty()) {
-    if (score.labels.empty()) score.labels = label(frame.frame).labels;
+    if (score.labels.empty()) score.labels = label_scene(*labeller_, options_.detect, frame.frame).labels;
     append(score.terms, mask_terms(truth, score.labels, depth));
     return;
   }
   Mask in_body(depth.width(), depth.height(), 0);
   std::ranges::transform(truth.labels, in_body.begin(),
                          [](std::uint8_t l) -> std::uint8_t { return l != kBackground; });
-  SceneLabels labels = label(frame.frame, &in_body);
+  SceneLabels labels = label_scene(*labeller_, options_.detect, frame.frame, &in_body);
   if (score.labels.empty()) score.labels = std::move(labels.labels);
   PixelConfusion inside(body().part_count());
   inside.add(truth.labels, labels.inside, depth);

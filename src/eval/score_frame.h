@@ -41,7 +41,6 @@ class FrameScorer {
   struct Options {
     DetectOptions detect;
     bool labels_only = false;  ///< only the pixel figures of the first pass: much faster
-    int shrink = 1;            ///< the detector sees every so many pixels (shrink_frame.h) and is judged on all
   };
 
   /// Throws as Detector does.
@@ -55,8 +54,6 @@ class FrameScorer {
   const Options& options() const { return options_; }
 
  private:
-  std::vector<Person> detect(const Frame& frame, Trace& trace) const;
-  SceneLabels label(const Frame& frame, const Mask* body = nullptr) const;
   void find_people(const TrueFrame& frame, bool fit_joints, FrameScore& score) const;
   void log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const;
   /// The body's joint set that has all of the truth's joints; null where there are none.

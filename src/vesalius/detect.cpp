@@ -257,6 +257,27 @@ class Pipeline {
   std::vector<Skeleton> rough_;
 };
 
+void enlarge(const GridGuide& guide, Person& person) {
+  person.mask = guide.enlarge(person.mask, std::uint8_t{0}, person.box);
+  person.labels = guide.enlarge(person.labels, kBackground, person.box);
+  person.box = bounding_box(person.mask);
+}
+
+void enlarge(const GridGuide& guide, int width, int step, Trace& trace) {
+  const int coarse_width = trace.labels.width();
+  trace.raw_labels = guide.enlarge(trace.raw_labels, kBackground);
+  trace.labels = guide.enlarge(trace.labels, kBackground);
+  trace.flat = guide.enlarge(trace.flat, std::uint8_t{0});
+  trace.clusters.index = guide.enlarge(trace.clusters.index, -1);
+  for (PartCluster& cluster : trace.clusters.items) {
+    cluster.first_pixel = cluster.first_pixel / coarse_width * step * width + cluster.first_pixel % coarse_width * step;
+  }
+  for (Trace::Candidate& candidate : trace.candidates) {
+    candidate.grown = guide.enlarge(candidate.grown, std::uint8_t{0});
+    candidate.labels = guide.enlarge(candidate.labels, kBackground);
+  }
+}
+
 }  // namespace
 
 Detector::Detector(Forest forest, DetectOptions options)
@@ -270,6 +291,21 @@ Detector::Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions 
 
 std::vector<Person> Detector::detect(const Frame& frame, Trace* trace, StageTimes* times) const {
   check(frame);
+  const int step = grid_step(frame.camera, options_.grid);
+  if (step == 1) return detect_everywhere(frame, trace, times);
+  StageClock before(times);
+  const Frame coarse = every_nth(frame, step);
+  before.lap(Stage::grid);
+  std::vector<Person> people = detect_everywhere(coarse, trace, times);
+  StageClock after(times);
+  const GridGuide guide(frame.depth, step);
+  for (Person& person : people) enlarge(guide, person);
+  after.lap(Stage::grid);
+  if (trace != nullptr) enlarge(guide, frame.depth.width(), step, *trace);
+  return people;
+}
+
+std::vector<Person> Detector::detect_everywhere(const Frame& frame, Trace* trace, StageTimes* times) const {
   std::unique_ptr<Workspaces::Workspace> workspace = workspaces_->take();
   std::vector<Person> people = Pipeline(*labeller_, options_, frame, *workspace, times).run(trace);
   workspaces_->give_back(std::move(workspace));

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "vesalius/coarse_frame.h"
 #include "vesalius/derive_joints.h"
 #include "vesalius/find_clusters.h"
 #include "vesalius/forest.h"
@@ -30,6 +31,7 @@ struct RefineOptions {
 };
 
 struct DetectOptions {
+  GridOptions grid;
   LabelOptions label;
   SmoothOptions smooth;
   ClusterOptions cluster;
@@ -51,7 +53,8 @@ struct Person {
   float score = 0.F;                       ///< 0-1, higher is surer
 };
 
-/// Every intermediate of one detection, for pictures and evaluation.
+/// Every intermediate of one detection, for pictures and evaluation. All pictures are of the frame's size; what
+/// clusters count are pixels of the grid (GridOptions).
 struct Trace {
   LabelImage raw_labels;        ///< pass 1, before smoothing
   LabelImage labels;            ///< pass 1, smoothed
@@ -90,6 +93,8 @@ class Detector {
   const BodyModel& body() const { return labeller_->body(); }
 
  private:
+  std::vector<Person> detect_everywhere(const Frame& frame, Trace* trace, StageTimes* times) const;
+
   std::shared_ptr<const PixelLabeller> labeller_;
   DetectOptions options_;
   std::shared_ptr<Workspaces> workspaces_;

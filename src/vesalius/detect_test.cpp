@@ -257,6 +257,45 @@ TEST(Detector, SameResultForAnyThreadCountAndEveryTime) {
   for (std::size_t i = 1; i < results.size(); ++i) expect_same(results[0], results[i]);
 }
 
+TEST(Detector, LooksAtAGridOfLargePicturesAndAnswersForAllPixels) {
+  const Camera large{640, 480, 525.F, 525.F, 319.F, 239.F};  // every second pixel is kCamera's
+  const LabelledFrame truth = render(one_person(2.F), large, paper_body());
+  const Detector detector(std::make_shared<TruthLabeller>(every_nth(truth.labels, 2), paper_body(), true));
+  Trace trace;
+  StageTimes times;
+  const std::vector<Person> people = detector.detect(truth.frame, &trace, &times);
+  const std::vector<Person> coarse = detector.detect(every_nth(truth.frame, 2));
+  ASSERT_EQ(people.size(), 1U);
+  ASSERT_EQ(coarse.size(), 1U);
+  EXPECT_GT(times[Stage::grid], 0.0);
+  EXPECT_EQ(people[0].score, coarse[0].score);
+  for (std::size_t i = 0; i < coarse[0].skeleton.parts.size(); ++i) {
+    EXPECT_EQ(people[0].skeleton.parts[i].centre, coarse[0].skeleton.parts[i].centre);
+  }
+  EXPECT_EQ(every_nth(people[0].mask, 2), coarse[0].mask);
+  EXPECT_EQ(every_nth(people[0].labels, 2), coarse[0].labels);
+  long both = 0, either = 0, right = 0;
+  for (std::size_t i = 0; i < truth.person.size(); ++i) {
+    const bool is = truth.person[i] == 0, found = people[0].mask[i] != 0;
+    both += is && found ? 1 : 0;
+    either += is || found ? 1 : 0;
+    right += is && found && people[0].labels[i] == truth.labels[i] ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(both), 0.95 * static_cast<double>(either));
+  EXPECT_GT(static_cast<double>(right), 0.9 * static_cast<double>(both));
+  const Box box = bounding_box(people[0].mask);
+  EXPECT_EQ(people[0].box.u, box.u);
+  EXPECT_EQ(people[0].box.height, box.height);
+  for (const Image<std::uint8_t>* picture :
+       {&trace.raw_labels, &trace.labels, &trace.flat, &trace.candidates[0].grown, &trace.candidates[0].labels}) {
+    EXPECT_TRUE(picture->same_size(truth.frame.depth));
+  }
+  for (std::size_t i = 0; i < trace.clusters.items.size(); ++i) {
+    const auto first = static_cast<std::size_t>(trace.clusters.items[i].first_pixel);
+    EXPECT_EQ(trace.clusters.index[first], static_cast<std::int32_t>(i));
+  }
+}
+
 TEST(Detector, RefusesWhatCannotBeMeant) {
   const LabelledFrame truth = render(one_person(2.5F), kCamera, paper_body());
   DetectOptions options;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+
+#include "vesalius/coarse_frame.h"
 
 namespace vesalius {
 namespace {
@@ -14,19 +15,9 @@ constexpr int kGuideMm = 50;
 }  // namespace
 
 bool take_from_grid(const DepthImage& depth, int step, int u, int v, Posteriors& out) {
-  const std::uint16_t* nearest = nullptr;
-  int least = kGuideMm + 1;
-  for (int nv = v - v % step; nv < v + step; nv += step) {
-    for (int nu = u - u % step; nu < u + step; nu += step) {
-      if (!depth.contains(nu, nv) || depth(nu, nv) == 0) continue;
-      const int difference = std::abs(depth(nu, nv) - depth(u, v));
-      if (difference >= least) continue;
-      least = difference;
-      nearest = out.at(nu, nv);
-    }
-  }
-  if (nearest != nullptr) std::copy_n(nearest, out.classes, out.at(u, v));
-  return nearest != nullptr;
+  const GridPixel nearest = nearest_on_grid(depth, step, u, v, kGuideMm);
+  if (nearest.found) std::copy_n(out.at(nearest.u, nearest.v), out.classes, out.at(u, v));
+  return nearest.found;
 }
 
 BackgroundGate::BackgroundGate(const DepthImage& depth, const Posteriors& posteriors, float least)

@@ -198,9 +198,6 @@ void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& vi
                  {"", 0.5, 2.0,
                   "Where the forest, asked at every fourth pixel of every fourth row, gives the background this "
                   "probability all around, it is not asked about pixels between; above 1 it is asked about all."});
-  visitor.option(
-      prefix + "half", o.half,
-      {"", 0, 1, "Ask the forest at half resolution; other pixels take over what a neighbour of like depth has."});
 }
 
 ForestLabeller::ForestLabeller(Forest forest) : forest_(std::move(forest)) {
@@ -215,7 +212,7 @@ ForestLabeller::ForestLabeller(Forest forest) : forest_(std::move(forest)) {
 
 Posteriors ForestLabeller::label(const DepthImage& depth, const Camera& camera) const {
   Posteriors out;
-  label_into(depth, camera, {.gate = 2.F, .half = false}, out);
+  label_into(depth, camera, {.gate = 2.F}, out);
   return out;
 }
 
@@ -229,8 +226,8 @@ void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, c
                     [&](int begin, int end) { label_rows_plainly(forest_, packed_, depth, begin, end, scaler, out); });
     return;
   }
-  if (options.half || (options.gate <= 1.F && forest_.has_background)) {
-    label_sparsely(depth, scaler, options, out);
+  if (options.gate <= 1.F && forest_.has_background) {
+    label_gated(depth, scaler, options.gate, out);
     return;
   }
   const PaddedDepth padded(depth, forest_.convention);
@@ -240,19 +237,17 @@ void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, c
   });
 }
 
-/// Ever finer: the gate's grid, what it leaves of the picture or of the next finer grid, the pixels between.
-void ForestLabeller::label_sparsely(const DepthImage& depth, const OffsetScaler& scaler, const LabelOptions& options,
-                                    Posteriors& out) const {
+/// The gate's grid first, then what it leaves of the picture.
+void ForestLabeller::label_gated(const DepthImage& depth, const OffsetScaler& scaler, float least,
+                                 Posteriors& out) const {
   const PaddedDepth padded(depth, forest_.convention);
-  const bool gated = options.gate <= 1.F && forest_.has_background;
-  const int step = options.half ? 2 : 1;
   Mask done(depth.width(), depth.height(), 0);
-  const auto ask = [&](int begin, int end, const auto& wanted) {
+  const auto ask = [&](int begin, int end, int step) {
     WalkPixels pixels(static_cast<std::size_t>(depth.width()) * static_cast<std::size_t>(end - begin), scaler,
                       forest_.convention);
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < depth.width(); ++u) {
-        if (depth(u, v) == 0 || done(u, v) != 0 || !wanted(u, v)) continue;
+        if (depth(u, v) == 0 || done(u, v) != 0 || !on_grid(step, u, v)) continue;
         pixels.add(u, v, depth(u, v));
         std::fill_n(out.at(u, v), out.classes, std::uint16_t{0});
         done(u, v) = 1;
@@ -267,28 +262,22 @@ void ForestLabeller::label_sparsely(const DepthImage& depth, const OffsetScaler&
         if (depth(u, v) == 0) std::fill_n(out.at(u, v), out.classes, std::uint16_t{0});
       }
     }
-    if (gated) ask(begin, end, [](int u, int v) { return on_grid(BackgroundGate::kStep, u, v); });
+    ask(begin, end, BackgroundGate::kStep);
   });
-  if (gated) {
-    const BackgroundGate gate(depth, out, options.gate);
-    out.settled = Mask(depth.width(), depth.height(), 0);
-    in_rows([&](int begin, int end) {
-      std::vector<std::uint8_t> shut(static_cast<std::size_t>(depth.width()));
-      for (int v = begin; v < end; ++v) {
-        gate.row(v, shut.data());
-        for (int u = 0; u < depth.width(); ++u) {
-          if (shut[static_cast<std::size_t>(u)] == 0 || depth(u, v) == 0 || done(u, v) != 0) continue;
-          out.settled(u, v) = take_from_grid(depth, BackgroundGate::kStep, u, v, out) ? 1 : 0;
-          done(u, v) = out.settled(u, v);
-        }
-      }
-    });
-  }
-  in_rows([&](int begin, int end) { ask(begin, end, [&](int u, int v) { return on_grid(step, u, v); }); });
-  if (!options.half) return;
+  const BackgroundGate gate(depth, out, least);
+  out.settled = Mask(depth.width(), depth.height(), 0);
   in_rows([&](int begin, int end) {
-    ask(begin, end, [&](int u, int v) { return !take_from_grid(depth, step, u, v, out); });
+    std::vector<std::uint8_t> shut(static_cast<std::size_t>(depth.width()));
+    for (int v = begin; v < end; ++v) {
+      gate.row(v, shut.data());
+      for (int u = 0; u < depth.width(); ++u) {
+        if (shut[static_cast<std::size_t>(u)] == 0 || depth(u, v) == 0 || done(u, v) != 0) continue;
+        out.settled(u, v) = take_from_grid(depth, BackgroundGate::kStep, u, v, out) ? 1 : 0;
+        done(u, v) = out.settled(u, v);
+      }
+    }
   });
+  in_rows([&](int begin, int end) { ask(begin, end, 1); });
 }
 
 LabelImage choose_labels(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice,

@@ -21,7 +21,6 @@ struct LabelOptions {
   /// Probability of the background from which a forest that is sure of it at every fourth pixel of every fourth row is
   /// not asked about those between, where depth goes on; above 1 it is asked about all.
   float gate = 0.9F;
-  bool half = false;  ///< ask the forest at every second pixel of every second row, guided by depth elsewhere
 };
 void visit_options(const std::string& prefix, LabelOptions& options, OptionVisitor& visitor);
 
@@ -31,8 +30,8 @@ class PixelLabeller {
  public:
   virtual ~PixelLabeller() = default;
   virtual Posteriors label(const DepthImage& depth, const Camera& camera) const = 0;
-  /// The same into `out`, whose memory may be used again. `options.gate` and `options.half` allow it to leave pixels
-  /// out and to give them what a neighbour of like depth has.
+  /// The same into `out`, whose memory may be used again. `options.gate` allows it to leave pixels out and to
+  /// give them what a neighbour of like depth has.
   virtual void label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& /*options*/,
                           Posteriors& out) const {
     out = label(depth, camera);
@@ -57,8 +56,7 @@ class ForestLabeller : public PixelLabeller {
   const Forest& forest() const { return forest_; }
 
  private:
-  void label_sparsely(const DepthImage& depth, const OffsetScaler& scaler, const LabelOptions& options,
-                      Posteriors& out) const;
+  void label_gated(const DepthImage& depth, const OffsetScaler& scaler, float least, Posteriors& out) const;
 
   Forest forest_;
   std::vector<PackedTree> packed_;

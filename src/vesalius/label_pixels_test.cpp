@@ -177,36 +177,6 @@ TEST(ForestLabeller, SameBytesForAnyThreadCount) {
   EXPECT_EQ(results[0], results[2]);
 }
 
-TEST(ForestLabeller, AtHalfResolutionTakesOverWhatANeighbourOfLikeDepthHas) {
-  Random random(29);
-  Forest forest = empty_forest(true);
-  for (int t = 0; t < 3; ++t) forest.trees.push_back(random_tree(random, 6, forest.class_count()));
-  const ForestLabeller labeller(forest);
-  DepthImage depth(53, 31);
-  for (auto& mm : depth) mm = random.below(8) == 0 ? 0 : static_cast<std::uint16_t>(1000 + 100 * random.below(3));
-  const Camera camera{53, 31, 60.F, 50.F, 26.F, 15.F};
-  const Posteriors whole = labeller.label(depth, camera);
-  for (const int threads : {1, 3}) {
-    const ThreadLimit limit(threads);
-    Posteriors half = whole;  // whatever was there before
-    std::ranges::fill(half.sums, std::uint16_t{7});
-    labeller.label_into(depth, camera, {.gate = 2.F, .half = true}, half);
-    for (int v = 0; v < depth.height(); ++v) {
-      for (int u = 0; u < depth.width(); ++u) {
-        // Depths are equal or a step apart: the first of the grid's neighbours with the same depth, or the pixel
-        // itself.
-        const std::uint16_t* expected = whole.at(u, v);
-        for (int nv = v + v % 2; nv >= v - v % 2; nv -= 2) {
-          for (int nu = u + u % 2; nu >= u - u % 2; nu -= 2) {
-            if (depth.contains(nu, nv) && depth(nu, nv) == depth(u, v)) expected = whole.at(nu, nv);
-          }
-        }
-        ASSERT_TRUE(std::equal(expected, expected + whole.classes, half.at(u, v))) << u << ' ' << v;
-      }
-    }
-  }
-}
-
 /// Background on the left half of the depths' range, parts on the right.
 Forest forest_by_depth(Random& random) {
   Forest forest = empty_forest(true);
@@ -237,31 +207,26 @@ TEST(ForestLabeller, GateLeavesOutWhatIsSurelyBackgroundOnly) {
   }
   const Camera camera{97, 61, 60.F, 60.F, 48.F, 30.F};
   const Posteriors whole = labeller.label(depth, camera);
-  for (const bool half : {false, true}) {
-    Posteriors without;
-    labeller.label_into(depth, camera, {.gate = 2.F, .half = half}, without);
-    int taken = 0;
-    for (const int threads : {1, 3}) {
-      const ThreadLimit limit(threads);
-      Posteriors gated = whole;
-      std::ranges::fill(gated.sums, std::uint16_t{7});  // whatever was there before
-      labeller.label_into(depth, camera, {.gate = 1.F, .half = half}, gated);
-      const BackgroundGate gate(depth, whole, 1.F);
-      std::vector<std::uint8_t> shut(97);
-      for (int v = 0; v < depth.height(); ++v) {
-        gate.row(v, shut.data());
-        for (int u = 0; u < depth.width(); ++u) {
-          const std::uint16_t* found = gated.at(u, v);
-          if (std::equal(found, found + whole.classes, without.at(u, v))) continue;
-          ++taken;
-          // At half resolution what was left out is handed on to neighbours.
-          ASSERT_TRUE(half || shut[static_cast<std::size_t>(u)] == 1) << u << ' ' << v;
-          ASSERT_EQ(found[background], 510) << "taken over from where the forest is sure";
-        }
+  int taken = 0;
+  for (const int threads : {1, 3}) {
+    const ThreadLimit limit(threads);
+    Posteriors gated = whole;
+    std::ranges::fill(gated.sums, std::uint16_t{7});  // whatever was there before
+    labeller.label_into(depth, camera, {.gate = 1.F}, gated);
+    const BackgroundGate gate(depth, whole, 1.F);
+    std::vector<std::uint8_t> shut(97);
+    for (int v = 0; v < depth.height(); ++v) {
+      gate.row(v, shut.data());
+      for (int u = 0; u < depth.width(); ++u) {
+        const std::uint16_t* found = gated.at(u, v);
+        if (std::equal(found, found + whole.classes, whole.at(u, v))) continue;
+        ++taken;
+        ASSERT_EQ(shut[static_cast<std::size_t>(u)], 1) << u << ' ' << v;
+        ASSERT_EQ(found[background], 510) << "taken over from where the forest is sure";
       }
     }
-    EXPECT_GT(taken, 20) << "somewhere the forest alone thinks otherwise";
   }
+  EXPECT_GT(taken, 20) << "somewhere the forest alone thinks otherwise";
 }
 
 TEST(ForestLabeller, RefusesAnInconsistentForest) {

@@ -7,10 +7,10 @@
 
 namespace vesalius {
 
-/// What a Detector does, in this order.
-enum class Stage { planes, label, smooth, choose, cluster, search, grow, second_pass, people };
+/// What a Detector does, in this order; the grid's pixels are taken before and brought back to the picture after.
+enum class Stage { planes, label, smooth, choose, cluster, search, grow, second_pass, people, grid };
 inline constexpr std::array kStageNames = {"planes", "label", "smooth",      "choose", "cluster",
-                                           "search", "grow",  "second pass", "people"};
+                                           "search", "grow",  "second pass", "people", "grid"};
 
 /// Milliseconds that each stage of one detection took, by the clock on the wall.
 struct StageTimes {

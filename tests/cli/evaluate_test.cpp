@@ -90,7 +90,7 @@ TEST_F(Evaluate, WritesWhatEachPartOfTheMethodIsWorth) {
   if (!has_gnuplot()) GTEST_SKIP() << "no program gnuplot (Debian: gnuplot-nox)";
   const Outcome run = evaluate(" --ablation --step 3 --report " + path("out"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, ContainsRegex("  half resolution +[0-9.]+ ms, [0-9.]+ of it; people found "));
+  EXPECT_THAT(run.out, ContainsRegex("  every second pixel +[0-9.]+ ms, [0-9.]+ of it; people found "));
   const std::string page = bytes_of(path("out/report.md"));
   EXPECT_THAT(page, ContainsRegex("\\| as it is \\| 100.00 % \\|"));
   EXPECT_THAT(page, HasSubstr("| no second iteration |"));
