@@ -1,6 +1,7 @@
 // The bundled forest on scenes it did not learn from: labelling, both passes, everything as shipped.
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <iostream>
 
@@ -102,6 +103,34 @@ TEST(CapsuleForest, NobodyInEmptyRooms) {
     add_sensor_noise(truth.frame, static_cast<std::uint64_t>(i));
     EXPECT_TRUE(detector.detect(truth.frame).empty()) << "scene " << i;
   }
+}
+
+/// Pages that the system gave this process so far.
+long pages_given() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_minflt;
+}
+
+TEST(CapsuleForest, FramesAfterTheFirstTakeNoNewMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizer's own memory grows with every allocation";
+#endif
+  Random random(13);
+  CapsuleScene scene = room(5.F);
+  scene.people.push_back(random_person(random, -0.6F, 2.6F, scene.floor_y_m));
+  scene.people.push_back(random_person(random, 0.6F, 3.2F, scene.floor_y_m));
+  const BodyModel body = paper_body();
+  const Frame frame = render(scene, kCamera, body).frame;
+  DetectOptions options;
+  options.grid.step = 1;
+  const Detector detector(load_model(std::string(VESALIUS_SOURCE_DIR) + "/data/models/capsule.forest"), options);
+  for (int i = 0; i < 5; ++i) ASSERT_EQ(detector.detect(frame).size(), 2U);
+  const long before = pages_given();
+  constexpr int kFrames = 10;
+  for (int i = 0; i < kFrames; ++i) detector.detect(frame);
+  // A picture of posteriors alone has 3900 pages, a mask 75.
+  EXPECT_LE(pages_given() - before, 10 * kFrames);
 }
 
 }  // namespace
