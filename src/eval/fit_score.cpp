@@ -75,8 +75,7 @@ std::vector<Weighted> weighted(const std::vector<std::vector<ScoreSample>>& sets
     const auto people = static_cast<double>(std::ranges::count(set, true, &ScoreSample::person));
     const double nobodies = static_cast<double>(set.size()) - people;
     for (const ScoreSample& sample : set) {
-      all.push_back({features(sample.evidence), sample.person,
-                     sample.person ? 1.0 / std::sqrt(people) : kCostOfFalse / std::sqrt(nobodies)});
+      all.push_back({features(sample.evidence), sample.person, sample.person ? 1.0 / people : kCostOfFalse / nobodies});
     }
   }
   return all;

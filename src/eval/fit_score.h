@@ -30,8 +30,8 @@ struct ScoreFit {
 };
 
 /// Weights and bias of the person score by logistic regression, so that 0.5 lies between people and nobodies; the
-/// other options are those of `start`. A set's people weigh the root of their number together, its nobodies likewise:
-/// a long sequence does not drown a short one. Weights are held towards 0 a little, for sets that a line parts wholly.
+/// other options are those of `start`. The people of every set weigh the same together, and so do its nobodies: a long
+/// sequence does not drown a short one. Weights are held towards 0 a little, for sets that a line parts wholly.
 /// Throws Error where there are no people or no nobodies.
 ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const ScoreOptions& start);
 

@@ -59,9 +59,11 @@ struct Outline {
   long open = 0;      ///< further away, or nothing
   long closed = 0;    ///< as far away
   long occluded = 0;  ///< nearer
+  long border = 0;    ///< the picture ends
 
   float share_open() const { return share(open, open + closed); }
   float share_occluded() const { return share(occluded, open + closed + occluded); }
+  float share_border() const { return share(border, open + closed + occluded + border); }
 
  private:
   static float share(long some, long all) { return all > 0 ? static_cast<float>(some) / static_cast<float>(all) : 0.F; }
@@ -74,7 +76,11 @@ Outline look_around(const Frame& frame, const Inside& inside, float step_m) {
   Outline outline;
   inside.each([&](int u, int v) {
     for (const auto& [du, dv] : kSides) {
-      if (!mask.contains(u + du, v + dv) || mask(u + du, v + dv) != 0) continue;
+      if (!mask.contains(u + du, v + dv)) {
+        ++outline.border;
+        continue;
+      }
+      if (mask(u + du, v + dv) != 0) continue;
       int beyond = 0;
       for (int k = 1; k <= kRim && beyond == 0 && mask.contains(u + k * du, v + k * dv); ++k) {
         beyond = frame.depth(u + k * du, v + k * dv);
@@ -92,20 +98,26 @@ Outline look_around(const Frame& frame, const Inside& inside, float step_m) {
   return outline;
 }
 
-/// 1 where there is no background class.
-float share_of_body(const Inside& inside, const Posteriors& posteriors, int parts) {
-  if (posteriors.classes == parts) return 1.F;
-  double sum = 0.0;
+/// How sure the forest is of the mask's pixels, means over them; 0 without pixels.
+struct Certainty {
+  double body = 0.0;  ///< the parts' share of all classes: 1 where there is no background class
+  double part = 0.0;  ///< the likeliest part's share of all parts
+};
+
+Certainty certainty_of(const Inside& inside, const Posteriors& posteriors, int parts) {
+  Certainty sum;
   long pixels = 0;
   inside.each([&](int u, int v) {
     const std::uint16_t* sums = posteriors.at(u, v);
     const double body = std::accumulate(sums, sums + parts, 0.0);
     const double all = std::accumulate(sums + parts, sums + posteriors.classes, body);
     if (all == 0.0) return;  // no reading
-    sum += body / all;
+    sum.body += body / all;
+    if (body > 0.0) sum.part += *std::max_element(sums, sums + parts) / body;
     ++pixels;
   });
-  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
+  if (pixels == 0) return {};
+  return {sum.body / static_cast<double>(pixels), sum.part / static_cast<double>(pixels)};
 }
 
 /// How large it is and how far away.
@@ -171,6 +183,10 @@ void visit_options(const std::string& prefix, ScoreOptions& o, OptionVisitor& vi
   visitor.option(prefix + "occluded-weight", o.occluded_weight,
                  {"", -1000.0, 1000.0, "Weight of the share of the outline that something nearer cuts off."});
   visitor.option(prefix + "near-weight", o.near_weight, {"", -1000.0, 1000.0, "Weight of how near the camera it is."});
+  visitor.option(prefix + "certain-weight", o.certain_weight,
+                 {"", -1000.0, 1000.0, "Weight of how sure the forest is which part each pixel is."});
+  visitor.option(prefix + "border-weight", o.border_weight,
+                 {"", -1000.0, 1000.0, "Weight of the share of the outline that the picture's border cuts off."});
   visitor.option(prefix + "bias", o.bias, {"", -1000.0, 1000.0, "Constant of the score."});
   visitor.option(prefix + "explained-radius", o.explained_radius_m,
                  {"m", 0.0, 10.0, "A pixel is explained by an observed part of its label this near."});
@@ -189,6 +205,8 @@ ScoreOptions score_without_background() {
   options.size_weight = 0.F;
   options.occluded_weight = 0.F;
   options.near_weight = 0.F;
+  options.certain_weight = 0.F;
+  options.border_weight = 0.F;
   options.bias = -17.F;
   return options;
 }
@@ -198,14 +216,17 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage&
   const Inside inside(mask);
   const Outline outline = look_around(frame, inside, options.open_step_m);
   const Extent extent = extent_of(frame, inside);
+  const Certainty certainty = certainty_of(inside, posteriors, body.part_count());
   return {skeleton.score / static_cast<float>(body.part_count()),
           share_explained(frame, inside, labels, skeleton, body, options.explained_radius_m),
           outline.share_open(),
           share_of_core(skeleton, body),
-          share_of_body(inside, posteriors, body.part_count()),
+          static_cast<float>(certainty.body),
           likeness_of_area(extent, options.usual_area_m2),
           outline.share_occluded(),
-          nearness(extent)};
+          nearness(extent),
+          static_cast<float>(certainty.part),
+          outline.share_border()};
 }
 
 float person_score(const Evidence& e, const ScoreOptions& o) {

@@ -13,15 +13,17 @@
 namespace vesalius {
 
 struct ScoreOptions {
-  float likelihood_weight = 4.5F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
-  float explained_weight = 1.41F;  ///< of the share of the mask that the skeleton explains
-  float open_weight = 0.25F;       ///< of the share of the outline that stands free
-  float core_weight = 1.02F;       ///< of the share of head, neck and chest parts found
-  float body_weight = 10.55F;      ///< of how sure the forest is that the mask is body
-  float size_weight = 3.35F;       ///< of how near the mask's area is to a person's
-  float occluded_weight = 3.73F;   ///< of the share of the outline that something nearer cuts off
-  float near_weight = 3.11F;       ///< of how near the camera it is
-  float bias = -15.31F;
+  float likelihood_weight = 4.67F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
+  float explained_weight = 0.59F;   ///< of the share of the mask that the skeleton explains
+  float open_weight = 0.45F;        ///< of the share of the outline that stands free
+  float core_weight = 1.4F;         ///< of the share of head, neck and chest parts found
+  float body_weight = 9.62F;        ///< of how sure the forest is that the mask is body
+  float size_weight = 5.33F;        ///< of how near the mask's area is to a person's
+  float occluded_weight = 4.44F;    ///< of the share of the outline that something nearer cuts off
+  float near_weight = 3.12F;        ///< of how near the camera it is
+  float certain_weight = 15.41F;    ///< of how sure the forest is which part each pixel is
+  float border_weight = -9.73F;     ///< of the share of the outline that the picture's border cuts off
+  float bias = -20.65F;
   float explained_radius_m = 0.25F;  ///< a pixel is explained by an observed part of its label this near
   float open_step_m = 0.1F;          ///< an outline stands free where what lies behind is this much further
   float usual_area_m2 = 0.45F;       ///< of a person's mask; a standing adult's front
@@ -42,6 +44,8 @@ struct Evidence {
   float size = 0.F;        ///< the mask's area over the usual one, or the other way round: the smaller of the two
   float occluded = 0.F;    ///< share of the outline with something nearer beyond it: it excuses what is missing
   float near = 0.F;        ///< one metre over the mean depth, at most 1: what is far is told from a body less surely
+  float certain = 0.F;  ///< mean over the mask of the likeliest part's share of all parts: furniture looks like several
+  float border = 0.F;   ///< share of the outline at the picture's border
 };
 
 /// A piece of evidence and what it weighs.
@@ -49,7 +53,7 @@ struct EvidenceWeight {
   float Evidence::*evidence;
   float ScoreOptions::*weight;
 };
-inline constexpr std::array<EvidenceWeight, 8> kEvidenceWeights{
+inline constexpr std::array<EvidenceWeight, 10> kEvidenceWeights{
     {{&Evidence::likelihood, &ScoreOptions::likelihood_weight},
      {&Evidence::explained, &ScoreOptions::explained_weight},
      {&Evidence::open, &ScoreOptions::open_weight},
@@ -57,7 +61,9 @@ inline constexpr std::array<EvidenceWeight, 8> kEvidenceWeights{
      {&Evidence::body, &ScoreOptions::body_weight},
      {&Evidence::size, &ScoreOptions::size_weight},
      {&Evidence::occluded, &ScoreOptions::occluded_weight},
-     {&Evidence::near, &ScoreOptions::near_weight}}};
+     {&Evidence::near, &ScoreOptions::near_weight},
+     {&Evidence::certain, &ScoreOptions::certain_weight},
+     {&Evidence::border, &ScoreOptions::border_weight}}};
 
 /// `labels` are the part labels inside `mask`, `posteriors` those of the first pass; images of the frame's size.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,

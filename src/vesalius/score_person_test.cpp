@@ -120,6 +120,36 @@ TEST(GatherEvidence, BodyIsThePartsShareOfThePosterior) {
   EXPECT_FLOAT_EQ(s.evidence().body, 1.F);  // without background
 }
 
+TEST(GatherEvidence, CertainIsTheLikeliestPartsShareOfAllParts) {
+  Square s(3000);
+  for (int v = 10; v < 20; ++v) {
+    for (int u = 15; u < 25; ++u) {
+      s.posteriors.at(u, v)[3] = 50;
+      s.posteriors.at(u, v)[7] = u < 20 ? 150 : 50;  // 0.75 and 0.5
+      s.posteriors.at(u, v)[25] = 200;               // of the background nothing is asked
+    }
+  }
+  EXPECT_FLOAT_EQ(s.evidence().certain, 0.5F * (0.75F + 0.5F));
+  s.posteriors.at(15, 10)[3] = s.posteriors.at(15, 10)[7] = 0;  // surely background
+  EXPECT_NEAR(s.evidence().certain, 0.5F * (0.75F + 0.5F) - 0.0075F, 1e-6);
+}
+
+TEST(GatherEvidence, BorderIsTheShareOfTheOutlineWhereThePictureEnds) {
+  Square s(3000);
+  EXPECT_FLOAT_EQ(s.evidence().border, 0.F);
+  s.mask = Mask(40, 30, 0);
+  for (int v = 20; v < 30; ++v) {
+    for (int u = 30; u < 40; ++u) {
+      s.frame.depth(u, v) = 2000;
+      s.mask(u, v) = 1;
+    }
+  }
+  EXPECT_FLOAT_EQ(s.evidence().border, 0.5F);
+  for (int v = 20; v < 30; ++v) s.frame.depth(29, v) = 1000;  // hidden to the left
+  EXPECT_FLOAT_EQ(s.evidence().border, 0.5F);
+  EXPECT_FLOAT_EQ(s.evidence().occluded, 0.5F);
+}
+
 TEST(GatherEvidence, SizeIsOneForTheUsualAreaAndLessForMoreAndLess) {
   const Square s(3000);  // 100 pixels of 4 cm^2
   ScoreOptions options;
@@ -141,18 +171,23 @@ TEST(PersonScore, IsALogisticSum) {
   options.size_weight = 0.5F;
   options.occluded_weight = 0.25F;
   options.near_weight = 0.F;
+  options.certain_weight = 0.F;
+  options.border_weight = -0.5F;
   options.bias = -1.F;
   EXPECT_FLOAT_EQ(person_score({0.5F, 0.9F, 0.F, 0.9F, 0.9F, 0.F}, options), 0.5F);
   EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 0.F}, options), 1.0 / (1.0 + std::exp(-1.0)), 1e-6);
   EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 1.F}, options), 1.0 / (1.0 + std::exp(-1.5)), 1e-6);
   EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 1.F, 1.F, 0.9F}, options), 1.0 / (1.0 + std::exp(-1.75)),
               1e-6);
+  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 1.F, 1.F, 0.9F, 0.9F, 0.5F}, options),
+              1.0 / (1.0 + std::exp(-1.5)), 1e-6);
 }
 
 TEST(PersonScore, EachEvidenceSpeaksForAPerson) {
   const Evidence some{0.5F, 0.6F, 0.6F, 0.7F};
   const float before = person_score(some, {});
-  for (float Evidence::*field : {&Evidence::likelihood, &Evidence::explained, &Evidence::open, &Evidence::core}) {
+  for (float Evidence::*field :
+       {&Evidence::likelihood, &Evidence::explained, &Evidence::core, &Evidence::body, &Evidence::certain}) {
     Evidence more = some;
     more.*field += 0.1F;
     EXPECT_GT(person_score(more, {}), before);
