@@ -50,6 +50,9 @@ void check(const Arguments& arguments, const TrainOptions& options) {
     throw UsageError(arguments.out + ": expected the name of a file to write");
   }
   if (arguments.curves && arguments.report.empty()) throw UsageError("--curves expects --report, where they go");
+  if (!arguments.report.empty() && options.sample.held_out_share <= 0.F) {
+    throw UsageError("--report expects frames to measure accuracy on: held-out-share above 0");
+  }
   if (!arguments.sources.backgrounds.empty() && options.sample.background_share <= 0.F) {
     throw UsageError("--background expects a background class: background-share above 0");
   }

@@ -189,6 +189,8 @@ TEST_F(TrainProgram, BadInputIsOneClearLine) {
   refused(train("--data " + path("none") + out), 1, "none");
   refused(train("--recipe " + recipe() + out), 2, "--count");
   refused(train("--data " + data() + " --curves" + out), 2, "--report");
+  refused("train --held-out-share 0 --data " + data() + " --report " + path("report") + out, 2,
+          "held-out-share above 0");
   refused(train("--data " + data() + " --min-gain 11" + out), 2, "min-gain");
   refused(train("--data " + data() + " --background-share 0 --background " + data() + out), 2, "background class");
   refused(train("--data " + data() + " --background " + path("nowhere") + out), 1, "nowhere");
