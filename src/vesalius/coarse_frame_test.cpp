@@ -95,7 +95,7 @@ LabelImage enlarge_slowly(const LabelImage& coarse, const DepthImage& depth, int
   return out;
 }
 
-TEST(GridGuide, AgreesWithLookingAtAllPixels) {
+TEST(GridGuideThreads, AnyNumberAgreesWithLookingAtAllPixels) {
   Random random(41);
   for (int trial = 0; trial < 40; ++trial) {
     const int step = 1 + static_cast<int>(random.below(4));
