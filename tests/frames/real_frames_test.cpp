@@ -9,8 +9,10 @@
 #include <set>
 
 #include "eval/pixel_figures.h"
+#include "io/model_file.h"
 #include "shared_frames.h"
 #include "vesalius/detect.h"
+#include "vesalius/for_each_target.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius {
@@ -129,25 +131,58 @@ TEST(RealFrames, MasksOfOtherRooms) {
   }
 }
 
+void expect_same(const std::vector<Person>& people, const std::vector<Person>& expected) {
+  ASSERT_EQ(people.size(), expected.size());
+  for (std::size_t p = 0; p < people.size(); ++p) {
+    EXPECT_EQ(people[p].mask, expected[p].mask);
+    EXPECT_EQ(people[p].labels, expected[p].labels);
+    EXPECT_EQ(people[p].score, expected[p].score);
+    for (std::size_t k = 0; k < people[p].skeleton.parts.size(); ++k) {
+      EXPECT_EQ(people[p].skeleton.parts[k].centre, expected[p].skeleton.parts[k].centre);
+      EXPECT_EQ(people[p].skeleton.parts[k].confidence, expected[p].skeleton.parts[k].confidence);
+    }
+  }
+}
+
 TEST(RealFrames, SameResultForAnyThreadCount) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
-  const std::vector<RealFrame> frames = load_real_set(shared, "tue_people");
-  for (const RealFrame& real : frames) {
+  for (const RealFrame& real : load_real_set(shared, "tue_people")) {
     std::vector<std::vector<Person>> results;
     for (const int threads : {1, 2, 8, 8}) {
       const ThreadLimit limit(threads);
       results.push_back(detector.detect(real.frame));
     }
-    for (std::size_t r = 1; r < results.size(); ++r) {
-      ASSERT_EQ(results[r].size(), results[0].size());
-      for (std::size_t p = 0; p < results[0].size(); ++p) {
-        EXPECT_EQ(results[r][p].mask, results[0][p].mask);
-        EXPECT_EQ(results[r][p].labels, results[0][p].labels);
-        EXPECT_EQ(results[r][p].score, results[0][p].score);
-      }
+    for (const std::vector<Person>& people : results) expect_same(people, results[0]);
+  }
+}
+
+/// Every `kEach`-th frame of all sets, with the shipped forest; VESALIUS_ALL_FRAMES=1 takes all.
+TEST(RealFrames, SameResultForEveryInstructionSetAndThreadCount) {
+  VESALIUS_NEEDS_SHARED();
+  constexpr std::size_t kEach = 12;
+  const std::size_t step =
+      std::getenv("VESALIUS_ALL_FRAMES") != nullptr ? 1 : kEach * static_cast<std::size_t>(stride());
+  const Detector detector(load_model(std::string(VESALIUS_SOURCE_DIR) + "/data/models/default.forest"));
+  std::size_t frames = 0, found = 0;
+  for (const char* set : {"alina_wave", "fallseq", "uva_person", "uc3m", "tue_people", "jointvosf", "pcl",
+                          "neg_7scenes_kitchen", "neg_aims", "neg_leezl_tabletop", "neg_pcl"}) {
+    const std::vector<RealFrame> all = load_real_set(shared, set);
+    for (std::size_t i = 0; i < all.size(); i += step) {
+      const std::vector<Person> expected = detector.detect(all[i].frame);
+      for_each_target([&](const char* target) {
+        for (const int threads : {1, 3}) {
+          SCOPED_TRACE(std::string(target) + ", " + std::to_string(threads) + " threads, " + all[i].frame.name);
+          const ThreadLimit limit(threads);
+          expect_same(detector.detect(all[i].frame), expected);
+        }
+      });
+      ++frames;
+      found += expected.size();
     }
   }
+  std::cout << frames << " frames, " << found << " people\n";
+  EXPECT_GT(found, 0U);
 }
 
 }  // namespace
