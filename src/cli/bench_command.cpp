@@ -17,6 +17,7 @@
 #include "cli/source_flags.h"
 #include "cli/text_sink.h"
 #include "vesalius/error.h"
+#include "vesalius/keep_memory.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius::cli {
@@ -151,6 +152,7 @@ void report(const Arguments& arguments, const Bench& bench) {
 }
 
 void run(const Arguments& arguments) {
+  keep_freed_memory();
   Bench bench;
   bench.runs = runs_for(arguments.threads);
   const auto start = Clock::now();

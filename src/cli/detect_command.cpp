@@ -12,6 +12,7 @@
 #include "cli/progress.h"
 #include "cli/source_flags.h"
 #include "cli/text_sink.h"
+#include "vesalius/keep_memory.h"
 #include "vesalius/parallel.h"
 #include "vesalius/stage_times.h"
 
@@ -82,6 +83,7 @@ void say_times(const FrameTimes& times) {
 
 void run(const Arguments& arguments) {
   check(arguments.outputs);
+  keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
   const Detector detector = arguments.detector.make();
   const auto source = open_source(arguments.source, arguments.camera);

@@ -8,6 +8,7 @@
 #include "io/model_file.h"
 #include "vesalius/capsule_person.h"
 #include "vesalius/detect.h"
+#include "vesalius/keep_memory.h"
 #include "vesalius/random.h"
 
 namespace vesalius {
@@ -116,6 +117,7 @@ TEST(CapsuleForest, FramesAfterTheFirstTakeNoNewMemory) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the sanitizer's own memory grows with every allocation";
 #endif
+  keep_freed_memory();
   Random random(13);
   CapsuleScene scene = room(5.F);
   scene.people.push_back(random_person(random, -0.6F, 2.6F, scene.floor_y_m));
