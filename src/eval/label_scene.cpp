@@ -27,7 +27,7 @@ SceneLabels label_scene(const PixelLabeller& labeller, const DetectOptions& opti
   const int step = grid_step(frame.camera, options.grid);
   if (step == 1) return label_everywhere(labeller, options, frame.depth, frame.camera, body);
   const Mask coarse_body = body != nullptr ? every_nth(*body, step) : Mask{};
-  const Frame coarse = every_nth(Frame{{}, 0.0, frame.camera, frame.depth, {}}, step);
+  const Frame coarse = every_nth(frame, step);
   SceneLabels result =
       label_everywhere(labeller, options, coarse.depth, coarse.camera, body != nullptr ? &coarse_body : nullptr);
   const GridGuide guide(frame.depth, step);
