@@ -24,6 +24,8 @@ constexpr double kUsedShare = 0.8;         ///< of the machine's memory: others 
 constexpr int kMeasuredFrames = 64;        ///< of each input
 constexpr double kMostMeasuring_s = 5.0;   ///< of each input
 constexpr int kUnknownBackgrounds = 1000;  ///< frames of a source that does not say how many it has
+constexpr int kPackedFrames = 32;          ///< of each input, packed to see how much they take
+constexpr double kPackedMargin = 1.1;      ///< for what the others take
 
 double gib(std::uint64_t bytes) { return static_cast<double>(bytes) / kGiB; }
 
@@ -33,16 +35,46 @@ int class_count(const TrainInputs& inputs, const TrainOptions& options) {
   return inputs.body().part_count() + (options.sample.background_share > 0.F ? 1 : 0);
 }
 
-/// `copies`: how many times all frames are held.
-std::vector<FrameGroup> groups_of(const TrainInputs& inputs, double copies = 1.0) {
-  const auto held = [&](int frames) { return static_cast<std::uint64_t>(std::ceil(copies * frames)); };
+std::vector<FrameGroup> groups_of(const TrainInputs& inputs) {
   std::vector<FrameGroup> groups;
   for (const TrainInput& input : inputs.inputs()) {
-    groups.push_back({held(input.frames), input.width, input.height, false});
+    groups.push_back({static_cast<std::uint64_t>(input.frames), 0, false});
   }
   for (const TrainBackground& background : inputs.backgrounds()) {
     const int frames = background.frames >= 0 ? background.frames : kUnknownBackgrounds;
-    groups.push_back({held(frames), background.width, background.height, true});
+    groups.push_back({static_cast<std::uint64_t>(frames), 0, true});
+  }
+  return groups;
+}
+
+/// What a frame of an input takes, from some of them: how well depth packs depends on what it shows.
+std::uint64_t measured_frame_bytes(const TrainInput& input) {
+  const int count = std::min(input.frames, kPackedFrames);
+  std::uint64_t bytes = 0;
+  parallel_in_order(
+      count,
+      [&](int i) {
+        const auto number = static_cast<std::int64_t>(i) * input.frames / count;
+        return FrameStore::frame_bytes(input.frame(static_cast<int>(number)).frame.depth);
+      },
+      [&](int /*i*/, std::uint64_t of_frame) {
+        bytes += of_frame;
+        return true;
+      });
+  return static_cast<std::uint64_t>(kPackedMargin * static_cast<double>(bytes) / count);
+}
+
+/// groups_of with the bytes; `copies`: how many times all frames are held.
+std::vector<FrameGroup> measured_groups(const TrainInputs& inputs, double copies) {
+  std::vector<FrameGroup> groups = groups_of(inputs);
+  for (FrameGroup& group : groups) {
+    group.frames = static_cast<std::uint64_t>(std::ceil(copies * static_cast<double>(group.frames)));
+  }
+  const std::size_t input_count = inputs.inputs().size();
+  for (std::size_t i = 0; i < input_count; ++i) groups[i].frame_bytes = measured_frame_bytes(inputs.inputs()[i]);
+  for (std::size_t i = input_count; i < groups.size(); ++i) {
+    const TrainBackground& background = inputs.backgrounds()[i - input_count];
+    groups[i].frame_bytes = FrameStore::most_frame_bytes(background.width, background.height);
   }
   return groups;
 }
@@ -94,7 +126,7 @@ std::uint64_t default_memory() {
 }
 
 MemoryPlan plan_memory(const TrainInputs& inputs, const TrainOptions& options, bool curves, std::uint64_t limit) {
-  const std::vector<FrameGroup> groups = groups_of(inputs, curves ? 1.0 + kCurveFrames : 1.0);
+  const std::vector<FrameGroup> groups = measured_groups(inputs, curves ? 1.0 + kCurveFrames : 1.0);
   const TrainingMemory memory = training_memory(groups, options, class_count(inputs, options));
   if (memory.total(1) > limit) refuse(inputs, options, groups, memory.total(1), limit);
   MemoryPlan plan;

@@ -57,7 +57,7 @@ class Training {
       progress.step();
       if (set_.bytes() <= run_.max_bytes) return;
       throw Error(fmt::format(
-          "{} frames take {:.2f} GiB, --memory allows {:.2f}: expected frames as large as the first", progress.done(),
+          "{} frames take {:.2f} GiB, --memory allows {:.2f}: expected frames like those measured beforehand", progress.done(),
           static_cast<double>(set_.bytes()) / kGiB, static_cast<double>(run_.max_bytes) / kGiB));
     };
     const std::vector<BackgroundFacts> backgrounds = inputs_.read_backgrounds(add);

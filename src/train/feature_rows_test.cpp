@@ -56,18 +56,21 @@ TEST(FeatureRows, AreWhatDetectionComputesOnEveryInstructionSet) {
       depth[0] = 700;
       FrameStore store(convention);
       store.add(camera, depth);
+      FrameUnpacker unpack(store);
       SplitOptions options;
       options.max_offset_m = 20.F;
       const CandidateTable table = draw_candidates(convention, options, 37, random);
-      std::vector<std::int16_t> values(static_cast<std::size_t>(table.padded));
+      std::vector<std::int16_t> values(static_cast<std::size_t>(table.padded)), packed = values;
       for_each_target([&](const char* target) {
         for (int s = 0; s < 20; ++s) {
           const TrainingSample sample = random_sample(depth, random);
-          evaluate_candidates(store[0], convention, sample, table.offsets.data(), table.padded, values.data());
+          evaluate_candidates(unpack(0), convention, sample, table.offsets.data(), table.padded, values.data());
           for (int c = 0; c < table.count; ++c) {
             ASSERT_EQ(values[static_cast<std::size_t>(c)], truth(depth, camera, convention, sample, table.node(c)))
                 << target << " candidate " << c;
           }
+          evaluate_candidates(store[0], convention, sample, table.offsets.data(), table.padded, packed.data());
+          ASSERT_EQ(packed, values);
         }
       });
     }
@@ -89,32 +92,6 @@ TEST(WalkSamples, FeatureIsWhatDetectionComputes) {
               feature_mm(depth, convention, OffsetScaler(convention, camera).at(sample.depth_mm), sample.u, sample.v,
                          table.node(c)));
   }
-}
-
-TEST(FrameStore, GivesBackEveryPixelOfFramesOfAnySize) {
-  Random random(13);
-  FrameStore store{FeatureConvention{}};
-  std::vector<DepthImage> frames;
-  for (const auto& [width, height] : {std::pair{320, 240}, std::pair{1, 1}, std::pair{9, 5}, std::pair{640, 480}}) {
-    frames.push_back(random_depth(width, height, random));
-    EXPECT_EQ(store.add({width, height, 300.F, 300.F, 0.F, 0.F}, frames.back()), frames.size() - 1);
-  }
-  std::size_t bytes = 0;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    bytes += FrameStore::frame_bytes(frames[f].width(), frames[f].height());
-    for (int v = 0; v < frames[f].height(); ++v) {
-      for (int u = 0; u < frames[f].width(); ++u) ASSERT_EQ(store[f].depth_mm(u, v), frames[f](u, v));
-    }
-  }
-  EXPECT_EQ(store.bytes(), bytes);
-  EXPECT_EQ(FrameStore::frame_bytes(320, 240), 320U * 240U * 2U);
-}
-
-TEST(FrameStore, RefusesDepthOfAnotherSizeThanItsCamera) {
-  FrameStore store{FeatureConvention{}};
-  EXPECT_THROW(store.add({10, 10, 1.F, 1.F, 0.F, 0.F}, DepthImage(10, 9, 0)), Error);
-  EXPECT_THROW(store.add({0, 0, 1.F, 1.F, 0.F, 0.F}, DepthImage(0, 0, 0)), Error);
-  EXPECT_EQ(store.size(), 0U);
 }
 
 }  // namespace

@@ -6,13 +6,10 @@ namespace vesalius {
 namespace {
 
 constexpr std::size_t kLineBytes = 64;
-/// Evaluated samples of a frame from which on reading all of it pays: each touches about 90 lines of some 2400.
-constexpr double kFewSamples = 25.0;
-
 }  // namespace
 
-FramePrefetcher::FramePrefetcher(const FrameStore& frames, std::span<const TrainingSample> samples, double density)
-    : frames_(frames), samples_(samples), density_(density) {}
+FramePrefetcher::FramePrefetcher(const FrameStore& frames, std::span<const TrainingSample> samples)
+    : frames_(frames), samples_(samples) {}
 
 void FramePrefetcher::step(std::size_t index) {
   if (index >= frame_end_) enter_frame(index);
@@ -28,10 +25,10 @@ void FramePrefetcher::enter_frame(std::size_t index) {
   next_ = end_ = nullptr;
   bytes_per_sample_ = 0;
   const auto count = static_cast<double>(frame_end_ - index);
-  if (end == rest.end() || count * density_ < kFewSamples) return;
+  if (end == rest.end()) return;
   const FrameStore::View& view = frames_[end->frame];
-  next_ = reinterpret_cast<const char*>(view.tiles);
-  end_ = next_ + FrameStore::frame_bytes(view.width, view.height);
+  next_ = reinterpret_cast<const char*>(view.depth.row_starts);
+  end_ = next_ + view.bytes;
   const std::size_t bytes = static_cast<std::size_t>(static_cast<double>(end_ - next_) / count);
   bytes_per_sample_ = (bytes / kLineBytes + 1) * kLineBytes;
 }

@@ -8,13 +8,11 @@
 
 namespace vesalius {
 
-/// Asks for the next frame's depth, a few cache lines with every sample of this one: probes would wait for memory
-/// otherwise, and their scattered order hides from the processor what comes next. Results do not depend on it.
+/// Asks for the next frame's depth, a few cache lines with every sample of this one: unpacking it would wait for memory
+/// otherwise. Results do not depend on it.
 class FramePrefetcher {
  public:
-  /// `density`: share of the samples that are evaluated. Where they are so few that they touch little of a frame,
-  /// nothing is asked for.
-  FramePrefetcher(const FrameStore& frames, std::span<const TrainingSample> samples, double density);
+  FramePrefetcher(const FrameStore& frames, std::span<const TrainingSample> samples);
 
   /// Before sample `index`; indices ascend by one.
   void step(std::size_t index);
@@ -24,7 +22,6 @@ class FramePrefetcher {
 
   const FrameStore& frames_;
   std::span<const TrainingSample> samples_;
-  double density_;
   std::size_t frame_end_ = 0;  ///< first sample of the next frame
   const char* next_ = nullptr;
   const char* end_ = nullptr;

@@ -1,6 +1,7 @@
 #include "train/frame_store.h"
 
 #include <algorithm>
+#include <cstring>
 #include <string>
 
 #include "vesalius/error.h"
@@ -8,29 +9,32 @@
 namespace vesalius {
 namespace {
 
-constexpr int kTileWidth = 8, kTileHeight = 4;
-constexpr std::size_t kTileBytes = 64;
 constexpr std::size_t kBlockBytes = std::size_t{64} << 20U;
-constexpr std::size_t kReadBeyond = 64;  ///< a gather reads four bytes for two
-constexpr int kLargestSide = 32767;
+constexpr std::size_t kLineBytes = 64;
 
-std::size_t tiles_along(int pixels, int tile) { return static_cast<std::size_t>((pixels + tile - 1) / tile); }
+std::size_t whole_lines(std::size_t bytes) { return (bytes + kLineBytes - 1) / kLineBytes * kLineBytes; }
 
 }  // namespace
 
-std::size_t FrameStore::frame_bytes(int width, int height) {
-  return tiles_along(width, kTileWidth) * tiles_along(height, kTileHeight) * kTileBytes;
+std::size_t FrameStore::frame_bytes(const DepthImage& depth) {
+  return whole_lines(pack_tiles(depth).size() * sizeof(std::uint32_t));
 }
 
-std::uint16_t* FrameStore::allocate(std::size_t bytes) {
-  if (blocks_.empty() || used_ + bytes + kReadBeyond > blocks_.back().size()) {
-    blocks_.emplace_back(std::max(kBlockBytes, bytes + kReadBeyond));
+std::size_t FrameStore::most_frame_bytes(int width, int height) {
+  const TileGrid grid{width, height};
+  const std::size_t headers = static_cast<std::size_t>(grid.rows()) + grid.tiles();
+  return whole_lines((headers + 4) * sizeof(std::uint32_t) + grid.tiles() * TileGrid::kPixels * sizeof(std::uint16_t));
+}
+
+std::byte* FrameStore::allocate(std::size_t bytes) {
+  if (blocks_.empty() || used_ + bytes > blocks_.back().size()) {
+    blocks_.emplace_back(std::max(kBlockBytes, bytes));
     used_ = 0;
   }
   std::byte* at = blocks_.back().data() + used_;
   used_ += bytes;
   bytes_ += bytes;
-  return reinterpret_cast<std::uint16_t*>(at);
+  return at;
 }
 
 std::size_t FrameStore::add(const Camera& camera, const DepthImage& depth) {
@@ -38,22 +42,28 @@ std::size_t FrameStore::add(const Camera& camera, const DepthImage& depth) {
     throw Error("training: depth is " + std::to_string(depth.width()) + "x" + std::to_string(depth.height()) +
                 ", its camera " + std::to_string(camera.width) + "x" + std::to_string(camera.height));
   }
-  if (depth.empty() || depth.width() > kLargestSide || depth.height() > kLargestSide) {
+  if (depth.empty() || depth.width() > kLargestTiledSide || depth.height() > kLargestTiledSide) {
     throw Error("training: a frame has " + std::to_string(depth.width()) + "x" + std::to_string(depth.height()) +
-                " pixels, expected 1 to " + std::to_string(kLargestSide) + " a side");
+                " pixels, expected 1 to " + std::to_string(kLargestTiledSide) + " a side");
   }
-  const auto per_row = static_cast<std::int32_t>(tiles_along(depth.width(), kTileWidth));
-  std::uint16_t* tiles = allocate(frame_bytes(depth.width(), depth.height()));
-  for (int v = 0; v < depth.height(); ++v) {
-    const std::size_t row = static_cast<std::size_t>(v / kTileHeight) * static_cast<std::size_t>(per_row);
-    for (int u = 0; u < depth.width(); ++u) {
-      const std::size_t tile = row + static_cast<std::size_t>(u / kTileWidth);
-      tiles[tile * kTileWidth * kTileHeight +
-            static_cast<std::size_t>((v % kTileHeight) * kTileWidth + u % kTileWidth)] = depth(u, v);
-    }
-  }
-  views_.push_back({tiles, depth.width(), depth.height(), per_row, OffsetScaler(convention_, camera)});
+  const std::vector<std::uint32_t> words = pack_tiles(depth);
+  const std::size_t bytes = words.size() * sizeof(std::uint32_t);
+  std::byte* at = allocate(whole_lines(bytes));
+  std::memcpy(at, words.data(), bytes);
+  const PackedTiles tiles = packed_tiles({depth.width(), depth.height()}, reinterpret_cast<const std::uint32_t*>(at));
+  views_.push_back({tiles, bytes, OffsetScaler(convention_, camera)});
   return views_.size() - 1;
+}
+
+const TiledDepth& FrameUnpacker::operator()(std::size_t frame) {
+  if (unpacked_ && frame == frame_) return *unpacked_;
+  const FrameStore::View& view = frames_[frame];
+  const std::size_t pixels = view.depth.grid.tiles() * TileGrid::kPixels;
+  if (tiles_.size() < pixels + 1) tiles_.resize(pixels + 1);
+  unpack_tiles(view.depth, frames_.convention().hole_mm, tiles_.data());
+  tiles_[pixels] = frames_.convention().outside_mm;
+  frame_ = frame;
+  return unpacked_.emplace(view.depth.grid, tiles_.data(), view.scaler);
 }
 
 }  // namespace vesalius

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "train/depth_tiles.h"
 #include "train/huge_buffer.h"
 #include "vesalius/camera.h"
 #include "vesalius/forest.h"
@@ -12,26 +14,16 @@
 
 namespace vesalius {
 
-/// Depth of many frames, of any sizes and cameras, in memory for random access: tiles of 8x4 pixels, 64 bytes, so that
-/// the probes around a pixel touch few cache lines. Read from any thread; add from one.
+/// Depth of many frames, of any sizes and cameras, packed in memory. Read from any thread; add from one.
 class FrameStore {
  public:
   explicit FrameStore(const FeatureConvention& convention) : convention_(convention) {}
 
-  /// One frame as the split search reads it. Pixel (u, v) is at
-  /// tiles[((v >> 2) * tiles_per_row + (u >> 3)) * 32 + (v & 3) * 8 + (u & 7)].
+  /// One frame: any pixel at a time, where few are asked for.
   struct View {
-    const std::uint16_t* tiles;  ///< aligned to 64 bytes; four bytes more than the tiles may be read
-    std::int32_t width, height;  ///< pixels
-    std::int32_t tiles_per_row;
+    PackedTiles depth;
+    std::size_t bytes = 0;  ///< from depth.row_starts on
     OffsetScaler scaler;
-
-    std::uint16_t depth_mm(int u, int v) const {
-      return tiles[(static_cast<std::size_t>(v >> 2) * static_cast<std::size_t>(tiles_per_row) +
-                    static_cast<std::size_t>(u >> 3)) *
-                       32 +
-                   static_cast<std::size_t>((v & 3) * 8 + (u & 7))];
-    }
   };
 
   /// Returns the frame's index. Throws Error for a depth image that is not of the camera's size or larger than 32767
@@ -44,17 +36,46 @@ class FrameStore {
 
   /// Bytes of depth held.
   std::size_t bytes() const { return bytes_; }
-  /// Bytes that a frame of this size takes.
-  static std::size_t frame_bytes(int width, int height);
+  /// Bytes that a frame takes.
+  static std::size_t frame_bytes(const DepthImage& depth);
+  /// Most that a frame of this size takes, whatever it shows.
+  static std::size_t most_frame_bytes(int width, int height);
 
  private:
-  std::uint16_t* allocate(std::size_t bytes);
+  std::byte* allocate(std::size_t bytes);
 
   FeatureConvention convention_;
   std::vector<HugeBuffer> blocks_;
   std::size_t used_ = 0;  ///< bytes of the last block
   std::vector<View> views_;
   std::size_t bytes_ = 0;
+};
+
+/// A frame unpacked, as the split search reads it.
+struct TiledDepth {
+  TileGrid grid{};
+  /// As unpack_tiles leaves them, holes as the convention has it; after the last tile what a probe outside reads.
+  const std::uint16_t* tiles = nullptr;
+  OffsetScaler scaler;
+
+  /// `u`, `v` inside the frame.
+  std::uint16_t depth_mm(int u, int v) const {
+    return tiles[grid.tile_of(u, v) * TileGrid::kPixels + TileGrid::in_tile(u, v)];
+  }
+};
+
+/// Unpacks frames, the last one kept: samples come ordered by frame. One for each thread.
+class FrameUnpacker {
+ public:
+  explicit FrameUnpacker(const FrameStore& frames) : frames_(frames) {}
+  /// Valid until another frame is asked for.
+  const TiledDepth& operator()(std::size_t frame);
+
+ private:
+  const FrameStore& frames_;
+  std::size_t frame_ = 0;
+  std::optional<TiledDepth> unpacked_;  ///< of `frame_`
+  std::vector<std::uint16_t> tiles_;
 };
 
 }  // namespace vesalius

@@ -24,6 +24,8 @@ constexpr std::uint32_t kNoRow = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kRowBytes = std::size_t{512} << 20U;  ///< values held at a time
 constexpr int kGrain = 8192;                                ///< samples that a thread takes at a time
 constexpr std::size_t kAhead = 3;                           ///< samples whose table and row are asked for beforehand
+/// Samples of a frame from which on unpacking all of it pays: all candidates at each, and one feature at each.
+constexpr double kFewEvaluated = 12.0, kFewRouted = 150.0;
 /// Nodes are numbered as in a heap, root 1, children 2n and 2n + 1: no number repeats within this depth.
 constexpr int kDeepest = 30;
 
@@ -215,7 +217,9 @@ class LevelGrower {
 
   void evaluate(const Group& group) {
     rows_.resize(static_cast<std::size_t>(group.row_end - group.row_begin), tables_.padded);
-    const double density = static_cast<double>(group.row_end - group.row_begin) / static_cast<double>(samples_.size());
+    const FrameStore& frames = set_.frames();
+    const bool few =
+        static_cast<double>(group.row_end - group.row_begin) < kFewEvaluated * static_cast<double>(frames.size());
     const auto has_row = [&](std::size_t s) {
       return row_of_[s] != kNoRow && row_of_[s] >= group.row_begin && row_of_[s] < group.row_end;
     };
@@ -224,9 +228,10 @@ class LevelGrower {
       return tables_.at(static_cast<std::size_t>(node_of_[s]) - group.begin);
     };
     parallel_ranges(static_cast<int>(samples_.size()), kGrain, [&](int begin, int end) {
-      FramePrefetcher prefetcher(set_.frames(), samples_, density);
+      FramePrefetcher prefetcher(frames, samples_);
+      FrameUnpacker unpack(frames);
       for (auto s = static_cast<std::size_t>(begin); s < static_cast<std::size_t>(end); ++s) {
-        prefetcher.step(s);
+        if (!few) prefetcher.step(s);
         const std::size_t later = s + kAhead;
         if (later < static_cast<std::size_t>(end) && has_row(later)) {
           prefetch_lines(table_at(later), tables_.bytes());
@@ -234,8 +239,14 @@ class LevelGrower {
         }
         if (!has_row(s)) continue;
         const TrainingSample& sample = samples_[s];
-        evaluate_candidates(set_.frames()[sample.frame], set_.convention(), sample, table_at(s), tables_.padded,
-                            rows_.row(row_at(s)));
+        const auto evaluate_on = [&](const auto& depth) {
+          evaluate_candidates(depth, set_.convention(), sample, table_at(s), tables_.padded, rows_.row(row_at(s)));
+        };
+        if (few) {
+          evaluate_on(frames[sample.frame]);
+        } else {
+          evaluate_on(unpack(sample.frame));
+        }
         rows_.labels[row_at(s)] = sample.label;
         rows_.samples[row_at(s)] = static_cast<std::uint32_t>(s);
       }
@@ -276,14 +287,21 @@ class LevelGrower {
 
   /// The same for nodes that had not all samples in rows.
   void route_the_rest() {
-    if (std::ranges::all_of(level_, [](const OpenNode& node) { return node.routed || node.gain <= 0.0; })) return;
+    const auto unrouted = [](const OpenNode& node) { return !node.routed && node.gain > 0.0; };
+    std::int64_t samples = 0;
+    for (const OpenNode& node : level_) samples += unrouted(node) ? node.size : 0;
+    if (samples == 0) return;
+    const FrameStore& frames = set_.frames();
+    const bool few = static_cast<double>(samples) < kFewRouted * static_cast<double>(frames.size());
     parallel_ranges(static_cast<int>(samples_.size()), kGrain, [&](int begin, int end) {
+      FrameUnpacker unpack(frames);
       for (auto s = static_cast<std::size_t>(begin); s < static_cast<std::size_t>(end); ++s) {
         if (node_of_[s] == kSettled) continue;
         const OpenNode& node = level_[static_cast<std::size_t>(node_of_[s])];
-        if (node.routed || node.gain <= 0.0) continue;
+        if (!unrouted(node)) continue;
         const TrainingSample& sample = samples_[s];
-        const int value = feature_of(set_.frames()[sample.frame], set_.convention(), sample, node.split);
+        const int value = few ? feature_of(frames[sample.frame], set_.convention(), sample, node.split)
+                              : feature_of(unpack(sample.frame), set_.convention(), sample, node.split);
         on_right_[s] = value > node.split.threshold_mm ? 1 : 0;
       }
     });

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "train/frame_store.h"
 #include "train/prune_tree.h"
 #include "train/split_histogram.h"
 
@@ -74,7 +73,7 @@ TrainingMemory training_memory(std::span<const FrameGroup> groups, const TrainOp
   TrainingMemory memory;
   double samples = 0.0, pool = 0.0, hard = 0.0;
   for (const FrameGroup& group : groups) {
-    memory.depth += group.frames * FrameStore::frame_bytes(group.width, group.height);
+    memory.depth += group.frames * group.frame_bytes;
     const double of_group = static_cast<double>(group.frames) * samples_of_frame(group, options);
     samples += of_group;
     hard += of_group * background_share(group, options) * static_cast<double>(options.sample.hard_share);

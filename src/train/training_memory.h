@@ -7,14 +7,14 @@
 
 namespace vesalius {
 
-/// Frames of one size that a training set is to hold.
+/// Frames of one kind that a training set is to hold.
 struct FrameGroup {
   std::uint64_t frames = 0;
-  int width = 0, height = 0;  ///< pixels
-  bool empty = false;         ///< known to show nobody
+  std::uint64_t frame_bytes = 0;  ///< that FrameStore takes for one
+  bool empty = false;             ///< known to show nobody
 };
 
-/// Most that training takes, bytes: an upper bound, in which vectors that grow count twice.
+/// Most that training takes, bytes: an upper bound if `frame_bytes` are, in which vectors that grow count twice.
 struct TrainingMemory {
   std::uint64_t depth = 0;    ///< of all frames
   std::uint64_t samples = 0;  ///< with hard negatives and the pool they come from

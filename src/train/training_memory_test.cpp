@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "train/frame_store.h"
 #include "vesalius/capsule_person.h"
 
 namespace vesalius {
@@ -10,15 +11,16 @@ namespace {
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
 
 TEST(TrainingMemory, HundredThousandFramesFitSixteenGigabytes) {
-  const FrameGroup group{100000, 320, 240, false};
+  const DepthImage room = render({}, {320, 240, 262.F, 262.F, 159.5F, 119.5F}, paper_body()).frame.depth;
+  const FrameGroup group{100000, FrameStore::frame_bytes(room), false};
   const TrainingMemory memory = training_memory({&group, 1}, {}, 26);
-  EXPECT_EQ(memory.depth, 100000ULL * 320 * 240 * 2);
-  EXPECT_LT(memory.total(1), 20 * kGiB);
+  EXPECT_EQ(memory.depth, 100000 * group.frame_bytes);
+  EXPECT_LT(memory.total(2), 16'000'000'000U);
 }
 
 TEST(TrainingMemory, GrowsWithFramesPixelsAndTrees) {
-  const FrameGroup some{1000, 320, 240, false};
-  const FrameGroup more{2000, 320, 240, false};
+  const FrameGroup some{1000, 100000, false};
+  const FrameGroup more{2000, 100000, false};
   TrainOptions dense;
   dense.sample.pixels_per_frame = 1000;
   const TrainingMemory base = training_memory({&some, 1}, {}, 26);
@@ -36,22 +38,22 @@ TEST(TrainingMemory, CoversWhatASetTakes) {
   TrainingSet set(paper_body(), training_convention(options), options.sample, 1);
   for (int i = 0; i < 90; ++i) set.add(person);
   for (int i = 0; i < 10; ++i) set.add(empty);
-  const FrameGroup group{100, 160, 120, false};
+  const FrameGroup group{100, FrameStore::frame_bytes(person.frame.depth), false};
   const TrainingMemory memory = training_memory({&group, 1}, options, set.class_count());
-  EXPECT_EQ(memory.depth, set.frames().bytes());
+  EXPECT_GE(memory.depth, set.frames().bytes());
   EXPECT_GE(memory.depth + memory.samples, set.bytes());
   EXPECT_NEAR(static_cast<double>(expected_samples({&group, 1}, options)), static_cast<double>(set.samples().size()),
               0.1 * static_cast<double>(set.samples().size()));
 }
 
 TEST(TrainingFit, WhatIsSaidToFitFitsAndMoreDoesNot) {
-  const FrameGroup group{40000, 640, 480, false};
+  const FrameGroup group{40000, 300000, false};
   const TrainOptions options;
   const std::uint64_t bytes = 8 * kGiB;
   ASSERT_GT(training_memory({&group, 1}, options, 26).total(1), bytes);
   const TrainingFit fit = training_fit({&group, 1}, options, 26, bytes);
   const auto total_of = [&](double share) {
-    const FrameGroup fewer{static_cast<std::uint64_t>(40000 * share), 640, 480, false};
+    const FrameGroup fewer{static_cast<std::uint64_t>(40000 * share), 300000, false};
     return training_memory({&fewer, 1}, options, 26).total(1);
   };
   EXPECT_LE(total_of(fit.frame_share), bytes);
@@ -60,7 +62,7 @@ TEST(TrainingFit, WhatIsSaidToFitFitsAndMoreDoesNot) {
 }
 
 TEST(TrainingFit, FewerPixelsDoWhereDepthFits) {
-  const FrameGroup group{40000, 160, 120, false};
+  const FrameGroup group{40000, 20000, false};
   TrainOptions options;
   options.sample.pixels_per_frame = 20000;
   const TrainingFit fit = training_fit({&group, 1}, options, 26, 8 * kGiB);

@@ -125,8 +125,8 @@ TEST(TrainingSet, AddsNoMoreHardNegativesThanAllowedOnAnyNumberOfThreads) {
 
 TEST(TrainingSet, KnowsItsMemory) {
   const TrainingSet set = set_of(20, {});
-  EXPECT_GE(set.bytes(), 20U * FrameStore::frame_bytes(80, 60) + set.samples().size() * sizeof(TrainingSample));
-  EXPECT_LT(set.bytes(), 20U * FrameStore::frame_bytes(80, 60) + 20U * 4U * 2000U * sizeof(TrainingSample));
+  EXPECT_GE(set.bytes(), set.frames().bytes() + set.samples().size() * sizeof(TrainingSample));
+  EXPECT_LT(set.bytes(), set.frames().bytes() + 20U * 4U * 2000U * sizeof(TrainingSample));
 }
 
 TEST(TrainingSet, RefusesBodiesWithoutPartsAndBadOptions) {
