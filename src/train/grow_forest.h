@@ -14,8 +14,8 @@ namespace vesalius {
 
 struct TrainOptions {
   int trees = 8;
-  int hard_trees = 2;        ///< trees of the first round, which finds hard negatives; 0 = no such round
-  float probe_clip_m = 1.F;  ///< probes are clamped to the centre's depth +- this; 0 = not
+  int hard_trees = 2;         ///< trees of the first round, which finds hard negatives; 0 = no such round
+  float probe_clip_m = 0.5F;  ///< probes are clamped to the centre's depth +- this; 0 = not
   SampleOptions sample;
   GrowTreeOptions grow;
 };

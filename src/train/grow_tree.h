@@ -12,13 +12,12 @@ namespace vesalius {
 
 /// How splits are proposed and judged.
 struct SplitOptions {
-  int candidates = 50;        ///< pairs of offsets a node tries
+  int candidates = 64;        ///< pairs of offsets a node tries
   int bins = 32;              ///< intervals between thresholds that a candidate's values are counted in; 2 to 32
   int split_pixels = 20000;   ///< most samples of a node that the choice of its split looks at
-  float max_offset_m = 0.5F;  ///< furthest probe; at reference focal length 1
-  bool half_normal =
-      false;               ///< distance of a probe half-normal with this third of `max_offset_m` as sigma, else uniform
-  float one_sided = 0.5F;  ///< share of the pairs with one probe at the pixel itself
+  float max_offset_m = 1.5F;  ///< furthest probe; at reference focal length 1
+  bool half_normal = true;    ///< distance of a probe half-normal, a third of `max_offset_m` as sigma; else uniform
+  float one_sided = 0.75F;    ///< share of the pairs with one probe at the pixel itself
   int shared_features =
       0;  ///< > 0: all nodes try this one list of pairs (the paper: 2000), not `candidates` of their own
   float min_gain = 1e-3F;  ///< bits a sample; a node whose best split gains less is a leaf

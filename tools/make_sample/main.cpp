@@ -75,6 +75,10 @@ int run(int argc, char** argv) {
   options.grow.leaf.max_depth = 18;
   options.sample.pixels_per_frame = 300;
   options.grow.split.candidates = 40;
+  options.grow.split.max_offset_m = 0.5F;
+  options.grow.split.half_normal = false;
+  options.grow.split.one_sided = 0.5F;
+  options.probe_clip_m = 1.F;
   options.grow.leaf.min_samples = 25;
   options.grow.leaf.part_balance = 0.F;
   app.add_option("OUT", out, "New folder: gets models/capsule.forest and sample/")->required();
