@@ -10,7 +10,7 @@ namespace vesalius {
 
 struct SmoothOptions {
   int window = 5;           ///< side of the square neighbourhood, pixels, odd; 1 = none
-  int depth_gate_mm = 300;  ///< neighbours further away than this in depth do not count
+  int depth_gate_mm = 60;   ///< neighbours further away than this in depth do not count
   bool mode = false;        ///< labels' mode even where the forest has distributions
 };
 void visit_options(const std::string& prefix, SmoothOptions& options, OptionVisitor& visitor);
