@@ -13,15 +13,15 @@ constexpr int kRowGrain = 8;
 
 /// Calls `use(nu, nv)` for every neighbour of (u, v), itself included, inside window, picture and depth gate.
 template <class Use>
-void for_neighbours(const DepthImage& depth, int u, int v, const SmoothOptions& options, Use&& use) {
-  const int reach = options.window / 2;
+void for_neighbours(const DepthImage& depth, int u, int v, int window, int gate_mm, Use&& use) {
+  const int reach = window / 2;
   const int z = depth(u, v);
   const int top = std::max(0, v - reach), bottom = std::min(depth.height() - 1, v + reach);
   const int left = std::max(0, u - reach), right = std::min(depth.width() - 1, u + reach);
   for (int nv = top; nv <= bottom; ++nv) {
     const std::uint16_t* row = depth.row(nv);
     for (int nu = left; nu <= right; ++nu) {
-      if (row[nu] != 0 && std::abs(row[nu] - z) <= options.depth_gate_mm) use(nu, nv);
+      if (row[nu] != 0 && std::abs(row[nu] - z) <= gate_mm) use(nu, nv);
     }
   }
 }
@@ -77,7 +77,7 @@ void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, co
       }
       std::fill(total.begin(), total.end(), 0U);
       std::uint32_t neighbours = 0;
-      for_neighbours(depth, u, v, options, [&](int nu, int nv) {
+      for_neighbours(depth, u, v, options.window, options.depth_gate_mm, [&](int nu, int nv) {
         const std::uint16_t* sums = posteriors.at(nu, nv);
         for (std::size_t c = 0; c < total.size(); ++c) total[c] += sums[c];
         ++neighbours;
@@ -98,10 +98,13 @@ void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& v
                  {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
   visitor.option(prefix + "mode", o.mode,
                  {"", 0, 1, "Smooth labels by their mode even if the forest has distributions."});
+  visitor.option(prefix + "mode-depth-gate", o.mode_depth_gate_mm,
+                 {"mm", 0, 10000, "The depth gate of smoothing by mode."});
 }
 
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
   LabelImage out(labels.width(), labels.height(), kBackground);
+  const int gate_mm = options.mode_depth_gate_mm;
   parallel_ranges(labels.height(), kRowGrain, [&](int begin, int end) {
     const EvenWindows even(labels, options.window, begin, end);
     std::array<std::uint16_t, 256> count{};
@@ -112,15 +115,15 @@ LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const 
           out(u, v) = labels(u, v);
           continue;
         }
-        for_neighbours(depth, u, v, options, [&](int nu, int nv) { ++count[labels(nu, nv)]; });
+        for_neighbours(depth, u, v, options.window, gate_mm, [&](int nu, int nv) { ++count[labels(nu, nv)]; });
         std::uint8_t best = labels(u, v);
-        for_neighbours(depth, u, v, options, [&](int nu, int nv) {
+        for_neighbours(depth, u, v, options.window, gate_mm, [&](int nu, int nv) {
           const std::uint8_t label = labels(nu, nv);
           const bool beats_tie = count[label] == count[best] && best != labels(u, v) && label < best;
           if (count[label] > count[best] || beats_tie) best = label;
         });
         out(u, v) = best;
-        for_neighbours(depth, u, v, options, [&](int nu, int nv) { count[labels(nu, nv)] = 0; });
+        for_neighbours(depth, u, v, options.window, gate_mm, [&](int nu, int nv) { count[labels(nu, nv)] = 0; });
       }
     }
   });

@@ -9,9 +9,10 @@
 namespace vesalius {
 
 struct SmoothOptions {
-  int window = 5;           ///< side of the square neighbourhood, pixels, odd; 1 = none
-  int depth_gate_mm = 60;   ///< neighbours further away than this in depth do not count
-  bool mode = false;        ///< labels' mode even where the forest has distributions
+  int window = 5;                ///< side of the square neighbourhood, pixels, odd; 1 = none
+  int depth_gate_mm = 60;        ///< posteriors of neighbours further away than this in depth do not count
+  bool mode = false;             ///< labels' mode even where the forest has distributions
+  int mode_depth_gate_mm = 300;  ///< the same for the mode, which needs many neighbours more than near ones
 };
 void visit_options(const std::string& prefix, SmoothOptions& options, OptionVisitor& visitor);
 

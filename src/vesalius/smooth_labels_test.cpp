@@ -38,11 +38,11 @@ Picture patchy_picture(std::uint64_t seed) {
 }
 
 template <class Use>
-void neighbours(const DepthImage& depth, int u, int v, const SmoothOptions& o, Use use) {
-  for (int dv = -o.window / 2; dv <= o.window / 2; ++dv) {
-    for (int du = -o.window / 2; du <= o.window / 2; ++du) {
+void neighbours(const DepthImage& depth, int u, int v, int window, int gate_mm, Use use) {
+  for (int dv = -window / 2; dv <= window / 2; ++dv) {
+    for (int du = -window / 2; du <= window / 2; ++du) {
       if (!depth.contains(u + du, v + dv) || depth(u + du, v + dv) == 0) continue;
-      if (std::abs(depth(u + du, v + dv) - depth(u, v)) <= o.depth_gate_mm) use(u + du, v + dv);
+      if (std::abs(depth(u + du, v + dv) - depth(u, v)) <= gate_mm) use(u + du, v + dv);
     }
   }
 }
@@ -50,7 +50,7 @@ void neighbours(const DepthImage& depth, int u, int v, const SmoothOptions& o, U
 std::uint8_t slow_mode(const Picture& p, int u, int v, const SmoothOptions& o) {
   if (p.depth(u, v) == 0) return kBackground;
   std::map<std::uint8_t, int> count;
-  neighbours(p.depth, u, v, o, [&](int nu, int nv) { ++count[p.labels(nu, nv)]; });
+  neighbours(p.depth, u, v, o.window, o.mode_depth_gate_mm, [&](int nu, int nv) { ++count[p.labels(nu, nv)]; });
   int most = 0;
   for (const auto& [label, n] : count) most = std::max(most, n);
   if (count[p.labels(u, v)] == most) return p.labels(u, v);
@@ -63,7 +63,7 @@ std::uint8_t slow_mode(const Picture& p, int u, int v, const SmoothOptions& o) {
 class Windows : public testing::TestWithParam<int> {};
 
 TEST_P(Windows, ModeAgreesWithCounting) {
-  const SmoothOptions options{GetParam(), 300, true};
+  const SmoothOptions options{.window = GetParam(), .mode = true};
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const Picture p = seed < 3 ? random_picture(seed) : patchy_picture(seed);
     const LabelImage fast = mode_filter(p.labels, p.depth, options);
@@ -76,7 +76,7 @@ TEST_P(Windows, ModeAgreesWithCounting) {
 }
 
 TEST_P(Windows, MeanAgreesWithSumming) {
-  const SmoothOptions options{GetParam(), 300, false};
+  const SmoothOptions options{.window = GetParam(), .depth_gate_mm = 250};
   const Picture p = random_picture(9);
   Posteriors in{37, 23, 6, 3, {}};
   Random random(1);
@@ -90,7 +90,7 @@ TEST_P(Windows, MeanAgreesWithSumming) {
       for (int c = 0; c < 6; ++c) {
         int sum = 0, n = 0;
         if (p.depth(u, v) != 0) {
-          neighbours(p.depth, u, v, options, [&](int nu, int nv) {
+          neighbours(p.depth, u, v, options.window, options.depth_gate_mm, [&](int nu, int nv) {
             sum += in.at(nu, nv)[c];
             ++n;
           });
