@@ -45,8 +45,8 @@ struct TextTree {
   int label(const DepthImage& depth, const Camera& camera, int u, int v) const {
     // The library's fixed-point scale, so that a probe on the edge between two pixels rounds alike.
     const auto scale = [&](float focal) { return std::floor(65536.0 * 1000.0 / 640.0 * focal / depth(u, v)); };
-    const double scale_u = std::min(scale(camera.fx), 8.0 * 65536.0);
-    const double scale_v = std::min(scale(camera.fy), 8.0 * 65536.0);
+    const double scale_u = std::min(scale(camera.fx), 32.0 * 65536.0);
+    const double scale_v = std::min(scale(camera.fy), 32.0 * 65536.0);
     const auto read = [&](int du, int dv) {
       const int pu = u + static_cast<int>(std::floor(du * scale_u / 65536.0 + 0.5));
       const int pv = v + static_cast<int>(std::floor(dv * scale_v / 65536.0 + 0.5));

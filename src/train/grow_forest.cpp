@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "vesalius/error.h"
 
 namespace vesalius {
 namespace {
+
+/// Most steps to the furthest probe: what a byte holds, so that nodes take 8 bytes (packed_tree.h).
+constexpr float kMostSteps = 127.F;
 
 std::vector<Tree> grow_trees(const TrainingSet& set, const TrainOptions& options, int first, int count) {
   std::vector<Tree> trees;
@@ -35,6 +39,8 @@ void check(const TrainOptions& options) {
 
 FeatureConvention training_convention(const TrainOptions& options) {
   FeatureConvention convention;
+  const float furthest = options.grow.split.max_offset_m * convention.reference_focal_px;
+  convention.offset_unit = std::max(convention.offset_unit, furthest / kMostSteps);
   convention.clip_mm = static_cast<std::uint16_t>(std::lround(1000.F * options.probe_clip_m));
   return convention;
 }

@@ -24,7 +24,8 @@ void visit_options(const std::string& prefix, TrainOptions& options, OptionVisit
 /// Throws UsageError naming the first option out of its range.
 void check(const TrainOptions& options);
 
-/// How features are to be read: holes and the world outside the picture far, probes clamped as the options say.
+/// How features are to be read: offsets in steps of 5 mm, or as long as 127 of them reach the furthest probe, holes and
+/// the world outside the picture far, probes clamped as the options say.
 FeatureConvention training_convention(const TrainOptions& options);
 
 /// Numbers of the trees of the first round begin here, so that they draw other tests than those that are kept.

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "train/split_candidates.h"
 #include "vesalius/capsule_person.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
@@ -96,6 +97,24 @@ TEST(GrowForest, SolvesAToyProblem) {
     for (int u = 0; u < 64; ++u) wrong += likeliest(forest, frame, u, v) != frame.labels(u, v);
   }
   EXPECT_LE(wrong, 64 * 48 / 50);
+}
+
+TEST(TrainingConvention, OffsetsReachTheFurthestProbeWithinAByte) {
+  for (const bool half_normal : {false, true}) {
+    for (const float furthest_m : {0.1F, 0.5F, 0.64F, 1.5F, 10.F}) {
+      TrainOptions options;
+      options.grow.split = {.max_offset_m = furthest_m, .half_normal = half_normal, .one_sided = 0.F};
+      const FeatureConvention convention = training_convention(options);
+      EXPECT_GE(convention.offset_unit, FeatureConvention{}.offset_unit) << "finer than a sensor sees";
+      Random random(3);
+      const CandidateTable table = draw_candidates(convention, options.grow.split, 20000, random);
+      const auto [low, high] = std::ranges::minmax(table.offsets);
+      EXPECT_GE(low, -128);
+      EXPECT_LE(high, 127);
+      EXPECT_NEAR(convention.offset_unit * static_cast<float>(high), furthest_m, 0.1F * furthest_m);
+      EXPECT_NEAR(convention.offset_unit * static_cast<float>(low), -furthest_m, 0.1F * furthest_m);
+    }
+  }
 }
 
 TEST(GrowForest, SameForestForAnyNumberOfThreads) {

@@ -21,7 +21,7 @@ struct FeatureConvention {
 };
 
 /// Largest offset a node may have, in offset units: keeps the walk's fixed-point product below 2^31 (tree_walk.h).
-inline constexpr int kMaxOffset = 4095;
+inline constexpr int kMaxOffset = 1023;
 
 /// Inner node: eq. 1 compared with a threshold.
 struct TreeNode {

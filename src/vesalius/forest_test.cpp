@@ -64,7 +64,7 @@ TEST(Forest, WalksOutOfTheArraysOrInCirclesAreRefused) {
 TEST(Forest, RefusesWhatIntegersCannotHold) {
   Forest far = small_forest();
   far.trees[0].nodes[0].dv1 = kMaxOffset + 1;
-  EXPECT_THAT([&] { check(far); }, ThrowsMessage<Error>(HasSubstr("offset 4096")));
+  EXPECT_THAT([&] { check(far); }, ThrowsMessage<Error>(HasSubstr("offset 1024")));
   Forest sure = small_forest();
   sure.trees[0].leaves[0].probability[1] = 1;
   EXPECT_THAT([&] { check(sure); }, ThrowsMessage<Error>(HasSubstr("probabilities above 1")));

@@ -28,14 +28,15 @@ class OffsetScaler {
       : unit_u_(65536.0 * 1000.0 * convention.offset_unit / convention.reference_focal_px * camera.fx),
         unit_v_(65536.0 * 1000.0 * convention.offset_unit / convention.reference_focal_px * camera.fy) {}
 
-  /// `depth_mm` > 0. Below about 10 cm the scale saturates.
+  /// `depth_mm` > 0. Saturates at 32 pixels a unit: for units of 12 mm and a focal length of 525 pixels
+  /// nearer than 20 cm.
   OffsetScale at(std::uint16_t depth_mm) const {
     return {static_cast<std::int32_t>(std::min(unit_u_ / depth_mm, kMaxScale)),
             static_cast<std::int32_t>(std::min(unit_v_ / depth_mm, kMaxScale))};
   }
 
  private:
-  static constexpr double kMaxScale = 8.0 * 65536.0;
+  static constexpr double kMaxScale = 32.0 * 65536.0;
   double unit_u_;
   double unit_v_;
 };

@@ -139,7 +139,7 @@ TEST(WalkKernels, TheFurthestProbesOfTheLargestPictureStayOutside) {
   Random random(22);
   const FeatureConvention convention;
   for (const auto& [width, height] : {std::pair{PaddedDepth::kMaxSide, 2}, std::pair{2, PaddedDepth::kMaxSide}}) {
-    const Camera camera{width, height, 1e6F, 1e6F, 0.F, 0.F};  // every offset is scaled by the most, 8
+    const Camera camera{width, height, 1e6F, 1e6F, 0.F, 0.F};  // every offset is scaled by the most, 32
     for (const int max_offset : {127, kMaxOffset}) {
       const Tree tree = random_tree(random, {.nodes = 40, .max_offset = max_offset, .max_threshold_mm = 9000});
       expect_leaves_of_walk(tree, convention, random_depth(random, width, height), camera);
