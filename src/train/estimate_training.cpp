@@ -21,7 +21,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 struct Pilot {
   TrainingSet set;
-  TrainOptions options;  ///< the run's, with fewer split_pixels
+  TrainOptions options;  ///< the run's, with less memory for rows
   double scale = 1.0;    ///< samples of the run for each of the pilot
 };
 
@@ -38,8 +38,8 @@ Pilot make_pilot(const std::vector<LabelledFrame>& frames, const BodyModel& body
   }
   if (pilot.set.samples().empty()) throw Error("training: no pixel with a label and a reading in the first frames");
   pilot.scale = std::max(1.0, samples / static_cast<double>(pilot.set.samples().size()));
-  pilot.options.grow.split.split_pixels =
-      std::max(2, static_cast<int>(std::lround(options.grow.split.split_pixels / pilot.scale)));
+  // As many samples of a frame at a time as in the run, so that unpacking it weighs the same.
+  pilot.options.grow.row_bytes = static_cast<std::size_t>(static_cast<double>(options.grow.row_bytes) / pilot.scale);
   return pilot;
 }
 
@@ -49,21 +49,20 @@ struct TreeWork {
   double run = 0.0;
 };
 
-/// Samples at each node and leaf, and how deep the leaves lie.
+/// Samples at each node and leaf, and how deep they lie.
 struct TreeShape {
   std::vector<double> leaves, nodes;
-  std::vector<int> leaf_level;
+  std::vector<int> leaf_level, node_level;
 };
 
 TreeShape shape_of(const Tree& tree, const TrainingSet& set) {
   TreeShape shape{std::vector<double>(tree.leaves.size(), 0.0), std::vector<double>(tree.nodes.size(), 0.0),
-                  std::vector<int>(tree.leaves.size(), 0)};
+                  std::vector<int>(tree.leaves.size(), 0), std::vector<int>(tree.nodes.size(), 0)};
   for (const TrainingSample& sample : set.samples()) shape.leaves[leaf_of(tree, set.frames(), sample)] += 1.0;
-  std::vector<int> level(tree.nodes.size(), 0);
   for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
     for (const std::int32_t child : {tree.nodes[n].left, tree.nodes[n].right}) {
-      (child >= 0 ? level[static_cast<std::size_t>(child)] : shape.leaf_level[static_cast<std::size_t>(~child)]) =
-          level[n] + 1;
+      (child >= 0 ? shape.node_level[static_cast<std::size_t>(child)]
+                  : shape.leaf_level[static_cast<std::size_t>(~child)]) = shape.node_level[n] + 1;
     }
   }
   for (std::size_t n = tree.nodes.size(); n-- > 0;) {  // children come after their parent
@@ -86,20 +85,19 @@ double levels_per_halving(const TreeShape& shape, double samples) {
   return halvings > 0.0 ? levels / halvings : 1.0;
 }
 
+/// Nodes of as many samples cost as much and split as well in the run; there are more of them, and they lie deeper by
+/// the levels that it takes to get down to them, some below the deepest level. Above, nodes look at no more samples
+/// than `split_pixels`, so that all levels there cost what one costs, in the pilot as in the run.
 TreeWork work_of(const Tree& tree, const Pilot& pilot) {
   const TreeShape shape = shape_of(tree, pilot.set);
   const GrowTreeOptions& grow = pilot.options.grow;
-  TreeWork work;
-  for (const double samples : shape.nodes) {
-    work.pilot += std::min(samples, static_cast<double>(grow.split.split_pixels));
-  }
-  work.run = work.pilot * pilot.scale;
-  const double more =
+  const double deeper =
       std::log2(pilot.scale) * levels_per_halving(shape, static_cast<double>(pilot.set.samples().size()));
-  for (std::size_t l = 0; l < tree.leaves.size(); ++l) {
-    if (tree.leaves[l].probability[0] == 255) continue;
-    const double most = grow.leaf.max_depth - shape.leaf_level[l];
-    work.run += shape.leaves[l] * pilot.scale * std::min(more, most);
+  TreeWork work;
+  for (std::size_t n = 0; n < shape.nodes.size(); ++n) {
+    const double looked_at = std::min(shape.nodes[n], static_cast<double>(grow.split.split_pixels));
+    work.pilot += looked_at;
+    work.run += looked_at * pilot.scale * std::clamp(grow.leaf.max_depth - shape.node_level[n] - deeper, 0.0, 1.0);
   }
   return work;
 }

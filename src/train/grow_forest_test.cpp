@@ -126,6 +126,14 @@ TEST(GrowForest, SameForestForAnyNumberOfThreads) {
   EXPECT_EQ(grow(1), grow(2));
 }
 
+TEST(GrowForest, SameForestHoweverFewValuesAreHeldAtATime) {
+  const std::vector<LabelledFrame> frames = standing_people(6);
+  TrainOptions options = small_options();
+  const std::vector<Tree> trees = grow_forest(frames, paper_body(), options).trees;
+  options.grow.row_bytes = 20000;
+  EXPECT_EQ(grow_forest(frames, paper_body(), options).trees, trees);
+}
+
 TEST(GrowForest, TreesAndSeedsDiffer) {
   const std::vector<LabelledFrame> frames = standing_people(3);
   TrainOptions options = small_options();

@@ -21,9 +21,8 @@ namespace {
 
 constexpr std::int32_t kSettled = -1;  ///< a sample that has reached a leaf
 constexpr std::uint32_t kNoRow = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kRowBytes = std::size_t{512} << 20U;  ///< values held at a time
-constexpr int kGrain = 8192;                                ///< samples that a thread takes at a time
-constexpr std::size_t kAhead = 3;                           ///< samples whose table and row are asked for beforehand
+constexpr int kGrain = 8192;       ///< samples that a thread takes at a time
+constexpr std::size_t kAhead = 3;  ///< samples whose table and row are asked for beforehand
 /// Samples of a frame from which on unpacking all of it pays: all candidates at each, and one feature at each.
 constexpr double kFewEvaluated = 12.0, kFewRouted = 150.0;
 /// Nodes are numbered as in a heap, root 1, children 2n and 2n + 1: no number repeats within this depth.
@@ -172,7 +171,7 @@ class LevelGrower {
   }
 
   std::vector<Group> groups() const {
-    const auto most = static_cast<std::int64_t>(kRowBytes / (sizeof(std::int16_t) * kBlockCandidates));
+    const auto most = static_cast<std::int64_t>(options_.row_bytes / (sizeof(std::int16_t) * kBlockCandidates));
     std::vector<Group> groups;
     for (std::size_t n = 0; n < level_.size(); ++n) {
       const std::int64_t end = level_[n].row_begin + level_[n].counted;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -34,6 +35,7 @@ struct GrowTreeOptions {
   int seed = 1;
   SplitOptions split;
   LeafOptions leaf;
+  std::size_t row_bytes = std::size_t{512} << 20U;  ///< most values of features held at a time; trees are the same
 };
 void visit_options(const std::string& prefix, GrowTreeOptions& options, OptionVisitor& visitor);
 

@@ -11,10 +11,9 @@ namespace vesalius {
 namespace {
 
 constexpr std::uint64_t kGrowing = 2;  ///< capacity of a vector for each element in it, at worst
-constexpr std::uint64_t kMostRowBytes = std::uint64_t{512} << 20U;  ///< values that grow_tree holds at a time
-constexpr std::uint64_t kRowBytes = 2 * kBlockCandidates + 5;       ///< a sample's values; its label and number
-constexpr std::uint64_t kPerSample = 4 + 4 + 1;                     ///< its node, row and side
-constexpr double kEmptyShare = 0.2;  ///< of synthetic frames, at most; their pool is larger
+constexpr std::uint64_t kRowBytes = 2 * kBlockCandidates + 5;  ///< a sample's values; its label and number
+constexpr std::uint64_t kPerSample = 4 + 4 + 1;                ///< its node, row and side
+constexpr double kEmptyShare = 0.2;                            ///< of synthetic frames, at most; their pool is larger
 constexpr double kEmptyPool = 4.0;
 
 double background_share(const FrameGroup& group, const TrainOptions& options) {
@@ -31,7 +30,7 @@ std::uint64_t tree_bytes(std::uint64_t samples, int class_count, const TrainOpti
   const auto least = static_cast<std::uint64_t>(std::max(1, options.grow.leaf.min_samples));
   const std::uint64_t level_nodes = samples / (2 * least) + 1;
   const std::uint64_t nodes = 2 * (samples / least) + 1;
-  const std::uint64_t rows = std::min(samples * kRowBytes, kMostRowBytes + samples * 5);
+  const std::uint64_t rows = std::min<std::uint64_t>(samples * kRowBytes, options.grow.row_bytes + samples * 5);
   return samples * kPerSample + rows + kGrowing * nodes * (sizeof(GrownNode) + sizeof(TreeNode)) +
          2 * level_nodes * static_cast<std::uint64_t>(class_count) * sizeof(std::int64_t);
 }
