@@ -57,8 +57,8 @@ class Training {
       progress.step();
       if (set_.bytes() <= run_.max_bytes) return;
       throw Error(fmt::format(
-          "{} frames take {:.2f} GiB, --memory allows {:.2f}: expected frames like those measured beforehand", progress.done(),
-          static_cast<double>(set_.bytes()) / kGiB, static_cast<double>(run_.max_bytes) / kGiB));
+          "{} frames take {:.2f} GiB, --memory allows {:.2f}: expected frames like those measured beforehand",
+          progress.done(), static_cast<double>(set_.bytes()) / kGiB, static_cast<double>(run_.max_bytes) / kGiB));
     };
     const std::vector<BackgroundFacts> backgrounds = inputs_.read_backgrounds(add);
     background_frames_ = set_.frames().size();
