@@ -3,10 +3,6 @@
 #include <algorithm>
 
 namespace vesalius {
-namespace {
-
-constexpr std::size_t kLineBytes = 64;
-}  // namespace
 
 FramePrefetcher::FramePrefetcher(const FrameStore& frames, std::span<const TrainingSample> samples)
     : frames_(frames), samples_(samples) {}

@@ -10,7 +10,6 @@ namespace vesalius {
 namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{64} << 20U;
-constexpr std::size_t kLineBytes = 64;
 
 std::size_t whole_lines(std::size_t bytes) { return (bytes + kLineBytes - 1) / kLineBytes * kLineBytes; }
 

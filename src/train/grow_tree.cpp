@@ -78,7 +78,6 @@ struct NodeTables {
 
 /// Neighbouring samples are in nodes far apart: without this each waits for its node's table and row.
 void prefetch_lines(const void* from, std::size_t bytes) {
-  constexpr std::size_t kLineBytes = 64;
   const char* at = static_cast<const char*>(from);
   for (std::size_t i = 0; i < bytes; i += kLineBytes) __builtin_prefetch(at + i, 0, 3);
 }

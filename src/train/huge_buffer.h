@@ -4,6 +4,9 @@
 
 namespace vesalius {
 
+/// Of a cache line.
+inline constexpr std::size_t kLineBytes = 64;
+
 /// Zeroed memory straight from the system, in huge pages where it has them: random reads over gigabytes wait for the
 /// page table otherwise.
 class HugeBuffer {

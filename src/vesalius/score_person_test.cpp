@@ -183,10 +183,11 @@ TEST(PersonScore, IsALogisticSum) {
               1.0 / (1.0 + std::exp(-1.5)), 1e-6);
 }
 
-TEST(PersonScore, StrongEvidenceSpeaksForAPerson) {
+TEST(PersonScore, EachEvidenceSpeaksForAPerson) {
   const Evidence some{0.5F, 0.6F, 0.6F, 0.7F};
   const float before = person_score(some, {});
-  for (float Evidence::*field : {&Evidence::likelihood, &Evidence::core, &Evidence::body, &Evidence::certain}) {
+  for (float Evidence::*field :
+       {&Evidence::likelihood, &Evidence::explained, &Evidence::core, &Evidence::body, &Evidence::certain}) {
     Evidence more = some;
     more.*field += 0.1F;
     EXPECT_GT(person_score(more, {}), before);
