@@ -194,6 +194,8 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
                  {"", 0.0, 1.0, "Probability of a table in front of a sitting person."});
   visitor.option(prefix + "sofa-probability", o.sofa_probability,
                  {"", 0.0, 1.0, "Probability that two sitting people try to share a sofa."});
+  visitor.option(prefix + "beside-probability", o.beside_probability,
+                 {"", 0.0, 1.0, "Probability that two standing people stand side by side and touch, or nearly."});
   visitor.option(prefix + "bed-probability", o.bed_probability,
                  {"", 0.0, 1.0, "Probability that a lying person has a bed rather than the floor."});
   visitor.option(prefix + "dark-furniture", o.dark_furniture,

@@ -25,6 +25,7 @@ struct SceneOptions {
   float near_probability = 0.15F;     ///< something large stands close to the camera
   float table_probability = 0.35F;    ///< a table stands in front of a sitting person
   float sofa_probability = 0.4F;      ///< two sitting people share a sofa
+  float beside_probability = 0.F;     ///< two standing people stand shoulder to shoulder
   float bed_probability = 0.6F;       ///< a lying person has a bed or sofa rather than the floor
   float frontal_share = 0.45F;  ///< of people who face the camera within `frontal_range_deg`; others face anywhere
   float frontal_range_deg = 60.F;

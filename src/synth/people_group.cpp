@@ -123,12 +123,47 @@ PeopleGroup lying_group(const SceneOptions& options, Posed posed, Random& random
   return group;
 }
 
-/// The partner with whom `people[first]` can share a sofa; -1: none.
+/// Side by side, looking about the same way, as close as arms and clothes let them or a hand's breadth apart; nothing
+/// where their limbs keep them further apart than that.
+std::optional<PeopleGroup> standing_pair(const Posed& one, const Posed& other, Random& random) {
+  constexpr float kNearest_m = 0.25F, kFurthest_m = 0.9F, kStep_m = 0.02F;
+  const float side = chance(0.5, random) ? 1.F : -1.F;
+  const float ahead = between(-0.12, 0.12, random);
+  const float gap = std::max(0.F, between(-0.1, 0.12, random));
+  const Isometry3f turned = standing_at(0.F, 0.F, 0.F, between(-0.6, 0.6, random));
+  const auto beside_at = [&](float apart) {
+    GroupMember beside = other.member;
+    put(beside, Translation3f(side * apart, 0.F, ahead) * turned);
+    return beside;
+  };
+  const auto clear = [&](const GroupMember& beside) { return !sinks_in(one.member.outline, beside.outline); };
+  for (float apart = kNearest_m; apart <= kFurthest_m; apart += kStep_m) {
+    GroupMember close = beside_at(apart);
+    if (!clear(close)) continue;
+    GroupMember further = beside_at(apart + gap);  // into an arm held out, now and then
+    return PeopleGroup{{one.member, clear(further) ? std::move(further) : std::move(close)}, {}};
+  }
+  return std::nullopt;
+}
+
+/// The next after `people[first]` who sits or stands as they do; -1: nobody.
 int partner_of(const std::vector<std::optional<Posed>>& people, std::size_t first) {
+  const Posed& one = *people[first];
   for (std::size_t i = first + 1; i < people.size(); ++i) {
-    if (people[i] && people[i]->seat) return static_cast<int>(i);
+    if (people[i] && people[i]->seat.has_value() == one.seat.has_value() &&
+        (one.seat || people[i]->posture == one.posture)) {
+      return static_cast<int>(i);
+    }
   }
   return -1;
+}
+
+/// That somebody is put together with another of the same posture. Nothing: scenes without the option draw no number
+/// for it, and stay as they were.
+std::optional<double> probability_of_company(const SceneOptions& options, const Posed& posed) {
+  if (posed.seat) return static_cast<double>(options.sofa_probability);
+  if (posed.posture != Posture::standing || options.beside_probability == 0.F) return std::nullopt;
+  return static_cast<double>(options.beside_probability);
 }
 
 }  // namespace
@@ -141,15 +176,17 @@ std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vec
   for (std::size_t i = 0; i < people.size(); ++i) {
     if (!people[i]) continue;
     Posed& posed = *people[i];
+    const std::optional<double> together = probability_of_company(options, posed);
+    const int partner = together && chance(*together, random) ? partner_of(people, i) : -1;
     std::optional<PeopleGroup> group;
-    if (posed.seat) {
-      const int partner = chance(static_cast<double>(options.sofa_probability), random) ? partner_of(people, i) : -1;
-      if (partner >= 0) group = sofa_group(posed, *people[static_cast<std::size_t>(partner)], random);
-      if (group) {
-        people[static_cast<std::size_t>(partner)].reset();
-      } else {
-        group = sitting_group(options, std::move(posed), random);
-      }
+    if (partner >= 0) {
+      const Posed& other = *people[static_cast<std::size_t>(partner)];
+      group = posed.seat ? sofa_group(posed, other, random) : standing_pair(posed, other, random);
+    }
+    if (group) {
+      people[static_cast<std::size_t>(partner)].reset();
+    } else if (posed.seat) {
+      group = sitting_group(options, std::move(posed), random);
     } else if (posed.posture == Posture::lying) {
       group = lying_group(options, std::move(posed), random);
     } else {

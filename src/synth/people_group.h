@@ -23,8 +23,8 @@ struct PeopleGroup {
   std::vector<Furniture> furniture;
 };
 
-/// Poses the people of the plans and gives those who sit or lie something that fits; some share a sofa. Whoever finds
-/// no seat is left out.
+/// Poses the people of the plans and gives those who sit or lie something that fits; some share a sofa, some stand side
+/// by side. Whoever finds no seat is left out.
 std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vector<PersonPlan>& plans, Random& random);
 
 }  // namespace vesalius::synth

@@ -149,5 +149,54 @@ TEST(BuildScene, PeopleKeepApart) {
   EXPECT_LT(deepest, kMaxSink_m);
 }
 
+/// Smallest distance of two people's skins; infinite where not even their bounds come near.
+float apart(const PlacedPerson& one, const PlacedPerson& other) {
+  constexpr float kFar_m = 0.3F;
+  Eigen::AlignedBox3f bounds;
+  for (const Vector3f& p : one.body.vertices) bounds.extend(p);
+  float nearest = std::numeric_limits<float>::infinity();
+  for (std::size_t k = 0; k < other.body.vertices.size(); k += 3) {
+    const Vector3f& p = other.body.vertices[k];
+    if (bounds.squaredExteriorDistance(p) > kFar_m * kFar_m) continue;
+    for (const Vector3f& q : one.body.vertices) nearest = std::min(nearest, (p - q).squaredNorm());
+  }
+  return std::sqrt(nearest);
+}
+
+/// Of scenes with two people who stand: in how many they nearly touch. `sunk` becomes true where they do so too deep.
+int close_pairs(float beside_probability, int scenes, bool& sunk) {
+  int close = 0;
+  for (int i = 0; i < scenes; ++i) {
+    Random random(21, static_cast<std::uint64_t>(i));
+    std::vector<PersonPlan> plans;
+    while (plans.size() < 2) {
+      plans.push_back(plan_of(sample_pose({}, random), random.next()));
+      if (plans.back().posture != Posture::standing) plans.pop_back();
+    }
+    const BuiltScene built = build_scene({.beside_probability = beside_probability}, {}, kCamera, plans, {},
+                                         Random(22, static_cast<std::uint64_t>(i)));
+    if (built.people.size() < 2 || apart(built.people[0], built.people[1]) > 0.15F) continue;
+    ++close;
+    const auto outline = [&](const PlacedPerson& person) {
+      return outline_of(person.body, plans[static_cast<std::size_t>(person.plan)].poser->mesh().stature_m);
+    };
+    sunk = sunk || sinks_in(outline(built.people[0]), outline(built.people[1]));
+  }
+  return close;
+}
+
+TEST(BuildScene, PeopleStandSideBySideAsOftenAsAsked) {
+  constexpr int kScenes = 40;
+  bool sunk = false;
+  const int never = close_pairs(0.F, kScenes, sunk);
+  const int sometimes = close_pairs(0.5F, kScenes, sunk);
+  const int always = close_pairs(1.F, kScenes, sunk);
+  EXPECT_LE(never, kScenes / 8);
+  EXPECT_GE(always, kScenes / 2) << "some have their arms in the way, some are cut off by the picture's border";
+  EXPECT_GT(sometimes, never);
+  EXPECT_LT(sometimes, always);
+  EXPECT_FALSE(sunk);
+}
+
 }  // namespace
 }  // namespace vesalius::synth

@@ -43,27 +43,28 @@ class Divider {
 
 class RowMean {
  public:
-  RowMean(const Posteriors& posteriors, const DepthImage& depth, int window, int gate_mm, Posteriors& out)
+  RowMean(const Posteriors& posteriors, const DepthImage& depth, const MeanWindow& window, Posteriors& out)
       : in_(posteriors),
         depth_(depth),
         window_(window),
-        reach_(window / 2),
-        gate_(gate_mm),
+        reach_(window.reach()),
         out_(out),
         classes_(static_cast<std::size_t>(posteriors.classes)),
-        columns_(static_cast<std::size_t>(depth.width()) * classes_),
+        columns_(static_cast<std::size_t>(window.spacing)),
         nearest_(static_cast<std::size_t>(depth.width())),
         furthest_(nearest_.size()),
-        sums_(classes_ + 2 * hn::Lanes(Lanes())),
-        neighbours_(static_cast<std::size_t>(window * window)) {
-    for (int n = 1; n <= window * window; ++n) dividers_.emplace_back(static_cast<std::uint32_t>(n));
+        sums_(columns_.size()),
+        neighbours_(static_cast<std::size_t>(window.most())) {
+    for (Columns& columns : columns_) columns.sums.resize(nearest_.size() * classes_);
+    for (Sums& sums : sums_) sums.values.resize(classes_ + 2 * hn::Lanes(Lanes()));
+    for (int n = 1; n <= window.most(); ++n) dividers_.emplace_back(static_cast<std::uint32_t>(n));
   }
 
   /// Rows one after the other are quicker: sums slide.
   void Run(int v) {
-    const bool whole = v >= reach_ && v + reach_ < depth_.height() && depth_.width() >= window_;
+    const bool whole = v >= reach_ && v + reach_ < depth_.height() && depth_.width() > 2 * reach_;
     if (whole) SumColumns(v);
-    int summed = -2;  // pixel whose window is in `sums_`
+    for (Sums& sums : sums_) sums.u = -1;
     for (int u = 0; u < depth_.width(); ++u) {
       std::uint16_t* to = out_.at(u, v);
       if (!in_.settled.empty() && in_.settled(u, v) != 0) {
@@ -71,8 +72,7 @@ class RowMean {
       } else if (depth_(u, v) == 0) {
         std::fill_n(to, classes_, std::uint16_t{0});
       } else if (whole && u >= reach_ && u + reach_ < depth_.width() && AllNear(u, depth_(u, v))) {
-        MeanOfColumns(u, summed == u - 1, to);
-        summed = u;
+        MeanOfColumns(u, v, to);
       } else {
         const std::size_t count = NeighboursOf(u, v);
         Mean(count, dividers_[count - 1], to);
@@ -81,24 +81,43 @@ class RowMean {
   }
 
  private:
+  /// Of the rows that the window of a row has.
+  struct Columns {
+    int v = -1;  ///< that row; -1: none yet
+    std::vector<std::uint16_t> sums;
+  };
+  /// Of the columns that the window of a pixel has.
+  struct Sums {
+    int u = -1;                         ///< that pixel; -1: none yet in this row
+    std::vector<std::uint16_t> values;  ///< the vectors of MeanOfColumns
+  };
+
+  /// Of `spacing` sets, that which the pixel or row `spacing` before had.
+  template <class Set>
+  Set& SetOf(std::vector<Set>& sets, int at) const {
+    return sets[static_cast<std::size_t>(at % window_.spacing)];
+  }
+
   /// For every column of the window's rows: sum of the posteriors, nearest and furthest depth (a hole counts as 0).
   void SumColumns(int v) {
+    const int spacing = window_.spacing;
     std::copy_n(depth_.row(v - reach_), nearest_.size(), nearest_.begin());
     furthest_ = nearest_;
-    for (int nv = v - reach_ + 1; nv <= v + reach_; ++nv) {
+    for (int nv = v - reach_ + spacing; nv <= v + reach_; nv += spacing) {
       const std::uint16_t* HWY_RESTRICT row = depth_.row(nv);
       Merge(row, nearest_, [](auto a, auto b) { return hn::Min(a, b); });
       Merge(row, furthest_, [](auto a, auto b) { return hn::Max(a, b); });
     }
     const auto add = [](auto a, auto b) { return hn::Add(a, b); };
-    if (v == summed_row_ + 1) {
-      Merge(in_.at(0, v - reach_ - 1), columns_, [](auto a, auto b) { return hn::Sub(a, b); });
-      Merge(in_.at(0, v + reach_), columns_, add);
+    Columns& columns = SetOf(columns_, v);
+    if (columns.v >= 0 && v == columns.v + spacing) {
+      Merge(in_.at(0, columns.v - reach_), columns.sums, [](auto a, auto b) { return hn::Sub(a, b); });
+      Merge(in_.at(0, v + reach_), columns.sums, add);
     } else {
-      std::copy_n(in_.at(0, v - reach_), columns_.size(), columns_.begin());
-      for (int nv = v - reach_ + 1; nv <= v + reach_; ++nv) Merge(in_.at(0, nv), columns_, add);
+      std::copy_n(in_.at(0, v - reach_), columns.sums.size(), columns.sums.begin());
+      for (int nv = v - reach_ + spacing; nv <= v + reach_; nv += spacing) Merge(in_.at(0, nv), columns.sums, add);
     }
-    summed_row_ = v;
+    columns.v = v;
   }
 
   /// all[i] = merge(all[i], row[i])
@@ -117,30 +136,31 @@ class RowMean {
 
   bool AllNear(int u, int mm) const {
     int nearest = 65535, furthest = 0;
-    for (std::size_t n = static_cast<std::size_t>(u - reach_); n <= static_cast<std::size_t>(u + reach_); ++n) {
-      nearest = std::min<int>(nearest, nearest_[n]);
-      furthest = std::max<int>(furthest, furthest_[n]);
+    for (int nu = u - reach_; nu <= u + reach_; nu += window_.spacing) {
+      nearest = std::min<int>(nearest, nearest_[static_cast<std::size_t>(nu)]);
+      furthest = std::max<int>(furthest, furthest_[static_cast<std::size_t>(nu)]);
     }
-    return nearest != 0 && mm - nearest <= gate_ && furthest - mm <= gate_;
+    return nearest != 0 && mm - nearest <= window_.gate_mm && furthest - mm <= window_.gate_mm;
   }
 
-  /// Mean over a whole window around column u; `slides` where `sums_` are those around u - 1. Sums of 16 bits may run
-  /// over on the way, never at the end.
-  HWY_INLINE void MeanOfColumns(int u, bool slides, std::uint16_t* to) {
+  /// Mean over a whole window around column u. Sums of 16 bits may run over on the way, never at the end.
+  HWY_INLINE void MeanOfColumns(int u, int v, std::uint16_t* to) {
     const Lanes d;
     const std::size_t lanes = hn::Lanes(d);
-    const std::uint16_t* first = columns_.data() + static_cast<std::size_t>(u - reach_) * classes_;
-    const std::uint16_t* last = first + static_cast<std::size_t>(window_ - 1) * classes_;
-    std::uint16_t* sums = sums_.data();  // the last vector has sums of its own: classes of the one before are in it too
+    const std::size_t step = static_cast<std::size_t>(window_.spacing) * classes_;
+    const std::uint16_t* first = SetOf(columns_, v).sums.data() + static_cast<std::size_t>(u - reach_) * classes_;
+    const std::uint16_t* last = first + static_cast<std::size_t>(2 * window_.each_way) * step;
+    Sums& kept = SetOf(sums_, u);
+    const bool slides = kept.u >= 0 && kept.u == u - window_.spacing;
+    kept.u = u;
+    std::uint16_t* sums = kept.values.data();  // the last vector has sums of its own: it overlaps the one before
     for (std::size_t c = 0;; c = std::min(c + lanes, classes_ - lanes), sums += lanes) {
       Uint16 sum;
       if (slides) {
-        sum = hn::Add(hn::Sub(hn::LoadU(d, sums), hn::LoadU(d, first - classes_ + c)), hn::LoadU(d, last + c));
+        sum = hn::Add(hn::Sub(hn::LoadU(d, sums), hn::LoadU(d, first - step + c)), hn::LoadU(d, last + c));
       } else {
         sum = hn::LoadU(d, first + c);
-        for (const std::uint16_t* at = first + classes_; at <= last; at += classes_) {
-          sum = hn::Add(sum, hn::LoadU(d, at + c));
-        }
+        for (const std::uint16_t* at = first + step; at <= last; at += step) sum = hn::Add(sum, hn::LoadU(d, at + c));
       }
       hn::StoreU(sum, d, sums);
       hn::StoreU(dividers_.back()(sum), d, to + c);
@@ -150,12 +170,13 @@ class RowMean {
 
   std::size_t NeighboursOf(int u, int v) {
     const int mm = depth_(u, v);
-    const int left = std::max(0, u - reach_), right = std::min(depth_.width() - 1, u + reach_);
     std::size_t count = 0;
-    for (int nv = std::max(0, v - reach_); nv <= std::min(depth_.height() - 1, v + reach_); ++nv) {
+    for (int nv = v - reach_; nv <= v + reach_; nv += window_.spacing) {
+      if (nv < 0 || nv >= depth_.height()) continue;
       const std::uint16_t* row = depth_.row(nv);
-      for (int nu = left; nu <= right; ++nu) {
-        if (row[nu] != 0 && std::abs(row[nu] - mm) <= gate_) neighbours_[count++] = in_.at(nu, nv);
+      for (int nu = u - reach_; nu <= u + reach_; nu += window_.spacing) {
+        if (nu < 0 || nu >= depth_.width()) continue;
+        if (row[nu] != 0 && std::abs(row[nu] - mm) <= window_.gate_mm) neighbours_[count++] = in_.at(nu, nv);
       }
     }
     return count;
@@ -175,22 +196,22 @@ class RowMean {
 
   const Posteriors& in_;
   const DepthImage& depth_;
-  int window_, reach_, gate_;
+  MeanWindow window_;
+  int reach_;
   Posteriors& out_;
   std::size_t classes_;
-  std::vector<std::uint16_t> columns_;
-  int summed_row_ = -2;  ///< whose columns are summed
+  std::vector<Columns> columns_;  ///< of `spacing` rows
   std::vector<std::uint16_t> nearest_, furthest_;
-  std::vector<std::uint16_t> sums_;  ///< vectors of MeanOfColumns
+  std::vector<Sums> sums_;  ///< of `spacing` pixels
   std::vector<const std::uint16_t*> neighbours_;
   std::vector<Divider> dividers_;
 };
 
 std::size_t LaneCount() { return hn::Lanes(Lanes()); }
 
-void MeanRows(const Posteriors& posteriors, const DepthImage& depth, int window, int gate_mm, int begin, int end,
+void MeanRows(const Posteriors& posteriors, const DepthImage& depth, const MeanWindow& window, int begin, int end,
               Posteriors& out) {
-  RowMean mean(posteriors, depth, window, gate_mm, out);
+  RowMean mean(posteriors, depth, window, out);
   for (int v = begin; v < end; ++v) mean.Run(v);
 }
 
@@ -203,14 +224,14 @@ namespace vesalius {
 HWY_EXPORT(LaneCount);
 HWY_EXPORT(MeanRows);
 
-bool mean_rows_fit(const Posteriors& posteriors, int window) {
-  return posteriors.trees * 255 * window * window <= 65535 &&
+bool mean_rows_fit(const Posteriors& posteriors, const MeanWindow& window) {
+  return posteriors.trees * 255 * window.most() <= 65535 &&
          posteriors.classes >= static_cast<int>(HWY_DYNAMIC_DISPATCH(LaneCount)());
 }
 
-void mean_rows(const Posteriors& posteriors, const DepthImage& depth, int window, int gate_mm, int begin, int end,
+void mean_rows(const Posteriors& posteriors, const DepthImage& depth, const MeanWindow& window, int begin, int end,
                Posteriors& out) {
-  HWY_DYNAMIC_DISPATCH(MeanRows)(posteriors, depth, window, gate_mm, begin, end, out);
+  HWY_DYNAMIC_DISPATCH(MeanRows)(posteriors, depth, window, begin, end, out);
 }
 
 }  // namespace vesalius

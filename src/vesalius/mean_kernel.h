@@ -8,13 +8,23 @@
 
 namespace vesalius {
 
-/// Whether `mean_rows` can do it: the sum over a whole window fits into 16 bits and the classes fill a vector.
-bool mean_rows_fit(const Posteriors& posteriors, int window);
+/// Which neighbours a mean is over: those of a square around the pixel, itself among them, whose depth differs from its
+/// depth by at most `gate_mm`.
+struct MeanWindow {
+  int each_way = 0;  ///< neighbours to each side, upwards and downwards
+  int spacing = 1;   ///< pixels from one neighbour to the next
+  int gate_mm = 0;
 
-/// Rows `begin` to `end` - 1 of mean_filter (smooth_labels.h): over neighbours in a `window` x `window` square whose
-/// depth differs by at most `gate_mm`, rounded down; zero without a reading. `out` is of the same size. The same from
-/// every instruction set.
-void mean_rows(const Posteriors& posteriors, const DepthImage& depth, int window, int gate_mm, int begin, int end,
+  int reach() const { return each_way * spacing; }
+  int most() const { return (2 * each_way + 1) * (2 * each_way + 1); }
+};
+
+/// Whether `mean_rows` can do it: the sum over a whole window fits into 16 bits and the classes fill a vector.
+bool mean_rows_fit(const Posteriors& posteriors, const MeanWindow& window);
+
+/// Rows `begin` to `end` - 1 of mean_filter (smooth_labels.h), rounded down; zero without a reading. `out` is of the
+/// same size. The same from every instruction set.
+void mean_rows(const Posteriors& posteriors, const DepthImage& depth, const MeanWindow& window, int begin, int end,
                Posteriors& out);
 
 }  // namespace vesalius

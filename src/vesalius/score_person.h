@@ -13,17 +13,17 @@
 namespace vesalius {
 
 struct ScoreOptions {
-  float likelihood_weight = 1.54F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
-  float explained_weight = 1.06F;   ///< of the share of the mask that the skeleton explains
-  float open_weight = -0.18F;       ///< of the share of the outline that stands free
-  float core_weight = 1.13F;        ///< of the share of head, neck and chest parts found
-  float body_weight = 10.32F;       ///< of how sure the forest is that the mask is body
-  float size_weight = 4.89F;        ///< of how near the mask's area is to a person's
-  float occluded_weight = 3.83F;    ///< of the share of the outline that something nearer cuts off
-  float near_weight = 2.16F;        ///< of how near the camera it is
-  float certain_weight = 16.31F;    ///< of how sure the forest is which part each pixel is
-  float border_weight = -8.87F;     ///< of the share of the outline that the picture's border cuts off
-  float bias = -19.55F;
+  float likelihood_weight = 1.35F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
+  float explained_weight = 0.1F;    ///< of the share of the mask that the skeleton explains
+  float open_weight = 0.29F;        ///< of the share of the outline that stands free
+  float core_weight = 1.65F;        ///< of the share of head, neck and chest parts found
+  float body_weight = 10.41F;       ///< of how sure the forest is that the mask is body
+  float size_weight = 5.42F;        ///< of how near the mask's area is to a person's
+  float occluded_weight = 4.45F;    ///< of the share of the outline that something nearer cuts off
+  float near_weight = 1.95F;        ///< of how near the camera it is
+  float certain_weight = 17.76F;    ///< of how sure the forest is which part each pixel is
+  float border_weight = -8.86F;     ///< of the share of the outline that the picture's border cuts off
+  float bias = -19.7F;
   float explained_radius_m = 0.25F;  ///< a pixel is explained by an observed part of its label this near
   float open_step_m = 0.1F;          ///< an outline stands free where what lies behind is this much further
   float usual_area_m2 = 0.45F;       ///< of a person's mask; a standing adult's front

@@ -1,6 +1,8 @@
 #include "vesalius/smooth_labels.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 
 #include "vesalius/mean_kernel.h"
@@ -13,15 +15,15 @@ constexpr int kRowGrain = 8;
 
 /// Calls `use(nu, nv)` for every neighbour of (u, v), itself included, inside window, picture and depth gate.
 template <class Use>
-void for_neighbours(const DepthImage& depth, int u, int v, int window, int gate_mm, Use&& use) {
-  const int reach = window / 2;
+void for_neighbours(const DepthImage& depth, int u, int v, const MeanWindow& window, Use&& use) {
+  const int reach = window.reach();
   const int z = depth(u, v);
-  const int top = std::max(0, v - reach), bottom = std::min(depth.height() - 1, v + reach);
-  const int left = std::max(0, u - reach), right = std::min(depth.width() - 1, u + reach);
-  for (int nv = top; nv <= bottom; ++nv) {
+  for (int nv = v - reach; nv <= v + reach; nv += window.spacing) {
+    if (nv < 0 || nv >= depth.height()) continue;
     const std::uint16_t* row = depth.row(nv);
-    for (int nu = left; nu <= right; ++nu) {
-      if (row[nu] != 0 && std::abs(row[nu] - z) <= gate_mm) use(nu, nv);
+    for (int nu = u - reach; nu <= u + reach; nu += window.spacing) {
+      if (nu < 0 || nu >= depth.width()) continue;
+      if (row[nu] != 0 && std::abs(row[nu] - z) <= window.gate_mm) use(nu, nv);
     }
   }
 }
@@ -61,7 +63,7 @@ class EvenWindows {
 };
 
 /// mean_filter for windows and forests whose sums need 32 bits, and for few classes.
-void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options, int begin,
+void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, const MeanWindow& window, int begin,
                        int end, Posteriors& out) {
   std::vector<std::uint32_t> total(static_cast<std::size_t>(posteriors.classes));
   for (int v = begin; v < end; ++v) {
@@ -77,7 +79,7 @@ void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, co
       }
       std::fill(total.begin(), total.end(), 0U);
       std::uint32_t neighbours = 0;
-      for_neighbours(depth, u, v, options.window, options.depth_gate_mm, [&](int nu, int nv) {
+      for_neighbours(depth, u, v, window, [&](int nu, int nv) {
         const std::uint16_t* sums = posteriors.at(nu, nv);
         for (std::size_t c = 0; c < total.size(); ++c) total[c] += sums[c];
         ++neighbours;
@@ -93,7 +95,13 @@ void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, co
 }  // namespace
 
 void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "window", o.window, {"px", 1, 31, "Side of the smoothing window; an odd number, 1 = none."});
+  visitor.option(
+      prefix + "window", o.window,
+      {"", 1, 31,
+       "Neighbours along a side of the smoothing window, 1 = none; an even number counts as the next odd one."});
+  visitor.option(
+      prefix + "spacing", o.spacing,
+      {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length; smoothing by mode takes 1."});
   visitor.option(prefix + "depth-gate", o.depth_gate_mm,
                  {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
   visitor.option(prefix + "mode", o.mode,
@@ -102,9 +110,15 @@ void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& v
                  {"mm", 0, 10000, "The depth gate of smoothing by mode."});
 }
 
+SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
+  constexpr float kSpacings = 140.F;  // in the focal length
+  if (options.spacing == 0) options.spacing = std::max(1, static_cast<int>(std::lround(camera.fx / kSpacings)));
+  return options;
+}
+
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
   LabelImage out(labels.width(), labels.height(), kBackground);
-  const int gate_mm = options.mode_depth_gate_mm;
+  const MeanWindow window{options.window / 2, 1, options.mode_depth_gate_mm};
   parallel_ranges(labels.height(), kRowGrain, [&](int begin, int end) {
     const EvenWindows even(labels, options.window, begin, end);
     std::array<std::uint16_t, 256> count{};
@@ -115,15 +129,15 @@ LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const 
           out(u, v) = labels(u, v);
           continue;
         }
-        for_neighbours(depth, u, v, options.window, gate_mm, [&](int nu, int nv) { ++count[labels(nu, nv)]; });
+        for_neighbours(depth, u, v, window, [&](int nu, int nv) { ++count[labels(nu, nv)]; });
         std::uint8_t best = labels(u, v);
-        for_neighbours(depth, u, v, options.window, gate_mm, [&](int nu, int nv) {
+        for_neighbours(depth, u, v, window, [&](int nu, int nv) {
           const std::uint8_t label = labels(nu, nv);
           const bool beats_tie = count[label] == count[best] && best != labels(u, v) && label < best;
           if (count[label] > count[best] || beats_tie) best = label;
         });
         out(u, v) = best;
-        for_neighbours(depth, u, v, options.window, gate_mm, [&](int nu, int nv) { count[labels(nu, nv)] = 0; });
+        for_neighbours(depth, u, v, window, [&](int nu, int nv) { count[labels(nu, nv)] = 0; });
       }
     }
   });
@@ -132,12 +146,13 @@ LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const 
 
 void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options, Posteriors& out) {
   out.resize_like(posteriors);
-  const bool fits = mean_rows_fit(posteriors, options.window);
+  const MeanWindow window{options.window / 2, std::max(1, options.spacing), options.depth_gate_mm};
+  const bool fits = mean_rows_fit(posteriors, window);
   parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
     if (fits) {
-      mean_rows(posteriors, depth, options.window, options.depth_gate_mm, begin, end, out);
+      mean_rows(posteriors, depth, window, begin, end, out);
     } else {
-      mean_rows_plainly(posteriors, depth, options, begin, end, out);
+      mean_rows_plainly(posteriors, depth, window, begin, end, out);
     }
   });
 }

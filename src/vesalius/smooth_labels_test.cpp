@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 
@@ -38,11 +39,12 @@ Picture patchy_picture(std::uint64_t seed) {
 }
 
 template <class Use>
-void neighbours(const DepthImage& depth, int u, int v, int window, int gate_mm, Use use) {
-  for (int dv = -window / 2; dv <= window / 2; ++dv) {
-    for (int du = -window / 2; du <= window / 2; ++du) {
-      if (!depth.contains(u + du, v + dv) || depth(u + du, v + dv) == 0) continue;
-      if (std::abs(depth(u + du, v + dv) - depth(u, v)) <= gate_mm) use(u + du, v + dv);
+void neighbours(const DepthImage& depth, int u, int v, int window, int spacing, int gate_mm, Use use) {
+  for (int j = -window / 2; j <= window / 2; ++j) {
+    for (int i = -window / 2; i <= window / 2; ++i) {
+      const int nu = u + i * spacing, nv = v + j * spacing;
+      if (!depth.contains(nu, nv) || depth(nu, nv) == 0) continue;
+      if (std::abs(depth(nu, nv) - depth(u, v)) <= gate_mm) use(nu, nv);
     }
   }
 }
@@ -50,7 +52,7 @@ void neighbours(const DepthImage& depth, int u, int v, int window, int gate_mm, 
 std::uint8_t slow_mode(const Picture& p, int u, int v, const SmoothOptions& o) {
   if (p.depth(u, v) == 0) return kBackground;
   std::map<std::uint8_t, int> count;
-  neighbours(p.depth, u, v, o.window, o.mode_depth_gate_mm, [&](int nu, int nv) { ++count[p.labels(nu, nv)]; });
+  neighbours(p.depth, u, v, o.window, 1, o.mode_depth_gate_mm, [&](int nu, int nv) { ++count[p.labels(nu, nv)]; });
   int most = 0;
   for (const auto& [label, n] : count) most = std::max(most, n);
   if (count[p.labels(u, v)] == most) return p.labels(u, v);
@@ -75,8 +77,7 @@ TEST_P(Windows, ModeAgreesWithCounting) {
   }
 }
 
-TEST_P(Windows, MeanAgreesWithSumming) {
-  const SmoothOptions options{.window = GetParam(), .depth_gate_mm = 250};
+void expect_plain_mean(const SmoothOptions& options) {
   const Picture p = random_picture(9);
   Posteriors in{37, 23, 6, 3, {}};
   Random random(1);
@@ -90,14 +91,22 @@ TEST_P(Windows, MeanAgreesWithSumming) {
       for (int c = 0; c < 6; ++c) {
         int sum = 0, n = 0;
         if (p.depth(u, v) != 0) {
-          neighbours(p.depth, u, v, options.window, options.depth_gate_mm, [&](int nu, int nv) {
-            sum += in.at(nu, nv)[c];
-            ++n;
-          });
+          neighbours(p.depth, u, v, options.window, std::max(1, options.spacing), options.depth_gate_mm,
+                     [&](int nu, int nv) {
+                       sum += in.at(nu, nv)[c];
+                       ++n;
+                     });
         }
-        ASSERT_EQ(out.at(u, v)[c], n > 0 ? sum / n : 0) << u << ' ' << v << " class " << c;
+        ASSERT_EQ(out.at(u, v)[c], n > 0 ? sum / n : 0)
+            << u << ' ' << v << " class " << c << " spacing " << options.spacing;
       }
     }
+  }
+}
+
+TEST_P(Windows, MeanAgreesWithSumming) {
+  for (const int spacing : {0, 1, 2, 3}) {
+    expect_plain_mean({.window = GetParam(), .spacing = spacing, .depth_gate_mm = 250});
   }
 }
 
@@ -107,14 +116,25 @@ TEST(MeanFilter, LeavesSettledPixelsAsTheyAre) {
   in.settled = Mask(9, 9, 0);
   in.settled(4, 4) = 1;
   in.at(4, 4)[5] = in.at(1, 4)[5] = 250;
-  const Posteriors out = mean_filter(in, depth, {});
+  const Posteriors out = mean_filter(in, depth, {.spacing = 1});
   EXPECT_EQ(out.settled, in.settled);
   EXPECT_EQ(out.at(4, 4)[5], 250);
   EXPECT_EQ(out.at(1, 4)[5], 250 / 20) << "a window of 5 cut by the border";
   EXPECT_EQ(out.at(5, 4)[5], 10) << "counts for its neighbours";
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, Windows, testing::Values(1, 3, 5, 9));
+TEST(MeanFilter, SpacesNeighboursByTheFocalLength) {
+  const auto spacing = [](float fx, int given) {
+    return spaced({.spacing = given}, Camera{320, 240, fx, fx, 159.5F, 119.5F}).spacing;
+  };
+  EXPECT_EQ(spacing(525.F, 0), 4);
+  EXPECT_EQ(spacing(262.5F, 0), 2);
+  EXPECT_EQ(spacing(131.F, 0), 1);
+  EXPECT_EQ(spacing(20.F, 0), 1);
+  EXPECT_EQ(spacing(525.F, 3), 3) << "as asked for";
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Windows, testing::Values(1, 3, 4, 5, 9));
 
 TEST(ModeFilter, RemovesASpeckleButNotAcrossADepthStep) {
   LabelImage labels(7, 7, 3);
