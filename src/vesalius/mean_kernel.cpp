@@ -171,11 +171,11 @@ class RowMean {
   std::size_t NeighboursOf(int u, int v) {
     const int mm = depth_(u, v);
     std::size_t count = 0;
-    for (int nv = v - reach_; nv <= v + reach_; nv += window_.spacing) {
-      if (nv < 0 || nv >= depth_.height()) continue;
+    const int left = window_.first(u), right = std::min(depth_.width() - 1, u + reach_);
+    const int bottom = std::min(depth_.height() - 1, v + reach_);
+    for (int nv = window_.first(v); nv <= bottom; nv += window_.spacing) {
       const std::uint16_t* row = depth_.row(nv);
-      for (int nu = u - reach_; nu <= u + reach_; nu += window_.spacing) {
-        if (nu < 0 || nu >= depth_.width()) continue;
+      for (int nu = left; nu <= right; nu += window_.spacing) {
         if (row[nu] != 0 && std::abs(row[nu] - mm) <= window_.gate_mm) neighbours_[count++] = in_.at(nu, nv);
       }
     }

@@ -16,6 +16,12 @@ struct MeanWindow {
   int gate_mm = 0;
 
   int reach() const { return each_way * spacing; }
+  /// The first neighbour of column or row `at` that is in the picture.
+  int first(int at) const {
+    int first = at - reach();
+    while (first < 0) first += spacing;
+    return first;
+  }
   int most() const { return (2 * each_way + 1) * (2 * each_way + 1); }
 };
 

@@ -18,11 +18,11 @@ template <class Use>
 void for_neighbours(const DepthImage& depth, int u, int v, const MeanWindow& window, Use&& use) {
   const int reach = window.reach();
   const int z = depth(u, v);
-  for (int nv = v - reach; nv <= v + reach; nv += window.spacing) {
-    if (nv < 0 || nv >= depth.height()) continue;
+  const int left = window.first(u), right = std::min(depth.width() - 1, u + reach);
+  const int bottom = std::min(depth.height() - 1, v + reach);
+  for (int nv = window.first(v); nv <= bottom; nv += window.spacing) {
     const std::uint16_t* row = depth.row(nv);
-    for (int nu = u - reach; nu <= u + reach; nu += window.spacing) {
-      if (nu < 0 || nu >= depth.width()) continue;
+    for (int nu = left; nu <= right; nu += window.spacing) {
       if (row[nu] != 0 && std::abs(row[nu] - z) <= window.gate_mm) use(nu, nv);
     }
   }
