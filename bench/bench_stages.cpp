@@ -65,7 +65,7 @@ void add_targets(const BenchScene& s, const std::shared_ptr<const ForestLabeller
     add("label_pixels:" + name, s,
         [=, &s] { on_target([&] { keep(labeller->label(s.frame.depth, s.frame.camera)); }); });
     add("mean_filter:" + name, s,
-        [=, &s] { on_target([&] { keep(mean_filter(s.posteriors, s.frame.depth, spaced({}, s.frame.camera))); }); });
+        [=, &s] { on_target([&] { keep(mean_filter(s.posteriors, s.frame.depth, s.frame.camera, {})); }); });
   }
 }
 
@@ -76,7 +76,7 @@ void add_labelling(const BenchScene& s) {
   const LabelChoice choice{.part_count = s.forest.body.part_count(), .has_background = s.forest.has_background};
   add("choose_labels", s, [&s, choice] { keep(choose_labels(s.posteriors, s.frame.depth, choice, LabelOptions())); });
   add("mode_filter", s, [&s] { keep(mode_filter(s.labels, s.frame.depth, SmoothOptions())); });
-  add("mean_filter", s, [&s] { keep(mean_filter(s.posteriors, s.frame.depth, spaced({}, s.frame.camera))); });
+  add("mean_filter", s, [&s] { keep(mean_filter(s.posteriors, s.frame.depth, s.frame.camera, {})); });
 }
 
 void add_search(const BenchScene& s) {

@@ -8,7 +8,7 @@ SceneLabels label_everywhere(const PixelLabeller& labeller, const DetectOptions&
   const bool by_mode = options.smooth.mode || !labeller.has_distributions();
   Posteriors posteriors;
   labeller.label_into(depth, camera, options.label, posteriors);
-  if (!by_mode) posteriors = mean_filter(posteriors, depth, spaced(options.smooth, camera));
+  if (!by_mode) posteriors = mean_filter(posteriors, depth, camera, options.smooth);
   const auto choose = [&](const Mask* prior) {
     const LabelChoice choice{labeller.body().part_count(), labeller.has_background(), prior};
     LabelImage labels = choose_labels(posteriors, depth, choice, options.label);

@@ -131,29 +131,25 @@ std::optional<PeopleGroup> standing_pair(const Posed& one, const Posed& other, R
   const float ahead = between(-0.12, 0.12, random);
   const float gap = std::max(0.F, between(-0.1, 0.12, random));
   const Isometry3f turned = standing_at(0.F, 0.F, 0.F, between(-0.6, 0.6, random));
-  const auto beside_at = [&](float apart) {
-    GroupMember beside = other.member;
-    put(beside, Translation3f(side * apart, 0.F, ahead) * turned);
-    return beside;
+  const auto place = [&](float apart) -> Isometry3f { return Translation3f(side * apart, 0.F, ahead) * turned; };
+  const auto clear = [&](float apart) {
+    return !sinks_in(one.member.outline, moved(other.member.outline, place(apart)));
   };
-  const auto clear = [&](const GroupMember& beside) { return !sinks_in(one.member.outline, beside.outline); };
   for (float apart = kNearest_m; apart <= kFurthest_m; apart += kStep_m) {
-    GroupMember close = beside_at(apart);
-    if (!clear(close)) continue;
-    GroupMember further = beside_at(apart + gap);  // into an arm held out, now and then
-    return PeopleGroup{{one.member, clear(further) ? std::move(further) : std::move(close)}, {}};
+    if (!clear(apart)) continue;
+    GroupMember beside = other.member;
+    put(beside, place(clear(apart + gap) ? apart + gap : apart));  // not into an arm held out
+    return PeopleGroup{{one.member, std::move(beside)}, {}};
   }
   return std::nullopt;
 }
 
-/// The next after `people[first]` who sits or stands as they do; -1: nobody.
+/// The next after `people[first]` who has a seat like them, or is of the same posture without; -1: nobody.
 int partner_of(const std::vector<std::optional<Posed>>& people, std::size_t first) {
   const Posed& one = *people[first];
   for (std::size_t i = first + 1; i < people.size(); ++i) {
-    if (people[i] && people[i]->seat.has_value() == one.seat.has_value() &&
-        (one.seat || people[i]->posture == one.posture)) {
-      return static_cast<int>(i);
-    }
+    if (!people[i]) continue;
+    if (one.seat ? people[i]->seat.has_value() : people[i]->posture == one.posture) return static_cast<int>(i);
   }
   return -1;
 }

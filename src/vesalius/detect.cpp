@@ -119,7 +119,7 @@ class Pipeline {
       const LabelChoice choice{body_.part_count(), labeller_.has_background(), nullptr};
       trace->raw_labels = choose_labels(raw, depth, choice, options_.label);
     }
-    if (!by_mode()) mean_filter(raw, depth, spaced(options_.smooth, frame_.camera), workspace_.smooth);
+    if (!by_mode()) mean_filter(raw, depth, frame_.camera, options_.smooth, workspace_.smooth);
     clock_.lap(Stage::smooth);
     // What may be a part is taken for one; the score of the whole tells people from what is none.
     LabelOptions propose = options_.label;
@@ -200,7 +200,7 @@ class Pipeline {
       const Camera camera = cropped(frame_.camera, box);
       Posteriors posteriors;
       labeller_.label_into(alone, camera, options_.label, posteriors);
-      if (!by_mode()) posteriors = mean_filter(posteriors, alone, spaced(options_.smooth, camera));
+      if (!by_mode()) posteriors = mean_filter(posteriors, alone, camera, options_.smooth);
       const LabelImage labels = choose(posteriors, alone, options_.label);
       clusters = find_clusters(labels, alone, camera, body_, cluster);
       candidate.labels = uncropped(labels, box, frame_.camera.width, frame_.camera.height);

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdlib>
 
 #include "vesalius/mean_kernel.h"
 
@@ -43,7 +42,7 @@ class Divider {
 
 class RowMean {
  public:
-  RowMean(const Posteriors& posteriors, const DepthImage& depth, const MeanWindow& window, Posteriors& out)
+  RowMean(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, Posteriors& out)
       : in_(posteriors),
         depth_(depth),
         window_(window),
@@ -169,16 +168,8 @@ class RowMean {
   }
 
   std::size_t NeighboursOf(int u, int v) {
-    const int mm = depth_(u, v);
     std::size_t count = 0;
-    const int left = window_.first(u), right = std::min(depth_.width() - 1, u + reach_);
-    const int bottom = std::min(depth_.height() - 1, v + reach_);
-    for (int nv = window_.first(v); nv <= bottom; nv += window_.spacing) {
-      const std::uint16_t* row = depth_.row(nv);
-      for (int nu = left; nu <= right; nu += window_.spacing) {
-        if (row[nu] != 0 && std::abs(row[nu] - mm) <= window_.gate_mm) neighbours_[count++] = in_.at(nu, nv);
-      }
-    }
+    for_neighbours(depth_, u, v, window_, [&](int nu, int nv) { neighbours_[count++] = in_.at(nu, nv); });
     return count;
   }
 
@@ -196,7 +187,7 @@ class RowMean {
 
   const Posteriors& in_;
   const DepthImage& depth_;
-  MeanWindow window_;
+  SmoothWindow window_;
   int reach_;
   Posteriors& out_;
   std::size_t classes_;
@@ -209,7 +200,7 @@ class RowMean {
 
 std::size_t LaneCount() { return hn::Lanes(Lanes()); }
 
-void MeanRows(const Posteriors& posteriors, const DepthImage& depth, const MeanWindow& window, int begin, int end,
+void MeanRows(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int begin, int end,
               Posteriors& out) {
   RowMean mean(posteriors, depth, window, out);
   for (int v = begin; v < end; ++v) mean.Run(v);
@@ -224,12 +215,12 @@ namespace vesalius {
 HWY_EXPORT(LaneCount);
 HWY_EXPORT(MeanRows);
 
-bool mean_rows_fit(const Posteriors& posteriors, const MeanWindow& window) {
+bool mean_rows_fit(const Posteriors& posteriors, const SmoothWindow& window) {
   return posteriors.trees * 255 * window.most() <= 65535 &&
          posteriors.classes >= static_cast<int>(HWY_DYNAMIC_DISPATCH(LaneCount)());
 }
 
-void mean_rows(const Posteriors& posteriors, const DepthImage& depth, const MeanWindow& window, int begin, int end,
+void mean_rows(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int begin, int end,
                Posteriors& out) {
   HWY_DYNAMIC_DISPATCH(MeanRows)(posteriors, depth, window, begin, end, out);
 }

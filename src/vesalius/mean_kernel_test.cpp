@@ -29,7 +29,7 @@ Picture random_picture(Random& random, int width, int height, int classes, int t
   return p;
 }
 
-std::vector<std::uint16_t> plain_means(const Picture& p, const MeanWindow& window) {
+std::vector<std::uint16_t> plain_means(const Picture& p, const SmoothWindow& window) {
   const int reach = window.each_way * window.spacing;
   std::vector<std::uint16_t> means(p.posteriors.sums.size(), 0);
   for (std::size_t i = 0; i < means.size(); ++i) {
@@ -52,7 +52,7 @@ std::vector<std::uint16_t> plain_means(const Picture& p, const MeanWindow& windo
 }
 
 /// On every instruction set, in ranges of rows that end anywhere.
-void expect_plain_means(const Picture& p, const MeanWindow& window) {
+void expect_plain_means(const Picture& p, const SmoothWindow& window) {
   ASSERT_TRUE(mean_rows_fit(p.posteriors, window));
   const std::vector<std::uint16_t> expected = plain_means(p, window);
   const int height = p.depth.height();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "vesalius/mean_kernel.h"
 #include "vesalius/parallel.h"
@@ -12,21 +11,6 @@ namespace vesalius {
 namespace {
 
 constexpr int kRowGrain = 8;
-
-/// Calls `use(nu, nv)` for every neighbour of (u, v), itself included, inside window, picture and depth gate.
-template <class Use>
-void for_neighbours(const DepthImage& depth, int u, int v, const MeanWindow& window, Use&& use) {
-  const int reach = window.reach();
-  const int z = depth(u, v);
-  const int left = window.first(u), right = std::min(depth.width() - 1, u + reach);
-  const int bottom = std::min(depth.height() - 1, v + reach);
-  for (int nv = window.first(v); nv <= bottom; nv += window.spacing) {
-    const std::uint16_t* row = depth.row(nv);
-    for (int nu = left; nu <= right; nu += window.spacing) {
-      if (row[nu] != 0 && std::abs(row[nu] - z) <= window.gate_mm) use(nu, nv);
-    }
-  }
-}
 
 /// Whether a whole window holds one label, whatever the depth: most of a picture needs no counting.
 class EvenWindows {
@@ -63,7 +47,7 @@ class EvenWindows {
 };
 
 /// mean_filter for windows and forests whose sums need 32 bits, and for few classes.
-void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, const MeanWindow& window, int begin,
+void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int begin,
                        int end, Posteriors& out) {
   std::vector<std::uint32_t> total(static_cast<std::size_t>(posteriors.classes));
   for (int v = begin; v < end; ++v) {
@@ -118,7 +102,7 @@ SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
 
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
   LabelImage out(labels.width(), labels.height(), kBackground);
-  const MeanWindow window{options.window / 2, 1, options.mode_depth_gate_mm};
+  const SmoothWindow window{options.window / 2, 1, options.mode_depth_gate_mm};
   parallel_ranges(labels.height(), kRowGrain, [&](int begin, int end) {
     const EvenWindows even(labels, options.window, begin, end);
     std::array<std::uint16_t, 256> count{};
@@ -144,9 +128,10 @@ LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const 
   return out;
 }
 
-void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options, Posteriors& out) {
+void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
+                 const SmoothOptions& options, Posteriors& out) {
   out.resize_like(posteriors);
-  const MeanWindow window{options.window / 2, std::max(1, options.spacing), options.depth_gate_mm};
+  const SmoothWindow window{options.window / 2, spaced(options, camera).spacing, options.depth_gate_mm};
   const bool fits = mean_rows_fit(posteriors, window);
   parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
     if (fits) {
@@ -157,9 +142,10 @@ void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Sm
   });
 }
 
-Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options) {
+Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
+                       const SmoothOptions& options) {
   Posteriors out;
-  mean_filter(posteriors, depth, options, out);
+  mean_filter(posteriors, depth, camera, options, out);
   return out;
 }
 

@@ -27,11 +27,13 @@ SmoothOptions spaced(SmoothOptions options, const Camera& camera);
 /// counts as a label. Pixels without reading become background.
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options);
 
-/// The sum of the posteriors over such neighbours `spacing` apart (0 as 1), rescaled to the range of one pixel's sums
+/// The sum of the posteriors over such neighbours `spacing` apart, rescaled to the range of one pixel's sums
 /// (rounded down), so that choose_labels reads both alike. Pixels next to each other mostly err alike: as many further
 /// apart say more.
-Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options);
+Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
+                       const SmoothOptions& options);
 /// The same into `out`, whose memory is used again; not `posteriors` itself.
-void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const SmoothOptions& options, Posteriors& out);
+void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
+                 const SmoothOptions& options, Posteriors& out);
 
 }  // namespace vesalius

@@ -12,6 +12,9 @@
 namespace vesalius {
 namespace {
 
+/// With neighbours next to each other.
+constexpr Camera kSmallCamera{37, 23, 40.F, 40.F, 18.F, 11.F};
+
 struct Picture {
   LabelImage labels{37, 23};
   DepthImage depth{37, 23};
@@ -84,7 +87,7 @@ void expect_plain_mean(const SmoothOptions& options) {
   for (std::size_t i = 0; i < p.depth.size() * 6; ++i) {
     in.sums.push_back(p.depth[i / 6] == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(random.below(766)));
   }
-  const Posteriors out = mean_filter(in, p.depth, options);
+  const Posteriors out = mean_filter(in, p.depth, kSmallCamera, options);
   EXPECT_EQ(out.trees, 3);
   for (int v = 0; v < p.depth.height(); ++v) {
     for (int u = 0; u < p.depth.width(); ++u) {
@@ -116,7 +119,7 @@ TEST(MeanFilter, LeavesSettledPixelsAsTheyAre) {
   in.settled = Mask(9, 9, 0);
   in.settled(4, 4) = 1;
   in.at(4, 4)[5] = in.at(1, 4)[5] = 250;
-  const Posteriors out = mean_filter(in, depth, {.spacing = 1});
+  const Posteriors out = mean_filter(in, depth, kSmallCamera, {.spacing = 1});
   EXPECT_EQ(out.settled, in.settled);
   EXPECT_EQ(out.at(4, 4)[5], 250);
   EXPECT_EQ(out.at(1, 4)[5], 250 / 20) << "a window of 5 cut by the border";
