@@ -5,10 +5,10 @@
 #include <iostream>
 #include <utility>
 
-#include "io/model_file.h"
-#include "io/open_source.h"
-#include "vesalius/capsule_person.h"
-#include "vesalius/error.h"
+#include "capsule/capsule_person.h"
+#include "io/model/model_file.h"
+#include "io/sources/open_source.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "vesalius/base/frame.h"
 #include "vesalius/detect.h"
-#include "vesalius/forest.h"
-#include "vesalius/frame.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

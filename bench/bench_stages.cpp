@@ -11,8 +11,8 @@
 
 #include "bench/bench_scenes.h"
 #include "bench/bench_synth.h"
-#include "vesalius/parallel.h"
-#include "vesalius/tree_walk.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {
 namespace {

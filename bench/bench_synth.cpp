@@ -10,18 +10,18 @@
 #include <utility>
 #include <vector>
 
-#include "cli/synth_assets.h"
-#include "io/asset_list.h"
-#include "io/assets.h"
-#include "io/labelled_frame_codec.h"
-#include "synth/body_detail.h"
-#include "synth/builtin_body.h"
-#include "synth/dress.h"
+#include "assets/asset_list.h"
+#include "assets/assets.h"
+#include "cli/synth/synth_assets.h"
+#include "dataset/labelled_frame_codec.h"
+#include "synth/body/body_detail.h"
+#include "synth/body/builtin_body.h"
+#include "synth/dress/dress.h"
 #include "synth/generate.h"
-#include "synth/pose_sampler.h"
-#include "synth/render.h"
-#include "synth/sensor_noise.h"
-#include "synth/thin_poses.h"
+#include "synth/mocap/thin_poses.h"
+#include "synth/pose/pose_sampler.h"
+#include "synth/sensor/render.h"
+#include "synth/sensor/sensor_noise.h"
 
 namespace vesalius {
 namespace {

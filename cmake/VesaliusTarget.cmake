@@ -17,19 +17,22 @@ if(VESALIUS_SANITIZE)
   target_link_options(vesalius_settings INTERFACE -fsanitize=${VESALIUS_SANITIZE})
 endif()
 
-# What tests (and the program, in builds with sanitizers) are compiled with besides, after all else: VESALIUS_TEST_FLAGS.
+# What tests are compiled with besides, after all else: VESALIUS_TEST_FLAGS.
 add_library(vesalius_test_settings INTERFACE)
 target_compile_options(vesalius_test_settings INTERFACE ${VESALIUS_TEST_FLAGS})
-# Tests of kernels call Highway; its definitions must be the same in all tests to share one precompiled header.
-target_link_libraries(vesalius_test_settings INTERFACE hwy::hwy)
 
-# vesalius_precompile(TARGET header...): reads what most of its files include once, where VESALIUS_PCH asks for it; a build
-# without (preset fuzz) shows which includes are missing.
+# vesalius_precompile(TARGET): what most files include is read once, where VESALIUS_PCH asks for it; the header of the core
+# serves all libraries. A build without (preset fuzz) shows which includes are missing.
 function(vesalius_precompile target)
-  if(VESALIUS_PCH)
+  if(NOT VESALIUS_PCH)
+    return()
+  endif()
+  if(target STREQUAL vesalius_core)
     target_precompile_headers(
       ${target} PRIVATE <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <ranges> <sstream>
-      <string> <vector> <Eigen/Geometry> ${ARGN})
+      <string> <vector> <Eigen/Geometry>)
+  else()
+    target_precompile_headers(${target} REUSE_FROM vesalius_core)
   endif()
 endfunction()
 
@@ -61,11 +64,17 @@ function(vesalius_test name)
   endif()
   add_executable(${name} ${sources})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} vesalius_settings GTest::gmock GTest::gtest_main vesalius_test_settings)
-  if(VESALIUS_PCH AND TARGET core_test AND NOT name STREQUAL core_test)
+  if(VESALIUS_PCH AND NOT name STREQUAL core_test)
     target_precompile_headers(${name} REUSE_FROM core_test)
-  else()
-    vesalius_precompile(${name} <gmock/gmock.h>)
+  elseif(VESALIUS_PCH)
+    target_precompile_headers(${name} PRIVATE <algorithm> <cmath> <memory> <string> <vector> <Eigen/Geometry> <gmock/gmock.h>)
   endif()
-  target_compile_definitions(${name} PRIVATE VESALIUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  # Only files that ask for it learn where the sources are: the others compile alike in every clone.
+  foreach(source IN LISTS sources)
+    file(STRINGS ${source} asks REGEX VESALIUS_SOURCE_DIR LIMIT_COUNT 1)
+    if(asks)
+      set_source_files_properties(${source} PROPERTIES COMPILE_DEFINITIONS VESALIUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    endif()
+  endforeach()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120 PROPERTIES TIMEOUT 600)
 endfunction()

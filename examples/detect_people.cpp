@@ -2,8 +2,8 @@
 
 #include <iostream>
 
-#include "io/model_file.h"
-#include "io/open_source.h"
+#include "io/model/model_file.h"
+#include "io/sources/open_source.h"
 #include "vesalius/vesalius.h"
 
 int main(int argc, char** argv) {

@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "synth/asf_amc.h"
-#include "synth/retarget.h"
-#include "vesalius/error.h"
+#include "synth/mocap/asf_amc.h"
+#include "synth/mocap/retarget.h"
+#include "vesalius/base/error.h"
 
 /// A skeleton, a byte 0, and a motion of it.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

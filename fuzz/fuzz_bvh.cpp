@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "synth/bvh.h"
-#include "synth/retarget.h"
-#include "vesalius/error.h"
+#include "synth/mocap/bvh.h"
+#include "synth/mocap/retarget.h"
+#include "vesalius/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

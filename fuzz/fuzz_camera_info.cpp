@@ -3,8 +3,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/camera_file.h"
-#include "vesalius/error.h"
+#include "io/sources/camera_file.h"
+#include "vesalius/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

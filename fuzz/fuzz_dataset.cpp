@@ -3,10 +3,10 @@
 #include <exception>
 #include <string>
 
-#include "io/dataset_folder.h"
-#include "io/dataset_shard.h"
-#include "io/labelled_frame_codec.h"
-#include "vesalius/error.h"
+#include "dataset/dataset_folder.h"
+#include "dataset/dataset_shard.h"
+#include "dataset/labelled_frame_codec.h"
+#include "vesalius/base/error.h"
 
 namespace {
 

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <string>
 
-#include "io/model_file.h"
-#include "io/model_trees.h"
-#include "io/packed.h"
-#include "vesalius/error.h"
+#include "io/files/packed.h"
+#include "io/model/model_file.h"
+#include "io/model/model_trees.h"
+#include "vesalius/base/error.h"
 
 namespace {
 

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "synth/makehuman_files.h"
-#include "vesalius/error.h"
+#include "synth/body/makehuman_files.h"
+#include "vesalius/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -1,9 +1,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "io/options_file.h"
+#include "io/files/options_file.h"
+#include "vesalius/base/error.h"
 #include "vesalius/detect.h"
-#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   vesalius::DetectOptions options;

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "io/pcd.h"
-#include "vesalius/error.h"
+#include "io/sources/pcd.h"
+#include "vesalius/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -3,9 +3,9 @@
 #include <string_view>
 #include <vector>
 
-#include "synth/makehuman_files.h"
-#include "synth/rig_map.h"
-#include "vesalius/error.h"
+#include "synth/body/makehuman_files.h"
+#include "synth/body/rig_map.h"
+#include "vesalius/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vesalius::synth;

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <exception>
 
-#include "io/model_file.h"
-#include "vesalius/error.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   vesalius::Forest forest;

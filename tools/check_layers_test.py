@@ -10,17 +10,28 @@ from pathlib import Path
 SCRIPT = Path(__file__).parent / "check_layers.py"
 
 GOOD = {
-    "src/CMakeLists.txt": "set(CORE_UNITS\n    error\n    image\n    detect)\n",
-    "src/vesalius/error.h": "#include <string>\n",
-    "src/vesalius/image.h": '#include "vesalius/error.h"\n',
-    "src/vesalius/detect.h": '//   #include "io/read.h"\n#include "vesalius/image.h"\n',
+    "src/vesalius/CMakeLists.txt": "vesalius_library(core FOLDERS base forest . OPENS_NO_FILES)\n",
+    "src/capsule/CMakeLists.txt": "vesalius_library(capsule)\n",
+    "src/io/CMakeLists.txt": "vesalius_library(io FOLDERS files\n  sources)  # bottom to top\n",
+    "src/draw/CMakeLists.txt": "vesalius_library(draw TESTS_USE io)\n",
+    "src/cli/CMakeLists.txt": (
+        "set(folders . detect)\nset(uses io)\n"
+        "macro(vesalius_satellite name)\nendmacro()\n  vesalius_satellite(pictures draw)\n"
+        "vesalius_library(cli FOLDERS ${folders} USES ${uses})\n"
+    ),
+    "src/vesalius/base/error.h": "#include <string>\n",
+    "src/vesalius/base/image.h": '#include "vesalius/base/error.h"\n',
+    "src/vesalius/forest/forest.h": '#include "vesalius/base/image.h"\n',
+    "src/vesalius/detect.h": '//   #include "io/sources/open.h"\n#include "vesalius/forest/forest.h"\n',
     "src/vesalius/detect.cpp": '#include "vesalius/detect.h"\n#include "generated.inc"\n',
-    "src/vesalius/error_test.cpp": '#include <fstream>\n#include "vesalius/detect.h"\n',
-    "src/vesalius/vesalius.h": '#include "vesalius/detect.h"\n',
-    "src/io/read.h": '#include "vesalius/vesalius.h"\n',
-    "src/io/read.cpp": '#include "io/read.h"\n#include <iostream>\n',
-    "src/draw/draw.h": '#include "vesalius/image.h"\n',
-    "src/cli/main.cpp": '#include "draw/draw.h"\n#include "io/read.h"\n',
+    "src/vesalius/base/error_test.cpp": '#include <fstream>\n#include "vesalius/detect.h"\n#include "capsule/body.h"\n',
+    "src/capsule/body.h": '#include "vesalius/base/image.h"\n',
+    "src/io/files/png.h": '#include "vesalius/detect.h"\n#include <fstream>\n',
+    "src/io/sources/open.h": '#include "io/files/png.h"\n',
+    "src/draw/draw.h": '#include "vesalius/base/image.h"\n',
+    "src/draw/draw_test.cpp": '#include "io/files/png.h"\n',
+    "src/cli/flags.h": '#include "io/sources/open.h"\n',
+    "src/cli/pictures/pictures.cpp": '#include "draw/draw.h"\n#include "cli/flags.h"\n',
 }
 
 
@@ -46,38 +57,58 @@ class CheckLayers(unittest.TestCase):
         code, output = run({})
         self.assertEqual(code, 0, output)
 
-    def test_core_includes_unit_below(self):
-        self.expect_violation({"src/vesalius/error.h": '\n#include "vesalius/image.h"\n'}, "src/vesalius/error.h:2:")
+    def test_folder_includes_folder_above(self):
+        changes = {"src/vesalius/base/image.h": '\n#include "vesalius/forest/forest.h"\n',
+                   "src/vesalius/forest/forest.h": ""}
+        self.expect_violation(changes, "src/vesalius/base/image.h:2:")
+
+    def test_folder_of_satellite_includes_folder_above(self):
+        changes = {"src/io/files/png.h": '#include "io/sources/open.h"\n', "src/io/sources/open.h": ""}
+        self.expect_violation(changes, "src/io/files/png.h:1:")
+
+    def test_command_includes_another_command(self):
+        changes = {"src/cli/flags.h": '#include "cli/pictures/list.h"\n', "src/cli/pictures/list.h": ""}
+        self.expect_violation(changes, "src/cli/flags.h:1:")
+
+    def test_units_include_each_other(self):
+        changes = {"src/vesalius/base/error.h": '#include "vesalius/base/image.h"\n'}
+        self.expect_violation(changes, "src/vesalius/base/error.h:1: units include each other: vesalius/base/error, "
+                                       "vesalius/base/image")
+
+    def test_units_include_each_other_through_a_third(self):
+        changes = {"src/io/files/a.h": '#include "io/files/b.h"\n', "src/io/files/b.h": "",
+                   "src/io/files/b.cpp": '#include "io/files/c.h"\n', "src/io/files/c.h": '#include "io/files/a.h"\n'}
+        self.expect_violation(changes, "src/io/files/a.h:1: units include each other")
 
     def test_core_includes_satellite(self):
-        self.expect_violation({"src/vesalius/detect.cpp": '#include "io/read.h"\n'}, "src/vesalius/detect.cpp:1:")
+        self.expect_violation({"src/vesalius/detect.cpp": '#include "draw/draw.h"\n'}, "src/vesalius/detect.cpp:1:")
 
-    def test_core_unit_missing_from_list(self):
-        self.expect_violation({"src/vesalius/stray.cpp": ""}, "src/vesalius/stray.cpp:1:")
+    def test_core_includes_what_is_for_tests(self):
+        self.expect_violation({"src/vesalius/detect.cpp": '#include "capsule/body.h"\n'}, "src/vesalius/detect.cpp:1:")
+
+    def test_file_in_no_library(self):
+        self.expect_violation({"src/stray/stray.cpp": ""}, "src/stray/stray.cpp:1:")
 
     def test_core_opens_files(self):
-        self.expect_violation({"src/vesalius/image.h": "#include <fstream>\n"}, "src/vesalius/image.h:1:")
+        self.expect_violation({"src/vesalius/base/image.h": "#include <fstream>\n"}, "src/vesalius/base/image.h:1:")
 
     def test_satellite_includes_satellite(self):
-        self.expect_violation({"src/draw/draw.h": '#include "io/read.h"\n'}, "src/draw/draw.h:1:")
+        self.expect_violation({"src/draw/draw.h": '#include "io/files/png.h"\n'}, "src/draw/draw.h:1:")
 
-    def test_test_of_satellite_includes_satellite(self):
-        self.expect_violation({"src/draw/draw_test.cpp": '#include "io/read.h"\n'}, "src/draw/draw_test.cpp:1:")
-
-    def test_satellite_includes_cli(self):
-        changes = {"src/cli/flags.h": "", "src/io/read.h": '#include "cli/flags.h"\n'}
-        self.expect_violation(changes, "src/io/read.h:1:")
+    def test_test_includes_satellite_that_it_may_not(self):
+        changes = {"src/io/files/png_test.cpp": '#include "draw/draw.h"\n'}
+        self.expect_violation(changes, "src/io/files/png_test.cpp:1:")
 
     def test_path_not_from_root(self):
-        self.expect_violation({"src/io/read.cpp": '#include "read.h"\n'}, "src/io/read.cpp:1:")
+        self.expect_violation({"src/io/files/png.cpp": '#include "png.h"\n'}, "src/io/files/png.cpp:1:")
 
     def test_missing_file(self):
-        self.expect_violation({"src/io/read.cpp": '#include "io/gone.h"\n'}, "src/io/read.cpp:1:")
+        self.expect_violation({"src/io/files/png.cpp": '#include "io/files/gone.h"\n'}, "src/io/files/png.cpp:1:")
 
-    def test_missing_list(self):
-        code, output = run({"src/CMakeLists.txt": ""})
+    def test_no_core(self):
+        code, output = run({"src/vesalius/CMakeLists.txt": ""})
         self.assertNotEqual(code, 0)
-        self.assertIn("CORE_UNITS", output)
+        self.assertIn("vesalius_library(core", output)
 
 
 if __name__ == "__main__":

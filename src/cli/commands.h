@@ -1,6 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}
 
 namespace vesalius::cli {
 
@@ -10,12 +12,14 @@ void add_detect(CLI::App& program);
 void add_info(CLI::App& program);
 void add_convert(CLI::App& program);
 void add_bench(CLI::App& program);
-void add_assets(CLI::App& program);
 void add_options(CLI::App& program);
+void add_completion(CLI::App& program);
+
+// These come with satellites.h and are missing from a build that leaves theirs out.
 void add_synth(CLI::App& program);
 void add_train(CLI::App& program);
 void add_evaluate(CLI::App& program);
 void add_compare(CLI::App& program);
-void add_completion(CLI::App& program);
+void add_assets(CLI::App& program);
 
 }  // namespace vesalius::cli

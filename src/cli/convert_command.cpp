@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cli/commands.h"
@@ -7,9 +8,9 @@
 #include "cli/progress.h"
 #include "cli/source_flags.h"
 #include "cli/text_sink.h"
-#include "io/model_file.h"
-#include "io/write_frames.h"
-#include "vesalius/error.h"
+#include "io/model/model_file.h"
+#include "io/sources/write_frames.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius::cli {
 namespace {

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <utility>
 
-#include "io/model_file.h"
-#include "io/options_file.h"
-#include "io/read_file.h"
-#include "vesalius/error.h"
+#include "io/files/options_file.h"
+#include "io/files/read_file.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius::cli {
 namespace {

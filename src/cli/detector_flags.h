@@ -1,10 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "cli/option_flags.h"
 #include "vesalius/detect.h"
+
+namespace CLI {
+class App;
+}
 
 namespace vesalius::cli {
 

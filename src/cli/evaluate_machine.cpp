@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "cli/text_sink.h"
-#include "vesalius/parallel.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius::cli {
 namespace {

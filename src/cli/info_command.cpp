@@ -1,18 +1,16 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/synth_assets.h"
+#include "cli/satellites.h"
 #include "cli/text_sink.h"
-#include "io/asset_list.h"
-#include "io/assets.h"
-#include "io/model_file.h"
-#include "io/read_file.h"
-#include "synth/render.h"
-#include "vesalius/parallel.h"
+#include "io/files/read_file.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius::cli {
 namespace {
@@ -33,12 +31,17 @@ std::vector<std::string> cpu_features() {
   return found;
 }
 
-/// Which packages of `vesalius assets` are where it puts them.
-Json asset_facts() {
+/// What this build has of all that a build can have.
+Json part_facts() {
   Json facts = Json::object();
-  for (const AssetPackage& package : asset_packages()) {
-    facts[package.name] = has_assets(package, default_assets_folder()) ? "present" : "absent";
+  for (const std::string& name : satellite_names()) facts[name] = "absent";
+  for (const Satellite& satellite : satellites()) {
+    facts[satellite.name] = "present";
+    if (satellite.facts == nullptr) continue;
+    Json& more = facts[satellite.name] = Json::object();
+    for (const auto& [name, value] : satellite.facts()) more[name] = value;
   }
+  for (const char* name : {"openni2", "realsense", "k4a", "cuda", "viewer"}) facts[name] = "absent";
   return facts;
 }
 
@@ -56,14 +59,7 @@ Json program_facts() {
           {"cpu_features", cpu_features()},
           {"threads", thread_count()},
           {"model_format", kModelVersion},
-          {"parts_of_this_build",
-           {{"renderer", synth::renderer_version()},
-            {"openni2", "absent"},
-            {"realsense", "absent"},
-            {"k4a", "absent"},
-            {"cuda", "absent"},
-            {"viewer", "absent"}}},
-          {"assets", asset_facts()}};
+          {"parts_of_this_build", part_facts()}};
 }
 
 Json tree_facts(const Tree& tree) {

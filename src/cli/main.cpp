@@ -1,6 +1,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <new>
@@ -9,9 +10,10 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/satellites.h"
 #include "cli/text_sink.h"
-#include "io/options_file.h"
-#include "vesalius/error.h"
+#include "io/files/options_file.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius::cli {
 namespace {
@@ -53,12 +55,10 @@ Exit codes: 0 done, 1 failed, 2 wrong usage.)");
   add_detect(program);
   add_info(program);
   add_convert(program);
-  add_synth(program);
-  add_train(program);
-  add_evaluate(program);
-  add_compare(program);
   add_bench(program);
-  add_assets(program);
+  for (const Satellite& satellite : satellites()) {
+    for (const auto add : satellite.commands) add(program);
+  }
   add_options(program);
   add_completion(program);
   refuse_empty_values(program);

@@ -1,10 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
-#include "io/options_file.h"
+#include "io/files/options_file.h"
+
+namespace CLI {
+class App;
+}
 
 namespace vesalius::cli {
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
+
 #include "vesalius/detect.h"
 
 namespace vesalius::cli {

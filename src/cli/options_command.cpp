@@ -1,29 +1,39 @@
+#include <CLI/CLI.hpp>
+#include <map>
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/option_flags.h"
+#include "cli/satellites.h"
 #include "cli/text_sink.h"
-#include "io/options_file.h"
-#include "synth/recipe.h"
-#include "train/grow_forest.h"
+#include "io/files/options_file.h"
 #include "vesalius/detect.h"
 
 namespace vesalius::cli {
 namespace {
 
-template <class Options>
-std::string defaults() {
-  Options options;
+std::string detector_defaults() {
+  DetectOptions options;
   return options_toml([&](OptionVisitor& visitor) { visit_options("", options, visitor); });
+}
+
+/// What prints the options of each command that has some.
+std::map<std::string, std::string (*)()> all_defaults() {
+  std::map<std::string, std::string (*)()> all{{"detect", detector_defaults}};
+  for (const Satellite& satellite : satellites()) {
+    if (satellite.default_options != nullptr) all[satellite.name] = satellite.default_options;
+  }
+  return all;
 }
 
 }  // namespace
 
 void add_options(CLI::App& program) {
   CLI::App* command = program.add_subcommand("options", "Print every option of a command: help, unit, range, default");
+  std::vector<std::string> names;
+  for (const auto& [name, text] : all_defaults()) names.push_back(name);
   const auto which = std::make_shared<std::string>("detect");
   command->add_option("COMMAND", *which, "Whose options")
-      ->check(CLI::IsMember({"detect", "synth", "train"}))
+      ->check(CLI::IsMember(std::move(names)))
       ->capture_default_str();
   command->footer(R"(
 What it prints is a file for `vesalius detect --options FILE`, `vesalius synth --recipe FILE` or
@@ -32,11 +42,7 @@ What it prints is a file for `vesalius detect --options FILE`, `vesalius synth -
 Examples:
   vesalius options > mine.toml
   vesalius options synth > recipe.toml)");
-  command->callback([which] {
-    if (*which == "detect") print(defaults<DetectOptions>());
-    if (*which == "synth") print(defaults<synth::Recipe>());
-    if (*which == "train") print(defaults<TrainOptions>());
-  });
+  command->callback([which] { print(all_defaults().at(*which)()); });
 }
 
 }  // namespace vesalius::cli

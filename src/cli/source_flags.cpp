@@ -1,5 +1,7 @@
 #include "cli/source_flags.h"
 
+#include <CLI/CLI.hpp>
+
 namespace vesalius::cli {
 
 void add_camera_flags(CLI::App& command, SourceOptions& options) {

@@ -1,8 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "io/sources/open_source.h"
 
-#include "io/open_source.h"
+namespace CLI {
+class App;
+}
 
 namespace vesalius::cli {
 

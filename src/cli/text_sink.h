@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "io/atomic_file.h"
-#include "vesalius/error.h"
+#include "io/files/atomic_file.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius::cli {
 

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "vesalius/image.h"
+#include "vesalius/base/image.h"
 
 namespace vesalius {
 

@@ -54,9 +54,9 @@ ColourImage contact_sheet(const std::vector<LabelledFrame>& frames, const BodyMo
   for (int i = 0; i < count; ++i) {
     const int left = i % columns * cell_width + kGap;
     const int top = i / columns * cell_height + kGap;
-    draw_text(sheet, frames[static_cast<std::size_t>(i)].frame.name, left, top + kTextRow - kGap, kInk);
-    for (std::size_t t = 0; t < cells[static_cast<std::size_t>(i)].size(); ++t) {
-      paste(cells[static_cast<std::size_t>(i)][t], left + static_cast<int>(t) * tile_width, top + kTextRow, sheet);
+    draw_text(sheet, frames[i].frame.name, left, top + kTextRow - kGap, kInk);
+    for (std::size_t t = 0; t < cells[i].size(); ++t) {
+      paste(cells[i][t], left + static_cast<int>(t) * tile_width, top + kTextRow, sheet);
     }
   }
   return sheet;

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "draw/canvas.h"
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
@@ -54,7 +54,7 @@ std::array<Rgb, 256> turbo_colours() {
   std::array<Rgb, 256> colours;
   for (int i = 0; i < 256; ++i) {
     const auto& c = bgr.at<cv::Vec3b>(0, i);
-    colours[static_cast<std::size_t>(i)] = {c[2], c[1], c[0]};
+    colours[i] = {c[2], c[1], c[0]};
   }
   return colours;
 }
@@ -83,7 +83,7 @@ ColourImage with_legend(const ColourImage& picture, const BodyModel& body) {
   ColourImage result(picture.width() + columns * column_width, std::max(picture.height(), kTextRow), {24, 24, 24});
   for (int v = 0; v < picture.height(); ++v) std::copy(picture.row(v), picture.row(v) + picture.width(), result.row(v));
   for (int i = 0; i < body.part_count(); ++i) {
-    const BodyPart& part = body.parts[static_cast<std::size_t>(i)];
+    const BodyPart& part = body.parts[i];
     const int left = picture.width() + i / rows * column_width + kMargin;
     const int top = i % rows * kTextRow;
     cv::rectangle(view(result), cv::Rect(left, top + 2, kSwatch, kSwatch), scalar(part.colour), cv::FILLED);
@@ -134,22 +134,20 @@ void draw_skeleton(ColourImage& picture, const Skeleton& skeleton, const Camera&
   const Strokes strokes(picture.width());
   std::vector<std::optional<cv::Point>> at;
   for (const SkeletonPart& part : skeleton.parts) at.push_back(place_on_canvas(part, camera, scale));
-  const auto seen = [&skeleton](int part) {
-    return skeleton.parts[static_cast<std::size_t>(part)].state == State::observed;
-  };
+  const auto seen = [&skeleton](int part) { return skeleton.parts[part].state == State::observed; };
   cv::Mat canvas = view(picture);
   for (const BodyLink& link : body.links) {
-    const auto& from = at[static_cast<std::size_t>(link.parent)];
-    const auto& to = at[static_cast<std::size_t>(link.child)];
+    const auto& from = at[link.parent];
+    const auto& to = at[link.child];
     if (!from || !to) continue;
     const int thickness = seen(link.parent) && seen(link.child) ? strokes.thick : strokes.thin;
     cv::line(canvas, *from, *to, {255, 255, 255}, thickness, cv::LINE_AA, kSubpixelBits);
   }
   for (int i = 0; i < body.part_count(); ++i) {
-    const auto& centre = at[static_cast<std::size_t>(i)];
+    const auto& centre = at[i];
     if (!centre) continue;
     const int radius = strokes.radius << kSubpixelBits;
-    const cv::Scalar colour = scalar(body.parts[static_cast<std::size_t>(i)].colour);
+    const cv::Scalar colour = scalar(body.parts[i].colour);
     if (seen(i)) {
       cv::circle(canvas, *centre, radius, colour, cv::FILLED, cv::LINE_AA, kSubpixelBits);
       cv::circle(canvas, *centre, radius, {0, 0, 0}, 1, cv::LINE_AA, kSubpixelBits);
@@ -184,7 +182,7 @@ ColourImage draw_depth(const DepthImage& depth) {
   for (std::size_t i = 0; i < depth.size(); ++i) {
     if (depth[i] == 0) continue;
     // Turbo's two ends are nearly black; its middle nine tenths are not.
-    picture[i] = colours[static_cast<std::size_t>(std::lround(243.F - 230.F * range.place(depth[i])))];
+    picture[i] = colours[std::lround(243.F - 230.F * range.place(depth[i]))];
   }
   return picture;
 }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
@@ -40,7 +40,7 @@ Person person_of(const Frame& frame, const BodyModel& body) {
 }
 
 void put(Person& person, const Frame& frame, int part, float u, float v, State state) {
-  SkeletonPart& p = person.skeleton.parts[static_cast<std::size_t>(part)];
+  SkeletonPart& p = person.skeleton.parts[part];
   p.state = state;
   p.centre = frame.camera.point(u, v, 2.F);
 }

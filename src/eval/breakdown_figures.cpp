@@ -47,7 +47,7 @@ Eigen::Vector2f right_to_left(const std::vector<Vector3f>& centres, const BodyMo
   float pairs = 0.F;
   for (std::size_t p = 0; p < centres.size(); ++p) {
     if (!body.parts[p].name.starts_with("l_")) continue;
-    const Vector3f across = centres[p] - centres[static_cast<std::size_t>(body.parts[p].mirror)];
+    const Vector3f across = centres[p] - centres[body.parts[p].mirror];
     if (across.hasNaN()) continue;
     sum += across;
     pairs += 1.F;

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "eval/figure_table.h"
-#include "vesalius/body_model.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
-#include "vesalius/frame_truth.h"
 
 namespace vesalius {
 

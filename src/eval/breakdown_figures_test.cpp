@@ -5,7 +5,7 @@
 #include <numbers>
 #include <set>
 
-#include "vesalius/capsule_person.h"
+#include "capsule/capsule_person.h"
 
 namespace vesalius {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "vesalius/random.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vesalius/error.h"
-#include "vesalius/random.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "eval/match_people.h"
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
@@ -25,8 +25,7 @@ constexpr double kSmallestSpread = 0.1;  // of evidence: what hardly differs amo
 
 Features features(const Evidence& e) {
   Features x;
-  for (int i = 0; i < kFeatures; ++i)
-    x[i] = static_cast<double>(e.*kEvidenceWeights[static_cast<std::size_t>(i)].evidence);
+  for (int i = 0; i < kFeatures; ++i) x[i] = static_cast<double>(e.*kEvidenceWeights[i].evidence);
   return x;
 }
 
@@ -86,8 +85,7 @@ double area_under_curve(const std::vector<Weighted>& samples, const ScoreOptions
   std::vector<std::pair<float, bool>> scored;
   for (const Weighted& s : samples) {
     Evidence e;
-    for (int i = 0; i < kFeatures; ++i)
-      e.*kEvidenceWeights[static_cast<std::size_t>(i)].evidence = static_cast<float>(s.x[i]);
+    for (int i = 0; i < kFeatures; ++i) e.*kEvidenceWeights[i].evidence = static_cast<float>(s.x[i]);
     scored.emplace_back(person_score(e, options), s.person);
   }
   std::ranges::sort(scored);
@@ -163,7 +161,7 @@ ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const Scor
   if (fit.nobodies == 0) throw Error("fitting the score: the frames have no candidate that is known to be nobody");
   const Weights w = logistic_weights(samples);
   for (int i = 0; i < kFeatures; ++i) {
-    fit.options.*kEvidenceWeights[static_cast<std::size_t>(i)].weight = static_cast<float>(w[i]);
+    fit.options.*kEvidenceWeights[i].weight = static_cast<float>(w[i]);
   }
   fit.options.bias = static_cast<float>(w[kFeatures]);
   fit.area_before = area_under_curve(samples, start);

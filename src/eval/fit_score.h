@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
-#include "vesalius/frame_truth.h"
 #include "vesalius/score_person.h"
 
 namespace vesalius {

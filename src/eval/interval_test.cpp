@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
@@ -30,8 +30,8 @@ Common common_joints(const JointPair& pair) {
   common.truth.resize(3, count);
   common.found.resize(3, count);
   for (Eigen::Index c = 0; c < count; ++c) {
-    common.truth.col(c) = pair.truth[common.joints[static_cast<std::size_t>(c)]].cast<double>();
-    common.found.col(c) = pair.found[common.joints[static_cast<std::size_t>(c)]].cast<double>();
+    common.truth.col(c) = pair.truth[common.joints[c]].cast<double>();
+    common.found.col(c) = pair.found[common.joints[c]].cast<double>();
   }
   return common;
 }
@@ -141,7 +141,7 @@ void JointCurve::add(const std::vector<double>& errors_m) {
     if (std::isnan(error_m)) continue;
     ++joints;
     for (int cm = 1; cm <= kJointCurve_cm; ++cm) {
-      if (error_m < cm * 0.01) ++within[static_cast<std::size_t>(cm - 1)];
+      if (error_m < cm * 0.01) ++within[cm - 1];
     }
   }
 }

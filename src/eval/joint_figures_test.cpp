@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "vesalius/error.h"
-#include "vesalius/random.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {

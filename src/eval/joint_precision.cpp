@@ -40,7 +40,7 @@ void JointPrecision::add(const std::vector<std::string>& names, std::vector<Join
     for (const JointProposals& proposal : proposals) {
       if (proposal.joints[joint].hasNaN()) continue;
       const int person = nearest_free(proposal.joints[joint], joint, truth, taken);
-      if (person >= 0) taken[static_cast<std::size_t>(person)] = 1;
+      if (person >= 0) taken[person] = 1;
       if (person >= static_cast<int>(counted)) continue;
       sums.proposals.push_back({proposal.score, person >= 0});
     }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vesalius/random.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "vesalius/base/frame.h"
 #include "vesalius/detect.h"
-#include "vesalius/frame.h"
-#include "vesalius/label_pixels.h"
+#include "vesalius/forest/label_pixels.h"
 
 namespace vesalius {
 

@@ -39,7 +39,7 @@ Match match_by_iou(const Proposal& proposal, const FrameTruth& truth, const Dept
     best_person = static_cast<int>(who);
   }
   if (best_person < 0) return {};
-  taken[static_cast<std::size_t>(best_person)] = true;
+  taken[best_person] = true;
   return {best_person < truth.people ? Match::Kind::person : Match::Kind::ignored, best_person};
 }
 

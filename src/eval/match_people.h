@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "vesalius/base/frame_truth.h"
+#include "vesalius/base/image.h"
 #include "vesalius/detect.h"
-#include "vesalius/frame_truth.h"
-#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -4,9 +4,9 @@
 
 #include "eval/figure_table.h"
 #include "eval/match_people.h"
-#include "vesalius/body_model.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
-#include "vesalius/frame_truth.h"
 
 namespace vesalius {
 

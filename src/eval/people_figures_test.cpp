@@ -35,8 +35,8 @@ Person person_with(const std::vector<std::pair<int, Eigen::Vector3f>>& observed,
   Person person;
   person.skeleton.parts.resize(paper_body().parts.size());
   for (const auto& [part, centre] : observed) {
-    person.skeleton.parts[static_cast<std::size_t>(part)].state = State::observed;
-    person.skeleton.parts[static_cast<std::size_t>(part)].centre = centre;
+    person.skeleton.parts[part].state = State::observed;
+    person.skeleton.parts[part].centre = centre;
   }
   person.mask = std::move(mask);
   return person;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
@@ -122,7 +122,7 @@ FigureTerms pixel_terms(const PixelConfusion& with_background, const PixelConfus
   add_term(terms, "pixels.person_iou", person.both, person.either);
   add_term(terms, "pixels.background_iou", background.both, background.either);
   for (int part = 0; part < body.part_count(); ++part) {
-    const std::string& name = body.parts[static_cast<std::size_t>(part)].name;
+    const std::string& name = body.parts[part].name;
     add_term(terms, "pixels.recall." + name, with_background.count(part, part), with_background.of_truth(part));
     add_term(terms, "pixels.recall_inside." + name, inside.count(part, part), inside.of_truth(part));
   }

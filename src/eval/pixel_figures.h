@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "eval/figure_table.h"
-#include "vesalius/body_model.h"
-#include "vesalius/frame_truth.h"
-#include "vesalius/image.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame_truth.h"
+#include "vesalius/base/image.h"
 
 namespace vesalius {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 
@@ -12,7 +12,7 @@ Forest with_hard_votes(Forest forest) {
   for (Tree& tree : forest.trees) {
     for (TreeLeaf& leaf : tree.leaves) {
       const auto best = std::ranges::max_element(leaf.probability) - leaf.probability.begin();
-      leaf = {{leaf.label[static_cast<std::size_t>(best)]}, {255}};
+      leaf = {{leaf.label[best]}, {255}};
     }
   }
   return forest;

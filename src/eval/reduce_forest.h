@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vesalius/forest.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

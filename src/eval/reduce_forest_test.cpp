@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include "vesalius/error.h"
-#include "vesalius/label_pixels.h"
+#include "vesalius/base/error.h"
+#include "vesalius/forest/label_pixels.h"
 
 namespace vesalius {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "eval/breakdown_figures.h"
 #include "eval/match_people.h"
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
@@ -70,7 +70,7 @@ std::vector<const Person*> found_of_each(const std::vector<Person>& people, cons
                                          int expected) {
   std::vector<const Person*> found(static_cast<std::size_t>(expected), nullptr);
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (matches[i].kind == Match::Kind::person) found[static_cast<std::size_t>(matches[i].person)] = &people[i];
+    if (matches[i].kind == Match::Kind::person) found[matches[i].person] = &people[i];
   }
   return found;
 }

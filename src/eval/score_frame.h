@@ -12,8 +12,8 @@
 #include "eval/joint_precision.h"
 #include "eval/label_scene.h"
 #include "eval/pixel_figures.h"
+#include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
-#include "vesalius/frame_truth.h"
 
 namespace vesalius {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capsule/capsule_person.h"
 #include "eval/label_scene.h"
 #include "eval/match_people.h"
-#include "vesalius/capsule_person.h"
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
@@ -73,7 +73,7 @@ TrueFrame labelled(const std::vector<float>& people_x_m) {
   for (const auto& parts : rendered.parts) {
     std::vector<Eigen::Vector3f>& joints = frame.truth.joints.emplace_back();
     for (const char* part : {"neck", "l_elbow", "r_hand"}) {
-      joints.push_back(parts[static_cast<std::size_t>(paper_body().find_part(part))]);
+      joints.push_back(parts[paper_body().find_part(part)]);
     }
   }
   return frame;

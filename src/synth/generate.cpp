@@ -6,13 +6,13 @@
 #include <numeric>
 #include <optional>
 
-#include "synth/builtin_body.h"
-#include "synth/dress.h"
-#include "synth/mix_poses.h"
-#include "synth/render.h"
-#include "synth/sensor_noise.h"
+#include "synth/body/builtin_body.h"
+#include "synth/dress/dress.h"
+#include "synth/pose/mix_poses.h"
+#include "synth/sensor/render.h"
+#include "synth/sensor/sensor_noise.h"
 #include "synth/skeleton_joints.h"
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius::synth {
 namespace {

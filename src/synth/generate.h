@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "synth/makehuman.h"
+#include "synth/body/makehuman.h"
 #include "synth/recipe.h"
-#include "vesalius/frame.h"
+#include "vesalius/base/frame.h"
 
 namespace vesalius::synth {
 

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "synth/skeleton_joints.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius::synth {
 namespace {
@@ -40,8 +40,7 @@ void expect_same(const LabelledFrame& a, const LabelledFrame& b) {
 
 std::vector<LabelledFrame> frames_of(const Generator& generator, std::uint64_t first, int count) {
   std::vector<LabelledFrame> all(static_cast<std::size_t>(count));
-  parallel_for(
-      count, [&](int i) { all[static_cast<std::size_t>(i)] = generator.frame(first + static_cast<std::uint64_t>(i)); });
+  parallel_for(count, [&](int i) { all[i] = generator.frame(first + static_cast<std::uint64_t>(i)); });
   return all;
 }
 

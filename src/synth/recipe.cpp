@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -2,13 +2,13 @@
 
 #include <string>
 
-#include "synth/build_scene.h"
-#include "synth/camera_pose.h"
-#include "synth/motion_list.h"
-#include "synth/outfit.h"
-#include "synth/pose_library.h"
-#include "synth/pose_sampler.h"
-#include "synth/sensor.h"
+#include "synth/dress/outfit.h"
+#include "synth/mocap/motion_list.h"
+#include "synth/mocap/pose_library.h"
+#include "synth/pose/pose_sampler.h"
+#include "synth/scene/build_scene.h"
+#include "synth/scene/camera_pose.h"
+#include "synth/sensor/sensor.h"
 
 namespace vesalius::synth {
 

@@ -22,7 +22,7 @@ const std::vector<std::string>& joint_names() {
 std::vector<Eigen::Vector3f> joint_points(const PosedBody& body, const Eigen::Isometry3f& camera_from_body) {
   std::vector<Eigen::Vector3f> points;
   for (const Eigen::Vector3f& p : body.joints) points.emplace_back(camera_from_body * p);
-  for (const Bone bone : kFreeEnds) points.emplace_back(camera_from_body * body.ends[static_cast<std::size_t>(bone)]);
+  for (const Bone bone : kFreeEnds) points.emplace_back(camera_from_body * body.ends[index(bone)]);
   return points;
 }
 

@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "synth/builtin_body.h"
-#include "synth/test_bodies.h"
+#include "synth/body/builtin_body.h"
+#include "synth/body/test_bodies.h"
 
 namespace vesalius::synth {
 namespace {
@@ -33,8 +33,8 @@ TEST(SkeletonJoints, AreBonesAndFreeEndsByName) {
   const PosedBody body = posed({});
   const std::vector<Vector3f> points = joint_points(body, Isometry3f::Identity());
   ASSERT_EQ(points.size(), names.size());
-  EXPECT_EQ(points[joint("l_shin")], body.joints[static_cast<std::size_t>(Bone::l_shin)]);
-  EXPECT_EQ(points[joint("r_hand_end")], body.ends[static_cast<std::size_t>(Bone::r_hand)]);
+  EXPECT_EQ(points[joint("l_shin")], body.joints[Bone::l_shin]);
+  EXPECT_EQ(points[joint("r_hand_end")], body.ends[Bone::r_hand]);
   EXPECT_GT(points[joint("head_end")].y(), points[joint("head")].y() + 0.1F);
 }
 

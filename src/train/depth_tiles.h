@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-#include "vesalius/image.h"
+#include "vesalius/base/image.h"
 
 namespace vesalius {
 

@@ -4,9 +4,9 @@
 
 #include <array>
 
-#include "vesalius/capsule_person.h"
-#include "vesalius/for_each_target.h"
-#include "vesalius/random.h"
+#include "capsule/capsule_person.h"
+#include "vesalius/base/for_each_target.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {
@@ -17,7 +17,7 @@ DepthImage patches(int width, int height, Random& random) {
   DepthImage depth(width, height, 0);
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
-      const auto spread = kSpreads[static_cast<std::size_t>((u / 8 + v / 4) % 6)];
+      const auto spread = kSpreads[(u / 8 + v / 4) % 6];
       if (random.below(5) != 0) depth(u, v) = static_cast<std::uint16_t>(1 + 77 * (u / 16) + random.below(spread));
     }
   }

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "train/walk_samples.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius {
 namespace {
@@ -61,14 +61,12 @@ TreeShape shape_of(const Tree& tree, const TrainingSet& set) {
   for (const TrainingSample& sample : set.samples()) shape.leaves[leaf_of(tree, set.frames(), sample)] += 1.0;
   for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
     for (const std::int32_t child : {tree.nodes[n].left, tree.nodes[n].right}) {
-      (child >= 0 ? shape.node_level[static_cast<std::size_t>(child)]
-                  : shape.leaf_level[static_cast<std::size_t>(~child)]) = shape.node_level[n] + 1;
+      (child >= 0 ? shape.node_level[child] : shape.leaf_level[~child]) = shape.node_level[n] + 1;
     }
   }
   for (std::size_t n = tree.nodes.size(); n-- > 0;) {  // children come after their parent
     for (const std::int32_t child : {tree.nodes[n].left, tree.nodes[n].right}) {
-      shape.nodes[n] +=
-          child >= 0 ? shape.nodes[static_cast<std::size_t>(child)] : shape.leaves[static_cast<std::size_t>(~child)];
+      shape.nodes[n] += child >= 0 ? shape.nodes[child] : shape.leaves[~child];
     }
   }
   return shape;
@@ -110,9 +108,8 @@ GrowthEstimate estimate_growth(const std::vector<LabelledFrame>& frames, const B
   GrowProgress progress;
   std::vector<Tree> trees(static_cast<std::size_t>(trees_at_once));
   const Clock::time_point start = Clock::now();
-  parallel_for(trees_at_once, [&](int t) {
-    trees[static_cast<std::size_t>(t)] = grow_tree(pilot.set, pilot.options.grow, kFirstPilotTree + t, &progress);
-  });
+  parallel_for(trees_at_once,
+               [&](int t) { trees[t] = grow_tree(pilot.set, pilot.options.grow, kFirstPilotTree + t, &progress); });
   GrowthEstimate estimate;
   const auto done = static_cast<double>(progress.evaluations);
   estimate.evaluations_per_s = done / seconds_since(start);

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "train/grow_forest.h"
-#include "vesalius/body_model.h"
-#include "vesalius/frame.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
 
 namespace vesalius {
 

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "vesalius/capsule_person.h"
-#include "vesalius/error.h"
-#include "vesalius/random.h"
+#include "capsule/capsule_person.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {

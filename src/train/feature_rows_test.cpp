@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "train/walk_samples.h"
-#include "vesalius/error.h"
-#include "vesalius/for_each_target.h"
-#include "vesalius/random.h"
-#include "vesalius/tree_walk.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/for_each_target.h"
+#include "vesalius/base/random.h"
+#include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {
 namespace {
@@ -66,7 +66,7 @@ TEST(FeatureRows, AreWhatDetectionComputesOnEveryInstructionSet) {
           const TrainingSample sample = random_sample(depth, random);
           evaluate_candidates(unpack(0), convention, sample, table.offsets.data(), table.padded, values.data());
           for (int c = 0; c < table.count; ++c) {
-            ASSERT_EQ(values[static_cast<std::size_t>(c)], truth(depth, camera, convention, sample, table.node(c)))
+            ASSERT_EQ(values[c], truth(depth, camera, convention, sample, table.node(c)))
                 << target << " candidate " << c;
           }
           evaluate_candidates(store[0], convention, sample, table.offsets.data(), table.padded, packed.data());

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {

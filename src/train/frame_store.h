@@ -7,10 +7,10 @@
 
 #include "train/depth_tiles.h"
 #include "train/huge_buffer.h"
-#include "vesalius/camera.h"
-#include "vesalius/forest.h"
-#include "vesalius/image.h"
-#include "vesalius/tree_walk.h"
+#include "vesalius/base/camera.h"
+#include "vesalius/base/image.h"
+#include "vesalius/forest/forest.h"
+#include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "vesalius/error.h"
-#include "vesalius/random.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {

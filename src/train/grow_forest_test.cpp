@@ -4,11 +4,11 @@
 
 #include <limits>
 
+#include "capsule/capsule_person.h"
 #include "train/split_candidates.h"
-#include "vesalius/capsule_person.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
-#include "vesalius/tree_walk.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {
 namespace {

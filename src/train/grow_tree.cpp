@@ -13,8 +13,8 @@
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
 #include "train/walk_samples.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius {
 namespace {
@@ -214,7 +214,7 @@ class LevelGrower {
   }
 
   void evaluate(const Group& group) {
-    rows_.resize(static_cast<std::size_t>(group.row_end - group.row_begin), tables_.padded);
+    rows_.resize(group.row_end - group.row_begin, tables_.padded);
     const FrameStore& frames = set_.frames();
     const bool few =
         static_cast<double>(group.row_end - group.row_begin) < kFewEvaluated * static_cast<double>(frames.size());
@@ -295,7 +295,7 @@ class LevelGrower {
       FrameUnpacker unpack(frames);
       for (auto s = static_cast<std::size_t>(begin); s < static_cast<std::size_t>(end); ++s) {
         if (node_of_[s] == kSettled) continue;
-        const OpenNode& node = level_[static_cast<std::size_t>(node_of_[s])];
+        const OpenNode& node = level_[node_of_[s]];
         if (!unrouted(node)) continue;
         const TrainingSample& sample = samples_[s];
         const int value = few ? feature_of(frames[sample.frame], set_.convention(), sample, node.split)

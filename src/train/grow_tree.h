@@ -6,8 +6,8 @@
 #include <string>
 
 #include "train/training_set.h"
-#include "vesalius/forest.h"
-#include "vesalius/options.h"
+#include "vesalius/base/options.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

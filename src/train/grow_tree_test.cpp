@@ -6,14 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#include "capsule/capsule_person.h"
 #include "train/leaf_shares.h"
 #include "train/prune_tree.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
-#include "vesalius/capsule_person.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
-#include "vesalius/tree_walk.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {
 namespace {
@@ -76,7 +76,7 @@ class ObviousTrainer {
     const auto most = std::min<std::ptrdiff_t>(size, options_.split.split_pixels);
     Samples result;
     for (std::ptrdiff_t i = 0; i < size; ++i) {
-      if ((i + 1) * most / size > i * most / size) result.push_back(samples[static_cast<std::size_t>(i)]);
+      if ((i + 1) * most / size > i * most / size) result.push_back(samples[i]);
     }
     return result;
   }
@@ -268,7 +268,7 @@ TEST(GrowTree, LeavesHoldTheSharesOfTheSamplesThatReachThem) {
     const Frame& frame = frames[sample.frame].frame;
     const OffsetScale scale = OffsetScaler(set.convention(), frame.camera).at(sample.depth_mm);
     const TreeLeaf& leaf = walk(tree, frame.depth, set.convention(), scale, sample.u, sample.v);
-    ++counts[static_cast<std::size_t>(&leaf - tree.leaves.data())][sample.label];
+    ++counts[&leaf - tree.leaves.data()][sample.label];
   }
   for (std::size_t l = 0; l < counts.size(); ++l) {
     int total = 0;

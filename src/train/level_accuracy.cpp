@@ -19,7 +19,7 @@ std::vector<TrainingSample> evenly_chosen(std::span<const TrainingSample> sample
 }
 
 std::int32_t child_of(const Tree& tree, std::int32_t at, const FrameStore& frames, const TrainingSample& sample) {
-  const TreeNode& node = tree.nodes[static_cast<std::size_t>(at)];
+  const TreeNode& node = tree.nodes[at];
   return feature_of(frames[sample.frame], frames.convention(), sample, node) <= node.threshold_mm ? node.left
                                                                                                   : node.right;
 }

@@ -18,7 +18,7 @@ std::int32_t add_subtree(Tree& tree, const std::vector<GrownNode>& nodes, std::s
   tree.nodes.push_back(grown.split);
   const std::int32_t left = add_subtree(tree, nodes, grown.left);
   const std::int32_t right = add_subtree(tree, nodes, grown.right);
-  const auto leaf = [&](std::int32_t child) { return tree.leaves[static_cast<std::size_t>(~child)]; };
+  const auto leaf = [&](std::int32_t child) { return tree.leaves[~child]; };
   if (left < 0 && right < 0 && leaf(left) == leaf(right)) {
     const TreeLeaf same = leaf(left);
     tree.nodes.pop_back();

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "vesalius/forest.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "train/training_set.h"
-#include "vesalius/forest.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

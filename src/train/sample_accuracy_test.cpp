@@ -6,11 +6,11 @@
 #include <map>
 #include <memory>
 
+#include "capsule/capsule_person.h"
 #include "train/grow_forest.h"
-#include "vesalius/capsule_person.h"
-#include "vesalius/label_pixels.h"
-#include "vesalius/parallel.h"
-#include "vesalius/random.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/base/random.h"
+#include "vesalius/forest/label_pixels.h"
 
 namespace vesalius {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "train/training_set.h"
-#include "vesalius/body_model.h"
-#include "vesalius/frame.h"
-#include "vesalius/random.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "vesalius/capsule_person.h"
-#include "vesalius/error.h"
+#include "capsule/capsule_person.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "train/sample_accuracy.h"
 #include "train/training_set.h"
-#include "vesalius/parallel.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "train/grow_tree.h"
-#include "vesalius/forest.h"
-#include "vesalius/random.h"
+#include "vesalius/base/random.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

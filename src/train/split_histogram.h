@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "vesalius/forest.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 
@@ -32,7 +32,7 @@ class EntropyTable {
  public:
   static constexpr int kLargest = 65535;
   EntropyTable();
-  std::int32_t operator()(std::int64_t n) const { return values_[static_cast<std::size_t>(n)]; }
+  std::int32_t operator()(std::int64_t n) const { return values_[n]; }
   const std::int32_t* data() const { return values_.data(); }
   static constexpr double kUnitsPerBit = 1024.0;
 

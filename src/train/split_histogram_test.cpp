@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "vesalius/for_each_target.h"
-#include "vesalius/random.h"
+#include "vesalius/base/for_each_target.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {
@@ -127,7 +127,7 @@ TEST(SplitHistogram, CountsEveryRowOnceInItsBinOnEveryInstructionSet) {
     for (std::size_t r = 0; r < rows.labels.size(); ++r) {
       for (int c = 0; c < rows.width; ++c) {
         const int row = classes.index[rows.labels[r]] * binning.bins + binning.bin_of(c, rows.value(r, c));
-        ++truth[static_cast<std::size_t>(row * kBlockCandidates + c)];
+        ++truth[row * kBlockCandidates + c];
       }
     }
     EXPECT_EQ(histogram.counts, truth) << target;
@@ -171,7 +171,7 @@ BinSplit obvious_split(const Rows& rows, const Binning& binning, int candidates,
       if (std::min(n_left, n_right) < least) continue;
       std::int32_t score = -entropy(n_left) - entropy(n_right);
       for (int k = 0; k <= kClasses; ++k) {
-        score += entropy(left[static_cast<std::size_t>(k)]) + entropy(right[static_cast<std::size_t>(k)]);
+        score += entropy(left[k]) + entropy(right[k]);
       }
       if (score > best.score) best = {c, b, score};
     }

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "capsule/capsule_person.h"
 #include "train/frame_store.h"
-#include "vesalius/capsule_person.h"
 
 namespace vesalius {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "train/sample_pixels.h"
 #include "train/walk_samples.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
-#include "vesalius/random.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {

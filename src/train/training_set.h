@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "train/frame_store.h"
-#include "vesalius/body_model.h"
-#include "vesalius/forest.h"
-#include "vesalius/frame.h"
-#include "vesalius/options.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/base/options.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

@@ -4,10 +4,10 @@
 
 #include <set>
 
+#include "capsule/capsule_person.h"
 #include "train/walk_samples.h"
-#include "vesalius/capsule_person.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius {
 namespace {
@@ -82,7 +82,7 @@ TEST(TrainingSet, CountsPixelsOfFramesLearnedFromOnly) {
   const int chest = paper_body().find_part("l_chest");
   const auto pixels = std::ranges::count(frame.labels, static_cast<std::uint8_t>(chest));
   ASSERT_GT(pixels, 0);
-  EXPECT_EQ(set.class_pixels()[static_cast<std::size_t>(chest)], 2U * static_cast<std::uint64_t>(pixels));
+  EXPECT_EQ(set.class_pixels()[chest], 2U * static_cast<std::uint64_t>(pixels));
 }
 
 TEST(TrainingSet, AddsTheBackgroundThatAForestTakesForABody) {

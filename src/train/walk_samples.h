@@ -5,7 +5,7 @@
 
 #include "train/frame_store.h"
 #include "train/training_set.h"
-#include "vesalius/forest.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 
@@ -50,7 +50,7 @@ inline std::size_t leaf_of(const Tree& tree, const FrameStore& frames, const Tra
   const FrameStore::View& view = frames[sample.frame];
   std::int32_t at = tree.nodes.empty() ? ~0 : 0;
   while (at >= 0) {
-    const TreeNode& node = tree.nodes[static_cast<std::size_t>(at)];
+    const TreeNode& node = tree.nodes[at];
     at = feature_of(view, frames.convention(), sample, node) <= node.threshold_mm ? node.left : node.right;
   }
   return static_cast<std::size_t>(~at);

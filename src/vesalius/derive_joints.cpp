@@ -20,7 +20,7 @@ std::vector<Neighbour> observed_neighbours(const BodyModel& body, const Skeleton
   for (const BodyLink& link : body.links) {
     const int other = link.parent == index ? link.child : link.child == index ? link.parent : -1;
     if (other < 0) continue;
-    const SkeletonPart& part = skeleton.parts[static_cast<std::size_t>(other)];
+    const SkeletonPart& part = skeleton.parts[other];
     if (part.state == State::observed) found.push_back({&part, link.length_m});
   }
   return found;
@@ -34,7 +34,7 @@ Joint derive(const JointDefinition& definition, const Skeleton& skeleton) {
   float confidence = 0.F;
   bool all_observed = true;
   for (std::size_t i = 0; i < definition.parts.size(); ++i) {
-    const SkeletonPart& part = skeleton.parts[static_cast<std::size_t>(definition.parts[i])];
+    const SkeletonPart& part = skeleton.parts[definition.parts[i]];
     if (part.state == State::none) {
       all_observed = false;
       continue;
@@ -57,7 +57,7 @@ Joint derive(const JointDefinition& definition, const Skeleton& skeleton) {
 void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {
   std::vector<SkeletonPart> predicted = skeleton.parts;
   for (int i = 0; i < body.part_count(); ++i) {
-    SkeletonPart& part = predicted[static_cast<std::size_t>(i)];
+    SkeletonPart& part = predicted[i];
     if (part.state != State::none) continue;
     const std::vector<Neighbour> around = observed_neighbours(body, skeleton, i);
     if (around.size() != 2) continue;

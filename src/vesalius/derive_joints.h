@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "vesalius/body_model.h"
-#include "vesalius/frame.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
 #include "vesalius/search_skeletons.h"
 
 namespace vesalius {

@@ -19,9 +19,7 @@ Skeleton whole_skeleton() {
   return s;
 }
 
-SkeletonPart& part_of(Skeleton& s, const char* name) {
-  return s.parts[static_cast<std::size_t>(paper_body().find_part(name))];
-}
+SkeletonPart& part_of(Skeleton& s, const char* name) { return s.parts[paper_body().find_part(name)]; }
 
 const Joint& joint_of(const std::vector<std::vector<Joint>>& sets, const char* set, const char* name) {
   const BodyModel& body = paper_body();

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "vesalius/parallel.h"
+#include "vesalius/base/parallel.h"
 #include "vesalius/workspaces.h"
 
 namespace vesalius {
@@ -62,7 +62,7 @@ class Pipeline {
     first_pass(trace);
     std::vector<Candidate> candidates = grow_candidates();
     clock_.lap(Stage::grow);
-    parallel_for(static_cast<int>(candidates.size()), [&](int i) { refine(candidates[static_cast<std::size_t>(i)]); });
+    parallel_for(static_cast<int>(candidates.size()), [&](int i) { refine(candidates[i]); });
     clock_.lap(Stage::second_pass);
     std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
     std::vector<Person> people = choose_people(candidates);
@@ -102,9 +102,7 @@ class Pipeline {
     DepthImage without_planes;
     if (labeller_.has_background()) {
       std::array<double, 2> took_ms{};
-      parallel_for(2, [&](int i) {
-        took_ms[static_cast<std::size_t>(i)] = elapsed_ms([&] { i == 0 ? find_planes() : label(frame_.depth); });
-      });
+      parallel_for(2, [&](int i) { took_ms[i] = elapsed_ms([&] { i == 0 ? find_planes() : label(frame_.depth); }); });
       clock_.lap({Stage::planes, Stage::label}, took_ms);
     } else {
       find_planes();
@@ -149,10 +147,8 @@ class Pipeline {
       }
     }
     std::vector<Mask> alone(count);
-    parallel_for(static_cast<int>(count), [&](int i) {
-      alone[static_cast<std::size_t>(i)] =
-          std::move(grower_->grow({rough_[static_cast<std::size_t>(i)]}, clusters_)[0]);
-    });
+    parallel_for(static_cast<int>(count),
+                 [&](int i) { alone[i] = std::move(grower_->grow({rough_[i]}, clusters_)[0]); });
     const std::size_t against = candidates.size();
     for (std::size_t i = 0; i < count; ++i) {
       if (i < against && candidates[i].grown == alone[i]) continue;
@@ -170,7 +166,7 @@ class Pipeline {
 
   /// Second iteration: the same stages on one person, and the better of its two skeletons.
   void refine(Candidate& candidate) const {
-    const Skeleton& rough = rough_[static_cast<std::size_t>(candidate.rough)];
+    const Skeleton& rough = rough_[candidate.rough];
     const Box box = bounding_box(candidate.grown);
     if (box.width == 0) return;
     if (options_.refine.second_pass) {

@@ -4,18 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/coarse_frame.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/base/image.h"
+#include "vesalius/base/pixel_grid.h"
+#include "vesalius/base/stage_times.h"
 #include "vesalius/derive_joints.h"
 #include "vesalius/find_clusters.h"
-#include "vesalius/forest.h"
-#include "vesalius/frame.h"
+#include "vesalius/forest/forest.h"
+#include "vesalius/forest/label_pixels.h"
+#include "vesalius/forest/smooth_labels.h"
 #include "vesalius/grow_person.h"
-#include "vesalius/image.h"
-#include "vesalius/label_pixels.h"
 #include "vesalius/score_person.h"
 #include "vesalius/search_skeletons.h"
-#include "vesalius/smooth_labels.h"
-#include "vesalius/stage_times.h"
 
 namespace vesalius {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "vesalius/capsule_person.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
+#include "capsule/capsule_person.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius {
 namespace {
@@ -97,11 +97,11 @@ TEST_P(Distances, EveryVisiblePartIsWithinFourCentimetres) {
     const float area_cm2 = static_cast<float>(pixels) * z * z / (262.5F * 262.5F) * 1e4F;
     if (pixels < 25 || area_cm2 < 25.F) continue;
     // Without a background class the floor is taken out first, and at 4 m with it what is lower than 7 cm.
-    if (!background && z > 3.5F && paper_body().parts[static_cast<std::size_t>(part)].name.ends_with("foot")) continue;
+    if (!background && z > 3.5F && paper_body().parts[part].name.ends_with("foot")) continue;
     ++visible;
-    const SkeletonPart& found = people[0].skeleton.parts[static_cast<std::size_t>(part)];
-    EXPECT_EQ(found.state, State::observed) << paper_body().parts[static_cast<std::size_t>(part)].name;
-    EXPECT_LT((found.centre - centre).norm(), 0.04F) << paper_body().parts[static_cast<std::size_t>(part)].name;
+    const SkeletonPart& found = people[0].skeleton.parts[part];
+    EXPECT_EQ(found.state, State::observed) << paper_body().parts[part].name;
+    EXPECT_LT((found.centre - centre).norm(), 0.04F) << paper_body().parts[part].name;
   }
   EXPECT_GE(visible, z < 1.5F ? 10 : 18);
 }

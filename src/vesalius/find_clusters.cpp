@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "vesalius/frame.h"
+#include "vesalius/base/frame.h"
 
 namespace vesalius {
 namespace {
@@ -39,7 +39,7 @@ class ClusterFinder {
         if (feasible(cluster)) {
           kept.push_back(cluster);
         } else {
-          for (const int pixel : queue_) out.index[static_cast<std::size_t>(pixel)] = kDropped;
+          for (const int pixel : queue_) out.index[pixel] = kDropped;
         }
       }
     }
@@ -102,7 +102,7 @@ class ClusterFinder {
   }
 
   bool feasible(const PartCluster& cluster) const {
-    const BodyPart& part = body_.parts[static_cast<std::size_t>(cluster.label)];
+    const BodyPart& part = body_.parts[cluster.label];
     return cluster.pixels >= options_.min_pixels && cluster.area_m2 * 1e4F >= options_.min_area_cm2 &&
            cluster.extent_m <= part.max_extent_m * options_.max_extent_scale;
   }
@@ -121,7 +121,7 @@ class ClusterFinder {
       rank[order[i]] = static_cast<std::int32_t>(i);
       out.items.push_back(kept[order[i]]);
     }
-    for (std::int32_t& id : out.index) id = id >= 0 ? rank[static_cast<std::size_t>(id)] : -1;
+    for (std::int32_t& id : out.index) id = id >= 0 ? rank[id] : -1;
   }
 
   const LabelImage& labels_;

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "vesalius/random.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {
@@ -26,10 +26,10 @@ class UnionFind {
  public:
   explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
   int root(int i) {
-    while (parent_[static_cast<std::size_t>(i)] != i) i = parent_[static_cast<std::size_t>(i)];
+    while (parent_[i] != i) i = parent_[i];
     return i;
   }
-  void join(int a, int b) { parent_[static_cast<std::size_t>(root(a))] = root(b); }
+  void join(int a, int b) { parent_[root(a)] = root(b); }
 
  private:
   std::vector<int> parent_;
@@ -39,8 +39,7 @@ std::set<std::set<int>> slow_partition(const LabelImage& labels, const DepthImag
   const int w = labels.width();
   UnionFind sets(labels.size());
   const auto point = [&](int i) {
-    return kCamera.point(static_cast<float>(i % w), static_cast<float>(i / w),
-                         static_cast<float>(depth[static_cast<std::size_t>(i)]) * 1e-3F);
+    return kCamera.point(static_cast<float>(i % w), static_cast<float>(i / w), static_cast<float>(depth[i]) * 1e-3F);
   };
   const auto usable = [&](int u, int v) { return depth.contains(u, v) && depth(u, v) != 0 && labels(u, v) < 25; };
   for (int v = 0; v < labels.height(); ++v) {
@@ -72,13 +71,13 @@ TEST(FindClusters, AgreesWithUnionFind) {
     const Clusters clusters = find_clusters(labels, depth, kCamera, paper_body(), keep_all());
     std::map<int, std::set<int>> groups;
     for (int i = 0; i < static_cast<int>(labels.size()); ++i) {
-      const std::int32_t id = clusters.index[static_cast<std::size_t>(i)];
+      const std::int32_t id = clusters.index[i];
       if (id >= 0) groups[id].insert(i);
     }
     std::set<std::set<int>> fast;
     for (auto& [id, members] : groups) {
-      EXPECT_EQ(clusters.items[static_cast<std::size_t>(id)].pixels, static_cast<int>(members.size()));
-      EXPECT_EQ(clusters.items[static_cast<std::size_t>(id)].first_pixel, *members.begin());
+      EXPECT_EQ(clusters.items[id].pixels, static_cast<int>(members.size()));
+      EXPECT_EQ(clusters.items[id].first_pixel, *members.begin());
       fast.insert(members);
     }
     EXPECT_EQ(fast, slow_partition(labels, depth, keep_all())) << "seed " << seed;

@@ -17,9 +17,9 @@ void blur(std::array<float, ColourModel::kBins>& values, int begin, int count, i
     for (int d = -reach; d <= reach; ++d) {
       int j = i + d;
       if (wraps) j = ((j % count) + count) % count;
-      if (j >= 0 && j < count) sum += source[static_cast<std::size_t>(begin + j)];
+      if (j >= 0 && j < count) sum += source[begin + j];
     }
-    values[static_cast<std::size_t>(begin + i)] = sum / static_cast<float>(2 * reach + 1);
+    values[begin + i] = sum / static_cast<float>(2 * reach + 1);
   }
 }
 
@@ -44,8 +44,8 @@ std::vector<float> any_colour_radius(const Skeleton& rough, const BodyModel& bod
   std::vector<float> radius(body.parts.size(), options.own_colour_m);
   for (const BodyLink& link : body.links) {
     for (const auto& [from, to] : {std::pair{link.parent, link.child}, std::pair{link.child, link.parent}}) {
-      if (rough.parts[static_cast<std::size_t>(to)].state == State::observed) continue;
-      float& r = radius[static_cast<std::size_t>(from)];
+      if (rough.parts[to].state == State::observed) continue;
+      float& r = radius[from];
       r = std::max(r, link.length_m + options.own_colour_m);
     }
   }
@@ -185,7 +185,7 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
   std::vector<int> owner_of(clusters.items.size(), -1);
   for (std::size_t i = 0; i < people.size(); ++i) {
     for (const SkeletonPart& part : people[i].parts) {
-      if (part.cluster >= 0) owner_of[static_cast<std::size_t>(part.cluster)] = static_cast<int>(i);
+      if (part.cluster >= 0) owner_of[part.cluster] = static_cast<int>(i);
     }
   }
   struct Front {
@@ -196,10 +196,10 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
   Mask taken = flat_;
   for (std::size_t i = 0; i < taken.size(); ++i) {
     const std::int32_t cluster = clusters.index[i];
-    const int owner = cluster < 0 ? -1 : owner_of[static_cast<std::size_t>(cluster)];
+    const int owner = cluster < 0 ? -1 : owner_of[cluster];
     if (owner < 0 || taken[i] != 0) continue;
     taken[i] = 1;
-    grown[static_cast<std::size_t>(owner)][i] = 1;
+    grown[owner][i] = 1;
     queue.push_back({static_cast<int>(i), owner});
   }
   for (std::size_t i = 0; i < people.size(); ++i) {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "vesalius/base/frame.h"
+#include "vesalius/base/image.h"
+#include "vesalius/base/options.h"
 #include "vesalius/find_clusters.h"
-#include "vesalius/find_planes.h"
-#include "vesalius/frame.h"
-#include "vesalius/image.h"
-#include "vesalius/options.h"
+#include "vesalius/planes/find_planes.h"
 #include "vesalius/search_skeletons.h"
 
 namespace vesalius {
@@ -40,10 +40,10 @@ class ColourModel {
   /// Bin of a colour: its hue, or its lightness where saturation is too low for a hue.
   static int bin(Rgb colour, float min_saturation);
 
-  void add(int bin) { ++counts_[static_cast<std::size_t>(bin)]; }
+  void add(int bin) { ++counts_[bin]; }
   /// Blurs over the tolerances (hues wrap) and normalises; an empty model is uniform.
   void finish(const GrowOptions& options);
-  float probability(int bin) const { return probabilities_[static_cast<std::size_t>(bin)]; }
+  float probability(int bin) const { return probabilities_[bin]; }
 
  private:
   std::array<std::uint32_t, kBins> counts_{};

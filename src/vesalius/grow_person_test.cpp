@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "vesalius/capsule_person.h"
-#include "vesalius/random.h"
+#include "capsule/capsule_person.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {
@@ -116,7 +116,7 @@ TEST(GrowPerson, TouchingNeighboursKeepTheirOwnPixels) {
   const Scene scene = make_scene(capsules, kHalf);
   const std::vector<Mask> masks = grow_all(scene);
   for (int who = 0; who < 2; ++who) {
-    const Overlap o = compare(masks[static_cast<std::size_t>(who)], scene.truth.person, who);
+    const Overlap o = compare(masks[who], scene.truth.person, who);
     EXPECT_LT(o.leaked, o.person / 25) << who;
     EXPECT_GT(o.iou, 0.93) << who;
   }

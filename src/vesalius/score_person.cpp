@@ -34,7 +34,7 @@ class Inside {
 };
 
 bool near_part(const Skeleton& skeleton, int part, const Eigen::Vector3f& point, float radius_m) {
-  const SkeletonPart& found = skeleton.parts[static_cast<std::size_t>(part)];
+  const SkeletonPart& found = skeleton.parts[part];
   return found.state == State::observed && (found.centre - point).squaredNorm() <= radius_m * radius_m;
 }
 
@@ -48,7 +48,7 @@ float share_explained(const Frame& frame, const Inside& inside, const LabelImage
     if (label >= body.part_count()) return;
     const Eigen::Vector3f point = point_at(frame.camera, frame.depth, u, v);
     // Seen from the side a labelling mixes left and right; either is an explanation.
-    const int mirror = body.parts[static_cast<std::size_t>(label)].mirror;
+    const int mirror = body.parts[label].mirror;
     if (near_part(skeleton, label, point, radius_m) || near_part(skeleton, mirror, point, radius_m)) ++explained;
   });
   return pixels > 0 ? static_cast<float>(explained) / static_cast<float>(pixels) : 0.F;
@@ -149,10 +149,10 @@ float nearness(const Extent& extent) { return static_cast<float>(1.0 / std::max(
 float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
   std::vector<char> core(body.parts.size(), 0);
   for (const int root : body.roots) {
-    core[static_cast<std::size_t>(root)] = 1;
+    core[root] = 1;
     for (const BodyLink& link : body.links) {
-      if (link.parent == root) core[static_cast<std::size_t>(link.child)] = 1;
-      if (link.child == root) core[static_cast<std::size_t>(link.parent)] = 1;
+      if (link.parent == root) core[link.child] = 1;
+      if (link.child == root) core[link.parent] = 1;
     }
   }
   float all = 0.F;

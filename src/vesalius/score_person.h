@@ -3,11 +3,11 @@
 #include <array>
 #include <string>
 
-#include "vesalius/body_model.h"
-#include "vesalius/frame.h"
-#include "vesalius/image.h"
-#include "vesalius/label_pixels.h"
-#include "vesalius/options.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/base/image.h"
+#include "vesalius/base/options.h"
+#include "vesalius/forest/label_pixels.h"
 #include "vesalius/search_skeletons.h"
 
 namespace vesalius {

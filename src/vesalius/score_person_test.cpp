@@ -26,7 +26,7 @@ struct Square {
     return gather_evidence(frame, mask, labels, posteriors, skeleton, paper_body(), options);
   }
   void observe(const char* part, const Eigen::Vector3f& centre) {
-    SkeletonPart& p = skeleton.parts[static_cast<std::size_t>(paper_body().find_part(part))];
+    SkeletonPart& p = skeleton.parts[paper_body().find_part(part)];
     p.state = State::observed;
     p.centre = centre;
   }

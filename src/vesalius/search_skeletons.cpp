@@ -24,9 +24,9 @@ RootedTree root_tree(const BodyModel& body, int root) {
     const int at = tree.order[head];
     for (const BodyLink& link : body.links) {
       const int next = link.parent == at ? link.child : link.child == at ? link.parent : -1;
-      if (next < 0 || next == parent[static_cast<std::size_t>(at)]) continue;
-      parent[static_cast<std::size_t>(next)] = at;
-      tree.children[static_cast<std::size_t>(at)].push_back(next);
+      if (next < 0 || next == parent[at]) continue;
+      parent[next] = at;
+      tree.children[at].push_back(next);
       tree.order.push_back(next);
     }
   }
@@ -86,12 +86,12 @@ class SkeletonSearch {
         used_(clusters.size(), false),
         by_part_(body.parts.size()) {
     for (std::size_t i = 0; i < clusters.size(); ++i) {
-      by_part_[static_cast<std::size_t>(clusters[i].label)].push_back(static_cast<int>(i));
+      by_part_[clusters[i].label].push_back(static_cast<int>(i));
       gains_.push_back(gain(clusters[i]));
     }
     for (const int root : body.roots) trees_.push_back(root_tree(body, root));
     for (int part = 0; options.any_root && part < body.part_count(); ++part) {
-      const bool proposed = !by_part_[static_cast<std::size_t>(part)].empty();
+      const bool proposed = !by_part_[part].empty();
       if (proposed && std::ranges::find(body.roots, part) == body.roots.end()) trees_.push_back(root_tree(body, part));
     }
     find_consistent_pairs();
@@ -109,12 +109,12 @@ class SkeletonSearch {
       Skeleton found = extract(tree, root);
       if (accepted(found)) {
         for (const SkeletonPart& part : found.parts) {
-          if (part.cluster >= 0) used_[static_cast<std::size_t>(part.cluster)] = true;
+          if (part.cluster >= 0) used_[part.cluster] = true;
         }
         people.push_back(std::move(found));
         changed = true;
       } else {
-        rejected[tree][static_cast<std::size_t>(root)] = 1;
+        rejected[tree][root] = 1;
       }
     }
     return people;
@@ -123,7 +123,7 @@ class SkeletonSearch {
  private:
   /// Likelihood that a part of this size adds: 1 for a feasible area, less for slivers and slabs.
   float gain(const PartCluster& cluster) const {
-    const float share = cluster.area_m2 / body_.parts[static_cast<std::size_t>(cluster.label)].typical_area_m2;
+    const float share = cluster.area_m2 / body_.parts[cluster.label].typical_area_m2;
     const float off = std::max({0.F, std::log(kLeastAreaShare / share), std::log(share / kMostAreaShare)});
     return std::exp2(-off / options_.size_tolerance);
   }
@@ -146,13 +146,12 @@ class SkeletonSearch {
   }
 
   void add_pairs(int part_a, int part_b, const Span& span, std::vector<std::vector<Partner>>& pairs) const {
-    for (const int i : by_part_[static_cast<std::size_t>(part_a)]) {
-      for (const int j : by_part_[static_cast<std::size_t>(part_b)]) {
-        const float error = normalised_distance(clusters_[static_cast<std::size_t>(i)],
-                                                clusters_[static_cast<std::size_t>(j)], span, options_);
+    for (const int i : by_part_[part_a]) {
+      for (const int j : by_part_[part_b]) {
+        const float error = normalised_distance(clusters_[i], clusters_[j], span, options_);
         if (error > options_.max_error) continue;
-        pairs[static_cast<std::size_t>(i)].push_back({j, error});
-        pairs[static_cast<std::size_t>(j)].push_back({i, error});
+        pairs[i].push_back({j, error});
+        pairs[j].push_back({i, error});
       }
     }
   }
@@ -161,7 +160,7 @@ class SkeletonSearch {
   Branch best_partner(int from, int part, const std::vector<std::vector<Partner>>& pairs,
                       const std::vector<float>& values) const {
     Branch best;
-    for (const Partner& partner : pairs[static_cast<std::size_t>(from)]) {
+    for (const Partner& partner : pairs[from]) {
       const auto j = static_cast<std::size_t>(partner.cluster);
       if (used_[j] || clusters_[j].label != part) continue;
       const float value = values[j] - options_.error_weight * partner.error * partner.error;
@@ -174,7 +173,7 @@ class SkeletonSearch {
   Branch best_branch(const RootedTree& tree, int from, int child, const std::vector<float>& values) const {
     Branch direct = best_partner(from, child, one_step_, values);
     Branch skipped;
-    for (const int grandchild : tree.children[static_cast<std::size_t>(child)]) {
+    for (const int grandchild : tree.children[child]) {
       const Branch one = best_partner(from, grandchild, two_step_, values);
       skipped.value += one.value;
       skipped.partners.insert(skipped.partners.end(), one.partners.begin(), one.partners.end());
@@ -186,13 +185,13 @@ class SkeletonSearch {
   std::vector<float> accumulate(const RootedTree& tree) const {
     std::vector<float> values(clusters_.size(), 0.F);
     for (auto part = tree.order.rbegin(); part != tree.order.rend(); ++part) {
-      for (const int i : by_part_[static_cast<std::size_t>(*part)]) {
-        if (used_[static_cast<std::size_t>(i)]) continue;
-        float value = gains_[static_cast<std::size_t>(i)];
-        for (const int child : tree.children[static_cast<std::size_t>(*part)]) {
+      for (const int i : by_part_[*part]) {
+        if (used_[i]) continue;
+        float value = gains_[i];
+        for (const int child : tree.children[*part]) {
           value += best_branch(tree, i, child, values).value;
         }
-        values[static_cast<std::size_t>(i)] = value;
+        values[i] = value;
       }
     }
     return values;
@@ -212,7 +211,7 @@ class SkeletonSearch {
     Root best;
     float best_value = 0.F;
     for (std::size_t t = 0; t < trees_.size(); ++t) {
-      for (const int i : by_part_[static_cast<std::size_t>(trees_[t].root)]) {
+      for (const int i : by_part_[trees_[t].root]) {
         const auto c = static_cast<std::size_t>(i);
         if (used_[c] || rejected[t][c] != 0 || values_[t][c] <= best_value) continue;
         best_value = values_[t][c];
@@ -226,16 +225,16 @@ class SkeletonSearch {
     Skeleton out;
     out.parts.resize(body_.parts.size());
     out.root = trees_[t].root;
-    out.score = values_[t][static_cast<std::size_t>(root)];
+    out.score = values_[t][root];
     std::vector<Partner> open{{root, 0.F}};
     while (!open.empty()) {
       const Partner at = open.back();
       open.pop_back();
-      const PartCluster& cluster = clusters_[static_cast<std::size_t>(at.cluster)];
-      out.parts[static_cast<std::size_t>(cluster.label)] = make_part(at);
+      const PartCluster& cluster = clusters_[at.cluster];
+      out.parts[cluster.label] = make_part(at);
       ++out.found;
       out.total_error += at.error;
-      for (const int child : trees_[t].children[static_cast<std::size_t>(cluster.label)]) {
+      for (const int child : trees_[t].children[cluster.label]) {
         const Branch branch = best_branch(trees_[t], at.cluster, child, values_[t]);
         open.insert(open.end(), branch.partners.begin(), branch.partners.end());
       }
@@ -245,10 +244,10 @@ class SkeletonSearch {
   }
 
   SkeletonPart make_part(const Partner& at) const {
-    const PartCluster& cluster = clusters_[static_cast<std::size_t>(at.cluster)];
+    const PartCluster& cluster = clusters_[at.cluster];
     return {State::observed,  at.cluster,
             cluster.centroid, cluster.eigenvalues.cwiseSqrt(),
-            at.error,         gains_[static_cast<std::size_t>(at.cluster)] * std::exp(-0.5F * at.error * at.error)};
+            at.error,         gains_[at.cluster] * std::exp(-0.5F * at.error * at.error)};
   }
 
   bool accepted(const Skeleton& s) const {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/body_model.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/base/options.h"
 #include "vesalius/find_clusters.h"
-#include "vesalius/frame.h"
-#include "vesalius/options.h"
 
 namespace vesalius {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "vesalius/random.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {
@@ -63,9 +63,9 @@ class Exhaustive {
     for (int part = 0; options_.any_root && part < body_.part_count(); ++part) roots.push_back(part);
     for (const int root : roots) {
       for (int i = 0; i < static_cast<int>(clusters_.size()); ++i) {
-        if (clusters_[static_cast<std::size_t>(i)].label != root) continue;
+        if (clusters_[i].label != root) continue;
         std::vector<int> chosen(body_.parts.size(), -1);
-        chosen[static_cast<std::size_t>(root)] = i;
+        chosen[root] = i;
         best = std::max(best, try_parts(root, 0, chosen));
       }
     }
@@ -78,10 +78,10 @@ class Exhaustive {
     if (part == root) return try_parts(root, part + 1, chosen);
     float best = try_parts(root, part + 1, chosen);
     for (int i = 0; i < static_cast<int>(clusters_.size()); ++i) {
-      if (clusters_[static_cast<std::size_t>(i)].label != part) continue;
-      chosen[static_cast<std::size_t>(part)] = i;
+      if (clusters_[i].label != part) continue;
+      chosen[part] = i;
       best = std::max(best, try_parts(root, part + 1, chosen));
-      chosen[static_cast<std::size_t>(part)] = -1;
+      chosen[part] = -1;
     }
     return best;
   }
@@ -103,7 +103,7 @@ class Exhaustive {
   float value(int root, const std::vector<int>& chosen) const {
     float sum = 0.F;
     for (int part = 0; part < body_.part_count(); ++part) {
-      const int me = chosen[static_cast<std::size_t>(part)];
+      const int me = chosen[part];
       if (me < 0) continue;
       sum += 1.F;  // every cluster of these tests has a feasible size
       if (part == root) continue;
@@ -111,13 +111,12 @@ class Exhaustive {
       const auto other_end = [](const BodyLink& l, int p) { return l.parent == p ? l.child : l.parent; };
       const int parent = other_end(*links[0], part);
       float error = 1e9F;
-      if (chosen[static_cast<std::size_t>(parent)] >= 0) {
+      if (chosen[parent] >= 0) {
         const float l = links[0]->length_m;
-        error = distance(me, chosen[static_cast<std::size_t>(parent)], l, l, links[0]->tolerance_m, 0.F);
-      } else if (links.size() > 1 && chosen[static_cast<std::size_t>(other_end(*links[1], parent))] >= 0) {
+        error = distance(me, chosen[parent], l, l, links[0]->tolerance_m, 0.F);
+      } else if (links.size() > 1 && chosen[other_end(*links[1], parent)] >= 0) {
         const float a = links[0]->length_m, b = links[1]->length_m;
-        error = distance(me, chosen[static_cast<std::size_t>(other_end(*links[1], parent))],
-                         std::max(std::abs(a - b), (a + b) / 2.F), a + b,
+        error = distance(me, chosen[other_end(*links[1], parent)], std::max(std::abs(a - b), (a + b) / 2.F), a + b,
                          std::max(links[0]->tolerance_m, links[1]->tolerance_m), (a + b) / 2.F);
       }
       if (error > options_.max_error) return 0.F;
@@ -127,7 +126,7 @@ class Exhaustive {
   }
 
   float distance(int i, int j, float low, float high, float tolerance, float hidden) const {
-    const PartCluster &a = clusters_[static_cast<std::size_t>(i)], &b = clusters_[static_cast<std::size_t>(j)];
+    const PartCluster &a = clusters_[i], &b = clusters_[j];
     const Vector3f line = b.centroid - a.centroid;
     const float d = line.norm();
     const Vector3f n = line / d;
@@ -160,7 +159,7 @@ void expect_what_exhaustive_search_finds(bool any_root) {
       for (std::uint32_t k = 0; k < copies; ++k) {
         const Vector3f noise(static_cast<float>(random.normal(0, 0.12)), static_cast<float>(random.normal(0, 0.12)),
                              static_cast<float>(random.normal(0, 0.12)));
-        clusters.push_back(cluster(part, person_at({0.F, 0.F, 2.F})[static_cast<std::size_t>(part)] + noise));
+        clusters.push_back(cluster(part, person_at({0.F, 0.F, 2.F})[part] + noise));
       }
     }
     const std::vector<Skeleton> found = search_skeletons(clusters, body, options);
@@ -182,7 +181,7 @@ TEST(SearchSkeletons, FromTheBodysRootsFindsTheBestTreeThatExhaustiveSearchFinds
 std::vector<PartCluster> people(const std::vector<Vector3f>& places) {
   std::vector<PartCluster> clusters;
   for (int part = 0; part < 6; ++part) {
-    for (const Vector3f& at : places) clusters.push_back(cluster(part, person_at(at)[static_cast<std::size_t>(part)]));
+    for (const Vector3f& at : places) clusters.push_back(cluster(part, person_at(at)[part]));
   }
   return clusters;
 }

@@ -3,8 +3,8 @@
 // People in the frames of a folder, a complete program:
 //
 //   #include <iostream>
-//   #include "io/model_file.h"
-//   #include "io/open_source.h"
+//   #include "io/model/model_file.h"
+//   #include "io/sources/open_source.h"
 //   #include "vesalius/vesalius.h"
 //
 //   int main(int argc, char** argv) {
@@ -16,10 +16,10 @@
 //         std::cout << frame->name << ": " << person.skeleton.found << " parts\n";
 //   }
 
-#include "vesalius/body_model.h"
-#include "vesalius/camera.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/camera.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/base/image.h"
 #include "vesalius/detect.h"
-#include "vesalius/error.h"
-#include "vesalius/forest.h"
-#include "vesalius/frame.h"
-#include "vesalius/image.h"
+#include "vesalius/forest/forest.h"

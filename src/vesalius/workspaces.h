@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/label_pixels.h"
+#include "vesalius/forest/label_pixels.h"
 
 namespace vesalius {
 

@@ -1,4 +1,4 @@
-#include "io/assets.h"
+#include "assets/assets.h"
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>
@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "io/test_files.h"
-#include "io/test_server.h"
+#include "assets/test_server.h"
+#include "io/files/test_files.h"
 #include "run_program.h"
 
 namespace vesalius {

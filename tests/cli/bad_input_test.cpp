@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
-#include "io/image_file.h"
-#include "io/model_file.h"
+#include "io/files/image_file.h"
+#include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_world.h"
 

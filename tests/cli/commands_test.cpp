@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/model_file.h"
+#include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_world.h"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "io/image_file.h"
+#include "io/files/image_file.h"
 #include "run_program.h"
 #include "small_world.h"
 

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "io/image_file.h"
-#include "io/labelled_dataset.h"
+#include "capsule/capsule_person.h"
+#include "dataset/labelled_dataset.h"
+#include "io/files/image_file.h"
 #include "run_program.h"
 #include "small_world.h"
-#include "vesalius/capsule_person.h"
 
 namespace vesalius {
 namespace {

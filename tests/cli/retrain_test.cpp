@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/model_file.h"
+#include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_frames.h"
 

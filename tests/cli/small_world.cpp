@@ -4,10 +4,10 @@
 
 #include <fstream>
 
-#include "io/model_file.h"
-#include "io/write_frames.h"
+#include "capsule/capsule_person.h"
+#include "io/model/model_file.h"
+#include "io/sources/write_frames.h"
 #include "train/grow_forest.h"
-#include "vesalius/capsule_person.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "vesalius/forest.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

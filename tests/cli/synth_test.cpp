@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "io/atomic_file.h"
-#include "io/image_file.h"
-#include "io/labelled_dataset.h"
-#include "io/open_source.h"
-#include "io/test_files.h"
+#include "dataset/labelled_dataset.h"
+#include "io/files/atomic_file.h"
+#include "io/files/image_file.h"
+#include "io/files/test_files.h"
+#include "io/sources/open_source.h"
 #include "run_program.h"
 
 namespace vesalius {

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <string>
 
-#include "io/atomic_file.h"
-#include "io/model_file.h"
+#include "io/files/atomic_file.h"
+#include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_frames.h"
-#include "vesalius/body_model.h"
+#include "vesalius/base/body_model.h"
 
 namespace vesalius {
 namespace {

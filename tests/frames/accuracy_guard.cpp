@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <memory>
 
+#include "dataset/truth_source.h"
 #include "eval/score_frame.h"
-#include "io/model_file.h"
-#include "io/read_file.h"
-#include "io/truth_source.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
+#include "io/files/read_file.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius {
 namespace {

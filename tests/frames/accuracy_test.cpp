@@ -5,9 +5,9 @@
 #include <iostream>
 
 #include "accuracy_guard.h"
-#include "io/read_file.h"
+#include "io/files/read_file.h"
 #include "shared_frames.h"
-#include "vesalius/error.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {

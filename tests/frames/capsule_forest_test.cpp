@@ -7,11 +7,11 @@
 #include <iostream>
 #include <limits>
 
-#include "io/model_file.h"
-#include "vesalius/capsule_person.h"
+#include "capsule/capsule_person.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/keep_memory.h"
+#include "vesalius/base/random.h"
 #include "vesalius/detect.h"
-#include "vesalius/keep_memory.h"
-#include "vesalius/random.h"
 
 namespace vesalius {
 namespace {
@@ -61,7 +61,7 @@ TEST(CapsuleForest, PartsLieWhereTheyAreSeen) {
       const auto seen = std::ranges::find_if(clusters.items, [&](const PartCluster& c) { return c.label == part; });
       if (seen == clusters.items.end() || seen->area_m2 < 0.004F) continue;
       ++visible;
-      const SkeletonPart& p = got[0].skeleton.parts[static_cast<std::size_t>(part)];
+      const SkeletonPart& p = got[0].skeleton.parts[part];
       if (p.state == State::none) continue;
       ++found;
       const float error_m = (p.centre - seen->centroid).norm();

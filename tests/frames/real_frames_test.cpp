@@ -9,11 +9,11 @@
 #include <set>
 
 #include "eval/pixel_figures.h"
-#include "io/model_file.h"
+#include "io/model/model_file.h"
 #include "shared_frames.h"
+#include "vesalius/base/for_each_target.h"
+#include "vesalius/base/parallel.h"
 #include "vesalius/detect.h"
-#include "vesalius/for_each_target.h"
-#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {
@@ -55,8 +55,8 @@ TEST(RealFrames, OneWalkingAndWavingPerson) {
     false_people += static_cast<int>(people.size()) - 1;
     iou += mask_iou(people[0].mask, real.mask, real.frame.depth);
     for (int i = 0; i < detector.body().part_count(); ++i) {
-      if (people[0].skeleton.parts[static_cast<std::size_t>(i)].state == State::observed) {
-        ++parts[detector.body().parts[static_cast<std::size_t>(i)].name];
+      if (people[0].skeleton.parts[i].state == State::observed) {
+        ++parts[detector.body().parts[i].name];
       }
     }
   }

@@ -5,9 +5,9 @@
 #include <map>
 #include <sstream>
 
-#include "io/image_file.h"
-#include "io/model_file.h"
-#include "io/open_source.h"
+#include "io/files/image_file.h"
+#include "io/model/model_file.h"
+#include "io/sources/open_source.h"
 
 namespace vesalius {
 namespace {

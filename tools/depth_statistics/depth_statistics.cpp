@@ -78,7 +78,7 @@ double step_at(const std::vector<std::int64_t>& seen, int depth_mm) {
   std::vector<double> steps;
   int last = 0;
   for (int z = depth_mm - 200; z <= depth_mm + 200; ++z) {
-    if (seen[static_cast<std::size_t>(z)] == 0) continue;
+    if (seen[z] == 0) continue;
     if (last > 0) steps.push_back(z - last);
     last = z;
   }

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "vesalius/image.h"
+#include "vesalius/base/image.h"
 
 namespace vesalius {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "vesalius/random.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {

@@ -6,8 +6,8 @@
 #include <iostream>
 
 #include "depth_statistics.h"
-#include "io/open_source.h"
-#include "vesalius/error.h"
+#include "io/sources/open_source.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {

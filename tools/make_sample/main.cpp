@@ -5,16 +5,16 @@
 #include <filesystem>
 #include <iostream>
 
-#include "io/atomic_file.h"
-#include "io/image_file.h"
-#include "io/model_file.h"
-#include "io/write_frames.h"
+#include "io/files/atomic_file.h"
+#include "io/files/image_file.h"
+#include "io/model/model_file.h"
+#include "io/sources/write_frames.h"
 #include "pixel_score.h"
 #include "random_scene.h"
 #include "sample_sequence.h"
 #include "train/grow_forest.h"
-#include "vesalius/error.h"
-#include "vesalius/parallel.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius {
 namespace {
@@ -25,9 +25,7 @@ constexpr int kTestFrames = 150;
 std::vector<LabelledFrame> random_frames(int count, std::uint64_t seed) {
   const Camera camera{320, 240, 262.5F, 262.5F, 159.5F, 119.5F};
   std::vector<LabelledFrame> frames(static_cast<std::size_t>(count));
-  parallel_for(count, [&](int i) {
-    frames[static_cast<std::size_t>(i)] = random_frame(camera, seed, static_cast<std::uint64_t>(i));
-  });
+  parallel_for(count, [&](int i) { frames[i] = random_frame(camera, seed, static_cast<std::uint64_t>(i)); });
   return frames;
 }
 

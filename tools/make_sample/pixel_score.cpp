@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "vesalius/label_pixels.h"
+#include "vesalius/forest/label_pixels.h"
 
 namespace vesalius {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "vesalius/forest.h"
-#include "vesalius/frame.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "vesalius/random.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {
@@ -105,9 +105,7 @@ class SceneMaker {
   void add_seat(const CapsulePerson& person) {
     const std::vector<BodySolid> solids = make_solids(person);
     const std::vector<Eigen::Vector3d> centres = part_centres(solids);
-    const auto centre = [&](const char* part) {
-      return centres[static_cast<std::size_t>(paper_body().find_part(part))].cast<float>().eval();
-    };
+    const auto centre = [&](const char* part) { return centres[paper_body().find_part(part)].cast<float>().eval(); };
     const Eigen::Vector3f hips = 0.5F * (centre("l_hips") + centre("r_hips"));
     const float top_y = std::min(hips.y() + range(0.12F, 0.2F), scene_.floor_y_m - 0.05F);
     const float half_m = range(0.15F, 0.25F);

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "vesalius/capsule_person.h"
-#include "vesalius/frame.h"
+#include "capsule/capsule_person.h"
+#include "vesalius/base/frame.h"
 
 namespace vesalius {
 

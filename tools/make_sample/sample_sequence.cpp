@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "vesalius/capsule_person.h"
+#include "capsule/capsule_person.h"
 
 namespace vesalius {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "vesalius/frame.h"
+#include "vesalius/base/frame.h"
 
 namespace vesalius {
 

@@ -1,0 +1,61 @@
+# vesalius_library(NAME [FOLDERS folder...] [USES library...] [TESTS_USE library...] [OPENS_NO_FILES] [PRECOMPILED])
+#
+# The library vesalius_NAME out of all sources in FOLDERS (below the current folder; "." is that folder itself, the
+# default), and the test NAME_test out of their *_test.cpp. tools/check_layers.py reads these calls: FOLDERS stand bottom to
+# top, a file includes only folders up to its own, the core, and the libraries it USES; tests also capsule and TESTS_USE.
+# PRECOMPILED: with the core's precompiled header, for libraries that it makes quicker to build.
+# OPENS_NO_FILES: no <fstream>, <iostream> or <filesystem> outside of tests.
+function(vesalius_library name)
+  cmake_parse_arguments(ARG "OPENS_NO_FILES;PRECOMPILED" "" "FOLDERS;USES;TESTS_USE" ${ARGN})
+  if(NOT ARG_FOLDERS)
+    set(ARG_FOLDERS .)
+  endif()
+  set(sources)
+  set(tests)
+  foreach(folder IN LISTS ARG_FOLDERS)
+    file(GLOB found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+    foreach(source IN LISTS found)
+      if(source MATCHES "_test\\.cpp$")
+        list(APPEND tests ${source})
+      else()
+        list(APPEND sources ${source})
+      endif()
+    endforeach()
+  endforeach()
+  list(REMOVE_ITEM sources ${VESALIUS_SOURCES_LEFT_OUT})
+
+  set(target vesalius_${name})
+  add_library(${target} STATIC ${sources})
+  add_library(vesalius::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:vesalius_settings>)
+  if(ARG_PRECOMPILED)
+    vesalius_precompile(${target})
+  endif()
+  if(NOT name STREQUAL core)
+    target_link_libraries(${target} PUBLIC vesalius_core)
+  endif()
+  foreach(library IN LISTS ARG_USES)
+    target_link_libraries(${target} PUBLIC vesalius_${library})
+  endforeach()
+
+  if(tests)
+    list(TRANSFORM ARG_TESTS_USE PREPEND vesalius_)
+    vesalius_test(${name}_test ${tests} LIBRARIES ${target} ${ARG_TESTS_USE} vesalius_capsule)
+  endif()
+endfunction()
+
+# vesalius_generate(TARGET TEMPLATE.inc.in [VARIABLE FILE]...): TEMPLATE.inc for TARGET to include, each @VARIABLE@ the text
+# of a file below the project's data folder: what a library knows without opening a file.
+function(vesalius_generate target template)
+  set(arguments ${ARGN})
+  while(arguments)
+    list(POP_FRONT arguments variable file)
+    file(READ ${PROJECT_SOURCE_DIR}/data/${file} ${variable})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/data/${file})
+  endwhile()
+  get_filename_component(name ${template} NAME)
+  string(REGEX REPLACE "\\.in$" "" name ${name})
+  configure_file(${template} ${CMAKE_CURRENT_BINARY_DIR}/generated/${name} @ONLY)
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated)
+endfunction()

@@ -1,0 +1,74 @@
+#include "assets/verified_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace vesalius {
+
+namespace fs = std::filesystem;
+
+bool holds(const std::string& path, const FileDigest& expected) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || fs::file_size(path, error) != expected.bytes) return false;
+  return sha256_of_file(path) == expected.sha256;
+}
+
+VerifiedFile::VerifiedFile(std::string path, std::string unfinished_path, FileDigest expected)
+    : path_(std::move(path)), unfinished_path_(std::move(unfinished_path)), expected_(std::move(expected)) {
+  fd_ = ::open(unfinished_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (fd_ < 0) fail(errno);
+}
+
+VerifiedFile::~VerifiedFile() {
+  if (fd_ >= 0) ::close(fd_);
+  if (!committed_) std::remove(unfinished_path_.c_str());
+}
+
+void VerifiedFile::fail(int error) const {
+  throw Error(fmt::format("{}: cannot be written: {}", path_, std::generic_category().message(error)));
+}
+
+void VerifiedFile::write(std::string_view bytes) {
+  if (bytes.size() > expected_.bytes - written_) {
+    throw WrongBytes(fmt::format("{}: more bytes came than the {} expected", path_, expected_.bytes));
+  }
+  sum_.update(bytes);
+  written_ += bytes.size();
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
+    if (n < 0 && errno != EINTR) fail(errno);
+    if (n > 0) bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+void VerifiedFile::restart() {
+  if (::ftruncate(fd_, 0) != 0 || ::lseek(fd_, 0, SEEK_SET) != 0) fail(errno);
+  sum_.finish();
+  written_ = 0;
+}
+
+void VerifiedFile::commit() {
+  if (written_ != expected_.bytes) {
+    throw WrongBytes(fmt::format("{}: {} bytes came, expected {}", path_, written_, expected_.bytes));
+  }
+  const std::string sum = sum_.finish();
+  if (sum != expected_.sha256) {
+    throw WrongBytes(fmt::format("{}: SHA-256 of what came is {}, expected {}", path_, sum, expected_.sha256));
+  }
+  // Some file systems say only here that the disk is full.
+  if (::close(std::exchange(fd_, -1)) != 0) fail(errno);
+  std::error_code error;
+  fs::create_directories(fs::path(path_).parent_path(), error);
+  if (error) fail(error.value());
+  if (std::rename(unfinished_path_.c_str(), path_.c_str()) != 0) fail(errno);
+  committed_ = true;
+}
+
+}  // namespace vesalius

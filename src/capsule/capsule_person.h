@@ -1,0 +1,102 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "capsule/capsule_shape.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/base/image.h"
+
+namespace vesalius {
+
+/// Joint angles of a capsule person, radians; all zero = standing upright, arms hanging just clear of the trunk, facing
+/// the camera. Left and right are the person's own. Soles stay level.
+struct CapsulePose {
+  float yaw = 0.F;        ///< about the vertical axis; positive turns the person to its own left
+  float lean = 0.F;       ///< trunk forward (positive) or backward
+  float side_lean = 0.F;  ///< trunk towards the person's left
+  float head_yaw = 0.F;
+  float head_pitch = 0.F;  ///< positive looks down
+  struct Arm {
+    float raise = 0.F;    ///< sideways away from the trunk, 0 hanging, pi/2 horizontal
+    float forward = 0.F;  ///< swing to the front
+    float elbow = 0.F;    ///< flexion, 0 straight
+  } l_arm, r_arm;
+  struct Leg {
+    float spread = 0.F;   ///< sideways
+    float forward = 0.F;  ///< thigh to the front, pi/2 = sitting
+    float knee = 0.F;     ///< flexion, 0 straight
+  } l_leg, r_leg;
+};
+
+/// Sizes and clothes.
+struct CapsuleBuild {
+  float stature_m = 1.75F;  ///< 0.5 to 2.5
+  float girth = 1.F;        ///< multiplies all radii but the head's; 0.5 to 1.5
+  Rgb skin{224, 172, 138}, hair{60, 42, 30}, shirt{52, 101, 164}, trousers{60, 60, 70}, shoes{30, 30, 30};
+};
+
+/// A person standing somewhere: `feet` is the point on the ground between the ankles (metres, optical frame of a camera
+/// whose y axis points down; the person stands upright along -y, the lower sole on the ground).
+struct CapsulePerson {
+  CapsuleBuild build;
+  CapsulePose pose;
+  Eigen::Vector3f feet = Eigen::Vector3f(0.F, 1.F, 2.5F);
+};
+
+/// One solid of a person's body. Its slab above `split` (along its axis, shape units) and the rest, each cut into
+/// halves by x = 0, carry a part of the paper's body each.
+struct BodySolid {
+  CapsuleShape shape;
+  double split = 0.0;
+  std::array<std::array<int, 2>, 2> part{};  ///< [0: below or at the split, 1: above][0: x < 0, 1: x >= 0], 0-24
+  Rgb colour;
+  Rgb crown;  ///< of the top and back; differs from `colour` on the head only
+
+  int part_at(const Eigen::Vector3d& local) const { return part[local.y() > split][local.x() >= 0.0]; }
+};
+
+/// The person's solids, in the world. Lengths after Drillis and Contini (1966), as fractions of the stature. Throws
+/// Error for a build out of range or a number that is not finite.
+std::vector<BodySolid> make_solids(const CapsulePerson& person);
+
+/// Centre of the volume of each of the paper's parts, metres, world; solids that overlap count twice there.
+std::vector<Eigen::Vector3d> part_centres(const std::vector<BodySolid>& solids);
+
+/// Solid box with a colour: furniture, pillars, occluders. Axis-aligned in the world.
+struct SceneBox {
+  Eigen::Vector3f low, high;
+  Rgb colour{150, 120, 90};
+};
+
+/// People in a plain room: the truth for tests, examples and benchmarks. World = optical frame of a level camera at
+/// the origin; `pitch` turns the camera down (positive) or up.
+struct CapsuleScene {
+  std::vector<CapsulePerson> people;
+  std::vector<SceneBox> boxes;
+  float floor_y_m = 1.F;      ///< height of the camera above the floor; <= 0: no floor
+  float wall_z_m = 4.5F;      ///< back wall; <= 0: no wall
+  float side_wall_x_m = 0.F;  ///< walls at +- this; <= 0: none
+  float pitch = 0.F;          ///< camera pitch, radians
+  Rgb floor_colour{120, 100, 80}, wall_colour{200, 195, 185};
+};
+
+/// Exact depth (rounded to the millimetre, 0 beyond 65.535 m), labels, person index, part centres (camera frame) and
+/// shaded colour of the scene by ray casting. Labels are those of `body`, matched by part name; surfaces whose part the
+/// body lacks take the nearest part up the paper body's tree that it has, or background. The centre of a part that no
+/// surface carries is NaN. Deterministic for any thread count. Throws Error for a camera, build or number that cannot
+/// be meant, or more than 255 people.
+LabelledFrame render(const CapsuleScene& scene, const Camera& camera, const BodyModel& body);
+
+/// Depth as a structured-light sensor reports it: axial and lateral noise (Nguyen, Izadi, Lovell 2012), disparity in
+/// steps of 1/8 pixel, and no reading in the projector's shadow, on half of the silhouettes, where the surface is seen
+/// at a grazing angle, within 1/80 of the width of the left and right border, and outside 0.4-10 m. Same (frame,
+/// seed), same bytes.
+void add_sensor_noise(Frame& frame, std::uint64_t seed);
+
+}  // namespace vesalius

@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <sstream>
+
+#include "cli/commands.h"
+#include "cli/detect/detect_outputs.h"
+#include "cli/detect/detect_stream.h"
+#include "cli/detect/latency.h"
+#include "cli/detector_flags.h"
+#include "cli/interrupts.h"
+#include "cli/progress.h"
+#include "cli/source_flags.h"
+#include "cli/text_sink.h"
+#include "vesalius/base/keep_memory.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/base/stage_times.h"
+
+namespace vesalius::cli {
+namespace {
+
+struct Arguments {
+  explicit Arguments(CLI::App& command) : detector(command) {}
+
+  std::string source;
+  SourceOptions camera;
+  OutputRequest outputs;
+  DetectorFlags detector;
+  StreamOptions stream;
+  int threads = 0;
+  bool timing = false;
+  bool keep_going = false;
+  bool quiet = false;
+};
+
+struct Totals {
+  int people = 0;
+  int frames_with_people = 0;
+  int failed = 0;
+  int dropped = 0;
+  FrameTimes times;
+};
+
+/// What was found in one frame to the outputs. Throws what reading or detecting threw.
+void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals) {
+  if (found.error) std::rethrow_exception(found.error);
+  const double write_ms = elapsed_ms([&] { outputs.write(*found.frame, found.people); });
+  totals.times.add(found.times, found.read_ms, write_ms);
+  totals.people += static_cast<int>(found.people.size());
+  totals.frames_with_people += found.people.empty() ? 0 : 1;
+}
+
+Totals detect_all(const Arguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,
+                  Progress& progress) {
+  Totals totals;
+  totals.dropped = stream_frames(source, detector, arguments.stream, [&](const FoundFrame& found) {
+    try {
+      write_found(found, outputs, totals);
+    } catch (const BrokenPipe&) {
+      throw;
+    } catch (const Error& e) {
+      if (!arguments.keep_going) throw;
+      progress.clear();
+      say(std::string("vesalius: ") + e.what());
+      ++totals.failed;
+    }
+    progress.step();
+    return true;
+  });
+  return totals;
+}
+
+void say_totals(const Arguments& arguments, const Totals& totals, const Progress& progress) {
+  say(fmt::format("{} frames, people in {} of them ({} in all), {:.1f} s, {:.1f} frames/s{}", progress.done(),
+                  totals.frames_with_people, totals.people, progress.seconds(), progress.done() / progress.seconds(),
+                  arguments.stream.realtime ? fmt::format(", {} dropped", totals.dropped) : ""));
+}
+
+void say_times(const FrameTimes& times) {
+  std::istringstream lines(table(times));
+  for (std::string line; std::getline(lines, line);) say(line);
+}
+
+void run(const Arguments& arguments) {
+  check(arguments.outputs);
+  keep_freed_memory();
+  const ThreadLimit limit(arguments.threads);
+  const Detector detector = arguments.detector.make();
+  const auto source = open_source(arguments.source, arguments.camera);
+  if (!arguments.quiet) {
+    for (const std::string& note : source->notes()) say("note: " + note);
+  }
+  OutputRequest request = arguments.outputs;
+  request.lines = !arguments.quiet && request.json != "-";
+  watch_interrupts();
+  DetectOutputs outputs(request, detector.body());
+  Progress progress(source->size(), !arguments.quiet);
+  const Totals totals = detect_all(arguments, *source, detector, outputs, progress);
+  progress.clear();
+  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+  outputs.finish();
+  if (!arguments.quiet) say_totals(arguments, totals, progress);
+  if (arguments.timing) say_times(totals.times);
+  if (totals.failed > 0) throw Error(fmt::format("{} of {} frames failed", totals.failed, progress.done()));
+}
+
+void add_output_flags(CLI::App& command, OutputRequest& outputs) {
+  const std::string group = "Output (without any of these: a line per frame)";
+  command.add_option("--json", outputs.json, "People as JSON, one line a frame; - is standard output")
+      ->type_name("FILE")
+      ->group(group);
+  command.add_option("--out", outputs.folder, "Folder for pictures; made if missing")->type_name("DIR")->group(group);
+  command
+      .add_option(
+          "--save", outputs.save,
+          "What to put into --out, separated by commas: overlay (default) and parts, pictures of skeletons and of "
+          "body parts; labels (part of each pixel) and mask (person of each pixel) as numbers; cloud (labelled "
+          "PLY); video")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(kSaveKinds))
+      ->group(group);
+  command.add_option("--video-rate", outputs.video_rate, "Frames per second of the video")
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str()
+      ->group(group);
+}
+
+void add_time_flags(CLI::App& command, Arguments& arguments) {
+  const std::string group = "Time";
+  command.add_flag("--timing", arguments.timing, "Print at the end how long each stage took")->group(group);
+  command
+      .add_flag("--realtime", arguments.stream.realtime,
+                "Take frames at the times at which the camera took them, drop those that come too fast, count them")
+      ->group(group);
+  command.add_option("--rate", arguments.stream.rate, "Frames per second in real time of a source without times")
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str()
+      ->group(group);
+}
+
+}  // namespace
+
+void add_detect(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("detect", "Find people in frames");
+  const auto arguments = std::make_shared<Arguments>(*command);
+  command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
+  add_output_flags(*command, arguments->outputs);
+  add_camera_flags(*command, arguments->camera);
+  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The result is the same")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxThreads))
+      ->group(kDetectorGroup);
+  add_time_flags(*command, *arguments);
+  command->add_flag("--keep-going", arguments->keep_going, "Pass over frames that fail; exit code 1 at the end");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command->footer(R"(
+Every detector option is a flag too, e.g. --search.min-parts 6; `vesalius options` lists them.
+
+Examples:
+  vesalius detect frames/ -m capsule.forest
+  vesalius detect tum:walking -m capsule.forest --json - | jq .people
+  vesalius detect depth.png --fx 525 -m capsule.forest --out found/ --save overlay,mask)");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,110 @@
+#include "cli/detect/detect_outputs.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/detect/person_json.h"
+#include "draw/draw.h"
+#include "io/files/image_file.h"
+#include "io/files/ply.h"
+
+namespace vesalius::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
+}
+
+/// Mean distance of the parts seen, metres along the optical axis.
+double distance_m(const Skeleton& skeleton) {
+  double sum = 0.0;
+  int count = 0;
+  for (const SkeletonPart& part : skeleton.parts) {
+    if (part.state != State::observed) continue;
+    sum += static_cast<double>(part.centre.z());
+    ++count;
+  }
+  return count == 0 ? 0.0 : sum / count;
+}
+
+}  // namespace
+
+void check(const OutputRequest& request) {
+  if (!request.save.empty() && request.folder.empty()) throw UsageError("--save needs --out, the folder to save in");
+}
+
+DetectOutputs::DetectOutputs(OutputRequest request, const BodyModel& body)
+    : request_(std::move(request)), kinds_(request_.save.begin(), request_.save.end()), body_(body) {
+  if (!request_.folder.empty()) {
+    if (kinds_.empty()) kinds_.insert("overlay");
+    make_folder(request_.folder);
+    for (const std::string& kind : kinds_) {
+      if (kind != "video") make_folder(fs::path(request_.folder) / kind);
+    }
+    const auto in_folder = [&](const char* name) { return (fs::path(request_.folder) / name).string(); };
+    if (wants("labels")) write_file_atomically(in_folder("labels.json"), part_table_json(body));
+    if (wants("video")) video_.emplace(in_folder("overlay.avi"), request_.video_rate);
+  }
+  if (!request_.json.empty()) json_.emplace(request_.json);
+}
+
+std::string DetectOutputs::path(const char* kind, const Frame& frame, const char* extension) const {
+  if (frame.name.empty() || frame.name.find('/') != std::string::npos) {
+    throw Error(fmt::format("frame \"{}\": its name cannot be a file's", frame.name));
+  }
+  return (fs::path(request_.folder) / kind / (frame.name + extension)).string();
+}
+
+void DetectOutputs::write(const Frame& frame, const std::vector<Person>& people) {
+  write_pictures(frame, people);
+  if (json_) json_->line(frame_json(frame, people, body_));
+  if (request_.lines) print(one_line(describe(frame, people)) + "\n");
+}
+
+void DetectOutputs::write_pictures(const Frame& frame, const std::vector<Person>& people) {
+  const int width = frame.depth.width();
+  const int height = frame.depth.height();
+  if (!kinds_.empty() && !names_.insert(frame.name).second) {
+    throw Error(
+        fmt::format("frame \"{}\": its pictures would replace those of another frame of this name", frame.name));
+  }
+  if (wants("overlay") || video_) {
+    const ColourImage overlay = draw_people(frame, people, body_);
+    if (wants("overlay")) write_png(overlay, path("overlay", frame, ".png"));
+    if (video_) video_->write(overlay);
+  }
+  if (wants("parts")) {
+    write_png(draw_labels(part_label_map(people, width, height), frame.depth, body_, true),
+              path("parts", frame, ".png"));
+  }
+  if (wants("mask")) write_png(body_index_map(people, width, height), path("mask", frame, ".png"));
+  if (wants("labels")) write_png(part_label_map(people, width, height), path("labels", frame, ".png"));
+  if (wants("cloud")) {
+    write_cloud(frame, part_label_map(people, width, height), body_index_map(people, width, height), body_,
+                path("cloud", frame, ".ply"));
+  }
+}
+
+void DetectOutputs::finish() {
+  if (video_) video_->close();
+  if (json_) json_->finish();
+  if (request_.lines) finish_stdout();
+}
+
+std::string describe(const Frame& frame, const std::vector<Person>& people) {
+  if (people.empty()) return frame.name + ": nobody";
+  std::string text = fmt::format("{}: {} {}: ", frame.name, people.size(), people.size() == 1 ? "person" : "people");
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const Person& person = people[i];
+    text += fmt::format("{}{} parts at {:.2f} m (score {:.2f})", i == 0 ? "" : ", ", person.skeleton.found,
+                        distance_m(person.skeleton), person.score);
+  }
+  return text;
+}
+
+}  // namespace vesalius::cli

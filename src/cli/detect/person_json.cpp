@@ -1,0 +1,75 @@
+#include "cli/detect/person_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace vesalius::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Shortest text at a tenth of a millimetre: no sensor knows more.
+double rounded(double value, double steps = 1e4) { return std::round(value * steps) / steps; }
+
+Json point_json(State state, const Eigen::Vector3f& point, float confidence) {
+  Json xyz;  // null
+  if (state != State::none) xyz = {rounded(point.x()), rounded(point.y()), rounded(point.z())};
+  return {
+      {"xyz_m", xyz}, {"confidence", state == State::none ? 0.0 : rounded(confidence)}, {"state", to_string(state)}};
+}
+
+Json parts_json(const Skeleton& skeleton, const BodyModel& body) {
+  Json parts = Json::object();
+  for (std::size_t p = 0; p < body.parts.size(); ++p) {
+    const SkeletonPart& part = skeleton.parts.at(p);
+    parts[body.parts[p].name] = point_json(part.state, part.centre, part.confidence);
+  }
+  return parts;
+}
+
+Json joints_json(const Person& person, const BodyModel& body) {
+  Json sets = Json::object();
+  for (std::size_t s = 0; s < body.joint_sets.size(); ++s) {
+    const JointSet& set = body.joint_sets[s];
+    Json joints = Json::object();
+    for (std::size_t j = 0; j < set.joints.size(); ++j) {
+      const Joint& joint = person.joints.at(s).at(j);
+      joints[set.joints[j].name] = point_json(joint.state, joint.position, joint.confidence);
+    }
+    sets[set.name] = std::move(joints);
+  }
+  return sets;
+}
+
+/// File names need not be UTF-8; JSON must.
+std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+}  // namespace
+
+std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const Person& person = people[i];
+    list.push_back({{"index", i},
+                    {"score", rounded(person.score)},
+                    {"box_px", {person.box.u, person.box.v, person.box.width, person.box.height}},
+                    {"parts", parts_json(person.skeleton, body)},
+                    {"joints", joints_json(person, body)}});
+  }
+  return line({{"frame", frame.name}, {"time_s", rounded(frame.time_s, 1e6)}, {"people", std::move(list)}});
+}
+
+std::string part_table_json(const BodyModel& body) {
+  Json parts = Json::array();
+  for (std::size_t p = 0; p < body.parts.size(); ++p) {
+    const BodyPart& part = body.parts[p];
+    parts.push_back({{"label", p},
+                     {"name", part.name},
+                     {"colour", {part.colour.r, part.colour.g, part.colour.b}},
+                     {"mirror", part.mirror}});
+  }
+  const Json table = {{"body", body.name}, {"background", kBackground}, {"parts", std::move(parts)}};
+  return table.dump(2) + "\n";
+}
+
+}  // namespace vesalius::cli

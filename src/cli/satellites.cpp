@@ -1,0 +1,20 @@
+#include "cli/satellites.h"
+
+namespace vesalius::cli {
+
+// satellites.inc, which CMake writes, names those of this build.
+#define VESALIUS_SATELLITE(name) Satellite name##_satellite();
+#include "satellites.inc"
+#undef VESALIUS_SATELLITE
+
+std::vector<Satellite> satellites() {
+  return {
+#define VESALIUS_SATELLITE(name) name##_satellite(),
+#include "satellites.inc"
+#undef VESALIUS_SATELLITE
+  };
+}
+
+std::vector<std::string> satellite_names() { return {"synth", "train", "evaluate", "assets"}; }
+
+}  // namespace vesalius::cli

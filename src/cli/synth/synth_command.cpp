@@ -1,0 +1,231 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/interrupts.h"
+#include "cli/option_flags.h"
+#include "cli/progress.h"
+#include "cli/synth/synth_assets.h"
+#include "cli/synth/synth_recipe.h"
+#include "cli/text_sink.h"
+#include "dataset/labelled_dataset.h"
+#include "dataset/labelled_export.h"
+#include "dataset/labelled_frame_codec.h"
+#include "draw/contact_sheet.h"
+#include "io/files/image_file.h"
+#include "io/files/read_file.h"
+#include "synth/skeleton_joints.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/base/parallel_in_order.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr int kMaxFrames = 1'000'000'000;
+constexpr int kMaxPreview = 200;
+constexpr int kPreviewColumns = 3;
+
+struct Arguments {
+  explicit Arguments(CLI::App& command) : recipe_flags(command) {}
+
+  std::string recipe, sensor, camera, body, assets, motions, out, format = "shards";
+  std::vector<std::string> models;
+  OptionFlags<synth::Recipe> recipe_flags;
+  int count = 0, preview = 0, first = 0, shard = 256, threads = 0;
+  std::uint64_t seed = 1;
+  bool quiet = false;
+};
+
+BodyModel body_of(const Arguments& arguments) {
+  return arguments.body.empty() ? paper_body() : parse_body_model(read_file(arguments.body), arguments.body);
+}
+
+/// Frames of the given range in order; `prepare` runs on all threads, `take` in this one.
+template <class Prepare, class Take>
+void make_frames(const synth::Generator& generator, std::uint64_t first, int count, Progress& progress,
+                 const Prepare& prepare, const Take& take) {
+  parallel_in_order(
+      count,
+      [&](int i) {
+        const std::uint64_t index = first + static_cast<std::uint64_t>(i);
+        return prepare(index, generator.frame(index));
+      },
+      [&](int i, auto item) {
+        if (interrupted()) return false;
+        take(first + static_cast<std::uint64_t>(i), std::move(item));
+        progress.step();
+        return true;
+      });
+  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+}
+
+LabelledFrame as_it_is(std::uint64_t /*index*/, LabelledFrame frame) { return frame; }
+
+void write_shards(const Arguments& arguments, const synth::Generator& generator, const DatasetInfo& info,
+                  int part_count) {
+  DatasetWriter writer(arguments.out, info);
+  std::uint64_t missing = 0;
+  for (const FrameRange& range : writer.missing()) missing += range.count;
+  if (missing < info.frames && !arguments.quiet) {
+    say(fmt::format("{}: {} of {} frames are there", arguments.out, info.frames - missing, info.frames));
+  }
+  Progress progress(static_cast<int>(missing), !arguments.quiet);
+  const auto encode = [&](std::uint64_t index, LabelledFrame frame) {
+    return encode_frame({index, info.seed, std::move(frame)}, part_count);
+  };
+  const std::vector<FrameRange> ranges = writer.missing();
+  for (const FrameRange& range : ranges) {
+    make_frames(generator, range.first, static_cast<int>(range.count), progress, encode,
+                [&](std::uint64_t index, std::string bytes) { writer.write_encoded(index, std::move(bytes)); });
+  }
+  progress.clear();
+  if (!arguments.quiet) {
+    say(fmt::format("{}: {} frames, {:.1f} frames/s", arguments.out, info.frames,
+                    progress.done() / progress.seconds()));
+  }
+}
+
+void write_folder(const Arguments& arguments, const synth::Generator& generator, const BodyModel& body) {
+  LabelledExporter exporter(arguments.out, body, synth::joint_names());
+  Progress progress(arguments.count, !arguments.quiet);
+  make_frames(generator, static_cast<std::uint64_t>(arguments.first), arguments.count, progress, as_it_is,
+              [&](std::uint64_t /*index*/, const LabelledFrame& frame) { exporter.write(frame); });
+  progress.clear();
+  if (!arguments.quiet) say(fmt::format("{}: {} frames", arguments.out, progress.done()));
+}
+
+void write_preview(const Arguments& arguments, const synth::Generator& generator, const BodyModel& body) {
+  std::vector<LabelledFrame> frames;
+  Progress progress(arguments.preview, !arguments.quiet);
+  make_frames(generator, static_cast<std::uint64_t>(arguments.first), arguments.preview, progress, as_it_is,
+              [&](std::uint64_t /*index*/, LabelledFrame frame) { frames.push_back(std::move(frame)); });
+  progress.clear();
+  const std::string path = arguments.out.empty() ? "preview.png" : arguments.out;
+  write_png(contact_sheet(frames, body, kPreviewColumns), path);
+  if (!arguments.quiet) say(fmt::format("{}: {} frames", path, frames.size()));
+}
+
+void check(const Arguments& arguments) {
+  if ((arguments.count > 0) == (arguments.preview > 0)) throw UsageError("expected --count or --preview, and not both");
+  if (arguments.count > 0 && arguments.out.empty()) throw UsageError("--count expects --out, the folder to write");
+  if (arguments.first > 0 && arguments.count > 0 && arguments.format == "shards") {
+    throw UsageError("a dataset begins with frame 0: --first expects --preview or --format folder");
+  }
+}
+
+void run(const Arguments& arguments) {
+  check(arguments);
+  const ThreadLimit limit(arguments.threads);
+  const synth::Recipe recipe = make_recipe({.file = arguments.recipe,
+                                            .sensor = arguments.sensor,
+                                            .camera = arguments.camera,
+                                            .flags = &arguments.recipe_flags});
+  const BodyModel body = body_of(arguments);
+  const LoadedAssets loaded =
+      load_assets(recipe, {.folder = arguments.assets.empty() ? default_assets_folder() : arguments.assets,
+                           .motions = arguments.motions,
+                           .models = arguments.models});
+  if (!arguments.quiet) {
+    for (const std::string& note : loaded.notes) say("note: " + note);
+  }
+  const synth::Generator generator(recipe, loaded.assets, body, arguments.seed);
+  watch_interrupts();
+  if (arguments.preview > 0) return write_preview(arguments, generator, body);
+  if (arguments.format == "folder") return write_folder(arguments, generator, body);
+  DatasetInfo info;
+  info.body_toml = body.toml;
+  info.recipe = full_recipe(recipe, loaded);
+  info.seed = arguments.seed;
+  info.frames = static_cast<std::uint64_t>(arguments.count);
+  info.joints = synth::joint_names();
+  info.frames_per_shard = static_cast<std::uint32_t>(arguments.shard);
+  write_shards(arguments, generator, info, body.part_count());
+}
+
+void add_output_flags(CLI::App& command, Arguments& arguments) {
+  const std::string group = "Output";
+  command.add_option("--count", arguments.count, "Frames to make")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxFrames))
+      ->group(group);
+  command.add_option("--preview", arguments.preview, "Instead of a dataset, a picture of this many frames")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxPreview))
+      ->group(group);
+  command
+      .add_option("--out", arguments.out,
+                  "Folder for the frames, made if missing; a run that was cut short goes on. For --preview the "
+                  "picture (default: preview.png)")
+      ->type_name("PATH")
+      ->group(group);
+  command.add_option("--format", arguments.format, "shards: compact, for training; folder: PNG and JSON")
+      ->check(CLI::IsMember({"shards", "folder"}))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--seed", arguments.seed, "Same recipe, seed and number, same frame")
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--first", arguments.first, "Number of the first frame, for --preview and --format folder")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxFrames))
+      ->group(group);
+  command.add_option("--shard", arguments.shard, "Frames in a shard")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str()
+      ->group(group);
+}
+
+void add_recipe_flags(CLI::App& command, Arguments& arguments) {
+  const std::string group = "What to make";
+  std::vector<std::string> names;
+  for (const synth::Sensor& sensor : synth::sensors()) names.push_back(sensor.name);
+  command
+      .add_option("--preset", arguments.sensor,
+                  fmt::format("Depth camera: {} (default: {})", fmt::join(names, ", "), synth::SensorOptions{}.preset))
+      ->type_name("NAME")
+      ->group(group);
+  command.add_option("--camera", arguments.camera, "Its intrinsics, if they differ: meta.json or camera_info YAML")
+      ->type_name("FILE")
+      ->group(group);
+  command.get_option("--mounting")->type_name("NAME")->group(group);
+  command.add_option("--recipe", arguments.recipe, "TOML file of options; `vesalius options synth` prints one")
+      ->type_name("FILE")
+      ->group(group);
+  command.add_option("--body", arguments.body, "Body model with other parts")->type_name("FILE")->group(group);
+  command.add_option("--models", arguments.models, "Furniture of your own: OBJ or glTF, metres, y up")
+      ->type_name("FILE")
+      ->group(group);
+  command.add_option("--motions", arguments.motions, "Motions of your own: a folder of .bvh, or .amc with .asf")
+      ->type_name("DIR")
+      ->group(group);
+  command.add_option("--assets", arguments.assets, "Where `vesalius assets` put its files")
+      ->type_name("DIR")
+      ->group(group);
+}
+
+}  // namespace
+
+void add_synth(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("synth", "Make labelled frames of synthetic people");
+  const auto arguments = std::make_shared<Arguments>(*command);
+  add_output_flags(*command, *arguments);
+  add_recipe_flags(*command, *arguments);
+  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The result is the same")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxThreads));
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command->footer(R"(
+Every option of a recipe is a flag too, e.g. --people.two 1; `vesalius options synth` lists them.
+
+Examples:
+  vesalius synth --preview 24 --out look.png
+  vesalius synth --preset kinect-v1 --count 10000 --seed 1 --out train/
+  vesalius synth --preset d435 --mounting ceiling --recipe mine.toml --count 500 --out ceiling/)");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace vesalius::cli

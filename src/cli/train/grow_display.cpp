@@ -1,0 +1,73 @@
+#include "cli/train/grow_display.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "cli/interrupts.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod(100);
+
+}  // namespace
+
+GrowDisplay::GrowDisplay(const std::string& round, const TrainingSet& set, int trees, int max_depth,
+                         GrowProgress& progress, bool shown)
+    : round_(round),
+      trees_(trees),
+      work_(static_cast<double>(set.samples().size()) * max_depth * trees),
+      progress_(progress),
+      status_(shown),
+      judged_(!set.held_out().empty()),
+      votes_(set),
+      thread_([this] { watch(); }) {}
+
+GrowDisplay::~GrowDisplay() {
+  {
+    const std::scoped_lock lock(mutex_);
+    end_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+double GrowDisplay::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void GrowDisplay::add(Tree tree) {
+  const std::scoped_lock lock(mutex_);
+  done_.push_back(std::move(tree));
+}
+
+void GrowDisplay::watch() {
+  std::unique_lock lock(mutex_);
+  while (!changed_.wait_for(lock, kPeriod, [this] { return end_; })) {
+    const std::vector<Tree> done = std::exchange(done_, {});
+    lock.unlock();
+    if (interrupted()) progress_.stop = true;
+    measure(done);
+    if (status_.due()) status_.show(line());
+    lock.lock();
+  }
+}
+
+void GrowDisplay::measure(const std::vector<Tree>& trees) {
+  if (trees.empty() || !status_.shown() || !judged_) return;
+  for (const Tree& tree : trees) votes_.add(tree);
+  const SampleAccuracy accuracy = votes_.accuracy();
+  accuracy_ = fmt::format(", accuracy {:.3f} ({:.3f} among parts)", accuracy.with_background(), accuracy.parts_only());
+}
+
+std::string GrowDisplay::line() const {
+  const double share = work_ > 0.0 ? static_cast<double>(progress_.settled) / work_ : 0.0;
+  const double spent_s = seconds();
+  const double left_s = share > 0.0 ? spent_s / share * (1.0 - share) : 0.0;
+  return fmt::format("{}: {} of {} trees, {:.0f} %, {:.2f} M nodes, {:.0f} M evaluations/s, {:.0f} s left{}", round_,
+                     votes_.trees(), trees_, 100.0 * share, static_cast<double>(progress_.nodes) * 1e-6,
+                     static_cast<double>(progress_.evaluations) / spent_s * 1e-6, left_s, accuracy_);
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,150 @@
+#include "cli/train/train_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "cli/progress.h"
+#include "cli/text_sink.h"
+#include "cli/train/train_curves.h"
+#include "cli/train/train_recipe.h"
+#include "cli/train/train_report.h"
+#include "cli/train/train_session.h"
+#include "cli/train/train_trees.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr double kMiB = 1024.0 * 1024.0;
+constexpr double kGiB = 1024.0 * kMiB;
+
+/// Trains one forest: what the steps share.
+class Training {
+ public:
+  Training(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs)
+      : run_(run),
+        options_(options),
+        inputs_(inputs),
+        set_(inputs.body(), training_convention(options), options.sample,
+             static_cast<std::uint64_t>(options.grow.seed)) {}
+
+  void run() {
+    if (!run_.report.empty()) expect_plots();
+    fill();
+    expect_enough();
+    if (run_.curves) {
+      figures_.curves = train_curves(inputs_, set_, background_frames_, options_, run_.shown);
+    }
+    const Forest forest = grow();
+    save_model(forest, run_.out);
+    session_->remove();
+    summarise(forest);
+    if (!run_.report.empty()) report(forest);
+  }
+
+ private:
+  /// Backgrounds come first: the recipe names them by their bytes, and a run that does not fit the session is refused
+  /// before the rest is read.
+  void fill() {
+    Progress progress(total_frames(), run_.shown);
+    const auto add = [&](const LabelledFrame& frame) {
+      set_.add(frame);
+      progress.step();
+      if (set_.bytes() <= run_.max_bytes) return;
+      throw Error(fmt::format(
+          "{} frames take {:.2f} GiB, --memory allows {:.2f}: expected frames like those measured beforehand",
+          progress.done(), static_cast<double>(set_.bytes()) / kGiB, static_cast<double>(run_.max_bytes) / kGiB));
+    };
+    const std::vector<BackgroundFacts> backgrounds = inputs_.read_backgrounds(add);
+    background_frames_ = set_.frames().size();
+    recipe_ = train_recipe(options_, inputs_, backgrounds);
+    session_.emplace(run_.out + ".work", recipe_, run_.restart);
+    inputs_.read({}, add);
+    figures_.reading_s = progress.seconds();
+    progress.clear();
+    tell(fmt::format("{} frames, {:.2f} million samples, {:.1f} s", set_.frames().size(),
+                     static_cast<double>(set_.samples().size()) * 1e-6, figures_.reading_s));
+  }
+
+  void expect_enough() {
+    const auto body = set_.class_pixels().first(set_.body().part_count());
+    const bool people = std::ranges::any_of(body, [](std::uint64_t pixels) { return pixels > 0; });
+    const bool judged = run_.report.empty() || !set_.held_out().empty();
+    if (people && judged) return;
+    session_->remove();
+    const std::size_t frames = set_.frames().size();
+    if (!people) throw Error(fmt::format("no person in any of {} frames, expected some to learn from", frames));
+    throw Error(fmt::format("no frame of {} is held out, --report expects some: --held-out-share up", frames));
+  }
+
+  /// Backgrounds may not say how many they are.
+  int total_frames() const {
+    std::int64_t frames = inputs_.frames();
+    for (const TrainBackground& background : inputs_.backgrounds()) {
+      if (background.frames < 0) return -1;
+      frames += background.frames;
+    }
+    return static_cast<int>(frames);
+  }
+
+  Forest grow() {
+    if (options_.hard_trees > 0 && set_.has_background()) {
+      const std::vector<Tree> trees = round("first round", kFirstHardTree, options_.hard_trees);
+      figures_.hard_negatives = set_.add_hard_negatives(assemble_forest(set_, trees, recipe_));
+      tell(fmt::format("{} hard negatives", figures_.hard_negatives));
+    }
+    return assemble_forest(set_, round("forest", 0, options_.trees), recipe_);
+  }
+
+  std::vector<Tree> round(const char* name, int first, int count) {
+    return grow_round(set_, options_, {name, first, count, run_.trees_at_once}, *session_, recipe_, run_.shown,
+                      figures_.grown);
+  }
+
+  void summarise(const Forest& forest) {
+    HeldOutVotes votes(set_);
+    for (const Tree& tree : forest.trees) votes.add(tree);
+    figures_.accuracy = votes.accuracy();
+    figures_.model = run_.out;
+    figures_.model_bytes = std::filesystem::file_size(run_.out);
+    figures_.threads = thread_count();
+    tell(fmt::format("{}: {} trees, {:.2f} MiB, grown in {:.1f} s", run_.out, forest.trees.size(),
+                     static_cast<double>(figures_.model_bytes) / kMiB, figures_.grown.seconds));
+    if (set_.held_out().empty()) return;
+    tell(fmt::format("accuracy {:.3f} ({:.3f} among parts) on {} held-out samples", figures_.accuracy.with_background(),
+                     figures_.accuracy.parts_only(), set_.held_out().size()));
+  }
+
+  void report(const Forest& forest) {
+    figures_.by_trees = accuracy_by_trees(forest, set_);
+    figures_.by_level = accuracy_by_level(forest, set_);
+    write_report(train_report(forest, set_, figures_), run_.report);
+    tell(fmt::format("{}/report.html", run_.report));
+  }
+
+  void tell(const std::string& text) const {
+    if (run_.shown) say(text);
+  }
+
+  const TrainRun& run_;
+  const TrainOptions& options_;
+  const TrainInputs& inputs_;
+  TrainingSet set_;
+  std::size_t background_frames_ = 0;
+  std::string recipe_;
+  std::optional<TrainSession> session_;
+  TrainFigures figures_;
+};
+
+}  // namespace
+
+void train(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs) {
+  Training(run, options, inputs).run();
+}
+
+}  // namespace vesalius::cli

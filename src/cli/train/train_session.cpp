@@ -1,0 +1,98 @@
+#include "cli/train/train_session.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "cli/train/train_recipe.h"
+#include "io/files/atomic_file.h"
+#include "io/files/read_file.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRecipeFile = "recipe.toml";
+
+bool is_ours(const std::string& name) { return name.starts_with("tree-") || name.starts_with(kRecipeFile); }
+
+/// What a killed run left half written.
+bool is_leftover(const std::string& name) { return name.find(".tmp") != std::string::npos; }
+
+std::vector<fs::path> files_in(const std::string& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    files.push_back(it->path());
+  }
+  if (error) throw Error(folder + ": folder cannot be read: " + error.message());
+  return files;
+}
+
+/// Throws for a folder that is in use for something else.
+void expect_only_ours(const std::string& folder) {
+  for (const fs::path& file : files_in(folder)) {
+    const std::string name = file.filename().string();
+    if (is_ours(name)) continue;
+    throw Error(fmt::format("{}: has another file in it, {}; expected a folder for trees that are being trained",
+                            folder, name));
+  }
+}
+
+}  // namespace
+
+TrainSession::TrainSession(const std::string& folder, const std::string& recipe, bool restart)
+    : folder_(folder), recipe_(recipe) {
+  lock_.emplace(folder_);
+  expect_only_ours(folder_);
+  tidy(restart);
+  const std::string recipe_path = (fs::path(folder_) / kRecipeFile).string();
+  if (fs::exists(recipe_path)) {
+    const std::string difference = first_difference(read_file(recipe_path), recipe_);
+    if (difference.empty()) return;
+    throw Error(fmt::format("{}: has trees of another training ({}); --restart removes them", folder_, difference));
+  }
+  tidy(true);  // trees without a recipe are nobody's
+  write_file_atomically(recipe_path, recipe_);
+}
+
+void TrainSession::tidy(bool all) const {
+  for (const fs::path& file : files_in(folder_)) {
+    const std::string name = file.filename().string();
+    std::error_code error;
+    if (is_ours(name) && (all || is_leftover(name))) fs::remove(file, error);
+    if (error) throw Error(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+  }
+}
+
+std::string TrainSession::path(int number) const {
+  return (fs::path(folder_) / fmt::format("tree-{:04}.forest", number)).string();
+}
+
+std::optional<Tree> TrainSession::load(int number) const {
+  std::error_code ignored;
+  if (!fs::exists(path(number), ignored)) return std::nullopt;
+  try {
+    Forest forest = load_model(path(number));
+    if (forest.recipe != recipe_ || forest.trees.size() != 1) return std::nullopt;
+    return std::move(forest.trees.front());
+  } catch (const Error&) {
+    return std::nullopt;  // damaged: grown again
+  }
+}
+
+void TrainSession::save(int number, const Forest& one_tree) const { save_model(one_tree, path(number)); }
+
+void TrainSession::remove() {
+  tidy(true);
+  lock_.reset();
+  std::error_code ignored;  // whatever else was put there stays
+  fs::remove(folder_, ignored);
+}
+
+}  // namespace vesalius::cli

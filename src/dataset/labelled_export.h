@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/sources/write_frames.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
+
+namespace vesalius {
+
+/// Writes labelled frames as plain files that any program reads: depth/, rgb/ and meta.json as `open_source` reads
+/// them, labels/NAME.png and person/NAME.png (8-bit, 255 = background), truth/NAME.json (part centres and
+/// joints in metres, optical frame), and body.toml, which names the labels.
+class LabelledExporter {
+ public:
+  /// Makes `folder`; throws Error when it cannot or when it has files in it already. `joints` names the joints of the
+  /// frames.
+  LabelledExporter(const std::string& folder, const BodyModel& body, std::vector<std::string> joints = {});
+
+  /// Throws Error as FrameWriter::write does, and for truth that does not fit the frame, the body or the joints.
+  void write(const LabelledFrame& labelled);
+
+ private:
+  std::string folder_;
+  const BodyModel& body_;
+  std::vector<std::string> joints_;
+  std::unique_ptr<FrameWriter> frames_;
+};
+
+}  // namespace vesalius

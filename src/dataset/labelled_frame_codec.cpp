@@ -1,0 +1,164 @@
+#include "dataset/labelled_frame_codec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "dataset/plane_codec.h"
+#include "io/files/image_bytes.h"
+
+namespace vesalius {
+namespace {
+
+constexpr std::uint8_t kHasColour = 1;
+constexpr std::size_t kMaxName = 255;
+
+void write_camera(ByteWriter& out, const Camera& camera) {
+  out.number(static_cast<std::uint32_t>(camera.width));
+  out.number(static_cast<std::uint32_t>(camera.height));
+  for (const float value : {camera.fx, camera.fy, camera.cx, camera.cy}) out.real(value);
+}
+
+Camera read_camera(ByteReader& in) {
+  Camera camera;
+  const auto width = in.number<std::uint32_t>("camera");
+  const auto height = in.number<std::uint32_t>("camera");
+  const bool usable = width > 0 && height > 0 && width <= kMaxPixels && height <= kMaxPixels &&
+                      std::int64_t{width} * std::int64_t{height} <= kMaxPixels;
+  if (!usable) in.fail(fmt::format("picture of {}x{}, expected 1 to {} pixels", width, height, kMaxPixels));
+  camera.width = static_cast<int>(width);
+  camera.height = static_cast<int>(height);
+  for (float* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *value = in.real32("camera");
+  return camera;
+}
+
+void write_points(ByteWriter& out, const std::vector<Eigen::Vector3f>& points) {
+  for (const Eigen::Vector3f& p : points) {
+    for (int axis = 0; axis < 3; ++axis) out.real(p[axis]);
+  }
+}
+
+std::vector<Eigen::Vector3f> read_points(ByteReader& in, std::size_t count, const char* what) {
+  std::vector<Eigen::Vector3f> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = in.real32(what);
+    const float y = in.real32(what);
+    points.emplace_back(x, y, in.real32(what));
+  }
+  return points;
+}
+
+void write_people(ByteWriter& out, const LabelledFrame& labelled) {
+  out.number(static_cast<std::uint8_t>(labelled.parts.size()));
+  for (const auto& parts : labelled.parts) write_points(out, parts);
+  out.number(static_cast<std::uint8_t>(labelled.joints.empty() ? 0 : labelled.joints[0].size()));
+  for (const auto& joints : labelled.joints) write_points(out, joints);
+}
+
+void read_people(ByteReader& in, int part_count, int version, LabelledFrame& labelled) {
+  const auto people = in.number<std::uint8_t>("people");
+  for (int i = 0; i < people; ++i) {
+    labelled.parts.push_back(read_points(in, static_cast<std::size_t>(part_count), "part centre"));
+  }
+  if (version < 2) return;
+  const auto joints = in.number<std::uint8_t>("joints");
+  for (int i = 0; joints > 0 && i < people; ++i) labelled.joints.push_back(read_points(in, joints, "joint"));
+}
+
+/// The first value that is neither background nor below `count`. Most often there is none: no early way out of the
+/// loop, so that it runs on vectors.
+std::optional<std::uint8_t> first_beyond(const Image<std::uint8_t>& plane, std::size_t count) {
+  const auto limit = static_cast<std::uint8_t>(std::min<std::size_t>(count, kBackground));
+  const auto beyond = [limit](std::uint8_t value) { return value >= limit && value != kBackground; };
+  std::uint8_t any = 0;
+  for (const std::uint8_t value : plane) any |= static_cast<std::uint8_t>(beyond(value));
+  if (any == 0) return std::nullopt;
+  return *std::find_if(plane.begin(), plane.end(), beyond);
+}
+
+void check_joints(const LabelledFrame& labelled) {
+  if (labelled.joints.empty()) return;
+  if (labelled.joints.size() != labelled.parts.size()) {
+    throw Error(fmt::format("joints of {} people, expected {} or none", labelled.joints.size(), labelled.parts.size()));
+  }
+  const std::size_t count = labelled.joints[0].size();
+  if (count == 0 || count > kMostJoints) throw Error(fmt::format("{} joints, expected 1 to {}", count, kMostJoints));
+  for (const auto& joints : labelled.joints) {
+    if (joints.size() != count) throw Error(fmt::format("person with {} joints, expected {}", joints.size(), count));
+    for (const Eigen::Vector3f& p : joints) {
+      if (!p.allFinite()) throw Error("joint is not finite");
+    }
+  }
+}
+
+}  // namespace
+
+void check_truth(const LabelledFrame& labelled, int part_count) {
+  check(labelled.frame);
+  if (!labelled.labels.same_size(labelled.frame.depth) || !labelled.person.same_size(labelled.frame.depth)) {
+    throw Error("labels and person must have the size of the depth");
+  }
+  if (labelled.frame.name.size() > kMaxName) throw Error(fmt::format("name of more than {} bytes", kMaxName));
+  const std::size_t people = labelled.parts.size();
+  if (people >= kBackground) throw Error(fmt::format("{} people, expected at most 254", people));
+  if (const auto label = first_beyond(labelled.labels, static_cast<std::size_t>(part_count))) {
+    throw Error(fmt::format("label {}, expected one below {} or {}", *label, part_count, kBackground));
+  }
+  if (const auto person = first_beyond(labelled.person, people)) {
+    throw Error(fmt::format("person {} in the picture, expected one below {} or {}", *person, people, kBackground));
+  }
+  for (const auto& parts : labelled.parts) {
+    if (parts.size() != static_cast<std::size_t>(part_count)) {
+      throw Error(fmt::format("person with {} parts, expected {}", parts.size(), part_count));
+    }
+    for (const Eigen::Vector3f& p : parts) {
+      if (p.array().isInf().any()) throw Error("part centre is infinite, expected a point or NaN");
+    }
+  }
+  check_joints(labelled);
+}
+
+std::string encode_frame(const DatasetFrame& frame, int part_count) {
+  const LabelledFrame& labelled = frame.labelled;
+  with_context(fmt::format("frame {}", frame.index), [&] { check_truth(labelled, part_count); });
+  ByteWriter out;
+  out.number(frame.index);
+  out.number(frame.seed);
+  out.number(labelled.frame.colour.empty() ? std::uint8_t{0} : kHasColour);
+  out.text(labelled.frame.name);
+  out.real(labelled.frame.time_s);
+  write_camera(out, labelled.frame.camera);
+  write_people(out, labelled);
+  write_depth_plane(out, labelled.frame.depth);
+  write_byte_plane(out, labelled.labels);
+  write_byte_plane(out, labelled.person);
+  if (!labelled.frame.colour.empty()) write_colour_plane(out, labelled.frame.colour);
+  return std::move(out.bytes());
+}
+
+DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::string& name, bool with_colour,
+                          int version) {
+  ByteReader in(bytes, name);
+  DatasetFrame frame;
+  frame.index = in.number<std::uint64_t>("index");
+  frame.seed = in.number<std::uint64_t>("seed");
+  const auto flags = in.number<std::uint8_t>("flags");
+  if (flags > kHasColour) in.fail(fmt::format("unknown flags {}", flags));
+  LabelledFrame& labelled = frame.labelled;
+  labelled.frame.name = in.text("name");
+  labelled.frame.time_s = in.real64("time");
+  labelled.frame.camera = read_camera(in);
+  read_people(in, part_count, version, labelled);
+  const auto [width, height] = std::pair(labelled.frame.camera.width, labelled.frame.camera.height);
+  labelled.frame.depth = read_depth_plane(in, width, height);
+  labelled.labels = read_byte_plane(in, width, height);
+  labelled.person = read_byte_plane(in, width, height);
+  if (flags == kHasColour && with_colour) labelled.frame.colour = read_colour_plane(in, width, height);
+  if (flags == kHasColour && !with_colour) skip_colour_plane(in);
+  in.expect_end();
+  if (!std::isfinite(labelled.frame.time_s)) in.fail("time is not finite");
+  with_context(name, [&] { check_truth(labelled, part_count); });
+  return frame;
+}
+
+}  // namespace vesalius

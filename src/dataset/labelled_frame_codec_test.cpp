@@ -1,0 +1,108 @@
+#include "dataset/labelled_frame_codec.h"
+
+#include <gmock/gmock.h>
+
+#include "dataset/test_dataset.h"
+
+namespace vesalius {
+namespace {
+
+using test::error_of;
+using test::random_labelled;
+using testing::HasSubstr;
+
+constexpr int kParts = 25;
+
+TEST(FrameCodec, GivesBackEveryField) {
+  for (const bool colour : {true, false}) {
+    LabelledFrame labelled = random_labelled(3, colour);
+    labelled.frame.time_s = 12.25;
+    const std::string bytes = encode_frame({41, 7, labelled}, kParts);
+    const DatasetFrame back = decode_frame(bytes, kParts, "test");
+    EXPECT_EQ(back.index, 41U);
+    EXPECT_EQ(back.seed, 7U);
+    test::expect_same(back.labelled, labelled);
+  }
+}
+
+TEST(FrameCodec, LeavesColourOutWhereNotWanted) {
+  const LabelledFrame labelled = random_labelled(3);
+  const DatasetFrame back = decode_frame(encode_frame({0, 0, labelled}, kParts), kParts, "test", false);
+  EXPECT_TRUE(back.labelled.frame.colour.empty());
+  EXPECT_EQ(back.labelled.frame.depth, labelled.frame.depth);
+}
+
+TEST(FrameCodec, KeepsEmptyRooms) {
+  LabelledFrame labelled = random_labelled(3);
+  labelled.parts.clear();
+  labelled.joints.clear();
+  labelled.labels.fill(kBackground);
+  labelled.person.fill(kBackground);
+  test::expect_same(decode_frame(encode_frame({1, 2, labelled}, kParts), kParts, "test").labelled, labelled);
+}
+
+TEST(FrameCodec, KeepsPeopleWithoutJoints) {
+  LabelledFrame labelled = random_labelled(3);
+  labelled.joints.clear();
+  test::expect_same(decode_frame(encode_frame({1, 2, labelled}, kParts), kParts, "test").labelled, labelled);
+}
+
+TEST(FrameCodec, ReadsFramesOfVersionOne) {
+  LabelledFrame labelled = random_labelled(3);
+  labelled.joints.clear();
+  const std::string old = test::as_version_one(encode_frame({1, 2, labelled}, kParts), labelled);
+  test::expect_same(decode_frame(old, kParts, "test", true, 1).labelled, labelled);
+  EXPECT_THAT(error_of([&] { decode_frame(old, kParts, "test"); }), HasSubstr("test: "));
+}
+
+TEST(FrameCodec, RefusesTruthThatDoesNotFit) {
+  const auto complaint = [](const std::function<void(LabelledFrame&)>& change) {
+    LabelledFrame labelled = random_labelled(3);
+    change(labelled);
+    return error_of([&] { encode_frame({5, 0, labelled}, kParts); });
+  };
+  EXPECT_THAT(complaint([](auto& f) { f.labels = LabelImage(3, 3, 0); }), HasSubstr("frame 5: labels and person"));
+  EXPECT_THAT(complaint([](auto& f) { f.labels[4] = 25; }), HasSubstr("label 25, expected one below 25 or 255"));
+  EXPECT_THAT(complaint([](auto& f) { f.person[4] = 2; }), HasSubstr("person 2 in the picture, expected one below 2"));
+  EXPECT_THAT(complaint([](auto& f) { f.parts[1].pop_back(); }), HasSubstr("person with 24 parts, expected 25"));
+  EXPECT_THAT(complaint([](auto& f) { f.parts[0][0].x() = std::numeric_limits<float>::infinity(); }),
+              HasSubstr("infinite"));
+  EXPECT_THAT(complaint([](auto& f) { f.joints.pop_back(); }), HasSubstr("joints of 1 people, expected 2 or none"));
+  EXPECT_THAT(complaint([](auto& f) { f.joints[1].pop_back(); }), HasSubstr("person with 2 joints, expected 3"));
+  EXPECT_THAT(complaint([](auto& f) { f.joints[0].resize(256); }), HasSubstr("256 joints, expected 1 to 255"));
+  EXPECT_THAT(complaint([](auto& f) { f.joints[0][0].y() = std::numeric_limits<float>::quiet_NaN(); }),
+              HasSubstr("joint is not finite"));
+  EXPECT_THAT(complaint([](auto& f) { f.frame.name = std::string(256, 'x'); }), HasSubstr("name of more than 255"));
+  EXPECT_THAT(complaint([](auto& f) { f.parts.resize(255, f.parts[0]); }), HasSubstr("255 people"));
+}
+
+// Without its checksum a damaged frame may decode as another one, but never as one that cannot be.
+TEST(FrameCodec, EndsInAnErrorOrAFrameForEveryDamage) {
+  const std::string bytes = encode_frame({1, 2, random_labelled(3)}, kParts);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    for (const int flip : {0x01, 0x80, 0xFF}) {
+      std::string damaged = bytes;
+      damaged[i] = static_cast<char>(damaged[i] ^ flip);
+      try {
+        check_truth(decode_frame(damaged, kParts, "test").labelled, kParts);
+      } catch (const Error& e) {
+        ASSERT_THAT(e.what(), testing::StartsWith("test"));
+      }
+    }
+  }
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    EXPECT_THAT(error_of([&] { decode_frame(bytes.substr(0, size), kParts, "test"); }), HasSubstr("test: damaged at"));
+  }
+  EXPECT_THAT(error_of([&] { decode_frame(bytes + "x", kParts, "test"); }), HasSubstr("expected the end"));
+}
+
+TEST(FrameCodec, RefusesPicturesBeyondTheLimitBeforeTheyAreMade) {
+  std::string bytes = encode_frame({1, 2, random_labelled(3)}, kParts);
+  const std::size_t width_at = 8 + 8 + 1 + 4 + random_labelled(3).frame.name.size() + 8;
+  ASSERT_EQ(bytes[width_at], 37);
+  bytes[width_at + 3] = '\x10';
+  EXPECT_THAT(error_of([&] { decode_frame(bytes, kParts, "test"); }), HasSubstr("picture of 268435493x23"));
+}
+
+}  // namespace
+}  // namespace vesalius

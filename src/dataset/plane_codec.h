@@ -1,0 +1,24 @@
+#pragma once
+
+#include "io/files/byte_stream.h"
+#include "vesalius/base/image.h"
+
+// Lossless compression of pictures in labelled datasets (docs/formats.md). Reading needs the size of the picture,
+// allocates no more than it warrants, and throws Error for bytes that are no such picture.
+namespace vesalius {
+
+/// Depth as ranks among the values that occur, each predicted from its neighbours: what a sensor quantises costs
+/// little.
+void write_depth_plane(ByteWriter& out, const DepthImage& depth);
+DepthImage read_depth_plane(ByteReader& in, int width, int height);
+
+/// Labels or person indices: few values, in patches.
+void write_byte_plane(ByteWriter& out, const Image<std::uint8_t>& plane);
+Image<std::uint8_t> read_byte_plane(ByteReader& in, int width, int height);
+
+void write_colour_plane(ByteWriter& out, const ColourImage& colour);
+ColourImage read_colour_plane(ByteReader& in, int width, int height);
+/// Goes past a colour picture without decoding it.
+void skip_colour_plane(ByteReader& in);
+
+}  // namespace vesalius

@@ -1,0 +1,52 @@
+#include "dataset/truth_csv.h"
+
+#include "io/files/test_files.h"
+
+namespace vesalius {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(CsvTable, CellsByColumn) {
+  const CsvTable table = CsvTable::parse(
+      "\xef\xbb\xbf"
+      "a,b,c\r\n1,,x y\r\n\r\n-2,0.5,\n",
+      "t.csv");
+  ASSERT_EQ(table.rows(), 2U);
+  EXPECT_TRUE(table.has("b"));
+  EXPECT_FALSE(table.has("d"));
+  EXPECT_EQ(table.cell(0, table.column("c")), "x y");
+  EXPECT_EQ(table.cell(1, table.column("c")), "");
+  EXPECT_EQ(table.integer(1, table.column("a"), -5, 5), -2);
+  EXPECT_DOUBLE_EQ(table.number(1, table.column("b")), 0.5);
+  EXPECT_EQ(table.place(1), "t.csv:4");
+}
+
+TEST(CsvTable, HeaderAlone) { EXPECT_EQ(CsvTable::parse("a,b", "t.csv").rows(), 0U); }
+
+TEST(CsvTable, SaysWhereItIsWrong) {
+  const auto error = [](const std::string& text) { return test::error_of([&] { CsvTable::parse(text, "t.csv"); }); };
+  EXPECT_EQ(error(""), "t.csv: empty, expected a header with the columns' names");
+  EXPECT_EQ(error("a,b\n1,2\n1\n"), "t.csv:3: 1 cells, expected 2 as in the header");
+  EXPECT_EQ(error("a,b,a\n"), "t.csv: the column \"a\" comes twice");
+  const CsvTable table = CsvTable::parse("a\nx\n1.5\ninf\n1e999\n 3\n", "t.csv");
+  EXPECT_EQ(test::error_of([&] { table.number(0, 0); }), "t.csv:2: column a: \"x\", expected a finite number");
+  EXPECT_THAT(test::error_of([&] { table.integer(1, 0, 0, 9); }),
+              HasSubstr("\"1.5\", expected a whole number from 0 to 9"));
+  for (const std::size_t row : {2U, 3U, 4U}) {
+    EXPECT_THAT(test::error_of([&] { table.number(row, 0); }), HasSubstr("expected a finite number"));
+  }
+  EXPECT_EQ(test::error_of([&] { table.column("b"); }), "t.csv: no column \"b\" in the header");
+  EXPECT_THAT(test::error_of([] { CsvTable::read("/nowhere/t.csv"); }), StartsWith("/nowhere/t.csv: "));
+}
+
+TEST(CsvTable, AForeignCellStaysOnOneLine) {
+  const CsvTable table = CsvTable::parse("a\n\x1b[31m\x01" + std::string(500, 'z') + "\n", "t.csv");
+  const std::string error = test::error_of([&] { table.number(0, 0); });
+  EXPECT_LT(error.size(), 150U);
+  EXPECT_THAT(error, HasSubstr("?[31m?zzz"));
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,172 @@
+#include "dataset/truth_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <system_error>
+
+#include "dataset/truth_csv.h"
+#include "io/files/image_file.h"
+#include "io/sources/folder_source.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostPeople = 1000;
+constexpr std::size_t kMostJoints = 1000;
+constexpr double kFarthest_m = 1000.0;
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+/// A trailing slash would hide the folder's name.
+fs::path plain(const std::string& folder) {
+  std::error_code ignored;
+  fs::path path = fs::absolute(folder, ignored).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+/// Frames go by their names, with or without the extension of a picture.
+std::string frame_name(const std::string& text) {
+  return text.ends_with(".png") ? text.substr(0, text.size() - 4) : text;
+}
+
+Mask read_mask(const std::string& path, const Frame& frame) {
+  const ColourImage picture = read_colour(path);
+  if (!picture.same_size(frame.depth)) {
+    throw Error(fmt::format("{}: {}x{} pixels, expected those of the frame, {}x{}", path, picture.width(),
+                            picture.height(), frame.depth.width(), frame.depth.height()));
+  }
+  Mask mask(picture.width(), picture.height(), 0);
+  std::ranges::transform(picture, mask.begin(), [](Rgb pixel) -> std::uint8_t { return pixel == Rgb{} ? 0 : 1; });
+  return mask;
+}
+
+}  // namespace
+
+TruthFolder::TruthFolder(const std::string& folder) : folder_(folder) {
+  const fs::path path = plain(folder);
+  has_masks_ = is_folder(path / "mask");
+  if (is_file(path / "frames.csv")) {
+    read_people((path / "frames.csv").string(), "");
+  } else if (is_file(path.parent_path() / "frames.csv")) {
+    read_people((path.parent_path() / "frames.csv").string(), path.filename().string());
+  }
+  if (is_file(path / "joints.csv")) read_joints((path / "joints.csv").string());
+  if (is_file(path / "groundtruth.txt")) camera_ = Trajectory::read((path / "groundtruth.txt").string());
+  if (facts_.empty() && joints_.empty() && !has_masks_) {
+    throw Error(
+        fmt::format("{}: no truth, expected frames.csv (in it, or beside it naming it), joints.csv or mask/", folder));
+  }
+}
+
+/// `set`: rows of other sets do not count; empty = the table has one set only.
+void TruthFolder::read_people(const std::string& path, const std::string& set) {
+  const CsvTable table = CsvTable::read(path);
+  const std::size_t frame = table.column("frame");
+  const std::size_t people = table.column("people");
+  const bool has_posture = table.has("posture");
+  const std::size_t posture = has_posture ? table.column("posture") : 0;
+  const std::size_t set_column = set.empty() ? 0 : table.column("set");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (!set.empty() && table.cell(row, set_column) != set) continue;
+    Facts facts{table.integer(row, people, -1, kMostPeople), has_posture ? table.cell(row, posture) : ""};
+    const std::string name = frame_name(table.cell(row, frame));
+    if (!facts_.emplace(name, std::move(facts)).second) {
+      throw Error(fmt::format("{}: frame {} comes twice", table.place(row), name));
+    }
+  }
+}
+
+void TruthFolder::read_joints(const std::string& path) {
+  const CsvTable table = CsvTable::read(path);
+  const std::size_t frame = table.column("frame");
+  const std::size_t joint = table.column("joint");
+  const std::size_t x = table.column("x_m"), y = table.column("y_m"), z = table.column("z_m");
+  std::map<std::string, std::size_t> index;
+  std::set<std::pair<std::string, std::size_t>> known;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto [found, is_new] = index.try_emplace(table.cell(row, joint), joint_names_.size());
+    if (is_new) joint_names_.push_back(found->first);
+    if (joint_names_.size() > kMostJoints) {
+      throw Error(fmt::format("{}: expected at most {} joints", table.place(row), kMostJoints));
+    }
+    const std::string name = frame_name(table.cell(row, frame));
+    if (!known.emplace(name, found->second).second) {
+      throw Error(fmt::format("{}: joint {} of frame {} comes twice", table.place(row), found->first, name));
+    }
+    const Eigen::Vector3d point(table.number(row, x), table.number(row, y), table.number(row, z));
+    if (point.cwiseAbs().maxCoeff() > kFarthest_m) {
+      throw Error(fmt::format("{}: a joint at {} m, expected metres", table.place(row), point.cwiseAbs().maxCoeff()));
+    }
+    auto& joints = joints_[name];
+    joints.resize(joint_names_.size(), Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+    joints[found->second] = point.cast<float>();
+  }
+  for (auto& [name, joints] : joints_) {
+    joints.resize(joint_names_.size(), Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+  }
+}
+
+FrameTruth TruthFolder::truth_of(const Frame& frame) const {
+  FrameTruth truth;
+  const auto facts = facts_.find(frame.name);
+  if (facts != facts_.end()) {
+    truth.people = facts->second.people;
+    truth.posture = facts->second.posture;
+  }
+  if (camera_) truth.camera_motion = camera_->motion(frame.time_s);
+  const auto joints = joints_.find(frame.name);
+  if (joints != joints_.end()) {
+    if (facts == facts_.end()) truth.people = 1;
+    truth.joint_names = joint_names_;
+    truth.joints.push_back(joints->second);
+  }
+  const fs::path mask = fs::path(folder_) / "mask" / (frame.name + ".png");
+  if (has_masks_ && is_file(mask)) truth.mask = read_mask(mask.string(), frame);
+  if (facts == facts_.end() && joints == joints_.end() && truth.mask.empty()) {
+    throw Error(fmt::format("{}: nothing is known of frame {}, expected it in frames.csv or joints.csv, or its mask",
+                            folder_, frame.name));
+  }
+  // People without a single pixel: the mask was not made for this frame.
+  const bool blank = std::ranges::all_of(truth.mask, [](std::uint8_t pixel) { return pixel == 0; });
+  if (blank && truth.people != 0) truth.mask = {};
+  return truth;
+}
+
+std::vector<std::string> sets_in(const std::string& folder) {
+  const fs::path path(folder);
+  if (!is_folder(path) || !is_file(path / "frames.csv") || is_folder(path / "depth")) return {folder};
+  const CsvTable table = CsvTable::read((path / "frames.csv").string());
+  if (!table.has("set")) return {folder};
+  const std::size_t column = table.column("set");
+  std::set<std::string> named;
+  for (std::size_t row = 0; row < table.rows(); ++row) named.insert(table.cell(row, column));
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
+    const std::string name = entry.path().filename().string();
+    if (is_folder(entry.path()) && (named.contains(name) || is_file(entry.path() / "joints.csv"))) {
+      names.push_back(name);
+    }
+  }
+  if (names.empty()) throw Error(fmt::format("{}: none of the sets that its frames.csv names is there", folder));
+  std::ranges::sort(names, natural_less);
+  for (std::string& name : names) name = (path / name).string();
+  return names;
+}
+
+}  // namespace vesalius

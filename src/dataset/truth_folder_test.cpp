@@ -1,0 +1,132 @@
+#include "dataset/truth_folder.h"
+
+#include <cmath>
+
+#include "io/files/image_file.h"
+#include "io/files/test_files.h"
+
+namespace vesalius {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Frame frame(const std::string& name, int width = 4, int height = 3) {
+  return test::random_frame(name, 1, width, height);
+}
+
+void put_mask(const std::string& path, int width, int height, std::uint8_t fill) {
+  test::put(path, encode_png(Image<std::uint8_t>(width, height, fill)));
+}
+
+TEST(TruthFolder, PeopleBesideSeveralSets) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "frames.csv", "set,frame,people,posture,has_rgb\nroom,a,2,sitting,1\nroom,b,0,,1\nhall,a,-1,,1\n");
+  test::put(folder / "room/depth/a.png", "");
+  const TruthFolder room(folder / "room/");
+  EXPECT_EQ(room.truth_of(frame("a")).people, 2);
+  EXPECT_EQ(room.truth_of(frame("a")).posture, "sitting");
+  EXPECT_EQ(room.truth_of(frame("b")).people, 0);
+  EXPECT_TRUE(room.truth_of(frame("a")).mask.empty());
+  EXPECT_THAT(test::error_of([&] { room.truth_of(frame("c")); }), HasSubstr("nothing is known of frame c"));
+}
+
+TEST(TruthFolder, PeopleInTheFolderItself) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "set/frames.csv", "frame,people\na.png,3\n");
+  test::put(folder / "frames.csv", "set,frame,people\nset,a,1\n");
+  EXPECT_EQ(TruthFolder(folder / "set").truth_of(frame("a")).people, 3);
+}
+
+TEST(TruthFolder, Masks) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "frames.csv", "frame,people\na,1\nblank,1\nempty,0\n");
+  put_mask(folder / "mask/a.png", 4, 3, 4);
+  put_mask(folder / "mask/blank.png", 4, 3, 0);
+  put_mask(folder / "mask/empty.png", 4, 3, 0);
+  put_mask(folder / "mask/only.png", 4, 3, 255);
+  const TruthFolder truth(folder.path());
+  EXPECT_EQ(truth.truth_of(frame("a")).mask, Mask(4, 3, 1));
+  EXPECT_TRUE(truth.truth_of(frame("blank")).mask.empty());  // a person without pixels: nobody made it
+  EXPECT_EQ(truth.truth_of(frame("empty")).mask, Mask(4, 3, 0));
+  EXPECT_EQ(truth.truth_of(frame("only")).people, -1);
+  EXPECT_THAT(test::error_of([&] { truth.truth_of(frame("a", 8, 6)); }),
+              HasSubstr("mask/a.png: 4x3 pixels, expected those of the frame, 8x6"));
+}
+
+TEST(TruthFolder, Joints) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "joints.csv",
+            "frame,joint,x_m,y_m,z_m,u_px\na.png,head,0.1,-0.5,2.5,3\na.png,hand,0.2,0,2,4\nb.png,hand,1,2,3,5\n");
+  const TruthFolder truth(folder.path());
+  const FrameTruth a = truth.truth_of(frame("a"));
+  EXPECT_EQ(a.people, 1);
+  EXPECT_THAT(a.joint_names, ElementsAre("head", "hand"));
+  EXPECT_EQ(a.joints[0][0], Eigen::Vector3f(0.1F, -0.5F, 2.5F));
+  const FrameTruth b = truth.truth_of(frame("b"));
+  EXPECT_TRUE(b.joints[0][0].hasNaN());
+  EXPECT_EQ(b.joints[0][1], Eigen::Vector3f(1, 2, 3));
+}
+
+TEST(TruthFolder, WhetherTheCameraMoves) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "frames.csv", "frame,people\na,1\n");
+  EXPECT_EQ(TruthFolder(folder.path()).truth_of(frame("a")).camera_motion, CameraMotion::unknown);
+  test::put(folder / "groundtruth.txt", "7.0 0 0 0 0 0 0 1\n7.1 0 0 0 0 0 0 1\n7.2 0.1 0 0 0 0 0 1\n");
+  const TruthFolder truth(folder.path());
+  const auto motion_at = [&](double time_s) {
+    Frame at = frame("a");
+    at.time_s = time_s;
+    return truth.truth_of(at).camera_motion;
+  };
+  EXPECT_EQ(motion_at(7.05), CameraMotion::still);
+  EXPECT_EQ(motion_at(7.14), CameraMotion::moving);
+  EXPECT_EQ(motion_at(0.0), CameraMotion::unknown);
+}
+
+TEST(TruthFolder, SaysWhatIsMissingOrWrong) {
+  const test::TemporaryFolder folder;
+  const auto error = [&](const std::string& file, const std::string& text) {
+    test::put(folder / file, text);
+    const std::string message = test::error_of([&] { TruthFolder(folder.path()); });
+    std::filesystem::remove(folder / file);
+    return message;
+  };
+  EXPECT_THAT(test::error_of([&] { TruthFolder(folder.path()); }), HasSubstr("no truth, expected frames.csv"));
+  EXPECT_THAT(error("frames.csv", "frame,posture\na,sitting\n"), HasSubstr("no column \"people\""));
+  EXPECT_THAT(error("frames.csv", "people\n1\n"), HasSubstr("no column \"frame\""));
+  EXPECT_THAT(error("frames.csv", "frame,people\na,many\n"), HasSubstr("frames.csv:2: column people: \"many\""));
+  EXPECT_THAT(error("frames.csv", "frame,people\na,-2\n"), HasSubstr("expected a whole number from -1 to 1000"));
+  EXPECT_THAT(error("frames.csv", "frame,people\na,1\na.png,1\n"), HasSubstr("frames.csv:3: frame a comes twice"));
+  test::put(folder / "mask/a.png", "");
+  EXPECT_THAT(error("groundtruth.txt", "1 2 3\n"), HasSubstr("groundtruth.txt:1: expected \"timestamp tx"));
+  std::filesystem::remove_all(folder / "mask");
+  EXPECT_THAT(error("joints.csv", "frame,joint,x_m,y_m\na,head,0,0\n"), HasSubstr("no column \"z_m\""));
+  EXPECT_THAT(error("joints.csv", "frame,joint,x_m,y_m,z_m\na,head,0,0,nan\n"),
+              HasSubstr("\"nan\", expected a finite"));
+  EXPECT_THAT(error("joints.csv", "frame,joint,x_m,y_m,z_m\na,head,0,0,2500\n"), HasSubstr("expected metres"));
+  EXPECT_THAT(error("joints.csv", "frame,joint,x_m,y_m,z_m\na,head,0,0,2\na,head,0,0,2\n"),
+              HasSubstr("joints.csv:3: joint head of frame a comes twice"));
+}
+
+TEST(SetsIn, FoldersThatTheTableNamesOrThatHaveJoints) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "frames.csv", "set,frame,people\nroom_10,a,1\nroom_9,a,1\ngone,a,1\n");
+  test::put(folder / "room_10/depth/a.png", "");
+  test::put(folder / "room_9/depth/a.png", "");
+  test::put(folder / "dancer/joints.csv", "");
+  test::put(folder / "other/depth/a.png", "");
+  EXPECT_THAT(sets_in(folder.path()), ElementsAre(folder / "dancer", folder / "room_9", folder / "room_10"));
+  EXPECT_THAT(sets_in(folder / "room_9"), ElementsAre(folder / "room_9"));
+  EXPECT_THAT(sets_in("/nowhere"), ElementsAre("/nowhere"));
+}
+
+TEST(SetsIn, NoneOfThemThere) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "frames.csv", "set,frame,people\ngone,a,1\n");
+  EXPECT_THAT(test::error_of([&] { sets_in(folder.path()); }), HasSubstr("none of the sets"));
+}
+
+}  // namespace
+}  // namespace vesalius

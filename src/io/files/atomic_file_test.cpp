@@ -1,0 +1,92 @@
+#include "io/files/atomic_file.h"
+
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "io/files/test_files.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using test::get;
+using test::put;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+TEST(WriteFileAtomically, ReplacesTheWholeFileAndLeavesNothingElse) {
+  const TemporaryFolder folder;
+  const std::string path = put(folder / "a.txt", "something rather long");
+  write_file_atomically(path, std::string_view("new\0bytes", 9));
+  EXPECT_EQ(get(path), std::string("new\0bytes", 9));
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(WriteFileAtomically, NamesThePathAndTheReason) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "none/a.txt";
+  EXPECT_THAT(error_of([&] { write_file_atomically(path, "x"); }), HasSubstr(path + ": cannot be written: No such"));
+  EXPECT_EQ(folder.file_count(), 0U);
+}
+
+TEST(WriteFileAtomically, FullDeviceIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  EXPECT_THAT(error_of([] { write_file_atomically("/dev/full", "x"); }),
+              HasSubstr("/dev/full: cannot be written: No space"));
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST(WriteFileAtomically, FullDiskKeepsTheOldFile) {
+  const TemporaryFolder folder;
+  const std::string path = put(folder / "a.bin", "old");
+  // A limit on file sizes fails in the middle of a write, as a full disk does.
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit tight{1000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
+  const std::string message = error_of([&] { write_file_atomically(path, std::string(5000, 'x')); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_THAT(message, HasSubstr("File too large"));
+  EXPECT_EQ(get(path), "old");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(WriteFileAtomically, LinkStaysALink) {
+  const TemporaryFolder folder;
+  const std::string target = put(folder / "target.txt", "old");
+  fs::create_symlink(target, folder / "link.txt");
+  write_file_atomically(folder / "link.txt", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(get(target), "new");
+}
+
+TEST(WriteFileAtomically, FolderIsAnError) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(error_of([&] { write_file_atomically(folder.path(), "x"); }), HasSubstr(folder.path() + ": cannot be"));
+}
+
+TEST(TemporaryFile, VanishesUnlessCommitted) {
+  const TemporaryFolder folder;
+  {
+    const TemporaryFile file(folder / "a.avi", ".avi");
+    EXPECT_TRUE(file.path().ends_with(".avi"));
+    put(file.path(), "half");
+  }
+  EXPECT_EQ(folder.file_count(), 0U);
+  {
+    TemporaryFile file(folder / "a.avi", ".avi");
+    put(file.path(), "whole");
+    file.commit();
+  }
+  EXPECT_EQ(get(folder / "a.avi"), "whole");
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,148 @@
+#include "io/files/image_bytes.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+using namespace std::literals;
+
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
+constexpr int kMaxJpegScans = 100;  // progressive encoders write about ten
+
+std::uint32_t byte_at(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
+
+std::uint32_t big_endian(std::string_view bytes, std::size_t at, int count) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < count; ++i) value = value << 8U | byte_at(bytes, at + static_cast<std::size_t>(i));
+  return value;
+}
+
+std::uint32_t crc32(std::string_view bytes) {
+  static constexpr auto table = [] {
+    std::array<std::uint32_t, 256> t{};
+    for (std::uint32_t i = 0; i < 256; ++i) {
+      t[i] = i;
+      for (int bit = 0; bit < 8; ++bit) t[i] = (t[i] & 1U) ? 0xEDB88320U ^ (t[i] >> 1U) : t[i] >> 1U;
+    }
+    return t;
+  }();
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (const char c : bytes) crc = table[(crc ^ static_cast<unsigned char>(c)) & 0xFFU] ^ (crc >> 8U);
+  return ~crc;
+}
+
+void check_size(std::int64_t width, std::int64_t height, const std::string& name) {
+  if (width < 1 || height < 1 || width > kMaxPixels / height) {
+    throw Error(fmt::format("{}: picture of {}x{} pixels, expected 1 to {} in all", name, width, height, kMaxPixels));
+  }
+}
+
+/// One chunk at `at`: type, data and whole length, with its checksum verified.
+struct Chunk {
+  std::string_view type, data, whole;
+};
+
+Chunk chunk_at(std::string_view bytes, std::size_t at, const std::string& name) {
+  const std::size_t left = bytes.size() - at;
+  if (left < 12 || big_endian(bytes, at, 4) > left - 12) {
+    throw Error(fmt::format("{}: truncated PNG: file ends at byte {} before the end chunk", name, bytes.size()));
+  }
+  const std::size_t length = big_endian(bytes, at, 4);
+  if (crc32(bytes.substr(at + 4, length + 4)) != big_endian(bytes, at + 8 + length, 4)) {
+    throw Error(fmt::format("{}: damaged PNG: wrong checksum of the chunk at byte {}", name, at));
+  }
+  return {bytes.substr(at + 4, 4), bytes.substr(at + 8, length), bytes.substr(at, length + 12)};
+}
+
+PngBytes parse_png_header(const Chunk& chunk, const std::string& name) {
+  if (chunk.type != "IHDR" || chunk.data.size() != 13) {
+    throw Error(name + ": damaged PNG: expected the header chunk at byte 8");
+  }
+  check_size(big_endian(chunk.data, 0, 4), big_endian(chunk.data, 4, 4), name);
+  PngBytes png;
+  png.width = static_cast<int>(big_endian(chunk.data, 0, 4));
+  png.height = static_cast<int>(big_endian(chunk.data, 4, 4));
+  png.bit_depth = static_cast<int>(byte_at(chunk.data, 8));
+  png.colour_type = static_cast<int>(byte_at(chunk.data, 9));
+  return png;
+}
+
+/// Deflate shrinks at most 1032 times (its longest match): fewer bytes cannot hold the picture.
+void check_data_size(const PngBytes& png, std::size_t data_bytes, const std::string& name) {
+  const std::int64_t row_bytes = (std::int64_t{png.width} * png.bit_depth + 7) / 8;
+  const std::int64_t least = row_bytes * png.height / 1032;
+  if (data_bytes == 0 || static_cast<std::int64_t>(data_bytes) < least) {
+    throw Error(fmt::format("{}: damaged PNG: {} bytes of picture data are too few for {}x{} pixels", name, data_bytes,
+                            png.width, png.height));
+  }
+}
+
+bool has_size(std::uint32_t jpeg_marker) {
+  return jpeg_marker >= 0xC0 && jpeg_marker <= 0xCF && jpeg_marker != 0xC4 && jpeg_marker != 0xC8 &&
+         jpeg_marker != 0xCC;
+}
+
+/// First byte at or after `at` that begins a marker other than those within coded data; npos = none.
+std::size_t next_marker(std::string_view bytes, std::size_t at) {
+  for (at = bytes.find('\xFF', at); at != bytes.npos && at + 1 < bytes.size(); at = bytes.find('\xFF', at + 1)) {
+    const std::uint32_t marker = byte_at(bytes, at + 1);
+    const bool in_data = marker == 0x00 || marker == 0xFF || (marker >= 0xD0 && marker <= 0xD7);
+    if (!in_data) return at;
+  }
+  return bytes.npos;
+}
+
+}  // namespace
+
+bool is_png(std::string_view bytes) { return bytes.starts_with(kPngSignature); }
+
+bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xFF\xD8\xFF"sv); }
+
+PngBytes check_png(std::string_view bytes, const std::string& name) {
+  if (bytes.empty()) throw Error(name + ": empty file, expected a PNG");
+  if (!is_png(bytes)) throw Error(name + ": no PNG signature, expected a PNG");
+  std::size_t at = kPngSignature.size();
+  Chunk chunk = chunk_at(bytes, at, name);
+  PngBytes png = parse_png_header(chunk, name);
+  png.pixels.append(kPngSignature).append(chunk.whole);
+  std::size_t data_bytes = 0;
+  while (chunk.type != "IEND") {
+    at += chunk.whole.size();
+    chunk = chunk_at(bytes, at, name);
+    if (chunk.type == "IDAT") data_bytes += chunk.data.size();
+    if (chunk.type == "IDAT" || chunk.type == "PLTE" || chunk.type == "IEND") png.pixels.append(chunk.whole);
+  }
+  check_data_size(png, data_bytes, name);
+  return png;
+}
+
+void check_jpeg(std::string_view bytes, const std::string& name) {
+  bool sized = false;
+  int scans = 0;
+  for (std::size_t at = next_marker(bytes, 2); at != bytes.npos;) {
+    const std::uint32_t marker = byte_at(bytes, at + 1);
+    if (marker == 0xD9) {
+      if (!sized || scans == 0) throw Error(name + ": damaged JPEG: no picture before its end");
+      return;
+    }
+    if (bytes.size() - at < 9) break;
+    const std::size_t length = big_endian(bytes, at + 2, 2);
+    if (length < 2 || length > bytes.size() - at - 2) break;
+    if (has_size(marker)) {
+      check_size(big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2), name);
+      sized = true;
+    }
+    if (marker == 0xDA && ++scans > kMaxJpegScans) {
+      throw Error(fmt::format("{}: JPEG of more than {} scans", name, kMaxJpegScans));
+    }
+    at = next_marker(bytes, at + 2 + length);
+  }
+  throw Error(fmt::format("{}: truncated JPEG: file ends at byte {} before the end marker", name, bytes.size()));
+}
+
+}  // namespace vesalius

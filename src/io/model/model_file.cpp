@@ -1,0 +1,135 @@
+#include "io/model/model_file.h"
+
+#define XXH_INLINE_ALL
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+
+#include "io/files/atomic_file.h"
+#include "io/files/byte_stream.h"
+#include "io/files/read_file.h"
+#include "io/model/model_trees.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+// Like PNG's: a text-mode transfer changes it, so the damage is named for what it is.
+constexpr std::string_view kMagic("\x89VSL\r\n\x1a\n", 8);
+constexpr std::size_t kSizeAt = 12;
+constexpr std::size_t kChecksumAt = 20;
+constexpr std::size_t kHeaderBytes = 28;
+constexpr std::uint16_t kFlagBackground = 1;
+
+std::uint64_t checksum(std::string_view bytes) {
+  XXH64_state_t state;
+  XXH64_reset(&state, 0);
+  XXH64_update(&state, bytes.data(), kChecksumAt);
+  XXH64_update(&state, bytes.data() + kHeaderBytes, bytes.size() - kHeaderBytes);
+  return XXH64_digest(&state);
+}
+
+template <class T>
+void overwrite(std::string& bytes, std::size_t at, T value) {
+  ByteWriter field;
+  field.number(value);
+  bytes.replace(at, sizeof(T), field.bytes());
+}
+
+/// Magic, version, length and checksum: what went wrong on the way, in the order that a user can act on.
+void check_header(std::string_view bytes, const std::string& name) {
+  if (bytes.empty()) throw Error(name + ": empty file, expected a vesalius model");
+  if (bytes.substr(0, kMagic.size()) != kMagic.substr(0, bytes.size())) {
+    throw Error(name + ": not a vesalius model (text trees are read by `vesalius convert`)");
+  }
+  if (bytes.size() < kHeaderBytes) {
+    throw Error(fmt::format("{}: truncated model, {} bytes of the {} of its header", name, bytes.size(), kHeaderBytes));
+  }
+  ByteReader in(bytes, name);
+  in.take(kMagic.size(), "header");
+  const auto version = in.number<std::uint16_t>("version");
+  if (version > kModelVersion) {
+    throw Error(fmt::format("{}: written by a newer version: format {}, this program reads up to {}", name, version,
+                            kModelVersion));
+  }
+  in.take(2, "flags");
+  const auto size = in.number<std::uint64_t>("size");
+  if (version == 0) throw Error(name + ": damaged model, format 0");
+  if (bytes.size() < size) {
+    throw Error(fmt::format("{}: truncated model, {} of {} bytes", name, bytes.size(), size));
+  }
+  if (bytes.size() > size) {
+    throw Error(fmt::format("{}: damaged model, {} bytes where its header says {}", name, bytes.size(), size));
+  }
+  if (in.number<std::uint64_t>("checksum") != checksum(bytes)) {
+    throw Error(name + ": damaged model, the checksum does not match");
+  }
+}
+
+/// The text is all that is written of the body; it must be this body's.
+void check_body_text(const BodyModel& body) {
+  const BodyModel again = parse_body_model(body.toml, "body model");
+  if (!std::ranges::equal(again.parts, body.parts, {}, &BodyPart::name, &BodyPart::name)) {
+    throw Error("body model: its text does not give the parts that it has");
+  }
+}
+
+}  // namespace
+
+std::string serialise_model(const Forest& forest) {
+  check(forest);
+  check_body_text(forest.body);
+  ByteWriter out;
+  out.bytes() += kMagic;
+  out.number(static_cast<std::uint16_t>(kModelVersion));
+  out.number(static_cast<std::uint16_t>(forest.has_background ? kFlagBackground : 0));
+  out.number(std::uint64_t{0});  // size and checksum, known at the end
+  out.number(std::uint64_t{0});
+  out.text(forest.body.toml);
+  out.text(forest.recipe);
+  out.real(forest.convention.offset_unit);
+  out.real(forest.convention.reference_focal_px);
+  out.number(forest.convention.hole_mm);
+  out.number(forest.convention.outside_mm);
+  out.number(forest.convention.clip_mm);
+  write_trees(out, forest.trees);
+  overwrite(out.bytes(), kSizeAt, static_cast<std::uint64_t>(out.bytes().size()));
+  overwrite(out.bytes(), kChecksumAt, checksum(out.bytes()));
+  return std::move(out.bytes());
+}
+
+Forest parse_model(std::string_view bytes, const std::string& name) {
+  check_header(bytes, name);
+  ByteReader in(bytes, name);
+  in.take(kMagic.size(), "header");
+  const auto version = in.number<std::uint16_t>("version");
+  const auto flags = in.number<std::uint16_t>("flags");
+  if (flags > kFlagBackground) in.fail(fmt::format("unknown flags {}", flags));
+  in.take(kHeaderBytes - kSizeAt, "header");
+  Forest forest;
+  forest.has_background = flags == kFlagBackground;
+  forest.body = parse_body_model(in.text("body model"), name + ": body model");
+  forest.recipe = in.text("recipe");
+  forest.convention.offset_unit = in.real32("convention");
+  forest.convention.reference_focal_px = in.real32("convention");
+  forest.convention.hole_mm = in.number<std::uint16_t>("convention");
+  forest.convention.outside_mm = in.number<std::uint16_t>("convention");
+  forest.convention.clip_mm = in.number<std::uint16_t>("convention");
+  forest.trees = version == 1 ? read_trees_v1(in) : read_trees(in);
+  in.expect_end();
+  with_context(name, [&] { check(forest); });
+  return forest;
+}
+
+std::string model_checksum(std::string_view bytes) {
+  return bytes.size() < kHeaderBytes ? std::string() : fmt::format("{:016x}", checksum(bytes));
+}
+
+Forest load_model(const std::string& path) { return parse_model(read_file(path), path); }
+
+void save_model(const Forest& forest, const std::string& path) {
+  write_file_atomically(path, with_context(path, [&] { return serialise_model(forest); }));
+}
+
+}  // namespace vesalius

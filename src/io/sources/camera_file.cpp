@@ -1,0 +1,300 @@
+#include "io/sources/camera_file.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "io/files/read_file.h"
+#include "io/sources/open_source.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxCameraFileBytes = 1 << 20;
+constexpr int kMaxSide = 1 << 16;
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+[[noreturn]] void fail(const std::string& name, const std::string& key, const std::string& expected) {
+  throw Error(fmt::format("{}: \"{}\": expected {}", name, key, expected));
+}
+
+float checked_focal(double value, const std::string& name, const std::string& key) {
+  if (!(value > 0.0 && value < 1e6)) fail(name, key, "a positive number of pixels");
+  return static_cast<float>(value);
+}
+
+float checked_centre(double value, const std::string& name, const std::string& key) {
+  if (!(std::abs(value) < 1e6)) fail(name, key, "a number of pixels");
+  return static_cast<float>(value);
+}
+
+float checked_scale(double value, const std::string& name, const std::string& key) {
+  if (!(value >= 1.0 && value <= 1e6)) fail(name, key, "stored units per metre, 1 to 1000000");
+  return static_cast<float>(value);
+}
+
+std::optional<double> number(const json& object, const std::string& key, const std::string& name) {
+  const auto found = object.find(key);
+  if (found == object.end()) return std::nullopt;
+  if (!found->is_number()) fail(name, key, "a number");
+  return found->get<double>();
+}
+
+std::optional<int> side(const json& object, const std::string& key, const std::string& name) {
+  const std::optional<double> value = number(object, key, name);
+  if (!value) return std::nullopt;
+  if (!(*value >= 1.0 && *value <= kMaxSide) || std::floor(*value) != *value) fail(name, key, "a number of pixels");
+  return static_cast<int>(*value);
+}
+
+/// Units per metre of "mm", "mm (checked)", ...
+float scale_of_units(const json& units, const std::string& name) {
+  const std::string text = units.is_string() ? units.get<std::string>() : "";
+  const std::string word(text.begin(),
+                         std::find_if(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) == 0; }));
+  if (word == "mm") return 1000.F;
+  if (word == "cm") return 100.F;
+  if (word == "m") return 1.F;
+  fail(name, "units", R"("mm", "cm" or "m", or else "depth_scale" in units per metre)");
+}
+
+std::vector<double> numbers(const YAML::Node& node, std::size_t count, const std::string& name,
+                            const std::string& key) {
+  const YAML::Node list = node.IsMap() ? node["data"] : node;
+  if (!list.IsDefined() || !list.IsSequence() || (count != 0 && list.size() != count)) {
+    fail(name, key, count != 0 ? fmt::format("a list of {} numbers", count) : "a list of numbers");
+  }
+  std::vector<double> values;
+  for (const YAML::Node& value : list) values.push_back(value.as<double>());
+  return values;
+}
+
+/// The first of two spellings that the file has; camera_calibration and rostopic differ.
+YAML::Node either(const YAML::Node& root, const char* a, const char* b) {
+  const YAML::Node first = root[a];
+  return first.IsDefined() ? first : root[b];
+}
+
+CameraFacts camera_info_facts(const YAML::Node& root, const std::string& name) {
+  CameraFacts facts;
+  facts.origin = name;
+  if (!root.IsMap()) throw Error(name + ": expected a map with camera_matrix (or K), image_width, image_height");
+  const YAML::Node k = either(root, "camera_matrix", "K");
+  const YAML::Node d = either(root, "distortion_coefficients", "D");
+  const YAML::Node p = either(root, "projection_matrix", "P");
+  if (!k.IsDefined()) fail(name, "camera_matrix", "3x3 numbers (or K)");
+  std::vector<double> matrix = numbers(k, 9, name, "camera_matrix");
+  if (d.IsDefined()) {
+    const std::vector<double> coefficients = numbers(d, 0, name, "distortion_coefficients");
+    facts.distorted = std::any_of(coefficients.begin(), coefficients.end(), [](double c) { return c != 0.0; });
+  }
+  std::size_t stride = 3;
+  if (facts.distorted && p.IsDefined()) {
+    const std::vector<double> projection = numbers(p, 12, name, "projection_matrix");
+    if (projection[0] != 0.0) {
+      matrix = projection;
+      stride = 4;
+    }
+  }
+  facts.fx = checked_focal(matrix[0], name, "camera_matrix");
+  facts.fy = checked_focal(matrix[stride + 1], name, "camera_matrix");
+  facts.cx = checked_centre(matrix[2], name, "camera_matrix");
+  facts.cy = checked_centre(matrix[stride + 2], name, "camera_matrix");
+  const YAML::Node width = either(root, "image_width", "width");
+  const YAML::Node height = either(root, "image_height", "height");
+  if (width.IsDefined()) facts.width = width.as<int>();
+  if (height.IsDefined()) facts.height = height.as<int>();
+  return facts;
+}
+
+CameraFacts read_camera_file(const std::string& path) {
+  const std::string text = read_file(path, kMaxCameraFileBytes);
+  const std::string extension = fs::path(path).extension().string();
+  if (extension == ".yaml" || extension == ".yml") return parse_camera_info(text, path);
+  return parse_meta(text, path);
+}
+
+/// What the caller gave; there a wrong value is wrong usage.
+CameraFacts facts_given(const SourceOptions& options) try {
+  CameraFacts facts;
+  const std::string name = "options";
+  if (options.fx) facts.fx = checked_focal(*options.fx, name, "fx");
+  if (options.fy) facts.fy = checked_focal(*options.fy, name, "fy");
+  if (options.cx) facts.cx = checked_centre(*options.cx, name, "cx");
+  if (options.cy) facts.cy = checked_centre(*options.cy, name, "cy");
+  if (options.depth_scale) facts.depth_scale = checked_scale(*options.depth_scale, name, "depth_scale");
+  return facts;
+} catch (const Error& e) {
+  throw UsageError(e.what());
+}
+
+CameraFacts facts_in_folder(const std::string& folder) {
+  CameraFacts facts;
+  for (const char* file : {"meta.json", "camera_info.yaml", "camera_info.yml"}) {
+    const fs::path path = fs::path(folder) / file;
+    std::error_code ignored;
+    if (fs::exists(path, ignored)) facts.fill_from(read_camera_file(path.string()));
+  }
+  return facts;
+}
+
+/// What makers or common calibrations give for pictures of one size, from which others follow.
+struct SensorFocal {
+  std::vector<const char*> names;  ///< lower case, any of them within the sensor's name
+  int width, height;
+  float own;         ///< focal length in pixels of depth on its own grid
+  float registered;  ///< the same on the colour camera's grid, 0 = not known
+  bool crops;        ///< other formats show the full height and cut the sides
+};
+
+const std::vector<SensorFocal>& known_sensors() {
+  static const std::vector<SensorFocal> sensors = {
+      {{"kinect v2", "kinect2", "kinect one"}, 512, 424, 365.F, 0.F, false},  // common calibrations
+      {{"azure", "k4a", "femto"}, 640, 576, 504.F, 0.F, false},               // narrow mode
+      // D435: typical factory calibration of the stereo pair; colour camera of 69x42 degrees.
+      {{"realsense", "d415", "d435", "d455"}, 640, 480, 385.F, 615.F, true},
+      {{"kinect", "xtion", "primesense", "openni", "carmine"}, 640, 480, 525.F, 525.F, false},  // OpenNI's default
+  };
+  return sensors;
+}
+
+/// The sensor's usual focal length for pictures of this size, 0 = not known.
+float nominal_focal(const std::string& sensor, int width, int height, bool registered) {
+  std::string lower = sensor;
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const SensorFocal& known : known_sensors()) {
+    const bool named = std::any_of(known.names.begin(), known.names.end(),
+                                   [&](const char* n) { return lower.find(n) != std::string::npos; });
+    if (!named) continue;
+    const bool same_format = std::int64_t{width} * known.height == std::int64_t{height} * known.width;
+    if (!same_format && !known.crops) return 0.F;
+    return (registered ? known.registered : known.own) * static_cast<float>(height) / static_cast<float>(known.height);
+  }
+  return 0.F;
+}
+
+template <class T>
+void take(std::optional<T>& mine, const std::optional<T>& theirs) {
+  if (!mine) mine = theirs;
+}
+
+}  // namespace
+
+void CameraFacts::fill_from(const CameraFacts& other) {
+  const bool needs_focal = !fx;
+  take(fx, other.fx);
+  // A lone fx means square pixels: fy comes from the same place or not at all.
+  if (needs_focal) take(fy, other.fy);
+  take(cx, other.cx);
+  take(cy, other.cy);
+  take(depth_scale, other.depth_scale);
+  if (needs_focal && other.fx) {
+    width = other.width;
+    height = other.height;
+    distorted = other.distorted;
+    origin = other.origin;
+  }
+  if (sensor.empty()) sensor = other.sensor;
+}
+
+CameraFacts parse_meta(std::string_view text, const std::string& name) {
+  json root;
+  try {
+    root = json::parse(text);
+  } catch (const json::exception& e) {
+    throw Error(name + ": not JSON: " + one_line(e.what()));
+  }
+  if (!root.is_object()) throw Error(name + ": expected a JSON object with fx, fy, cx, cy");
+  CameraFacts facts;
+  facts.origin = name;
+  if (const auto v = number(root, "fx", name)) facts.fx = checked_focal(*v, name, "fx");
+  if (const auto v = number(root, "fy", name)) facts.fy = checked_focal(*v, name, "fy");
+  if (const auto v = number(root, "cx", name)) facts.cx = checked_centre(*v, name, "cx");
+  if (const auto v = number(root, "cy", name)) facts.cy = checked_centre(*v, name, "cy");
+  facts.width = side(root, "width", name);
+  facts.height = side(root, "height", name);
+  if (const auto v = number(root, "depth_scale", name)) {
+    facts.depth_scale = checked_scale(*v, name, "depth_scale");
+  } else if (const auto units = root.find("units"); units != root.end()) {
+    facts.depth_scale = scale_of_units(*units, name);
+  }
+  if (const auto sensor = root.find("sensor"); sensor != root.end() && sensor->is_string()) facts.sensor = *sensor;
+  return facts;
+}
+
+CameraFacts parse_camera_info(std::string_view yaml, const std::string& name) {
+  try {
+    return camera_info_facts(YAML::Load(std::string(yaml)), name);
+  } catch (const YAML::Exception& e) {
+    throw Error(name + ": not the YAML of a camera_info: " + one_line(e.what()));
+  }
+}
+
+std::string serialise_meta(const Camera& camera, float depth_scale) {
+  // The shortest text of the float, not of the double nearest to it.
+  const auto shortest = [](float value) { return std::stod(fmt::format("{}", value)); };
+  nlohmann::ordered_json root;
+  root["width"] = camera.width;
+  root["height"] = camera.height;
+  root["fx"] = shortest(camera.fx);
+  root["fy"] = shortest(camera.fy);
+  root["cx"] = shortest(camera.cx);
+  root["cy"] = shortest(camera.cy);
+  root["depth_scale"] = shortest(depth_scale);
+  return root.dump(1) + "\n";
+}
+
+CameraFacts find_camera_facts(const SourceOptions& options, const std::vector<std::string>& folders) {
+  CameraFacts facts = facts_given(options);
+  if (!options.camera_file.empty()) {
+    facts.fill_from(read_camera_file(options.camera_file));
+    return facts;
+  }
+  for (const std::string& folder : folders) {
+    const CameraFacts found = facts_in_folder(folder);
+    if (found.origin.empty() && found.sensor.empty() && !found.depth_scale) continue;
+    facts.fill_from(found);
+    break;
+  }
+  return facts;
+}
+
+Camera resolve_camera(const CameraFacts& facts, int width, int height, bool registered, const std::string& place,
+                      std::vector<std::string>& notes) {
+  if ((facts.width && *facts.width != width) || (facts.height && *facts.height != height)) {
+    throw Error(fmt::format("{}: camera of {}x{} pictures, but {} has {}x{}", facts.origin, facts.width.value_or(width),
+                            facts.height.value_or(height), place, width, height));
+  }
+  Camera camera{width, height, facts.fx.value_or(0.F), 0.F, 0.F, 0.F};
+  if (!facts.fx) {
+    camera.fx = nominal_focal(facts.sensor, width, height, registered);
+    if (camera.fx == 0.F) {
+      throw Error(
+          place +
+          ": no intrinsics: expected fx, fy, cx, cy in meta.json, a camera_info.yaml, or --fx, --fy, --cx, --cy");
+    }
+    notes.push_back(fmt::format("{}: no focal length given; {:.4g} pixels assumed, usual for \"{}\"", place, camera.fx,
+                                facts.sensor));
+  }
+  if (facts.distorted) notes.push_back(facts.origin + ": lens distortion not removed: pictures are taken as rectified");
+  camera.fy = facts.fy.value_or(camera.fx);
+  camera.cx = facts.cx.value_or(static_cast<float>(width - 1) / 2.F);
+  camera.cy = facts.cy.value_or(static_cast<float>(height - 1) / 2.F);
+  check(camera);
+  return camera;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,42 @@
+#include "io/sources/folder_source.h"
+
+#include <gmock/gmock.h>
+
+#include <string>
+#include <vector>
+
+#include "io/files/test_files.h"
+
+namespace vesalius {
+namespace {
+
+using test::error_of;
+using test::put;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+TEST(NaturalLess, CountsNumbersAsNumbers) {
+  const std::vector<std::string> ordered = {"1", "01", "2", "10", "a", "a1b", "a1c", "a02", "a2", "a2b", "a10", "b"};
+  for (std::size_t i = 0; i < ordered.size(); ++i) {
+    for (std::size_t j = 0; j < ordered.size(); ++j) {
+      const bool equal_numbers = (ordered[i] == "1" && ordered[j] == "01") || (ordered[i] == "01" && ordered[j] == "1");
+      if (!equal_numbers) {
+        EXPECT_EQ(natural_less(ordered[i], ordered[j]), i < j) << ordered[i] << ' ' << ordered[j];
+      }
+    }
+  }
+  EXPECT_NE(natural_less("1", "01"), natural_less("01", "1"));
+}
+
+TEST(ListFiles, TakesTheWantedKindsOnly) {
+  const TemporaryFolder folder;
+  for (const char* name : {"b10.png", "b9.PNG", "._b1.png", "c.jpg", "d.txt", "png"}) put(folder / name, "");
+  std::vector<std::string> names;
+  for (const auto& path : list_files(folder.path(), {".png", ".jpg"})) names.push_back(path.filename().string());
+  EXPECT_THAT(names, testing::ElementsAre("b9.PNG", "b10.png", "c.jpg"));
+  EXPECT_THAT(error_of([&] { list_files(folder / "none", {".png"}); }),
+              HasSubstr("none: folder cannot be read: No such"));
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,332 @@
+#include "io/sources/open_source.h"
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "io/files/image_file.h"
+#include "io/files/test_files.h"
+#include "io/sources/pcd.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using test::put;
+using test::random_frame;
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kMeta = R"({"fx": 41.3, "fy": 40.7, "cx": 17.2, "cy": 12.9, "units": "mm"})";
+
+void put_depth(const std::string& path, const Image<std::uint16_t>& depth) { put(path, encode_png(depth)); }
+void put_colour(const std::string& path, const ColourImage& colour) { put(path, encode_png(colour)); }
+
+std::vector<Frame> all_frames(FrameSource& source) {
+  std::vector<Frame> frames;
+  while (auto frame = source.next()) frames.push_back(std::move(*frame));
+  return frames;
+}
+
+std::vector<std::string> names(const std::vector<Frame>& frames) {
+  std::vector<std::string> all;
+  for (const Frame& frame : frames) all.push_back(frame.name);
+  return all;
+}
+
+std::string open_error(const std::string& uri, const SourceOptions& options = {}) {
+  return error_of([&] { open_source(uri, options); });
+}
+
+TEST(FolderSource, ReadsFramesInOrderWithTheirColour) {
+  const TemporaryFolder folder;
+  put(folder / "meta.json", kMeta);
+  std::map<std::string, Frame> written;
+  for (const char* name : {"f10", "f2", "f1"}) {
+    const Frame frame = written[name] = random_frame(name, written.size());
+    put_depth(folder / "depth/" + name + ".png", frame.depth);
+    if (frame.name != "f2") put_colour(folder / "rgb/" + name + ".png", frame.colour);
+  }
+  put(folder / "depth/._f1.png", "left by another system");
+  put(folder / "depth/readme.txt", "text");
+  const auto source = open_source(folder.path());
+  EXPECT_EQ(source->size(), 3);
+  const std::vector<Frame> frames = all_frames(*source);
+  EXPECT_THAT(names(frames), ElementsAre("f1", "f2", "f10"));
+  for (const Frame& frame : frames) {
+    EXPECT_EQ(frame.depth, written[frame.name].depth);
+    EXPECT_EQ(frame.camera, written[frame.name].camera);
+    EXPECT_EQ(frame.colour, frame.name == "f2" ? ColourImage() : written[frame.name].colour);
+  }
+  EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("1 of 3 frames have no colour")));
+}
+
+TEST(FolderSource, CameraInfoColorFolderAndJpeg) {
+  const TemporaryFolder folder;
+  put(folder / "camera_info.yml", "{width: 37, height: 23, K: [50, 0, 18, 0, 51, 11, 0, 0, 1]}");
+  put_depth(folder / "depth/a.png", random_frame("a", 1).depth);
+  std::vector<unsigned char> jpeg;
+  cv::imencode(".jpg", cv::Mat(23, 37, CV_8UC3, cv::Scalar(0, 0, 250)), jpeg);
+  put(folder / "color/a.JPG", std::string(jpeg.begin(), jpeg.end()));
+  const auto frame = open_source("folder:" + folder.path())->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->camera, (Camera{37, 23, 50.F, 51.F, 18.F, 11.F}));
+  EXPECT_NEAR(frame->colour(5, 5).r, 250, 5);
+}
+
+TEST(FolderSource, DepthFilesDirectly) {
+  const TemporaryFolder folder;
+  put(folder / "meta.json", kMeta);
+  const Frame frame = random_frame("a", 3);
+  put_depth(folder / "depth/a.png", frame.depth);
+  // The folder named depth itself: its camera lies one folder up.
+  for (const std::string& uri : {folder / "depth", folder / "depth/", "png:" + folder / "depth"}) {
+    const auto frames = all_frames(*open_source(uri));
+    ASSERT_EQ(frames.size(), 1U);
+    EXPECT_EQ(frames[0].depth, frame.depth);
+    EXPECT_EQ(frames[0].camera, frame.camera);
+  }
+}
+
+TEST(FolderSource, UnitsAndOptionsDecideTheScale) {
+  const TemporaryFolder folder;
+  put(folder / "meta.json", R"({"fx": 50, "depth_scale": 5000})");
+  DepthImage depth(4, 3, 5000);
+  put_depth(folder / "a.png", depth);
+  EXPECT_EQ(open_source(folder.path())->next()->depth(0, 0), 1000);
+  SourceOptions options;
+  options.depth_scale = 10000.F;
+  EXPECT_EQ(open_source(folder.path(), options)->next()->depth(0, 0), 500);
+}
+
+TEST(FolderSource, SensorWithoutFocalLengthIsNoted) {
+  const TemporaryFolder folder;
+  put(folder / "meta.json", R"({"sensor": "Kinect v1"})");
+  put_depth(folder / "depth/a.png", DepthImage(160, 120, 900));
+  const auto source = open_source(folder.path());
+  EXPECT_EQ(source->next()->camera, (Camera{160, 120, 131.25F, 131.25F, 79.5F, 59.5F}));
+  EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("131.2 pixels assumed, usual for \"Kinect v1\"")));
+}
+
+TEST(FolderSource, BadFramesAreNamedAndPassedOver) {
+  const TemporaryFolder folder;
+  put(folder / "meta.json", kMeta);
+  const Frame frame = random_frame("a", 3);
+  const std::string png = encode_png(frame.depth);
+  put(folder / "depth/0.png", png);
+  put(folder / "depth/1.png", "");
+  put(folder / "depth/2.png", png.substr(0, png.size() / 2));
+  put_depth(folder / "depth/3.png", DepthImage(8, 8, 1));
+  put(folder / "depth/4.png", png);
+  put_colour(folder / "rgb/4.png", ColourImage(8, 8));
+  put(folder / "depth/5.png", encode_png(frame.colour));
+  put(folder / "depth/6.png", png);
+  put(folder / "rgb/6.jpg", "\xFF\xD8\xFF\xE0 no more");
+  fs::create_symlink("nowhere", folder / "depth/7.png");
+  put(folder / "depth/8.png", png);
+  const auto source = open_source(folder.path());
+  ASSERT_TRUE(source->next());
+  for (const char* expected :
+       {"1.png: empty file", "2.png: truncated PNG", "3.png: 8x8 pixels, expected the size of the first, 37x23",
+        "rgb/4.png: 8x8 pixels, expected the size of the depth, 37x23", "5.png: 8-bit colour PNG, expected 16-bit grey",
+        "rgb/6.jpg: truncated JPEG", "7.png: cannot be read: No such file"}) {
+    EXPECT_THAT(error_of([&] { source->next(); }), HasSubstr(expected));
+  }
+  EXPECT_EQ(source->next()->name, "8");
+  EXPECT_FALSE(source->next());
+}
+
+TEST(SinglePng, FindsColourAndCameraOfItsFolder) {
+  const TemporaryFolder folder;
+  put(folder / "meta.json", kMeta);
+  const Frame frame = random_frame("a.b", 4);
+  put_depth(folder / "depth/a.b.png", frame.depth);
+  put_colour(folder / "rgb/a.b.png", frame.colour);
+  const auto frames = all_frames(*open_source(folder / "depth/a.b.png"));
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].name, "a.b");
+  EXPECT_EQ(frames[0].colour, frame.colour);
+  EXPECT_EQ(frames[0].camera, frame.camera);
+}
+
+TEST(SinglePng, TakesTheGivenColourAndCamera) {
+  const TemporaryFolder folder;
+  const Frame frame = random_frame("a", 4);
+  put_depth(folder / "a.png", frame.depth);
+  put_colour(folder / "c.png", frame.colour);
+  SourceOptions options;
+  options.fx = 30.F;
+  options.colour_file = folder / "c.png";
+  const auto read = open_source(folder / "a.png", options)->next();
+  EXPECT_EQ(read->colour, frame.colour);
+  EXPECT_EQ(read->camera, (Camera{37, 23, 30.F, 30.F, 18.F, 11.F}));
+}
+
+void put_tum(const TemporaryFolder& folder, const DepthImage& depth, const ColourImage& colour) {
+  put(folder / "depth.txt", "# depth maps\n1.5 depth/b.png\n1.0 depth/a.png\n");
+  put(folder / "rgb.txt", "1.011 rgb/x.png\n1.6 rgb/y.png\n");
+  for (const char* name : {"a", "b"}) put_depth(folder / "depth/" + name + ".png", depth);
+  for (const char* name : {"x", "y"}) put_colour(folder / "rgb/" + name + ".png", colour);
+}
+
+TEST(TumSource, PairsByTimeAndScalesBy5000) {
+  const TemporaryFolder folder;
+  put_tum(folder, DepthImage(640, 480, 10000), ColourImage(640, 480, {1, 2, 3}));
+  const auto source = open_source(folder.path());
+  const std::vector<Frame> frames = all_frames(*source);
+  EXPECT_THAT(names(frames), ElementsAre("1.0", "1.5"));
+  EXPECT_EQ(frames[1].time_s, 1.5);
+  EXPECT_EQ(frames[0].depth(3, 4), 2000);
+  EXPECT_EQ(frames[0].colour(3, 4), (Rgb{1, 2, 3}));
+  EXPECT_TRUE(frames[1].colour.empty());
+  EXPECT_EQ(frames[0].camera, (Camera{640, 480, 525.F, 525.F, 319.5F, 239.5F}));
+  EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("1 of 2 depth pictures have no colour within 0.02 s"),
+                                           HasSubstr("no intrinsics given; those of the TUM benchmark")));
+}
+
+TEST(TumSource, ScaleInTheAddress) {
+  const TemporaryFolder folder;
+  put_tum(folder, DepthImage(640, 480, 10000), ColourImage(640, 480));
+  EXPECT_EQ(open_source("tum:" + folder.path() + ":1000")->next()->depth(0, 0), 10000);
+  SourceOptions options;
+  options.depth_scale = 2000.F;
+  EXPECT_EQ(open_source("tum:" + folder.path(), options)->next()->depth(0, 0), 5000);
+  EXPECT_THROW(open_source("tum:" + folder.path() + ":1000", options), UsageError);
+  EXPECT_THAT(open_error("tum:" + folder.path() + ":-4"), HasSubstr("depth_scale"));
+  EXPECT_THAT(open_error("tum:" + folder.path() + ":x"), HasSubstr("No such file"));
+}
+
+TEST(TumSource, OtherSizesNeedACamera) {
+  const TemporaryFolder folder;
+  put_tum(folder, DepthImage(32, 24, 10000), ColourImage(32, 24));
+  EXPECT_THAT(open_error(folder.path()), HasSubstr("no intrinsics"));
+  put(folder / "meta.json", R"({"fx": 26.25})");
+  EXPECT_EQ(open_source(folder.path())->next()->camera.fx, 26.25F);
+}
+
+TEST(TumSource, BadListsAreNamed) {
+  const TemporaryFolder folder;
+  put(folder / "depth.txt", "# nothing\n");
+  EXPECT_THAT(open_error(folder.path()), HasSubstr("depth.txt: no frames"));
+  put(folder / "depth.txt", "1.0 depth/none.png\n");
+  EXPECT_THAT(open_error(folder.path()), HasSubstr("depth/none.png: cannot be read"));
+  put(folder / "depth.txt", "one depth/none.png\n");
+  EXPECT_THAT(open_error(folder.path()), HasSubstr("depth.txt:1: expected"));
+}
+
+TEST(PcdSource, FileAndFolder) {
+  const TemporaryFolder folder;
+  const Frame first = random_frame("a2", 5);
+  const Frame second = random_frame("a10", 6, 37, 23, false);
+  put(folder / "a2.pcd", serialise_pcd(first, PcdEncoding::binary_compressed));
+  put(folder / "a10.pcd", serialise_pcd(second, PcdEncoding::ascii));
+  const auto source = open_source(folder.path());
+  EXPECT_EQ(source->size(), 2);
+  const std::vector<Frame> frames = all_frames(*source);
+  EXPECT_THAT(names(frames), ElementsAre("a2", "a10"));
+  EXPECT_EQ(frames[0].depth, first.depth);
+  EXPECT_EQ(frames[0].colour, first.colour);
+  EXPECT_EQ(frames[1].depth, second.depth);
+  EXPECT_NEAR(frames[1].camera.fx, second.camera.fx, 1e-3);
+  EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("a2.pcd: intrinsics estimated from its points: fx 41.30")));
+
+  put(folder / "meta.json", kMeta);
+  const auto single = open_source("pcd:" + folder / "a10.pcd");
+  EXPECT_EQ(single->next()->camera, second.camera);
+  EXPECT_THAT(single->notes(), IsEmpty());
+}
+
+TEST(OpenSource, WhatIsNoSourceIsNamed) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(open_error(folder / "none"), HasSubstr("none: No such file or directory, expected a folder"));
+  EXPECT_THAT(open_error(""), HasSubstr("expected a folder"));
+  EXPECT_THAT(open_error(folder.path()), HasSubstr(folder.path() + ": no frames, expected depth/*.png"));
+  EXPECT_THAT(open_error("pcd:" + folder.path()), HasSubstr("no frames, expected *.pcd"));
+  EXPECT_THAT(open_error(put(folder / "a.txt", "x")), HasSubstr("a.txt: unknown kind of file"));
+  EXPECT_THAT(open_error("tum:" + folder / "a.txt"), HasSubstr("a.txt: a file, expected a folder"));
+  EXPECT_THAT(open_error(put(folder / "a.png", "")), HasSubstr("a.png: empty file"));
+  EXPECT_THAT(open_error(put(folder / "a.pcd", "")), HasSubstr("a.pcd: empty file"));
+  EXPECT_THAT(open_error(folder.path()), HasSubstr("PNG and PCD files in one folder"));
+  fs::create_directory(folder / "depth");
+  EXPECT_THAT(open_error(folder.path()), HasSubstr("depth: no frames"));
+  put_depth(folder / "depth/a.png", DepthImage(4, 4, 1));
+  EXPECT_THAT(open_error(folder.path()), HasSubstr("no intrinsics"));
+  SourceOptions options;
+  options.colour_file = folder / "c.png";
+  EXPECT_THROW(open_source(folder.path(), options), UsageError);
+}
+
+TEST(OpenSource, ForbiddenFolderIsAnError) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "shut");
+  ASSERT_EQ(chmod((folder / "shut").c_str(), 0), 0);
+  EXPECT_THAT(open_error(folder / "shut"), HasSubstr("Permission denied"));
+}
+
+TEST(MakeFrame, CopiesRowsAtTheirStrides) {
+  const Camera camera{2, 2, 10.F, 10.F, 0.5F, 0.5F};
+  const std::uint16_t depth_mm[] = {1, 2, 99, 3, 4, 99};
+  const std::uint8_t rgb[] = {1, 2, 3, 4, 5, 6, 0, 7, 8, 9, 10, 11, 12, 0};
+  const Frame frame = make_frame(camera, depth_mm, 6, rgb, 7);
+  EXPECT_THAT(std::vector<int>(frame.depth.begin(), frame.depth.end()), ElementsAre(1, 2, 3, 4));
+  EXPECT_EQ(frame.colour(1, 1), (Rgb{10, 11, 12}));
+  const Frame packed = make_frame(camera, depth_mm, 0);
+  EXPECT_EQ(packed.depth(1, 1), 3);
+  EXPECT_TRUE(packed.colour.empty());
+}
+
+TEST(MakeFrame, UnusableBuffersAreErrors) {
+  const Camera camera{2, 2, 10.F, 10.F, 0.5F, 0.5F};
+  const std::uint16_t depth_mm[4] = {};
+  EXPECT_THAT(error_of([&] { make_frame(camera, nullptr, 0); }), HasSubstr("no depth"));
+  EXPECT_THAT(error_of([&] { make_frame(camera, depth_mm, 3); }), HasSubstr("strides 3"));
+  EXPECT_THROW(make_frame(Camera{0, 2, 1.F, 1.F, 0.F, 0.F}, depth_mm, 0), Error);
+  EXPECT_THROW(make_frame(Camera{1 << 20, 1 << 20, 1.F, 1.F, 0.F, 0.F}, depth_mm, 0), Error);
+}
+
+/// The folder of development data, empty where there is none.
+std::string shared_folder() {
+  const char* given = std::getenv("VESALIUS_SHARED");
+  const std::string folder = given != nullptr ? given : std::string(VESALIUS_SOURCE_DIR) + "/../shared";
+  return fs::is_directory(folder + "/real") ? folder : "";
+}
+
+TEST(RealFrames, AllOpenAsListed) {
+  const std::string shared = shared_folder();
+  if (shared.empty()) GTEST_SKIP() << "no development data: set VESALIUS_SHARED";
+  std::map<std::string, std::map<std::string, bool>> has_colour;  // by set and frame
+  std::istringstream list(test::get(shared + "/real/frames.csv"));
+  std::string line;
+  std::getline(list, line);
+  while (std::getline(list, line)) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    ASSERT_GE(cells.size(), 5U) << line;
+    has_colour[cells[0]][cells[1]] = cells[4] == "1";
+  }
+  ASSERT_FALSE(has_colour.empty());
+  for (const auto& [set, frames] : has_colour) {
+    const auto source = open_source(shared + "/real/" + set);
+    EXPECT_EQ(source->size(), static_cast<int>(frames.size())) << set;
+    while (const auto frame = source->next()) {
+      ASSERT_TRUE(frames.count(frame->name)) << set << ' ' << frame->name;
+      EXPECT_EQ(!frame->colour.empty(), frames.at(frame->name)) << set << ' ' << frame->name;
+      EXPECT_EQ(frame->depth.width(), set == "fallseq" ? 320 : 640) << set;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vesalius

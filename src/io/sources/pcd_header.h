@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/sources/pcd.h"
+
+namespace vesalius {
+
+/// One column of a PCD: `count` values of `size` bytes per point.
+struct PcdField {
+  std::string name;
+  std::uint32_t size = 4;
+  char type = 'F';  ///< I signed, U unsigned, F floating point
+  std::uint32_t count = 1;
+  std::size_t offset = 0;  ///< bytes before it in a point
+};
+
+/// What stands before the points of a PCD file.
+struct PcdHeader {
+  std::vector<PcdField> fields;
+  int width = 0;
+  int height = 0;
+  PcdEncoding encoding = PcdEncoding::ascii;
+  std::array<int, 3> xyz{-1, -1, -1};  ///< indices of these fields
+  int rgb = -1;                        ///< -1 = no colour
+  std::size_t point_bytes = 0;
+  std::size_t data_begin = 0;  ///< bytes before the first point
+
+  std::size_t points() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+};
+
+/// Throws Error naming `name` and the line for a header that is damaged or not that of an organised cloud.
+PcdHeader parse_pcd_header(std::string_view bytes, const std::string& name);
+
+}  // namespace vesalius

@@ -1,0 +1,177 @@
+#include "io/sources/write_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <system_error>
+
+#include "io/files/atomic_file.h"
+#include "io/files/image_file.h"
+#include "io/sources/camera_file.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Error(folder.string() + ": folder cannot be made: " + error.message());
+}
+
+void make_empty_folder(const fs::path& folder) {
+  make_folder(folder);
+  std::error_code error;
+  const bool empty = fs::is_empty(folder, error);
+  if (error) throw Error(folder.string() + ": folder cannot be read: " + error.message());
+  if (!empty) throw Error(folder.string() + ": folder has files in it, expected a new or empty one");
+}
+
+/// What all formats share: names, and the camera's file with the first frame.
+class FolderWriter : public FrameWriter {
+ public:
+  FolderWriter(fs::path root, float units_per_m) : root_(std::move(root)), units_per_m_(units_per_m) {
+    make_empty_folder(root_);
+  }
+
+  void write(const Frame& frame) final {
+    check(frame);
+    const std::string name = file_name(frame);
+    const bool plain =
+        !name.empty() && name.front() != '.' && name.find('/') == name.npos && name.find('\0') == name.npos;
+    if (!plain) throw Error(fmt::format("{}: frame named \"{}\", expected a file name", root_.string(), name));
+    if (!names_.insert(name).second) throw Error(fmt::format("{}: two frames named {}", root_.string(), name));
+    if (!camera_) {
+      camera_ = frame.camera;
+      write_file_atomically((root_ / "meta.json").string(), serialise_meta(*camera_, units_per_m_));
+    }
+    if (frame.camera != *camera_) {
+      throw Error(fmt::format("{}: frame {} has another camera than the first", root_.string(), name));
+    }
+    write_pictures(frame, name);
+  }
+
+  void close() override {}
+
+ protected:
+  virtual std::string file_name(const Frame& frame) { return frame.name; }
+  virtual void write_pictures(const Frame& frame, const std::string& name) = 0;
+
+  void write_pngs(const Image<std::uint16_t>& depth, const ColourImage& colour, const std::string& name) const {
+    make_folder(root_ / "depth");
+    write_png(depth, (root_ / "depth" / (name + ".png")).string());
+    if (colour.empty()) return;
+    make_folder(root_ / "rgb");
+    write_png(colour, (root_ / "rgb" / (name + ".png")).string());
+  }
+
+  const fs::path& root() const { return root_; }
+
+ private:
+  fs::path root_;
+  float units_per_m_;
+  std::optional<Camera> camera_;
+  std::set<std::string> names_;
+};
+
+class PngWriter final : public FolderWriter {
+ public:
+  explicit PngWriter(const fs::path& root) : FolderWriter(root, 1000.F) {}
+
+ private:
+  void write_pictures(const Frame& frame, const std::string& name) override {
+    write_pngs(frame.depth, frame.colour, name);
+  }
+};
+
+class PcdWriter final : public FolderWriter {
+ public:
+  PcdWriter(const fs::path& root, PcdEncoding encoding) : FolderWriter(root, 1000.F), encoding_(encoding) {}
+
+ private:
+  void write_pictures(const Frame& frame, const std::string& name) override {
+    write_file_atomically((root() / (name + ".pcd")).string(), serialise_pcd(frame, encoding_));
+  }
+
+  PcdEncoding encoding_;
+};
+
+class TumWriter final : public FolderWriter {
+ public:
+  TumWriter(const fs::path& root, const WriteOptions& options)
+      : FolderWriter(root, options.tum_units_per_m), options_(options) {}
+
+  void close() override {
+    write_file_atomically((root() / "depth.txt").string(), "# depth maps\n# timestamp filename\n" + depth_list_);
+    if (!colour_list_.empty()) {
+      write_file_atomically((root() / "rgb.txt").string(), "# color images\n# timestamp filename\n" + colour_list_);
+    }
+  }
+
+ private:
+  std::string file_name(const Frame& frame) override {
+    const int index = count_++;
+    return fmt::format("{:.6f}", frame.time_s != 0.0 ? frame.time_s : index / double{options_.tum_frame_rate});
+  }
+
+  void write_pictures(const Frame& frame, const std::string& name) override {
+    write_pngs(stored(frame), frame.colour, name);
+    depth_list_ += fmt::format("{0} depth/{0}.png\n", name);
+    if (!frame.colour.empty()) colour_list_ += fmt::format("{0} rgb/{0}.png\n", name);
+  }
+
+  Image<std::uint16_t> stored(const Frame& frame) const {
+    const double units_per_mm = options_.tum_units_per_m / 1000.0;
+    Image<std::uint16_t> image(frame.depth.width(), frame.depth.height());
+    std::transform(frame.depth.begin(), frame.depth.end(), image.begin(), [&](std::uint16_t depth_mm) {
+      const double units = std::round(depth_mm * units_per_mm);
+      if (units > 65535.0) {
+        throw Error(fmt::format("{}: frame {}: depth of {} mm, expected at most {} at {} units per metre",
+                                root().string(), frame.name, depth_mm, std::floor(65535.0 / units_per_mm),
+                                options_.tum_units_per_m));
+      }
+      return static_cast<std::uint16_t>(units);
+    });
+    return image;
+  }
+
+  WriteOptions options_;
+  int count_ = 0;
+  std::string depth_list_;
+  std::string colour_list_;
+};
+
+}  // namespace
+
+FrameFormat parse_frame_format(std::string_view word) {
+  if (word == "folder") return FrameFormat::folder;
+  if (word == "tum") return FrameFormat::tum;
+  if (word == "pcd") return FrameFormat::pcd;
+  throw UsageError(fmt::format("format \"{}\", expected folder, tum or pcd", word));
+}
+
+std::unique_ptr<FrameWriter> make_frame_writer(FrameFormat format, const std::string& folder,
+                                               const WriteOptions& options) {
+  if (!(options.tum_units_per_m >= 1000.F && options.tum_units_per_m <= 65535.F)) {
+    throw UsageError("TUM scale: expected 1000 to 65535 units per metre: fewer would lose millimetres");
+  }
+  if (!(options.tum_frame_rate > 0.F && options.tum_frame_rate <= 1000.F)) {
+    throw UsageError("TUM frame rate: expected more than 0 to 1000 frames per second");
+  }
+  switch (format) {
+    case FrameFormat::tum:
+      return std::make_unique<TumWriter>(folder, options);
+    case FrameFormat::pcd:
+      return std::make_unique<PcdWriter>(folder, options.pcd_encoding);
+    default:
+      return std::make_unique<PngWriter>(folder);
+  }
+}
+
+}  // namespace vesalius

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "io/sources/pcd.h"
+#include "vesalius/base/frame.h"
+
+namespace vesalius {
+
+/// Layouts of frames on disk that `open_source` reads back.
+enum class FrameFormat {
+  folder,  ///< depth/NAME.png (16-bit, millimetres), rgb/NAME.png, meta.json
+  tum,     ///< depth.txt, rgb.txt, depth/TIME.png, rgb/TIME.png, and meta.json for the camera
+  pcd      ///< NAME.pcd, organised, and meta.json
+};
+
+/// "folder", "tum" or "pcd"; throws UsageError for another word.
+FrameFormat parse_frame_format(std::string_view word);
+
+struct WriteOptions {
+  PcdEncoding pcd_encoding = PcdEncoding::binary_compressed;
+  float tum_units_per_m = 5000.F;  ///< 16 bits of the usual 5000 end at 13.1 m
+  float tum_frame_rate = 30.F;     ///< times of frames that have none
+};
+
+/// Writes frames into a folder, losslessly. Frames of one folder share one camera.
+class FrameWriter {
+ public:
+  virtual ~FrameWriter() = default;
+  /// Throws Error naming the frame or file: for a name that is no file name or was written before, another camera
+  /// than the first frame's, depth that does not fit the format, or a file that cannot be written.
+  virtual void write(const Frame& frame) = 0;
+  /// Writes what lists all frames; a folder is complete only after it.
+  virtual void close() = 0;
+};
+
+/// Makes `folder`; throws Error when it cannot or when it has files in it already.
+std::unique_ptr<FrameWriter> make_frame_writer(FrameFormat format, const std::string& folder,
+                                               const WriteOptions& options = {});
+
+}  // namespace vesalius

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "synth/body/builtin_figure.h"
+
+namespace vesalius::synth {
+
+/// Lengths of one body, metres, and what shapes its flesh. `h` is the stature.
+struct Measures {
+  float h = 0.F;
+  float male = 0.F;
+  float child = 0.F;  ///< 0 from 18 years on, 1 at 4
+  float limb = 1.F;   ///< thickness of limbs against the average
+  float waist = 1.F;
+  float trunk = 1.F;
+  float head = 0.F;                                                                  ///< chin to crown
+  float chin = 0.F, neck = 0.F, shoulder = 0.F, hip = 0.F, knee = 0.F, ankle = 0.F;  ///< heights
+  float shoulder_x = 0.F, hip_x = 0.F;
+};
+
+/// Measures of a shape, whose numbers are kept within what the figure can show.
+Measures measure(const BuiltinShape& shape);
+
+/// Arms hang 45 degrees from the body.
+inline const Eigen::Vector3f kDownArm = Eigen::Vector3f(1.F, -1.F, 0.F).normalized();
+
+/// Where the left leg's line is at a height: the legs stand apart, so that thighs do not melt together.
+inline float leg_x(const Measures& m, float y) { return m.hip_x + 0.09F * (m.hip - y); }
+
+/// The bones of the built-in rig, left and right.
+std::array<BoneSegment, kBuiltinBoneCount> builtin_bones(const Measures& m);
+
+}  // namespace vesalius::synth

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <initializer_list>
+#include <vector>
+
+#include "synth/body/body_mesh.h"
+#include "synth/body/surface_parts.h"
+#include "synth/dress/outfit.h"
+#include "vesalius/base/random.h"
+
+namespace vesalius::synth {
+
+/// Adds what is worn or carried to a body as simple surfaces that move with its bones. Everything is cut to the body as
+/// it is when it is put on, clothes and hair included.
+class Wardrobe {
+ public:
+  Wardrobe(BodyMesh& mesh, BodyTopology& topology, SurfaceParts rules);
+
+  /// A sheet of hair behind the head, down to the neck or the shoulder blades.
+  void add_long_hair(float thickness_m, Random& random);
+  /// A tube around the hips down the legs; `legs`: share of them that it covers.
+  void add_skirts(float legs, Fabric fabric, Random& random);
+  void add_hat(Hat hat, Random& random);
+  void add_backpack(Random& random);
+  void add_bag(Bag bag, bool left, Random& random);
+  void add_held(Held held, bool left, Random& random);
+
+ private:
+  struct Extent {  ///< of the body at a height: half width, front and back
+    float half_width = 0.F, front = 0.F, back = 0.F;
+  };
+  /// Of the vertices that `bones` move, within `reach_m` of a height; zero where there are none.
+  Extent extent(float y, float reach_m, std::initializer_list<Bone> bones) const;
+
+  struct Sheet {  ///< rows of points, each row as long as the others
+    std::vector<std::vector<Eigen::Vector3f>> rows;
+    bool closed = false;  ///< whether each row is a ring; counter-clockwise seen from above where rows go down
+  };
+  using PartAt = std::function<std::uint8_t(const Eigen::Vector3f&)>;
+  using SkinAt = std::function<SkinWeights(const Eigen::Vector3f&)>;
+  void add_sheet(const Sheet& sheet, const SkinAt& skin, const PartAt& part, Fabric fabric);
+  void add_box(const Eigen::Vector3f& centre, const Eigen::Matrix3f& half_axes, Bone bone);
+  void add_box(const Eigen::Vector3f& centre, const Eigen::Matrix3f& half_axes, const SkinWeights& weights);
+  /// Moved by a new rig bone that hangs from a hand at a point.
+  SkinWeights hanging(Bone hand, const Eigen::Vector3f& from);
+  void add_cylinder(const Eigen::Vector3f& centre, const Eigen::Vector3f& half_axis, float radius_m, Bone bone);
+
+  struct Influence {
+    Bone bone;
+    float weight;
+  };
+  /// At most four influences above 0.
+  SkinWeights skin(std::initializer_list<Influence> influences) const;
+  const BoneSegment& segment(Bone bone) const { return segments_[index(bone)]; }
+  /// Columns: along the hand, out of the palm, towards the thumb; body frame at rest.
+  Eigen::Matrix3f hand_axes(bool left) const;
+
+  BodyMesh& mesh_;
+  BodyTopology& topology_;
+  SurfaceParts rules_;
+  std::array<BoneSegment, kBoneCount> segments_;
+  std::array<std::uint16_t, kBoneCount> carrier_{};  ///< rig bone that turns as the bone of the pose does
+  std::vector<Bone> mover_;                          ///< per vertex of the body: bone that most moves it
+};
+
+}  // namespace vesalius::synth

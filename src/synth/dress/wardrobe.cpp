@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "synth/dress/garments.h"
+
+namespace vesalius::synth {
+namespace {
+
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+
+float uniform(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
+
+Matrix3f diagonal(float x, float y, float z) { return Vector3f(x, y, z).asDiagonal(); }
+
+}  // namespace
+
+Wardrobe::Wardrobe(BodyMesh& mesh, BodyTopology& topology, SurfaceParts rules)
+    : mesh_(mesh), topology_(topology), rules_(std::move(rules)), segments_(rest_bones(mesh)) {
+  for (std::size_t b = 0; b < kBoneCount; ++b) {
+    const auto whole = std::ranges::find_if(mesh.rig, [&](const RigBone& bone) {
+      return bone.from == static_cast<Bone>(b) && (bone.blend == 0.F || bone.to == bone.from);
+    });
+    carrier_[b] = static_cast<std::uint16_t>(whole == mesh.rig.end() ? mesh.rig_of[b] : whole - mesh.rig.begin());
+  }
+  mover_.assign(mesh.vertices.size(), Bone::pelvis);
+  const std::vector<Bone> bones = surface_bones(mesh);
+  for (std::size_t t = 0; t < bones.size(); ++t) {
+    for (const std::uint32_t v : topology.triangles[t]) mover_[v] = bones[t];
+  }
+}
+
+void Wardrobe::add_backpack(Random& random) {
+  const BoneSegment& chest = segment(Bone::chest);
+  const float high = uniform(random, 0.2, 0.28) * mesh_.stature_m / 2.F;
+  const float deep = uniform(random, 0.1, 0.22) / 2.F;
+  const float wide = uniform(random, 0.14, 0.19) * mesh_.stature_m / 2.F;
+  const float y = std::lerp(chest.head.y(), chest.tail.y(), 0.45F);
+  const float back = extent(y, high, {Bone::chest, Bone::spine}).back;
+  add_box({0.F, y, back - deep}, diagonal(wide, high, deep), Bone::chest);
+}
+
+void Wardrobe::add_bag(Bag bag, bool left, Random& random) {
+  const float high = uniform(random, 0.09, 0.18);
+  const float wide = uniform(random, 0.1, 0.2);
+  const float thick = uniform(random, 0.03, 0.07);
+  if (bag == Bag::at_hip) {
+    const float y = segment(Bone::l_thigh).head.y();
+    const float side = extent(y, high, {Bone::pelvis, Bone::l_thigh, Bone::r_thigh}).half_width + thick;
+    add_box({left ? side : -side, y, 0.F}, diagonal(thick, high, wide), Bone::pelvis);
+    return;
+  }
+  const Bone bone = left ? Bone::l_hand : Bone::r_hand;
+  const Vector3f fingers = segment(bone).tail;
+  add_box(fingers - Vector3f(0.F, high, 0.F), diagonal(thick, high, wide), hanging(bone, fingers));
+}
+
+void Wardrobe::add_held(Held held, bool left, Random& random) {
+  const Bone bone = left ? Bone::l_hand : Bone::r_hand;
+  const BoneSegment& hand = segment(bone);
+  const Matrix3f axes = hand_axes(left);
+  const Vector3f palm = 0.45F * hand.head + 0.55F * hand.tail;
+  const auto in_palm = [&](float half_thickness) -> Vector3f { return palm + (half_thickness + 0.015F) * axes.col(1); };
+  switch (held) {
+    case Held::none:
+      return;
+    case Held::cup: {
+      const float radius = uniform(random, 0.03, 0.045);
+      add_cylinder(in_palm(radius), uniform(random, 0.04, 0.07) * axes.col(2), radius, bone);
+      return;
+    }
+    case Held::phone:
+      add_box(in_palm(0.005F), axes * diagonal(0.075F, 0.005F, 0.037F), bone);
+      return;
+    case Held::stick: {
+      const float half = uniform(random, 0.15, 0.6);
+      const float shift = uniform(random, -0.8, 0.8) * half;
+      add_cylinder(in_palm(0.012F) + shift * axes.col(2), half * axes.col(2), uniform(random, 0.008, 0.018), bone);
+      return;
+    }
+    case Held::box: {
+      const float thick = uniform(random, 0.04, 0.15);
+      add_box(in_palm(thick), axes * diagonal(uniform(random, 0.08, 0.2), thick, uniform(random, 0.08, 0.2)), bone);
+      return;
+    }
+  }
+}
+
+Wardrobe::Extent Wardrobe::extent(float y, float reach_m, std::initializer_list<Bone> bones) const {
+  Extent out;
+  bool found = false;
+  for (std::size_t v = 0; v < mover_.size(); ++v) {
+    const Vector3f& p = mesh_.vertices[v];
+    if (std::abs(p.y() - y) > reach_m || std::ranges::find(bones, mover_[v]) == bones.end()) continue;
+    out.half_width = std::max(out.half_width, std::abs(p.x()));
+    out.front = found ? std::max(out.front, p.z()) : p.z();
+    out.back = found ? std::min(out.back, p.z()) : p.z();
+    found = true;
+  }
+  return out;
+}
+
+void Wardrobe::add_sheet(const Sheet& sheet, const SkinAt& skin_at, const PartAt& part, Fabric fabric) {
+  const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+  const std::size_t columns = sheet.rows.front().size();
+  for (const auto& row : sheet.rows) {
+    for (const Vector3f& p : row) {
+      mesh_.vertices.push_back(p);
+      topology_.skin.push_back(skin_at(p));
+    }
+  }
+  for (std::size_t r = 0; r + 1 < sheet.rows.size(); ++r) {
+    for (std::size_t k = 0; k + (sheet.closed ? 0 : 1) < columns; ++k) {
+      const auto at = [&](std::size_t row, std::size_t column) {
+        return first + static_cast<std::uint32_t>(row * columns + column % columns);
+      };
+      topology_.triangles.push_back({at(r, k), at(r + 1, k), at(r + 1, k + 1)});
+      topology_.triangles.push_back({at(r, k), at(r + 1, k + 1), at(r, k + 1)});
+      topology_.part.insert(topology_.part.end(), 2,
+                            part((mesh_.vertices[at(r, k)] + mesh_.vertices[at(r + 1, k + 1)]) / 2.F));
+      topology_.fabric.insert(topology_.fabric.end(), 2, fabric);
+    }
+  }
+}
+
+SkinWeights Wardrobe::hanging(Bone hand, const Vector3f& from) {
+  RigBone bone;
+  bone.name = "bag";
+  bone.parent = carrier_[index(hand)];
+  bone.head = from;
+  bone.tail = from - Vector3f::UnitY();
+  bone.hangs = true;
+  mesh_.rig.push_back(bone);
+  return {{static_cast<std::uint16_t>(mesh_.rig.size() - 1)}, {1.F}};
+}
+
+void Wardrobe::add_box(const Vector3f& centre, const Matrix3f& half_axes, Bone bone) {
+  add_box(centre, half_axes, skin({{bone, 1.F}}));
+}
+
+void Wardrobe::add_box(const Vector3f& centre, const Matrix3f& half_axes, const SkinWeights& weights) {
+  // Twelve triangles over corners numbered by the signs of x, y, z; outwards where the axes are right-handed.
+  constexpr std::array<Triangle, 12> kFaces{{{0, 2, 3},
+                                             {0, 3, 1},
+                                             {4, 5, 7},
+                                             {4, 7, 6},
+                                             {0, 1, 5},
+                                             {0, 5, 4},
+                                             {2, 6, 7},
+                                             {2, 7, 3},
+                                             {0, 4, 6},
+                                             {0, 6, 2},
+                                             {1, 3, 7},
+                                             {1, 7, 5}}};
+  const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+  const bool left_handed = half_axes.determinant() < 0.F;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const auto sign = [&](unsigned bit) { return (corner >> bit & 1U) != 0 ? 1.F : -1.F; };
+    mesh_.vertices.push_back(centre + half_axes * Vector3f(sign(0), sign(1), sign(2)));
+    topology_.skin.push_back(weights);
+  }
+  for (Triangle t : kFaces) {
+    if (left_handed) std::swap(t[1], t[2]);
+    topology_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    topology_.part.push_back(kBackground);
+    topology_.fabric.push_back(Fabric::accessory);
+  }
+}
+
+void Wardrobe::add_cylinder(const Vector3f& centre, const Vector3f& half_axis, float radius_m, Bone bone) {
+  constexpr int kSides = 12;
+  const Vector3f axis = half_axis.normalized();
+  const Vector3f side = axis.unitOrthogonal();
+  Sheet sheet;
+  sheet.closed = true;
+  // Rings of no width at the ends are the lids.
+  for (const auto& [along, wide] : {std::pair{1.F, 0.F}, {1.F, 1.F}, {-1.F, 1.F}, {-1.F, 0.F}}) {
+    std::vector<Vector3f> row;
+    for (int k = 0; k < kSides; ++k) {
+      const Eigen::AngleAxisf turn(2.F * std::numbers::pi_v<float> * static_cast<float>(k) / kSides, axis);
+      row.push_back(centre + along * half_axis + wide * radius_m * (turn * side));
+    }
+    sheet.rows.push_back(std::move(row));
+  }
+  add_sheet(
+      sheet,
+      [&](const Vector3f&) {
+        return skin({{bone, 1.F}});
+      },
+      [](const Vector3f&) { return kBackground; }, Fabric::accessory);
+}
+
+SkinWeights Wardrobe::skin(std::initializer_list<Influence> influences) const {
+  SkinWeights out;
+  std::size_t k = 0;
+  for (const Influence& i : influences) {
+    if (i.weight <= 0.F || k == 4) continue;
+    out.bone[k] = carrier_[index(i.bone)];
+    out.weight[k] = i.weight;
+    ++k;
+  }
+  return out;
+}
+
+Matrix3f Wardrobe::hand_axes(bool left) const {
+  const Bone hand = left ? Bone::l_hand : Bone::r_hand;
+  const RigBone& rig = mesh_.rig[carrier_[index(hand)]];
+  Matrix3f t_axes;  // in the T palms are down and thumbs in front
+  t_axes << rest_direction(hand), -Vector3f::UnitY(), Vector3f::UnitZ();
+  return rig.t_from_rest.conjugate().toRotationMatrix() * t_axes;
+}
+
+}  // namespace vesalius::synth

@@ -1,0 +1,98 @@
+#include "synth/mocap/retarget.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "synth/text/text_scanner.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+/// The joints of one bone in a certain motion, and the turn before theirs.
+struct Source {
+  int first = -1;
+  int second = -1;  ///< -1: the first alone
+  Eigen::Quaternionf source_from_t = Eigen::Quaternionf::Identity();
+};
+
+using Sources = std::array<Source, kBoneCount>;
+
+/// Name of a joint that the convention asks for and the motion lacks; empty where there is none.
+std::string missing_joint(const Motion& motion, const MotionConvention& convention) {
+  for (const BoneSource& bone : convention.bones) {
+    for (const std::string& joint : bone.from) {
+      if (motion.find_joint(joint) < 0) return joint;
+    }
+  }
+  return {};
+}
+
+Sources find_sources(const Motion& motion, const MotionConvention& convention) {
+  Sources sources;
+  for (std::size_t b = 0; b < kBoneCount; ++b) {
+    const BoneSource& bone = convention.bones[b];
+    Source& source = sources[b];
+    source.first = motion.find_joint(bone.from[0]);
+    if (bone.from.size() > 1) source.second = motion.find_joint(bone.from[1]);
+    if (bone.rest != RestRule::aim) continue;
+    const MotionJoint& joint = motion.joints[source.first];
+    source.source_from_t = Eigen::Quaternionf::FromTwoVectors(rest_direction(static_cast<Bone>(b)), joint.along);
+  }
+  for (std::size_t b = 0; b < kBoneCount; ++b) {
+    const BoneSource& bone = convention.bones[b];
+    if (bone.rest == RestRule::like) sources[b].source_from_t = sources[index(bone.like)].source_from_t;
+  }
+  return sources;
+}
+
+Pose pose_of(const Motion& motion, const Sources& sources, int frame) {
+  std::array<Eigen::Quaternionf, kBoneCount> world;
+  for (std::size_t b = 0; b < kBoneCount; ++b) {
+    const Source& source = sources[b];
+    Eigen::Quaternionf q = motion.rotation(frame, source.first);
+    if (source.second >= 0) q = q.slerp(0.5F, motion.rotation(frame, source.second));
+    world[b] = q * source.source_from_t;
+  }
+  Pose pose = from_world_rotations(world);
+  pose[Bone::pelvis] = without_yaw(pose[Bone::pelvis]);
+  return pose;
+}
+
+}  // namespace
+
+void check_fit(const Motion& motion, const MotionConvention& convention) {
+  const std::string missing = missing_joint(motion, convention);
+  if (!missing.empty()) {
+    throw Error(fmt::format("{}: no joint is called {}, which convention {} expects", motion.name, in_quotes(missing),
+                            convention.name));
+  }
+  for (const BoneSource& bone : convention.bones) {
+    if (bone.rest != RestRule::aim) continue;
+    if (motion.joints[motion.find_joint(bone.from[0])].along.isZero()) {
+      throw Error(fmt::format("{}: joint {} has no direction: expected a child apart from it", motion.name,
+                              in_quotes(bone.from[0])));
+    }
+  }
+}
+
+const MotionConvention& find_convention(const Motion& motion, const std::vector<MotionConvention>& conventions) {
+  std::string tried;
+  for (const MotionConvention& convention : conventions) {
+    const std::string missing = missing_joint(motion, convention);
+    if (missing.empty()) return convention;
+    tried += fmt::format("{}{} (no joint {})", tried.empty() ? "" : ", ", convention.name, in_quotes(missing));
+  }
+  throw Error(fmt::format("{}: its joints fit none of the conventions known: {}", motion.name, tried));
+}
+
+std::vector<Pose> retarget(const Motion& motion, const MotionConvention& convention) {
+  check_fit(motion, convention);
+  const Sources sources = find_sources(motion, convention);
+  std::vector<Pose> poses;
+  for (int f = convention.skip_frames; f < motion.frame_count(); ++f) poses.push_back(pose_of(motion, sources, f));
+  return poses;
+}
+
+}  // namespace vesalius::synth

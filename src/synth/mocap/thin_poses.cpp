@@ -1,0 +1,193 @@
+#include "synth/mocap/thin_poses.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+/// Entries of the joints' rotation matrices, 9 each: a turn by some angle moves an entry by no more than the chord.
+constexpr int kEntries = 9 * kBoneCount;
+/// Levels of the tree, which split by one entry each. 40 leave few bones out.
+constexpr int kLevels = 40;
+constexpr std::size_t kLeaf = 12;
+/// Poses that the choice of entries looks at.
+constexpr std::size_t kSample = 2000;
+
+using Entries = Eigen::Matrix<float, kEntries, 1>;
+using Coordinates = std::array<float, kLevels>;
+using Rotations = std::array<Eigen::Quaternionf, kBoneCount>;
+
+Rotations rotations_of(const Pose& pose) {
+  Rotations out = pose.local;
+  out[0] = without_yaw(out[0]);
+  for (const Eigen::Quaternionf& q : out) {
+    if (!q.coeffs().allFinite()) throw Error("thin_poses: a pose has a number that is not finite");
+  }
+  return out;
+}
+
+Entries entries_of(const Rotations& rotations) {
+  Entries out;
+  for (int b = 0; b < kBoneCount; ++b) {
+    const Eigen::Matrix3f m = rotations[b].toRotationMatrix();
+    out.segment<9>(9 * b) = Eigen::Map<const Eigen::Matrix<float, 9, 1>>(m.data());
+  }
+  return out;
+}
+
+/// The entries that tell poses apart best: each time the one that varies most beyond what those before it explain
+/// (Cholesky decomposition of the covariance with pivots).
+std::array<int, kLevels> telling_entries(std::span<const Pose> poses) {
+  const std::size_t step = poses.size() / kSample + 1;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(kEntries);
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(kEntries, kEntries);
+  int count = 0;
+  for (std::size_t i = 0; i < poses.size(); i += step, ++count) {
+    const Eigen::VectorXd e = entries_of(rotations_of(poses[i])).cast<double>();
+    sum += e;
+    squares.selfadjointView<Eigen::Lower>().rankUpdate(e);
+  }
+  Eigen::MatrixXd rest = squares.selfadjointView<Eigen::Lower>();
+  rest = rest / count - (sum / count) * (sum / count).transpose();
+  std::array<int, kLevels> chosen{};
+  for (int& entry : chosen) {
+    Eigen::Index pivot = 0;
+    const double variance = rest.diagonal().maxCoeff(&pivot);
+    entry = static_cast<int>(pivot);
+    if (variance < 1e-9) continue;  // the others follow from those chosen
+    const Eigen::VectorXd column = rest.col(pivot);
+    rest -= column * column.transpose() / variance;
+  }
+  return chosen;
+}
+
+/// Finds out whether a pose is nearer than an angle to one of those it was given. Level after level of the tree cuts
+/// one coordinate into cells as wide as the angle's chord: whatever is near lies in the same cell or beside it.
+class NearPoses {
+ public:
+  NearPoses(std::array<int, kLevels> entries, float min_angle_rad)
+      : entries_(entries),
+        min_angle_(min_angle_rad),
+        cos_half_(std::cos(0.5F * min_angle_rad)),
+        // The little more is for rounding.
+        cell_(2.F * std::sin(0.5F * std::min(min_angle_rad, 3.14159265F)) + 1e-5F),
+        nodes_(1) {}
+
+  /// Adds the pose unless one is near; whether it did.
+  bool add_if_far(const Pose& pose) {
+    const Rotations rotations = rotations_of(pose);
+    const Entries all = entries_of(rotations);
+    Coordinates at;
+    for (std::size_t l = 0; l < kLevels; ++l) at[l] = all[entries_[l]];
+    if (near(rotations, at)) return false;
+    kept_.push_back({rotations, at});
+    insert(static_cast<int>(kept_.size()) - 1);
+    return true;
+  }
+
+ private:
+  struct Kept {
+    Rotations rotations;
+    Coordinates at;
+  };
+  struct Child {
+    int cell;
+    int node;
+  };
+  struct Node {
+    bool leaf = true;
+    std::vector<int> poses;       ///< of a leaf
+    std::vector<Child> children;  ///< else; by rising cells
+  };
+  struct Place {
+    int node;
+    std::size_t level;
+  };
+
+  int cell_of(float coordinate) const { return static_cast<int>(std::floor(coordinate / cell_)); }
+
+  bool near(const Rotations& pose, const Coordinates& at) {
+    open_.assign(1, {0, 0});
+    while (!open_.empty()) {
+      const Place place = open_.back();
+      open_.pop_back();
+      const Node& node = nodes_[place.node];
+      for (const int i : node.poses) {
+        if (near(pose, kept_[i].rotations)) return true;
+      }
+      if (node.leaf) continue;
+      const int low = cell_of(at[place.level] - cell_), high = cell_of(at[place.level] + cell_);
+      auto child = std::ranges::lower_bound(node.children, low, {}, &Child::cell);
+      for (; child != node.children.end() && child->cell <= high; ++child) {
+        open_.push_back({child->node, place.level + 1});
+      }
+    }
+    return false;
+  }
+
+  /// largest_angle(a, b) < min_angle_. The dot product decides, but where it is too close to call.
+  bool near(const Rotations& a, const Rotations& b) const {
+    constexpr float kTooClose = 2e-6F;
+    for (std::size_t j = 0; j < kBoneCount; ++j) {
+      const float dot = std::abs(a[j].dot(b[j]));
+      if (dot < cos_half_ - kTooClose) return false;
+      if (dot < cos_half_ + kTooClose && a[j].angularDistance(b[j]) >= min_angle_) return false;
+    }
+    return true;
+  }
+
+  void insert(int pose) {
+    Place place{0, 0};
+    while (!nodes_[place.node].leaf) place = descend(place, pose);
+    std::vector<int>& poses = nodes_[place.node].poses;
+    poses.push_back(pose);
+    if (poses.size() <= kLeaf || place.level == kLevels) return;
+    const std::vector<int> moved = std::exchange(poses, {});
+    nodes_[place.node].leaf = false;
+    for (const int i : moved) nodes_[descend(place, i).node].poses.push_back(i);
+  }
+
+  /// The child for a pose, made where there is none.
+  Place descend(const Place& place, int pose) {
+    const int cell = cell_of(kept_[pose].at[place.level]);
+    std::vector<Child>& children = nodes_[place.node].children;
+    auto child = std::ranges::lower_bound(children, cell, {}, &Child::cell);
+    if (child == children.end() || child->cell != cell) {
+      child = children.insert(child, {cell, static_cast<int>(nodes_.size())});
+      const int made = child->node;
+      nodes_.emplace_back();  // ends the life of `children`
+      return {made, place.level + 1};
+    }
+    return {child->node, place.level + 1};
+  }
+
+  std::array<int, kLevels> entries_;
+  float min_angle_;
+  float cos_half_;
+  float cell_;
+  std::vector<Kept> kept_;
+  std::vector<Node> nodes_;
+  std::vector<Place> open_;
+};
+
+}  // namespace
+
+std::vector<int> thin_poses(std::span<const Pose> poses, float min_angle_rad) {
+  if (!(min_angle_rad >= 0.F && std::isfinite(min_angle_rad))) {
+    throw Error("thin_poses: expected an angle of 0 or more radians");
+  }
+  std::vector<int> kept;
+  if (poses.empty()) return kept;
+  NearPoses near(telling_entries(poses), min_angle_rad);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (min_angle_rad == 0.F || near.add_if_far(poses[i])) kept.push_back(static_cast<int>(i));
+  }
+  return kept;
+}
+
+}  // namespace vesalius::synth

@@ -1,0 +1,179 @@
+#include "synth/pose/joint_angles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "synth/pose/stick_figure.h"
+
+namespace vesalius::synth {
+namespace {
+
+using Eigen::Quaternionf;
+using Eigen::Vector3f;
+
+constexpr float kDegree = 3.14159265F / 180.F;
+/// Spine and neck bones bend by half of what their region does.
+constexpr float kHalf = 0.5F;
+
+Quaternionf turn(const Vector3f& axis, float degrees) {
+  return Quaternionf(Eigen::AngleAxisf(degrees * kDegree, axis));
+}
+Quaternionf turn_x(float degrees) { return turn(Vector3f::UnitX(), degrees); }
+Quaternionf turn_y(float degrees) { return turn(Vector3f::UnitY(), degrees); }
+Quaternionf turn_z(float degrees) { return turn(Vector3f::UnitZ(), degrees); }
+
+/// The left side's rotation as the right side's: x -> -x.
+Quaternionf on_side(const Quaternionf& left_rotation, bool left) {
+  const Quaternionf& q = left_rotation;
+  return left ? q : Quaternionf(q.w(), q.x(), -q.y(), -q.z());
+}
+
+/// Turns the hanging upper arm by `elevation` towards `plane`, without a turn about itself; from the T.
+Quaternionf swing(float elevation, float plane) {
+  return turn_y(-plane) * turn_z(elevation) * turn_y(plane) * turn_z(-90.F);
+}
+
+Quaternionf spine_turn(const SpineAngles& spine, float share) {
+  return turn_y(share * spine.turn) * turn_z(-share * spine.lateral) * turn_x(share * spine.flexion);
+}
+
+void set_arm(Pose& pose, bool left, const ArmAngles& arm) {
+  pose[left ? Bone::l_clavicle : Bone::r_clavicle] = on_side(turn_y(-arm.forward) * turn_z(arm.shrug), left);
+  pose[left ? Bone::l_upper_arm : Bone::r_upper_arm] =
+      on_side(swing(arm.elevation, arm.plane) * turn_x(-arm.external), left);
+  pose[left ? Bone::l_forearm : Bone::r_forearm] = on_side(turn_y(-arm.elbow), left);
+  set_hand(pose, left, arm.pronation, arm.wrist, arm.ulnar);
+}
+
+void set_leg(Pose& pose, bool left, const LegAngles& leg) {
+  pose[left ? Bone::l_thigh : Bone::r_thigh] =
+      on_side(turn_x(-leg.flexion) * turn_z(leg.abduction) * turn_y(leg.external), left);
+  pose[left ? Bone::l_shin : Bone::r_shin] = turn_x(leg.knee);
+  pose[left ? Bone::l_foot : Bone::r_foot] = turn_x(-leg.ankle);
+}
+
+void clamp(float& angle, const JointRange& range) { angle = std::clamp(angle, range.low, range.high); }
+
+/// Elevation that the shoulder allows in a plane: full to the side and the front, less the further back.
+float largest_elevation(float plane) {
+  const float back = std::clamp(-plane / 90.F, 0.F, 1.F);
+  return range::kElevation.high + back * (range::kExtension - range::kElevation.high);
+}
+
+void clamp(ArmAngles& arm) {
+  clamp(arm.plane, range::kPlane);
+  arm.elevation = std::clamp(arm.elevation, 0.F, largest_elevation(arm.plane));
+  clamp(arm.external, range::kArmExternal);
+  clamp(arm.elbow, range::kElbow);
+  clamp(arm.pronation, range::kPronation);
+  clamp(arm.wrist, range::kWrist);
+  clamp(arm.ulnar, range::kUlnar);
+  clamp(arm.shrug, range::kShrug);
+  clamp(arm.forward, range::kForward);
+}
+
+void clamp(LegAngles& leg) {
+  clamp(leg.flexion, range::kHipFlexion);
+  clamp(leg.abduction, range::kHipAbduction);
+  clamp(leg.external, range::kHipExternal);
+  clamp(leg.knee, range::kKnee);
+  clamp(leg.ankle, range::kAnkle);
+}
+
+/// Angle about the x axis of a rotation about it, degrees in [-180, 180].
+float x_angle(const Quaternionf& q) {
+  const float angle = 2.F * std::atan2(q.x(), q.w()) / kDegree;
+  return angle > 180.F ? angle - 360.F : angle < -180.F ? angle + 360.F : angle;
+}
+
+}  // namespace
+
+BodyAngles within_range(BodyAngles angles) {
+  clamp(angles.trunk.flexion, range::kTrunkFlexion);
+  clamp(angles.trunk.lateral, range::kTrunkLateral);
+  clamp(angles.trunk.turn, range::kTrunkTurn);
+  clamp(angles.neck.flexion, range::kNeckFlexion);
+  clamp(angles.neck.lateral, range::kNeckLateral);
+  clamp(angles.neck.turn, range::kNeckTurn);
+  for (ArmAngles& arm : angles.arms) clamp(arm);
+  for (LegAngles& leg : angles.legs) clamp(leg);
+  for (float& grip : angles.grip) grip = std::clamp(grip, 0.F, 1.F);
+  return angles;
+}
+
+Pose pose_of(const BodyAngles& angles) {
+  Pose pose;
+  pose[Bone::pelvis] = turn_z(-angles.roll) * turn_x(angles.pitch);
+  pose[Bone::spine] = pose[Bone::chest] = spine_turn(angles.trunk, kHalf);
+  pose[Bone::neck] = pose[Bone::head] = spine_turn(angles.neck, kHalf);
+  for (const bool left : {true, false}) {
+    set_arm(pose, left, angles.arms[left ? 0 : 1]);
+    set_leg(pose, left, angles.legs[left ? 0 : 1]);
+  }
+  pose.l_grip = angles.grip[0];
+  pose.r_grip = angles.grip[1];
+  return pose;
+}
+
+ArmAngles arm_angles(const Pose& pose, bool left) {
+  const Quaternionf upper = on_side(pose[left ? Bone::l_upper_arm : Bone::r_upper_arm], left);
+  const Vector3f along = upper * Vector3f::UnitX();
+  ArmAngles arm;
+  arm.elevation = std::acos(std::clamp(-along.y(), -1.F, 1.F)) / kDegree;
+  arm.plane = std::atan2(along.z(), along.x()) / kDegree;
+  arm.external = -x_angle(swing(arm.elevation, arm.plane).conjugate() * upper);
+  const Vector3f fore = on_side(pose[left ? Bone::l_forearm : Bone::r_forearm], left) * Vector3f::UnitX();
+  arm.elbow = std::atan2(fore.z(), fore.x()) / kDegree;
+  const Quaternionf hand = on_side(pose[left ? Bone::l_hand : Bone::r_hand], left);
+  const Vector3f palm_axis = hand * Vector3f::UnitX();
+  const Quaternionf bend = Quaternionf::FromTwoVectors(Vector3f::UnitX(), palm_axis);
+  arm.pronation = x_angle(bend.conjugate() * hand);
+  const Vector3f in_palm = turn_x(-arm.pronation) * palm_axis;
+  arm.wrist = std::asin(std::clamp(-in_palm.y(), -1.F, 1.F)) / kDegree;
+  arm.ulnar = std::atan2(-in_palm.z(), in_palm.x()) / kDegree;
+  return arm;
+}
+
+bool arm_in_range(const ArmAngles& arm) {
+  constexpr float kSlack = 2.F;
+  const auto in = [](float angle, const JointRange& range) {
+    return angle >= range.low - kSlack && angle <= range.high + kSlack;
+  };
+  // A hanging arm points nowhere: its plane says nothing.
+  const bool raised = arm.elevation > 10.F;
+  return (!raised || in(arm.plane, range::kPlane)) && arm.elevation <= largest_elevation(arm.plane) + kSlack &&
+         in(arm.external, range::kArmExternal) && in(arm.elbow, range::kElbow) &&
+         in(arm.pronation, range::kPronation) && in(arm.wrist, range::kWrist) && in(arm.ulnar, range::kUlnar);
+}
+
+void reach(Pose& pose, bool left, const Vector3f& wrist_m, const Vector3f& elbow_towards) {
+  const Bone upper = left ? Bone::l_upper_arm : Bone::r_upper_arm;
+  const Bone fore = left ? Bone::l_forearm : Bone::r_forearm;
+  const float a = bone_length_m(upper), b = bone_length_m(fore);
+  const Vector3f to = wrist_m - stick_figure(pose).head_of(upper);
+  const float nearest = std::sqrt(a * a + b * b - 2.F * a * b * std::cos((180.F - range::kElbow.high) * kDegree));
+  const float d = std::clamp(to.norm(), nearest, (a + b) * 0.999F);
+  const Vector3f n = to.norm() > 1e-4F ? to.normalized() : Vector3f(Vector3f::UnitZ());
+  Vector3f pole = elbow_towards - elbow_towards.dot(n) * n;
+  if (pole.norm() < 1e-4F) pole = n.unitOrthogonal();
+  pole.normalize();
+  const float cos_shoulder = std::clamp((a * a + d * d - b * b) / (2.F * a * d), -1.F, 1.F);
+  const Vector3f along = n * cos_shoulder + pole * std::sqrt(1.F - cos_shoulder * cos_shoulder);
+  const float cos_elbow = std::clamp((a * a + b * b - d * d) / (2.F * a * b), -1.F, 1.F);
+  const float elbow = 180.F - std::acos(cos_elbow) / kDegree;
+
+  Eigen::Matrix3f axes;  // the arm bends towards its own z
+  axes.col(0) = left ? along : Vector3f(-along);
+  axes.col(2) = (n - n.dot(along) * along).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  const Quaternionf clavicle = world_rotations(pose)[index(parent(upper))];
+  pose[upper] = (clavicle.conjugate() * Quaternionf(axes)).normalized();
+  pose[fore] = on_side(turn_y(-elbow), left);
+  set_hand(pose, left, 0.F, 0.F, 0.F);
+}
+
+void set_hand(Pose& pose, bool left, float pronation, float wrist, float ulnar) {
+  pose[left ? Bone::l_hand : Bone::r_hand] = on_side(turn_x(pronation) * turn_y(ulnar) * turn_z(-wrist), left);
+}
+
+}  // namespace vesalius::synth

@@ -1,0 +1,114 @@
+#include "synth/pose/pose.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vesalius::synth {
+namespace {
+
+struct BoneInfo {
+  std::string_view name;
+  Bone parent;
+  Bone mirror;
+  std::array<float, 3> rest;
+};
+
+constexpr std::array<BoneInfo, kBoneCount> kBones{{
+    {"pelvis", Bone::pelvis, Bone::pelvis, {0.F, 1.F, 0.F}},
+    {"spine", Bone::pelvis, Bone::spine, {0.F, 1.F, 0.F}},
+    {"chest", Bone::spine, Bone::chest, {0.F, 1.F, 0.F}},
+    {"neck", Bone::chest, Bone::neck, {0.F, 1.F, 0.F}},
+    {"head", Bone::neck, Bone::head, {0.F, 1.F, 0.F}},
+    {"l_clavicle", Bone::chest, Bone::r_clavicle, {1.F, 0.F, 0.F}},
+    {"l_upper_arm", Bone::l_clavicle, Bone::r_upper_arm, {1.F, 0.F, 0.F}},
+    {"l_forearm", Bone::l_upper_arm, Bone::r_forearm, {1.F, 0.F, 0.F}},
+    {"l_hand", Bone::l_forearm, Bone::r_hand, {1.F, 0.F, 0.F}},
+    {"r_clavicle", Bone::chest, Bone::l_clavicle, {-1.F, 0.F, 0.F}},
+    {"r_upper_arm", Bone::r_clavicle, Bone::l_upper_arm, {-1.F, 0.F, 0.F}},
+    {"r_forearm", Bone::r_upper_arm, Bone::l_forearm, {-1.F, 0.F, 0.F}},
+    {"r_hand", Bone::r_forearm, Bone::l_hand, {-1.F, 0.F, 0.F}},
+    {"l_thigh", Bone::pelvis, Bone::r_thigh, {0.F, -1.F, 0.F}},
+    {"l_shin", Bone::l_thigh, Bone::r_shin, {0.F, -1.F, 0.F}},
+    {"l_foot", Bone::l_shin, Bone::r_foot, {0.F, 0.F, 1.F}},
+    {"r_thigh", Bone::pelvis, Bone::l_thigh, {0.F, -1.F, 0.F}},
+    {"r_shin", Bone::r_thigh, Bone::l_shin, {0.F, -1.F, 0.F}},
+    {"r_foot", Bone::r_shin, Bone::l_foot, {0.F, 0.F, 1.F}},
+}};
+
+const BoneInfo& info(Bone bone) { return kBones[index(bone)]; }
+
+}  // namespace
+
+std::string_view bone_name(Bone bone) { return info(bone).name; }
+
+int find_bone(std::string_view name) {
+  const auto found = std::ranges::find(kBones, name, &BoneInfo::name);
+  return found == kBones.end() ? -1 : static_cast<int>(found - kBones.begin());
+}
+
+Bone parent(Bone bone) { return info(bone).parent; }
+
+Bone mirror(Bone bone) { return info(bone).mirror; }
+
+Eigen::Vector3f rest_direction(Bone bone) {
+  const auto& d = info(bone).rest;
+  return {d[0], d[1], d[2]};
+}
+
+std::array<Eigen::Quaternionf, kBoneCount> world_rotations(const Pose& pose) {
+  std::array<Eigen::Quaternionf, kBoneCount> world;
+  world[0] = pose.local[0];
+  for (std::size_t b = 1; b < kBoneCount; ++b) {
+    world[b] = (world[index(kBones[b].parent)] * pose.local[b]).normalized();
+  }
+  return world;
+}
+
+Pose from_world_rotations(const std::array<Eigen::Quaternionf, kBoneCount>& world) {
+  Pose pose;
+  pose.local[0] = world[0].normalized();
+  for (std::size_t b = 1; b < kBoneCount; ++b) {
+    pose.local[b] = (world[index(kBones[b].parent)].conjugate() * world[b]).normalized();
+  }
+  return pose;
+}
+
+Pose mirrored(const Pose& pose) {
+  Pose out;
+  for (std::size_t b = 0; b < kBoneCount; ++b) {
+    const Eigen::Quaternionf& q = pose.local[index(kBones[b].mirror)];
+    out.local[b] = {q.w(), q.x(), -q.y(), -q.z()};  // an axis is a pseudo-vector: the reflected normal stays
+  }
+  out.l_grip = pose.r_grip;
+  out.r_grip = pose.l_grip;
+  return out;
+}
+
+Eigen::Quaternionf without_yaw(const Eigen::Quaternionf& rotation) {
+  const float norm = std::hypot(rotation.w(), rotation.y());
+  if (norm < 1e-6F) return rotation;  // upside down: no heading to take off
+  const Eigen::Quaternionf yaw(rotation.w() / norm, 0.F, rotation.y() / norm, 0.F);
+  return (yaw.conjugate() * rotation).normalized();
+}
+
+float largest_angle(const Pose& a, const Pose& b) {
+  float largest = without_yaw(a[Bone::pelvis]).angularDistance(without_yaw(b[Bone::pelvis]));
+  for (std::size_t i = 1; i < kBoneCount; ++i) largest = std::max(largest, a.local[i].angularDistance(b.local[i]));
+  return largest;
+}
+
+std::string_view to_string(Posture posture) {
+  switch (posture) {
+    case Posture::standing:
+      return "standing";
+    case Posture::sitting:
+      return "sitting";
+    case Posture::lying:
+      return "lying";
+    case Posture::kneeling:
+      return "kneeling";
+  }
+  return "standing";
+}
+
+}  // namespace vesalius::synth

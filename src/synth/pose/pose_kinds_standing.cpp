@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <cmath>
+
+#include "synth/pose/pose_kinds.h"
+#include "synth/pose/stick_figure.h"
+
+namespace vesalius::synth::kinds {
+namespace {
+
+constexpr float kPi = 3.14159265F;
+constexpr float kDegree = kPi / 180.F;
+
+/// Tilts the pelvis to the side until both feet are level, as far as hips go; the trunk straightens up.
+void level_feet(BodyAngles& angles) {
+  constexpr float kMost = 10.F;
+  const StickFigure figure = stick_figure(pose_of(angles));
+  const Eigen::Vector3f between_feet = figure.head_of(Bone::l_foot) - figure.head_of(Bone::r_foot);
+  const float width_m = std::max(std::abs(between_feet.x()), 0.19F);
+  const float roll = std::clamp(std::atan2(between_feet.y(), width_m) / kDegree, -kMost, kMost);
+  angles.roll += roll;
+  angles.trunk.lateral -= roll;
+}
+
+/// 1 at phase `at`, falling to 0 at `width` to either side; phases are shares of a stride.
+float bump(float phase, float at, float width) {
+  float away = std::abs(phase - at);
+  away = std::min(away, 1.F - away);
+  return away >= width ? 0.F : 0.5F + 0.5F * std::cos(kPi * away / width);
+}
+
+/// Leg at a phase of the stride (0: heel strike). Fitted by eye to the sagittal curves of normal gait, natural
+/// cadence: Winter, "The Biomechanics and Motor Control of Human Gait" (1991).
+LegAngles stride(float phase, float length) {
+  LegAngles leg;
+  leg.flexion = length * (8.F + 22.F * std::cos(2.F * kPi * phase));
+  leg.knee = 4.F + length * (14.F * bump(phase, 0.14F, 0.16F) + 58.F * bump(phase, 0.72F, 0.24F));
+  leg.ankle = length * (9.F * bump(phase, 0.45F, 0.2F) - 18.F * bump(phase, 0.64F, 0.14F));
+  return leg;
+}
+
+}  // namespace
+
+float level_ankle(const LegAngles& leg, float pitch) { return leg.knee - leg.flexion + pitch; }
+
+ArmAngles hanging_arm(Random& random, float front, float side) {
+  ArmAngles arm;
+  arm.elevation = std::hypot(front, side);
+  arm.plane = std::atan2(front, side) / kDegree;
+  arm.external = between(random, -35.F, 10.F);
+  arm.elbow = between(random, 3.F, 30.F);
+  arm.pronation = between(random, -10.F, 45.F);
+  arm.wrist = between(random, -10.F, 20.F);
+  arm.ulnar = between(random, -5.F, 15.F);
+  return arm;
+}
+
+BodyAngles standing_angles(Random& random) {
+  BodyAngles angles;
+  angles.pitch = between(random, -4.F, 6.F);
+  const int bent_leg = static_cast<int>(random.below(4));  // 0, 1: weight on the other leg
+  for (int side = 0; side < 2; ++side) {
+    LegAngles& leg = angles.legs[side];
+    leg.abduction = between(random, 0.F, 12.F);
+    leg.external = between(random, -5.F, 25.F);
+    leg.knee = bent_leg == side ? between(random, 10.F, 35.F) : between(random, 0.F, 6.F);
+    leg.flexion = angles.pitch + 0.55F * leg.knee + between(random, -6.F, 6.F);
+    leg.ankle = level_ankle(leg, angles.pitch);
+    angles.arms[side] = hanging_arm(random, between(random, -10.F, 12.F), between(random, 4.F, 16.F));
+    angles.grip[side] = between(random, 0.1F, 0.7F);
+  }
+  angles.trunk = {between(random, -6.F, 10.F), between(random, -6.F, 6.F), between(random, -12.F, 12.F)};
+  angles.neck = {between(random, -10.F, 20.F), between(random, -8.F, 8.F), between(random, -40.F, 40.F)};
+  level_feet(angles);
+  return within_range(angles);
+}
+
+Pose idle(Random& random) {
+  Pose pose = pose_of(standing_angles(random));
+  if (chance(random, 0.1F)) hand_to_face(pose, chance(random, 0.5F), random);
+  if (chance(random, 0.05F)) {
+    for (const bool left : {true, false}) hand_behind_head(pose, left, random);
+  }
+  return pose;
+}
+
+Pose walking(Random& random) {
+  const float phase = between(random, 0.F, 1.F), length = between(random, 0.5F, 1.3F);
+  BodyAngles angles = standing_angles(random);
+  angles.pitch = between(random, 0.F, 8.F);
+  angles.roll = between(random, -3.F, 3.F);
+  angles.trunk = {between(random, -3.F, 6.F), -angles.roll, length * 8.F * std::cos(2.F * kPi * phase)};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const float own = std::fmod(phase + 0.5F * static_cast<float>(side), 1.F);
+    LegAngles& leg = angles.legs[side];
+    const float outwards = leg.external;
+    leg = stride(own, length);
+    leg.flexion += angles.pitch;
+    leg.abduction = between(random, 0.F, 5.F);
+    leg.external = 0.5F * outwards;
+    const float front = -length * between(random, 10.F, 25.F) * std::cos(2.F * kPi * own);
+    angles.arms[side] = hanging_arm(random, front + 5.F, between(random, 4.F, 14.F));
+    angles.arms[side].elbow = between(random, 10.F, 25.F) + std::max(front, 0.F);
+  }
+  return pose_of(within_range(angles));
+}
+
+Pose reaching(Random& random) {
+  BodyAngles angles = standing_angles(random);
+  const std::size_t side = random.below(2);
+  const float to_left = side == 0 ? 1.F : -1.F;
+  for (std::size_t arm = 0; arm < 2; ++arm) {
+    if (arm != side && !chance(random, 0.3F)) continue;
+    ArmAngles& reaching_arm = angles.arms[arm];
+    reaching_arm.elevation = between(random, 40.F, 170.F);
+    reaching_arm.plane = between(random, -15.F, 110.F);
+    reaching_arm.external = between(random, -40.F, 40.F);
+    reaching_arm.elbow = between(random, 0.F, 60.F);
+    reaching_arm.pronation = between(random, -50.F, 70.F);
+    reaching_arm.wrist = between(random, -30.F, 30.F);
+    reaching_arm.shrug = 0.12F * reaching_arm.elevation;
+    reaching_arm.forward = between(random, 0.F, 15.F);
+    angles.grip[arm] = between(random, 0.F, 1.F);
+  }
+  angles.trunk.turn += -to_left * between(random, -10.F, 30.F);
+  angles.trunk.flexion += between(random, -10.F, 25.F);
+  return pose_of(within_range(angles));
+}
+
+Pose waving(Random& random) {
+  BodyAngles angles = standing_angles(random);
+  const std::size_t side = random.below(2);
+  ArmAngles& arm = angles.arms[side];
+  arm.elevation = between(random, 45.F, 140.F);
+  arm.plane = between(random, -5.F, 60.F);
+  arm.external = between(random, 40.F, 90.F);
+  arm.elbow = between(random, arm.elevation < 70.F ? 100.F : 40.F, 135.F);
+  arm.pronation = between(random, -10.F, 40.F);
+  arm.wrist = between(random, -25.F, 15.F);
+  arm.shrug = between(random, 0.F, 12.F);
+  angles.grip[side] = between(random, 0.F, 0.2F);
+  if (chance(random, 0.15F)) angles.arms[1 - side] = arm;
+  return pose_of(within_range(angles));
+}
+
+Pose bending(Random& random) {
+  BodyAngles angles = standing_angles(random);
+  angles.pitch = between(random, 10.F, 65.F);
+  angles.roll = 0.F;
+  angles.trunk.flexion = between(random, 10.F, 60.F);
+  angles.neck.flexion = between(random, -35.F, 25.F);
+  const float knees = between(random, 0.F, 70.F);
+  for (LegAngles& leg : angles.legs) {
+    leg.knee = std::max(0.F, knees + between(random, -10.F, 10.F));
+    leg.flexion = angles.pitch + 0.5F * leg.knee + between(random, -8.F, 0.F);  // hips move back to keep the balance
+    leg.ankle = level_ankle(leg, angles.pitch);
+  }
+  const float chest = angles.pitch + angles.trunk.flexion;
+  for (ArmAngles& arm : angles.arms) {
+    arm = hanging_arm(random, chest + between(random, -25.F, 30.F), between(random, 2.F, 20.F));
+    arm.elbow = between(random, 5.F, 60.F);
+  }
+  Pose pose = pose_of(within_range(angles));
+  if (chance(random, 0.2F)) hand_on_thigh(pose, chance(random, 0.5F), random);
+  return pose;
+}
+
+Pose arms_crossed(Random& random) {
+  Pose pose = pose_of(standing_angles(random));
+  cross_arms(pose, random);
+  return pose;
+}
+
+Pose arms_behind(Random& random) {
+  Pose pose = pose_of(standing_angles(random));
+  fold_behind(pose, random);
+  return pose;
+}
+
+Pose hands_on_hips(Random& random) {
+  Pose pose = pose_of(standing_angles(random));
+  const bool left = chance(random, 0.5F), both = chance(random, 0.7F);
+  put_on_hip(pose, left, random);
+  if (both) put_on_hip(pose, !left, random);
+  return pose;
+}
+
+Pose carrying(Random& random) {
+  const bool walks = chance(random, 0.4F);
+  Pose pose = walks ? walking(random) : pose_of(standing_angles(random));
+  if (chance(random, 0.65F)) {
+    hold_in_front(pose, random);
+    return pose;
+  }
+  const bool left = chance(random, 0.5F), both = chance(random, 0.3F);  // bags hang from the hands
+  if (left || both) pose.l_grip = 1.F;
+  if (!left || both) pose.r_grip = 1.F;
+  return pose;
+}
+
+Pose phone(Random& random) {
+  const bool ear = chance(random, 0.4F), left = chance(random, 0.5F), both = !ear && chance(random, 0.3F);
+  BodyAngles angles = standing_angles(random);
+  if (!ear) {
+    angles.neck.flexion = between(random, 15.F, 40.F);
+    angles.neck.turn *= 0.3F;
+  }
+  Pose pose = pose_of(within_range(angles));
+  if (ear) {
+    phone_to_ear(pose, left, random);
+    return pose;
+  }
+  phone_in_hand(pose, left, random);
+  if (both) phone_in_hand(pose, !left, random);
+  return pose;
+}
+
+Pose squatting(Random& random) {
+  BodyAngles angles = standing_angles(random);
+  angles.roll = 0.F;
+  angles.pitch = between(random, 5.F, 45.F);
+  angles.trunk.flexion = between(random, 10.F, 45.F);
+  angles.neck.flexion = between(random, -40.F, 10.F);
+  const float thigh = between(random, 60.F, 110.F), shin = between(random, 15.F, 35.F);
+  const float apart = between(random, 5.F, 30.F);
+  for (LegAngles& leg : angles.legs) {
+    leg.flexion = angles.pitch + thigh;
+    leg.abduction = apart;
+    leg.external = between(random, 0.F, 15.F);
+    leg.knee = thigh + shin;
+    leg.ankle = level_ankle(leg, angles.pitch);
+  }
+  for (ArmAngles& arm : angles.arms)
+    arm = hanging_arm(random, between(random, 30.F, 100.F), between(random, 0.F, 25.F));
+  return pose_of(within_range(angles));
+}
+
+Pose any(Random& random) {
+  const auto in = [&](const JointRange& r) { return between(random, r.low, r.high); };
+  BodyAngles angles;
+  angles.pitch = between(random, -15.F, 40.F);
+  angles.roll = between(random, -12.F, 12.F);
+  angles.trunk = {in(range::kTrunkFlexion), in(range::kTrunkLateral), in(range::kTrunkTurn)};
+  angles.neck = {in(range::kNeckFlexion), in(range::kNeckLateral), in(range::kNeckTurn)};
+  for (ArmAngles& arm : angles.arms) {
+    arm = {in(range::kElevation), in(range::kPlane), in(range::kArmExternal), in(range::kElbow),  in(range::kPronation),
+           in(range::kWrist),     in(range::kUlnar), in(range::kShrug),       in(range::kForward)};
+  }
+  for (LegAngles& leg : angles.legs) {
+    leg = {in(range::kHipFlexion), in(range::kHipAbduction), in(range::kHipExternal), in(range::kKnee),
+           in(range::kAnkle)};
+  }
+  for (float& grip : angles.grip) grip = between(random, 0.F, 1.F);
+  return pose_of(within_range(angles));
+}
+
+}  // namespace vesalius::synth::kinds

@@ -1,0 +1,93 @@
+#include "synth/pose/pose_sampler.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "synth/pose/pose_kinds.h"
+#include "synth/pose/posture.h"
+#include "synth/pose/self_contact.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+constexpr float kMaxWeight = 1000.F;
+/// Of people who sit on the floor one in three is possible (measured; of others more): so many tries never all fail.
+constexpr int kTries = 300;
+
+struct Kind {
+  const char* name;
+  float PoseSamplerOptions::*weight;
+  Pose (*draw)(Random&);
+  std::optional<Posture> posture;  ///< nothing: as it turns out
+  const char* help;
+};
+
+using P = Posture;
+using O = PoseSamplerOptions;
+constexpr std::array<Kind, 16> kKinds{{
+    {"idle", &O::idle, kinds::idle, P::standing, "Weight of people who stand about."},
+    {"walking", &O::walking, kinds::walking, P::standing, "Weight of people who walk."},
+    {"reaching", &O::reaching, kinds::reaching, P::standing, "Weight of people who reach for something or point."},
+    {"waving", &O::waving, kinds::waving, P::standing, "Weight of people who wave."},
+    {"bending", &O::bending, kinds::bending, P::standing, "Weight of people who bend down."},
+    {"arms-crossed", &O::arms_crossed, kinds::arms_crossed, P::standing, "Weight of people with crossed arms."},
+    {"arms-behind", &O::arms_behind, kinds::arms_behind, P::standing, "Weight of people with their hands behind them."},
+    {"hands-on-hips", &O::hands_on_hips, kinds::hands_on_hips, P::standing, "Weight of people with hands on hips."},
+    {"carrying", &O::carrying, kinds::carrying, P::standing, "Weight of people who carry something."},
+    {"phone", &O::phone, kinds::phone, P::standing, "Weight of people with a telephone at the ear or in the hand."},
+    {"sitting", &O::sitting, kinds::sitting, P::sitting, "Weight of people who sit on chairs and sofas."},
+    {"floor-sitting", &O::floor_sitting, kinds::floor_sitting, P::sitting, "Weight of people who sit on the floor."},
+    {"lying", &O::lying, kinds::lying, P::lying, "Weight of people who lie on back, side or front."},
+    {"kneeling", &O::kneeling, kinds::kneeling, P::kneeling, "Weight of people on one knee, both, or all fours."},
+    {"squatting", &O::squatting, kinds::squatting, P::standing, "Weight of people who squat."},
+    {"any", &O::any, kinds::any, std::nullopt, "Weight of joints drawn uniformly from all that they can do."},
+}};
+
+const Kind& draw_kind(const PoseSamplerOptions& options, Random& random) {
+  float total = 0.F;
+  for (const Kind& kind : kKinds) {
+    const float weight = options.*kind.weight;
+    if (!(weight >= 0.F && weight <= kMaxWeight)) {
+      throw UsageError(fmt::format("pose sampler: weight of {}: expected 0 to {}", kind.name, kMaxWeight));
+    }
+    total += weight;
+  }
+  if (!(total > 0.F)) throw UsageError("pose sampler: expected at least one weight above 0");
+  float left = static_cast<float>(random.uniform()) * total;
+  const Kind* last = nullptr;
+  for (const Kind& kind : kKinds) {
+    if (options.*kind.weight <= 0.F) continue;
+    last = &kind;
+    left -= options.*kind.weight;
+    if (left < 0.F) break;
+  }
+  return *last;
+}
+
+bool possible(const Pose& pose) {
+  return arm_in_range(arm_angles(pose, true)) && arm_in_range(arm_angles(pose, false)) && !intersects_itself(pose);
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, PoseSamplerOptions& options, OptionVisitor& visitor) {
+  for (const Kind& kind : kKinds)
+    visitor.option(prefix + kind.name, options.*kind.weight, {"", 0.0, kMaxWeight, kind.help});
+}
+
+SampledPose sample_pose(const PoseSamplerOptions& options, Random& random) {
+  const Kind& kind = draw_kind(options, random);
+  for (int i = 0; i < kTries; ++i) {
+    const Pose pose = kind.draw(random);
+    if (!possible(pose)) continue;
+    const Posture posture = classify_posture(pose);
+    if (!kind.posture || posture == *kind.posture) return {pose, posture};
+  }
+  return {pose_of({}), Posture::standing};
+}
+
+}  // namespace vesalius::synth

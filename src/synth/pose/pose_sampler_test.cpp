@@ -1,0 +1,156 @@
+#include "synth/pose/pose_sampler.h"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <set>
+
+#include "synth/pose/joint_angles.h"
+#include "synth/pose/posture.h"
+#include "synth/pose/self_contact.h"
+#include "synth/pose/stick_figure.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+using Eigen::Vector3f;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// Collects the names of weights, and sets all to 0 but one.
+class OnlyOne : public OptionVisitor {
+ public:
+  explicit OnlyOne(std::string name) : name_(std::move(name)) {}
+  void option(const std::string& name, float& value, const OptionInfo& /*info*/) override {
+    names.insert(name);
+    value = name == name_ ? 1.F : 0.F;
+  }
+  void option(const std::string& /*name*/, int& /*value*/, const OptionInfo& /*info*/) override {}
+  void option(const std::string& /*name*/, bool& /*value*/, const OptionInfo& /*info*/) override {}
+  void option(const std::string& /*name*/, std::string& /*value*/, const OptionInfo& /*info*/) override {}
+
+  std::set<std::string> names;
+
+ private:
+  std::string name_;
+};
+
+PoseSamplerOptions only(const std::string& name) {
+  PoseSamplerOptions options;
+  OnlyOne visitor(name);
+  visit_options("", options, visitor);
+  EXPECT_TRUE(visitor.names.contains(name)) << name;
+  return options;
+}
+
+std::vector<SampledPose> sampled(const std::string& kind, int count) {
+  const PoseSamplerOptions options = only(kind);
+  std::vector<SampledPose> out;
+  for (int i = 0; i < count; ++i) {
+    Random random(5, static_cast<std::uint64_t>(i));
+    out.push_back(sample_pose(options, random));
+  }
+  return out;
+}
+
+/// Mean place of a point over poses of a kind.
+template <class F>
+Vector3f mean(const std::vector<SampledPose>& poses, F&& point) {
+  Vector3f sum = Vector3f::Zero();
+  for (const SampledPose& p : poses) sum += point(stick_figure(p.pose));
+  return sum / static_cast<float>(poses.size());
+}
+
+TEST(PoseSampler, PosesAreDifferentPossibleAndHeldUpAsTheySay) {
+  const std::map<std::string, Posture> kinds = {
+      {"idle", Posture::standing},         {"walking", Posture::standing},
+      {"reaching", Posture::standing},     {"waving", Posture::standing},
+      {"bending", Posture::standing},      {"arms-crossed", Posture::standing},
+      {"arms-behind", Posture::standing},  {"hands-on-hips", Posture::standing},
+      {"carrying", Posture::standing},     {"phone", Posture::standing},
+      {"squatting", Posture::standing},    {"sitting", Posture::sitting},
+      {"floor-sitting", Posture::sitting}, {"lying", Posture::lying},
+      {"kneeling", Posture::kneeling}};
+  for (const auto& [kind, posture] : kinds) {
+    const std::vector<SampledPose> poses = sampled(kind, 100);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_EQ(poses[i].posture, posture) << kind << ' ' << i;
+      EXPECT_EQ(classify_posture(poses[i].pose), posture) << kind << ' ' << i;
+      EXPECT_FALSE(intersects_itself(poses[i].pose)) << kind << ' ' << i;
+      for (const bool left : {true, false})
+        EXPECT_TRUE(arm_in_range(arm_angles(poses[i].pose, left))) << kind << ' ' << i;
+      EXPECT_GT(largest_angle(poses[i].pose, poses[(i + 1) % poses.size()].pose), 0.02F) << kind << ' ' << i;
+    }
+  }
+}
+
+TEST(PoseSampler, HandsAreWhereTheKindSays) {
+  const auto left_wrist = [](const StickFigure& f) { return f.head_of(Bone::l_hand); };
+  const auto right_wrist = [](const StickFigure& f) { return f.head_of(Bone::r_hand); };
+  const std::vector<SampledPose> crossed = sampled("arms-crossed", 50);
+  EXPECT_LT(mean(crossed, left_wrist).x(), -0.03F) << "left hand to the right";
+  EXPECT_GT(mean(crossed, left_wrist).z(), 0.1F);
+  EXPECT_GT(mean(crossed, right_wrist).x(), 0.03F);
+  EXPECT_LT(mean(sampled("arms-behind", 50), left_wrist).z(), -0.1F);
+  const std::vector<SampledPose> idle = sampled("idle", 50);
+  EXPECT_GT(mean(idle, left_wrist).x(), 0.2F);
+  EXPECT_LT(mean(idle, left_wrist).y(), 0.2F);
+  for (const SampledPose& p : sampled("waving", 50)) {
+    const StickFigure f = stick_figure(p.pose);
+    const float higher = std::max(f.tail_of(Bone::l_hand).y(), f.tail_of(Bone::r_hand).y());
+    EXPECT_GT(higher, f.head_of(Bone::chest).y()) << "a hand is up";
+  }
+}
+
+TEST(PoseSampler, FeetOfWhoStandsAreLevel) {
+  for (const char* kind : {"idle", "arms-crossed", "hands-on-hips"}) {
+    for (const SampledPose& p : sampled(kind, 50)) {
+      const StickFigure f = stick_figure(p.pose);
+      EXPECT_NEAR(f.head_of(Bone::l_foot).y(), f.head_of(Bone::r_foot).y(), 0.03F) << kind;
+      EXPECT_NEAR(f.head_of(Bone::l_foot).y(), f.tail_of(Bone::l_foot).y(), 0.03F) << kind;
+    }
+  }
+}
+
+TEST(PoseSampler, AnyReachesAllOfAJointsRange) {
+  float lowest = 180.F, highest = 0.F;
+  for (const SampledPose& p : sampled("any", 300)) {
+    const float elbow = arm_angles(p.pose, true).elbow;
+    lowest = std::min(lowest, elbow);
+    highest = std::max(highest, elbow);
+  }
+  EXPECT_LT(lowest, 15.F);
+  EXPECT_GT(highest, 135.F);
+}
+
+TEST(PoseSampler, SameSeedSamePose) {
+  Random a(1, 2), b(1, 2), c(1, 3);
+  const SampledPose first = sample_pose({}, a), again = sample_pose({}, b), other = sample_pose({}, c);
+  for (std::size_t j = 0; j < kBoneCount; ++j) EXPECT_EQ(first.pose.local[j].coeffs(), again.pose.local[j].coeffs());
+  EXPECT_GT(largest_angle(first.pose, other.pose), 0.02F);
+}
+
+TEST(PoseSampler, WeightsDecideTheShares) {
+  PoseSamplerOptions options = only("lying");
+  options.idle = 3.F;
+  Random random(9);
+  int lying = 0;
+  for (int i = 0; i < 1000; ++i) lying += sample_pose(options, random).posture == Posture::lying ? 1 : 0;
+  EXPECT_NEAR(lying, 250, 55) << "4 standard deviations";
+}
+
+TEST(PoseSampler, RefusesWeightsThatCannotBeMeant) {
+  Random random(1);
+  PoseSamplerOptions none = only("idle");
+  none.idle = 0.F;
+  EXPECT_THAT([&] { sample_pose(none, random); }, ThrowsMessage<UsageError>(HasSubstr("at least one weight above 0")));
+  none.idle = -1.F;
+  EXPECT_THAT([&] { sample_pose(none, random); }, ThrowsMessage<UsageError>(HasSubstr("weight of idle")));
+  PoseSamplerOptions defaults;
+  RangeCheck check;
+  EXPECT_NO_THROW(visit_options("", defaults, check));
+}
+
+}  // namespace
+}  // namespace vesalius::synth

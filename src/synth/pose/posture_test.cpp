@@ -1,0 +1,69 @@
+#include "synth/pose/posture.h"
+
+#include <gtest/gtest.h>
+
+#include "synth/pose/joint_angles.h"
+
+namespace vesalius::synth {
+namespace {
+
+BodyAngles legs(float flexion, float knee, float ankle = 0.F) {
+  BodyAngles angles;
+  for (LegAngles& leg : angles.legs) leg = {.flexion = flexion, .knee = knee, .ankle = ankle};
+  return angles;
+}
+
+Posture posture_of(const BodyAngles& angles) { return classify_posture(pose_of(angles)); }
+
+TEST(ClassifyPosture, StandsWithFeetUnderTheWeight) {
+  EXPECT_EQ(posture_of({}), Posture::standing);
+  BodyAngles bent = legs(80.F, 10.F, 10.F);
+  bent.pitch = 70.F;
+  EXPECT_EQ(posture_of(bent), Posture::standing) << "a level trunk over straight legs is bent, not lying";
+  BodyAngles squat = legs(130.F, 125.F, 30.F);
+  squat.pitch = 35.F;
+  squat.trunk.flexion = 40.F;
+  EXPECT_EQ(posture_of(squat), Posture::standing) << "a squat needs no seat";
+  BodyAngles one_leg;
+  one_leg.legs[0] = {.flexion = 90.F, .knee = 90.F};
+  EXPECT_EQ(posture_of(one_leg), Posture::standing);
+}
+
+TEST(ClassifyPosture, SitsWhereTheFeetCarryNothing) {
+  EXPECT_EQ(posture_of(legs(90.F, 90.F)), Posture::sitting) << "on a chair";
+  EXPECT_EQ(posture_of(legs(90.F, 10.F)), Posture::sitting) << "on the floor, legs stretched";
+  BodyAngles sofa = legs(75.F, 60.F);
+  sofa.pitch = -30.F;
+  EXPECT_EQ(posture_of(sofa), Posture::sitting);
+}
+
+TEST(ClassifyPosture, LiesOnBackFrontAndSides) {
+  for (const float pitch : {-90.F, 90.F}) {
+    BodyAngles angles;
+    angles.pitch = pitch;
+    EXPECT_EQ(posture_of(angles), Posture::lying);
+  }
+  BodyAngles side = legs(70.F, 90.F);
+  side.roll = -90.F;
+  EXPECT_EQ(posture_of(side), Posture::lying);
+}
+
+TEST(ClassifyPosture, KneelsOnOneOrTwoKneesOrAllFours) {
+  EXPECT_EQ(posture_of(legs(0.F, 102.F, -50.F)), Posture::kneeling);
+  BodyAngles one = legs(0.F, 102.F, -50.F);
+  one.legs[0] = {.flexion = 90.F, .knee = 90.F};
+  EXPECT_EQ(posture_of(one), Posture::kneeling);
+  BodyAngles fours = legs(85.F, 107.F, -50.F);
+  fours.pitch = 75.F;
+  for (ArmAngles& arm : fours.arms) arm = {.elevation = 80.F, .plane = 90.F, .wrist = -70.F};
+  EXPECT_EQ(posture_of(fours), Posture::kneeling);
+}
+
+TEST(ClassifyPosture, IsTheSameInAMirror) {
+  BodyAngles angles = legs(0.F, 102.F, -50.F);
+  angles.legs[1] = {.flexion = 90.F, .knee = 90.F};
+  EXPECT_EQ(classify_posture(mirrored(pose_of(angles))), posture_of(angles));
+}
+
+}  // namespace
+}  // namespace vesalius::synth

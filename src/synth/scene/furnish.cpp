@@ -1,0 +1,152 @@
+#include "synth/scene/furnish.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "synth/scene/palette.h"
+
+namespace vesalius::synth {
+namespace {
+
+using Eigen::Isometry3f;
+using Eigen::Vector3f;
+
+constexpr int kTries = 6;
+
+class Furnisher {
+ public:
+  Furnisher(const SceneOptions& options, const RoomShape& room, const std::vector<SceneMesh>& models,
+            const Vector3f& eye, Occupancy& occupancy, Random& random)
+      : options_(options), room_(room), models_(models), eye_(eye), occupancy_(occupancy), random_(random) {}
+
+  /// Something on the way from the camera to a person.
+  void occlude(const Vector3f& person) {
+    constexpr std::array<FurnitureKind, 8> kKinds = {FurnitureKind::table, FurnitureKind::chair, FurnitureKind::box,
+                                                     FurnitureKind::plant, FurnitureKind::desk,  FurnitureKind::shelf,
+                                                     FurnitureKind::table, FurnitureKind::pillar};
+    constexpr float kMostHidden = 0.65F;
+    Furniture piece = make_furniture(kKinds[random_.below(kKinds.size())], random_);
+    for (int i = 0; i < kTries; ++i) {
+      const Vector3f on_way = eye_ + between(0.3, 0.85, random_) * (person - eye_);
+      const float x = on_way.x() + static_cast<float>(random_.normal(0.0, 0.3));
+      const float z = on_way.z() + static_cast<float>(random_.normal(0.0, 0.3));
+      if (put(piece, standing_at(x, 0.F, z, any_turn()), kMostHidden)) return;
+    }
+  }
+
+  void add_piece() {
+    constexpr float kMostHidden = 0.35F;
+    Furniture piece = draw_piece();
+    const bool at_wall = !room_.open && chance(0.6, random_);
+    for (int i = 0; i < kTries; ++i) {
+      if (put(piece, at_wall ? place_at_wall(piece) : place_anywhere(), kMostHidden)) return;
+    }
+  }
+
+  /// Something large right in front of the camera, at the side.
+  void loom() {
+    constexpr std::array<FurnitureKind, 5> kKinds = {FurnitureKind::panel, FurnitureKind::panel, FurnitureKind::panel,
+                                                     FurnitureKind::wardrobe, FurnitureKind::desk};
+    constexpr float kMostHidden = 0.5F;
+    const Furniture piece = make_furniture(kKinds[random_.below(kKinds.size())], random_);
+    for (int i = 0; i < kTries; ++i) {
+      const float far = between(0.45, 1.3, random_);
+      const float bearing = between(0.15, 0.8, random_) * (chance(0.5, random_) ? 1.F : -1.F);
+      const Isometry3f pose = standing_at(far * std::sin(bearing), 0.F, -far * std::cos(bearing), any_turn());
+      if (put(piece, pose, kMostHidden, true)) return;
+    }
+  }
+
+  std::vector<Furniture> take() { return std::move(placed_); }
+
+ private:
+  float any_turn() { return between(-std::numbers::pi, std::numbers::pi, random_); }
+
+  Furniture draw_piece() {
+    if (!models_.empty() && chance(0.3, random_)) {
+      return as_furniture(models_[random_.below(static_cast<std::uint32_t>(models_.size()))]);
+    }
+    if (chance(static_cast<double>(options_.mannequin_share), random_)) {
+      constexpr std::array<FurnitureKind, 3> kLike = {FurnitureKind::coat_stand, FurnitureKind::mannequin,
+                                                      FurnitureKind::pillar};
+      return make_furniture(kLike[random_.below(kLike.size())], random_);
+    }
+    constexpr std::uint32_t kOrdinary = static_cast<std::uint32_t>(FurnitureKind::pillar);
+    return make_furniture(static_cast<FurnitureKind>(random_.below(kOrdinary)), random_);
+  }
+
+  Isometry3f place_at_wall(const Furniture& piece) {
+    constexpr float kGap_m = 0.03F;
+    float behind = 0.F;
+    for (const OrientedBox& box : piece.solids) {
+      for (const Vector3f& corner : corners(box)) behind = std::max(behind, -corner.z());
+    }
+    const std::uint32_t wall = random_.below(4);
+    const bool along_x = wall % 2 == 0;
+    const float inset = behind + kGap_m;
+    const float share = between(0.0, 1.0, random_);
+    const Eigen::Vector2f size = room_.high - room_.low;
+    const float x = along_x     ? room_.low.x() + share * size.x()
+                    : wall == 1 ? room_.high.x() - inset
+                                : room_.low.x() + inset;
+    const float z = !along_x    ? room_.low.y() + share * size.y()
+                    : wall == 0 ? room_.low.y() + inset
+                                : room_.high.y() - inset;
+    constexpr std::array<float, 4> kQuarterTurns = {0.F, -1.F, 2.F, 1.F};  // the back to the wall
+    return room_.world_from_room * standing_at(x, 0.F, z, kQuarterTurns[wall] * std::numbers::pi_v<float> / 2.F);
+  }
+
+  /// Where the camera looks, rather than behind it.
+  Isometry3f place_anywhere() {
+    const float far = between(0.6, 6.0, random_), bearing = between(-0.9, 0.9, random_);
+    return standing_at(far * std::sin(bearing), 0.F, -far * std::cos(bearing), any_turn());
+  }
+
+  /// Whether the piece is so near that it would fill the picture.
+  bool looms(const std::vector<OrientedBox>& solids) const {
+    constexpr float kLarge_m = 0.35F;  // half diagonal
+    return std::ranges::any_of(solids, [&](const OrientedBox& box) {
+      const Vector3f way = box.pose.translation() - eye_;
+      return box.radius() > kLarge_m && way.norm() < 2.F * box.radius() + 0.2F && way.z() < 0.F;
+    });
+  }
+
+  bool put(const Furniture& piece, const Isometry3f& pose, float most_hidden, bool may_loom = false) {
+    std::vector<OrientedBox> solids;
+    for (const OrientedBox& box : piece.solids) solids.push_back(moved(box, pose));
+    if ((!may_loom && looms(solids)) || !occupancy_.free_for(solids) || occupancy_.hidden_share(solids) > most_hidden)
+      return false;
+    occupancy_.add(solids);
+    placed_.push_back(piece);
+    move(placed_.back(), pose);
+    return true;
+  }
+
+  const SceneOptions& options_;
+  const RoomShape& room_;
+  const std::vector<SceneMesh>& models_;
+  Vector3f eye_;
+  Occupancy& occupancy_;
+  Random& random_;
+  std::vector<Furniture> placed_;
+};
+
+}  // namespace
+
+std::vector<Furniture> furnish(const SceneOptions& options, const RoomShape& room, const std::vector<SceneMesh>& models,
+                               const std::vector<Vector3f>& people, const Vector3f& eye, Occupancy& occupancy,
+                               Random& random) {
+  Furnisher furnisher(options, room, models, eye, occupancy, random);
+  for (const Vector3f& person : people) {
+    if (chance(static_cast<double>(options.occluder_probability), random)) furnisher.occlude(person);
+  }
+  const int span = options.furniture_max - options.furniture_min + 1;
+  const int count = options.furniture_min + static_cast<int>(random.below(static_cast<std::uint32_t>(span)));
+  for (int i = 0; i < count; ++i) furnisher.add_piece();
+  if (chance(static_cast<double>(options.near_probability), random)) furnisher.loom();
+  return furnisher.take();
+}
+
+}  // namespace vesalius::synth

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "synth/scene/build_scene.h"
+#include "synth/scene/furniture.h"
+#include "synth/scene/occupancy.h"
+
+namespace vesalius::synth {
+
+/// Puts furniture into a room: along the walls, standing free, and some of it between the camera and people. Adds it
+/// to `occupancy`. What finds no place is left out; nobody ends up hidden but for a part.
+std::vector<Furniture> furnish(const SceneOptions& options, const RoomShape& room, const std::vector<SceneMesh>& models,
+                               const std::vector<Eigen::Vector3f>& people, const Eigen::Vector3f& eye,
+                               Occupancy& occupancy, Random& random);
+
+}  // namespace vesalius::synth

@@ -1,0 +1,196 @@
+#include "synth/scene/people_group.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "synth/scene/fit_support.h"
+#include "synth/scene/palette.h"
+
+namespace vesalius::synth {
+namespace {
+
+using Eigen::Isometry3f;
+using Eigen::Translation3f;
+
+/// A person posed, before it is known what is under them.
+struct Posed {
+  GroupMember member;
+  Posture posture = Posture::standing;
+  std::optional<SeatFit> seat;  ///< of those who sit on one
+};
+
+Posed pose_of(const PersonPlan& plan, int number) {
+  Posed posed;
+  posed.posture = plan.posture;
+  posed.member.plan = number;
+  posed.member.body = plan.poser->pose(plan.pose);
+  posed.member.outline = outline_of(posed.member.body, plan.poser->mesh().stature_m);
+  if (plan.posture == Posture::sitting) posed.seat = fit_seat(plan.poser->mesh(), posed.member.body);
+  return posed;
+}
+
+void put(GroupMember& member, const Isometry3f& group_from_body) {
+  member.group_from_body = group_from_body;
+  member.outline = moved(std::move(member.outline), group_from_body);
+}
+
+bool keeps_clear(const PeopleGroup& group, const Furniture& piece) {
+  return std::ranges::none_of(group.members,
+                              [&](const GroupMember& member) { return sinks_in(member.outline, piece.solids); }) &&
+         std::ranges::none_of(group.furniture, [&](const Furniture& other) {
+           return std::ranges::any_of(other.solids, [&](const OrientedBox& a) {
+             return std::ranges::any_of(piece.solids, [&](const OrientedBox& b) { return overlap(a, b, 0.005F); });
+           });
+         });
+}
+
+/// A table before somebody who sits, above the knees where there is room for them.
+void add_table(const SeatFit& fit, PeopleGroup& group, Random& random) {
+  constexpr int kTries = 3;
+  for (int i = 0; i < kTries; ++i) {
+    const bool high = chance(0.7, random);
+    const float height = high ? fit.height_m + between(0.2, 0.34, random) : between(0.35, 0.5, random);
+    const float depth = between(0.5, 0.9, random);
+    const float near = high ? fit.depth_m * between(0.6, 1.0, random) : fit.depth_m + between(0.3, 0.5, random);
+    Furniture table = make_table(between(0.6, 1.6, random), depth, height, random);
+    move(table, fit.body_from_seat * Translation3f(between(-0.2, 0.2, random), 0.F, near + 0.5F * depth));
+    if (!keeps_clear(group, table)) continue;
+    group.furniture.push_back(std::move(table));
+    return;
+  }
+}
+
+std::optional<PeopleGroup> sitting_group(const SceneOptions& options, Posed posed, Random& random) {
+  std::optional<Furniture> seat = make_fitting_seat(*posed.seat, posed.member.outline, random);
+  if (!seat) return std::nullopt;
+  PeopleGroup group;
+  group.furniture.push_back(std::move(*seat));
+  const SeatFit fit = *posed.seat;
+  group.members.push_back(std::move(posed.member));
+  if (chance(static_cast<double>(options.table_probability), random)) add_table(fit, group, random);
+  return group;
+}
+
+/// Both on one sofa, in its frame; nothing where they differ too much or get in each other's way.
+std::optional<PeopleGroup> sofa_group(const Posed& left, const Posed& right, Random& random) {
+  constexpr float kMaxDifference_m = 0.03F;
+  const SeatFit &a = *left.seat, &b = *right.seat;
+  if (std::abs(a.height_m - b.height_m) > kMaxDifference_m || std::abs(a.lean_rad - b.lean_rad) > 0.15F) {
+    return std::nullopt;
+  }
+  SeatShape shape;
+  shape.kind = SeatKind::sofa;
+  shape.height_m = 0.5F * (a.height_m + b.height_m);
+  shape.depth_m = std::min(a.depth_m, b.depth_m);
+  shape.lean_rad = std::max(a.lean_rad, b.lean_rad);
+  shape.back_m = std::min(a.back_m, b.back_m);
+  const float apart = a.half_width_m + b.half_width_m + between(0.1, 0.3, random);
+  shape.width_m = std::clamp(2.F * apart * between(0.95, 1.2, random), 1.3F, 2.4F);
+
+  PeopleGroup group;
+  for (const auto& [posed, x] : {std::pair{&left, 0.5F * apart}, std::pair{&right, -0.5F * apart}}) {
+    const SeatFit& fit = *posed->seat;
+    GroupMember member = posed->member;
+    const Isometry3f seat_from_body = fit.body_from_seat.inverse();
+    put(member, Translation3f(x, shape.height_m - fit.height_m, 0.F) * seat_from_body);
+    group.members.push_back(std::move(member));
+  }
+  Furniture sofa = make_seat(shape, random);
+  if (sinks_in(group.members[0].outline, group.members[1].outline) || !keeps_clear(group, sofa)) return std::nullopt;
+  group.furniture.push_back(std::move(sofa));
+  return group;
+}
+
+PeopleGroup lying_group(const SceneOptions& options, Posed posed, Random& random) {
+  PeopleGroup group;
+  const BedFit fit = fit_bed(posed.member.body);
+  if (chance(static_cast<double>(options.bed_probability), random)) {
+    const float height = between(0.25, 0.6, random);
+    GroupMember raised = posed.member;
+    put(raised, Isometry3f(Translation3f(0.F, height - kCushion_m, 0.F)));
+    constexpr int kTries = 3;
+    for (int i = 0; i < kTries && group.furniture.empty(); ++i) {
+      const float width = std::max(between(0.8, 1.8, random), fit.width_m + 0.05F);
+      const float length = std::max(between(1.9, 2.1, random), fit.length_m + 0.1F);
+      Furniture bed = make_bed(width, length, height, random);
+      move(bed, fit.body_from_bed);
+      if (!sinks_in(raised.outline, bed.solids)) group.furniture.push_back(std::move(bed));
+    }
+    if (!group.furniture.empty()) posed.member = std::move(raised);
+  }
+  group.members.push_back(std::move(posed.member));
+  return group;
+}
+
+/// Side by side, looking about the same way, as close as arms and clothes let them or a hand's breadth apart; nothing
+/// where their limbs keep them further apart than that.
+std::optional<PeopleGroup> standing_pair(const Posed& one, const Posed& other, Random& random) {
+  constexpr float kNearest_m = 0.25F, kFurthest_m = 0.9F, kStep_m = 0.02F;
+  const float side = chance(0.5, random) ? 1.F : -1.F;
+  const float ahead = between(-0.12, 0.12, random);
+  const float gap = std::max(0.F, between(-0.1, 0.12, random));
+  const Isometry3f turned = standing_at(0.F, 0.F, 0.F, between(-0.6, 0.6, random));
+  const auto place = [&](float apart) -> Isometry3f { return Translation3f(side * apart, 0.F, ahead) * turned; };
+  const auto clear = [&](float apart) {
+    return !sinks_in(one.member.outline, moved(other.member.outline, place(apart)));
+  };
+  for (float apart = kNearest_m; apart <= kFurthest_m; apart += kStep_m) {
+    if (!clear(apart)) continue;
+    GroupMember beside = other.member;
+    put(beside, place(clear(apart + gap) ? apart + gap : apart));  // not into an arm held out
+    return PeopleGroup{{one.member, std::move(beside)}, {}};
+  }
+  return std::nullopt;
+}
+
+/// The next after `people[first]` who has a seat like them, or is of the same posture without; -1: nobody.
+int partner_of(const std::vector<std::optional<Posed>>& people, std::size_t first) {
+  const Posed& one = *people[first];
+  for (std::size_t i = first + 1; i < people.size(); ++i) {
+    if (!people[i]) continue;
+    if (one.seat ? people[i]->seat.has_value() : people[i]->posture == one.posture) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+/// That somebody is put together with another of the same posture. Nothing: scenes without the option draw no number
+/// for it, and stay as they were.
+std::optional<double> probability_of_company(const SceneOptions& options, const Posed& posed) {
+  if (posed.seat) return static_cast<double>(options.sofa_probability);
+  if (posed.posture != Posture::standing || options.beside_probability == 0.F) return std::nullopt;
+  return static_cast<double>(options.beside_probability);
+}
+
+}  // namespace
+
+std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vector<PersonPlan>& plans,
+                                     Random& random) {
+  std::vector<std::optional<Posed>> people;
+  for (std::size_t i = 0; i < plans.size(); ++i) people.emplace_back(pose_of(plans[i], static_cast<int>(i)));
+  std::vector<PeopleGroup> groups;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    if (!people[i]) continue;
+    Posed& posed = *people[i];
+    const std::optional<double> together = probability_of_company(options, posed);
+    const int partner = together && chance(*together, random) ? partner_of(people, i) : -1;
+    std::optional<PeopleGroup> group;
+    if (partner >= 0) {
+      const Posed& other = *people[partner];
+      group = posed.seat ? sofa_group(posed, other, random) : standing_pair(posed, other, random);
+    }
+    if (group) {
+      people[partner].reset();
+    } else if (posed.seat) {
+      group = sitting_group(options, std::move(posed), random);
+    } else if (posed.posture == Posture::lying) {
+      group = lying_group(options, std::move(posed), random);
+    } else {
+      group = PeopleGroup{{std::move(posed.member)}, {}};
+    }
+    if (group) groups.push_back(std::move(*group));
+  }
+  return groups;
+}
+
+}  // namespace vesalius::synth

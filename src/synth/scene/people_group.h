@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "synth/scene/build_scene.h"
+#include "synth/scene/furniture.h"
+#include "synth/scene/occupancy.h"
+
+namespace vesalius::synth {
+
+/// A posed person within a group.
+struct GroupMember {
+  int plan = 0;
+  PosedBody body;  ///< in the body's own frame
+  Eigen::Isometry3f group_from_body = Eigen::Isometry3f::Identity();
+  BodyOutline outline;  ///< group frame
+};
+
+/// People and what holds them up, to be put into the room as one. Group frame: metres, y up, floor y = 0; the people
+/// face about +z.
+struct PeopleGroup {
+  std::vector<GroupMember> members;
+  std::vector<Furniture> furniture;
+};
+
+/// Poses the people of the plans and gives those who sit or lie something that fits; some share a sofa, some stand side
+/// by side. Whoever finds no seat is left out.
+std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vector<PersonPlan>& plans, Random& random);
+
+}  // namespace vesalius::synth

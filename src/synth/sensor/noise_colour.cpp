@@ -1,0 +1,37 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "synth/sensor/noise_field.h"
+#include "synth/sensor/sensor_noise.h"
+
+namespace vesalius::synth {
+namespace {
+
+constexpr double kExposure = 0.15;                 // sigma of the logarithm of the gain
+constexpr double kBalance = 0.04;                  // the same between channels
+constexpr double kQuietest = 2.0, kLoudest = 6.0;  // sigma of a pixel, of 255
+
+std::uint8_t clipped(int value) { return static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value); }
+
+}  // namespace
+
+void add_colour_noise(ColourImage& colour, Random random) {
+  const double exposure = random.normal(0.0, kExposure);
+  std::array<std::array<int, 256>, 3> gained{};
+  for (auto& channel : gained) {
+    const double gain = std::exp(exposure + random.normal(0.0, kBalance));
+    for (std::size_t i = 0; i < channel.size(); ++i) {
+      channel[i] = static_cast<int>(std::min(255.0, std::round(gain * static_cast<double>(i))));
+    }
+  }
+  const auto sigma = static_cast<float>(random.uniform(kQuietest, kLoudest));
+  const auto noise = [&] { return static_cast<int>(std::lround(sigma * quick_normal(random))); };
+  for (Rgb& pixel : colour) {
+    pixel.r = clipped(gained[0][pixel.r] + noise());
+    pixel.g = clipped(gained[1][pixel.g] + noise());
+    pixel.b = clipped(gained[2][pixel.b] + noise());
+  }
+}
+
+}  // namespace vesalius::synth

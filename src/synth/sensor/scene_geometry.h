@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "synth/scene/scene.h"
+
+namespace vesalius::synth {
+
+/// What a triangle shows.
+struct Face {
+  std::uint8_t part = kBackground;
+  std::uint8_t person = kBackground;
+  std::uint16_t material = 0;  ///< index in SceneGeometry::materials
+};
+
+/// All that a view can see of a scene as one soup in the camera frame, ready for a ray caster. Neighbouring triangles
+/// are joined to quads, which halves what the ray caster has to sort.
+struct SceneGeometry {
+  /// Corners 0, 1, 3 are the first triangle and 2, 3, 1 the second; where there is no second, corner 2 equals 3.
+  using Quad = std::array<std::uint32_t, 4>;
+
+  std::vector<Eigen::Vector3f> vertices;  ///< metres; one more than used, as Embree reads 16 bytes a vertex
+  std::vector<Quad> quads;
+  std::vector<std::array<Face, 2>> faces;  ///< per quad, of its two triangles
+  std::vector<Material> materials;
+
+  /// Fills this, keeping memory of earlier scenes. Triangles that no ray from the camera, nor any from what it sees
+  /// to `projector` (camera frame, metres), can meet are left out. Throws Error naming the mesh for an index out of
+  /// range, a list of the wrong length, or a number that is not finite.
+  void gather(const Scene& scene, const View& view, const std::optional<Eigen::Vector3f>& projector);
+
+ private:
+  void add(const SceneMesh& mesh, std::size_t number);
+  void set_planes(const Camera& camera, const std::optional<Eigen::Vector3f>& projector);
+  void add_triangles(const SceneMesh& mesh, std::uint32_t first_vertex, std::size_t first_material);
+  void add_vertices(const SceneMesh& mesh, std::size_t number);
+
+  struct Plane {
+    Eigen::Vector3f normal;  ///< inwards
+    float offset;
+  };
+  std::array<Plane, 5> planes_;
+  Eigen::Isometry3f camera_from_world_;
+  std::vector<std::uint8_t> outside_;  ///< per vertex: a bit for each plane that it lies beyond
+};
+
+}  // namespace vesalius::synth

@@ -1,0 +1,349 @@
+#include "vesalius/base/body_model.h"
+
+#define TOML_EXCEPTIONS 1
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <set>
+#include <sstream>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr std::size_t kMaxParts = 200;
+constexpr std::size_t kMaxSurfaceRules = 4000;
+constexpr std::size_t kMaxName = 64;
+
+constexpr std::string_view kPaperBody =
+#include "paper_body.inc"
+    ;
+
+/// Text of a stranger's file, fit for a one-line message.
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text.substr(0, kMaxName)) out += (c >= ' ' && c != '\x7f') ? c : '?';
+  return out + (text.size() > kMaxName ? "...\"" : "\"");
+}
+
+/// Typed reads from TOML that name source and line where they fail.
+class Reader {
+ public:
+  explicit Reader(const std::string& source) : source_(source) {}
+
+  [[noreturn]] void fail(const toml::node& at, const std::string& what) const {
+    throw Error(source_ + ":" + std::to_string(at.source().begin.line) + ": " + what);
+  }
+
+  void expect_keys(const toml::table& table, std::initializer_list<std::string_view> known) const {
+    for (const auto& [key, node] : table) {
+      if (std::ranges::find(known, key.str()) != known.end()) continue;
+      std::string list;
+      for (const std::string_view k : known) list.append(list.empty() ? "" : ", ").append(k);
+      fail(node, "unknown key " + in_quotes(key.str()) + ", expected " + list);
+    }
+  }
+
+  const toml::node& need(const toml::table& table, std::string_view key) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) fail(table, "missing key \"" + std::string(key) + "\"");
+    return *node;
+  }
+
+  const toml::array& array(const toml::table& table, std::string_view key) const {
+    const toml::node& node = need(table, key);
+    if (!node.is_array()) fail(node, std::string(key) + ": expected an array");
+    return *node.as_array();
+  }
+
+  const toml::table& table(const toml::node& node, std::string_view what) const {
+    if (!node.is_table()) fail(node, std::string(what) + ": expected a table");
+    return *node.as_table();
+  }
+
+  std::string string(const toml::node& node, std::string_view what) const {
+    const auto value = node.value_exact<std::string>();
+    if (!value) fail(node, std::string(what) + ": expected a string");
+    return *value;
+  }
+
+  /// Names end up in JSON, pictures and file names.
+  std::string name(const toml::table& table, std::string_view key) const {
+    const toml::node& node = need(table, key);
+    std::string value = string(node, key);
+    const auto allowed = [](unsigned char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    };
+    if (value.empty() || value.size() > kMaxName || !std::ranges::all_of(value, allowed)) {
+      fail(node, std::string(key) + " " + in_quotes(value) + ": expected 1 to 64 letters, digits, '_' or '-'");
+    }
+    return value;
+  }
+
+  float number(const toml::node& node, std::string_view what, double low, double high) const {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!value || !std::isfinite(*value) || *value < low || *value > high) {
+      std::ostringstream message;
+      message << what << ": expected a number from " << low << " to " << high;
+      fail(node, message.str());
+    }
+    return static_cast<float>(*value);
+  }
+
+  float number(const toml::table& table, std::string_view key, double low, double high) const {
+    return number(need(table, key), key, low, high);
+  }
+
+  bool boolean(const toml::table& table, std::string_view key) const {
+    const toml::node& node = need(table, key);
+    const auto value = node.value_exact<bool>();
+    if (!value) fail(node, std::string(key) + ": expected true or false");
+    return *value;
+  }
+
+  /// Index of the part that `node` names.
+  int part(const BodyModel& body, const toml::node& node, std::string_view what) const {
+    const std::string value = string(node, what);
+    const int index = body.find_part(value);
+    if (index < 0) fail(node, std::string(what) + ": no part is called " + in_quotes(value));
+    return index;
+  }
+
+ private:
+  const std::string& source_;
+};
+
+// Metres and square metres that a part of a person, or of a giant, can have; keeps later arithmetic finite.
+constexpr double kSmallest = 1e-3;
+constexpr double kLargest = 100.0;
+
+Rgb read_colour(const Reader& reader, const toml::table& table) {
+  const toml::array& values = reader.array(table, "colour");
+  if (values.size() != 3) reader.fail(values, "colour: expected 3 whole numbers, red, green and blue, from 0 to 255");
+  std::uint8_t rgb[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto value = values.get(i)->value_exact<std::int64_t>();
+    if (!value || *value < 0 || *value > 255) {
+      reader.fail(values, "colour: expected 3 whole numbers, red, green and blue, from 0 to 255");
+    }
+    rgb[i] = static_cast<std::uint8_t>(*value);
+  }
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+void read_parts(const Reader& reader, const toml::table& root, BodyModel& body) {
+  const toml::array& array = reader.array(root, "part");
+  if (array.empty() || array.size() > kMaxParts) {
+    reader.fail(array,
+                "part: expected 1 to " + std::to_string(kMaxParts) + " parts, found " + std::to_string(array.size()));
+  }
+  for (const toml::node& node : array) {
+    const toml::table& table = reader.table(node, "part");
+    reader.expect_keys(table, {"name", "colour", "mirror", "max_extent", "area", "upper_body"});
+    BodyPart part;
+    part.name = reader.name(table, "name");
+    if (body.find_part(part.name) >= 0) reader.fail(table, "part: the name " + in_quotes(part.name) + " is used twice");
+    part.colour = read_colour(reader, table);
+    part.max_extent_m = reader.number(table, "max_extent", kSmallest, kLargest);
+    part.typical_area_m2 = reader.number(table, "area", 1e-6, kLargest);
+    part.upper_body = reader.boolean(table, "upper_body");
+    body.parts.push_back(std::move(part));
+  }
+  for (std::size_t i = 0; i < array.size(); ++i) {  // partners may come later than the part that names them
+    body.parts[i].mirror = reader.part(body, reader.need(*array.get(i)->as_table(), "mirror"), "mirror");
+  }
+  for (std::size_t i = 0; i < array.size(); ++i) {
+    const BodyPart& partner = body.parts[body.parts[i].mirror];
+    if (partner.mirror != static_cast<int>(i)) {
+      reader.fail(*array.get(i), "part " + in_quotes(body.parts[i].name) + ": its mirror " + in_quotes(partner.name) +
+                                     " does not name it in return");
+    }
+  }
+}
+
+/// Follows parents; a part that reaches no top within as many steps as there are parts hangs in a ring.
+void check_no_ring(const Reader& reader, const toml::array& array, const BodyModel& body,
+                   const std::vector<int>& parent) {
+  for (std::size_t link = 0; link < body.links.size(); ++link) {
+    int at = body.links[link].child;
+    for (int steps = 0; at >= 0; ++steps, at = parent[at]) {
+      if (steps > body.part_count()) {
+        const std::string& name = body.parts[body.links[link].child].name;
+        reader.fail(*array.get(link), "link: " + in_quotes(name) + " hangs in a ring, expected a tree");
+      }
+    }
+  }
+}
+
+void read_links(const Reader& reader, const toml::table& root, BodyModel& body) {
+  static const toml::array kNone;
+  const toml::array& array = root.contains("link") ? reader.array(root, "link") : kNone;
+  std::vector<int> parent(body.parts.size(), -1);
+  for (const toml::node& node : array) {
+    const toml::table& table = reader.table(node, "link");
+    reader.expect_keys(table, {"parent", "child", "length", "tolerance"});
+    BodyLink link;
+    link.parent = reader.part(body, reader.need(table, "parent"), "parent");
+    link.child = reader.part(body, reader.need(table, "child"), "child");
+    link.length_m = reader.number(table, "length", kSmallest, kLargest);
+    link.tolerance_m = reader.number(table, "tolerance", kSmallest, kLargest);
+    int& known = parent[link.child];
+    const std::string& child = body.parts[link.child].name;
+    if (link.child == link.parent) reader.fail(table, "link: " + in_quotes(child) + " cannot be its own parent");
+    if (known >= 0) reader.fail(table, "link: " + in_quotes(child) + " has a second parent, expected a tree");
+    known = link.parent;
+    body.links.push_back(link);
+  }
+  check_no_ring(reader, array, body, parent);
+  if (body.links.size() + 1 != body.parts.size()) {
+    // Without rings and second parents, each missing link leaves one more part without parent.
+    reader.fail(array.empty() ? static_cast<const toml::node&>(root) : array,
+                "link: expected " + std::to_string(body.parts.size() - 1) + " links, one tree over all parts, found " +
+                    std::to_string(body.links.size()));
+  }
+}
+
+void read_roots(const Reader& reader, const toml::table& root, BodyModel& body) {
+  const toml::array& array = reader.array(root, "roots");
+  if (array.empty()) reader.fail(array, "roots: expected at least one part");
+  for (const toml::node& node : array) {
+    const int index = reader.part(body, node, "roots");
+    if (std::ranges::find(body.roots, index) != body.roots.end()) {
+      reader.fail(node, "roots: " + in_quotes(body.parts[index].name) + " is listed twice");
+    }
+    body.roots.push_back(index);
+  }
+}
+
+JointDefinition read_joint(const Reader& reader, const toml::node& node, const BodyModel& body) {
+  const toml::table& table = reader.table(node, "joint");
+  reader.expect_keys(table, {"name", "parts", "weights", "depth_offset"});
+  JointDefinition joint;
+  joint.name = reader.name(table, "name");
+  for (const toml::node& part : reader.array(table, "parts")) {
+    joint.parts.push_back(reader.part(body, part, "parts"));
+  }
+  if (joint.parts.empty()) return joint;
+  const toml::array& weights = reader.array(table, "weights");
+  if (weights.size() != joint.parts.size()) {
+    reader.fail(weights, "weights: expected as many as parts, " + std::to_string(joint.parts.size()) + ", found " +
+                             std::to_string(weights.size()));
+  }
+  double sum = 0.0;
+  for (const toml::node& weight : weights) {
+    joint.weights.push_back(reader.number(weight, "weights", -10.0, 10.0));
+    sum += static_cast<double>(joint.weights.back());
+  }
+  if (std::abs(sum - 1.0) > 1e-3) reader.fail(weights, "weights: expected a sum of 1, found " + std::to_string(sum));
+  joint.depth_offset_m = reader.number(table, "depth_offset", -1.0, 1.0);
+  return joint;
+}
+
+void read_joint_sets(const Reader& reader, const toml::table& root, BodyModel& body) {
+  if (!root.contains("joint_set")) return;
+  std::set<std::string> set_names;
+  for (const toml::node& node : reader.array(root, "joint_set")) {
+    const toml::table& table = reader.table(node, "joint_set");
+    reader.expect_keys(table, {"name", "joint"});
+    JointSet set;
+    set.name = reader.name(table, "name");
+    if (!set_names.insert(set.name).second) reader.fail(table, "joint_set: " + in_quotes(set.name) + " is used twice");
+    std::set<std::string> joint_names;
+    for (const toml::node& joint : reader.array(table, "joint")) {
+      set.joints.push_back(read_joint(reader, joint, body));
+      const std::string& name = set.joints.back().name;
+      if (!joint_names.insert(name).second) {
+        reader.fail(joint, "joint_set " + in_quotes(set.name) + ": the joint " + in_quotes(name) + " is used twice");
+      }
+    }
+    body.joint_sets.push_back(std::move(set));
+  }
+}
+
+SurfaceRule::Side read_side(const Reader& reader, const toml::table& table) {
+  const toml::node* node = table.get("side");
+  if (node == nullptr) return SurfaceRule::Side::both;
+  const std::string side = reader.string(*node, "side");
+  if (side == "both") return SurfaceRule::Side::both;
+  if (side == "left") return SurfaceRule::Side::left;
+  if (side == "right") return SurfaceRule::Side::right;
+  reader.fail(*node, "side " + in_quotes(side) + ": expected \"both\", \"left\" or \"right\"");
+}
+
+void read_surface(const Reader& reader, const toml::table& root, BodyModel& body) {
+  if (!root.contains("surface")) return;
+  const toml::array& array = reader.array(root, "surface");
+  if (array.size() > kMaxSurfaceRules) {
+    reader.fail(array, "surface: expected at most " + std::to_string(kMaxSurfaceRules) + " rules, found " +
+                           std::to_string(array.size()));
+  }
+  for (const toml::node& node : array) {
+    const toml::table& table = reader.table(node, "surface");
+    reader.expect_keys(table, {"part", "bone", "from", "to", "side"});
+    SurfaceRule rule;
+    rule.part = reader.part(body, reader.need(table, "part"), "part");
+    rule.bone = reader.name(table, "bone");
+    rule.from = reader.number(table, "from", 0.0, 1.0);
+    rule.to = reader.number(table, "to", 0.0, 1.0);
+    if (rule.to <= rule.from) reader.fail(table, "surface: expected \"to\" to be larger than \"from\"");
+    rule.side = read_side(reader, table);
+    rule.line = static_cast<int>(table.source().begin.line);
+    body.surface.push_back(std::move(rule));
+  }
+}
+
+/// A key of many thousand dotted levels, which only a very long line can hold, overruns the parser's stack.
+void check_lines(std::string_view text, const std::string& source) {
+  constexpr std::size_t kLongestLine = 4096;
+  std::size_t begin = 0;
+  for (int line = 1; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > kLongestLine) {
+      throw Error(source + ":" + std::to_string(line) + ": line of " + std::to_string(end - begin) +
+                  " characters, expected at most " + std::to_string(kLongestLine));
+    }
+    begin = end + 1;
+  }
+}
+
+toml::table parse_toml(std::string_view text, const std::string& source) {
+  check_lines(text, source);
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& e) {
+    throw Error(source + ":" + std::to_string(e.source().begin.line) +
+                ": not valid TOML: " + std::string(e.description()));
+  }
+}
+
+}  // namespace
+
+int BodyModel::find_part(std::string_view part_name) const {
+  const auto found = std::ranges::find(parts, part_name, &BodyPart::name);
+  return found == parts.end() ? -1 : static_cast<int>(found - parts.begin());
+}
+
+BodyModel parse_body_model(std::string_view toml, const std::string& source) {
+  const toml::table root = parse_toml(toml, source);
+  const Reader reader(source);
+  reader.expect_keys(root, {"name", "roots", "part", "link", "joint_set", "surface"});
+  BodyModel body;
+  body.name = reader.name(root, "name");
+  read_parts(reader, root, body);
+  read_links(reader, root, body);
+  read_roots(reader, root, body);
+  read_joint_sets(reader, root, body);
+  read_surface(reader, root, body);
+  body.toml = toml;
+  return body;
+}
+
+const BodyModel& paper_body() {
+  static const BodyModel body = parse_body_model(kPaperBody, "paper25");
+  return body;
+}
+
+}  // namespace vesalius

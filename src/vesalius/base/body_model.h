@@ -1,0 +1,79 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vesalius/base/image.h"
+
+namespace vesalius {
+
+/// One class of the labelling, e.g. "l_knee". Left and right are the person's own.
+struct BodyPart {
+  std::string name;
+  Rgb colour;
+  int mirror = -1;              ///< index of the partner on the other side; itself for parts on the middle line
+  float max_extent_m = 0.F;     ///< largest feasible length (section 5), metres
+  float typical_area_m2 = 0.F;  ///< visible area of an unoccluded adult part, square metres
+  bool upper_body = false;      ///< one of the parts above the pelvis (section 8.3)
+};
+
+/// Two parts that touch, and how far apart their centres are (section 6, d_m).
+struct BodyLink {
+  int parent = -1;
+  int child = -1;
+  float length_m = 0.F;
+  float tolerance_m = 0.F;  ///< deviation that counts as one unit of normalised distance
+};
+
+/// A point derived from part centres: the weighted mean of those present, e.g. a wrist between forearm and hand.
+struct JointDefinition {
+  std::string name;
+  std::vector<int> parts;      ///< empty: the set has this joint and this body cannot supply it
+  std::vector<float> weights;  ///< same length as parts; need not be positive (extrapolation), sums to 1
+  float depth_offset_m = 0.F;  ///< added along the viewing ray: from the visible surface into the body
+};
+
+/// Joints under the names and in the order that another tracker uses, e.g. "nite15".
+struct JointSet {
+  std::string name;
+  std::vector<JointDefinition> joints;
+};
+
+/// Which triangles of a synthetic body's surface belong to a part: those that move with `bone` of the synthetic
+/// skeleton and lie from `from` to `to` along it. What lies before the bone's head or beyond its tail counts as 0 or 1.
+struct SurfaceRule {
+  /// Half of the body cut by its middle plane; left is the person's own.
+  enum class Side { both, left, right };
+
+  int part = -1;
+  std::string bone;  ///< name in synth's skeleton, e.g. "l_thigh"; synth checks it
+  float from = 0.F;  ///< 0: the bone's head (nearer to the trunk), 1: its tail
+  float to = 1.F;    ///< above `from`
+  Side side = Side::both;
+  int line = 0;  ///< in the body's TOML, for messages
+};
+
+/// The body as data: parts, kinematic tree, joints. Read from TOML (docs/formats.md); nothing else in the program
+/// knows how many parts there are or what they are called.
+struct BodyModel {
+  std::string name;
+  std::vector<BodyPart> parts;
+  std::vector<BodyLink> links;  ///< a tree over all parts
+  std::vector<int> roots;       ///< parts a search may start from, the steadiest first
+  std::vector<JointSet> joint_sets;
+  std::vector<SurfaceRule> surface;  ///< for training on synthetic people; may be empty: detection needs none
+  std::string toml;                  ///< the text this was read from, embedded in model files
+
+  int part_count() const { return static_cast<int>(parts.size()); }
+  /// Index of the part, -1 where there is none of that name.
+  int find_part(std::string_view part_name) const;
+};
+
+/// Parses and checks a body model; `source` is named in errors. Throws Error with line and expectation.
+BodyModel parse_body_model(std::string_view toml, const std::string& source);
+
+/// The paper's 25 parts (section 4.1.3) with the numbers of the released trees.
+const BodyModel& paper_body();
+
+}  // namespace vesalius

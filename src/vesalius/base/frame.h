@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "vesalius/base/camera.h"
+#include "vesalius/base/image.h"
+
+namespace vesalius {
+
+/// One RGB-D picture: depth, colour registered to it (or none), and the camera of the depth grid.
+struct Frame {
+  std::string name;     ///< file stem or time stamp; unique within a source
+  double time_s = 0.0;  ///< seconds; 0 where the source has no times
+  Camera camera;
+  DepthImage depth;
+  ColourImage colour;  ///< empty, or the size of `depth`
+};
+
+/// Point that pixel (u, v) of a depth image sees; z is 0 where it has no reading.
+inline Eigen::Vector3f point_at(const Camera& camera, const DepthImage& depth, int u, int v) {
+  return camera.point(static_cast<float>(u), static_cast<float>(v), static_cast<float>(depth(u, v)) * 1e-3F);
+}
+
+/// Throws Error unless depth has the camera's size and colour is empty or has it too.
+void check(const Frame& frame);
+
+/// Whether joints or parts were seen, or inferred from others.
+enum class State { none, predicted, observed };
+const char* to_string(State state);
+
+/// A frame with its truth: what training and evaluation consume.
+struct LabelledFrame {
+  Frame frame;
+  LabelImage labels;                                ///< true part of every pixel; kBackground elsewhere
+  Image<std::uint8_t> person;                       ///< true person index of every pixel; kBackground elsewhere
+  std::vector<std::vector<Eigen::Vector3f>> parts;  ///< [person][part]: centre of the part's volume, metres
+  /// [person][joint]: where joints of the skeleton are, metres, optical frame; empty where nobody knows. Whoever makes
+  /// the frames names them, the same ones in all (synth/skeleton_joints.h; DatasetInfo::joints).
+  std::vector<std::vector<Eigen::Vector3f>> joints;
+};
+
+}  // namespace vesalius

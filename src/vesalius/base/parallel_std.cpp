@@ -1,0 +1,64 @@
+// The same contract over std::thread. For the thread sanitizer alone: it cannot see how oneTBB, which is not built
+// with it, hands work from thread to thread, and would report every hand-over as a race.
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "vesalius/base/parallel.h"
+
+namespace vesalius {
+namespace {
+
+std::atomic<int> thread_limit{std::numeric_limits<int>::max()};
+
+/// Threads take the next index until there are none.
+void run(int count, const std::function<void(int)>& work) {
+  std::atomic<int> next{0};
+  std::exception_ptr first;
+  std::mutex first_mutex;
+  const auto take = [&] {
+    for (int i = next++; i < count; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        const std::scoped_lock lock(first_mutex);
+        if (!first) first = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::jthread> helpers;
+  for (int i = 1; i < std::min(count, thread_count()); ++i) helpers.emplace_back(take);
+  take();
+  helpers.clear();  // joins
+  if (first) std::rethrow_exception(first);
+}
+
+}  // namespace
+
+void parallel_for(int count, const std::function<void(int)>& work) { run(count, work); }
+
+void parallel_ranges(int count, int grain, const std::function<void(int, int)>& work) {
+  const int step = std::max(1, grain);
+  run((count + step - 1) / step, [&](int i) { work(i * step, std::min(count, (i + 1) * step)); });
+}
+
+struct ThreadLimit::State {
+  int before;
+};
+
+ThreadLimit::ThreadLimit(int threads) : state_(std::make_unique<State>(State{thread_limit})) {
+  if (threads > 0) thread_limit = std::min(state_->before, threads);
+}
+
+ThreadLimit::~ThreadLimit() { thread_limit = state_->before; }
+
+int thread_count() {
+  return std::min(thread_limit.load(), static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+}
+
+}  // namespace vesalius

@@ -1,0 +1,39 @@
+#include "vesalius/base/pixel_grid.h"
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+
+void visit_options(const std::string& prefix, GridOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "step", o.step,
+                 {"px", 0, 16,
+                  "Look at every so many pixels of every so many rows and bring what is found back to all by their "
+                  "depth; 0: the least that leaves at most 250,000 pixels."});
+}
+
+int grid_step(const Camera& camera, const GridOptions& options) {
+  if (options.step > 0) return options.step;
+  const auto left = [&](long step) { return ((camera.width + step - 1) / step) * ((camera.height + step - 1) / step); };
+  int step = 1;
+  while (left(step) > kMostPixels) ++step;
+  return step;
+}
+
+Frame every_nth(const Frame& frame, int step) {
+  const Camera& c = frame.camera;
+  const auto by = static_cast<float>(step);
+  Frame coarse;
+  coarse.name = frame.name;
+  coarse.time_s = frame.time_s;
+  coarse.depth = every_nth(frame.depth, step);
+  if (!frame.colour.empty()) coarse.colour = every_nth(frame.colour, step);
+  // Pixel u of the grid is pixel step * u of the picture.
+  coarse.camera = {coarse.depth.width(), coarse.depth.height(), c.fx / by, c.fy / by, c.cx / by, c.cy / by};
+  return coarse;
+}
+
+GridGuide::GridGuide(const DepthImage& depth, int step) : depth_(depth), step_(step) {
+  if (step < 1) throw Error("a grid's step must be at least 1");
+}
+
+}  // namespace vesalius

@@ -1,0 +1,130 @@
+#include "vesalius/base/pixel_grid.h"
+
+#include <gmock/gmock.h>
+
+#include "capsule/capsule_person.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/random.h"
+
+namespace vesalius {
+namespace {
+
+TEST(GridStep, LeastThatLeavesFewEnoughPixels) {
+  const auto step = [](int width, int height, int wanted = 0) {
+    return grid_step({width, height, 500.F, 500.F, 0.F, 0.F}, {wanted});
+  };
+  EXPECT_EQ(step(320, 240), 1);
+  EXPECT_EQ(step(512, 424), 1);
+  EXPECT_EQ(step(500, 500), 1);
+  EXPECT_EQ(step(501, 500), 2);
+  EXPECT_EQ(step(640, 480), 2);
+  EXPECT_EQ(step(848, 480), 2);
+  EXPECT_EQ(step(1280, 720), 2);
+  EXPECT_EQ(step(1024, 1024), 3);
+  EXPECT_EQ(step(8000, 6000), 14);
+  EXPECT_EQ(step(640, 480, 1), 1);
+  EXPECT_EQ(step(320, 240, 3), 3);
+  EXPECT_EQ(step(1, 1), 1);
+}
+
+TEST(EveryNth, PixelsKeepTheirPoints) {
+  CapsuleScene scene;
+  scene.people.emplace_back();
+  Frame frame = render(scene, {163, 121, 131.F, 129.F, 80.2F, 61.7F}, paper_body()).frame;
+  frame.name = "0007";
+  frame.time_s = 2.5;
+  for (const int step : {1, 2, 3, 200}) {
+    const Frame coarse = every_nth(frame, step);
+    ASSERT_EQ(coarse.depth.width(), (163 + step - 1) / step);
+    ASSERT_EQ(coarse.depth.height(), (121 + step - 1) / step);
+    EXPECT_NO_THROW(check(coarse));
+    EXPECT_EQ(coarse.name, "0007");
+    EXPECT_EQ(coarse.time_s, 2.5);
+    for (int v = 0; v < coarse.depth.height(); ++v) {
+      for (int u = 0; u < coarse.depth.width(); ++u) {
+        const Eigen::Vector3f whole = point_at(frame.camera, frame.depth, step * u, step * v);
+        ASSERT_LT((point_at(coarse.camera, coarse.depth, u, v) - whole).norm(), 1e-4F);
+        ASSERT_EQ(coarse.colour(u, v), frame.colour(step * u, step * v));
+      }
+    }
+  }
+  frame.colour = {};
+  EXPECT_TRUE(every_nth(frame, 2).colour.empty());
+  EXPECT_EQ(every_nth(frame, 1).camera, frame.camera);
+}
+
+TEST(GridGuide, TakesAfterTheNeighbourOfNearestDepth) {
+  DepthImage depth(5, 3, 2000);
+  depth(2, 0) = 1000;  // somebody before a wall
+  depth(1, 0) = 1010;
+  depth(3, 0) = 1990;
+  depth(3, 1) = 0;
+  depth(1, 2) = 1500;  // between both: neither is near enough
+  LabelImage coarse(3, 2, 9);
+  coarse(1, 0) = 4;
+  const LabelImage all = GridGuide(depth, 2).enlarge(coarse, kBackground);
+  ASSERT_TRUE(all.same_size(depth));
+  EXPECT_EQ(all(2, 0), 4);
+  EXPECT_EQ(all(1, 0), 4);
+  EXPECT_EQ(all(3, 0), 9);
+  EXPECT_EQ(all(2, 1), 9) << "of the row below, for the one above is a metre nearer";
+  EXPECT_EQ(all(3, 1), kBackground) << "no reading";
+  EXPECT_EQ(all(1, 2), kBackground);
+  EXPECT_EQ(all(4, 2), 9);
+}
+
+/// What the header says, pixel by pixel and over the whole grid.
+LabelImage enlarge_slowly(const LabelImage& coarse, const DepthImage& depth, int step) {
+  LabelImage out(depth.width(), depth.height(), kBackground);
+  for (int v = 0; v < depth.height(); ++v) {
+    for (int u = 0; u < depth.width(); ++u) {
+      const double z = 1e-3 * depth(u, v);
+      int least = 100000;
+      for (int j = 0; depth(u, v) != 0 && j < coarse.height(); ++j) {
+        for (int i = 0; i < coarse.width(); ++i) {
+          if (std::abs(i * step - u) >= step || std::abs(j * step - v) >= step) continue;
+          const int there = depth(i * step, j * step);
+          const int apart = std::abs(there - depth(u, v));
+          if (there == 0 || apart > 50 + static_cast<int>(3.0 * z * z) || apart >= least) continue;
+          least = apart;
+          out(u, v) = coarse(i, j);
+        }
+      }
+    }
+  }
+  return out;
+}
+
+TEST(GridGuideThreads, AnyNumberAgreesWithLookingAtAllPixels) {
+  Random random(41);
+  for (int trial = 0; trial < 40; ++trial) {
+    const int step = 1 + static_cast<int>(random.below(4));
+    DepthImage depth(1 + static_cast<int>(random.below(40)), 1 + static_cast<int>(random.below(40)));
+    for (auto& mm : depth) mm = random.below(6) == 0 ? 0 : static_cast<std::uint16_t>(1000 + 30 * random.below(12));
+    LabelImage coarse = every_nth(LabelImage(depth.width(), depth.height(), 0), step);
+    for (auto& label : coarse) label = static_cast<std::uint8_t>(random.below(7));
+    const GridGuide guide(depth, step);
+    const LabelImage expected = enlarge_slowly(coarse, depth, step);
+    for (const int threads : {1, 3}) {
+      const ThreadLimit limit(threads);
+      ASSERT_EQ(guide.enlarge(coarse, kBackground), expected) << trial;
+    }
+  }
+}
+
+TEST(GridGuide, ABoxOfTheGridIsEnough) {
+  DepthImage depth(23, 17, 1500);
+  const GridGuide guide(depth, 3);
+  Mask coarse(8, 6, 0);
+  for (int v = 2; v < 5; ++v) {
+    for (int u = 7; u < 8; ++u) coarse(u, v) = 1;
+  }
+  coarse(6, 3) = 1;
+  EXPECT_EQ(guide.enlarge(coarse, std::uint8_t{0}, bounding_box(coarse)), guide.enlarge(coarse, std::uint8_t{0}));
+  EXPECT_EQ(guide.enlarge(Mask(8, 6, 0), std::uint8_t{0}, Box{}), Mask(23, 17, 0));
+}
+
+TEST(GridGuide, RefusesAStepOfNothing) { EXPECT_THROW(GridGuide(DepthImage(2, 2), 0), Error); }
+
+}  // namespace
+}  // namespace vesalius

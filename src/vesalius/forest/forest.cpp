@@ -1,0 +1,93 @@
+#include "vesalius/forest/forest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+[[noreturn]] void bad_tree(std::size_t tree, const std::string& what) {
+  throw Error("tree " + std::to_string(tree) + ": " + what);
+}
+
+void check_child(std::int32_t child, std::size_t parent, std::size_t tree, const Tree& t) {
+  if (child >= 0) {
+    // Children after their parent: no walk can turn in a circle.
+    if (static_cast<std::size_t>(child) <= parent || static_cast<std::size_t>(child) >= t.nodes.size()) {
+      bad_tree(tree, "node " + std::to_string(parent) + " has child " + std::to_string(child) +
+                         ", expected a later node below " + std::to_string(t.nodes.size()));
+    }
+  } else if (static_cast<std::size_t>(~child) >= t.leaves.size()) {
+    bad_tree(tree, "node " + std::to_string(parent) + " has leaf " + std::to_string(~child) + " of " +
+                       std::to_string(t.leaves.size()));
+  }
+}
+
+void check_tree(const Tree& t, std::size_t tree, int classes) {
+  if (t.leaves.empty()) bad_tree(tree, "no leaves");
+  for (std::size_t n = 0; n < t.nodes.size(); ++n) {
+    const TreeNode& node = t.nodes[n];
+    check_child(node.left, n, tree, t);
+    check_child(node.right, n, tree, t);
+    for (const int offset : {node.du1, node.dv1, node.du2, node.dv2}) {
+      if (std::abs(offset) > kMaxOffset) {
+        bad_tree(tree, "node " + std::to_string(n) + " has offset " + std::to_string(offset) + ", expected at most " +
+                           std::to_string(kMaxOffset));
+      }
+    }
+  }
+  for (std::size_t l = 0; l < t.leaves.size(); ++l) {
+    const TreeLeaf& leaf = t.leaves[l];
+    int sum = 0;
+    for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) {
+      sum += leaf.probability[k];
+      if (leaf.probability[k] != 0 && leaf.label[k] >= classes) {
+        bad_tree(tree, "leaf " + std::to_string(l) + " names class " + std::to_string(leaf.label[k]) + " of " +
+                           std::to_string(classes));
+      }
+    }
+    if (sum > 255) bad_tree(tree, "leaf " + std::to_string(l) + " has probabilities above 1");
+  }
+}
+
+}  // namespace
+
+void check(const Forest& forest) {
+  if (forest.body.parts.empty()) throw Error("forest: body model without parts");
+  if (forest.trees.empty()) throw Error("forest: no trees");
+  // 16-bit sums of probabilities in 1/255.
+  if (forest.trees.size() > 256) throw Error("forest: " + std::to_string(forest.trees.size()) + " trees, at most 256");
+  const FeatureConvention& c = forest.convention;
+  if (!std::isfinite(c.offset_unit) || c.offset_unit <= 0.F || !std::isfinite(c.reference_focal_px) ||
+      c.reference_focal_px <= 0.F) {
+    throw Error("forest: offset unit and reference focal length must be positive");
+  }
+  for (std::size_t t = 0; t < forest.trees.size(); ++t) check_tree(forest.trees[t], t, forest.class_count());
+}
+
+int depth(const Tree& tree) {
+  std::vector<int> depth_of(tree.nodes.size(), 0);
+  int deepest = 0;
+  for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+    const int below = depth_of[n] + 1;
+    deepest = std::max(deepest, below);
+    for (const std::int32_t child : {tree.nodes[n].left, tree.nodes[n].right}) {
+      if (child < 0) continue;
+      int& child_depth = depth_of[child];
+      child_depth = std::max(child_depth, below);  // nodes may share it
+    }
+  }
+  return deepest;
+}
+
+bool has_distributions(const Forest& forest) {
+  const auto mixed = [](const TreeLeaf& leaf) {
+    return std::ranges::count_if(leaf.probability, [](int p) { return p != 0; }) > 1;
+  };
+  return std::ranges::any_of(forest.trees, [&](const Tree& t) { return std::ranges::any_of(t.leaves, mixed); });
+}
+
+}  // namespace vesalius

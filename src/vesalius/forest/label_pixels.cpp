@@ -1,0 +1,288 @@
+#include "vesalius/forest/label_pixels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "vesalius/base/parallel.h"
+#include "vesalius/forest/background_gate.h"
+#include "vesalius/forest/top_two.h"
+#include "vesalius/forest/tree_walk.h"
+#include "vesalius/forest/walk_kernels.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kRowGrain = 8;
+
+/// Weighted posteriors of one pixel in fixed point, so that every platform chooses alike.
+class Weights {
+ public:
+  Weights(const LabelChoice& choice, const LabelOptions& options)
+      : person_(std::lround(options.person_weight * kOne)),
+        background_(std::lround(options.background_weight * kOne)),
+        parts_(choice.part_count) {}
+
+  std::int64_t operator()(const std::uint16_t* sums, int c) const {
+    return c < parts_ ? of_part(sums[c]) : of_background(sums[c]);
+  }
+  static constexpr float kOne = 1024.F;
+
+  std::int64_t of_part(std::uint16_t sum) const { return sum * static_cast<std::int64_t>(person_); }
+  std::int64_t of_background(std::uint16_t sum) const { return sum * static_cast<std::int64_t>(background_); }
+
+ private:
+  long person_;
+  long background_;
+  int parts_;
+};
+
+/// How many of the eight neighbours have a label.
+int count_neighbours(const LabelImage& labels, int u, int v, std::uint8_t label) {
+  int count = 0;
+  for (int nv = v - 1; nv <= v + 1; ++nv) {
+    for (int nu = u - 1; nu <= u + 1; ++nu) {
+      if ((nu != u || nv != v) && labels.contains(nu, nv) && labels(nu, nv) == label) ++count;
+    }
+  }
+  return count;
+}
+
+/// Section 4.3 for one picture: every pixel by itself first, then the unsure ones by their neighbours. Until the end
+/// the background is class part_count.
+class Chooser {
+ public:
+  Chooser(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice, const LabelOptions& options)
+      : posteriors_(posteriors),
+        depth_(depth),
+        choice_(choice),
+        weight_(choice, options),
+        classes_(choice.part_count + (choice.has_background && choice.prior == nullptr ? 1 : 0)),
+        margin_(static_cast<std::int64_t>(
+            std::ceil(static_cast<double>(options.unsure_margin) * 255.0 * posteriors.trees * Weights::kOne))),
+        box_(choice.box != nullptr ? *choice.box : Box{0, 0, depth.width(), depth.height()}),
+        first_(depth.width(), depth.height(), kBackground),
+        unsure_(depth.width(), depth.height(), 0) {}
+
+  LabelImage run() {
+    parallel_ranges(box_.height, kRowGrain, [&](int begin, int end) {
+      std::vector<std::uint8_t> skip(static_cast<std::size_t>(box_.width));
+      std::vector<TopTwo> parts(skip.size());
+      for (int v = box_.v + begin; v < box_.v + end; ++v) choose_alone(v, skip, parts);
+    });
+    LabelImage out(depth_.width(), depth_.height(), kBackground);
+    parallel_ranges(box_.height, kRowGrain, [&](int begin, int end) {
+      for (int v = box_.v + begin; v < box_.v + end; ++v) {
+        for (int u = box_.u; u < box_.u + box_.width; ++u) {
+          const std::uint8_t label = unsure_(u, v) != 0 ? ask_neighbours(u, v) : first_(u, v);
+          out(u, v) = label < choice_.part_count ? label : kBackground;
+        }
+      }
+    });
+    return out;
+  }
+
+ private:
+  /// `skip` becomes 1 where no part may be, `parts` what the parts have elsewhere.
+  void choose_alone(int v, std::vector<std::uint8_t>& skip, std::vector<TopTwo>& parts) {
+    const std::uint16_t* depth = depth_.row(v) + box_.u;
+    const std::uint8_t* prior = choice_.prior != nullptr ? choice_.prior->row(v) + box_.u : nullptr;
+    const bool rivalled = classes_ > choice_.part_count;
+    const std::uint8_t* settled =
+        rivalled && !posteriors_.settled.empty() ? posteriors_.settled.row(v) + box_.u : nullptr;
+    for (std::size_t i = 0; i < skip.size(); ++i) {
+      skip[i] = depth[i] == 0 || (prior != nullptr && prior[i] == 0) ? 1 : 0;
+      if (settled == nullptr || settled[i] == 0) continue;
+      skip[i] = 1;
+      first_(box_.u + static_cast<int>(i), v) = static_cast<std::uint8_t>(choice_.part_count);
+    }
+    find_top_two(posteriors_.at(box_.u, v), static_cast<std::size_t>(posteriors_.classes), choice_.part_count,
+                 skip.data(), box_.width, parts.data());
+    for (std::size_t i = 0; i < skip.size(); ++i) {
+      if (skip[i] != 0) continue;
+      const int u = box_.u + static_cast<int>(i);
+      choose_between(parts[i], rivalled ? posteriors_.at(u, v)[choice_.part_count] : std::uint16_t{0}, first_(u, v),
+                     unsure_(u, v));
+    }
+  }
+
+  /// The best part or the background, whichever weighs more; a part where they weigh the same.
+  void choose_between(const TopTwo& parts, std::uint16_t background_sum, std::uint8_t& label,
+                      std::uint8_t& unsure) const {
+    const std::int64_t part = weight_.of_part(parts.first);
+    const std::int64_t background = weight_.of_background(background_sum);
+    const std::int64_t first = std::max(part, background);
+    if (first == 0) return;
+    label = static_cast<std::uint8_t>(background > part ? choice_.part_count : parts.best);
+    const std::int64_t second = std::max(std::min(part, background), weight_.of_part(parts.second));
+    unsure = second > 0 && first - second < margin_ ? 1 : 0;
+  }
+
+  /// That class of the near-best which most neighbours have.
+  std::uint8_t ask_neighbours(int u, int v) const {
+    const std::uint16_t* sums = posteriors_.at(u, v);
+    std::uint8_t label = first_(u, v);
+    const std::int64_t rival = std::max<std::int64_t>(1, weight_(sums, label) - margin_ + 1);
+    int most = count_neighbours(first_, u, v, label);
+    for (int c = 0; c < classes_; ++c) {
+      if (weight_(sums, c) < rival) continue;
+      const int count = count_neighbours(first_, u, v, static_cast<std::uint8_t>(c));
+      if (count <= most) continue;
+      most = count;
+      label = static_cast<std::uint8_t>(c);
+    }
+    return label;
+  }
+
+  const Posteriors& posteriors_;
+  const DepthImage& depth_;
+  const LabelChoice& choice_;
+  Weights weight_;
+  int classes_;
+  std::int64_t margin_;
+  Box box_;
+  LabelImage first_;
+  Mask unsure_;
+};
+
+void add_leaf(const TreeLeaf& leaf, std::uint16_t* sums) {
+  for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) {
+    sums[leaf.label[k]] = static_cast<std::uint16_t>(sums[leaf.label[k]] + leaf.probability[k]);
+  }
+}
+
+/// Just before they are written, while they are in the cache.
+void clear_rows(int begin, int end, Posteriors& out) { std::fill(out.at(0, begin), out.at(0, end), std::uint16_t{0}); }
+
+/// Sums of the rows' pixels, which are still zero.
+void label_rows(const std::vector<PackedTree>& trees, const PaddedDepth& depth, const WalkPixels& pixels,
+                Posteriors& out) {
+  const std::size_t stride = pixels.padded_size();
+  std::vector<std::uint32_t> leaves(trees.size() * stride);
+  for (std::size_t t = 0; t < trees.size(); ++t) walk_pixels(trees[t], depth, pixels, leaves.data() + t * stride);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    std::uint16_t* sums = out.at(pixels.column(WalkPixels::kU)[i], pixels.column(WalkPixels::kV)[i]);
+    for (std::size_t t = 0; t < trees.size(); ++t) add_leaf(trees[t].leaves[leaves[t * stride + i]], sums);
+  }
+}
+
+/// The same one pixel after the other, for pictures of any size.
+void label_rows_plainly(const Forest& forest, const std::vector<PackedTree>& packed, const DepthImage& depth, int begin,
+                        int end, const OffsetScaler& scaler, Posteriors& out) {
+  clear_rows(begin, end, out);
+  for (int v = begin; v < end; ++v) {
+    for (int u = 0; u < depth.width(); ++u) {
+      if (depth(u, v) == 0) continue;
+      for (std::size_t t = 0; t < packed.size(); ++t) {
+        const Tree& tree = forest.trees[t];
+        const TreeLeaf& leaf = walk(tree, depth, forest.convention, scaler.at(depth(u, v)), u, v);
+        add_leaf(packed[t].leaves[&leaf - tree.leaves.data()], out.at(u, v));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "background-weight", o.background_weight,
+                 {"", 0.0, 100.0, "Factor on the background's posterior; above 1 finds fewer and thinner people."});
+  visitor.option(
+      prefix + "proposal-weight", o.proposal_weight,
+      {"", 0.0, 100.0, "The same where part proposals are looked for: less finds more of what may be people."});
+  visitor.option(prefix + "person-weight", o.person_weight,
+                 {"", 0.0, 100.0, "Factor on the posteriors of all body parts."});
+  visitor.option(prefix + "unsure-margin", o.unsure_margin,
+                 {"", 0.0, 1.0, "Where the two best labels' probabilities differ by less, neighbours decide."});
+  visitor.option(prefix + "gate", o.gate,
+                 {"", 0.5, 2.0,
+                  "Where the forest, asked at every fourth pixel of every fourth row, gives the background this "
+                  "probability all around, it is not asked about pixels between; above 1 it is asked about all."});
+}
+
+ForestLabeller::ForestLabeller(Forest forest) : forest_(std::move(forest)) {
+  check(forest_);
+  distributions_ = vesalius::has_distributions(forest_);
+  packed_.resize(forest_.trees.size());
+  parallel_for(static_cast<int>(packed_.size()), [&](int t) {
+    const auto i = static_cast<std::size_t>(t);
+    packed_[i] = pack(forest_.trees[i], forest_.convention);
+  });
+}
+
+Posteriors ForestLabeller::label(const DepthImage& depth, const Camera& camera) const {
+  Posteriors out;
+  label_into(depth, camera, {.gate = 2.F}, out);
+  return out;
+}
+
+void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& options,
+                                Posteriors& out) const {
+  out.resize_like(
+      {depth.width(), depth.height(), forest_.class_count(), static_cast<int>(forest_.trees.size()), {}, {}});
+  const OffsetScaler scaler(forest_.convention, camera);
+  if (std::max(depth.width(), depth.height()) > PaddedDepth::kMaxSide) {
+    parallel_ranges(depth.height(), kRowGrain,
+                    [&](int begin, int end) { label_rows_plainly(forest_, packed_, depth, begin, end, scaler, out); });
+    return;
+  }
+  if (options.gate <= 1.F && forest_.has_background) {
+    label_gated(depth, scaler, options.gate, out);
+    return;
+  }
+  const PaddedDepth padded(depth, forest_.convention);
+  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
+    clear_rows(begin, end, out);
+    label_rows(packed_, padded, WalkPixels(depth, begin, end, scaler, forest_.convention), out);
+  });
+}
+
+/// The gate's grid first, then what it leaves of the picture.
+void ForestLabeller::label_gated(const DepthImage& depth, const OffsetScaler& scaler, float least,
+                                 Posteriors& out) const {
+  const PaddedDepth padded(depth, forest_.convention);
+  Mask done(depth.width(), depth.height(), 0);
+  const auto ask = [&](int begin, int end, int step) {
+    WalkPixels pixels(static_cast<std::size_t>(depth.width()) * static_cast<std::size_t>(end - begin), scaler,
+                      forest_.convention);
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < depth.width(); ++u) {
+        if (depth(u, v) == 0 || done(u, v) != 0 || !on_grid(step, u, v)) continue;
+        pixels.add(u, v, depth(u, v));
+        std::fill_n(out.at(u, v), out.classes, std::uint16_t{0});
+        done(u, v) = 1;
+      }
+    }
+    label_rows(packed_, padded, pixels, out);
+  };
+  const auto in_rows = [&](const auto& work) { parallel_ranges(depth.height(), kRowGrain, work); };
+  in_rows([&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < depth.width(); ++u) {
+        if (depth(u, v) == 0) std::fill_n(out.at(u, v), out.classes, std::uint16_t{0});
+      }
+    }
+    ask(begin, end, BackgroundGate::kStep);
+  });
+  const BackgroundGate gate(depth, out, least);
+  out.settled = Mask(depth.width(), depth.height(), 0);
+  in_rows([&](int begin, int end) {
+    std::vector<std::uint8_t> shut(static_cast<std::size_t>(depth.width()));
+    for (int v = begin; v < end; ++v) {
+      gate.row(v, shut.data());
+      for (int u = 0; u < depth.width(); ++u) {
+        if (shut[u] == 0 || depth(u, v) == 0 || done(u, v) != 0) continue;
+        out.settled(u, v) = take_from_grid(depth, BackgroundGate::kStep, u, v, out) ? 1 : 0;
+        done(u, v) = out.settled(u, v);
+      }
+    }
+  });
+  in_rows([&](int begin, int end) { ask(begin, end, 1); });
+}
+
+LabelImage choose_labels(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice,
+                         const LabelOptions& options) {
+  return Chooser(posteriors, depth, choice, options).run();
+}
+
+}  // namespace vesalius

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+#include "vesalius/base/image.h"
+#include "vesalius/forest/label_pixels.h"
+
+namespace vesalius {
+
+/// Which neighbours smoothing looks at: those of a square around the pixel, itself among them, whose depth differs from
+/// its depth by at most `gate_mm`.
+struct SmoothWindow {
+  int each_way = 0;  ///< neighbours to each side, upwards and downwards
+  int spacing = 1;   ///< pixels from one neighbour to the next
+  int gate_mm = 0;
+
+  int reach() const { return each_way * spacing; }
+  int most() const { return (2 * each_way + 1) * (2 * each_way + 1); }
+};
+
+/// Calls `use(nu, nv)` for every neighbour of (u, v), itself included, inside window, picture and depth gate.
+template <class Use>
+void for_neighbours(const DepthImage& depth, int u, int v, const SmoothWindow& window, Use&& use) {
+  const auto first_inside = [&](int at) {
+    while (at < 0) at += window.spacing;
+    return at;
+  };
+  const int reach = window.reach();
+  const int z = depth(u, v);
+  const int left = first_inside(u - reach), right = std::min(depth.width() - 1, u + reach);
+  const int bottom = std::min(depth.height() - 1, v + reach);
+  for (int nv = first_inside(v - reach); nv <= bottom; nv += window.spacing) {
+    const std::uint16_t* row = depth.row(nv);
+    for (int nu = left; nu <= right; nu += window.spacing) {
+      if (row[nu] != 0 && std::abs(row[nu] - z) <= window.gate_mm) use(nu, nv);
+    }
+  }
+}
+
+/// Whether `mean_rows` can do it: the sum over a whole window fits into 16 bits and the classes fill a vector.
+bool mean_rows_fit(const Posteriors& posteriors, const SmoothWindow& window);
+
+/// Rows `begin` to `end` - 1 of mean_filter (smooth_labels.h), rounded down; zero without a reading. `out` is of the
+/// same size. The same from every instruction set.
+void mean_rows(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int begin, int end,
+               Posteriors& out);
+
+}  // namespace vesalius

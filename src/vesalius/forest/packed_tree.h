@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "vesalius/forest/forest.h"
+
+namespace vesalius {
+
+/// A tree laid out for walking many pixels at once (walk_kernels.h): the children of a node are neighbours, so that one
+/// link serves both and the way to the right child is one step.
+///
+/// A node is `words_per_node()` words in a row. Node 0 is the root and node 1 is never reached; nodes 2k and 2k + 1 are
+/// the children of the inner node whose link is k. A link of 0 marks a leaf, whose first word is its index. Where
+/// several nodes share a child each has a copy, so there are twice as many nodes as inner nodes in the tree, plus two.
+struct PackedTree {
+  /// Compact, 2 words: offsets u1, v1, u2, v2 as bytes, 128 added, the first one lowest; then the threshold in mm above
+  /// `link_bits` bits of link. Wide, 4 words, where offsets, thresholds or links need it: u1 and v1 as int16, u2 and
+  /// v2, threshold, link.
+  bool wide = false;
+  int link_bits = 0;
+  int levels = 0;  ///< edges from the root to the deepest leaf
+  std::vector<std::uint32_t> words;
+  std::vector<TreeLeaf> leaves;  ///< as the tree's, unused slots with label 0: adding all four slots does no harm
+
+  int words_per_node() const { return wide ? 4 : 2; }
+};
+
+/// `tree` must pass check(Forest). Thresholds beyond what the convention's clipping lets a feature reach are brought to
+/// that range, which changes no walk. Throws Error for more than 2^26 nodes: byte offsets are 32 bits.
+PackedTree pack(const Tree& tree, const FeatureConvention& convention);
+
+}  // namespace vesalius

@@ -1,0 +1,152 @@
+#include "vesalius/forest/smooth_labels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "vesalius/base/parallel.h"
+#include "vesalius/forest/mean_kernel.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kRowGrain = 8;
+
+/// Whether a whole window holds one label, whatever the depth: most of a picture needs no counting.
+class EvenWindows {
+ public:
+  /// For windows around the pixels of rows `begin` to `end` - 1.
+  EvenWindows(const LabelImage& labels, int window, int begin, int end)
+      : labels_(labels),
+        reach_(window / 2),
+        first_row_(std::max(0, begin - reach_)),
+        run_(labels.width(), std::min(labels.height(), end + reach_) - first_row_) {
+    for (int v = 0; v < run_.height(); ++v) {
+      const std::uint8_t* row = labels.row(first_row_ + v);
+      std::uint8_t* run = run_.row(v);
+      for (int u = 0; u < labels.width(); ++u) {
+        const bool goes_on = u > 0 && row[u] == row[u - 1];
+        run[u] = goes_on ? static_cast<std::uint8_t>(std::min(run[u - 1] + 1, 255)) : std::uint8_t{1};
+      }
+    }
+  }
+
+  bool operator()(int u, int v) const {
+    if (u < reach_ || v < reach_ || u + reach_ >= labels_.width() || v + reach_ >= labels_.height()) return false;
+    for (int nv = v - reach_; nv <= v + reach_; ++nv) {
+      if (run_(u + reach_, nv - first_row_) <= 2 * reach_ || labels_(u, nv) != labels_(u, v)) return false;
+    }
+    return true;
+  }
+
+ private:
+  const LabelImage& labels_;
+  int reach_;
+  int first_row_;
+  Image<std::uint8_t> run_;  ///< equal labels in a row that end here, at most 255
+};
+
+/// mean_filter for windows and forests whose sums need 32 bits, and for few classes.
+void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int begin,
+                       int end, Posteriors& out) {
+  std::vector<std::uint32_t> total(static_cast<std::size_t>(posteriors.classes));
+  for (int v = begin; v < end; ++v) {
+    for (int u = 0; u < posteriors.width; ++u) {
+      std::uint16_t* mean = out.at(u, v);
+      if (!posteriors.settled.empty() && posteriors.settled(u, v) != 0) {
+        std::copy_n(posteriors.at(u, v), total.size(), mean);
+        continue;
+      }
+      if (depth(u, v) == 0) {
+        std::fill_n(mean, total.size(), std::uint16_t{0});
+        continue;
+      }
+      std::fill(total.begin(), total.end(), 0U);
+      std::uint32_t neighbours = 0;
+      for_neighbours(depth, u, v, window, [&](int nu, int nv) {
+        const std::uint16_t* sums = posteriors.at(nu, nv);
+        for (std::size_t c = 0; c < total.size(); ++c) total[c] += sums[c];
+        ++neighbours;
+      });
+      // In double, which vectorises: exact, since quotients are whole or at least 1/neighbours from the next whole.
+      for (std::size_t c = 0; c < total.size(); ++c) {
+        mean[c] = static_cast<std::uint16_t>(static_cast<double>(total[c]) / static_cast<double>(neighbours));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& visitor) {
+  visitor.option(
+      prefix + "window", o.window,
+      {"", 1, 31,
+       "Neighbours along a side of the smoothing window, 1 = none; an even number counts as the next odd one."});
+  visitor.option(
+      prefix + "spacing", o.spacing,
+      {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length; smoothing by mode takes 1."});
+  visitor.option(prefix + "depth-gate", o.depth_gate_mm,
+                 {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
+  visitor.option(prefix + "mode", o.mode,
+                 {"", 0, 1, "Smooth labels by their mode even if the forest has distributions."});
+  visitor.option(prefix + "mode-depth-gate", o.mode_depth_gate_mm,
+                 {"mm", 0, 10000, "The depth gate of smoothing by mode."});
+}
+
+SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
+  constexpr float kSpacings = 140.F;  // in the focal length
+  if (options.spacing == 0) options.spacing = std::max(1, static_cast<int>(std::lround(camera.fx / kSpacings)));
+  return options;
+}
+
+LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
+  LabelImage out(labels.width(), labels.height(), kBackground);
+  const SmoothWindow window{options.window / 2, 1, options.mode_depth_gate_mm};
+  parallel_ranges(labels.height(), kRowGrain, [&](int begin, int end) {
+    const EvenWindows even(labels, options.window, begin, end);
+    std::array<std::uint16_t, 256> count{};
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < labels.width(); ++u) {
+        if (depth(u, v) == 0) continue;
+        if (even(u, v)) {
+          out(u, v) = labels(u, v);
+          continue;
+        }
+        for_neighbours(depth, u, v, window, [&](int nu, int nv) { ++count[labels(nu, nv)]; });
+        std::uint8_t best = labels(u, v);
+        for_neighbours(depth, u, v, window, [&](int nu, int nv) {
+          const std::uint8_t label = labels(nu, nv);
+          const bool beats_tie = count[label] == count[best] && best != labels(u, v) && label < best;
+          if (count[label] > count[best] || beats_tie) best = label;
+        });
+        out(u, v) = best;
+        for_neighbours(depth, u, v, window, [&](int nu, int nv) { count[labels(nu, nv)] = 0; });
+      }
+    }
+  });
+  return out;
+}
+
+void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
+                 const SmoothOptions& options, Posteriors& out) {
+  out.resize_like(posteriors);
+  const SmoothWindow window{options.window / 2, spaced(options, camera).spacing, options.depth_gate_mm};
+  const bool fits = mean_rows_fit(posteriors, window);
+  parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
+    if (fits) {
+      mean_rows(posteriors, depth, window, begin, end, out);
+    } else {
+      mean_rows_plainly(posteriors, depth, window, begin, end, out);
+    }
+  });
+}
+
+Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
+                       const SmoothOptions& options) {
+  Posteriors out;
+  mean_filter(posteriors, depth, camera, options, out);
+  return out;
+}
+
+}  // namespace vesalius
