@@ -7,7 +7,7 @@
 
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/base/test_threads.h"
 
 namespace vesalius {
 namespace {
@@ -249,10 +249,7 @@ TEST(Detector, SameResultForAnyThreadCountAndEveryTime) {
   LabelledFrame truth = render(scene, kCamera, paper_body());
   add_sensor_noise(truth.frame, 2);
   std::vector<std::vector<Person>> results;
-  for (const int threads : {1, 2, 8, 8}) {
-    const ThreadLimit limit(threads);
-    results.push_back(detect_truth(truth, false));
-  }
+  for_threads({1, 2, 8, 8}, [&] { results.push_back(detect_truth(truth, false)); });
   ASSERT_EQ(results[0].size(), 2U);
   for (std::size_t i = 1; i < results.size(); ++i) expect_same(results[0], results[i]);
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
+#include "vesalius/base/test_threads.h"
 #include "vesalius/forest/background_gate.h"
 #include "vesalius/forest/tree_walk.h"
 
@@ -143,10 +143,7 @@ TEST(ForestLabeller, SumsTheLeavesOfThePlainWalkForAnySizeAndThreadCount) {
       const DepthImage depth = random_depth(random, width, height);
       const Camera camera{width, height, 60.F, 50.F, 0.F, 0.F};
       const std::vector<std::uint16_t> expected = walked_sums(forest, depth, camera);
-      for (const int threads : {1, 3}) {
-        const ThreadLimit limit(threads);
-        EXPECT_EQ(labeller.label(depth, camera).sums, expected) << width << 'x' << height << ", " << threads;
-      }
+      for_threads({1, 3}, [&] { EXPECT_EQ(labeller.label(depth, camera).sums, expected) << width << 'x' << height; });
     }
   }
 }
@@ -169,12 +166,8 @@ TEST(ForestLabeller, SameBytesForAnyThreadCount) {
   const ForestLabeller labeller(forest);
   const DepthImage depth = random_depth(random);
   std::vector<std::vector<std::uint16_t>> results;
-  for (const int threads : {1, 2, 8}) {
-    const ThreadLimit limit(threads);
-    results.push_back(labeller.label(depth, kCamera).sums);
-  }
-  EXPECT_EQ(results[0], results[1]);
-  EXPECT_EQ(results[0], results[2]);
+  for_threads({1, 2, 8}, [&] { results.push_back(labeller.label(depth, kCamera).sums); });
+  EXPECT_THAT(results, testing::Each(results[0]));
 }
 
 /// Background on the left half of the depths' range, parts on the right.
@@ -208,8 +201,7 @@ TEST(ForestLabeller, GateLeavesOutWhatIsSurelyBackgroundOnly) {
   const Camera camera{97, 61, 60.F, 60.F, 48.F, 30.F};
   const Posteriors whole = labeller.label(depth, camera);
   int taken = 0;
-  for (const int threads : {1, 3}) {
-    const ThreadLimit limit(threads);
+  for_threads({1, 3}, [&] {
     Posteriors gated = whole;
     std::ranges::fill(gated.sums, std::uint16_t{7});  // whatever was there before
     labeller.label_into(depth, camera, {.gate = 1.F}, gated);
@@ -225,7 +217,7 @@ TEST(ForestLabeller, GateLeavesOutWhatIsSurelyBackgroundOnly) {
         ASSERT_EQ(found[background], 510) << "taken over from where the forest is sure";
       }
     }
-  }
+  });
   EXPECT_GT(taken, 20) << "somewhere the forest alone thinks otherwise";
 }
 
