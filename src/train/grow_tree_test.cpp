@@ -28,7 +28,7 @@ class ObviousTrainer {
         frames_(frames),
         options_(options),
         tree_(tree),
-        shares_(set, options.leaf.prior_correction, options.leaf.part_balance) {}
+        shares_(set.sample_counts(), set.body().part_count(), options.leaf) {}
 
   Tree grow() {
     grow_node({set_.samples().begin(), set_.samples().end()}, 1, 0);

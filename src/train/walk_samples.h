@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "train/frame_store.h"
-#include "train/training_set.h"
+#include "train/training_sample.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {
