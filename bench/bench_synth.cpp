@@ -172,7 +172,7 @@ void add_synth_benchmarks() {
   add_thinning("motions", 25);
   add_thinning("single", 1);
   add_kind("builtin", std::make_shared<Later<Assets>>([] { return Assets(); }));
-  const std::string folder = cli::default_assets_folder();
+  const std::string folder = default_assets_folder();
   for (const char* package : {"makehuman", "mocap"}) {
     if (has_assets(asset_package(package), folder)) continue;
     std::cerr << "no MakeHuman bodies in captured poses: " << package << " is not in \"" << folder << "\"\n";

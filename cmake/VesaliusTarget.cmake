@@ -20,6 +20,7 @@ endif()
 # What tests are compiled with besides, after all else: VESALIUS_TEST_FLAGS.
 add_library(vesalius_test_settings INTERFACE)
 target_compile_options(vesalius_test_settings INTERFACE ${VESALIUS_TEST_FLAGS})
+target_link_libraries(vesalius_test_settings INTERFACE hwy::hwy)  # of kernels; the same in all, which share a precompiled header
 
 # vesalius_precompile(TARGET): what most files include is read once, where VESALIUS_PCH asks for it; the header of the core
 # serves all libraries. A build without (preset fuzz) shows which includes are missing.
@@ -27,6 +28,8 @@ function(vesalius_precompile target)
   if(NOT VESALIUS_PCH)
     return()
   endif()
+  # A header is shared only among targets with the same definitions, and these packages come with some.
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:hwy::hwy> $<BUILD_INTERFACE:tomlplusplus::tomlplusplus>)
   if(target STREQUAL vesalius_core)
     target_precompile_headers(
       ${target} PRIVATE <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <ranges> <sstream>
@@ -36,17 +39,66 @@ function(vesalius_precompile target)
   endif()
 endfunction()
 
-# vesalius_thread_tests(LIST): leaves of the tests' sources those that the thread sanitizer can say something about: the files
-# with a test named after threads, and what is no test.
+# Labels that a test can have: a line `// Labels: threads slow` above it gives it to ctest (-L, -LE).
+#   threads     compares what several threads do with what one does: what the thread sanitizer runs
+#   real        needs the real frames, which are not part of the project
+#   statistics  counts over hundreds of bodies, poses or scenes
+#   slow        takes more than some seconds
+set(VESALIUS_TEST_LABELS threads real statistics slow)
+
+# vesalius_thread_tests(LIST): leaves of the tests' sources those with a test labelled `threads`, and what is no test.
 function(vesalius_thread_tests list)
   set(kept)
   foreach(source IN LISTS ${list})
-    file(STRINGS ${source} threads REGEX "^TEST.*Thread" LIMIT_COUNT 1)
+    file(STRINGS ${source} threads REGEX "^// Labels:.* threads" LIMIT_COUNT 1)
     if(threads OR NOT source MATCHES "_test.cpp$")
       list(APPEND kept ${source})
     endif()
   endforeach()
   set(${list} ${kept} PARENT_SCOPE)
+endfunction()
+
+# vesalius_discover_tests(TARGET source.cpp...): tells ctest of the tests in the sources, with their labels.
+function(vesalius_discover_tests target)
+  set(kinds)
+  set(labelled)
+  foreach(source IN LISTS ARGN)
+    file(STRINGS ${source} lines REGEX "^(// Labels:|TEST)")
+    set(labels)
+    foreach(line IN LISTS lines)
+      if(line MATCHES "^// Labels:(.*)")
+        string(STRIP "${CMAKE_MATCH_1}" labels)
+        string(REPLACE " " ";" names "${labels}")
+        foreach(name IN LISTS names)
+          if(NOT name IN_LIST VESALIUS_TEST_LABELS)
+            message(FATAL_ERROR "${source}: label ${name}: expected one of ${VESALIUS_TEST_LABELS}")
+          endif()
+        endforeach()
+      elseif(labels)
+        if(NOT line MATCHES "^TEST(_F|_P)?\\(([A-Za-z0-9_]+), ([A-Za-z0-9_]+)\\)")
+          message(FATAL_ERROR "${source}: expected a test below its labels, found: ${line}")
+        endif()
+        set(test "${CMAKE_MATCH_2}.${CMAKE_MATCH_3}")
+        if(CMAKE_MATCH_1 STREQUAL "_P")
+          set(test "*/${test}/*")
+        endif()
+        string(REPLACE " " "_" kind "${labels}")
+        list(APPEND kinds ${kind})
+        list(APPEND tests_${kind} ${test})
+        set(labels_${kind} ${names})
+        list(APPEND labelled ${test})
+        set(labels)
+      endif()
+    endforeach()
+  endforeach()
+  list(REMOVE_DUPLICATES kinds)
+  foreach(kind IN LISTS kinds)
+    list(JOIN tests_${kind} ":" filter)
+    gtest_discover_tests(${target} TEST_FILTER "${filter}" TEST_LIST ${target}_${kind} DISCOVERY_TIMEOUT 120
+                         PROPERTIES TIMEOUT 600 LABELS "${labels_${kind}}")
+  endforeach()
+  list(JOIN labelled ":" filter)
+  gtest_discover_tests(${target} TEST_FILTER "-${filter}" DISCOVERY_TIMEOUT 120 PROPERTIES TIMEOUT 600)
 endfunction()
 
 # vesalius_test(NAME source.cpp... LIBRARIES lib...): one GoogleTest binary, its tests known to ctest.
@@ -76,5 +128,5 @@ function(vesalius_test name)
       set_source_files_properties(${source} PROPERTIES COMPILE_DEFINITIONS VESALIUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     endif()
   endforeach()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120 PROPERTIES TIMEOUT 600)
+  vesalius_discover_tests(${name} ${sources})
 endfunction()

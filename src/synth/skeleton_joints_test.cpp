@@ -33,8 +33,8 @@ TEST(SkeletonJoints, AreBonesAndFreeEndsByName) {
   const PosedBody body = posed({});
   const std::vector<Vector3f> points = joint_points(body, Isometry3f::Identity());
   ASSERT_EQ(points.size(), names.size());
-  EXPECT_EQ(points[joint("l_shin")], body.joints[Bone::l_shin]);
-  EXPECT_EQ(points[joint("r_hand_end")], body.ends[Bone::r_hand]);
+  EXPECT_EQ(points[joint("l_shin")], body.joints[index(Bone::l_shin)]);
+  EXPECT_EQ(points[joint("r_hand_end")], body.ends[index(Bone::r_hand)]);
   EXPECT_GT(points[joint("head_end")].y(), points[joint("head")].y() + 0.1F);
 }
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "assets/assets.h"
 #include "cli/commands.h"
 #include "cli/interrupts.h"
 #include "cli/option_flags.h"

@@ -118,7 +118,7 @@ TEST(BuiltinBody, FollowsItsShape) {
   EXPECT_GT(width_at(heavy, 0.6F), 1.4F * width_at(thin, 0.6F));
   const auto head_share = [](const BodyMesh& mesh) {
     const auto bones = rest_bones(mesh);
-    return (mesh.stature_m - bones[Bone::head].head.y()) / mesh.stature_m;
+    return (mesh.stature_m - bones[index(Bone::head)].head.y()) / mesh.stature_m;
   };
   const BodyMesh child = make_builtin_body({1.F, 0.5F, 0.F, 4.F}, paper_body());
   EXPECT_GT(head_share(child), 1.3F * head_share(thin));

@@ -35,9 +35,9 @@ const RigMap::Follow& follow_of(const std::string& rig) {
 
 TEST(RigMap, FillsStarsForBothSides) {
   const RigMap& map = makehuman_rig_map();
-  EXPECT_EQ(map.bones[Bone::l_forearm].joint, "lowerarm01.L");
-  EXPECT_EQ(map.bones[Bone::r_forearm].joint, "lowerarm01.R");
-  EXPECT_EQ(map.bones[Bone::r_hand].tail, "finger3-3.R");
+  EXPECT_EQ(map.bones[index(Bone::l_forearm)].joint, "lowerarm01.L");
+  EXPECT_EQ(map.bones[index(Bone::r_forearm)].joint, "lowerarm01.R");
+  EXPECT_EQ(map.bones[index(Bone::r_hand)].tail, "finger3-3.R");
   EXPECT_EQ(follow_of("lowerarm02.R").from, Bone::r_forearm);
   EXPECT_EQ(follow_of("lowerarm02.R").to, Bone::r_hand);
   EXPECT_TRUE(follow_of("lowerarm02.R").twist);

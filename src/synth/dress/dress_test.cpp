@@ -149,7 +149,7 @@ TEST(Dress, ThingsCarriedBelongToNobodyAndMoveWithTheirBone) {
   EXPECT_THAT(added_parts(*mesh), testing::ElementsAre(static_cast<int>(kBackground)));
   const Poser poser(mesh, paper_body());
   const auto gap = [&](const PosedBody& body) {
-    const Vector3f& hand = body.joints[Bone::l_hand];
+    const Vector3f& hand = body.joints[index(Bone::l_hand)];
     return (body.vertices.back() - hand).norm();
   };
   Random random(2);
@@ -169,7 +169,7 @@ TEST(Dress, ABagInAHandHangsWhateverTheArmDoes) {
     Pose pose = random_pose(random, 1.2F);
     pose[Bone::pelvis] = Eigen::AngleAxisf(0.3F * static_cast<float>(i), Vector3f::UnitY());  // upright, any heading
     const PosedBody body = poser.pose(pose);
-    const Vector3f hand = body.ends[Bone::l_hand];
+    const Vector3f hand = body.ends[index(Bone::l_hand)];
     Vector3f middle = Vector3f::Zero();
     for (std::size_t v = bare().vertices.size(); v < body.vertices.size(); ++v) {
       middle += body.vertices[v] / static_cast<float>(body.vertices.size() - bare().vertices.size());
@@ -191,7 +191,7 @@ TEST(Dress, WhatIsCarriedDoesNotLiftThePersonOffTheFloor) {
     bow[arm] = Eigen::Quaternionf(Eigen::AngleAxisf(-side * 1.5F, Vector3f::UnitY()));
   }
   const PosedBody body = Poser(mesh, paper_body()).pose(bow);
-  const auto feet = std::min(body.joints[Bone::l_foot].y(), body.joints[Bone::r_foot].y());
+  const auto feet = std::min(body.joints[index(Bone::l_foot)].y(), body.joints[index(Bone::r_foot)].y());
   EXPECT_LT(feet, 0.12F);
 }
 

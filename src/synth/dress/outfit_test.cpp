@@ -54,9 +54,9 @@ TEST(Look, ReflectsAsPeopleDo) {
       EXPECT_TRUE(m.infrared >= 0.01F && m.infrared <= 1.F);
       EXPECT_GT(m.period_m, 0.F);
     }
-    const Material& hair = look[Fabric::hair];
+    const Material& hair = look[static_cast<std::size_t>(Fabric::hair)];
     if (hair.infrared < 0.3F) ++dark_hair;
-    const Material& skin = look[Fabric::skin];
+    const Material& skin = look[static_cast<std::size_t>(Fabric::skin)];
     EXPECT_GE(skin.colour.r, skin.colour.b);
     EXPECT_EQ(skin.texture, Texture::plain);
   }
@@ -68,7 +68,7 @@ TEST(Look, DarkClothAndHairSendBackNextToNothing) {
     int dark = 0;
     for (std::uint64_t i = 0; i < 300; ++i) {
       Random random(9, i);
-      if (sample_look(options, random)[fabric].infrared < limit) ++dark;
+      if (sample_look(options, random)[static_cast<std::size_t>(fabric)].infrared < limit) ++dark;
     }
     return static_cast<float>(dark) / 300.F;
   };

@@ -124,7 +124,7 @@ TEST(PoseLibrary, RefusesWhereNothingIsLeft) {
 
 /// Angle between the directions of a bone in two poses, degrees.
 float apart(const Pose& a, const Pose& b, Bone bone) {
-  const auto direction = [&](const Pose& pose) { return (world_rotations(pose)[bone] * rest_direction(bone)).eval(); };
+  const auto direction = [&](const Pose& pose) { return (world_rotations(pose)[index(bone)] * rest_direction(bone)).eval(); };
   return std::acos(std::clamp(direction(a).dot(direction(b)), -1.F, 1.F)) / kDegree;
 }
 

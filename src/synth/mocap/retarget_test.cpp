@@ -42,7 +42,7 @@ Motion still_motion(int frames) {
   return motion;
 }
 
-Eigen::Vector3f direction(const Pose& pose, Bone bone) { return world_rotations(pose)[bone] * rest_direction(bone); }
+Eigen::Vector3f direction(const Pose& pose, Bone bone) { return world_rotations(pose)[index(bone)] * rest_direction(bone); }
 
 auto parsing(const std::string& text) {
   return [text] { parse_convention(text, "c.toml"); };
@@ -99,7 +99,7 @@ TEST(Convention, ComesWithThoseOfTheProgram) {
   for (const MotionConvention& convention : builtin_conventions()) {
     for (int b = 1; b < kBoneCount; ++b) {
       const BoneSource& bone = convention.bones[b];
-      const BoneSource& other = convention.bones[mirror(static_cast<Bone>(b))];
+      const BoneSource& other = convention.bones[index(mirror(static_cast<Bone>(b)))];
       EXPECT_EQ(bone.rest, other.rest) << convention.name << ' ' << bone.from[0];
     }
   }

@@ -10,10 +10,10 @@ namespace {
 
 using Eigen::Vector3f;
 
-Vector3f direction(const Pose& pose, Bone bone) { return world_rotations(pose)[bone] * rest_direction(bone); }
+Vector3f direction(const Pose& pose, Bone bone) { return world_rotations(pose)[index(bone)] * rest_direction(bone); }
 /// Where the palm faces: down in the T.
 Vector3f palm(const Pose& pose, bool left) {
-  return world_rotations(pose)[left ? Bone::l_hand : Bone::r_hand] * -Vector3f::UnitY();
+  return world_rotations(pose)[index(left ? Bone::l_hand : Bone::r_hand)] * -Vector3f::UnitY();
 }
 /// Both sides, mirrored to the left.
 void expect_arm(const ArmAngles& arm, const Vector3f& upper, const Vector3f& fore, const Vector3f& palm_normal) {
