@@ -1,4 +1,4 @@
-#include "synth/body/body_mesh.h"
+#include "synth/body/poser.h"
 
 #include <gmock/gmock.h>
 
@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "synth/body/builtin_body.h"
+#include "synth/body/check_body.h"
 #include "synth/body/test_bodies.h"
 #include "vesalius/base/error.h"
 

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "synth/mocap/motion.h"
 
 namespace vesalius::synth {
 
@@ -29,10 +28,5 @@ struct AsfSkeleton {
 
 /// Parses an ASF file. `name` stands for the file in errors. Throws Error naming line and expectation.
 AsfSkeleton parse_asf(std::string_view text, const std::string& name);
-
-/// Parses an AMC file, the motion of that skeleton: a bone's rotation is C M C^-1 with C from its axis and M the
-/// product of its dofs; what a frame leaves out is 0. AMC files do not say how fast they play: `fps` does.
-/// Throws Error naming line and expectation, also for a bone that the skeleton lacks.
-Motion parse_amc(std::string_view text, const std::string& name, const AsfSkeleton& skeleton, float fps);
 
 }  // namespace vesalius::synth

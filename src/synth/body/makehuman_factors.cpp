@@ -1,4 +1,4 @@
-#include "synth/body/makehuman_targets.h"
+#include "synth/body/makehuman_factors.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "synth/body/rig_map.h"
+#include "synth/body/fit_rig.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "synth/mocap/asf_amc.h"
+#include "synth/mocap/amc.h"
 
 #include <fmt/format.h>
 
