@@ -1,20 +1,17 @@
 #include "report/plot_process.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <cstring>
-#include <optional>
+#include <memory>
 #include <thread>
 
 #include "vesalius/base/error.h"
@@ -24,142 +21,72 @@ extern char** environ;
 namespace vesalius {
 namespace {
 
-constexpr std::size_t kMaxOutput = std::size_t{64} << 20;
-constexpr auto kReapPeriod = std::chrono::milliseconds(2);
+constexpr off_t kMaxOutput = off_t{64} << 20;
+constexpr auto kPeriod = std::chrono::milliseconds(2);
 
 using Clock = std::chrono::steady_clock;
-
-/// A file descriptor of ours.
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  int get() const { return fd_; }
-  bool is_open() const { return fd_ >= 0; }
-  void set(int fd) {
-    close();
-    fd_ = fd;
-  }
-  void close() {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
-  }
-
- private:
-  int fd_;
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
 };
+/// A file without a name: unlike a pipe it neither blocks nor raises a signal when the other side does not use it.
+using File = std::unique_ptr<std::FILE, Close>;
 
-[[noreturn]] void fail(const std::string& program, const std::string& what, int reason) {
-  throw Error(fmt::format("{}: {}: {}", program, what, std::strerror(reason)));
+File temporary_file(const std::string& content = "") {
+  File file(std::tmpfile());
+  const bool written = file && std::fwrite(content.data(), 1, content.size(), file.get()) == content.size() &&
+                       std::fflush(file.get()) == 0;
+  if (!written) throw Error(fmt::format("no temporary file: {}", std::strerror(errno)));
+  std::rewind(file.get());
+  return file;
 }
 
-/// The input in a file that has no name: unlike a pipe it neither blocks nor raises a signal when nobody reads it.
-void fill(Descriptor& file, const std::string& input, const std::string& program) {
-  file.set(::memfd_create("input", MFD_CLOEXEC));
-  if (!file.is_open()) fail(program, "no memory for its input", errno);
-  for (std::size_t done = 0; done < input.size();) {
-    const ssize_t written = ::write(file.get(), input.data() + done, input.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(program, "cannot hold its input", errno);
-    done += static_cast<std::size_t>(written);
-  }
-  ::lseek(file.get(), 0, SEEK_SET);
+off_t size_of(std::FILE* file) {
+  struct stat status {};
+  return ::fstat(::fileno(file), &status) == 0 ? status.st_size : 0;
 }
 
-void open_pipe(Descriptor& read_end, Descriptor& write_end, const std::string& program) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(program, "no pipe", errno);
-  read_end.set(ends[0]);
-  write_end.set(ends[1]);
+std::string text_of(std::FILE* file) {
+  std::string text(static_cast<std::size_t>(size_of(file)), '\0');
+  std::rewind(file);
+  text.resize(std::fread(text.data(), 1, text.size(), file));
+  return text;
 }
 
-/// A program at work; killed and waited for when this goes.
-class Child {
- public:
-  Child(const std::vector<std::string>& command, const std::string& input) : program_(command.front()) {
-    Descriptor in, out_end, err_end;
-    fill(in, input, program_);
-    open_pipe(out_, out_end, program_);
-    open_pipe(err_, err_end, program_);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, in.get(), STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, out_end.get(), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, err_end.get(), STDERR_FILENO);
-    std::vector<char*> arguments;
-    for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    const int error = ::posix_spawnp(&pid_, program_.c_str(), &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (error == ENOENT) throw Error(fmt::format("{}: not found, expected this program in PATH", program_));
-    if (error != 0) fail(program_, "cannot be run", error);
-  }
-  ~Child() {
-    if (pid_ <= 0) return;
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  ProcessResult wait(Clock::time_point deadline) {
-    ProcessResult result;
-    while (out_.is_open() || err_.is_open()) {
-      std::array<pollfd, 2> waiting{{{out_.get(), POLLIN, 0}, {err_.get(), POLLIN, 0}}};
-      const int ready = ::poll(waiting.data(), waiting.size(), left_ms(deadline));
-      if (ready < 0 && errno != EINTR) fail(program_, "cannot be waited for", errno);
-      if (ready <= 0) continue;
-      if (waiting[0].revents != 0) read_some(out_, result.out);
-      if (waiting[1].revents != 0) read_some(err_, result.err);
-    }
-    result.exit_code = reap(deadline);
-    return result;
-  }
-
- private:
-  /// Until the deadline; throws when it has passed.
-  int left_ms(Clock::time_point deadline) const {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (left <= 0) throw Error(fmt::format("{}: did not end in time and was stopped", program_));
-    return static_cast<int>(std::min<long long>(left, 1000));
-  }
-
-  void read_some(Descriptor& from, std::string& to) const {
-    std::array<char, 65536> buffer;
-    const ssize_t count = ::read(from.get(), buffer.data(), buffer.size());
-    if (count < 0 && errno == EINTR) return;
-    if (count <= 0) return from.close();
-    to.append(buffer.data(), static_cast<std::size_t>(count));
-    if (to.size() > kMaxOutput) throw Error(fmt::format("{}: wrote more than {} bytes", program_, kMaxOutput));
-  }
-
-  int reap(Clock::time_point deadline) {
-    int status = 0;
-    for (;;) {
-      const pid_t ended = ::waitpid(pid_, &status, WNOHANG);
-      if (ended == pid_) break;
-      if (ended < 0 && errno != EINTR) fail(program_, "cannot be waited for", errno);
-      left_ms(deadline);
-      std::this_thread::sleep_for(kReapPeriod);
-    }
-    pid_ = -1;
-    return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-  }
-
-  std::string program_;
-  Descriptor out_, err_;
-  pid_t pid_ = -1;
-};
+pid_t start(const std::vector<std::string>& command, std::FILE* in, std::FILE* out, std::FILE* err) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(in), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(out), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(err), STDERR_FILENO);
+  std::vector<char*> arguments;
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_t pid = -1;
+  const int error = ::posix_spawnp(&pid, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error == ENOENT) throw Error(fmt::format("{}: not found, expected this program in PATH", command[0]));
+  if (error != 0) throw Error(fmt::format("{}: cannot be run: {}", command[0], std::strerror(error)));
+  return pid;
+}
 
 }  // namespace
 
 ProcessResult run_process(const std::vector<std::string>& command, const std::string& input, double limit_s) {
-  const auto limit = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s));
-  Child child(command, input);
-  return child.wait(Clock::now() + limit);
+  const File in = temporary_file(input), out = temporary_file(), err = temporary_file();
+  const auto deadline = Clock::now() + std::chrono::duration<double>(limit_s);
+  const pid_t pid = start(command, in.get(), out.get(), err.get());
+  int status = 0;
+  while (::waitpid(pid, &status, WNOHANG) == 0) {
+    const bool too_long = Clock::now() > deadline;
+    if (too_long || size_of(out.get()) + size_of(err.get()) > kMaxOutput) {
+      ::kill(pid, SIGKILL);
+      ::waitpid(pid, nullptr, 0);
+      throw Error(too_long ? fmt::format("{}: did not end in time and was stopped", command[0])
+                           : fmt::format("{}: wrote more than {} bytes", command[0], kMaxOutput));
+    }
+    std::this_thread::sleep_for(kPeriod);
+  }
+  return {WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), text_of(out.get()), text_of(err.get())};
 }
 
 }  // namespace vesalius

@@ -12,8 +12,7 @@ struct ProcessResult {
 };
 
 /// Runs a program found in PATH with `input` as its standard input and waits for its end. Throws Error naming it where
-/// it is not found, writes more than 64 MiB, or has not closed its outputs and ended within `limit_s` seconds; it is
-/// killed then.
+/// it is not found, writes more than 64 MiB, or has not ended within `limit_s` seconds; it is killed then.
 ProcessResult run_process(const std::vector<std::string>& command, const std::string& input, double limit_s);
 
 }  // namespace vesalius
