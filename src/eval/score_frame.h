@@ -10,7 +10,6 @@
 #include "eval/fit_score.h"
 #include "eval/joint_figures.h"
 #include "eval/joint_precision.h"
-#include "eval/label_scene.h"
 #include "eval/pixel_figures.h"
 #include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
@@ -50,7 +49,7 @@ class FrameScorer {
   /// people found. Throws Error where truth and frame do not fit together.
   FrameScore score(TrueFrame frame, bool fit_joints) const;
 
-  const BodyModel& body() const { return labeller_->body(); }
+  const BodyModel& body() const { return detector_.body(); }
   const Options& options() const { return options_; }
 
  private:
@@ -63,7 +62,6 @@ class FrameScorer {
                     FrameScore& score) const;
   void judge_labels(const TrueFrame& frame, FrameScore& score) const;
 
-  std::shared_ptr<const PixelLabeller> labeller_;
   Options options_;
   Detector detector_;
 };

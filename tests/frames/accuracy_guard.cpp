@@ -13,6 +13,7 @@
 #include "io/model/model_file.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/forest/make_labeller.h"
 
 namespace vesalius {
 namespace {
@@ -109,7 +110,7 @@ std::vector<AcceptedSet> parse_accuracy(std::string_view text, const std::string
 }
 
 MeasuredSet measure(const AcceptedSet& set, const std::string& project, const std::string& source) {
-  const FrameScorer scorer(std::make_shared<ForestLabeller>(load_with_joints(project, set.model)), {});
+  const FrameScorer scorer(make_labeller(load_with_joints(project, set.model)), {});
   const auto truth = open_truth(source, set.step);
   std::vector<TrueFrame> frames;
   while (auto frame = truth->next()) frames.push_back(std::move(*frame));
