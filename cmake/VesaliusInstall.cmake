@@ -28,3 +28,14 @@ install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/v
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZF.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindHDF5C.cmake
         DESTINATION ${VESALIUS_CMAKE_DIR})
+
+# What the program finds without being told where (src/cli/default_model.h), and what bash asks for commands and flags.
+if(TARGET vesalius)
+  set(VESALIUS_DATA_DIR ${CMAKE_INSTALL_DATADIR}/vesalius)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/models DESTINATION ${VESALIUS_DATA_DIR} FILES_MATCHING
+          PATTERN "*.forest" PATTERN "README.md")
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${VESALIUS_DATA_DIR}/models)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/bodies DESTINATION ${VESALIUS_DATA_DIR})
+  install(FILES ${PROJECT_SOURCE_DIR}/data/completion.bash RENAME vesalius
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+endif()

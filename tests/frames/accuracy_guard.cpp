@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "dataset/truth_source.h"
+#include "dataset/open_truth.h"
 #include "eval/score_frame.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"

@@ -1,11 +1,11 @@
-#include "cli/detect/frame_queue.h"
+#include "stream/frame_queue.h"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 #include <vector>
 
-namespace vesalius::cli {
+namespace vesalius {
 namespace {
 
 using std::chrono::milliseconds;
@@ -49,4 +49,4 @@ TEST(FrameQueueThreads, ClosingWakesAWriterWithoutRoom) {
 }
 
 }  // namespace
-}  // namespace vesalius::cli
+}  // namespace vesalius

@@ -1,4 +1,4 @@
-#include "cli/detect/detect_stream.h"
+#include "stream/detect_stream.h"
 
 #include <atomic>
 #include <chrono>
@@ -8,18 +8,17 @@
 #include <thread>
 #include <utility>
 
-#include "cli/detect/frame_queue.h"
-#include "cli/interrupts.h"
+#include "stream/frame_queue.h"
 #include "vesalius/base/parallel.h"
 
-namespace vesalius::cli {
+namespace vesalius {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kFramesAhead = 4;             // read, worked on or waiting to be written
 constexpr int kDetectors = 2;                       // stages that run on one thread leave the other to the next frame
-constexpr std::chrono::milliseconds kPatience(50);  // between looks for an interrupt
+constexpr std::chrono::milliseconds kPatience(50);  // between questions whether to stop
 
 /// False at the end of the source.
 bool read_next(FrameSource& source, FoundFrame& to) {
@@ -42,7 +41,7 @@ void detect(const Detector& detector, FoundFrame& in) {
   }
 }
 
-/// When a camera would have had the next frame ready.
+/// Says when a camera would have had the next frame ready.
 class Pace {
  public:
   explicit Pace(double rate) : period_s_(1.0 / rate) {}
@@ -50,28 +49,25 @@ class Pace {
   Clock::time_point due(const Frame& frame) {
     if (frames_ == 0) first_s_ = frame.time_s;
     const double by_rate = period_s_ * frames_++;
-    const double by_time = frame.time_s - first_s_;
-    has_times_ = has_times_ || by_time != 0.0;
-    return start_ +
-           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(has_times_ ? by_time : by_rate));
+    const double wait_s = frame.time_s != 0.0 && first_s_ != 0.0 ? frame.time_s - first_s_ : by_rate;
+    return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
   }
 
  private:
   double period_s_;
   Clock::time_point start_ = Clock::now();
-  double first_s_ = 0.0;
+  double first_s_ = 0.0;  ///< 0 where frames have no times
   int frames_ = 0;
-  bool has_times_ = false;
 };
 
-/// A frame on its way: whoever takes it out waits until it is worked on.
+/// A frame on its way. Whoever takes it out of the queue waits until it is worked on.
 struct Job {
   FoundFrame found;
   std::promise<void> done;
 };
 using JobPointer = std::shared_ptr<Job>;
 
-/// Signals are for the thread that called.
+/// A thread that leaves all signals to the one that called.
 template <class Work>
 std::jthread helper(Work work) {
   return std::jthread([work = std::move(work)] {
@@ -81,6 +77,8 @@ std::jthread helper(Work work) {
     work();
   });
 }
+
+bool stopped(const StreamOptions& options) { return options.stop && options.stop(); }
 
 class Stream {
  public:
@@ -100,7 +98,7 @@ class Stream {
   Stream& operator=(const Stream&) = delete;
 
   void run(const std::function<bool(FoundFrame)>& take) {
-    while (!interrupted() && !written_.finished()) {
+    while (!stopped(options_) && !written_.finished()) {
       const std::optional<JobPointer> job = written_.pop(kPatience);
       if (!job) continue;
       (*job)->done.get_future().wait();
@@ -166,7 +164,7 @@ int stream_frames(FrameSource& source, const Detector& detector, const StreamOpt
     stream.run(take);
     return stream.dropped();
   }
-  while (!interrupted()) {
+  while (!stopped(options)) {
     FoundFrame found;
     if (!read_next(source, found)) break;
     detect(detector, found);
@@ -175,4 +173,4 @@ int stream_frames(FrameSource& source, const Detector& detector, const StreamOpt
   return 0;
 }
 
-}  // namespace vesalius::cli
+}  // namespace vesalius

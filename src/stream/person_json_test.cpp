@@ -1,11 +1,11 @@
-#include "cli/detect/person_json.h"
+#include "stream/person_json.h"
 
 #include <gmock/gmock.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace vesalius::cli {
+namespace vesalius {
 namespace {
 
 using nlohmann::json;
@@ -33,11 +33,14 @@ Frame named(const std::string& name) {
   Frame frame;
   frame.name = name;
   frame.time_s = 1.5;
+  frame.camera = {320, 240, 250.F, 262.1F, 160.F, 120.F};
   return frame;
 }
 
 TEST(PersonJson, NobodyIsAnEmptyList) {
-  EXPECT_EQ(frame_json(named("0172"), {}, paper_body()), R"({"frame":"0172","time_s":1.5,"people":[]})");
+  EXPECT_EQ(
+      frame_json(named("0172"), {}, paper_body()),
+      R"({"frame":"0172","time_s":1.5,"camera":{"width":320,"height":240,"fx":250.0,"fy":262.1,"cx":160.0,"cy":120.0},"people":[]})");
 }
 
 TEST(PersonJson, ListsEveryPartAndJoint) {
@@ -50,12 +53,33 @@ TEST(PersonJson, ListsEveryPartAndJoint) {
   EXPECT_EQ(person.at("box_px"), json({10, 20, 30, 40}));
   EXPECT_EQ(person.at("parts").size(), 25U);
   EXPECT_EQ(person.at("parts").at("neck"),
-            json::parse(R"({"xyz_m":[0.1235,-1.0,2.5],"confidence":0.75,"state":"observed"})"));
+            json::parse(R"({"xyz_m":[0.1235,-1.0,2.5],"px":[172.3,15.2],"confidence":0.75,"state":"observed"})"));
   EXPECT_EQ(person.at("parts").at("l_hand").at("state"), "predicted");
-  EXPECT_EQ(person.at("parts").at("r_foot"), json::parse(R"({"xyz_m":null,"confidence":0.0,"state":"none"})"));
+  EXPECT_EQ(person.at("parts").at("r_foot"),
+            json::parse(R"({"xyz_m":null,"px":null,"confidence":0.0,"state":"none"})"));
   EXPECT_EQ(person.at("joints").at("nite15").size(), 15U);
   EXPECT_EQ(person.at("joints").at("nite15").at("neck").at("xyz_m"), json({0.0, 0.5, 2.0}));
   EXPECT_TRUE(person.at("joints").at("coco17").at("nose").at("xyz_m").is_null());
+}
+
+TEST(PersonJson, AnUnknownTimeIsNull) {
+  Frame frame = named("f");
+  frame.time_s = 0.0;
+  EXPECT_TRUE(json::parse(frame_json(frame, {}, paper_body())).at("time_s").is_null());
+}
+
+TEST(PersonJson, APointBehindTheCameraHasNoPixel) {
+  const BodyModel& body = paper_body();
+  Person person = half_seen(body);
+  person.skeleton.parts[body.find_part("neck")].centre.z() = -0.1F;
+  const json neck = json::parse(frame_json(named("f"), {person}, body)).at("people").at(0).at("parts").at("neck");
+  EXPECT_TRUE(neck.at("px").is_null());
+  EXPECT_FALSE(neck.at("xyz_m").is_null());
+}
+
+TEST(PersonJson, TheLastLineSaysWhetherAllIsThere) {
+  EXPECT_EQ(closing_json(3, true), R"({"complete":true,"frames":3})");
+  EXPECT_EQ(closing_json(2, false, "interrupted"), R"({"complete":false,"frames":2,"why":"interrupted"})");
 }
 
 TEST(PersonJson, AnyFileNameGivesValidJson) {
@@ -75,4 +99,4 @@ TEST(PersonJson, PartTableNumbersTheLabels) {
 }
 
 }  // namespace
-}  // namespace vesalius::cli
+}  // namespace vesalius

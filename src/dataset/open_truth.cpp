@@ -1,12 +1,13 @@
-#include "dataset/truth_source.h"
+#include "dataset/open_truth.h"
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "dataset/labelled_dataset.h"
+#include "dataset/labelled_folder.h"
 #include "dataset/truth_folder.h"
 #include "dataset/truth_itop.h"
+#include "io/sources/open_source.h"
 #include "io/sources/stepped_source.h"
 #include "vesalius/base/error.h"
 
@@ -15,8 +16,8 @@ namespace {
 
 class FolderTruth final : public TruthSource {
  public:
-  FolderTruth(const std::string& uri, const std::string& folder, int step, const SourceOptions& options)
-      : source_(open_source(uri, options), step), truth_(folder) {}
+  FolderTruth(const std::string& uri, int step, const SourceOptions& options)
+      : source_(open_source(uri, options), step), truth_(path_of_source(uri)) {}
 
   std::optional<TrueFrame> next() override {
     auto step = source_.next();
@@ -32,12 +33,12 @@ class FolderTruth final : public TruthSource {
   TruthFolder truth_;
 };
 
-class DatasetTruth final : public TruthSource {
+/// Truth of a DatasetReader or LabelledFolder.
+template <class Reader>
+class LabelledTruth final : public TruthSource {
  public:
-  DatasetTruth(const std::string& folder, int step) : reader_(folder), step_(static_cast<std::uint64_t>(step)) {
-    if (reader_.size() > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) {
-      throw Error(folder + ": more frames than can be counted");
-    }
+  LabelledTruth(const std::string& folder, int step) : reader_(folder), step_(step) {
+    if (reader_.size() > std::numeric_limits<int>::max()) throw Error(folder + ": more frames than can be counted");
   }
 
   std::optional<TrueFrame> next() override {
@@ -49,24 +50,10 @@ class DatasetTruth final : public TruthSource {
   std::vector<std::string> part_names() const override { return part_names_of(reader_.body()); }
 
  private:
-  DatasetReader reader_;
+  Reader reader_;
   std::uint64_t step_;
   std::uint64_t next_ = 0;
 };
-
-/// "tum:walking:5000" and the like name the folder in the middle.
-std::string folder_of(const std::string& uri) {
-  for (const std::string_view scheme : {"folder:", "pcd:", "png:", "tum:"}) {
-    if (!uri.starts_with(scheme)) continue;
-    std::string path = uri.substr(scheme.size());
-    const std::size_t colon = path.rfind(':');
-    const bool scaled = scheme == "tum:" && colon != path.npos && colon + 1 < path.size() &&
-                        std::ranges::all_of(path.substr(colon + 1), [](char c) { return c >= '0' && c <= '9'; });
-    if (scaled) path.resize(colon);
-    return path;
-  }
-  return uri;
-}
 
 }  // namespace
 
@@ -92,9 +79,10 @@ std::vector<std::string> part_names_of(const BodyModel& body) {
 
 std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step, const SourceOptions& options) {
   if (step < 1) throw UsageError("every 0th frame, expected a step of at least 1");
-  if (is_dataset(uri)) return std::make_unique<DatasetTruth>(uri, step);
+  if (is_dataset(uri)) return std::make_unique<LabelledTruth<DatasetReader>>(uri, step);
+  if (is_labelled_folder(uri)) return std::make_unique<LabelledTruth<LabelledFolder>>(uri, step);
   if (is_itop(uri)) return open_itop(uri, step);
-  return std::make_unique<FolderTruth>(uri, folder_of(uri), step, options);
+  return std::make_unique<FolderTruth>(uri, step, options);
 }
 
 }  // namespace vesalius

@@ -8,15 +8,15 @@
 #include <optional>
 #include <utility>
 
-namespace vesalius::cli {
+namespace vesalius {
 
-/// Hands things from thread to thread in order, at most `capacity` of them waiting.
+/// Hands items from thread to thread in order. At most `capacity` of them wait.
 template <class T>
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  /// Waits for room. False where the queue is closed, and `item` is gone.
+  /// Waits for room, then adds the item. Returns false where the queue is closed: the item is then gone.
   bool push(T item) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || items_.size() < capacity_; });
@@ -26,7 +26,7 @@ class FrameQueue {
     return true;
   }
 
-  /// Never waits: where there is no room the oldest makes it. How many were given up, 0 or 1.
+  /// Adds the item without waiting: where there is no room the oldest item is given up. Returns how many were, 0 or 1.
   int push_newest(T item) {
     const std::scoped_lock lock(mutex_);
     int dropped = 0;
@@ -39,7 +39,7 @@ class FrameQueue {
     return dropped;
   }
 
-  /// Waits for the next one: none when the queue is closed and empty, or after `patience`.
+  /// Waits for the next item and takes it out. Returns none when the queue is closed and empty, or after `patience`.
   std::optional<T> pop(std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [&] { return closed_ || !items_.empty(); });
@@ -50,19 +50,20 @@ class FrameQueue {
     return item;
   }
 
-  /// No more come; what waits can still be taken.
+  /// Says that no more items come. Those that wait can still be taken.
   void close() {
     const std::scoped_lock lock(mutex_);
     closed_ = true;
     changed_.notify_all();
   }
 
-  /// Waits until `time`, or until the queue is closed, which it tells.
+  /// Waits until `time` or until the queue is closed. Returns whether it is closed.
   bool closed_by(std::chrono::steady_clock::time_point time) {
     std::unique_lock lock(mutex_);
     return changed_.wait_until(lock, time, [&] { return closed_; });
   }
 
+  /// Returns whether the queue is closed and empty.
   bool finished() const {
     const std::scoped_lock lock(mutex_);
     return closed_ && items_.empty();
@@ -76,4 +77,4 @@ class FrameQueue {
   bool closed_ = false;
 };
 
-}  // namespace vesalius::cli
+}  // namespace vesalius

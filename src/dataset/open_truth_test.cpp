@@ -1,4 +1,4 @@
-#include "dataset/truth_source.h"
+#include "dataset/open_truth.h"
 
 #include "dataset/test_dataset.h"
 #include "io/files/image_file.h"
