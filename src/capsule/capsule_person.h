@@ -14,8 +14,8 @@
 
 namespace vesalius {
 
-/// Joint angles of a capsule person, radians; all zero = standing upright, arms hanging just clear of the trunk, facing
-/// the camera. Left and right are the person's own. Soles stay level.
+/// Joint angles of a capsule person, in radians. With all of them zero the person stands upright, faces the camera, and
+/// the arms hang just clear of the trunk. Left and right are the person's own. Soles stay level.
 struct CapsulePose {
   float yaw = 0.F;        ///< about the vertical axis; positive turns the person to its own left
   float lean = 0.F;       ///< trunk forward (positive) or backward
@@ -49,8 +49,8 @@ struct CapsulePerson {
   Eigen::Vector3f feet = Eigen::Vector3f(0.F, 1.F, 2.5F);
 };
 
-/// One solid of a person's body. Its slab above `split` (along its axis, shape units) and the rest, each cut into
-/// halves by x = 0, carry a part of the paper's body each.
+/// One solid of a person's body. `split` (along its axis, shape units) and the plane x = 0 cut it into four pieces,
+/// each of which carries a part of the paper's body.
 struct BodySolid {
   CapsuleShape shape;
   double split = 0.0;
@@ -61,21 +61,21 @@ struct BodySolid {
   int part_at(const Eigen::Vector3d& local) const { return part[local.y() > split][local.x() >= 0.0]; }
 };
 
-/// The person's solids, in the world. Lengths after Drillis and Contini (1966), as fractions of the stature. Throws
-/// Error for a build out of range or a number that is not finite.
+/// Returns the person's solids, in the world. Lengths are fractions of the stature after Drillis and Contini (1966).
+/// Throws Error for a build out of range or a number that is not finite.
 std::vector<BodySolid> make_solids(const CapsulePerson& person);
 
-/// Centre of the volume of each of the paper's parts, metres, world; solids that overlap count twice there.
+/// Returns the centre of the volume of each of the paper's parts, metres, world. Where solids overlap, both count.
 std::vector<Eigen::Vector3d> part_centres(const std::vector<BodySolid>& solids);
 
-/// Solid box with a colour: furniture, pillars, occluders. Axis-aligned in the world.
+/// A solid box with a colour, axis-aligned in the world: furniture, pillars, occluders.
 struct SceneBox {
   Eigen::Vector3f low, high;
   Rgb colour{150, 120, 90};
 };
 
-/// People in a plain room: the truth for tests, examples and benchmarks. World = optical frame of a level camera at
-/// the origin; `pitch` turns the camera down (positive) or up.
+/// People in a plain room: the truth for tests, tools and benchmarks. The world is the optical frame of a level camera
+/// at the origin; `pitch` turns the camera down (positive) or up.
 struct CapsuleScene {
   std::vector<CapsulePerson> people;
   std::vector<SceneBox> boxes;
@@ -86,17 +86,17 @@ struct CapsuleScene {
   Rgb floor_colour{120, 100, 80}, wall_colour{200, 195, 185};
 };
 
-/// Exact depth (rounded to the millimetre, 0 beyond 65.535 m), labels, person index, part centres (camera frame) and
-/// shaded colour of the scene by ray casting. Labels are those of `body`, matched by part name; surfaces whose part the
-/// body lacks take the nearest part up the paper body's tree that it has, or background. The centre of a part that no
-/// surface carries is NaN. Deterministic for any thread count. Throws Error for a camera, build or number that cannot
-/// be meant, or more than 255 people.
+/// Renders the scene by ray casting: exact depth (rounded to the millimetre, 0 beyond 65.535 m), labels, person index,
+/// part centres (camera frame) and shaded colour. Labels are those of `body`, matched by part name; surfaces whose part
+/// the body lacks take the nearest part up the paper body's tree that it has, or background. The centre of a part that
+/// no surface carries is NaN. The picture is the same for any number of threads. Throws Error for a camera, build or
+/// number out of range, or more than 255 people.
 LabelledFrame render(const CapsuleScene& scene, const Camera& camera, const BodyModel& body);
 
-/// Depth as a structured-light sensor reports it: axial and lateral noise (Nguyen, Izadi, Lovell 2012), disparity in
-/// steps of 1/8 pixel, and no reading in the projector's shadow, on half of the silhouettes, where the surface is seen
-/// at a grazing angle, within 1/80 of the width of the left and right border, and outside 0.4-10 m. Same (frame,
-/// seed), same bytes.
+/// Turns exact depth into what a structured-light sensor reports: axial and lateral noise (Nguyen, Izadi, Lovell 2012),
+/// disparity in steps of 1/8 pixel, and no reading in the projector's shadow, on half of the silhouettes, where the
+/// surface is seen at a grazing angle, within 1/80 of the width of the left and right border, and outside 0.4-10 m. The
+/// same frame and seed give the same bytes.
 void add_sensor_noise(Frame& frame, std::uint64_t seed);
 
 }  // namespace vesalius

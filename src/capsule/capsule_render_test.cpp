@@ -216,7 +216,7 @@ TEST(CapsuleRender, OtherBodiesTakeTheirPartsByName) {
   EXPECT_TRUE(coarse.parts[0][3].allFinite());
 }
 
-TEST(CapsuleRender, SceneAsCloseAsTheLensIsNoTrouble) {
+TEST(CapsuleRender, RendersAPersonAsCloseAsTheLens) {
   CapsuleScene scene = one_person();
   scene.people[0].feet = {0.F, 1.F, 0.05F};  // the camera is inside the chest
   EXPECT_NO_THROW(render(scene, kCamera, paper_body()));

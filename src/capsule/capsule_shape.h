@@ -5,15 +5,15 @@
 
 namespace vesalius {
 
-/// Points within one unit of the segment (0, -half_length, 0) .. (0, half_length, 0), stretched by `scale_m`, turned
-/// and moved: a capsule, a flattened capsule, or with half_length 0 an ellipsoid or sphere.
+/// The points within one unit of the segment (0, -half_length, 0) .. (0, half_length, 0), stretched by `scale_m`,
+/// turned and moved. This is a capsule, a flattened capsule, or with half_length 0 an ellipsoid or sphere.
 struct CapsuleShape {
   Eigen::Matrix3d world_from_shape = Eigen::Matrix3d::Identity();  ///< rotation
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();              ///< metres, world
   Eigen::Vector3d scale_m = Eigen::Vector3d::Ones();               ///< half axes of the ends, metres
   double half_length = 0.0;                                        ///< of the straight part, in units of scale_m.y
 
-  /// World position of a point in shape units.
+  /// Returns the world position of a point in shape units.
   Eigen::Vector3d world(const Eigen::Vector3d& local) const {
     return centre_m + world_from_shape * local.cwiseProduct(scale_m);
   }
@@ -25,11 +25,11 @@ struct ShapeHit {
   Eigen::Vector3d local;  ///< entry point in shape units
 };
 
-/// First entry of the ray origin + t direction, t > 0, in closed form; nothing where it misses or starts inside.
+/// Returns where the ray origin + t direction, t > 0, first enters the shape; nothing where it misses or starts inside.
 std::optional<ShapeHit> intersect(const CapsuleShape& shape, const Eigen::Vector3d& origin,
                                   const Eigen::Vector3d& direction);
 
-/// Outward unit normal (world) at an entry point in shape units.
+/// Returns the outward unit normal (world) at an entry point in shape units.
 Eigen::Vector3d normal(const CapsuleShape& shape, const Eigen::Vector3d& local);
 
 /// A slab low <= y <= high of a shape, cut in halves by its plane x = 0.
@@ -39,7 +39,8 @@ struct Slab {
   double x = 0.0;               ///< distance of a half's centroid from the plane, shape units
 };
 
-/// Volume and centroids of a slab (shape units, clamped to the shape), by quadrature to better than 0.1 %.
+/// Returns volume and centroids of the slab from `low` to `high` (shape units, clamped to the shape), to better than
+/// 0.1 %.
 Slab measure_slab(const CapsuleShape& shape, double low, double high);
 
 }  // namespace vesalius

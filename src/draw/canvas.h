@@ -7,10 +7,10 @@
 
 namespace vesalius {
 
-/// Factor by which pictures of this width are enlarged, so that text on them is legible.
+/// Returns the factor by which pictures of this width are enlarged, so that text on them is legible.
 int legible_scale(int width);
 
-/// Every pixel repeated `scale` x `scale` times.
+/// Returns the picture with every pixel repeated `scale` x `scale` times.
 template <class T>
 Image<T> enlarge(const Image<T>& image, int scale) {
   if (scale == 1) return image;
@@ -20,10 +20,10 @@ Image<T> enlarge(const Image<T>& image, int scale) {
   return result;
 }
 
-/// `weight` of `over` on top of `under`, 0-1.
+/// Returns the colour of `over` laid on `under` with an opacity of `weight`, 0-1.
 Rgb mix(Rgb under, Rgb over, float weight);
 
-/// The picture's own pixels for OpenCV, in RGB order. Valid while `image` lives.
+/// Returns the picture's own pixels for OpenCV, in RGB order; they live as long as `image`.
 cv::Mat view(ColourImage& image);
 cv::Scalar scalar(Rgb colour);
 
@@ -31,10 +31,11 @@ cv::Scalar scalar(Rgb colour);
 inline constexpr int kTextRow = 17;
 int text_width(const std::string& text);
 
-/// One line of text (ASCII) whose lower left corner is (u, v), pixels; what leaves the picture is cut off.
+/// Draws one line of text (ASCII) whose lower left corner is pixel (u, v); what leaves the picture is cut off.
 void draw_text(ColourImage& image, const std::string& text, int u, int v, Rgb colour);
 
-/// Text on a plate of `plate` colour, black or white to be read on it, moved into the picture as far as it fits.
+/// Draws text on a plate of colour `plate`, in black or white, whichever is legible on it. Both are moved into the
+/// picture as far as they fit.
 void draw_tag(ColourImage& image, const std::string& text, int u, int v, Rgb plate);
 
 }  // namespace vesalius

@@ -41,7 +41,7 @@ TEST(ContactSheet, LeavesOutColourWhereThereIsNone) {
   EXPECT_EQ(with.width() - without.width(), 64);
 }
 
-TEST(ContactSheet, OfNothingIsAnEmptyPage) { EXPECT_FALSE(contact_sheet({}, one_part(), 3).empty()); }
+TEST(ContactSheet, IsABlankPageWithoutFrames) { EXPECT_FALSE(contact_sheet({}, one_part(), 3).empty()); }
 
 TEST(ContactSheet, RefusesLabelsOfAnotherSize) {
   LabelledFrame frame = labelled(false);

@@ -130,7 +130,7 @@ TEST(DrawLabels, SmallPicturesAreDoubled) {
   for (const BodyPart& part : body.parts) EXPECT_GE(count(tiny, part.colour), 100) << part.name;
 }
 
-TEST(DrawLabels, RefusesWhatDoesNotFit) {
+TEST(DrawLabels, RefusesLabelsOfAnotherSizeOrBody) {
   const BodyModel body = three_parts();
   EXPECT_THROW(draw_labels(LabelImage(4, 3), DepthImage(3, 4), body, true), Error);
   EXPECT_THAT([&] { draw_labels(LabelImage(4, 3, 3), DepthImage(4, 3), body, true); },
@@ -221,7 +221,7 @@ TEST(DrawPeople, SmallFramesAreDoubledWithTheirSkeletons) {
   EXPECT_EQ(picture(400, 300), body.parts[1].colour);
 }
 
-TEST(DrawPeople, OddPlacesAreHarmless) {
+TEST(DrawPeople, DrawsNoPartWhoseCentreIsNotInView) {
   const Frame frame = plain_frame(64, 48);
   const BodyModel body = three_parts();
   Person person = person_of(frame, body);
@@ -236,7 +236,7 @@ TEST(DrawPeople, OddPlacesAreHarmless) {
   }
 }
 
-TEST(DrawPeople, RefusesWhatDoesNotFit) {
+TEST(DrawPeople, RefusesMasksAndSkeletonsThatDoNotFit) {
   const Frame frame = plain_frame(64, 48);
   const BodyModel body = three_parts();
   Person person = person_of(frame, body);

@@ -38,8 +38,9 @@ struct Clusters {
   Image<std::int32_t> index;       ///< item that each pixel belongs to, -1 = none
 };
 
-/// Part proposals by breadth-first search over the 8-neighbourhood (section 5): neighbours of equal label closer than
-/// the gap are one cluster; clusters too small, or longer than their part can be, are dropped.
+/// Returns the part proposals of a labelling, found by breadth-first search over the 8-neighbourhood (section 5).
+/// Neighbours of equal label closer than the gap are one cluster; clusters too small, or longer than their part can be,
+/// are dropped. Pixels without a reading belong to none.
 Clusters find_clusters(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
                        const ClusterOptions& options);
 

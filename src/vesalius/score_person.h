@@ -30,8 +30,8 @@ struct ScoreOptions {
 };
 void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisitor& visitor);
 
-/// Defaults for forests without background class, fitted with the paper's released trees: furniture cut out looks like
-/// a body, so the outline tells more.
+/// Returns the defaults for forests without background class, fitted with the paper's released trees. Furniture cut out
+/// looks like a body to them, so the outline tells more.
 ScoreOptions score_without_background();
 
 /// What speaks for a grown mask and its skeleton being a person; all 0-1.
@@ -48,7 +48,7 @@ struct Evidence {
   float border = 0.F;   ///< share of the outline at the picture's border
 };
 
-/// A piece of evidence and what it weighs.
+/// A kind of evidence and the option that says what it weighs.
 struct EvidenceWeight {
   float Evidence::*evidence;
   float ScoreOptions::*weight;
@@ -65,11 +65,13 @@ inline constexpr std::array<EvidenceWeight, 10> kEvidenceWeights{
      {&Evidence::certain, &ScoreOptions::certain_weight},
      {&Evidence::border, &ScoreOptions::border_weight}}};
 
-/// `labels` are the part labels inside `mask`, `posteriors` those of the first pass; images of the frame's size.
+/// Measures what speaks for a mask and a skeleton being a person. `labels` are the part labels inside `mask`,
+/// `posteriors` those of the first pass; all have the frame's size.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
                          const Skeleton& skeleton, const BodyModel& body, const ScoreOptions& options);
 
-/// How surely it is a person, 0-1: a logistic function whose weights were fitted to frames with and without people.
+/// Returns how surely it is a person, 0-1, by a logistic function whose weights were fitted to frames with and without
+/// people.
 float person_score(const Evidence& evidence, const ScoreOptions& options);
 
 }  // namespace vesalius

@@ -45,7 +45,7 @@ struct Skeleton {
   float score = 0.F;                ///< accumulated likelihood; ranks people
 };
 
-/// All people in the proposals, best first; each proposal belongs to at most one of them.
+/// Returns all people in the proposals, best first. Each proposal belongs to at most one of them.
 std::vector<Skeleton> search_skeletons(const std::vector<PartCluster>& clusters, const BodyModel& body,
                                        const SearchOptions& options);
 

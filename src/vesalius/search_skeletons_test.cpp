@@ -235,7 +235,7 @@ TEST(SearchSkeletons, RootsAtAFaceWhenTheNeckIsHidden) {
   EXPECT_EQ(found[0].found, 5);
 }
 
-TEST(SearchSkeletons, SomebodyWithoutHeadAndNeckIsFoundUnlessRootedThere) {
+TEST(SearchSkeletons, FindsAPersonWithoutHeadAndNeckUnlessRootedThere) {
   std::vector<PartCluster> clusters = people({{0.F, 0.F, 2.F}});
   std::erase_if(clusters, [](const PartCluster& c) { return c.label == 1 || c.label == 2; });
   SearchOptions options;
@@ -246,7 +246,7 @@ TEST(SearchSkeletons, SomebodyWithoutHeadAndNeckIsFoundUnlessRootedThere) {
   EXPECT_TRUE(search_skeletons(clusters, small_body(), options).empty());
 }
 
-TEST(SearchSkeletons, WhoIsWhollySeenIsRootedInTheBody) {
+TEST(SearchSkeletons, RootsAPersonSeenWholeInTheBody) {
   EXPECT_EQ(search_skeletons(people({{0.F, 0.F, 2.F}}), small_body(), {}).at(0).root, 1);
 }
 
@@ -293,7 +293,7 @@ TEST(SearchSkeletons, CovarianceAlongTheLineExcusesADeviation) {
   EXPECT_LT(elongated, compact - 0.05F);
 }
 
-TEST(SearchSkeletons, NothingFromNothing) { EXPECT_TRUE(search_skeletons({}, paper_body(), {}).empty()); }
+TEST(SearchSkeletons, FindsNobodyWithoutProposals) { EXPECT_TRUE(search_skeletons({}, paper_body(), {}).empty()); }
 
 }  // namespace
 }  // namespace vesalius

@@ -1,15 +1,12 @@
 // The bundled forest on scenes it did not learn from: labelling, both passes, everything as shipped.
 
 #include <gmock/gmock.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <iostream>
-#include <limits>
 
 #include "capsule/capsule_person.h"
 #include "io/model/model_file.h"
-#include "vesalius/base/keep_memory.h"
 #include "vesalius/base/random.h"
 #include "vesalius/detect.h"
 
@@ -106,39 +103,6 @@ TEST(CapsuleForest, NobodyInEmptyRooms) {
     add_sensor_noise(truth.frame, static_cast<std::uint64_t>(i));
     EXPECT_TRUE(detector.detect(truth.frame).empty()) << "scene " << i;
   }
-}
-
-/// Pages that the system gave this process so far.
-long pages_given() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_minflt;
-}
-
-TEST(CapsuleForest, FramesAfterTheFirstTakeNoNewMemory) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizer's own memory grows with every allocation";
-#endif
-  keep_freed_memory();
-  Random random(13);
-  CapsuleScene scene = room(5.F);
-  scene.people.push_back(random_person(random, -0.6F, 2.6F, scene.floor_y_m));
-  scene.people.push_back(random_person(random, 0.6F, 3.2F, scene.floor_y_m));
-  const BodyModel body = paper_body();
-  const Frame frame = render(scene, kCamera, body).frame;
-  DetectOptions options;
-  options.grid.step = 1;
-  const Detector detector(load_model(std::string(VESALIUS_SOURCE_DIR) + "/data/models/capsule.forest"), options);
-  for (int i = 0; i < 5; ++i) ASSERT_EQ(detector.detect(frame).size(), 2U);
-  constexpr int kFrames = 10;
-  long fewest = std::numeric_limits<long>::max();
-  for (int round = 0; round < 5; ++round) {  // on a busy machine a thread may get its first work late
-    const long before = pages_given();
-    for (int i = 0; i < kFrames; ++i) detector.detect(frame);
-    fewest = std::min(fewest, pages_given() - before);
-  }
-  // A picture of posteriors alone has 3900 pages, a mask 75.
-  EXPECT_LE(fewest, 10 * kFrames);
 }
 
 }  // namespace

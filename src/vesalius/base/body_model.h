@@ -66,14 +66,14 @@ struct BodyModel {
   std::string toml;                  ///< the text this was read from, embedded in model files
 
   int part_count() const { return static_cast<int>(parts.size()); }
-  /// Index of the part, -1 where there is none of that name.
+  /// Returns the index of the part, -1 where there is none of that name.
   int find_part(std::string_view part_name) const;
 };
 
 /// Parses and checks a body model; `source` is named in errors. Throws Error with line and expectation.
 BodyModel parse_body_model(std::string_view toml, const std::string& source);
 
-/// The paper's 25 parts (section 4.1.3) with the numbers of the released trees.
+/// Returns the paper's 25 parts (section 4.1.3), in the order of its released trees.
 const BodyModel& paper_body();
 
 }  // namespace vesalius

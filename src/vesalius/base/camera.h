@@ -14,13 +14,13 @@ struct Camera {
   float cx = 0.F;  ///< principal point, pixels
   float cy = 0.F;
 
-  /// Point seen by pixel (u, v) at `z_m` metres along the optical axis.
+  /// Returns the point seen by pixel (u, v) at `z_m` metres along the optical axis.
   Eigen::Vector3f point(float u, float v, float z_m) const { return {(u - cx) / fx * z_m, (v - cy) / fy * z_m, z_m}; }
 
-  /// Pixel (u, v) of a point with z > 0.
+  /// Returns the pixel (u, v) of a point with z > 0.
   Eigen::Vector2f pixel(const Eigen::Vector3f& p) const { return {p.x() / p.z() * fx + cx, p.y() / p.z() * fy + cy}; }
 
-  /// The same view at another picture size (e.g. depth at half resolution).
+  /// Returns the camera of the same view at another picture size (e.g. depth at half resolution).
   Camera resized(int new_width, int new_height) const;
 
   friend bool operator==(const Camera&, const Camera&) = default;

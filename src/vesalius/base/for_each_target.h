@@ -6,8 +6,8 @@
 
 namespace vesalius {
 
-/// Calls `work(name)` with kernels running on each instruction set that this machine has and the build made code for,
-/// e.g. "AVX3": for tests and measurements. Not while other threads run kernels.
+/// Calls `work(name)` once for each instruction set, e.g. "AVX3", that this machine has and the build made code for,
+/// while kernels run on it. For tests and measurements; no other thread may run kernels meanwhile.
 template <class Work>
 void for_each_target(const Work& work) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

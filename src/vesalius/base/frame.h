@@ -18,7 +18,7 @@ struct Frame {
   ColourImage colour;  ///< empty, or the size of `depth`
 };
 
-/// Point that pixel (u, v) of a depth image sees; z is 0 where it has no reading.
+/// Returns the point that pixel (u, v) of a depth image sees; its z is 0 where there is no reading.
 inline Eigen::Vector3f point_at(const Camera& camera, const DepthImage& depth, int u, int v) {
   return camera.point(static_cast<float>(u), static_cast<float>(v), static_cast<float>(depth(u, v)) * 1e-3F);
 }

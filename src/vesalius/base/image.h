@@ -39,7 +39,7 @@ class Image {
   T* data() { return pixels_.data(); }
   const T* data() const { return pixels_.data(); }
 
-  /// Unsigned: negative coordinates compare as huge ones, which halves the tests of the innermost loops.
+  /// Compares as unsigned numbers: negative coordinates are huge ones, which halves the tests of the innermost loops.
   bool contains(int u, int v) const {
     return static_cast<unsigned>(u) < static_cast<unsigned>(width_) &&
            static_cast<unsigned>(v) < static_cast<unsigned>(height_);
@@ -71,7 +71,7 @@ struct Box {
   int u = 0, v = 0, width = 0, height = 0;
 };
 
-/// The part of a picture inside a box, which lies within it.
+/// Returns the part of a picture inside a box, which must lie within it.
 template <class T>
 Image<T> crop(const Image<T>& image, const Box& box) {
   Image<T> part(box.width, box.height);
@@ -87,7 +87,7 @@ using LabelImage = Image<std::uint8_t>;
 using Mask = Image<std::uint8_t>;
 using ColourImage = Image<Rgb>;
 
-/// The smallest box around what is inside; empty where nothing is.
+/// Returns the smallest box around what is inside the mask; an empty one where nothing is.
 inline Box bounding_box(const Mask& mask) {
   int left = mask.width(), right = -1, top = mask.height(), bottom = -1;
   const auto inside = [](std::uint8_t value) { return value != 0; };

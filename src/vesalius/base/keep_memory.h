@@ -6,9 +6,9 @@
 
 namespace vesalius {
 
-/// From now on this process keeps the memory that it frees: the pictures of one frame are those of the next, where else
-/// the C library gives up to 5 MB a frame back to the system and asks for them anew. For programs that look at many
-/// frames, once at their start; does nothing where the C library is not glibc.
+/// Makes this process keep the memory that it frees, so that the pictures of one frame use that of the frame before;
+/// otherwise the C library gives up to 5 MB a frame back to the system and asks for it anew. Programs that look at many
+/// frames call it once at their start. It does nothing where the C library is not glibc.
 inline void keep_freed_memory() {
 #if defined(__GLIBC__)
   constexpr int kMost = 512 * 1024 * 1024;

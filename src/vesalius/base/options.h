@@ -19,7 +19,7 @@ class OptionVisitor {
   virtual void option(const std::string& name, float& value, const OptionInfo& info) = 0;
   virtual void option(const std::string& name, int& value, const OptionInfo& info) = 0;
   virtual void option(const std::string& name, bool& value, const OptionInfo& info) = 0;
-  /// A word; the range does not apply. Whoever uses it checks it.
+  /// The value is a word, to which the range does not apply; whoever uses it checks it.
   virtual void option(const std::string& name, std::string& value, const OptionInfo& info) = 0;
 };
 

@@ -12,8 +12,8 @@ void parallel_for(int count, const std::function<void(int)>& work);
 /// Splits [0, count) into ranges of about `grain` and runs `work(begin, end)` on each.
 void parallel_ranges(int count, int grain, const std::function<void(int, int)>& work);
 
-/// While it lives, parallel work of this process uses at most `threads` threads (1 = none beside the caller;
-/// 0 = as many as the machine has). Nest at will: the smallest limit holds.
+/// Limits the parallel work of this process to `threads` threads as long as it lives (1 = none beside the caller; 0 =
+/// as many as the machine has). Where several limits live at once, the smallest one holds.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
@@ -26,7 +26,7 @@ class ThreadLimit {
   std::unique_ptr<State> state_;
 };
 
-/// Threads that parallel work may use now.
+/// Returns how many threads parallel work may use now.
 int thread_count();
 
 }  // namespace vesalius

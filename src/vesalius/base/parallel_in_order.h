@@ -8,8 +8,8 @@
 
 namespace vesalius {
 
-/// Makes items 0 .. count-1 on all threads allowed and hands them over in order: `make(i)` returns an item, `take(i,
-/// item)` gets it in the calling thread while later ones are being made, and returns whether to go on. At most two
+/// Makes items 0 .. count-1 on all threads allowed and hands them over in order. `make(i)` returns an item; `take(i,
+/// item)` gets it in the calling thread, while later ones are being made, and returns whether to go on. At most two
 /// batches of 8 items a thread are held. The first exception of either is rethrown.
 template <class Make, class Take>
 void parallel_in_order(int count, const Make& make, const Take& take) {

@@ -28,7 +28,7 @@ TEST(ParallelInOrderThreads, HandsOverInOrderInTheCallersThread) {
   }
 }
 
-TEST(ParallelInOrder, NothingToDoIsDone) {
+TEST(ParallelInOrder, ReturnsAtOnceWithoutItems) {
   parallel_in_order(
       0, [](int i) { return i; }, [](int, int) { return ADD_FAILURE(), true; });
 }

@@ -122,7 +122,7 @@ TEST(GridGuide, ABoxOfTheGridIsEnough) {
   EXPECT_EQ(guide.enlarge(Mask(8, 6, 0), std::uint8_t{0}, Box{}), Mask(23, 17, 0));
 }
 
-TEST(GridGuide, RefusesAStepOfNothing) { EXPECT_THROW(GridGuide(DepthImage(2, 2), 0), Error); }
+TEST(GridGuide, RefusesAStepOfZero) { EXPECT_THROW(GridGuide(DepthImage(2, 2), 0), Error); }
 
 }  // namespace
 }  // namespace vesalius

@@ -15,7 +15,7 @@ class Random {
     next();
   }
 
-  /// Uniform over all 32-bit values.
+  /// Returns any 32-bit value, all equally likely.
   std::uint32_t next() {
     const std::uint64_t old = state_;
     state_ = old * 6364136223846793005ULL + increment_;
@@ -24,16 +24,16 @@ class Random {
     return (shifted >> rotation) | (shifted << ((32U - rotation) & 31U));
   }
 
-  /// Uniform over 0 .. bound-1; bound > 0.
+  /// Returns a number from 0 to bound - 1, all equally likely; `bound` must be above 0.
   std::uint32_t below(std::uint32_t bound) {
     return static_cast<std::uint32_t>((static_cast<std::uint64_t>(next()) * bound) >> 32U);
   }
 
-  /// Uniform over [0, 1).
+  /// Returns a number from [0, 1), or from [low, high), uniformly distributed.
   double uniform() { return next() * (1.0 / 4294967296.0); }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
-  /// Normal distribution (Box-Muller).
+  /// Returns a normally distributed number (Box-Muller).
   double normal(double mean = 0.0, double sigma = 1.0) {
     const double u1 = 1.0 - uniform();
     const double u2 = uniform();

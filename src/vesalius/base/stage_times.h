@@ -7,7 +7,7 @@
 
 namespace vesalius {
 
-/// What a Detector does, in this order; the grid's pixels are taken before and brought back to the picture after.
+/// What a Detector does, in this order. Picking the grid's pixels before all and enlarging after all are `grid`.
 enum class Stage { planes, label, smooth, choose, cluster, search, grow, second_pass, people, grid };
 inline constexpr std::array kStageNames = {"planes", "label", "smooth",      "choose", "cluster",
                                            "search", "grow",  "second pass", "people", "grid"};
@@ -20,7 +20,7 @@ struct StageTimes {
   double total() const { return std::accumulate(ms.begin(), ms.end(), 0.0); }
 };
 
-/// How long `work` takes, by the clock on the wall.
+/// Returns how long `work` takes, in milliseconds by the clock on the wall.
 template <class Work>
 double elapsed_ms(Work&& work) {
   const auto begin = std::chrono::steady_clock::now();
@@ -28,14 +28,14 @@ double elapsed_ms(Work&& work) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Adds what has passed since the last `lap`, or since it was made, to a stage; does nothing for null.
+/// Adds the time since its last `lap`, or since it was made, to a stage; does nothing for null.
 class StageClock {
  public:
   explicit StageClock(StageTimes* times) : times_(times) {}
 
   void lap(Stage stage) { add_to(stage, since_last()); }
 
-  /// The same for two stages that ran side by side: each gets what it took for itself, as a share of what both did.
+  /// Adds the time to two stages that ran side by side, in proportion to what each took for itself.
   void lap(const std::array<Stage, 2>& stages, const std::array<double, 2>& took_ms) {
     const double passed = since_last();
     const double sum = took_ms[0] + took_ms[1];

@@ -9,7 +9,7 @@
 
 namespace vesalius {
 
-/// How node offsets and thresholds are to be read. Stored in the model file; trainer and detector share it
+/// How node offsets and thresholds are to be read. It is stored in the model file; trainer and detector share it
 /// (tree_walk.h), since a forest labels nonsense under any other convention.
 struct FeatureConvention {
   float offset_unit = 5e-3F;         ///< one step of a node offset, in pixels times metres at `reference_focal_px`
@@ -23,7 +23,7 @@ struct FeatureConvention {
 /// Largest offset a node may have, in offset units: keeps the walk's fixed-point product below 2^31 (tree_walk.h).
 inline constexpr int kMaxOffset = 1023;
 
-/// Inner node: eq. 1 compared with a threshold.
+/// An inner node: eq. 1 compared with a threshold.
 struct TreeNode {
   std::int16_t du1 = 0, dv1 = 0;  ///< first probe, in offset units
   std::int16_t du2 = 0, dv2 = 0;  ///< second probe
@@ -63,10 +63,11 @@ struct Forest {
 /// Throws Error where a tree would be walked out of its arrays or names a class the body lacks.
 void check(const Forest& forest);
 
-/// Edges from the root to the deepest leaf.
+/// Returns the number of edges from the root to the deepest leaf.
 int depth(const Tree& tree);
 
-/// Whether any leaf holds more than one class; a forest of single votes is smoothed by its labels instead.
+/// Returns whether any leaf holds more than one class. Without, a forest gives single votes, and its labels are
+/// smoothed instead of its posteriors.
 bool has_distributions(const Forest& forest);
 
 }  // namespace vesalius

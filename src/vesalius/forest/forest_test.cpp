@@ -30,9 +30,9 @@ Forest small_forest() {
   return forest;
 }
 
-TEST(Forest, SoundOnePasses) { EXPECT_NO_THROW(check(small_forest())); }
+TEST(Forest, AcceptsASoundOne) { EXPECT_NO_THROW(check(small_forest())); }
 
-TEST(Forest, LeafAloneIsATree) {
+TEST(Forest, ALeafAloneIsATree) {
   Forest forest = small_forest();
   forest.trees = {Tree{.nodes = {}, .leaves = {vote(1)}}};
   EXPECT_NO_THROW(check(forest));
@@ -53,7 +53,7 @@ TEST(Forest, LabelOfAnUnusedSlotIsIgnored) {
   EXPECT_NO_THROW(check(forest));
 }
 
-TEST(Forest, WalksOutOfTheArraysOrInCirclesAreRefused) {
+TEST(Forest, RefusesChildrenOutsideTheArraysOrBeforeTheirParents) {
   for (const std::int32_t child : {0, 1, 2, ~3, std::numeric_limits<std::int32_t>::min()}) {
     Forest forest = small_forest();
     forest.trees[0].nodes[1].left = child;
@@ -61,7 +61,7 @@ TEST(Forest, WalksOutOfTheArraysOrInCirclesAreRefused) {
   }
 }
 
-TEST(Forest, RefusesWhatIntegersCannotHold) {
+TEST(Forest, RefusesOffsetsProbabilitiesAndTreesAboveTheirLimits) {
   Forest far = small_forest();
   far.trees[0].nodes[0].dv1 = kMaxOffset + 1;
   EXPECT_THAT([&] { check(far); }, ThrowsMessage<Error>(HasSubstr("offset 1024")));

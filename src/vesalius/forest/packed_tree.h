@@ -15,9 +15,9 @@ namespace vesalius {
 /// the children of the inner node whose link is k. A link of 0 marks a leaf, whose first word is its index. Where
 /// several nodes share a child each has a copy, so there are twice as many nodes as inner nodes in the tree, plus two.
 struct PackedTree {
-  /// Compact, 2 words: offsets u1, v1, u2, v2 as bytes, 128 added, the first one lowest; then the threshold in mm above
-  /// `link_bits` bits of link. Wide, 4 words, where offsets, thresholds or links need it: u1 and v1 as int16, u2 and
-  /// v2, threshold, link.
+  /// Whether nodes take 4 words rather than 2, because offsets, thresholds or links need it.
+  /// Of 2 words the first holds the offsets u1, v1, u2, v2 as bytes, 128 added, u1 lowest; the second the threshold in
+  /// mm above `link_bits` bits of link. The 4 words are u1 and v1 as int16, u2 and v2, the threshold, and the link.
   bool wide = false;
   int link_bits = 0;
   int levels = 0;  ///< edges from the root to the deepest leaf
@@ -27,8 +27,9 @@ struct PackedTree {
   int words_per_node() const { return wide ? 4 : 2; }
 };
 
-/// `tree` must pass check(Forest). Thresholds beyond what the convention's clipping lets a feature reach are brought to
-/// that range, which changes no walk. Throws Error for more than 2^26 nodes: byte offsets are 32 bits.
+/// Lays out a tree, which must pass check(Forest). Thresholds beyond what the convention's clipping lets a feature
+/// reach are brought to that range, which changes no walk. Throws Error for more than 2^26 nodes: byte offsets are 32
+/// bits.
 PackedTree pack(const Tree& tree, const FeatureConvention& convention);
 
 }  // namespace vesalius

@@ -9,9 +9,9 @@
 
 namespace vesalius {
 
-/// A depth image as probes read it: holes hold what the convention says they count as, and behind each row and below
-/// the last one lies a border of what the outside reads. Unsigned, coordinates left of or above the picture are huge,
-/// so bringing them down to the border is all the test a probe needs.
+/// A depth image as probes read it. Holes hold what the convention says they count as; behind each row and below the
+/// last one lies a border that holds what the outside reads. As unsigned numbers, coordinates left of or above the
+/// picture are huge, so that bringing them down to the border is all the test that a probe needs.
 class PaddedDepth {
  public:
   /// Largest width and height: a byte offset within a row stays below 2^15 (walk_kernels.cpp).
@@ -19,12 +19,12 @@ class PaddedDepth {
 
   PaddedDepth(const DepthImage& depth, const FeatureConvention& convention);
 
-  /// Values per row; the border is column `border_u()` and row `border_v()`.
+  /// Returns how many values a row has. The border is column `border_u()` and row `border_v()`.
   int stride() const { return width_ + 1; }
   int border_u() const { return width_; }
   int border_v() const { return height_; }
-  /// Value of pixel (0, 0) less 32768, as all of them, so that differences are those of int16. One more value lies
-  /// before it and behind the last, as kernels read in pairs.
+  /// Returns the value of pixel (0, 0) and those behind it. All are biased: 32768 mm less, so that they fit into int16.
+  /// One more value lies before the first and behind the last, since kernels read in pairs.
   const std::int16_t* values() const { return values_.data() + 1; }
 
   static std::int16_t biased(int depth_mm) { return static_cast<std::int16_t>(depth_mm - 32768); }

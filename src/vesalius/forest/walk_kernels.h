@@ -8,8 +8,9 @@
 
 namespace vesalius {
 
-/// Index of the leaf that each pixel reaches, the one that `walk` in tree_walk.h finds: `leaves` takes
-/// `pixels.padded_size()` values, of which the first `pixels.size()` count. The same from every instruction set.
+/// Writes to `leaves` the index of the leaf that each pixel reaches, the one that `walk` in tree_walk.h finds. There
+/// must be room for `pixels.padded_size()` values, of which the first `pixels.size()` count. The result is the same
+/// from every instruction set.
 void walk_pixels(const PackedTree& tree, const PaddedDepth& depth, const WalkPixels& pixels, std::uint32_t* leaves);
 
 }  // namespace vesalius

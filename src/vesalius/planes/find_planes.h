@@ -20,7 +20,8 @@ struct PlaneOptions {
 };
 void visit_options(const std::string& prefix, PlaneOptions& options, OptionVisitor& visitor);
 
-/// normal . p = offset; unit normal, offset >= 0, metres, optical frame.
+/// The points p with normal . p = offset, in metres, optical frame. The normal has length 1, the offset is not
+/// negative.
 struct Plane {
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
   float offset = 0.F;
@@ -29,12 +30,12 @@ struct Plane {
   float distance(const Eigen::Vector3f& p) const { return std::abs(normal.dot(p) - offset); }
 };
 
-/// Floor, walls, ceilings, large table-tops: the largest flat surfaces of one picture, largest first. They are what a
-/// growing person leaks into. Seeded sampling: same picture, same planes.
+/// Returns the largest flat surfaces of one picture, largest first: floor, walls, ceilings, large table-tops. They are
+/// what a growing person leaks into. Sampling is seeded, so that the same picture has the same planes.
 std::vector<Plane> find_planes(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);
 
-/// 1 on the pixels of those surfaces. A pixel is on one if it lies in it and the surface about it is turned the same
-/// way. Where a plane runs on through a person, the person is not on it.
+/// Returns 1 on the pixels of those surfaces. A pixel is on one if it lies in it and the surface about it is turned the
+/// same way. Where a plane runs on through a person, the person is not on it.
 Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);
 
 }  // namespace vesalius

@@ -41,7 +41,7 @@ std::set<std::set<int>> plain_pieces(const DepthImage& depth, const Mask& flat) 
   return all;
 }
 
-TEST(FlatPieces, AreWhatCanBeReached) {
+TEST(FlatPieces, AreThePixelsReachedFromOneOfThem) {
   Random random(7);
   for (int round = 0; round < 50; ++round) {
     DepthImage depth(17, 13);

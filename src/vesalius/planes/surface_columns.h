@@ -8,7 +8,7 @@
 
 namespace vesalius {
 
-/// Samples of the surfaces in a picture, a column for each property, as the kernel takes them.
+/// Samples of the surfaces in a picture, as the kernel takes them: a column for each property.
 class SurfaceColumns {
  public:
   enum Column { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kThickness, kArea, kDistance, kColumns };
@@ -19,19 +19,20 @@ class SurfaceColumns {
   };
 
   void reserve(std::size_t samples);
-  /// A point, the unit normal of the surface about it, how far it may be from its plane, and its area, m^2.
+  /// Adds a sample: a point, the unit normal of the surface about it, how far it may be from its plane, and its area.
   void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float thickness_m, float area_m2);
 
-  /// Area of the samples that lie on the plane `normal . p = offset` and are turned like it, by a cosine of at least
-  /// `aligned`; each is divided by the cosine of its slant to the line of sight, at least `most_slant`. Summed as
-  /// doubles one after the other; the same from every instruction set.
+  /// Returns the area of the samples that lie on the plane `normal . p = offset` and whose normals have a cosine of at
+  /// least `aligned` to its normal. Each area is divided by the cosine of its slant to the line of sight, or by
+  /// `most_slant` where that is larger. The sum is that of doubles added one after the other, the same from every
+  /// instruction set.
   float support(const Eigen::Vector3f& normal, float offset, float aligned, float most_slant) const;
 
   std::size_t size() const { return columns_[kX].size(); }
   const float* column(Column c) const { return columns_[c].data(); }
 
  private:
-  /// Whether no sum of the areas is rounded, in whatever order.
+  /// Returns whether no sum of the areas is rounded, in whatever order.
   bool sums_are_exact(float most_slant) const;
 
   std::vector<float> columns_[kColumns];

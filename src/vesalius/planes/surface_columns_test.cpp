@@ -49,12 +49,12 @@ void expect_plain_support(Random& random, int count, double spread) {
   });
 }
 
-TEST(PlaneKernel, IsThePlainSumOnEveryInstructionSet) {
+TEST(SurfaceColumns, SupportIsThePlainSumOnEveryInstructionSet) {
   Random random(5);
   for (const int count : {0, 1, 7, 8, 100, 5000}) expect_plain_support(random, count, 8.0);
 }
 
-TEST(PlaneKernel, KeepsTheOrderWhereSumsAreRounded) {
+TEST(SurfaceColumns, AddsInOrderWhereSumsAreRounded) {
   Random random(6);
   for (int round = 0; round < 20; ++round) expect_plain_support(random, 3000, 60.0);
 }
