@@ -16,7 +16,7 @@ An installed vesalius brings this script with it.
 
 Example:
   source <(vesalius completion bash))");
-  command->callback([&program] { print(bash_completion(program)); });
+  command->callback([shell, &program] { print(bash_completion(program)); });  // the option writes into `shell`
 }
 
 }  // namespace vesalius::cli
