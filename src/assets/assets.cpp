@@ -1,11 +1,8 @@
 #include "assets/assets.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -15,7 +12,7 @@
 #include <vector>
 
 #include "assets/unpack.h"
-#include "io/files/descriptor.h"
+#include "io/files/folder_lock.h"
 #include "io/files/read_file.h"
 #include "vesalius/base/error.h"
 
@@ -40,17 +37,10 @@ class Workplace {
          path = path.parent_path()) {
       if (path.has_filename()) made_.push_back(path);  // not so "D/", which names D again
     }
-    fs::create_directories(folder, error);
-    if (error) fail(folder, error.value());
-    lock_ = Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (!lock_.is_open()) fail(folder, errno);
-    // A file system without locks is no reason to refuse.
-    if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      throw Error(folder + ": another installation of assets is at work here");
-    }
+    lock_.emplace(folder);
     clear();  // what a killed one left
     fs::create_directory(unfinished_, error);
-    if (error) fail(folder, error.value());
+    if (error) throw Error(fmt::format("{}: cannot be written: {}", folder, error.message()));
   }
   ~Workplace() {
     clear();
@@ -65,17 +55,14 @@ class Workplace {
   std::string unfinished(const std::string& name) const { return unfinished_ + "/" + name; }
 
  private:
-  [[noreturn]] static void fail(const std::string& folder, int error) {
-    throw Error(fmt::format("{}: cannot be written: {}", folder, std::generic_category().message(error)));
-  }
   void clear() const {
     std::error_code ignored;
     fs::remove_all(unfinished_, ignored);
   }
 
   std::string unfinished_;
-  std::vector<fs::path> made_;  ///< folders that were not there, innermost first
-  Descriptor lock_;
+  std::vector<fs::path> made_;      ///< folders that were not there, innermost first
+  std::optional<FolderLock> lock_;  ///< once it is known which folders are made
 };
 
 /// One package on its way into a folder.

@@ -221,7 +221,7 @@ TEST_F(Assets, OneAtATime) {
   fs::create_directories(home());
   const int other = ::open(home().c_str(), O_RDONLY | O_DIRECTORY);
   ASSERT_EQ(::flock(other, LOCK_EX), 0);
-  EXPECT_THAT(error_from(mirror()), HasSubstr("home: another installation of assets is at work here"));
+  EXPECT_THAT(error_from(mirror()), HasSubstr("home: another process is writing there"));
   ::close(other);
   EXPECT_EQ(install(mirror()).fetched, 4U);
 }
@@ -229,7 +229,7 @@ TEST_F(Assets, OneAtATime) {
 TEST_F(Assets, SaysWhatCannotBeWritten) {
   mirror_archive();
   test::put(home(), "a file where the folder should be");
-  EXPECT_THAT(error_from(mirror()), HasSubstr("home: cannot be written: "));
+  EXPECT_THAT(error_from(mirror()), HasSubstr("home: folder cannot be made: "));
   if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   fs::remove(home());
   fs::create_directories(home());

@@ -102,6 +102,12 @@ void check(const Recipe& recipe) {
 
 std::string PoseOptions::default_exclusions() { return fmt::format("{}", fmt::join(MotionChoice{}.exclude, ", ")); }
 
+bool asks_for_motions(const PoseOptions& options) {
+  const PoseOptions usual;
+  return options.captured > 0.F &&
+         (options.captured != usual.captured || options.include != usual.include || options.exclude != usual.exclude);
+}
+
 MotionChoice motion_choice(const PoseOptions& options) {
   return {.include = words_of(options.include), .exclude = words_of(options.exclude)};
 }

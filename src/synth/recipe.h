@@ -24,7 +24,7 @@ struct BodyOptions {
 };
 
 struct PoseOptions {
-  float captured = 0.6F;  ///< share of poses from motion capture, where there is any
+  float captured = 0.6F;  ///< share of poses from motion capture; see asks_for_motions()
   float mixed = 0.25F;    ///< share of those with limbs of another pose
   float mirrored = 0.5F;  ///< share seen in a mirror
   std::string include;    ///< words separated by commas, one of which a motion's description must have; empty: all
@@ -60,6 +60,11 @@ void visit_options(const std::string& prefix, Recipe& recipe, OptionVisitor& vis
 
 /// Throws UsageError naming the first option out of its range, or whose word is not one of those allowed.
 void check(const Recipe& recipe);
+
+/// Returns whether a recipe says anything about captured poses: a share of them other than the default's, or which
+/// motions they come from. Frames of such a recipe cannot be made without motions. The default takes captured poses
+/// where there are any.
+bool asks_for_motions(const PoseOptions& options);
 
 /// Which motions a recipe takes its captured poses from.
 MotionChoice motion_choice(const PoseOptions& options);

@@ -59,5 +59,17 @@ TEST(Recipe, ListsOfWordsAreCutAtCommas) {
   EXPECT_EQ(motion_choice(options).include, (std::vector<std::string>{"walk", "sit down"}));
 }
 
+TEST(Recipe, AsksForMotionsWhereItSaysAnythingAboutThem) {
+  PoseOptions options;
+  EXPECT_FALSE(asks_for_motions(options)) << "the default takes them where they are";
+  options.captured = 0.5F;
+  EXPECT_TRUE(asks_for_motions(options));
+  options = {};
+  options.include = "walk";
+  EXPECT_TRUE(asks_for_motions(options));
+  options.captured = 0.F;
+  EXPECT_FALSE(asks_for_motions(options));
+}
+
 }  // namespace
 }  // namespace vesalius::synth

@@ -146,5 +146,32 @@ TEST_F(SynthProgram, BadInputIsOneClearLine) {
   EXPECT_FALSE(fs::exists(path("x")));
 }
 
+TEST_F(SynthProgram, FramesThatWereAskedForAreNotSilentlyOthers) {
+  const std::string small = "sensor.width = 80\nsensor.height = 60\nbody.count = 2\n";
+  write_file_atomically(path("any.toml"), small);
+  write_file_atomically(path("moving.toml"), small + "pose.captured = 0.5\n");
+  const std::string nowhere = " --assets " + path("nowhere");
+  const std::string model = " -m " VESALIUS_SOURCE_DIR "/data/models/small.forest";
+  const std::string evaluate = "evaluate -q --count 2" + nowhere + model + " --recipe ";
+
+  const Outcome refused = run_program(evaluate + path("moving.toml"));
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("`vesalius assets mocap`"));
+  EXPECT_EQ(
+      run_program("synth -q --count 2 --recipe " + path("moving.toml") + nowhere + " --out " + path("x")).exit_code, 1);
+
+  expect_done(run_program(evaluate + path("any.toml") + " --json " + path("r.json")));
+  EXPECT_THAT(bytes_of(path("r.json")), HasSubstr("makehuman is not there, the built-in body instead"));
+  expect_done(run_program("synth -q --count 2 --recipe " + path("any.toml") + nowhere + " --out " + path("d")));
+  EXPECT_THAT(DatasetReader(path("d")).info().recipe, HasSubstr("# mocap is not there, sampled poses instead\n"));
+}
+
+TEST_F(SynthProgram, ModelsThatUnfoldAreRefused) {
+  write_file_atomically(path("a.glb"), std::string("glTF\2\0\0\0\24\0\0\0\360\377\377\377JSON", 20));
+  const Outcome run = run_program(synth("--preview 1 --models " + path("a.glb") + " --out " + path("p.png")));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("a.glb: a chunk of 4294967280 bytes at byte 12"));
+}
+
 }  // namespace
 }  // namespace vesalius

@@ -58,8 +58,10 @@ class Loader {
     if (recipe.body.kind == "builtin") return;
     const AssetPackage& package = asset_package("makehuman");
     if (!has_assets(package, places_.folder)) {
-      if (recipe.body.kind == "auto") missing(package, "the built-in body", loaded);
-      return;
+      if (recipe.body.kind == "makehuman") {
+        throw Error("body.kind is makehuman, but the package is not there; `vesalius assets makehuman` fetches it");
+      }
+      return missing(package, "the built-in body", loaded);
     }
     std::vector<std::string> targets;
     const std::vector<std::string> paths = paths_of(package);
@@ -77,7 +79,14 @@ class Loader {
       return take_motions(files_below(places_.motions), read, recipe, loaded);
     }
     const AssetPackage& package = asset_package("mocap");
-    if (!has_assets(package, places_.folder)) return missing(package, "sampled poses", loaded);
+    if (!has_assets(package, places_.folder)) {
+      if (synth::asks_for_motions(recipe.pose)) {
+        throw Error(
+            "the recipe asks for motions (pose.captured, pose.include, pose.exclude), but the package mocap is not "
+            "there; `vesalius assets mocap` fetches it, pose.captured = 0 does without");
+      }
+      return missing(package, "sampled poses", loaded);
+    }
     take_motions(paths_of(package), reader(package), recipe, loaded);
   }
 
@@ -117,8 +126,8 @@ class Loader {
   }
 
   static void missing(const AssetPackage& package, const char* instead, LoadedAssets& loaded) {
-    loaded.notes.push_back(
-        fmt::format("{0} is not there, {1} instead; `vesalius assets {0}` fetches it", package.name, instead));
+    loaded.stand_ins.push_back(fmt::format("{} is not there, {} instead", package.name, instead));
+    loaded.notes.push_back(fmt::format("{}; `vesalius assets {}` fetches it", loaded.stand_ins.back(), package.name));
   }
 
   const AssetPlaces& places_;

@@ -12,6 +12,9 @@ struct LoadedAssets {
   synth::Assets assets;
   std::string sum;                 ///< SHA-256 over all that was read: frames depend on it
   std::vector<std::string> notes;  ///< what a user should know, one line each
+  /// What stands in for a package that the recipe would have taken and that is not there, one line each; also in
+  /// `notes`.
+  std::vector<std::string> stand_ins;
 };
 
 /// Where files are looked for.
@@ -21,7 +24,9 @@ struct AssetPlaces {
   std::vector<std::string> models;  ///< furniture of the user's: OBJ, glTF
 };
 
-/// What `recipe` wants of what is there. Throws Error naming the file that cannot be used.
+/// Loads what `recipe` wants of what is there. Where the recipe leaves a choice (body.kind auto, poses as by default)
+/// the built-in body and sampled poses stand in for what is missing. Throws Error naming the package that a recipe asks
+/// for and that is not there, or the file that cannot be used.
 LoadedAssets load_assets(const synth::Recipe& recipe, const AssetPlaces& places);
 
 }  // namespace vesalius::cli

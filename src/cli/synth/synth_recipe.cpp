@@ -52,8 +52,10 @@ synth::Recipe make_recipe(const RecipeRequest& request) {
 }
 
 std::string full_recipe(synth::Recipe recipe, const LoadedAssets& loaded) {
-  return fmt::format("{}\n# vesalius {}\n# files: sha256 {}\n", options_toml(all_options(recipe)), VESALIUS_VERSION,
-                     loaded.sum);
+  std::string text = fmt::format("{}\n# vesalius {}\n# files: sha256 {}\n", options_toml(all_options(recipe)),
+                                 VESALIUS_VERSION, loaded.sum);
+  for (const std::string& line : loaded.stand_ins) text += fmt::format("# {}\n", line);
+  return text;
 }
 
 }  // namespace vesalius::cli

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "synth/text/parse_json.h"
 #include "synth/text/text_scanner.h"
 #include "vesalius/base/error.h"
 
@@ -18,17 +19,6 @@ constexpr std::size_t kMostBones = 1000;
 
 [[noreturn]] void fail(const std::string& file, const std::string& what) {
   throw Error(fmt::format("{}: {}", file, what));
-}
-
-json parse_json(std::string_view text, const std::string& file) {
-  try {
-    return json::parse(text);
-  } catch (const json::parse_error& e) {
-    const auto line = 1 + std::ranges::count(text.substr(0, std::min(e.byte, text.size())), '\n');
-    throw Error(fmt::format("{}:{}: not valid JSON", file, line));
-  } catch (const json::out_of_range&) {
-    fail(file, "not valid JSON: a number beyond all bounds");
-  }
 }
 
 const json& object(const json& in, const char* key, const std::string& file, const std::string& place) {

@@ -18,6 +18,7 @@ namespace vesalius::synth {
 namespace {
 
 constexpr float kDegree = 3.14159265F / 180.F;
+constexpr float kUsualFps = 30.F;  // what faster recordings are brought down to
 
 /// Forearm and wrist together turn the hand by 90 degrees or a little more to either side; solvers of marker data
 /// sometimes lose the hand's turn and give anything.
@@ -32,9 +33,14 @@ class MotionLoader {
  public:
   explicit MotionLoader(const ReadText& read) : read_(read) {}
 
-  std::vector<Pose> load(const MotionFile& file) {
+  struct Recording {
+    std::vector<Pose> poses;
+    float fps = 0.F;
+  };
+
+  Recording load(const MotionFile& file) {
     const Motion motion = read(file);
-    return retarget(motion, find_convention(motion, builtin_conventions()));
+    return {retarget(motion, find_convention(motion, builtin_conventions())), motion.fps};
   }
 
  private:
@@ -64,7 +70,9 @@ void visit_options(const std::string& prefix, PoseLibraryOptions& options, Optio
                  {"deg", 0.0, 180.0, "Angle by which a pose must differ in some joint from every other one kept."});
 }
 
-std::vector<Pose> load_motion(const MotionFile& file, const ReadText& read) { return MotionLoader(read).load(file); }
+std::vector<Pose> load_motion(const MotionFile& file, const ReadText& read) {
+  return MotionLoader(read).load(file).poses;
+}
 
 PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText& read,
                               const PoseLibraryOptions& options) {
@@ -78,8 +86,9 @@ PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText&
   std::vector<int> motion;
   for (std::size_t f = 0; f < files.size(); ++f) {
     try {
-      const std::vector<Pose> all = loader.load(files[f]);
-      for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(options.every)) {
+      const auto [all, fps] = loader.load(files[f]);
+      const std::size_t step = options.every * std::max(1L, std::lround(fps / kUsualFps));
+      for (std::size_t i = 0; i < all.size(); i += step) {
         ++library.frames;
         const bool twisted = hands_twisted(all[i]), intersects = !twisted && intersects_itself(all[i]);
         library.twisted += twisted ? 1 : 0;

@@ -11,7 +11,7 @@
 namespace vesalius::synth {
 
 struct PoseLibraryOptions {
-  int every = 2;              ///< takes every so many frames of a motion
+  int every = 2;              ///< takes every so many frames of a motion brought down to about 30 frames a second
   float min_angle_deg = 5.F;  ///< by which a pose must differ in some joint from every other
 };
 
@@ -30,9 +30,10 @@ struct PoseLibrary {
 /// Reads one motion by its extension. Throws Error naming the file: also an .amc without a skeleton.
 std::vector<Pose> load_motion(const MotionFile& file, const ReadText& read);
 
-/// Loads motions, leaves out poses that cannot be (the body runs through itself, a marker's error has turned a hand
-/// back to front), thins the rest (section 4.1.2). A file that cannot be used is skipped and named in `skipped`. Throws
-/// Error where all had to be, UsageError for options out of range.
+/// Loads motions, brings those of 45 and more frames a second down to about 30 by taking every nth frame, the first one
+/// included (CMU and HDM05 recorded 120: every 4th), leaves out poses that cannot be (the body runs through itself, a
+/// marker's error has turned a hand back to front), thins the rest (section 4.1.2). A file that cannot be used is
+/// skipped and named in `skipped`. Throws Error where all had to be, UsageError for options out of range.
 PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText& read,
                               const PoseLibraryOptions& options = {});
 

@@ -72,7 +72,9 @@ Files some_files() {
 std::vector<MotionFile> listed(const Files& files) {
   std::vector<std::string> paths;
   for (const auto& [path, text] : files.text) paths.push_back(path);
-  return list_motions(paths);
+  std::vector<MotionFile> motions = list_motions(paths);
+  for (MotionFile& motion : motions) motion.fps = 30.F;
+  return motions;
 }
 
 TEST(PoseLibrary, LoadsThinsAndSaysWhereFrom) {
@@ -93,6 +95,25 @@ TEST(PoseLibrary, TakesEveryNthFrame) {
   files.text.erase("2_a.amc");
   const PoseLibrary library = load_pose_library(listed(files), files.reader(), {.every = 2, .min_angle_deg = 0.F});
   EXPECT_EQ(library.frames, 3) << "frames 1 and 3 of the first, 1 of the second";
+}
+
+TEST(PoseLibrary, TakesEvery4thFrameOfTheRecordingsAsTheyArePublished) {
+  Files slow, fast;
+  slow.text["1.asf"] = fast.text["subjects/1/1.asf"] = t_skeleton();
+  for (int i = 0; i < 17; ++i) {
+    const std::string frame = "\nlradius 0 -" + std::to_string(5 * i) + " 0\n";
+    fast.text["subjects/1/1_a.amc"] += std::to_string(i + 1) + frame;
+    if (i % 4 == 0) slow.text["1_a.amc"] += std::to_string(i / 4 + 1) + frame;
+  }
+  std::vector<MotionFile> recorded = listed(fast);
+  recorded[0].fps = MotionFile{}.fps;
+  const PoseLibrary library = load_pose_library(recorded, fast.reader(), {.every = 2, .min_angle_deg = 0.F});
+  const PoseLibrary expected = load_pose_library(listed(slow), slow.reader(), {.every = 2, .min_angle_deg = 0.F});
+  ASSERT_EQ(library.poses.size(), 3U);
+  ASSERT_EQ(expected.poses.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(largest_angle(library.poses[i].pose, expected.poses[i].pose), 0.F) << i;
+  }
 }
 
 TEST(PoseLibrary, LeavesOutHandsTurnedBackToFront) {
@@ -124,7 +145,9 @@ TEST(PoseLibrary, RefusesWhereNothingIsLeft) {
 
 /// Angle between the directions of a bone in two poses, degrees.
 float apart(const Pose& a, const Pose& b, Bone bone) {
-  const auto direction = [&](const Pose& pose) { return (world_rotations(pose)[index(bone)] * rest_direction(bone)).eval(); };
+  const auto direction = [&](const Pose& pose) {
+    return (world_rotations(pose)[index(bone)] * rest_direction(bone)).eval();
+  };
   return std::acos(std::clamp(direction(a).dot(direction(b)), -1.F, 1.F)) / kDegree;
 }
 
