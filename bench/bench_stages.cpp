@@ -86,7 +86,8 @@ void add_search(const BenchScene& s) {
   add("find_planes", s, [&s] { keep(flat_pixels(s.frame.depth, s.frame.camera, PlaneOptions())); });
   add("grow_person", s, [&s] {
     const GrowOptions options;
-    keep(PersonGrower(s.frame, s.forest.body, options).grow(s.rough, s.clusters));
+    const Mask flat = flat_pixels(s.frame.depth, s.frame.camera, options.plane);
+    keep(PersonGrower(s.frame, flat, s.forest.body, options).grow(s.rough, s.clusters));
   });
 }
 

@@ -1,24 +1,23 @@
-# `cmake --install`, and the package that find_package(vesalius COMPONENTS core io draw) finds afterwards.
+# `cmake --install`, and the package that find_package(vesalius COMPONENTS core io ...) finds afterwards.
 include(CMakePackageConfigHelpers)
 
 set(VESALIUS_INCLUDE_DIR ${CMAKE_INSTALL_INCLUDEDIR}/vesalius-${PROJECT_VERSION_MAJOR})
 set(VESALIUS_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/vesalius)
 
-# Headers for users. The core's include each other, so all of them; of a satellite only what it is meant for.
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/vesalius DESTINATION ${VESALIUS_INCLUDE_DIR} FILES_MATCHING PATTERN "*.h"
-        PATTERN "*_inl.h" EXCLUDE PATTERN "for_each_target.h" EXCLUDE)
-set(VESALIUS_io_HEADERS atomic_file camera_file image_file model_file open_source options_file pcd ply video write_frames)
-set(VESALIUS_draw_HEADERS draw)
-
-foreach(component core io draw)
-  if(NOT TARGET vesalius_${component})
-    continue()
-  endif()
+# Libraries that name public headers are components. Bottom to top: a component's uses stand before it.
+get_property(VESALIUS_COMPONENTS GLOBAL PROPERTY VESALIUS_COMPONENTS)
+set(VESALIUS_USES_LINES)
+foreach(component IN LISTS VESALIUS_COMPONENTS)
+  get_target_property(uses vesalius_${component} VESALIUS_USES)
+  get_target_property(headers vesalius_${component} VESALIUS_PUBLIC_HEADERS)
+  list(REMOVE_DUPLICATES uses)
+  string(REPLACE ";" " " uses "${uses}")
+  string(APPEND VESALIUS_USES_LINES "set(vesalius_${component}_uses ${uses})\n")
   install(TARGETS vesalius_${component} EXPORT vesalius_${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(EXPORT vesalius_${component} NAMESPACE vesalius:: FILE vesalius-${component}.cmake
-          DESTINATION ${VESALIUS_CMAKE_DIR})
-  foreach(header IN LISTS VESALIUS_${component}_HEADERS)
-    install(FILES ${PROJECT_SOURCE_DIR}/src/${component}/${header}.h DESTINATION ${VESALIUS_INCLUDE_DIR}/${component})
+  install(EXPORT vesalius_${component} NAMESPACE vesalius:: FILE vesalius-${component}.cmake DESTINATION ${VESALIUS_CMAKE_DIR})
+  foreach(header IN LISTS headers)
+    get_filename_component(folder ${header} DIRECTORY)
+    install(FILES ${PROJECT_SOURCE_DIR}/src/${header} DESTINATION ${VESALIUS_INCLUDE_DIR}/${folder})
   endforeach()
 endforeach()
 
@@ -29,3 +28,14 @@ install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/v
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZF.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindHDF5C.cmake
         DESTINATION ${VESALIUS_CMAKE_DIR})
+
+# What the program finds without being told where (src/cli/default_model.h), and what bash asks for commands and flags.
+if(TARGET vesalius)
+  set(VESALIUS_DATA_DIR ${CMAKE_INSTALL_DATADIR}/vesalius)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/models DESTINATION ${VESALIUS_DATA_DIR} FILES_MATCHING
+          PATTERN "*.forest" PATTERN "README.md")
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${VESALIUS_DATA_DIR}/models)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/bodies DESTINATION ${VESALIUS_DATA_DIR})
+  install(FILES ${PROJECT_SOURCE_DIR}/data/completion.bash RENAME vesalius
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+endif()

@@ -1,19 +1,23 @@
-# vesalius_library(NAME [FOLDERS folder...] [USES library...] [TESTS_USE library...] [OPENS_NO_FILES] [PRECOMPILED])
+# vesalius_library(NAME [FOLDERS folder...] [USES library...] [TESTS_USE library...] [PUBLIC header...] [OPENS_NO_FILES]
+#                  [PRECOMPILED])
 #
 # The library vesalius_NAME out of all sources in FOLDERS (below the current folder; "." is that folder itself, the
 # default), and the test NAME_test out of their *_test.cpp. tools/check_layers.py reads these calls: FOLDERS stand bottom to
 # top, a file includes only folders up to its own, the core, and the libraries it USES; tests also capsule and TESTS_USE.
+# PUBLIC: headers that are installed (below the current folder), all that they include among them; a library with some is a
+# component of the installed package.
 # PRECOMPILED: with the core's precompiled header, for libraries that it makes quicker to build.
 # OPENS_NO_FILES: no <fstream>, <iostream> or <filesystem> outside of tests.
 function(vesalius_library name)
-  cmake_parse_arguments(ARG "OPENS_NO_FILES;PRECOMPILED" "" "FOLDERS;USES;TESTS_USE" ${ARGN})
+  cmake_parse_arguments(ARG "OPENS_NO_FILES;PRECOMPILED" "" "FOLDERS;USES;TESTS_USE;PUBLIC" ${ARGN})
   if(NOT ARG_FOLDERS)
     set(ARG_FOLDERS .)
   endif()
   set(sources)
   set(tests)
   foreach(folder IN LISTS ARG_FOLDERS)
-    file(GLOB found CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+    get_filename_component(place ${folder} ABSOLUTE)
+    file(GLOB found CONFIGURE_DEPENDS ${place}/*.cpp)
     foreach(source IN LISTS found)
       if(source MATCHES "_test\\.cpp$")
         list(APPEND tests ${source})
@@ -38,6 +42,13 @@ function(vesalius_library name)
   foreach(library IN LISTS ARG_USES)
     target_link_libraries(${target} PUBLIC vesalius_${library})
   endforeach()
+
+  if(ARG_PUBLIC)
+    file(RELATIVE_PATH here ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
+    list(TRANSFORM ARG_PUBLIC PREPEND ${here}/)
+    set_property(GLOBAL APPEND PROPERTY VESALIUS_COMPONENTS ${name})
+    set_target_properties(${target} PROPERTIES VESALIUS_USES "core;${ARG_USES}" VESALIUS_PUBLIC_HEADERS "${ARG_PUBLIC}")
+  endif()
 
   if(tests)
     list(TRANSFORM ARG_TESTS_USE PREPEND vesalius_)

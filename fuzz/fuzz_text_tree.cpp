@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <exception>
 
-#include "io/model/model_file.h"
+#include "io/model/text_trees.h"
 #include "vesalius/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

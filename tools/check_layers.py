@@ -23,7 +23,7 @@ FOR_TESTS = "capsule"
 FILE_HEADERS = {"fstream", "iostream", "filesystem"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 CALL = re.compile(r"^vesalius_library\(\s*([^)]*)\)", re.MULTILINE)
-KEYWORDS = ("FOLDERS", "USES", "TESTS_USE", "OPENS_NO_FILES", "PRECOMPILED")
+KEYWORDS = ("FOLDERS", "USES", "TESTS_USE", "PUBLIC", "OPENS_NO_FILES", "PRECOMPILED")
 
 
 @dataclass

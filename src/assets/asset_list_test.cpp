@@ -56,7 +56,7 @@ TEST(AssetList, RefusesWithTheLine) {
   EXPECT_THAT(error("\"sub/b\"", "\"../b\""), HasSubstr("l.toml:10: files: expected a path"));
   EXPECT_THAT(error("\"sub/b\"", "\"/b\""), HasSubstr("expected a path that leads nowhere else"));
   EXPECT_THAT(error("\"sub/b\"", "\"a\""), HasSubstr("l.toml:10: files: this path is listed twice"));
-  EXPECT_THAT(error("3,", "-3,"), HasSubstr("expected a number of bytes"));
+  EXPECT_THAT(error("3,", "-3,"), HasSubstr("expected a whole number from 0"));
   EXPECT_THAT(error("3,", ""), HasSubstr("expected [path, bytes, SHA-256]"));
   EXPECT_THAT(error("a\"],\n  [", "A\"],\n  ["), HasSubstr("l.toml:9: files: expected a SHA-256"));
   EXPECT_THAT(error("[[package]]", "x = ["), HasSubstr("not valid TOML"));

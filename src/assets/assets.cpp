@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "assets/unpack.h"
+#include "io/files/descriptor.h"
 #include "io/files/read_file.h"
 #include "vesalius/base/error.h"
 
@@ -41,19 +42,15 @@ class Workplace {
     }
     fs::create_directories(folder, error);
     if (error) fail(folder, error.value());
-    lock_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock_ < 0) fail(folder, errno);
+    lock_ = Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!lock_.is_open()) fail(folder, errno);
     // A file system without locks is no reason to refuse.
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      ::close(lock_);
+    if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       throw Error(folder + ": another installation of assets is at work here");
     }
     clear();  // what a killed one left
     fs::create_directory(unfinished_, error);
-    if (error) {
-      ::close(lock_);
-      fail(folder, error.value());
-    }
+    if (error) fail(folder, error.value());
   }
   ~Workplace() {
     clear();
@@ -61,7 +58,6 @@ class Workplace {
     for (const fs::path& path : made_) {
       if (::rmdir(path.c_str()) != 0) break;
     }
-    ::close(lock_);
   }
   Workplace(const Workplace&) = delete;
   Workplace& operator=(const Workplace&) = delete;
@@ -79,7 +75,7 @@ class Workplace {
 
   std::string unfinished_;
   std::vector<fs::path> made_;  ///< folders that were not there, innermost first
-  int lock_ = -1;
+  Descriptor lock_;
 };
 
 /// One package on its way into a folder.

@@ -225,24 +225,20 @@ bool Origin::get(const std::string& path, VerifiedFile& file) {
 }
 
 bool Origin::copy(const std::string& path, VerifiedFile& file) const {
-  struct Descriptor {
-    int fd;
-    ~Descriptor() { ::close(fd); }
-  };
   const std::string from = place_of(path);
   const auto fail = [&](int error) {
     throw Error(fmt::format("{}: cannot be read: {}", from, std::generic_category().message(error)));
   };
   // Not blocking: opening a pipe nobody writes to would wait for ever.
-  const Descriptor in{::open(from.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
-  if (in.fd < 0 && (errno == ENOENT || errno == ENOTDIR)) return false;
+  const Descriptor in(::open(from.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!in.is_open() && (errno == ENOENT || errno == ENOTDIR)) return false;
   struct stat info {};
-  if (in.fd < 0 || ::fstat(in.fd, &info) != 0) fail(errno);
+  if (!in.is_open() || ::fstat(in.get(), &info) != 0) fail(errno);
   if (!S_ISREG(info.st_mode)) throw Error(from + ": not a regular file");
   file.restart();
   std::vector<char> piece(kPiece);
   for (;;) {
-    const ssize_t n = ::read(in.fd, piece.data(), piece.size());
+    const ssize_t n = ::read(in.get(), piece.data(), piece.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) fail(errno);
     if (n == 0) return true;

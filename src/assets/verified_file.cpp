@@ -22,12 +22,11 @@ bool holds(const std::string& path, const FileDigest& expected) {
 
 VerifiedFile::VerifiedFile(std::string path, std::string unfinished_path, FileDigest expected)
     : path_(std::move(path)), unfinished_path_(std::move(unfinished_path)), expected_(std::move(expected)) {
-  fd_ = ::open(unfinished_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (fd_ < 0) fail(errno);
+  file_ = Descriptor(::open(unfinished_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666));
+  if (!file_.is_open()) fail(errno);
 }
 
 VerifiedFile::~VerifiedFile() {
-  if (fd_ >= 0) ::close(fd_);
   if (!committed_) std::remove(unfinished_path_.c_str());
 }
 
@@ -41,15 +40,11 @@ void VerifiedFile::write(std::string_view bytes) {
   }
   sum_.update(bytes);
   written_ += bytes.size();
-  while (!bytes.empty()) {
-    const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
-    if (n < 0 && errno != EINTR) fail(errno);
-    if (n > 0) bytes.remove_prefix(static_cast<std::size_t>(n));
-  }
+  if (const int error = write_all(file_, bytes)) fail(error);
 }
 
 void VerifiedFile::restart() {
-  if (::ftruncate(fd_, 0) != 0 || ::lseek(fd_, 0, SEEK_SET) != 0) fail(errno);
+  if (::ftruncate(file_.get(), 0) != 0 || ::lseek(file_.get(), 0, SEEK_SET) != 0) fail(errno);
   sum_.finish();
   written_ = 0;
 }
@@ -63,7 +58,7 @@ void VerifiedFile::commit() {
     throw WrongBytes(fmt::format("{}: SHA-256 of what came is {}, expected {}", path_, sum, expected_.sha256));
   }
   // Some file systems say only here that the disk is full.
-  if (::close(std::exchange(fd_, -1)) != 0) fail(errno);
+  if (const int error = file_.close()) fail(error);
   std::error_code error;
   fs::create_directories(fs::path(path_).parent_path(), error);
   if (error) fail(error.value());

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "assets/sha256.h"
+#include "io/files/descriptor.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -53,7 +54,7 @@ class VerifiedFile {
   FileDigest expected_;
   Sha256 sum_;
   std::uint64_t written_ = 0;
-  int fd_ = -1;
+  Descriptor file_;
   bool committed_ = false;
 };
 

@@ -8,7 +8,7 @@
 
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/base/test_threads.h"
 
 namespace vesalius {
 namespace {
@@ -185,16 +185,13 @@ TEST(CapsuleRender, ClothesAndSkinAreWhereTheyBelong) {
 
 TEST(CapsuleRender, SameBytesForAnyThreadCount) {
   const CapsuleScene scene = scene_and_reflection().first;
-  const ThreadLimit one(1);
-  const LabelledFrame a = render(scene, kCamera, paper_body());
-  LabelledFrame b;
-  {
-    const ThreadLimit two(2);
-    b = render(scene, kCamera, paper_body());
+  std::vector<LabelledFrame> results;
+  for_threads({1, 2, 8}, [&] { results.push_back(render(scene, kCamera, paper_body())); });
+  for (const LabelledFrame& result : results) {
+    EXPECT_EQ(result.frame.depth, results[0].frame.depth);
+    EXPECT_EQ(result.frame.colour, results[0].frame.colour);
+    EXPECT_EQ(result.labels, results[0].labels);
   }
-  EXPECT_EQ(a.frame.depth, b.frame.depth);
-  EXPECT_EQ(a.frame.colour, b.frame.colour);
-  EXPECT_EQ(a.labels, b.labels);
 }
 
 TEST(CapsuleRender, OtherBodiesTakeTheirPartsByName) {

@@ -9,6 +9,7 @@
 #include "cli/source_flags.h"
 #include "cli/text_sink.h"
 #include "io/model/model_file.h"
+#include "io/model/text_trees.h"
 #include "io/sources/write_frames.h"
 #include "vesalius/base/error.h"
 
@@ -21,6 +22,7 @@ struct Arguments {
   std::vector<std::string> paths;
   std::string format;
   SourceOptions camera;
+  WriteOptions write;
   bool quiet = false;
 };
 
@@ -31,8 +33,7 @@ void convert_model(std::vector<std::string> paths, bool quiet) {
     throw UsageError(
         fmt::format("{}: expected a name that ends in {} (frames are converted with --to)", out, kModelExtension));
   }
-  const bool is_model = paths.size() == 1 && paths[0].ends_with(kModelExtension);
-  const Forest forest = is_model ? load_model(paths[0]) : import_text_trees(paths);
+  const Forest forest = import_text_trees(paths);
   save_model(forest, out);
   if (!quiet) say(fmt::format("{}: {} trees", out, forest.trees.size()));
 }
@@ -42,9 +43,10 @@ void convert_frames(const Arguments& arguments) {
   const FrameFormat format = parse_frame_format(arguments.format);
   const auto source = open_source(arguments.paths[0], arguments.camera);
   watch_interrupts();
-  const auto writer = make_frame_writer(format, arguments.paths[1]);
+  const auto writer = make_frame_writer(format, arguments.paths[1], arguments.write);
   if (!arguments.quiet) {
     for (const std::string& note : source->notes()) say("note: " + note);
+    if (format == FrameFormat::tum) say("note: this layout names frames by their times, in seconds");
   }
   Progress progress(source->size(), !arguments.quiet);
   while (const auto frame = source->next()) {
@@ -60,25 +62,27 @@ void convert_frames(const Arguments& arguments) {
 }  // namespace
 
 void add_convert(CLI::App& program) {
-  CLI::App* command = program.add_subcommand(
-      "convert", "Turn text trees or an older model into a model, or frames into another layout");
+  CLI::App* command = program.add_subcommand("convert", "Turn text trees into a model, or frames into another layout");
   const auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option(
-          "PATH", arguments->paths,
-          "Text trees (.txt or .txt.bz2), or a .forest of an older version, and the .forest to write; with --to a "
-          "source and a folder")
+      ->add_option("PATH", arguments->paths,
+                   "Text trees (.txt or .txt.bz2) and the .forest to write; with --to a source and a folder")
       ->required()
       ->expected(2, 257);
   command->add_option("--to", arguments->format, "Write frames in this layout")
       ->check(CLI::IsMember({"folder", "tum", "pcd"}));
+  command
+      ->add_option("--rate", arguments->write.frame_rate,
+                   "Frames per second, for --to tum of a source that does not know its frames' times")
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0));
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   add_camera_flags(*command, arguments->camera);
   command->footer(R"(
 Examples:
   vesalius convert tree_1.txt.bz2 tree_2.txt.bz2 released.forest
-  vesalius convert old.forest new.forest
-  vesalius convert tum:walking frames/ --to folder)");
+  vesalius convert tum:walking frames/ --to folder
+  vesalius convert frames/ as_tum/ --to tum --rate 30)");
   command->callback([arguments] {
     if (arguments->format.empty()) {
       convert_model(arguments->paths, arguments->quiet);

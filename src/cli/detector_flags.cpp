@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cli/default_model.h"
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
@@ -42,7 +43,8 @@ DetectOptions detect_options(const std::string& options_file, const OptionFlags<
 }
 
 DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
-  command.add_option("-m,--model", model_, "Trained forest, e.g. capsule.forest")->type_name("FILE")->required();
+  command.add_option("-m,--model", model_, "Trained forest; without it the default.forest that comes with vesalius")
+      ->type_name("FILE");
   command.add_option("--options", options_file_, "TOML file of detector options")
       ->type_name("FILE")
       ->group(kDetectorGroup);
@@ -51,9 +53,11 @@ DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
       ->group(kDetectorGroup);
 }
 
+std::string DetectorFlags::model() const { return model_.empty() ? default_model() : model_; }
+
 Detector DetectorFlags::make() const {
   const DetectOptions options = detect_options(options_file_, options_);
-  Forest forest = load_model(model_);
+  Forest forest = load_model(model());
   if (!body_.empty()) replace_body(forest, body_);
   return Detector(std::move(forest), options);
 }

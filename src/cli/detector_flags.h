@@ -23,7 +23,8 @@ class DetectorFlags {
 
   /// Throws Error for files that cannot be used, UsageError for options outside their range.
   Detector make() const;
-  const std::string& model() const { return model_; }
+  /// Returns the path of the model. Throws Error where none is given and there is no default one.
+  std::string model() const;
 
  private:
   std::string model_, body_, options_file_;

@@ -111,10 +111,10 @@ Json model_facts(const std::string& path) {
 }
 
 std::string plain(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) return escaped(value.get<std::string>());
   if (!value.is_object()) return value.dump();
   std::string text;
-  for (const auto& [key, inner] : value.items()) text += (text.empty() ? "" : ", ") + key + " " + plain(inner);
+  for (const auto& [key, inner] : value.items()) text += (text.empty() ? "" : ", ") + escaped(key) + " " + plain(inner);
   return text;
 }
 
@@ -148,7 +148,7 @@ void add_info(CLI::App& program) {
     const Json facts = model->empty() ? program_facts() : model_facts(*model);
     std::string text;
     if (*json) {
-      text = facts.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+      text = facts.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
     } else {
       append_text(text, facts, "");
     }

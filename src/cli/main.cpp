@@ -44,11 +44,11 @@ void describe(CLI::App& program) {
   program.get_option("--help")->description("Print this help and end");
   program.footer(R"(
 Examples:
-  vesalius detect frames/ --model capsule.forest                    what is found, a line per frame
-  vesalius detect frames/ --model capsule.forest --json people.jsonl --out pictures/
-  vesalius info capsule.forest                                      what is in a model
-  vesalius train --data train/ --out my.forest                      a model of your own
-  vesalius detect --help                                            everything about one command
+  vesalius detect frames/                                  what is found, a line per frame
+  vesalius detect frames/ --json people.jsonl --out pictures/
+  vesalius info capsule.forest                             what is in a model
+  vesalius train --data train/ --out my.forest             a model of your own
+  vesalius detect --help                                   everything about one command
 
 Exit codes: 0 done, 1 failed, 2 wrong usage.)");
   program.require_subcommand(1);

@@ -1,6 +1,7 @@
 #include "cli/status_line.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -10,6 +11,14 @@ namespace {
 
 constexpr std::chrono::milliseconds kTerminalPeriod(100);
 constexpr std::chrono::seconds kPlainPeriod(10);
+
+/// How long a line may be on the terminal. One that filled the last column would wrap, and what stands on the row above
+/// could not be removed.
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col - 1U : 79U;
+}
 
 }  // namespace
 
@@ -26,8 +35,9 @@ void StatusLine::show(const std::string& line) {
   if (!shown_) return;
   last_shown_ = Clock::now();
   clear();
-  std::fputs((line + (terminal_ ? "" : "\n")).c_str(), stderr);
-  if (terminal_) width_ = line.size();
+  const std::string text = terminal_ ? line.substr(0, terminal_width()) : line + "\n";
+  std::fputs(text.c_str(), stderr);
+  if (terminal_) width_ = text.size();
   std::fflush(stderr);
 }
 

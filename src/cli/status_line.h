@@ -6,7 +6,8 @@
 
 namespace vesalius::cli {
 
-/// What is going on, on standard error: one line that changes on a terminal, elsewhere a plain line every ten seconds.
+/// What is going on, on standard error: on a terminal one line that changes and is cut to the terminal's width,
+/// elsewhere a plain line every ten seconds.
 class StatusLine {
  public:
   /// Silent where not `shown`.

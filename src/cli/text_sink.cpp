@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <system_error>
 
@@ -17,6 +16,34 @@ constexpr const char* kStdoutName = "standard output";
   const std::string message = fmt::format("{}: cannot be written: {}", name, std::generic_category().message(error));
   if (error == EPIPE) throw BrokenPipe(message);
   throw Error(message);
+}
+
+/// Bytes of the control character that `text` begins with, 0 where it begins with another: those of ASCII, those of
+/// UTF-8 (U+0080 to U+009F), and single bytes that are no UTF-8 and that some terminals take for the latter.
+std::size_t control_at(std::string_view text, bool continues) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  if (byte(0) < 0x20 || byte(0) == 0x7f) return 1;
+  if (byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0) return 2;
+  return byte(0) >= 0x80 && byte(0) < 0xa0 && !continues ? 1 : 0;
+}
+
+template <class Replace>
+std::string replace_controls(std::string_view text, Replace&& replace) {
+  std::string out;
+  std::size_t follow = 0;  // bytes of a character that are still to come
+  while (!text.empty()) {
+    const std::size_t size = control_at(text, follow > 0);
+    const auto first = static_cast<unsigned char>(text.front());
+    if (size > 0) {
+      out += replace(text.substr(0, size));
+    } else {
+      out += text.front();
+    }
+    follow = first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : first >= 0xc0 ? 1 : follow - std::min<std::size_t>(follow, 1);
+    if (size > 0) follow = 0;
+    text.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return out;
 }
 
 void write(std::FILE* stream, std::string_view text, const std::string& name) {
@@ -44,6 +71,7 @@ void TextSink::line(std::string_view text) {
 }
 
 void TextSink::finish() {
+  if (std::ferror(stream_.get()) != 0) throw Error(name_ + ": cannot be written");  // what was said before is lost
   std::FILE* stream = stream_.release();
   if ((stream == stdout ? std::fflush(stream) : std::fclose(stream)) != 0) fail(name_);
   if (temporary_) temporary_->commit();
@@ -51,13 +79,20 @@ void TextSink::finish() {
 
 void print(std::string_view text) { write(stdout, text, kStdoutName); }
 
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  return text;
+std::string one_line(std::string_view text) {
+  return replace_controls(text, [](std::string_view) { return " "; });
 }
 
-void say(std::string text) { std::fputs((one_line(std::move(text)) + "\n").c_str(), stderr); }
+std::string escaped(std::string_view text) {
+  return replace_controls(text, [](std::string_view control) {
+    if (control == "\n") return std::string(control);
+    std::string codes;
+    for (const unsigned char c : control) codes += fmt::format("\\x{:02x}", c);
+    return codes;
+  });
+}
+
+void say(std::string_view text) { std::fputs((one_line(text) + "\n").c_str(), stderr); }
 
 void finish_stdout() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) fail(kStdoutName);

@@ -17,7 +17,7 @@ class BrokenPipe : public Error {
   using Error::Error;
 };
 
-/// Lines of text for standard output ("-"), a device or pipe (written as it comes), or a file (which appears whole, at
+/// Lines of text for standard output ("-"), a device or pipe (written as they come), or a file (which appears at
 /// `finish`). All members throw Error with the path and the system's reason, BrokenPipe where a reader left.
 class TextSink {
  public:
@@ -41,10 +41,13 @@ class TextSink {
 void print(std::string_view text);
 
 /// Writes a line to standard error, control characters as spaces. Where that cannot be written nobody can be told.
-void say(std::string text);
+void say(std::string_view text);
 
-/// `text` as one line for a terminal: control characters become spaces.
-std::string one_line(std::string text);
+/// Returns `text` as one line that is safe on a terminal: control characters, those of UTF-8 among them, become spaces.
+std::string one_line(std::string_view text);
+
+/// Returns `text` with control characters but line ends as "\x1b": what files say cannot command the terminal.
+std::string escaped(std::string_view text);
 
 /// Throws when not all that was printed arrived.
 void finish_stdout();

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
+#include "dataset/labelled_frame_codec.h"
 #include "io/files/byte_stream.h"
+#include "vesalius/base/body_model.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -48,12 +51,17 @@ std::string hash_text(const DatasetInfo& info) { return fmt::format("{:016x}", d
 
 std::uint64_t dataset_hash(const DatasetInfo& info) {
   ByteWriter hashed;
-  hashed.number(static_cast<std::uint32_t>(info.version));
+  hashed.number(std::uint32_t{kDatasetVersion});
   hashed.text(info.body_toml);
   hashed.text(info.recipe);
   hashed.number(info.seed);
   hashed.number(info.frames_per_shard);
   return checksum_of(hashed.bytes());
+}
+
+bool is_dataset(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(description_path(path), ignored);
 }
 
 std::string description_path(const std::string& folder) { return (fs::path(folder) / "dataset.json").string(); }
@@ -93,14 +101,10 @@ void check_joint_count(const LabelledFrame& labelled, const DatasetInfo& info) {
 }
 
 std::string serialise_description(const DatasetInfo& info) {
-  const Json json = {{"format", static_cast<std::uint64_t>(info.version)},
-                     {"frames", info.frames},
-                     {"frames_per_shard", info.frames_per_shard},
-                     {"seed", info.seed},
-                     {"hash", hash_text(info)},
-                     {"joints", info.joints},
-                     {"body", info.body_toml},
-                     {"recipe", info.recipe}};
+  const Json json = {
+      {"format", kDatasetVersion}, {"frames", info.frames},   {"frames_per_shard", info.frames_per_shard},
+      {"seed", info.seed},         {"hash", hash_text(info)}, {"joints", info.joints},
+      {"body", info.body_toml},    {"recipe", info.recipe}};
   try {
     return json.dump(1) + "\n";
   } catch (const Json::exception&) {
@@ -111,12 +115,7 @@ std::string serialise_description(const DatasetInfo& info) {
 DatasetInfo parse_description(std::string_view text, const std::string& name) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) throw Error(name + ": no description of a labelled dataset, expected a JSON object");
-  const std::uint64_t version = number_of(json, "format", name);
-  if (version > kDatasetVersion) {
-    throw Error(fmt::format("{}: written by a newer version: format {}, this program reads up to {}", name, version,
-                            kDatasetVersion));
-  }
-  if (version == 0) throw Error(name + ": format 0, expected 1 or more");
+  check_dataset_version(number_of(json, "format", name), name);
   DatasetInfo info;
   info.frames = number_of(json, "frames", name);
   info.seed = number_of(json, "seed", name);
@@ -125,8 +124,7 @@ DatasetInfo parse_description(std::string_view text, const std::string& name) {
   info.frames_per_shard = static_cast<std::uint32_t>(per_shard);
   info.body_toml = text_of(json, "body", name);
   info.recipe = text_of(json, "recipe", name);
-  info.version = static_cast<int>(version);
-  if (version >= 2) info.joints = joints_of(json, name);
+  info.joints = joints_of(json, name);
   if (text_of(json, "hash", name) != hash_text(info)) throw Error(name + ": hash does not fit the other values");
   try {
     check(info);

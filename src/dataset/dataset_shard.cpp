@@ -1,9 +1,7 @@
 #include "dataset/dataset_shard.h"
 
 #define XXH_INLINE_ALL
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -11,8 +9,8 @@
 #include <cerrno>
 #include <system_error>
 
-#include "dataset/labelled_dataset.h"
 #include "io/files/byte_stream.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
@@ -26,11 +24,13 @@ static_assert(kMostShardHeaderBytes == kFixedBytes + kMostFramesPerShard * kEntr
 
 std::size_t header_bytes(std::size_t frames) { return kFixedBytes + frames * kEntryBytes + kChecksumBytes; }
 
-[[noreturn]] void fail(const std::string& path, int error) {
-  throw Error(fmt::format("{}: cannot be read: {}", path, std::generic_category().message(error)));
-}
-
 }  // namespace
+
+void check_dataset_version(std::uint64_t version, const std::string& name) {
+  if (version == kDatasetVersion) return;
+  throw Error(fmt::format("{}: written by {} version: format {}, this program reads {}", name,
+                          version > kDatasetVersion ? "a newer" : "another", version, kDatasetVersion));
+}
 
 std::uint64_t checksum_of(std::string_view bytes) { return XXH64(bytes.data(), bytes.size(), 0); }
 
@@ -65,13 +65,10 @@ ShardTable parse_shard_table(std::string_view beginning, std::uint64_t file_byte
   ByteReader in(beginning, name);
   in.take(kMagic.size(), "magic");
   const auto version = in.number<std::uint16_t>("version");
-  if (version > kDatasetVersion) {
-    throw Error(fmt::format("{}: written by a newer version: format {}, this program reads up to {}", name, version,
-                            kDatasetVersion));
-  }
+  check_dataset_version(version, name);
   const auto reserved = in.number<std::uint16_t>("flags");
   const auto count = in.number<std::uint32_t>("number of frames");
-  if (version == 0 || reserved != 0 || count == 0 || count > kMostFramesPerShard) {
+  if (reserved != 0 || count == 0 || count > kMostFramesPerShard) {
     throw Error(fmt::format("{}: damaged header: format {}, {} frames", name, version, count));
   }
   ShardTable table;
@@ -93,41 +90,28 @@ ShardTable parse_shard_table(std::string_view beginning, std::uint64_t file_byte
   return table;
 }
 
-ShardFile::ShardFile(std::string path) : path_(std::move(path)) {
-  // Not blocking: opening a pipe nobody writes to would wait for ever.
-  fd_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (fd_ < 0) fail(path_, errno);
-  struct stat info {};
-  const int error = ::fstat(fd_, &info) != 0 ? errno : S_ISREG(info.st_mode) ? 0 : EINVAL;
-  if (error != 0) {
-    ::close(fd_);
-    fail(path_, error);
-  }
-  size_ = static_cast<std::uint64_t>(info.st_size);
-}
-
-ShardFile::~ShardFile() { ::close(fd_); }
+ShardFile::ShardFile(std::string path) : path_(std::move(path)), file_(open_regular_file(path_)) {}
 
 std::string ShardFile::read(std::uint64_t offset, std::size_t count) const {
   std::string bytes(count, '\0');
   std::size_t done = 0;
   while (done < count) {
-    const ssize_t n = ::pread(fd_, bytes.data() + done, count - done, static_cast<off_t>(offset + done));
+    const ssize_t n = ::pread(file_.descriptor.get(), bytes.data() + done, count - done, off_t(offset + done));
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(path_, errno);
+    if (n < 0) throw Error(fmt::format("{}: cannot be read: {}", path_, std::generic_category().message(errno)));
     if (n == 0) throw Error(fmt::format("{}: cut: ends at byte {}", path_, offset + done));
-    done += static_cast<std::size_t>(n);
+    done += n;
   }
   return bytes;
 }
 
 ShardTable ShardFile::table() const {
-  return parse_shard_table(read(0, std::min<std::uint64_t>(size_, kMostShardHeaderBytes)), size_, path_);
+  return parse_shard_table(read(0, std::min<std::uint64_t>(file_.size, kMostShardHeaderBytes)), file_.size, path_);
 }
 
 std::string ShardFile::frame(const ShardEntry& entry, std::uint64_t index) const {
-  if (entry.offset > size_ || entry.bytes > size_ - entry.offset) {
-    throw Error(fmt::format("{}: frame {}: cut: the file has only {} bytes", path_, index, size_));
+  if (entry.offset > file_.size || entry.bytes > file_.size - entry.offset) {
+    throw Error(fmt::format("{}: frame {}: cut: the file has only {} bytes", path_, index, file_.size));
   }
   std::string bytes = read(entry.offset, entry.bytes);
   if (checksum_of(bytes) != entry.checksum) {

@@ -5,7 +5,15 @@
 #include <string_view>
 #include <vector>
 
+#include "io/files/descriptor.h"
+
 namespace vesalius {
+
+/// Version of the datasets that this program writes and reads.
+inline constexpr int kDatasetVersion = 2;
+
+/// Throws Error naming `name` for files of another version.
+void check_dataset_version(std::uint64_t version, const std::string& name);
 
 /// Where a frame lies in its shard.
 struct ShardEntry {
@@ -40,9 +48,6 @@ ShardTable parse_shard_table(std::string_view beginning, std::uint64_t file_byte
 class ShardFile {
  public:
   explicit ShardFile(std::string path);
-  ~ShardFile();
-  ShardFile(const ShardFile&) = delete;
-  ShardFile& operator=(const ShardFile&) = delete;
 
   ShardTable table() const;
   /// The encoded frame of an entry; Error for one that does not fit its checksum, naming it by `index`.
@@ -52,8 +57,7 @@ class ShardFile {
   std::string read(std::uint64_t offset, std::size_t count) const;
 
   std::string path_;
-  int fd_;
-  std::uint64_t size_ = 0;
+  OpenFile file_;
 };
 
 }  // namespace vesalius

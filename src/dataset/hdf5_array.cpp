@@ -60,7 +60,7 @@ class Quiet {
 std::vector<hsize_t> shape_of(const Handle& dataset) {
   const Handle space(H5Dget_space(dataset.id()), H5Sclose);
   if (!space.ok() || H5Sget_simple_extent_type(space.id()) != H5S_SIMPLE) return {};
-  std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space.id()))));
+  std::vector<hsize_t> shape(std::max(0, H5Sget_simple_extent_ndims(space.id())));
   if (H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr) < 0) return {};
   return shape;
 }
@@ -136,7 +136,7 @@ Hdf5Array::~Hdf5Array() = default;
 Hdf5Array::Hdf5Array(Hdf5Array&&) noexcept = default;
 Hdf5Array& Hdf5Array::operator=(Hdf5Array&&) noexcept = default;
 
-std::size_t Hdf5Array::rows() const { return static_cast<std::size_t>(state_->shape.front()); }
+std::size_t Hdf5Array::rows() const { return state_->shape.front(); }
 
 std::vector<float> Hdf5Array::read(std::size_t row) const {
   const Quiet quiet;

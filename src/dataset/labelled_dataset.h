@@ -3,40 +3,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "dataset/dataset_shard.h"
+#include "dataset/dataset_folder.h"
 #include "dataset/labelled_frame_codec.h"
 #include "io/files/folder_lock.h"
 #include "vesalius/base/body_model.h"
 
 namespace vesalius {
-
-/// Version of datasets that this program writes and the newest it reads. 1: without joints.
-inline constexpr int kDatasetVersion = kFrameVersion;
-
-/// What all frames of a dataset share.
-struct DatasetInfo {
-  std::string body_toml;                 ///< text of the body model whose parts are the labels
-  std::string recipe;                    ///< how the frames are made; any text
-  std::uint64_t seed = 0;                ///< of the run
-  std::uint64_t frames = 0;              ///< in the whole dataset
-  std::uint32_t frames_per_shard = 256;  ///< 1 to 4096
-  std::vector<std::string> joints = {};  ///< names of each person's joints, of a dataset that has any; at most 255
-  int version = kDatasetVersion;         ///< of the files; a dataset read may be older
-};
-
-/// Names what frames depend on: XXH64 over version, body, recipe, seed and shard size, but not over the number of
-/// frames, so that a dataset can grow.
-std::uint64_t dataset_hash(const DatasetInfo& info);
-
-/// Frames [first, first + count).
-struct FrameRange {
-  std::uint64_t first = 0;
-  std::uint32_t count = 0;
-  friend bool operator==(const FrameRange&, const FrameRange&) = default;
-};
 
 /// Writes a dataset shard by shard: a shard appears whole or not at all, and those that are there count as done. Holds
 /// one shard's compressed frames in memory. One process writes a folder at a time.
@@ -95,8 +69,5 @@ class DatasetReader {
   BodyModel body_;
   std::vector<ShardEntry> entries_;  ///< of all frames
 };
-
-/// Whether `path` is a folder with a labelled dataset.
-bool is_dataset(const std::string& path);
 
 }  // namespace vesalius

@@ -44,7 +44,7 @@ TEST(LabelledExport, NamesThePartsAndSaysWhichAreMissing) {
   EXPECT_EQ(json["people"][1]["index"], 1);
   EXPECT_TRUE(json["people"][1]["parts_m"]["neck"].is_null());
   const auto& knee = json["people"][0]["parts_m"]["l_knee"];
-  const auto index = static_cast<std::size_t>(paper_body().find_part("l_knee"));
+  const int index = paper_body().find_part("l_knee");
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(knee[axis].get<float>(), labelled.parts[0][index][axis], 6e-5F);
   }

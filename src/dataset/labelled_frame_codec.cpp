@@ -55,12 +55,11 @@ void write_people(ByteWriter& out, const LabelledFrame& labelled) {
   for (const auto& joints : labelled.joints) write_points(out, joints);
 }
 
-void read_people(ByteReader& in, int part_count, int version, LabelledFrame& labelled) {
+void read_people(ByteReader& in, int part_count, LabelledFrame& labelled) {
   const auto people = in.number<std::uint8_t>("people");
   for (int i = 0; i < people; ++i) {
-    labelled.parts.push_back(read_points(in, static_cast<std::size_t>(part_count), "part centre"));
+    labelled.parts.push_back(read_points(in, part_count, "part centre"));
   }
-  if (version < 2) return;
   const auto joints = in.number<std::uint8_t>("joints");
   for (int i = 0; joints > 0 && i < people; ++i) labelled.joints.push_back(read_points(in, joints, "joint"));
 }
@@ -101,7 +100,7 @@ void check_truth(const LabelledFrame& labelled, int part_count) {
   if (labelled.frame.name.size() > kMaxName) throw Error(fmt::format("name of more than {} bytes", kMaxName));
   const std::size_t people = labelled.parts.size();
   if (people >= kBackground) throw Error(fmt::format("{} people, expected at most 254", people));
-  if (const auto label = first_beyond(labelled.labels, static_cast<std::size_t>(part_count))) {
+  if (const auto label = first_beyond(labelled.labels, part_count)) {
     throw Error(fmt::format("label {}, expected one below {} or {}", *label, part_count, kBackground));
   }
   if (const auto person = first_beyond(labelled.person, people)) {
@@ -136,8 +135,7 @@ std::string encode_frame(const DatasetFrame& frame, int part_count) {
   return std::move(out.bytes());
 }
 
-DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::string& name, bool with_colour,
-                          int version) {
+DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::string& name, bool with_colour) {
   ByteReader in(bytes, name);
   DatasetFrame frame;
   frame.index = in.number<std::uint64_t>("index");
@@ -148,7 +146,7 @@ DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::str
   labelled.frame.name = in.text("name");
   labelled.frame.time_s = in.real64("time");
   labelled.frame.camera = read_camera(in);
-  read_people(in, part_count, version, labelled);
+  read_people(in, part_count, labelled);
   const auto [width, height] = std::pair(labelled.frame.camera.width, labelled.frame.camera.height);
   labelled.frame.depth = read_depth_plane(in, width, height);
   labelled.labels = read_byte_plane(in, width, height);

@@ -15,8 +15,6 @@ struct DatasetFrame {
   LabelledFrame labelled;
 };
 
-/// Version of frames that this program writes and the newest it reads. 1: without joints.
-inline constexpr int kFrameVersion = 2;
 inline constexpr std::size_t kMostJoints = 255;
 
 /// Throws Error where pictures differ in size, a label is not below `part_count`, a person in the picture has no
@@ -29,9 +27,8 @@ void check_truth(const LabelledFrame& labelled, int part_count);
 /// `check_truth` does, naming the frame's index.
 std::string encode_frame(const DatasetFrame& frame, int part_count);
 
-/// The frame that these bytes of a version hold; without its colour where that is not wanted. Throws Error naming
-/// `name` for bytes that hold none, and asks for no more memory than 64 Mpixel pictures need.
-DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::string& name, bool with_colour = true,
-                          int version = kFrameVersion);
+/// Returns the frame that these bytes hold, without its colour where that is not wanted. Throws Error naming `name` for
+/// bytes that hold none, and asks for no more memory than pictures of 64 Mpixel need.
+DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::string& name, bool with_colour = true);
 
 }  // namespace vesalius

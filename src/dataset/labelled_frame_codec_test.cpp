@@ -47,14 +47,6 @@ TEST(FrameCodec, KeepsPeopleWithoutJoints) {
   test::expect_same(decode_frame(encode_frame({1, 2, labelled}, kParts), kParts, "test").labelled, labelled);
 }
 
-TEST(FrameCodec, ReadsFramesOfVersionOne) {
-  LabelledFrame labelled = random_labelled(3);
-  labelled.joints.clear();
-  const std::string old = test::as_version_one(encode_frame({1, 2, labelled}, kParts), labelled);
-  test::expect_same(decode_frame(old, kParts, "test", true, 1).labelled, labelled);
-  EXPECT_THAT(error_of([&] { decode_frame(old, kParts, "test"); }), HasSubstr("test: "));
-}
-
 TEST(FrameCodec, RefusesTruthThatDoesNotFit) {
   const auto complaint = [](const std::function<void(LabelledFrame&)>& change) {
     LabelledFrame labelled = random_labelled(3);

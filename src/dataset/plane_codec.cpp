@@ -15,7 +15,7 @@ constexpr unsigned kEscape = 255;         // symbol whose number follows in the 
 
 void write_packed(ByteWriter& out, std::string_view raw) { out.bytes() += pack(raw, kLevel); }
 
-std::size_t pixels(int width, int height) { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+std::size_t pixels(int width, int height) { return std::size_t(width) * height; }
 
 /// What a reading is expected to be: between its neighbours (the median predictor of LOCO-I), holes left out.
 class Prediction {

@@ -54,14 +54,6 @@ inline void expect_same(const LabelledFrame& a, const LabelledFrame& b) {
   }
 }
 
-/// Bytes of an encoded frame without joints, as version 1 had them.
-inline std::string as_version_one(std::string bytes, const LabelledFrame& labelled) {
-  constexpr std::size_t kPointBytes = 12;
-  const std::size_t head = 8 + 8 + 1 + 4 + labelled.frame.name.size() + 8 + 2 * 4 + 4 * 4 + 1;
-  bytes.erase(head + labelled.parts.size() * labelled.parts[0].size() * kPointBytes, 1);  // the number of joints
-  return bytes;
-}
-
 inline DatasetInfo small_info(std::uint64_t frames = 10, std::uint32_t per_shard = 4) {
   return {paper_body().toml, "people = 2\n", 7, frames, per_shard, kJoints};
 }

@@ -72,7 +72,7 @@ bool CsvTable::has(std::string_view column) const { return std::ranges::find(hea
 std::size_t CsvTable::column(std::string_view name) const {
   const auto found = std::ranges::find(header_, name);
   if (found == header_.end()) throw Error(fmt::format("{}: no column \"{}\" in the header", name_, name));
-  return static_cast<std::size_t>(found - header_.begin());
+  return found - header_.begin();
 }
 
 double CsvTable::number(std::size_t row, std::size_t column) const {

@@ -56,7 +56,7 @@ class ItopTruth final : public TruthSource {
     std::size_t kept = 0;
     for (std::size_t row = 0; row < rows_; ++row) {
       if (valid.read(row).front() == 0.F) continue;
-      if (kept++ % static_cast<std::size_t>(step) == 0) wanted_.push_back(row);
+      if (kept++ % step == 0) wanted_.push_back(row);
     }
     left_out_ = rows_ - kept;
   }

@@ -1,5 +1,6 @@
 #include "dataset/truth_itop.h"
 
+#include "dataset/open_truth.h"
 #include "dataset/test_hdf5.h"
 #include "io/files/test_files.h"
 

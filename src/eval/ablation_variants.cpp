@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "eval/reduce_forest.h"
+#include "vesalius/forest/make_labeller.h"
 
 namespace vesalius {
 namespace {
@@ -17,7 +18,7 @@ constexpr float kAskEverywhere = 2.F;  ///< a probability that no background has
 class VariantList {
  public:
   VariantList(const Forest& forest, const DetectOptions& options)
-      : forest_(forest), labeller_(std::make_shared<ForestLabeller>(forest)), options_(options) {}
+      : forest_(forest), labeller_(make_labeller(forest)), options_(options) {}
 
   void add(const std::string& name, const std::function<void(FrameScorer::Options&)>& change) {
     FrameScorer::Options options{options_};
@@ -28,8 +29,8 @@ class VariantList {
   void add(const std::string& name, Forest forest) { add(name, std::move(forest), options_); }
 
   void add(const std::string& name, Forest forest, const DetectOptions& options) {
-    variants_.push_back({name, std::make_unique<FrameScorer>(std::make_shared<ForestLabeller>(std::move(forest)),
-                                                             FrameScorer::Options{options})});
+    variants_.push_back(
+        {name, std::make_unique<FrameScorer>(make_labeller(std::move(forest)), FrameScorer::Options{options})});
   }
 
   void add_options() {
@@ -84,7 +85,7 @@ class VariantList {
 
  private:
   const Forest& forest_;
-  std::shared_ptr<const ForestLabeller> labeller_;
+  std::shared_ptr<const PixelLabeller> labeller_;
   DetectOptions options_;
   std::vector<Variant> variants_;
 };

@@ -90,7 +90,7 @@ Skeleton as_seen(const TrueFrame& frame, int person, const BodyModel& body) {
 }  // namespace
 
 FrameScorer::FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options)
-    : labeller_(labeller), options_(std::move(options)), detector_(std::move(labeller), options_.detect) {}
+    : options_(std::move(options)), detector_(std::move(labeller), options_.detect) {}
 
 FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
   check(frame.frame);
@@ -183,14 +183,14 @@ void FrameScorer::judge_labels(const TrueFrame& frame, FrameScore& score) const 
   const FrameTruth& truth = frame.truth;
   const DepthImage& depth = frame.frame.depth;
   if (truth.labels.empty()) {
-    if (score.labels.empty()) score.labels = label_scene(*labeller_, options_.detect, frame.frame).labels;
+    if (score.labels.empty()) score.labels = detector_.label(frame.frame).labels;
     append(score.terms, mask_terms(truth, score.labels, depth));
     return;
   }
   Mask in_body(depth.width(), depth.height(), 0);
   std::ranges::transform(truth.labels, in_body.begin(),
                          [](std::uint8_t l) -> std::uint8_t { return l != kBackground; });
-  SceneLabels labels = label_scene(*labeller_, options_.detect, frame.frame, &in_body);
+  FrameLabels labels = detector_.label(frame.frame, &in_body);
   if (score.labels.empty()) score.labels = std::move(labels.labels);
   PixelConfusion inside(body().part_count());
   inside.add(truth.labels, labels.inside, depth);

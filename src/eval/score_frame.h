@@ -9,7 +9,6 @@
 #include "eval/fit_score.h"
 #include "eval/joint_metrics.h"
 #include "eval/joint_precision.h"
-#include "eval/label_scene.h"
 #include "eval/metric_table.h"
 #include "eval/pixel_metrics.h"
 #include "vesalius/base/frame_truth.h"
@@ -50,7 +49,7 @@ class FrameScorer {
   /// where these are known, else from the people found. Throws Error where truth and frame do not fit together.
   FrameScore score(TrueFrame frame, bool fit_joints) const;
 
-  const BodyModel& body() const { return labeller_->body(); }
+  const BodyModel& body() const { return detector_.body(); }
   const Options& options() const { return options_; }
 
  private:
@@ -63,7 +62,6 @@ class FrameScorer {
                     FrameScore& score) const;
   void judge_labels(const TrueFrame& frame, FrameScore& score) const;
 
-  std::shared_ptr<const PixelLabeller> labeller_;
   Options options_;
   Detector detector_;
 };

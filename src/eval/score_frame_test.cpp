@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "capsule/capsule_person.h"
-#include "eval/label_scene.h"
 #include "eval/match_people.h"
 #include "eval/test_terms.h"
 #include "vesalius/base/error.h"
@@ -29,8 +28,8 @@ class Labeller : public PixelLabeller {
  public:
   Labeller(LabelImage truth, bool half_blind) : truth_(std::move(truth)), half_blind_(half_blind) {}
 
-  Posteriors label(const DepthImage& depth, const Camera& /*camera*/) const override {
-    Posteriors out{depth.width(), depth.height(), paper_body().part_count() + 1, 1, {}};
+  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+    out = {depth.width(), depth.height(), paper_body().part_count() + 1, 1, {}};
     out.sums.assign(depth.size() * out.classes, 0);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
@@ -41,7 +40,6 @@ class Labeller : public PixelLabeller {
         out.at(u, v)[paper_body().part_count()] = label == kBackground || blind ? 120 : 0;
       }
     }
-    return out;
   }
   const BodyModel& body() const override { return paper_body(); }
   bool has_background() const override { return true; }

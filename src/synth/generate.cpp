@@ -9,6 +9,7 @@
 #include "synth/body/builtin_body.h"
 #include "synth/dress/dress.h"
 #include "synth/pose/mix_poses.h"
+#include "synth/sensor/noise_colour.h"
 #include "synth/sensor/render.h"
 #include "synth/sensor/sensor_noise.h"
 #include "synth/skeleton_joints.h"

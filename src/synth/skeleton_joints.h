@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "synth/body/body_mesh.h"
+#include "synth/body/poser.h"
 
 namespace vesalius::synth {
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "train/local_executor.h"
 #include "train/walk_samples.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
@@ -119,9 +120,11 @@ GrowthEstimate estimate_growth(const std::vector<LabelledFrame>& frames, const B
   if (options.hard_trees == 0 || !pilot.set.has_background()) return estimate;
 
   const auto before = static_cast<double>(pilot.set.samples().size());
+  Forest forest = pilot.set.untrained_forest();
+  forest.trees.push_back(std::move(trees.front()));
+  LocalExecutor executor({&pilot.set});
   const Clock::time_point search_start = Clock::now();
-  const auto added = static_cast<double>(
-      pilot.set.add_hard_negatives(assemble_forest(pilot.set, {std::move(trees.front())}, "pilot")));
+  const auto added = static_cast<double>(add_hard_negatives(executor, forest, options.sample));
   estimate.hard_search_s = seconds_since(search_start) * pilot.scale * options.hard_trees;
   estimate.evaluations *= 1.0 + added / before;
   estimate.evaluations += of_a_tree * options.hard_trees;

@@ -6,7 +6,8 @@
 // clang-format on
 
 #include "train/feature_rows.h"
-#include "train/split_histogram.h"
+#include "train/split_candidates.h"
+#include "train/training_messages.h"
 #include "train/walk_samples.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,18 +1,26 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "train/frame_store.h"
-#include "train/split_candidates.h"
-#include "train/training_set.h"
+#include "train/training_sample.h"
 
 namespace vesalius {
 
-/// Eq. 1 at one sample for all candidates of a table, whose columns (CandidateTable::offsets) have `padded` values
-/// each: `values` takes as many, in mm, clamped to int16. The same numbers from every instruction set.
+/// Values of up to kBlockCandidates candidates at samples of one node: row after row of `width` numbers (mm).
+struct FeatureRows {
+  const std::int16_t* values = nullptr;
+  const std::uint8_t* labels = nullptr;  ///< class of each row
+  std::size_t rows = 0;
+  int width = 0;  ///< a multiple of 16, at most kBlockCandidates
+};
+
+/// Computes eq. 1 at one sample for all candidates of a table, whose columns (CandidateTable::offsets) have `padded`
+/// values each. `values` takes as many, in mm, clamped to int16. The numbers are the same from every instruction set.
 void evaluate_candidates(const TiledDepth& depth, const FeatureConvention& convention, const TrainingSample& sample,
                          const std::int16_t* offsets, int padded, std::int16_t* values);
-/// The same numbers without unpacking the frame: quicker for few samples of it.
+/// Computes the same numbers without unpacking the frame, which is quicker for few samples of it.
 void evaluate_candidates(const FrameStore::View& view, const FeatureConvention& convention,
                          const TrainingSample& sample, const std::int16_t* offsets, int padded, std::int16_t* values);
 

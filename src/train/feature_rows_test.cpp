@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "train/split_candidates.h"
 #include "train/walk_samples.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/for_each_target.h"

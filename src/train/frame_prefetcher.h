@@ -4,7 +4,7 @@
 #include <span>
 
 #include "train/frame_store.h"
-#include "train/training_set.h"
+#include "train/training_sample.h"
 
 namespace vesalius {
 

@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
 
+#include "train/local_executor.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius {
 namespace {
@@ -13,10 +18,38 @@ namespace {
 /// Most steps to the furthest probe: what a byte holds, so that nodes take 8 bytes (packed_tree.h).
 constexpr float kMostSteps = 127.F;
 
-std::vector<Tree> grow_trees(const TrainingSet& set, const TrainOptions& options, int first, int count) {
-  std::vector<Tree> trees;
-  for (int t = 0; t < count; ++t) trees.push_back(grow_tree(set, options.grow, first + t));
-  return trees;
+/// Grows the trees of a round that the store lacks, and returns all of the round in order.
+std::vector<Tree> grow_round(Executor& executor, const Forest& forest, const TrainOptions& options, TreeRound round,
+                             TreeStore& store, TrainObserver& observer, int trees_at_once) {
+  std::vector<std::optional<Tree>> trees;
+  std::vector<int> missing;
+  for (int t = 0; t < round.trees; ++t) {
+    trees.push_back(store.load(round.first + t));
+    if (!trees.back()) missing.push_back(t);
+  }
+  round.missing = static_cast<int>(missing.size());
+  GrowProgress progress;
+  observer.begin_round(round, progress);
+  const auto grow = [&](int t) {
+    const int number = round.first + t;
+    const std::unique_ptr<TreeExecutor> shards = executor.begin_tree(options.grow, number);
+    trees[t] = grow_tree(*shards, forest, options.grow, number, progress);
+    store.save(number, *trees[t]);
+    observer.add_tree(*trees[t]);
+  };
+  try {
+    // In batches: a thread that waits within a tree may otherwise begin another one, and hold the memory of both.
+    for (int begin = 0; begin < round.missing; begin += trees_at_once) {
+      parallel_for(std::min(round.missing - begin, trees_at_once), [&](int i) { grow(missing[begin + i]); });
+    }
+  } catch (...) {
+    observer.end_round();
+    throw;
+  }
+  observer.end_round();
+  std::vector<Tree> grown;
+  for (std::optional<Tree>& tree : trees) grown.push_back(std::move(*tree));
+  return grown;
 }
 
 }  // namespace
@@ -45,14 +78,24 @@ FeatureConvention training_convention(const TrainOptions& options) {
   return convention;
 }
 
-Forest assemble_forest(const TrainingSet& set, std::vector<Tree> trees, std::string recipe) {
-  Forest forest;
-  forest.body = set.body();
-  forest.convention = set.convention();
-  forest.has_background = set.has_background();
-  forest.trees = std::move(trees);
-  forest.recipe = std::move(recipe);
-  check(forest);
+std::size_t add_hard_negatives(Executor& executor, const Forest& forest, const SampleOptions& options) {
+  const HardCounts hard = executor.count_hard_negatives(forest);
+  const double most = static_cast<double>(options.hard_share) * static_cast<double>(hard.background);
+  return executor.add_hard_negatives(hard_cut(hard, static_cast<std::uint64_t>(most)));
+}
+
+Forest train_forest(Executor& executor, Forest forest, const TrainOptions& options, TreeStore& store,
+                    TrainObserver& observer, int trees_at_once) {
+  check(options);
+  const auto grow = [&](const char* name, int first, int count) {
+    forest.trees = grow_round(executor, forest, options, {name, first, count, 0}, store, observer, trees_at_once);
+    check(forest);
+  };
+  if (options.hard_trees > 0 && forest.has_background) {
+    grow("first round", kFirstHardTree, options.hard_trees);
+    observer.add_hard_negatives(add_hard_negatives(executor, forest, options.sample));
+  }
+  grow("forest", 0, options.trees);
   return forest;
 }
 
@@ -61,15 +104,14 @@ Forest grow_forest(const std::vector<LabelledFrame>& frames, const BodyModel& bo
   if (frames.empty()) throw Error("training: no frames");
   TrainingSet set(body, training_convention(options), options.sample, static_cast<std::uint64_t>(options.grow.seed));
   for (const LabelledFrame& frame : frames) set.add(frame);
-  if (options.hard_trees > 0 && set.has_background()) {
-    set.add_hard_negatives(
-        assemble_forest(set, grow_trees(set, options, kFirstHardTree, options.hard_trees), "first round"));
-  }
-  return assemble_forest(
-      set, grow_trees(set, options, 0, options.trees),
-      fmt::format("grow_forest: {} frames, {} pixels each, {} trees, depth {}, {} candidates, seed {}", frames.size(),
-                  options.sample.pixels_per_frame, options.trees, options.grow.leaf.max_depth,
-                  options.grow.split.candidates, options.grow.seed));
+  Forest forest = set.untrained_forest();
+  forest.recipe = fmt::format("grow_forest: {} frames, {} pixels each, {} trees, depth {}, {} candidates, seed {}",
+                              frames.size(), options.sample.pixels_per_frame, options.trees,
+                              options.grow.leaf.max_depth, options.grow.split.candidates, options.grow.seed);
+  LocalExecutor executor({&set});
+  MemoryTreeStore store;
+  TrainObserver nobody;
+  return train_forest(executor, std::move(forest), options, store, nobody);
 }
 
 }  // namespace vesalius

@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "capsule/capsule_person.h"
 #include "train/leaf_shares.h"
+#include "train/local_executor.h"
 #include "train/prune_tree.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
 #include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/base/test_threads.h"
 #include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {
@@ -28,7 +30,7 @@ class ObviousTrainer {
         frames_(frames),
         options_(options),
         tree_(tree),
-        shares_(set, options.leaf.prior_correction, options.leaf.part_balance) {}
+        shares_(set.sample_counts(), set.body().part_count(), options.leaf) {}
 
   Tree grow() {
     grow_node({set_.samples().begin(), set_.samples().end()}, 1, 0);
@@ -187,41 +189,101 @@ std::vector<LabelledFrame> people(int count) {
   return frames;
 }
 
-TrainingSet set_of(const std::vector<LabelledFrame>& frames, int pixels) {
+TrainingSet set_of(const std::vector<LabelledFrame>& frames, int pixels, std::size_t first_frame = 0) {
   SampleOptions sample;
   sample.pixels_per_frame = pixels;
   sample.held_out_share = 0.F;
   FeatureConvention convention;
   convention.clip_mm = 1000;
-  TrainingSet set(paper_body(), convention, sample, 5);
+  TrainingSet set(paper_body(), convention, sample, 5, first_frame);
   for (const LabelledFrame& frame : frames) set.add(frame);
   return set;
 }
 
+/// The tree that shards within this process grow, shard i holding the frames [ends[i - 1], ends[i]).
+Tree grow_over(const std::vector<std::size_t>& ends, const std::vector<LabelledFrame>& frames, const TrainingSet& whole,
+               int pixels, const GrowTreeOptions& options, int tree) {
+  std::vector<TrainingSet> sets;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const std::size_t begin = i > 0 ? ends[i - 1] : 0;
+    sets.push_back(set_of(
+        {frames.begin() + static_cast<std::ptrdiff_t>(begin), frames.begin() + static_cast<std::ptrdiff_t>(ends[i])},
+        pixels, begin));
+  }
+  std::vector<const TrainingSet*> shards;
+  for (const TrainingSet& set : sets) shards.push_back(&set);
+  GrowProgress progress;
+  LocalTree local(shards, options, tree);
+  return grow_tree(local, whole.untrained_forest(), options, tree, progress);
+}
+
+/// Expects the obvious trainer's tree from 1, 2 and 5 shards, of which some have few frames and one has none.
+void expect_obvious_tree(const std::vector<LabelledFrame>& frames, int pixels, const GrowTreeOptions& options,
+                         int tree) {
+  const TrainingSet set = set_of(frames, pixels);
+  const Tree truth = ObviousTrainer(set, frames, options, tree).grow();
+  EXPECT_GT(truth.nodes.size(), 5U);
+  EXPECT_EQ(grow_tree(set, options, tree), truth);
+  const std::size_t n = frames.size();
+  for (const std::vector<std::size_t>& ends :
+       {std::vector<std::size_t>{n}, {n / 2, n}, {1, n / 2, n / 2, n - 1, n}, {0, 1, 1, n, n}}) {
+    EXPECT_EQ(grow_over(ends, frames, set, pixels, options, tree), truth) << ends.size() << " shards";
+  }
+}
+
 TEST(GrowTree, IsThatOfTheObviousTrainer) {
   const std::vector<LabelledFrame> frames = people(8);
-  const TrainingSet set = set_of(frames, 300);
   GrowTreeOptions options;
   options.split.candidates = 12;
   options.leaf.max_depth = 7;
   options.leaf.min_samples = 6;
-  EXPECT_EQ(grow_tree(set, options, 3), ObviousTrainer(set, frames, options, 3).grow());
+  expect_obvious_tree(frames, 300, options, 3);
   options.split.split_pixels = 150;  // most nodes choose by some of their samples
   options.split.bins = 5;
   options.leaf.prior_correction = 1.F;
-  EXPECT_EQ(grow_tree(set, options, 4), ObviousTrainer(set, frames, options, 4).grow());
+  expect_obvious_tree(frames, 300, options, 4);
 }
 
 TEST(GrowTree, IsThatOfTheObviousTrainerForMoreThanOneBlockOfCandidates) {
   const std::vector<LabelledFrame> frames = people(2);
-  const TrainingSet set = set_of(frames, 150);
   GrowTreeOptions options;
   options.leaf.max_depth = 4;
   options.leaf.min_samples = 6;
   options.split.candidates = kBlockCandidates + 9;
-  EXPECT_EQ(grow_tree(set, options, 0), ObviousTrainer(set, frames, options, 0).grow());
+  expect_obvious_tree(frames, 150, options, 0);
   options.split.shared_features = kBlockCandidates + 20;
-  EXPECT_EQ(grow_tree(set, options, 0), ObviousTrainer(set, frames, options, 0).grow());
+  options.split.split_pixels = 40;
+  expect_obvious_tree(frames, 150, options, 0);
+}
+
+TEST(GrowTree, IsThatOfTheObviousTrainerWhereShardsLackClasses) {
+  std::vector<LabelledFrame> frames = people(6);
+  const int chest = paper_body().find_part("l_chest");
+  ASSERT_GE(chest, 0);
+  for (int f = 0; f < 6; ++f) {  // the first frames have no background, the last one has nothing but a chest and it
+    for (std::size_t p = 0; p < frames[f].labels.size(); ++p) {
+      const bool background = frames[f].labels[p] == kBackground;
+      if (f < 3 ? background : f == 5 && !background && frames[f].labels[p] != chest) frames[f].frame.depth[p] = 0;
+    }
+  }
+  GrowTreeOptions options;
+  options.split.candidates = 15;
+  options.leaf.max_depth = 8;
+  options.leaf.min_samples = 2;
+  expect_obvious_tree(frames, 200, options, 2);
+}
+
+TEST(GrowTree, SameTreeHoweverLittleIsHeldAtATime) {
+  const std::vector<LabelledFrame> frames = people(5);
+  const TrainingSet set = set_of(frames, 300);
+  GrowTreeOptions options;
+  const Tree whole = grow_tree(set, options, 0);
+  options.row_bytes = 20000;
+  EXPECT_EQ(grow_tree(set, options, 0), whole);
+  options.batch_bytes = 1;
+  EXPECT_EQ(grow_over({2, 5}, frames, set, 300, options, 0), whole);
+  options.row_bytes = options.batch_bytes = std::size_t{1} << 30U;
+  EXPECT_EQ(grow_over({2, 5}, frames, set, 300, options, 0), whole);
 }
 
 TEST(GrowTree, SharedFeaturesAreAllThatNodesTest) {
@@ -246,14 +308,14 @@ TEST(GrowTree, SharedFeaturesAreAllThatNodesTest) {
 TEST(GrowTree, SameTreeForAnyNumberOfThreads) {
   const std::vector<LabelledFrame> frames = people(10);
   const TrainingSet set = set_of(frames, 2000);  // more samples than one thread takes at a time
-  const auto grow = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return grow_tree(set, {}, 1);
-  };
-  const Tree alone = grow(1);
-  EXPECT_GT(alone.nodes.size(), 50U);
-  EXPECT_EQ(alone, grow(2));
-  EXPECT_EQ(alone, grow(4));
+  std::optional<Tree> alone;
+  for_threads({1, 2, 4}, [&] {
+    const Tree tree = grow_tree(set, {}, 1);
+    if (!alone) alone = tree;
+    EXPECT_GT(tree.nodes.size(), 50U);
+    EXPECT_EQ(tree, *alone);
+    EXPECT_EQ(grow_over({3, 10}, frames, set, 2000, {}, 1), *alone);
+  });
 }
 
 TEST(GrowTree, LeavesHoldTheSharesOfTheSamplesThatReachThem) {
@@ -298,7 +360,7 @@ TEST(GrowTree, StopsWhenAsked) {
   const TrainingSet set = set_of(frames, 400);
   GrowProgress progress;
   progress.stop = true;
-  EXPECT_THROW(grow_tree(set, {}, 0, &progress), Error);
+  EXPECT_THROW(grow_tree(set, {}, 0, &progress), Interrupted);
 }
 
 TEST(GrowTree, RefusesSetsWithoutSamplesAndBadOptions) {

@@ -20,21 +20,20 @@ std::vector<std::uint64_t> fixed_point(const std::vector<double>& factors) {
 
 }  // namespace
 
-LeafShares::LeafShares(const TrainingSet& set, float prior_correction, float part_balance) {
-  const auto classes = static_cast<std::size_t>(set.class_count());
-  std::vector<double> sampled(classes, 0.0);
-  for (const TrainingSample& sample : set.samples()) sampled[sample.label] += 1.0;
-  std::vector<double> factors(classes, 0.0);
-  for (std::size_t c = 0; c < classes; ++c) {
-    if (sampled[c] == 0.0) continue;
-    const double pixels = std::max<double>(static_cast<double>(set.class_pixels()[c]), 1.0);
-    factors[c] = std::pow(pixels / sampled[c], static_cast<double>(prior_correction));
+LeafShares::LeafShares(const SampleCounts& counts, int parts, const LeafOptions& options) {
+  const std::vector<std::int64_t>& sampled = counts.samples;
+  std::vector<double> factors(sampled.size(), 0.0);
+  for (std::size_t c = 0; c < factors.size(); ++c) {
+    if (sampled[c] == 0) continue;
+    const double pixels = std::max<double>(static_cast<double>(counts.pixels[c]), 1.0);
+    factors[c] = std::pow(pixels / static_cast<double>(sampled[c]), static_cast<double>(options.prior_correction));
   }
   weights_ = fixed_point(factors);
-  if (part_balance == 0.F) return;
-  factors.resize(set.body().parts.size());
+  if (options.part_balance == 0.F) return;
+  factors.resize(parts);
   for (std::size_t c = 0; c < factors.size(); ++c) {
-    if (sampled[c] > 0.0) factors[c] *= std::pow(sampled[c], -static_cast<double>(part_balance));
+    if (sampled[c] == 0) continue;
+    factors[c] *= std::pow(static_cast<double>(sampled[c]), -static_cast<double>(options.part_balance));
   }
   balance_ = fixed_point(factors);
 }

@@ -1,22 +1,23 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "train/training_set.h"
+#include "train/grow_options.h"
+#include "train/training_messages.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {
 
-/// Class shares of leaves.
+/// Computes the class shares of leaves.
 class LeafShares {
  public:
-  /// Of the classes' sizes in `set`; `prior_correction` and `part_balance`: see LeafOptions.
-  LeafShares(const TrainingSet& set, float prior_correction, float part_balance);
+  /// `counts` are those of all samples; the first `parts` classes are body parts. `options` say how far shares make up
+  /// for the sizes of the classes.
+  LeafShares(const SampleCounts& counts, int parts, const LeafOptions& options);
 
-  /// Shares of the four largest classes (the lower one on a tie) in 1/255, rounded down. `counts`: samples of each
-  /// class of the forest, not all 0.
+  /// Returns the shares of the four largest classes (the lower one on a tie) in 1/255, rounded down. `counts` are the
+  /// leaf's samples of each class, not all 0.
   TreeLeaf leaf(const std::int64_t* counts) const;
 
  private:

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "train/prune_tree.h"
+#include "train/training_set.h"
 
 namespace vesalius {
 namespace {
@@ -25,6 +26,13 @@ TrainingSet set_with(int width, const SampleOptions& options) {
   return set;
 }
 
+LeafShares shares_of(const TrainingSet& set, float prior_correction, float part_balance) {
+  LeafOptions options;
+  options.prior_correction = prior_correction;
+  options.part_balance = part_balance;
+  return {set.sample_counts(), set.body().part_count(), options};
+}
+
 SampleOptions half_background() {
   SampleOptions options;
   options.pixels_per_frame = 1000;
@@ -38,7 +46,7 @@ TEST(LeafShares, AreTheLargestFourRoundedDown) {
   body.parts.resize(8);
   const TrainingSet set(body, {}, {}, 1);
   const std::vector<std::int64_t> counts{5, 10, 10, 0, 25, 0, 0, 50, 0};
-  const TreeLeaf leaf = LeafShares(set, 0.F, 0.F).leaf(counts.data());
+  const TreeLeaf leaf = shares_of(set, 0.F, 0.F).leaf(counts.data());
   EXPECT_THAT(leaf.label, testing::ElementsAre(7, 4, 1, 2));
   EXPECT_THAT(leaf.probability, testing::ElementsAre(127, 63, 25, 25));  // floor(255 share)
 }
@@ -46,7 +54,7 @@ TEST(LeafShares, AreTheLargestFourRoundedDown) {
 TEST(LeafShares, OfOneClassAreCertain) {
   const TrainingSet set = set_with(100, half_background());
   const std::vector<std::int64_t> counts{0, 3, 0};
-  const TreeLeaf leaf = LeafShares(set, 0.5F, 0.F).leaf(counts.data());
+  const TreeLeaf leaf = shares_of(set, 0.5F, 0.F).leaf(counts.data());
   EXPECT_EQ(leaf.label[0], 1);
   EXPECT_THAT(leaf.probability, testing::ElementsAre(255, 0, 0, 0));
 }
@@ -55,7 +63,7 @@ TEST(LeafShares, UndoSamplingWhenAsked) {
   const TrainingSet set = set_with(102, half_background());  // 9 + 11 of 1020 readings are body, half of the samples
   const std::vector<std::int64_t> counts{0, 50, 50};
   const auto share_of_background = [&](float correction) {
-    const TreeLeaf leaf = LeafShares(set, correction, 0.F).leaf(counts.data());
+    const TreeLeaf leaf = shares_of(set, correction, 0.F).leaf(counts.data());
     return (leaf.label[0] == 2 ? leaf.probability[0] : leaf.probability[1]) / 255.0;
   };
   EXPECT_NEAR(share_of_background(0.F), 0.5, 0.005);
@@ -71,7 +79,7 @@ TEST(LeafShares, PartsCountAlikeWhenAskedAndTheBackgroundStays) {
   for (const TrainingSample& sample : set.samples()) ++drawn[sample.label];
   ASSERT_GT(drawn[1], drawn[0]);
   const auto shares = [&](float balance) {
-    const TreeLeaf leaf = LeafShares(set, 0.F, balance).leaf(drawn.data());
+    const TreeLeaf leaf = shares_of(set, 0.F, balance).leaf(drawn.data());
     std::vector<double> of(3, 0.0);
     for (std::size_t k = 0; k < 3; ++k) of[leaf.label[k]] = leaf.probability[k] / 255.0;
     return of;

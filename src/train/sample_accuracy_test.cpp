@@ -38,9 +38,8 @@ class SampleAccuracyTest : public testing::Test {
     set_ = std::make_unique<TrainingSet>(paper_body(), training_convention(options_), options_.sample, 1);
     for (int i = 0; i < 40; ++i) frames_.push_back(person_at(i));
     for (const LabelledFrame& frame : frames_) set_->add(frame);
-    std::vector<Tree> trees;
-    for (int t = 0; t < 3; ++t) trees.push_back(grow_tree(*set_, options_.grow, t));
-    forest_ = assemble_forest(*set_, std::move(trees), "test");
+    forest_ = set_->untrained_forest();
+    for (int t = 0; t < 3; ++t) forest_.trees.push_back(grow_tree(*set_, options_.grow, t));
   }
 
   TrainOptions options_;

@@ -123,6 +123,24 @@ class Drawer {
 
 }  // namespace
 
+void visit_options(const std::string& prefix, SampleOptions& options, OptionVisitor& visitor) {
+  visitor.option(prefix + "pixels", options.pixels_per_frame, {"", 1, 100000, "Pixels drawn from each frame"});
+  visitor.option(prefix + "background-share", options.background_share,
+                 {"", 0, 1, "Share of the pixels that lie outside all people; 0 trains without background class"});
+  visitor.option(prefix + "near-share", options.near_share,
+                 {"", 0, 1, "Share of the background pixels that lie beside a person"});
+  visitor.option(prefix + "near-distance", options.near_px, {"pixels", 1, 10000, "What counts as beside a person"});
+  visitor.option(prefix + "balanced-share", options.balanced_share,
+                 {"", 0, 1, "Share of the body pixels for which every part in view counts alike"});
+  visitor.option(
+      prefix + "hard-pool", options.hard_pool,
+      {"", 0, 100000, "Background pixels of a frame searched for hard negatives; of an empty frame 4 times"});
+  visitor.option(prefix + "hard-share", options.hard_share,
+                 {"", 0, 10, "Most hard negatives, as a multiple of the other background pixels"});
+  visitor.option(prefix + "held-out-share", options.held_out_share,
+                 {"", 0, 0.5, "Share of the frames kept back to measure accuracy on"});
+}
+
 DrawnSamples draw_samples(const LabelledFrame& labelled, const BodyModel& body, const SampleOptions& options,
                           Random& random, const std::string& where) {
   DrawnSamples drawn;

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "train/split_histogram.h"
+#include "train/training_messages.h"
 
 namespace vesalius {
 namespace {
 
 constexpr std::uint64_t kSharedStream = 0xFFFFFFFF00000000ULL;
+
+int all_candidates(const SplitOptions& options) {
+  return options.shared_features > 0 ? options.shared_features : options.candidates;
+}
 
 struct Probe {
   std::int16_t du = 0, dv = 0;
@@ -69,17 +73,18 @@ CandidateTable draw_candidates(const FeatureConvention& convention, const SplitO
 CandidateTable node_candidates(const FeatureConvention& convention, const GrowTreeOptions& options, int tree,
                                std::uint32_t number, int block) {
   const bool shared = options.split.shared_features > 0;
-  const int all = shared ? options.split.shared_features : options.split.candidates;
-  const int count = std::min(all - block * kBlockCandidates, kBlockCandidates);
   const std::uint64_t node = (static_cast<std::uint64_t>(tree) << 32U) | number;
   Random random(static_cast<std::uint64_t>(options.seed) + (static_cast<std::uint64_t>(block) << 32U),
                 shared ? kSharedStream : node);
-  return draw_candidates(convention, options.split, count, random);
+  return draw_candidates(convention, options.split, block_candidates(options.split, block), random);
 }
 
 int candidate_blocks(const SplitOptions& options) {
-  const int all = options.shared_features > 0 ? options.shared_features : options.candidates;
-  return (all + kBlockCandidates - 1) / kBlockCandidates;
+  return (all_candidates(options) + kBlockCandidates - 1) / kBlockCandidates;
+}
+
+int block_candidates(const SplitOptions& options, int block) {
+  return std::min(all_candidates(options) - block * kBlockCandidates, kBlockCandidates);
 }
 
 }  // namespace vesalius

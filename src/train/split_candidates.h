@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "train/grow_tree.h"
+#include "train/grow_options.h"
 #include "vesalius/base/random.h"
 #include "vesalius/forest/forest.h"
 
@@ -34,5 +34,7 @@ CandidateTable node_candidates(const FeatureConvention& convention, const GrowTr
 
 /// How many such blocks there are.
 int candidate_blocks(const SplitOptions& options);
+/// How many candidates a block has.
+int block_candidates(const SplitOptions& options, int block);
 
 }  // namespace vesalius

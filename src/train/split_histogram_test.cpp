@@ -21,9 +21,6 @@ struct Rows {
   int width;
 
   FeatureRows view() const { return {values.data(), labels.data(), labels.size(), width}; }
-  FeatureRows part(std::size_t begin, std::size_t end) const {
-    return {values.data() + begin * static_cast<std::size_t>(width), labels.data() + begin, end - begin, width};
-  }
   int value(std::size_t row, int candidate) const {
     return values[row * static_cast<std::size_t>(width) + static_cast<std::size_t>(candidate)];
   }
@@ -44,10 +41,10 @@ Rows random_rows(std::size_t count, int width, Random& random) {
   return rows;
 }
 
-Binning binning_of(const Rows& rows, int bins) {
-  ValueRanges ranges(rows.width);
-  ranges.add(rows.view());
-  return {ranges, bins};
+/// How the rows of one shard are counted.
+CountTask task_of(const Rows& rows, int bins) {
+  const NodeValues values = node_values(rows.view(), kClasses + 1);
+  return {{values.ranges, bins}, ClassIndex(values.class_counts)};
 }
 
 double entropy_bits(const std::vector<int>& counts) {
@@ -83,14 +80,14 @@ TEST(EntropyTable, IsNLogN) {
   EXPECT_EQ(entropy(1), 0);
   EXPECT_EQ(entropy(2), 2048);
   EXPECT_EQ(entropy(1024), 1024 * 10 * 1024);
-  EXPECT_GT(entropy(EntropyTable::kLargest), 0) << "fits";
+  EXPECT_GT(entropy(kMostCounted), 0) << "fits";
 }
 
 TEST(Binning, LastValueIsTheThresholdOfItsBin) {
   Random random(1);
   for (const int bins : {2, 8, 16, 32}) {
     const Rows rows = random_rows(300, 32, random);
-    const Binning binning = binning_of(rows, bins);
+    const Binning binning = task_of(rows, bins).binning;
     for (int c = 0; c < rows.width; ++c) {
       for (std::size_t r = 0; r < rows.labels.size(); ++r) {
         const int bin = binning.bin_of(c, rows.value(r, c));
@@ -108,7 +105,7 @@ TEST(Binning, FewValuesHaveABinEach) {
   Rows rows{{}, {0, 0, 1, 1}, 16};
   for (const std::int16_t value : std::array<std::int16_t, 4>{-1, 0, 1, 1})
     rows.values.insert(rows.values.end(), 16, value);
-  const Binning binning = binning_of(rows, 32);
+  const Binning binning = task_of(rows, 32).binning;
   EXPECT_EQ(binning.bin_of(3, -1), 0);
   EXPECT_EQ(binning.bin_of(3, 0), 1);
   EXPECT_EQ(binning.bin_of(3, 1), 2);
@@ -118,11 +115,8 @@ TEST(SplitHistogram, CountsEveryRowOnceInItsBinOnEveryInstructionSet) {
   Random random(2);
   const Rows rows = random_rows(500, 48, random);
   for_each_target([&](const char* target) {
-    const ClassIndex classes = index_classes(rows.view(), kClasses + 1);
-    const Binning binning = binning_of(rows, 16);
-    SplitHistogram histogram;
-    histogram.reset(classes.size(), binning.bins);
-    histogram.add(rows.view(), binning, classes);
+    const auto [binning, classes] = task_of(rows, 16);
+    const SplitHistogram histogram = count_bins(rows.view(), {binning, classes});
     std::vector<std::uint16_t> truth(histogram.counts.size(), 0);
     for (std::size_t r = 0; r < rows.labels.size(); ++r) {
       for (int c = 0; c < rows.width; ++c) {
@@ -132,27 +126,6 @@ TEST(SplitHistogram, CountsEveryRowOnceInItsBinOnEveryInstructionSet) {
     }
     EXPECT_EQ(histogram.counts, truth) << target;
   });
-}
-
-TEST(SplitHistogram, ShardsAddUpToTheWhole) {
-  Random random(3);
-  const Rows rows = random_rows(700, 32, random);
-  ValueRanges ranges(32), first(32), second(32);
-  ranges.add(rows.view());
-  first.add(rows.part(0, 300));
-  second.add(rows.part(300, 700));
-  first.merge(second);
-  EXPECT_EQ(first.low, ranges.low);
-  EXPECT_EQ(first.high, ranges.high);
-  const Binning binning(ranges, 32);
-  const ClassIndex classes = index_classes(rows.view(), kClasses + 1);
-  SplitHistogram whole, a, b;
-  for (SplitHistogram* histogram : {&whole, &a, &b}) histogram->reset(classes.size(), 32);
-  whole.add(rows.view(), binning, classes);
-  a.add(rows.part(0, 300), binning, classes);
-  b.add(rows.part(300, 700), binning, classes);
-  a += b;
-  EXPECT_EQ(a.counts, whole.counts);
 }
 
 /// All thresholds between bins of all candidates, in order, from the definition with the same integers.
@@ -186,11 +159,8 @@ TEST(BestSplit, IsThatOfTryingEveryThresholdOnEveryInstructionSet) {
     for (const auto& [count, candidates, bins, least] :
          {std::array{400, 60, 32, 1}, std::array{90, 17, 8, 30}, std::array{50, 64, 16, 26}}) {
       const Rows rows = random_rows(static_cast<std::size_t>(count), (candidates + 15) / 16 * 16, random);
-      const Binning binning = binning_of(rows, bins);
-      const ClassIndex classes = index_classes(rows.view(), kClasses + 1);
-      SplitHistogram histogram;
-      histogram.reset(classes.size(), bins);
-      histogram.add(rows.view(), binning, classes);
+      const auto [binning, classes] = task_of(rows, bins);
+      const SplitHistogram histogram = count_bins(rows.view(), {binning, classes});
       const BinSplit truth = obvious_split(rows, binning, candidates, least, entropy);
       const BinSplit found = best_split(histogram, candidates, classes, least, entropy);
       EXPECT_EQ(found.candidate, truth.candidate) << target;
@@ -206,14 +176,12 @@ TEST(RefineSplit, FindsTheBestThresholdOfBothBins) {
   Random random(5);
   for (int i = 0; i < 20; ++i) {
     const Rows rows = random_rows(200, 16, random);
-    const Binning binning = binning_of(rows, 8);
-    const ClassIndex classes = index_classes(rows.view(), kClasses + 1);
-    SplitHistogram histogram;
-    histogram.reset(classes.size(), 8);
-    histogram.add(rows.view(), binning, classes);
+    const auto [binning, classes] = task_of(rows, 8);
+    const SplitHistogram histogram = count_bins(rows.view(), {binning, classes});
     const BinSplit split = best_split(histogram, 16, classes, 10, entropy);
     ASSERT_GE(split.candidate, 0);
-    const ThresholdSplit refined = refine_split(rows.view(), split, binning, classes, 10, entropy);
+    const ThresholdSplit refined =
+        refine_split(values_in(rows.view(), beside(split, binning, 0)), split, histogram, classes, 10, entropy);
     EXPECT_NEAR(refined.gain, gain_of(rows, split.candidate, refined.threshold_mm), 1e-3);
     double best = 0.0;
     const int low = split.bin > 0 ? binning.last_value(split.candidate, split.bin - 1) : -32768;
@@ -231,14 +199,12 @@ TEST(RefineSplit, LiesMidwayAndKeepsWhatOneBinEdgeAloneTells) {
   Rows rows{{}, {0, 0, 1, 1}, 16};
   for (const std::int16_t value : std::array<std::int16_t, 4>{-100, -90, 300, 301})
     rows.values.insert(rows.values.end(), 16, value);
-  const Binning binning = binning_of(rows, 8);
-  const ClassIndex classes = index_classes(rows.view(), 2);
-  SplitHistogram histogram;
-  histogram.reset(classes.size(), 8);
-  histogram.add(rows.view(), binning, classes);
+  const auto [binning, classes] = task_of(rows, 8);
+  const SplitHistogram histogram = count_bins(rows.view(), {binning, classes});
   const BinSplit split = best_split(histogram, 16, classes, 1, entropy);
   EXPECT_EQ(split.candidate, 0);
-  const ThresholdSplit refined = refine_split(rows.view(), split, binning, classes, 1, entropy);
+  const ThresholdSplit refined =
+      refine_split(values_in(rows.view(), beside(split, binning, 0)), split, histogram, classes, 1, entropy);
   EXPECT_NEAR(refined.gain, 1.0, 1e-3);
   EXPECT_GE(refined.threshold_mm, -90);
   EXPECT_LT(refined.threshold_mm, 300);

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 
-#include "train/split_histogram.h"
+#include "train/entropy_table.h"
+#include "train/feature_rows.h"
+#include "train/training_messages.h"
 
 namespace vesalius::kernels {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "train/prune_tree.h"
-#include "train/split_histogram.h"
+#include "train/training_messages.h"
 
 namespace vesalius {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <tuple>
 
-#include "train/sample_pixels.h"
 #include "train/walk_samples.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/options.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
 
@@ -35,26 +35,14 @@ void sort_samples(std::vector<TrainingSample>::iterator begin, std::vector<Train
 
 }  // namespace
 
-void visit_options(const std::string& prefix, SampleOptions& options, OptionVisitor& visitor) {
-  visitor.option(prefix + "pixels", options.pixels_per_frame, {"", 1, 100000, "Pixels drawn from each frame"});
-  visitor.option(prefix + "background-share", options.background_share,
-                 {"", 0, 1, "Share of the pixels that lie outside all people; 0 trains without background class"});
-  visitor.option(prefix + "near-share", options.near_share,
-                 {"", 0, 1, "Share of the background pixels that lie beside a person"});
-  visitor.option(prefix + "near-distance", options.near_px, {"pixels", 1, 10000, "What counts as beside a person"});
-  visitor.option(prefix + "balanced-share", options.balanced_share,
-                 {"", 0, 1, "Share of the body pixels for which every part in view counts alike"});
-  visitor.option(
-      prefix + "hard-pool", options.hard_pool,
-      {"", 0, 100000, "Background pixels of a frame searched for hard negatives; of an empty frame 4 times"});
-  visitor.option(prefix + "hard-share", options.hard_share,
-                 {"", 0, 10, "Most hard negatives, as a multiple of the other background pixels"});
-  visitor.option(prefix + "held-out-share", options.held_out_share,
-                 {"", 0, 0.5, "Share of the frames kept back to measure accuracy on"});
-}
-
-TrainingSet::TrainingSet(BodyModel body, FeatureConvention convention, const SampleOptions& options, std::uint64_t seed)
-    : body_(std::move(body)), convention_(convention), options_(options), seed_(seed), frames_(convention) {
+TrainingSet::TrainingSet(BodyModel body, FeatureConvention convention, const SampleOptions& options, std::uint64_t seed,
+                         std::size_t first_frame)
+    : body_(std::move(body)),
+      convention_(convention),
+      options_(options),
+      seed_(seed),
+      first_frame_(first_frame),
+      frames_(convention) {
   RangeCheck range;
   visit_options("", options_, range);
   if (body_.parts.empty() || body_.part_count() >= kBackground) {
@@ -64,17 +52,17 @@ TrainingSet::TrainingSet(BodyModel body, FeatureConvention convention, const Sam
 }
 
 void TrainingSet::add(const LabelledFrame& labelled) {
-  const std::size_t index = frames_.size();
+  const std::size_t index = first_frame_ + frames_.size();
   Random random(seed_, index);
   const std::string where = fmt::format("training frame {} ({})", index, labelled.frame.name);
   DrawnSamples drawn = draw_samples(labelled, body_, options_, random, where);
-  frames_.add(labelled.frame.camera, labelled.frame.depth);
+  const auto frame = static_cast<std::uint32_t>(frames_.add(labelled.frame.camera, labelled.frame.depth));
   for (std::vector<TrainingSample>* samples : {&drawn.samples, &drawn.pool}) {
-    for (TrainingSample& sample : *samples) sample.frame = static_cast<std::uint32_t>(index);
+    for (TrainingSample& sample : *samples) sample.frame = frame;
     sort_samples(samples->begin(), samples->end());
   }
-  const int period = options_.held_out_share > 0.F ? static_cast<int>(std::lround(1.F / options_.held_out_share)) : 0;
-  if (period > 0 && static_cast<int>(index % static_cast<std::size_t>(period)) == period - 1) {
+  const std::size_t period = options_.held_out_share > 0.F ? std::lround(1.F / options_.held_out_share) : 0;
+  if (period > 0 && index % period == period - 1) {
     held_out_.insert(held_out_.end(), drawn.samples.begin(), drawn.samples.end());
     return;
   }
@@ -83,29 +71,55 @@ void TrainingSet::add(const LabelledFrame& labelled) {
   for (std::size_t c = 0; c < class_pixels_.size(); ++c) class_pixels_[c] += drawn.class_pixels[c];
 }
 
-std::size_t TrainingSet::add_hard_negatives(const Forest& forest) {
-  std::vector<std::uint32_t> shares(pool_.size());
+Forest TrainingSet::untrained_forest() const {
+  Forest forest;
+  forest.body = body_;
+  forest.convention = convention_;
+  forest.has_background = has_background();
+  return forest;
+}
+
+HardCounts TrainingSet::count_hard_negatives(const Forest& forest) {
+  if (!has_background()) throw Error("training: hard negatives expect a background class");
   constexpr int kGrain = 4096;
+  const std::uint32_t most = static_cast<std::uint32_t>(forest.trees.size()) * 255U;
+  pool_shares_.assign(pool_.size(), 0);
   parallel_ranges(static_cast<int>(pool_.size()), kGrain, [&](int begin, int end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      shares[i] = body_share(forest, frames_, pool_[i]);
+    for (int i = begin; i < end; ++i) {
+      const std::uint32_t share = body_share(forest, frames_, pool_[i]);
+      if (share > most / 2U) pool_shares_[i] = share;
     }
   });
-  const std::uint32_t half = static_cast<std::uint32_t>(forest.trees.size()) * 255U / 2U;
+  const auto background = static_cast<std::uint8_t>(body_.part_count());
+  HardCounts hard{std::ranges::count(samples_, background, &TrainingSample::label),
+                  std::vector<std::uint64_t>(most + 1, 0)};
+  for (const std::uint32_t share : pool_shares_) hard.counts[share] += share > 0 ? 1 : 0;
+  return hard;
+}
+
+std::size_t TrainingSet::add_hard_negatives(const HardCut& cut) {
   std::vector<std::size_t> hard;
-  for (std::size_t i = 0; i < pool_.size(); ++i) {
-    if (shares[i] > half) hard.push_back(i);
+  std::uint64_t ties = cut.ties;
+  for (std::size_t i = 0; i < pool_shares_.size(); ++i) {
+    if (pool_shares_[i] == 0 || pool_shares_[i] < cut.above) continue;
+    const bool tied = pool_shares_[i] == cut.above;
+    if (tied && ties == 0) continue;
+    if (tied) --ties;
+    hard.push_back(i);
   }
-  std::ranges::stable_sort(hard, [&](std::size_t a, std::size_t b) { return shares[a] > shares[b]; });
-  const auto background =
-      std::ranges::count(samples_, static_cast<std::uint8_t>(body_.part_count()), &TrainingSample::label);
-  const auto most =
-      static_cast<std::size_t>(static_cast<double>(options_.hard_share) * static_cast<double>(background));
-  if (hard.size() > most) hard.resize(most);
+  std::ranges::stable_sort(hard, [&](std::size_t a, std::size_t b) { return pool_shares_[a] > pool_shares_[b]; });
   for (const std::size_t i : hard) samples_.push_back(pool_[i]);
   sort_samples(samples_.begin(), samples_.end());
   pool_ = {};
+  pool_shares_ = {};
   return hard.size();
+}
+
+SampleCounts TrainingSet::sample_counts() const {
+  SampleCounts counts{std::vector<std::int64_t>(class_count(), 0),
+                      {class_pixels_.begin(), class_pixels_.begin() + class_count()}};
+  for (const TrainingSample& sample : samples_) ++counts.samples[sample.label];
+  return counts;
 }
 
 std::size_t TrainingSet::bytes() const {

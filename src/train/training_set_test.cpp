@@ -53,6 +53,13 @@ Forest credulous_forest() {
   return forest;
 }
 
+/// What the driver does with one shard.
+std::size_t add_hard_negatives(TrainingSet& set, const Forest& forest, float hard_share) {
+  const HardCounts hard = set.count_hard_negatives(forest);
+  return set.add_hard_negatives(
+      hard_cut(hard, static_cast<std::uint64_t>(hard_share * static_cast<float>(hard.background))));
+}
+
 TEST(TrainingSet, HoldsBackItsShareOfFramesFromLearning) {
   SampleOptions options;
   options.held_out_share = 0.25F;
@@ -87,12 +94,11 @@ TEST(TrainingSet, CountsPixelsOfFramesLearnedFromOnly) {
 
 TEST(TrainingSet, AddsTheBackgroundThatAForestTakesForABody) {
   SampleOptions options;
-  options.hard_share = 10.F;
   options.held_out_share = 0.F;
   const Forest forest = credulous_forest();
   TrainingSet set = set_of(8, options);
   const std::vector<TrainingSample> before(set.samples().begin(), set.samples().end());
-  const std::size_t added = set.add_hard_negatives(forest);
+  const std::size_t added = add_hard_negatives(set, forest, 10.F);
   ASSERT_GT(added, 0U) << "pixels beside the picture's right edge lie before what is far";
   EXPECT_EQ(set.samples().size(), before.size() + added);
   EXPECT_TRUE(std::ranges::is_sorted(set.samples(), {}, &TrainingSample::frame));
@@ -105,18 +111,17 @@ TEST(TrainingSet, AddsTheBackgroundThatAForestTakesForABody) {
     EXPECT_EQ(each.label, 25);
     EXPECT_EQ(leaf_of(forest.trees[0], set.frames(), each), 0U);
   }
-  EXPECT_EQ(set.add_hard_negatives(forest), 0U) << "the pool is used up";
+  EXPECT_EQ(add_hard_negatives(set, forest, 10.F), 0U) << "the pool is used up";
 }
 
 TEST(TrainingSet, AddsNoMoreHardNegativesThanAllowedOnAnyNumberOfThreads) {
   SampleOptions options;
-  options.hard_share = 0.05F;
   options.held_out_share = 0.F;
   const auto grow = [&](int threads) {
     const ThreadLimit limit(threads);
     TrainingSet set = set_of(8, options);
     const auto background = std::ranges::count(set.samples(), std::uint8_t{25}, &TrainingSample::label);
-    EXPECT_EQ(set.add_hard_negatives(credulous_forest()),
+    EXPECT_EQ(add_hard_negatives(set, credulous_forest(), 0.05F),
               static_cast<std::size_t>(0.05F * static_cast<double>(background)));
     return places(set.samples());
   };

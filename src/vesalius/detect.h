@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/base/stage_times.h"
-#include "vesalius/derive_joints.h"
+#include "vesalius/detection.h"
 #include "vesalius/find_clusters.h"
 #include "vesalius/forest/forest.h"
 #include "vesalius/forest/label_pixels.h"
@@ -43,40 +42,13 @@ struct DetectOptions {
 };
 void visit_options(const std::string& prefix, DetectOptions& options, OptionVisitor& visitor);
 
-/// Everything found about one person.
-struct Person {
-  Skeleton skeleton;                       ///< parts with 3-D centre, extent, confidence and state
-  std::vector<std::vector<Joint>> joints;  ///< [joint set of the body model][joint]
-  Mask mask;                               ///< 1 on the person's pixels
-  LabelImage labels;                       ///< part of each of the person's pixels, kBackground elsewhere
-  Box box;                                 ///< smallest around the mask
-  float score = 0.F;                       ///< 0-1, higher is surer
+/// Labels of one frame's pixels, of its size.
+struct FrameLabels {
+  LabelImage labels;  ///< of the first pass, smoothed: Trace::labels
+  LabelImage inside;  ///< of a person's pixels, as the second pass labels them; empty where no person was given
 };
 
-/// Every intermediate of one detection, for pictures and evaluation. All pictures are of the frame's size; what
-/// clusters count are pixels of the grid (GridOptions).
-struct Trace {
-  LabelImage raw_labels;        ///< pass 1, before smoothing
-  LabelImage labels;            ///< pass 1, smoothed
-  Clusters clusters;            ///< pass 1, of labels with the proposals' weight of the background
-  std::vector<Skeleton> rough;  ///< pass 1, best first
-  Mask flat;                    ///< pixels of floor, walls and other large flat surfaces
-
-  /// A rough skeleton grown and refined; a rough skeleton has two where growing against its rivals differs from
-  /// growing alone.
-  struct Candidate {
-    int rough = -1;  ///< index in `rough`
-    Mask grown;
-    LabelImage labels;  ///< pass 2, smoothed
-    Skeleton refined;   ///< pass 2; found = 0 if there was none
-    Evidence evidence;
-    float score = 0.F;
-    bool accepted = false;
-  };
-  std::vector<Candidate> candidates;  ///< surest first
-};
-
-class Workspaces;
+struct Method;
 
 /// The whole method: people of one frame. Keeps only memory between frames, and copies of it share that; safe to call
 /// from several threads.
@@ -86,24 +58,21 @@ class Detector {
   explicit Detector(Forest forest, DetectOptions options = {});
   explicit Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options = {});
 
-  /// People in the frame, surest first; empty when nobody is in view. To `times` is added what each stage took. Throws
-  /// Error for a frame whose images do not fit its camera.
+  /// Returns the people in the frame, surest first; none when nobody is in view. `prior` says what earlier frames tell
+  /// about them. Adds to `times` what each stage took. Throws Error for a frame whose images do not fit its camera, or
+  /// a prior that does not fit the frame.
+  std::vector<Person> detect(const Frame& frame, const Prior& prior, Trace* trace = nullptr,
+                             StageTimes* times = nullptr) const;
   std::vector<Person> detect(const Frame& frame, Trace* trace = nullptr, StageTimes* times = nullptr) const;
 
-  const BodyModel& body() const { return labeller_->body(); }
+  /// Returns the labels of the first pass, and nothing else of the method; with `person`, also those that the second
+  /// pass gives the pixels where that is non-zero. Throws Error for a frame whose images do not fit its camera.
+  FrameLabels label(const Frame& frame, const Mask* person = nullptr) const;
+
+  const BodyModel& body() const;
 
  private:
-  std::vector<Person> detect_everywhere(const Frame& frame, Trace* trace, StageTimes* times) const;
-
-  std::shared_ptr<const PixelLabeller> labeller_;
-  DetectOptions options_;
-  std::shared_ptr<Workspaces> workspaces_;
+  std::shared_ptr<const Method> method_;
 };
-
-/// uint8 map of the people: index in `people`, kBackground elsewhere (of the frame's size).
-Image<std::uint8_t> body_index_map(const std::vector<Person>& people, int width, int height);
-
-/// Part labels of all people in one picture, kBackground elsewhere.
-LabelImage part_label_map(const std::vector<Person>& people, int width, int height);
 
 }  // namespace vesalius

@@ -7,7 +7,7 @@
 
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/base/test_threads.h"
 
 namespace vesalius {
 namespace {
@@ -20,8 +20,8 @@ class TruthLabeller : public PixelLabeller {
   TruthLabeller(LabelImage truth, BodyModel body, bool background)
       : truth_(std::move(truth)), body_(std::move(body)), background_(background) {}
 
-  Posteriors label(const DepthImage& depth, const Camera& camera) const override {
-    Posteriors out{depth.width(), depth.height(), body_.part_count() + (background_ ? 1 : 0), 1, {}};
+  void label_into(const DepthImage& depth, const Camera& camera, float /*gate*/, Posteriors& out) const override {
+    out = {depth.width(), depth.height(), body_.part_count() + (background_ ? 1 : 0), 1, {}};
     out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
     // The second pass shows a part of the picture: its principal point tells which.
     const int left = static_cast<int>(std::lround(kCamera.cx - camera.cx));
@@ -37,7 +37,6 @@ class TruthLabeller : public PixelLabeller {
         }
       }
     }
-    return out;
   }
   const BodyModel& body() const override { return body_; }
   bool has_background() const override { return background_; }
@@ -134,7 +133,7 @@ TEST(Detector, FindsThreePeopleAndTheirMasks) {
   EXPECT_GE(people[1].score, people[2].score);
 }
 
-TEST(Detector, NobodyInAnEmptyRoom) {
+TEST(Detector, FindsNobodyInAnEmptyRoom) {
   CapsuleScene scene = one_person(2.5F);
   scene.people.clear();
   scene.boxes.push_back({{-1.F, 0.2F, 2.F}, {0.F, 0.9F, 2.6F}, {}});
@@ -149,7 +148,7 @@ TEST(Detector, WorksWithoutColour) {
   EXPECT_EQ(detect_truth(truth, true).size(), 1U);
 }
 
-TEST(Detector, APersonIsConsistentWithItself) {
+TEST(Detector, MaskLabelsBoxAndScoreOfAPersonAgree) {
   const LabelledFrame truth = render(one_person(2.5F), kCamera, paper_body());
   Trace trace;
   const std::vector<Person> people = detect_truth(truth, false, paper_body(), {}, &trace);
@@ -177,7 +176,7 @@ TEST(Detector, APersonIsConsistentWithItself) {
   EXPECT_EQ(trace.raw_labels.width(), kCamera.width);
 }
 
-TEST(Detector, OffMeansOff) {
+TEST(Detector, WithoutSecondPassTheRoughSkeletonIsTheResult) {
   const LabelledFrame truth = render(one_person(2.5F), kCamera, paper_body());
   DetectOptions options;
   options.refine.second_pass = false;
@@ -249,10 +248,7 @@ TEST(Detector, SameResultForAnyThreadCountAndEveryTime) {
   LabelledFrame truth = render(scene, kCamera, paper_body());
   add_sensor_noise(truth.frame, 2);
   std::vector<std::vector<Person>> results;
-  for (const int threads : {1, 2, 8, 8}) {
-    const ThreadLimit limit(threads);
-    results.push_back(detect_truth(truth, false));
-  }
+  for_threads({1, 2, 8, 8}, [&] { results.push_back(detect_truth(truth, false)); });
   ASSERT_EQ(results[0].size(), 2U);
   for (std::size_t i = 1; i < results.size(); ++i) expect_same(results[0], results[i]);
 }
@@ -296,7 +292,7 @@ TEST(Detector, LooksAtAGridOfLargePicturesAndAnswersForAllPixels) {
   }
 }
 
-TEST(Detector, RefusesWhatCannotBeMeant) {
+TEST(Detector, RefusesOptionsOutOfRangeAndFramesOfTwoSizes) {
   const LabelledFrame truth = render(one_person(2.5F), kCamera, paper_body());
   DetectOptions options;
   options.refine.min_score = 1.5F;
@@ -309,32 +305,142 @@ TEST(Detector, RefusesWhatCannotBeMeant) {
   EXPECT_THROW(detect_truth(wrong, true), Error);
 }
 
-/// Notes what memory it is given to write into.
-class MemoryWatch : public TruthLabeller {
+/// Gives the background more weight than the parts on one person, as a forest does on somebody in unusual clothes.
+class DoubtfulLabeller : public TruthLabeller {
  public:
-  using TruthLabeller::TruthLabeller;
-  void label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& /*options*/,
-                  Posteriors& out) const override {
-    given.push_back(out.sums.data());
-    const Posteriors found = label(depth, camera);
-    out.resize_like(found);
-    std::ranges::copy(found.sums, out.sums.begin());
+  DoubtfulLabeller(const LabelledFrame& truth, int doubted)
+      : TruthLabeller(truth.labels, paper_body(), true), person_(truth.person), doubted_(doubted) {}
+
+  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
+    TruthLabeller::label_into(depth, camera, gate, out);
+    for (int v = 0; v < depth.height(); ++v) {
+      for (int u = 0; u < depth.width(); ++u) {
+        if (person_(u, v) != doubted_ || depth(u, v) == 0) continue;
+        for (int c = 0; c < out.classes; ++c) out.at(u, v)[c] = static_cast<std::uint16_t>(out.at(u, v)[c] / 4);
+        out.at(u, v)[out.classes - 1] = 191;
+      }
+    }
   }
-  mutable std::vector<const std::uint16_t*> given;
+
+ private:
+  Image<std::uint8_t> person_;
+  int doubted_;
 };
 
-TEST(Detector, FramesUseTheMemoryOfThoseBefore) {
-  const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
-  const auto labeller = std::make_shared<MemoryWatch>(truth.labels, paper_body(), true);
-  const Detector detector(labeller);
-  const Detector copy = detector;
-  std::vector<std::size_t> people;
-  for (int i = 0; i < 3; ++i) people.push_back((i < 2 ? detector : copy).detect(truth.frame).size());
-  EXPECT_THAT(people, testing::Each(1U));
-  ASSERT_EQ(labeller->given.size(), 3U);
-  EXPECT_EQ(labeller->given[0], nullptr);
-  EXPECT_NE(labeller->given[1], nullptr);
-  EXPECT_EQ(labeller->given[1], labeller->given[2]);
+/// Two people, of whom the second one is doubted by the labeller.
+class DetectorWithPrior : public testing::Test {
+ protected:
+  void SetUp() override {
+    CapsuleScene scene = one_person(2.5F);
+    scene.people.push_back(scene.people[0]);
+    scene.people[1].feet.x() = -0.8F;
+    truth = render(scene, kCamera, paper_body());
+    detector = std::make_unique<Detector>(std::make_shared<DoubtfulLabeller>(truth, 1));
+  }
+
+  /// Where a person is, moved by some pixels to the right.
+  Mask mask_of(int who, int moved = 0) const {
+    Mask mask(kCamera.width, kCamera.height, 0);
+    for (int v = 0; v < mask.height(); ++v) {
+      for (int u = moved; u < mask.width(); ++u) mask(u, v) = truth.person(u - moved, v) == who ? 1 : 0;
+    }
+    return mask;
+  }
+
+  double overlap(const Mask& mask, int who) const {
+    long both = 0, either = 0;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+      both += mask[i] != 0 && truth.person[i] == who ? 1 : 0;
+      either += mask[i] != 0 || truth.person[i] == who ? 1 : 0;
+    }
+    return static_cast<double>(both) / static_cast<double>(either);
+  }
+
+  LabelledFrame truth;
+  std::unique_ptr<Detector> detector;
+};
+
+TEST_F(DetectorWithPrior, FindsAgainWhomTheLabelsLose) {
+  const std::vector<Person> alone = detector->detect(truth.frame);
+  ASSERT_EQ(alone.size(), 1U);
+  EXPECT_GT(overlap(alone[0].mask, 0), 0.9);
+  Trace trace;
+  const std::vector<Person> people = detector->detect(truth.frame, {{{mask_of(1, 3), {}}}}, &trace);
+  ASSERT_EQ(people.size(), 2U);
+  EXPECT_GT(overlap(people[0].mask, 0), 0.9);
+  EXPECT_GT(overlap(people[1].mask, 1), 0.9);
+  expect_same({people[0]}, alone);
+  EXPECT_EQ(trace.candidates[1].known, 0);
+  EXPECT_TRUE(trace.candidates[1].accepted);
+}
+
+TEST_F(DetectorWithPrior, FindsPeopleOfAForestWithoutBackgroundToo) {
+  const Detector without(std::make_shared<TruthLabeller>(truth.labels, paper_body(), false));
+  Trace trace;
+  const std::vector<Person> people = without.detect(truth.frame, {{{mask_of(0), {}}}}, &trace);
+  EXPECT_EQ(people.size(), 2U);
+  EXPECT_TRUE(std::ranges::any_of(trace.candidates, [](const auto& c) { return c.known == 0 && c.score > 0.5F; }));
+}
+
+TEST_F(DetectorWithPrior, ChangesNothingWithoutMasksOfPeople) {
+  const std::vector<Person> expected = detector->detect(truth.frame);
+  expect_same(detector->detect(truth.frame, Prior{}), expected);
+  Prior only_looks;
+  only_looks.people.push_back({{}, learn_appearance(truth.frame, mask_of(1), {})});
+  expect_same(detector->detect(truth.frame, only_looks), expected);
+}
+
+TEST_F(DetectorWithPrior, InventsNobodyWhereNobodyIs) {
+  Mask wall(kCamera.width, kCamera.height, 0);
+  for (int v = 20; v < 120; ++v) std::fill_n(wall.row(v) + 250, 40, std::uint8_t{1});
+  expect_same(detector->detect(truth.frame, {{{wall, {}}, {Mask(kCamera.width, kCamera.height, 0), {}}}}),
+              detector->detect(truth.frame));
+}
+
+TEST_F(DetectorWithPrior, MasksAreOfTheFramesSizeOnAGridToo) {
+  DetectOptions options;
+  options.grid.step = 2;
+  options.cluster.min_pixels = 3;
+  LabelledFrame coarse = truth;
+  coarse.labels = every_nth(truth.labels, 2);
+  coarse.person = every_nth(truth.person, 2);
+  class Half : public DoubtfulLabeller {
+    using DoubtfulLabeller::DoubtfulLabeller;
+    void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
+      Camera as_whole = camera;  // TruthLabeller tells by the principal point which part of its picture is shown
+      as_whole.cx = kCamera.cx;
+      as_whole.cy = kCamera.cy;
+      DoubtfulLabeller::label_into(depth, as_whole, gate, out);
+    }
+  };
+  const Detector half(std::make_shared<Half>(coarse, 1), options);
+  EXPECT_EQ(half.detect(truth.frame).size(), 1U);
+  const std::vector<Person> people = half.detect(truth.frame, {{{mask_of(1), {}}}});
+  ASSERT_EQ(people.size(), 2U);
+  EXPECT_TRUE(people[1].mask.same_size(truth.frame.depth));
+  EXPECT_GT(overlap(people[1].mask, 1), 0.85);
+}
+
+TEST_F(DetectorWithPrior, RefusesAMaskOfAnotherSize) {
+  EXPECT_THAT(
+      [&] {
+        detector->detect(truth.frame, {{{Mask(10, 10, 1), {}}}});
+      },
+      testing::ThrowsMessage<Error>(testing::HasSubstr("10x10 pixels, expected the frame's 320x240")));
+}
+
+TEST_F(DetectorWithPrior, LabelsAsDetectionDoes) {
+  for (const bool background : {false, true}) {
+    const Detector plain(std::make_shared<TruthLabeller>(truth.labels, paper_body(), background));
+    Trace trace;
+    ASSERT_EQ(plain.detect(truth.frame, &trace).size(), 2U);
+    const Trace::Candidate& candidate = trace.candidates.front();
+    const FrameLabels labels = plain.label(truth.frame, &candidate.grown);
+    EXPECT_EQ(labels.labels, trace.labels);
+    EXPECT_EQ(labels.inside, candidate.labels);
+    EXPECT_TRUE(plain.label(truth.frame).inside.empty());
+    EXPECT_EQ(plain.label(truth.frame).labels, trace.labels);
+  }
 }
 
 TEST(Detector, TimesOfStagesAddUp) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace vesalius {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 /// Fewest pixels that a colour is learned from.
 constexpr int kLeastColourSamples = 200;
 
-/// Blurs `values[begin, begin + count)` with a box of `reach` bins each way.
+/// Blurs `count` values from `begin` on with a box of `reach` bins each way.
 void blur(std::array<float, ColourModel::kBins>& values, int begin, int count, int reach, bool wraps) {
   const auto source = values;
   for (int i = 0; i < count; ++i) {
@@ -23,23 +24,21 @@ void blur(std::array<float, ColourModel::kBins>& values, int begin, int count, i
   }
 }
 
-/// Furthest that the body extends around each observed part: further where parts beyond it were not seen.
+/// Returns how far the body extends around each part: further where a neighbouring part was not seen.
 std::vector<float> reach_of_parts(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
   std::vector<float> reach(body.parts.size(), options.reach_m);
   for (const BodyLink& link : body.links) {
-    const auto a = static_cast<std::size_t>(link.parent);
-    const auto b = static_cast<std::size_t>(link.child);
-    const bool has_a = rough.parts[a].state == State::observed;
-    const bool has_b = rough.parts[b].state == State::observed;
-    if (has_a == has_b) continue;
-    float& r = reach[has_a ? a : b];
+    const bool has_parent = rough.parts[link.parent].state == State::observed;
+    const bool has_child = rough.parts[link.child].state == State::observed;
+    if (has_parent == has_child) continue;
+    float& r = reach[has_parent ? link.parent : link.child];
     r = std::max(r, options.reach_m + options.missing_reach_m);
   }
   return reach;
 }
 
-/// Where a colour that the seeds do not have may be the person's all the same: close to any part, and where parts that
-/// were not seen must be (hair, hands, shoes).
+/// Returns how near to each part a colour that the seeds do not have may be the person's all the same: close to any
+/// part, and as far as parts reach that were not seen (hair, hands, shoes).
 std::vector<float> any_colour_radius(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
   std::vector<float> radius(body.parts.size(), options.own_colour_m);
   for (const BodyLink& link : body.links) {
@@ -106,8 +105,24 @@ void ColourModel::finish(const GrowOptions& options) {
   for (float& p : probabilities_) p = (total > 0.F ? (1.F - kUnseen) * p / total : 0.F) + kUnseen / kBins;
 }
 
-PersonGrower::PersonGrower(const Frame& frame, const BodyModel& body, const GrowOptions& options)
-    : frame_(frame), body_(body), options_(options), flat_(flat_pixels(frame.depth, frame.camera, options.plane)) {}
+long ColourModel::samples() const { return std::accumulate(counts_.begin(), counts_.end(), 0L); }
+
+ColourModel learn_appearance(const Frame& frame, const Mask& mask, const GrowOptions& options) {
+  ColourModel model;
+  for (std::size_t i = 0; i < frame.colour.size(); ++i) {
+    if (mask[i] != 0) model.add(ColourModel::bin(frame.colour[i], options.min_saturation));
+  }
+  return model;
+}
+
+PersonGrower::PersonGrower(const Frame& frame, const Mask& flat, const BodyModel& body, const GrowOptions& options)
+    : frame_(frame), flat_(flat), body_(body), options_(options) {
+  if (!options.use_colour) return;
+  bins_.reserve(frame.colour.size());
+  for (const Rgb colour : frame.colour) {
+    bins_.push_back(static_cast<std::uint8_t>(ColourModel::bin(colour, options.min_saturation)));
+  }
+}
 
 Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>& reach) const {
   Mask out(frame_.depth.width(), frame_.depth.height(), 0);
@@ -138,45 +153,32 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
   return out;
 }
 
-const std::vector<std::uint8_t>& PersonGrower::colour_bins() const {
-  // Nothing in parallel inside: a thread that waits could come back here.
-  std::call_once(binned_, [&] {
-    colour_bins_.reserve(frame_.colour.size());
-    for (const Rgb colour : frame_.colour) {
-      colour_bins_.push_back(static_cast<std::uint8_t>(ColourModel::bin(colour, options_.min_saturation)));
-    }
-  });
-  return colour_bins_;
-}
-
-Mask PersonGrower::refused_colours(const Skeleton& rough, const Mask& seeds, const Mask& reach) const {
+Mask PersonGrower::refused_colours(const Skeleton& rough, const Mask& seeds, const Mask& reach,
+                                   ColourModel person) const {
   Mask refused(seeds.width(), seeds.height(), 0);
-  if (!options_.use_colour || frame_.colour.empty()) return refused;
-  ColourModel person, rest;
-  int person_count = 0, rest_count = 0;
-  const std::vector<std::uint8_t>& bins = colour_bins();
+  if (bins_.empty()) return refused;
+  ColourModel rest;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (seeds[i] != 0) {
-      person.add(bins[i]);
-      ++person_count;
+      person.add(bins_[i]);
     } else if (reach[i] == 0 || flat_[i] != 0) {
-      rest.add(bins[i]);
-      ++rest_count;
+      rest.add(bins_[i]);
     }
   }
-  if (person_count < kLeastColourSamples || rest_count < kLeastColourSamples) return refused;
+  if (person.samples() < kLeastColourSamples || rest.samples() < kLeastColourSamples) return refused;
   person.finish(options_);
   rest.finish(options_);
   const Mask any_colour = around_parts(rough, any_colour_radius(rough, body_, options_));
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (reach[i] == 0 || seeds[i] != 0 || any_colour[i] != 0) continue;
-    const float elsewhere = std::max(rest.probability(bins[i]), 1.F / ColourModel::kBins);
-    if (std::log(elsewhere / person.probability(bins[i])) > options_.colour_veto) refused[i] = 1;
+    const float elsewhere = std::max(rest.probability(bins_[i]), 1.F / ColourModel::kBins);
+    if (std::log(elsewhere / person.probability(bins_[i])) > options_.colour_veto) refused[i] = 1;
   }
   return refused;
 }
 
-std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const Clusters& clusters) const {
+std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const Clusters& clusters,
+                                     const std::vector<ColourModel>& known) const {
   const int width = frame_.depth.width();
   const int height = frame_.depth.height();
   Mask nobody(width, height, 0);
@@ -204,7 +206,7 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
   }
   for (std::size_t i = 0; i < people.size(); ++i) {
     allowed.push_back(around_parts(people[i], reach_of_parts(people[i], body_, options_)));
-    const Mask refused = refused_colours(people[i], grown[i], allowed.back());
+    const Mask refused = refused_colours(people[i], grown[i], allowed.back(), known.empty() ? ColourModel{} : known[i]);
     for (std::size_t k = 0; k < refused.size(); ++k) {
       if (refused[k] != 0) allowed.back()[k] = 0;
     }
@@ -216,13 +218,12 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
     const int v = pixel / width;
     const Eigen::Vector3f here = point(u, v);
     const float radius = options_.radius_m + options_.radius_per_z2 * here.z() * here.z();
-    const auto who = static_cast<std::size_t>(person);
     for (int nv = std::max(0, v - 1); nv <= std::min(height - 1, v + 1); ++nv) {
       for (int nu = std::max(0, u - 1); nu <= std::min(width - 1, u + 1); ++nu) {
-        if (taken(nu, nv) != 0 || allowed[who](nu, nv) == 0) continue;
+        if (taken(nu, nv) != 0 || allowed[person](nu, nv) == 0) continue;
         if ((point(nu, nv) - here).squaredNorm() > radius * radius) continue;
         taken(nu, nv) = 1;
-        grown[who](nu, nv) = 1;
+        grown[person](nu, nv) = 1;
         queue.push_back({nv * width + nu, person});
       }
     }

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -30,17 +29,19 @@ struct GrowOptions {
 };
 void visit_options(const std::string& prefix, GrowOptions& options, OptionVisitor& visitor);
 
-/// Learned look (section 7): frequency of hues, and of lightness for greys, as a distribution over bins.
+/// Learned appearance of a person (section 7): how often hues occur, and lightness where a colour is grey.
 class ColourModel {
  public:
   static constexpr int kHues = 72;   ///< 5 degrees each
   static constexpr int kGreys = 32;  ///< 8 lightness steps each
   static constexpr int kBins = kHues + kGreys;
 
-  /// Bin of a colour: its hue, or its lightness where saturation is too low for a hue.
+  /// Returns the bin of a colour: its hue, or its lightness where saturation is too low for a hue.
   static int bin(Rgb colour, float min_saturation);
 
   void add(int bin) { ++counts_[bin]; }
+  /// Returns how many pixels were added.
+  long samples() const;
   /// Blurs over the tolerances (hues wrap) and normalises; an empty model is uniform.
   void finish(const GrowOptions& options);
   float probability(int bin) const { return probabilities_[bin]; }
@@ -50,33 +51,34 @@ class ColourModel {
   std::array<float, kBins> probabilities_{};
 };
 
+/// Returns the appearance of the pixels inside `mask`, which has the frame's size; an empty one for a frame without
+/// colour.
+ColourModel learn_appearance(const Frame& frame, const Mask& mask, const GrowOptions& options);
+
 /// Grows people from rough skeletons in one frame (section 7): Euclidean clustering by place and colour, seeded with
 /// the pixels of the skeleton's proposals, within the body's reach, never along floor, walls or other people.
 class PersonGrower {
  public:
-  /// Keeps references: frame and options must outlive it.
-  PersonGrower(const Frame& frame, const BodyModel& body, const GrowOptions& options);
+  /// `flat` is 1 on floor, walls and other large flat surfaces. Keeps references: all four must outlive it.
+  PersonGrower(const Frame& frame, const Mask& flat, const BodyModel& body, const GrowOptions& options);
 
-  /// Masks of the people, 1 inside, one per skeleton. They grow at the same pace from their own proposals, so that
-  /// people who touch share the pixels between them by nearness.
-  std::vector<Mask> grow(const std::vector<Skeleton>& people, const Clusters& clusters) const;
-
-  /// 1 on pixels of floor, walls and other large flat surfaces.
-  const Mask& flat() const { return flat_; }
+  /// Returns the people's masks, 1 inside, one per skeleton. They grow at the same pace from their own proposals in
+  /// `clusters`, so that people who touch share the pixels between them by nearness. `known` is empty or holds what was
+  /// learned before of each one's appearance, to which the colours of this frame are added.
+  std::vector<Mask> grow(const std::vector<Skeleton>& people, const Clusters& clusters,
+                         const std::vector<ColourModel>& known = {}) const;
 
  private:
-  /// 1 on pixels within `radius_m[part]` of each observed part's centre; 0 = not at all.
+  /// Returns 1 on pixels within `radius_m[part]` of each observed part's centre; a radius of 0 reaches nothing.
   Mask around_parts(const Skeleton& rough, const std::vector<float>& radius_m) const;
-  /// Of every pixel: worked out when first asked for, for most frames have nobody.
-  const std::vector<std::uint8_t>& colour_bins() const;
-  Mask refused_colours(const Skeleton& rough, const Mask& seeds, const Mask& reach) const;
+  /// Returns 1 where a pixel within reach has a colour that the person hardly has.
+  Mask refused_colours(const Skeleton& rough, const Mask& seeds, const Mask& reach, ColourModel person) const;
 
   const Frame& frame_;
+  const Mask& flat_;
   const BodyModel& body_;
   const GrowOptions& options_;
-  Mask flat_;
-  mutable std::once_flag binned_;
-  mutable std::vector<std::uint8_t> colour_bins_;
+  std::vector<std::uint8_t> bins_;  ///< ColourModel::bin of every pixel; empty where colour takes no part
 };
 
 }  // namespace vesalius

@@ -75,7 +75,8 @@ Overlap compare(const Mask& mask, const Image<std::uint8_t>& person, int who) {
 }
 
 std::vector<Mask> grow_all(const Scene& scene, const GrowOptions& options = {}) {
-  return PersonGrower(scene.truth.frame, paper_body(), options).grow(scene.rough, scene.clusters);
+  const Mask flat = flat_pixels(scene.truth.frame.depth, kCamera, options.plane);
+  return PersonGrower(scene.truth.frame, flat, paper_body(), options).grow(scene.rough, scene.clusters);
 }
 
 TEST(GrowPerson, FillsTheWholePersonFromHalfOfTheParts) {
@@ -178,6 +179,25 @@ TEST(GrowPerson, WorksWithoutColour) {
   const std::vector<Mask> expected = grow_all(scene, blind);
   scene.truth.frame.colour = {};
   EXPECT_EQ(grow_all(scene), expected);
+}
+
+TEST(GrowPerson, KnownColoursStopWhereThoseOfTheSeedsAreTooFew) {
+  // So little of the person is seen in this frame that no colour can be learned from it.
+  const Scene scene = make_scene(person_with_box(), {"l_knee"});
+  const Mask flat = flat_pixels(scene.truth.frame.depth, kCamera, {});
+  GrowOptions options;
+  options.reach_m = 0.5F;
+  options.own_colour_m = 0.01F;
+  const PersonGrower grower(scene.truth.frame, flat, paper_body(), options);
+  Mask person(kCamera.width, kCamera.height, 0);
+  for (std::size_t i = 0; i < person.size(); ++i) person[i] = scene.truth.person[i] == 0 ? 1 : 0;
+  const ColourModel known = learn_appearance(scene.truth.frame, person, options);
+  EXPECT_EQ(known.samples(), std::ranges::count(person, 1));
+  const long without = compare(grower.grow(scene.rough, scene.clusters)[0], scene.truth.person, 0).leaked;
+  const long with = compare(grower.grow(scene.rough, scene.clusters, {known})[0], scene.truth.person, 0).leaked;
+  EXPECT_GT(without, 200);
+  EXPECT_LT(with, without / 2);
+  EXPECT_EQ(grower.grow(scene.rough, scene.clusters, {ColourModel{}}), grower.grow(scene.rough, scene.clusters));
 }
 
 TEST(ColourModel, HuesWrapAndGreysHaveNone) {

@@ -1,9 +1,14 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "io/files/image_file.h"
 #include "run_program.h"
@@ -56,8 +61,9 @@ TEST_F(Detect, QuietPrintsNothing) {
 
 void expect_point(const json& point) {
   const std::string state = point.at("state");
-  EXPECT_EQ(point.size(), 3U);
+  EXPECT_EQ(point.size(), 4U);
   EXPECT_EQ(point.at("xyz_m").is_null(), state == "none");
+  EXPECT_EQ(point.at("px").is_null(), state == "none");
   EXPECT_TRUE(state == "none" || state == "predicted" || state == "observed") << state;
   if (state != "none") {
     EXPECT_EQ(point.at("xyz_m").size(), 3U);
@@ -70,9 +76,14 @@ TEST_F(Detect, JsonOnStandardOutputIsNothingElse) {
   const Outcome run = detect(" --json -");
   EXPECT_EQ(run.exit_code, 0);
   const std::vector<json> found = lines(run.out);
-  ASSERT_EQ(found.size(), 3U);
+  ASSERT_EQ(found.size(), 4U);
   EXPECT_EQ(found[0].at("frame"), "a");
-  EXPECT_EQ(found[2], json::parse(R"({"frame":"c","time_s":0.0,"people":[]})"));
+  EXPECT_EQ(found[2].at("frame"), "c");
+  EXPECT_TRUE(found[2].at("time_s").is_null()) << "nobody knows when these frames were taken";
+  EXPECT_EQ(found[2].at("people"), json::array());
+  EXPECT_EQ(found[2].at("camera"),
+            json::parse(R"({"width":320,"height":240,"fx":262.5,"fy":262.5,"cx":159.5,"cy":119.5})"));
+  EXPECT_EQ(found[3], json::parse(R"({"complete":true,"frames":3})"));
   ASSERT_EQ(found[0].at("people").size(), 1U);
   const json& person = found[0].at("people").at(0);
   EXPECT_EQ(person.size(), 5U);
@@ -93,6 +104,10 @@ TEST_F(Detect, FindsTheRenderedPersonWhereItStands) {
   ASSERT_EQ(chest.at("state"), "observed");
   EXPECT_NEAR(chest.at("xyz_m").at(2), 2.4, 0.2);  // the feet stand at 2.5 m, the chest's surface before
   EXPECT_GT(chest.at("xyz_m").at(0), 0.0) << "the left of a person who faces the camera is on the right";
+  const json& box = person.at("box_px");
+  EXPECT_GT(chest.at("px").at(0), 159.5) << "so it is in the picture";
+  EXPECT_LT(chest.at("px").at(0), box.at(0).get<double>() + box.at(2).get<double>());
+  EXPECT_GT(chest.at("px").at(1), box.at(1));
 }
 
 TEST_F(Detect, SameBytesForAnyNumberOfThreads) {
@@ -149,20 +164,90 @@ TEST_F(Detect, FlagsWinOverTheOptionsFile) {
   EXPECT_EQ(people(detect(file + " --search.min-parts 4 --search.max-mean-error 1")), 1U);
 }
 
-TEST_F(Detect, KeepGoingPassesOverDamagedFrames) {
+TEST_F(Detect, ADamagedFrameKeepsWhatWasDoneBefore) {
   fs::copy(frames(), path("damaged"), fs::copy_options::recursive);
   write("damaged/depth/b.png", "no picture");
-  const std::string command = "detect " + path("damaged") + " -q -m " + model() + " --json " + path("people.jsonl");
+  const std::string out = path("damaged_out");
+  const std::string command = "detect " + path("damaged") + " -q -m " + model() + " --json " + path("people.jsonl") +
+                              " --out " + out + " --save video";
   const Outcome stopped = run_program(command);
   EXPECT_EQ(stopped.exit_code, 1);
   EXPECT_THAT(stopped.err, HasSubstr("b.png"));
-  EXPECT_FALSE(fs::exists(path("people.jsonl"))) << "half a result is none";
+  auto found = lines(bytes_of(path("people.jsonl")));
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].at("frame"), "a");
+  EXPECT_EQ(found[1].at("complete"), false);
+  EXPECT_EQ(found[1].at("frames"), 1);
+  EXPECT_THAT(found[1].at("why"), HasSubstr("b.png"));
+  EXPECT_EQ(bytes_of(out + "/overlay.avi").substr(0, 4), "RIFF");
+
   const Outcome kept = run_program(command + " --keep-going");
   EXPECT_EQ(kept.exit_code, 1);
   EXPECT_THAT(kept.err, HasSubstr("1 of 3 frames failed"));
-  const auto found = lines(bytes_of(path("people.jsonl")));
-  ASSERT_EQ(found.size(), 2U);
+  found = lines(bytes_of(path("people.jsonl")));
+  ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[1].at("frame"), "c");
+  EXPECT_EQ(found[2], json::parse(R"({"complete":false,"frames":2,"why":"1 of 3 frames failed"})"));
+}
+
+TEST_F(Detect, LinesOfTextComeOnlyWhereNothingElseIsAskedFor) {
+  EXPECT_EQ(detect(" --json " + path("alone.jsonl")).out, "");
+  EXPECT_EQ(detect(" --out " + path("alone")).out, "");
+}
+
+TEST_F(Detect, OnATerminalAResultHasALineOfItsOwn) {
+  std::string list;
+  for (int i = 0; i < 100; ++i) list += std::to_string(i) + " ../frames/depth/c.png\n";
+  fs::create_directories(path("hundred"));
+  write("hundred/depth.txt", list);
+  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_TRUE(terminal >= 0 && ::grantpt(terminal) == 0 && ::unlockpt(terminal) == 0);
+  const std::string name = ::ptsname(terminal);
+  const int held = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // so that reading does not end before the program begins
+  std::string shown;
+  std::thread reader([&] {
+    std::array<char, 4096> buffer{};
+    for (ssize_t n = 0; (n = ::read(terminal, buffer.data(), buffer.size())) > 0;) shown.append(buffer.data(), n);
+  });
+  const Outcome run =
+      run_program("detect " + path("hundred") + " --fx 262 --threads 1 -m " + model() + " >" + name + " 2>" + name);
+  ::close(held);
+  reader.join();
+  ::close(terminal);
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(shown, HasSubstr("of 100 frames"));
+  int results = 0;
+  std::istringstream in(shown);
+  for (std::string line; std::getline(in, line);) {
+    if (line.ends_with('\r')) line.pop_back();
+    line.erase(0, line.rfind('\r') + 1);  // what the terminal goes back over
+    if (!line.ends_with(": nobody")) continue;
+    EXPECT_THAT(line, MatchesRegex("[0-9]+: nobody"));
+    ++results;
+  }
+  EXPECT_EQ(results, 100);
+}
+
+TEST_F(Detect, TheDefaultModelIsFoundWithoutBeingNamed) {
+  fs::create_directories(path("models"));
+  fs::copy_file(model(), path("models/default.forest"));
+  const Outcome chosen = run_program("detect " + frames() + " -q --json -", "VESALIUS_MODELS='" + path("models") + "'");
+  EXPECT_EQ(chosen.exit_code, 0) << chosen.err;
+  EXPECT_EQ(chosen.out, detect(" -q --json -").out);
+  EXPECT_EQ(run_program("detect " + frames() + " -q").exit_code, 0) << "the build tree has the shipped ones";
+}
+
+TEST_F(Detect, AMissingDefaultModelSaysWhereItWasLookedFor) {
+  fs::create_directories(path("bin"));
+  fs::copy_file(VESALIUS_PROGRAM, path("bin/vesalius"));
+  const std::string command =
+      "cd " + path("") + " && VESALIUS_MODELS=elsewhere bin/vesalius detect frames 2>" + path("models.err");
+  EXPECT_NE(std::system(command.c_str()), 0);
+  EXPECT_EQ(bytes_of(path("models.err")), "vesalius: no --model given, and no default.forest in elsewhere, " +
+                                              path("bin/models") + ", " + path("share/vesalius/models") + "\n");
+  fs::create_directories(path("share/vesalius/models"));
+  fs::copy_file(model(), path("share/vesalius/models/default.forest"));
+  EXPECT_EQ(std::system(command.c_str()), 0) << "as an installation has it: " << bytes_of(path("models.err"));
 }
 
 TEST_F(Detect, WhatNobodyCanReadStopsNothing) {
@@ -177,7 +262,7 @@ TEST_F(Detect, ClosedStreamsDoNotSpillIntoFiles) {
   write("spilt/depth/b.png", "no picture");
   const std::string people = path("spilt.jsonl");
   run_program("detect " + path("spilt") + " -m " + model() + " --keep-going --json " + people + " 2>&-");
-  EXPECT_EQ(lines(bytes_of(people)).size(), 2U);
+  EXPECT_EQ(lines(bytes_of(people)).size(), 3U) << "two frames and the closing line";
 }
 
 TEST_F(Detect, AFrameIsALineWhateverItsName) {

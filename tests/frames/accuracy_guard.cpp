@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <memory>
 
-#include "dataset/truth_source.h"
+#include "dataset/open_truth.h"
 #include "eval/score_frame.h"
 #include "evaluation/evaluation_joints.h"
 #include "io/model/model_file.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/forest/make_labeller.h"
 
 namespace vesalius {
 namespace {
@@ -106,7 +107,7 @@ std::vector<AcceptedSet> parse_accuracy(std::string_view text, const std::string
 MeasuredSet measure(const AcceptedSet& set, const std::string& project, const std::string& source) {
   Forest forest = load_model(project + "/" + set.model);
   forest.body = with_evaluation_joints(forest.body);
-  const FrameScorer scorer(std::make_shared<ForestLabeller>(std::move(forest)), {});
+  const FrameScorer scorer(make_labeller(std::move(forest)), {});
   const auto truth = open_truth(source, set.step);
   std::vector<TrueFrame> frames;
   while (auto frame = truth->next()) frames.push_back(std::move(*frame));

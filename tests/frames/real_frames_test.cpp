@@ -12,7 +12,7 @@
 #include "io/model/model_file.h"
 #include "shared_frames.h"
 #include "vesalius/base/for_each_target.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/base/test_threads.h"
 #include "vesalius/detect.h"
 
 namespace vesalius {
@@ -149,10 +149,7 @@ TEST(RealFrames, SameResultForAnyThreadCount) {
   const Detector detector = released_detector(shared);
   for (const RealFrame& real : load_real_set(shared, "tue_people")) {
     std::vector<std::vector<Person>> results;
-    for (const int threads : {1, 2, 8, 8}) {
-      const ThreadLimit limit(threads);
-      results.push_back(detector.detect(real.frame));
-    }
+    for_threads({1, 2, 8, 8}, [&] { results.push_back(detector.detect(real.frame)); });
     for (const std::vector<Person>& people : results) expect_same(people, results[0]);
   }
 }
@@ -171,11 +168,8 @@ TEST(RealFrames, SameResultForEveryInstructionSetAndThreadCount) {
     for (std::size_t i = 0; i < all.size(); i += step) {
       const std::vector<Person> expected = detector.detect(all[i].frame);
       for_each_target([&](const char* target) {
-        for (const int threads : {1, 3}) {
-          SCOPED_TRACE(std::string(target) + ", " + std::to_string(threads) + " threads, " + all[i].frame.name);
-          const ThreadLimit limit(threads);
-          expect_same(detector.detect(all[i].frame), expected);
-        }
+        SCOPED_TRACE(std::string(target) + ", " + all[i].frame.name);
+        for_threads({1, 3}, [&] { expect_same(detector.detect(all[i].frame), expected); });
       });
       ++frames;
       found += expected.size();

@@ -7,6 +7,7 @@
 
 #include "io/files/image_file.h"
 #include "io/model/model_file.h"
+#include "io/model/text_trees.h"
 #include "io/sources/open_source.h"
 
 namespace vesalius {

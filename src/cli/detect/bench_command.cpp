@@ -185,7 +185,7 @@ Times are those of the clock on the wall, from a frame in memory to its people; 
 those of one detection after the other. Every detector option is a flag too; `vesalius options` lists them.
 
 Example:
-  vesalius bench frames/ -m default.forest --frames 300 --json bench.json)");
+  vesalius bench frames/ --frames 300 --json bench.json)");
   command->callback([arguments] { run(*arguments); });
 }
 

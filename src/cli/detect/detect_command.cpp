@@ -6,13 +6,13 @@
 
 #include "cli/commands.h"
 #include "cli/detect/detect_outputs.h"
-#include "cli/detect/detect_stream.h"
 #include "cli/detect/latency.h"
 #include "cli/detector_flags.h"
 #include "cli/interrupts.h"
 #include "cli/progress.h"
 #include "cli/source_flags.h"
 #include "cli/text_sink.h"
+#include "stream/detect_stream.h"
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/stage_times.h"
@@ -31,7 +31,6 @@ struct Arguments {
   int threads = 0;
   bool timing = false;
   bool keep_going = false;
-  bool quiet = false;
 };
 
 struct Totals {
@@ -42,7 +41,7 @@ struct Totals {
   FrameTimes times;
 };
 
-/// What was found in one frame to the outputs. Throws what reading or detecting threw.
+/// Writes what was found in one frame. Throws what reading or detecting threw.
 void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals) {
   if (found.error) std::rethrow_exception(found.error);
   const double write_ms = elapsed_ms([&] { outputs.write(*found.frame, found.people); });
@@ -51,10 +50,13 @@ void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals
   totals.frames_with_people += found.people.empty() ? 0 : 1;
 }
 
-Totals detect_all(const Arguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,
-                  Progress& progress) {
-  Totals totals;
-  totals.dropped = stream_frames(source, detector, arguments.stream, [&](const FoundFrame& found) {
+void detect_all(const Arguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,
+                Progress& progress, Totals& totals) {
+  StreamOptions options = arguments.stream;
+  options.stop = interrupted;
+  totals.dropped = stream_frames(source, detector, options, [&](const FoundFrame& found) {
+    // A terminal shows both: what is printed must not stand behind the changing line.
+    if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
     try {
       write_found(found, outputs, totals);
     } catch (const BrokenPipe&) {
@@ -68,7 +70,9 @@ Totals detect_all(const Arguments& arguments, FrameSource& source, const Detecto
     progress.step();
     return true;
   });
-  return totals;
+  progress.clear();
+  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+  if (totals.failed > 0) throw Error(fmt::format("{} of {} frames failed", totals.failed, progress.done()));
 }
 
 void say_totals(const Arguments& arguments, const Totals& totals, const Progress& progress) {
@@ -88,21 +92,32 @@ void run(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   const Detector detector = arguments.detector.make();
   const auto source = open_source(arguments.source, arguments.camera);
-  if (!arguments.quiet) {
+  if (!arguments.outputs.quiet) {
     for (const std::string& note : source->notes()) say("note: " + note);
   }
-  OutputRequest request = arguments.outputs;
-  request.lines = !arguments.quiet && request.json != "-";
   watch_interrupts();
-  DetectOutputs outputs(request, detector.body());
-  Progress progress(source->size(), !arguments.quiet);
-  const Totals totals = detect_all(arguments, *source, detector, outputs, progress);
-  progress.clear();
-  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
-  outputs.finish();
-  if (!arguments.quiet) say_totals(arguments, totals, progress);
-  if (arguments.timing) say_times(totals.times);
-  if (totals.failed > 0) throw Error(fmt::format("{} of {} frames failed", totals.failed, progress.done()));
+  DetectOutputs outputs(arguments.outputs, detector.body());
+  Progress progress(source->size(), !arguments.outputs.quiet);
+  Totals totals;
+  const auto say_end = [&] {
+    if (!arguments.outputs.quiet) say_totals(arguments, totals, progress);
+    if (arguments.timing) say_times(totals.times);
+  };
+  try {
+    detect_all(arguments, *source, detector, outputs, progress, totals);
+  } catch (const BrokenPipe&) {
+    throw;
+  } catch (const Error& e) {
+    progress.clear();
+    try {
+      outputs.finish(e.what());  // what was done is kept
+    } catch (const Error&) {     // the first error is told
+    }
+    if (progress.done() > 0) say_end();
+    throw;
+  }
+  outputs.finish("");
+  say_end();
 }
 
 void add_output_flags(CLI::App& command, OutputRequest& outputs) {
@@ -156,14 +171,14 @@ void add_detect(CLI::App& program) {
       ->group(kDetectorGroup);
   add_time_flags(*command, *arguments);
   command->add_flag("--keep-going", arguments->keep_going, "Pass over frames that fail; exit code 1 at the end");
-  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command->add_flag("-q,--quiet", arguments->outputs.quiet, "Print errors only");
   command->footer(R"(
 Every detector option is a flag too, e.g. --search.min-parts 6; `vesalius options` lists them.
 
 Examples:
-  vesalius detect frames/ -m capsule.forest
+  vesalius detect frames/
   vesalius detect tum:walking -m capsule.forest --json - | jq .people
-  vesalius detect depth.png --fx 525 -m capsule.forest --out found/ --save overlay,mask)");
+  vesalius detect depth.png --fx 525 --out found/ --save overlay,mask)");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-#include "cli/detect/person_json.h"
 #include "draw/draw.h"
 #include "io/files/image_file.h"
 #include "io/files/ply.h"
+#include "stream/person_json.h"
 
 namespace vesalius::cli {
 namespace {
@@ -63,7 +63,8 @@ std::string DetectOutputs::path(const char* kind, const Frame& frame, const char
 void DetectOutputs::write(const Frame& frame, const std::vector<Person>& people) {
   write_pictures(frame, people);
   if (json_) json_->line(frame_json(frame, people, body_));
-  if (request_.lines) print(one_line(describe(frame, people)) + "\n");
+  if (request_.lines()) print(one_line(describe(frame, people)) + "\n");
+  ++frames_;
 }
 
 void DetectOutputs::write_pictures(const Frame& frame, const std::vector<Person>& people) {
@@ -90,10 +91,13 @@ void DetectOutputs::write_pictures(const Frame& frame, const std::vector<Person>
   }
 }
 
-void DetectOutputs::finish() {
-  if (video_) video_->close();
-  if (json_) json_->finish();
-  if (request_.lines) finish_stdout();
+void DetectOutputs::finish(const std::string& why_not_all) {
+  if (json_) {
+    json_->line(closing_json(frames_, why_not_all.empty(), why_not_all));
+    json_->finish();
+  }
+  if (video_ && (frames_ > 0 || why_not_all.empty())) video_->close();
+  if (request_.lines()) finish_stdout();
 }
 
 std::string describe(const Frame& frame, const std::vector<Person>& people) {

@@ -17,7 +17,10 @@ struct OutputRequest {
   std::string folder;             ///< empty = no pictures
   std::vector<std::string> save;  ///< of kSaveKinds; empty with a folder = overlay
   double video_rate = 30.0;       ///< frames per second
-  bool lines = true;              ///< a line of text per frame on standard output
+  bool quiet = false;             ///< no lines of text
+
+  /// Returns whether a line of text per frame goes to standard output: where nothing else is asked for.
+  bool lines() const { return !quiet && json.empty() && folder.empty(); }
 };
 
 inline const std::set<std::string> kSaveKinds = {"overlay", "parts", "labels", "mask", "cloud", "video"};
@@ -25,13 +28,15 @@ inline const std::set<std::string> kSaveKinds = {"overlay", "parts", "labels", "
 /// Throws UsageError for a request that cannot be meant.
 void check(const OutputRequest& request);
 
-/// Everything written per frame. Pictures appear one by one; JSON and video at `finish`, whole or not at all.
+/// Everything written per frame. Pictures appear one by one, JSON and video at `finish`. Whoever does not call it
+/// leaves neither.
 class DetectOutputs {
  public:
   /// Makes the folders; throws Error when it cannot, or cannot open a file.
   DetectOutputs(OutputRequest request, const BodyModel& body);
   void write(const Frame& frame, const std::vector<Person>& people);
-  void finish();
+  /// Ends JSON and video. `why_not_all` says why frames are missing, which the JSON repeats; empty where none are.
+  void finish(const std::string& why_not_all);
 
  private:
   bool wants(const std::string& kind) const { return kinds_.contains(kind); }
@@ -43,6 +48,7 @@ class DetectOutputs {
   std::set<std::string> names_;  ///< of frames with pictures
   const BodyModel& body_;
   std::optional<TextSink> json_;
+  int frames_ = 0;  ///< written
   std::optional<VideoWriter> video_;
 };
 

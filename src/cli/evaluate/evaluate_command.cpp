@@ -31,6 +31,7 @@
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/forest/make_labeller.h"
 
 namespace vesalius::cli {
 namespace {
@@ -180,8 +181,7 @@ void run(const Arguments& arguments, const std::string& command) {
   evaluation.machine = machine_facts();
   std::vector<Variant> variants;
   if (arguments.ablation) variants = ablation_variants(forest, evaluation.options);
-  const FrameScorer scorer(std::make_shared<ForestLabeller>(std::move(forest)),
-                           {evaluation.options, arguments.labels_only});
+  const FrameScorer scorer(make_labeller(std::move(forest)), {evaluation.options, arguments.labels_only});
   evaluation.body = scorer.body();
   if (!arguments.report.empty()) prepare_report(arguments.report);
   watch_interrupts();

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "dataset/open_truth.h"
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "io/sources/open_source.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/synth/synth_recipe.h"
+#include "dataset/open_truth.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 

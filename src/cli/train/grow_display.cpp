@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cli/interrupts.h"
+#include "cli/text_sink.h"
 
 namespace vesalius::cli {
 namespace {
@@ -68,6 +69,37 @@ std::string GrowDisplay::line() const {
   return fmt::format("{}: {} of {} trees, {:.0f} %, {:.2f} M nodes, {:.0f} M evaluations/s, {:.0f} s left{}", round_,
                      votes_.trees(), trees_, 100.0 * share, static_cast<double>(progress_.nodes) * 1e-6,
                      static_cast<double>(progress_.evaluations) / spent_s * 1e-6, left_s, accuracy_);
+}
+
+TrainDisplay::TrainDisplay(const TrainingSet& set, int max_depth, bool shown)
+    : set_(set), max_depth_(max_depth), shown_(shown) {}
+
+void TrainDisplay::begin_round(const TreeRound& round, GrowProgress& progress) {
+  round_ = round;
+  progress_ = &progress;
+  grown_ = 0;
+  totals_.resumed += round.trees - round.missing;
+  display_.emplace(round.name, set_, round.missing, max_depth_, progress, shown_);
+}
+
+void TrainDisplay::add_tree(const Tree& tree) {
+  ++grown_;
+  display_->add(tree);
+}
+
+void TrainDisplay::end_round() {
+  totals_.evaluations += progress_->evaluations;
+  totals_.seconds += display_->seconds();
+  display_.reset();
+}
+
+void TrainDisplay::add_hard_negatives(std::size_t samples) {
+  totals_.hard_negatives = samples;
+  if (shown_) say(fmt::format("{} hard negatives", samples));
+}
+
+std::string TrainDisplay::done() const {
+  return fmt::format("{} of {} trees of the {}", round_.trees - round_.missing + grown_, round_.trees, round_.name);
 }
 
 }  // namespace vesalius::cli

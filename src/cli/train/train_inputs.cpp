@@ -10,8 +10,10 @@
 #include "cli/interrupts.h"
 #include "cli/synth/synth_recipe.h"
 #include "dataset/labelled_dataset.h"
+#include "dataset/labelled_folder.h"
 #include "io/files/byte_stream.h"
 #include "io/files/read_file.h"
+#include "io/sources/open_source.h"
 #include "vesalius/base/parallel_in_order.h"
 
 namespace vesalius::cli {
@@ -70,24 +72,34 @@ TrainInputs::TrainInputs(const TrainSources& sources) : background_camera_(sourc
   for (const std::string& source : sources.backgrounds) open_background(source);
 }
 
-void TrainInputs::open_dataset(const std::string& folder, int count) {
-  const auto reader = std::make_shared<const DatasetReader>(folder);
-  if (reader->size() == 0) throw Error(folder + ": no frames in it, expected some to train from");
+/// Adds the frames of a DatasetReader or LabelledFolder.
+template <class Reader>
+void TrainInputs::open_labelled(std::shared_ptr<const Reader> reader, int count, TrainInput input) {
+  if (reader->size() == 0) throw Error(input.name + ": no frames in it, expected some to train from");
   if (body_from_.empty()) {
     body_ = reader->body();
-    body_from_ = folder;
+    body_from_ = input.name;
   }
-  expect_same_parts(reader->body(), folder, body_, body_from_);
+  expect_same_parts(reader->body(), input.name, body_, body_from_);
   const auto most = static_cast<std::uint64_t>(count > 0 ? count : kMostFrames);
   const Camera camera = reader->read(0, false).frame.camera;
-  inputs_.push_back({.name = folder,
-                     .made_by = reader->info().recipe,
-                     .seed = reader->info().seed,
-                     .hash = dataset_hash(reader->info()),
-                     .frames = static_cast<int>(std::min(reader->size(), most)),
-                     .width = camera.width,
-                     .height = camera.height,
-                     .frame = [reader](int i) { return reader->read(static_cast<std::uint64_t>(i), false); }});
+  input.frames = static_cast<int>(std::min(reader->size(), most));
+  input.width = camera.width;
+  input.height = camera.height;
+  input.frame = [reader](int i) { return reader->read(i, false); };
+  inputs_.push_back(std::move(input));
+}
+
+void TrainInputs::open_dataset(const std::string& folder, int count) {
+  if (is_labelled_folder(folder)) {
+    const auto reader = std::make_shared<const LabelledFolder>(folder);
+    open_labelled(reader, count, {.name = folder, .made_by = "", .hash = reader->content_hash(), .frame = {}});
+    return;
+  }
+  const auto reader = std::make_shared<const DatasetReader>(folder);
+  const DatasetInfo& info = reader->info();
+  open_labelled(reader, count,
+                {.name = folder, .made_by = info.recipe, .seed = info.seed, .hash = dataset_hash(info), .frame = {}});
 }
 
 void TrainInputs::open_recipe(const std::string& file, const TrainSources& sources) {

@@ -2,11 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/synth/synth_assets.h"
-#include "io/sources/open_source.h"
+#include "io/sources/source_options.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
 
@@ -77,6 +78,8 @@ class TrainInputs {
   void read(const Selection& selection, const TakeFrame& take) const;
 
  private:
+  template <class Reader>
+  void open_labelled(std::shared_ptr<const Reader> reader, int count, TrainInput input);
   void open_dataset(const std::string& folder, int count);
   void open_recipe(const std::string& file, const TrainSources& sources);
   void open_background(const std::string& source);

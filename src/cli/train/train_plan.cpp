@@ -1,6 +1,7 @@
 #include "cli/train/train_plan.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -79,15 +80,24 @@ std::vector<FrameGroup> measured_groups(const TrainInputs& inputs, double copies
   return groups;
 }
 
+/// Most memory that the program itself has taken so far, bytes: its libraries and the sources it has opened.
+std::uint64_t own_memory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;
+}
+
 [[noreturn]] void refuse(const TrainInputs& inputs, const TrainOptions& options, std::span<const FrameGroup> groups,
-                         std::uint64_t needed, std::uint64_t limit) {
-  const TrainingFit fit = training_fit(groups, options, class_count(inputs, options), limit);
+                         std::uint64_t needed, std::uint64_t own, std::uint64_t limit) {
+  const std::uint64_t left = limit > own ? limit - own : 0;
+  const TrainingFit fit = training_fit(groups, options, class_count(inputs, options), left);
   const auto frames = static_cast<std::int64_t>(std::floor(static_cast<double>(inputs.frames()) * fit.frame_share));
-  const std::string pixels = fit.pixels > 0 ? fmt::format(", or --pixels {}", fit.pixels) : "";
   throw Error(
-      fmt::format("training on {} frames with {} pixels each takes {:.2f} GiB, --memory allows {:.2f}; {} "
-                  "frames would fit{}",
-                  inputs.frames(), options.sample.pixels_per_frame, gib(needed), gib(limit), frames, pixels));
+      fmt::format("training on {} frames with {} pixels each takes {:.2f} GiB, --memory allows {:.2f}: expected "
+                  "--memory {:.1f}{}{}",
+                  inputs.frames(), options.sample.pixels_per_frame, gib(needed), gib(limit),
+                  std::ceil(10.0 * gib(needed)) / 10.0, frames > 0 ? fmt::format(", or {} frames", frames) : "",
+                  fit.pixels > 0 ? fmt::format(", or --pixels {}", fit.pixels) : ""));
 }
 
 /// Frames of an input made for a moment, and how long all of it will take.
@@ -128,11 +138,12 @@ std::uint64_t default_memory() {
 MemoryPlan plan_memory(const TrainInputs& inputs, const TrainOptions& options, bool curves, std::uint64_t limit) {
   const std::vector<FrameGroup> groups = measured_groups(inputs, curves ? 1.0 + kCurveFrames : 1.0);
   const TrainingMemory memory = training_memory(groups, options, class_count(inputs, options));
-  if (memory.total(1) > limit) refuse(inputs, options, groups, memory.total(1), limit);
+  const std::uint64_t own = own_memory();
+  if (own + memory.total(1) > limit) refuse(inputs, options, groups, own + memory.total(1), own, limit);
   MemoryPlan plan;
   const int most = std::min(thread_count(), std::max(options.trees, 1));
-  while (plan.trees_at_once < most && memory.total(plan.trees_at_once + 1) <= limit) ++plan.trees_at_once;
-  plan.bytes = memory.total(plan.trees_at_once);
+  while (plan.trees_at_once < most && own + memory.total(plan.trees_at_once + 1) <= limit) ++plan.trees_at_once;
+  plan.bytes = own + memory.total(plan.trees_at_once);
   return plan;
 }
 

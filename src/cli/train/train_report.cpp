@@ -49,7 +49,7 @@ void add_summary(Document& document, const Forest& forest, const TrainingSet& se
       {"Accuracy, background a rival", share_text(figures.accuracy.with_background())},
       {"Frames", fmt::format("{}", set.frames().size())},
       {"Samples learned from", fmt::format("{}", set.samples().size())},
-      {"of them hard negatives", fmt::format("{}", figures.hard_negatives)},
+      {"of them hard negatives", fmt::format("{}", figures.grown.hard_negatives)},
       {"Samples held out", fmt::format("{}", set.held_out().size())},
       {"Frames and samples in memory, MiB", fmt::format("{:.0f}", static_cast<double>(set.bytes()) / kMiB)},
       {"Reading or rendering, s", fmt::format("{:.1f}", figures.reading_s)},

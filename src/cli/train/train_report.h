@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/train/train_trees.h"
+#include "cli/train/grow_display.h"
 #include "report/document.h"
 #include "train/sample_accuracy.h"
 
@@ -27,7 +27,6 @@ struct TrainFigures {
   GrowTotals grown;
   double reading_s = 0.0;
   int threads = 0;
-  std::size_t hard_negatives = 0;
   SampleAccuracy accuracy;
   std::vector<AccuracyPoint> by_trees, by_level;
   std::vector<CurvePoint> curves;  ///< may be empty

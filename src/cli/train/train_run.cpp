@@ -8,12 +8,13 @@
 
 #include "cli/progress.h"
 #include "cli/text_sink.h"
+#include "cli/train/grow_display.h"
 #include "cli/train/train_curves.h"
 #include "cli/train/train_recipe.h"
 #include "cli/train/train_report.h"
 #include "cli/train/train_session.h"
-#include "cli/train/train_trees.h"
 #include "io/model/model_file.h"
+#include "train/local_executor.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 
@@ -63,7 +64,7 @@ class Training {
     const std::vector<BackgroundFacts> backgrounds = inputs_.read_backgrounds(add);
     background_frames_ = set_.frames().size();
     recipe_ = train_recipe(options_, inputs_, backgrounds);
-    session_.emplace(run_.out + ".work", recipe_, run_.restart);
+    session_.emplace(run_.out + ".work", untrained_forest(), run_.restart);
     inputs_.read({}, add);
     figures_.reading_s = progress.seconds();
     progress.clear();
@@ -92,18 +93,23 @@ class Training {
     return static_cast<int>(frames);
   }
 
-  Forest grow() {
-    if (options_.hard_trees > 0 && set_.has_background()) {
-      const std::vector<Tree> trees = round("first round", kFirstHardTree, options_.hard_trees);
-      figures_.hard_negatives = set_.add_hard_negatives(assemble_forest(set_, trees, recipe_));
-      tell(fmt::format("{} hard negatives", figures_.hard_negatives));
-    }
-    return assemble_forest(set_, round("forest", 0, options_.trees), recipe_);
+  Forest untrained_forest() const {
+    Forest forest = set_.untrained_forest();
+    forest.recipe = recipe_;
+    return forest;
   }
 
-  std::vector<Tree> round(const char* name, int first, int count) {
-    return grow_round(set_, options_, {name, first, count, run_.trees_at_once}, *session_, recipe_, run_.shown,
-                      figures_.grown);
+  Forest grow() {
+    LocalExecutor executor({&set_});
+    TrainDisplay display(set_, options_.grow.leaf.max_depth, run_.shown);
+    try {
+      Forest forest = train_forest(executor, untrained_forest(), options_, *session_, display, run_.trees_at_once);
+      figures_.grown = display.totals();
+      return forest;
+    } catch (const Interrupted&) {
+      throw Error(
+          fmt::format("interrupted, {} are in {}: the same command goes on", display.done(), session_->folder()));
+    }
   }
 
   void summarise(const Forest& forest) {

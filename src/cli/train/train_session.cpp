@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "cli/train/train_recipe.h"
@@ -46,19 +47,19 @@ void expect_only_ours(const std::string& folder) {
 
 }  // namespace
 
-TrainSession::TrainSession(const std::string& folder, const std::string& recipe, bool restart)
-    : folder_(folder), recipe_(recipe) {
+TrainSession::TrainSession(const std::string& folder, Forest forest, bool restart)
+    : folder_(folder), forest_(std::move(forest)) {
   lock_.emplace(folder_);
   expect_only_ours(folder_);
   tidy(restart);
   const std::string recipe_path = (fs::path(folder_) / kRecipeFile).string();
   if (fs::exists(recipe_path)) {
-    const std::string difference = first_difference(read_file(recipe_path), recipe_);
+    const std::string difference = first_difference(read_file(recipe_path), forest_.recipe);
     if (difference.empty()) return;
     throw Error(fmt::format("{}: has trees of another training ({}); --restart removes them", folder_, difference));
   }
   tidy(true);  // trees without a recipe are nobody's
-  write_file_atomically(recipe_path, recipe_);
+  write_file_atomically(recipe_path, forest_.recipe);
 }
 
 void TrainSession::tidy(bool all) const {
@@ -74,19 +75,23 @@ std::string TrainSession::path(int number) const {
   return (fs::path(folder_) / fmt::format("tree-{:04}.forest", number)).string();
 }
 
-std::optional<Tree> TrainSession::load(int number) const {
+std::optional<Tree> TrainSession::load(int number) {
   std::error_code ignored;
   if (!fs::exists(path(number), ignored)) return std::nullopt;
   try {
     Forest forest = load_model(path(number));
-    if (forest.recipe != recipe_ || forest.trees.size() != 1) return std::nullopt;
+    if (forest.recipe != forest_.recipe || forest.trees.size() != 1) return std::nullopt;
     return std::move(forest.trees.front());
   } catch (const Error&) {
     return std::nullopt;  // damaged: grown again
   }
 }
 
-void TrainSession::save(int number, const Forest& one_tree) const { save_model(one_tree, path(number)); }
+void TrainSession::save(int number, const Tree& tree) {
+  Forest one_tree = forest_;
+  one_tree.trees = {tree};
+  save_model(one_tree, path(number));
+}
 
 void TrainSession::remove() {
   tidy(true);

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "cli/train/train_recipe.h"
+#include "io/model/model_file.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/error.h"
 
@@ -21,17 +22,20 @@ class TrainSessionTest : public testing::Test {
   void SetUp() override { fs::remove_all(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
 
-  static Forest forest_of(std::uint8_t label, const std::string& recipe) {
+  static Forest forest_of(const std::string& recipe) {
     Forest forest;
     forest.body = paper_body();
     forest.recipe = recipe;
-    forest.trees.resize(1);
-    forest.trees[0].leaves = {{{label}, {200}}};
     return forest;
+  }
+  static Tree tree_of(std::uint8_t label) {
+    Tree tree;
+    tree.leaves = {{{label}, {200}}};
+    return tree;
   }
   std::string refusal(const std::string& recipe) const {
     try {
-      TrainSession session(folder_, recipe, false);
+      TrainSession session(folder_, forest_of(recipe), false);
     } catch (const Error& e) {
       return e.what();
     }
@@ -44,28 +48,30 @@ class TrainSessionTest : public testing::Test {
 
 TEST_F(TrainSessionTest, KeepsTreesForTheNextRun) {
   {
-    const TrainSession session(folder_, "a = 1\n", false);
+    TrainSession session(folder_, forest_of("a = 1\n"), false);
     EXPECT_FALSE(session.load(3));
-    session.save(3, forest_of(7, "a = 1\n"));
+    session.save(3, tree_of(7));
   }
-  const TrainSession again(folder_, "a = 1\n", false);
+  TrainSession again(folder_, forest_of("a = 1\n"), false);
   ASSERT_TRUE(again.load(3));
   EXPECT_EQ(again.load(3)->leaves[0].label[0], 7);
   EXPECT_FALSE(again.load(2));
 }
 
 TEST_F(TrainSessionTest, DamagedAndForeignTreesAreNotThere) {
-  const TrainSession session(folder_, "a = 1\n", false);
-  session.save(0, forest_of(1, "a = 2\n"));
+  TrainSession session(folder_, forest_of("a = 1\n"), false);
+  Forest foreign = forest_of("a = 2\n");
+  foreign.trees = {tree_of(1)};
+  save_model(foreign, folder_ + "/tree-0000.forest");
   EXPECT_FALSE(session.load(0)) << "of another training";
   put("tree-0001.forest");
   EXPECT_FALSE(session.load(1));
 }
 
 TEST_F(TrainSessionTest, AnotherRecipeIsRefusedOrForgotten) {
-  TrainSession(folder_, "a = 1\nb = 2\n", false).save(0, forest_of(1, "a = 1\nb = 2\n"));
+  TrainSession(folder_, forest_of("a = 1\nb = 2\n"), false).save(0, tree_of(1));
   EXPECT_THAT(refusal("a = 1\nb = 3\n"), HasSubstr("(`b = 2` before, now `b = 3`); --restart"));
-  const TrainSession restarted(folder_, "a = 1\nb = 3\n", true);
+  TrainSession restarted(folder_, forest_of("a = 1\nb = 3\n"), true);
   EXPECT_FALSE(restarted.load(0));
   EXPECT_EQ(refusal("a = 1\nb = 3\n"), folder_ + ": another process is writing there");
 }
@@ -78,8 +84,8 @@ TEST_F(TrainSessionTest, LeavesFoldersOfOthersAlone) {
 }
 
 TEST_F(TrainSessionTest, RemovesWhatItMade) {
-  TrainSession session(folder_, "a = 1\n", false);
-  session.save(0, forest_of(1, "a = 1\n"));
+  TrainSession session(folder_, forest_of("a = 1\n"), false);
+  session.save(0, tree_of(1));
   put("tree-0001.forest.tmp.77");
   session.remove();
   EXPECT_FALSE(fs::exists(folder_));

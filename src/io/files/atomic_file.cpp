@@ -2,12 +2,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <system_error>
 
 #include "vesalius/base/error.h"
@@ -21,27 +27,58 @@ namespace fs = std::filesystem;
   throw Error(fmt::format("{}: cannot be written: {}", path, std::generic_category().message(error)));
 }
 
-/// Writes all and closes; the errno of what failed, 0 = nothing did.
-int write_and_close(int fd, std::string_view bytes) {
-  int error = 0;
-  while (!bytes.empty() && error == 0) {
-    const ssize_t n = ::write(fd, bytes.data(), bytes.size());
-    if (n >= 0) {
-      bytes.remove_prefix(static_cast<std::size_t>(n));
-    } else if (errno != EINTR) {
-      error = errno;
-    }
-  }
-  if (::close(fd) != 0 && error == 0) error = errno;
-  return error;
-}
-
 /// A link stays a link: the file that it names is replaced.
 std::string behind_links(const std::string& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;
   const fs::path target = fs::canonical(path, error);
   return error ? path : target.string();
+}
+
+constexpr std::string_view kMark = ".tmp";
+
+/// A temporary file that another process made: NAME.tmpPROCESS-COUNT and an extension.
+struct Leftover {
+  std::string name;  ///< of the file that it was to become
+  pid_t process = 0;
+};
+
+std::optional<Leftover> parse_leftover(const std::string& file) {
+  const std::size_t mark = file.rfind(kMark);
+  if (mark == file.npos || mark == 0) return std::nullopt;
+  Leftover leftover{file.substr(0, mark), 0};
+  const char* end = file.data() + file.size();
+  const auto [dash, error] = std::from_chars(file.data() + mark + kMark.size(), end, leftover.process);
+  unsigned count = 0;
+  if (error != std::errc() || leftover.process <= 0 || dash == end || *dash != '-') return std::nullopt;
+  const auto [stop, count_error] = std::from_chars(dash + 1, end, count);
+  if (count_error != std::errc() || (stop != end && *stop != '.')) return std::nullopt;
+  return leftover;
+}
+
+/// Whether nobody writes it any more: its process is gone, here and, seen by the lock, in other containers.
+bool is_abandoned(const fs::path& path, pid_t process) {
+  // A file of our number is an older process's; those of this one are locked.
+  if (process != ::getpid() && (::kill(process, 0) == 0 || errno != ESRCH)) return false;
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW));
+  struct stat info {};
+  const bool ours = file.is_open() && ::fstat(file.get(), &info) == 0 && S_ISREG(info.st_mode);
+  return ours && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0;
+}
+
+/// Removes what killed processes left of files called `name`. Each folder is listed once in the life of this process,
+/// however many files are written there.
+void remove_leftovers(const fs::path& folder, const std::string& name) {
+  static std::map<fs::path, std::multimap<std::string, fs::path>> abandoned;  // by folder, then by name
+  const auto [entry, is_new] = abandoned.try_emplace(folder);
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; is_new && !error && it != end; it.increment(error)) {
+    const auto leftover = parse_leftover(it->path().filename().string());
+    if (leftover && is_abandoned(it->path(), leftover->process)) entry->second.emplace(leftover->name, it->path());
+  }
+  const auto [first, last] = entry->second.equal_range(name);
+  for (auto it = first; it != last; ++it) fs::remove(it->second, error);
+  entry->second.erase(first, last);
 }
 
 }  // namespace
@@ -55,8 +92,15 @@ bool written_directly(const std::string& path) {
 
 TemporaryFile::TemporaryFile(std::string final_path, const std::string& extension)
     : final_path_(std::move(final_path)) {
-  static std::atomic<unsigned> counter{0};
-  path_ = fmt::format("{}.tmp{}-{}{}", behind_links(final_path_), ::getpid(), counter++, extension);
+  static unsigned counter = 0;
+  static std::mutex mutex;  // no other thread looks for leftovers before this file is locked
+  const std::scoped_lock lock(mutex);
+  const fs::path target = behind_links(final_path_);
+  remove_leftovers(target.has_parent_path() ? target.parent_path() : ".", target.filename().string());
+  path_ = fmt::format("{}{}{}-{}{}", target.string(), kMark, ::getpid(), counter++, extension);
+  descriptor_ = Descriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (!descriptor_.is_open()) fail(final_path_, errno);
+  ::flock(descriptor_.get(), LOCK_EX | LOCK_NB);  // a file system without locks is no reason to refuse
 }
 
 TemporaryFile::~TemporaryFile() {
@@ -64,21 +108,22 @@ TemporaryFile::~TemporaryFile() {
 }
 
 void TemporaryFile::commit() {
+  // Some file systems say only here that the disk is full.
+  if (const int error = descriptor_.close()) fail(final_path_, error);
   if (std::rename(path_.c_str(), behind_links(final_path_).c_str()) != 0) fail(final_path_, errno);
   committed_ = true;
 }
 
 void write_file_atomically(const std::string& path, std::string_view bytes) {
   if (written_directly(path)) {
-    const int fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (fd < 0) fail(path, errno);
-    if (const int error = write_and_close(fd, bytes)) fail(path, error);
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+    if (!file.is_open()) fail(path, errno);
+    if (const int error = write_all(file, bytes)) fail(path, error);
+    if (const int error = file.close()) fail(path, error);
     return;
   }
   TemporaryFile file(path);
-  const int fd = ::open(file.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (fd < 0) fail(path, errno);
-  if (const int error = write_and_close(fd, bytes)) fail(path, error);
+  if (const int error = write_all(file.descriptor(), bytes)) fail(path, error);
   file.commit();
 }
 

@@ -1,8 +1,12 @@
 #include "io/files/atomic_file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
@@ -86,6 +90,43 @@ TEST(TemporaryFile, VanishesUnlessCommitted) {
     file.commit();
   }
   EXPECT_EQ(get(folder / "a.avi"), "whole");
+}
+
+/// The number of a process that has ended.
+pid_t gone() {
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST(TemporaryFile, RemovesWhatAKilledProcessLeftOfThisName) {
+  const TemporaryFolder folder;
+  const std::string dead = std::to_string(gone());
+  const std::string left = put(folder / ("a.txt.tmp" + dead + "-3"), "half");
+  const std::string left_video = put(folder / ("a.txt.tmp" + dead + "-12.avi"), "half");
+  const std::vector<std::string> others = {
+      put(folder / ("b.txt.tmp" + dead + "-3"), "of another name"),
+      put(folder / ("a.txt.tmp" + std::to_string(getppid()) + "-0"), "of a process that lives"),
+      put(folder / ("a.txt.tmp" + dead), "not our pattern"),
+      put(folder / "a.txt.tmpfile-1", "not our pattern"),
+      put(folder / "a.txt.tmp", "not our pattern"),
+  };
+  write_file_atomically(folder / "a.txt", "whole");
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_FALSE(fs::exists(left_video));
+  for (const std::string& other : others) EXPECT_TRUE(fs::exists(other)) << other;
+  write_file_atomically(folder / "b.txt", "whole");
+  EXPECT_FALSE(fs::exists(others[0]));
+}
+
+TEST(TemporaryFile, KeepsWhatAnotherContainerIsWriting) {
+  const TemporaryFolder folder;
+  const std::string path = put(folder / ("a.txt.tmp" + std::to_string(gone()) + "-3"), "half");
+  const Descriptor writer(open(path.c_str(), O_RDONLY));
+  ASSERT_EQ(flock(writer.get(), LOCK_EX), 0);
+  write_file_atomically(folder / "a.txt", "whole");
+  EXPECT_TRUE(fs::exists(path)) << "its writer has another number there, but its lock is seen";
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <filesystem>
@@ -17,17 +16,14 @@ FolderLock::FolderLock(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Error(folder + ": folder cannot be made: " + error.message());
-  descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0) {
+  descriptor_ = Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!descriptor_.is_open()) {
     throw Error(fmt::format("{}: folder cannot be read: {}", folder, std::generic_category().message(errno)));
   }
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  if (::flock(descriptor_.get(), LOCK_EX | LOCK_NB) == 0) return;
   const int cause = errno;
-  ::close(descriptor_);
   if (cause == EWOULDBLOCK) throw Error(folder + ": another process is writing there");
   throw Error(fmt::format("{}: folder cannot be locked: {}", folder, std::generic_category().message(cause)));
 }
-
-FolderLock::~FolderLock() { ::close(descriptor_); }
 
 }  // namespace vesalius

@@ -18,7 +18,7 @@ std::uint32_t byte_at(std::string_view bytes, std::size_t i) { return static_cas
 
 std::uint32_t big_endian(std::string_view bytes, std::size_t at, int count) {
   std::uint32_t value = 0;
-  for (int i = 0; i < count; ++i) value = value << 8U | byte_at(bytes, at + static_cast<std::size_t>(i));
+  for (int i = 0; i < count; ++i) value = value << 8U | byte_at(bytes, at + i);
   return value;
 }
 

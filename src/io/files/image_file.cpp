@@ -37,8 +37,7 @@ Image<T> decode_grey_png(std::string_view bytes, const std::string& name, const 
   }
   const cv::Mat mat = decode(png.pixels, cv::IMREAD_UNCHANGED, sizeof(T) == 2 ? CV_16UC1 : CV_8UC1, name);
   Image<T> image(mat.cols, mat.rows);
-  for (int v = 0; v < mat.rows; ++v)
-    std::memcpy(image.row(v), mat.ptr(v), sizeof(T) * static_cast<std::size_t>(mat.cols));
+  for (int v = 0; v < mat.rows; ++v) std::memcpy(image.row(v), mat.ptr(v), sizeof(T) * mat.cols);
   return image;
 }
 

@@ -1,8 +1,6 @@
 #include "io/files/options_file.h"
 
-#define TOML_EXCEPTIONS 1
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +10,7 @@
 
 #include "io/files/atomic_file.h"
 #include "io/files/read_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/base/toml_reader.h"
 
 namespace vesalius {
 namespace {
@@ -21,17 +19,10 @@ namespace {
 constexpr std::size_t kMaxOptionsBytes = std::size_t{1} << 14;
 constexpr std::size_t kMaxShown = 64;
 
-std::string printable(std::string_view text) {
-  std::string out(text.substr(0, kMaxShown));
-  std::ranges::replace_if(
-      out, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, '?');
-  return out;
-}
-
 /// Values of a TOML text by their dotted names.
-class Values {
+class Values : public TomlReader {
  public:
-  Values(const toml::table& root, const std::string& name) : name_(name) { collect("", root); }
+  Values(const toml::table& root, const std::string& name) : TomlReader(name) { collect("", root); }
 
   const toml::node* find(const std::string& option) const {
     const auto found = nodes_.find(option);
@@ -41,13 +32,9 @@ class Values {
     for (const auto& [option, node] : nodes_) {
       if (std::ranges::find(known, option) != known.end()) continue;
       const std::string nearest = nearest_name(option, known);
-      fail(*node, fmt::format("no option is called \"{}\"{}", printable(option),
+      fail(*node, fmt::format("no option is called {}{}", in_quotes(option),
                               nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
     }
-  }
-  std::string place(const toml::node& node) const { return fmt::format("{}:{}", name_, node.source().begin.line); }
-  [[noreturn]] void fail(const toml::node& node, const std::string& what) const {
-    throw Error(place(node) + ": " + what);
   }
 
  private:
@@ -62,7 +49,6 @@ class Values {
     }
   }
 
-  const std::string& name_;
   std::map<std::string, const toml::node*> nodes_;
 };
 
@@ -195,12 +181,7 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
 }
 
 void parse_options(std::string_view toml, const std::string& name, const VisitAll& visit) {
-  toml::table root;
-  try {
-    root = toml::parse(toml);
-  } catch (const toml::parse_error& e) {
-    throw Error(fmt::format("{}:{}: not valid TOML: {}", name, e.source().begin.line, printable(e.description())));
-  }
+  const toml::table root = TomlReader(name).parse(toml);
   const Values values(root, name);
   NameCollector known;
   visit(known);

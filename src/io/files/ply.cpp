@@ -45,7 +45,7 @@ std::string serialise_cloud(const Frame& frame, const LabelImage& labels, const 
       "property float x\nproperty float y\nproperty float z\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\n"
       "property uchar label\nproperty uchar person\nend_header\n",
-      frame.depth.size() - static_cast<std::size_t>(holes));
+      frame.depth.size() - holes);
   for (int v = 0; v < frame.depth.height(); ++v) {
     for (int u = 0; u < frame.depth.width(); ++u) {
       if (frame.depth(u, v) == 0) continue;

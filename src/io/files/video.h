@@ -11,8 +11,8 @@ namespace vesalius {
 /// at `close`; a writer destroyed before leaves nothing.
 class VideoWriter {
  public:
-  /// Throws UsageError for another extension than .avi or a frame rate out of (0, 1000]. `frame_rate` in frames per
-  /// second.
+  /// `frame_rate` in frames per second. Throws UsageError for another extension than .avi or a rate out of (0, 1000],
+  /// Error naming the path where no file can be made.
   VideoWriter(const std::string& path, double frame_rate);
   ~VideoWriter();
   VideoWriter(VideoWriter&&) noexcept;

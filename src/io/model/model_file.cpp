@@ -49,13 +49,12 @@ void check_header(std::string_view bytes, const std::string& name) {
   ByteReader in(bytes, name);
   in.take(kMagic.size(), "header");
   const auto version = in.number<std::uint16_t>("version");
-  if (version > kModelVersion) {
-    throw Error(fmt::format("{}: written by a newer version: format {}, this program reads up to {}", name, version,
-                            kModelVersion));
+  if (version != kModelVersion) {
+    throw Error(fmt::format("{}: written by {} version: format {}, this program reads {}", name,
+                            version > kModelVersion ? "a newer" : "another", version, kModelVersion));
   }
   in.take(2, "flags");
   const auto size = in.number<std::uint64_t>("size");
-  if (version == 0) throw Error(name + ": damaged model, format 0");
   if (bytes.size() < size) {
     throw Error(fmt::format("{}: truncated model, {} of {} bytes", name, bytes.size(), size));
   }
@@ -102,8 +101,7 @@ std::string serialise_model(const Forest& forest) {
 Forest parse_model(std::string_view bytes, const std::string& name) {
   check_header(bytes, name);
   ByteReader in(bytes, name);
-  in.take(kMagic.size(), "header");
-  const auto version = in.number<std::uint16_t>("version");
+  in.take(kMagic.size() + sizeof(std::uint16_t), "header");
   const auto flags = in.number<std::uint16_t>("flags");
   if (flags > kFlagBackground) in.fail(fmt::format("unknown flags {}", flags));
   in.take(kHeaderBytes - kSizeAt, "header");
@@ -116,7 +114,7 @@ Forest parse_model(std::string_view bytes, const std::string& name) {
   forest.convention.hole_mm = in.number<std::uint16_t>("convention");
   forest.convention.outside_mm = in.number<std::uint16_t>("convention");
   forest.convention.clip_mm = in.number<std::uint16_t>("convention");
-  forest.trees = version == 1 ? read_trees_v1(in) : read_trees(in);
+  forest.trees = read_trees(in);
   in.expect_end();
   with_context(name, [&] { check(forest); });
   return forest;

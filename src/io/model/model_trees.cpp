@@ -54,7 +54,7 @@ class ContextOrder {
   ContextOrder(const Items& items, Context context) {
     for (const auto& item : items) {
       const int c = context(item);
-      if (c != kAbsent) ++next_[static_cast<std::size_t>(c) + 1];
+      if (c != kAbsent) ++next_[c + 1];
     }
     for (std::size_t c = 1; c < next_.size(); ++c) next_[c] += next_[c - 1];
   }

@@ -14,13 +14,10 @@ namespace vesalius {
 /// About six times a large forest; reading that many takes 0.5 GB.
 inline constexpr std::size_t kMaxModelNodes = std::size_t{1} << 23U;
 
-/// Appends consistent trees as version 2. Trees whose nodes and leaves are in depth-first order, as trainers make them,
+/// Appends consistent trees. Trees whose nodes and leaves are in depth-first order, as trainers make them,
 /// take about 8 bytes for a node and a leaf; in any other order they come back just as well, from more bytes. Throws
 /// Error beyond kMaxModelNodes.
 void write_trees(ByteWriter& out, const std::vector<Tree>& trees);
 std::vector<Tree> read_trees(ByteReader& in);
-
-/// Of version 1.
-std::vector<Tree> read_trees_v1(ByteReader& in);
 
 }  // namespace vesalius

@@ -1,3 +1,5 @@
+#include "io/model/text_trees.h"
+
 #include <bzlib.h>
 #include <fmt/format.h>
 
@@ -8,7 +10,6 @@
 #include <optional>
 
 #include "io/files/read_file.h"
-#include "io/model/model_file.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -55,7 +56,7 @@ class NumberScanner {
     if (error != std::errc() || value < low || value > high) {
       fail(fmt::format("{}: expected a whole number from {} to {}", what, low, high));
     }
-    at_ = static_cast<std::size_t>(end - text_.data());
+    at_ = end - text_.data();
     return value;
   }
 

@@ -1,3 +1,5 @@
+#include "io/model/text_trees.h"
+
 #include <bzlib.h>
 #include <gmock/gmock.h>
 
@@ -9,7 +11,6 @@
 
 #include "io/files/read_file.h"
 #include "io/files/test_files.h"
-#include "io/model/model_file.h"
 #include "io/sources/open_source.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/random.h"

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "io/files/read_file.h"
-#include "io/sources/open_source.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {

@@ -5,11 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "io/sources/source_options.h"
 #include "vesalius/base/camera.h"
 
 namespace vesalius {
-
-struct SourceOptions;
 
 /// What is known about a camera; whatever a file leaves out is empty.
 struct CameraFacts {

@@ -24,12 +24,6 @@ std::string_view number_at(std::string_view text, std::size_t& at) {
   return text.substr(begin, at - begin);
 }
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
 bool is_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(path, ignored);
@@ -50,8 +44,8 @@ std::map<std::string, std::string> list_colours(const fs::path& root) {
 }
 
 void note_missing_colours(FrameList& list, std::size_t colours) {
-  const auto with = static_cast<std::size_t>(std::count_if(
-      list.frames.begin(), list.frames.end(), [](const FrameFiles& files) { return !files.colour.empty(); }));
+  const std::size_t with = std::count_if(list.frames.begin(), list.frames.end(),
+                                         [](const FrameFiles& files) { return !files.colour.empty(); });
   if (colours != 0 && with != list.frames.size()) {
     list.notes.push_back(
         fmt::format("{}: {} of {} frames have no colour", list.place, list.frames.size() - with, list.frames.size()));
@@ -93,6 +87,12 @@ bool natural_less(std::string_view a, std::string_view b) {
   return a < b;  // 01 and 1
 }
 
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
 std::vector<fs::path> list_files(const std::string& folder, const std::vector<std::string>& extensions) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -117,7 +117,7 @@ FrameList list_folder(const std::string& folder, const SourceOptions& options) {
   for (const fs::path& path : list_files(depth_folder, {".png"})) {
     const std::string stem = path.stem().string();
     const auto partner = colours.find(stem);
-    list.frames.push_back({stem, 0.0, path.string(), partner == colours.end() ? "" : partner->second});
+    list.frames.push_back({stem, {}, path.string(), partner == colours.end() ? "" : partner->second});
   }
   if (list.frames.empty()) throw Error(depth_folder + ": no frames, expected 16-bit depth PNG files");
   note_missing_colours(list, colours.size());
@@ -135,7 +135,7 @@ FrameList list_single_png(const std::string& path, const SourceOptions& options)
     const auto colours = list_colours(folder / "..");
     if (const auto partner = colours.find(file.stem().string()); partner != colours.end()) colour = partner->second;
   }
-  list.frames.push_back({file.stem().string(), 0.0, path, colour});
+  list.frames.push_back({file.stem().string(), {}, path, colour});
   list.facts = find_camera_facts(options, {folder.string(), (folder / "..").string()});
   return list;
 }

@@ -12,6 +12,9 @@ namespace vesalius {
 /// Order of names in which numbers count as numbers: frame_2 before frame_10. Total: no two names are equal.
 bool natural_less(std::string_view a, std::string_view b);
 
+/// The extension of a path in lower case, with its dot.
+std::string lower_extension(const std::filesystem::path& path);
+
 /// The files in `folder` whose extension (lower case, with its dot) is one of `extensions`, in natural order; hidden
 /// files do not count. Throws Error naming the folder when it cannot be read.
 std::vector<std::filesystem::path> list_files(const std::string& folder, const std::vector<std::string>& extensions);

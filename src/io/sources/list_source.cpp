@@ -21,45 +21,48 @@ void check_size(const Image<T>& image, const Camera& camera, const std::string& 
 
 class ListSource final : public FrameSource {
  public:
-  explicit ListSource(FrameList list) : list_(std::move(list)) {
-    const Image<std::uint16_t> first = read_png16(list_.frames.front().depth);
-    CameraFacts& facts = list_.facts;
-    const CameraFacts& fallback = list_.fallback;
-    if (!facts.fx && facts.sensor.empty() && fallback.fx && fallback.width == first.width() &&
-        fallback.height == first.height()) {
-      facts.fill_from(fallback);
-      list_.notes.push_back(fmt::format("{}: no intrinsics given; those of {} assumed", list_.place, fallback.origin));
-    }
-    const bool registered = std::any_of(list_.frames.begin(), list_.frames.end(),
-                                        [](const FrameFiles& files) { return !files.colour.empty(); });
-    camera_ = resolve_camera(facts, first.width(), first.height(), registered, list_.place, list_.notes);
-    scale_ = facts.depth_scale.value_or(list_.default_scale);
-  }
+  explicit ListSource(FrameList list) : reader_(std::move(list)) {}
 
   std::optional<Frame> next() override {
-    if (next_ == list_.frames.size()) return std::nullopt;
-    const FrameFiles& files = list_.frames[next_++];
-    const Image<std::uint16_t> stored = read_png16(files.depth);
-    check_size(stored, camera_, files.depth, "the size of the first");
-    Frame frame{files.name, files.time_s, camera_, to_millimetres(stored, scale_), {}};
-    if (!files.colour.empty()) {
-      frame.colour = read_colour(files.colour);
-      check_size(frame.colour, camera_, files.colour, "the size of the depth");
-    }
-    return frame;
+    if (next_ == reader_.size()) return std::nullopt;
+    return reader_.read(next_++);
   }
-
-  int size() const override { return static_cast<int>(list_.frames.size()); }
-  std::vector<std::string> notes() const override { return list_.notes; }
+  int size() const override { return static_cast<int>(reader_.size()); }
+  std::vector<std::string> notes() const override { return reader_.list().notes; }
 
  private:
-  FrameList list_;
-  Camera camera_;
-  float scale_ = 1000.F;
+  FrameListReader reader_;
   std::size_t next_ = 0;
 };
 
 }  // namespace
+
+FrameListReader::FrameListReader(FrameList list) : list_(std::move(list)) {
+  const Image<std::uint16_t> first = read_png16(list_.frames.front().depth);
+  CameraFacts& facts = list_.facts;
+  const CameraFacts& fallback = list_.fallback;
+  if (!facts.fx && facts.sensor.empty() && fallback.fx && fallback.width == first.width() &&
+      fallback.height == first.height()) {
+    facts.fill_from(fallback);
+    list_.notes.push_back(fmt::format("{}: no intrinsics given; those of {} assumed", list_.place, fallback.origin));
+  }
+  const bool registered = std::any_of(list_.frames.begin(), list_.frames.end(),
+                                      [](const FrameFiles& files) { return !files.colour.empty(); });
+  camera_ = resolve_camera(facts, first.width(), first.height(), registered, list_.place, list_.notes);
+  units_per_m_ = facts.depth_scale.value_or(list_.default_scale);
+}
+
+Frame FrameListReader::read(std::size_t index, bool with_colour) const {
+  const FrameFiles& files = list_.frames[index];
+  const Image<std::uint16_t> stored = read_png16(files.depth);
+  check_size(stored, camera_, files.depth, "the size of the first");
+  Frame frame{files.name, files.time_s, camera_, to_millimetres(stored, units_per_m_), {}};
+  if (with_colour && !files.colour.empty()) {
+    frame.colour = read_colour(files.colour);
+    check_size(frame.colour, camera_, files.colour, "the size of the depth");
+  }
+  return frame;
+}
 
 std::unique_ptr<FrameSource> open_list(FrameList list) { return std::make_unique<ListSource>(std::move(list)); }
 

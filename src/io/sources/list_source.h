@@ -1,21 +1,22 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "io/sources/camera_file.h"
-#include "io/sources/open_source.h"
+#include "vesalius/base/frame_source.h"
 
 namespace vesalius {
 
 /// Where one frame lies.
 struct FrameFiles {
   std::string name;
-  double time_s = 0.0;
-  std::string depth;   ///< path of a 16-bit PNG
-  std::string colour;  ///< path of a PNG or JPEG of the same size; empty = none
+  double time_s = 0.0;  ///< seconds; 0 = not known
+  std::string depth;    ///< path of a 16-bit PNG
+  std::string colour;   ///< path of a PNG or JPEG of the same size; empty = none
 };
 
 /// Depth and colour pictures in files of their own, in the order of the frames.
@@ -28,11 +29,29 @@ struct FrameList {
   std::vector<std::string> notes;
 };
 
-/// A source that reads the pictures one by one. A frame that cannot be read is passed over by the next call. Throws
-/// Error when the first picture is unusable, the camera unknown, or a picture differs from the first in size.
+/// Reads the pictures of a list in any order. Safe to use from several threads.
+class FrameListReader {
+ public:
+  /// Throws Error when the first picture is unusable or the camera unknown.
+  explicit FrameListReader(FrameList list);
+
+  std::size_t size() const { return list_.frames.size(); }
+  const FrameList& list() const { return list_; }
+  const Camera& camera() const { return camera_; }
+
+  /// `index` must be below size(). Throws Error naming a picture that cannot be read or differs from the first in size.
+  Frame read(std::size_t index, bool with_colour = true) const;
+
+ private:
+  FrameList list_;
+  Camera camera_;
+  float units_per_m_ = 1000.F;
+};
+
+/// Returns a source that reads the pictures one by one. Throws Error as FrameListReader does.
 std::unique_ptr<FrameSource> open_list(FrameList list);
 
-/// Stored depth to millimetres. What rounds to more than 65535 mm cannot be held and becomes 0, no reading.
+/// Returns stored depth in millimetres. What rounds to more than 65535 mm cannot be held and becomes 0, no reading.
 DepthImage to_millimetres(const Image<std::uint16_t>& stored, float units_per_m);
 
 }  // namespace vesalius

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "io/files/image_bytes.h"
@@ -21,91 +23,122 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Kind { unknown, folder, tum, pcd, png };
-
-struct Location {
-  Kind kind = Kind::unknown;
-  std::string path;
+/// One kind of source. A sensor is a row more.
+struct Scheme {
+  std::string_view name;
+  const char* what;  ///< what `open` expects
+  std::unique_ptr<FrameSource> (*open)(const std::string& rest, const SourceOptions& options);
 };
 
-Location split_scheme(const std::string& uri) {
-  constexpr std::array<std::pair<std::string_view, Kind>, 4> kSchemes{
-      {{"folder:", Kind::folder}, {"tum:", Kind::tum}, {"pcd:", Kind::pcd}, {"png:", Kind::png}}};
-  for (const auto& [scheme, kind] : kSchemes) {
-    if (uri.starts_with(scheme)) return {kind, uri.substr(scheme.size())};
-  }
-  return {Kind::unknown, uri};
-}
-
-/// Takes the scale off "walking:1000", unless there is a folder of that very name.
-void split_scale(std::string& path, SourceOptions& options) {
-  std::error_code ignored;
-  const std::size_t colon = path.rfind(':');
-  if (colon == path.npos || fs::exists(path, ignored)) return;
-  float scale = 0.F;
-  const char* end = path.data() + path.size();
-  const auto [stop, error] = std::from_chars(path.data() + colon + 1, end, scale);
-  if (error != std::errc() || stop != end) return;
-  if (options.depth_scale) throw UsageError(path + ": the depth scale is given twice, here and as an option");
-  options.depth_scale = scale;
-  path.resize(colon);
-}
-
-bool has_extension(const std::string& path, std::string_view wanted) {
-  std::string extension = fs::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == wanted;
-}
-
-Kind kind_of_file(const std::string& path) {
-  if (has_extension(path, ".png")) return Kind::png;
-  if (has_extension(path, ".pcd")) return Kind::pcd;
-  throw Error(path + ": unknown kind of file, expected a folder, a depth PNG or a PCD file");
-}
-
-Kind kind_of_folder(const std::string& path) {
-  std::error_code ignored;
-  if (fs::exists(fs::path(path) / "depth.txt", ignored)) return Kind::tum;
-  if (fs::is_directory(fs::path(path) / "depth", ignored)) return Kind::folder;
-  const bool png = !list_files(path, {".png"}).empty();
-  const bool pcd = !list_files(path, {".pcd"}).empty();
-  if (png && pcd) throw Error(path + ": PNG and PCD files in one folder, expected folder: or pcd: before the path");
-  if (png) return Kind::folder;
-  if (pcd) return Kind::pcd;
-  throw Error(path + ": no frames, expected depth/*.png, depth.txt, *.png or *.pcd");
-}
-
-/// Throws unless there is a folder (true) or file (false) at `path`.
-bool is_folder(const std::string& path) {
+/// Whether there is a folder at `path`, not a file. Throws Error where there is nothing.
+bool is_folder(const std::string& path, const char* expected) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
     const std::string why = error ? error.message() : "no such file or folder";
-    throw Error(path + ": " + why + ", expected a folder, a depth PNG or a PCD file");
+    throw Error(fmt::format("{}: {}, expected {}", path, why, expected));
   }
   return fs::is_directory(status);
 }
 
+constexpr const char* kFolder = "a folder with depth/*.png or depth PNG files";
+constexpr const char* kTum = "a folder with depth.txt (TUM RGB-D)";
+constexpr const char* kPcd = "an organised PCD file or a folder of them";
+constexpr const char* kPng = "a depth PNG or a folder of them";
+constexpr const char* kAnything = "a folder, a depth PNG or a PCD file";
+
+void refuse_colour_file(const std::string& path, const SourceOptions& options) {
+  if (!options.colour_file.empty()) throw UsageError(path + ": a colour file goes with a single depth PNG only");
+}
+
+/// Throws unless there is a folder at `path`.
+void expect_folder(const std::string& path, const SourceOptions& options, const char* expected) {
+  const bool folder = is_folder(path, expected);
+  refuse_colour_file(path, options);
+  if (!folder) throw Error(path + ": a file, expected a folder");
+}
+
+std::unique_ptr<FrameSource> open_folder(const std::string& path, const SourceOptions& options) {
+  expect_folder(path, options, kFolder);
+  return open_list(list_folder(path, options));
+}
+
+/// Takes the scale off "walking:1000", unless there is a folder of that very name.
+std::optional<float> split_scale(std::string& path) {
+  std::error_code ignored;
+  const std::size_t colon = path.rfind(':');
+  if (colon == path.npos || fs::exists(path, ignored)) return std::nullopt;
+  float scale = 0.F;
+  const char* end = path.data() + path.size();
+  const auto [stop, error] = std::from_chars(path.data() + colon + 1, end, scale);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  path.resize(colon);
+  return scale;
+}
+
+std::unique_ptr<FrameSource> open_tum(const std::string& rest, const SourceOptions& given) {
+  std::string path = rest;
+  SourceOptions options = given;
+  if (const auto scale = split_scale(path)) {
+    if (options.depth_scale) throw UsageError(rest + ": the depth scale is given twice, here and as an option");
+    options.depth_scale = scale;
+  }
+  expect_folder(path, options, kTum);
+  return open_list(list_tum(path, options));
+}
+
+std::unique_ptr<FrameSource> open_clouds(const std::string& path, const SourceOptions& options) {
+  is_folder(path, kPcd);
+  refuse_colour_file(path, options);
+  return open_pcd(path, options);
+}
+
+std::unique_ptr<FrameSource> open_png(const std::string& path, const SourceOptions& options) {
+  if (is_folder(path, kPng)) return open_folder(path, options);
+  return open_list(list_single_png(path, options));
+}
+
+constexpr std::array<Scheme, 4> kSchemes{
+    {{"folder", kFolder, open_folder}, {"tum", kTum, open_tum}, {"pcd", kPcd, open_clouds}, {"png", kPng, open_png}}};
+
+/// The scheme that "pcd:cloud.pcd" begins with, null where it is a plain path.
+const Scheme* scheme_of(const std::string& uri) {
+  const auto found = std::ranges::find(kSchemes, std::string_view(uri).substr(0, uri.find(':')), &Scheme::name);
+  return found == kSchemes.end() || found->name.size() == uri.size() ? nullptr : &*found;
+}
+
+std::string_view scheme_of_file(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".png") return "png";
+  if (extension == ".pcd") return "pcd";
+  throw Error(fmt::format("{}: unknown kind of file, expected {}", path, kAnything));
+}
+
+std::string_view scheme_of_folder(const std::string& path) {
+  std::error_code ignored;
+  if (fs::exists(fs::path(path) / "depth.txt", ignored)) return "tum";
+  if (fs::is_directory(fs::path(path) / "depth", ignored)) return "folder";
+  const bool png = !list_files(path, {".png"}).empty();
+  const bool pcd = !list_files(path, {".pcd"}).empty();
+  if (png && pcd) throw Error(path + ": PNG and PCD files in one folder, expected folder: or pcd: before the path");
+  if (png) return "folder";
+  if (pcd) return "pcd";
+  throw Error(path + ": no frames, expected depth/*.png, depth.txt, *.png or *.pcd");
+}
+
 }  // namespace
 
-std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& given) {
-  auto [kind, path] = split_scheme(uri);
-  SourceOptions options = given;
-  if (kind == Kind::tum) split_scale(path, options);
-  const bool folder = is_folder(path);
-  if (kind == Kind::unknown) kind = folder ? kind_of_folder(path) : kind_of_file(path);
-  if (!options.colour_file.empty() && (folder || kind != Kind::png)) {
-    throw UsageError(path + ": a colour file goes with a single depth PNG only");
-  }
-  if (!folder && (kind == Kind::tum || kind == Kind::folder)) throw Error(path + ": a file, expected a folder");
-  switch (kind) {
-    case Kind::tum:
-      return open_list(list_tum(path, options));
-    case Kind::pcd:
-      return open_pcd(path, options);
-    default:
-      return open_list(folder ? list_folder(path, options) : list_single_png(path, options));
-  }
+std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& options) {
+  if (const Scheme* scheme = scheme_of(uri)) return scheme->open(uri.substr(scheme->name.size() + 1), options);
+  const std::string_view name = is_folder(uri, kAnything) ? scheme_of_folder(uri) : scheme_of_file(uri);
+  return std::ranges::find(kSchemes, name, &Scheme::name)->open(uri, options);
+}
+
+std::string path_of_source(const std::string& uri) {
+  const Scheme* scheme = scheme_of(uri);
+  std::string path = scheme == nullptr ? uri : uri.substr(scheme->name.size() + 1);
+  if (scheme != nullptr && scheme->open == open_tum) split_scale(path);
+  return path;
 }
 
 Frame make_frame(const Camera& camera, const std::uint16_t* depth_mm, std::size_t depth_stride, const std::uint8_t* rgb,
@@ -113,7 +146,7 @@ Frame make_frame(const Camera& camera, const std::uint16_t* depth_mm, std::size_
   check(camera);
   if (std::int64_t{camera.width} * camera.height > kMaxPixels) throw Error("frame buffers: more pixels than supported");
   if (depth_mm == nullptr) throw Error("frame buffers: no depth, expected a pointer to its first value");
-  const auto width = static_cast<std::size_t>(camera.width);
+  const std::size_t width = camera.width;
   const std::size_t depth_bytes = width * sizeof(std::uint16_t);
   const std::size_t rgb_bytes = width * 3;
   if (depth_stride == 0) depth_stride = depth_bytes;
@@ -129,9 +162,8 @@ Frame make_frame(const Camera& camera, const std::uint16_t* depth_mm, std::size_
   const auto* depth_rows = reinterpret_cast<const char*>(depth_mm);
   static_assert(sizeof(Rgb) == 3);
   for (int v = 0; v < camera.height; ++v) {
-    const auto row = static_cast<std::size_t>(v);
-    std::memcpy(frame.depth.row(v), depth_rows + row * depth_stride, depth_bytes);
-    if (rgb != nullptr) std::memcpy(static_cast<void*>(frame.colour.row(v)), rgb + row * rgb_stride, rgb_bytes);
+    std::memcpy(frame.depth.row(v), depth_rows + v * depth_stride, depth_bytes);
+    if (rgb != nullptr) std::memcpy(static_cast<void*>(frame.colour.row(v)), rgb + v * rgb_stride, rgb_bytes);
   }
   return frame;
 }

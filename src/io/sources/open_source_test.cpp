@@ -13,7 +13,7 @@
 
 #include "io/files/image_file.h"
 #include "io/files/test_files.h"
-#include "io/sources/pcd.h"
+#include "io/sources/pcd_write.h"
 
 namespace vesalius {
 namespace {

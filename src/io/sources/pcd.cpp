@@ -99,8 +99,8 @@ std::string_view next_word(std::string_view& text) {
   const auto is_space = [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; };
   const auto begin = std::find_if_not(text.begin(), text.end(), is_space);
   const auto end = std::find_if(begin, text.end(), is_space);
-  const auto from = static_cast<std::size_t>(begin - text.begin());
-  const std::string_view word = text.substr(from, static_cast<std::size_t>(end - begin));
+  const std::size_t from = begin - text.begin();
+  const std::string_view word = text.substr(from, end - begin);
   text.remove_prefix(from + word.size());
   return word;
 }

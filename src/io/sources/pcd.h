@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "io/sources/camera_file.h"
-#include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
 
 namespace vesalius {
@@ -27,11 +26,5 @@ DepthImage depth_of(const PointGrid& grid);
 /// The pinhole camera whose grid the points lie on, by least squares. Throws Error naming `name` when there are too
 /// few points or they lie on no such grid.
 CameraFacts estimate_camera(const PointGrid& grid, const std::string& name);
-
-enum class PcdEncoding { ascii, binary, binary_compressed };
-
-/// The frame as an organised PCD of x y z, and rgb where the frame has colour; NaN where it has no depth. Reading it
-/// back gives the same depth and colour.
-std::string serialise_pcd(const Frame& frame, PcdEncoding encoding);
 
 }  // namespace vesalius

@@ -7,9 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "io/sources/pcd.h"
-
 namespace vesalius {
+
+/// How a PCD file holds its points.
+enum class PcdEncoding { ascii, binary, binary_compressed };
 
 /// One column of a PCD: `count` values of `size` bytes per point.
 struct PcdField {
@@ -31,7 +32,7 @@ struct PcdHeader {
   std::size_t point_bytes = 0;
   std::size_t data_begin = 0;  ///< bytes before the first point
 
-  std::size_t points() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  std::size_t points() const { return std::size_t(width) * height; }
 };
 
 /// Throws Error naming `name` and the line for a header that is damaged or not that of an organised cloud.

@@ -44,7 +44,7 @@ class PcdSource final : public FrameSource {
     const Camera camera =
         resolve_camera(facts, grid.points_m.width(), grid.points_m.height(), !grid.colour.empty(), path, notes);
     if (next_ == 0) notes_ = std::move(notes);
-    return {file.stem().string(), 0.0, camera, depth_of(grid), std::move(grid.colour)};
+    return {file.stem().string(), {}, camera, depth_of(grid), std::move(grid.colour)};
   }
 
   std::vector<fs::path> files_;

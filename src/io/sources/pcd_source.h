@@ -3,7 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "io/sources/open_source.h"
+#include "io/sources/source_options.h"
+#include "vesalius/base/frame_source.h"
 
 namespace vesalius {
 

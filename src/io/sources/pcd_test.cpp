@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "io/files/test_files.h"
+#include "io/sources/pcd_write.h"
 
 namespace vesalius {
 namespace {

@@ -1,3 +1,5 @@
+#include "io/sources/pcd_write.h"
+
 #include <fmt/format.h>
 #include <lzf.h>
 
@@ -7,7 +9,6 @@
 #include <limits>
 #include <vector>
 
-#include "io/sources/pcd.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -57,8 +58,8 @@ std::string binary_points(const Frame& frame, std::size_t point_step, std::size_
   for (int v = 0; v < frame.depth.height(); ++v) {
     for (int u = 0; u < frame.depth.width(); ++u, at += point_step) {
       const Eigen::Vector3f p = point_at(frame, u, v);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        words[at + axis * field_step] = std::bit_cast<std::uint32_t>(p[static_cast<Eigen::Index>(axis)]);
+      for (int axis = 0; axis < 3; ++axis) {
+        words[at + axis * field_step] = std::bit_cast<std::uint32_t>(p[axis]);
       }
       if (fields == 4) words[at + 3 * field_step] = pack(frame.colour(u, v));
     }

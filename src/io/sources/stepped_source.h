@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/sources/open_source.h"
+#include "vesalius/base/frame_source.h"
 
 namespace vesalius {
 

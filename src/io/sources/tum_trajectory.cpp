@@ -30,7 +30,7 @@ std::optional<std::array<double, 8>> numbers(std::string_view line) {
     const auto [stop, error] = std::from_chars(line.data(), end, value);
     if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
     if (stop != end && kSpace.find(*stop) == kSpace.npos) return std::nullopt;
-    line.remove_prefix(static_cast<std::size_t>(stop - line.data()));
+    line.remove_prefix(stop - line.data());
   }
   if (line.find_first_not_of(kSpace) != line.npos) return std::nullopt;
   return values;

@@ -12,6 +12,7 @@
 #include "io/files/atomic_file.h"
 #include "io/files/image_file.h"
 #include "io/sources/camera_file.h"
+#include "io/sources/pcd_write.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -116,8 +117,12 @@ class TumWriter final : public FolderWriter {
 
  private:
   std::string file_name(const Frame& frame) override {
-    const int index = count_++;
-    return fmt::format("{:.6f}", frame.time_s != 0.0 ? frame.time_s : index / double{options_.tum_frame_rate});
+    const int number = ++count_;  // from 1: the time 0 stands for none
+    if (frame.time_s != 0.0) return fmt::format("{:.6f}", frame.time_s);
+    if (options_.frame_rate) return fmt::format("{:.6f}", number / double{*options_.frame_rate});
+    throw Error(fmt::format(
+        "frame {} has no time, which this layout needs: expected a source with times or a frame rate (--rate)",
+        frame.name));
   }
 
   void write_pictures(const Frame& frame, const std::string& name) override {
@@ -161,8 +166,9 @@ std::unique_ptr<FrameWriter> make_frame_writer(FrameFormat format, const std::st
   if (!(options.tum_units_per_m >= 1000.F && options.tum_units_per_m <= 65535.F)) {
     throw UsageError("TUM scale: expected 1000 to 65535 units per metre: fewer would lose millimetres");
   }
-  if (!(options.tum_frame_rate > 0.F && options.tum_frame_rate <= 1000.F)) {
-    throw UsageError("TUM frame rate: expected more than 0 to 1000 frames per second");
+  const float rate = options.frame_rate.value_or(1.F);
+  if (!(rate > 0.F && rate <= 1000.F)) {
+    throw UsageError("frame rate: expected more than 0 to 1000 frames per second");
   }
   switch (format) {
     case FrameFormat::tum:

@@ -22,7 +22,8 @@ using testing::IsEmpty;
 std::vector<Frame> sample_frames() { return {random_frame("a1", 1), random_frame("a2", 2), random_frame("a10", 3)}; }
 
 void write_all(FrameFormat format, const std::string& folder, const std::vector<Frame>& frames,
-               const WriteOptions& options = {}) {
+               WriteOptions options = {}) {
+  if (!options.frame_rate) options.frame_rate = 30.F;
   const auto writer = make_frame_writer(format, folder, options);
   for (const Frame& frame : frames) writer->write(frame);
   writer->close();
@@ -94,6 +95,18 @@ TEST(WriteFrames, TumKeepsTimes) {
   EXPECT_EQ(back[0].name, "1305031102.160407");
   EXPECT_EQ(back[2].time_s, 1305031104.160407);
   EXPECT_THAT(get(folder / "out/depth.txt"), HasSubstr("\n1305031102.160407 depth/1305031102.160407.png\n"));
+}
+
+TEST(WriteFrames, TumInventsNoTimes) {
+  const TemporaryFolder folder;
+  const auto writer = make_frame_writer(FrameFormat::tum, folder / "out");
+  EXPECT_THAT(error_of([&] { writer->write(random_frame("a", 1)); }), HasSubstr("frame a has no time"));
+  WriteOptions options;
+  options.frame_rate = 10.F;
+  write_all(FrameFormat::tum, folder / "rated", sample_frames(), options);
+  const std::vector<Frame> rated = read_all(folder / "rated");
+  EXPECT_EQ(rated.at(0).time_s, 0.1);
+  EXPECT_EQ(rated.at(2).time_s, 0.3);
 }
 
 TEST(WriteFrames, TumDepthThatDoesNotFitIsAnError) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "synth/body/poser.h"
 #include "synth/body/simplify.h"
 
 namespace vesalius::synth {

@@ -65,6 +65,9 @@ struct BodyMesh {
   float stature_m = 0.F;
 };
 
+/// Returns the bone whose head is this one's tail; heads, hands and feet return themselves.
+Bone next_bone(Bone bone);
+
 /// Ends of a bone of `Pose` in the body's own rest pose: its head, and the head of the bone that goes on from there
 /// (the tail of its rig bone for heads, hands and feet).
 struct BoneSegment {
@@ -72,44 +75,6 @@ struct BoneSegment {
   Eigen::Vector3f tail = Eigen::Vector3f::Zero();
 };
 std::array<BoneSegment, kBoneCount> rest_bones(const BodyMesh& mesh);
-
-/// A body in a pose. The body frame's origin lies under the pelvis, the person's lowest vertex at y = 0 (what belongs
-/// to nobody, as a bag, may reach lower).
-struct PosedBody {
-  std::vector<Eigen::Vector3f> vertices;             ///< same order as the mesh's
-  std::vector<Eigen::Vector3f> parts;                ///< centre of each part's volume; NaN where the body has none
-  std::array<Eigen::Vector3f, kBoneCount> joints{};  ///< head of each bone of `Pose`
-  std::array<Eigen::Vector3f, kBoneCount> ends{};    ///< tail of each bone of `Pose`
-};
-
-/// Volume of a part that moves with one rig bone, as a share of the part's; a part's shares sum to 1.
-struct PartShare {
-  int part = 0;
-  int bone = 0;
-  float share = 0.F;                                 ///< may be negative where the part's surface folds over itself
-  Eigen::Vector3f moment = Eigen::Vector3f::Zero();  ///< share times its centre at rest, metres
-};
-/// Shares of all parts of the body's own surface, by part and bone. A part is closed at its rims by flat fans.
-std::vector<PartShare> part_shares(const BodyMesh& mesh, int part_count);
-
-/// Poses bodies by linear blend skinning. What depends on the mesh only is worked out once.
-class Poser {
- public:
-  /// Throws Error as check() does.
-  Poser(std::shared_ptr<const BodyMesh> mesh, const BodyModel& body);
-  /// Safe to call from several threads. Throws Error for a pose with a number that is not finite.
-  PosedBody pose(const Pose& pose) const;
-  const BodyMesh& mesh() const { return *mesh_; }
-
- private:
-  std::shared_ptr<const BodyMesh> mesh_;
-  int part_count_ = 0;
-  std::vector<PartShare> shares_;
-  std::vector<std::uint8_t> grounded_;  ///< per vertex: 1 where it is the person's, not of a thing carried
-};
-
-/// Throws Error naming what is wrong: an index out of range, weights that do not sum to 1, a number that is not finite.
-void check(const BodyMesh& mesh, const BodyModel& body);
 
 /// The mesh and its labels seen in a mirror (x -> -x).
 BodyMesh mirrored(const BodyMesh& mesh, const BodyModel& body);

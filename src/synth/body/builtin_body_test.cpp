@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "synth/body/poser.h"
 #include "synth/body/test_bodies.h"
 
 namespace vesalius::synth {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synth/body/builtin_measures.h"
-
 namespace vesalius::synth {
 namespace {
 

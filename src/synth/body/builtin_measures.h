@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "synth/body/builtin_figure.h"
+#include "synth/body/body_mesh.h"
+#include "synth/body/builtin_shape.h"
 
 namespace vesalius::synth {
 
@@ -28,6 +29,12 @@ inline const Eigen::Vector3f kDownArm = Eigen::Vector3f(1.F, -1.F, 0.F).normaliz
 
 /// Where the left leg's line is at a height: the legs stand apart, so that thighs do not melt together.
 inline float leg_x(const Measures& m, float y) { return m.hip_x + 0.09F * (m.hip - y); }
+
+/// Bones of the built-in body beside those of poses: fingers in two pieces and a thumb, per hand.
+enum class FingerBone : int { fingers, finger_tips, thumb };
+inline constexpr int kBuiltinBoneCount = kBoneCount + 6;
+/// Index of a finger bone in the built-in rig.
+constexpr int finger_bone(FingerBone bone, bool left) { return kBoneCount + (left ? 0 : 3) + static_cast<int>(bone); }
 
 /// The bones of the built-in rig, left and right.
 std::array<BoneSegment, kBuiltinBoneCount> builtin_bones(const Measures& m);

@@ -1,8 +1,9 @@
+#include "synth/body/check_body.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "synth/body/body_mesh.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::synth {

@@ -1,8 +1,9 @@
+#include "synth/body/fit_rig.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "synth/body/rig_map.h"
 #include "synth/text/text_scanner.h"
 #include "vesalius/base/error.h"
 

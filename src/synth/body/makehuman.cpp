@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "synth/body/makehuman_files.h"
-#include "synth/body/makehuman_targets.h"
-#include "synth/body/rig_map.h"
+#include "synth/body/check_body.h"
+#include "synth/body/fit_rig.h"
+#include "synth/body/makehuman_mesh.h"
+#include "synth/body/makehuman_rig.h"
+#include "synth/body/surface_parts.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::synth {

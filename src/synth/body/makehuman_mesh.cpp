@@ -1,10 +1,11 @@
+#include "synth/body/makehuman_mesh.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
-#include "synth/body/makehuman_files.h"
 #include "synth/text/text_scanner.h"
 #include "vesalius/base/error.h"
 

@@ -1,10 +1,11 @@
+#include "synth/body/makehuman_rig.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "synth/body/makehuman_files.h"
 #include "synth/text/text_scanner.h"
 #include "vesalius/base/error.h"
 

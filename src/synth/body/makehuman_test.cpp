@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "synth/body/makehuman_targets.h"
+#include "synth/body/poser.h"
 #include "synth/body/rig_map.h"
 #include "synth/body/stature.h"
 #include "synth/body/test_bodies.h"

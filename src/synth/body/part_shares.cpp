@@ -1,9 +1,9 @@
+#include "synth/body/part_shares.h"
+
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <span>
-
-#include "synth/body/body_mesh.h"
 
 namespace vesalius::synth {
 namespace {

@@ -1,8 +1,10 @@
 #include "synth/body/simplify.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-
-#include "synth/body/simplifier.h"
+#include <array>
+#include <cstdint>
+#include <limits>
 
 namespace vesalius::synth {
 namespace {
@@ -11,8 +13,241 @@ using Eigen::Vector3d;
 
 constexpr double kLongestEdge_m = 0.06;      // beyond, the poses other than the measured one would show
 constexpr double kSmallestTurnCosine = 0.3;  // of a triangle that stays
+constexpr double kSmallestArea = 1e-12;      // keeps weights above 0 where a triangle has no area
 
-}  // namespace
+/// Mean of squared distances to planes, each with a weight.
+class Quadric {
+ public:
+  void add_plane(const Eigen::Vector3d& n, double d, double weight) {
+    const std::array<double, 4> p{n.x(), n.y(), n.z(), d};
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i; j < 4; ++j) m_[at++] += weight * p[i] * p[j];
+    }
+    weight_ += weight;
+  }
+  void add(const Quadric& other) {
+    for (std::size_t i = 0; i < m_.size(); ++i) m_[i] += other.m_[i];
+    weight_ += other.weight_;
+  }
+  double at(const Eigen::Vector3d& p) const {
+    const double sum = p.x() * (m_[0] * p.x() + 2 * (m_[1] * p.y() + m_[2] * p.z() + m_[3])) +
+                       p.y() * (m_[4] * p.y() + 2 * (m_[5] * p.z() + m_[6])) + p.z() * (m_[7] * p.z() + 2 * m_[8]) +
+                       m_[9];
+    return sum / weight_;
+  }
+
+ private:
+  std::array<double, 10> m_{};
+  double weight_ = 0.0;
+};
+
+/// What may happen to a vertex: anything, a move along the one border it lies on, or nothing.
+enum class Kind : std::uint8_t { free, border, fixed };
+
+/// What simplify() works with: a surface that loses vertices.
+class Simplifier {
+ public:
+  /// Keeps a reference to `topology`.
+  Simplifier(const BodyTopology& topology, const std::vector<Eigen::Vector3f>& points);
+  /// Moves vertices while any can go for that root mean square error.
+  void run_to(double error_m);
+  /// What is left.
+  CoarseSurface result(float error_m) const;
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  template <class F>
+  void each_triangle(std::uint32_t vertex, F&& visit) const {
+    for (std::uint32_t c = first_[vertex]; c != kNone; c = next_[c]) {
+      if (alive_[c / 3] != 0) visit(c / 3);
+    }
+  }
+  template <class F>
+  void each_neighbour(std::uint32_t vertex, F&& visit) {
+    ++epoch_;
+    each_triangle(vertex, [&](std::uint32_t t) {
+      for (const std::uint32_t n : triangles_[t]) {
+        if (n == vertex || seen_[n] == epoch_) continue;
+        seen_[n] = epoch_;
+        visit(n);
+      }
+    });
+  }
+  bool has(std::uint32_t triangle, std::uint32_t v) const {
+    const Triangle& t = triangles_[triangle];
+    return t[0] == v || t[1] == v || t[2] == v;
+  }
+  bool same_look(std::uint32_t a, std::uint32_t b) const {
+    return topology_.part[a] == topology_.part[b] && topology_.fabric[a] == topology_.fabric[b];
+  }
+
+  void link_corners();
+  void add_planes();
+  void find_borders();
+  void add_border(std::uint32_t triangle, std::uint32_t a, std::uint32_t b);
+  bool is_border(std::uint32_t a, std::uint32_t b) const;
+  double cost(std::uint32_t from, std::uint32_t to) const;
+  bool sweep(double most);
+  std::uint32_t best_target(std::uint32_t from, double most);
+  bool keeps_shape(std::uint32_t from, std::uint32_t to);
+  bool turns_over(std::uint32_t triangle, std::uint32_t from, std::uint32_t to) const;
+  void collapse(std::uint32_t from, std::uint32_t to);
+  std::vector<std::uint32_t> paired() const;
+
+  const BodyTopology& topology_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint8_t> alive_;                 ///< per triangle
+  std::vector<std::uint32_t> first_, last_, next_;  ///< per vertex, per vertex, per corner: corners at a vertex
+  std::vector<Kind> kind_;
+  std::vector<Quadric> quadrics_;
+  std::vector<double> waits_for_;  ///< per vertex: no target costs less; kNever: none until the neighbours change
+  std::vector<std::uint32_t> seen_, candidates_;  ///< scratch
+  std::uint32_t epoch_ = 0;
+};
+
+Simplifier::Simplifier(const BodyTopology& topology, const std::vector<Eigen::Vector3f>& points)
+    : topology_(topology),
+      triangles_(topology.triangles),
+      alive_(triangles_.size(), 1),
+      first_(points.size(), kNone),
+      last_(points.size(), kNone),
+      next_(3 * triangles_.size(), kNone),
+      kind_(points.size(), Kind::free),
+      quadrics_(points.size()),
+      waits_for_(points.size(), 0.0),
+      seen_(points.size(), 0) {
+  points_.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) points_.push_back(p.cast<double>());
+  link_corners();
+  add_planes();
+  find_borders();
+}
+
+void Simplifier::link_corners() {
+  std::ranges::fill(first_, kNone);
+  for (std::uint32_t c = 0; c < next_.size(); ++c) {
+    if (alive_[c / 3] == 0) continue;
+    const std::uint32_t v = triangles_[c / 3][c % 3];
+    (first_[v] == kNone ? first_[v] : next_[last_[v]]) = c;
+    last_[v] = c;
+    next_[c] = kNone;
+  }
+}
+
+void Simplifier::add_planes() {
+  for (const Triangle& t : triangles_) {
+    const Vector3d& a = points_[t[0]];
+    const Vector3d across = (points_[t[1]] - a).cross(points_[t[2]] - a);
+    const double area = across.norm() + kSmallestArea;
+    const Vector3d normal = across / area;
+    for (const std::uint32_t v : t) quadrics_[v].add_plane(normal, -normal.dot(a), area);
+  }
+}
+
+/// Classifies vertices; and planes along borders, upright on their triangles, make leaving a border cost as much as
+/// leaving the surface.
+void Simplifier::find_borders() {
+  constexpr int kManyTriangles = 5;
+  std::vector<int> sides(points_.size(), 0);  // of borders' edges at a vertex: two an edge
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
+      int others = 0;
+      bool alike = true;
+      each_triangle(a, [&](std::uint32_t other) {
+        if (other == t || !has(other, b)) return;
+        ++others;
+        alike = alike && same_look(t, other);
+      });
+      if (others == 1 && alike) continue;
+      const int here = others == 0 ? 2 : others == 1 ? 1 : kManyTriangles;
+      for (const std::uint32_t v : {a, b}) sides[v] += here;
+      add_border(t, a, b);
+    }
+  }
+  for (std::size_t v = 0; v < sides.size(); ++v) {
+    if (sides[v] > 0) kind_[v] = sides[v] == 4 ? Kind::border : Kind::fixed;
+  }
+}
+
+void Simplifier::add_border(std::uint32_t triangle, std::uint32_t a, std::uint32_t b) {
+  const Triangle& t = triangles_[triangle];
+  const Vector3d along = points_[b] - points_[a];
+  const Vector3d up = (points_[t[1]] - points_[t[0]]).cross(points_[t[2]] - points_[t[0]]);
+  const Vector3d normal = along.cross(up).stableNormalized();
+  for (const std::uint32_t v : {a, b}) {
+    quadrics_[v].add_plane(normal, -normal.dot(points_[a]), along.squaredNorm() + kSmallestArea);
+  }
+}
+
+/// Whether an edge is anything but inside one part and fabric.
+bool Simplifier::is_border(std::uint32_t a, std::uint32_t b) const {
+  std::array<std::uint32_t, 2> beside{};
+  std::size_t count = 0;
+  each_triangle(a, [&](std::uint32_t t) {
+    if (!has(t, b)) return;
+    if (count < 2) beside[count] = t;
+    ++count;
+  });
+  return count != 2 || !same_look(beside[0], beside[1]);
+}
+
+CoarseSurface Simplifier::result(float error_m) const {
+  CoarseSurface out;
+  out.error_m = error_m;
+  const std::vector<std::uint32_t> order = paired();
+  std::vector<std::uint32_t> place(points_.size(), kNone);
+  for (const std::uint32_t t : order) {
+    for (const std::uint32_t v : triangles_[t]) place[v] = 0;
+  }
+  for (std::uint32_t v = 0; v < place.size(); ++v) {
+    if (place[v] == kNone) continue;
+    place[v] = static_cast<std::uint32_t>(out.vertex.size());
+    out.vertex.push_back(v);
+  }
+  for (const std::uint32_t t : order) {
+    const Triangle& corners = triangles_[t];
+    out.triangles.push_back({place[corners[0]], place[corners[1]], place[corners[2]]});
+    out.part.push_back(topology_.part[t]);
+    out.fabric.push_back(static_cast<std::uint8_t>(topology_.fabric[t]));
+  }
+  return out;
+}
+
+/// The triangles that are left, neighbours across a long edge one after the other, as SceneGeometry joins them to
+/// quads; those that stay alone last.
+std::vector<std::uint32_t> Simplifier::paired() const {
+  std::vector<std::uint32_t> order, alone;
+  std::vector<std::uint8_t> taken(triangles_.size(), 0);
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    if (alive_[t] == 0 || taken[t] != 0) continue;
+    taken[t] = 1;
+    std::uint32_t partner = kNone;
+    double longest = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
+      const double length = (points_[a] - points_[b]).squaredNorm();
+      if (length <= longest) continue;
+      each_triangle(a, [&](std::uint32_t other) {
+        if (taken[other] != 0 || !has(other, b)) return;
+        partner = other;
+        longest = length;
+      });
+    }
+    if (partner == kNone) {
+      alone.push_back(t);
+      continue;
+    }
+    taken[partner] = 1;
+    order.insert(order.end(), {t, partner});
+  }
+  order.insert(order.end(), alone.begin(), alone.end());
+  return order;
+}
 
 /// Mean squared error of moving a vertex onto its neighbour.
 double Simplifier::cost(std::uint32_t from, std::uint32_t to) const {
@@ -106,6 +341,8 @@ bool Simplifier::sweep(double most) {
 void Simplifier::run_to(double error_m) {
   while (sweep(error_m * error_m)) link_corners();  // without the triangles that are gone: lists stay short
 }
+
+}  // namespace
 
 std::vector<CoarseSurface> simplify(const BodyTopology& topology, const std::vector<Eigen::Vector3f>& points,
                                     const std::vector<float>& errors_m) {

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "synth/body/check_body.h"
 #include "synth/body/surface_parts.h"
-#include "synth/dress/garments.h"
+#include "synth/dress/wardrobe.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::synth {

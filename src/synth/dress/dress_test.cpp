@@ -6,6 +6,8 @@
 #include <set>
 
 #include "synth/body/builtin_body.h"
+#include "synth/body/check_body.h"
+#include "synth/body/poser.h"
 #include "synth/body/test_bodies.h"
 #include "vesalius/base/error.h"
 

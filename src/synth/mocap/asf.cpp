@@ -1,10 +1,12 @@
+#include "synth/mocap/asf.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <optional>
 
-#include "synth/mocap/asf_amc.h"
+#include "synth/mocap/motion.h"
 #include "synth/text/text_scanner.h"
 
 namespace vesalius::synth {

@@ -1,7 +1,6 @@
-#include "synth/mocap/asf_amc.h"
-
 #include <gmock/gmock.h>
 
+#include "synth/mocap/amc.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::synth {

@@ -1,10 +1,11 @@
+#include "synth/mocap/motion_convention.h"
+
 #define TOML_EXCEPTIONS 1
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
 
-#include "synth/mocap/retarget.h"
 #include "synth/text/text_scanner.h"
 #include "vesalius/base/error.h"
 

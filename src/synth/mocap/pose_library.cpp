@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "synth/mocap/asf_amc.h"
+#include "synth/mocap/amc.h"
 #include "synth/mocap/bvh.h"
 #include "synth/mocap/retarget.h"
 #include "synth/mocap/thin_poses.h"

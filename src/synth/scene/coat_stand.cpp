@@ -1,3 +1,5 @@
+#include "synth/scene/coat_stand.h"
+
 #include <cmath>
 
 #include "synth/scene/furniture_builder.h"

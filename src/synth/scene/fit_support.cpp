@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "synth/scene/palette.h"
+#include "synth/scene/seats.h"
 
 namespace vesalius::synth {
 namespace {

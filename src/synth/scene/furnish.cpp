@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "synth/scene/make_furniture.h"
 #include "synth/scene/palette.h"
 
 namespace vesalius::synth {

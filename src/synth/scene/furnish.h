@@ -2,9 +2,11 @@
 
 #include <vector>
 
-#include "synth/scene/build_scene.h"
 #include "synth/scene/furniture.h"
 #include "synth/scene/occupancy.h"
+#include "synth/scene/room.h"
+#include "synth/scene/scene_options.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius::synth {
 

@@ -57,8 +57,4 @@ class FurnitureBuilder {
   Random& random_;
 };
 
-/// Things that resemble people: a coat on a stand, and a torso on a pole.
-Furniture make_coat_stand(Random& random);
-Furniture make_mannequin(Random& random);
-
 }  // namespace vesalius::synth

@@ -1,8 +1,9 @@
-#include "synth/scene/furniture.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "synth/scene/make_furniture.h"
+#include "synth/scene/seats.h"
 
 namespace vesalius::synth {
 namespace {

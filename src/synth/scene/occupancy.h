@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "synth/body/body_mesh.h"
+#include "synth/body/poser.h"
 #include "synth/scene/oriented_box.h"
 #include "synth/scene/room.h"
 

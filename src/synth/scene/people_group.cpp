@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "synth/scene/fit_support.h"
+#include "synth/scene/make_furniture.h"
 #include "synth/scene/palette.h"
+#include "synth/scene/seats.h"
 
 namespace vesalius::synth {
 namespace {

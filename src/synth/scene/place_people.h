@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "synth/scene/camera_pose.h"
+#include "synth/scene/occupancy.h"
 #include "synth/scene/people_group.h"
 
 namespace vesalius::synth {

@@ -1,3 +1,5 @@
+#include "synth/scene/seats.h"
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,9 +1,10 @@
+#include "synth/sensor/noise_colour.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "synth/sensor/noise_field.h"
-#include "synth/sensor/sensor_noise.h"
 
 namespace vesalius::synth {
 namespace {

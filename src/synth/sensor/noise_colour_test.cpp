@@ -1,8 +1,8 @@
+#include "synth/sensor/noise_colour.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
-
-#include "synth/sensor/sensor_noise.h"
 
 namespace vesalius::synth {
 namespace {

@@ -27,7 +27,4 @@ Image<T> as_read(const Image<T>& image, const Image<std::uint32_t>& source) {
   return read;
 }
 
-/// A colour camera's exposure, white balance and pixel noise: gains of about 15 and 4 %, sigma 2 to 6 of 255.
-void add_colour_noise(ColourImage& colour, Random random);
-
 }  // namespace vesalius::synth

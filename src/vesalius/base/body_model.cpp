@@ -1,15 +1,10 @@
 #include "vesalius/base/body_model.h"
 
-#define TOML_EXCEPTIONS 1
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <set>
-#include <sstream>
 
-#include "vesalius/base/error.h"
+#include "vesalius/base/toml_reader.h"
 
 namespace vesalius {
 namespace {
@@ -22,53 +17,9 @@ constexpr std::string_view kPaperBody =
 #include "paper_body.inc"
     ;
 
-/// Text of a stranger's file, fit for a one-line message.
-std::string in_quotes(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text.substr(0, kMaxName)) out += (c >= ' ' && c != '\x7f') ? c : '?';
-  return out + (text.size() > kMaxName ? "...\"" : "\"");
-}
-
-/// Typed reads from TOML that name source and line where they fail.
-class Reader {
+class Reader : public TomlReader {
  public:
-  explicit Reader(const std::string& source) : source_(source) {}
-
-  [[noreturn]] void fail(const toml::node& at, const std::string& what) const {
-    throw Error(source_ + ":" + std::to_string(at.source().begin.line) + ": " + what);
-  }
-
-  void expect_keys(const toml::table& table, std::initializer_list<std::string_view> known) const {
-    for (const auto& [key, node] : table) {
-      if (std::ranges::find(known, key.str()) != known.end()) continue;
-      std::string list;
-      for (const std::string_view k : known) list.append(list.empty() ? "" : ", ").append(k);
-      fail(node, "unknown key " + in_quotes(key.str()) + ", expected " + list);
-    }
-  }
-
-  const toml::node& need(const toml::table& table, std::string_view key) const {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) fail(table, "missing key \"" + std::string(key) + "\"");
-    return *node;
-  }
-
-  const toml::array& array(const toml::table& table, std::string_view key) const {
-    const toml::node& node = need(table, key);
-    if (!node.is_array()) fail(node, std::string(key) + ": expected an array");
-    return *node.as_array();
-  }
-
-  const toml::table& table(const toml::node& node, std::string_view what) const {
-    if (!node.is_table()) fail(node, std::string(what) + ": expected a table");
-    return *node.as_table();
-  }
-
-  std::string string(const toml::node& node, std::string_view what) const {
-    const auto value = node.value_exact<std::string>();
-    if (!value) fail(node, std::string(what) + ": expected a string");
-    return *value;
-  }
+  using TomlReader::TomlReader;
 
   /// Names end up in JSON, pictures and file names.
   std::string name(const toml::table& table, std::string_view key) const {
@@ -83,27 +34,6 @@ class Reader {
     return value;
   }
 
-  float number(const toml::node& node, std::string_view what, double low, double high) const {
-    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-    if (!value || !std::isfinite(*value) || *value < low || *value > high) {
-      std::ostringstream message;
-      message << what << ": expected a number from " << low << " to " << high;
-      fail(node, message.str());
-    }
-    return static_cast<float>(*value);
-  }
-
-  float number(const toml::table& table, std::string_view key, double low, double high) const {
-    return number(need(table, key), key, low, high);
-  }
-
-  bool boolean(const toml::table& table, std::string_view key) const {
-    const toml::node& node = need(table, key);
-    const auto value = node.value_exact<bool>();
-    if (!value) fail(node, std::string(key) + ": expected true or false");
-    return *value;
-  }
-
   /// Index of the part that `node` names.
   int part(const BodyModel& body, const toml::node& node, std::string_view what) const {
     const std::string value = string(node, what);
@@ -111,9 +41,6 @@ class Reader {
     if (index < 0) fail(node, std::string(what) + ": no part is called " + in_quotes(value));
     return index;
   }
-
- private:
-  const std::string& source_;
 };
 
 // Metres and square metres that a part of a person, or of a giant, can have; keeps later arithmetic finite.
@@ -123,15 +50,10 @@ constexpr double kLargest = 100.0;
 Rgb read_colour(const Reader& reader, const toml::table& table) {
   const toml::array& values = reader.array(table, "colour");
   if (values.size() != 3) reader.fail(values, "colour: expected 3 whole numbers, red, green and blue, from 0 to 255");
-  std::uint8_t rgb[3];
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto value = values.get(i)->value_exact<std::int64_t>();
-    if (!value || *value < 0 || *value > 255) {
-      reader.fail(values, "colour: expected 3 whole numbers, red, green and blue, from 0 to 255");
-    }
-    rgb[i] = static_cast<std::uint8_t>(*value);
-  }
-  return {rgb[0], rgb[1], rgb[2]};
+  const auto value = [&](std::size_t i) {
+    return static_cast<std::uint8_t>(reader.integer(values[i], "colour", 0, 255));
+  };
+  return {value(0), value(1), value(2)};
 }
 
 void read_parts(const Reader& reader, const toml::table& root, BodyModel& body) {
@@ -295,30 +217,6 @@ void read_surface(const Reader& reader, const toml::table& root, BodyModel& body
   }
 }
 
-/// A key of many thousand dotted levels, which only a very long line can hold, overruns the parser's stack.
-void check_lines(std::string_view text, const std::string& source) {
-  constexpr std::size_t kLongestLine = 4096;
-  std::size_t begin = 0;
-  for (int line = 1; begin < text.size(); ++line) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    if (end - begin > kLongestLine) {
-      throw Error(source + ":" + std::to_string(line) + ": line of " + std::to_string(end - begin) +
-                  " characters, expected at most " + std::to_string(kLongestLine));
-    }
-    begin = end + 1;
-  }
-}
-
-toml::table parse_toml(std::string_view text, const std::string& source) {
-  check_lines(text, source);
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& e) {
-    throw Error(source + ":" + std::to_string(e.source().begin.line) +
-                ": not valid TOML: " + std::string(e.description()));
-  }
-}
-
 }  // namespace
 
 int BodyModel::find_part(std::string_view part_name) const {
@@ -327,8 +225,8 @@ int BodyModel::find_part(std::string_view part_name) const {
 }
 
 BodyModel parse_body_model(std::string_view toml, const std::string& source) {
-  const toml::table root = parse_toml(toml, source);
   const Reader reader(source);
+  const toml::table root = reader.parse(toml);
   reader.expect_keys(root, {"name", "roots", "part", "link", "joint_set", "surface"});
   BodyModel body;
   body.name = reader.name(root, "name");

@@ -14,7 +14,8 @@
 namespace vesalius {
 namespace {
 
-std::atomic<int> thread_limit{std::numeric_limits<int>::max()};
+constexpr int kNoLimit = std::numeric_limits<int>::max();
+std::atomic<int> thread_limit{kNoLimit};
 
 /// Threads take the next index until there are none.
 void run(int count, const std::function<void(int)>& work) {
@@ -58,7 +59,8 @@ ThreadLimit::ThreadLimit(int threads) : state_(std::make_unique<State>(State{thr
 ThreadLimit::~ThreadLimit() { thread_limit = state_->before; }
 
 int thread_count() {
-  return std::min(thread_limit.load(), static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  const int limit = thread_limit;
+  return limit != kNoLimit ? limit : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
 }  // namespace vesalius

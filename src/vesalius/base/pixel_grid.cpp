@@ -32,6 +32,14 @@ Frame every_nth(const Frame& frame, int step) {
   return coarse;
 }
 
+Camera cropped(Camera camera, const Box& box) {
+  camera.width = box.width;
+  camera.height = box.height;
+  camera.cx -= static_cast<float>(box.u);
+  camera.cy -= static_cast<float>(box.v);
+  return camera;
+}
+
 GridGuide::GridGuide(const DepthImage& depth, int step) : depth_(depth), step_(step) {
   if (step < 1) throw Error("a grid's step must be at least 1");
 }

@@ -9,22 +9,24 @@
 #include "vesalius/base/image.h"
 #include "vesalius/base/options.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/base/stage_times.h"
 
 namespace vesalius {
 
-/// How many of a picture's pixels the method looks at.
+/// Which of a picture's pixels the method looks at.
 struct GridOptions {
-  int step = 0;  ///< every so many pixels of every so many rows; 0: the least that leaves at most kMostPixels
+  /// Columns and rows from one pixel of the grid to the next; 0: the least that leaves at most kMostPixels.
+  int step = 0;
 };
 void visit_options(const std::string& prefix, GridOptions& options, OptionVisitor& visitor);
 
-/// 512x424 is looked at whole; 640x480 and 848x480 at every second pixel.
+/// Pictures of up to so many pixels are looked at whole, e.g. 512x424; of 640x480 and 848x480 every second pixel.
 inline constexpr long kMostPixels = 250'000;
 
-/// Step for pictures of this camera, at least 1.
+/// Returns the step for pictures of this camera, at least 1.
 int grid_step(const Camera& camera, const GridOptions& options);
 
-/// Every `step`-th pixel of every `step`-th row, from the first on.
+/// Returns every `step`-th pixel of every `step`-th row, from the first on.
 template <class T>
 Image<T> every_nth(const Image<T>& image, int step) {
   Image<T> coarse((image.width() + step - 1) / step, (image.height() + step - 1) / step);
@@ -36,8 +38,11 @@ Image<T> every_nth(const Image<T>& image, int step) {
   return coarse;
 }
 
-/// The same of depth and colour, and the camera of these pixels: each keeps its point.
+/// Returns the same of depth and colour, with the camera that gives each of these pixels the point that it had.
 Frame every_nth(const Frame& frame, int step);
+
+/// Returns the camera of the picture inside a box, where each pixel has the point that it had.
+Camera cropped(Camera camera, const Box& box);
 
 /// A pixel of a grid, in the whole picture's coordinates.
 struct GridPixel {
@@ -45,8 +50,9 @@ struct GridPixel {
   int u = 0, v = 0;
 };
 
-/// Of the grid's pixels around (u, v), itself if it is one, that whose depth is nearest to its own, if it is within so
-/// many millimetres; of several the first row by row.
+/// Returns that one of the grid's up to four pixels around (u, v) whose depth is nearest to that of (u, v), or none
+/// where all differ by more than `within_mm`. A pixel of the grid has only itself around it. Of equally near ones the
+/// first in row order is returned.
 inline GridPixel nearest_on_grid(const DepthImage& depth, int step, int u, int v, int within_mm) {
   GridPixel nearest;
   int least = within_mm + 1;
@@ -62,20 +68,20 @@ inline GridPixel nearest_on_grid(const DepthImage& depth, int step, int u, int v
   return nearest;
 }
 
-/// Brings what was found on a grid back to all pixels: each takes after that one of the grid's pixels around it whose
-/// depth is nearest, if it is within 5 cm and 3 mm more for every square metre of its own depth.
+/// Brings what was found on a grid back to all pixels. Each pixel takes the value of that grid pixel around it which is
+/// nearest in depth; that one must be within 5 cm, and 3 mm more for every square metre of the pixel's own depth.
 class GridGuide {
  public:
-  /// `depth` is the whole picture; it must outlive the guide. Throws Error for a step below 1.
+  /// `depth` is the whole picture and must outlive the guide. Throws Error for a step below 1.
   GridGuide(const DepthImage& depth, int step);
 
-  /// `outside` where depth has no reading or no pixel around is near enough.
+  /// Returns a picture of full size. Pixels without a reading, or without a grid pixel near enough, become `outside`.
   template <class T>
   Image<T> enlarge(const Image<T>& coarse, T outside) const {
     return enlarge(coarse, outside, {0, 0, coarse.width(), coarse.height()});
   }
 
-  /// Outside `box`, of the coarse picture, that one holds nothing but `outside`.
+  /// Does the same quicker for a coarse picture that holds nothing but `outside` beyond `box`.
   template <class T>
   Image<T> enlarge(const Image<T>& coarse, T outside, const Box& box) const {
     Image<T> out(depth_.width(), depth_.height(), outside);
@@ -93,14 +99,38 @@ class GridGuide {
     return out;
   }
 
+  /// Returns the row-major index that a pixel of the coarse picture has in the whole one.
+  int whole_index(int coarse_index) const {
+    const int coarse_width = (depth_.width() + step_ - 1) / step_;
+    return coarse_index / coarse_width * step_ * depth_.width() + coarse_index % coarse_width * step_;
+  }
+
  private:
   static constexpr int kRows = 16;
 
-  /// Millimetres of depth that a pixel may lie from the one it takes after.
+  /// Returns how much a pixel's depth may differ from that of the grid pixel that it takes its value from.
   static int within(int z_mm) { return 50 + static_cast<int>(static_cast<std::int64_t>(z_mm) * z_mm * 3 / 1'000'000); }
 
   const DepthImage& depth_;
   int step_;
 };
+
+/// Runs `work(grid, step)` on the grid's pixels of a frame and brings what it returns to all pixels by
+/// `enlarge(guide, result)`. Where the grid is the whole picture, `work` gets the frame itself and nothing is enlarged.
+/// Adds the time that picking and enlarging take to Stage::grid.
+template <class Work, class Enlarge>
+auto on_grid(const Frame& frame, const GridOptions& options, StageTimes* times, const Work& work,
+             const Enlarge& enlarge) {
+  const int step = grid_step(frame.camera, options);
+  if (step == 1) return work(frame, 1);
+  StageClock before(times);
+  const Frame grid = every_nth(frame, step);
+  before.lap(Stage::grid);
+  auto result = work(grid, step);
+  StageClock after(times);
+  enlarge(GridGuide(frame.depth, step), result);
+  after.lap(Stage::grid);
+  return result;
+}
 
 }  // namespace vesalius

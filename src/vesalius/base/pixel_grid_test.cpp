@@ -5,6 +5,7 @@
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/base/test_threads.h"
 
 namespace vesalius {
 namespace {
@@ -105,10 +106,7 @@ TEST(GridGuideThreads, AnyNumberAgreesWithLookingAtAllPixels) {
     for (auto& label : coarse) label = static_cast<std::uint8_t>(random.below(7));
     const GridGuide guide(depth, step);
     const LabelImage expected = enlarge_slowly(coarse, depth, step);
-    for (const int threads : {1, 3}) {
-      const ThreadLimit limit(threads);
-      ASSERT_EQ(guide.enlarge(coarse, kBackground), expected) << trial;
-    }
+    for_threads({1, 3}, [&] { ASSERT_EQ(guide.enlarge(coarse, kBackground), expected) << trial; });
   }
 }
 

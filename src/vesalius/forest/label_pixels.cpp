@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
+#include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/forest/background_gate.h"
+#include "vesalius/forest/packed_tree.h"
 #include "vesalius/forest/top_two.h"
 #include "vesalius/forest/tree_walk.h"
 #include "vesalius/forest/walk_kernels.h"
@@ -19,20 +23,17 @@ constexpr int kRowGrain = 8;
 class Weights {
  public:
   Weights(const LabelChoice& choice, const LabelOptions& options)
-      : person_(std::lround(options.person_weight * kOne)),
-        background_(std::lround(options.background_weight * kOne)),
-        parts_(choice.part_count) {}
+      : background_(std::lround(options.background_weight * kOne)), parts_(choice.part_count) {}
 
   std::int64_t operator()(const std::uint16_t* sums, int c) const {
     return c < parts_ ? of_part(sums[c]) : of_background(sums[c]);
   }
   static constexpr float kOne = 1024.F;
 
-  std::int64_t of_part(std::uint16_t sum) const { return sum * static_cast<std::int64_t>(person_); }
+  std::int64_t of_part(std::uint16_t sum) const { return sum * static_cast<std::int64_t>(kOne); }
   std::int64_t of_background(std::uint16_t sum) const { return sum * static_cast<std::int64_t>(background_); }
 
  private:
-  long person_;
   long background_;
   int parts_;
 };
@@ -166,21 +167,75 @@ void label_rows(const std::vector<PackedTree>& trees, const PaddedDepth& depth, 
   }
 }
 
-/// The same one pixel after the other, for pictures of any size.
-void label_rows_plainly(const Forest& forest, const std::vector<PackedTree>& packed, const DepthImage& depth, int begin,
-                        int end, const OffsetScaler& scaler, Posteriors& out) {
-  clear_rows(begin, end, out);
-  for (int v = begin; v < end; ++v) {
-    for (int u = 0; u < depth.width(); ++u) {
-      if (depth(u, v) == 0) continue;
-      for (std::size_t t = 0; t < packed.size(); ++t) {
-        const Tree& tree = forest.trees[t];
-        const TreeLeaf& leaf = walk(tree, depth, forest.convention, scaler.at(depth(u, v)), u, v);
-        add_leaf(packed[t].leaves[&leaf - tree.leaves.data()], out.at(u, v));
+/// Posteriors of a picture where the forest is not asked about all pixels: about those of the gate's grid first, then
+/// about what the gate leaves open.
+class GatedLabels {
+ public:
+  GatedLabels(const std::vector<PackedTree>& trees, const FeatureConvention& convention, const DepthImage& depth,
+              const PaddedDepth& padded, const OffsetScaler& scaler, Posteriors& out)
+      : trees_(trees),
+        convention_(convention),
+        depth_(depth),
+        padded_(padded),
+        scaler_(scaler),
+        out_(out),
+        done_(depth.width(), depth.height(), 0) {}
+
+  void run(float gate) {
+    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) {
+      clear_holes(begin, end);
+      ask(begin, end, BackgroundGate::kStep);
+    });
+    const BackgroundGate closed(depth_, out_, gate);
+    out_.settled = Mask(depth_.width(), depth_.height(), 0);
+    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) { settle(closed, begin, end); });
+    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) { ask(begin, end, 1); });
+  }
+
+ private:
+  void clear_holes(int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < depth_.width(); ++u) {
+        if (depth_(u, v) == 0) std::fill_n(out_.at(u, v), out_.classes, std::uint16_t{0});
       }
     }
   }
-}
+
+  /// Asks the forest about those pixels of the rows that lie on a grid and are not done yet.
+  void ask(int begin, int end, int step) {
+    WalkPixels pixels(static_cast<std::size_t>(depth_.width()) * static_cast<std::size_t>(end - begin), scaler_,
+                      convention_);
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < depth_.width(); ++u) {
+        if (depth_(u, v) == 0 || done_(u, v) != 0 || u % step != 0 || v % step != 0) continue;
+        pixels.add(u, v, depth_(u, v));
+        std::fill_n(out_.at(u, v), out_.classes, std::uint16_t{0});
+        done_(u, v) = 1;
+      }
+    }
+    label_rows(trees_, padded_, pixels, out_);
+  }
+
+  void settle(const BackgroundGate& closed, int begin, int end) {
+    std::vector<std::uint8_t> shut(static_cast<std::size_t>(depth_.width()));
+    for (int v = begin; v < end; ++v) {
+      closed.row(v, shut.data());
+      for (int u = 0; u < depth_.width(); ++u) {
+        if (shut[u] == 0 || depth_(u, v) == 0 || done_(u, v) != 0) continue;
+        out_.settled(u, v) = take_from_grid(depth_, BackgroundGate::kStep, u, v, out_) ? 1 : 0;
+        done_(u, v) = out_.settled(u, v);
+      }
+    }
+  }
+
+  const std::vector<PackedTree>& trees_;
+  const FeatureConvention& convention_;
+  const DepthImage& depth_;
+  const PaddedDepth& padded_;
+  const OffsetScaler& scaler_;
+  Posteriors& out_;
+  Mask done_;
+};
 
 }  // namespace
 
@@ -190,8 +245,6 @@ void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& vi
   visitor.option(
       prefix + "proposal-weight", o.proposal_weight,
       {"", 0.0, 100.0, "The same where part proposals are looked for: less finds more of what may be people."});
-  visitor.option(prefix + "person-weight", o.person_weight,
-                 {"", 0.0, 100.0, "Factor on the posteriors of all body parts."});
   visitor.option(prefix + "unsure-margin", o.unsure_margin,
                  {"", 0.0, 1.0, "Where the two best labels' probabilities differ by less, neighbours decide."});
   visitor.option(prefix + "gate", o.gate,
@@ -200,84 +253,49 @@ void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& vi
                   "probability all around, it is not asked about pixels between; above 1 it is asked about all."});
 }
 
-ForestLabeller::ForestLabeller(Forest forest) : forest_(std::move(forest)) {
-  check(forest_);
-  distributions_ = vesalius::has_distributions(forest_);
-  packed_.resize(forest_.trees.size());
-  parallel_for(static_cast<int>(packed_.size()), [&](int t) {
-    const auto i = static_cast<std::size_t>(t);
-    packed_[i] = pack(forest_.trees[i], forest_.convention);
+struct ForestLabeller::Packed {
+  BodyModel body;
+  FeatureConvention convention;
+  bool background = false;
+  bool distributions = false;
+  int classes = 0;
+  std::vector<PackedTree> trees;
+};
+
+ForestLabeller::ForestLabeller(Forest forest) {
+  check(forest);
+  Packed packed{forest.body,           forest.convention,
+                forest.has_background, vesalius::has_distributions(forest),
+                forest.class_count(),  std::vector<PackedTree>(forest.trees.size())};
+  parallel_for(static_cast<int>(packed.trees.size()), [&](int t) {
+    packed.trees[t] = pack(forest.trees[t], forest.convention);
+    forest.trees[t] = {};
   });
+  packed_ = std::make_unique<const Packed>(std::move(packed));
 }
 
-Posteriors ForestLabeller::label(const DepthImage& depth, const Camera& camera) const {
-  Posteriors out;
-  label_into(depth, camera, {.gate = 2.F}, out);
-  return out;
-}
+ForestLabeller::~ForestLabeller() = default;
 
-void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& options,
-                                Posteriors& out) const {
-  out.resize_like(
-      {depth.width(), depth.height(), forest_.class_count(), static_cast<int>(forest_.trees.size()), {}, {}});
-  const OffsetScaler scaler(forest_.convention, camera);
+const BodyModel& ForestLabeller::body() const { return packed_->body; }
+bool ForestLabeller::has_background() const { return packed_->background; }
+bool ForestLabeller::has_distributions() const { return packed_->distributions; }
+
+void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const {
   if (std::max(depth.width(), depth.height()) > PaddedDepth::kMaxSide) {
-    parallel_ranges(depth.height(), kRowGrain,
-                    [&](int begin, int end) { label_rows_plainly(forest_, packed_, depth, begin, end, scaler, out); });
+    throw Error("depth image of " + std::to_string(depth.width()) + "x" + std::to_string(depth.height()) +
+                " pixels, expected at most " + std::to_string(PaddedDepth::kMaxSide) + " a side");
+  }
+  out.resize_like({depth.width(), depth.height(), packed_->classes, static_cast<int>(packed_->trees.size()), {}, {}});
+  const OffsetScaler scaler(packed_->convention, camera);
+  const PaddedDepth padded(depth, packed_->convention);
+  if (gate <= 1.F && packed_->background) {
+    GatedLabels(packed_->trees, packed_->convention, depth, padded, scaler, out).run(gate);
     return;
   }
-  if (options.gate <= 1.F && forest_.has_background) {
-    label_gated(depth, scaler, options.gate, out);
-    return;
-  }
-  const PaddedDepth padded(depth, forest_.convention);
   parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
     clear_rows(begin, end, out);
-    label_rows(packed_, padded, WalkPixels(depth, begin, end, scaler, forest_.convention), out);
+    label_rows(packed_->trees, padded, WalkPixels(depth, begin, end, scaler, packed_->convention), out);
   });
-}
-
-/// The gate's grid first, then what it leaves of the picture.
-void ForestLabeller::label_gated(const DepthImage& depth, const OffsetScaler& scaler, float least,
-                                 Posteriors& out) const {
-  const PaddedDepth padded(depth, forest_.convention);
-  Mask done(depth.width(), depth.height(), 0);
-  const auto ask = [&](int begin, int end, int step) {
-    WalkPixels pixels(static_cast<std::size_t>(depth.width()) * static_cast<std::size_t>(end - begin), scaler,
-                      forest_.convention);
-    for (int v = begin; v < end; ++v) {
-      for (int u = 0; u < depth.width(); ++u) {
-        if (depth(u, v) == 0 || done(u, v) != 0 || !on_grid(step, u, v)) continue;
-        pixels.add(u, v, depth(u, v));
-        std::fill_n(out.at(u, v), out.classes, std::uint16_t{0});
-        done(u, v) = 1;
-      }
-    }
-    label_rows(packed_, padded, pixels, out);
-  };
-  const auto in_rows = [&](const auto& work) { parallel_ranges(depth.height(), kRowGrain, work); };
-  in_rows([&](int begin, int end) {
-    for (int v = begin; v < end; ++v) {
-      for (int u = 0; u < depth.width(); ++u) {
-        if (depth(u, v) == 0) std::fill_n(out.at(u, v), out.classes, std::uint16_t{0});
-      }
-    }
-    ask(begin, end, BackgroundGate::kStep);
-  });
-  const BackgroundGate gate(depth, out, least);
-  out.settled = Mask(depth.width(), depth.height(), 0);
-  in_rows([&](int begin, int end) {
-    std::vector<std::uint8_t> shut(static_cast<std::size_t>(depth.width()));
-    for (int v = begin; v < end; ++v) {
-      gate.row(v, shut.data());
-      for (int u = 0; u < depth.width(); ++u) {
-        if (shut[u] == 0 || depth(u, v) == 0 || done(u, v) != 0) continue;
-        out.settled(u, v) = take_from_grid(depth, BackgroundGate::kStep, u, v, out) ? 1 : 0;
-        done(u, v) = out.settled(u, v);
-      }
-    }
-  });
-  in_rows([&](int begin, int end) { ask(begin, end, 1); });
 }
 
 LabelImage choose_labels(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice,

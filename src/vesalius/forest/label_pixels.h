@@ -1,22 +1,19 @@
 #pragma once
 
+#include <memory>
 #include <string>
-#include <vector>
 
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
 #include "vesalius/base/options.h"
 #include "vesalius/forest/forest.h"
-#include "vesalius/forest/packed_tree.h"
 #include "vesalius/forest/posteriors.h"
-#include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {
 
 struct LabelOptions {
   float background_weight = 0.65F;  ///< multiplies the background's posterior; a run-time correction of its prior
   float proposal_weight = 0.35F;    ///< the same, multiplied instead where part proposals are looked for
-  float person_weight = 1.F;        ///< multiplies the parts' posteriors
   float unsure_margin = 0.05F;      ///< difference in probability below which neighbours decide
   /// Probability of the background from which a forest that is sure of it at every fourth pixel of every fourth row is
   /// not asked about those between, where depth goes on; above 1 it is asked about all.
@@ -24,43 +21,52 @@ struct LabelOptions {
 };
 void visit_options(const std::string& prefix, LabelOptions& options, OptionVisitor& visitor);
 
-/// Gives every pixel of a depth image its part posteriors. `Forest` is the one shipped; tests and experiments bring
-/// their own (the truth, a network).
+/// Gives every pixel of a depth image its part posteriors. make_labeller (make_labeller.h) returns those that are
+/// shipped; tests and experiments bring their own (the truth, a network).
+///
+/// All member functions are called from several threads at once, also for different pictures: a labeller keeps nothing
+/// between calls that could change a result. It may run work in parallel itself (base/parallel.h).
 class PixelLabeller {
  public:
   virtual ~PixelLabeller() = default;
-  virtual Posteriors label(const DepthImage& depth, const Camera& camera) const = 0;
-  /// The same into `out`, whose memory may be used again. `options.gate` allows it to leave pixels out and to
-  /// give them what a neighbour of like depth has.
-  virtual void label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& /*options*/,
-                          Posteriors& out) const {
-    out = label(depth, camera);
+
+  /// Writes the posteriors of all pixels to `out`, whose memory is used again, whatever it holds. Where the background
+  /// is at least `gate` probable all around, pixels may be given what a neighbour of like depth has and be marked as
+  /// settled; a labeller that looks at them all the same gives other posteriors there, which is as right. With a gate
+  /// above 1 every pixel is looked at, and all devices give the same bits for one forest.
+  virtual void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const = 0;
+
+  /// Returns the posteriors of all pixels, each looked at.
+  Posteriors label(const DepthImage& depth, const Camera& camera) const {
+    Posteriors out;
+    label_into(depth, camera, 2.F, out);
+    return out;
   }
+
   virtual const BodyModel& body() const = 0;
+  /// Whether the last class is the background.
   virtual bool has_background() const = 0;
   /// Whether posteriors carry more than a vote per tree.
   virtual bool has_distributions() const = 0;
 };
 
-/// Section 4.3, eq. 2: the mean over trees of the distributions in the leaves that each pixel reaches.
+/// Section 4.3, eq. 2, on the processor: the posteriors of a pixel are the mean over the trees of the distributions in
+/// the leaves that it reaches.
 class ForestLabeller : public PixelLabeller {
  public:
-  /// Throws Error if the forest is inconsistent (check(Forest)).
+  /// Throws Error for an inconsistent forest (check(Forest)).
   explicit ForestLabeller(Forest forest);
-  Posteriors label(const DepthImage& depth, const Camera& camera) const override;
-  void label_into(const DepthImage& depth, const Camera& camera, const LabelOptions& options,
-                  Posteriors& out) const override;
-  const BodyModel& body() const override { return forest_.body; }
-  bool has_background() const override { return forest_.has_background; }
-  bool has_distributions() const override { return distributions_; }
-  const Forest& forest() const { return forest_; }
+  ~ForestLabeller() override;
+
+  /// Throws Error for a picture of more than 16,000 pixels a side.
+  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override;
+  const BodyModel& body() const override;
+  bool has_background() const override;
+  bool has_distributions() const override;
 
  private:
-  void label_gated(const DepthImage& depth, const OffsetScaler& scaler, float least, Posteriors& out) const;
-
-  Forest forest_;
-  std::vector<PackedTree> packed_;
-  bool distributions_;
+  struct Packed;
+  std::unique_ptr<const Packed> packed_;
 };
 
 /// Which classes a pixel may take.
@@ -73,9 +79,9 @@ struct LabelChoice {
   const Box* box = nullptr;
 };
 
-/// The most likely class of each pixel, background written as kBackground. A pixel whose two best classes lie closer
-/// than `unsure_margin` (in probability) takes that one of the near-best which most of its eight neighbours have
-/// (section 4.3). Pixels without reading are background.
+/// Returns the most likely class of each pixel, with the background written as kBackground. A pixel whose two best
+/// classes lie closer than `unsure_margin` (in probability) takes that one of the near-best which most of its eight
+/// neighbours have (section 4.3). Pixels without a reading are background.
 LabelImage choose_labels(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice,
                          const LabelOptions& options);
 

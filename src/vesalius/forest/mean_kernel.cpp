@@ -14,10 +14,6 @@ HWY_BEFORE_NAMESPACE();
 namespace vesalius::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Capped, so that the classes of the paper's body fill it; the last vector of a pixel overlaps the one before.
-using Lanes = hn::CappedTag<std::uint16_t, 16>;
-using Uint16 = hn::Vec<Lanes>;
-
 /// Division of 16-bit numbers by a product and shifts, exact (Granlund and Montgomery 1994, figure 4.1).
 class Divider {
  public:
@@ -28,8 +24,9 @@ class Divider {
     first_shift_ = std::min(bits, 1);
     second_shift_ = std::max(bits - 1, 0);
   }
+  template <class Uint16>
   HWY_INLINE Uint16 operator()(Uint16 x) const {
-    const Uint16 high = hn::MulHigh(x, hn::Set(Lanes(), factor_));
+    const Uint16 high = hn::MulHigh(x, hn::Set(hn::DFromV<Uint16>(), factor_));
     const Uint16 rest = hn::ShiftRightSame(hn::Sub(x, high), first_shift_);
     return hn::ShiftRightSame(hn::Add(high, rest), second_shift_);
   }
@@ -40,7 +37,12 @@ class Divider {
   int second_shift_;
 };
 
+/// Means of one row after the other. `Lanes` has no more lanes than there are classes; the last vector of a pixel
+/// overlaps the one before.
+template <class Lanes>
 class RowMean {
+  using Uint16 = hn::Vec<Lanes>;
+
  public:
   RowMean(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, Posteriors& out)
       : in_(posteriors),
@@ -59,7 +61,7 @@ class RowMean {
     for (int n = 1; n <= window.most(); ++n) dividers_.emplace_back(static_cast<std::uint32_t>(n));
   }
 
-  /// Rows one after the other are quicker: sums slide.
+  /// Writes the means of row `v`. It is quicker where the row before was the last one: sums slide.
   void Run(int v) {
     const bool whole = v >= reach_ && v + reach_ < depth_.height() && depth_.width() > 2 * reach_;
     if (whole) SumColumns(v);
@@ -80,24 +82,26 @@ class RowMean {
   }
 
  private:
-  /// Of the rows that the window of a row has.
+  /// Sums over the rows of a window, for every column.
   struct Columns {
-    int v = -1;  ///< that row; -1: none yet
+    int v = -1;  ///< row in the middle of the window; -1: none yet
     std::vector<std::uint16_t> sums;
   };
-  /// Of the columns that the window of a pixel has.
+  /// Sums over the columns of a window.
   struct Sums {
-    int u = -1;                         ///< that pixel; -1: none yet in this row
+    int u = -1;                         ///< column in the middle of the window; -1: none yet in this row
     std::vector<std::uint16_t> values;  ///< the vectors of MeanOfColumns
   };
 
-  /// Of `spacing` sets, that which the pixel or row `spacing` before had.
+  /// Returns the set of row or column `at`: the one that row or column `at - spacing` used before. There are `spacing`
+  /// of them, since a window slides by `spacing`.
   template <class Set>
   Set& SetOf(std::vector<Set>& sets, int at) const {
     return sets[at % window_.spacing];
   }
 
-  /// For every column of the window's rows: sum of the posteriors, nearest and furthest depth (a hole counts as 0).
+  /// Finds, over the window's rows, each column's sum of posteriors and its nearest and furthest depth; a hole counts
+  /// as 0.
   void SumColumns(int v) {
     const int spacing = window_.spacing;
     std::copy_n(depth_.row(v - reach_), nearest_.size(), nearest_.begin());
@@ -119,7 +123,7 @@ class RowMean {
     columns.v = v;
   }
 
-  /// all[i] = merge(all[i], row[i])
+  /// Sets all[i] to merge(all[i], row[i]) for every i.
   template <class Operation>
   static HWY_INLINE void Merge(const std::uint16_t* HWY_RESTRICT row, std::vector<std::uint16_t>& all,
                                const Operation& merge) {
@@ -142,7 +146,7 @@ class RowMean {
     return nearest != 0 && mm - nearest <= window_.gate_mm && furthest - mm <= window_.gate_mm;
   }
 
-  /// Mean over a whole window around column u. Sums of 16 bits may run over on the way, never at the end.
+  /// Writes the mean over a whole window around column `u`. Sums of 16 bits may run over on the way, never at the end.
   HWY_INLINE void MeanOfColumns(int u, int v, std::uint16_t* to) {
     const Lanes d;
     const std::size_t lanes = hn::Lanes(d);
@@ -173,7 +177,7 @@ class RowMean {
     return count;
   }
 
-  /// Sum of what the first `count` of `neighbours_` point to, divided.
+  /// Writes the mean of what the first `count` of `neighbours_` point to.
   HWY_INLINE void Mean(std::size_t count, const Divider& divide, std::uint16_t* to) const {
     const Lanes d;
     const std::size_t lanes = hn::Lanes(d);
@@ -198,12 +202,18 @@ class RowMean {
   std::vector<Divider> dividers_;
 };
 
-std::size_t LaneCount() { return hn::Lanes(Lanes()); }
-
 void MeanRows(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int begin, int end,
               Posteriors& out) {
-  RowMean mean(posteriors, depth, window, out);
-  for (int v = begin; v < end; ++v) mean.Run(v);
+  const auto run = [&](auto lanes) {
+    RowMean<decltype(lanes)> mean(posteriors, depth, window, out);
+    for (int v = begin; v < end; ++v) mean.Run(v);
+  };
+  const hn::CappedTag<std::uint16_t, 16> many;  // capped, so that the classes of the paper's body fill it
+  if (posteriors.classes >= static_cast<int>(hn::Lanes(many))) {
+    run(many);
+  } else {
+    run(hn::CappedTag<std::uint16_t, 1>());
+  }
 }
 
 }  // namespace vesalius::HWY_NAMESPACE
@@ -212,13 +222,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vesalius {
 
-HWY_EXPORT(LaneCount);
 HWY_EXPORT(MeanRows);
-
-bool mean_rows_fit(const Posteriors& posteriors, const SmoothWindow& window) {
-  return posteriors.trees * 255 * window.most() <= 65535 &&
-         posteriors.classes >= static_cast<int>(HWY_DYNAMIC_DISPATCH(LaneCount)());
-}
 
 void mean_rows(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int begin, int end,
                Posteriors& out) {

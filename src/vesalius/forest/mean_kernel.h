@@ -10,8 +10,8 @@
 
 namespace vesalius {
 
-/// Which neighbours smoothing looks at: those of a square around the pixel, itself among them, whose depth differs from
-/// its depth by at most `gate_mm`.
+/// Says which neighbours smoothing looks at: those of a square around the pixel, itself among them, whose depth differs
+/// from its depth by at most `gate_mm`.
 struct SmoothWindow {
   int each_way = 0;  ///< neighbours to each side, upwards and downwards
   int spacing = 1;   ///< pixels from one neighbour to the next
@@ -40,11 +40,9 @@ void for_neighbours(const DepthImage& depth, int u, int v, const SmoothWindow& w
   }
 }
 
-/// Whether `mean_rows` can do it: the sum over a whole window fits into 16 bits and the classes fill a vector.
-bool mean_rows_fit(const Posteriors& posteriors, const SmoothWindow& window);
-
-/// Rows `begin` to `end` - 1 of mean_filter (smooth_labels.h), rounded down; zero without a reading. `out` is of the
-/// same size. The same from every instruction set.
+/// Writes rows `begin` to `end` - 1 of mean_filter (smooth_labels.h) to `out`, which has the size of `posteriors`:
+/// means rounded down, zero without a reading, the same from every instruction set. No sum over a window may exceed
+/// 65535.
 void mean_rows(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int begin, int end,
                Posteriors& out);
 

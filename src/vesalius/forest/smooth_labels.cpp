@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kRowGrain = 8;
 
-/// Whether a whole window holds one label, whatever the depth: most of a picture needs no counting.
+/// Says whether a whole window holds one label, whatever the depth: most of a picture needs no counting.
 class EvenWindows {
  public:
   /// For windows around the pixels of rows `begin` to `end` - 1.
@@ -46,34 +46,30 @@ class EvenWindows {
   Image<std::uint8_t> run_;  ///< equal labels in a row that end here, at most 255
 };
 
-/// mean_filter for windows and forests whose sums need 32 bits, and for few classes.
-void mean_rows_plainly(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int begin,
-                       int end, Posteriors& out) {
-  std::vector<std::uint32_t> total(static_cast<std::size_t>(posteriors.classes));
-  for (int v = begin; v < end; ++v) {
-    for (int u = 0; u < posteriors.width; ++u) {
-      std::uint16_t* mean = out.at(u, v);
-      if (!posteriors.settled.empty() && posteriors.settled(u, v) != 0) {
-        std::copy_n(posteriors.at(u, v), total.size(), mean);
-        continue;
-      }
-      if (depth(u, v) == 0) {
-        std::fill_n(mean, total.size(), std::uint16_t{0});
-        continue;
-      }
-      std::fill(total.begin(), total.end(), 0U);
-      std::uint32_t neighbours = 0;
-      for_neighbours(depth, u, v, window, [&](int nu, int nv) {
-        const std::uint16_t* sums = posteriors.at(nu, nv);
-        for (std::size_t c = 0; c < total.size(); ++c) total[c] += sums[c];
-        ++neighbours;
-      });
-      // In double, which vectorises: exact, since quotients are whole or at least 1/neighbours from the next whole.
-      for (std::size_t c = 0; c < total.size(); ++c) {
-        mean[c] = static_cast<std::uint16_t>(static_cast<double>(total[c]) / static_cast<double>(neighbours));
+/// Returns how many bits a sum of posteriors must lose so that the sum over a window takes at most 16.
+int excess_bits(const Posteriors& posteriors, const SmoothWindow& window) {
+  int bits = 0;
+  while ((255 * posteriors.trees >> bits) * window.most() > 65535) ++bits;
+  return bits;
+}
+
+/// Does mean_filter without the lowest bits of all sums.
+void coarse_mean(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int bits,
+                 Posteriors& out) {
+  Posteriors coarse = posteriors;
+  for (std::uint16_t& sum : coarse.sums) sum = static_cast<std::uint16_t>(sum >> bits);
+  parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
+    mean_rows(coarse, depth, window, begin, end, out);
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < out.width; ++u) {
+        std::uint16_t* mean = out.at(u, v);
+        const bool settled = !posteriors.settled.empty() && posteriors.settled(u, v) != 0;
+        const std::uint16_t* exact = posteriors.at(u, v);
+        for (int c = 0; c < out.classes; ++c)
+          mean[c] = settled ? exact[c] : static_cast<std::uint16_t>(mean[c] << bits);
       }
     }
-  }
+  });
 }
 
 }  // namespace
@@ -132,14 +128,13 @@ void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Ca
                  const SmoothOptions& options, Posteriors& out) {
   out.resize_like(posteriors);
   const SmoothWindow window{options.window / 2, spaced(options, camera).spacing, options.depth_gate_mm};
-  const bool fits = mean_rows_fit(posteriors, window);
-  parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
-    if (fits) {
-      mean_rows(posteriors, depth, window, begin, end, out);
-    } else {
-      mean_rows_plainly(posteriors, depth, window, begin, end, out);
-    }
-  });
+  const int bits = excess_bits(posteriors, window);
+  if (bits > 0) {
+    coarse_mean(posteriors, depth, window, bits, out);
+    return;
+  }
+  parallel_ranges(posteriors.height, kRowGrain,
+                  [&](int begin, int end) { mean_rows(posteriors, depth, window, begin, end, out); });
 }
 
 Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,

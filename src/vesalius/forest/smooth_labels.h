@@ -10,29 +10,30 @@
 namespace vesalius {
 
 struct SmoothOptions {
-  int window = 5;                ///< neighbours along a side of the square; even: as the next odd number; 1 = none
-  int spacing = 0;               ///< pixels from one neighbour to the next, of posteriors; 0: see `spaced`
+  int window = 5;   ///< neighbours along a side of the square; an even number counts as the next odd one; 1 = none
+  int spacing = 0;  ///< pixels from one neighbour to the next where posteriors are smoothed; 0: see `spaced`
   int depth_gate_mm = 60;        ///< posteriors of neighbours further away than this in depth do not count
-  bool mode = false;             ///< labels' mode even where the forest has distributions
-  int mode_depth_gate_mm = 300;  ///< the same for the mode, which needs many neighbours more than near ones
+  bool mode = false;             ///< smooth labels by their mode even where the forest has distributions
+  int mode_depth_gate_mm = 300;  ///< the depth gate of the mode, which needs many neighbours more than near ones
 };
 void visit_options(const std::string& prefix, SmoothOptions& options, OptionVisitor& visitor);
 
-/// The options with a spacing: where it is 0, the pixels in 1/140 of the focal length, rounded, at least 1. That is a
-/// step of 18 mm at 2.5 m.
+/// Returns the options with a spacing. Where it is 0, it becomes 1/140 of the focal length in pixels, rounded, at least
+/// 1: a step of 18 mm at 2.5 m.
 SmoothOptions spaced(SmoothOptions options, const Camera& camera);
 
-/// The most frequent label among the neighbours, next to each other, within the window, the depth gate and the picture
-/// (section 4.2.1). A pixel keeps its label on a tie that includes it; other ties go to the lowest label. Background
-/// counts as a label. Pixels without reading become background.
+/// Returns for each pixel the most frequent label of the pixels within the window, the depth gate and the picture
+/// (section 4.2.1); spacing plays no part. A pixel keeps its label on a tie that includes it; other ties go to the
+/// lowest label. Background counts as a label. Pixels without a reading become background.
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options);
 
-/// The sum of the posteriors over such neighbours `spacing` apart, rescaled to the range of one pixel's sums
-/// (rounded down), so that choose_labels reads both alike. Pixels next to each other mostly err alike: as many further
-/// apart say more.
+/// Returns for each pixel the mean of the posteriors of such neighbours, `spacing` apart, rounded down, in the range of
+/// one pixel's sums, so that choose_labels reads both alike. Pixels next to each other mostly err alike; as many
+/// further apart say more. Where the sums over a window exceed 16 bits (with the default window: of more than 10
+/// trees), each loses its lowest bits beforehand.
 Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
                        const SmoothOptions& options);
-/// The same into `out`, whose memory is used again; not `posteriors` itself.
+/// Writes the same to `out`, whose memory is used again and which must not be `posteriors`.
 void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
                  const SmoothOptions& options, Posteriors& out);
 

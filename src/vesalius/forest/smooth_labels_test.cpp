@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <map>
 
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
+#include "vesalius/base/test_threads.h"
 
 namespace vesalius {
 namespace {
@@ -126,6 +126,36 @@ TEST(MeanFilter, LeavesSettledPixelsAsTheyAre) {
   EXPECT_EQ(out.at(5, 4)[5], 10) << "counts for its neighbours";
 }
 
+TEST(MeanFilter, LosesTheLowestBitsWhereSumsOfAWindowExceed16) {
+  const Picture p = random_picture(9);
+  for (const auto& [trees, bits] : {std::pair{10, 0}, std::pair{11, 1}, std::pair{20, 1}, std::pair{40, 2}}) {
+    Posteriors in{37, 23, 26, trees, {}};
+    in.settled = Mask(37, 23, 0);
+    Random random(2);
+    for (std::size_t i = 0; i < p.depth.size() * 26; ++i) {
+      in.sums.push_back(p.depth[i / 26] == 0 ? std::uint16_t{0}
+                                             : static_cast<std::uint16_t>(random.below(255U * trees + 1U)));
+    }
+    in.settled(4, 4) = 1;
+    const SmoothOptions options{.spacing = 1, .depth_gate_mm = 250};
+    const Posteriors out = mean_filter(in, p.depth, kSmallCamera, options);
+    for (int v = 0; v < 23; ++v) {
+      for (int u = 0; u < 37; ++u) {
+        int sum = 0, n = 0;
+        if (p.depth(u, v) != 0) {
+          neighbours(p.depth, u, v, options.window, 1, options.depth_gate_mm, [&](int nu, int nv) {
+            sum += in.at(nu, nv)[7] >> bits;
+            ++n;
+          });
+        }
+        const int mean = n > 0 ? (sum / n) << bits : 0;
+        ASSERT_EQ(out.at(u, v)[7], in.settled(u, v) != 0 ? in.at(u, v)[7] : mean)
+            << trees << " trees at " << u << ' ' << v;
+      }
+    }
+  }
+}
+
 TEST(MeanFilter, SpacesNeighboursByTheFocalLength) {
   const auto spacing = [](float fx, int given) {
     return spaced({.spacing = given}, Camera{320, 240, fx, fx, 159.5F, 119.5F}).spacing;
@@ -150,10 +180,9 @@ TEST(ModeFilter, RemovesASpeckleButNotAcrossADepthStep) {
 
 TEST(ModeFilter, SameBytesForAnyThreadCount) {
   const Picture p = random_picture(4);
-  const ThreadLimit one(1);
-  const LabelImage alone = mode_filter(p.labels, p.depth, {});
-  const ThreadLimit many(8);
-  EXPECT_EQ(alone, mode_filter(p.labels, p.depth, {}));
+  std::vector<LabelImage> results;
+  for_threads({1, 2, 8}, [&] { results.push_back(mode_filter(p.labels, p.depth, {})); });
+  EXPECT_THAT(results, testing::Each(results[0]));
 }
 
 }  // namespace

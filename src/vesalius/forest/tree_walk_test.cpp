@@ -58,15 +58,14 @@ TEST(TreeWalk, FeatureIsEquationOne) {
   EXPECT_GT(compared, 4000);
 }
 
-TEST(TreeWalk, HolesAndTheOutsideReadTheirOwnValues) {
+TEST(TreeWalk, HolesAndTheOutsideReadWhatTheConventionSays) {
   DepthImage depth(4, 4, 1000);
   depth(2, 1) = 0;
   const FeatureConvention convention{.hole_mm = 7777, .outside_mm = 8888};
-  const OffsetScale one_pixel{65536, 65536};
-  EXPECT_EQ(probe_mm(depth, convention, one_pixel, 1, 1, 1, 0), 7777);
-  EXPECT_EQ(probe_mm(depth, convention, one_pixel, 1, 1, -2, 0), 8888);
-  EXPECT_EQ(probe_mm(depth, convention, one_pixel, 1, 1, 0, 3), 8888);
-  EXPECT_EQ(probe_mm(depth, convention, one_pixel, 1, 1, 0, 2), 1000);
+  EXPECT_EQ(probe_mm(depth, convention, 2, 1), 7777);
+  EXPECT_EQ(probe_mm(depth, convention, -1, 1), 8888);
+  EXPECT_EQ(probe_mm(depth, convention, 1, 4), 8888);
+  EXPECT_EQ(probe_mm(depth, convention, 1, 3), 1000);
 }
 
 TEST(TreeWalk, TheFurthestProbeOfTheNearestPixelStaysInRange) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "vesalius/forest/feature.h"
 #include "vesalius/forest/walk_kernels.h"
 #include "vesalius/forest/walk_nodes_inl.h"
 
@@ -21,20 +22,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR  // a lane of 32 bits has no halves
 
-/// Depth that a probe reads, biased and clamped.
-int Probe(const PaddedDepth& depth, const WalkPixels& pixels, std::size_t i, int du, int dv) {
-  const auto column = [&](WalkPixels::Column c) { return pixels.column(c)[i]; };
-  const int u = column(WalkPixels::kU) + ((du * column(WalkPixels::kScaleU) + 32768) >> 16);
-  const int v = column(WalkPixels::kV) + ((dv * column(WalkPixels::kScaleV) + 32768) >> 16);
-  const std::size_t in_u = std::min(static_cast<unsigned>(u), static_cast<unsigned>(depth.border_u()));
-  const std::size_t in_v = std::min(static_cast<unsigned>(v), static_cast<unsigned>(depth.border_v()));
-  const int value = depth.values()[in_v * static_cast<std::size_t>(depth.stride()) + in_u];
-  return std::clamp<int>(value, static_cast<std::int16_t>(column(WalkPixels::kLow)),
-                         static_cast<std::int16_t>(column(WalkPixels::kHigh)));
-}
-
 struct Node {
-  std::array<int, 4> offsets;
+  int du1, dv1, du2, dv2;
   std::int32_t threshold;
   std::uint32_t link;
 };
@@ -43,23 +32,33 @@ Node Read(const PackedTree& tree, const std::uint32_t* words) {
   if (tree.wide) {
     const auto low = [&](int w) { return static_cast<std::int16_t>(words[w]); };
     const auto high = [&](int w) { return static_cast<std::int16_t>(words[w] >> 16U); };
-    return {{low(0), high(0), low(1), high(1)}, static_cast<std::int32_t>(words[2]), words[3]};
+    return {low(0), high(0), low(1), high(1), static_cast<std::int32_t>(words[2]), words[3]};
   }
   const auto byte = [&](unsigned i) { return static_cast<int>(words[0] >> (8 * i) & 255U) - 128; };
-  return {{byte(0), byte(1), byte(2), byte(3)},
+  return {byte(0),
+          byte(1),
+          byte(2),
+          byte(3),
           static_cast<std::int32_t>(words[1]) >> tree.link_bits,
           words[1] & ((1U << static_cast<unsigned>(tree.link_bits)) - 1)};
 }
 
 void WalkPixelsOn(const PackedTree& tree, const PaddedDepth& depth, const WalkPixels& pixels, std::uint32_t* leaves) {
   const auto words_per_node = static_cast<std::size_t>(tree.words_per_node());
+  const auto read = [&](int u, int v) -> int {
+    const std::size_t in_u = std::min(static_cast<unsigned>(u), static_cast<unsigned>(depth.border_u()));
+    const std::size_t in_v = std::min(static_cast<unsigned>(v), static_cast<unsigned>(depth.border_v()));
+    return depth.values()[in_v * static_cast<std::size_t>(depth.stride()) + in_u];
+  };
   for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto column = [&](WalkPixels::Column c) { return pixels.column(c)[i]; };
+    const OffsetScale scale{column(WalkPixels::kScaleU), column(WalkPixels::kScaleV)};
+    const ProbeRange range{static_cast<std::int16_t>(column(WalkPixels::kLow)),
+                           static_cast<std::int16_t>(column(WalkPixels::kHigh))};
     const std::uint32_t* words = tree.words.data();
     for (Node n = Read(tree, words); n.link != 0; n = Read(tree, words)) {
-      const int feature =
-          Probe(depth, pixels, i, n.offsets[0], n.offsets[1]) - Probe(depth, pixels, i, n.offsets[2], n.offsets[3]);
-      const std::size_t child = 2 * std::size_t{n.link} + (feature > n.threshold ? 1 : 0);
-      words = tree.words.data() + child * words_per_node;
+      const int difference = feature(column(WalkPixels::kU), column(WalkPixels::kV), scale, range, n, read);
+      words = tree.words.data() + (2 * std::size_t{n.link} + (difference > n.threshold ? 1 : 0)) * words_per_node;
     }
     leaves[i] = words[0];
   }

@@ -1,0 +1,116 @@
+#include "dataset/labelled_folder.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "dataset/dataset_shard.h"
+#include "dataset/labelled_frame_codec.h"
+#include "io/files/byte_stream.h"
+#include "io/files/image_file.h"
+#include "io/files/read_file.h"
+#include "io/sources/folder_source.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Points = std::vector<Eigen::Vector3f>;
+
+constexpr std::size_t kMaxTruthBytes = std::size_t{1} << 24;
+
+/// A point of [x, y, z]; NaN of null where that is allowed.
+Eigen::Vector3f point_of(const Json& json, bool or_null, const std::string& what) {
+  if (or_null && json.is_null()) return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  if (!json.is_array() || json.size() != 3) throw Error(what + ": expected [x, y, z] in metres");
+  Eigen::Vector3f point;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!json[axis].is_number()) throw Error(what + ": expected [x, y, z] in metres");
+    point[axis] = json[axis].get<float>();
+  }
+  return point;
+}
+
+const Json& member(const Json& json, const std::string& key, const std::string& expected) {
+  const auto found = json.is_object() ? json.find(key) : json.end();
+  if (found == json.end()) throw Error(fmt::format("no \"{}\", expected {}", key, expected));
+  return *found;
+}
+
+Points parts_of(const Json& person, const BodyModel& body) {
+  const Json& parts = member(person, "parts_m", "the centres of all parts");
+  Points points;
+  for (const BodyPart& part : body.parts) {
+    points.push_back(point_of(member(parts, part.name, "every part of body.toml"), true, part.name));
+  }
+  return points;
+}
+
+void read_people(const std::string& path, const BodyModel& body, LabelledFrame& labelled) {
+  const Json json = Json::parse(read_file(path, kMaxTruthBytes), nullptr, false);
+  with_context(path, [&] {
+    const Json& people = member(json, "people", "a JSON object with a list of people");
+    if (!people.is_array()) throw Error("people: expected a list");
+    for (const Json& person : people) {
+      labelled.parts.push_back(parts_of(person, body));
+      const auto joints = person.find("joints_m");
+      if (joints == person.end() || !joints->is_object()) continue;
+      Points& points = labelled.joints.emplace_back();
+      for (const auto& [name, point] : joints->items()) points.push_back(point_of(point, false, name));
+    }
+  });
+}
+
+std::string body_path(const std::string& folder) { return (fs::path(folder) / "body.toml").string(); }
+
+}  // namespace
+
+bool is_labelled_folder(const std::string& path) {
+  std::error_code ignored;
+  for (const char* kind : {"depth", "labels", "person", "truth"}) {
+    if (!fs::is_directory(fs::path(path) / kind, ignored)) return false;
+  }
+  return fs::is_regular_file(body_path(path), ignored);
+}
+
+LabelledFolder::LabelledFolder(const std::string& folder)
+    : folder_(folder),
+      body_(parse_body_model(read_file(body_path(folder)), body_path(folder))),
+      frames_(list_folder(folder, {})) {}
+
+std::string LabelledFolder::file(const char* kind, std::uint64_t index, const char* extension) const {
+  return (fs::path(folder_) / kind / (frames_.list().frames[index].name + extension)).string();
+}
+
+LabelledFrame LabelledFolder::read(std::uint64_t index, bool with_colour) const {
+  LabelledFrame labelled;
+  labelled.frame = frames_.read(index, with_colour);
+  labelled.labels = read_png8(file("labels", index, ".png"));
+  labelled.person = read_png8(file("person", index, ".png"));
+  read_people(file("truth", index, ".json"), body_, labelled);
+  with_context(folder_ + ": frame " + labelled.frame.name, [&] { check_truth(labelled, body_.part_count()); });
+  return labelled;
+}
+
+std::uint64_t LabelledFolder::content_hash() const {
+  ByteWriter hashed;
+  hashed.text(body_.toml);
+  const Camera& camera = frames_.camera();
+  for (const float value : {camera.fx, camera.fy, camera.cx, camera.cy}) hashed.real(value);
+  for (std::uint64_t i = 0; i < size(); ++i) {
+    hashed.number(checksum_of(read_file(frames_.list().frames[i].depth)));
+    hashed.number(checksum_of(read_file(file("labels", i, ".png"))));
+    hashed.number(checksum_of(read_file(file("person", i, ".png"))));
+    hashed.number(checksum_of(read_file(file("truth", i, ".json"))));
+  }
+  return checksum_of(hashed.bytes());
+}
+
+}  // namespace vesalius

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "io/sources/list_source.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
+
+namespace vesalius {
+
+/// Reads the folders of labelled frames that LabelledExporter writes, in any order. Safe to use from several threads.
+class LabelledFolder {
+ public:
+  /// Throws Error for a folder without frames, camera (meta.json) or body (body.toml).
+  explicit LabelledFolder(const std::string& folder);
+
+  std::uint64_t size() const { return frames_.size(); }
+  const BodyModel& body() const { return body_; }
+
+  /// `index` counts in the order of the frames' names and must be below size(). Parts and joints are given to a tenth
+  /// of a millimetre, joints in the order of the file. Throws Error naming the file that cannot be used.
+  LabelledFrame read(std::uint64_t index, bool with_colour = true) const;
+
+  /// Returns an XXH64 over what `read` reads for all frames but colour: equal for equal frames. Reads all files once.
+  std::uint64_t content_hash() const;
+
+ private:
+  std::string file(const char* kind, std::uint64_t index, const char* extension) const;
+
+  std::string folder_;
+  BodyModel body_;
+  FrameListReader frames_;
+};
+
+/// Returns whether `path` is such a folder: it has body.toml, depth/, labels/, person/ and truth/.
+bool is_labelled_folder(const std::string& path);
+
+}  // namespace vesalius

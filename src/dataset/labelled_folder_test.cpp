@@ -1,0 +1,120 @@
+#include "dataset/labelled_folder.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "dataset/labelled_export.h"
+#include "dataset/open_truth.h"
+#include "dataset/test_dataset.h"
+
+namespace vesalius {
+namespace {
+
+using test::error_of;
+using test::random_labelled;
+using testing::HasSubstr;
+
+/// A folder of the random frames 1, 2 and 3, the third of which shows nobody.
+struct Exported {
+  test::TemporaryFolder folder;
+  Exported() {
+    LabelledExporter exporter(path(), paper_body(), test::kJoints);
+    for (const std::uint64_t i : {1U, 2U, 3U}) exporter.write(frame(i));
+  }
+  std::string path() const { return folder / "out"; }
+  static LabelledFrame frame(std::uint64_t i) {
+    LabelledFrame labelled = random_labelled(i);
+    if (i != 3) return labelled;
+    labelled.parts.clear();
+    labelled.joints.clear();
+    labelled.labels.fill(kBackground);
+    labelled.person.fill(kBackground);
+    return labelled;
+  }
+};
+
+void expect_near(const std::vector<std::vector<Eigen::Vector3f>>& a,
+                 const std::vector<std::vector<Eigen::Vector3f>>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].size(), b[i].size());
+    for (std::size_t p = 0; p < a[i].size(); ++p) {
+      EXPECT_TRUE((a[i][p].hasNaN() && b[i][p].hasNaN()) || (a[i][p] - b[i][p]).cwiseAbs().maxCoeff() < 6e-5F);
+    }
+  }
+}
+
+TEST(LabelledFolder, GivesBackWhatWasExported) {
+  const Exported exported;
+  ASSERT_TRUE(is_labelled_folder(exported.path()));
+  const LabelledFolder folder(exported.path());
+  ASSERT_EQ(folder.size(), 3U);
+  EXPECT_EQ(folder.body().toml, paper_body().toml);
+  for (const std::uint64_t i : {2U, 0U, 1U}) {
+    const LabelledFrame expected = Exported::frame(i + 1);
+    const LabelledFrame read = folder.read(i);
+    EXPECT_EQ(read.frame.name, expected.frame.name);
+    EXPECT_EQ(read.frame.camera, expected.frame.camera);
+    EXPECT_EQ(read.frame.depth, expected.frame.depth);
+    EXPECT_EQ(read.frame.colour, expected.frame.colour);
+    EXPECT_EQ(read.labels, expected.labels);
+    EXPECT_EQ(read.person, expected.person);
+    expect_near(read.parts, expected.parts);
+    expect_near(read.joints, expected.joints);
+    EXPECT_TRUE(folder.read(i, false).frame.colour.empty());
+  }
+}
+
+TEST(LabelledFolder, IsTruthForEvaluation) {
+  const Exported exported;
+  const auto truth = open_truth(exported.path(), 2);
+  EXPECT_EQ(truth->size(), 2);
+  EXPECT_EQ(truth->part_names(), part_names_of(paper_body()));
+  const auto first = truth->next();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->truth.people, 2);
+  EXPECT_EQ(first->truth.labels, Exported::frame(1).labels);
+  const auto last = truth->next();
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->truth.people, 0);
+  EXPECT_FALSE(truth->next());
+}
+
+TEST(LabelledFolder, HashesWhatIsInIt) {
+  const Exported one;
+  const Exported two;
+  const std::uint64_t hash = LabelledFolder(one.path()).content_hash();
+  EXPECT_EQ(hash, LabelledFolder(two.path()).content_hash());
+  std::filesystem::copy_file(two.path() + "/labels/frame_1.png", two.path() + "/labels/frame_2.png",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_NE(hash, LabelledFolder(two.path()).content_hash());
+}
+
+TEST(LabelledFolder, NamesTheFileThatIsWrong) {
+  const auto complaint = [](const std::function<void(const std::string&)>& harm) {
+    const Exported exported;
+    harm(exported.path());
+    return error_of([&] { LabelledFolder(exported.path()).read(0); });
+  };
+  const auto put = [](const char* name, const char* text) {
+    return [=](const std::string& path) { test::put(path + name, text); };
+  };
+  EXPECT_THAT(complaint([](const std::string& path) { std::filesystem::remove(path + "/labels/frame_1.png"); }),
+              HasSubstr("labels/frame_1.png"));
+  EXPECT_THAT(complaint([](const std::string& path) { std::filesystem::remove(path + "/meta.json"); }),
+              HasSubstr("no intrinsics"));
+  EXPECT_THAT(complaint(put("/body.toml", "name = ")), HasSubstr("body.toml"));
+  EXPECT_THAT(complaint(put("/truth/frame_1.json", "{")), HasSubstr("truth/frame_1.json: no \"people\""));
+  EXPECT_THAT(complaint(put("/truth/frame_1.json", R"({"people": [7]})")), HasSubstr("no \"parts_m\""));
+  EXPECT_THAT(complaint(put("/truth/frame_1.json", R"({"people": []})")), HasSubstr("frame frame_1: person"));
+}
+
+TEST(LabelledFolder, IsNoOtherFolder) {
+  const test::TemporaryFolder folder;
+  EXPECT_FALSE(is_labelled_folder(folder.path()));
+  EXPECT_FALSE(is_labelled_folder(folder / "nothing"));
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,88 @@
+#include "dataset/open_truth.h"
+
+#include <limits>
+#include <utility>
+
+#include "dataset/labelled_dataset.h"
+#include "dataset/labelled_folder.h"
+#include "dataset/truth_folder.h"
+#include "dataset/truth_itop.h"
+#include "io/sources/open_source.h"
+#include "io/sources/stepped_source.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+class FolderTruth final : public TruthSource {
+ public:
+  FolderTruth(const std::string& uri, int step, const SourceOptions& options)
+      : source_(open_source(uri, options), step), truth_(path_of_source(uri)) {}
+
+  std::optional<TrueFrame> next() override {
+    auto step = source_.next();
+    if (!step) return std::nullopt;
+    FrameTruth truth = truth_.truth_of(step->frame);
+    return TrueFrame{std::move(step->frame), std::move(truth)};
+  }
+  int size() const override { return source_.size(); }
+  std::vector<std::string> notes() const override { return source_.notes(); }
+
+ private:
+  SteppedSource source_;
+  TruthFolder truth_;
+};
+
+/// Truth of a DatasetReader or LabelledFolder.
+template <class Reader>
+class LabelledTruth final : public TruthSource {
+ public:
+  LabelledTruth(const std::string& folder, int step) : reader_(folder), step_(step) {
+    if (reader_.size() > std::numeric_limits<int>::max()) throw Error(folder + ": more frames than can be counted");
+  }
+
+  std::optional<TrueFrame> next() override {
+    if (next_ >= reader_.size()) return std::nullopt;
+    const std::uint64_t index = std::exchange(next_, next_ + step_);
+    return as_true_frame(reader_.read(index), part_names());
+  }
+  int size() const override { return static_cast<int>((reader_.size() + step_ - 1) / step_); }
+  std::vector<std::string> part_names() const override { return part_names_of(reader_.body()); }
+
+ private:
+  Reader reader_;
+  std::uint64_t step_;
+  std::uint64_t next_ = 0;
+};
+
+}  // namespace
+
+TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& part_names) {
+  TrueFrame result;
+  FrameTruth& truth = result.truth;
+  truth.people = static_cast<int>(labelled.parts.size());
+  truth.mask = Mask(labelled.person.width(), labelled.person.height(), 0);
+  for (std::size_t i = 0; i < truth.mask.size(); ++i) truth.mask[i] = labelled.person[i] == kBackground ? 0 : 1;
+  truth.joint_names = part_names;
+  truth.joints = std::move(labelled.parts);
+  truth.person = std::move(labelled.person);
+  truth.labels = std::move(labelled.labels);
+  result.frame = std::move(labelled.frame);
+  return result;
+}
+
+std::vector<std::string> part_names_of(const BodyModel& body) {
+  std::vector<std::string> names;
+  for (const BodyPart& part : body.parts) names.push_back(part.name);
+  return names;
+}
+
+std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step, const SourceOptions& options) {
+  if (step < 1) throw UsageError("every 0th frame, expected a step of at least 1");
+  if (is_dataset(uri)) return std::make_unique<LabelledTruth<DatasetReader>>(uri, step);
+  if (is_labelled_folder(uri)) return std::make_unique<LabelledTruth<LabelledFolder>>(uri, step);
+  if (is_itop(uri)) return open_itop(uri, step);
+  return std::make_unique<FolderTruth>(uri, step, options);
+}
+
+}  // namespace vesalius

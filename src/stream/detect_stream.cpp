@@ -1,0 +1,176 @@
+#include "stream/detect_stream.h"
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <future>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "stream/frame_queue.h"
+#include "vesalius/base/parallel.h"
+
+namespace vesalius {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kFramesAhead = 4;             // read, worked on or waiting to be written
+constexpr int kDetectors = 2;                       // stages that run on one thread leave the other to the next frame
+constexpr std::chrono::milliseconds kPatience(50);  // between questions whether to stop
+
+/// False at the end of the source.
+bool read_next(FrameSource& source, FoundFrame& to) {
+  const auto start = Clock::now();
+  try {
+    to.frame = source.next();
+  } catch (...) {
+    to.error = std::current_exception();
+  }
+  to.read_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  return to.frame || to.error;
+}
+
+void detect(const Detector& detector, FoundFrame& in) {
+  if (!in.frame || in.error) return;
+  try {
+    in.people = detector.detect(*in.frame, nullptr, &in.times);
+  } catch (...) {
+    in.error = std::current_exception();
+  }
+}
+
+/// Says when a camera would have had the next frame ready.
+class Pace {
+ public:
+  explicit Pace(double rate) : period_s_(1.0 / rate) {}
+
+  Clock::time_point due(const Frame& frame) {
+    if (frames_ == 0) first_s_ = frame.time_s;
+    const double by_rate = period_s_ * frames_++;
+    const double wait_s = frame.time_s != 0.0 && first_s_ != 0.0 ? frame.time_s - first_s_ : by_rate;
+    return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
+  }
+
+ private:
+  double period_s_;
+  Clock::time_point start_ = Clock::now();
+  double first_s_ = 0.0;  ///< 0 where frames have no times
+  int frames_ = 0;
+};
+
+/// A frame on its way. Whoever takes it out of the queue waits until it is worked on.
+struct Job {
+  FoundFrame found;
+  std::promise<void> done;
+};
+using JobPointer = std::shared_ptr<Job>;
+
+/// A thread that leaves all signals to the one that called.
+template <class Work>
+std::jthread helper(Work work) {
+  return std::jthread([work = std::move(work)] {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, nullptr);
+    work();
+  });
+}
+
+bool stopped(const StreamOptions& options) { return options.stop && options.stop(); }
+
+class Stream {
+ public:
+  Stream(FrameSource& source, const Detector& detector, const StreamOptions& options)
+      : source_(source),
+        detector_(detector),
+        options_(options),
+        work_(options.realtime ? 1 : kFramesAhead),
+        written_(kFramesAhead) {
+    helpers_.push_back(helper([this] { options_.realtime ? read_in_real_time() : read_ahead(); }));
+    const int detectors = options.realtime ? 1 : kDetectors;
+    working_ = detectors;
+    for (int i = 0; i < detectors; ++i) helpers_.push_back(helper([this] { work(); }));
+  }
+  ~Stream() { stop(); }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+
+  void run(const std::function<bool(FoundFrame)>& take) {
+    while (!stopped(options_) && !written_.finished()) {
+      const std::optional<JobPointer> job = written_.pop(kPatience);
+      if (!job) continue;
+      (*job)->done.get_future().wait();
+      if (!take(std::move((*job)->found))) return;
+    }
+  }
+  int dropped() const { return dropped_; }
+
+ private:
+  void stop() {
+    stopping_ = true;
+    work_.close();
+    written_.close();
+    helpers_.clear();  // joins
+  }
+
+  void read_ahead() {
+    for (auto job = std::make_shared<Job>(); read_next(source_, job->found); job = std::make_shared<Job>()) {
+      // In the order of reading, and into the queue that bounds both.
+      if (!written_.push(job) || !work_.push(job)) break;
+    }
+    work_.close();
+    written_.close();
+  }
+
+  void read_in_real_time() {
+    Pace pace(options_.rate);
+    for (auto job = std::make_shared<Job>(); read_next(source_, job->found); job = std::make_shared<Job>()) {
+      if (job->found.frame && work_.closed_by(pace.due(*job->found.frame))) break;
+      dropped_ += work_.push_newest(std::move(job));
+    }
+    work_.close();
+  }
+
+  void work() {
+    while (!stopping_ && !work_.finished()) {
+      const std::optional<JobPointer> job = work_.pop(kPatience);
+      if (!job) continue;
+      detect(detector_, (*job)->found);
+      (*job)->done.set_value();
+      if (options_.realtime && !written_.push(*job)) break;
+    }
+    if (--working_ == 0) written_.close();
+  }
+
+  FrameSource& source_;
+  const Detector& detector_;
+  const StreamOptions& options_;
+  FrameQueue<JobPointer> work_;     ///< read, to be worked on
+  FrameQueue<JobPointer> written_;  ///< in the order of writing
+  std::atomic<int> dropped_ = 0;
+  std::atomic<int> working_ = 0;
+  std::atomic<bool> stopping_ = false;
+  std::vector<std::jthread> helpers_;
+};
+
+}  // namespace
+
+int stream_frames(FrameSource& source, const Detector& detector, const StreamOptions& options,
+                  const std::function<bool(FoundFrame)>& take) {
+  if (options.realtime || thread_count() > 1) {
+    Stream stream(source, detector, options);
+    stream.run(take);
+    return stream.dropped();
+  }
+  while (!stopped(options)) {
+    FoundFrame found;
+    if (!read_next(source, found)) break;
+    detect(detector, found);
+    if (!take(std::move(found))) break;
+  }
+  return 0;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,108 @@
+#include "stream/person_json.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace vesalius {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Shortest text at a tenth of a millimetre: no sensor knows more.
+double rounded(double value, double steps = 1e4) { return std::round(value * steps) / steps; }
+
+Json point_json(State state, const Eigen::Vector3f& point, float confidence, const Camera& camera) {
+  Json xyz, px;  // null
+  if (state != State::none) {
+    xyz = {rounded(point.x()), rounded(point.y()), rounded(point.z())};
+    if (point.z() > 0.F) {
+      const Eigen::Vector2f pixel = camera.pixel(point);
+      px = {rounded(pixel.x(), 10), rounded(pixel.y(), 10)};
+    }
+  }
+  return {{"xyz_m", xyz},
+          {"px", px},
+          {"confidence", state == State::none ? 0.0 : rounded(confidence)},
+          {"state", to_string(state)}};
+}
+
+/// The shortest text of the float, not of the double nearest to it.
+double shortest(float value) {
+  double exact = 0.0;
+  const std::string text = fmt::format("{}", value);
+  std::from_chars(text.data(), text.data() + text.size(), exact);
+  return exact;
+}
+
+Json camera_json(const Camera& camera) {
+  return {{"width", camera.width},     {"height", camera.height},   {"fx", shortest(camera.fx)},
+          {"fy", shortest(camera.fy)}, {"cx", shortest(camera.cx)}, {"cy", shortest(camera.cy)}};
+}
+
+Json parts_json(const Skeleton& skeleton, const BodyModel& body, const Camera& camera) {
+  Json parts = Json::object();
+  for (std::size_t p = 0; p < body.parts.size(); ++p) {
+    const SkeletonPart& part = skeleton.parts.at(p);
+    parts[body.parts[p].name] = point_json(part.state, part.centre, part.confidence, camera);
+  }
+  return parts;
+}
+
+Json joints_json(const Person& person, const BodyModel& body, const Camera& camera) {
+  Json sets = Json::object();
+  for (std::size_t s = 0; s < body.joint_sets.size(); ++s) {
+    const JointSet& set = body.joint_sets[s];
+    Json joints = Json::object();
+    for (std::size_t j = 0; j < set.joints.size(); ++j) {
+      const Joint& joint = person.joints.at(s).at(j);
+      joints[set.joints[j].name] = point_json(joint.state, joint.position, joint.confidence, camera);
+    }
+    sets[set.name] = std::move(joints);
+  }
+  return sets;
+}
+
+/// File names need not be UTF-8; JSON must.
+std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+}  // namespace
+
+std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const Person& person = people[i];
+    list.push_back({{"index", i},
+                    {"score", rounded(person.score)},
+                    {"box_px", {person.box.u, person.box.v, person.box.width, person.box.height}},
+                    {"parts", parts_json(person.skeleton, body, frame.camera)},
+                    {"joints", joints_json(person, body, frame.camera)}});
+  }
+  return line({{"frame", frame.name},
+               {"time_s", frame.time_s != 0.0 ? Json(rounded(frame.time_s, 1e6)) : Json()},
+               {"camera", camera_json(frame.camera)},
+               {"people", std::move(list)}});
+}
+
+std::string closing_json(int lines, bool complete, const std::string& why) {
+  Json json = {{"complete", complete}, {"frames", lines}};
+  if (!why.empty()) json["why"] = why;
+  return line(json);
+}
+
+std::string part_table_json(const BodyModel& body) {
+  Json parts = Json::array();
+  for (std::size_t p = 0; p < body.parts.size(); ++p) {
+    const BodyPart& part = body.parts[p];
+    parts.push_back({{"label", p},
+                     {"name", part.name},
+                     {"colour", {part.colour.r, part.colour.g, part.colour.b}},
+                     {"mirror", part.mirror}});
+  }
+  const Json table = {{"body", body.name}, {"background", kBackground}, {"parts", std::move(parts)}};
+  return table.dump(2) + "\n";
+}
+
+}  // namespace vesalius

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/detect.h"
+
+namespace vesalius {
+
+/// Returns one line of JSON, without its end, about a frame (docs/formats.md): its name, its time, its camera and the
+/// people with their box (pixels), parts and joints. Points are given in metres in the optical frame (xyz_m) and in
+/// pixels of the depth picture (px). Every part and joint is listed; where the state is "none" xyz_m and px are null.
+std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body);
+
+/// Returns the line that closes a file of such lines: whether all frames of the source are in it, how many lines there
+/// are, and where some are missing why. A file without it was cut.
+std::string closing_json(int lines, bool complete, const std::string& why = "");
+
+/// Returns the table that goes with label pictures: number, name, colour and mirror partner of each part.
+std::string part_table_json(const BodyModel& body);
+
+}  // namespace vesalius

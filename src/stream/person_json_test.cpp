@@ -1,0 +1,102 @@
+#include "stream/person_json.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace vesalius {
+namespace {
+
+using nlohmann::json;
+
+/// One person of whom the neck was seen and the left hand inferred.
+Person half_seen(const BodyModel& body) {
+  Person person;
+  person.score = 0.5F;
+  person.box = {10, 20, 30, 40};
+  person.skeleton.parts.resize(body.parts.size());
+  SkeletonPart& neck = person.skeleton.parts[body.find_part("neck")];
+  neck.state = State::observed;
+  neck.centre = {0.12345F, -1.F, 2.5F};
+  neck.confidence = 0.75F;
+  SkeletonPart& hand = person.skeleton.parts[body.find_part("l_hand")];
+  hand.state = State::predicted;
+  hand.centre = {1.F, 2.F, 3.F};
+  const Joint unknown{State::none, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()), 0.F};
+  for (const JointSet& set : body.joint_sets) person.joints.emplace_back(set.joints.size(), unknown);
+  person.joints[0][1] = {State::observed, {0.F, 0.5F, 2.F}, 0.25F};
+  return person;
+}
+
+Frame named(const std::string& name) {
+  Frame frame;
+  frame.name = name;
+  frame.time_s = 1.5;
+  frame.camera = {320, 240, 250.F, 262.1F, 160.F, 120.F};
+  return frame;
+}
+
+TEST(PersonJson, NobodyIsAnEmptyList) {
+  EXPECT_EQ(
+      frame_json(named("0172"), {}, paper_body()),
+      R"({"frame":"0172","time_s":1.5,"camera":{"width":320,"height":240,"fx":250.0,"fy":262.1,"cx":160.0,"cy":120.0},"people":[]})");
+}
+
+TEST(PersonJson, ListsEveryPartAndJoint) {
+  const BodyModel& body = paper_body();
+  const std::string line = frame_json(named("f"), {half_seen(body)}, body);
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const json person = json::parse(line).at("people").at(0);
+  EXPECT_EQ(person.at("index"), 0);
+  EXPECT_EQ(person.at("score"), 0.5);
+  EXPECT_EQ(person.at("box_px"), json({10, 20, 30, 40}));
+  EXPECT_EQ(person.at("parts").size(), 25U);
+  EXPECT_EQ(person.at("parts").at("neck"),
+            json::parse(R"({"xyz_m":[0.1235,-1.0,2.5],"px":[172.3,15.2],"confidence":0.75,"state":"observed"})"));
+  EXPECT_EQ(person.at("parts").at("l_hand").at("state"), "predicted");
+  EXPECT_EQ(person.at("parts").at("r_foot"),
+            json::parse(R"({"xyz_m":null,"px":null,"confidence":0.0,"state":"none"})"));
+  EXPECT_EQ(person.at("joints").at("nite15").size(), 15U);
+  EXPECT_EQ(person.at("joints").at("nite15").at("neck").at("xyz_m"), json({0.0, 0.5, 2.0}));
+  EXPECT_TRUE(person.at("joints").at("coco17").at("nose").at("xyz_m").is_null());
+}
+
+TEST(PersonJson, AnUnknownTimeIsNull) {
+  Frame frame = named("f");
+  frame.time_s = 0.0;
+  EXPECT_TRUE(json::parse(frame_json(frame, {}, paper_body())).at("time_s").is_null());
+}
+
+TEST(PersonJson, APointBehindTheCameraHasNoPixel) {
+  const BodyModel& body = paper_body();
+  Person person = half_seen(body);
+  person.skeleton.parts[body.find_part("neck")].centre.z() = -0.1F;
+  const json neck = json::parse(frame_json(named("f"), {person}, body)).at("people").at(0).at("parts").at("neck");
+  EXPECT_TRUE(neck.at("px").is_null());
+  EXPECT_FALSE(neck.at("xyz_m").is_null());
+}
+
+TEST(PersonJson, TheLastLineSaysWhetherAllIsThere) {
+  EXPECT_EQ(closing_json(3, true), R"({"complete":true,"frames":3})");
+  EXPECT_EQ(closing_json(2, false, "interrupted"), R"({"complete":false,"frames":2,"why":"interrupted"})");
+}
+
+TEST(PersonJson, AnyFileNameGivesValidJson) {
+  const std::string line = frame_json(named("a\"b\\\xff\n"), {}, paper_body());
+  EXPECT_TRUE(json::parse(line).at("frame").is_string());
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+}
+
+TEST(PersonJson, PartTableNumbersTheLabels) {
+  const json table = json::parse(part_table_json(paper_body()));
+  EXPECT_EQ(table.at("background"), 255);
+  ASSERT_EQ(table.at("parts").size(), 25U);
+  EXPECT_EQ(table.at("parts").at(10).at("name"), "neck");
+  EXPECT_EQ(table.at("parts").at(10).at("label"), 10);
+  EXPECT_EQ(table.at("parts").at(10).at("colour"), json({255, 255, 102}));
+  EXPECT_EQ(table.at("parts").at(0).at("mirror"), 4);
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "synth/body/makehuman_rig.h"
+#include "synth/body/rig_map.h"
+
+namespace vesalius::synth {
+
+/// A skeleton joined with its map: all of a RigBone that does not depend on the body's shape.
+struct MappedRig {
+  std::vector<RigBone> bones;  ///< without ends, rests and axes
+  std::array<int, kBoneCount> rig_of{};
+  std::array<int, kBoneCount> tail_of{};  ///< rig bone whose tail is the end, -1: the next bone's head is
+  std::array<RigMap::Rest, kBoneCount> rest{};
+  struct Finger {
+    int bone;
+    float across;
+  };
+  std::vector<Finger> fingers;
+  std::array<int, 2> first_knuckle{-1, -1}, last_knuckle{-1, -1};  ///< rig bones, left and right
+};
+
+/// Throws Error where the map names a bone that the skeleton lacks, or leaves a root without one to follow.
+MappedRig map_rig(const std::vector<SkeletonBone>& skeleton, const RigMap& map);
+
+/// The rig of one body: `heads` and `tails` of all bones, metres.
+std::vector<RigBone> fit_rig(const MappedRig& rig, const std::vector<Eigen::Vector3f>& heads,
+                             const std::vector<Eigen::Vector3f>& tails);
+
+}  // namespace vesalius::synth

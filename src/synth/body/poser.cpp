@@ -1,0 +1,149 @@
+#include "synth/body/poser.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "synth/body/check_body.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+/// Rows of the 3x4 matrix that takes a point at rest to its place in the pose.
+using Placement = std::array<float, 12>;
+
+Placement placement(const Eigen::Quaternionf& rotation, const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+  const Eigen::Matrix3f r = rotation.toRotationMatrix();
+  const Eigen::Vector3f t = to - r * from;
+  return {r(0, 0), r(0, 1), r(0, 2), t.x(), r(1, 0), r(1, 1), r(1, 2), t.y(), r(2, 0), r(2, 1), r(2, 2), t.z()};
+}
+
+Eigen::Vector3f moved(const Placement& m, const Eigen::Vector3f& p, float one = 1.F) {
+  return {m[0] * p.x() + m[1] * p.y() + m[2] * p.z() + m[3] * one,
+          m[4] * p.x() + m[5] * p.y() + m[6] * p.z() + m[7] * one,
+          m[8] * p.x() + m[9] * p.y() + m[10] * p.z() + m[11] * one};
+}
+
+/// `share` of the turn from one bone to the other that is about the first one's axis.
+Eigen::Quaternionf shared_twist(const Eigen::Quaternionf& from, const Eigen::Quaternionf& to,
+                                const Eigen::Vector3f& axis, float share) {
+  const Eigen::Quaternionf turn = from.conjugate() * to;
+  const float along = turn.vec().dot(axis);
+  if (std::hypot(turn.w(), along) < 1e-4F) return from;  // turned right over: the twist is anything
+  const float angle = 2.F * std::atan2(turn.w() < 0.F ? -along : along, std::abs(turn.w()));
+  return from * Eigen::Quaternionf(Eigen::AngleAxisf(share * angle, axis));
+}
+
+Eigen::Quaternionf blended(const RigBone& bone, const std::array<Eigen::Quaternionf, kBoneCount>& world) {
+  const Eigen::Quaternionf& from = world[index(bone.from)];
+  if (bone.blend == 0.F) return from;
+  const Eigen::Quaternionf& to = world[index(bone.to)];
+  if (bone.twist_only) return shared_twist(from, to, rest_direction(bone.from), bone.blend);
+  return from.slerp(bone.blend, to);
+}
+
+/// What without_yaw() takes off.
+Eigen::Quaternionf heading(const Eigen::Quaternionf& rotation) {
+  return (rotation * without_yaw(rotation).conjugate()).normalized();
+}
+
+/// Turns of each rig bone out of the body's own rest pose.
+std::vector<Eigen::Quaternionf> rig_rotations(const std::vector<RigBone>& rig, const Pose& pose) {
+  const auto world = world_rotations(pose);
+  std::vector<Eigen::Quaternionf> curls(rig.size());
+  std::vector<Eigen::Quaternionf> rotations(rig.size());
+  for (std::size_t b = 0; b < rig.size(); ++b) {
+    const RigBone& bone = rig[b];
+    curls[b] = bone.parent < 0 ? Eigen::Quaternionf::Identity() : curls[bone.parent];
+    if (bone.grip != Grip::none) {
+      const float grip = bone.grip == Grip::left ? pose.l_grip : pose.r_grip;
+      curls[b] = curls[b] * Eigen::Quaternionf(Eigen::AngleAxisf(grip * bone.curl_rad, bone.curl_axis));
+    }
+    rotations[b] = bone.hangs ? heading(world[index(bone.from)])
+                              : (blended(bone, world) * bone.t_from_rest * curls[b]).normalized();
+  }
+  return rotations;
+}
+
+std::vector<Placement> rig_placements(const std::vector<RigBone>& rig, const Pose& pose) {
+  const std::vector<Eigen::Quaternionf> rotations = rig_rotations(rig, pose);
+  std::vector<Placement> placements(rig.size());
+  for (std::size_t b = 0; b < rig.size(); ++b) {
+    const Eigen::Vector3f head = rig[b].parent < 0 ? rig[b].head : moved(placements[rig[b].parent], rig[b].head);
+    placements[b] = placement(rotations[b], rig[b].head, head);
+  }
+  return placements;
+}
+
+void place_bones(const BodyMesh& mesh, const std::vector<Placement>& placements, PosedBody& out) {
+  const auto rig_of = [&](std::size_t bone) { return static_cast<std::size_t>(mesh.rig_of[bone]); };
+  for (std::size_t b = 0; b < kBoneCount; ++b) out.joints[b] = moved(placements[rig_of(b)], mesh.rig[rig_of(b)].head);
+  for (std::size_t b = 0; b < kBoneCount; ++b) {
+    const auto after = static_cast<std::size_t>(next_bone(static_cast<Bone>(b)));
+    out.ends[b] = after == b ? moved(placements[rig_of(b)], mesh.rig[rig_of(b)].tail) : out.joints[after];
+  }
+}
+
+std::vector<Eigen::Vector3f> part_centres(const std::vector<PartShare>& shares,
+                                          const std::vector<Placement>& placements, int part_count) {
+  std::vector<bool> found(static_cast<std::size_t>(part_count), false);
+  std::vector<Eigen::Vector3f> centres(static_cast<std::size_t>(part_count), Eigen::Vector3f::Zero());
+  for (const PartShare& s : shares) {
+    const auto part = static_cast<std::size_t>(s.part);
+    centres[part] += moved(placements[s.bone], s.moment, s.share);
+    found[part] = true;
+  }
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    if (!found[p]) centres[p].setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  return centres;
+}
+
+void expect_finite(const Pose& pose) {
+  bool good = std::isfinite(pose.l_grip) && std::isfinite(pose.r_grip);
+  for (const Eigen::Quaternionf& q : pose.local) good = good && std::abs(q.squaredNorm() - 1.F) < 1e-2F;
+  if (!good) throw Error("pose: expected rotations by unit quaternions and finite grips");
+}
+
+}  // namespace
+
+Poser::Poser(std::shared_ptr<const BodyMesh> mesh, const BodyModel& body)
+    : mesh_(std::move(mesh)), part_count_(body.part_count()) {
+  check(*mesh_, body);
+  shares_ = part_shares(*mesh_, part_count_);
+  grounded_.assign(mesh_->vertices.size(), 0);
+  for (std::size_t t = 0; t < mesh_->topology->triangles.size(); ++t) {
+    if (mesh_->topology->part[t] == kBackground) continue;
+    for (const std::uint32_t v : mesh_->topology->triangles[t]) grounded_[v] = 1;
+  }
+}
+
+PosedBody Poser::pose(const Pose& pose) const {
+  expect_finite(pose);
+  const std::vector<Placement> placements = rig_placements(mesh_->rig, pose);
+  PosedBody out;
+  out.vertices.resize(mesh_->vertices.size());
+  float lowest = std::numeric_limits<float>::max();
+  for (std::size_t v = 0; v < out.vertices.size(); ++v) {
+    const SkinWeights& skin = mesh_->topology->skin[v];
+    Placement blended{};
+    for (std::size_t k = 0; k < 4 && skin.weight[k] > 0.F; ++k) {
+      const Placement& m = placements[skin.bone[k]];
+      for (std::size_t i = 0; i < 12; ++i) blended[i] += skin.weight[k] * m[i];
+    }
+    out.vertices[v] = moved(blended, mesh_->vertices[v]);
+    if (grounded_[v] != 0) lowest = std::min(lowest, out.vertices[v].y());
+  }
+  place_bones(*mesh_, placements, out);
+  out.parts = part_centres(shares_, placements, part_count_);
+  const Eigen::Vector3f& pelvis = out.joints[0];
+  const Eigen::Vector3f shift(-pelvis.x(), -lowest, -pelvis.z());
+  for (Eigen::Vector3f& p : out.vertices) p += shift;
+  for (Eigen::Vector3f& p : out.parts) p += shift;
+  for (Eigen::Vector3f& p : out.ends) p += shift;
+  for (Eigen::Vector3f& p : out.joints) p += shift;
+  return out;
+}
+
+}  // namespace vesalius::synth

@@ -1,0 +1,200 @@
+#include "synth/body/poser.h"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <limits>
+
+#include "synth/body/builtin_body.h"
+#include "synth/body/check_body.h"
+#include "synth/body/test_bodies.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+using Eigen::Vector3f;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::shared_ptr<const BodyMesh> person() {
+  static const auto mesh = std::make_shared<const BodyMesh>(make_builtin_body({}, paper_body()));
+  return mesh;
+}
+
+std::size_t at(Bone bone) { return static_cast<std::size_t>(bone); }
+std::size_t part(const char* name) { return static_cast<std::size_t>(paper_body().find_part(name)); }
+
+TEST(Poser, IdentityIsTheT) {
+  const PosedBody body = Poser(person(), paper_body()).pose({});
+  for (const Bone bone : {Bone::l_upper_arm, Bone::l_forearm, Bone::l_hand, Bone::r_upper_arm, Bone::r_forearm,
+                          Bone::r_hand, Bone::l_thigh, Bone::l_shin, Bone::r_thigh, Bone::r_shin}) {
+    const Vector3f along = (body.ends[at(bone)] - body.joints[at(bone)]).normalized();
+    EXPECT_GT(along.dot(rest_direction(bone)), 0.9999F) << bone_name(bone);
+  }
+  EXPECT_GT(body.parts[part("l_hand")].x(), 0.5F);  // the person's left is +x
+  EXPECT_LT(body.parts[part("r_hand")].x(), -0.5F);
+  EXPECT_GT(body.ends[at(Bone::l_foot)].z(), body.joints[at(Bone::l_foot)].z() + 0.1F);
+  EXPECT_GT(body.parts[part("l_face_top")].y(), body.parts[part("l_face_bottom")].y());
+}
+
+TEST(Poser, StandsOnTheFloorUnderThePelvis) {
+  const Poser poser(person(), paper_body());
+  Random random(1);
+  for (int i = 0; i < 50; ++i) {
+    const PosedBody body = poser.pose(random_pose(random, 1.F));
+    const auto lowest = std::ranges::min(body.vertices, {}, [](const Vector3f& p) { return p.y(); }).y();
+    EXPECT_NEAR(lowest, 0.F, 1e-5F);
+    EXPECT_NEAR(body.joints[0].x(), 0.F, 1e-5F);
+    EXPECT_NEAR(body.joints[0].z(), 0.F, 1e-5F);
+  }
+}
+
+TEST(Poser, BonesKeepTheirLengths) {
+  const Poser poser(person(), paper_body());
+  const auto rest = rest_bones(*person());
+  Random random(2);
+  for (int i = 0; i < 20; ++i) {
+    const PosedBody body = poser.pose(random_pose(random, 2.F));
+    for (std::size_t b = 0; b < kBoneCount; ++b) {
+      EXPECT_NEAR((body.ends[b] - body.joints[b]).norm(), (rest[b].tail - rest[b].head).norm(), 1e-4F) << b;
+    }
+  }
+}
+
+TEST(Poser, TurnsTheWholeBodyByThePelvisHeading) {
+  const Poser poser(person(), paper_body());
+  Random random(3);
+  Pose pose = random_pose(random, 0.8F);
+  const PosedBody before = poser.pose(pose);
+  const Eigen::Quaternionf turn(Eigen::AngleAxisf(1.F, Vector3f::UnitY()));
+  pose[Bone::pelvis] = turn * pose[Bone::pelvis];
+  const PosedBody after = poser.pose(pose);
+  for (std::size_t v = 0; v < after.vertices.size(); v += 97) {
+    EXPECT_LT((after.vertices[v] - turn * before.vertices[v]).norm(), 1e-4F);
+  }
+  for (std::size_t p = 0; p < after.parts.size(); ++p) {
+    EXPECT_LT((after.parts[p] - turn * before.parts[p]).norm(), 1e-4F);
+  }
+}
+
+TEST(Poser, AFistMovesFingersAlone) {
+  const Poser poser(person(), paper_body());
+  Pose open;
+  open.l_grip = open.r_grip = 0.F;
+  Pose fist = open;
+  fist.l_grip = 1.F;
+  const PosedBody a = poser.pose(open);
+  const PosedBody b = poser.pose(fist);
+  const std::uint8_t hand = static_cast<std::uint8_t>(part("l_hand"));
+  float farthest = 0.F;
+  std::vector<bool> of_hand(a.vertices.size(), false);
+  const BodyTopology& topology = *person()->topology;
+  for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
+    for (const std::uint32_t v : topology.triangles[t]) of_hand[v] = of_hand[v] || topology.part[t] == hand;
+  }
+  for (std::size_t v = 0; v < a.vertices.size(); ++v) {
+    const float moved = (a.vertices[v] - b.vertices[v]).norm();
+    if (of_hand[v]) farthest = std::max(farthest, moved);
+    EXPECT_TRUE(of_hand[v] || moved < 0.01F) << moved;
+  }
+  EXPECT_GT(farthest, 0.06F);
+  // Palms are down in the T, and fingers close towards the palm.
+  EXPECT_LT(b.parts[hand].y(), a.parts[hand].y() - 0.002F);
+}
+
+TEST(Poser, MirrorImagesPoseAsMirrorImages) {
+  const auto twin = std::make_shared<const BodyMesh>(mirrored(*person(), paper_body()));
+  const Poser poser(person(), paper_body());
+  const Poser other(twin, paper_body());
+  Random random(4);
+  for (int i = 0; i < 10; ++i) {
+    const Pose pose = random_pose(random, 1.F);
+    const PosedBody a = poser.pose(pose);
+    const PosedBody b = other.pose(mirrored(pose));
+    const auto in_mirror = [](const Vector3f& p) { return Vector3f(-p.x(), p.y(), p.z()); };
+    for (std::size_t v = 0; v < a.vertices.size(); v += 31) {
+      EXPECT_LT((in_mirror(a.vertices[v]) - b.vertices[v]).norm(), 1e-4F);
+    }
+    for (std::size_t p = 0; p < a.parts.size(); ++p) {
+      const auto partner = static_cast<std::size_t>(paper_body().parts[p].mirror);
+      EXPECT_LT((in_mirror(a.parts[p]) - b.parts[partner]).norm(), 1e-4F);
+    }
+  }
+}
+
+TEST(Poser, CentresOfPartsAreThoseOfTheirVolumes) {
+  const auto mesh = std::make_shared<const BodyMesh>(box_body(3, 5));
+  const PosedBody body = Poser(mesh, paper_body()).pose({});
+  EXPECT_LT((body.parts[3] - Vector3f(0.5F, 1.F, 0.F)).norm(), 1e-5F);  // each half a box of its own
+  EXPECT_LT((body.parts[5] - Vector3f(-0.5F, 1.F, 0.F)).norm(), 1e-5F);
+  EXPECT_TRUE(body.parts[0].hasNaN());  // the box has no left foot
+}
+
+TEST(Poser, SharesOfAPartSumToOne) {
+  std::vector<float> sums(25, 0.F);
+  for (const PartShare& s : part_shares(*person(), 25)) sums[s.part] += s.share;
+  for (const float sum : sums) EXPECT_NEAR(sum, 1.F, 1e-4F);
+}
+
+TEST(Poser, RefusesAPoseThatIsNotFinite) {
+  const Poser poser(person(), paper_body());
+  Pose pose;
+  pose[Bone::neck].w() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(poser.pose(pose), Error);
+  pose = {};
+  pose.l_grip = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(poser.pose(pose), Error);
+}
+
+TEST(BodyMesh, MirroringTwiceGivesTheSame) {
+  const BodyMesh twice = mirrored(mirrored(*person(), paper_body()), paper_body());
+  EXPECT_EQ(twice.topology->part, person()->topology->part);
+  EXPECT_EQ(twice.topology->triangles, person()->topology->triangles);
+  EXPECT_EQ(twice.vertices, person()->vertices);
+  EXPECT_EQ(twice.rig_of, person()->rig_of);
+}
+
+struct BadMesh {
+  const char* what;
+  std::function<void(BodyMesh&, BodyTopology&)> spoil;
+  const char* message;
+};
+
+class BodyMeshCheck : public testing::TestWithParam<BadMesh> {};
+
+TEST_P(BodyMeshCheck, NamesWhatIsWrong) {
+  BodyMesh mesh = box_body(3, 5);
+  auto topology = std::make_shared<BodyTopology>(*mesh.topology);
+  mesh.topology = topology;
+  EXPECT_NO_THROW(check(mesh, paper_body()));
+  GetParam().spoil(mesh, *topology);
+  EXPECT_THAT([&] { check(mesh, paper_body()); }, ThrowsMessage<Error>(HasSubstr(GetParam().message)));
+}
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BodyMeshCheck,
+    testing::Values(
+        BadMesh{"index", [](BodyMesh&, BodyTopology& top) { top.triangles[2][1] = 12; }, "triangle 2 uses vertex 12"},
+        BadMesh{"part", [](BodyMesh&, BodyTopology& top) { top.part[1] = 25; }, "part 25, expected one below 25"},
+        BadMesh{"parts", [](BodyMesh&, BodyTopology& top) { top.part.pop_back(); }, "expected one for each"},
+        BadMesh{"skin", [](BodyMesh&, BodyTopology& top) { top.skin.pop_back(); }, "skin weights, expected one"},
+        BadMesh{"sum", [](BodyMesh&, BodyTopology& top) { top.skin[4].weight[0] = 0.5F; },
+                "vertex 4: its skin weights sum"},
+        BadMesh{"weight", [](BodyMesh&, BodyTopology& top) { top.skin[4].weight[1] = kNaN; },
+                "vertex 4: expected weights"},
+        BadMesh{"bone", [](BodyMesh&, BodyTopology& top) { top.skin[0].bone[0] = 1; }, "hangs on bone 1"},
+        BadMesh{"vertex", [](BodyMesh& m, BodyTopology&) { m.vertices[7].y() = kNaN; }, "vertex 7 is not finite"},
+        BadMesh{"rig", [](BodyMesh& m, BodyTopology&) { m.rig_of[3] = 1; }, "head of rig bone 1"},
+        BadMesh{"parent", [](BodyMesh& m, BodyTopology&) { m.rig[0].parent = 0; }, "its parent before it"},
+        BadMesh{"turn", [](BodyMesh& m, BodyTopology&) { m.rig[0].t_from_rest.w() = 2.F; }, "unit quaternion"},
+        BadMesh{"nobody", [](BodyMesh&, BodyTopology& top) { std::ranges::fill(top.part, kBackground); },
+                "expected a person"},
+        BadMesh{"stature", [](BodyMesh& m, BodyTopology&) { m.stature_m = 0.F; }, "stature"},
+        BadMesh{"empty", [](BodyMesh& m, BodyTopology&) { m.topology = nullptr; }, "no topology"}),
+    [](const auto& test) { return test.param.what; });
+
+}  // namespace
+}  // namespace vesalius::synth

@@ -1,0 +1,49 @@
+#include "synth/scene/scene_options.h"
+
+#include <fmt/format.h>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius::synth {
+
+void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "open-share", o.open_share, {"", 0.0, 1.0, "Share of scenes in a hall without walls."});
+  visitor.option(prefix + "furniture-min", o.furniture_min, {"", 0, 50, "Fewest pieces of furniture."});
+  visitor.option(prefix + "furniture-max", o.furniture_max, {"", 0, 50, "Most pieces of furniture."});
+  visitor.option(prefix + "mannequin-share", o.mannequin_share,
+                 {"", 0.0, 1.0, "Share of furniture that resembles people: coats on stands, mannequins, pillars."});
+  visitor.option(prefix + "occluder-probability", o.occluder_probability,
+                 {"", 0.0, 1.0, "Probability that something stands between the camera and a person."});
+  visitor.option(prefix + "near-probability", o.near_probability,
+                 {"", 0.0, 1.0, "Probability that something large, such as a door leaf, stands close to the camera."});
+  visitor.option(prefix + "table-probability", o.table_probability,
+                 {"", 0.0, 1.0, "Probability of a table in front of a sitting person."});
+  visitor.option(prefix + "sofa-probability", o.sofa_probability,
+                 {"", 0.0, 1.0, "Probability that two sitting people try to share a sofa."});
+  visitor.option(prefix + "beside-probability", o.beside_probability,
+                 {"", 0.0, 1.0, "Probability that two standing people stand side by side and touch, or nearly."});
+  visitor.option(prefix + "bed-probability", o.bed_probability,
+                 {"", 0.0, 1.0, "Probability that a lying person has a bed rather than the floor."});
+  visitor.option(prefix + "dark-furniture", o.dark_furniture,
+                 {"", 0.0, 1.0, "Share of furniture that sends back next to no infrared light, as black leather."});
+  visitor.option(prefix + "frontal-share", o.frontal_share,
+                 {"", 0.0, 1.0, "Share of people made to face the camera; the others face anywhere."});
+  visitor.option(prefix + "frontal-range", o.frontal_range_deg,
+                 {"deg", 0.0, 180.0, "Largest angle to the camera of those who face it."});
+  visitor.option(prefix + "min-visible", o.min_visible,
+                 {"", 0.0, 1.0, "Least share of a person's bones within the picture."});
+  visitor.option(prefix + "detail", o.detail_px,
+                 {"px", 0.0, 4.0, "How far the surface of people far away may be simplified; 0: not at all."});
+}
+
+void check(const SceneOptions& options) {
+  SceneOptions copy = options;
+  RangeCheck ranges;
+  visit_options("scene.", copy, ranges);
+  if (options.furniture_min > options.furniture_max) {
+    throw UsageError(fmt::format("option scene.furniture-min is {}, above scene.furniture-max {}",
+                                 options.furniture_min, options.furniture_max));
+  }
+}
+
+}  // namespace vesalius::synth

@@ -1,0 +1,83 @@
+#include "train/local_executor.h"
+
+#include <utility>
+
+#include "vesalius/base/parallel.h"
+
+namespace vesalius {
+namespace {
+
+/// Replies of all shards, asked one after the other, as one.
+template <class Shards, class Ask>
+auto merged(Shards& shards, const Ask& ask) {
+  auto all = ask(shards.front());
+  for (std::size_t i = 1; i < shards.size(); ++i) merge(all, ask(shards[i]));
+  return all;
+}
+
+}  // namespace
+
+LocalTree::LocalTree(const std::vector<const TrainingSet*>& sets, const GrowTreeOptions& options, int tree) {
+  shards_.reserve(sets.size());
+  for (const TrainingSet* set : sets) shards_.emplace_back(*set, options, tree);
+}
+
+SampleCounts LocalTree::sample_counts() {
+  return merged(shards_, [](const TreeShard& shard) { return shard.sample_counts(); });
+}
+
+void LocalTree::open_level(const Level& level) {
+  std::vector<ChildSizes> before{ChildSizes(level.node_of_child.size(), 0)};
+  for (const TreeShard& shard : shards_) {
+    before.push_back(before.back());
+    merge(before.back(), shard.child_sizes());
+  }
+  parallel_for(static_cast<int>(shards_.size()), [&](int i) { shards_[i].open_level(level, before[i]); });
+}
+
+void LocalTree::evaluate(NodeRange group, int block) {
+  parallel_for(static_cast<int>(shards_.size()), [&](int i) { shards_[i].evaluate(group, block); });
+}
+
+std::vector<NodeValues> LocalTree::node_values(NodeRange batch) {
+  return merged(shards_, [&](const TreeShard& shard) { return shard.node_values(batch); });
+}
+
+std::vector<SplitHistogram> LocalTree::histograms(NodeRange batch, const std::vector<CountTask>& tasks) {
+  return merged(shards_, [&](const TreeShard& shard) { return shard.histograms(batch, tasks); });
+}
+
+std::vector<IntervalValues> LocalTree::values_in(const std::vector<ValueInterval>& intervals) {
+  return merged(shards_, [&](const TreeShard& shard) { return shard.values_in(intervals); });
+}
+
+void LocalTree::set_splits(const std::vector<NodeSplit>& splits) {
+  for (TreeShard& shard : shards_) shard.set_splits(splits);
+}
+
+ChildCounts LocalTree::route() {
+  std::vector<ChildCounts> replies(shards_.size());
+  parallel_for(static_cast<int>(shards_.size()), [&](int i) { replies[i] = shards_[i].route(); });
+  return merged(replies, [](ChildCounts& reply) { return std::move(reply); });
+}
+
+LocalExecutor::LocalExecutor(std::vector<TrainingSet*> sets) : sets_(std::move(sets)) {}
+
+std::unique_ptr<TreeExecutor> LocalExecutor::begin_tree(const GrowTreeOptions& options, int tree) {
+  return std::make_unique<LocalTree>(std::vector<const TrainingSet*>(sets_.begin(), sets_.end()), options, tree);
+}
+
+HardCounts LocalExecutor::count_hard_negatives(const Forest& forest) {
+  hard_.clear();
+  for (TrainingSet* set : sets_) hard_.push_back(set->count_hard_negatives(forest));
+  return merged(hard_, [](const HardCounts& counts) { return counts; });
+}
+
+std::size_t LocalExecutor::add_hard_negatives(const HardCut& cut) {
+  HardCut rest = cut;
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < sets_.size(); ++i) added += sets_[i]->add_hard_negatives(take_part(rest, hard_[i]));
+  return added;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,86 @@
+#pragma once
+
+// How a forest is trained on samples that lie in several places (section 4.2).
+//
+// Glossary
+//   shard     some of the frames with the pixels drawn from them: a TrainingSet. Shards follow each other in the order
+//             of the frames, so that each sample has one rank among the samples of all shards.
+//   driver    the loop below (grow_forest.cpp, grow_tree.cpp). It chooses the splits from merged replies and never sees
+//             a sample or a frame.
+//   executor  carries the driver's requests to all shards and merges their replies. LocalExecutor does so within this
+//             process; another one may send them to other machines, since requests and replies are plain structs.
+//   node      of the tree being grown; a level is the nodes of one depth that are still to be split, in order.
+//   rank      of a sample among those of its node in all shards. A node of more samples than `split_pixels` chooses its
+//             split by evenly spaced ranks: its counted samples.
+//   rows      values of eq. 1 of the counted samples of a group of nodes, for one block of candidates; held by shards.
+//   group     nodes of a level whose rows fit `row_bytes`. A batch is nodes of a group that one request is about.
+//
+// The loop
+//   for each round: first `hard_trees` trees that look for hard negatives, then the trees of the forest
+//     for each tree, several at a time
+//       sample_counts                      how many samples of each class there are, for the root and for leaves
+//       while the level has nodes
+//         open_level                       the shards move samples to the nodes of the level and give them ranks
+//         for each group of nodes, for each block of candidates
+//           evaluate                       rows of the counted samples
+//           for each batch of nodes, several at a time
+//             node_values                  class counts and ranges of values; from them bins and class numbers
+//             histograms                   counted samples by class, candidate and bin; from them the best split
+//             values_in                    values beside that split; from them its threshold
+//             set_splits                   the shards note the splits that gain more than those before
+//         route                            samples by class at both children of each node; from them the next level
+//     after the first round
+//       count_hard_negatives               background that its trees take for a body, by how much they do
+//       add_hard_negatives                 the worst of it becomes samples
+//
+// Replies are integers and merge in any order to the same numbers, and all that depends on the order of samples is said
+// in ranks. So the forest does not depend on how many shards there are, nor on how many threads each of them uses.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "train/grow_options.h"
+#include "train/training_messages.h"
+#include "vesalius/forest/forest.h"
+
+namespace vesalius {
+
+/// What the shards keep while one tree grows. All members throw Error where a shard cannot be asked. One call at a
+/// time, but the four about batches may be called from several threads at once for batches without common nodes.
+class TreeExecutor {
+ public:
+  virtual ~TreeExecutor() = default;
+
+  virtual SampleCounts sample_counts() = 0;
+  /// Moves each sample to its node of `level`. What a shard's ranks begin with follows from the child sizes of the
+  /// shards before it (ChildSizes), which the executor knows from the last `route`, or for the first level from their
+  /// numbers of samples.
+  virtual void open_level(const Level& level) = 0;
+  /// Computes the rows of a group of nodes for one block of candidates; earlier rows are forgotten.
+  virtual void evaluate(NodeRange group, int block) = 0;
+
+  // About a batch: nodes of the group evaluated last.
+  virtual std::vector<NodeValues> node_values(NodeRange batch) = 0;
+  virtual std::vector<SplitHistogram> histograms(NodeRange batch, const std::vector<CountTask>& tasks) = 0;
+  virtual std::vector<IntervalValues> values_in(const std::vector<ValueInterval>& intervals) = 0;
+  virtual void set_splits(const std::vector<NodeSplit>& splits) = 0;
+
+  /// Sends all samples of the nodes that were split to a side. Those of other nodes stay where they are, which counts
+  /// as the left side.
+  virtual ChildCounts route() = 0;
+};
+
+/// All shards of a training.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+
+  /// Trees may grow at the same time, from several threads, but not while hard negatives are added.
+  virtual std::unique_ptr<TreeExecutor> begin_tree(const GrowTreeOptions& options, int tree) = 0;
+  virtual HardCounts count_hard_negatives(const Forest& forest) = 0;
+  /// Adds samples of the pixels counted last, each shard its part of the ties (take_part); returns how many.
+  virtual std::size_t add_hard_negatives(const HardCut& cut) = 0;
+};
+
+}  // namespace vesalius

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "train/feature_rows.h"
+#include "train/grow_options.h"
+#include "train/huge_buffer.h"
+#include "train/training_messages.h"
+#include "train/training_set.h"
+
+namespace vesalius {
+
+/// One shard's part in growing one tree: where its samples stand, and the rows of the group at hand. It answers the
+/// requests of TreeExecutor (training_protocol.h) for its own samples, under the same names.
+///
+/// Samples are evaluated in the order of their frames, whatever node they are in: a frame is read from memory once for
+/// all of its samples and stays in the cache meanwhile. The values go to rows ordered by node.
+class TreeShard {
+ public:
+  /// `set` must outlive this and stay as it is.
+  TreeShard(const TrainingSet& set, const GrowTreeOptions& options, int tree);
+
+  SampleCounts sample_counts() const { return set_.sample_counts(); }
+  /// Samples of this shard at each child of the level at hand since `route`; all of them as one child before.
+  const ChildSizes& child_sizes() const { return child_sizes_; }
+  /// `before` are the child sizes of all shards before this one together.
+  void open_level(const Level& level, const ChildSizes& before);
+  void evaluate(NodeRange group, int block);
+  std::vector<NodeValues> node_values(NodeRange batch) const;
+  std::vector<SplitHistogram> histograms(NodeRange batch, const std::vector<CountTask>& tasks) const;
+  std::vector<IntervalValues> values_in(const std::vector<ValueInterval>& intervals) const;
+  void set_splits(const std::vector<NodeSplit>& splits);
+  ChildCounts route();
+
+ private:
+  /// A node of the level, as far as this shard has samples of it.
+  struct Node {
+    LevelNode all;                ///< of all shards together
+    std::int64_t size = 0;        ///< samples of this shard
+    std::int64_t first_rank = 0;  ///< of the first of them
+    std::int64_t row_begin = 0;   ///< of this shard's counted samples
+    std::int64_t row_end = 0;
+    TreeNode split;
+    bool divided = false;  ///< has a split
+    bool routed = false;   ///< the side of every sample is known from the rows
+  };
+
+  /// Candidates of the nodes of a group, one after the other, each laid out as in CandidateTable.
+  struct Tables {
+    int padded = 0;
+    std::vector<std::int16_t> offsets;
+
+    std::size_t length() const { return std::size_t{4} * padded; }
+  };
+
+  void assign_rows();
+  void draw_tables(int block);
+  void evaluate_rows(std::size_t rows);
+  std::int16_t* values() const { return reinterpret_cast<std::int16_t*>(values_.data()); }
+  FeatureRows rows_of(const Node& node) const;
+  void route_by_rows(Node& node, int candidate);
+  void route_the_rest();
+
+  const TrainingSet& set_;
+  std::span<const TrainingSample> samples_;
+  GrowTreeOptions options_;
+  int tree_;
+  ChildSizes child_sizes_;  ///< of this shard, at the last level
+  std::vector<Node> level_;
+  std::vector<std::int32_t> node_of_;   ///< [sample]: index in `level_`, or kSettled
+  std::vector<std::uint32_t> row_of_;   ///< [sample]
+  std::vector<std::uint8_t> on_right_;  ///< [sample]: the side that it goes to
+
+  // Rows of the group at hand for one block, kept from group to group.
+  NodeRange group_;
+  Tables tables_;
+  HugeBuffer values_{0};
+  std::vector<std::uint8_t> row_labels_;
+  std::vector<std::uint32_t> row_samples_;
+};
+
+}  // namespace vesalius

@@ -1,0 +1,107 @@
+#include "vesalius/forest/label_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "vesalius/base/parallel.h"
+#include "vesalius/base/pixel_grid.h"
+
+namespace vesalius {
+namespace {
+
+DepthImage without(const DepthImage& depth, const Mask& mask) {
+  DepthImage out = depth;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (mask[i] != 0) out[i] = 0;
+  }
+  return out;
+}
+
+/// Returns the depth inside the box, with no reading outside the mask.
+DepthImage keep_only(const DepthImage& depth, const Mask& mask, const Box& box) {
+  DepthImage out = crop(depth, box);
+  for (int v = 0; v < box.height; ++v) {
+    for (int u = 0; u < box.width; ++u) {
+      if (mask(box.u + u, box.v + v) == 0) out(u, v) = 0;
+    }
+  }
+  return out;
+}
+
+/// Returns a picture of the frame's size with `part` at its place and background around.
+LabelImage uncropped(const LabelImage& part, const Box& box, const Camera& camera) {
+  LabelImage out(camera.width, camera.height, kBackground);
+  for (int v = 0; v < box.height; ++v) std::copy_n(part.row(v), box.width, out.row(box.v + v) + box.u);
+  return out;
+}
+
+}  // namespace
+
+SceneLabeller::SceneLabeller(std::shared_ptr<const PixelLabeller> labeller, SceneLabelOptions options)
+    : labeller_(std::move(labeller)),
+      options_(options),
+      by_mode_(options.smooth.mode || !labeller_->has_distributions()) {}
+
+SceneLabels SceneLabeller::label_scene(const Frame& frame, StageClock& clock, SceneLabels used) const {
+  SceneLabels scene = std::move(used);
+  const auto find_planes = [&] { scene.flat = flat_pixels(frame.depth, frame.camera, options_.plane); };
+  const auto label = [&](const DepthImage& depth) {
+    labeller_->label_into(depth, frame.camera, options_.label.gate, scene.raw);
+  };
+  if (labeller_->has_background()) {
+    scene.shown = {};
+    std::array<double, 2> took_ms{};
+    parallel_for(2, [&](int i) { took_ms[i] = elapsed_ms([&] { i == 0 ? find_planes() : label(frame.depth); }); });
+    clock.lap({Stage::planes, Stage::label}, took_ms);
+  } else {
+    find_planes();
+    clock.lap(Stage::planes);
+    scene.shown = without(frame.depth, scene.flat);
+    label(scene.shown);
+    clock.lap(Stage::label);
+  }
+  scene.smoothed = !by_mode_;
+  if (scene.smoothed) {
+    const DepthImage& depth = scene.shown.empty() ? frame.depth : scene.shown;
+    mean_filter(scene.raw, depth, frame.camera, options_.smooth, scene.smooth);
+  }
+  clock.lap(Stage::smooth);
+  return scene;
+}
+
+LabelImage SceneLabeller::choose(const Posteriors& posteriors, const DepthImage& depth, float background_weight,
+                                 const Mask* prior, const Box* box) const {
+  LabelOptions options = options_.label;
+  options.background_weight = background_weight;
+  const LabelChoice choice{body().part_count(), labeller_->has_background(), prior, box};
+  LabelImage labels = choose_labels(posteriors, depth, choice, options);
+  return by_mode_ ? mode_filter(labels, depth, options_.smooth) : labels;
+}
+
+LabelImage SceneLabeller::choose(const SceneLabels& scene, const Frame& frame, float background_weight) const {
+  return choose(scene.posteriors(), scene.shown.empty() ? frame.depth : scene.shown, background_weight);
+}
+
+LabelImage SceneLabeller::choose_raw(const SceneLabels& scene, const Frame& frame) const {
+  const LabelChoice choice{body().part_count(), labeller_->has_background()};
+  return choose_labels(scene.raw, scene.shown.empty() ? frame.depth : scene.shown, choice, options_.label);
+}
+
+LabelImage SceneLabeller::label_person(const SceneLabels& scene, const Frame& frame, const Mask& person,
+                                       const Box& box) const {
+  if (box.width == 0) return {frame.camera.width, frame.camera.height, kBackground};
+  if (!labeller_->has_background()) return label_alone(frame, person, box);
+  return choose(scene.posteriors(), frame.depth, options_.label.background_weight, &person, &box);
+}
+
+LabelImage SceneLabeller::label_alone(const Frame& frame, const Mask& person, const Box& box) const {
+  const DepthImage alone = keep_only(frame.depth, person, box);
+  const Camera camera = cropped(frame.camera, box);
+  Posteriors posteriors;
+  labeller_->label_into(alone, camera, options_.label.gate, posteriors);
+  if (!by_mode_) posteriors = mean_filter(posteriors, alone, camera, options_.smooth);
+  return uncropped(choose(posteriors, alone, options_.label.background_weight), box, frame.camera);
+}
+
+}  // namespace vesalius
