@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "eval/people_figures.h"
+#include "eval/people_metrics.h"
 
 namespace vesalius {
 
@@ -21,7 +21,7 @@ struct DetectionLog {
   std::vector<JudgedProposal> proposals;
 };
 
-/// What is left at one threshold. Shares are NaN where there is nothing to share.
+/// What is left at one threshold. Shares of nothing are NaN.
 struct DetectionPoint {
   double threshold = 0.0;
   double rate = 0.0;             ///< share of the true people found
@@ -30,10 +30,11 @@ struct DetectionPoint {
   double upper_part_rate = 0.0;  ///< of the upper body's
 };
 
-/// With at least 1, 2, ... `max_parts` parts, of proposals of at least `min_score` (the paper's Figs 9 to 14).
+/// Returns a point for each fewest number of parts, 1 to `max_parts`, over the proposals whose score is at least
+/// `min_score` (the paper's Figs 9 to 14).
 std::vector<DetectionPoint> sweep_parts(const DetectionLog& log, int max_parts, double min_score);
 
-/// With scores of at least 0, 1/steps, ... 1, of proposals of at least `min_parts` parts.
+/// Returns a point for each least score 0, 1/steps, ... 1, over the proposals that have at least `min_parts` parts.
 std::vector<DetectionPoint> sweep_score(const DetectionLog& log, int steps, int min_parts);
 
 }  // namespace vesalius

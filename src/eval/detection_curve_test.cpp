@@ -17,7 +17,7 @@ DetectionLog by_hand() {
   return log;
 }
 
-TEST(DetectionCurve, OverPartsByHand) {
+TEST(DetectionCurve, OverPartsAgreesWithCountingByHand) {
   const auto curve = sweep_parts(by_hand(), 25, 0.3);
   ASSERT_EQ(curve.size(), 25U);
   EXPECT_DOUBLE_EQ(curve[0].threshold, 1.0);
@@ -33,7 +33,7 @@ TEST(DetectionCurve, OverPartsByHand) {
   EXPECT_TRUE(std::isnan(curve[20].part_rate));
 }
 
-TEST(DetectionCurve, OverScoreByHand) {
+TEST(DetectionCurve, OverScoreAgreesWithCountingByHand) {
   const auto curve = sweep_score(by_hand(), 10, 6);
   ASSERT_EQ(curve.size(), 11U);
   EXPECT_DOUBLE_EQ(curve[0].rate, 2.0 / 3.0);
@@ -52,7 +52,7 @@ TEST(DetectionCurve, FallsWithItsThreshold) {
   }
 }
 
-TEST(DetectionCurve, NobodyToBeFound) {
+TEST(DetectionCurve, WithNobodyToBeFoundHasNoRate) {
   DetectionLog log;
   log.frames = 2;
   EXPECT_TRUE(std::isnan(sweep_parts(log, 1, 0.0)[0].rate));

@@ -14,11 +14,11 @@ struct ScoreSample {
   bool person = false;
 };
 
-/// The candidates of a frame that can be told: each by itself, however many show the same person. A person has a mask
-/// of IoU kMatchIou with a true one, or where only the mask of all people is known, kShareOnMask of its pixels there or
-/// of that mask's among its own; nobody less than half of either, and less than half of kShareOnMask on people, or is
-/// in a frame without people. What lies between is left out, and so are frames with people of whose masks nothing is
-/// known.
+/// Returns the candidates of a frame of which the truth tells whether they are people. Each is judged by itself,
+/// however many show the same person. A candidate is a person if its mask has an IoU of at least kMatchIou with a true
+/// one. Where only the mask of all people is known, kShareOnMask of its pixels must lie there, or that share of the
+/// mask on it. A candidate is nobody if it has less than half of this and less than half of kShareOnMask on people, or
+/// if the frame is empty. All others are left out, and so are frames with people of whose masks nothing is known.
 std::vector<ScoreSample> score_samples(const Trace& trace, const FrameTruth& truth, const DepthImage& depth);
 
 struct ScoreFit {
@@ -29,9 +29,9 @@ struct ScoreFit {
   double area_after = 0.0;
 };
 
-/// Weights and bias of the person score by logistic regression, so that 0.5 lies between people and nobodies; the
+/// Fits weights and bias of the person score by logistic regression, so that 0.5 lies between people and nobodies; the
 /// other options are those of `start`. The people of every set weigh the same together, and so do its nobodies: a long
-/// sequence does not drown a short one. Weights are held towards 0 a little, for sets that a line parts wholly.
+/// sequence does not drown a short one. A small ridge keeps the weights finite for sets that a line parts wholly.
 /// Throws Error where there are no people or no nobodies.
 ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const ScoreOptions& start);
 

@@ -62,7 +62,7 @@ TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
   EXPECT_GE(fit.area_after, fit.area_before);
 }
 
-TEST(FitScore, SetsThatALinePartsGiveFiniteWeightsThatPartThem) {
+TEST(FitScore, SetsThatALineSeparatesGiveFiniteWeights) {
   std::vector<ScoreSample> samples;
   for (int i = 0; i < 20; ++i) {
     const float x = (i < 10 ? 0.F : 0.4F) + 0.03F * static_cast<float>(i);
@@ -85,13 +85,13 @@ TEST(FitScore, ALongSequenceDoesNotDrownAShortOne) {
   EXPECT_GT(fit.options.core_weight, 0.8F * fit.options.open_weight);
 }
 
-TEST(FitScore, EqualScoresAreHalfInOrder) {
+TEST(FitScore, EqualScoresCountAsHalfInOrder) {
   const Evidence same{0.5F, 0.5F, 0.5F, 0.5F};
   const ScoreFit fit = fit_score({{{same, true}, {same, false}, {same, false}}}, {});
   EXPECT_EQ(fit.area_before, 0.5);
 }
 
-TEST(FitScore, NeedsBothKinds) {
+TEST(FitScore, NeedsPeopleAndNobodies) {
   const Evidence e{0.5F, 0.5F, 0.5F, 0.5F};
   EXPECT_THAT([&] { fit_score({{{e, true}}}, {}); }, ThrowsMessage<Error>(HasSubstr("to be nobody")));
   EXPECT_THAT([&] { fit_score({{{e, false}}}, {}); }, ThrowsMessage<Error>(HasSubstr("to be a person")));

@@ -23,7 +23,7 @@ double wilson_bound(double successes, double trials, bool low) {
   return inside;
 }
 
-TEST(Wilson, TextbookValues) {
+TEST(Wilson, AgreesWithTextbookValues) {
   const Interval half = wilson(5, 10);
   EXPECT_NEAR(half.low, 0.2366, 5e-5);
   EXPECT_NEAR(half.high, 0.7634, 5e-5);
@@ -41,7 +41,7 @@ TEST(Wilson, SolvesItsEquation) {
   }
 }
 
-TEST(Wilson, NothingKnownAndNonsense) {
+TEST(Wilson, NoTrialsGiveAllAndNonsenseIsRefused) {
   EXPECT_DOUBLE_EQ(wilson(0, 0).low, 0.0);
   EXPECT_DOUBLE_EQ(wilson(0, 0).high, 1.0);
   EXPECT_THROW(wilson(3, 2), Error);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "eval/joint_figures.h"
+#include "eval/joint_metrics.h"
 
 namespace vesalius {
 namespace {

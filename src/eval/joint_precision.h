@@ -13,18 +13,19 @@ struct JointProposals {
   std::vector<Eigen::Vector3f> joints;
 };
 
-/// Average precision of each joint over all proposals of a set of frames, whatever their score (Shotton et al. 2011):
-/// the area under precision against recall as the least score falls. A proposal is right within kJointTolerance_m of a
-/// true joint of its name that no surer proposal of the frame took.
+/// The average precision of each joint over all proposals of a set of frames, whatever their score (Shotton et al.
+/// 2011): the area under precision against recall as the least score falls. A proposal is right if it lies within
+/// kJointTolerance_m of a true joint of its name that no surer proposal of the frame took.
 class JointPrecision {
  public:
-  /// A frame. `truth` is [person][joint] in the order of `names`; NaN where it is not known, which leaves the joint out
-  /// in this frame. People from `counted` on are no loss where they are missed and no fault where they are proposed.
+  /// Adds a frame. `truth` is [person][joint] in the order of `names`; a NaN leaves the joint out in this frame. People
+  /// from index `counted` on count neither as missed nor, where they are proposed, as wrong.
   void add(const std::vector<std::string>& names, std::vector<JointProposals> proposals,
            const std::vector<std::vector<Eigen::Vector3f>>& truth, std::size_t counted);
   void add(const JointPrecision& frames);
 
-  /// (name, average precision) of the joints that were there to be found, in the order in which they came.
+  /// Returns name and average precision (0-1) of the joints that were there to be found, in the order in which they
+  /// came.
   std::vector<std::pair<std::string, double>> averages() const;
   bool empty() const { return joints_.empty(); }
 

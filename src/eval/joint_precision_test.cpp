@@ -24,7 +24,7 @@ double average(const JointPrecision& precision) {
   return averages.empty() ? std::nan("") : averages.front().second;
 }
 
-TEST(JointPrecision, ByHand) {
+TEST(JointPrecision, AgreesWithCountingByHand) {
   // True heads at 0 and 5. By score: right, wrong, right, so precision 1, 1/2, 2/3 at recall 1/2, 1/2, 1.
   JointPrecision precision;
   precision.add(kHead, {proposal(0.2F, 5.F), proposal(0.9F, 0.05F), proposal(0.5F, 2.F)},

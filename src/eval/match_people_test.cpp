@@ -25,7 +25,7 @@ std::vector<Kind> kinds(const std::vector<Mask>& masks, const FrameTruth& truth)
   return kinds;
 }
 
-TEST(MatchPeople, ByCountAlone) {
+TEST(MatchPeople, CountsAloneMatchWhoeverIsFound) {
   FrameTruth truth;
   truth.people = 2;
   EXPECT_THAT(kinds({span(0, 1), span(1, 2), span(2, 3)}, truth),
@@ -36,7 +36,7 @@ TEST(MatchPeople, ByCountAlone) {
   EXPECT_THAT(kinds({span(0, 1), span(1, 2)}, truth), testing::ElementsAre(Kind::person, Kind::ignored));
 }
 
-TEST(MatchPeople, MustLieOnTheCommonMask) {
+TEST(MatchPeople, ProposalsMustLieOnTheCommonMask) {
   FrameTruth truth;
   truth.people = 1;
   truth.mask = span(0, 10);
@@ -55,7 +55,7 @@ FrameTruth two_people() {
   return truth;
 }
 
-TEST(MatchPeople, ByIouEachOnce) {
+TEST(MatchPeople, EachPersonIsMatchedOnceByIou) {
   const FrameTruth truth = two_people();
   const Mask right = span(10, 18), again = span(10, 20), left = span(0, 4), small = span(0, 3);
   std::vector<Proposal> proposals;
@@ -77,7 +77,7 @@ TEST(MatchPeople, PixelsWithoutReadingDoNotCount) {
   EXPECT_EQ(match_people({{&small, nullptr, 1.F}}, truth, depth)[0].kind, Kind::person);
 }
 
-TEST(VisiblePeople, ThoseOfWhomTooLittleIsSeenComeLast) {
+TEST(VisiblePeople, ComeBeforeThoseOfWhomTooLittleIsSeen) {
   TrueFrame frame;
   frame.frame.depth = kDepth;
   frame.frame.camera = {kWidth, 1, 10.F, 10.F, 10.F, 0.F};  // 100 cm^2 a pixel at 1 m
@@ -94,7 +94,7 @@ TEST(VisiblePeople, ThoseOfWhomTooLittleIsSeenComeLast) {
   EXPECT_THAT(kinds({span(0, 4), span(10, 20)}, frame.truth), testing::ElementsAre(Kind::ignored, Kind::person));
 }
 
-TEST(DistinctProposals, WithoutRepetitionsOfSurerOnes) {
+TEST(DistinctProposals, LeaveOutRepetitionsOfSurerOnes) {
   Trace trace;
   const auto add = [&](const Mask& mask, int found, float score) {
     trace.candidates.emplace_back();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "vesalius/base/error.h"
 
@@ -19,7 +20,7 @@ Forest with_hard_votes(Forest forest) {
 }
 
 Forest with_first_trees(const Forest& forest, int count) {
-  if (count < 1 || static_cast<std::size_t>(count) > forest.trees.size()) {
+  if (count < 1 || count > std::ssize(forest.trees)) {
     throw Error(fmt::format("{} of {} trees, expected at least one and at most all", count, forest.trees.size()));
   }
   Forest reduced;

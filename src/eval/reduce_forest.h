@@ -4,10 +4,10 @@
 
 namespace vesalius {
 
-/// Every leaf left with its likeliest class alone, the first of equals: what a forest of votes would have stored.
+/// Returns the forest with the likeliest class alone in every leaf, the first of equals: a forest of votes.
 Forest with_hard_votes(Forest forest);
 
-/// The first `count` trees. Throws Error unless there are as many.
+/// Returns the forest of the first `count` trees. Throws Error unless there are as many.
 Forest with_first_trees(const Forest& forest, int count);
 
 }  // namespace vesalius

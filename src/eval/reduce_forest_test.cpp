@@ -19,7 +19,7 @@ Forest three_leaves() {
   return forest;
 }
 
-TEST(ReduceForest, HardVotes) {
+TEST(ReduceForest, HardVotesKeepTheLikeliestClassAlone) {
   const Forest hard = with_hard_votes(three_leaves());
   EXPECT_TRUE(has_distributions(three_leaves()));
   EXPECT_FALSE(has_distributions(hard));
@@ -31,7 +31,7 @@ TEST(ReduceForest, HardVotes) {
   EXPECT_EQ(votes.at(0, 0)[4], 0);
 }
 
-TEST(ReduceForest, FirstTrees) {
+TEST(ReduceForest, KeepsTheFirstTrees) {
   const Forest forest = three_leaves();
   const Forest two = with_first_trees(forest, 2);
   EXPECT_THAT(two.trees, testing::ElementsAre(forest.trees[0], forest.trees[1]));

@@ -7,16 +7,16 @@
 #include <iterator>
 #include <utility>
 
-#include "eval/breakdown_figures.h"
+#include "eval/breakdown_metrics.h"
 #include "eval/match_people.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
 
-/// Value of a term of this frame; `fallback` where it has none.
-double term_or(const FigureTerms& terms, std::string_view name, double fallback) {
-  const auto found = std::ranges::find(terms, name, &FigureTerm::name);
+/// Returns the value of a metric in this frame, or `fallback` where it has none.
+double term_or(const MetricTerms& terms, Metric metric, double fallback) {
+  const auto found = std::ranges::find(terms, metric, [](const MetricTerm& term) { return term.id.metric; });
   if (found == terms.end() || found->denominator <= 0.0) return fallback;
   return found->numerator / found->denominator;
 }
@@ -27,21 +27,21 @@ void say_what_went_wrong(FrameScore& score, bool labels_only) {
     score.badness += badness;
     wrong += (wrong.empty() ? "" : ", ") + text;
   };
-  const FigureTerms& terms = score.terms;
-  const double missed = score.expected * (1.0 - term_or(terms, "people.found", 1.0));
-  const double excess = term_or(terms, "people.false", 0.0);
+  const MetricTerms& terms = score.terms;
+  const double missed = score.expected * (1.0 - term_or(terms, Metric::people_found, 1.0));
+  const double excess = term_or(terms, Metric::people_false, 0.0);
   if (missed > 0.0) add(missed, fmt::format("{:.0f} of {} people missed", missed, score.expected));
   if (excess > 0.0) add(excess, fmt::format("{:.0f} found who are none", excess));
-  const char* overlap = labels_only ? "pixels.person_iou" : "mask.iou_where_found";
+  const Metric overlap = labels_only ? Metric::pixel_person_iou : Metric::mask_iou_where_found;
   const double iou = term_or(terms, overlap, 1.0);
   if (iou < 0.9) add(1.0 - iou, fmt::format("{} IoU {:.2f}", labels_only ? "pixel" : "mask", iou));
-  const double body = term_or(terms, "pixels.body_on_empty", 0.0);
+  const double body = term_or(terms, Metric::body_on_empty, 0.0);
   if (body > 0.003) add(body, fmt::format("{:.1f} % of the empty frame taken for a body", 100.0 * body));
-  const double joints = term_or(terms, "joints.at_10cm", 1.0);
+  const double joints = term_or(terms, Metric::joints_at_10cm, 1.0);
   if (joints < 0.9) add(1.0 - joints, fmt::format("{:.0f} % of the joints within 10 cm", 100.0 * joints));
 }
 
-void append(FigureTerms& terms, FigureTerms more) {
+void append(MetricTerms& terms, MetricTerms more) {
   terms.insert(terms.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
@@ -68,7 +68,7 @@ void check_truth(const TrueFrame& frame) {
 /// The found person of each true one, null where it was missed.
 std::vector<const Person*> found_of_each(const std::vector<Person>& people, const std::vector<Match>& matches,
                                          int expected) {
-  std::vector<const Person*> found(static_cast<std::size_t>(expected), nullptr);
+  std::vector<const Person*> found(expected, nullptr);
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (matches[i].kind == Match::Kind::person) found[matches[i].person] = &people[i];
   }
@@ -145,15 +145,14 @@ void FrameScorer::judge_joint_proposals(const TrueFrame& frame, const std::vecto
   const FrameTruth& truth = frame.truth;
   const JointSet* set = joint_set_of(truth);
   if (set == nullptr) return;
-  const auto index = static_cast<std::size_t>(set - body().joint_sets.data());
+  const auto index = set - body().joint_sets.data();
   std::vector<JointProposals> judged;
   for (const Proposal& proposal : proposals) {
     Skeleton skeleton = *proposal.skeleton;
     predict_missing_parts(body(), skeleton);
     judged.push_back({proposal.score, joints_by_name(truth.joint_names, *set, derive_joints(body(), skeleton)[index])});
   }
-  score.joint_precision.add(truth.joint_names, std::move(judged), truth.joints,
-                            static_cast<std::size_t>(score.expected));
+  score.joint_precision.add(truth.joint_names, std::move(judged), truth.joints, score.expected);
 }
 
 void FrameScorer::judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
@@ -161,7 +160,7 @@ void FrameScorer::judge_joints(const TrueFrame& frame, const std::vector<const P
   const FrameTruth& truth = frame.truth;
   const JointSet* set = joint_set_of(truth);
   if (set == nullptr) return;
-  const auto index = static_cast<std::size_t>(set - body().joint_sets.data());
+  const auto index = set - body().joint_sets.data();
   for (std::size_t who = 0; who < of_person.size() && who < truth.joints.size(); ++who) {
     std::vector<Joint> joints;
     if (fit && !truth.labels.empty()) {

@@ -6,19 +6,19 @@
 #include <vector>
 
 #include "eval/detection_curve.h"
-#include "eval/figure_table.h"
 #include "eval/fit_score.h"
-#include "eval/joint_figures.h"
+#include "eval/joint_metrics.h"
 #include "eval/joint_precision.h"
-#include "eval/pixel_figures.h"
+#include "eval/metric_table.h"
+#include "eval/pixel_metrics.h"
 #include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
 
 namespace vesalius {
 
-/// Everything that one frame adds to the figures of its set, and what shows why.
+/// Everything that one frame adds to the metrics of its set, and what shows why.
 struct FrameScore {
-  FigureTerms terms;
+  MetricTerms terms;
   int expected = 0;  ///< true people
   std::vector<JudgedProposal> proposals;
   std::vector<ScoreSample> samples;                 ///< to fit the score on
@@ -39,14 +39,14 @@ class FrameScorer {
  public:
   struct Options {
     DetectOptions detect;
-    bool labels_only = false;  ///< only the pixel figures of the first pass: much faster
+    bool labels_only = false;  ///< only the pixel metrics of the first pass: much faster
   };
 
   /// Throws as Detector does.
   FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options);
 
-  /// `fit_joints`: joint offsets instead of joint figures; from the true labels where these are known, else from the
-  /// people found. Throws Error where truth and frame do not fit together.
+  /// Judges one frame. With `fit_joints` the score has joint offsets instead of joint metrics, from the true labels
+  /// where these are known, else from the people found. Throws Error where truth and frame do not fit together.
   FrameScore score(TrueFrame frame, bool fit_joints) const;
 
   const BodyModel& body() const { return detector_.body(); }

@@ -7,6 +7,7 @@
 
 #include "capsule/capsule_person.h"
 #include "eval/match_people.h"
+#include "eval/test_terms.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -29,7 +30,7 @@ class Labeller : public PixelLabeller {
 
   void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
     out = {depth.width(), depth.height(), paper_body().part_count() + 1, 1, {}};
-    out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
+    out.sums.assign(depth.size() * out.classes, 0);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
         const std::uint8_t label = truth_(u, v);
@@ -84,17 +85,9 @@ FrameScorer scorer(const TrueFrame& frame, bool half_blind, bool labels_only = f
   return FrameScorer(std::make_shared<Labeller>(frame.truth.labels, half_blind), options);
 }
 
-double value(const FrameScore& score, const std::string& name) {
-  double numerator = 0.0, denominator = 0.0;
-  for (const FigureTerm& term : score.terms) {
-    if (term.name != name) continue;
-    numerator += term.numerator;
-    denominator += term.denominator;
-  }
-  return numerator / denominator;
-}
+double value(const FrameScore& score, const std::string& name) { return test::value_of(score.terms, name); }
 
-TEST(FrameScorer, PerfectLabelsGivePerfectFigures) {
+TEST(FrameScorer, PerfectLabelsGivePerfectMetrics) {
   const TrueFrame frame = labelled({0.F});
   const FrameScore score = scorer(frame, false).score(frame, false);
   EXPECT_EQ(score.expected, 1);
@@ -135,7 +128,7 @@ TEST(FrameScorer, AGridIsJudgedOnTheWholePicture) {
   EXPECT_EQ(quick.score(frame, false).labels, score.labels);
 }
 
-TEST(FrameScorer, HalfOfTheLabelsWrong) {
+TEST(FrameScorer, HalfOfTheLabelsWrongLowersIouAndRecall) {
   const TrueFrame frame = labelled({0.F});
   const FrameScore score = scorer(frame, true).score(frame, false);
   EXPECT_LT(value(score, "pixels.person_iou"), 0.6);
@@ -145,7 +138,7 @@ TEST(FrameScorer, HalfOfTheLabelsWrong) {
   EXPECT_GT(value(score, "pixels.recall.l_upper_arm"), 0.9);
 }
 
-TEST(FrameScorer, MissedAndSurplusPeople) {
+TEST(FrameScorer, CountsMissedAndSurplusPeople) {
   TrueFrame frame = labelled({-0.7F, 0.7F});
   const FrameScorer both = scorer(frame, false);
   EXPECT_DOUBLE_EQ(value(both.score(frame, false), "people.found"), 1.0);

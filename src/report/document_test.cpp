@@ -16,7 +16,7 @@ using ::testing::ThrowsMessage;
 const std::string kSvg = "<svg></svg>";
 const std::string kPng = "\x89PNG\r\n\x1a\n";
 
-TEST(EscapeText, Base64OfRfc4648) {
+TEST(EscapeText, Base64AgreesWithRfc4648) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
   EXPECT_EQ(base64("fo"), "Zm8=");
@@ -41,7 +41,7 @@ TEST(EscapeText, MarkdownMarkupBecomesText) {
   EXPECT_EQ(escape_markdown("    two\nlines"), "two lines");
 }
 
-TEST(Document, MarkdownAsWritten) {
+TEST(Document, IsWrittenAsMarkdown) {
   Document document("Report");
   document.heading(2, "Sets");
   document.paragraph("All of it.");
@@ -56,7 +56,7 @@ TEST(Document, MarkdownAsWritten) {
   EXPECT_THAT(document.markdown(), HasSubstr("(<curve_one.svg>)"));
 }
 
-TEST(Document, OnePageWithItsPictures) {
+TEST(Document, IsOnePageOfHtmlWithItsPictures) {
   Document document("A & B");
   document.heading(3, "x < y");
   document.table({"n"}, {{"1"}, {""}});
@@ -81,7 +81,7 @@ TEST(Document, PictureFilesHaveSafeUniqueNames) {
   EXPECT_THAT(files, testing::ElementsAre("___a_b.svg", "___a_b-2.svg", "___a_b.png", "picture.svg"));
 }
 
-TEST(Document, RefusesWhatItCannotMean) {
+TEST(Document, RefusesOddTablesHeadingsAndPictures) {
   Document document("r");
   EXPECT_THAT([&] { document.heading(1, "x"); }, ThrowsMessage<Error>(HasSubstr("level 1, expected 2 to 6")));
   EXPECT_THAT(

@@ -84,7 +84,7 @@ TEST(Plot, GapsBreakLinesAndEmptySeriesStayInTheLegend) {
   EXPECT_NE(plot_svg(plot), svg);
 }
 
-TEST(Plot, RangesAndLogAxis) {
+TEST(Plot, HasTheRangesAndLogAxisAskedFor) {
   NEEDS_GNUPLOT();
   LinePlot plot = two_lines();
   plot.log_x = true;
@@ -108,7 +108,7 @@ TEST(Plot, RefusesWhatCannotBeDrawn) {
   EXPECT_THAT(test::error_of([&] { plot_svg(plot); }), HasSubstr("no points"));
 }
 
-TEST(Plot, SaysWhatIsMissing) {
+TEST(Plot, SaysThatGnuplotIsMissing) {
   const test::TemporaryFolder empty;
   const PathIs path(empty.path());
   EXPECT_THAT(test::error_of([&] { plot_svg(two_lines()); }),

@@ -52,7 +52,7 @@ TEST_F(Evaluate, PrintsWhatASetCameTo) {
   const Outcome run = evaluate("");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out,
-              StartsWith("frames: 3 frames, people 2 of 2, false 0, somebody in 0 of 1 empty, body on empty "));
+              StartsWith("frames: 3 frames, people 2 of 2, false 0, somebody in 0 of 1 empty, parts seen on average "));
   EXPECT_THAT(run.out, ContainsRegex("parts seen, %: l_foot [0-9]+, l_leg "));
   EXPECT_THAT(run.out, HasSubstr("found by posture, %: standing 100\n"));
 }
@@ -61,14 +61,14 @@ TEST_F(Evaluate, StepTakesTheFirstOfEveryN) {
   EXPECT_THAT(evaluate(" --step 2").out, StartsWith("frames: 2 frames, people 1 of 1"));
 }
 
-TEST_F(Evaluate, LabelsOnly) {
+TEST_F(Evaluate, LabelsOnlyMeasuresNoPeople) {
   const Outcome run = evaluate(" --labels-only");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, StartsWith("frames: 3 frames, body on empty "));
   EXPECT_THAT(run.out, Not(HasSubstr("people")));
 }
 
-TEST_F(Evaluate, WritesReportWithPictures) {
+TEST_F(Evaluate, WritesAReportWithPictures) {
   if (!has_gnuplot()) GTEST_SKIP() << "no program gnuplot (Debian: gnuplot-nox)";
   // So that somebody is missed:
   const Outcome run = evaluate(" --refine.min-score 1 --no-refine.second-pass --report " + path("out"));
@@ -107,7 +107,7 @@ TEST_F(Evaluate, WritesWhatEachPartOfTheMethodIsWorth) {
   EXPECT_EQ(evaluate(" --ablation --labels-only").exit_code, 2);
 }
 
-TEST_F(Evaluate, SameFiguresForAnyThreadCount) {
+TEST_F(Evaluate, MetricsAreTheSameForAnyThreadCount) {
   std::vector<json> sets;
   for (const char* threads : {"1", "2", "5"}) {
     ASSERT_EQ(evaluate(" --json " + path("t.json") + " --threads " + threads).exit_code, 0);
@@ -118,7 +118,7 @@ TEST_F(Evaluate, SameFiguresForAnyThreadCount) {
   EXPECT_EQ(sets[0], sets[2]);
 }
 
-TEST_F(Evaluate, DatasetsHaveFiguresOfPixelsPartsAndJoints) {
+TEST_F(Evaluate, DatasetsHaveMetricsOfPixelsPartsAndJoints) {
   const Outcome run = run_program("evaluate " + dataset() + " -q -m " + model() + " --json " + path("d.json"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json set = json::parse(bytes_of(path("d.json"))).at("sets").at(0);
@@ -132,7 +132,7 @@ TEST_F(Evaluate, DatasetsHaveFiguresOfPixelsPartsAndJoints) {
   EXPECT_EQ(set.at("curve_over_parts").size(), 25U);
 }
 
-TEST_F(Evaluate, AModelOfOtherParts) {
+TEST_F(Evaluate, RefusesAModelOfOtherParts) {
   std::string toml = paper_body().toml;
   for (std::size_t at = toml.find("l_foot"); at != toml.npos; at = toml.find("l_foot", at + 1)) toml[at + 2] = 'g';
   DatasetWriter(path("other"), {toml, "", 1, 1, 1}).write(0, render({}, {16, 12, 10, 10, 8, 6}, paper_body()));
@@ -141,7 +141,7 @@ TEST_F(Evaluate, AModelOfOtherParts) {
   EXPECT_THAT(run.err, HasSubstr("part 0 is l_goot, in the model l_foot"));
 }
 
-TEST_F(Evaluate, ADamagedFrameInTheMiddle) {
+TEST_F(Evaluate, ADamagedFrameEndsTheWorkUnlessItIsToKeepGoing) {
   const std::string file = path("frames/depth/b.png");
   const std::string good = bytes_of(file);
   write("frames/depth/b.png", good.substr(0, good.size() / 2));
@@ -161,7 +161,7 @@ TEST_F(Evaluate, ADamagedFrameInTheMiddle) {
   EXPECT_THAT(set.at("failures").at(0).get<std::string>(), HasSubstr("b.png"));
 }
 
-TEST_F(Evaluate, TruthThatCannotBeUsed) {
+TEST_F(Evaluate, RefusesTruthThatCannotBeUsed) {
   const auto error = [](const std::string& more) {
     const Outcome run = evaluate(more);
     EXPECT_EQ(run.exit_code, 1);
@@ -214,10 +214,25 @@ TEST_F(Evaluate, FramesOfARecipeAreThoseThatSynthWrites) {
   const json rendered = figures("--recipe " + recipe + " --count 5 --render-seed 3");
   EXPECT_EQ(rendered.at("frames"), 3);
   EXPECT_EQ(rendered.at("name"), "small");
+  EXPECT_THAT(rendered.at("notes").at(0).get<std::string>(),
+              StartsWith("rendered with seed 3: bodies built in, 0 captured poses, checksum of the files used "));
   for (const auto& [name, figure] : stored.at("figures").items()) {
     EXPECT_EQ(rendered.at("figures").at(name).at("value"), figure.at("value")) << name;
   }
   EXPECT_EQ(rendered.at("confusion"), stored.at("confusion"));
+}
+
+TEST_F(Evaluate, SaysWhatStandsInForMissingAssetsEvenWhenQuiet) {
+  write("captured.toml",
+        "sensor.width = 80\nsensor.height = 60\nbody.count = 2\nbody.kind = 'auto'\npose.captured = 0.5\n");
+  fs::create_directories(path("no_assets"));
+  const Outcome run = run_program("evaluate -q --recipe " + path("captured.toml") + " --count 1 --assets " +
+                                  path("no_assets") + " -m " + model() + " --json " + path("n.json"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("note: captured: makehuman is not there, the built-in body instead"));
+  EXPECT_THAT(run.err, HasSubstr("note: captured: mocap is not there, sampled poses instead"));
+  const json notes = json::parse(bytes_of(path("n.json"))).at("sets").at(0).at("notes");
+  EXPECT_THAT(notes.dump(), HasSubstr("mocap is not there"));
 }
 
 TEST_F(Evaluate, ARecipeNeedsACount) {
@@ -275,9 +290,11 @@ TEST_F(Compare, RefusesWhatIsNoEvaluation) {
   EXPECT_THAT(error(R"({"vesalius_evaluation": 99})"), HasSubstr("x.json: version 99, expected 1"));
   EXPECT_THAT(error(R"({"vesalius_evaluation": 1})"), HasSubstr("x.json: damaged evaluation"));
   EXPECT_THAT(error(R"({"vesalius_evaluation": 1, "sets": []})"), HasSubstr("no set in common"));
-  EXPECT_THAT(
-      error(R"({"vesalius_evaluation": 1, "sets": [{"name": "frames", "frames_key": "0", "figures": {"a": 3}}]})"),
-      HasSubstr("damaged evaluation"));
+  const auto with = [](const std::string& metrics) {
+    return R"({"vesalius_evaluation": 1, "sets": [{"name": "frames", "frames_key": "0", "figures": )" + metrics + "}]}";
+  };
+  EXPECT_THAT(error(with(R"({"mask.iou": 3})")), HasSubstr("x.json: damaged evaluation"));
+  EXPECT_THAT(error(with(R"({"mask.iuo": {}})")), HasSubstr("x.json: unknown metric mask.iuo"));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "dataset/open_truth.h"
 #include "eval/score_frame.h"
-#include "io/files/read_file.h"
+#include "evaluation/evaluation_joints.h"
 #include "io/model/model_file.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
@@ -60,21 +60,16 @@ AcceptedSet parse_set(const toml::table& table, const std::string& name) {
     const toml::table* figure = node.as_table();
     if (figure == nullptr) fail(name, node, "[[set.figure]]");
     check_keys(*figure, {"name", "value", "tolerance"}, name);
-    set.figures.push_back({value_of<std::string>(*figure, "name", name), value_of<double>(*figure, "value", name),
-                           value_of<double>(*figure, "tolerance", name)});
+    const auto metric = value_of<std::string>(*figure, "name", name);
+    if (!parse_metric(metric)) fail(name, *figure, "a metric of docs/metrics.md, found " + metric);
+    set.metrics.push_back(
+        {metric, value_of<double>(*figure, "value", name), value_of<double>(*figure, "tolerance", name)});
   }
   return set;
 }
 
-Forest load_with_joints(const std::string& project, const std::string& model) {
-  Forest forest = load_model(project + "/" + model);
-  forest.body = parse_body_model(forest.body.toml + "\n" + read_file(project + "/data/joints/evaluation.toml"),
-                                 "data/joints/evaluation.toml");
-  return forest;
-}
-
-double term(const FrameScore& score, std::string_view name) {
-  const auto found = std::ranges::find(score.terms, name, &FigureTerm::name);
+double term(const FrameScore& score, Metric metric) {
+  const auto found = std::ranges::find(score.terms, metric, [](const MetricTerm& term) { return term.id.metric; });
   return found == score.terms.end() ? 0.0 : found->numerator;
 }
 
@@ -110,41 +105,40 @@ std::vector<AcceptedSet> parse_accuracy(std::string_view text, const std::string
 }
 
 MeasuredSet measure(const AcceptedSet& set, const std::string& project, const std::string& source) {
-  const FrameScorer scorer(make_labeller(load_with_joints(project, set.model)), {});
+  Forest forest = load_model(project + "/" + set.model);
+  forest.body = with_evaluation_joints(forest.body);
+  const FrameScorer scorer(make_labeller(std::move(forest)), {});
   const auto truth = open_truth(source, set.step);
   std::vector<TrueFrame> frames;
   while (auto frame = truth->next()) frames.push_back(std::move(*frame));
   std::vector<FrameScore> scores(frames.size());
-  parallel_for(static_cast<int>(frames.size()), [&](int i) {
-    const auto at = static_cast<std::size_t>(i);
-    scores[at] = scorer.score(frames[at], false);
-  });
+  parallel_for(static_cast<int>(frames.size()), [&](int i) { scores[i] = scorer.score(frames[i], false); });
   MeasuredSet now;
-  FigureTable table;
+  MetricTable table;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::string& name = frames[i].frame.name;
     ++now.frames;
     table.add(frame_key("", name.c_str()), scores[i].terms);
-    if (term(scores[i], "people.found") < scores[i].expected) now.missed.push_back(name);
-    if (term(scores[i], "people.false") > 0.0) now.false_people.push_back(name);
+    if (term(scores[i], Metric::people_found) < scores[i].expected) now.missed.push_back(name);
+    if (term(scores[i], Metric::people_false) > 0.0) now.false_people.push_back(name);
   }
-  for (const Estimate& estimate : table.estimates()) now.figures[estimate.name] = estimate.value;
+  for (const Estimate& estimate : table.estimates()) now.metrics[estimate.id.name()] = estimate.value;
   return now;
 }
 
 std::vector<std::string> what_got_worse(const AcceptedSet& accepted, const MeasuredSet& now) {
   std::vector<std::string> lines;
-  for (const AcceptedFigure& figure : accepted.figures) {
-    const auto found = now.figures.find(figure.name);
-    if (found == now.figures.end()) {
-      lines.push_back(fmt::format("{}: no {} any more", accepted.source, figure.name));
+  for (const AcceptedMetric& metric : accepted.metrics) {
+    const auto found = now.metrics.find(metric.name);
+    if (found == now.metrics.end()) {
+      lines.push_back(fmt::format("{}: no {} any more", accepted.source, metric.name));
       continue;
     }
-    const double gain =
-        kind_of(figure.name).higher_is_better ? found->second - figure.value : figure.value - found->second;
-    if (gain >= -figure.tolerance - 1e-9) continue;
+    const bool higher = info(parse_metric(metric.name).value().metric).direction == MetricDirection::higher_is_better;
+    const double gain = higher ? found->second - metric.value : metric.value - found->second;
+    if (gain >= -metric.tolerance - 1e-9) continue;
     lines.push_back(fmt::format("{}: {} is {:.4f}, accepted were {:.4f} with a tolerance of {}", accepted.source,
-                                figure.name, found->second, figure.value, figure.tolerance));
+                                metric.name, found->second, metric.value, metric.tolerance));
   }
   if (lines.empty()) return lines;
   const auto add_frames = [&](const char* what, const std::vector<std::string>& frames) {
@@ -161,11 +155,11 @@ std::string accuracy_toml(const AcceptedSet& accepted, const MeasuredSet& now) {
   std::string toml = fmt::format("[[set]]  # {} frames\nmodel = \"{}\"\nsource = \"{}\"\nstep = {}\n", now.frames,
                                  accepted.model, accepted.source, accepted.step);
   toml += fmt::format("missed = {}\nfalse_people = {}\n", list_toml(now.missed), list_toml(now.false_people));
-  for (const AcceptedFigure& figure : accepted.figures) {
-    const auto found = now.figures.find(figure.name);
-    if (found == now.figures.end()) continue;
-    toml += fmt::format("\n[[set.figure]]\nname = \"{}\"\nvalue = {:.4f}\ntolerance = {}\n", figure.name, found->second,
-                        figure.tolerance);
+  for (const AcceptedMetric& metric : accepted.metrics) {
+    const auto found = now.metrics.find(metric.name);
+    if (found == now.metrics.end()) continue;
+    toml += fmt::format("\n[[set.figure]]\nname = \"{}\"\nvalue = {:.4f}\ntolerance = {}\n", metric.name, found->second,
+                        metric.tolerance);
   }
   return toml;
 }

@@ -1,4 +1,4 @@
-// The figures of data/accuracy.toml must not get worse.
+// The metrics of data/accuracy.toml must not get worse.
 
 #include <gmock/gmock.h>
 
@@ -26,9 +26,9 @@ std::vector<AcceptedSet> accepted_sets() {
 void expect_as_good(const AcceptedSet& set, const std::string& source) {
   const MeasuredSet now = measure(set, kProject, source);
   std::cout << set.source << " by " << set.model << ", " << now.frames << " frames:";
-  for (const AcceptedFigure& figure : set.figures) {
-    const auto found = now.figures.find(figure.name);
-    if (found != now.figures.end()) std::cout << ' ' << figure.name << ' ' << found->second;
+  for (const AcceptedMetric& metric : set.metrics) {
+    const auto found = now.metrics.find(metric.name);
+    if (found != now.metrics.end()) std::cout << ' ' << metric.name << ' ' << found->second;
   }
   std::cout << '\n';
   const std::vector<std::string> worse = what_got_worse(set, now);
@@ -36,7 +36,7 @@ void expect_as_good(const AcceptedSet& set, const std::string& source) {
   if (!worse.empty()) std::cout << "As it is now, where that is meant:\n" << accuracy_toml(set, now);
 }
 
-TEST(Accuracy, OfBundledFramesAsGoodAsAccepted) {
+TEST(Accuracy, OnBundledFramesIsAsGoodAsAccepted) {
   int sets = 0;
   for (const AcceptedSet& set : accepted_sets()) {
     if (set.shared()) continue;
@@ -46,7 +46,7 @@ TEST(Accuracy, OfBundledFramesAsGoodAsAccepted) {
   EXPECT_GT(sets, 0);
 }
 
-TEST(Accuracy, OfRealFramesAsGoodAsAccepted) {
+TEST(Accuracy, OnRealFramesIsAsGoodAsAccepted) {
   VESALIUS_NEEDS_SHARED();
   int sets = 0;
   for (const AcceptedSet& set : accepted_sets()) {
@@ -67,7 +67,7 @@ TEST(AccuracyGuard, WithinTheTolerancesNothingGotWorse) {
   EXPECT_THAT(what_got_worse(small_set(), {10, {}, {}, {{"people.found", 1.0}, {"people.false", 0.0}}}), IsEmpty());
 }
 
-TEST(AccuracyGuard, SaysWhichFiguresAndFramesGotWorse) {
+TEST(AccuracyGuard, SaysWhichMetricsAndFramesGotWorse) {
   const MeasuredSet now{10, {"b", "c"}, {"y", "z"}, {{"people.found", 0.87}, {"people.false", 0.1}}};
   EXPECT_THAT(what_got_worse(small_set(), now),
               ElementsAre("room: people.found is 0.8700, accepted were 0.9000 with a tolerance of 0.02",
@@ -88,9 +88,9 @@ TEST(AccuracyGuard, TextIsReadAsItIsWritten) {
   EXPECT_EQ(read[0].source, "room");
   EXPECT_THAT(read[0].missed, ElementsAre("b"));
   EXPECT_THAT(read[0].false_people, IsEmpty());
-  ASSERT_EQ(read[0].figures.size(), 2U);
-  EXPECT_EQ(read[0].figures[0].value, 0.875);
-  EXPECT_EQ(read[0].figures[0].tolerance, 0.02);
+  ASSERT_EQ(read[0].metrics.size(), 2U);
+  EXPECT_EQ(read[0].metrics[0].value, 0.875);
+  EXPECT_EQ(read[0].metrics[0].tolerance, 0.02);
 }
 
 TEST(AccuracyGuard, SaysWhereTheTextIsWrong) {
@@ -107,7 +107,10 @@ TEST(AccuracyGuard, SaysWhereTheTextIsWrong) {
   EXPECT_THAT(error("[[set]]\nmodel = \"m\"\n"), HasSubstr("t:1: expected a value for source"));
   const std::string good = "[[set]]\nmodel = \"m\"\nsource = \"s\"\nstep = 1\nmissed = []\nfalse_people = []\n";
   EXPECT_THAT(error(good), HasSubstr("expected [[set.figure]]"));
-  EXPECT_THAT(error(good + "[[set.figure]]\nname = \"n\"\nvalue = 1.0\n"), HasSubstr("t:7: expected a value for tol"));
+  EXPECT_THAT(error(good + "[[set.figure]]\nname = \"n\"\nvalue = 1.0\n"),
+              HasSubstr("t:7: expected a metric of docs/metrics.md, found n"));
+  EXPECT_THAT(error(good + "[[set.figure]]\nname = \"mask.iou\"\nvalue = 1.0\n"),
+              HasSubstr("t:7: expected a value for tol"));
 }
 
 }  // namespace

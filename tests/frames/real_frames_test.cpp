@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "eval/pixel_figures.h"
+#include "eval/pixel_metrics.h"
 #include "io/model/model_file.h"
 #include "shared_frames.h"
 #include "vesalius/base/for_each_target.h"
@@ -36,7 +36,7 @@ std::vector<RealFrame> some_of(std::vector<RealFrame> frames) {
   return kept;
 }
 
-TEST(RealFrames, OneWalkingAndWavingPerson) {
+TEST(RealFrames, AWalkingAndWavingPersonIsFound) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
   int with = 0, empty = 0, found = 0, false_people = 0;
@@ -70,7 +70,7 @@ TEST(RealFrames, OneWalkingAndWavingPerson) {
   EXPECT_GE(parts["r_upper_arm"], 0.8 * with);
 }
 
-TEST(RealFrames, NobodyWhereNobodyIs) {
+TEST(RealFrames, NobodyIsFoundWhereNobodyIs) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
   int frames = 0, with_person = 0;
@@ -86,7 +86,7 @@ TEST(RealFrames, NobodyWhereNobodyIs) {
   EXPECT_LE(with_person, 2);
 }
 
-TEST(RealFrames, FivePeopleFromBehind) {
+TEST(RealFrames, FourOfFivePeopleFromBehindAreFound) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
   // A pixel on each trunk, left to right.
@@ -106,7 +106,7 @@ TEST(RealFrames, FivePeopleFromBehind) {
   }
 }
 
-TEST(RealFrames, MasksOfOtherRooms) {
+TEST(RealFrames, MasksOfOtherRoomsAreGood) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
   for (const char* set : {"uc3m", "uva_person"}) {

@@ -11,16 +11,23 @@
 
 #include "cli/commands.h"
 #include "cli/detector_flags.h"
-#include "cli/evaluate/ablation.h"
-#include "cli/evaluate/evaluate_ablation.h"
-#include "cli/evaluate/evaluate_report.h"
-#include "cli/evaluate/evaluate_set.h"
+#include "cli/evaluate/truth_bvh.h"
+#include "cli/evaluate/truth_recipe.h"
+#include "cli/evaluate_machine.h"
 #include "cli/interrupts.h"
 #include "cli/option_flags.h"
 #include "cli/progress.h"
 #include "cli/text_sink.h"
 #include "dataset/truth_folder.h"
+#include "evaluation/ablation_report.h"
+#include "evaluation/evaluate_set.h"
+#include "evaluation/evaluation_joints.h"
+#include "evaluation/evaluation_json.h"
+#include "evaluation/evaluation_report.h"
+#include "evaluation/evaluation_summary.h"
+#include "evaluation/fit_evaluation.h"
 #include "io/files/atomic_file.h"
+#include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
 #include "vesalius/base/parallel.h"
@@ -31,11 +38,12 @@ namespace {
 
 constexpr int kMaxStep = 1000000;
 constexpr int kMaxCount = 1000000000;
-constexpr std::size_t kWorstFrames = 3;
 
-constexpr const char* kEvaluationJoints =
-#include "evaluation_joints.inc"
-    ;
+/// A set to be measured on, and how to open it.
+struct Request {
+  SetOptions set;
+  bool is_recipe = false;
+};
 
 struct Arguments {
   explicit Arguments(CLI::App& command) : detector_flags(command) {}
@@ -52,24 +60,6 @@ struct Arguments {
   bool quiet = false;
 };
 
-bool has_set(const BodyModel& body, const std::string& name) {
-  return std::ranges::find(body.joint_sets, name, &JointSet::name) != body.joint_sets.end();
-}
-
-/// The joints that data sets have, put to the body's own; a body of other parts goes without.
-BodyModel with_joints(const BodyModel& body, const std::string& joints_file) {
-  if (!joints_file.empty()) {
-    const auto lines = std::ranges::count(body.toml, '\n') + 1;
-    return parse_body_model(body.toml + "\n" + read_file(joints_file),
-                            fmt::format("{}, after the {} lines of the model's body", joints_file, lines));
-  }
-  if (has_set(body, "kinect20") || has_set(body, "itop15") || has_set(body, "part_centres")) return body;
-  for (const BodyPart& part : paper_body().parts) {
-    if (body.find_part(part.name) < 0) return body;
-  }
-  return parse_body_model(body.toml + "\n" + kEvaluationJoints, "joints for evaluation");
-}
-
 /// Valid UTF-8 on one line: names go into pictures and JSON.
 std::string clean(const std::string& name) {
   const nlohmann::json json = one_line(name);
@@ -82,25 +72,25 @@ std::filesystem::path whole_path(const std::string& path) {
   return whole.has_filename() ? whole : whole.parent_path();
 }
 
-/// Names that tell the sources apart: their last folders, or where these are the same, their paths.
-std::vector<SetRequest> set_requests(const Arguments& arguments) {
-  std::vector<SetRequest> requests;
+/// Names the sources so that they can be told apart: by their last folders, or where these are the same, by their
+/// paths.
+std::vector<Request> set_requests(const Arguments& arguments) {
+  std::vector<Request> requests;
   std::set<std::string> paths, names;
+  const auto add = [&](const std::string& source, const std::filesystem::path& path, std::string name, bool is_recipe) {
+    if (!paths.insert(path.string()).second) throw UsageError(fmt::format("{}: given twice", source));
+    if (!names.insert(name).second) name = clean(path.string());
+    requests.push_back({{name, source, arguments.keep_going}, is_recipe});
+  };
   for (const std::string& source : arguments.sources) {
     for (const std::string& set : sets_in(source)) {
       const std::filesystem::path path = whole_path(set);
-      if (!paths.insert(path.string()).second) throw UsageError(fmt::format("{}: given twice", set));
-      std::string name = clean(path.filename().string());
-      if (!names.insert(name).second) name = clean(path.string());
-      requests.push_back({name, set, arguments.step, arguments.keep_going, kWorstFrames, {}});
+      add(set, path, clean(path.filename().string()), false);
     }
   }
   for (const std::string& recipe : arguments.recipes) {
     const std::filesystem::path path = whole_path(recipe);
-    if (!paths.insert(path.string()).second) throw UsageError(fmt::format("{}: given twice", recipe));
-    std::string name = clean(path.stem().string());
-    if (!names.insert(name).second) name = clean(path.string());
-    requests.push_back({name, recipe, arguments.step, arguments.keep_going, kWorstFrames, arguments.rendered});
+    add(recipe, path, clean(path.stem().string()), true);
   }
   if (requests.empty()) throw UsageError("expected a source or --recipe to measure on");
   return requests;
@@ -139,10 +129,31 @@ std::string command_line(const CLI::App& command) {
   return one_line(line);
 }
 
-SetResult evaluate_shown(const SetRequest& request, const FrameScorer& scorer, const std::vector<Variant>& variants,
-                         bool quiet) {
-  Progress progress(-1, !quiet);
-  return evaluate_set(request, scorer, variants, progress);
+SetResult evaluate_shown(const Request& request, const Arguments& arguments, const FrameScorer& scorer,
+                         const std::vector<Variant>& variants) {
+  const auto frames = request.is_recipe
+                          ? open_recipe_truth(request.set.source, arguments.rendered, arguments.step, scorer.body())
+                          : open_evaluation_truth(request.set.source, arguments.step);
+  for (const std::string& note : frames->notes()) say(fmt::format("note: {}: {}", request.set.name, note));
+  Progress progress(-1, !arguments.quiet);
+  EvaluationHooks hooks;
+  hooks.progress = [&](int done, int total) { progress.set(done, total); };
+  hooks.failure = [&](const std::string& why) {
+    progress.clear();
+    say("vesalius: " + why);
+  };
+  hooks.stop = interrupted;
+  return evaluate_set(*frames, request.set, scorer, variants, hooks);
+}
+
+/// Writes the detector options used, with the score fitted to all sets, and prints what that is worth.
+void write_fitted_score(const Evaluation& evaluation, const std::string& path) {
+  FittedOptions fitted = fit_score_options(evaluation);
+  write_options([&](OptionVisitor& visitor) { visit_options("", fitted.options, visitor); }, path);
+  const ScoreFit& fit = fitted.fit;
+  print(fmt::format(
+      "score fitted to {} candidates that were people and {} that were not: area under the curve {:.3f}, was {:.3f}\n",
+      fit.people, fit.nobodies, fit.area_after, fit.area_before));
 }
 
 void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
@@ -154,10 +165,11 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
 
 void run(const Arguments& arguments, const std::string& command) {
   const ThreadLimit limit(arguments.threads);
-  const std::vector<SetRequest> requests = set_requests(arguments);
+  const std::vector<Request> requests = set_requests(arguments);
   const std::string bytes = read_file(arguments.model);
   Forest forest = parse_model(bytes, arguments.model);
-  forest.body = with_joints(forest.body, arguments.joints_file);
+  forest.body = arguments.joints_file.empty() ? with_evaluation_joints(forest.body)
+                                              : with_joints_of(forest.body, arguments.joints_file);
   Evaluation evaluation;
   evaluation.options = detect_options(arguments.options_file, arguments.detector_flags);
   evaluation.labels_only = arguments.labels_only;
@@ -165,6 +177,8 @@ void run(const Arguments& arguments, const std::string& command) {
   evaluation.command = command;
   evaluation.model = arguments.model;
   evaluation.model_checksum = model_checksum(bytes);
+  evaluation.version = VESALIUS_VERSION;
+  evaluation.machine = machine_facts();
   std::vector<Variant> variants;
   if (arguments.ablation) variants = ablation_variants(forest, evaluation.options);
   const FrameScorer scorer(make_labeller(std::move(forest)), {evaluation.options, arguments.labels_only});
@@ -172,8 +186,8 @@ void run(const Arguments& arguments, const std::string& command) {
   if (!arguments.report.empty()) prepare_report(arguments.report);
   watch_interrupts();
   int failed = 0;
-  for (const SetRequest& request : requests) {
-    evaluation.sets.push_back(evaluate_shown(request, scorer, variants, arguments.quiet));
+  for (const Request& request : requests) {
+    evaluation.sets.push_back(evaluate_shown(request, arguments, scorer, variants));
     failed += evaluation.sets.back().failed;
     print(summary_lines(evaluation.sets.back()) + ablation_lines(evaluation.sets.back()));
     std::fflush(stdout);  // a set can take minutes
@@ -205,7 +219,7 @@ void add_evaluate(CLI::App& program) {
       ->add_option("--report", arguments->report,
                    "Folder for report.html, report.md, report.json, figures.csv (and ablation.csv)")
       ->type_name("DIR");
-  command->add_option("--json", arguments->json, "Figures as JSON, for `vesalius compare`")->type_name("FILE");
+  command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`")->type_name("FILE");
   command->add_option("--options", arguments->options_file, "TOML file of detector options")->type_name("FILE");
   command->add_option("--step", arguments->step, "Only the first of every N frames")
       ->type_name("N")
@@ -229,14 +243,14 @@ void add_evaluate(CLI::App& program) {
                    "Write the detector options used, with the weights of the person score fitted to these frames")
       ->type_name("FILE")
       ->excludes(labels_only);
-  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The figures are the same")
+  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The metrics are the same")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads));
   command->add_flag("--keep-going", arguments->keep_going, "Pass over frames that fail; exit code 1 at the end");
   command->add_flag("-q,--quiet", arguments->quiet, "No progress");
   command->footer(R"(
 Every detector option is a flag too, e.g. --search.min-parts 6; `vesalius options` lists them. docs/metrics.md says what
-the figures mean.
+the metrics mean.
 
 Examples:
   vesalius evaluate held_out/ -m adult.forest --report out/

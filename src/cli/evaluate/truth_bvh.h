@@ -23,7 +23,7 @@ struct BvhTruthOptions {
 };
 void visit_options(const std::string& prefix, BvhTruthOptions& options, OptionVisitor& visitor);
 
-/// Opens what `evaluate` measures against: a folder with truth_bvh.toml, else what io/truth_source.h opens.
+/// Opens what `evaluate` measures against: a folder with truth_bvh.toml, else what open_truth opens.
 std::unique_ptr<TruthSource> open_evaluation_truth(const std::string& uri, int step);
 
 }  // namespace vesalius::cli

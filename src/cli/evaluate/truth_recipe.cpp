@@ -1,5 +1,7 @@
 #include "cli/evaluate/truth_recipe.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -20,6 +22,9 @@ class RecipeTruth final : public TruthSource {
     const synth::Recipe recipe = make_recipe({.file = recipe_file});
     LoadedAssets loaded = load_assets(recipe, rendered.assets);
     notes_ = std::move(loaded.notes);
+    notes_.push_back(fmt::format("rendered with seed {}: bodies {}, {} captured poses, checksum of the files used {}",
+                                 rendered.seed, loaded.assets.makehuman ? "of MakeHuman" : "built in",
+                                 loaded.assets.captured.size(), loaded.sum));
     generator_ = std::make_unique<synth::Generator>(recipe, std::move(loaded.assets), body, rendered.seed);
   }
 
@@ -35,13 +40,10 @@ class RecipeTruth final : public TruthSource {
 
  private:
   void render() {
-    ready_ = std::vector<LabelledFrame>(
-        static_cast<std::size_t>(std::min(count_ - next_, kFramesPerThread * std::max(1, thread_count()))));
+    ready_ = std::vector<LabelledFrame>(std::min(count_ - next_, kFramesPerThread * std::max(1, thread_count())));
     taken_ = 0;
-    parallel_for(static_cast<int>(ready_.size()), [&](int i) {
-      const auto index = static_cast<std::uint64_t>(next_ + i) * static_cast<std::uint64_t>(step_);
-      ready_[i] = generator_->frame(index);
-    });
+    parallel_for(static_cast<int>(ready_.size()),
+                 [&](int i) { ready_[i] = generator_->frame(static_cast<std::uint64_t>(next_ + i) * step_); });
   }
 
   std::vector<std::string> names_;

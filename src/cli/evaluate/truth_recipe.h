@@ -18,7 +18,9 @@ struct RenderedTruth {
 };
 
 /// The frames that `vesalius synth --recipe FILE --count N --seed S` would write, of every `step` the first, with the
-/// labels of `body`. Renders some frames at a time on all threads allowed. Throws as make_recipe and load_assets do.
+/// labels of `body`. Renders some frames at a time on all threads allowed. Its notes say
+/// which assets the frames are made from, so that two evaluations can be told to have seen the same. Throws as
+/// make_recipe and load_assets do.
 std::unique_ptr<TruthSource> open_recipe_truth(const std::string& recipe_file, const RenderedTruth& rendered, int step,
                                                const BodyModel& body);
 

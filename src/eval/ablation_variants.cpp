@@ -1,0 +1,102 @@
+#include "eval/ablation_variants.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <iterator>
+
+#include "eval/reduce_forest.h"
+#include "vesalius/forest/make_labeller.h"
+
+namespace vesalius {
+namespace {
+
+/// Depth steps up to this join neighbouring pixels where the look is colour alone: any within a person's reach.
+constexpr float kAnyStep_m = 1.F;
+constexpr float kAskEverywhere = 2.F;  ///< a probability that no background has
+
+class VariantList {
+ public:
+  VariantList(const Forest& forest, const DetectOptions& options)
+      : forest_(forest), labeller_(make_labeller(forest)), options_(options) {}
+
+  void add(const std::string& name, const std::function<void(FrameScorer::Options&)>& change) {
+    FrameScorer::Options options{options_};
+    change(options);
+    variants_.push_back({name, std::make_unique<FrameScorer>(labeller_, options)});
+  }
+
+  void add(const std::string& name, Forest forest) { add(name, std::move(forest), options_); }
+
+  void add(const std::string& name, Forest forest, const DetectOptions& options) {
+    variants_.push_back(
+        {name, std::make_unique<FrameScorer>(make_labeller(std::move(forest)), FrameScorer::Options{options})});
+  }
+
+  void add_options() {
+    using Options = FrameScorer::Options;
+    add(options_.refine.second_pass ? "no second iteration" : "second iteration",
+        [](Options& o) { o.detect.refine.second_pass = !o.detect.refine.second_pass; });
+    if (options_.grow.use_colour) {
+      add("look by depth alone", [](Options& o) { o.detect.grow.use_colour = false; });
+      add("look by colour alone", [](Options& o) { o.detect.grow.radius_m = kAnyStep_m; });
+    } else {
+      add("look by depth and colour", [](Options& o) { o.detect.grow.use_colour = true; });
+    }
+    if (options_.smooth.window > 1) add("no smoothing", [](Options& o) { o.detect.smooth.window = 1; });
+    if (labeller_->has_distributions() && options_.smooth.window > 1) {
+      add(options_.smooth.mode ? "smoothing by mean" : "smoothing by mode",
+          [](Options& o) { o.detect.smooth.mode = !o.detect.smooth.mode; });
+    }
+    add(options_.search.grandparents ? "no links past unseen parts" : "links past unseen parts",
+        [](Options& o) { o.detect.search.grandparents = !o.detect.search.grandparents; });
+    add(options_.search.any_root ? "roots of the body alone" : "any part as root",
+        [](Options& o) { o.detect.search.any_root = !o.detect.search.any_root; });
+    if (labeller_->has_background()) {
+      add("proposals with the labels' background",
+          [](Options& o) { o.detect.label.proposal_weight = o.detect.label.background_weight; });
+      const bool gated = options_.label.gate <= 1.F;
+      add(gated ? "forest asked everywhere" : "gate",
+          [&](Options& o) { o.detect.label.gate = gated ? kAskEverywhere : LabelOptions().gate; });
+    }
+    if (options_.grid.step != 1) add("every pixel", [](Options& o) { o.detect.grid.step = 1; });
+    if (options_.grid.step != 2) add("every second pixel", [](Options& o) { o.detect.grid.step = 2; });
+  }
+
+  void add_forests() {
+    if (forest_.body.roots.size() > 1) {
+      DetectOptions options = options_;
+      options.search.any_root = false;
+      for (const int root : forest_.body.roots) {
+        Forest one_root = forest_;
+        one_root.body.roots = {root};
+        add(fmt::format("root {} alone", forest_.body.parts[root].name), std::move(one_root), options);
+      }
+    }
+    // Votes cannot be smoothed by their mean: the mode comes with them.
+    if (labeller_->has_distributions()) add("votes, smoothed by mode", with_hard_votes(forest_));
+    for (const int trees : {1, 2, 4}) {
+      if (trees >= std::ssize(forest_.trees)) break;
+      add(trees == 1 ? "1 tree" : fmt::format("{} trees", trees), with_first_trees(forest_, trees));
+    }
+  }
+
+  std::vector<Variant> take() { return std::move(variants_); }
+
+ private:
+  const Forest& forest_;
+  std::shared_ptr<const PixelLabeller> labeller_;
+  DetectOptions options_;
+  std::vector<Variant> variants_;
+};
+
+}  // namespace
+
+std::vector<Variant> ablation_variants(const Forest& forest, const DetectOptions& options) {
+  VariantList list(forest, options);
+  list.add_options();
+  list.add_forests();
+  return list.take();
+}
+
+}  // namespace vesalius

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "eval/metric_table.h"
+#include "vesalius/derive_joints.h"
+
+namespace vesalius {
+
+/// Distance below which a joint counts as right, metres. The tables of ITOP call the share of right joints mAP.
+inline constexpr double kJointTolerance_m = 0.1;
+/// Largest distance of the curve over distances, centimetres.
+inline constexpr int kJointCurve_cm = 30;
+
+/// Joints of one true person under the names of its data set, and where they were found; NaN = not known or not found.
+struct JointPair {
+  std::vector<Eigen::Vector3f> truth;
+  std::vector<Eigen::Vector3f> found;  ///< of the same length
+};
+
+/// Returns the positions of `joints`, which are in the order of `set`, in the order of `names`. Joints that were not
+/// found are NaN; of a person who was not found (`joints` is empty) all are. Throws Error for a name that the set
+/// lacks.
+std::vector<Eigen::Vector3f> joints_by_name(const std::vector<std::string>& names, const JointSet& set,
+                                            const std::vector<Joint>& joints);
+
+/// Returns the joint set called `wanted` if it has all of these joints, else the first one that does; null for none.
+const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names,
+                               std::string_view wanted = "");
+
+/// Returns the distance of each joint in metres: NaN where the truth is not known, infinity where it was not found.
+std::vector<double> joint_errors(const JointPair& pair);
+
+/// Mean distance of the joints that both have; NaN where a mean or a fit has too few joints.
+struct MeanErrors {
+  double absolute_m = 0.0;
+  double root_aligned_m = 0.0;  ///< with the mean of the joints whose names contain "hip" moved onto the true one
+  double procrustes_m = 0.0;    ///< after the similarity that fits best in squares (Umeyama 1991)
+};
+MeanErrors mean_joint_errors(const JointPair& pair, const std::vector<std::string>& names);
+
+/// Returns the joint metrics of one person. Joints that were not found count as wrong in the shares of right ones and
+/// not at all in the mean errors.
+MetricTerms joint_terms(const JointPair& pair, const std::vector<std::string>& names);
+
+/// How many joints lie within 1, 2, ... kJointCurve_cm centimetres of the truth.
+struct JointCurve {
+  std::array<long, kJointCurve_cm> within{};
+  long joints = 0;
+
+  void add(const std::vector<double>& errors_m);
+  /// Returns the share within `cm`, 1 to kJointCurve_cm; NaN without joints.
+  double share(int cm) const;
+};
+
+/// How far behind its visible surface a joint's truth lies along the viewing ray: a sample for a depth_offset.
+struct JointOffset {
+  std::string set;
+  std::string joint;
+  double behind_m = 0.0;
+};
+
+/// Returns the samples of the joints that both have, counted from the surface: without the set's own depth offsets.
+std::vector<JointOffset> joint_offsets(const JointPair& pair, const std::vector<std::string>& names,
+                                       const JointSet& set);
+
+}  // namespace vesalius

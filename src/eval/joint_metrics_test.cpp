@@ -1,0 +1,143 @@
+#include "eval/joint_metrics.h"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "eval/test_terms.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/random.h"
+
+namespace vesalius {
+namespace {
+
+using test::value_of;
+
+using Eigen::Vector3f;
+
+const Vector3f kNothing = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+const std::vector<std::string> kNames{"head", "l_hip", "r_hip", "l_hand"};
+
+/// Head 5 cm too deep, a hip 20 cm aside, the other right, no hand.
+JointPair by_hand() {
+  return {{{0, -1, 2}, {0.2F, 0, 2}, {-0.2F, 0, 2}, {0.5F, 0, 2}},
+          {{0, -1, 2.05F}, {0.4F, 0, 2}, {-0.2F, 0, 2}, kNothing}};
+}
+
+TEST(JointMetrics, AgreeWithCountingByHand) {
+  const MetricTerms terms = joint_terms(by_hand(), kNames);
+  EXPECT_DOUBLE_EQ(value_of(terms, "joints.at_10cm"), 0.5);
+  EXPECT_DOUBLE_EQ(value_of(terms, "joint.head.at_10cm"), 1.0);
+  EXPECT_DOUBLE_EQ(value_of(terms, "joint.l_hip.at_10cm"), 0.0);
+  EXPECT_DOUBLE_EQ(value_of(terms, "joint.l_hand.at_10cm"), 0.0);
+  EXPECT_TRUE(std::isnan(value_of(terms, "joint.l_hand.error_m")));
+  EXPECT_NEAR(value_of(terms, "joint.head.error_m"), 0.05, 1e-6);
+  EXPECT_NEAR(value_of(terms, "joints.error_m"), 0.25 / 3, 1e-6);
+  // The mean of the hips is 10 cm aside; moved back, head is off by (0.1, 0, 0.05), the hips by 0.1 each.
+  EXPECT_NEAR(value_of(terms, "joints.root_aligned_error_m"), (std::hypot(0.1, 0.05) + 0.2) / 3, 1e-6);
+}
+
+TEST(JointMetrics, UnknownTruthDoesNotCount) {
+  JointPair pair = by_hand();
+  pair.truth[3] = kNothing;
+  const MetricTerms terms = joint_terms(pair, kNames);
+  EXPECT_DOUBLE_EQ(value_of(terms, "joints.at_10cm"), 2.0 / 3.0);
+  EXPECT_TRUE(std::isnan(value_of(terms, "joint.l_hand.at_10cm")));
+}
+
+TEST(JointMetrics, AMissedPersonHasNoJointRight) {
+  JointPair pair = by_hand();
+  std::ranges::fill(pair.found, kNothing);
+  const MetricTerms terms = joint_terms(pair, kNames);
+  EXPECT_DOUBLE_EQ(value_of(terms, "joints.at_10cm"), 0.0);
+  EXPECT_TRUE(std::isnan(value_of(terms, "joints.error_m")));
+  EXPECT_EQ(terms.size(), 5U);
+}
+
+JointPair random_pair(std::uint64_t seed, double noise_m) {
+  Random random(seed);
+  JointPair pair;
+  const Eigen::AngleAxisd turn(random.uniform(0.0, 3.0), Eigen::Vector3d(1, 2, random.uniform()).normalized());
+  for (int j = 0; j < 12; ++j) {
+    const Eigen::Vector3d point(random.normal(), random.normal(), 3.0 + random.normal());
+    const Eigen::Vector3d noise(random.normal(0, noise_m), random.normal(0, noise_m), random.normal(0, noise_m));
+    pair.truth.push_back(point.cast<float>());
+    pair.found.push_back((0.8 * (turn * point) + Eigen::Vector3d(1, 2, 3) + noise).cast<float>());
+  }
+  return pair;
+}
+
+TEST(JointMetrics, ProcrustesUndoesASimilarity) {
+  const std::vector<std::string> names(12, "l_hip");
+  const JointPair pair = random_pair(1, 0.0);
+  const MeanErrors errors = mean_joint_errors(pair, names);
+  EXPECT_GT(errors.absolute_m, 1.0);
+  EXPECT_LT(errors.procrustes_m, 1e-5);
+}
+
+/// No similarity near the one that was undone may fit better (in squares, which is what it minimises).
+TEST(JointMetrics, ProcrustesIsTheBestFit) {
+  const std::vector<std::string> names(12, "l_hip");
+  const JointPair pair = random_pair(2, 0.05);
+  const MeanErrors errors = mean_joint_errors(pair, names);
+  EXPECT_LT(errors.procrustes_m, 0.15);
+  EXPECT_GT(errors.procrustes_m, 0.02);
+  EXPECT_LE(errors.procrustes_m, errors.root_aligned_m);
+}
+
+TEST(JointMetrics, TooFewJointsGiveNoFit) {
+  JointPair pair = by_hand();
+  pair.found[0] = kNothing;
+  EXPECT_TRUE(std::isnan(mean_joint_errors(pair, kNames).procrustes_m));
+  pair = by_hand();
+  std::ranges::fill(pair.found, Vector3f(0, 0, 1));  // no scale fits
+  EXPECT_TRUE(std::isnan(mean_joint_errors(pair, kNames).procrustes_m));
+  EXPECT_FALSE(std::isnan(mean_joint_errors(pair, kNames).absolute_m));
+}
+
+TEST(JointCurve, HasTheSharesWithinDistances) {
+  JointCurve curve;
+  curve.add({0.005, 0.095, 0.105, std::numeric_limits<double>::infinity(), std::nan("")});
+  EXPECT_DOUBLE_EQ(curve.share(1), 0.25);
+  EXPECT_DOUBLE_EQ(curve.share(9), 0.25);
+  EXPECT_DOUBLE_EQ(curve.share(10), 0.5);
+  EXPECT_DOUBLE_EQ(curve.share(30), 0.75);
+  EXPECT_TRUE(std::isnan(JointCurve{}.share(10)));
+}
+
+TEST(JointsByName, ComeInTheOrderOfTheTruth) {
+  const JointSet& set = paper_body().joint_sets.front();  // nite15
+  std::vector<Joint> joints(set.joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) joints[j] = {State::observed, {static_cast<float>(j), 0, 1}, 1.F};
+  joints[1].state = State::none;
+  const auto found = joints_by_name({"l_shoulder", "head", "neck"}, set, joints);
+  EXPECT_EQ(found[0].x(), 2.F);
+  EXPECT_EQ(found[1].x(), 0.F);
+  EXPECT_TRUE(found[2].hasNaN());
+  EXPECT_TRUE(joints_by_name({"head"}, set, {})[0].hasNaN());
+  EXPECT_THROW(joints_by_name({"tail"}, set, joints), Error);
+  EXPECT_EQ(find_joint_set(paper_body(), {"head", "torso"})->name, "nite15");
+  EXPECT_EQ(find_joint_set(paper_body(), {"nose"})->name, "k4abt32");
+  EXPECT_EQ(find_joint_set(paper_body(), {"head"}, "k4abt32")->name, "k4abt32");
+  EXPECT_EQ(find_joint_set(paper_body(), {"torso"}, "k4abt32")->name, "nite15");  // which has no torso
+  EXPECT_EQ(find_joint_set(paper_body(), {"tail"}), nullptr);
+}
+
+TEST(JointOffsets, AreMeasuredAlongTheRayBehindTheSurface) {
+  const JointSet& set = paper_body().joint_sets.front();
+  const float own_m = set.joints[0].depth_offset_m;  // of the head
+  const Vector3f surface = Vector3f(0.6F, 0, 0.8F) * 2.F;
+  const Vector3f ray = surface.normalized();
+  const Vector3f aside(-0.8F, 0, 0.6F);
+  const JointPair pair{{surface + 0.12F * ray + 0.3F * aside, {0, 0, 1}}, {surface + own_m * ray, kNothing}};
+  const std::vector<JointOffset> offsets = joint_offsets(pair, {"head", "neck"}, set);
+  ASSERT_EQ(offsets.size(), 1U);
+  EXPECT_EQ(offsets[0].joint, "head");
+  EXPECT_NEAR(offsets[0].behind_m, 0.12, 1e-6);
+}
+
+}  // namespace
+}  // namespace vesalius

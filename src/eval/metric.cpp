@@ -1,0 +1,55 @@
+#include "eval/metric.h"
+
+#include <fmt/format.h>
+
+namespace vesalius {
+
+std::string MetricId::name() const {
+  std::string name(info(metric).name);
+  if (info(metric).is_family()) name.replace(name.find('*'), 1, parameter);
+  return name;
+}
+
+std::optional<MetricId> parse_metric(std::string_view name) {
+  for (const MetricInfo& metric : kMetrics) {
+    if (!metric.is_family()) {
+      if (name == metric.name) return MetricId(metric.metric);
+      continue;
+    }
+    const std::string_view before = metric.name.substr(0, metric.name.find('*'));
+    const std::string_view behind = metric.name.substr(before.size() + 1);
+    if (name.size() <= before.size() + behind.size() || !name.starts_with(before) || !name.ends_with(behind)) continue;
+    name.remove_prefix(before.size());
+    name.remove_suffix(behind.size());
+    return MetricId(metric.metric, 0, std::string(name));
+  }
+  return std::nullopt;
+}
+
+const char* better_word(Metric metric) {
+  return info(metric).direction == MetricDirection::higher_is_better ? "higher" : "lower";
+}
+
+std::string metric_text(Metric metric, double value) {
+  switch (info(metric).unit) {
+    case MetricUnit::metres:
+      return fmt::format("{:.3f} m", value);
+    case MetricUnit::per_frame:
+      return fmt::format("{:.3f} a frame", value);
+    default:
+      return fmt::format("{:.2f} %", 100.0 * value);
+  }
+}
+
+std::string metric_difference_text(Metric metric, double difference) {
+  switch (info(metric).unit) {
+    case MetricUnit::metres:
+      return fmt::format("{:+.3f} m", difference);
+    case MetricUnit::per_frame:
+      return fmt::format("{:+.3f}", difference);
+    default:
+      return fmt::format("{:+.2f} %", 100.0 * difference);
+  }
+}
+
+}  // namespace vesalius

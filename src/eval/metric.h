@@ -1,0 +1,140 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace vesalius {
+
+/// Everything that an evaluation measures (docs/metrics.md), in the order in which all reports show it. Metrics marked
+/// as families have a parameter: a posture, a range, a body part or a joint.
+enum class Metric {
+  people_found,
+  people_false,
+  empty_with_person,
+  posture,   ///< family
+  distance,  ///< family
+  heading,   ///< family
+  visible,   ///< family
+  motion,    ///< family
+  mask_iou,
+  mask_iou_where_found,
+  part_seen,  ///< family
+  part_mean_seen,
+  parts_right,
+  parts_right_upper,
+  pixel_person_iou,
+  pixel_background_iou,
+  pixel_recall,  ///< family
+  pixel_mean_recall,
+  pixel_recall_inside,  ///< family
+  pixel_mean_recall_inside,
+  body_on_empty,
+  joint_at_10cm,  ///< family
+  joints_at_10cm,
+  joint_error,  ///< family
+  joints_error,
+  joints_root_aligned_error,
+  joints_procrustes_error,
+};
+
+enum class MetricUnit { share, per_frame, metres };
+enum class MetricDirection { higher_is_better, lower_is_better };
+/// How a metric is made from the terms of its frames, which decides its interval.
+enum class MetricKind {
+  trials,  ///< share of separate trials: Wilson's interval
+  ratio,   ///< ratio of two sums over the frames: the bootstrap's interval
+  mean,    ///< mean over the members of the family `mean_of`: the bootstrap's interval
+};
+
+struct MetricInfo {
+  Metric metric;
+  std::string_view name;  ///< in files; the parameter of a family stands at the '*'
+  std::string_view title;
+  MetricUnit unit = MetricUnit::share;
+  MetricDirection direction = MetricDirection::higher_is_better;
+  MetricKind kind = MetricKind::ratio;
+  std::optional<Metric> mean_of = std::nullopt;
+
+  constexpr bool is_family() const { return name.find('*') != std::string_view::npos; }
+};
+
+/// The only place that knows names, titles and kinds of metrics; in the order of `Metric`.
+inline constexpr auto kMetrics = [] {
+  using enum MetricUnit;
+  using enum MetricDirection;
+  using enum MetricKind;
+  using M = Metric;
+  return std::to_array<MetricInfo>({
+      {M::people_found, "people.found", "people found", share, higher_is_better, trials},
+      {M::people_false, "people.false", "false people", per_frame, lower_is_better},
+      {M::empty_with_person, "frames.empty_with_person", "empty frames with somebody", share, lower_is_better, trials},
+      {M::posture, "posture.*", "found by posture", share, higher_is_better, trials},
+      {M::distance, "distance.*", "found by distance", share, higher_is_better, trials},
+      {M::heading, "heading.*", "found by heading", share, higher_is_better, trials},
+      {M::visible, "visible.*", "found by parts visible", share, higher_is_better, trials},
+      {M::motion, "motion.*", "found by camera motion", share, higher_is_better, trials},
+      {M::mask_iou, "mask.iou", "mask IoU with misses"},
+      {M::mask_iou_where_found, "mask.iou_where_found", "mask IoU where found"},
+      {M::part_seen, "part.seen.*", "parts seen", share, higher_is_better, trials},
+      {M::part_mean_seen, "part.mean_seen", "parts seen on average", share, higher_is_better, mean, M::part_seen},
+      {M::parts_right, "parts.right", "visible parts right"},
+      {M::parts_right_upper, "parts.right_upper", "visible upper parts right"},
+      {M::pixel_person_iou, "pixels.person_iou", "person IoU of labels"},
+      {M::pixel_background_iou, "pixels.background_iou", "background IoU of labels"},
+      {M::pixel_recall, "pixels.recall.*", "recall with background"},
+      {M::pixel_mean_recall, "pixels.mean_recall", "mAcc", share, higher_is_better, mean, M::pixel_recall},
+      {M::pixel_recall_inside, "pixels.recall_inside.*", "recall among parts"},
+      {M::pixel_mean_recall_inside, "pixels.mean_recall_inside", "mAcc among parts", share, higher_is_better, mean,
+       M::pixel_recall_inside},
+      {M::body_on_empty, "pixels.body_on_empty", "body on empty frames", share, lower_is_better},
+      {M::joint_at_10cm, "joint.*.at_10cm", "within 10 cm", share, higher_is_better, trials},
+      {M::joints_at_10cm, "joints.at_10cm", "joints at 10 cm"},
+      {M::joint_error, "joint.*.error_m", "mean error", metres, lower_is_better},
+      {M::joints_error, "joints.error_m", "mean error of joints", metres, lower_is_better},
+      {M::joints_root_aligned_error, "joints.root_aligned_error_m", "root-aligned", metres, lower_is_better},
+      {M::joints_procrustes_error, "joints.procrustes_error_m", "Procrustes", metres, lower_is_better},
+  });
+}();
+
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kMetrics.size(); ++i) {
+        if (kMetrics[i].metric != static_cast<Metric>(i)) return false;
+      }
+      return kMetrics.size() == static_cast<std::size_t>(Metric::joints_procrustes_error) + 1;
+    }(),
+    "kMetrics is in the order of Metric");
+
+constexpr const MetricInfo& info(Metric metric) { return kMetrics[static_cast<std::size_t>(metric)]; }
+
+/// One metric, or one member of a family.
+struct MetricId {
+  Metric metric{};
+  int place = 0;          ///< of the parameter among those of its family, e.g. the part's index; 0 for other metrics
+  std::string parameter;  ///< e.g. "l_hand"; empty for other metrics
+
+  MetricId(Metric m) : metric(m) {}  // NOLINT(google-explicit-constructor): a metric without a parameter is one
+  MetricId(Metric m, int place_in_family, std::string of)
+      : metric(m), place(place_in_family), parameter(std::move(of)) {}
+
+  /// The name in files: "joint.l_hand.at_10cm".
+  std::string name() const;
+};
+
+/// Returns the metric of that name, or nothing for a name that is not in kMetrics. `place` of a family's member stays
+/// 0.
+std::optional<MetricId> parse_metric(std::string_view name);
+
+/// Returns "higher" or "lower": which values are better, as files say it.
+const char* better_word(Metric metric);
+
+/// Returns a value in its unit: "97.20 %", "0.041 m", "0.013 a frame".
+std::string metric_text(Metric metric, double value);
+/// Returns a difference of two values: "+1.20 %", "-0.003 m", "+0.013".
+std::string metric_difference_text(Metric metric, double difference);
+
+}  // namespace vesalius

@@ -1,0 +1,70 @@
+#include "eval/metric.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+
+namespace vesalius {
+namespace {
+
+TEST(Metric, EveryNameIsReadAsTheMetricThatHasIt) {
+  std::set<std::string> names;
+  for (const MetricInfo& metric : kMetrics) {
+    const std::string parameter = metric.is_family() ? "l_hand" : "";
+    const std::string name = MetricId(metric.metric, 3, parameter).name();
+    EXPECT_TRUE(names.insert(name).second) << name << " twice";
+    const auto read = parse_metric(name);
+    ASSERT_TRUE(read) << name;
+    EXPECT_EQ(read->metric, metric.metric) << name;
+    EXPECT_EQ(read->parameter, parameter);
+  }
+}
+
+TEST(Metric, EveryMetricHasATitleOfItsOwn) {
+  std::set<std::string_view> titles;
+  for (const MetricInfo& metric : kMetrics) {
+    EXPECT_FALSE(metric.title.empty()) << metric.name;
+    EXPECT_TRUE(titles.insert(metric.title).second) << metric.title << " twice";
+  }
+}
+
+TEST(Metric, OtherNamesAreNone) {
+  for (const char* name :
+       {"", "people", "people.found.", "posture.", "joint..at_10cm", "joint.head", "*", "mask.iou "}) {
+    EXPECT_FALSE(parse_metric(name)) << name;
+  }
+}
+
+TEST(Metric, FamiliesTakeAnyParameter) {
+  EXPECT_EQ(MetricId(Metric::joint_at_10cm, 0, "head").name(), "joint.head.at_10cm");
+  EXPECT_EQ(MetricId(Metric::distance, 0, "4m-").name(), "distance.4m-");
+  EXPECT_EQ(parse_metric("joint.a.at_10cm.at_10cm")->parameter, "a.at_10cm");
+}
+
+TEST(Metric, ErrorsAndFalseFindingsAreBetterWhenLower) {
+  std::set<std::string_view> lower;
+  for (const MetricInfo& metric : kMetrics) {
+    if (metric.direction == MetricDirection::lower_is_better) lower.insert(metric.name);
+  }
+  EXPECT_EQ(lower, (std::set<std::string_view>{"people.false", "frames.empty_with_person", "pixels.body_on_empty",
+                                               "joint.*.error_m", "joints.error_m", "joints.root_aligned_error_m",
+                                               "joints.procrustes_error_m"}));
+}
+
+TEST(Metric, OnlySeparateTrialsHaveWilsonsInterval) {
+  EXPECT_EQ(info(Metric::people_found).kind, MetricKind::trials);
+  EXPECT_EQ(info(Metric::joint_at_10cm).kind, MetricKind::trials);
+  EXPECT_EQ(info(Metric::joints_at_10cm).kind, MetricKind::ratio);  // joints of one frame go wrong together
+}
+
+TEST(Metric, ValuesAreWrittenInTheirUnit) {
+  EXPECT_EQ(metric_text(Metric::people_found, 0.972), "97.20 %");
+  EXPECT_EQ(metric_text(Metric::joints_error, 0.0412), "0.041 m");
+  EXPECT_EQ(metric_text(Metric::people_false, 0.0125), "0.013 a frame");
+  EXPECT_EQ(metric_difference_text(Metric::people_found, 0.012), "+1.20 %");
+  EXPECT_EQ(metric_difference_text(Metric::joints_error, -0.003), "-0.003 m");
+  EXPECT_EQ(metric_difference_text(Metric::people_false, 0.0), "+0.000");
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/metric_table.h"
+#include "evaluation/evaluation.h"
+
+namespace vesalius {
+
+/// Version of report.json that is written, and the only one that is read.
+inline constexpr int kEvaluationVersion = 1;
+
+/// Returns report.json (docs/metrics.md): everything as numbers, with null for what is not known.
+std::string evaluation_json(const Evaluation& evaluation);
+
+/// A set as a report.json has it.
+struct StoredSet {
+  std::string name;
+  std::string frames_key;  ///< two sets with the same key saw the same frames
+  std::vector<Estimate> metrics;
+};
+
+/// Reads the sets of a report.json. Throws Error with the path for a file that is none, is damaged, has another
+/// version, or a metric that is not in kMetrics.
+std::vector<StoredSet> read_evaluation(const std::string& path);
+
+}  // namespace vesalius

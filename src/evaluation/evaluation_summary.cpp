@@ -1,0 +1,85 @@
+#include "evaluation/evaluation_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace vesalius {
+namespace {
+
+/// The metrics of a set's line besides the people, where it has them.
+constexpr std::array kLine{Metric::mask_iou,
+                           Metric::mask_iou_where_found,
+                           Metric::part_mean_seen,
+                           Metric::parts_right,
+                           Metric::parts_right_upper,
+                           Metric::pixel_person_iou,
+                           Metric::pixel_background_iou,
+                           Metric::pixel_mean_recall,
+                           Metric::pixel_mean_recall_inside,
+                           Metric::body_on_empty,
+                           Metric::joints_at_10cm,
+                           Metric::joints_error,
+                           Metric::joints_root_aligned_error,
+                           Metric::joints_procrustes_error};
+static_assert(std::ranges::is_sorted(kLine));
+
+/// The families that have a line of their own.
+constexpr std::array kFamilies{Metric::posture,
+                               Metric::distance,
+                               Metric::heading,
+                               Metric::visible,
+                               Metric::motion,
+                               Metric::part_seen,
+                               Metric::pixel_recall_inside,
+                               Metric::joint_at_10cm};
+static_assert(std::ranges::is_sorted(kFamilies));
+
+/// "people 56 of 56, false 0".
+std::string people_text(const SetResult& set, const std::vector<Estimate>& estimates) {
+  std::string text;
+  if (const Estimate* found = find_estimate(estimates, Metric::people_found)) {
+    text += fmt::format(", people {:.0f} of {:.0f}", found->numerator, found->denominator);
+  }
+  if (const Estimate* wrong = find_estimate(estimates, Metric::people_false)) {
+    text += fmt::format(", false {:.0f}", wrong->numerator);
+  }
+  if (const Estimate* empty = find_estimate(estimates, Metric::empty_with_person)) {
+    text += fmt::format(", somebody in {:.0f} of {:.0f} empty", empty->numerator, empty->denominator);
+  }
+  if (set.failed > 0) text += fmt::format(", {} failed", set.failed);
+  return text;
+}
+
+/// "  parts seen, %: neck 100, l_hand 87, ...".
+std::string family_line(const std::vector<Estimate>& estimates, Metric family) {
+  std::string text;
+  for (const Estimate& estimate : estimates) {
+    if (estimate.id.metric != family) continue;
+    text += fmt::format("{}{} {:.0f}", text.empty() ? "" : ", ", estimate.id.parameter, 100.0 * estimate.value);
+  }
+  return text.empty() ? "" : fmt::format("  {}, %: {}\n", info(family).title, text);
+}
+
+}  // namespace
+
+std::string speed_text(const SetResult& set) {
+  if (!set.ablation.empty()) return fmt::format("{:.1f} ms a frame", set.frame_ms);
+  return fmt::format("{:.1f} frames/s", set.frames / std::max(1e-9, set.seconds));
+}
+
+std::string summary_lines(const SetResult& set) {
+  const std::vector<Estimate> estimates = set.metrics.estimates();
+  std::string text = fmt::format("{}: {} frames{}", set.name, set.frames, people_text(set, estimates));
+  for (const Metric metric : kLine) {
+    if (const Estimate* estimate = find_estimate(estimates, metric)) {
+      text += fmt::format(", {} {}", info(metric).title, metric_text(metric, estimate->value));
+    }
+  }
+  text += ", " + speed_text(set) + "\n";
+  for (const Metric family : kFamilies) text += family_line(estimates, family);
+  return text;
+}
+
+}  // namespace vesalius
