@@ -8,7 +8,8 @@ USES, and those that its TESTS_USE besides.
    Unit tests include all of their library, `capsule` and TESTS_USE as well.
 2. No unit (a header with its sources) includes another that includes it, over however many steps.
 3. A library that OPENS_NO_FILES includes no <fstream>, <iostream> or <filesystem>.
-4. Every include is written from src/ and names a file that is there; every source belongs to a library.
+4. A header that is installed (PUBLIC) includes only headers that are.
+5. Every include is written from src/ and names a file that is there; every source belongs to a library.
 
 Usage: check_layers.py [ROOT]. Prints one line for each violation; exit code 1 if there are any.
 """
@@ -32,6 +33,7 @@ class Library:
     folders: list  # below src/, bottom to top
     uses: list
     tests_use: list
+    public: set  # headers, from src/
     opens_no_files: bool
 
 
@@ -67,7 +69,8 @@ def read_library(path, source_folder):
             lists["USES"] += satellite[1].split()
     here = path.parent.relative_to(source_folder)
     folders = [str(here if folder == "." else here / folder) for folder in lists["FOLDERS"] or ["."]]
-    return Library(words[0], folders, lists["USES"], lists["TESTS_USE"], "OPENS_NO_FILES" in present)
+    public = {str(here / header) for header in lists["PUBLIC"]}
+    return Library(words[0], folders, lists["USES"], lists["TESTS_USE"], public, "OPENS_NO_FILES" in present)
 
 
 def includes(path):
@@ -125,6 +128,7 @@ class Checker:
         self.violations = []
         found = [read_library(path, self.source) for path in sorted(self.source.rglob("CMakeLists.txt"))]
         self.libraries = {library.name: library for library in found if library}
+        self.public = {header for library in self.libraries.values() for header in library.public}
         self.owner = {folder: library for library in self.libraries.values() for folder in library.folders}
         self.graph = {}
 
@@ -168,6 +172,8 @@ class Checker:
                 reason = self.why_not(path, library, folder, target)
                 if reason:
                     self.complain(path, number, reason)
+                if str(path.relative_to(self.source)) in library.public and target not in self.public:
+                    self.complain(path, number, f"is installed and includes {target}, which is not")
                 if unit_of(target) != unit:
                     edges.add(unit_of(target))
 

@@ -10,10 +10,10 @@ from pathlib import Path
 SCRIPT = Path(__file__).parent / "check_layers.py"
 
 GOOD = {
-    "src/vesalius/CMakeLists.txt": "vesalius_library(core FOLDERS base forest . OPENS_NO_FILES)\n",
+    "src/vesalius/CMakeLists.txt": "vesalius_library(core FOLDERS base forest . OPENS_NO_FILES PUBLIC base/error.h base/image.h)\n",
     "src/capsule/CMakeLists.txt": "vesalius_library(capsule)\n",
     "src/io/CMakeLists.txt": "vesalius_library(io FOLDERS files\n  sources)  # bottom to top\n",
-    "src/draw/CMakeLists.txt": "vesalius_library(draw TESTS_USE io)\n",
+    "src/draw/CMakeLists.txt": "set(public_headers\n  draw.h)\nvesalius_library(draw TESTS_USE io PUBLIC ${public_headers})\n",
     "src/cli/CMakeLists.txt": (
         "set(folders . detect)\nset(uses io)\n"
         "macro(vesalius_satellite name)\nendmacro()\n  vesalius_satellite(pictures draw)\n"
@@ -58,9 +58,8 @@ class CheckLayers(unittest.TestCase):
         self.assertEqual(code, 0, output)
 
     def test_folder_includes_folder_above(self):
-        changes = {"src/vesalius/base/image.h": '\n#include "vesalius/forest/forest.h"\n',
-                   "src/vesalius/forest/forest.h": ""}
-        self.expect_violation(changes, "src/vesalius/base/image.h:2:")
+        changes = {"src/vesalius/base/size.h": '\n#include "vesalius/forest/forest.h"\n'}
+        self.expect_violation(changes, "src/vesalius/base/size.h:2:")
 
     def test_folder_of_satellite_includes_folder_above(self):
         changes = {"src/io/files/png.h": '#include "io/sources/open.h"\n', "src/io/sources/open.h": ""}
@@ -98,6 +97,9 @@ class CheckLayers(unittest.TestCase):
     def test_test_includes_satellite_that_it_may_not(self):
         changes = {"src/io/files/png_test.cpp": '#include "draw/draw.h"\n'}
         self.expect_violation(changes, "src/io/files/png_test.cpp:1:")
+
+    def test_installed_header_includes_one_that_is_not(self):
+        self.expect_violation({"src/draw/draw.h": '#include "vesalius/forest/forest.h"\n'}, "src/draw/draw.h:1:")
 
     def test_path_not_from_root(self):
         self.expect_violation({"src/io/files/png.cpp": '#include "png.h"\n'}, "src/io/files/png.cpp:1:")

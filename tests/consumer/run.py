@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Installs to a temporary prefix, builds the program of vesalius.h against it and runs it on the sample.
+"""Installs to a temporary prefix, builds the examples against it and runs them beside those of the build tree.
 
-Usage: run.py SOURCE_DIR BUILD_DIR EXAMPLE_BINARY
+Usage: run.py SOURCE_DIR BUILD_DIR EXAMPLES_DIR, where EXAMPLES_DIR holds the build tree's programs
 """
 
+import json
 import subprocess
 import sys
 import tempfile
@@ -33,26 +34,47 @@ def code_of(source):
     return [line for line in source.read_text().splitlines() if line and not line.startswith("//")]
 
 
+def expect(condition, what):
+    if not condition:
+        sys.exit(what)
+
+
 def main():
-    source, build, example = (Path(a).resolve() for a in sys.argv[1:4])
+    source, build, examples = (Path(a).resolve() for a in sys.argv[1:4])
+    model, frames = source / "data/models/capsule.forest", source / "data/sample"
     with tempfile.TemporaryDirectory() as folder:
-        prefix, outside = Path(folder) / "prefix", Path(folder) / "build"
+        folder = Path(folder)
+        prefix, outside = folder / "prefix", folder / "build"
         run("cmake", "--install", build, "--prefix", prefix)
         (headers,) = prefix.glob("include/vesalius-*")
         program = program_of(headers / "vesalius/vesalius.h")
-        if program != code_of(source / "examples/detect_people.cpp"):
-            sys.exit("examples/detect_people.cpp differs from the program in src/vesalius/vesalius.h")
-        main_cpp = Path(folder) / "main.cpp"
+        expect(program == code_of(source / "examples/detect_people.cpp"),
+               "examples/detect_people.cpp differs from the program in src/vesalius/vesalius.h")
+        main_cpp = folder / "main.cpp"
         main_cpp.write_text("\n".join(program) + "\n")
         run("cmake", "-S", source / "tests/consumer", "-B", outside, f"-DCMAKE_PREFIX_PATH={prefix}",
-            f"-DMAIN_SOURCE={main_cpp}", f"-DVESALIUS_HEADERS={headers}")
+            f"-DMAIN_SOURCE={main_cpp}", f"-DEXAMPLES={source / 'examples'}", f"-DVESALIUS_HEADERS={headers}")
         run("cmake", "--build", outside)
-        arguments = source / "data/models/capsule.forest", source / "data/sample"
-        found = run(outside / "consumer", *arguments)
-        if " parts\n" not in found:
-            sys.exit(f"expected people in the sample, got: {found!r}")
-        if found != run(example, *arguments):
-            sys.exit("the installed library and the build tree's disagree")
+
+        def both(name, *arguments):
+            """What the program says that uses the installed libraries, and that it says the same as the build tree's."""
+            said = run(outside / name / name, *arguments)
+            expect(said == run(examples / name, *arguments), f"{name}: the installed library and the build tree's disagree")
+            return said
+
+        found = both("detect_people", model, frames)
+        expect(" parts\n" in found, f"expected people in the sample, got: {found!r}")
+        drawn = both("draw_people", model, frames, folder / "drawn").split()
+        expect(len(drawn) == 8 and all(Path(each).read_bytes()[1:4] == b"PNG" for each in drawn), f"no pictures: {drawn}")
+        lines = [json.loads(line) for line in both("stream_people", model).splitlines()]
+        expect([line["frame"] for line in lines] == [f"rendered_{i}" for i in range(6)], f"other frames: {lines}")
+        trained = both("train_forest", folder / "own.forest")
+        expect(float(trained.split(":")[1].split("%")[0]) > 10, f"expected more than chance, 4 %: {trained}")
+
+        # The installed program finds the installed model.
+        bin_folder = prefix / "bin"
+        said = run(bin_folder / "vesalius", "detect", frames)
+        expect("person" in said or "people" in said, f"expected people in the sample, got: {said!r}")
 
 
 if __name__ == "__main__":
