@@ -92,7 +92,7 @@ class CheckLayers(unittest.TestCase):
         self.expect_violation({"src/vesalius/base/image.h": "#include <fstream>\n"}, "src/vesalius/base/image.h:1:")
 
     def test_satellite_includes_satellite(self):
-        self.expect_violation({"src/draw/draw.h": '#include "io/files/png.h"\n'}, "src/draw/draw.h:1:")
+        self.expect_violation({"src/draw/canvas.h": '#include "io/files/png.h"\n'}, "src/draw/canvas.h:1:")
 
     def test_test_includes_satellite_that_it_may_not(self):
         changes = {"src/io/files/png_test.cpp": '#include "draw/draw.h"\n'}
