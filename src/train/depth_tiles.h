@@ -9,7 +9,7 @@
 
 namespace vesalius {
 
-/// Where a frame's depth is kept in tiles of 8x4 pixels: the probes around a pixel touch few of them.
+/// Layout of a frame whose depth is kept in tiles of 8x4 pixels, so that the probes around a pixel touch few of them.
 struct TileGrid {
   static constexpr int kWidth = 8, kHeight = 4, kPixels = kWidth * kHeight;
 
@@ -25,8 +25,9 @@ struct TileGrid {
   static std::size_t in_tile(int u, int v) { return static_cast<std::size_t>((v % kHeight) * kWidth + u % kWidth); }
 };
 
-/// Tiles packed without loss, to somewhat more than half of 16 bits a pixel: codes above the nearest reading of the
-/// tile, in 4, 8 or 16 bits as its furthest needs, the first pixel's in the lowest bits; code 0 is a hole.
+/// Tiles packed without loss, to somewhat more than half of 16 bits a pixel. A pixel's code is its depth above a base
+/// just below the tile's nearest reading, in 4, 8 or 16 bits as the tile's furthest reading needs; code 0 is a hole.
+/// The first pixel's code is in the lowest bits.
 struct PackedTiles {
   TileGrid grid;
   const std::uint32_t* row_starts = nullptr;  ///< of each row of tiles, in chunks
@@ -38,20 +39,20 @@ struct PackedTiles {
   static std::size_t code_bits(std::uint32_t header) { return std::size_t{4} << (header >> 16U & 3U); }
   static std::size_t chunk_in_row(std::uint32_t header) { return header >> 18U; }
 
-  /// 0 for a hole. `u`, `v` inside the frame.
+  /// Returns the depth of a pixel inside the frame, 0 for a hole.
   std::uint16_t depth_mm(int u, int v) const;
 };
 
 /// Largest side of a frame, pixels.
 constexpr int kLargestTiledSide = 32767;
 
-/// Packs `depth`; returns words that `packed_tiles` finds its way in, the last of them for reads beyond the end. At
-/// most kLargestTiledSide a side.
+/// Packs `depth`, which has at most kLargestTiledSide pixels a side. Returns words that `packed_tiles` reads; the last
+/// of them is there for reads beyond the end.
 std::vector<std::uint32_t> pack_tiles(const DepthImage& depth);
 PackedTiles packed_tiles(TileGrid grid, const std::uint32_t* words);
 
-/// Writes all readings to `tiles`, TileGrid::kPixels for each tile: pixel (u, v) at tile_of(u, v) * kPixels +
-/// in_tile(u, v), a hole as `hole_mm`. The same from every instruction set.
+/// Writes all readings to `tiles`, TileGrid::kPixels for each tile: pixel (u, v) goes to tile_of(u, v) * kPixels +
+/// in_tile(u, v), a hole as `hole_mm`. The readings are the same from every instruction set.
 void unpack_tiles(const PackedTiles& packed, std::uint16_t hole_mm, std::uint16_t* tiles);
 
 inline std::uint16_t PackedTiles::depth_mm(int u, int v) const {

@@ -107,7 +107,7 @@ GrowthEstimate estimate_growth(const std::vector<LabelledFrame>& frames, const B
                                const TrainOptions& options, int trees_at_once) {
   Pilot pilot = make_pilot(frames, body, static_cast<double>(samples), options);
   GrowProgress progress;
-  std::vector<Tree> trees(static_cast<std::size_t>(trees_at_once));
+  std::vector<Tree> trees(trees_at_once);
   const Clock::time_point start = Clock::now();
   parallel_for(trees_at_once,
                [&](int t) { trees[t] = grow_tree(pilot.set, pilot.options.grow, kFirstPilotTree + t, &progress); });

@@ -23,15 +23,16 @@
 
 namespace vesalius {
 
+/// What growing a forest will take.
 struct GrowthEstimate {
   double evaluations = 0.0;        ///< values of eq. 1, of all trees of both rounds
   double evaluations_per_s = 0.0;  ///< of all threads allowed together
-  double hard_search_s = 0.0;      ///< TrainingSet::add_hard_negatives
+  double hard_search_s = 0.0;      ///< looking for hard negatives
   double seconds() const { return evaluations / evaluations_per_s + hard_search_s; }
 };
 
-/// Grows a pilot for some seconds on `frames`, repeated where they are few, and says what `samples` of such frames
-/// would take, `trees_at_once` trees at a time. Throws Error as TrainingSet::add and grow_tree do.
+/// Grows a pilot for some seconds on `frames`, repeated where they are few, and returns what `samples` of such frames
+/// would take, with `trees_at_once` trees at a time. Throws Error as TrainingSet::add and grow_tree do.
 GrowthEstimate estimate_growth(const std::vector<LabelledFrame>& frames, const BodyModel& body, std::uint64_t samples,
                                const TrainOptions& options, int trees_at_once);
 

@@ -61,7 +61,7 @@ TEST(FeatureRows, AreWhatDetectionComputesOnEveryInstructionSet) {
       SplitOptions options;
       options.max_offset_m = 20.F;
       const CandidateTable table = draw_candidates(convention, options, 37, random);
-      std::vector<std::int16_t> values(static_cast<std::size_t>(table.padded)), packed = values;
+      std::vector<std::int16_t> values(table.padded), packed = values;
       for_each_target([&](const char* target) {
         for (int s = 0; s < 20; ++s) {
           const TrainingSample sample = random_sample(depth, random);

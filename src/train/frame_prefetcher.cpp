@@ -17,7 +17,7 @@ void FramePrefetcher::enter_frame(std::size_t index) {
   const std::uint32_t frame = samples_[index].frame;
   const auto rest = samples_.subspan(index);
   const auto end = std::ranges::find_if(rest, [&](const TrainingSample& each) { return each.frame != frame; });
-  frame_end_ = index + static_cast<std::size_t>(end - rest.begin());
+  frame_end_ = index + (end - rest.begin());
   next_ = end_ = nullptr;
   bytes_per_sample_ = 0;
   const auto count = static_cast<double>(frame_end_ - index);

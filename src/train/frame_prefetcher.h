@@ -8,13 +8,13 @@
 
 namespace vesalius {
 
-/// Asks for the next frame's depth, a few cache lines with every sample of this one: unpacking it would wait for memory
-/// otherwise. Results do not depend on it.
+/// Asks memory for the next frame's depth, a few cache lines with every sample of the frame at hand; unpacking the next
+/// frame would wait for memory otherwise. Results do not depend on it.
 class FramePrefetcher {
  public:
   FramePrefetcher(const FrameStore& frames, std::span<const TrainingSample> samples);
 
-  /// Before sample `index`; indices ascend by one.
+  /// Is called before sample `index` is read. Indices ascend by one.
   void step(std::size_t index);
 
  private:

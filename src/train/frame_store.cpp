@@ -21,7 +21,7 @@ std::size_t FrameStore::frame_bytes(const DepthImage& depth) {
 
 std::size_t FrameStore::most_frame_bytes(int width, int height) {
   const TileGrid grid{width, height};
-  const std::size_t headers = static_cast<std::size_t>(grid.rows()) + grid.tiles();
+  const std::size_t headers = grid.rows() + grid.tiles();
   return whole_lines((headers + 4) * sizeof(std::uint32_t) + grid.tiles() * TileGrid::kPixels * sizeof(std::uint16_t));
 }
 

@@ -14,20 +14,21 @@
 
 namespace vesalius {
 
-/// Depth of many frames, of any sizes and cameras, packed in memory. Read from any thread; add from one.
+/// Holds the depth of many frames, of any sizes and cameras, packed in memory. Any thread may read; one thread at a
+/// time may add, while no other reads.
 class FrameStore {
  public:
   explicit FrameStore(const FeatureConvention& convention) : convention_(convention) {}
 
-  /// One frame: any pixel at a time, where few are asked for.
+  /// One frame, of which any pixel can be read without unpacking the rest.
   struct View {
     PackedTiles depth;
     std::size_t bytes = 0;  ///< from depth.row_starts on
     OffsetScaler scaler;
   };
 
-  /// Returns the frame's index. Throws Error for a depth image that is not of the camera's size or larger than 32767
-  /// pixels a side.
+  /// Adds a frame and returns its index. Throws Error for a depth image that is not of the camera's size or has more
+  /// than 32767 pixels a side.
   std::size_t add(const Camera& camera, const DepthImage& depth);
 
   std::size_t size() const { return views_.size(); }
@@ -36,9 +37,9 @@ class FrameStore {
 
   /// Bytes of depth held.
   std::size_t bytes() const { return bytes_; }
-  /// Bytes that a frame takes.
+  /// Returns the bytes that a frame takes.
   static std::size_t frame_bytes(const DepthImage& depth);
-  /// Most that a frame of this size takes, whatever it shows.
+  /// Returns the most bytes that a frame of this size takes, whatever it shows.
   static std::size_t most_frame_bytes(int width, int height);
 
  private:
@@ -51,24 +52,25 @@ class FrameStore {
   std::size_t bytes_ = 0;
 };
 
-/// A frame unpacked, as the split search reads it.
+/// One frame unpacked, as the split search reads it.
 struct TiledDepth {
   TileGrid grid{};
-  /// As unpack_tiles leaves them, holes as the convention has it; after the last tile what a probe outside reads.
+  /// Readings as unpack_tiles leaves them, with holes as the convention has it. After the last tile stands what a probe
+  /// outside the picture reads.
   const std::uint16_t* tiles = nullptr;
   OffsetScaler scaler;
 
-  /// `u`, `v` inside the frame.
+  /// Returns the depth of a pixel inside the frame, a hole as the convention has it.
   std::uint16_t depth_mm(int u, int v) const {
     return tiles[grid.tile_of(u, v) * TileGrid::kPixels + TileGrid::in_tile(u, v)];
   }
 };
 
-/// Unpacks frames, the last one kept: samples come ordered by frame. One for each thread.
+/// Unpacks frames and keeps the last one, since samples come ordered by frame. Each thread has its own.
 class FrameUnpacker {
  public:
   explicit FrameUnpacker(const FrameStore& frames) : frames_(frames) {}
-  /// Valid until another frame is asked for.
+  /// Returns a frame, which stays valid until another one is asked for.
   const TiledDepth& operator()(std::size_t frame);
 
  private:

@@ -13,6 +13,7 @@
 
 namespace vesalius {
 
+/// All that decides what forest comes of given frames.
 struct TrainOptions {
   int trees = 8;
   int hard_trees = 2;         ///< trees of the first round, which finds hard negatives; 0 = no such round

@@ -41,7 +41,7 @@ std::vector<LabelledFrame> standing_people(int count) {
 
 int likeliest(const Forest& forest, const LabelledFrame& frame, int u, int v) {
   const OffsetScaler scaler(forest.convention, frame.frame.camera);
-  std::vector<int> sums(static_cast<std::size_t>(forest.class_count()), 0);
+  std::vector<int> sums(forest.class_count(), 0);
   for (const Tree& tree : forest.trees) {
     const TreeLeaf& leaf = walk(tree, frame.frame.depth, forest.convention, scaler.at(frame.frame.depth(u, v)), u, v);
     for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) sums[leaf.label[k]] += leaf.probability[k];

@@ -53,7 +53,7 @@ class ObviousTrainer {
   std::size_t grow_node(const Samples& samples, std::uint32_t number, int depth) {
     const std::size_t at = nodes_.size();
     nodes_.emplace_back();
-    std::vector<std::int64_t> counts(static_cast<std::size_t>(set_.class_count()), 0);
+    std::vector<std::int64_t> counts(set_.class_count(), 0);
     for (const TrainingSample& sample : samples) ++counts[sample.label];
     nodes_[at].leaf = shares_.leaf(counts.data());
     const bool pure = std::ranges::count_if(counts, [](std::int64_t n) { return n > 0; }) < 2;
@@ -148,7 +148,7 @@ class ObviousTrainer {
   }
 
   std::int64_t score_of(const Samples& samples, const std::vector<int>& values, int threshold, int least) const {
-    const auto classes = static_cast<std::size_t>(set_.class_count());
+    const int classes = set_.class_count();
     std::vector<int> left(classes, 0), right(classes, 0);
     int n_left = 0, n_right = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -157,7 +157,7 @@ class ObviousTrainer {
     }
     if (std::min(n_left, n_right) < least) return std::numeric_limits<std::int64_t>::min();
     std::int64_t score = -entropy_(n_left) - entropy_(n_right);
-    for (std::size_t c = 0; c < classes; ++c) score += entropy_(left[c]) + entropy_(right[c]);
+    for (int c = 0; c < classes; ++c) score += entropy_(left[c]) + entropy_(right[c]);
     return score;
   }
 
@@ -182,7 +182,7 @@ std::vector<LabelledFrame> people(int count) {
     person.pose.r_arm.raise = 0.3F * static_cast<float>(i % 6);
     scene.people.push_back(person);
     frames.push_back(render(scene, kCamera, paper_body()));
-    for (std::size_t p = static_cast<std::size_t>(i); p < frames.back().frame.depth.size(); p += 31) {
+    for (std::size_t p = i; p < frames.back().frame.depth.size(); p += 31) {
       frames.back().frame.depth[p] = 0;  // holes
     }
   }

@@ -4,14 +4,14 @@
 
 namespace vesalius {
 
-/// Of a cache line.
+/// Bytes of a cache line.
 inline constexpr std::size_t kLineBytes = 64;
 
-/// Zeroed memory straight from the system, in huge pages where it has them: random reads over gigabytes wait for the
-/// page table otherwise.
+/// Zeroed memory straight from the system, in huge pages where it has them, since random reads over gigabytes wait for
+/// the page table otherwise.
 class HugeBuffer {
  public:
-  /// Throws std::bad_alloc.
+  /// Throws std::bad_alloc where the system has no such memory.
   explicit HugeBuffer(std::size_t bytes);
   ~HugeBuffer();
   HugeBuffer(HugeBuffer&& other) noexcept;

@@ -28,7 +28,7 @@ void for_sample_ranges(std::size_t count, const Work& work) {
   constexpr std::size_t kSamplesPerRange = 2048;
   const std::size_t ranges = (count + kSamplesPerRange - 1) / kSamplesPerRange;
   parallel_for(static_cast<int>(ranges), [&](int r) {
-    const std::size_t begin = static_cast<std::size_t>(r) * kSamplesPerRange;
+    const std::size_t begin = r * kSamplesPerRange;
     work(begin, std::min(begin + kSamplesPerRange, count));
   });
 }
@@ -79,7 +79,7 @@ std::int32_t child_of(const Tree& tree, std::int32_t at, const FrameStore& frame
 class NodeCounts {
  public:
   NodeCounts(const Tree& tree, const TrainingSet& set)
-      : classes_(static_cast<std::size_t>(set.class_count())),
+      : classes_(set.class_count()),
         leaves_(tree.leaves.size() * classes_, 0),
         nodes_(tree.nodes.size() * classes_, 0) {
     const std::span<const TrainingSample> samples = set.samples();
@@ -98,8 +98,7 @@ class NodeCounts {
 
   /// One count for each class; `at` is a node, or ~leaf.
   const std::uint32_t* of(std::int32_t at) const {
-    return at >= 0 ? nodes_.data() + static_cast<std::size_t>(at) * classes_
-                   : leaves_.data() + static_cast<std::size_t>(~at) * classes_;
+    return at >= 0 ? nodes_.data() + at * classes_ : leaves_.data() + ~at * classes_;
   }
 
  private:
@@ -114,7 +113,7 @@ class LevelVotes {
       : set_(set),
         samples_(std::move(samples)),
         levels_(levels),
-        classes_(static_cast<std::size_t>(set.class_count())),
+        classes_(set.class_count()),
         votes_(samples_.size() * levels_ * classes_, 0.F) {}
 
   void add(const Tree& tree) {
@@ -176,12 +175,11 @@ double Confusion::recall(int truth) const {
 double SampleAccuracy::with_background() const { return mean_part_recall(all, parts.classes); }
 double SampleAccuracy::parts_only() const { return mean_part_recall(parts, parts.classes); }
 
-HeldOutVotes::HeldOutVotes(const TrainingSet& set)
-    : set_(set), sums_(set.held_out().size() * static_cast<std::size_t>(set.class_count()), 0) {}
+HeldOutVotes::HeldOutVotes(const TrainingSet& set) : set_(set), sums_(set.held_out().size() * set.class_count(), 0) {}
 
 void HeldOutVotes::add(const Tree& tree) {
   const std::span<const TrainingSample> samples = set_.held_out();
-  const auto classes = static_cast<std::size_t>(set_.class_count());
+  const std::size_t classes = set_.class_count();
   for_sample_ranges(samples.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const TreeLeaf& leaf = tree.leaves[leaf_of(tree, set_.frames(), samples[i])];
@@ -195,7 +193,7 @@ void HeldOutVotes::add(const Tree& tree) {
 }
 
 SampleAccuracy HeldOutVotes::accuracy() const {
-  const auto classes = static_cast<std::size_t>(set_.class_count());
+  const std::size_t classes = set_.class_count();
   return accuracy_of_votes(set_, set_.held_out(), [&](std::size_t i) { return sums_.data() + i * classes; });
 }
 
@@ -213,7 +211,7 @@ std::vector<AccuracyPoint> accuracy_by_trees(const Forest& forest, const Trainin
 std::vector<AccuracyPoint> accuracy_by_level(const Forest& forest, const TrainingSet& set) {
   int deepest = 0;
   for (const Tree& tree : forest.trees) deepest = std::max(deepest, depth(tree));
-  const auto levels = static_cast<std::size_t>(deepest) + 1;
+  const std::size_t levels = deepest + 1;
   LevelVotes votes(set, evenly_chosen(set.held_out()), levels);
   for (const Tree& tree : forest.trees) votes.add(tree);
   std::vector<AccuracyPoint> points;

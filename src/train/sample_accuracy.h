@@ -1,7 +1,7 @@
 #pragma once
 
-// Accuracy of a forest on samples, which are drawn pixels and no whole pictures: good for comparing forests on the same
-// samples, not beside figures over all pixels of a picture.
+// Accuracy of a forest on samples. Samples are drawn pixels, so these numbers compare forests on the same samples; they
+// do not compare with metrics over all pixels of a picture.
 
 #include <cstdint>
 #include <span>
@@ -17,39 +17,37 @@ struct Confusion {
   int classes = 0;
   std::vector<std::uint64_t> counts;  ///< classes x classes, row after row
 
-  explicit Confusion(int class_count = 0)
-      : classes(class_count), counts(static_cast<std::size_t>(class_count) * static_cast<std::size_t>(class_count)) {}
+  explicit Confusion(int class_count = 0) : classes(class_count), counts(std::size_t{1} * class_count * class_count) {}
   std::uint64_t at(int truth, int given) const { return counts[index(truth, given)]; }
   std::uint64_t& at(int truth, int given) { return counts[index(truth, given)]; }
-  /// Samples of a true class.
+  /// Returns the number of samples of a true class.
   std::uint64_t row_sum(int truth) const;
-  /// Share of a true class that was given right, 0 to 1; 0 where it has no sample.
+  /// Returns the share of a true class that was given right, 0 to 1; 0 where the class has no sample.
   double recall(int truth) const;
 
  private:
-  std::size_t index(int truth, int given) const {
-    return static_cast<std::size_t>(truth) * static_cast<std::size_t>(classes) + static_cast<std::size_t>(given);
-  }
+  std::size_t index(int truth, int given) const { return std::size_t{1} * truth * classes + given; }
 };
 
+/// How a forest did on samples, with and without the background as a rival of the parts.
 struct SampleAccuracy {
-  Confusion all;    ///< of all classes: the background, where the forest has it, is a rival of the parts
-  Confusion parts;  ///< samples of parts only, which may be given parts only: free of the background's prior
+  Confusion all;    ///< of all classes, the background among them where the forest has it
+  Confusion parts;  ///< of samples of parts, which are given the likeliest part: free of the background's prior
 
-  /// Mean recall of the parts that have samples, 0 to 1; 0 without any.
+  /// Both return the mean recall of the parts that have samples, 0 to 1; 0 without any.
   double with_background() const;
   double parts_only() const;
 };
 
-/// Adds up the posteriors of a set's held-out samples, tree by tree (eq. 2). Not for several threads at once; each call
-/// uses all of them. The counts do not depend on how many.
+/// Adds up the posteriors of a set's held-out samples, tree by tree (eq. 2). One call at a time; each uses all threads
+/// allowed. The counts do not depend on how many those are.
 class HeldOutVotes {
  public:
   /// `set` must outlive this.
   explicit HeldOutVotes(const TrainingSet& set);
   void add(const Tree& tree);
   int trees() const { return trees_; }
-  /// The most probable class of each, the lower one on a tie.
+  /// Compares the most probable class of each sample, the lower one on a tie, with the truth.
   SampleAccuracy accuracy() const;
 
  private:
@@ -58,17 +56,18 @@ class HeldOutVotes {
   std::vector<std::uint16_t> sums_;  ///< [sample][class], in 1/255
 };
 
-/// Both mean recalls of some part of a forest.
+/// Both mean recalls of a part of a forest.
 struct AccuracyPoint {
   double with_background = 0.0;
   double parts_only = 0.0;
 };
 
-/// Of the first tree, the first two, ... of the forest on the held-out samples.
+/// Returns the accuracy of the first tree, the first two trees, ... of the forest on the held-out samples.
 std::vector<AccuracyPoint> accuracy_by_trees(const Forest& forest, const TrainingSet& set);
 
-/// Of the forest cut at level 0, 1, ... of its deepest tree: an inner node answers with the classes of the training
-/// samples that pass through it. Measured on at most 20,000 held-out samples, evenly chosen.
+/// Returns the accuracy of the forest cut at level 0, 1, ... of its deepest tree, where an inner node answers with the
+/// classes of the training samples that pass through it. It is measured on at most 20,000 held-out samples, evenly
+/// chosen.
 std::vector<AccuracyPoint> accuracy_by_level(const Forest& forest, const TrainingSet& set);
 
 }  // namespace vesalius

@@ -25,7 +25,7 @@ PixelPools make_pools(const LabelledFrame& labelled, int part_count, std::vector
     throw Error(fmt::format("{}: labels and depth differ in size", where));
   }
   PixelPools pools;
-  std::vector<std::vector<int>> by_part(static_cast<std::size_t>(part_count));
+  std::vector<std::vector<int>> by_part(part_count);
   for (std::size_t i = 0; i < labelled.labels.size(); ++i) {
     if (labelled.frame.depth[i] == 0) continue;
     const std::uint8_t label = labelled.labels[i];

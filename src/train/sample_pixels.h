@@ -25,16 +25,16 @@ struct SampleOptions {
 };
 void visit_options(const std::string& prefix, SampleOptions& options, OptionVisitor& visitor);
 
-/// What one frame gives to a training set; `frame` of the samples is not set.
+/// What one frame gives to a training set. `TrainingSample::frame` is not set.
 struct DrawnSamples {
   std::vector<TrainingSample> samples;      ///< to learn from
   std::vector<TrainingSample> pool;         ///< background to search for hard negatives
   std::vector<std::uint64_t> class_pixels;  ///< readings of each class, the background last
 };
 
-/// Draws pixels with a reading, with replacement. A frame without people gives its background share only, one without
-/// background its body share only. `where` names the frame in errors. Throws Error for images that differ in size and
-/// for labels that the body lacks.
+/// Draws pixels with a reading, with replacement. A frame without people gives only its background share, a frame
+/// without background only its body share. `where` names the frame in errors. Throws Error for images that differ in
+/// size and for labels that the body lacks.
 DrawnSamples draw_samples(const LabelledFrame& labelled, const BodyModel& body, const SampleOptions& options,
                           Random& random, const std::string& where);
 

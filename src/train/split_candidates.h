@@ -9,7 +9,7 @@
 
 namespace vesalius {
 
-/// Offsets of the pairs that a node tries, column by column: du1, dv1, du2, dv2, each of `padded` values.
+/// Offsets of the pairs that a node tries, column by column: du1, dv1, du2, dv2. Each column has `padded` values.
 struct CandidateTable {
   static constexpr int kLanes = 16;  ///< columns are padded to a multiple of this
 
@@ -23,18 +23,19 @@ struct CandidateTable {
   TreeNode node(int index) const;  ///< offsets only
 };
 
-/// `count` random pairs: directions uniform, distances as the options say. Equal for equal state of `random`.
+/// Returns `count` random pairs, with uniform directions and distances as the options say. They are equal for equal
+/// states of `random`.
 CandidateTable draw_candidates(const FeatureConvention& convention, const SplitOptions& options, int count,
                                Random& random);
 
-/// Block `block` (of kBlockCandidates) of what node `number` of a tree tries: of the shared list, or of its own.
-/// Nodes are numbered as in a heap: root 1, children 2n and 2n + 1.
+/// Returns block `block` (of kBlockCandidates) of what node `number` of a tree tries, from the shared list or the
+/// node's own. Nodes are numbered as in a heap: root 1, children 2n and 2n + 1.
 CandidateTable node_candidates(const FeatureConvention& convention, const GrowTreeOptions& options, int tree,
                                std::uint32_t number, int block);
 
-/// How many such blocks there are.
+/// Returns how many such blocks there are.
 int candidate_blocks(const SplitOptions& options);
-/// How many candidates a block has.
+/// Returns how many candidates a block has.
 int block_candidates(const SplitOptions& options, int block);
 
 }  // namespace vesalius

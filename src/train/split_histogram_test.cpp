@@ -21,9 +21,7 @@ struct Rows {
   int width;
 
   FeatureRows view() const { return {values.data(), labels.data(), labels.size(), width}; }
-  int value(std::size_t row, int candidate) const {
-    return values[row * static_cast<std::size_t>(width) + static_cast<std::size_t>(candidate)];
-  }
+  int value(std::size_t row, int candidate) const { return values[row * width + candidate]; }
 };
 
 /// Every candidate has a spread of its own, from none to all of int16; labels follow some of the values.
@@ -158,7 +156,7 @@ TEST(BestSplit, IsThatOfTryingEveryThresholdOnEveryInstructionSet) {
   for_each_target([&](const char* target) {
     for (const auto& [count, candidates, bins, least] :
          {std::array{400, 60, 32, 1}, std::array{90, 17, 8, 30}, std::array{50, 64, 16, 26}}) {
-      const Rows rows = random_rows(static_cast<std::size_t>(count), (candidates + 15) / 16 * 16, random);
+      const Rows rows = random_rows(count, (candidates + 15) / 16 * 16, random);
       const auto [binning, classes] = task_of(rows, bins);
       const SplitHistogram histogram = count_bins(rows.view(), {binning, classes});
       const BinSplit truth = obvious_split(rows, binning, candidates, least, entropy);

@@ -38,8 +38,8 @@ void CountRows(const FeatureRows& rows, const Binning& binning, const std::uint8
                std::uint16_t* HWY_RESTRICT counts) {
   const Lanes16 d;
   const hn::RebindToUnsigned<Lanes16> du;
-  const auto class_stride = static_cast<std::size_t>(binning.bins) * kBlockCandidates;
-  const auto width = static_cast<std::size_t>(rows.width);
+  const std::size_t class_stride = binning.bins * kBlockCandidates;
+  const std::size_t width = rows.width;
   alignas(64) std::uint16_t at[kBlockCandidates];
   const std::int16_t* HWY_RESTRICT low = binning.low.data();
   const std::uint16_t* HWY_RESTRICT factor = binning.factor.data();
@@ -80,8 +80,7 @@ void ScanBins(const SplitHistogram& histogram, const std::int32_t* totals, std::
     for (int b = 0; b + 1 < histogram.bins; ++b) {
       auto sum = hn::Zero(d);
       for (std::size_t k = 0; k < histogram.classes; ++k) {
-        const std::size_t at =
-            (k * static_cast<std::size_t>(histogram.bins) + static_cast<std::size_t>(b)) * kBlockCandidates + c;
+        const std::size_t at = (k * histogram.bins + b) * kBlockCandidates + c;
         const auto moved = hn::PromoteTo(d, hn::LoadU(narrow, histogram.counts.data() + at));
         const auto on_left = hn::Add(hn::LoadU(d, left.data() + k * lanes), moved);
         hn::StoreU(on_left, d, left.data() + k * lanes);

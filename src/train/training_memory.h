@@ -14,7 +14,7 @@ struct FrameGroup {
   bool empty = false;             ///< known to show nobody
 };
 
-/// Most that training takes, bytes: an upper bound if `frame_bytes` are, in which vectors that grow count twice.
+/// Most bytes that training takes. An upper bound where `frame_bytes` are one; vectors that grow count twice in it.
 struct TrainingMemory {
   std::uint64_t depth = 0;    ///< of all frames
   std::uint64_t samples = 0;  ///< with hard negatives and the pool they come from
@@ -26,10 +26,10 @@ struct TrainingMemory {
 };
 TrainingMemory training_memory(std::span<const FrameGroup> groups, const TrainOptions& options, int class_count);
 
-/// Samples that `groups` give, held-out ones and hard negatives not among them.
+/// Returns how many samples `groups` give, without held-out ones and hard negatives.
 std::uint64_t expected_samples(std::span<const FrameGroup> groups, const TrainOptions& options);
 
-/// What fits into `bytes`, one tree growing at a time; 0 where nothing does.
+/// What fits into `bytes` while one tree grows at a time; 0 where nothing does.
 struct TrainingFit {
   double frame_share = 0.0;  ///< of each group, at the pixels asked for
   int pixels = 0;            ///< of each frame, at the frames asked for

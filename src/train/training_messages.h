@@ -63,7 +63,7 @@ struct NodeValues {
 };
 void merge(NodeValues& all, const NodeValues& other);
 
-/// How many bins a node of so many counted samples uses, at most `most`: few samples do not tell many apart.
+/// Returns how many bins a node of so many counted samples uses, at most `most`: few samples do not tell many apart.
 int bins_for(std::int64_t samples, int most);
 
 /// How values become bins: bin = (2 min(value - low, 32767) * factor) >> 16.
@@ -74,7 +74,7 @@ struct Binning {
 
   Binning(const ValueRanges& ranges, int bins);
   int bin_of(int candidate, int value) const;
-  /// Largest value whose bin is not above `bin`.
+  /// Returns the largest value whose bin is not above `bin`.
   int last_value(int candidate, int bin) const;
 };
 

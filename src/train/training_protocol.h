@@ -66,8 +66,8 @@ class TreeExecutor {
   virtual std::vector<IntervalValues> values_in(const std::vector<ValueInterval>& intervals) = 0;
   virtual void set_splits(const std::vector<NodeSplit>& splits) = 0;
 
-  /// Sends all samples of the nodes that were split to a side. Those of other nodes stay where they are, which counts
-  /// as the left side.
+  /// Sends all samples of the nodes that were split to a side, and counts them. The counts of the other nodes mean
+  /// nothing.
   virtual ChildCounts route() = 0;
 };
 

@@ -57,7 +57,7 @@ void TreeShard::open_level(const Level& level, const ChildSizes& before) {
   }
   for (std::size_t s = 0; s < samples_.size(); ++s) {
     if (node_of_[s] == kSettled) continue;
-    node_of_[s] = level.node_of_child[first ? 0 : 2 * static_cast<std::size_t>(node_of_[s]) + on_right_[s]];
+    node_of_[s] = level.node_of_child[first ? 0 : std::size_t{2} * node_of_[s] + on_right_[s]];
   }
   assign_rows();
 }
@@ -81,7 +81,7 @@ void TreeShard::evaluate(NodeRange group, int block) {
   group_ = group;
   draw_tables(block);
   const std::int64_t first_row = level_[group.begin].row_begin;
-  const auto rows = static_cast<std::size_t>(level_[group.end - 1].row_end - first_row);
+  const std::size_t rows = level_[group.end - 1].row_end - first_row;
   const std::size_t bytes = rows * tables_.padded * sizeof(std::int16_t);
   if (values_.size() < bytes) values_ = HugeBuffer(bytes);
   row_labels_.resize(rows);
@@ -104,7 +104,7 @@ void TreeShard::draw_tables(int block) {
 /// Computes the `rows` rows of the group.
 void TreeShard::evaluate_rows(std::size_t rows) {
   const FrameStore& frames = set_.frames();
-  const auto first_row = static_cast<std::size_t>(level_[group_.begin].row_begin);
+  const std::size_t first_row = level_[group_.begin].row_begin;
   const bool few = static_cast<double>(rows) < kFewEvaluated * static_cast<double>(frames.size());
   const auto has_row = [&](std::size_t s) {
     return row_of_[s] != kNoRow && row_of_[s] >= first_row && row_of_[s] < first_row + rows;
@@ -220,7 +220,7 @@ ChildCounts TreeShard::route() {
   ChildCounts children{set_.class_count(), std::vector<std::int64_t>(2 * level_.size() * set_.class_count(), 0)};
   for (std::size_t s = 0; s < samples_.size(); ++s) {
     if (node_of_[s] == kSettled) continue;
-    const std::size_t child = 2 * static_cast<std::size_t>(node_of_[s]) + on_right_[s];
+    const std::size_t child = std::size_t{2} * node_of_[s] + on_right_[s];
     ++children.counts[child * children.classes + samples_[s].label];
   }
   child_sizes_ = vesalius::child_sizes(children);

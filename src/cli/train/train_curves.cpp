@@ -34,7 +34,7 @@ TrainingSet smaller_set(const TrainInputs& inputs, const TrainingSet& set, std::
     if (early && !held_out[index]) fewer.add(frame);
     ++index;
   });
-  const auto wanted = [&](int i) { return !held_out[backgrounds + static_cast<std::size_t>(i)]; };
+  const auto wanted = [&](int i) { return !held_out[backgrounds + i]; };
   inputs.read({share, wanted}, [&](const LabelledFrame& frame) { fewer.add(frame); });
   return fewer;
 }
