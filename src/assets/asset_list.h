@@ -9,7 +9,7 @@
 namespace vesalius {
 
 struct AssetFile {
-  std::string path;  ///< below the folder of its package; stays inside
+  std::string path;  ///< below the folder of its package; see stays_inside()
   FileDigest digest;
 };
 
@@ -24,17 +24,18 @@ struct AssetPackage {
   AssetFile archive;  ///< holds `name`/`path` for each of the files
   std::vector<AssetFile> files;
 
-  std::uint64_t bytes() const;  ///< of all files
+  /// Returns the size of all files together.
+  std::uint64_t bytes() const;
 };
 
-/// The packages that this program knows.
+/// Returns the packages that this program knows.
 const std::vector<AssetPackage>& asset_packages();
 
-/// That of this name; throws UsageError naming those there are.
+/// Returns the package of this name. Throws UsageError, which lists the known names, where there is none.
 const AssetPackage& asset_package(std::string_view name);
 
-/// Reads a list; `name` stands for the path in errors. Throws Error with the line for bad TOML, an unknown or missing
-/// key, a value of another type, a name or path twice, a path that leads outside and a malformed SHA-256.
+/// Parses a list of packages; `name` stands for the path in errors. Throws Error with the line for bad TOML, an unknown
+/// or missing key, a value of another type, a name or path twice, a path that leads outside and a malformed SHA-256.
 std::vector<AssetPackage> parse_asset_list(std::string_view toml, const std::string& name);
 
 }  // namespace vesalius

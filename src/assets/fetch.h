@@ -10,11 +10,12 @@
 namespace vesalius {
 
 struct FetchOptions {
-  double connect_s = 20.0;    ///< for a server to answer at all
-  double stall_s = 30.0;      ///< with fewer than 100 bytes a second
-  int tries = 4;              ///< where a server or the way to it fails
-  double first_wait_s = 1.0;  ///< before the second try; each later one waits twice as long
-  /// Asked several times a second with the bytes of the file at hand so far; false ends the transfer with an Error.
+  double connect_s = 20.0;    ///< time a server has to answer at all
+  double stall_s = 30.0;      ///< time a transfer may stay below 100 bytes a second
+  int tries = 4;              ///< attempts for each file where a server or the way to it fails
+  double first_wait_s = 1.0;  ///< pause before the second try; each later pause is twice as long
+  /// Is called several times a second with the bytes of the file at hand so far; by returning false it ends the
+  /// transfer with an Error.
   std::function<bool(std::uint64_t bytes)> go_on;
 };
 
@@ -27,11 +28,12 @@ class Origin {
   Origin(const Origin&) = delete;
   Origin& operator=(const Origin&) = delete;
 
-  /// Writes the file `path` (as of `stays_inside`) of this place to `file`; false where there is none. Throws Error,
-  /// with the address, where it cannot be had, and what `file` throws. Does not commit.
+  /// Writes the file `path`, for which stays_inside() holds, of this place to `file` and returns true; returns false
+  /// where there is no such file. The caller commits. Throws Error with the address where the file cannot be had, and
+  /// what `file` throws.
   bool get(const std::string& path, VerifiedFile& file);
 
-  /// Where `path` is looked for, for messages: without a password in the address.
+  /// Returns where `path` is looked for, to be shown in messages: without a password in the address.
   std::string place_of(const std::string& path) const;
 
  private:

@@ -15,7 +15,7 @@ class Sha256 {
   Sha256& operator=(const Sha256&) = delete;
 
   void update(std::string_view bytes);
-  /// The digest as 64 small hexadecimal digits; what comes afterwards begins a new one.
+  /// Returns the digest as 64 lower-case hexadecimal digits. Bytes that come afterwards begin a new one.
   std::string finish();
 
  private:
@@ -23,7 +23,7 @@ class Sha256 {
   std::unique_ptr<State> state_;
 };
 
-/// That of a regular file, read in pieces. Throws Error with the path and the system's reason.
+/// Returns the SHA-256 of a regular file. Throws Error with the path and the system's reason.
 std::string sha256_of_file(const std::string& path);
 
 }  // namespace vesalius

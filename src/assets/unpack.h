@@ -6,12 +6,12 @@
 
 namespace vesalius {
 
-/// Whether a relative path of plain components stays inside the folder that it is appended to: not empty, no leading
-/// '/', no empty component, "." or "..", no control character or backslash.
+/// Returns whether a path stays inside the folder that it is appended to: it is not empty, has no leading '/', no empty
+/// component, "." or "..", and no control character or backslash.
 bool stays_inside(std::string_view path);
 
-/// Shown the files of an archive. `begin` says by true that it wants the bytes of a file; `bytes` gives them in pieces,
-/// `end` follows the last.
+/// Receives the files of an archive. `begin` returns whether it wants the bytes of a file; `bytes` then gets them in
+/// pieces, and `end` is called after the last piece.
 struct UnpackSink {
   std::function<bool(const std::string& path)> begin;
   std::function<void(std::string_view bytes)> bytes;

@@ -10,7 +10,7 @@
 
 namespace vesalius {
 
-/// Bytes that are not the ones asked for: too many, too few, or others.
+/// Is thrown for bytes that are not the ones asked for: too many, too few, or others.
 class WrongBytes : public Error {
  public:
   using Error::Error;
@@ -22,7 +22,7 @@ struct FileDigest {
   std::string sha256;  ///< 64 small hexadecimal digits
 };
 
-/// Whether a regular file of this size and SHA-256 is there; throws Error where it cannot be read.
+/// Returns whether a regular file of this size and SHA-256 is there. Throws Error where it cannot be read.
 bool holds(const std::string& path, const FileDigest& expected);
 
 /// A file that gets its final name only once size and SHA-256 are right. Until then its bytes lie under another name of
@@ -38,9 +38,10 @@ class VerifiedFile {
 
   /// Throws WrongBytes, before writing, once there are more than expected; Error where the disk takes no more.
   void write(std::string_view bytes);
-  /// Forgets what was written.
+  /// Removes what was written, so that the file begins anew.
   void restart();
-  /// Makes the folders on the way and renames. Throws WrongBytes where size or sum differ, Error where it cannot.
+  /// Makes the folders on the way and gives the file its name. Throws WrongBytes where size or sum differ, Error where
+  /// it cannot.
   void commit();
 
   const std::string& path() const { return path_; }

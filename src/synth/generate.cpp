@@ -107,8 +107,8 @@ struct Generator::State {
         assets(std::move(the_assets)),
         body(the_body),
         seed(the_seed),
-        made(static_cast<std::size_t>(the_recipe.body.count)),
-        people(static_cast<std::size_t>(the_recipe.body.count)) {
+        made(the_recipe.body.count),
+        people(the_recipe.body.count) {
     check(recipe);
     sensor = sensor_of(recipe.sensor);
     makehuman = wants_makehuman(recipe, assets);
@@ -141,7 +141,7 @@ struct Generator::State {
 
   PersonPlan draw_person(Random& random) const {
     PersonPlan plan;
-    const Dressed& dressed = person(random.below(static_cast<std::uint32_t>(recipe.body.count)));
+    const Dressed& dressed = person(random.below(recipe.body.count));
     plan.poser = &dressed.poser;
     if (dressed.detail) plan.detail = &*dressed.detail;
     const SampledPose drawn = draw_pose(random);

@@ -50,12 +50,12 @@ void make_frames(const synth::Generator& generator, std::uint64_t first, int cou
   parallel_in_order(
       count,
       [&](int i) {
-        const std::uint64_t index = first + static_cast<std::uint64_t>(i);
+        const std::uint64_t index = first + i;
         return prepare(index, generator.frame(index));
       },
       [&](int i, auto item) {
         if (interrupted()) return false;
-        take(first + static_cast<std::uint64_t>(i), std::move(item));
+        take(first + i, std::move(item));
         progress.step();
         return true;
       });
@@ -91,7 +91,7 @@ void write_shards(const Arguments& arguments, const synth::Generator& generator,
 void write_folder(const Arguments& arguments, const synth::Generator& generator, const BodyModel& body) {
   LabelledExporter exporter(arguments.out, body, synth::joint_names());
   Progress progress(arguments.count, !arguments.quiet);
-  make_frames(generator, static_cast<std::uint64_t>(arguments.first), arguments.count, progress, as_it_is,
+  make_frames(generator, arguments.first, arguments.count, progress, as_it_is,
               [&](std::uint64_t /*index*/, const LabelledFrame& frame) { exporter.write(frame); });
   progress.clear();
   if (!arguments.quiet) say(fmt::format("{}: {} frames", arguments.out, progress.done()));
@@ -100,7 +100,7 @@ void write_folder(const Arguments& arguments, const synth::Generator& generator,
 void write_preview(const Arguments& arguments, const synth::Generator& generator, const BodyModel& body) {
   std::vector<LabelledFrame> frames;
   Progress progress(arguments.preview, !arguments.quiet);
-  make_frames(generator, static_cast<std::uint64_t>(arguments.first), arguments.preview, progress, as_it_is,
+  make_frames(generator, arguments.first, arguments.preview, progress, as_it_is,
               [&](std::uint64_t /*index*/, LabelledFrame frame) { frames.push_back(std::move(frame)); });
   progress.clear();
   const std::string path = arguments.out.empty() ? "preview.png" : arguments.out;
@@ -139,9 +139,9 @@ void run(const Arguments& arguments) {
   info.body_toml = body.toml;
   info.recipe = full_recipe(recipe, loaded);
   info.seed = arguments.seed;
-  info.frames = static_cast<std::uint64_t>(arguments.count);
+  info.frames = arguments.count;
   info.joints = synth::joint_names();
-  info.frames_per_shard = static_cast<std::uint32_t>(arguments.shard);
+  info.frames_per_shard = arguments.shard;
   write_shards(arguments, generator, info, body.part_count());
 }
 

@@ -12,7 +12,7 @@ class BodyDetail {
  public:
   explicit BodyDetail(const Poser& poser);
 
-  /// The coarsest surface that strays at most so far from the full one; null where only the full one does.
+  /// Returns the coarsest surface that strays at most so far from the full one; null where only the full one does.
   const CoarseSurface* within(float error_m) const;
 
  private:

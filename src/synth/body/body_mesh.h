@@ -76,7 +76,7 @@ struct BoneSegment {
 };
 std::array<BoneSegment, kBoneCount> rest_bones(const BodyMesh& mesh);
 
-/// The mesh and its labels seen in a mirror (x -> -x).
+/// Returns the mesh and its labels seen in a mirror (x -> -x).
 BodyMesh mirrored(const BodyMesh& mesh, const BodyModel& body);
 
 }  // namespace vesalius::synth

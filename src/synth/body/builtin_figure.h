@@ -10,7 +10,7 @@
 
 namespace vesalius::synth {
 
-/// Skeleton and flesh of the built-in body: standing, arms 45 degrees down, palms facing the thighs. Metres.
+/// The skeleton and flesh of the built-in body: standing, arms 45 degrees down, palms facing the thighs. Metres.
 struct BuiltinFigure {
   std::array<BoneSegment, kBuiltinBoneCount> bones;  ///< of the built-in rig
   std::vector<Limb> limbs;                           ///< paired ones: the left

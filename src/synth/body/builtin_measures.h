@@ -21,22 +21,22 @@ struct Measures {
   float shoulder_x = 0.F, hip_x = 0.F;
 };
 
-/// Measures of a shape, whose numbers are kept within what the figure can show.
+/// Returns the measures of a shape, whose numbers are kept within what the figure can show.
 Measures measure(const BuiltinShape& shape);
 
-/// Arms hang 45 degrees from the body.
+/// The direction of the left arm: arms hang 45 degrees from the body.
 inline const Eigen::Vector3f kDownArm = Eigen::Vector3f(1.F, -1.F, 0.F).normalized();
 
-/// Where the left leg's line is at a height: the legs stand apart, so that thighs do not melt together.
+/// Returns where the left leg's line is at a height: the legs stand apart, so that thighs do not melt together.
 inline float leg_x(const Measures& m, float y) { return m.hip_x + 0.09F * (m.hip - y); }
 
 /// Bones of the built-in body beside those of poses: fingers in two pieces and a thumb, per hand.
 enum class FingerBone : int { fingers, finger_tips, thumb };
 inline constexpr int kBuiltinBoneCount = kBoneCount + 6;
-/// Index of a finger bone in the built-in rig.
+/// Returns the index of a finger bone in the built-in rig.
 constexpr int finger_bone(FingerBone bone, bool left) { return kBoneCount + (left ? 0 : 3) + static_cast<int>(bone); }
 
-/// The bones of the built-in rig, left and right.
+/// Returns the bones of the built-in rig, left and right.
 std::array<BoneSegment, kBuiltinBoneCount> builtin_bones(const Measures& m);
 
 }  // namespace vesalius::synth

@@ -12,7 +12,7 @@ struct BuiltinShape {
   float age_years = 30.F;  ///< 4 to 90; proportions of children below 18
 };
 
-/// A person at random: age 4 to 85, stature within 2.5 standard deviations of its age and sex.
+/// Returns a person at random: age 4 to 85, stature within 2.5 standard deviations of its age and sex.
 BuiltinShape sample_builtin_shape(Random& random);
 
 }  // namespace vesalius::synth

@@ -61,7 +61,7 @@ std::array<Eigen::Quaternionf, kBoneCount> rest_turns(const MappedRig& rig, cons
 /// Axis about which a finger bone turns towards the palm.
 Eigen::Vector3f curl_axis(const MappedRig& rig, const MappedRig::Finger& finger,
                           const std::vector<Eigen::Vector3f>& heads, const std::vector<Eigen::Vector3f>& tails) {
-  const auto b = static_cast<std::size_t>(finger.bone);
+  const int b = finger.bone;
   const bool left = rig.bones[b].grip == Grip::left;
   const auto head = [&](int bone) -> const Eigen::Vector3f& { return heads[bone]; };
   const Eigen::Vector3f wrist = head(rig.rig_of[index(left ? Bone::l_hand : Bone::r_hand)]);

@@ -23,10 +23,11 @@ struct MappedRig {
   std::array<int, 2> first_knuckle{-1, -1}, last_knuckle{-1, -1};  ///< rig bones, left and right
 };
 
-/// Throws Error where the map names a bone that the skeleton lacks, or leaves a root without one to follow.
+/// Joins a skeleton with its map. Throws Error where the map names a bone that the skeleton lacks, or leaves a root
+/// without one to follow.
 MappedRig map_rig(const std::vector<SkeletonBone>& skeleton, const RigMap& map);
 
-/// The rig of one body: `heads` and `tails` of all bones, metres.
+/// Returns the rig of one body: `heads` and `tails` of all bones, metres.
 std::vector<RigBone> fit_rig(const MappedRig& rig, const std::vector<Eigen::Vector3f>& heads,
                              const std::vector<Eigen::Vector3f>& tails);
 

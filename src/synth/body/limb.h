@@ -54,7 +54,7 @@ class LimbDistance {
   std::vector<Piece> pieces_;
 };
 
-/// Box around the limb's surface.
+/// A box around a limb's surface.
 struct Bounds {
   Eigen::Vector3f low = Eigen::Vector3f::Zero();
   Eigen::Vector3f high = Eigen::Vector3f::Zero();

@@ -20,7 +20,7 @@ class MakeHumanModel {
     std::string weights;               ///< rigs/default_weights.mhw
     std::vector<std::string> targets;  ///< targets/macrodetails/**.target; their names say when they apply
   };
-  /// The files below MakeHuman's folder `data`, given what targets there are.
+  /// Returns the files below MakeHuman's folder `data`, given what targets there are.
   static Files files(const std::string& data_folder, std::vector<std::string> targets);
 
   /// Throws Error naming file and place for anything that does not fit together.
@@ -29,7 +29,7 @@ class MakeHumanModel {
   MakeHumanModel(const MakeHumanModel&) = delete;
   MakeHumanModel& operator=(const MakeHumanModel&) = delete;
 
-  /// Bytes that the targets take.
+  /// Returns the bytes that the targets take.
   std::size_t target_bytes() const;
 
  private:
@@ -40,8 +40,8 @@ class MakeHumanModel {
 
 std::shared_ptr<const MakeHumanModel> load_makehuman(const ReadText& read, const MakeHumanModel::Files& files);
 
-/// The body of these factors, labelled by the surface rules of `body`, its feet on y = 0. Safe to call from several
-/// threads.
+/// Returns the body of these factors, labelled by the surface rules of `body`, its feet on y = 0. It is safe to call
+/// from several threads.
 BodyMesh make_body(const MakeHumanModel& model, const MakeHumanFactors& factors, const BodyModel& body);
 
 }  // namespace vesalius::synth

@@ -21,16 +21,16 @@ struct MakeHumanFactors {
   float stature_m = 0.F;  ///< height the body is scaled to; 0: as the factors make it
 };
 
-/// A person at random: age 5 to 85, stature within 2.5 standard deviations of its age and sex.
+/// Returns a person at random: age 5 to 85, stature within 2.5 standard deviations of its age and sex.
 MakeHumanFactors sample_factors(Random& random);
 
-/// Strength of every word that names of targets are made of: "female", "child", "maxmuscle", "asian", ...
+/// The strength of every word that names of targets are made of: "female", "child", "maxmuscle", "asian", ...
 inline constexpr std::size_t kFactorWords = 19;
 using FactorValues = std::array<float, kFactorWords>;
 FactorValues factor_values(const MakeHumanFactors& factors);
 
-/// Words of a target's file name, "female-child-minmuscle-averageweight-maxheight.target", as indices of FactorValues;
-/// its weight is the product of their values. Throws Error for a name with another word.
+/// Returns the words of a target's file name, "female-child-minmuscle-averageweight-maxheight.target", as indices of
+/// FactorValues; its weight is the product of their values. Throws Error for a name with another word.
 std::vector<std::uint8_t> factors_of_name(const std::string& path);
 
 }  // namespace vesalius::synth

@@ -21,8 +21,8 @@ class Moments {
     const double volume = p[0].dot(p[1].cross(p[2])) / 6.0;
     const Eigen::Vector3d centre = (p[0] + p[1] + p[2]) / 4.0;
     for (const auto& [bone, weight] : skin) {
-      volume_[bone] += volume * static_cast<double>(weight);
-      first_[bone] += volume * static_cast<double>(weight) * centre;
+      volume_[bone] += volume * weight;
+      first_[bone] += volume * weight * centre;
     }
   }
 
@@ -136,7 +136,7 @@ void add_part(const BodyMesh& mesh, int part, const std::vector<std::uint32_t>& 
 }  // namespace
 
 std::vector<PartShare> part_shares(const BodyMesh& mesh, int part_count) {
-  std::vector<std::vector<std::uint32_t>> triangles(static_cast<std::size_t>(part_count));
+  std::vector<std::vector<std::uint32_t>> triangles(part_count);
   for (std::size_t t = 0; t < mesh.topology->body_triangles; ++t) {
     const std::uint8_t part = mesh.topology->part[t];
     if (part < triangles.size()) triangles[part].push_back(static_cast<std::uint32_t>(t));

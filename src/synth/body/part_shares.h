@@ -14,7 +14,7 @@ struct PartShare {
   float share = 0.F;                                 ///< may be negative where the part's surface folds over itself
   Eigen::Vector3f moment = Eigen::Vector3f::Zero();  ///< share times its centre at rest, metres
 };
-/// Shares of all parts of the body's own surface, by part and bone. A part is closed at its rims by flat fans.
+/// Returns the shares of all parts of the body's own surface, by part and bone. Flat fans close a part at its rims.
 std::vector<PartShare> part_shares(const BodyMesh& mesh, int part_count);
 
 }  // namespace vesalius::synth

@@ -77,22 +77,21 @@ std::vector<Placement> rig_placements(const std::vector<RigBone>& rig, const Pos
 }
 
 void place_bones(const BodyMesh& mesh, const std::vector<Placement>& placements, PosedBody& out) {
-  const auto rig_of = [&](std::size_t bone) { return static_cast<std::size_t>(mesh.rig_of[bone]); };
-  for (std::size_t b = 0; b < kBoneCount; ++b) out.joints[b] = moved(placements[rig_of(b)], mesh.rig[rig_of(b)].head);
-  for (std::size_t b = 0; b < kBoneCount; ++b) {
-    const auto after = static_cast<std::size_t>(next_bone(static_cast<Bone>(b)));
+  const auto rig_of = [&](int bone) { return mesh.rig_of[bone]; };
+  for (int b = 0; b < kBoneCount; ++b) out.joints[b] = moved(placements[rig_of(b)], mesh.rig[rig_of(b)].head);
+  for (int b = 0; b < kBoneCount; ++b) {
+    const int after = index(next_bone(static_cast<Bone>(b)));
     out.ends[b] = after == b ? moved(placements[rig_of(b)], mesh.rig[rig_of(b)].tail) : out.joints[after];
   }
 }
 
 std::vector<Eigen::Vector3f> part_centres(const std::vector<PartShare>& shares,
                                           const std::vector<Placement>& placements, int part_count) {
-  std::vector<bool> found(static_cast<std::size_t>(part_count), false);
-  std::vector<Eigen::Vector3f> centres(static_cast<std::size_t>(part_count), Eigen::Vector3f::Zero());
+  std::vector<bool> found(part_count, false);
+  std::vector<Eigen::Vector3f> centres(part_count, Eigen::Vector3f::Zero());
   for (const PartShare& s : shares) {
-    const auto part = static_cast<std::size_t>(s.part);
-    centres[part] += moved(placements[s.bone], s.moment, s.share);
-    found[part] = true;
+    centres[s.part] += moved(placements[s.bone], s.moment, s.share);
+    found[s.part] = true;
   }
   for (std::size_t p = 0; p < found.size(); ++p) {
     if (!found[p]) centres[p].setConstant(std::numeric_limits<float>::quiet_NaN());

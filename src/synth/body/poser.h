@@ -23,9 +23,10 @@ struct PosedBody {
 /// Poses bodies by linear blend skinning. What depends on the mesh only is worked out once.
 class Poser {
  public:
-  /// Throws Error as check() does.
+  /// Throws Error as check() does for a mesh that is no body.
   Poser(std::shared_ptr<const BodyMesh> mesh, const BodyModel& body);
-  /// Safe to call from several threads. Throws Error for a pose with a number that is not finite.
+  /// Returns the body in a pose. It is safe to call from several threads. Throws Error for a pose with a number that is
+  /// not finite.
   PosedBody pose(const Pose& pose) const;
   const BodyMesh& mesh() const { return *mesh_; }
 

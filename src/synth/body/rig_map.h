@@ -38,10 +38,10 @@ struct RigMap {
   std::array<std::string, 2> first_knuckle, last_knuckle;  ///< left, right; empty where there are no fingers
 };
 
-/// Throws Error naming line and expectation.
+/// Parses a map. Throws Error naming line and expectation.
 RigMap parse_rig_map(std::string_view toml, const std::string& name);
 
-/// data/rigs/makehuman_default.toml.
+/// Returns the map of data/rigs/makehuman_default.toml.
 const RigMap& makehuman_rig_map();
 
 }  // namespace vesalius::synth

@@ -349,7 +349,7 @@ std::vector<CoarseSurface> simplify(const BodyTopology& topology, const std::vec
   Simplifier simplifier(topology, points);
   std::vector<CoarseSurface> levels;
   for (const float error_m : errors_m) {
-    simplifier.run_to(static_cast<double>(error_m));
+    simplifier.run_to(error_m);
     levels.push_back(simplifier.result(error_m));
   }
   return levels;

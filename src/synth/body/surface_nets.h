@@ -21,9 +21,9 @@ struct Surface {
   std::vector<Triangle> triangles;  ///< counter-clockwise seen from outside
 };
 
-/// The closed surface around limbs melted together: where the sum of exp(-distance / softness) is 1. Only the half with
-/// x > 0 is worked out (surface nets, Gibson 1998) and the other is its mirror image to the last bit: vertex for
-/// vertex, the middle ones shared at x = 0, triangle i + n/2 mirroring triangle i.
+/// Returns the closed surface around limbs melted together: where the sum of exp(-distance / softness) is 1. Only the
+/// half with x > 0 is worked out (surface nets, Gibson 1998) and the other is its mirror image to the last bit: vertex
+/// for vertex, the middle ones shared at x = 0, triangle i + n/2 mirroring triangle i.
 Surface melt(const std::vector<Limb>& limbs, float softness_m, const HalfGrid& grid);
 
 }  // namespace vesalius::synth

@@ -16,7 +16,7 @@ class SurfaceParts {
   /// a part.
   explicit SurfaceParts(const BodyModel& body);
 
-  /// Part of the surface `along` the bone: 0 at its head, 1 at its tail, clamped to these.
+  /// Returns the part of the surface `along` the bone: 0 at its head, 1 at its tail, clamped to these.
   std::uint8_t part(Bone bone, float along, bool left) const;
 
  private:
@@ -27,11 +27,12 @@ class SurfaceParts {
   std::array<std::array<std::vector<Stretch>, 2>, kBoneCount> stretches_;  ///< [bone][left], rising
 };
 
-/// Part of every triangle of a body at rest: the rule of the bone that its corners' weights favour (on a tie, one of
-/// its own side), at the place of its centre along that bone. Mirrored surfaces get mirrored parts to the triangle.
+/// Returns the part of every triangle of a body at rest: the rule of the bone that its corners' weights favour (on a
+/// tie, one of its own side), at the place of its centre along that bone. Mirrored surfaces get mirrored parts to the
+/// triangle.
 std::vector<std::uint8_t> surface_parts(const BodyMesh& mesh, const SurfaceParts& rules);
 
-/// Bone of the pose that most moves each triangle, as surface_parts() finds it.
+/// Returns the bone of the pose that most moves each triangle, as surface_parts() finds it.
 std::vector<Bone> surface_bones(const BodyMesh& mesh);
 
 }  // namespace vesalius::synth

@@ -30,7 +30,7 @@ inline Pose random_pose(Random& random, float most_rad) {
   return pose;
 }
 
-/// Whether a point is inside a closed surface: crossings of a ray counted with their direction.
+/// Returns whether a point is inside a closed surface: crossings of a ray counted with their direction.
 inline bool is_inside(const std::vector<Eigen::Vector3f>& vertices, const std::vector<Triangle>& triangles,
                       std::size_t count, const Eigen::Vector3f& p) {
   // Any direction serves; this one meets no edge of a grid.
@@ -82,7 +82,7 @@ inline float distance_to(const std::vector<Eigen::Vector3f>& vertices, const std
   return nearest;
 }
 
-/// Whether every edge is used as often in one direction as in the other.
+/// Returns whether every edge is used as often in one direction as in the other.
 inline bool is_closed(const std::vector<Triangle>& triangles, std::size_t count) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (std::size_t t = 0; t < count; ++t) {

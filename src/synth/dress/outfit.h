@@ -54,11 +54,11 @@ struct Outfit {
   bool left_hand = true;  ///< hand (or hip) that bag and thing are at: the bag's; the thing is in the other
 };
 
-/// Throws UsageError for options out of range.
+/// Returns an outfit at random. Throws UsageError for options out of range.
 Outfit sample_outfit(const OutfitOptions& options, Random& random);
 
-/// Colours, patterns and infrared reflectance of a person's fabrics, by Fabric. Dark hair and dark cloth send back as
-/// little as 0.01 of a depth sensor's light, other cloth more than a third whatever its colour.
+/// Returns colours, patterns and infrared reflectance of a person's fabrics, by Fabric. Dark hair and dark cloth send
+/// back as little as 0.01 of a depth sensor's light, other cloth more than a third whatever its colour.
 std::array<Material, kFabricCount> sample_look(const OutfitOptions& options, Random& random);
 
 }  // namespace vesalius::synth

@@ -18,9 +18,9 @@ class Wardrobe {
  public:
   Wardrobe(BodyMesh& mesh, BodyTopology& topology, SurfaceParts rules);
 
-  /// A sheet of hair behind the head, down to the neck or the shoulder blades.
+  /// Adds a sheet of hair behind the head, down to the neck or the shoulder blades.
   void add_long_hair(float thickness_m, Random& random);
-  /// A tube around the hips down the legs; `legs`: share of them that it covers.
+  /// Adds a tube around the hips down the legs; `legs`: share of them that it covers.
   void add_skirts(float legs, Fabric fabric, Random& random);
   void add_hat(Hat hat, Random& random);
   void add_backpack(Random& random);
@@ -28,10 +28,11 @@ class Wardrobe {
   void add_held(Held held, bool left, Random& random);
 
  private:
-  struct Extent {  ///< of the body at a height: half width, front and back
+  /// How far the body reaches at a height.
+  struct Extent {
     float half_width = 0.F, front = 0.F, back = 0.F;
   };
-  /// Of the vertices that `bones` move, within `reach_m` of a height; zero where there are none.
+  /// Returns the extent of the vertices that `bones` move, within `reach_m` of a height; zero where there are none.
   Extent extent(float y, float reach_m, std::initializer_list<Bone> bones) const;
 
   struct Sheet {  ///< rows of points, each row as long as the others
@@ -43,7 +44,7 @@ class Wardrobe {
   void add_sheet(const Sheet& sheet, const SkinAt& skin, const PartAt& part, Fabric fabric);
   void add_box(const Eigen::Vector3f& centre, const Eigen::Matrix3f& half_axes, Bone bone);
   void add_box(const Eigen::Vector3f& centre, const Eigen::Matrix3f& half_axes, const SkinWeights& weights);
-  /// Moved by a new rig bone that hangs from a hand at a point.
+  /// Returns the weights of what a new rig bone moves that hangs from a hand at a point.
   SkinWeights hanging(Bone hand, const Eigen::Vector3f& from);
   void add_cylinder(const Eigen::Vector3f& centre, const Eigen::Vector3f& half_axis, float radius_m, Bone bone);
 

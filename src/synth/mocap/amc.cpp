@@ -119,7 +119,7 @@ void AmcParser::finish_frame() {
   for (std::size_t b = 0; b < skeleton_.bones.size(); ++b) {
     const int parent = skeleton_.bones[b].parent;
     Eigen::Quaternionf world = local(b).cast<float>();
-    if (parent >= 0) world = motion_.world[first + static_cast<std::size_t>(parent)] * world;
+    if (parent >= 0) world = motion_.world[first + parent] * world;
     motion_.world.push_back(world.normalized());
   }
   const auto& root = values_[0].by_dof;

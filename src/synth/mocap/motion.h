@@ -25,10 +25,8 @@ struct Motion {
 
   int joint_count() const { return static_cast<int>(joints.size()); }
   int frame_count() const { return static_cast<int>(root.size()); }
-  const Eigen::Quaternionf& rotation(int frame, int joint) const {
-    return world[static_cast<std::size_t>(frame) * joints.size() + static_cast<std::size_t>(joint)];
-  }
-  /// Index of the joint of that name, -1 where there is none.
+  const Eigen::Quaternionf& rotation(int frame, int joint) const { return world[frame * joints.size() + joint]; }
+  /// Returns the index of the joint of that name, -1 where there is none.
   int find_joint(std::string_view joint_name) const;
 };
 
@@ -37,7 +35,7 @@ struct Motion {
 inline constexpr int kMaxMotionJoints = 1000;
 inline constexpr std::size_t kMaxMotionRotations = std::size_t{1} << 24;
 
-/// Rotation by `angle_rad` about axis 0 (x), 1 (y) or 2 (z).
+/// Returns the rotation by `angle_rad` about axis 0 (x), 1 (y) or 2 (z).
 Eigen::Quaterniond axis_rotation(int axis, double angle_rad);
 
 }  // namespace vesalius::synth

@@ -34,7 +34,7 @@ struct MotionConvention {
 /// Parses such a mapping from TOML. Throws Error naming line and expectation; every bone must be there.
 MotionConvention parse_convention(std::string_view toml, const std::string& name);
 
-/// Those that come with the program: asf_amc, cmu_bvh, daz_bvh.
+/// Returns the conventions that come with the program: asf_amc, cmu_bvh, daz_bvh.
 const std::vector<MotionConvention>& builtin_conventions();
 
 }  // namespace vesalius::synth

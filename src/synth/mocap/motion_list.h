@@ -24,7 +24,7 @@ std::vector<MotionFile> list_motions(std::span<const std::string> paths);
 /// throws Error naming line and expectation.
 void describe_motions(std::vector<MotionFile>& motions, std::string_view csv, const std::string& name);
 
-/// Which motions are wanted, by words in their descriptions, whatever their case.
+/// Chooses motions by words in their descriptions, in upper or lower case.
 struct MotionChoice {
   std::vector<std::string> include;  ///< at least one must be there; empty: all are wanted
   /// None may be there. Unless told otherwise: what people do not do in a room on an ordinary day.
@@ -34,7 +34,7 @@ struct MotionChoice {
                                       "glissade",   "dance - lean", "dance - fold", "playground"};
 };
 
-/// Those wanted, in order.
+/// Returns the motions that are wanted, in order.
 std::vector<MotionFile> choose_motions(std::span<const MotionFile> motions, const MotionChoice& choice);
 
 }  // namespace vesalius::synth

@@ -46,7 +46,7 @@ struct BodyAngles {
   std::array<float, 2> grip{0.3F, 0.3F};  ///< 0 stretched, 1 a fist
 };
 
-/// What a joint can do, degrees.
+/// The range of a joint, in degrees.
 struct JointRange {
   float low;
   float high;
@@ -90,7 +90,7 @@ Pose pose_of(const BodyAngles& angles);
 /// The arm of a pose, as `pose_of` reads it; clavicles come out as 0.
 ArmAngles arm_angles(const Pose& pose, bool left);
 
-/// Whether the arm stays in the ranges, with 2 degrees for rounding and bodies between two measurements.
+/// Returns whether the arm stays in the ranges, with 2 degrees for rounding and bodies between two measurements.
 bool arm_in_range(const ArmAngles& arm);
 
 /// Sets upper arm and forearm (clavicles and trunk as they are) so that the wrist of a person of standard proportions

@@ -6,7 +6,7 @@
 
 namespace vesalius::synth {
 
-/// What one pose can take from another.
+/// The limbs that one pose can take from another.
 struct Limbs {
   bool l_arm = false;  ///< clavicle to hand, and its grip
   bool r_arm = false;

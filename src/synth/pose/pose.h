@@ -38,7 +38,7 @@ std::string_view bone_name(Bone bone);
 int find_bone(std::string_view name);
 /// The bone that `bone` hangs from; the pelvis is its own parent.
 Bone parent(Bone bone);
-/// The same bone on the other side; itself on the middle line.
+/// Returns the same bone on the other side; a bone on the middle line returns itself.
 Bone mirror(Bone bone);
 /// Unit direction of the bone in the rest pose, body frame: a T: spine up, arms along +-x, palms down, legs down,
 /// feet forward.

@@ -3,7 +3,8 @@
 #include "synth/pose/joint_angles.h"
 #include "vesalius/base/random.h"
 
-/// What pose_sampler.h draws from: one function a kind. Poses may run through the body; the sampler rejects those.
+/// The kinds of poses that sample_pose() draws from, one function for each. A pose may run through its own body; the
+/// sampler rejects it then.
 namespace vesalius::synth::kinds {
 
 Pose idle(Random& random);
@@ -24,24 +25,24 @@ Pose squatting(Random& random);
 /// Every angle uniform in its range, upright.
 Pose any(Random& random);
 
-/// Uniform over [low, high).
+/// Returns a number uniform over [low, high).
 float between(Random& random, float low, float high);
 bool chance(Random& random, float probability);
 
-/// Legs, trunk, neck and hanging arms of somebody who stands.
+/// Returns the angles of somebody who stands: legs, trunk, neck and hanging arms.
 BodyAngles standing_angles(Random& random);
-/// An arm that hangs, or is swung by so many degrees to the front and to the side.
+/// Returns an arm that hangs, or is swung by so many degrees to the front and to the side.
 ArmAngles hanging_arm(Random& random, float front, float side);
-/// Ankle that puts the sole level under a pelvis of that pitch.
+/// Returns the angle of the ankle that puts the sole level under a pelvis of that pitch.
 float level_ankle(const LegAngles& leg, float pitch);
 
-/// Where a point fixed to a bone is, stick figure's frame; `offset_m` is seen from the bone's head, at rest. For the
-/// left side: `left` false takes the mirror image.
+/// Returns where a point fixed to a bone is in the stick figure's frame; `offset_m` is seen from the bone's head, at
+/// rest. For the left side: `left` false takes the mirror image.
 Eigen::Vector3f point_on(const Pose& pose, Bone bone, const Eigen::Vector3f& offset_m);
-/// x -> -x for the right side.
+/// Returns the vector for the left side, its mirror image (x -> -x) for the right.
 Eigen::Vector3f on_side(const Eigen::Vector3f& v, bool left);
 
-/// What hands do by themselves, whatever the legs do. They keep clear of trunk and legs as far as the pose lets them.
+/// These change the arms alone, whatever the legs do. Hands keep clear of trunk and legs as far as the pose lets them.
 void cross_arms(Pose& pose, Random& random);
 void fold_behind(Pose& pose, Random& random);
 void put_on_hip(Pose& pose, bool left, Random& random);

@@ -11,7 +11,7 @@ float self_overlap_m(const Pose& pose);
 /// Flesh gives way and bodies differ: so much overlap is a touch (hands on hips, crossed arms and legs).
 inline constexpr float kTouch_m = 0.03F;
 
-/// Whether the body runs through itself by more than a touch.
+/// Returns whether the body runs through itself by more than a touch.
 bool intersects_itself(const Pose& pose);
 
 }  // namespace vesalius::synth

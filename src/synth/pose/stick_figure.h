@@ -7,8 +7,8 @@
 
 namespace vesalius::synth {
 
-/// Where the bones of a person of standard proportions are: body frame moved so that the middle between the hips is
-/// the origin, metres.
+/// Returns where the bones of a person of standard proportions are, in the body frame moved so that the middle between
+/// the hips is the origin, metres.
 struct StickFigure {
   std::array<Eigen::Vector3f, kBoneCount> head;  ///< joint that the bone turns about
   std::array<Eigen::Vector3f, kBoneCount> tail;

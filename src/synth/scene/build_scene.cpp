@@ -48,7 +48,7 @@ RoomShape draw_room(const SceneOptions& options, const Stage& stage, const std::
                     Random& random) {
   constexpr float kWallGap_m = 0.02F, kSmallest_m = 1.8F;
   RoomShape room;
-  room.open = chance(static_cast<double>(options.open_share), random);
+  room.open = chance(options.open_share, random);
   float yaw = between(-std::numbers::pi / 4, std::numbers::pi / 4, random);
   if (!stage.groups.empty() && chance(0.5, random)) {  // furniture in use tends to stand square to the walls
     const Vector3f front = stage.groups[0].world_from_group.linear().col(2);
@@ -161,7 +161,7 @@ void darken_furniture(float share, Scene& scene, Random& random) {
   constexpr std::size_t kRoom = 0;
   for (std::size_t i = kRoom + 1; i < scene.meshes.size(); ++i) {
     SceneMesh& mesh = scene.meshes[i];
-    if (mesh.person >= 0 || !chance(static_cast<double>(share), random)) continue;
+    if (mesh.person >= 0 || !chance(share, random)) continue;
     const auto factor = static_cast<float>(std::exp(random.uniform(std::log(0.015), std::log(0.15))));
     for (Material& material : mesh.materials) material.infrared *= factor;
   }

@@ -95,7 +95,7 @@ CameraPose sample_camera(const CameraPlacement& options, float target_height_m, 
 float sample_distance(const CameraPlacement& options, Random& random) {
   const float low = std::max(options.usual_min_m, options.distance_min_m);
   const float high = std::min(options.usual_max_m, options.distance_max_m);
-  const bool usual = random.uniform() < static_cast<double>(options.usual_share) && low <= high;
+  const bool usual = random.uniform() < options.usual_share && low <= high;
   return usual ? between(low, high, random) : between(options.distance_min_m, options.distance_max_m, random);
 }
 

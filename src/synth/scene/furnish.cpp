@@ -69,7 +69,7 @@ class Furnisher {
     if (!models_.empty() && chance(0.3, random_)) {
       return as_furniture(models_[random_.below(static_cast<std::uint32_t>(models_.size()))]);
     }
-    if (chance(static_cast<double>(options_.mannequin_share), random_)) {
+    if (chance(options_.mannequin_share, random_)) {
       constexpr std::array<FurnitureKind, 3> kLike = {FurnitureKind::coat_stand, FurnitureKind::mannequin,
                                                       FurnitureKind::pillar};
       return make_furniture(kLike[random_.below(kLike.size())], random_);
@@ -141,12 +141,12 @@ std::vector<Furniture> furnish(const SceneOptions& options, const RoomShape& roo
                                Random& random) {
   Furnisher furnisher(options, room, models, eye, occupancy, random);
   for (const Vector3f& person : people) {
-    if (chance(static_cast<double>(options.occluder_probability), random)) furnisher.occlude(person);
+    if (chance(options.occluder_probability, random)) furnisher.occlude(person);
   }
   const int span = options.furniture_max - options.furniture_min + 1;
-  const int count = options.furniture_min + static_cast<int>(random.below(static_cast<std::uint32_t>(span)));
+  const int count = options.furniture_min + static_cast<int>(random.below(span));
   for (int i = 0; i < count; ++i) furnisher.add_piece();
-  if (chance(static_cast<double>(options.near_probability), random)) furnisher.loom();
+  if (chance(options.near_probability, random)) furnisher.loom();
   return furnisher.take();
 }
 

@@ -16,10 +16,11 @@ struct Furniture {
 /// Moves mesh and solids.
 void move(Furniture& piece, const Eigen::Isometry3f& motion);
 
-/// Turned by `yaw_rad` about y (positive: counter-clockwise seen from above) and put at (x, height, z).
+/// Returns a motion that turns by `yaw_rad` about y (positive: counter-clockwise seen from above) and puts at (x,
+/// height, z).
 Eigen::Isometry3f standing_at(float x_m, float height_m, float z_m, float yaw_rad);
 
-/// A piece made of a mesh of the user's: its bounding box is its solid.
+/// Returns a piece made of a mesh of the user's: its bounding box is its solid.
 Furniture as_furniture(SceneMesh mesh);
 
 }  // namespace vesalius::synth

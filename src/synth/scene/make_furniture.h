@@ -28,10 +28,10 @@ enum class FurnitureKind : std::uint8_t {
 };
 inline constexpr int kFurnitureKindCount = 17;
 
-/// A piece of random size and look.
+/// Returns a piece of random size and look.
 Furniture make_furniture(FurnitureKind kind, Random& random);
 
-/// A table about the origin.
+/// Returns a table about the origin.
 Furniture make_table(float width_m, float depth_m, float height_m, Random& random);
 
 }  // namespace vesalius::synth

@@ -30,9 +30,10 @@ struct BodyOutline {
 BodyOutline outline_of(const PosedBody& body, float stature_m);
 BodyOutline moved(BodyOutline outline, const Eigen::Isometry3f& motion);
 
-/// Whether a body sinks into any of the solids too far; thin ones let it in less deep, so that no limb goes through.
+/// Returns whether a body sinks into any of the solids too far; thin ones let it in less deep, so that no limb goes
+/// through.
 bool sinks_in(const BodyOutline& body, const std::vector<OrientedBox>& solids);
-/// Whether two bodies' bones sink into each other too far.
+/// Returns whether two bodies' bones sink into each other too far.
 bool sinks_in(const BodyOutline& a, const BodyOutline& b);
 
 /// Who and what stands where, in world coordinates.
@@ -43,7 +44,8 @@ class Occupancy {
   void add(const BodyOutline& body) { bodies_.push_back(body); }
   void add(const std::vector<OrientedBox>& solids) { solids_.insert(solids_.end(), solids.begin(), solids.end()); }
 
-  /// Whether a body or piece of furniture can be put there: apart from all others, from the camera and from the walls.
+  /// Returns whether a body or piece of furniture can be put there: apart from all others, from the camera and from the
+  /// walls.
   bool free_for(const BodyOutline& body) const;
   bool free_for(const std::vector<OrientedBox>& solids) const;
 

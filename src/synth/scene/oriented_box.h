@@ -13,16 +13,16 @@ struct OrientedBox {
   float radius() const { return half.norm(); }
 };
 
-/// The same box in the parent's parent.
+/// Returns the same box in the parent's parent.
 OrientedBox moved(const OrientedBox& box, const Eigen::Isometry3f& motion);
 
-/// How far the point is below the box's surface; 0 or less outside.
+/// Returns how far the point is below the box's surface; 0 or less outside.
 float depth_inside(const OrientedBox& box, const Eigen::Vector3f& point);
 
-/// Whether the boxes overlap by more than `slack_m` (separating axes).
+/// Returns whether the boxes overlap by more than `slack_m` (separating axes).
 bool overlap(const OrientedBox& a, const OrientedBox& b, float slack_m);
 
-/// Whether the straight way from a to b meets the box.
+/// Returns whether the straight way from a to b meets the box.
 bool blocks(const OrientedBox& box, const Eigen::Vector3f& a, const Eigen::Vector3f& b);
 
 std::array<Eigen::Vector3f, 8> corners(const OrientedBox& box);

@@ -70,7 +70,7 @@ std::optional<PeopleGroup> sitting_group(const SceneOptions& options, Posed pose
   group.furniture.push_back(std::move(*seat));
   const SeatFit fit = *posed.seat;
   group.members.push_back(std::move(posed.member));
-  if (chance(static_cast<double>(options.table_probability), random)) add_table(fit, group, random);
+  if (chance(options.table_probability, random)) add_table(fit, group, random);
   return group;
 }
 
@@ -107,7 +107,7 @@ std::optional<PeopleGroup> sofa_group(const Posed& left, const Posed& right, Ran
 PeopleGroup lying_group(const SceneOptions& options, Posed posed, Random& random) {
   PeopleGroup group;
   const BedFit fit = fit_bed(posed.member.body);
-  if (chance(static_cast<double>(options.bed_probability), random)) {
+  if (chance(options.bed_probability, random)) {
     const float height = between(0.25, 0.6, random);
     GroupMember raised = posed.member;
     put(raised, Isometry3f(Translation3f(0.F, height - kCushion_m, 0.F)));
@@ -159,9 +159,9 @@ int partner_of(const std::vector<std::optional<Posed>>& people, std::size_t firs
 /// That somebody is put together with another of the same posture. Nothing: scenes without the option draw no number
 /// for it, and stay as they were.
 std::optional<double> probability_of_company(const SceneOptions& options, const Posed& posed) {
-  if (posed.seat) return static_cast<double>(options.sofa_probability);
+  if (posed.seat) return options.sofa_probability;
   if (posed.posture != Posture::standing || options.beside_probability == 0.F) return std::nullopt;
-  return static_cast<double>(options.beside_probability);
+  return options.beside_probability;
 }
 
 }  // namespace

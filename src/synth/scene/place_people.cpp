@@ -90,9 +90,8 @@ class Placer {
   float draw_heading(const PeopleGroup& group) {
     const std::optional<float>& given = plans_[group.members[0].plan].yaw_rad;
     if (given) return *given;
-    const double frontal = static_cast<double>(options_.frontal_range_deg) * std::numbers::pi / 180.0;
-    return chance(static_cast<double>(options_.frontal_share), random_) ? between(-frontal, frontal, random_)
-                                                                        : between(-kPi, kPi, random_);
+    const double frontal = options_.frontal_range_deg * std::numbers::pi / 180.0;
+    return chance(options_.frontal_share, random_) ? between(-frontal, frontal, random_) : between(-kPi, kPi, random_);
   }
 
   Isometry3f draw_place(const PeopleGroup& group) {

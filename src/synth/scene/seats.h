@@ -19,10 +19,10 @@ struct SeatShape {
   float lean_rad = 0.1F;   ///< of the back, backwards
 };
 
-/// A seat whose back's foot is at z = 0 and whose front edge is at z = depth; x = 0 is its middle.
+/// Returns a seat whose back's foot is at z = 0 and whose front edge is at z = depth; x = 0 is its middle.
 Furniture make_seat(const SeatShape& shape, Random& random);
 
-/// A bed about the origin whose lying surface is at that height; its head end is at +z.
+/// Returns a bed about the origin whose lying surface is at that height; its head end is at +z.
 Furniture make_bed(float width_m, float length_m, float height_m, Random& random);
 
 }  // namespace vesalius::synth

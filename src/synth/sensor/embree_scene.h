@@ -24,7 +24,8 @@ class EmbreeScene {
   void build(const SceneGeometry& geometry);
 
   static constexpr std::uint32_t kNothing = 0xFFFFFFFFU;
-  /// What the ray through each pixel's centre meets first: 2 * quad + (0 or 1: which of its triangles), or kNothing.
+  /// Returns what the ray through each pixel's centre meets first: 2 * quad + (0 or 1: which of its triangles), or
+  /// kNothing.
   void cast(const Camera& camera, Image<std::uint32_t>& hits);
 
   /// Way from a surface to the projector.

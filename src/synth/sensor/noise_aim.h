@@ -12,7 +12,8 @@
 
 namespace vesalius::synth {
 
-/// What the pixels of one row of a sensor read, as padded arrays for the formulas that follow (noise_kernel.h).
+/// The surfaces that the pixels of one row of a sensor read, as padded arrays for the formulas that follow
+/// (noise_kernel.h).
 struct AimedRow {
   Eigen::ArrayXf z;         ///< metres; 0: nothing
   Eigen::ArrayXf cosine;    ///< of the angle between ray and normal, kSmallestCosine to 1
@@ -28,7 +29,7 @@ class Aim {
   /// Keeps references to all three.
   Aim(const Rendering& rendering, const Sensor& sensor, Random& random);
 
-  /// What row v reads. `losses`: normal noise that decides where the background is lost.
+  /// Returns what row v reads. `losses` is normal noise that decides where the background is lost.
   const AimedRow& row(int v, const Eigen::ArrayXf& losses);
 
  private:

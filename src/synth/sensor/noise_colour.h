@@ -5,7 +5,7 @@
 
 namespace vesalius::synth {
 
-/// A colour camera's exposure, white balance and pixel noise: gains of about 15 and 4 %, sigma 2 to 6 of 255.
+/// Adds a colour camera's exposure, white balance and pixel noise: gains of about 15 and 4 %, sigma 2 to 6 of 255.
 void add_colour_noise(ColourImage& colour, Random random);
 
 }  // namespace vesalius::synth

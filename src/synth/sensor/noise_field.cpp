@@ -10,7 +10,7 @@
 namespace vesalius::synth {
 
 std::vector<NoiseField::Tap> NoiseField::taps(int count, float spacing) {
-  std::vector<Tap> taps(static_cast<std::size_t>(count));
+  std::vector<Tap> taps(count);
   for (std::size_t i = 0; i < taps.size(); ++i) {
     const float x = static_cast<float>(i) / spacing;
     const float f = x - std::floor(x);

@@ -172,11 +172,11 @@ HWY_EXPORT(FaceRow);
 void face_row(const Eigen::Vector3f* normals, const float* ray_x, float ray_y, int width, float* cosine,
               float* fall_off) {
   HWY_DYNAMIC_DISPATCH(FaceRow)
-  (normals->data(), ray_x, ray_y, static_cast<std::size_t>(width), cosine, fall_off);
+  (normals->data(), ray_x, ray_y, width, cosine, fall_off);
 }
 
 void read_row(const Sensor& sensor, const NoisyRow& row, int width, std::uint16_t* depth_mm) {
-  HWY_DYNAMIC_DISPATCH(ReadRow)(sensor, row, static_cast<std::size_t>(width), depth_mm);
+  HWY_DYNAMIC_DISPATCH(ReadRow)(sensor, row, width, depth_mm);
 }
 
 }  // namespace vesalius::synth

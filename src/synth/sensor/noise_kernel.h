@@ -29,7 +29,7 @@ constexpr std::array<float, 4> kAngleSeries{1.5707288F, -0.2121144F, 0.0742610F,
 void face_row(const Eigen::Vector3f* normals, const float* ray_x, float ray_y, int width, float* cosine,
               float* fall_off);
 
-/// What the pixels of a row aim at, and the normal noise that they meet. All padded.
+/// The surfaces that the pixels of a row aim at, and the normal noise that they meet. All arrays are padded.
 struct NoisyRow {
   const float* z;         ///< metres; 0: nothing
   const float* cosine;    ///< of the angle between ray and normal
@@ -39,7 +39,7 @@ struct NoisyRow {
   const float* error;     ///< of the depth
 };
 
-/// What a sensor with noise (any kind but `perfect`) reads, mm; 0 for no reading. `depth_mm` is padded.
+/// Computes what a sensor with noise (any kind but `perfect`) reads, in mm; 0 is no reading. `depth_mm` is padded.
 void read_row(const Sensor& sensor, const NoisyRow& row, int width, std::uint16_t* depth_mm);
 
 }  // namespace vesalius::synth

@@ -16,7 +16,7 @@ class RowScan {
         step_(baseline_m > 0.F ? -1 : 1),
         start_(baseline_m > 0.F ? camera.width - 1 : 0),
         scale_px_m_(camera.fx * std::abs(baseline_m)),
-        disparity_(static_cast<std::size_t>(camera.width)) {}
+        disparity_(camera.width) {}
 
   void mark(const float* depth_m, std::uint8_t* maybe) {
     constexpr float kSlackPx = 0.6F;  // less than the 1 px by which a level surface stays below its neighbour's ray

@@ -68,7 +68,7 @@ struct Met {
 
   /// Where the ray (x, y, 1) meets its plane.
   float depth_of(float ray_x, float ray_y) const {
-    const double along = normal.x() * static_cast<double>(ray_x) + normal.y() * static_cast<double>(ray_y) + normal.z();
+    const double along = normal.x() * ray_x + normal.y() * ray_y + normal.z();
     return std::clamp(static_cast<float>(offset / along), near_m, far_m);
   }
 };

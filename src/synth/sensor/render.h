@@ -7,7 +7,7 @@
 
 namespace vesalius::synth {
 
-/// What a view sees, free of noise. All images have the camera's size.
+/// The images of a view, free of noise. All images have the camera's size.
 struct Rendering {
   View view;
   Image<float> depth_m;           ///< along the optical axis, metres; 0 where no surface is hit

@@ -23,7 +23,7 @@ constexpr float kLossWindows = 2.F;
 
 Border draw_border(const Sensor& sensor, Random& random) {
   const auto draw = [&](int low, int high) {
-    return low + static_cast<int>(random.below(static_cast<std::uint32_t>(std::max(0, high - low)) + 1));
+    return low + static_cast<int>(random.below(std::max(0, high - low) + 1));
   };
   const Border& a = sensor.border_low;
   const Border& b = sensor.border_high;
@@ -82,7 +82,7 @@ Reading::Reading(const Rendering& rendering, const Sensor& sensor, Random& rando
       loss_(width_, height_, kLossWindows * sensor.window_px, random),
       white_(Array::Zero(padded_width(width_))),
       grainy_(Array::Zero(padded_width(width_))),
-      read_mm_(static_cast<std::size_t>(padded_width(width_))) {}
+      read_mm_(padded_width(width_)) {}
 
 DepthImage Reading::run(Image<std::uint32_t>* source) {
   DepthImage depth(width_, height_, 0);

@@ -9,17 +9,17 @@
 
 namespace vesalius::synth {
 
-/// Where the sensor's projector or second eye sits, camera frame; nothing for sensors that have none.
+/// Returns where the sensor's projector or second eye sits, in the camera frame; nothing for sensors that have none.
 std::optional<Eigen::Vector3f> projector_of(const Sensor& sensor);
 
-/// Depth as the sensor reports it, uint16 millimetres, 0 = no reading. Same (rendering, sensor, random), same bytes.
-/// `source`, if asked for, is given the pixel (row-major index) of the rendering whose surface was read, for
+/// Returns depth as the sensor reports it: uint16 millimetres, 0 = no reading. Same (rendering, sensor, random), same
+/// bytes. `source`, if asked for, is given the pixel (row-major index) of the rendering whose surface was read, for
 /// silhouettes wobble and grow and the truth must follow (`as_read`); the pixel itself where nothing was read.
 /// Throws Error when the images of the rendering differ in size, or `lit` is missing for a sensor with a projector.
 DepthImage sense(const Rendering& rendering, const Sensor& sensor, Random random,
                  Image<std::uint32_t>* source = nullptr);
 
-/// Labels or person indices of the surfaces that were read.
+/// Returns the labels or person indices of the surfaces that were read.
 template <class T>
 Image<T> as_read(const Image<T>& image, const Image<std::uint32_t>& source) {
   Image<T> read(image.width(), image.height());

@@ -14,9 +14,9 @@ class TextScanner {
   /// Throws Error naming the line of the last word.
   [[noreturn]] void fail(const std::string& what) const;
 
-  /// Whether no word is left.
+  /// Returns whether no word is left.
   bool at_end();
-  /// Whether no word is left on the line of the last word.
+  /// Returns whether no word is left on the line of the last word.
   bool at_line_end();
   /// The next word without taking it; empty at the end.
   std::string_view peek();
@@ -45,7 +45,7 @@ class TextScanner {
 std::string shown(std::string_view text);
 std::string in_quotes(std::string_view text);
 
-/// Whether the two are the same but for the case of ASCII letters.
+/// Returns whether the two are the same but for the case of ASCII letters.
 bool same_word(std::string_view a, std::string_view b);
 
 }  // namespace vesalius::synth
