@@ -65,6 +65,13 @@ void check_truth(const TrueFrame& frame) {
   }
 }
 
+/// Returns 1 where the true label is a part; empty where no labels are known.
+Mask labelled_pixels(const FrameTruth& truth) {
+  Mask pixels(truth.labels.width(), truth.labels.height(), 0);
+  std::ranges::transform(truth.labels, pixels.begin(), [](std::uint8_t l) -> std::uint8_t { return l != kBackground; });
+  return pixels;
+}
+
 /// The found person of each true one, null where it was missed.
 std::vector<const Person*> found_of_each(const std::vector<Person>& people, const std::vector<Match>& matches,
                                          int expected) {
@@ -98,18 +105,23 @@ FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
   put_visible_people_first(frame);
   FrameScore score;
   score.expected = expected_people(frame.truth);
-  if (!options_.labels_only) find_people(frame, fit_joints, score);
-  judge_labels(frame, score);
+  const Mask people = labelled_pixels(frame.truth);
+  const Mask* asked = people.empty() ? nullptr : &people;
+  FrameLabels labels =
+      options_.labels_only ? detector_.label(frame.frame, asked) : find_people(frame, asked, fit_joints, score);
+  judge_labels(frame, labels, score);
+  score.labels = std::move(labels.labels);
   say_what_went_wrong(score, options_.labels_only);
   return score;
 }
 
-void FrameScorer::find_people(const TrueFrame& frame, bool fit_joints, FrameScore& score) const {
+FrameLabels FrameScorer::find_people(const TrueFrame& frame, const Mask* asked, bool fit_joints,
+                                     FrameScore& score) const {
   Trace trace;
+  trace.person = asked;
   const auto start = std::chrono::steady_clock::now();
   score.people = detector_.detect(frame.frame, &trace);
   score.detect_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  score.labels = std::move(trace.labels);
   const std::vector<Match> matches = match_people(accepted_proposals(score.people), frame.truth, frame.frame.depth);
   append(score.terms, people_terms(frame, score.people, matches, body()));
   const std::vector<const Person*> of_person = found_of_each(score.people, matches, score.expected);
@@ -117,6 +129,7 @@ void FrameScorer::find_people(const TrueFrame& frame, bool fit_joints, FrameScor
   append(score.terms, breakdown_terms(frame, of_person, body()));
   log_proposals(frame, trace, fit_joints, score);
   judge_joints(frame, of_person, fit_joints, score);
+  return {std::move(trace.labels), std::move(trace.inside)};
 }
 
 void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const {
@@ -179,25 +192,19 @@ void FrameScorer::judge_joints(const TrueFrame& frame, const std::vector<const P
   }
 }
 
-void FrameScorer::judge_labels(const TrueFrame& frame, FrameScore& score) const {
+void FrameScorer::judge_labels(const TrueFrame& frame, const FrameLabels& labels, FrameScore& score) const {
   const FrameTruth& truth = frame.truth;
   const DepthImage& depth = frame.frame.depth;
   if (truth.labels.empty()) {
-    if (score.labels.empty()) score.labels = detector_.label(frame.frame).labels;
-    append(score.terms, mask_terms(truth, score.labels, depth));
+    append(score.terms, mask_terms(truth, labels.labels, depth));
     return;
   }
-  Mask in_body(depth.width(), depth.height(), 0);
-  std::ranges::transform(truth.labels, in_body.begin(),
-                         [](std::uint8_t l) -> std::uint8_t { return l != kBackground; });
-  FrameLabels labels = detector_.label(frame.frame, &in_body);
-  if (score.labels.empty()) score.labels = std::move(labels.labels);
   PixelConfusion inside(body().part_count());
   inside.add(truth.labels, labels.inside, depth);
   score.confusion.emplace(body().part_count());
-  score.confusion->add(truth.labels, score.labels, depth);
+  score.confusion->add(truth.labels, labels.labels, depth);
   append(score.terms, pixel_terms(*score.confusion, inside, body()));
-  if (truth.people == 0) append(score.terms, mask_terms(truth, score.labels, depth));
+  if (truth.people == 0) append(score.terms, mask_terms(truth, labels.labels, depth));
 }
 
 }  // namespace vesalius

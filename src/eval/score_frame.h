@@ -53,14 +53,15 @@ class FrameScorer {
   const Options& options() const { return options_; }
 
  private:
-  void find_people(const TrueFrame& frame, bool fit_joints, FrameScore& score) const;
+  /// Returns the labels that the detector gave; `asked`: Trace::person.
+  FrameLabels find_people(const TrueFrame& frame, const Mask* asked, bool fit_joints, FrameScore& score) const;
   void log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const;
   /// The body's joint set that has all of the truth's joints; null where there are none.
   const JointSet* joint_set_of(const FrameTruth& truth) const;
   void judge_joint_proposals(const TrueFrame& frame, const std::vector<Proposal>& proposals, FrameScore& score) const;
   void judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
                     FrameScore& score) const;
-  void judge_labels(const TrueFrame& frame, FrameScore& score) const;
+  void judge_labels(const TrueFrame& frame, const FrameLabels& labels, FrameScore& score) const;
 
   Options options_;
   Detector detector_;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "capsule/capsule_person.h"
@@ -29,6 +30,7 @@ class Labeller : public PixelLabeller {
   Labeller(LabelImage truth, bool half_blind) : truth_(std::move(truth)), half_blind_(half_blind) {}
 
   void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+    ++asked;
     out = {depth.width(), depth.height(), paper_body().part_count() + 1, 1, {}};
     out.sums.assign(depth.size() * out.classes, 0);
     for (int v = 0; v < depth.height(); ++v) {
@@ -44,6 +46,8 @@ class Labeller : public PixelLabeller {
   const BodyModel& body() const override { return paper_body(); }
   bool has_background() const override { return true; }
   bool has_distributions() const override { return true; }
+
+  mutable std::atomic<int> asked = 0;  ///< how often
 
  private:
   LabelImage truth_;
@@ -183,6 +187,17 @@ TEST(FrameScorer, LabelsOnlyAreThoseOfTheDetector) {
   EXPECT_DOUBLE_EQ(value(quick, "pixels.person_iou"), value(whole, "pixels.person_iou"));
   EXPECT_TRUE(std::isnan(value(quick, "people.found")));
   EXPECT_THAT(quick.what_went_wrong, HasSubstr("pixel IoU"));
+}
+
+TEST(FrameScorer, LabelsEachFrameOnce) {
+  const TrueFrame frame = labelled({0.F});
+  for (const bool labels_only : {false, true}) {
+    const auto labeller = std::make_shared<Labeller>(frame.truth.labels, false);
+    FrameScorer::Options options;
+    options.labels_only = labels_only;
+    FrameScorer(labeller, options).score(frame, false);
+    EXPECT_EQ(labeller->asked, 1);
+  }
 }
 
 TEST(FrameScorer, RefusesTruthThatDoesNotFit) {

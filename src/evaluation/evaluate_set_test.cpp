@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "capsule/capsule_person.h"
+#include "dataset/open_truth.h"
 #include "evaluation/compare_evaluations.h"
 #include "evaluation/evaluation_json.h"
 #include "evaluation/evaluation_summary.h"
@@ -24,13 +25,12 @@ const Camera kCamera{80, 60, 65.F, 65.F, 39.5F, 29.5F};
 /// Calls every pixel background: nobody is ever found.
 class BlindLabeller : public PixelLabeller {
  public:
-  Posteriors label(const DepthImage& depth, const Camera& /*camera*/) const override {
-    Posteriors out{depth.width(), depth.height(), paper_body().part_count() + 1, 1, {}};
+  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+    out = {depth.width(), depth.height(), paper_body().part_count() + 1, 1, {}};
     out.sums.assign(depth.size() * out.classes, 0);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) out.at(u, v)[out.classes - 1] = 255;
     }
-    return out;
   }
   const BodyModel& body() const override { return paper_body(); }
   bool has_background() const override { return true; }

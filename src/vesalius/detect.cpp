@@ -191,20 +191,22 @@ std::vector<Person> choose_people(const Method& method, const Frame& frame, std:
   return people;
 }
 
-Trace make_trace(const Method& method, const Frame& frame, Scene& scene, std::vector<Candidate> candidates) {
-  Trace trace;
+/// `person` is Trace::person on the grid.
+void fill(Trace& trace, const Method& method, const Frame& frame, Scene& scene, std::vector<Candidate> candidates,
+          const Mask& person) {
   trace.raw_labels = method.labeller.choose_raw(scene.labels, frame);
   trace.labels = method.labeller.choose(scene.labels, frame, method.options.label.background_weight);
   trace.clusters = std::move(scene.clusters);
   trace.rough = std::move(scene.rough);
   trace.flat = scene.labels.flat;
   trace.candidates = std::move(candidates);
-  return trace;
+  trace.inside = {};
+  if (!person.empty()) trace.inside = method.labeller.label_person(scene.labels, frame, person, bounding_box(person));
 }
 
 /// The method on one frame, whatever its size.
 std::vector<Person> detect_everywhere(const Method& method, const Frame& frame, const Prior& prior, Trace* trace,
-                                      StageTimes* times) {
+                                      const Mask& person, StageTimes* times) {
   StageClock clock(times);
   Scene scene = first_pass(method, frame, clock);
   std::vector<Candidate> candidates = propose(method, frame, scene, prior);
@@ -215,7 +217,7 @@ std::vector<Person> detect_everywhere(const Method& method, const Frame& frame, 
   std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   std::vector<Person> people = choose_people(method, frame, candidates);
   clock.lap(Stage::people);
-  if (trace != nullptr) *trace = make_trace(method, frame, scene, std::move(candidates));
+  if (trace != nullptr) fill(*trace, method, frame, scene, std::move(candidates), person);
   method.memory.give_back(std::move(scene.labels));
   return people;
 }
@@ -246,7 +248,9 @@ std::vector<Person> Detector::detect(const Frame& frame, const Prior& prior, Tra
   return on_grid(
       frame, method_->options.grid, times,
       [&](const Frame& grid, int step) {
-        return detect_everywhere(*method_, grid, every_nth(prior, step), trace, times);
+        const bool has_person = trace != nullptr && trace->person != nullptr;
+        const Mask person = has_person ? every_nth(*trace->person, step) : Mask{};
+        return detect_everywhere(*method_, grid, every_nth(prior, step), trace, person, times);
       },
       [&](const GridGuide& guide, std::vector<Person>& people) {
         for (Person& person : people) enlarge(guide, person);

@@ -32,6 +32,7 @@ void enlarge(const GridGuide& guide, Trace& trace) {
   trace.raw_labels = guide.enlarge(trace.raw_labels, kBackground);
   trace.labels = guide.enlarge(trace.labels, kBackground);
   trace.flat = guide.enlarge(trace.flat, std::uint8_t{0});
+  if (!trace.inside.empty()) trace.inside = guide.enlarge(trace.inside, kBackground);
   trace.clusters.index = guide.enlarge(trace.clusters.index, -1);
   for (PartCluster& cluster : trace.clusters.items) cluster.first_pixel = guide.whole_index(cluster.first_pixel);
   for (Trace::Candidate& candidate : trace.candidates) {

@@ -54,6 +54,9 @@ struct Trace {
   Clusters clusters;            ///< pass 1, of labels with the proposals' weight of the background
   std::vector<Skeleton> rough;  ///< pass 1, best first
   Mask flat;                    ///< pixels of floor, walls and other large flat surfaces
+  /// May be set before: pixels of people, of the frame's size, whose parts are asked for.
+  const Mask* person = nullptr;
+  LabelImage inside;  ///< parts of those pixels, as the second pass labels them; empty where none were given
 
   /// A rough skeleton grown and refined. A rough skeleton has two where growing against its rivals differs from growing
   /// alone.
