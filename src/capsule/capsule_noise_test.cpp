@@ -114,6 +114,7 @@ TEST(SensorNoise, OutOfRangeIsNoReading) {
   EXPECT_GT(share_of_holes(far.depth), 0.95);
 }
 
+// Labels: threads
 TEST(SensorNoise, SameSeedSameBytesForAnyThreadCount) {
   CapsuleScene scene;
   scene.people.emplace_back();

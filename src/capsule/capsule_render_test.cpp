@@ -183,6 +183,7 @@ TEST(CapsuleRender, ClothesAndSkinAreWhereTheyBelong) {
   EXPECT_GT(face.r, face.b) << "skin";
 }
 
+// Labels: threads
 TEST(CapsuleRender, SameBytesForAnyThreadCount) {
   const CapsuleScene scene = scene_and_reflection().first;
   std::vector<LabelledFrame> results;

@@ -10,6 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
+// Labels: threads
 TEST(FrameQueueThreads, KeepsOrderAndBounds) {
   FrameQueue<int> queue(2);
   std::jthread writer([&] {
@@ -34,6 +35,7 @@ TEST(FrameQueue, GivesUpTheOldest) {
   EXPECT_EQ(queue.pop(milliseconds(0)), std::nullopt);
 }
 
+// Labels: threads
 TEST(FrameQueueThreads, ClosingWakesAWriterWithoutRoom) {
   FrameQueue<int> queue(1);
   EXPECT_TRUE(queue.push(1));

@@ -64,6 +64,7 @@ TEST(Generate, CutsPeopleOutOfTheirSurroundings) {
   EXPECT_GT(person_pixels, 1000);
 }
 
+// Labels: threads
 TEST(GenerateThreads, AnyNumberGivesTheSameFrames) {
   const Generator generator(small_recipe(), {}, paper_body(), 7);
   const std::vector<LabelledFrame> all = frames_of(generator, 0, 24);

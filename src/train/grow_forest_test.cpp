@@ -117,6 +117,7 @@ TEST(TrainingConvention, OffsetsReachTheFurthestProbeWithinAByte) {
   }
 }
 
+// Labels: threads
 TEST(GrowForest, SameForestForAnyNumberOfThreads) {
   const std::vector<LabelledFrame> frames = standing_people(6);
   const auto grow = [&](int threads) {

@@ -305,6 +305,7 @@ TEST(GrowTree, SharedFeaturesAreAllThatNodesTest) {
   }
 }
 
+// Labels: threads
 TEST(GrowTree, SameTreeForAnyNumberOfThreads) {
   const std::vector<LabelledFrame> frames = people(10);
   const TrainingSet set = set_of(frames, 2000);  // more samples than one thread takes at a time

@@ -66,6 +66,7 @@ TEST_F(SampleAccuracyTest, CountsWhatTheDetectorsLabellerSays) {
   EXPECT_EQ(votes.accuracy().parts.counts, parts.counts);
 }
 
+// Labels: threads
 TEST_F(SampleAccuracyTest, TheSameForAnyNumberOfThreads) {
   const auto counts = [&](int threads) {
     const ThreadLimit limit(threads);

@@ -114,6 +114,7 @@ TEST(TrainingSet, AddsTheBackgroundThatAForestTakesForABody) {
   EXPECT_EQ(add_hard_negatives(set, forest, 10.F), 0U) << "the pool is used up";
 }
 
+// Labels: threads
 TEST(TrainingSet, AddsNoMoreHardNegativesThanAllowedOnAnyNumberOfThreads) {
   SampleOptions options;
   options.held_out_share = 0.F;

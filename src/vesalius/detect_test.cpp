@@ -241,6 +241,7 @@ void expect_same(const std::vector<Person>& a, const std::vector<Person>& b) {
   }
 }
 
+// Labels: threads
 TEST(Detector, SameResultForAnyThreadCountAndEveryTime) {
   CapsuleScene scene = one_person(2.5F);
   scene.people.push_back(scene.people[0]);

@@ -110,6 +110,7 @@ TEST_F(Detect, FindsTheRenderedPersonWhereItStands) {
   EXPECT_GT(chest.at("px").at(1), box.at(1));
 }
 
+// Labels: threads
 TEST_F(Detect, SameBytesForAnyNumberOfThreads) {
   std::map<std::string, std::string> first;
   for (const std::string threads : {"1", "2", "8"}) {

@@ -107,6 +107,7 @@ TEST_F(Evaluate, WritesWhatEachPartOfTheMethodIsWorth) {
   EXPECT_EQ(evaluate(" --ablation --labels-only").exit_code, 2);
 }
 
+// Labels: threads
 TEST_F(Evaluate, MetricsAreTheSameForAnyThreadCount) {
   std::vector<json> sets;
   for (const char* threads : {"1", "2", "5"}) {

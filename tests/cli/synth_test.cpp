@@ -55,6 +55,7 @@ TEST_F(SynthProgram, WritesFramesThatTheReaderGives) {
   EXPECT_EQ(frame.frame.name, "00000011");
 }
 
+// Labels: threads
 TEST_F(SynthProgram, ThreadsDoNotChangeTheBytes) {
   expect_done(run_program(synth("--count 20 --threads 1 --out " + path("one"))));
   expect_done(run_program(synth("--count 20 --threads 8 --out " + path("eight"))));

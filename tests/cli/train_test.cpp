@@ -109,6 +109,7 @@ TEST_F(TrainProgram, RenderingOnTheFlyIsTheSameAsADataset) {
   EXPECT_EQ(bytes_of(path("a.forest")), bytes_of(path("b.forest")));
 }
 
+// Labels: threads
 TEST_F(TrainProgram, ThreadsDoNotChangeTheBytes) {
   expect_done(run_program(train("-q --threads 1 --data " + data() + " --out " + path("one.forest"))));
   expect_done(run_program(train("-q --threads 4 --data " + data() + " --out " + path("four.forest"))));

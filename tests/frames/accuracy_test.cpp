@@ -36,6 +36,7 @@ void expect_as_good(const AcceptedSet& set, const std::string& source) {
   if (!worse.empty()) std::cout << "As it is now, where that is meant:\n" << accuracy_toml(set, now);
 }
 
+// Labels: real
 TEST(Accuracy, OnBundledFramesIsAsGoodAsAccepted) {
   int sets = 0;
   for (const AcceptedSet& set : accepted_sets()) {
@@ -46,6 +47,7 @@ TEST(Accuracy, OnBundledFramesIsAsGoodAsAccepted) {
   EXPECT_GT(sets, 0);
 }
 
+// Labels: real
 TEST(Accuracy, OnRealFramesIsAsGoodAsAccepted) {
   VESALIUS_NEEDS_SHARED();
   int sets = 0;

@@ -36,6 +36,7 @@ std::vector<RealFrame> some_of(std::vector<RealFrame> frames) {
   return kept;
 }
 
+// Labels: real
 TEST(RealFrames, AWalkingAndWavingPersonIsFound) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
@@ -70,6 +71,7 @@ TEST(RealFrames, AWalkingAndWavingPersonIsFound) {
   EXPECT_GE(parts["r_upper_arm"], 0.8 * with);
 }
 
+// Labels: real
 TEST(RealFrames, NobodyIsFoundWhereNobodyIs) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
@@ -86,6 +88,7 @@ TEST(RealFrames, NobodyIsFoundWhereNobodyIs) {
   EXPECT_LE(with_person, 2);
 }
 
+// Labels: real
 TEST(RealFrames, FourOfFivePeopleFromBehindAreFound) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
@@ -106,6 +109,7 @@ TEST(RealFrames, FourOfFivePeopleFromBehindAreFound) {
   }
 }
 
+// Labels: real
 TEST(RealFrames, MasksOfOtherRoomsAreGood) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
@@ -144,6 +148,7 @@ void expect_same(const std::vector<Person>& people, const std::vector<Person>& e
   }
 }
 
+// Labels: real threads
 TEST(RealFrames, SameResultForAnyThreadCount) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
@@ -155,6 +160,7 @@ TEST(RealFrames, SameResultForAnyThreadCount) {
 }
 
 /// Every `kEach`-th frame of all sets, with the shipped forest; VESALIUS_ALL_FRAMES=1 takes all.
+// Labels: real threads
 TEST(RealFrames, SameResultForEveryInstructionSetAndThreadCount) {
   VESALIUS_NEEDS_SHARED();
   constexpr std::size_t kEach = 12;

@@ -45,6 +45,7 @@ TEST(ModelFile, RoundTripKeepsEverything) {
   }
 }
 
+// Labels: threads
 TEST(ModelFile, SameForestSameBytes) {
   const std::string bytes = serialise_model(random_forest(5));
   EXPECT_EQ(bytes, serialise_model(random_forest(5)));

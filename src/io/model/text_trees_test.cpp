@@ -209,6 +209,7 @@ std::string unpacked(const fs::path& path) {
   return text.substr(0, size);
 }
 
+// Labels: real
 TEST(ReleasedTrees, EveryPixelGetsTheLabelOfTheText) {
   const fs::path reference = shared_folder() / "reference";
   if (!fs::exists(reference)) GTEST_SKIP() << "needs the released trees in " << reference;

@@ -302,6 +302,7 @@ std::string shared_folder() {
   return fs::is_directory(folder + "/real") ? folder : "";
 }
 
+// Labels: real
 TEST(RealFrames, AllOpenAsListed) {
   const std::string shared = shared_folder();
   if (shared.empty()) GTEST_SKIP() << "no development data: set VESALIUS_SHARED";

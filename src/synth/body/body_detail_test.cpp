@@ -44,6 +44,7 @@ TEST(BodyDetail, KeepsEveryPartAndAClosedSurface) {
   }
 }
 
+// Labels: statistics
 TEST(BodyDetail, FollowsTheFullSurfaceInAnyPose) {
   const CoarseSurface& coarse = *detail().within(0.002F);
   Random random(5);

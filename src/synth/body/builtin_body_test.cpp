@@ -59,6 +59,7 @@ TEST(BuiltinBody, LeftAndRightMirrorEachOtherToTheLastBit) {
   }
 }
 
+// Labels: statistics
 TEST(BuiltinBody, JointsAreInsideInAnyModeratePose) {
   int outside = 0;
   int all = 0;

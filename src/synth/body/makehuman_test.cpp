@@ -217,6 +217,7 @@ int unlike_their_twins(const BodyMesh& mesh) {
 }
 
 // One test for all that needs MakeHuman's real files: unpacking and loading them takes a second or two.
+// Labels: statistics
 TEST(MakeHumanFilesTour, MakesManyGoodBodies) {
   const auto data = unpacked_makehuman();
   if (!data) GTEST_SKIP() << "no MakeHuman files: set VESALIUS_SHARED to the folder with assets/makehuman.tar.xz";

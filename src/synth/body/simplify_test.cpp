@@ -105,6 +105,7 @@ TEST(Simplify, LeavesOfAFlatSheetLittleButItsPartsAsTheyWere) {
   }
 }
 
+// Labels: statistics
 TEST(Simplify, StaysWithinItsBoundOnASphereAndClosed) {
   const Surface s = sphere(40, 80);
   ASSERT_TRUE(is_closed(s.topology.triangles, s.topology.triangles.size()));

@@ -54,6 +54,7 @@ TEST(BuildScene, WhoFacesTheCameraHasTheLeftHandOnTheRightOfThePicture) {
   }
 }
 
+// Labels: statistics
 TEST(BuildScene, HeadingsFollowTheFrontalShare) {
   int frontal = 0, all = 0;
   SceneOptions options;

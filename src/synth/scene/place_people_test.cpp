@@ -23,6 +23,7 @@ float deepest_in_solids(const PlacedPerson& person, const std::vector<OrientedBo
   return deepest;
 }
 
+// Labels: statistics
 TEST(BuildScene, NobodyIsInsideFurnitureOrWalls) {
   constexpr int kScenes = 1000;
   int planned = 0, placed = 0, beyond = 0;
@@ -55,6 +56,7 @@ TEST(BuildScene, NobodyIsInsideFurnitureOrWalls) {
   EXPECT_GT(off_floor, -0.02F);
 }
 
+// Labels: statistics
 TEST(BuildScene, FeetAreOnTheFloorOfThoseWhoStandAndKneel) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     Random random(21, i);
@@ -81,6 +83,7 @@ PoseSamplerOptions only_sitting() {
   return options;
 }
 
+// Labels: statistics
 TEST(BuildScene, SeatsAreRightUnderThoseWhoSit) {
   int sitters = 0, supported = 0;
   for (std::uint64_t i = 0; i < 150; ++i) {
@@ -121,6 +124,7 @@ bool is_inside(const Vector3f& p, const PosedBody& body, const std::vector<Trian
   return inside;
 }
 
+// Labels: statistics
 TEST(BuildScene, PeopleKeepApart) {
   float deepest = 0.F;
   int near = 0;

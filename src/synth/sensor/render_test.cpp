@@ -153,6 +153,7 @@ bool same(const Rendering& a, const Rendering& b) {
          a.colour == b.colour && a.infrared == b.infrared && a.lit == b.lit;
 }
 
+// Labels: threads
 TEST(Render, SameBytesAgainAndFromAnyThread) {
   const View view = view_of(160, 120, 140.F);
   Scene scene = confetti(20000);
@@ -168,6 +169,7 @@ TEST(Render, SameBytesAgainAndFromAnyThread) {
   for (const Rendering& other : others) EXPECT_TRUE(same(first, other));
 }
 
+// Labels: threads
 TEST(Render, ARendererLeavesOtherThreadsTheirWork) {
   const int before = thread_count();
   Renderer renderer;

@@ -11,6 +11,7 @@
 namespace vesalius {
 namespace {
 
+// Labels: threads
 TEST(ParallelInOrderThreads, HandsOverInOrderInTheCallersThread) {
   for (const int threads : {1, 2, 8}) {
     const ThreadLimit limit(threads);

@@ -11,6 +11,7 @@
 namespace vesalius {
 namespace {
 
+// Labels: threads
 TEST(ParallelThreads, ForVisitsEveryIndexOnce) {
   for_threads({1, 2, 8}, [] {
     std::vector<std::atomic<int>> visits(1000);
@@ -19,6 +20,7 @@ TEST(ParallelThreads, ForVisitsEveryIndexOnce) {
   });
 }
 
+// Labels: threads
 TEST(ParallelThreads, RangesCoverEverythingOnceWhateverTheGrain) {
   for (const int count : {0, 1, 7, 100}) {
     for (const int grain : {0, 1, 3, 1000}) {
@@ -31,6 +33,7 @@ TEST(ParallelThreads, RangesCoverEverythingOnceWhateverTheGrain) {
   }
 }
 
+// Labels: threads
 TEST(ParallelThreads, AnExceptionReachesTheCaller) {
   EXPECT_THROW(parallel_for(100,
                             [](int i) {
@@ -39,6 +42,7 @@ TEST(ParallelThreads, AnExceptionReachesTheCaller) {
                std::runtime_error);
 }
 
+// Labels: threads
 TEST(ParallelThreads, LimitsNestAndEnd) {
   const int before = thread_count();
   {

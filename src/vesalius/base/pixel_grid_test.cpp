@@ -96,6 +96,7 @@ LabelImage enlarge_slowly(const LabelImage& coarse, const DepthImage& depth, int
   return out;
 }
 
+// Labels: threads
 TEST(GridGuideThreads, AnyNumberAgreesWithLookingAtAllPixels) {
   Random random(41);
   for (int trial = 0; trial < 40; ++trial) {

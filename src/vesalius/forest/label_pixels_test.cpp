@@ -130,6 +130,7 @@ std::vector<std::uint16_t> walked_sums(const Forest& forest, const DepthImage& d
   return sums;
 }
 
+// Labels: threads
 TEST(ForestLabeller, SumsTheLeavesOfThePlainWalkForAnySizeAndThreadCount) {
   Random random(17);
   for (const bool background : {false, true}) {
@@ -157,6 +158,7 @@ TEST(ForestLabeller, AveragesTheTrees) {
   EXPECT_EQ(p.at(5, 5)[0], 0);
 }
 
+// Labels: threads
 TEST(ForestLabeller, SameBytesForAnyThreadCount) {
   Random random(3);
   Forest forest = empty_forest(true);
@@ -185,6 +187,7 @@ Forest forest_by_depth(Random& random) {
   return forest;
 }
 
+// Labels: threads
 TEST(ForestLabeller, GateLeavesOutWhatIsSurelyBackgroundOnly) {
   Random random(31);
   const ForestLabeller labeller(forest_by_depth(random));

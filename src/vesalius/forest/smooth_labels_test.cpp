@@ -178,6 +178,7 @@ TEST(ModeFilter, RemovesASpeckleButNotAcrossADepthStep) {
   EXPECT_EQ(mode_filter(labels, depth, {})(3, 3), 8);
 }
 
+// Labels: threads
 TEST(ModeFilter, SameBytesForAnyThreadCount) {
   const Picture p = random_picture(4);
   std::vector<LabelImage> results;

@@ -105,6 +105,7 @@ TEST(FlatPixels, FloorBetweenTheFeetIsFloor) {
   EXPECT_GT(between_flat, 0.85 * static_cast<double>(between));
 }
 
+// Labels: threads
 TEST(FlatPixels, SameBytesForAnyThreadCount) {
   CapsuleScene scene;
   scene.people.emplace_back();
