@@ -10,6 +10,7 @@
 #include "io/model/model_file.h"
 #include "synth/generate.h"
 #include "train/grow_forest.h"
+#include "vesalius/forest/make_labeller.h"
 #include "vesalius/vesalius.h"
 
 namespace {

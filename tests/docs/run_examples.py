@@ -81,7 +81,7 @@ class Wrapper:
     def provide(self, words):
         command = words[0]
         for name in self.values(words, "-m", "--model"):
-            self.place(name, "some.forest")
+            self.place(name, "rendered.forest" if "--recipe" in words else "some.forest")
         if command in ("detect", "bench"):
             for name in self.positional(words):
                 self.place(name, "walking" if name.startswith("tum:") else "depth.png" if name.endswith(".png") else "frames")
@@ -93,7 +93,7 @@ class Wrapper:
                 self.place(name, "evaluation.json")
         if command == "convert":
             for name in self.positional(words)[:-1]:
-                self.place(name, "walking" if name.startswith("tum:") else "tree.txt" if "tree" in name else "some.forest")
+                self.place(name, "walking" if name.startswith("tum:") else "frames" if "--to" in words else "tree.txt")
         if command == "info":
             for name in self.positional(words):
                 self.place(name, "some.forest")
@@ -124,6 +124,13 @@ class Wrapper:
             shutil.copy(self.stand_ins / "recipe.toml", path)
         return str(path)
 
+    def without_motions(self, words):
+        """Recordings of motions are the reader's to fetch."""
+        if "--motions" not in words:
+            return words
+        at = words.index("--motions")
+        return words[:at] + words[at + 2:]
+
     def run(self, words):
         if not words or words[0] in NOT_RUN or "--dir" in words:
             return 0
@@ -132,6 +139,7 @@ class Wrapper:
         if any(w.startswith("real/") for w in words) and not Path("real").exists():
             print("example not run, no real frames: vesalius", *words, file=sys.stderr)
             return 0
+        words = self.without_motions(words)
         self.provide(words)
         # A recipe of the reader's own, or one of the project's, at the size of a test.
         for i, word in enumerate(words):
@@ -155,9 +163,10 @@ def make_stand_ins(program, source, folder):
     vesalius("synth", "-q", "--count", 12, "--seed", 5, "--out", folder / "labelled", *small)
     vesalius("synth", "-q", "--count", 4, "--seed", 6, "--out", folder / "nobody", *nobody)
     vesalius("synth", "-q", "--count", 3, "--seed", 6, "--format", "folder", "--out", folder / "rooms", *nobody)
-    vesalius("convert", source / "data/sample", folder / "walking", "--to", "tum", "-q")
+    vesalius("convert", source / "data/sample", folder / "walking", "--to", "tum", "--rate", 30, "-q")
     (folder / "frames").symlink_to(source / "data/sample")
     (folder / "some.forest").symlink_to(source / "data/models/capsule.forest")
+    (folder / "rendered.forest").symlink_to(source / "data/models/small.forest")
     (folder / "depth.png").symlink_to(sorted((source / "data/sample/depth").iterdir())[0])
     vesalius("evaluate", source / "data/sample", "-q", "-m", folder / "some.forest", "--json", folder / "evaluation.json")
     # A tree of the paper's released format: one decision.
@@ -223,6 +232,7 @@ def main():
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir()
             (folder / "data").symlink_to(source / "data")
+            (folder / "motions").mkdir()
             for body in (source / "data/bodies").glob("upper_body.toml"):
                 shutil.copy(body, folder)
             if (shared / "real").is_dir():

@@ -1,0 +1,18 @@
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "synth/scene/model_import.h"
+#include "vesalius/base/error.h"
+
+/// A model of the user's in each of its formats; whatever it refers to holds the same bytes.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  for (const char* name : {"chair.obj", "chair.gltf", "chair.glb"}) {
+    try {
+      vesalius::synth::import_model(name, [&](const std::string& /*path*/) { return bytes; });
+    } catch (const vesalius::Error&) {
+    }
+  }
+  return 0;
+}
