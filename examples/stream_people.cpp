@@ -1,4 +1,5 @@
-// People in frames of one's own making, as lines of JSON: MODEL. A camera's source looks the same: next() waits for a frame.
+// People in frames of one's own making, as lines of JSON: MODEL. A camera's source looks the same: next() waits for a
+// frame.
 
 #include <exception>
 #include <iostream>

@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
     vesalius::LabelledFrame labelled = unknown.frame(i);
     vesalius::TrueFrame frame{std::move(labelled.frame), {}};
     frame.truth.labels = std::move(labelled.labels);
+    frame.truth.person = std::move(labelled.person);
     metrics.add(i, scorer.score(std::move(frame), false).terms);
   }
   for (const vesalius::Estimate& estimate : metrics.estimates()) {

@@ -224,8 +224,7 @@ TEST_F(Evaluate, FramesOfARecipeAreThoseThatSynthWrites) {
 }
 
 TEST_F(Evaluate, SaysWhatStandsInForMissingAssetsEvenWhenQuiet) {
-  write("captured.toml",
-        "sensor.width = 80\nsensor.height = 60\nbody.count = 2\nbody.kind = 'auto'\n");
+  write("captured.toml", "sensor.width = 80\nsensor.height = 60\nbody.count = 2\nbody.kind = 'auto'\n");
   fs::create_directories(path("no_assets"));
   const Outcome run = run_program("evaluate -q --recipe " + path("captured.toml") + " --count 1 --assets " +
                                   path("no_assets") + " -m " + model() + " --json " + path("n.json"));

@@ -42,7 +42,9 @@ Motion still_motion(int frames) {
   return motion;
 }
 
-Eigen::Vector3f direction(const Pose& pose, Bone bone) { return world_rotations(pose)[index(bone)] * rest_direction(bone); }
+Eigen::Vector3f direction(const Pose& pose, Bone bone) {
+  return world_rotations(pose)[index(bone)] * rest_direction(bone);
+}
 
 auto parsing(const std::string& text) {
   return [text] { parse_convention(text, "c.toml"); };
