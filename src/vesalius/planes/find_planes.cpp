@@ -251,7 +251,7 @@ Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptio
     }
     return static_cast<float>(area / static_cast<double>(camera.fx * camera.fy));
   };
-  const double surely_large_mm2 = 1.001e6 * static_cast<double>(options.min_piece_m2 * camera.fx * camera.fy);
+  const double surely_large_mm2 = 1e6 * static_cast<double>(options.min_piece_m2 * camera.fx * camera.fy);
   return without_body_pieces(depth, out, surely_large_mm2,
                              [&](const std::vector<int>& pixels) { return area_m2(pixels) >= options.min_piece_m2; });
 }
