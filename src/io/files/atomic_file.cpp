@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
   throw Error(fmt::format("{}: cannot be written: {}", path, std::generic_category().message(error)));
 }
 
-/// A link stays a link: the file that it names is replaced.
+/// Follows symbolic links, so that the file behind a link is replaced and the link stays.
 std::string behind_links(const std::string& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;
@@ -37,9 +37,9 @@ std::string behind_links(const std::string& path) {
 
 constexpr std::string_view kMark = ".tmp";
 
-/// A temporary file that another process made: NAME.tmpPROCESS-COUNT and an extension.
+/// A temporary file that another process made. It is called NAME.tmpPROCESS-COUNT, then an extension.
 struct Leftover {
-  std::string name;  ///< of the file that it was to become
+  std::string name;  ///< final name of the file
   pid_t process = 0;
 };
 
@@ -56,9 +56,10 @@ std::optional<Leftover> parse_leftover(const std::string& file) {
   return leftover;
 }
 
-/// Whether nobody writes it any more: its process is gone, here and, seen by the lock, in other containers.
+/// Returns whether nobody writes the file any more. Its process must have ended here, and, since other containers have
+/// process numbers of their own, nobody may hold its lock.
 bool is_abandoned(const fs::path& path, pid_t process) {
-  // A file of our number is an older process's; those of this one are locked.
+  // A file with this process's number was made by an older process of that number, or it is locked.
   if (process != ::getpid() && (::kill(process, 0) == 0 || errno != ESRCH)) return false;
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW));
   struct stat info {};
@@ -66,8 +67,8 @@ bool is_abandoned(const fs::path& path, pid_t process) {
   return ours && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0;
 }
 
-/// Removes what killed processes left of files called `name`. Each folder is listed once in the life of this process,
-/// however many files are written there.
+/// Removes temporary files that killed processes left for files called `name`. Each folder is listed only once in the
+/// life of this process, however many files are written there.
 void remove_leftovers(const fs::path& folder, const std::string& name) {
   static std::map<fs::path, std::multimap<std::string, fs::path>> abandoned;  // by folder, then by name
   const auto [entry, is_new] = abandoned.try_emplace(folder);
@@ -93,14 +94,14 @@ bool written_directly(const std::string& path) {
 TemporaryFile::TemporaryFile(std::string final_path, const std::string& extension)
     : final_path_(std::move(final_path)) {
   static unsigned counter = 0;
-  static std::mutex mutex;  // no other thread looks for leftovers before this file is locked
+  static std::mutex mutex;  // held until this file is locked, so that no other thread takes it for a leftover
   const std::scoped_lock lock(mutex);
   const fs::path target = behind_links(final_path_);
   remove_leftovers(target.has_parent_path() ? target.parent_path() : ".", target.filename().string());
   path_ = fmt::format("{}{}{}-{}{}", target.string(), kMark, ::getpid(), counter++, extension);
   descriptor_ = Descriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!descriptor_.is_open()) fail(final_path_, errno);
-  ::flock(descriptor_.get(), LOCK_EX | LOCK_NB);  // a file system without locks is no reason to refuse
+  ::flock(descriptor_.get(), LOCK_EX | LOCK_NB);  // failure is ignored: some file systems have no locks
 }
 
 TemporaryFile::~TemporaryFile() {
@@ -108,7 +109,7 @@ TemporaryFile::~TemporaryFile() {
 }
 
 void TemporaryFile::commit() {
-  // Some file systems say only here that the disk is full.
+  // Some file systems report a full disk only here.
   if (const int error = descriptor_.close()) fail(final_path_, error);
   if (std::rename(path_.c_str(), behind_links(final_path_).c_str()) != 0) fail(final_path_, errno);
   committed_ = true;

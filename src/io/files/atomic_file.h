@@ -7,17 +7,17 @@
 
 namespace vesalius {
 
-/// Returns whether `path` is a device, a pipe or /dev/stdout (a link to whatever the shell opened): these must keep
-/// being what they are.
+/// Returns whether `path` is a device, a pipe or /dev/stdout. Such a path is written directly, because replacing it by
+/// a regular file would break it.
 bool written_directly(const std::string& path);
 
-/// A file being written beside its final place: `commit` renames it there, the destructor removes what was not
-/// committed. What killed processes left of a file of this name is removed first. For writers that need a path of their
-/// own; others use `write_file_atomically`.
+/// A temporary file beside the place where it will stay. `commit` renames it to its final name; the destructor removes
+/// it if it was not committed. The constructor also removes temporary files of the same name that killed processes left
+/// behind. This class is for writers that need a path of their own; others use `write_file_atomically`.
 class TemporaryFile {
  public:
-  /// Makes an empty file. Its name is the final one, ".tmp", a number unique on this machine, and `extension`. Throws
-  /// Error naming the final path where it cannot.
+  /// Creates an empty file. Its name is the final name, then ".tmp", a number unique on this machine, and `extension`.
+  /// Throws Error naming the final path if the file cannot be created.
   explicit TemporaryFile(std::string final_path, const std::string& extension = "");
   ~TemporaryFile();
   TemporaryFile(const TemporaryFile&) = delete;
@@ -25,9 +25,9 @@ class TemporaryFile {
 
   const std::string& path() const { return path_; }
   const std::string& final_path() const { return final_path_; }
-  /// Open for writing, and locked as long as this lives.
+  /// The file, open for writing. It stays locked as long as this object lives.
   const Descriptor& descriptor() const { return descriptor_; }
-  /// Throws Error naming the final path when it cannot be closed or renamed.
+  /// Gives the file its final name. Throws Error naming the final path if closing or renaming fails.
   void commit();
 
  private:
@@ -37,8 +37,8 @@ class TemporaryFile {
   bool committed_ = false;
 };
 
-/// Writes `bytes` so that a reader sees the old file or the whole new one; what is no regular file (a pipe, a device)
-/// is written directly. Throws Error with the path and the system's reason, leaving no temporary file.
+/// Writes a file in one step: a reader sees either the old content or all of `bytes`. A pipe or a device is written
+/// directly. Throws Error with the path and the system's reason; no temporary file is left behind.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
 }  // namespace vesalius

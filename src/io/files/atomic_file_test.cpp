@@ -38,17 +38,17 @@ TEST(WriteFileAtomically, NamesThePathAndTheReason) {
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
-TEST(WriteFileAtomically, FullDeviceIsAnError) {
+TEST(WriteFileAtomically, ThrowsOnAFullDevice) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   EXPECT_THAT(error_of([] { write_file_atomically("/dev/full", "x"); }),
               HasSubstr("/dev/full: cannot be written: No space"));
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }
 
-TEST(WriteFileAtomically, FullDiskKeepsTheOldFile) {
+TEST(WriteFileAtomically, KeepsTheOldFileWhenTheDiskIsFull) {
   const TemporaryFolder folder;
   const std::string path = put(folder / "a.bin", "old");
-  // A limit on file sizes fails in the middle of a write, as a full disk does.
+  // A limit on file sizes makes a write fail in the middle, as a full disk does.
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -62,7 +62,7 @@ TEST(WriteFileAtomically, FullDiskKeepsTheOldFile) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
-TEST(WriteFileAtomically, LinkStaysALink) {
+TEST(WriteFileAtomically, ReplacesTheFileBehindALink) {
   const TemporaryFolder folder;
   const std::string target = put(folder / "target.txt", "old");
   fs::create_symlink(target, folder / "link.txt");
@@ -71,12 +71,12 @@ TEST(WriteFileAtomically, LinkStaysALink) {
   EXPECT_EQ(get(target), "new");
 }
 
-TEST(WriteFileAtomically, FolderIsAnError) {
+TEST(WriteFileAtomically, RefusesAFolder) {
   const TemporaryFolder folder;
   EXPECT_THAT(error_of([&] { write_file_atomically(folder.path(), "x"); }), HasSubstr(folder.path() + ": cannot be"));
 }
 
-TEST(TemporaryFile, VanishesUnlessCommitted) {
+TEST(TemporaryFile, IsRemovedUnlessCommitted) {
   const TemporaryFolder folder;
   {
     const TemporaryFile file(folder / "a.avi", ".avi");
@@ -92,7 +92,7 @@ TEST(TemporaryFile, VanishesUnlessCommitted) {
   EXPECT_EQ(get(folder / "a.avi"), "whole");
 }
 
-/// The number of a process that has ended.
+/// Returns the number of a process that has ended.
 pid_t gone() {
   const pid_t child = fork();
   if (child == 0) _exit(0);
@@ -100,7 +100,7 @@ pid_t gone() {
   return child;
 }
 
-TEST(TemporaryFile, RemovesWhatAKilledProcessLeftOfThisName) {
+TEST(TemporaryFile, RemovesLeftoversOfKilledProcesses) {
   const TemporaryFolder folder;
   const std::string dead = std::to_string(gone());
   const std::string left = put(folder / ("a.txt.tmp" + dead + "-3"), "half");
@@ -120,7 +120,7 @@ TEST(TemporaryFile, RemovesWhatAKilledProcessLeftOfThisName) {
   EXPECT_FALSE(fs::exists(others[0]));
 }
 
-TEST(TemporaryFile, KeepsWhatAnotherContainerIsWriting) {
+TEST(TemporaryFile, KeepsFilesThatAnotherContainerIsWriting) {
   const TemporaryFolder folder;
   const std::string path = put(folder / ("a.txt.tmp" + std::to_string(gone()) + "-3"), "half");
   const Descriptor writer(open(path.c_str(), O_RDONLY));

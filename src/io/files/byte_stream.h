@@ -11,7 +11,8 @@
 
 namespace vesalius {
 
-/// Numbers of either sign as small ones: 0, -1, 1, -2 ... become 0, 1, 2, 3 ...
+/// Maps signed numbers to unsigned ones, such that small magnitudes give small results: 0, -1, 1, -2 ... become 0, 1,
+/// 2, 3 ...
 inline std::uint32_t zigzag(std::int32_t value) {
   return (static_cast<std::uint32_t>(value) << 1U) ^ (value < 0 ? 0xFFFFFFFFU : 0U);
 }
@@ -19,7 +20,7 @@ inline std::int32_t unzigzag(std::uint32_t code) {
   return static_cast<std::int32_t>((code >> 1U) ^ ((code & 1U) != 0 ? 0xFFFFFFFFU : 0U));
 }
 
-/// Appends numbers, little endian, and texts to a string.
+/// Appends little-endian numbers and texts to a string.
 class ByteWriter {
  public:
   template <class T>
@@ -28,12 +29,12 @@ class ByteWriter {
   }
   void real(float value) { number(std::bit_cast<std::uint32_t>(value)); }
   void real(double value) { number(std::bit_cast<std::uint64_t>(value)); }
-  /// Seven bits a byte, the lowest first; the high bit says that more follow.
+  /// Writes seven bits in each byte, the lowest first. The high bit of a byte says that another one follows.
   void varint(std::uint32_t value) {
     for (; value >= 0x80; value >>= 7U) bytes_ += static_cast<char>((value & 0x7FU) | 0x80U);
     bytes_ += static_cast<char>(value);
   }
-  /// A u32 with the length, then the bytes.
+  /// Writes the length as a u32, then the bytes.
   void text(std::string_view value) {
     number(static_cast<std::uint32_t>(value.size()));
     bytes_ += value;
@@ -44,7 +45,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Takes them out again. All throw Error naming `name`, the byte and what was expected.
+/// Reads what ByteWriter wrote. All functions throw Error naming `name`, the position in bytes and what was expected.
 class ByteReader {
  public:
   ByteReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}

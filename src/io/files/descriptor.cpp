@@ -21,7 +21,7 @@ OpenFile open_regular_file(const std::string& path) {
   const auto fail = [&](int error) {
     throw Error(fmt::format("{}: cannot be read: {}", path, std::generic_category().message(error)));
   };
-  // Not blocking: opening a pipe nobody writes to would wait for ever.
+  // O_NONBLOCK is needed because opening a pipe that nobody writes to would wait for ever.
   Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   struct stat info {};
   if (!file.is_open() || ::fstat(file.get(), &info) != 0) fail(errno);

@@ -20,8 +20,8 @@ class Descriptor {
 
   int get() const { return fd_; }
   bool is_open() const { return fd_ >= 0; }
-  /// Closes it now. Returns the error number, 0 where there is none: some file systems say only here that the disk is
-  /// full.
+  /// Closes the descriptor now. Returns the error number, or 0 if there was no error. Some file systems report a full
+  /// disk only at this point.
   int close();
 
  private:
@@ -34,10 +34,11 @@ struct OpenFile {
   std::uint64_t size = 0;  ///< bytes
 };
 
-/// Throws Error naming `path` where there is none, it cannot be read, or is no regular file (a pipe would block).
+/// Opens a regular file. Throws Error naming `path` if it does not exist, cannot be read, or is not a regular file
+/// (opening a pipe would block).
 OpenFile open_regular_file(const std::string& path);
 
-/// Writes all bytes. Returns the error number of what failed, 0 where nothing did.
+/// Writes all bytes. Returns the error number of the first failure, or 0.
 int write_all(const Descriptor& descriptor, std::string_view bytes);
 
 }  // namespace vesalius

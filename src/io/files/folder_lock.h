@@ -6,11 +6,11 @@
 
 namespace vesalius {
 
-/// A folder that one process at a time writes. Gone with the process, however it ends.
+/// Lets only one process at a time write to a folder. The lock ends with the process, however that ends.
 class FolderLock {
  public:
-  /// Makes the folder where there is none. Throws Error naming it where it cannot be made or read, and while another
-  /// process has it.
+  /// Creates the folder if it does not exist. Throws Error naming it if it cannot be created or read, or if another
+  /// process holds the lock.
   explicit FolderLock(const std::string& folder);
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(FolderLock, OneAtATime) {
+TEST(FolderLock, AdmitsOneHolderAtATime) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a/b";
   {

@@ -42,7 +42,7 @@ void check_size(std::int64_t width, std::int64_t height, const std::string& name
   }
 }
 
-/// One chunk at `at`: type, data and whole length, with its checksum verified.
+/// A chunk of a PNG. Its checksum has been verified.
 struct Chunk {
   std::string_view type, data, whole;
 };
@@ -72,7 +72,7 @@ PngBytes parse_png_header(const Chunk& chunk, const std::string& name) {
   return png;
 }
 
-/// Deflate shrinks at most 1032 times (its longest match): fewer bytes cannot hold the picture.
+/// Throws if the compressed data is too short for the picture: deflate shrinks at most 1032 times (its longest match).
 void check_data_size(const PngBytes& png, std::size_t data_bytes, const std::string& name) {
   const std::int64_t row_bytes = (std::int64_t{png.width} * png.bit_depth + 7) / 8;
   const std::int64_t least = row_bytes * png.height / 1032;
@@ -87,7 +87,8 @@ bool has_size(std::uint32_t jpeg_marker) {
          jpeg_marker != 0xCC;
 }
 
-/// First byte at or after `at` that begins a marker other than those within coded data; npos = none.
+/// Returns the position of the first marker at or after `at`, not counting those within coded data; npos if there is
+/// none.
 std::size_t next_marker(std::string_view bytes, std::size_t at) {
   for (at = bytes.find('\xFF', at); at != bytes.npos && at + 1 < bytes.size(); at = bytes.find('\xFF', at + 1)) {
     const std::uint32_t marker = byte_at(bytes, at + 1);

@@ -6,24 +6,25 @@
 
 namespace vesalius {
 
-/// Largest picture that is decoded: a header can claim any size.
+/// Largest picture, in pixels, that is decoded. A header can claim any size.
 inline constexpr std::int64_t kMaxPixels = std::int64_t{64} << 20;
 
-/// What a PNG's header says, and the PNG without the chunks that do not matter to its pixels.
+/// The header of a PNG, and its data without the chunks that do not affect the pixels.
 struct PngBytes {
   int width = 0;
   int height = 0;
   int bit_depth = 0;
   int colour_type = 0;  ///< 0 grey, 2 RGB, 3 palette, 4 grey + alpha, 6 RGB + alpha
-  std::string pixels;   ///< IHDR, PLTE, IDAT and IEND only: profiles and texts cannot upset the decoder
+  std::string pixels;   ///< IHDR, PLTE, IDAT and IEND only, so profiles and texts cannot upset the decoder
 };
 
-/// Walks all chunks before anything is decoded. Throws Error naming `name` for a file that is empty, no PNG,
-/// truncated, damaged (checksums), too large, or too short for the size it claims.
+/// Checks all chunks before anything is decoded. Throws Error naming `name` if the file is empty, not a PNG, truncated,
+/// damaged (by its checksums), too large, or too short for the size it claims.
 PngBytes check_png(std::string_view bytes, const std::string& name);
 
-/// Walks all segments of a JPEG up to the end marker, for decoders pad a truncated one with grey. Throws Error naming
-/// `name` for a file that is truncated, has no or too large a size, or more scans than any real encoder makes.
+/// Checks all segments of a JPEG up to the end marker, because decoders fill a truncated picture with grey instead of
+/// failing. Throws Error naming `name` if the file is truncated, states no size or too large a one, or has more scans
+/// than any real encoder writes.
 void check_jpeg(std::string_view bytes, const std::string& name);
 
 bool is_png(std::string_view bytes);

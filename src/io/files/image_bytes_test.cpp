@@ -33,14 +33,14 @@ TEST(CheckPng, ReadsTheHeader) {
   EXPECT_EQ(png.colour_type, 0);
 }
 
-TEST(CheckPng, EveryTruncationIsAnError) {
+TEST(CheckPng, RefusesEveryTruncation) {
   const std::string whole = sample_png();
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_THROW(check_png(whole.substr(0, size), "a.png"), Error) << "first " << size << " bytes";
   }
 }
 
-TEST(CheckPng, EveryFlippedByteIsAnError) {
+TEST(CheckPng, RefusesEveryFlippedByte) {
   const std::string whole = sample_png();
   for (std::size_t i = 0; i < whole.size(); ++i) {
     std::string damaged = whole;
@@ -49,15 +49,15 @@ TEST(CheckPng, EveryFlippedByteIsAnError) {
   }
 }
 
-TEST(CheckPng, LeavesOutWhatIsNoPicture) {
+TEST(CheckPng, DropsChunksWithoutPixels) {
   std::string png = sample_png();
-  // tEXt chunk "a\0b" with its checksum, after the header.
+  // A tEXt chunk "a\0b" with its checksum is inserted after the header.
   const std::string text("\x00\x00\x00\x03tEXta\x00\x62\xDC\x49\xA2\x3B", 15);
   png.insert(33, text);
   EXPECT_EQ(check_png(png, "a.png").pixels, sample_png());
 }
 
-TEST(CheckPng, NamesFileAndPlace) {
+TEST(CheckPng, NamesTheFileAndThePlaceOfTheDamage) {
   EXPECT_EQ(error_of([] { check_png("", "a.png"); }), "a.png: empty file, expected a PNG");
   EXPECT_THAT(error_of([] { check_png("GIF89a", "a.png"); }), HasSubstr("a.png: no PNG signature"));
   std::string damaged = sample_png();
@@ -70,7 +70,7 @@ TEST(CheckJpeg, AcceptsBaselineAndProgressive) {
   check_jpeg(sample_jpeg(true), "a.jpg");
 }
 
-TEST(CheckJpeg, EveryTruncationIsAnError) {
+TEST(CheckJpeg, RefusesEveryTruncation) {
   for (const bool progressive : {false, true}) {
     const std::string whole = sample_jpeg(progressive);
     for (std::size_t size = 3; size < whole.size(); ++size) {
@@ -79,7 +79,7 @@ TEST(CheckJpeg, EveryTruncationIsAnError) {
   }
 }
 
-TEST(CheckJpeg, HugeSizeIsAnErrorBeforeDecoding) {
+TEST(CheckJpeg, RefusesAHugeSizeBeforeDecoding) {
   std::string jpeg = sample_jpeg(false);
   const std::size_t frame = jpeg.find("\xFF\xC0");
   ASSERT_NE(frame, jpeg.npos);
@@ -87,7 +87,7 @@ TEST(CheckJpeg, HugeSizeIsAnErrorBeforeDecoding) {
   EXPECT_THAT(error_of([&] { check_jpeg(jpeg, "a.jpg"); }), HasSubstr("65535x65535"));
 }
 
-TEST(CheckJpeg, EndlessScansAreAnError) {
+TEST(CheckJpeg, RefusesTooManyScans) {
   std::string jpeg = sample_jpeg(true);
   const std::size_t scan = jpeg.rfind("\xFF\xDA");
   const std::string last = jpeg.substr(scan, jpeg.size() - 2 - scan);

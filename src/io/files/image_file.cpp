@@ -18,7 +18,7 @@ namespace {
 cv::Mat decode(std::string_view bytes, int flags, int type, const std::string& name) {
   cv::Mat decoded;
   try {
-    // imdecode only reads, but wants a Mat, which has no const form.
+    // imdecode only reads, but takes a Mat, which has no const form.
     const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
     decoded = cv::imdecode(raw, flags);
   } catch (const cv::Exception&) {

@@ -24,7 +24,7 @@ std::string encoded(const char* extension, const cv::Mat& mat, const std::vector
   return {bytes.begin(), bytes.end()};
 }
 
-TEST(ImageFile, DepthComesBackBitForBit) {
+TEST(ImageFile, KeepsEveryBitOfDepth) {
   const TemporaryFolder folder;
   DepthImage depth = random_frame("f", 2).depth;
   depth(0, 0) = 65535;
@@ -33,7 +33,7 @@ TEST(ImageFile, DepthComesBackBitForBit) {
   EXPECT_EQ(read_png16(folder / "d.png"), depth);
 }
 
-TEST(ImageFile, MaskAndColourComeBackBitForBit) {
+TEST(ImageFile, KeepsEveryBitOfMasksAndColour) {
   const TemporaryFolder folder;
   const Frame frame = random_frame("f", 3);
   write_png(frame.colour, folder / "c.png");
@@ -44,7 +44,7 @@ TEST(ImageFile, MaskAndColourComeBackBitForBit) {
   EXPECT_EQ(read_png8(folder / "m.png"), mask);
 }
 
-TEST(ImageFile, JpegChannelsAreRedGreenBlue) {
+TEST(ImageFile, ReadsJpegChannelsAsRedGreenBlue) {
   const std::string jpeg = encoded(".jpg", cv::Mat(16, 16, CV_8UC3, cv::Scalar(20, 60, 220)));
   const ColourImage image = decode_colour(jpeg, "a.jpg");
   ASSERT_EQ(image.width(), 16);
@@ -53,8 +53,8 @@ TEST(ImageFile, JpegChannelsAreRedGreenBlue) {
   EXPECT_NEAR(image(8, 8).b, 20, 4);
 }
 
-TEST(ImageFile, TurnedJpegIsNotTurnedBack) {
-  // Orientation 6 (a quarter turn) in an Exif segment: depth beside it would not turn.
+TEST(ImageFile, IgnoresTheOrientationTagOfAJpeg) {
+  // This Exif segment states orientation 6 (a quarter turn). The depth picture that belongs to it would not be turned.
   const std::string exif(
       "\xFF\xE1\x00\x22\x45xif\x00\x00II*\x00\x08\x00\x00\x00\x01\x00\x12\x01\x03\x00\x01\x00\x00\x00\x06\x00"
       "\x00\x00\x00\x00\x00\x00",
@@ -64,13 +64,13 @@ TEST(ImageFile, TurnedJpegIsNotTurnedBack) {
   EXPECT_EQ(decode_colour(jpeg, "a.jpg").width(), 24);
 }
 
-TEST(ImageFile, GreyAndTransparentColourAreAccepted) {
+TEST(ImageFile, ReadsGreyAndTransparentPicturesAsColour) {
   EXPECT_EQ(decode_colour(encoded(".png", cv::Mat(3, 4, CV_8UC1, cv::Scalar(77))), "a.png")(1, 1), (Rgb{77, 77, 77}));
   EXPECT_EQ(decode_colour(encoded(".png", cv::Mat(3, 4, CV_8UC4, cv::Scalar(1, 2, 3, 0))), "a.png")(1, 1),
             (Rgb{3, 2, 1}));
 }
 
-TEST(ImageFile, WrongKindsOfDepthAreNamed) {
+TEST(ImageFile, SaysWhyAPictureIsNotDepth) {
   const auto message = [](const cv::Mat& mat) {
     return error_of([&] { decode_depth_png(encoded(".png", mat), "d.png"); });
   };
@@ -101,13 +101,13 @@ std::string chunk(const std::string& type, const std::string& data) {
   return big_endian(static_cast<std::uint32_t>(data.size())) + type + data + big_endian(crc(type + data));
 }
 
-/// A PNG with right checksums whatever its contents.
+/// Returns a PNG whose checksums are right whatever its contents.
 std::string forged_png(std::uint32_t width, std::uint32_t height, const std::string& data) {
   const std::string header = big_endian(width) + big_endian(height) + std::string("\x10\x00\x00\x00\x00", 5);
   return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", data) + chunk("IEND", "");
 }
 
-TEST(ImageFile, HostileHeadersAreStoppedBeforeDecoding) {
+TEST(ImageFile, RefusesHostileHeadersBeforeDecoding) {
   const auto message = [](std::uint32_t width, std::uint32_t height) {
     return error_of([&] { decode_depth_png(forged_png(width, height, "xx"), "d.png"); });
   };
@@ -116,13 +116,13 @@ TEST(ImageFile, HostileHeadersAreStoppedBeforeDecoding) {
   EXPECT_THAT(message(8192, 8192), HasSubstr("too few"));
 }
 
-TEST(ImageFile, UndecodableDataIsAnError) {
+TEST(ImageFile, RefusesUndecodableData) {
   EXPECT_THAT(error_of([] { decode_depth_png(forged_png(4, 4, "not deflate"), "d.png"); }),
               HasSubstr("d.png: damaged picture"));
 }
 
-TEST(ImageFile, TooFewRowsAreAnError) {
-  // Data of 40 rows under a header that claims 41.
+TEST(ImageFile, RefusesTooFewRows) {
+  // The data has 40 rows, but the header claims 41.
   const std::string small = encode_png(random_frame("f", 4, 30, 40).depth);
   std::string header = small.substr(16, 13);
   header[7] = 41;
@@ -130,7 +130,7 @@ TEST(ImageFile, TooFewRowsAreAnError) {
   EXPECT_THAT(error_of([&] { decode_depth_png(forged, "d.png"); }), HasSubstr("d.png: damaged picture"));
 }
 
-TEST(ImageFile, EmptyPictureCannotBeWritten) {
+TEST(ImageFile, RefusesToWriteAnEmptyPicture) {
   const TemporaryFolder folder;
   EXPECT_THAT(error_of([&] { write_png(DepthImage(), folder / "d.png"); }), HasSubstr("d.png: picture cannot"));
   EXPECT_EQ(folder.file_count(), 0U);

@@ -15,11 +15,12 @@
 namespace vesalius {
 namespace {
 
-// A key of n dots nests n tables, and the TOML library frees them by recursion: this much cannot exhaust the stack.
+// A key with n dots nests n tables, and the TOML library frees them by recursion. A text of this size cannot exhaust
+// the stack.
 constexpr std::size_t kMaxOptionsBytes = std::size_t{1} << 14;
 constexpr std::size_t kMaxShown = 64;
 
-/// Values of a TOML text by their dotted names.
+/// The values of a TOML text by their dotted names.
 class Values : public TomlReader {
  public:
   Values(const toml::table& root, const std::string& name) : TomlReader(name) { collect("", root); }
@@ -103,7 +104,7 @@ class Setter : public OptionVisitor {
     try {
       RangeCheck().option(name, read, info);
     } catch (const UsageError& e) {
-      values_.fail(node, e.what());  // here the file is at fault, not the command line
+      values_.fail(node, e.what());  // Error with the line, since the file is at fault and not the command line
     }
     value = read;
   }
@@ -169,7 +170,7 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
   if (word.size() > kMaxShown) return nearest;
   std::size_t fewest = kMaxShown;
   for (const std::string& name : known) {
-    // A name without its stage is a common slip: "min-parts" for "search.min-parts".
+    // Leaving out the stage is a common slip: "min-parts" instead of "search.min-parts".
     const std::string_view last = std::string_view(name).substr(name.rfind('.') + 1);
     const std::size_t distance = std::min(edit_distance(word, name), edit_distance(word, last) + 1);
     if (distance < fewest && distance <= word.size() / 3 + 1) {

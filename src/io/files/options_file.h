@@ -9,25 +9,26 @@
 
 namespace vesalius {
 
-/// Shows a visitor every option there is, e.g. [&](OptionVisitor& v) { visit_options("", options, v); }.
+/// A function that shows every option to a visitor, e.g. [&](OptionVisitor& v) { visit_options("", options, v); }.
 using VisitAll = std::function<void(OptionVisitor&)>;
 
-/// Sets the options that a TOML text names ("search.min-parts = 6", or min-parts in a table [search]); others keep
-/// their values. `name` stands for the path in errors. Throws Error with the line for bad TOML, an option that does
-/// not exist (naming the nearest that does), a value of another type or out of its range.
+/// Sets the options that a TOML text names ("search.min-parts = 6", or min-parts in a table [search]); all others keep
+/// their values. `name` is used as the path in errors. Throws Error with the line for invalid TOML, for an unknown
+/// option (naming the most similar known one), and for a value of the wrong type or out of range.
 void parse_options(std::string_view toml, const std::string& name, const VisitAll& visit);
 
-/// The same from a file.
+/// Reads the options from a file; see `parse_options`.
 void read_options(const std::string& path, const VisitAll& visit);
 
-/// Every option with its value as TOML that `parse_options` reads, under a comment with help, unit and range.
+/// Returns every option with its value as TOML that `parse_options` reads. A comment above each option gives its help
+/// text, unit and range.
 std::string options_toml(const VisitAll& visit);
 
-/// Writes that text atomically; throws Error with the path.
+/// Writes the text of `options_toml` atomically. Throws Error with the path.
 void write_options(const VisitAll& visit, const std::string& path);
 
-/// The entry of `known` that takes the fewest inserted, removed or changed letters to reach from `word`; empty where
-/// none is within a third of its length.
+/// Returns the entry of `known` with the smallest edit distance to `word` (letters inserted, removed or changed).
+/// Returns an empty string if every distance exceeds a third of the word's length.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace vesalius

@@ -37,7 +37,7 @@ TestOptions parsed(const std::string& toml) {
   return options;
 }
 
-TEST(OptionsFile, SetsWhatIsNamedAndKeepsTheRest) {
+TEST(OptionsFile, SetsNamedOptionsAndKeepsTheOthers) {
   const TestOptions options = parsed("search.parts = 7\n");
   EXPECT_EQ(options.parts, 7);
   EXPECT_FLOAT_EQ(options.gap, 0.05F);
@@ -45,14 +45,14 @@ TEST(OptionsFile, SetsWhatIsNamedAndKeepsTheRest) {
   EXPECT_EQ(parsed("").parts, 4);
 }
 
-TEST(OptionsFile, TablesAndDottedKeysAreTheSame) {
+TEST(OptionsFile, ReadsTablesAndDottedKeysAlike) {
   const TestOptions options = parsed("cluster.gap = 1\n[search]\nmode = true\nparts = 25\n");
   EXPECT_FLOAT_EQ(options.gap, 1.F);
   EXPECT_TRUE(options.mode);
   EXPECT_EQ(options.parts, 25);
 }
 
-TEST(OptionsFile, RefusesWithLineAndReason) {
+TEST(OptionsFile, NamesLineAndReasonOfErrors) {
   const auto parse = [](const char* text) { return [text] { parsed(text); }; };
   EXPECT_THAT(parse("\nserach.parts = 7"),
               ThrowsMessage<Error>("o.toml:2: no option is called \"serach.parts\"; did you mean \"search.parts\"?"));
@@ -87,7 +87,7 @@ TEST(OptionsFile, DescribesEveryOption) {
               StartsWith("# A gap. (0 to 1 m)\ncluster.gap = 1.0\n\n# Parts. (1 to 25)\nsearch.parts = 4\n"));
 }
 
-TEST(OptionsFile, DetectorOptionsRoundTripThroughAFile) {
+TEST(OptionsFile, KeepsDetectorOptionsInAFile) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "o.toml";
   DetectOptions changed;
@@ -104,7 +104,7 @@ TEST(OptionsFile, DetectorOptionsRoundTripThroughAFile) {
   EXPECT_NO_THROW(visit_options("", again, check)) << "defaults lie in their ranges";
 }
 
-TEST(NearestName, FindsSlipsOnly) {
+TEST(NearestName, FindsOnlySimilarNames) {
   const std::vector<std::string> known = {"search.min-parts", "search.max-total-error", "smooth.window"};
   EXPECT_EQ(nearest_name("search.min-part", known), "search.min-parts");
   EXPECT_EQ(nearest_name("window", known), "smooth.window");

@@ -15,7 +15,8 @@ struct FreeContext {
 };
 
 std::size_t compress(std::string& packed, std::string_view raw, int level) {
-  // At high levels a context holds 100 MB: one that lives on is for the quick ones, which are used for every frame.
+  // At high levels a compression context holds 100 MB, so only the fast levels, which are used for every frame, keep
+  // theirs.
   if (level > kQuickLevel) return ZSTD_compress(packed.data(), packed.size(), raw.data(), raw.size(), level);
   thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
   return ZSTD_compressCCtx(context.get(), packed.data(), packed.size(), raw.data(), raw.size(), level);

@@ -8,12 +8,13 @@
 
 namespace vesalius {
 
-/// Bytes compressed by zstd as files hold them: u32 size, u32 compressed size, zstd frame. Level 1 is quick, 19 small
-/// and about 100 times slower; reading takes the same time. The same bytes give the same file for one version of zstd.
+/// Compresses bytes with zstd in the form that files store: u32 size, u32 compressed size, zstd frame. Level 1 is fast;
+/// level 19 gives the smallest result and takes about 100 times as long. The level does not affect the reading time.
+/// One version of zstd always compresses the same bytes to the same result.
 std::string pack(std::string_view raw, int level);
 
-/// Throws Error unless there are `smallest` to `largest` bytes, before it allocates any, and for what is no zstd frame
-/// of that size. `what` names them.
+/// Reads and decompresses what `pack` wrote. Throws Error before allocating memory if the stated size is not within
+/// `smallest` and `largest` bytes, and if the data is not a zstd frame of that size. `what` names the data in errors.
 std::string read_packed(ByteReader& in, std::size_t smallest, std::size_t largest, const char* what);
 
 }  // namespace vesalius

@@ -23,7 +23,7 @@ std::string random_bytes(std::size_t count, std::uint32_t bound) {
   return bytes;
 }
 
-TEST(Packed, ComesBackFromAnyLevel) {
+TEST(Packed, ReadsBackWhatAnyLevelPacked) {
   for (const std::string& raw : {std::string(), std::string("x"), random_bytes(5000, 256), random_bytes(70000, 3)}) {
     for (const int level : {1, 3, 4, 16, 19}) {
       const std::string packed = pack(raw, level);
@@ -34,14 +34,14 @@ TEST(Packed, ComesBackFromAnyLevel) {
   EXPECT_LT(pack(random_bytes(70000, 3), 16).size(), 70000U / 4) << "1.6 bits a byte";
 }
 
-TEST(Packed, SizesOutsideTheBoundsAreRefused) {
+TEST(Packed, RefusesSizesOutsideTheBounds) {
   const std::string packed = pack(std::string(100, 'a'), 1);
   EXPECT_EQ(unpack(packed, 0, 100).size(), 100U);
   EXPECT_THAT(error_of([&] { unpack(packed, 0, 99); }), HasSubstr("numbers: 100 bytes, expected 0 to 99"));
   EXPECT_THAT(error_of([&] { unpack(packed, 101, 200); }), HasSubstr("numbers: 100 bytes, expected 101 to 200"));
 }
 
-TEST(Packed, WhatIsNotThatFrameIsRefused) {
+TEST(Packed, RefusesAFrameOfAnotherSize) {
   const std::string packed = pack(std::string(100000, 'a'), 1);
   for (std::size_t size = 0; size < packed.size(); ++size) {
     EXPECT_NE(error_of([&] { unpack(packed.substr(0, size), 0, 100000); }), "") << size;

@@ -8,14 +8,15 @@
 
 namespace vesalius {
 
-/// The pixels of `frame` that have depth as a binary little-endian PLY: x y z (float, metres, optical frame), red green
-/// blue, label (part, 255 = none), person (index, 255 = none). Labelled points have their part's colour, others the
-/// frame's own, or grey. `labels` and `person` have the depth's size.
+/// Returns the pixels of `frame` that have depth as a binary little-endian PLY file. Each vertex has x y z (float,
+/// metres, optical frame), red green blue, label (part, 255 = none) and person (index, 255 = none). Labelled points
+/// have their part's colour; others have the frame's own colour, or grey. `labels` and `person` must have the depth's
+/// size. Throws Error if the sizes differ or `body` lacks a label.
 std::string serialise_cloud(const Frame& frame, const LabelImage& labels, const Image<std::uint8_t>& person,
                             const BodyModel& body);
 
-/// Writes it atomically. Both throw Error for pictures of different sizes and labels that `body` does not have; this
-/// one also, with the path, when the file cannot be written.
+/// Writes the file of `serialise_cloud` atomically. Throws the same errors, and Error with the path if the file cannot
+/// be written.
 void write_cloud(const Frame& frame, const LabelImage& labels, const Image<std::uint8_t>& person, const BodyModel& body,
                  const std::string& path);
 

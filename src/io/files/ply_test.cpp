@@ -69,7 +69,7 @@ TEST(Ply, HasAVertexForEachReading) {
   EXPECT_EQ(all[1].b, 30);
 }
 
-TEST(Ply, UnlabelledPointsKeepTheirColour) {
+TEST(Ply, KeepsTheColourOfUnlabelledPoints) {
   Scene scene;
   scene.frame.colour = ColourImage(3, 2, {1, 2, 3});
   const std::vector<Vertex> all = vertices(scene.cloud());
@@ -77,7 +77,7 @@ TEST(Ply, UnlabelledPointsKeepTheirColour) {
   EXPECT_EQ(all[1].b, 30);
 }
 
-TEST(Ply, WrongSizesAndLabelsAreErrors) {
+TEST(Ply, RefusesWrongSizesAndLabels) {
   Scene small;
   small.labels = LabelImage(2, 2);
   EXPECT_THAT(error_of([&] { small.cloud(); }), HasSubstr("another size"));
@@ -90,7 +90,7 @@ TEST(Ply, WrongSizesAndLabelsAreErrors) {
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
-TEST(Ply, WritesTheSameBytes) {
+TEST(Ply, WritesTheSameBytesAsItSerialises) {
   const TemporaryFolder folder;
   const Scene scene;
   write_cloud(scene.frame, scene.labels, scene.person, scene.body, folder / "a.ply");

@@ -5,11 +5,11 @@
 
 namespace vesalius {
 
-/// Largest file that is read whole.
+/// Largest file, in bytes, that is read as a whole.
 inline constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30;
 
-/// The bytes of a regular file. Throws Error naming `path` when there is none, it cannot be read, is no regular file
-/// (a pipe would block), or has more than `max_bytes` bytes.
+/// Returns the bytes of a regular file. Throws Error naming `path` if it does not exist, cannot be read, is not a
+/// regular file (reading a pipe would block), or is larger than `max_bytes`.
 std::string read_file(const std::string& path, std::size_t max_bytes = kMaxFileBytes);
 
 }  // namespace vesalius

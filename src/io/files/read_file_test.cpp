@@ -14,14 +14,14 @@ using test::put;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-TEST(ReadFile, GivesAllBytes) {
+TEST(ReadFile, ReturnsAllBytes) {
   const TemporaryFolder folder;
   const std::string bytes("a\0b\r\n\xFF", 6);
   EXPECT_EQ(read_file(put(folder / "a", bytes)), bytes);
   EXPECT_EQ(read_file(put(folder / "empty", "")), "");
 }
 
-TEST(ReadFile, NamesWhatIsWrong) {
+TEST(ReadFile, SaysWhyAFileCannotBeRead) {
   const TemporaryFolder folder;
   EXPECT_THAT(error_of([&] { read_file(folder / "none"); }), HasSubstr("none: cannot be read: No such file"));
   EXPECT_THAT(error_of([&] { read_file(folder.path()); }), HasSubstr("not a regular file"));
@@ -35,7 +35,7 @@ TEST(ReadFile, DoesNotWaitForAPipe) {
   EXPECT_THAT(error_of([&] { read_file(folder / "pipe"); }), HasSubstr("not a regular file"));
 }
 
-TEST(ReadFile, ForbiddenFileIsAnError) {
+TEST(ReadFile, RefusesAFileWithoutPermission) {
   if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
   const TemporaryFolder folder;
   const std::string path = put(folder / "secret", "x");

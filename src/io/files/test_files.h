@@ -15,10 +15,10 @@
 #include "vesalius/base/frame.h"
 #include "vesalius/base/random.h"
 
-// What the tests of io share.
+// Helpers that the tests of io share.
 namespace vesalius::test {
 
-/// A folder of its own, removed with all in it.
+/// A temporary folder. The destructor removes it with everything in it.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -44,7 +44,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Writes `bytes`, making the folders on the way.
+/// Writes `bytes` to a file and creates missing folders above it. Returns the path.
 inline std::string put(const std::string& path, std::string_view bytes) {
   std::filesystem::create_directories(std::filesystem::path(path).parent_path());
   std::ofstream(path, std::ios::binary) << bytes;
@@ -56,7 +56,8 @@ inline std::string get(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The one-line message of the Error that `f` throws; fails the test when there is none.
+/// Returns the message of the Error that `f` throws. Fails the test if nothing is thrown or the message has several
+/// lines.
 inline std::string error_of(const std::function<void()>& f) {
   try {
     f();
@@ -68,7 +69,7 @@ inline std::string error_of(const std::function<void()>& f) {
   return {};
 }
 
-/// A frame of random depth, a fifth of it holes, and random colour; a camera with nothing round about it.
+/// Returns a frame of random depth, a fifth of it holes, and random colour. No number of its camera is round.
 inline Frame random_frame(const std::string& name, std::uint64_t seed, int width = 37, int height = 23,
                           bool colour = true) {
   Random rng(seed);

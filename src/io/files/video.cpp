@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Keeps OpenCV from printing while one lives; what goes wrong is told by Error.
+/// Keeps OpenCV from printing while an object of this class lives; errors are reported as Error instead.
 class Silence {
  public:
   Silence() : level_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
@@ -32,8 +32,8 @@ class Silence {
   cv::utils::logging::LogLevel level_;
 };
 
-/// OpenCV does not report failed writes. It fills in the RIFF length last, at the front: a file that lost bytes has
-/// another one.
+/// Returns whether a closed file is complete. OpenCV does not report failed writes, but it writes the RIFF length at
+/// the front last: in a file that lost bytes it is wrong.
 bool is_whole(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   unsigned char head[8] = {};

@@ -39,7 +39,7 @@ TEST(VideoWriter, WritesPicturesThatPlayersRead) {
   EXPECT_FALSE(video.read(picture));
 }
 
-TEST(VideoWriter, SamePicturesGiveTheSameBytes) {
+TEST(VideoWriter, WritesTheSameBytesForTheSamePictures) {
   const TemporaryFolder folder;
   const ColourImage picture = random_frame("f", 1, 320, 240).colour;
   for (const char* name : {"a.avi", "b.avi"}) {
@@ -50,7 +50,7 @@ TEST(VideoWriter, SamePicturesGiveTheSameBytes) {
   EXPECT_EQ(get(folder / "a.avi"), get(folder / "b.avi"));
 }
 
-TEST(VideoWriter, UnclosedVideoLeavesNothing) {
+TEST(VideoWriter, LeavesNoFileUnlessClosed) {
   const TemporaryFolder folder;
   {
     VideoWriter writer(folder / "a.avi", 25.0);
@@ -59,7 +59,7 @@ TEST(VideoWriter, UnclosedVideoLeavesNothing) {
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
-TEST(VideoWriter, WrongUseIsAnError) {
+TEST(VideoWriter, RefusesWrongUse) {
   const TemporaryFolder folder;
   EXPECT_THROW(VideoWriter(folder / "a.mp4", 25.0), UsageError);
   EXPECT_THROW(VideoWriter(folder / "a.avi", 0.0), UsageError);
@@ -71,7 +71,7 @@ TEST(VideoWriter, WrongUseIsAnError) {
   EXPECT_THAT(error_of([&] { VideoWriter(folder / "none/a.avi", 25.0); }), HasSubstr("none/a.avi: cannot be written"));
 }
 
-TEST(VideoWriter, FullDiskIsAnError) {
+TEST(VideoWriter, ThrowsOnAFullDisk) {
   const TemporaryFolder folder;
   const ColourImage picture = random_frame("f", 1, 320, 240).colour;
   rlimit before{};

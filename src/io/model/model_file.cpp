@@ -15,7 +15,8 @@
 namespace vesalius {
 namespace {
 
-// Like PNG's: a text-mode transfer changes it, so the damage is named for what it is.
+// The line ends in it serve the same purpose as PNG's: a text-mode transfer changes them, so this kind of damage can be
+// named.
 constexpr std::string_view kMagic("\x89VSL\r\n\x1a\n", 8);
 constexpr std::size_t kSizeAt = 12;
 constexpr std::size_t kChecksumAt = 20;
@@ -37,7 +38,7 @@ void overwrite(std::string& bytes, std::size_t at, T value) {
   bytes.replace(at, sizeof(T), field.bytes());
 }
 
-/// Magic, version, length and checksum: what went wrong on the way, in the order that a user can act on.
+/// Checks magic number, version, length and checksum, in the order in which a user can act on them.
 void check_header(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw Error(name + ": empty file, expected a vesalius model");
   if (bytes.substr(0, kMagic.size()) != kMagic.substr(0, bytes.size())) {
@@ -66,7 +67,7 @@ void check_header(std::string_view bytes, const std::string& name) {
   }
 }
 
-/// The text is all that is written of the body; it must be this body's.
+/// Throws unless the body's text describes this body. Only the text is written to the file.
 void check_body_text(const BodyModel& body) {
   const BodyModel again = parse_body_model(body.toml, "body model");
   if (!std::ranges::equal(again.parts, body.parts, {}, &BodyPart::name, &BodyPart::name)) {
@@ -83,7 +84,7 @@ std::string serialise_model(const Forest& forest) {
   out.bytes() += kMagic;
   out.number(static_cast<std::uint16_t>(kModelVersion));
   out.number(static_cast<std::uint16_t>(forest.has_background ? kFlagBackground : 0));
-  out.number(std::uint64_t{0});  // size and checksum, known at the end
+  out.number(std::uint64_t{0});  // size and checksum, filled in at the end
   out.number(std::uint64_t{0});
   out.text(forest.body.toml);
   out.text(forest.recipe);

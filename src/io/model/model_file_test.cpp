@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
-/// Overwrites bytes and makes the checksum fit again: what only a forger, or a bug, writes.
+/// Overwrites bytes and corrects the checksum, as only a forger or a bug would.
 std::string forged(std::string bytes, std::size_t at, std::string_view with) {
   bytes.replace(at, with.size(), with);
   const std::uint64_t size = bytes.size();
@@ -33,7 +33,7 @@ std::string forged(std::string bytes, std::size_t at, std::string_view with) {
   return bytes;
 }
 
-TEST(ModelFile, RoundTripKeepsEverything) {
+TEST(ModelFile, KeepsEverythingInARoundTrip) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Forest forest = random_forest(seed);
     const Forest again = parse_model(serialise_model(forest), "m");
@@ -46,7 +46,7 @@ TEST(ModelFile, RoundTripKeepsEverything) {
 }
 
 // Labels: threads
-TEST(ModelFile, SameForestSameBytes) {
+TEST(ModelFile, WritesTheSameBytesForTheSameForest) {
   const std::string bytes = serialise_model(random_forest(5));
   EXPECT_EQ(bytes, serialise_model(random_forest(5)));
   EXPECT_EQ(bytes, serialise_model(parse_model(bytes, "m")));
@@ -56,7 +56,7 @@ TEST(ModelFile, SameForestSameBytes) {
   EXPECT_EQ(bytes, serialise_model(random_forest(5)));
 }
 
-TEST(ModelFile, LabelsOfUnusedSlotsDoNotReachTheFile) {
+TEST(ModelFile, DoesNotWriteLabelsOfUnusedSlots) {
   Forest forest = random_forest(5);
   forest.trees.back().leaves[0] = {.label = {1, 0, 0, 9}, .probability = {255, 0, 0, 0}};
   const std::string bytes = serialise_model(forest);
@@ -64,7 +64,7 @@ TEST(ModelFile, LabelsOfUnusedSlotsDoNotReachTheFile) {
   EXPECT_EQ(bytes, serialise_model(forest));
 }
 
-TEST(ModelFile, EveryTruncationIsRefused) {
+TEST(ModelFile, RefusesEveryTruncation) {
   const std::string bytes = serialise_model(tiny_forest());
   for (std::size_t n = 0; n < bytes.size(); ++n) {
     EXPECT_THROW(parse_model(std::string_view(bytes).substr(0, n), "m"), Error) << n;
@@ -72,7 +72,7 @@ TEST(ModelFile, EveryTruncationIsRefused) {
   EXPECT_THROW(parse_model(bytes + '\0', "m"), Error);
 }
 
-TEST(ModelFile, TruncationIsRefusedWhenTheHeaderFits) {
+TEST(ModelFile, RefusesTruncationEvenIfTheHeaderMatches) {
   const std::string bytes = serialise_model(tiny_forest());
   for (std::size_t n = 28; n < bytes.size(); ++n) {
     EXPECT_THROW(parse_model(forged(bytes.substr(0, n), n, ""), "m"), Error) << n;
@@ -80,7 +80,7 @@ TEST(ModelFile, TruncationIsRefusedWhenTheHeaderFits) {
   EXPECT_THROW(parse_model(forged(bytes + '\0', bytes.size(), ""), "m"), Error);
 }
 
-TEST(ModelFile, EveryChangedByteIsRefused) {
+TEST(ModelFile, RefusesEveryChangedByte) {
   const std::string bytes = serialise_model(tiny_forest());
   for (std::size_t n = 0; n < bytes.size(); ++n) {
     for (const int flip : {0x01, 0x80, 0xFF}) {
@@ -91,7 +91,7 @@ TEST(ModelFile, EveryChangedByteIsRefused) {
   }
 }
 
-TEST(ModelFile, WhatPassesTheChecksumIsStillChecked) {
+TEST(ModelFile, ChecksTheForestAfterTheChecksum) {
   const std::string bytes = serialise_model(tiny_forest());
   int accepted = 0;
   for (std::size_t n = 28; n < bytes.size(); ++n) {
@@ -106,7 +106,7 @@ TEST(ModelFile, WhatPassesTheChecksumIsStillChecked) {
       }
     }
   }
-  EXPECT_GT(accepted, 0);  // e.g. another threshold
+  EXPECT_GT(accepted, 0);  // a changed threshold, for example, is a valid forest
 }
 
 TEST(ModelFile, SaysWhatIsWrong) {
@@ -136,7 +136,7 @@ TEST(ModelFile, SaysWhatIsWrong) {
   EXPECT_EQ(message(damaged), "a.forest: damaged model, the checksum does not match");
 }
 
-TEST(ModelFile, InconsistentForestIsNotWritten) {
+TEST(ModelFile, DoesNotWriteAnInconsistentForest) {
   Forest forest = random_forest(1);
   forest.trees[0].nodes[3].left = 3;
   EXPECT_THROW(serialise_model(forest), Error);

@@ -9,19 +9,21 @@
 #include "io/files/packed.h"
 #include "vesalius/base/parallel.h"
 
-// Columns: all first offsets, then all second ones and so on, since numbers of one kind compress best together. A
-// column may be sorted by a context, something that was read before and tells what to expect: zstd then finds stretches
-// of one distribution.
+// Trees are stored by columns: all first offsets, then all second ones and so on, since numbers of one kind compress
+// best together. A column may be sorted by a context, which is something read before it that tells which values to
+// expect; zstd then finds stretches of one distribution.
 
 namespace vesalius {
 namespace {
 
-// The lowest that divides a column where its distribution changes: 9 takes 3 to 4 % more bytes, 22 0.1 % less.
+// This is the lowest level at which zstd divides a column where its distribution changes. Level 9 takes 3 to 4 % more
+// bytes, level 22 takes 0.1 % less.
 constexpr int kLevel = 16;
 constexpr std::size_t kMaxTrees = 256;
 constexpr std::size_t kWidestIndex = 5;  // bytes of a varint
 
-// Where a child is: depth first, the next node or leaf not yet met; else its index is among the far children.
+// Where a child is: in depth-first order it is the next node or leaf not yet met; otherwise its index is stored among
+// the far children.
 enum Child : unsigned { kNextNode = 0, kNextLeaf = 1, kFarNode = 2, kFarLeaf = 3 };
 constexpr unsigned kKindBits = 2;
 
@@ -29,12 +31,12 @@ using Number = std::int16_t TreeNode::*;
 constexpr std::array kNumbers = {&TreeNode::du1, &TreeNode::dv1, &TreeNode::du2, &TreeNode::dv2,
                                  &TreeNode::threshold_mm};
 
-/// Calls `follow(node, side, next)`, side 0 = left, 1 = right, for every child in depth-first order; it returns whether
-/// the child is node `next`, the first not yet met, whose own children then come before all others. Nodes that no such
-/// child leads to begin anew.
+/// Visits all nodes depth first and calls `follow(node, side, next)` for every child; side 0 is left, 1 is right.
+/// `follow` returns whether the child is node `next`, the first node not yet met; if so, that node's children are
+/// visited next. Nodes that no such child leads to are visited afterwards, each with its own descendants.
 template <class Follow>
 void each_child(std::size_t nodes, Follow&& follow) {
-  std::vector<std::size_t> waiting;  // for their right child
+  std::vector<std::size_t> waiting;  // nodes whose right child is still to be visited
   for (std::size_t node = 0; node < nodes; ++node) {
     const auto next = static_cast<std::int32_t>(node + 1);
     if (follow(node, 0, next)) {
@@ -47,7 +49,7 @@ void each_child(std::size_t nodes, Follow&& follow) {
 
 constexpr int kAbsent = -1;  // context of an item that has no value in a column
 
-/// Places of a column's values when it is sorted by context (0 to 255), stably.
+/// The positions of a column's values after a stable sort by context (0 to 255).
 class ContextOrder {
  public:
   template <class Items, class Context>
@@ -71,23 +73,24 @@ int rest(const TreeLeaf& leaf, std::size_t slot) {
   return std::max(255 - sum, 0);
 }
 
-/// Probabilities descend and do not exceed what the earlier ones leave; being n-ths for one n, they say more than that.
+/// Returns the context of a probability. Probabilities descend and do not exceed what the earlier ones leave; since all
+/// are multiples of 1/n for one n, the earlier ones tell even more.
 int probability_context(const TreeLeaf& leaf, std::size_t slot) {
   if (slot == 0) return 0;
   const int before = leaf.probability[slot - 1];
   return slot == 1 ? before : std::min(before, rest(leaf, slot));
 }
 
-/// Only slots in use have a label.
+/// Returns the context of a label. Only slots in use have one.
 int label_context(const TreeLeaf& leaf, std::size_t slot) {
   if (leaf.probability[slot] == 0) return kAbsent;
   return slot == 0 || leaf.probability[0] == 0 ? 0 : leaf.label[0];
 }
 
-/// Every second pair of probes has one at the pixel itself.
+/// Returns the context of a probe's offset. In every second pair one probe lies at the pixel itself.
 int number_context(const TreeNode& node, Number number) { return number == &TreeNode::dv2 && node.du2 == 0 ? 1 : 0; }
 
-/// `value(item)` of all items, sorted by `context(item)`.
+/// Returns `value(item)` of all items, sorted by `context(item)`.
 template <class Items, class Context, class Value>
 std::string column(const Items& items, Context context, Value value) {
   ContextOrder order(items, context);
@@ -99,7 +102,7 @@ std::string column(const Items& items, Context context, Value value) {
   return bytes;
 }
 
-/// Calls `set(item, byte)` for all items that have one.
+/// Calls `set(item, byte)` for all items that have a value.
 template <class Items, class Context, class Set>
 void read_column(ByteReader& in, const char* what, Items& items, Context context, Set set) {
   ContextOrder order(items, context);
@@ -110,7 +113,7 @@ void read_column(ByteReader& in, const char* what, Items& items, Context context
   }
 }
 
-/// Kinds of the children, a byte for each node; those that no kind says follow in `far`.
+/// Returns the kinds of the children, one byte for each node. Indices that no kind expresses are appended to `far`.
 std::string kinds_of(const Tree& tree, ByteWriter& far) {
   std::string kinds(tree.nodes.size(), '\0');
   std::int32_t next_leaf = 0;
@@ -151,7 +154,7 @@ void read_children(Tree& tree, std::string_view kinds, ByteReader& far) {
   });
 }
 
-/// In the order of the file.
+/// Returns the columns in the order of the file.
 std::vector<std::string> columns_of(const Tree& tree) {
   ByteWriter far;
   std::vector<std::string> columns = {kinds_of(tree, far), std::move(far.bytes())};
@@ -229,7 +232,7 @@ Tree unpack_tree(const PackedTree& packed, const std::string& name) {
   return tree;
 }
 
-/// What the trees of a file add up to.
+/// The numbers of nodes and leaves over all trees of a file.
 struct Total {
   std::size_t nodes = 0, leaves = 0;
 

@@ -36,7 +36,7 @@ Tree depth_first_tree(std::uint32_t nodes, std::uint64_t seed) {
   return tree;
 }
 
-/// The same decisions with nodes and leaves in level order.
+/// Returns a tree that decides the same, with nodes and leaves in level order.
 Tree level_order(const Tree& tree) {
   Tree out;
   std::vector<std::int32_t> queue = {0};
@@ -57,7 +57,7 @@ Tree level_order(const Tree& tree) {
   return out;
 }
 
-/// A chain: every right (or left) child is a leaf.
+/// Returns a chain: every right (or left) child is a leaf.
 Tree chain(std::int32_t nodes, bool to_the_left) {
   Random random(8);
   Tree tree;
@@ -73,20 +73,20 @@ Tree chain(std::int32_t nodes, bool to_the_left) {
 
 void expect_round_trip(const std::vector<Tree>& trees) { ASSERT_EQ(read(written(trees)), trees); }
 
-TEST(ModelTrees, EveryShapeComesBack) {
+TEST(ModelTrees, KeepsTreesOfEveryShape) {
   expect_round_trip({});
   expect_round_trip({depth_first_tree(0, 1)});
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
     const auto nodes = 1 + static_cast<std::uint32_t>(seed) * static_cast<std::uint32_t>(seed) / 4;
     const Tree first = depth_first_tree(nodes, seed);
-    // The last: shared children, nodes and leaves that nothing leads to.
+    // The last tree shares children and has nodes and leaves that nothing leads to.
     expect_round_trip({first, level_order(first), test::random_tree(random, nodes, 1 + nodes / 2, kClasses)});
   }
   expect_round_trip({chain(500, true), chain(500, false)});
 }
 
-TEST(ModelTrees, ExtremeNumbersComeBack) {
+TEST(ModelTrees, KeepsExtremeNumbers) {
   Tree tree;
   for (const int offset : {0, 1, -1, 127, 128, -128, -129, kMaxOffset, -kMaxOffset}) {
     for (const int threshold : {0, -1, 255, 256, 32767, -32768}) {
@@ -101,7 +101,7 @@ TEST(ModelTrees, ExtremeNumbersComeBack) {
   expect_round_trip({tree});
 }
 
-TEST(ModelTrees, LabelsOfUnusedSlotsAreNotKept) {
+TEST(ModelTrees, DropsLabelsOfUnusedSlots) {
   Random random(7);
   Tree tree;
   for (int l = 0; l < 300; ++l) {
@@ -121,16 +121,16 @@ TEST(ModelTrees, LabelsOfUnusedSlotsAreNotKept) {
   EXPECT_EQ(written({tree}), bytes);
 }
 
-TEST(ModelTrees, DepthFirstOrderIsTheSmallest) {
+TEST(ModelTrees, TakesFewestBytesInDepthFirstOrder) {
   const Tree tree = depth_first_tree(3000, 4);
   const std::size_t size = written({tree}).size();
   EXPECT_GT(written({level_order(tree)}).size(), size + 3000);
-  // Two bits for the shape. Of the random numbers a quarter are 13 bits wide, the others 8; leaves have 2.5 labels of
-  // 4.7 bits with 5.9 of probability.
+  // The shape takes two bits. A quarter of the random numbers are 13 bits wide, the others 8; leaves have 2.5 labels of
+  // 4.7 bits with 5.9 bits of probability.
   EXPECT_LT(size, 3000 * (2 + 3 * (0.25 * 13.5 + 0.75 * 8.5) + 2 + 16 + 2.5 * 10.6) / 8 * 1.1);
 }
 
-TEST(ModelTrees, WhatDependsOnContextCostsLittle) {
+TEST(ModelTrees, TakesFewBytesForValuesThatFollowFromContext) {
   Random random(6);
   Tree tree = depth_first_tree(20000, 5);
   for (TreeLeaf& leaf : tree.leaves) {
@@ -143,12 +143,12 @@ TEST(ModelTrees, WhatDependsOnContextCostsLittle) {
   EXPECT_LT(size, written({tree}).size() + 20000 / 16) << "the second follows from the first";
 }
 
-TEST(ModelTrees, EveryTruncationIsRefused) {
+TEST(ModelTrees, RefusesEveryTruncation) {
   const std::string bytes = written({depth_first_tree(6, 2), chain(2, true), depth_first_tree(0, 3)});
   for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_THROW(read(bytes.substr(0, n)), Error) << n;
 }
 
-TEST(ModelTrees, DeclaredSizesAreCheckedBeforeAllocation) {
+TEST(ModelTrees, ChecksDeclaredSizesBeforeAllocation) {
   const auto message = [](std::uint32_t trees, std::uint32_t nodes, std::uint32_t leaves, std::uint32_t size) {
     ByteWriter out;
     for (const std::uint32_t number : {trees, nodes, leaves, size}) out.number(number);
@@ -164,7 +164,7 @@ TEST(ModelTrees, DeclaredSizesAreCheckedBeforeAllocation) {
   EXPECT_THAT(error_of([&] { written({large}); }), HasSubstr("0 nodes and 8388609 leaves"));
 }
 
-/// A tree of one node and two leaves with this column in place of its own.
+/// Returns a tree of one node and two leaves, with this column in place of its own.
 std::string with_column(std::size_t index, const std::string& raw) {
   const Tree tree = depth_first_tree(1, 2);
   const std::string bytes = written({tree});
@@ -182,7 +182,7 @@ std::string with_column(std::size_t index, const std::string& raw) {
   return out.bytes();
 }
 
-TEST(ModelTrees, ColumnsOfAnotherSizeOrMeaningAreRefused) {
+TEST(ModelTrees, RefusesColumnsOfAnotherSizeOrMeaning) {
   EXPECT_NO_THROW(read(with_column(0, "\x05"))) << "two leaves: the tree's own column";
   for (std::size_t i = 0; i < 20; ++i) {
     EXPECT_THAT(error_of([&] { read(with_column(i, std::string(50, '\0'))); }), HasSubstr("test: tree 0"));
@@ -193,8 +193,8 @@ TEST(ModelTrees, ColumnsOfAnotherSizeOrMeaningAreRefused) {
   EXPECT_THAT(error_of([&] { read(with_column(1, "\xff\xff\xff\xff\x1f")); }), HasSubstr("tree 0"));
 }
 
-TEST(ModelTrees, ChildrenBeyondTheTreeAreLeftToTheCheck) {
-  for (const char kinds : {'\0', '\x01', '\x04'}) {  // node 1, of one node
+TEST(ModelTrees, LeavesChildrenOutsideTheTreeToTheForestsCheck) {
+  for (const char kinds : {'\0', '\x01', '\x04'}) {  // node 1 of a tree that has one node
     Forest forest;
     forest.body = paper_body();
     forest.has_background = true;

@@ -7,7 +7,7 @@
 #include "vesalius/base/random.h"
 #include "vesalius/forest/forest.h"
 
-// Forests for the tests of model files.
+// Forests that the tests of model files share.
 namespace vesalius::test {
 
 inline std::int16_t random_int16(Random& random, int bound) {
@@ -33,7 +33,8 @@ inline TreeLeaf random_leaf(Random& random, int classes) {
   return leaf;
 }
 
-/// Nodes whose children are any later node or any leaf: every shape that check() allows.
+/// Returns a tree whose nodes have any later node or any leaf as children, which covers every shape that check()
+/// allows.
 inline Tree random_tree(Random& random, std::uint32_t nodes, std::uint32_t leaves, int classes) {
   Tree tree;
   const auto child = [&](std::uint32_t parent) {
@@ -51,7 +52,8 @@ inline Tree random_tree(Random& random, std::uint32_t nodes, std::uint32_t leave
   return tree;
 }
 
-/// Appends a subtree with `nodes` nodes, depth first as trainers do; returns how its parent refers to it.
+/// Appends a random subtree with `nodes` nodes in depth-first order, as trainers do. Returns the index by which its
+/// parent refers to it.
 inline std::int32_t grow_randomly(Tree& tree, std::uint32_t nodes, Random& random, int classes) {
   if (nodes == 0) {
     tree.leaves.push_back(random_leaf(random, classes));
@@ -80,7 +82,7 @@ inline Forest random_forest(std::uint64_t seed, std::uint32_t nodes = 200) {
   return forest;
 }
 
-/// A forest small enough to try every byte of its file.
+/// Returns a forest so small that a test can change every byte of its file.
 inline Forest tiny_forest() {
   Forest forest = random_forest(3, 5);
   forest.body = parse_body_model(R"(name = "one"

@@ -16,16 +16,16 @@ namespace vesalius {
 namespace {
 
 constexpr int kMaxHeight = 22;                               // the released trees have 20
-constexpr std::size_t kMaxTextBytes = std::size_t{1} << 28;  // 256 MiB; theirs have 25
+constexpr std::size_t kMaxTextBytes = std::size_t{1} << 28;  // 256 MiB; the released trees have 25
 constexpr int kUndecided = -1;
 
-/// The complete binary tree of the text; children of i are 2i+1 and 2i+2, leaves follow the nodes.
+/// The complete binary tree of the text. The children of node i are 2i+1 and 2i+2; leaves follow the nodes.
 struct LevelOrder {
   std::vector<TreeNode> nodes;
   std::vector<std::uint8_t> labels;
 
   std::size_t size() const { return nodes.size() + labels.size(); }
-  /// The child that every pixel takes, where both probes are the same and the feature hence 0.
+  /// Returns the child that every pixel takes, if there is only one: both probes are equal, so the feature is always 0.
   std::optional<std::size_t> only_child(std::size_t i) const {
     const TreeNode& node = nodes[i];
     if (node.du1 != node.du2 || node.dv1 != node.dv2) return std::nullopt;
@@ -71,7 +71,7 @@ LevelOrder read_level_order(std::string_view text, const std::string& name) {
   NumberScanner in(text, name);
   const int height = in.next(0, kMaxHeight, "height of the tree");
   const std::size_t leaves = std::size_t{1} << height;
-  // A node takes at least ten bytes, a label two: no allocation that the text cannot fill.
+  // A node takes at least ten bytes of text and a label two, so nothing larger than the text can fill is allocated.
   if (text.size() + 9 < 12 * leaves) {
     in.fail(fmt::format("{} bytes are too few for a tree of height {}", text.size(), height));
   }
@@ -90,7 +90,7 @@ LevelOrder read_level_order(std::string_view text, const std::string& name) {
   return tree;
 }
 
-/// For every node and leaf the label that all pixels reaching it get, `kUndecided` where they differ.
+/// Returns for every node and leaf the label that all pixels reaching it get, or `kUndecided` if they differ.
 std::vector<std::int16_t> decide(const LevelOrder& tree) {
   std::vector<std::int16_t> decided(tree.size(), kUndecided);
   for (std::size_t i = tree.size(); i-- > 0;) {
@@ -105,7 +105,7 @@ std::vector<std::int16_t> decide(const LevelOrder& tree) {
   return decided;
 }
 
-/// Copies what remains of the tree, level by level. One leaf a label: all that hold it are alike.
+/// Copies the tree without the removed branches, level by level. All leaves with the same label become one.
 class Pruner {
  public:
   explicit Pruner(const LevelOrder& from) : from_(from), decided_(decide(from)) {}
@@ -123,7 +123,7 @@ class Pruner {
   }
 
  private:
-  /// Index of the node or leaf that stands for `i` in the new tree.
+  /// Returns the index of the node or leaf that stands for `i` in the new tree.
   std::int32_t place(std::size_t i) {
     while (decided_[i] == kUndecided) {
       const auto only = from_.only_child(i);
@@ -148,11 +148,11 @@ class Pruner {
 
   const LevelOrder& from_;
   std::vector<std::int16_t> decided_;
-  std::vector<std::size_t> origin_;  ///< of each new node: its index in `from_`
+  std::vector<std::size_t> origin_;  ///< for each new node its index in `from_`
   Tree tree_;
 };
 
-/// All streams of a bzip2 file, one after the other, as bunzip2 does.
+/// Decompresses all streams of a bzip2 file, one after the other, as bunzip2 does.
 std::string decompress_bz2(std::string_view packed, const std::string& name) {
   const auto fail = [&](const std::string& what) { throw Error(name + ": " + what); };
   std::string text;
@@ -195,7 +195,7 @@ Forest import_text_trees(const std::vector<std::string>& paths) {
     std::string text = read_file(path, kMaxTextBytes);
     if (text.starts_with("BZh")) text = decompress_bz2(text, path);
     forest.trees.push_back(parse_text_tree(text, path));
-    // Only here is the body known whose classes the labels must be.
+    // The labels are checked here because only here the body, and so the number of classes, is known.
     for (const TreeLeaf& leaf : forest.trees.back().leaves) {
       if (leaf.label[0] < forest.body.part_count()) continue;
       throw Error(fmt::format("{}: label {}, expected 0 to {}", path, leaf.label[0], forest.body.part_count() - 1));

@@ -26,7 +26,7 @@ using testing::ThrowsMessage;
 
 const FeatureConvention kTextConvention{.offset_unit = 1.F, .reference_focal_px = 640.F};
 
-/// The text as it stands: rows of numbers, walked by the definition of the format and nothing of the library's.
+/// The text as rows of numbers. It is walked by the definition of the format and uses no code of the library.
 struct TextTree {
   int height = 0;
   std::vector<std::array<int, 5>> nodes;
@@ -44,7 +44,7 @@ struct TextTree {
   }
 
   int label(const DepthImage& depth, const Camera& camera, int u, int v) const {
-    // The library's fixed-point scale, so that a probe on the edge between two pixels rounds alike.
+    // The scale is the library's fixed-point one, so that a probe on the edge between two pixels is rounded alike.
     const auto scale = [&](float focal) { return std::floor(65536.0 * 1000.0 / 640.0 * focal / depth(u, v)); };
     const double scale_u = std::min(scale(camera.fx), 32.0 * 65536.0);
     const double scale_v = std::min(scale(camera.fy), 32.0 * 65536.0);
@@ -63,7 +63,7 @@ struct TextTree {
   }
 };
 
-/// Pixels whose label differs from the text's.
+/// Returns the number of pixels whose label differs from the text's.
 int differences(const Tree& tree, const TextTree& text, const DepthImage& depth, const Camera& camera, int step) {
   const OffsetScaler scaler(kTextConvention, camera);
   int wrong = 0;
@@ -77,7 +77,7 @@ int differences(const Tree& tree, const TextTree& text, const DepthImage& depth,
   return wrong;
 }
 
-/// Smooth hills with holes: features of both signs and all sizes.
+/// Returns smooth hills with holes, which give features of both signs and all sizes.
 DepthImage hilly_depth(std::uint64_t seed, int width, int height) {
   Random random(seed);
   const double a = random.uniform(0.02, 0.2);
@@ -92,7 +92,7 @@ DepthImage hilly_depth(std::uint64_t seed, int width, int height) {
   return depth;
 }
 
-/// A tree with padding and agreeing leaves, as text.
+/// Returns the text of a tree with padding and with leaves that agree.
 std::string random_text(Random& random, int height) {
   std::ostringstream out;
   out << height << '\n';
@@ -101,7 +101,7 @@ std::string random_text(Random& random, int height) {
     if (random.below(3) == 0) {
       out << "    0     0     0     0    -1\n";
     } else if (random.below(8) == 0) {
-      out << "5 6 5 6 0\n";  // the same pixel twice: always left
+      out << "5 6 5 6 0\n";  // both probes are the same pixel, so every pixel goes left
     } else {
       out << offset() << ' ' << offset() << "  " << offset() << ' ' << offset() << ' '
           << static_cast<int>(random.below(400)) - 200 << '\n';
@@ -111,7 +111,7 @@ std::string random_text(Random& random, int height) {
   return out.str();
 }
 
-TEST(TextTree, ReadsAsDefined) {
+TEST(TextTree, ReadsTheFormatAsDefined) {
   const Tree tree = parse_text_tree("1\n 10 -20  0 0  -5\n7\n8\n", "t");
   ASSERT_EQ(tree.nodes.size(), 1U);
   EXPECT_EQ(tree.nodes[0], (TreeNode{.du1 = 10, .dv1 = -20, .threshold_mm = -5, .left = ~0, .right = ~1}));
@@ -119,7 +119,7 @@ TEST(TextTree, ReadsAsDefined) {
   EXPECT_EQ(tree.leaves[1], (TreeLeaf{.label = {8}, .probability = {255}}));
 }
 
-TEST(TextTree, PaddingAndAgreeingBranchesGo) {
+TEST(TextTree, LosesPaddingAndAgreeingBranches) {
   EXPECT_TRUE(parse_text_tree("1\n1 2 3 4 5\n7\n7\n", "agree").nodes.empty());
   const Tree padded = parse_text_tree("1\n0 0 0 0 -1\n7\n8\n", "padded");
   EXPECT_TRUE(padded.nodes.empty());
@@ -127,7 +127,7 @@ TEST(TextTree, PaddingAndAgreeingBranchesGo) {
   EXPECT_EQ(parse_text_tree("0\n9\n", "leaf").leaves[0].label[0], 9);
 }
 
-TEST(TextTree, PrunedTreeLabelsEveryPixelAlike) {
+TEST(TextTree, LabelsEveryPixelAsBeforePruning) {
   Random random(11);
   const Camera camera{80, 60, 160.F, 150.F, 39.5F, 29.5F};
   for (int i = 0; i < 40; ++i) {
@@ -137,7 +137,7 @@ TEST(TextTree, PrunedTreeLabelsEveryPixelAlike) {
   }
 }
 
-TEST(TextTree, SaysLineAndExpectation) {
+TEST(TextTree, NamesTheLineAndWhatWasExpected) {
   const auto parse = [](const char* text) { return [text] { parse_text_tree(text, "t.txt"); }; };
   EXPECT_THAT(parse(""), ThrowsMessage<Error>("t.txt:1: expected height of the tree, found the end of the file"));
   EXPECT_THAT(parse("x"), ThrowsMessage<Error>(StartsWith("t.txt:1: height of the tree: expected a whole number")));
@@ -169,7 +169,7 @@ class TextTreeFiles : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(TextTreeFiles, PlainAndPackedGiveTheSameTrees) {
+TEST_F(TextTreeFiles, GiveTheSameTreesPlainAndCompressed) {
   const std::string text = "1\n1 2 3 4 5\n7\n8\n";
   const std::string half = "1\n1 2 3";
   const Forest forest = import_text_trees({write("a.txt", text), write("b.txt.bz2", pack(text)),
@@ -182,7 +182,7 @@ TEST_F(TextTreeFiles, PlainAndPackedGiveTheSameTrees) {
   EXPECT_EQ(forest.recipe, "text trees: a.txt b.txt.bz2 c.bz2");
 }
 
-TEST_F(TextTreeFiles, DamagedPackingAndForeignLabelsAreRefused) {
+TEST_F(TextTreeFiles, RefuseDamagedCompressionAndUnknownLabels) {
   const std::string packed = pack("1\n1 2 3 4 5\n7\n8\n");
   const std::string cut = write("cut.bz2", packed.substr(0, packed.size() - 4));
   EXPECT_THAT([&] { import_text_trees({cut}); }, ThrowsMessage<Error>(cut + ": truncated bzip2 data"));
@@ -210,7 +210,7 @@ std::string unpacked(const fs::path& path) {
 }
 
 // Labels: real
-TEST(ReleasedTrees, EveryPixelGetsTheLabelOfTheText) {
+TEST(ReleasedTrees, GiveEveryPixelTheLabelOfTheText) {
   const fs::path reference = shared_folder() / "reference";
   if (!fs::exists(reference)) GTEST_SKIP() << "needs the released trees in " << reference;
   for (const char* name : {"pcl_tree_1.txt.bz2", "pcl_tree_2.txt.bz2", "pcl_tree_3.txt.bz2"}) {

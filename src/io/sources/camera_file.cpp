@@ -59,7 +59,7 @@ std::optional<int> side(const json& object, const std::string& key, const std::s
   return static_cast<int>(*value);
 }
 
-/// Units per metre of "mm", "mm (checked)", ...
+/// Returns the units per metre that "mm", "mm (checked)" and so on name.
 float scale_of_units(const json& units, const std::string& name) {
   const std::string text = units.is_string() ? units.get<std::string>() : "";
   const std::string word(text.begin(),
@@ -81,7 +81,8 @@ std::vector<double> numbers(const YAML::Node& node, std::size_t count, const std
   return values;
 }
 
-/// The first of two spellings that the file has; camera_calibration and rostopic differ.
+/// Returns the value under the first of two keys that the file has; camera_calibration and rostopic spell them
+/// differently.
 YAML::Node either(const YAML::Node& root, const char* a, const char* b) {
   const YAML::Node first = root[a];
   return first.IsDefined() ? first : root[b];
@@ -126,7 +127,7 @@ CameraFacts read_camera_file(const std::string& path) {
   return parse_meta(text, path);
 }
 
-/// What the caller gave; there a wrong value is wrong usage.
+/// Returns the facts that the caller gave. A wrong value there is a UsageError.
 CameraFacts facts_given(const SourceOptions& options) try {
   CameraFacts facts;
   const std::string name = "options";
@@ -150,27 +151,27 @@ CameraFacts facts_in_folder(const std::string& folder) {
   return facts;
 }
 
-/// What makers or common calibrations give for pictures of one size, from which others follow.
+/// Focal lengths, from makers or common calibrations, for pictures of one size. Those for other sizes follow from them.
 struct SensorFocal {
-  std::vector<const char*> names;  ///< lower case, any of them within the sensor's name
+  std::vector<const char*> names;  ///< lower case; the sensor's name contains one of them
   int width, height;
   float own;         ///< focal length in pixels of depth on its own grid
   float registered;  ///< the same on the colour camera's grid, 0 = not known
-  bool crops;        ///< other formats show the full height and cut the sides
+  bool crops;        ///< other formats show the full height and crop the sides
 };
 
 const std::vector<SensorFocal>& known_sensors() {
   static const std::vector<SensorFocal> sensors = {
       {{"kinect v2", "kinect2", "kinect one"}, 512, 424, 365.F, 0.F, false},  // common calibrations
       {{"azure", "k4a", "femto"}, 640, 576, 504.F, 0.F, false},               // narrow mode
-      // D435: typical factory calibration of the stereo pair; colour camera of 69x42 degrees.
+      // The numbers are a typical factory calibration of the D435's stereo pair, and its colour camera's 69x42 degrees.
       {{"realsense", "d415", "d435", "d455"}, 640, 480, 385.F, 615.F, true},
       {{"kinect", "xtion", "primesense", "openni", "carmine"}, 640, 480, 525.F, 525.F, false},  // OpenNI's default
   };
   return sensors;
 }
 
-/// The sensor's usual focal length for pictures of this size, 0 = not known.
+/// Returns the sensor's usual focal length for pictures of this size, or 0 if it is not known.
 float nominal_focal(const std::string& sensor, int width, int height, bool registered) {
   std::string lower = sensor;
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -195,7 +196,7 @@ void take(std::optional<T>& mine, const std::optional<T>& theirs) {
 void CameraFacts::fill_from(const CameraFacts& other) {
   const bool needs_focal = !fx;
   take(fx, other.fx);
-  // A lone fx means square pixels: fy comes from the same place or not at all.
+  // A lone fx means square pixels, so fy comes from the same place as fx or not at all.
   if (needs_focal) take(fy, other.fy);
   take(cx, other.cx);
   take(cy, other.cy);
@@ -243,7 +244,7 @@ CameraFacts parse_camera_info(std::string_view yaml, const std::string& name) {
 }
 
 std::string serialise_meta(const Camera& camera, float depth_scale) {
-  // The shortest text of the float, not of the double nearest to it.
+  // JSON should show the shortest text of the float, not that of the double nearest to it.
   const auto shortest = [](float value) { return std::stod(fmt::format("{}", value)); };
   nlohmann::ordered_json root;
   root["width"] = camera.width;

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(ParseMeta, ReadsWhatIsThere) {
+TEST(ParseMeta, ReadsAllKeys) {
   const CameraFacts facts = parse_meta(
       R"json({"fx": 525, "fy": 526.5, "cx": 319.5, "cy": 239, "width": 640, "height": 480, "units": "mm (checked)",
           "sensor": "Kinect v1", "licence": ["any", {"thing": 1}]})json",
@@ -30,18 +30,18 @@ TEST(ParseMeta, ReadsWhatIsThere) {
   EXPECT_EQ(facts.sensor, "Kinect v1");
 }
 
-TEST(ParseMeta, MissingKeysStayUnknown) {
+TEST(ParseMeta, LeavesMissingKeysUnknown) {
   const CameraFacts facts = parse_meta("{}", "meta.json");
   EXPECT_FALSE(facts.fx || facts.fy || facts.cx || facts.cy || facts.width || facts.height || facts.depth_scale);
 }
 
-TEST(ParseMeta, UnitsAndScale) {
+TEST(ParseMeta, ReadsUnitsAndScale) {
   EXPECT_EQ(parse_meta(R"({"units": "m"})", "m").depth_scale, 1.F);
   EXPECT_EQ(parse_meta(R"({"units": "cm"})", "m").depth_scale, 100.F);
   EXPECT_EQ(parse_meta(R"({"units": "mm", "depth_scale": 5000})", "m").depth_scale, 5000.F);
 }
 
-TEST(ParseMeta, NamesFileAndKey) {
+TEST(ParseMeta, NamesTheFileAndTheKeyOfErrors) {
   const auto message = [](const char* text) { return error_of([&] { parse_meta(text, "meta.json"); }); };
   EXPECT_THAT(message("{\"fx\": "), HasSubstr("meta.json: not JSON"));
   EXPECT_THAT(message("[1]"), HasSubstr("meta.json: expected a JSON object"));
@@ -55,7 +55,7 @@ TEST(ParseMeta, NamesFileAndKey) {
   EXPECT_THAT(message(R"({"depth_scale": 0})"), HasSubstr("\"depth_scale\""));
 }
 
-TEST(SerialiseMeta, ComesBackExactly) {
+TEST(SerialiseMeta, IsReadBackExactly) {
   const Camera camera{320, 240, 285.63F, 1.F / 3.F * 900.F, 159.000015F, 119.7F};
   const CameraFacts facts = parse_meta(serialise_meta(camera, 5000.F), "meta.json");
   std::vector<std::string> notes;
@@ -98,7 +98,7 @@ TEST(ParseCameraInfo, ReadsCalibrationFiles) {
   EXPECT_FALSE(facts.distorted);
 }
 
-TEST(ParseCameraInfo, DistortedLensMeansTheRectifiedCameraAndANote) {
+TEST(ParseCameraInfo, TakesTheRectifiedCameraOfADistortedLens) {
   const CameraFacts facts = parse_camera_info(calibration("-0.2"), "camera_info.yaml");
   EXPECT_TRUE(facts.distorted);
   EXPECT_EQ(facts.fx, 560.F);
@@ -119,7 +119,7 @@ TEST(ParseCameraInfo, ReadsPrintedMessages) {
   EXPECT_EQ(facts.cy, 239.5F);
 }
 
-TEST(ParseCameraInfo, NamesFileAndKey) {
+TEST(ParseCameraInfo, NamesTheFileAndTheKeyOfErrors) {
   const auto message = [](const std::string& text) { return error_of([&] { parse_camera_info(text, "c.yaml"); }); };
   EXPECT_THAT(message(""), HasSubstr("c.yaml: expected a map"));
   EXPECT_THAT(message("a: ["), HasSubstr("c.yaml: not the YAML"));
@@ -138,7 +138,7 @@ TEST(ResolveCamera, DefaultsToSquarePixelsAndTheCentre) {
   EXPECT_EQ(resolve_camera(facts, 64, 48, false, "here", notes), (Camera{64, 48, 100.F, 100.F, 31.5F, 23.5F}));
 }
 
-TEST(ResolveCamera, SensorsHaveUsualFocalLengths) {
+TEST(ResolveCamera, KnowsTheUsualFocalLengthsOfSensors) {
   const auto focal = [](const char* sensor, int width, int height, bool registered) {
     CameraFacts facts;
     facts.sensor = sensor;
@@ -155,7 +155,7 @@ TEST(ResolveCamera, SensorsHaveUsualFocalLengths) {
   EXPECT_EQ(focal("Intel RealSense D435", 640, 480, false), 385.F);
 }
 
-TEST(ResolveCamera, UnknownFocalLengthAndOtherSizesAreErrors) {
+TEST(ResolveCamera, RefusesUnknownFocalLengthsAndOtherSizes) {
   std::vector<std::string> notes;
   CameraFacts facts;
   EXPECT_THAT(error_of([&] { resolve_camera(facts, 640, 480, true, "DIR", notes); }),
@@ -169,7 +169,7 @@ TEST(ResolveCamera, UnknownFocalLengthAndOtherSizesAreErrors) {
               HasSubstr("meta.json: camera of 320x480 pictures, but DIR has 640x480"));
 }
 
-TEST(FindCameraFacts, OptionsWinOverFilesAndNearFoldersOverFar) {
+TEST(FindCameraFacts, PrefersOptionsToFilesAndNearFoldersToFarOnes) {
   const TemporaryFolder folder;
   put(folder / "near/camera_info.yaml", "K: [500, 0, 50, 0, 501, 40, 0, 0, 1]");
   put(folder / "near/meta.json", R"({"sensor": "Xtion", "units": "cm"})");
@@ -185,7 +185,7 @@ TEST(FindCameraFacts, OptionsWinOverFilesAndNearFoldersOverFar) {
   EXPECT_EQ(facts.sensor, "Xtion");
 }
 
-TEST(FindCameraFacts, LoneFocalOptionMeansSquarePixels) {
+TEST(FindCameraFacts, TakesALoneFocalLengthForSquarePixels) {
   const TemporaryFolder folder;
   put(folder / "meta.json", R"({"fx": 500, "fy": 400})");
   SourceOptions options;
@@ -193,7 +193,7 @@ TEST(FindCameraFacts, LoneFocalOptionMeansSquarePixels) {
   EXPECT_FALSE(find_camera_facts(options, {folder.path()}).fy);
 }
 
-TEST(FindCameraFacts, CameraFileReplacesThoseInFolders) {
+TEST(FindCameraFacts, TakesTheCameraFileInsteadOfThoseInFolders) {
   const TemporaryFolder folder;
   put(folder / "meta.json", R"({"fx": 500, "cx": 1})");
   SourceOptions options;
@@ -205,7 +205,7 @@ TEST(FindCameraFacts, CameraFileReplacesThoseInFolders) {
   EXPECT_THAT(error_of([&] { find_camera_facts(options, {}); }), HasSubstr("none.yaml: cannot be read"));
 }
 
-TEST(FindCameraFacts, BadOptionsAreErrors) {
+TEST(FindCameraFacts, RefusesBadOptions) {
   SourceOptions options;
   options.fx = -3.F;
   EXPECT_THAT(error_of([&] { find_camera_facts(options, {}); }), HasSubstr("options: \"fx\""));

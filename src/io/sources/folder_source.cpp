@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The run of digits at `at`, without leading zeros.
+/// Returns the digits at `at` without leading zeros, and moves `at` past them.
 std::string_view number_at(std::string_view text, std::size_t& at) {
   while (at < text.size() && text[at] == '0') ++at;
   const std::size_t begin = at;
@@ -29,7 +29,7 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, ignored);
 }
 
-/// Colour pictures of the folder `root` by stem; a PNG wins over a JPEG of the same name.
+/// Returns the colour pictures of the folder `root` by stem. A PNG takes precedence over a JPEG of the same name.
 std::map<std::string, std::string> list_colours(const fs::path& root) {
   std::map<std::string, std::string> by_stem;
   for (const char* name : {"rgb", "color", "colour"}) {
@@ -56,7 +56,7 @@ void note_missing_colours(FrameList& list, std::size_t colours) {
   }
 }
 
-/// Where the camera of the pictures in `folder` may be described: there and, for DIR/depth, in DIR.
+/// Returns the folders that may describe the camera of the pictures in `folder`: itself and, for DIR/depth, DIR.
 std::vector<std::string> camera_folders(const fs::path& folder) {
   std::vector<std::string> folders{folder.string()};
   std::error_code ignored;
@@ -84,7 +84,7 @@ bool natural_less(std::string_view a, std::string_view b) {
     }
   }
   if ((i < a.size()) != (j < b.size())) return j < b.size();
-  return a < b;  // 01 and 1
+  return a < b;  // decides between 01 and 1
 }
 
 std::string lower_extension(const fs::path& path) {

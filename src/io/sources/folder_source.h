@@ -9,20 +9,23 @@
 
 namespace vesalius {
 
-/// Order of names in which numbers count as numbers: frame_2 before frame_10. Total: no two names are equal.
+/// Compares names such that numbers in them count as numbers: frame_2 comes before frame_10. The order is total: two
+/// different names are never equal.
 bool natural_less(std::string_view a, std::string_view b);
 
-/// The extension of a path in lower case, with its dot.
+/// Returns the extension of a path in lower case, with its dot.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// The files in `folder` whose extension (lower case, with its dot) is one of `extensions`, in natural order; hidden
-/// files do not count. Throws Error naming the folder when it cannot be read.
+/// Returns the files in `folder` whose extension (lower case, with its dot) is one of `extensions`, in natural order.
+/// Hidden files are left out. Throws Error naming the folder if it cannot be read.
 std::vector<std::filesystem::path> list_files(const std::string& folder, const std::vector<std::string>& extensions);
 
-/// Depth PNG files in `folder`/depth, partners of the same stem in rgb, color or colour; or in `folder` itself.
+/// Lists the depth PNG files in `folder`/depth, with colour files of the same stem in rgb, color or colour; if there is
+/// no folder depth, lists the PNG files in `folder` itself.
 FrameList list_folder(const std::string& folder, const SourceOptions& options);
 
-/// One depth PNG; colour from `options`, or, where the file lies in a folder named depth, from the folders beside.
+/// Lists one depth PNG. Its colour file is that of `options`; if none is given and the PNG lies in a folder named
+/// depth, it is looked for in the folders beside that.
 FrameList list_single_png(const std::string& path, const SourceOptions& options);
 
 }  // namespace vesalius

@@ -15,7 +15,7 @@ using test::put;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-TEST(NaturalLess, CountsNumbersAsNumbers) {
+TEST(NaturalLess, ComparesNumbersByValue) {
   const std::vector<std::string> ordered = {"1", "01", "2", "10", "a", "a1b", "a1c", "a02", "a2", "a2b", "a10", "b"};
   for (std::size_t i = 0; i < ordered.size(); ++i) {
     for (std::size_t j = 0; j < ordered.size(); ++j) {
@@ -28,7 +28,7 @@ TEST(NaturalLess, CountsNumbersAsNumbers) {
   EXPECT_NE(natural_less("1", "01"), natural_less("01", "1"));
 }
 
-TEST(ListFiles, TakesTheWantedKindsOnly) {
+TEST(ListFiles, ListsOnlyTheWantedKinds) {
   const TemporaryFolder folder;
   for (const char* name : {"b10.png", "b9.PNG", "._b1.png", "c.jpg", "d.txt", "png"}) put(folder / name, "");
   std::vector<std::string> names;

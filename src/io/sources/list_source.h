@@ -11,7 +11,7 @@
 
 namespace vesalius {
 
-/// Where one frame lies.
+/// The files of one frame.
 struct FrameFiles {
   std::string name;
   double time_s = 0.0;  ///< seconds; 0 = not known
@@ -19,7 +19,7 @@ struct FrameFiles {
   std::string colour;   ///< path of a PNG or JPEG of the same size; empty = none
 };
 
-/// Depth and colour pictures in files of their own, in the order of the frames.
+/// Frames whose depth and colour pictures are files of their own, in order.
 struct FrameList {
   std::string place;  ///< for messages
   std::vector<FrameFiles> frames;
@@ -29,17 +29,18 @@ struct FrameList {
   std::vector<std::string> notes;
 };
 
-/// Reads the pictures of a list in any order. Safe to use from several threads.
+/// Reads the frames of a list in any order. It may be used from several threads.
 class FrameListReader {
  public:
-  /// Throws Error when the first picture is unusable or the camera unknown.
+  /// Throws Error if the first picture is unusable or the camera is unknown.
   explicit FrameListReader(FrameList list);
 
   std::size_t size() const { return list_.frames.size(); }
   const FrameList& list() const { return list_; }
   const Camera& camera() const { return camera_; }
 
-  /// `index` must be below size(). Throws Error naming a picture that cannot be read or differs from the first in size.
+  /// Returns frame `index`, which must be below size(). Throws Error naming a picture that cannot be read or differs in
+  /// size from the first.
   Frame read(std::size_t index, bool with_colour = true) const;
 
  private:
@@ -51,7 +52,7 @@ class FrameListReader {
 /// Returns a source that reads the pictures one by one. Throws Error as FrameListReader does.
 std::unique_ptr<FrameSource> open_list(FrameList list);
 
-/// Returns stored depth in millimetres. What rounds to more than 65535 mm cannot be held and becomes 0, no reading.
+/// Converts stored depth to millimetres. A result over 65535 mm does not fit and becomes 0, no reading.
 DepthImage to_millimetres(const Image<std::uint16_t>& stored, float units_per_m);
 
 }  // namespace vesalius

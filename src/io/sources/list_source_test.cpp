@@ -12,7 +12,7 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(ToMillimetres, RoundsAndDropsWhatDoesNotFit) {
+TEST(ToMillimetres, RoundsAndDropsValuesThatDoNotFit) {
   Image<std::uint16_t> stored(5, 1);
   const std::uint16_t units[] = {0, 7, 8, 5000, 65535};
   std::copy(std::begin(units), std::end(units), stored.begin());

@@ -23,14 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One kind of source. A sensor is a row more.
+/// One kind of source. A new sensor would be another row of the table.
 struct Scheme {
   std::string_view name;
   const char* what;  ///< what `open` expects
   std::unique_ptr<FrameSource> (*open)(const std::string& rest, const SourceOptions& options);
 };
 
-/// Whether there is a folder at `path`, not a file. Throws Error where there is nothing.
+/// Returns whether `path` is a folder rather than a file. Throws Error if it does not exist.
 bool is_folder(const std::string& path, const char* expected) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -51,7 +51,7 @@ void refuse_colour_file(const std::string& path, const SourceOptions& options) {
   if (!options.colour_file.empty()) throw UsageError(path + ": a colour file goes with a single depth PNG only");
 }
 
-/// Throws unless there is a folder at `path`.
+/// Throws unless `path` is a folder.
 void expect_folder(const std::string& path, const SourceOptions& options, const char* expected) {
   const bool folder = is_folder(path, expected);
   refuse_colour_file(path, options);
@@ -63,7 +63,7 @@ std::unique_ptr<FrameSource> open_folder(const std::string& path, const SourceOp
   return open_list(list_folder(path, options));
 }
 
-/// Takes the scale off "walking:1000", unless there is a folder of that very name.
+/// Removes the scale from "walking:1000" and returns it, unless a folder has that whole name.
 std::optional<float> split_scale(std::string& path) {
   std::error_code ignored;
   const std::size_t colon = path.rfind(':');
@@ -101,7 +101,7 @@ std::unique_ptr<FrameSource> open_png(const std::string& path, const SourceOptio
 constexpr std::array<Scheme, 4> kSchemes{
     {{"folder", kFolder, open_folder}, {"tum", kTum, open_tum}, {"pcd", kPcd, open_clouds}, {"png", kPng, open_png}}};
 
-/// The scheme that "pcd:cloud.pcd" begins with, null where it is a plain path.
+/// Returns the scheme that "pcd:cloud.pcd" begins with, or null for a plain path.
 const Scheme* scheme_of(const std::string& uri) {
   const auto found = std::ranges::find(kSchemes, std::string_view(uri).substr(0, uri.find(':')), &Scheme::name);
   return found == kSchemes.end() || found->name.size() == uri.size() ? nullptr : &*found;

@@ -11,7 +11,7 @@
 namespace vesalius {
 
 /// Opens the source of frames that `uri` names: a path, or a scheme with what it expects after the colon.
-///   PATH              the scheme follows from what is there
+///   PATH              the scheme is chosen by what the path holds
 ///   folder:FOLDER     depth/*.png (rgb/ or color/ optional) and meta.json or camera_info.yaml, or depth PNG files
 ///   tum:FOLDER        the layout of the TUM RGB-D benchmark (depth.txt); "tum:walking:1000" gives a depth scale too
 ///   pcd:PATH          an organised PCD file or a folder of them
@@ -19,12 +19,12 @@ namespace vesalius {
 /// Throws Error with the path and what was expected, UsageError for options that do not go with the source.
 std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& options = {});
 
-/// Returns the path in `uri`, without scheme and depth scale.
+/// Returns the path in `uri` without the scheme and the depth scale.
 std::string path_of_source(const std::string& uri);
 
-/// Returns a frame with copies of the caller's buffers: `depth_mm` has width x height values, `rgb` three bytes a pixel
-/// or is null. Strides are in bytes from row to row, 0 where rows follow each other. Throws Error for a camera or
-/// strides that cannot be.
+/// Returns a frame with copies of the caller's buffers. `depth_mm` has width x height values; `rgb` has three bytes for
+/// each pixel, or is null. Strides are the bytes from one row to the next; 0 means that the rows follow each other
+/// without gaps. Throws Error for an impossible camera or stride.
 Frame make_frame(const Camera& camera, const std::uint16_t* depth_mm, std::size_t depth_stride,
                  const std::uint8_t* rgb = nullptr, std::size_t rgb_stride = 0);
 

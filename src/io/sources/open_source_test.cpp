@@ -71,7 +71,7 @@ TEST(FolderSource, ReadsFramesInOrderWithTheirColour) {
   EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("1 of 3 frames have no colour")));
 }
 
-TEST(FolderSource, CameraInfoColorFolderAndJpeg) {
+TEST(FolderSource, ReadsCameraInfoAColorFolderAndJpeg) {
   const TemporaryFolder folder;
   put(folder / "camera_info.yml", "{width: 37, height: 23, K: [50, 0, 18, 0, 51, 11, 0, 0, 1]}");
   put_depth(folder / "depth/a.png", random_frame("a", 1).depth);
@@ -84,12 +84,12 @@ TEST(FolderSource, CameraInfoColorFolderAndJpeg) {
   EXPECT_NEAR(frame->colour(5, 5).r, 250, 5);
 }
 
-TEST(FolderSource, DepthFilesDirectly) {
+TEST(FolderSource, ReadsAFolderOfDepthFiles) {
   const TemporaryFolder folder;
   put(folder / "meta.json", kMeta);
   const Frame frame = random_frame("a", 3);
   put_depth(folder / "depth/a.png", frame.depth);
-  // The folder named depth itself: its camera lies one folder up.
+  // For the folder named depth the camera lies one folder up.
   for (const std::string& uri : {folder / "depth", folder / "depth/", "png:" + folder / "depth"}) {
     const auto frames = all_frames(*open_source(uri));
     ASSERT_EQ(frames.size(), 1U);
@@ -98,7 +98,7 @@ TEST(FolderSource, DepthFilesDirectly) {
   }
 }
 
-TEST(FolderSource, UnitsAndOptionsDecideTheScale) {
+TEST(FolderSource, TakesTheScaleFromUnitsAndOptions) {
   const TemporaryFolder folder;
   put(folder / "meta.json", R"({"fx": 50, "depth_scale": 5000})");
   DepthImage depth(4, 3, 5000);
@@ -109,7 +109,7 @@ TEST(FolderSource, UnitsAndOptionsDecideTheScale) {
   EXPECT_EQ(open_source(folder.path(), options)->next()->depth(0, 0), 500);
 }
 
-TEST(FolderSource, SensorWithoutFocalLengthIsNoted) {
+TEST(FolderSource, NotesASensorWithoutFocalLength) {
   const TemporaryFolder folder;
   put(folder / "meta.json", R"({"sensor": "Kinect v1"})");
   put_depth(folder / "depth/a.png", DepthImage(160, 120, 900));
@@ -118,7 +118,7 @@ TEST(FolderSource, SensorWithoutFocalLengthIsNoted) {
   EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("131.2 pixels assumed, usual for \"Kinect v1\"")));
 }
 
-TEST(FolderSource, BadFramesAreNamedAndPassedOver) {
+TEST(FolderSource, NamesBadFramesAndGoesOn) {
   const TemporaryFolder folder;
   put(folder / "meta.json", kMeta);
   const Frame frame = random_frame("a", 3);
@@ -146,7 +146,7 @@ TEST(FolderSource, BadFramesAreNamedAndPassedOver) {
   EXPECT_FALSE(source->next());
 }
 
-TEST(SinglePng, FindsColourAndCameraOfItsFolder) {
+TEST(SinglePng, FindsColourAndCameraBesideIt) {
   const TemporaryFolder folder;
   put(folder / "meta.json", kMeta);
   const Frame frame = random_frame("a.b", 4);
@@ -194,7 +194,7 @@ TEST(TumSource, PairsByTimeAndScalesBy5000) {
                                            HasSubstr("no intrinsics given; those of the TUM benchmark")));
 }
 
-TEST(TumSource, ScaleInTheAddress) {
+TEST(TumSource, TakesTheScaleFromTheAddress) {
   const TemporaryFolder folder;
   put_tum(folder, DepthImage(640, 480, 10000), ColourImage(640, 480));
   EXPECT_EQ(open_source("tum:" + folder.path() + ":1000")->next()->depth(0, 0), 10000);
@@ -206,7 +206,7 @@ TEST(TumSource, ScaleInTheAddress) {
   EXPECT_THAT(open_error("tum:" + folder.path() + ":x"), HasSubstr("No such file"));
 }
 
-TEST(TumSource, OtherSizesNeedACamera) {
+TEST(TumSource, NeedsACameraForOtherSizes) {
   const TemporaryFolder folder;
   put_tum(folder, DepthImage(32, 24, 10000), ColourImage(32, 24));
   EXPECT_THAT(open_error(folder.path()), HasSubstr("no intrinsics"));
@@ -214,7 +214,7 @@ TEST(TumSource, OtherSizesNeedACamera) {
   EXPECT_EQ(open_source(folder.path())->next()->camera.fx, 26.25F);
 }
 
-TEST(TumSource, BadListsAreNamed) {
+TEST(TumSource, NamesBadLists) {
   const TemporaryFolder folder;
   put(folder / "depth.txt", "# nothing\n");
   EXPECT_THAT(open_error(folder.path()), HasSubstr("depth.txt: no frames"));
@@ -224,7 +224,7 @@ TEST(TumSource, BadListsAreNamed) {
   EXPECT_THAT(open_error(folder.path()), HasSubstr("depth.txt:1: expected"));
 }
 
-TEST(PcdSource, FileAndFolder) {
+TEST(PcdSource, ReadsAFileAndAFolder) {
   const TemporaryFolder folder;
   const Frame first = random_frame("a2", 5);
   const Frame second = random_frame("a10", 6, 37, 23, false);
@@ -246,7 +246,7 @@ TEST(PcdSource, FileAndFolder) {
   EXPECT_THAT(single->notes(), IsEmpty());
 }
 
-TEST(OpenSource, WhatIsNoSourceIsNamed) {
+TEST(OpenSource, NamesWhatIsNotASource) {
   const TemporaryFolder folder;
   EXPECT_THAT(open_error(folder / "none"), HasSubstr("none: No such file or directory, expected a folder"));
   EXPECT_THAT(open_error(""), HasSubstr("expected a folder"));
@@ -266,7 +266,7 @@ TEST(OpenSource, WhatIsNoSourceIsNamed) {
   EXPECT_THROW(open_source(folder.path(), options), UsageError);
 }
 
-TEST(OpenSource, ForbiddenFolderIsAnError) {
+TEST(OpenSource, RefusesAFolderWithoutPermission) {
   if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
   const TemporaryFolder folder;
   fs::create_directory(folder / "shut");
@@ -274,7 +274,7 @@ TEST(OpenSource, ForbiddenFolderIsAnError) {
   EXPECT_THAT(open_error(folder / "shut"), HasSubstr("Permission denied"));
 }
 
-TEST(MakeFrame, CopiesRowsAtTheirStrides) {
+TEST(MakeFrame, CopiesRowsWithStrides) {
   const Camera camera{2, 2, 10.F, 10.F, 0.5F, 0.5F};
   const std::uint16_t depth_mm[] = {1, 2, 99, 3, 4, 99};
   const std::uint8_t rgb[] = {1, 2, 3, 4, 5, 6, 0, 7, 8, 9, 10, 11, 12, 0};
@@ -286,7 +286,7 @@ TEST(MakeFrame, CopiesRowsAtTheirStrides) {
   EXPECT_TRUE(packed.colour.empty());
 }
 
-TEST(MakeFrame, UnusableBuffersAreErrors) {
+TEST(MakeFrame, RefusesUnusableBuffers) {
   const Camera camera{2, 2, 10.F, 10.F, 0.5F, 0.5F};
   const std::uint16_t depth_mm[4] = {};
   EXPECT_THAT(error_of([&] { make_frame(camera, nullptr, 0); }), HasSubstr("no depth"));
@@ -295,7 +295,7 @@ TEST(MakeFrame, UnusableBuffersAreErrors) {
   EXPECT_THROW(make_frame(Camera{1 << 20, 1 << 20, 1.F, 1.F, 0.F, 0.F}, depth_mm, 0), Error);
 }
 
-/// The folder of development data, empty where there is none.
+/// Returns the folder of development data; empty if there is none.
 std::string shared_folder() {
   const char* given = std::getenv("VESALIUS_SHARED");
   const std::string folder = given != nullptr ? given : std::string(VESALIUS_SOURCE_DIR) + "/../shared";
@@ -303,7 +303,7 @@ std::string shared_folder() {
 }
 
 // Labels: real
-TEST(RealFrames, AllOpenAsListed) {
+TEST(RealFrames, AllOpenAsTheirTableSays) {
   const std::string shared = shared_folder();
   if (shared.empty()) GTEST_SKIP() << "no development data: set VESALIUS_SHARED";
   std::map<std::string, std::map<std::string, bool>> has_colour;  // by set and frame

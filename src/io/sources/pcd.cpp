@@ -38,7 +38,7 @@ float load_coordinate(const PcdField& field, const char* at) {
   return field.size == 8 ? static_cast<float>(load<double>(at)) : load<float>(at);
 }
 
-/// Where a field's values lie in decoded bytes: the first one and the distance to the next point's.
+/// Where a field's values lie in decoded bytes: the offset of the first one and the distance to the next point's.
 struct Column {
   const char* first;
   std::size_t step;
@@ -70,7 +70,7 @@ PointGrid decode_binary(const PcdHeader& header, std::string_view data, const st
   return gather(header, [&](const PcdField& field) { return Column{data.data() + field.offset, header.point_bytes}; });
 }
 
-/// In this encoding all values of a field lie together.
+/// Decodes compressed points. In this encoding all values of one field lie together.
 PointGrid decode_compressed(const PcdHeader& header, std::string_view data, const std::string& name) {
   const std::size_t expected = header.points() * header.point_bytes;
   if (data.size() < 8) throw Error(name + ": truncated: expected two sizes after DATA binary_compressed");
@@ -83,7 +83,7 @@ PointGrid decode_compressed(const PcdHeader& header, std::string_view data, cons
     throw Error(
         fmt::format("{}: truncated: {} bytes of compressed points, expected {}", name, data.size() - 8, packed_bytes));
   }
-  // LZF's longest copy makes 264 bytes of 3: more cannot come of so few.
+  // LZF's longest copy makes 264 bytes from 3, so so few bytes cannot hold more.
   if (plain_bytes / 88 > packed_bytes) throw Error(name + ": damaged: too few compressed bytes for its points");
   std::vector<char> plain(plain_bytes);
   const unsigned int got = lzf_decompress(data.data() + 8, static_cast<unsigned int>(packed_bytes), plain.data(),
@@ -94,7 +94,7 @@ PointGrid decode_compressed(const PcdHeader& header, std::string_view data, cons
   });
 }
 
-/// The next word of ascii data, an empty one at the end.
+/// Returns the next word of ascii data, or an empty one at the end.
 std::string_view next_word(std::string_view& text) {
   const auto is_space = [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; };
   const auto begin = std::find_if_not(text.begin(), text.end(), is_space);
@@ -112,7 +112,7 @@ bool parse_word(std::string_view word, T& value) {
 }
 
 bool parse_colour(const PcdField& field, std::string_view word, Rgb& colour) {
-  if (field.type == 'F') {  // the bits of this number are the colour
+  if (field.type == 'F') {  // the colour is stored in the bits of this number
     float bits = 0.F;
     if (!parse_word(word, bits)) return false;
     colour = std::isnan(bits) ? Rgb{} : unpack(std::bit_cast<std::uint32_t>(bits));
@@ -124,7 +124,7 @@ bool parse_colour(const PcdField& field, std::string_view word, Rgb& colour) {
   return true;
 }
 
-/// Puts one value of point `i` where it belongs; false = the word is no number.
+/// Stores one value of point `i`. Returns false if the word is not a number.
 bool store_word(const PcdHeader& header, int field, std::string_view word, std::size_t i, PointGrid& grid) {
   if (field == header.rgb) return parse_colour(header.fields[field], word, grid.colour[i]);
   for (int axis = 0; axis < 3; ++axis) {
@@ -156,7 +156,7 @@ PointGrid decode_ascii(const PcdHeader& header, std::string_view data, const std
   return grid;
 }
 
-/// Least squares of pixel = focal * slope + centre over the points for which `use` holds.
+/// A least-squares fit of pixel = focal * slope + centre over the points for which `use` holds.
 struct LineFit {
   double n = 0, s = 0, p = 0, ss = 0, sp = 0;
 

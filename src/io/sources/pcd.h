@@ -9,22 +9,22 @@
 
 namespace vesalius {
 
-/// An organised cloud: one point per pixel, metres in the optical frame.
+/// An organised cloud: one point for each pixel, in metres in the optical frame.
 struct PointGrid {
   Image<Eigen::Vector3f> points_m;  ///< z NaN or not positive = no reading
   ColourImage colour;               ///< empty, or the size of `points_m`
 };
 
-/// Reads a PCD file of version 0.7: ascii, binary or binary_compressed; x, y, z (F 4 or F 8) and rgb or rgba (4 bytes)
-/// among any other fields, in any order. VIEWPOINT is ignored. Throws Error naming `name` and the header line or point
-/// for one that is damaged, truncated or not organised (HEIGHT 1).
+/// Reads a PCD file of version 0.7: ascii, binary or binary_compressed. It must have x, y, z (F 4 or F 8) and may have
+/// rgb or rgba (4 bytes); other fields are skipped, and the order is free. VIEWPOINT is ignored. Throws Error naming
+/// `name` and the header line or point if the file is damaged, truncated or not organised (HEIGHT 1).
 PointGrid parse_pcd(std::string_view bytes, const std::string& name);
 
-/// Millimetres of the points' z, rounded; 0 where there is none or it is over 65535.
+/// Returns the z of the points in millimetres, rounded. It is 0 where there is no point or the value exceeds 65535.
 DepthImage depth_of(const PointGrid& grid);
 
-/// The pinhole camera whose grid the points lie on, by least squares. Throws Error naming `name` when there are too
-/// few points or they lie on no such grid.
+/// Estimates the pinhole camera whose pixel grid the points lie on, by least squares. Throws Error naming `name` if
+/// there are too few points or they lie on no such grid.
 CameraFacts estimate_camera(const PointGrid& grid, const std::string& name);
 
 }  // namespace vesalius

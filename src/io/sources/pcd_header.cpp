@@ -27,7 +27,7 @@ Words split(std::string_view line) {
   }
 }
 
-/// Reads the lines in turn; knows where it is for errors.
+/// Reads the lines in turn and keeps the line number for errors.
 class HeaderReader {
  public:
   HeaderReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}

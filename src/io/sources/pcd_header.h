@@ -9,10 +9,10 @@
 
 namespace vesalius {
 
-/// How a PCD file holds its points.
+/// How a PCD file stores its points.
 enum class PcdEncoding { ascii, binary, binary_compressed };
 
-/// One column of a PCD: `count` values of `size` bytes per point.
+/// One field of a PCD file: `count` values of `size` bytes for each point.
 struct PcdField {
   std::string name;
   std::uint32_t size = 4;
@@ -21,7 +21,7 @@ struct PcdField {
   std::size_t offset = 0;  ///< bytes before it in a point
 };
 
-/// What stands before the points of a PCD file.
+/// The header of a PCD file.
 struct PcdHeader {
   std::vector<PcdField> fields;
   int width = 0;
@@ -35,7 +35,8 @@ struct PcdHeader {
   std::size_t points() const { return std::size_t(width) * height; }
 };
 
-/// Throws Error naming `name` and the line for a header that is damaged or not that of an organised cloud.
+/// Reads the header of a PCD file. Throws Error naming `name` and the line if it is damaged or describes no organised
+/// cloud.
 PcdHeader parse_pcd_header(std::string_view bytes, const std::string& name);
 
 }  // namespace vesalius

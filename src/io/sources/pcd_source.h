@@ -8,8 +8,8 @@
 
 namespace vesalius {
 
-/// Frames of an organised PCD file or of all those in a folder. The camera is that of `options` or of the files beside;
-/// without, each cloud's own, estimated from its points.
+/// Opens an organised PCD file, or all such files in a folder, as a source of frames. The camera comes from `options`
+/// or from a camera file beside the clouds; otherwise it is estimated for each cloud from its points.
 std::unique_ptr<FrameSource> open_pcd(const std::string& path, const SourceOptions& options);
 
 }  // namespace vesalius

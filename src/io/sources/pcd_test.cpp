@@ -31,7 +31,7 @@ std::string with_size(const std::string& lines, int width, int height, const std
          data;
 }
 
-TEST(Pcd, EveryEncodingComesBackBitForBit) {
+TEST(Pcd, KeepsEveryBitInEveryEncoding) {
   for (const bool colour : {true, false}) {
     const Frame frame = random_frame("f", 5, 37, 23, colour);
     for (const PcdEncoding encoding : kAll) {
@@ -42,7 +42,7 @@ TEST(Pcd, EveryEncodingComesBackBitForBit) {
   }
 }
 
-TEST(Pcd, EveryMillimetreComesBack) {
+TEST(Pcd, KeepsEveryMillimetre) {
   Frame frame;
   frame.camera = {256, 256, 200.F, 200.F, 127.5F, 127.5F};
   frame.depth = DepthImage(256, 256);
@@ -52,7 +52,7 @@ TEST(Pcd, EveryMillimetreComesBack) {
   }
 }
 
-TEST(Pcd, OtherFieldsInAnyOrderAreSkipped) {
+TEST(Pcd, SkipsOtherFieldsInAnyOrder) {
   std::string data = "binary\n";
   for (int i = 0; i < 4; ++i) {
     data +=
@@ -66,7 +66,7 @@ TEST(Pcd, OtherFieldsInAnyOrderAreSkipped) {
   EXPECT_EQ(depth_of(grid)(0, 1), 3000);
 }
 
-TEST(Pcd, AsciiColourMayBeTheBitsOfAFloat) {
+TEST(Pcd, ReadsAsciiColourFromTheBitsOfAFloat) {
   // 2.3418052e-38 has the bits 0x00FF0000.
   const PointGrid grid = parse_pcd(with_size("FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1", 1, 2,
                                              "ascii\n0.1 0.2 1.5 2.3418052e-38\nnan nan nan nan\n"),
@@ -76,7 +76,7 @@ TEST(Pcd, AsciiColourMayBeTheBitsOfAFloat) {
   EXPECT_EQ(depth_of(grid)(0, 1), 0);
 }
 
-TEST(Pcd, DepthIsRoundedAndBounded) {
+TEST(Pcd, RoundsAndBoundsDepth) {
   PointGrid grid{Image<Eigen::Vector3f>(5, 1, Eigen::Vector3f::Zero()), {}};
   const float z_m[] = {1.2346F, -2.F, 65.535F, 65.6F, std::numeric_limits<float>::infinity()};
   for (int i = 0; i < 5; ++i) grid.points_m(i, 0).z() = z_m[i];
@@ -84,7 +84,7 @@ TEST(Pcd, DepthIsRoundedAndBounded) {
   EXPECT_THAT(std::vector<int>(depth.begin(), depth.end()), testing::ElementsAre(1235, 0, 65535, 0, 0));
 }
 
-TEST(Pcd, CameraFollowsFromThePoints) {
+TEST(Pcd, EstimatesTheCameraFromThePoints) {
   const Frame frame = random_frame("f", 6);
   const CameraFacts facts = estimate_camera(parse_pcd(serialise_pcd(frame, PcdEncoding::binary), "f.pcd"), "f.pcd");
   EXPECT_NEAR(*facts.fx, frame.camera.fx, 1e-3);
@@ -93,7 +93,7 @@ TEST(Pcd, CameraFollowsFromThePoints) {
   EXPECT_NEAR(*facts.cy, frame.camera.cy, 1e-3);
 }
 
-TEST(Pcd, FewStrayPointsDoNotMoveTheCamera) {
+TEST(Pcd, EstimatesTheCameraDespiteFewStrayPoints) {
   Frame frame = random_frame("f", 7);
   PointGrid grid = parse_pcd(serialise_pcd(frame, PcdEncoding::binary), "f.pcd");
   for (int u = 0; u < 30; u += 6) grid.points_m(u, 3) = {0.3F, -0.2F, 1.F};
@@ -102,7 +102,7 @@ TEST(Pcd, FewStrayPointsDoNotMoveTheCamera) {
   EXPECT_NEAR(*facts.cy, frame.camera.cy, 0.05);
 }
 
-TEST(Pcd, NoPinholeGridIsAnError) {
+TEST(Pcd, RefusesPointsThatAreNoPinholeGrid) {
   const Frame frame = random_frame("f", 8);
   PointGrid mirrored = parse_pcd(serialise_pcd(frame, PcdEncoding::binary), "f.pcd");
   for (auto& point : mirrored.points_m) point.x() = -point.x();
@@ -118,11 +118,11 @@ TEST(Pcd, NoPinholeGridIsAnError) {
   EXPECT_THROW(estimate_camera(empty, "f.pcd"), Error);
 }
 
-TEST(Pcd, EveryTruncationIsAnError) {
+TEST(Pcd, RefusesEveryTruncation) {
   const Frame frame = random_frame("f", 9, 6, 4);
   for (const PcdEncoding encoding : kAll) {
     const std::string whole = serialise_pcd(frame, encoding);
-    // The last number of an ascii file may lose digits unseen.
+    // The last number of an ascii file may lose digits without being noticed.
     const std::size_t last = encoding == PcdEncoding::ascii ? whole.rfind(' ') : whole.size() - 1;
     for (std::size_t size = 0; size <= last; ++size) {
       EXPECT_THROW(parse_pcd(whole.substr(0, size), "f.pcd"), Error) << "first " << size << " bytes";
@@ -130,7 +130,7 @@ TEST(Pcd, EveryTruncationIsAnError) {
   }
 }
 
-TEST(Pcd, NamesFileAndLine) {
+TEST(Pcd, NamesTheFileAndTheLineOfErrors) {
   const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1";
   const auto message = [](const std::string& text) { return error_of([&] { parse_pcd(text, "f.pcd"); }); };
   EXPECT_THAT(message(""), HasSubstr("f.pcd: empty file"));
@@ -148,7 +148,7 @@ TEST(Pcd, NamesFileAndLine) {
   EXPECT_THAT(message("FIELDS x y z\nWIDTH 2\nHEIGHT 2\nPOINTS 5\nDATA ascii\n"), HasSubstr("POINTS 5, expected"));
 }
 
-TEST(Pcd, HostileSizesAreStoppedBeforeAllocating) {
+TEST(Pcd, RefusesHostileSizesBeforeAllocating) {
   const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 60000\nHEIGHT ";
   const auto message = [](const std::string& text) { return error_of([&] { parse_pcd(text, "f.pcd"); }); };
   EXPECT_THAT(message(fields + "60000\nDATA binary\nabc"), HasSubstr("60000x60000"));
@@ -159,7 +159,7 @@ TEST(Pcd, HostileSizesAreStoppedBeforeAllocating) {
               HasSubstr("too few compressed bytes"));
 }
 
-TEST(Pcd, DamagedCompressionIsAnError) {
+TEST(Pcd, RefusesDamagedCompression) {
   std::string bytes = serialise_pcd(random_frame("f", 10, 6, 4), PcdEncoding::binary_compressed);
   const std::size_t data = bytes.find("binary_compressed\n") + 18 + 8;
   for (std::size_t i = data; i < bytes.size(); ++i) bytes[i] = '\xFF';

@@ -50,7 +50,8 @@ std::string ascii_points(const Frame& frame) {
   return text;
 }
 
-/// The points' numbers: `point_step` words from one point to the next, `field_step` from one field to the next.
+/// Returns the points' numbers as bytes. `point_step` is the distance in words from one point to the next, `field_step`
+/// that from one field to the next.
 std::string binary_points(const Frame& frame, std::size_t point_step, std::size_t field_step) {
   const std::size_t fields = frame.colour.empty() ? 3 : 4;
   std::vector<std::uint32_t> words(frame.depth.size() * fields);
@@ -71,7 +72,7 @@ std::string binary_points(const Frame& frame, std::size_t point_step, std::size_
 
 std::string compressed_points(const Frame& frame) {
   const std::string plain = binary_points(frame, 1, frame.depth.size());
-  // Data that does not shrink grows by a byte in 32.
+  // Data that cannot be compressed grows by one byte in 32.
   std::string packed(plain.size() + plain.size() / 16 + 64, '\0');
   const unsigned int packed_bytes = lzf_compress(plain.data(), static_cast<unsigned int>(plain.size()), packed.data(),
                                                  static_cast<unsigned int>(packed.size()));

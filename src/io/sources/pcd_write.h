@@ -7,8 +7,8 @@
 
 namespace vesalius {
 
-/// Returns the frame as an organised PCD file of x y z, and rgb where the frame has colour; points are NaN where it has
-/// no depth. Reading the file gives the same depth and colour.
+/// Returns the frame as an organised PCD file with x y z, and rgb if the frame has colour. Pixels without depth become
+/// NaN points. Reading the file gives back the same depth and colour.
 std::string serialise_pcd(const Frame& frame, PcdEncoding encoding);
 
 }  // namespace vesalius

@@ -5,12 +5,12 @@
 
 namespace vesalius {
 
-/// What the files of a source may leave open. Values given here win over those in files.
+/// Facts that the files of a source may not state. Values given here replace those in files.
 struct SourceOptions {
   std::optional<float> fx, fy, cx, cy;  ///< pixels; fy defaults to fx, cx and cy to the picture's centre
   std::optional<float> depth_scale;     ///< stored units per metre (1000 = millimetres, 5000 = TUM)
   std::string camera_file;              ///< path of a meta.json or ROS camera_info YAML
-  std::string colour_file;              ///< path of the partner of a single depth PNG
+  std::string colour_file;              ///< path of the colour picture for a single depth PNG
 };
 
 }  // namespace vesalius

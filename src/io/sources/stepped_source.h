@@ -10,19 +10,19 @@
 
 namespace vesalius {
 
-/// Of every `step` frames of a source the first.
+/// Gives the first of every `step` frames of a source.
 class SteppedSource {
  public:
-  /// A frame and how many came before it in the source.
+  /// A frame and its index in the source.
   struct Step {
     Frame frame;
     int index = 0;
   };
 
-  /// `step` of at least 1.
+  /// `step` must be at least 1.
   SteppedSource(std::unique_ptr<FrameSource> source, int step) : source_(std::move(source)), step_(step) {}
 
-  /// Nothing after the last one. Throws Error as the source does.
+  /// Returns the next frame, or nothing after the last one. Throws Error as the source does.
   std::optional<Step> next() {
     for (;;) {
       const int index = passed_++;
@@ -31,7 +31,7 @@ class SteppedSource {
       if (index % step_ == 0) return Step{std::move(*frame), index};
     }
   }
-  /// Frames in all; negative where the source does not know.
+  /// Returns the number of frames; it is negative if the source does not know its own.
   int size() const {
     const int all = source_->size();
     return all < 0 ? all : (all + step_ - 1) / step_;

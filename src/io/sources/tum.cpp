@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kTumUnitsPerM = 5000.F;       // the benchmark's file format page
-constexpr double kMaxTimeDifferenceS = 0.02;  // default of its associate tool
+constexpr double kMaxTimeDifferenceS = 0.02;  // default of the benchmark's associate tool
 constexpr std::size_t kMaxListBytes = 64 << 20;
 
 std::string_view trimmed(std::string_view text) {
@@ -42,8 +42,8 @@ TumEntry parse_line(std::string_view line, const std::string& name, int number) 
   return entry;
 }
 
-/// Both lists merged by time as a linked list, so that partners taken out make others neighbours: the closest pair
-/// of what remains is always one of neighbours.
+/// Both lists merged by time as a linked list. When a pair is taken out, the entries beside it become neighbours; so
+/// the closest remaining pair is always a pair of neighbours.
 struct Merged {
   struct Item {
     double time_s;
@@ -95,7 +95,7 @@ std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& n
 std::vector<int> associate(const std::vector<TumEntry>& depth, const std::vector<TumEntry>& colour,
                            double max_difference_s) {
   Merged merged(depth, colour);
-  // Difference, then times as the tie-break of the benchmark's tool, then the pair.
+  // Candidates are sorted by difference, then by times as in the benchmark's tool, then by indices.
   using Candidate = std::tuple<double, double, double, int, int>;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates;
   const auto consider = [&](int a, int b) {

@@ -16,17 +16,18 @@ struct TumEntry {
   std::string file;   ///< relative to the list's folder
 };
 
-/// Lines "timestamp file"; empty lines and those after # are skipped. The entries are in the order of their times.
-/// Throws Error naming `name` and the line for one of another form or a time that an earlier line has.
+/// Reads lines of the form "timestamp file". Empty lines and those that begin with # are skipped. The entries are
+/// sorted by time. Throws Error naming `name` and the line if a line has another form or repeats the time of an earlier
+/// one.
 std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& name);
 
-/// Partners of two lists in order of time, as the benchmark's associate tool finds them: of all pairs less than
-/// `max_difference_s` apart, the closest first, each entry in one pair only. For each of `depth` the index in `colour`,
-/// -1 = none. O(n log n).
+/// Pairs depth with colour as the benchmark's associate tool does: of all pairs less than `max_difference_s` apart the
+/// closest is taken first, and each entry is in one pair only. Both lists must be sorted by time. Returns for each
+/// entry of `depth` the index in `colour`, or -1. Takes O(n log n) time.
 std::vector<int> associate(const std::vector<TumEntry>& depth, const std::vector<TumEntry>& colour,
                            double max_difference_s);
 
-/// A folder in the layout of the TUM RGB-D benchmark: depth.txt, and rgb.txt or no colour.
+/// Lists a folder in the layout of the TUM RGB-D benchmark: depth.txt and, if there is colour, rgb.txt.
 FrameList list_tum(const std::string& folder, const SourceOptions& options);
 
 }  // namespace vesalius

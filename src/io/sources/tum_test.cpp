@@ -17,7 +17,7 @@ using test::error_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST(ParseTumList, ReadsLinesInOrderOfTime) {
+TEST(ParseTumList, SortsLinesByTime) {
   const auto entries = parse_tum_list("# comment\r\n\n 2.5 depth/b.png \r\n1.25\tdepth/with space.png", "depth.txt");
   ASSERT_EQ(entries.size(), 2U);
   EXPECT_EQ(entries[0].time_s, 1.25);
@@ -26,7 +26,7 @@ TEST(ParseTumList, ReadsLinesInOrderOfTime) {
   EXPECT_EQ(entries[1].file, "depth/b.png");
 }
 
-TEST(ParseTumList, NamesFileAndLine) {
+TEST(ParseTumList, NamesTheFileAndTheLineOfErrors) {
   const auto message = [](const char* text) { return error_of([&] { parse_tum_list(text, "depth.txt"); }); };
   EXPECT_EQ(message("1 a.png\n\nx b.png\n"), "depth.txt:3: expected \"timestamp file\"");
   EXPECT_THAT(message("1"), HasSubstr("depth.txt:1"));
@@ -43,13 +43,13 @@ std::vector<TumEntry> entries_at(const std::vector<double>& times_s) {
   return entries;
 }
 
-TEST(Associate, TakesTheNearestAndEachColourOnce) {
+TEST(Associate, PairsTheNearestAndUsesEachColourOnce) {
   EXPECT_THAT(associate(entries_at({1.0, 1.01, 2.0}), entries_at({1.012, 1.9, 2.015}), 0.02), ElementsAre(-1, 0, 2));
   EXPECT_THAT(associate(entries_at({1.0}), entries_at({1.02000001}), 0.02), ElementsAre(-1));
   EXPECT_THAT(associate(entries_at({1.0}), {}, 0.02), ElementsAre(-1));
 }
 
-/// The benchmark's tool: all pairs, sorted by difference and times.
+/// Pairs as the benchmark's tool does: it sorts all pairs by difference and times.
 std::vector<int> all_pairs(const std::vector<TumEntry>& depth, const std::vector<TumEntry>& colour, double limit) {
   std::vector<std::tuple<double, double, double, int, int>> pairs;
   for (int i = 0; i < static_cast<int>(depth.size()); ++i) {
@@ -69,7 +69,7 @@ std::vector<int> all_pairs(const std::vector<TumEntry>& depth, const std::vector
   return partner;
 }
 
-TEST(Associate, AgreesWithAllPairs) {
+TEST(Associate, AgreesWithComparingAllPairs) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
     const auto times = [&] {

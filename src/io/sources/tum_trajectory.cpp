@@ -16,11 +16,11 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 constexpr double kLongestGap_s = 0.15;  // the benchmark's motion capture gives 100 poses a second
-constexpr double kHalfSpan_s = 0.05;    // half of what motion is measured over
+constexpr double kHalfSpan_s = 0.05;    // half of the time over which motion is measured
 constexpr double kStill_m_s = 0.05;
 constexpr double kStill_deg_s = 5.0;
 
-/// The eight numbers of a line; nothing where it has fewer, more or others.
+/// Returns the eight numbers of a line, or nothing if the line has any other form.
 std::optional<std::array<double, 8>> numbers(std::string_view line) {
   constexpr std::string_view kSpace = " \t\r";
   std::array<double, 8> values{};

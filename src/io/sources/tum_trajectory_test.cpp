@@ -9,8 +9,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(Trajectory, PosesBetweenThoseRecorded) {
-  // From the origin one metre to the right, turning a quarter about the camera's y axis.
+TEST(Trajectory, InterpolatesBetweenPoses) {
+  // The camera moves one metre to the right from the origin and turns a quarter about its y axis.
   const Trajectory trajectory = Trajectory::parse(
       "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n\n"
       "10.00 0 0 0 0 0 0 1\r\n10.10 1 0 2 0 0.70710678 0 0.70710678\n",
@@ -20,19 +20,19 @@ TEST(Trajectory, PosesBetweenThoseRecorded) {
   EXPECT_TRUE(middle->translation().isApprox(Eigen::Vector3d(0.5, 0, 1), 1e-9));
   const Eigen::AngleAxisd turn(middle->rotation());
   EXPECT_NEAR(turn.angle(), std::numbers::pi / 4, 1e-6);
-  // An eighth about y: what is straight ahead of the camera lies between the world's z and x.
+  // After an eighth of a turn about y the camera looks between the world's z and x.
   EXPECT_TRUE((middle->rotation() * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d(1, 0, 1).normalized(), 1e-6));
   EXPECT_TRUE(trajectory.world_from_camera(10.0)->isApprox(Eigen::Isometry3d::Identity()));
   EXPECT_TRUE(trajectory.world_from_camera(10.1)->translation().isApprox(Eigen::Vector3d(1, 0, 2)));
 }
 
-TEST(Trajectory, NothingOutsideAndInGaps) {
+TEST(Trajectory, HasNoPoseOutsideTheRecordingAndInGaps) {
   const Trajectory trajectory = Trajectory::parse("1 0 0 0 0 0 0 1\n1.2 0 0 0 0 0 0 1\n", "t");
   for (const double time_s : {0.99, 1.1, 1.21}) EXPECT_FALSE(trajectory.world_from_camera(time_s)) << time_s;
   EXPECT_TRUE(trajectory.world_from_camera(1.2));
 }
 
-TEST(Trajectory, TellsAMovingCameraFromAStillOne) {
+TEST(Trajectory, DistinguishesAMovingCameraFromAStillOne) {
   const auto motion = [](const std::string& later) {
     return Trajectory::parse("0 0 0 0 0 0 0 1\n0.1 " + later + "\n", "t").motion(0.05);
   };
@@ -43,7 +43,7 @@ TEST(Trajectory, TellsAMovingCameraFromAStillOne) {
   EXPECT_EQ(Trajectory::parse("0 0 0 0 0 0 0 1\n", "t").motion(0.0), CameraMotion::unknown);
 }
 
-TEST(Trajectory, SaysWhereItIsWrong) {
+TEST(Trajectory, NamesTheLineOfErrors) {
   const auto error = [](const std::string& text) { return test::error_of([&] { Trajectory::parse(text, "g.txt"); }); };
   EXPECT_THAT(error("# nothing\n"), HasSubstr("g.txt: no pose"));
   for (const char* line : {"1 2 3", "1 0 0 0 0 0 0 1 9", "1 0 0 0 0 0 0 x", "1 0 0 0 0 0 0 1x", "nan 0 0 0 0 0 0 1"}) {

@@ -34,7 +34,7 @@ void make_empty_folder(const fs::path& folder) {
   if (!empty) throw Error(folder.string() + ": folder has files in it, expected a new or empty one");
 }
 
-/// What all formats share: names, and the camera's file with the first frame.
+/// The part that all formats share: it checks names and writes the camera's file with the first frame.
 class FolderWriter : public FrameWriter {
  public:
   FolderWriter(fs::path root, float units_per_m) : root_(std::move(root)), units_per_m_(units_per_m) {
@@ -117,7 +117,7 @@ class TumWriter final : public FolderWriter {
 
  private:
   std::string file_name(const Frame& frame) override {
-    const int number = ++count_;  // from 1: the time 0 stands for none
+    const int number = ++count_;  // counts from 1, because time 0 means that there is none
     if (frame.time_s != 0.0) return fmt::format("{:.6f}", frame.time_s);
     if (options_.frame_rate) return fmt::format("{:.6f}", number / double{*options_.frame_rate});
     throw Error(fmt::format(

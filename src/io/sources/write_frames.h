@@ -10,35 +10,36 @@
 
 namespace vesalius {
 
-/// Layouts of frames on disk that `open_source` reads back.
+/// Layouts of frames on disk. `open_source` reads all of them.
 enum class FrameFormat {
   folder,  ///< depth/NAME.png (16-bit, millimetres), rgb/NAME.png, meta.json
-  tum,     ///< depth.txt, rgb.txt, depth/TIME.png, rgb/TIME.png, and meta.json for the camera; frames go by their times
+  tum,     ///< depth.txt, rgb.txt, depth/TIME.png, rgb/TIME.png, and meta.json for the camera; TIME names a frame
   pcd      ///< NAME.pcd, organised, and meta.json
 };
 
-/// "folder", "tum" or "pcd"; throws UsageError for another word.
+/// Returns the format that "folder", "tum" or "pcd" names. Throws UsageError for any other word.
 FrameFormat parse_frame_format(std::string_view word);
 
 struct WriteOptions {
   PcdEncoding pcd_encoding = PcdEncoding::binary_compressed;
-  float tum_units_per_m = 5000.F;   ///< 16 bits of the usual 5000 end at 13.1 m
-  std::optional<float> frame_rate;  ///< frames per second, for the times of frames that have none in `tum`
+  float tum_units_per_m = 5000.F;   ///< at the benchmark's 5000, 16 bits reach 13.1 m
+  std::optional<float> frame_rate;  ///< frames per second; gives times to frames without, which `tum` needs
 };
 
-/// Writes frames into a folder, losslessly. Frames of one folder share one camera.
+/// Writes frames into a folder without loss. All frames of one folder share one camera.
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
-  /// Throws Error naming the frame or file: for a name that is no file name or was written before, another camera
-  /// than the first frame's, depth that does not fit the format, a time that the format needs and nobody knows, or a
-  /// file that cannot be written.
+  /// Writes one frame. Throws Error naming the frame or file if its name is not a valid file name or was used before,
+  /// its camera differs from the first frame's, its depth does not fit the format, the format needs a time and the
+  /// frame has none, or a file cannot be written.
   virtual void write(const Frame& frame) = 0;
-  /// Writes what lists all frames; a folder is complete only after it.
+  /// Writes the files that list all frames. The folder is complete only after this call.
   virtual void close() = 0;
 };
 
-/// Makes `folder`; throws Error when it cannot or when it has files in it already.
+/// Creates `folder` and returns a writer for it. Throws Error if the folder cannot be created or already has files in
+/// it.
 std::unique_ptr<FrameWriter> make_frame_writer(FrameFormat format, const std::string& folder,
                                                const WriteOptions& options = {});
 

@@ -46,7 +46,7 @@ void expect_same_pictures(const std::vector<Frame>& got, const std::vector<Frame
   }
 }
 
-TEST(WriteFrames, FromEachFormatToEachBitForBit) {
+TEST(WriteFrames, ConvertsEveryFormatToEveryOtherWithoutLoss) {
   const TemporaryFolder folder;
   const std::vector<Frame> frames = sample_frames();
   constexpr FrameFormat kFormats[] = {FrameFormat::folder, FrameFormat::tum, FrameFormat::pcd};
@@ -64,7 +64,7 @@ TEST(WriteFrames, FromEachFormatToEachBitForBit) {
   }
 }
 
-TEST(WriteFrames, PcdEncodings) {
+TEST(WriteFrames, WritesEveryPcdEncoding) {
   const TemporaryFolder folder;
   for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary, PcdEncoding::binary_compressed}) {
     WriteOptions options;
@@ -75,7 +75,7 @@ TEST(WriteFrames, PcdEncodings) {
   }
 }
 
-TEST(WriteFrames, FramesWithoutColour) {
+TEST(WriteFrames, WritesFramesWithoutColour) {
   const TemporaryFolder folder;
   const std::vector<Frame> frames = {random_frame("a", 1, 20, 10, false)};
   for (const FrameFormat format : {FrameFormat::folder, FrameFormat::tum, FrameFormat::pcd}) {
@@ -86,7 +86,7 @@ TEST(WriteFrames, FramesWithoutColour) {
   }
 }
 
-TEST(WriteFrames, TumKeepsTimes) {
+TEST(WriteFrames, KeepsTimesInTum) {
   const TemporaryFolder folder;
   std::vector<Frame> frames = sample_frames();
   for (std::size_t i = 0; i < frames.size(); ++i) frames[i].time_s = 1305031102.160407 + static_cast<double>(i);
@@ -97,7 +97,7 @@ TEST(WriteFrames, TumKeepsTimes) {
   EXPECT_THAT(get(folder / "out/depth.txt"), HasSubstr("\n1305031102.160407 depth/1305031102.160407.png\n"));
 }
 
-TEST(WriteFrames, TumInventsNoTimes) {
+TEST(WriteFrames, RefusesTumWithoutTimes) {
   const TemporaryFolder folder;
   const auto writer = make_frame_writer(FrameFormat::tum, folder / "out");
   EXPECT_THAT(error_of([&] { writer->write(random_frame("a", 1)); }), HasSubstr("frame a has no time"));
@@ -109,7 +109,7 @@ TEST(WriteFrames, TumInventsNoTimes) {
   EXPECT_EQ(rated.at(2).time_s, 0.3);
 }
 
-TEST(WriteFrames, TumDepthThatDoesNotFitIsAnError) {
+TEST(WriteFrames, RefusesDepthThatDoesNotFitTum) {
   const TemporaryFolder folder;
   Frame frame = random_frame("far", 1);
   frame.depth(0, 0) = 13108;
@@ -121,7 +121,7 @@ TEST(WriteFrames, TumDepthThatDoesNotFitIsAnError) {
   expect_same_pictures(read_all(folder / "b"), {frame});
 }
 
-TEST(WriteFrames, RefusesWhatWouldMixOrMislead) {
+TEST(WriteFrames, RefusesFramesThatDoNotFitTheFolder) {
   const TemporaryFolder folder;
   put(folder / "full/old.png", "x");
   EXPECT_THAT(error_of([&] { make_frame_writer(FrameFormat::folder, folder / "full"); }), HasSubstr("has files in it"));
