@@ -128,7 +128,7 @@ DatasetInfo parse_description(std::string_view text, const std::string& name) {
   if (text_of(json, "hash", name) != hash_text(info)) throw Error(name + ": hash does not fit the other values");
   try {
     check(info);
-  } catch (const Error& e) {  // a plain one: here the file is at fault, not the command line
+  } catch (const Error& e) {  // an Error instead, since the file is at fault and not the command line
     throw Error(fmt::format("{}: {}", name, e.what()));
   }
   return info;

@@ -15,7 +15,8 @@
 namespace vesalius {
 namespace {
 
-// Like PNG's: a text-mode transfer changes it, so the damage is named for what it is.
+// The line ends in it serve the same purpose as PNG's: a text-mode transfer changes them, so this kind of damage can be
+// named.
 constexpr std::string_view kMagic("\x89VSD\r\n\x1a\n", 8);
 constexpr std::size_t kFixedBytes = 8 + 2 + 2 + 4 + 8 + 8 + 8;
 constexpr std::size_t kEntryBytes = 4 + 8;

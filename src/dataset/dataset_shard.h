@@ -15,14 +15,14 @@ inline constexpr int kDatasetVersion = 2;
 /// Throws Error naming `name` for files of another version.
 void check_dataset_version(std::uint64_t version, const std::string& name);
 
-/// Where a frame lies in its shard.
+/// The place of a frame in its shard.
 struct ShardEntry {
   std::uint64_t offset = 0;  ///< bytes from the beginning of the file
   std::uint32_t bytes = 0;
   std::uint64_t checksum = 0;  ///< XXH64, seed 0
 };
 
-/// What the header of a shard says of it.
+/// The header of a shard.
 struct ShardTable {
   std::uint64_t dataset_hash = 0;
   std::uint64_t first = 0;  ///< index of the first frame
@@ -31,26 +31,26 @@ struct ShardTable {
 
 inline constexpr std::uint32_t kMostFramesPerShard = 4096;
 
-/// XXH64, seed 0.
+/// Returns the XXH64 of the bytes with seed 0.
 std::uint64_t checksum_of(std::string_view bytes);
 
-/// The bytes of a shard (docs/formats.md) of encoded frames.
+/// Returns the bytes of a shard (docs/formats.md) that holds these encoded frames.
 std::string serialise_shard(std::uint64_t dataset_hash, std::uint64_t first, const std::vector<std::string>& frames);
 
-/// Bytes that the header of any shard fits in.
+/// The largest size of a shard's header in bytes.
 inline constexpr std::size_t kMostShardHeaderBytes = 48 + 12 * std::size_t{kMostFramesPerShard};
 
-/// Table of a shard whose file has `file_bytes` bytes, from the first kMostShardHeaderBytes of them. Throws Error
-/// naming `name` for a file that is no shard, cut, damaged or of a newer version.
+/// Reads the header of a shard from the first kMostShardHeaderBytes of its file, which has `file_bytes` bytes. Throws
+/// Error naming `name` if the file is not a shard, is truncated, damaged or of a newer version.
 ShardTable parse_shard_table(std::string_view beginning, std::uint64_t file_bytes, const std::string& name);
 
-/// A shard's file, read in parts. All throw Error naming the path.
+/// The file of a shard, read in parts. All functions throw Error naming the path.
 class ShardFile {
  public:
   explicit ShardFile(std::string path);
 
   ShardTable table() const;
-  /// The encoded frame of an entry; Error for one that does not fit its checksum, naming it by `index`.
+  /// Returns the encoded frame of an entry. Throws Error naming the frame by `index` if it does not match its checksum.
   std::string frame(const ShardEntry& entry, std::uint64_t index) const;
 
  private:

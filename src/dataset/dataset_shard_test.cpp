@@ -16,7 +16,7 @@ ShardTable table_of(const std::string& bytes) {
   return parse_shard_table(bytes.substr(0, kMostShardHeaderBytes), bytes.size(), "a.shard");
 }
 
-TEST(Shard, SaysWhereItsFramesLie) {
+TEST(Shard, ListsThePlacesOfItsFrames) {
   const std::string bytes = serialise_shard(0x1234, 512, kFrames);
   const ShardTable table = table_of(bytes);
   EXPECT_EQ(table.dataset_hash, 0x1234U);
@@ -45,7 +45,7 @@ TEST(Shard, NoticesEveryFlippedByte) {
   }
 }
 
-TEST(Shard, NoticesEveryCut) {
+TEST(Shard, NoticesEveryTruncation) {
   const std::string bytes = serialise_shard(1, 0, kFrames);
   EXPECT_THAT(error_of([] { table_of(""); }), HasSubstr("a.shard: cut: 0 bytes"));
   for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -53,7 +53,7 @@ TEST(Shard, NoticesEveryCut) {
   }
 }
 
-TEST(Shard, SaysWhatIsWrong) {
+TEST(Shard, NamesTheReasonOfErrors) {
   const std::string bytes = serialise_shard(1, 0, kFrames);
   EXPECT_THAT(error_of([] { table_of("hello there, this is some text of no meaning at all"); }),
               HasSubstr("no shard of a labelled dataset"));

@@ -15,9 +15,10 @@ namespace vesalius {
 namespace {
 
 constexpr double kMaxChunkBytes = 256.0 * 1048576.0;
-constexpr std::size_t kCacheBytes = std::size_t{32} << 20;  // the library's own 1 MB holds no chunk of pictures
+constexpr std::size_t kCacheBytes = std::size_t{32}
+                                    << 20;  // a chunk of pictures does not fit in the library's default of 1 MB
 
-/// An object of the library, closed at the end.
+/// An object of the library, which the destructor closes.
 class Handle {
  public:
   Handle() = default;
@@ -41,7 +42,7 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-/// While it lives the library does not print its errors: they become an Error's text.
+/// While an object of this class lives, the library does not print its errors; they become the text of an Error.
 class Quiet {
  public:
   Quiet() {
@@ -65,7 +66,7 @@ std::vector<hsize_t> shape_of(const Handle& dataset) {
   return shape;
 }
 
-/// IEEE half floats, as NumPy writes them.
+/// Returns the type of IEEE half floats as NumPy writes them.
 Handle half_float() {
   Handle type(H5Tcopy(H5T_IEEE_F32LE), H5Tclose);
   H5Tset_fields(type.id(), 15, 10, 5, 0, 10);
@@ -74,8 +75,8 @@ Handle half_float() {
   return type;
 }
 
-/// Whether it holds numbers of a usual type. Only these are given to the library to convert: a damaged one, of more
-/// bits than bytes, makes it write past its buffers.
+/// Returns whether a data set holds numbers of a usual type. Only these are passed to the library's conversion: a
+/// damaged type with more bits than its bytes can hold makes it write past its buffers.
 bool has_numbers(const Handle& dataset) {
   const Handle type(H5Dget_type(dataset.id()), H5Tclose);
   const Handle half = half_float();
@@ -85,8 +86,8 @@ bool has_numbers(const Handle& dataset) {
          is(H5T_STD_U64LE);
 }
 
-/// Bytes that have to be unpacked to read any number; 0 where they lie in a row. In floating point: the product of a
-/// damaged file's lengths may be beyond any integer.
+/// Returns the bytes that must be unpacked to read any number; 0 if the data is contiguous. The result is a double
+/// because the product of a damaged file's lengths may exceed any integer.
 double chunk_bytes(const Handle& dataset, std::size_t dimensions) {
   const Handle properties(H5Dget_create_plist(dataset.id()), H5Pclose);
   if (!properties.ok() || H5Pget_layout(properties.id()) != H5D_CHUNKED) return 0.0;
@@ -149,7 +150,7 @@ std::vector<float> Hdf5Array::read(std::size_t row) const {
   const Handle memory(H5Screate_simple(1, &length, nullptr), H5Sclose);
   const Handle space(H5Dget_space(s.dataset.id()), H5Sclose);
   std::vector<float> values(s.row_length);
-  // The library takes a row beyond the last for a selection like any other, until it reads.
+  // The library accepts the selection of a row beyond the last and fails only when it reads.
   if (row >= rows() || !memory.ok() || !space.ok() ||
       H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr) < 0 ||
       H5Dread(s.dataset.id(), H5T_NATIVE_FLOAT, memory.id(), space.id(), H5P_DEFAULT, values.data()) < 0) {

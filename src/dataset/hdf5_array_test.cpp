@@ -11,7 +11,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-TEST(Hdf5Array, RowsOfAnyTypeOfNumber) {
+TEST(Hdf5Array, ReadsRowsOfAnyTypeOfNumber) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.h5";
   {
@@ -33,7 +33,7 @@ TEST(Hdf5Array, RowsOfAnyTypeOfNumber) {
   EXPECT_THAT(test::error_of([&] { flags.read(3); }), HasSubstr("a.h5: flags: row 3 of 3 cannot be read"));
 }
 
-TEST(Hdf5Array, SaysWhatIsWrongAndPrintsNothing) {
+TEST(Hdf5Array, ThrowsErrorsAndPrintsNothing) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.h5";
   {

@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxFrameBytes = std::size_t{1} << 30;
 
-/// What a killed writer left.
+/// Returns whether a file was left by a killed writer.
 bool is_leftover(const std::string& name) {
   return name.find(".shard.tmp") != std::string::npos || name.starts_with("dataset.json.tmp");
 }
 
-/// Removes leftovers; whether anything else is in the folder.
+/// Removes leftovers. Returns whether anything else is in the folder.
 bool tidy(const std::string& folder) {
   bool has_files = false;
   std::error_code error;
@@ -76,7 +76,7 @@ void DatasetWriter::start() {
   }
 }
 
-/// Whether the shard is there and every frame of it fits its checksum.
+/// Returns whether the shard exists and every frame of it matches its checksum.
 bool DatasetWriter::complete(std::uint64_t shard) const {
   const std::string path = shard_path(folder_, shard);
   std::error_code ignored;
@@ -89,7 +89,7 @@ bool DatasetWriter::complete(std::uint64_t shard) const {
     for (const ShardEntry& entry : table.entries) file.frame(entry, index++);
     return true;
   } catch (const Error&) {
-    return false;  // made again
+    return false;  // the shard is written again
   }
 }
 

@@ -26,7 +26,7 @@ void write_missing(DatasetWriter& writer) {
   }
 }
 
-/// A folder with a whole dataset.
+/// A folder with a complete dataset.
 struct Whole {
   test::TemporaryFolder folder;
   explicit Whole(const DatasetInfo& info = small_info()) {
@@ -62,7 +62,7 @@ TEST(Dataset, NamesTheJointsOfItsPeople) {
   EXPECT_THAT(error_of([&] { DatasetWriter(whole.path(), info); }), HasSubstr("another recipe"));
 }
 
-TEST(Dataset, HasTheSameBytesHoweverItWasInterrupted) {
+TEST(Dataset, HasTheSameBytesAfterAnyInterruption) {
   const Whole whole;
   test::TemporaryFolder folder;
   const std::string path = folder / "set";
@@ -70,7 +70,7 @@ TEST(Dataset, HasTheSameBytesHoweverItWasInterrupted) {
     DatasetWriter writer(path, small_info());
     EXPECT_THAT(writer.missing(), ElementsAre(FrameRange{0, 4}, FrameRange{4, 4}, FrameRange{8, 2}));
     for (std::uint64_t i = 4; i < 8; ++i) writer.write(i, random_labelled(i));
-    writer.write(0, random_labelled(0));  // lost: its shard never fills
+    writer.write(0, random_labelled(0));  // this frame is lost, since its shard never fills
   }
   test::put(path + "/000000.shard.tmp123-0", "half a shard of a killed process");
   {
@@ -86,7 +86,7 @@ TEST(Dataset, HasTheSameBytesHoweverItWasInterrupted) {
   EXPECT_EQ(std::distance(fs::directory_iterator(path), {}), 4);
 }
 
-TEST(Dataset, MakesDamagedCutAndForeignShardsAgain) {
+TEST(Dataset, ReplacesDamagedTruncatedAndForeignShards) {
   const Whole whole;
   const Whole other({paper_body().toml, "people = 3\n", 7, 10, 4, test::kJoints});
   std::string damaged = test::get(whole.shard(0));
@@ -101,7 +101,7 @@ TEST(Dataset, MakesDamagedCutAndForeignShardsAgain) {
   for (std::uint64_t i = 0; i < 10; ++i) test::expect_same(reader.read(i), random_labelled(i));
 }
 
-TEST(Dataset, Grows) {
+TEST(Dataset, CanGrow) {
   const Whole whole;
   DatasetWriter writer(whole.path(), small_info(14));
   EXPECT_THAT(writer.missing(), ElementsAre(FrameRange{8, 4}, FrameRange{12, 2}));
@@ -141,13 +141,13 @@ TEST(DatasetWriter, RefusesFoldersThatAreNotItsOwn) {
   EXPECT_THAT(error_of([&] { DatasetWriter(folder / "photos/cat.jpg", small_info()); }), HasSubstr("cat.jpg"));
 }
 
-TEST(DatasetWriter, IsAloneInItsFolder) {
+TEST(DatasetWriter, LocksItsFolder) {
   test::TemporaryFolder folder;
   const DatasetWriter writer(folder / "set", small_info());
   EXPECT_THAT(error_of([&] { DatasetWriter(folder / "set", small_info()); }), HasSubstr("another process is writing"));
 }
 
-TEST(DatasetWriter, RefusesInfoThatCannotBeMeant) {
+TEST(DatasetWriter, RefusesInvalidInfo) {
   test::TemporaryFolder folder;
   EXPECT_THROW(DatasetWriter(folder / "a", small_info(0)), UsageError);
   EXPECT_THROW(DatasetWriter(folder / "a", small_info(10, 0)), UsageError);
@@ -159,7 +159,7 @@ TEST(DatasetWriter, RefusesInfoThatCannotBeMeant) {
               HasSubstr("not UTF-8"));
 }
 
-TEST(DatasetReader, NamesFileAndFrameOfWhatIsWrong) {
+TEST(DatasetReader, NamesTheFileAndTheFrameOfErrors) {
   const auto complaint = [](const std::function<void(const Whole&)>& harm) {
     const Whole whole;
     harm(whole);

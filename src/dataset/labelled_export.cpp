@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Shortest text at a tenth of a millimetre.
+/// Rounds to a tenth of a millimetre, which keeps the text short.
 double rounded(float value) { return std::round(value * 1e4) / 1e4; }
 
 Json point_json(const Eigen::Vector3f& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
@@ -26,7 +26,7 @@ Json point_json(const Eigen::Vector3f& p) { return {rounded(p.x()), rounded(p.y(
 Json parts_json(const std::vector<Eigen::Vector3f>& parts, const BodyModel& body) {
   Json json = Json::object();
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    json[body.parts[p].name] = parts[p].hasNaN() ? Json() : point_json(parts[p]);  // null: the body has no such part
+    json[body.parts[p].name] = parts[p].hasNaN() ? Json() : point_json(parts[p]);  // null: the body lacks the part
   }
   return json;
 }

@@ -10,16 +10,17 @@
 
 namespace vesalius {
 
-/// Writes labelled frames as plain files that any program reads: depth/, rgb/ and meta.json as `open_source` reads
-/// them, labels/NAME.png and person/NAME.png (8-bit, 255 = background), truth/NAME.json (part centres and
+/// Writes labelled frames as plain files that any program can read: depth/, rgb/ and meta.json in the layout of
+/// `open_source`, labels/NAME.png and person/NAME.png (8-bit, 255 = background), truth/NAME.json (part centres and
 /// joints in metres, optical frame), and body.toml, which names the labels.
 class LabelledExporter {
  public:
-  /// Makes `folder`; throws Error when it cannot or when it has files in it already. `joints` names the joints of the
-  /// frames.
+  /// Creates `folder`. Throws Error if it cannot be created or already has files in it. `joints` names the joints of
+  /// the frames.
   LabelledExporter(const std::string& folder, const BodyModel& body, std::vector<std::string> joints = {});
 
-  /// Throws Error as FrameWriter::write does, and for truth that does not fit the frame, the body or the joints.
+  /// Writes one frame. Throws Error as FrameWriter::write does, and if the truth does not fit the frame, the body or
+  /// the joints.
   void write(const LabelledFrame& labelled);
 
  private:

@@ -26,7 +26,7 @@ using Points = std::vector<Eigen::Vector3f>;
 
 constexpr std::size_t kMaxTruthBytes = std::size_t{1} << 24;
 
-/// A point of [x, y, z]; NaN of null where that is allowed.
+/// Reads a point from [x, y, z]. If `or_null` is true, null is allowed and gives NaN.
 Eigen::Vector3f point_of(const Json& json, bool or_null, const std::string& what) {
   if (or_null && json.is_null()) return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
   if (!json.is_array() || json.size() != 3) throw Error(what + ": expected [x, y, z] in metres");

@@ -9,20 +9,22 @@
 
 namespace vesalius {
 
-/// Reads the folders of labelled frames that LabelledExporter writes, in any order. Safe to use from several threads.
+/// Reads a folder that LabelledExporter wrote, its frames in any order. It may be used from several threads.
 class LabelledFolder {
  public:
-  /// Throws Error for a folder without frames, camera (meta.json) or body (body.toml).
+  /// Throws Error if the folder has no frames, no camera (meta.json) or no body (body.toml).
   explicit LabelledFolder(const std::string& folder);
 
   std::uint64_t size() const { return frames_.size(); }
   const BodyModel& body() const { return body_; }
 
-  /// `index` counts in the order of the frames' names and must be below size(). Parts and joints are given to a tenth
-  /// of a millimetre, joints in the order of the file. Throws Error naming the file that cannot be used.
+  /// Returns frame `index` in the order of the frames' names; `index` must be below size(). Parts and joints are given
+  /// to a tenth of a millimetre, and joints have the order of the file. Throws Error naming the file that cannot be
+  /// used.
   LabelledFrame read(std::uint64_t index, bool with_colour = true) const;
 
-  /// Returns an XXH64 over what `read` reads for all frames but colour: equal for equal frames. Reads all files once.
+  /// Returns an XXH64 over everything that `read` reads for all frames, except colour; it is equal for equal frames.
+  /// Reads all files once.
   std::uint64_t content_hash() const;
 
  private:
@@ -33,7 +35,7 @@ class LabelledFolder {
   FrameListReader frames_;
 };
 
-/// Returns whether `path` is such a folder: it has body.toml, depth/, labels/, person/ and truth/.
+/// Returns whether `path` is a folder of labelled frames, which has body.toml, depth/, labels/, person/ and truth/.
 bool is_labelled_folder(const std::string& path);
 
 }  // namespace vesalius

@@ -15,7 +15,7 @@ using test::error_of;
 using test::random_labelled;
 using testing::HasSubstr;
 
-/// A folder of the random frames 1, 2 and 3, the third of which shows nobody.
+/// A folder with the random frames 1, 2 and 3. The third shows nobody.
 struct Exported {
   test::TemporaryFolder folder;
   Exported() {
@@ -45,7 +45,7 @@ void expect_near(const std::vector<std::vector<Eigen::Vector3f>>& a,
   }
 }
 
-TEST(LabelledFolder, GivesBackWhatWasExported) {
+TEST(LabelledFolder, ReadsWhatWasExported) {
   const Exported exported;
   ASSERT_TRUE(is_labelled_folder(exported.path()));
   const LabelledFolder folder(exported.path());
@@ -81,7 +81,7 @@ TEST(LabelledFolder, IsTruthForEvaluation) {
   EXPECT_FALSE(truth->next());
 }
 
-TEST(LabelledFolder, HashesWhatIsInIt) {
+TEST(LabelledFolder, HashesItsContent) {
   const Exported one;
   const Exported two;
   const std::uint64_t hash = LabelledFolder(one.path()).content_hash();
@@ -110,7 +110,7 @@ TEST(LabelledFolder, NamesTheFileThatIsWrong) {
   EXPECT_THAT(complaint(put("/truth/frame_1.json", R"({"people": []})")), HasSubstr("frame frame_1: person"));
 }
 
-TEST(LabelledFolder, IsNoOtherFolder) {
+TEST(LabelledFolder, RefusesOtherFolders) {
   const test::TemporaryFolder folder;
   EXPECT_FALSE(is_labelled_folder(folder.path()));
   EXPECT_FALSE(is_labelled_folder(folder / "nothing"));

@@ -64,8 +64,8 @@ void read_people(ByteReader& in, int part_count, LabelledFrame& labelled) {
   for (int i = 0; joints > 0 && i < people; ++i) labelled.joints.push_back(read_points(in, joints, "joint"));
 }
 
-/// The first value that is neither background nor below `count`. Most often there is none: no early way out of the
-/// loop, so that it runs on vectors.
+/// Returns the first value that is neither background nor below `count`. The loop does not stop early, so that the
+/// compiler can vectorise it; most often there is no such value.
 std::optional<std::uint8_t> first_beyond(const Image<std::uint8_t>& plane, std::size_t count) {
   const auto limit = static_cast<std::uint8_t>(std::min<std::size_t>(count, kBackground));
   const auto beyond = [limit](std::uint8_t value) { return value >= limit && value != kBackground; };

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 constexpr int kParts = 25;
 
-TEST(FrameCodec, GivesBackEveryField) {
+TEST(FrameCodec, KeepsEveryField) {
   for (const bool colour : {true, false}) {
     LabelledFrame labelled = random_labelled(3, colour);
     labelled.frame.time_s = 12.25;
@@ -25,7 +25,7 @@ TEST(FrameCodec, GivesBackEveryField) {
   }
 }
 
-TEST(FrameCodec, LeavesColourOutWhereNotWanted) {
+TEST(FrameCodec, LeavesOutColourIfNotWanted) {
   const LabelledFrame labelled = random_labelled(3);
   const DatasetFrame back = decode_frame(encode_frame({0, 0, labelled}, kParts), kParts, "test", false);
   EXPECT_TRUE(back.labelled.frame.colour.empty());
@@ -68,8 +68,9 @@ TEST(FrameCodec, RefusesTruthThatDoesNotFit) {
   EXPECT_THAT(complaint([](auto& f) { f.parts.resize(255, f.parts[0]); }), HasSubstr("255 people"));
 }
 
-// Without its checksum a damaged frame may decode as another one, but never as one that cannot be.
-TEST(FrameCodec, EndsInAnErrorOrAFrameForEveryDamage) {
+// The checksum is not part of the codec: a damaged frame may decode as another valid frame, but never as an invalid
+// one.
+TEST(FrameCodec, GivesAnErrorOrAValidFrameForEveryDamage) {
   const std::string bytes = encode_frame({1, 2, random_labelled(3)}, kParts);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     for (const int flip : {0x01, 0x80, 0xFF}) {
@@ -88,7 +89,7 @@ TEST(FrameCodec, EndsInAnErrorOrAFrameForEveryDamage) {
   EXPECT_THAT(error_of([&] { decode_frame(bytes + "x", kParts, "test"); }), HasSubstr("expected the end"));
 }
 
-TEST(FrameCodec, RefusesPicturesBeyondTheLimitBeforeTheyAreMade) {
+TEST(FrameCodec, RefusesTooLargePicturesBeforeAllocating) {
   std::string bytes = encode_frame({1, 2, random_labelled(3)}, kParts);
   const std::size_t width_at = 8 + 8 + 1 + 4 + random_labelled(3).frame.name.size() + 8;
   ASSERT_EQ(bytes[width_at], 37);

@@ -33,7 +33,7 @@ class FolderTruth final : public TruthSource {
   TruthFolder truth_;
 };
 
-/// Truth of a DatasetReader or LabelledFolder.
+/// Gives the frames of a DatasetReader or LabelledFolder as truth.
 template <class Reader>
 class LabelledTruth final : public TruthSource {
  public:

@@ -10,12 +10,13 @@
 
 namespace vesalius {
 
-/// Opens frames with their truth: a labelled dataset or a labelled folder (LabelledExporter) with the parts' centres as
-/// joints, under the parts' names; depth maps of ITOP (truth_itop.h); or any source that `open_source` opens and that
-/// TruthFolder knows something about. Gives out the first of every `step` frames. Throws Error as those do.
+/// Opens frames with their truth: a labelled dataset, a folder of labelled frames (LabelledExporter), depth maps of
+/// ITOP (truth_itop.h), or any other source that `open_source` opens and TruthFolder has truth for. The joints of
+/// labelled datasets and folders are the parts' centres under the parts' names. Gives the first of every `step` frames.
+/// Throws Error as those readers do.
 std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step = 1, const SourceOptions& options = {});
 
-/// Returns a labelled frame as truth: joints are the parts' centres, under the parts' names.
+/// Converts a labelled frame to truth. Its joints are the parts' centres under the parts' names.
 TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& part_names);
 
 /// Returns the names of a body's parts, in order.

@@ -15,7 +15,7 @@ std::vector<std::string> names(TruthSource& source) {
   return found;
 }
 
-/// Five frames f0 to f4 with a table of people.
+/// Writes five frames f0 to f4 with a table of people.
 void put_frames(const test::TemporaryFolder& folder) {
   std::string table = "frame,people\n";
   for (int i = 0; i < 5; ++i) {
@@ -27,7 +27,7 @@ void put_frames(const test::TemporaryFolder& folder) {
   test::put(folder / "meta.json", R"({"fx": 5, "fy": 5, "cx": 2.5, "cy": 1.5, "width": 6, "height": 4})");
 }
 
-TEST(OpenTruth, FramesOfAFolder) {
+TEST(OpenTruth, OpensFramesOfAFolder) {
   const test::TemporaryFolder folder;
   put_frames(folder);
   const auto source = open_truth(folder.path());
@@ -40,7 +40,7 @@ TEST(OpenTruth, FramesOfAFolder) {
   EXPECT_THAT(names(*open_truth("folder:" + folder.path())), ElementsAre("f0", "f1", "f2", "f3", "f4"));
 }
 
-TEST(OpenTruth, EveryNthFrame) {
+TEST(OpenTruth, GivesEveryNthFrame) {
   const test::TemporaryFolder folder;
   put_frames(folder);
   const auto source = open_truth(folder.path(), 2);
@@ -49,7 +49,7 @@ TEST(OpenTruth, EveryNthFrame) {
   EXPECT_THROW(open_truth(folder.path(), 0), UsageError);
 }
 
-TEST(OpenTruth, PassesOverADamagedFrame) {
+TEST(OpenTruth, GoesOnAfterADamagedFrame) {
   const test::TemporaryFolder folder;
   put_frames(folder);
   test::put(folder / "depth/f1.png", "no picture");
@@ -59,7 +59,7 @@ TEST(OpenTruth, PassesOverADamagedFrame) {
   EXPECT_THAT(names(*source), ElementsAre("f2", "f3", "f4"));
 }
 
-TEST(OpenTruth, Datasets) {
+TEST(OpenTruth, OpensDatasets) {
   const test::TemporaryFolder folder;
   std::vector<LabelledFrame> frames;
   {
@@ -87,7 +87,7 @@ TEST(OpenTruth, Datasets) {
   EXPECT_FALSE(source->next());
 }
 
-TEST(OpenTruth, NoTruthNoEvaluation) {
+TEST(OpenTruth, RefusesFramesWithoutTruth) {
   const test::TemporaryFolder folder;
   put_frames(folder);
   std::filesystem::remove(folder / "frames.csv");

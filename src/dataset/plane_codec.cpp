@@ -8,16 +8,16 @@
 namespace vesalius {
 namespace {
 
-constexpr int kLevel = 1;  // higher ones gain under 3 % on depth and cost several times the time
+constexpr int kLevel = 1;  // higher levels save less than 3 % of depth and take several times as long
 constexpr std::size_t kValues = 65536;
 constexpr std::size_t kWidestNumber = 3;  // bytes of a varint of at most 2 x 65536
-constexpr unsigned kEscape = 255;         // symbol whose number follows in the wide stream
+constexpr unsigned kEscape = 255;         // this symbol's number is in the wide stream
 
 void write_packed(ByteWriter& out, std::string_view raw) { out.bytes() += pack(raw, kLevel); }
 
 std::size_t pixels(int width, int height) { return std::size_t(width) * height; }
 
-/// What a reading is expected to be: between its neighbours (the median predictor of LOCO-I), holes left out.
+/// Predicts a reading from its neighbours (the median predictor of LOCO-I); holes are left out.
 class Prediction {
  public:
   Prediction(const Image<std::uint16_t>& ranks, int v)
@@ -45,7 +45,7 @@ std::uint8_t predicted_byte(const std::uint8_t* here, const std::uint8_t* above,
   return static_cast<std::uint8_t>((left + (above != nullptr ? above[u] : left)) / 2);
 }
 
-/// A plane of a colour picture less its prediction, modulo 256.
+/// Returns a plane of a colour picture minus its prediction, modulo 256.
 std::string residual(const Image<std::uint8_t>& plane) {
   std::string out(plane.size(), '\0');
   auto next = out.begin();
@@ -70,7 +70,7 @@ Image<std::uint8_t> from_residual(const std::string& residual, int width, int he
   return plane;
 }
 
-/// The values that occur, ascending; holes left out.
+/// Returns the values that occur in ascending order, without holes.
 std::vector<std::uint16_t> values_of(const DepthImage& depth) {
   std::uint16_t largest = 0;
   for (const std::uint16_t value : depth) largest = std::max(largest, value);
@@ -174,7 +174,7 @@ Image<std::uint8_t> read_byte_plane(ByteReader& in, int width, int height) {
   return plane;
 }
 
-// Red and blue mostly follow green: their differences are small.
+// Red and blue mostly follow green, so their differences from it are small.
 void write_colour_plane(ByteWriter& out, const ColourImage& colour) {
   write_packed(out, residual(channel(colour, [](const Rgb& c) { return c.g; })));
   write_packed(out, residual(channel(colour, [](const Rgb& c) { return static_cast<std::uint8_t>(c.r - c.g); })));

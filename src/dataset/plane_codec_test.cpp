@@ -29,7 +29,8 @@ DepthImage round_trip(const DepthImage& depth) {
   return back;
 }
 
-/// A slanted wall with a sphere's noise, as a sensor of 1/8 pixel disparity steps reads it; a fifth are holes.
+/// Returns a slanted wall with a sphere as a noisy sensor with disparity steps of 1/8 pixel reads it; a fifth of the
+/// pixels are holes.
 DepthImage sensed() {
   Random rng(4);
   DepthImage depth(320, 240);
@@ -43,7 +44,7 @@ DepthImage sensed() {
   return depth;
 }
 
-TEST(DepthPlane, ComesBackWhateverItHolds) {
+TEST(DepthPlane, KeepsAnyDepth) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     for (const std::uint32_t bound : {1U, 2U, 3U, 300U, 9000U, 65536U}) {
       const auto depth = random_image<std::uint16_t>(31, 17, bound, seed);
@@ -57,7 +58,7 @@ TEST(DepthPlane, ComesBackWhateverItHolds) {
   EXPECT_EQ(round_trip(sensed()), sensed());
 }
 
-TEST(DepthPlane, ComesBackWhenEveryValueOccurs) {
+TEST(DepthPlane, KeepsDepthInWhichEveryValueOccurs) {
   DepthImage depth(256, 256);
   for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = static_cast<std::uint16_t>((i * 40503U) & 0xFFFFU);
   EXPECT_EQ(round_trip(depth), depth);
@@ -69,7 +70,7 @@ TEST(DepthPlane, TakesLessThanHalfOfAPng) {
   EXPECT_LT(out.bytes().size(), 30000U);  // 76,800 pixels, 16 bits each
 }
 
-TEST(BytePlane, ComesBack) {
+TEST(BytePlane, KeepsEveryByte) {
   const auto labels = random_image<std::uint8_t>(61, 33, 256, 5);
   ByteWriter out;
   write_byte_plane(out, labels);
@@ -79,7 +80,7 @@ TEST(BytePlane, ComesBack) {
   in.expect_end();
 }
 
-TEST(ColourPlane, ComesBackOrIsSkipped) {
+TEST(ColourPlane, CanBeReadOrSkipped) {
   Random rng(6);
   ColourImage colour(45, 22);
   const auto byte = [&] { return static_cast<std::uint8_t>(rng.below(256)); };
@@ -108,7 +109,7 @@ TEST(Planes, RefuseAnotherSizeThanTheirOwn) {
   }
 }
 
-TEST(Planes, AskForNoMoreMemoryThanThePictureNeeds) {
+TEST(Planes, AllocateNoMoreThanThePictureNeeds) {
   ByteWriter bomb;
   bomb.number(std::uint32_t{0xFFFFFFFF});
   bomb.text("not zstd");

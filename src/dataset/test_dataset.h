@@ -5,12 +5,13 @@
 #include "dataset/labelled_dataset.h"
 #include "io/files/test_files.h"
 
-// What the tests of labelled datasets share.
+// Helpers that the tests of labelled datasets share.
 namespace vesalius::test {
 
 inline const std::vector<std::string> kJoints = {"hip", "knee", "foot"};
 
-/// Random depth, colour and truth of two people of the paper's body with kJoints; the second has no neck.
+/// Returns random depth, colour and truth of two people of the paper's body with kJoints; the second person has no
+/// neck.
 inline LabelledFrame random_labelled(std::uint64_t seed, bool colour = true) {
   LabelledFrame labelled;
   labelled.frame = random_frame("frame_" + std::to_string(seed), seed, 37, 23, colour);

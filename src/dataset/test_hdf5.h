@@ -7,7 +7,7 @@
 
 namespace vesalius::test {
 
-/// Half floats, as NumPy writes them.
+/// Returns the type of half floats as NumPy writes them.
 inline hid_t half_float() {
   const hid_t type = H5Tcopy(H5T_IEEE_F32LE);
   H5Tset_fields(type, 15, 10, 5, 0, 10);
@@ -16,7 +16,7 @@ inline hid_t half_float() {
   return type;
 }
 
-/// Writes data sets into a new file; `type` is that in the file, the values are converted.
+/// Writes data sets into a new file. `type` is the type in the file; values are converted to it.
 class Hdf5Writer {
  public:
   explicit Hdf5Writer(const std::string& path)
@@ -25,7 +25,7 @@ class Hdf5Writer {
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
 
-  /// `chunk` empty: in a row.
+  /// An empty `chunk` stores the values contiguously.
   void put(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<float>& values, hid_t type,
            const std::vector<hsize_t>& chunk = {}) {
     const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);

@@ -25,7 +25,7 @@ std::vector<std::string> split(std::string_view line) {
   return cells;
 }
 
-/// A stranger's text, fit for a one-line message.
+/// Makes untrusted text fit for a one-line message.
 std::string shown(std::string_view text) {
   std::string out(text.substr(0, kMaxShown));
   std::ranges::replace_if(

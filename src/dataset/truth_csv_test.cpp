@@ -8,7 +8,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-TEST(CsvTable, CellsByColumn) {
+TEST(CsvTable, GivesCellsByColumn) {
   const CsvTable table = CsvTable::parse(
       "\xef\xbb\xbf"
       "a,b,c\r\n1,,x y\r\n\r\n-2,0.5,\n",
@@ -23,9 +23,9 @@ TEST(CsvTable, CellsByColumn) {
   EXPECT_EQ(table.place(1), "t.csv:4");
 }
 
-TEST(CsvTable, HeaderAlone) { EXPECT_EQ(CsvTable::parse("a,b", "t.csv").rows(), 0U); }
+TEST(CsvTable, MayHaveNoRows) { EXPECT_EQ(CsvTable::parse("a,b", "t.csv").rows(), 0U); }
 
-TEST(CsvTable, SaysWhereItIsWrong) {
+TEST(CsvTable, NamesTheLineOfErrors) {
   const auto error = [](const std::string& text) { return test::error_of([&] { CsvTable::parse(text, "t.csv"); }); };
   EXPECT_EQ(error(""), "t.csv: empty, expected a header with the columns' names");
   EXPECT_EQ(error("a,b\n1,2\n1\n"), "t.csv:3: 1 cells, expected 2 as in the header");
@@ -41,7 +41,7 @@ TEST(CsvTable, SaysWhereItIsWrong) {
   EXPECT_THAT(test::error_of([] { CsvTable::read("/nowhere/t.csv"); }), StartsWith("/nowhere/t.csv: "));
 }
 
-TEST(CsvTable, AForeignCellStaysOnOneLine) {
+TEST(CsvTable, ShowsACellOnOneLineInErrors) {
   const CsvTable table = CsvTable::parse("a\n\x1b[31m\x01" + std::string(500, 'z') + "\n", "t.csv");
   const std::string error = test::error_of([&] { table.number(0, 0); });
   EXPECT_LT(error.size(), 150U);

@@ -32,14 +32,14 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, ignored);
 }
 
-/// A trailing slash would hide the folder's name.
+/// Removes a trailing slash, which would hide the folder's name.
 fs::path plain(const std::string& folder) {
   std::error_code ignored;
   fs::path path = fs::absolute(folder, ignored).lexically_normal();
   return path.has_filename() ? path : path.parent_path();
 }
 
-/// Frames go by their names, with or without the extension of a picture.
+/// Returns the name of a frame; tables may give it with or without the extension of a picture.
 std::string frame_name(const std::string& text) {
   return text.ends_with(".png") ? text.substr(0, text.size() - 4) : text;
 }
@@ -73,7 +73,7 @@ TruthFolder::TruthFolder(const std::string& folder) : folder_(folder) {
   }
 }
 
-/// `set`: rows of other sets do not count; empty = the table has one set only.
+/// Reads the rows of `set`; if it is empty, the table has one set only.
 void TruthFolder::read_people(const std::string& path, const std::string& set) {
   const CsvTable table = CsvTable::read(path);
   const std::size_t frame = table.column("frame");
@@ -141,7 +141,7 @@ FrameTruth TruthFolder::truth_of(const Frame& frame) const {
     throw Error(fmt::format("{}: nothing is known of frame {}, expected it in frames.csv or joints.csv, or its mask",
                             folder_, frame.name));
   }
-  // People without a single pixel: the mask was not made for this frame.
+  // If there are people but the mask has no pixel of them, it was not made for this frame.
   const bool blank = std::ranges::all_of(truth.mask, [](std::uint8_t pixel) { return pixel == 0; });
   if (blank && truth.people != 0) truth.mask = {};
   return truth;

@@ -10,16 +10,16 @@
 
 namespace vesalius {
 
-/// What a folder of frames says about them, apart from the pictures (docs/metrics.md): `frames.csv` in it or beside it
-/// with the number of people and their posture, `mask/*.png` with their pixels, `joints.csv` with one person's joints,
-/// `groundtruth.txt` with the camera's poses (TUM RGB-D), from which it follows whether the camera moved.
+/// The truth that lies beside the pictures of a folder of frames (docs/metrics.md). `frames.csv`, in the folder or one
+/// above it, has the number of people and their posture; `mask/*.png` has their pixels; `joints.csv` has one person's
+/// joints; `groundtruth.txt` has the camera's poses (TUM RGB-D), which tell whether the camera moved.
 class TruthFolder {
  public:
-  /// Throws Error naming file and line for tables that cannot be used, and the folder where there is no truth at all.
+  /// Throws Error naming file and line of a table that cannot be used, and the folder if it has no truth at all.
   explicit TruthFolder(const std::string& folder);
 
-  /// Reads the frame's mask. Throws Error for a mask of another size than the frame's and for a frame of which nothing
-  /// is known.
+  /// Returns the truth of a frame and reads its mask. Throws Error if the mask differs in size from the frame, and if
+  /// nothing is known about the frame.
   FrameTruth truth_of(const Frame& frame) const;
 
  private:
@@ -32,14 +32,14 @@ class TruthFolder {
   };
   std::string folder_;
   bool has_masks_ = false;
-  std::map<std::string, Facts> facts_;  ///< by the frame's name
+  std::map<std::string, Facts> facts_;  ///< by frame name
   std::optional<Trajectory> camera_;
   std::vector<std::string> joint_names_;
-  std::map<std::string, std::vector<Eigen::Vector3f>> joints_;  ///< likewise
+  std::map<std::string, std::vector<Eigen::Vector3f>> joints_;  ///< by frame name
 };
 
-/// Folders of frames that the frames.csv of `folder` names, or that have a joints.csv, in the order of their names;
-/// only `folder` itself where it holds frames. What a collection of sets stands for.
+/// Returns the sets of a collection: the folders of frames that the frames.csv of `folder` names or that have a
+/// joints.csv, in the order of their names. If `folder` itself holds frames, it is the only set.
 std::vector<std::string> sets_in(const std::string& folder);
 
 }  // namespace vesalius

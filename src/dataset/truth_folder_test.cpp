@@ -20,7 +20,7 @@ void put_mask(const std::string& path, int width, int height, std::uint8_t fill)
   test::put(path, encode_png(Image<std::uint8_t>(width, height, fill)));
 }
 
-TEST(TruthFolder, PeopleBesideSeveralSets) {
+TEST(TruthFolder, ReadsPeopleFromATableOfSeveralSets) {
   const test::TemporaryFolder folder;
   test::put(folder / "frames.csv", "set,frame,people,posture,has_rgb\nroom,a,2,sitting,1\nroom,b,0,,1\nhall,a,-1,,1\n");
   test::put(folder / "room/depth/a.png", "");
@@ -32,14 +32,14 @@ TEST(TruthFolder, PeopleBesideSeveralSets) {
   EXPECT_THAT(test::error_of([&] { room.truth_of(frame("c")); }), HasSubstr("nothing is known of frame c"));
 }
 
-TEST(TruthFolder, PeopleInTheFolderItself) {
+TEST(TruthFolder, ReadsPeopleFromATableInTheFolder) {
   const test::TemporaryFolder folder;
   test::put(folder / "set/frames.csv", "frame,people\na.png,3\n");
   test::put(folder / "frames.csv", "set,frame,people\nset,a,1\n");
   EXPECT_EQ(TruthFolder(folder / "set").truth_of(frame("a")).people, 3);
 }
 
-TEST(TruthFolder, Masks) {
+TEST(TruthFolder, ReadsMasks) {
   const test::TemporaryFolder folder;
   test::put(folder / "frames.csv", "frame,people\na,1\nblank,1\nempty,0\n");
   put_mask(folder / "mask/a.png", 4, 3, 4);
@@ -48,14 +48,14 @@ TEST(TruthFolder, Masks) {
   put_mask(folder / "mask/only.png", 4, 3, 255);
   const TruthFolder truth(folder.path());
   EXPECT_EQ(truth.truth_of(frame("a")).mask, Mask(4, 3, 1));
-  EXPECT_TRUE(truth.truth_of(frame("blank")).mask.empty());  // a person without pixels: nobody made it
+  EXPECT_TRUE(truth.truth_of(frame("blank")).mask.empty());  // a person without pixels: the mask was not made
   EXPECT_EQ(truth.truth_of(frame("empty")).mask, Mask(4, 3, 0));
   EXPECT_EQ(truth.truth_of(frame("only")).people, -1);
   EXPECT_THAT(test::error_of([&] { truth.truth_of(frame("a", 8, 6)); }),
               HasSubstr("mask/a.png: 4x3 pixels, expected those of the frame, 8x6"));
 }
 
-TEST(TruthFolder, Joints) {
+TEST(TruthFolder, ReadsJoints) {
   const test::TemporaryFolder folder;
   test::put(folder / "joints.csv",
             "frame,joint,x_m,y_m,z_m,u_px\na.png,head,0.1,-0.5,2.5,3\na.png,hand,0.2,0,2,4\nb.png,hand,1,2,3,5\n");
@@ -69,7 +69,7 @@ TEST(TruthFolder, Joints) {
   EXPECT_EQ(b.joints[0][1], Eigen::Vector3f(1, 2, 3));
 }
 
-TEST(TruthFolder, WhetherTheCameraMoves) {
+TEST(TruthFolder, TellsWhetherTheCameraMoves) {
   const test::TemporaryFolder folder;
   test::put(folder / "frames.csv", "frame,people\na,1\n");
   EXPECT_EQ(TruthFolder(folder.path()).truth_of(frame("a")).camera_motion, CameraMotion::unknown);
@@ -85,7 +85,7 @@ TEST(TruthFolder, WhetherTheCameraMoves) {
   EXPECT_EQ(motion_at(0.0), CameraMotion::unknown);
 }
 
-TEST(TruthFolder, SaysWhatIsMissingOrWrong) {
+TEST(TruthFolder, NamesMissingAndWrongFiles) {
   const test::TemporaryFolder folder;
   const auto error = [&](const std::string& file, const std::string& text) {
     test::put(folder / file, text);
@@ -110,7 +110,7 @@ TEST(TruthFolder, SaysWhatIsMissingOrWrong) {
               HasSubstr("joints.csv:3: joint head of frame a comes twice"));
 }
 
-TEST(SetsIn, FoldersThatTheTableNamesOrThatHaveJoints) {
+TEST(SetsIn, FindsFoldersOfTheTableAndThoseWithJoints) {
   const test::TemporaryFolder folder;
   test::put(folder / "frames.csv", "set,frame,people\nroom_10,a,1\nroom_9,a,1\ngone,a,1\n");
   test::put(folder / "room_10/depth/a.png", "");
@@ -122,7 +122,7 @@ TEST(SetsIn, FoldersThatTheTableNamesOrThatHaveJoints) {
   EXPECT_THAT(sets_in("/nowhere"), ElementsAre("/nowhere"));
 }
 
-TEST(SetsIn, NoneOfThemThere) {
+TEST(SetsIn, FindsNoneOfTheTablesFolders) {
   const test::TemporaryFolder folder;
   test::put(folder / "frames.csv", "set,frame,people\ngone,a,1\n");
   EXPECT_THAT(test::error_of([&] { sets_in(folder.path()); }), HasSubstr("none of the sets"));

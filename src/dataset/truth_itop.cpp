@@ -19,7 +19,7 @@ constexpr std::size_t kWidth = 320;
 constexpr std::size_t kHeight = 240;
 constexpr std::size_t kMaxRows = 10'000'000;
 constexpr float kFarthest_m = 100.F;
-/// The data set's own conversion of pixels to metres: x = (u - 160) z 0.0035, y = (120 - v) z 0.0035, y up.
+/// The data set converts pixels to metres by x = (u - 160) z 0.0035, y = (120 - v) z 0.0035, with y up.
 constexpr float kMetresPerPixel = 0.0035F;
 
 constexpr std::array<const char*, 15> kJoints{"head",    "neck",   "r_shoulder", "l_shoulder", "r_elbow",
@@ -35,7 +35,7 @@ DepthImage to_depth(const std::vector<float>& metres) {
   std::ranges::transform(metres, depth.begin(), [](float m) -> std::uint16_t {
     const float mm = std::round(m * 1000.F);
     const bool held = mm >= 1.F && mm <= static_cast<float>(std::numeric_limits<std::uint16_t>::max());
-    return held ? static_cast<std::uint16_t>(mm) : std::uint16_t{0};  // also where it is no number
+    return held ? static_cast<std::uint16_t>(mm) : std::uint16_t{0};  // NaN gives 0 too
   });
   return depth;
 }
@@ -97,7 +97,8 @@ class ItopTruth final : public TruthSource {
     return joints;
   }
 
-  /// Parts are numbered from 0, the background is -1; without a single pixel it was not made.
+  /// Reads the mask of a row. Parts are numbered from 0 and the background is -1; if no pixel has a part, there is no
+  /// mask.
   Mask read_mask(std::size_t row) const {
     const std::vector<float> parts = segmentation_.read(row);
     Mask mask(kWidth, kHeight);
@@ -105,7 +106,7 @@ class ItopTruth final : public TruthSource {
     return std::ranges::find(mask, std::uint8_t{1}) == mask.end() ? Mask{} : mask;
   }
 
-  std::string path_;  ///< of the labels
+  std::string path_;  ///< path of the labels' file
   Hdf5Array depth_;
   Hdf5Array joints_;
   Hdf5Array segmentation_;

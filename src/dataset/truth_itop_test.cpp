@@ -13,8 +13,8 @@ using ::testing::IsEmpty;
 
 constexpr std::size_t kPixels = 320 * 240;
 
-/// Files of `rows` frames in the form of ITOP; the second is not valid. Frame r: a wall at r + 2 m with a person of
-/// part 3 on its first r pixels, joint j at (0.1 j, 1, 2.5).
+/// Files of `rows` frames in the form of ITOP; the second frame is not valid. Frame r shows a wall at r + 2 m, its
+/// first r pixels have part 3, and joint j is at (0.1 j, 1, 2.5).
 struct Files {
   test::TemporaryFolder folder;
   std::string depth = folder / "ITOP_side_test_depth_map.h5";
@@ -46,7 +46,7 @@ struct Files {
   }
 };
 
-TEST(Itop, FramesWithPersonJointsAndMask) {
+TEST(Itop, ReadsPersonJointsAndMask) {
   const Files files(3);
   ASSERT_TRUE(is_itop(files.depth));
   const auto source = open_truth(files.depth);
@@ -59,7 +59,7 @@ TEST(Itop, FramesWithPersonJointsAndMask) {
   for (const int u : {1, 2, 3}) EXPECT_EQ(first->frame.depth(u, 0), 0) << u;
   EXPECT_EQ(first->frame.depth(319, 239), 1500);
   EXPECT_EQ(first->truth.people, 1);
-  EXPECT_TRUE(first->truth.mask.empty());  // nobody marked anything there
+  EXPECT_TRUE(first->truth.mask.empty());  // no pixel is marked
   const auto third = source->next();
   EXPECT_EQ(third->frame.name, "000002");
   EXPECT_EQ(third->truth.mask(1, 0), 1);
@@ -71,8 +71,8 @@ TEST(Itop, FramesWithPersonJointsAndMask) {
   EXPECT_FALSE(source->next());
 }
 
-/// The file's metres and pixels are related by its own formula; ours must give the same pixel.
-TEST(Itop, CameraSeesJointsWhereTheFilesSay) {
+/// The data set relates metres and pixels by its own formula; our camera must give the same pixel.
+TEST(Itop, CameraProjectsJointsAsTheDataSetDoes) {
   const Files files(1);
   const auto frame = open_itop(files.depth, 1)->next();
   const Eigen::Vector2f pixel = frame->frame.camera.pixel({0.7F, -0.35F, 2.F});  // y up: 0.35
@@ -80,7 +80,7 @@ TEST(Itop, CameraSeesJointsWhereTheFilesSay) {
   EXPECT_NEAR(pixel.y(), 120.F - 0.35F / (0.0035F * 2.F), 1e-3F);
 }
 
-TEST(Itop, StepCountsFramesThatAreLeft) {
+TEST(Itop, StepCountsValidFramesOnly) {
   const Files files(5);
   const auto source = open_itop(files.depth, 2);
   EXPECT_EQ(source->size(), 2);
@@ -88,7 +88,7 @@ TEST(Itop, StepCountsFramesThatAreLeft) {
   EXPECT_EQ(source->next()->frame.name, "000003");
 }
 
-TEST(Itop, FilesThatDoNotFit) {
+TEST(Itop, RefusesFilesThatDoNotFit) {
   const auto error = [](const Files& files) { return test::error_of([&] { open_truth(files.depth); }); };
   EXPECT_THAT(error(Files(2, 3)), HasSubstr("_labels.h5: 3 rows, expected 2 as in the depth maps"));
   EXPECT_THAT(error(Files(1, 1, 14)),

@@ -8,18 +8,18 @@
 
 namespace vesalius {
 
-/// Frames with their truth, one after the other.
+/// A sequence of frames with their truth.
 class TruthSource {
  public:
   virtual ~TruthSource() = default;
-  /// Returns the next frame, or nothing at the end. Throws Error for one that cannot be read; the next call passes over
-  /// it.
+  /// Returns the next frame, or nothing at the end. Throws Error if the frame cannot be read; the next call then
+  /// continues after it.
   virtual std::optional<TrueFrame> next() = 0;
-  /// Returns the number of frames in all, -1 where it is not known.
+  /// Returns the total number of frames, or -1 if it is not known.
   virtual int size() const = 0;
-  /// Returns what a user should know, one line each.
+  /// Returns remarks for the user, one line each.
   virtual std::vector<std::string> notes() const { return {}; }
-  /// Returns the names of the parts that labels are numbers of; none where there are no labels.
+  /// Returns the names of the parts; labels are indices into them. The list is empty if there are no labels.
   virtual std::vector<std::string> part_names() const { return {}; }
 };
 
