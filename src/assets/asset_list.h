@@ -9,33 +9,34 @@
 namespace vesalius {
 
 struct AssetFile {
-  std::string path;  ///< below the folder of its package; see stays_inside()
+  std::string path;  ///< relative to the package's folder; stays_inside() holds
   FileDigest digest;
 };
 
-/// Files that `vesalius assets` fetches together (data/assets.toml).
+/// Files that `vesalius assets` fetches together. data/assets.toml lists them.
 struct AssetPackage {
-  std::string name;     ///< letters, digits, '_' and '-'; the folder that its files are kept in
+  std::string name;     ///< letters, digits, '_' and '-'; also the name of its folder
   std::string licence;  ///< one line
-  std::string credit;   ///< one line: whom to name
-  std::string page;     ///< address for people
-  /// Addresses that hold the files by their paths, tried in turn; may be none.
+  std::string credit;   ///< one line that names the authors
+  std::string page;     ///< address of a page about the package
+  /// Addresses that hold the files by their paths, tried in turn. There may be none.
   std::vector<std::string> homes;
-  AssetFile archive;  ///< holds `name`/`path` for each of the files
+  AssetFile archive;  ///< contains each file as `name`/`path`
   std::vector<AssetFile> files;
 
   /// Returns the size of all files together.
   std::uint64_t bytes() const;
 };
 
-/// Returns the packages that this program knows.
+/// Returns the packages that this program can fetch.
 const std::vector<AssetPackage>& asset_packages();
 
-/// Returns the package of this name. Throws UsageError, which lists the known names, where there is none.
+/// Returns the package of this name. Throws UsageError, which lists the known names, if there is no such package.
 const AssetPackage& asset_package(std::string_view name);
 
-/// Parses a list of packages; `name` stands for the path in errors. Throws Error with the line for bad TOML, an unknown
-/// or missing key, a value of another type, a name or path twice, a path that leads outside and a malformed SHA-256.
+/// Parses a list of packages; `name` is used as the path in errors. Throws Error with the line for invalid TOML, an
+/// unknown or missing key, a value of another type, a repeated name or path, a path that leads outside the folder and a
+/// malformed SHA-256.
 std::vector<AssetPackage> parse_asset_list(std::string_view toml, const std::string& name);
 
 }  // namespace vesalius

@@ -45,7 +45,7 @@ TEST(AssetList, ReadsAPackage) {
   EXPECT_EQ(packages[0].bytes(), 7U);
 }
 
-TEST(AssetList, RefusesWithTheLine) {
+TEST(AssetList, NamesTheLineOfErrors) {
   const auto error = [](const std::string& from, const std::string& to) {
     return test::error_of([&] { parse_asset_list(list_with(from, to), "l.toml"); });
   };
@@ -64,7 +64,7 @@ TEST(AssetList, RefusesWithTheLine) {
               HasSubstr("this name is used twice"));
 }
 
-TEST(AssetList, KnowsItsPackages) {
+TEST(AssetList, ContainsThePackagesOfTheProgram) {
   const AssetPackage& makehuman = asset_package("makehuman");
   EXPECT_THAT(makehuman.files, Contains(Field(&AssetFile::path, "makehuman/data/3dobjs/base.obj")));
   EXPECT_FALSE(makehuman.homes.empty());

@@ -28,23 +28,24 @@ std::string variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// A folder that one installation works in, and its place for what has no name yet.
+/// The folder of one installation, with a place for files that have no final name yet.
 class Workplace {
  public:
   explicit Workplace(const std::string& folder) : unfinished_(folder + "/" + kUnfinished) {
     std::error_code error;
     for (fs::path path = fs::path(folder).lexically_normal(); !path.empty() && !fs::exists(path, error);
          path = path.parent_path()) {
-      if (path.has_filename()) made_.push_back(path);  // not so "D/", which names D again
+      if (path.has_filename()) made_.push_back(path);  // "D/" is skipped, since it names D again
     }
     lock_.emplace(folder);
-    clear();  // what a killed one left
+    clear();  // removes what a killed installation left
     fs::create_directory(unfinished_, error);
     if (error) throw Error(fmt::format("{}: cannot be written: {}", folder, error.message()));
   }
   ~Workplace() {
     clear();
-    // What this one made goes again where nothing got into it; a folder with files in it cannot be removed so.
+    // Folders that this installation made are removed if they are still empty; a folder with files in it cannot be
+    // removed this way.
     for (const fs::path& path : made_) {
       if (::rmdir(path.c_str()) != 0) break;
     }
@@ -61,11 +62,11 @@ class Workplace {
   }
 
   std::string unfinished_;
-  std::vector<fs::path> made_;      ///< folders that were not there, innermost first
-  std::optional<FolderLock> lock_;  ///< once it is known which folders are made
+  std::vector<fs::path> made_;      ///< folders that this installation made, innermost first
+  std::optional<FolderLock> lock_;  ///< taken after `made_` is known
 };
 
-/// One package on its way into a folder.
+/// The installation of one package into a folder.
 class Installation {
  public:
   Installation(const AssetPackage& package, const std::string& folder, const InstallWatch& watch, FetchOptions options)
@@ -126,7 +127,7 @@ class Installation {
         if (!origin->get(prefix + file.path, *target)) continue;
         target->commit();
         return;
-      } catch (const WrongBytes& e) {  // another release of the package: the next home may have this one
+      } catch (const WrongBytes& e) {  // this home has another release; the next may have the right one
         if (refused.empty()) refused = fmt::format("{}: {}", origin->place_of(prefix + file.path), e.what());
       }
     }
@@ -177,7 +178,7 @@ class Installation {
 
   const AssetPackage& package_;
   std::string folder_;
-  std::string root_;  ///< of the package
+  std::string root_;  ///< folder of the package
   std::optional<Workplace> workplace_;
   const InstallWatch& watch_;
   FetchOptions options_;

@@ -24,7 +24,7 @@ FileDigest digest_of(std::string_view bytes) {
   return {bytes.size(), sum.finish()};
 }
 
-/// A made-up package, a folder that mirrors it and one to install it in.
+/// An invented package, a folder that mirrors it and a folder in which to install it.
 class Assets : public testing::Test {
  protected:
   Assets() {
@@ -54,7 +54,7 @@ class Assets : public testing::Test {
   std::string error_from(const std::string& from) const {
     return test::error_of([&] { install(from); });
   }
-  /// All of the package and nothing else is there.
+  /// Expects that the whole package is there, and nothing else.
   void expect_installed() const {
     EXPECT_TRUE(has_assets(package_, home()));
     std::size_t found = 0;
@@ -77,7 +77,7 @@ class Assets : public testing::Test {
   std::string archive_;
 };
 
-TEST_F(Assets, FromAnArchive) {
+TEST_F(Assets, InstallFromAnArchive) {
   mirror_archive();
   EXPECT_FALSE(has_assets(package_, home()));
   const InstallReport first = install(mirror());
@@ -90,13 +90,13 @@ TEST_F(Assets, FromAnArchive) {
   EXPECT_EQ(install(mirror()).kept, 4U) << "nothing left to fetch";
 }
 
-TEST_F(Assets, FromFiles) {
+TEST_F(Assets, InstallFromFiles) {
   mirror_files();
   EXPECT_EQ(install(mirror()).fetched, 4U);
   expect_installed();
 }
 
-TEST_F(Assets, FromAMirrorOnTheWeb) {
+TEST_F(Assets, InstallFromAMirrorOnTheWeb) {
   mirror_files();
   TestServer server([&](const std::string& path) {
     return fs::exists(mirror() + path) ? Reply{200, test::get(mirror() + path)} : Reply{404, ""};
@@ -112,9 +112,9 @@ TEST_F(Assets, FromAMirrorOnTheWeb) {
   EXPECT_EQ(server.requests().size(), 6U) << "the archive alone";
 }
 
-TEST_F(Assets, FromHomesInTurn) {
+TEST_F(Assets, InstallFromHomesInTurn) {
   TestServer other([&](const std::string& path) {
-    if (path == "/sub/z") return Reply{200, "lost"};  // the same size, another sum
+    if (path == "/sub/z") return Reply{200, "lost"};  // the same size, but another digest
     return path == "/a.txt" ? Reply{200, "another release"} : answer_from_home()(path);
   });
   TestServer right(answer_from_home());
@@ -123,7 +123,7 @@ TEST_F(Assets, FromHomesInTurn) {
   expect_installed();
 }
 
-TEST_F(Assets, SaysWhatNoHomeHolds) {
+TEST_F(Assets, NameTheFileThatNoHomeHas) {
   TestServer other([&](const std::string& path) {
     return path == "/sub/z" ? Reply{200, "lost"} : answer_from_home()(path);
   });
@@ -138,7 +138,7 @@ TEST_F(Assets, SaysWhatNoHomeHolds) {
   EXPECT_THAT(error_from(""), HasSubstr("p: no public address holds these files, expected a mirror with p.tar.xz"));
 }
 
-TEST_F(Assets, RefusesWrongBytes) {
+TEST_F(Assets, RefuseWrongBytes) {
   test::put(mirror() + "/p.tar.xz", archive_ + "x");
   EXPECT_THAT(error_from(mirror()), HasSubstr("p.tar.xz: "));
   std::string flipped = archive_;
@@ -156,7 +156,7 @@ TEST_F(Assets, RefusesWrongBytes) {
   EXPECT_THAT(error_from(mirror()), HasSubstr("mirror/p/sub/z: not found"));
 }
 
-TEST_F(Assets, LeaveNoEmptyFolderWhenNothingCame) {
+TEST_F(Assets, LeaveNoEmptyFolderIfNothingWasFetched) {
   EXPECT_NE(error_from(folder_ / "nowhere"), "");
   EXPECT_FALSE(fs::exists(home()));
   FetchOptions options;
@@ -169,7 +169,7 @@ TEST_F(Assets, LeaveNoEmptyFolderWhenNothingCame) {
   EXPECT_TRUE(fs::exists(home())) << "it was there before";
 }
 
-TEST_F(Assets, RefusesArchivesThatDoNotFit) {
+TEST_F(Assets, RefuseArchivesThatDoNotMatchThePackage) {
   const auto with_archive = [&](const std::vector<test::ArchiveEntry>& entries) {
     fs::remove_all(home());
     fs::create_directories(mirror());
@@ -184,7 +184,7 @@ TEST_F(Assets, RefusesArchivesThatDoNotFit) {
   EXPECT_FALSE(fs::exists(home() + "/p"));
 }
 
-TEST_F(Assets, MendsWhatDiffersAndKeepsTheRest) {
+TEST_F(Assets, RepairDamagedFilesAndKeepTheOthers) {
   mirror_archive();
   install(mirror());
   test::put(home() + "/p/a.txt", "eno");
@@ -196,7 +196,7 @@ TEST_F(Assets, MendsWhatDiffersAndKeepsTheRest) {
   expect_installed();
 }
 
-TEST_F(Assets, TellsHowFarItIs) {
+TEST_F(Assets, ReportProgress) {
   mirror_files();
   std::uint64_t last = 0;
   std::uint64_t total = 0;
@@ -216,7 +216,7 @@ TEST_F(Assets, TellsHowFarItIs) {
   EXPECT_FALSE(fs::exists(home() + "/p/sub/large"));
 }
 
-TEST_F(Assets, OneAtATime) {
+TEST_F(Assets, AreInstalledByOneProcessAtATime) {
   mirror_archive();
   fs::create_directories(home());
   const int other = ::open(home().c_str(), O_RDONLY | O_DIRECTORY);
@@ -226,7 +226,7 @@ TEST_F(Assets, OneAtATime) {
   EXPECT_EQ(install(mirror()).fetched, 4U);
 }
 
-TEST_F(Assets, SaysWhatCannotBeWritten) {
+TEST_F(Assets, NameAFolderThatCannotBeWritten) {
   mirror_archive();
   test::put(home(), "a file where the folder should be");
   EXPECT_THAT(error_from(mirror()), HasSubstr("home: folder cannot be made: "));

@@ -34,7 +34,7 @@ std::string without_slashes(std::string text) {
   return text;
 }
 
-/// An address without "user:password@".
+/// Returns an address without "user:password@".
 std::string without_password(const std::string& address) {
   const std::size_t host = address.find("://") + 3;
   const std::size_t end = std::min(address.find('/', host), address.size());
@@ -48,7 +48,7 @@ int hex_value(char c) {
   return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-/// Folder of a file:// address.
+/// Decodes the folder of a file:// address.
 std::string unescaped(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -60,7 +60,7 @@ std::string unescaped(std::string_view text) {
   return out;
 }
 
-/// A path as part of an address.
+/// Encodes a path as part of an address.
 std::string escaped(std::string_view path) {
   std::string out;
   for (const char c : path) {
@@ -71,7 +71,7 @@ std::string escaped(std::string_view path) {
   return out;
 }
 
-/// What a transfer shares with libcurl's callbacks, which no exception may pass.
+/// State that a transfer shares with libcurl's callbacks. No exception may pass through those.
 struct Transfer {
   VerifiedFile& file;
   const FetchOptions& options;
@@ -96,7 +96,7 @@ int ask_to_go_on(void* user, curl_off_t /*total*/, curl_off_t /*now*/, curl_off_
   return transfer.stopped ? 1 : 0;
 }
 
-/// Whether the same request may succeed a moment later.
+/// Returns whether the same request may succeed a moment later.
 bool passing(CURLcode code, long status) {
   switch (code) {
     case CURLE_OK:
@@ -120,7 +120,7 @@ bool passing(CURLcode code, long status) {
 
 }  // namespace
 
-/// One connection, kept for the next file.
+/// One connection. It is kept for the next file.
 class Origin::Server {
  public:
   Server(std::string address, const FetchOptions& options) : address_(std::move(address)), options_(options) {
@@ -129,7 +129,7 @@ class Origin::Server {
     if (!handle_) throw Error("libcurl cannot be used on this system");
     set(CURLOPT_NOSIGNAL, 1L);
     set(CURLOPT_FAILONERROR, 1L);
-    set(CURLOPT_FOLLOWLOCATION, 1L);  // libcurl follows to the web only, never to a file
+    set(CURLOPT_FOLLOWLOCATION, 1L);  // libcurl follows only to the web, never to a file
     set(CURLOPT_MAXREDIRS, kMaxRedirects);
     set(CURLOPT_ACCEPT_ENCODING, "");
     set(CURLOPT_USERAGENT, "vesalius");
@@ -229,7 +229,7 @@ bool Origin::copy(const std::string& path, VerifiedFile& file) const {
   const auto fail = [&](int error) {
     throw Error(fmt::format("{}: cannot be read: {}", from, std::generic_category().message(error)));
   };
-  // Not blocking: opening a pipe nobody writes to would wait for ever.
+  // O_NONBLOCK is needed because opening a pipe that nobody writes to would wait for ever.
   const Descriptor in(::open(from.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!in.is_open() && (errno == ENOENT || errno == ENOTDIR)) return false;
   struct stat info {};

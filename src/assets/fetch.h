@@ -10,30 +10,30 @@
 namespace vesalius {
 
 struct FetchOptions {
-  double connect_s = 20.0;    ///< time a server has to answer at all
-  double stall_s = 30.0;      ///< time a transfer may stay below 100 bytes a second
-  int tries = 4;              ///< attempts for each file where a server or the way to it fails
+  double connect_s = 20.0;    ///< time within which a server must answer
+  double stall_s = 30.0;      ///< time for which a transfer may stay below 100 bytes a second
+  int tries = 4;              ///< attempts for each file if the server or the network fails
   double first_wait_s = 1.0;  ///< pause before the second try; each later pause is twice as long
-  /// Is called several times a second with the bytes of the file at hand so far; by returning false it ends the
-  /// transfer with an Error.
+  /// This function is called several times a second with the bytes of the current file so far. If it returns false, the
+  /// transfer ends with an Error.
   std::function<bool(std::uint64_t bytes)> go_on;
 };
 
-/// A place that files are fetched from: a folder, or an address that begins with http://, https:// or file://.
+/// A place from which files are fetched: a folder, or an address that begins with http://, https:// or file://.
 class Origin {
  public:
-  /// Throws UsageError for an address of another kind and for a folder that is not there.
+  /// Throws UsageError for any other kind of address and for a folder that does not exist.
   explicit Origin(const std::string& place, FetchOptions options = {});
   ~Origin();
   Origin(const Origin&) = delete;
   Origin& operator=(const Origin&) = delete;
 
-  /// Writes the file `path`, for which stays_inside() holds, of this place to `file` and returns true; returns false
-  /// where there is no such file. The caller commits. Throws Error with the address where the file cannot be had, and
-  /// what `file` throws.
+  /// Writes the file `path` of this place to `file` and returns true; returns false if there is no such file.
+  /// stays_inside(path) must hold, and the caller has to commit `file`. Throws Error with the address if the file
+  /// cannot be fetched, and passes on what `file` throws.
   bool get(const std::string& path, VerifiedFile& file);
 
-  /// Returns where `path` is looked for, to be shown in messages: without a password in the address.
+  /// Returns the place of `path` for messages; a password in the address is left out.
   std::string place_of(const std::string& path) const;
 
  private:

@@ -30,7 +30,7 @@ FetchOptions hasty() {
   return options;
 }
 
-/// What comes from a place; nullopt where there is nothing.
+/// Fetches a file from a place and returns its bytes, or nullopt if there is no such file.
 std::optional<std::string> fetched(const std::string& place, const std::string& path = "f",
                                    const FetchOptions& options = hasty(), const std::string& expected = kText) {
   const test::TemporaryFolder folder;
@@ -41,7 +41,7 @@ std::optional<std::string> fetched(const std::string& place, const std::string& 
   return test::get(folder / "out");
 }
 
-TEST(Fetch, FromFolders) {
+TEST(Fetch, ReadsFromFolders) {
   const test::TemporaryFolder folder;
   test::put(folder / "sub dir/f %", kText);
   EXPECT_EQ(fetched(folder.path(), "sub dir/f %"), kText);
@@ -59,7 +59,7 @@ TEST(Fetch, RefusesOtherPlaces) {
   EXPECT_THAT(test::error_of([] { Origin("file:///no/such/folder"); }), HasSubstr("no such folder"));
 }
 
-TEST(Fetch, FromServers) {
+TEST(Fetch, ReadsFromServers) {
   TestServer server([](const std::string& path) {
     return path.ends_with("none") ? Reply{404, "not here"} : Reply{200, kText};
   });
@@ -68,7 +68,7 @@ TEST(Fetch, FromServers) {
   EXPECT_EQ(fetched(server.address(), "none"), std::nullopt);
 }
 
-TEST(Fetch, FollowsToTheWebOnly) {
+TEST(Fetch, FollowsRedirectionsOnlyToTheWeb) {
   const test::TemporaryFolder folder;
   test::put(folder / "f", kText);
   TestServer server([&](const std::string& path) {
@@ -82,7 +82,7 @@ TEST(Fetch, FollowsToTheWebOnly) {
   EXPECT_THAT(test::error_of([&] { fetched(server.address() + "/round"); }), HasSubstr("redirects"));
 }
 
-TEST(Fetch, TriesAgainWhatMayPass) {
+TEST(Fetch, RetriesAfterPassingErrors) {
   TestServer busy([asked = 0](const std::string&) mutable {
     return ++asked < 3 ? Reply{503, "later"} : Reply{200, kText};
   });
@@ -100,7 +100,7 @@ TEST(Fetch, TriesAgainWhatMayPass) {
   EXPECT_EQ(shut.requests().size(), 1U);
 }
 
-TEST(Fetch, EndsSilentTransfers) {
+TEST(Fetch, EndsStalledTransfers) {
   TestServer server([&](const std::string&) { return Reply{200, kText, "", 5, true}; });
   FetchOptions options = hasty();
   options.tries = 1;
@@ -110,7 +110,7 @@ TEST(Fetch, EndsSilentTransfers) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
-TEST(Fetch, EndsWhenAsked) {
+TEST(Fetch, StopsWhenAsked) {
   TestServer server([&](const std::string&) { return Reply{200, kText, "", 5, true}; });
   FetchOptions options = hasty();
   options.stall_s = 600;
@@ -124,7 +124,7 @@ TEST(Fetch, EndsWhenAsked) {
   EXPECT_THAT(test::error_of([&] { fetched(busy.address(), "f", options); }), HasSubstr("/f: interrupted"));
 }
 
-TEST(Fetch, TakesNoMoreThanExpected) {
+TEST(Fetch, StopsAfterMoreBytesThanExpected) {
   const std::string endless(1 << 22, 'x');
   TestServer server([&](const std::string&) { return Reply{200, endless}; });
   EXPECT_THROW(fetched(server.address()), WrongBytes);
@@ -133,7 +133,7 @@ TEST(Fetch, TakesNoMoreThanExpected) {
   EXPECT_THROW(fetched(folder.path()), WrongBytes);
 }
 
-TEST(Fetch, NamesNoPassword) {
+TEST(Fetch, ShowsNoPassword) {
   TestServer server([&](const std::string&) { return Reply{500, ""}; });
   std::string address = server.address();
   address.insert(address.find("//") + 2, "user:secret@");
@@ -142,7 +142,7 @@ TEST(Fetch, NamesNoPassword) {
   EXPECT_THAT(message, testing::Not(HasSubstr("secret")));
 }
 
-TEST(Fetch, SaysThatNobodyAnswers) {
+TEST(Fetch, NamesAServerThatDoesNotAnswer) {
   std::string address;
   {
     address = TestServer([](const std::string&) { return Reply{}; }).address();

@@ -54,7 +54,7 @@ std::string sha256_of_file(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw Error(path + ": not a regular file");  // a pipe would block
+    throw Error(path + ": not a regular file");  // reading a pipe would block
   }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"), std::fclose);
   if (!file) fail(path, errno);

@@ -6,7 +6,7 @@
 
 namespace vesalius {
 
-/// SHA-256 (FIPS 180-4) of bytes that come in pieces.
+/// Computes the SHA-256 (FIPS 180-4) of bytes that are given in pieces.
 class Sha256 {
  public:
   Sha256();
@@ -15,7 +15,7 @@ class Sha256 {
   Sha256& operator=(const Sha256&) = delete;
 
   void update(std::string_view bytes);
-  /// Returns the digest as 64 lower-case hexadecimal digits. Bytes that come afterwards begin a new one.
+  /// Returns the digest as 64 lower-case hexadecimal digits. Bytes that are added afterwards begin a new digest.
   std::string finish();
 
  private:

@@ -9,18 +9,18 @@
 #include <string_view>
 #include <vector>
 
-// Archives that the tests of io make, good and bad.
+// Good and bad archives for tests.
 namespace vesalius::test {
 
 inline constexpr unsigned kHardLink = 0;
 
 struct ArchiveEntry {
   std::string path;
-  std::string content;       ///< of a file; of a link where it leads
+  std::string content;       ///< bytes of a file, or target of a link
   unsigned type = AE_IFREG;  ///< AE_IFREG and the like, or kHardLink
 };
 
-/// Writes a tar, compressed as the name says (.tar, .tar.xz, .tar.gz); gives the path.
+/// Writes a tar file, compressed as its name says (.tar, .tar.xz, .tar.gz). Returns the path.
 inline std::string write_archive(const std::string& path, const std::vector<ArchiveEntry>& entries) {
   const std::unique_ptr<archive, decltype(&archive_write_free)> out(archive_write_new(), archive_write_free);
   const auto check = [&](int result) {

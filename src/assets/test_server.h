@@ -15,20 +15,20 @@
 #include <thread>
 #include <vector>
 
-// A web server on loopback for tests, as bad as a test wants it.
+// A web server on the loopback interface for tests. It misbehaves as a test demands.
 namespace vesalius::test {
 
 struct Reply {
   int status = 200;
   std::string body;
-  std::string headers = {};             ///< further ones, each with "\r\n"
+  std::string headers = {};             ///< additional headers, each ending with "\r\n"
   std::size_t cut = std::string::npos;  ///< hangs up after this many bytes of the body
-  bool stall = false;                   ///< keeps silent after the body instead, until the server ends
+  bool stall = false;                   ///< sends nothing after the body, but keeps the connection open
 };
 
 class TestServer {
  public:
-  /// Answers each request for a path, one after the other, on a thread of its own.
+  /// Answers requests one after the other on a thread of its own.
   using Answer = std::function<Reply(const std::string& path)>;
 
   explicit TestServer(Answer answer) : answer_(std::move(answer)), listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -51,7 +51,7 @@ class TestServer {
   TestServer(const TestServer&) = delete;
   TestServer& operator=(const TestServer&) = delete;
 
-  /// Paths asked for so far.
+  /// Returns the paths requested so far.
   std::vector<std::string> requests() const {
     const std::lock_guard lock(mutex_);
     return requests_;
@@ -61,7 +61,7 @@ class TestServer {
  private:
   static constexpr int kPoll_ms = 20;
 
-  /// Whether there is something to read (or accept) before the server ends.
+  /// Waits until there is something to read or accept and returns true; returns false when the server ends.
   bool readable(int fd) const {
     while (!stop_) {
       pollfd waiting{fd, POLLIN, 0};

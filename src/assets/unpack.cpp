@@ -17,7 +17,7 @@ constexpr std::size_t kMaxShown = 80;
 
 using Archive = std::unique_ptr<struct archive, decltype(&archive_read_free)>;
 
-/// Text of a stranger's archive, fit for a one-line message.
+/// Makes text from an untrusted archive fit for a one-line message.
 std::string printable(std::string_view text) {
   std::string out(text.substr(0, kMaxShown));
   std::ranges::replace_if(
@@ -34,7 +34,7 @@ class Reader {
     check(archive_read_open_filename(archive_.get(), path.c_str(), kBlock));
   }
 
-  /// The next entry; null at the end.
+  /// Returns the next entry, or null at the end.
   archive_entry* next() {
     archive_entry* entry = nullptr;
     const int result = archive_read_next_header(archive_.get(), &entry);
@@ -69,7 +69,8 @@ class Reader {
   Archive archive_{archive_read_new(), archive_read_free};
 };
 
-/// Path of an entry, without the "/" at the end of a folder's and the "./" that some archives begin with.
+/// Returns the path of an entry without the "/" at the end of a folder's path and the "./" at the beginning that some
+/// archives have.
 std::string checked_path(const Reader& reader, archive_entry* entry) {
   const char* raw = archive_entry_pathname(entry);
   if (raw == nullptr) reader.fail("an entry without a readable name");

@@ -26,7 +26,7 @@ Files unpacked(const std::string& archive, const std::string& unwanted = "") {
   return files;
 }
 
-TEST(Unpack, GivesWhatIsWanted) {
+TEST(Unpack, GivesTheWantedFiles) {
   const test::TemporaryFolder folder;
   std::string large;
   for (int i = 0; i < 300'000; ++i) large += static_cast<char>(i % 1000 * (i % 251));
@@ -38,7 +38,7 @@ TEST(Unpack, GivesWhatIsWanted) {
   }
 }
 
-TEST(Unpack, RefusesWhatLeadsOutside) {
+TEST(Unpack, RefusesPathsThatLeadOutside) {
   const test::TemporaryFolder folder;
   for (const char* path : {"/etc/passwd", "../up", "p/../../up", "p//q", "p/./q", "..", "p\\q", "p\nq"}) {
     const std::string archive = write_archive(folder / "bad.tar", {{path, "x"}});
@@ -67,7 +67,7 @@ TEST(Unpack, RefusesDamagedArchives) {
   EXPECT_THAT(test::error_of([&] { unpacked(folder / "none"); }), HasSubstr("cannot be unpacked"));
 }
 
-TEST(StaysInside, TellsPathsApart) {
+TEST(StaysInside, HoldsOnlyForPathsBelowTheFolder) {
   for (const char* good : {"a", "a/b", ".part", "a..b/c", "..a", "a b"}) EXPECT_TRUE(stays_inside(good)) << good;
   for (const char* bad : {"", "/", "/a", "a/", "a//b", ".", "./a", "a/.", "..", "../a", "a/..", "a/../b", "a\tb"}) {
     EXPECT_FALSE(stays_inside(bad)) << bad;

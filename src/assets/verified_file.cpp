@@ -57,7 +57,7 @@ void VerifiedFile::commit() {
   if (sum != expected_.sha256) {
     throw WrongBytes(fmt::format("{}: SHA-256 of what came is {}, expected {}", path_, sum, expected_.sha256));
   }
-  // Some file systems say only here that the disk is full.
+  // Some file systems report a full disk only here.
   if (const int error = file_.close()) fail(error);
   std::error_code error;
   fs::create_directories(fs::path(path_).parent_path(), error);

@@ -10,38 +10,39 @@
 
 namespace vesalius {
 
-/// Is thrown for bytes that are not the ones asked for: too many, too few, or others.
+/// This error says that bytes are not the expected ones: there are too many or too few, or the digest differs.
 class WrongBytes : public Error {
  public:
   using Error::Error;
 };
 
-/// What a file must be.
+/// The size and digest that a file must have.
 struct FileDigest {
   std::uint64_t bytes = 0;
-  std::string sha256;  ///< 64 small hexadecimal digits
+  std::string sha256;  ///< 64 lower-case hexadecimal digits
 };
 
-/// Returns whether a regular file of this size and SHA-256 is there. Throws Error where it cannot be read.
+/// Returns whether `path` is a regular file of this size and SHA-256. Throws Error if it cannot be read.
 bool holds(const std::string& path, const FileDigest& expected);
 
-/// A file that gets its final name only once size and SHA-256 are right. Until then its bytes lie under another name of
-/// the same file system, which the destructor removes.
+/// A file that gets its final name only if its size and SHA-256 are right. Until then its bytes have another name on
+/// the same file system; the destructor removes them.
 class VerifiedFile {
  public:
-  /// Throws Error with the path and the system's reason where it cannot be made. A file under the other name is
-  /// replaced.
+  /// Creates the file under its unfinished name and replaces a file that has that name. Throws Error with the path and
+  /// the system's reason if it cannot.
   VerifiedFile(std::string path, std::string unfinished_path, FileDigest expected);
   ~VerifiedFile();
   VerifiedFile(const VerifiedFile&) = delete;
   VerifiedFile& operator=(const VerifiedFile&) = delete;
 
-  /// Throws WrongBytes, before writing, once there are more than expected; Error where the disk takes no more.
+  /// Appends bytes. Throws WrongBytes before writing if there are more than expected, and Error if the disk does not
+  /// take them.
   void write(std::string_view bytes);
-  /// Removes what was written, so that the file begins anew.
+  /// Removes what was written, to begin again.
   void restart();
-  /// Makes the folders on the way and gives the file its name. Throws WrongBytes where size or sum differ, Error where
-  /// it cannot.
+  /// Creates missing folders and gives the file its name. Throws WrongBytes if the size or digest differs, and Error if
+  /// the file system refuses.
   void commit();
 
   const std::string& path() const { return path_; }

@@ -18,7 +18,7 @@ FileDigest digest_of(std::string_view bytes) {
   return {bytes.size(), sum.finish()};
 }
 
-TEST(VerifiedFile, AppearsWholeAndOnlyAtTheEnd) {
+TEST(VerifiedFile, AppearsOnlyWhenComplete) {
   const test::TemporaryFolder folder;
   VerifiedFile file(folder / "a/b/final", folder / "part", digest_of("hello world"));
   file.write("wrong");
@@ -54,7 +54,7 @@ TEST(VerifiedFile, RefusesOtherBytesAndKeepsTheOldFile) {
   EXPECT_EQ(test::get(path), "abc");
 }
 
-TEST(VerifiedFile, SaysWhyItCannotBeWritten) {
+TEST(VerifiedFile, NamesTheReasonIfItCannotBeWritten) {
   const test::TemporaryFolder folder;
   test::put(folder / "file", "");
   EXPECT_THAT(test::error_of([&] { VerifiedFile(folder / "f", folder / "none/part", digest_of("abc")); }),
@@ -67,8 +67,8 @@ TEST(VerifiedFile, SaysWhyItCannotBeWritten) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
-// A limit on the size of files stands for a full disk: both end a write with a reason.
-TEST(VerifiedFile, SaysThatTheDiskIsFull) {
+// A limit on the size of files stands in for a full disk, since both make a write fail with a reason.
+TEST(VerifiedFile, ReportsAFullDisk) {
   const test::TemporaryFolder folder;
   const std::string bytes(1 << 16, 'x');
   rlimit before{};
