@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.42;
-constexpr int kLegibleWidth = 480;  // below, the font would take more than a fifteenth of the picture's height
+constexpr int kLegibleWidth = 480;  // in narrower pictures the font takes more than a fifteenth of the height
 constexpr int kPadding = 3;
 
 bool is_light(Rgb colour) { return 0.299 * colour.r + 0.587 * colour.g + 0.114 * colour.b > 140.0; }

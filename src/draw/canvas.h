@@ -7,7 +7,7 @@
 
 namespace vesalius {
 
-/// Returns the factor by which pictures of this width are enlarged, so that text on them is legible.
+/// Returns the factor by which a picture of this width is enlarged so that text on it is legible.
 int legible_scale(int width);
 
 /// Returns the picture with every pixel repeated `scale` x `scale` times.
@@ -20,21 +20,21 @@ Image<T> enlarge(const Image<T>& image, int scale) {
   return result;
 }
 
-/// Returns the colour of `over` laid on `under` with an opacity of `weight`, 0-1.
+/// Returns the colour of `over` drawn on `under` with the opacity `weight`, 0-1.
 Rgb mix(Rgb under, Rgb over, float weight);
 
-/// Returns the picture's own pixels for OpenCV, in RGB order; they live as long as `image`.
+/// Returns the picture's own pixels for OpenCV, in RGB order. They are valid as long as `image` lives.
 cv::Mat view(ColourImage& image);
 cv::Scalar scalar(Rgb colour);
 
-/// Height of a line of text and its plate, pixels.
+/// Height of a line of text with its background plate, in pixels.
 inline constexpr int kTextRow = 17;
 int text_width(const std::string& text);
 
-/// Draws one line of text (ASCII) whose lower left corner is pixel (u, v); what leaves the picture is cut off.
+/// Draws one line of text (ASCII) with its lower left corner at pixel (u, v). Parts outside the picture are cut off.
 void draw_text(ColourImage& image, const std::string& text, int u, int v, Rgb colour);
 
-/// Draws text on a plate of colour `plate`, in black or white, whichever is legible on it. Both are moved into the
+/// Draws text on a background of colour `plate`, in black or white, whichever is more legible. Both are moved into the
 /// picture as far as they fit.
 void draw_tag(ColourImage& image, const std::string& text, int u, int v, Rgb plate);
 

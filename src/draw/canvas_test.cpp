@@ -25,14 +25,14 @@ TEST(Enlarge, RepeatsEveryPixel) {
   EXPECT_EQ(enlarge(image, 1), image);
 }
 
-TEST(LegibleScale, DoublesSmallPicturesOnly) {
+TEST(LegibleScale, DoublesOnlySmallPictures) {
   EXPECT_EQ(legible_scale(320), 2);
   EXPECT_EQ(legible_scale(479), 2);
   EXPECT_EQ(legible_scale(480), 1);
   EXPECT_EQ(legible_scale(1920), 1);
 }
 
-TEST(Mix, GoesFromUnderToOver) {
+TEST(Mix, BlendsFromUnderToOver) {
   const Rgb under{0, 100, 200}, over{200, 100, 0};
   EXPECT_EQ(mix(under, over, 0.F), under);
   EXPECT_EQ(mix(under, over, 1.F), over);
@@ -50,21 +50,21 @@ TEST(DrawTag, StaysInsideThePicture) {
   for (const auto& [u, v] : {std::pair{-500, -500}, {500, 500}, {10, 30}}) {
     ColourImage image(120, 60);
     draw_tag(image, "0: 0.87", u, v, plate);
-    // The whole plate is there: its area less the ink.
+    // The plate is complete: its area minus the text has its colour.
     const auto plates = std::count(image.begin(), image.end(), plate);
     EXPECT_GT(plates, (text_width("0: 0.87") * kTextRow) / 2) << u << " " << v;
     EXPECT_TRUE(has(image, {0, 0, 0}));
   }
 }
 
-TEST(DrawTag, InkContrastsWithPlate) {
+TEST(DrawTag, DrawsTextInContrastToThePlate) {
   ColourImage image(120, 60, {9, 9, 9});
   draw_tag(image, "IIIII", 10, 40, {0, 0, 60});
   const auto brightest = std::max_element(image.begin(), image.end(), [](Rgb a, Rgb b) { return a.g < b.g; });
   EXPECT_GT(brightest->g, 150);
 }
 
-TEST(DrawTag, SurvivesPicturesSmallerThanText) {
+TEST(DrawTag, WorksOnPicturesSmallerThanText) {
   ColourImage image(4, 3);
   draw_tag(image, "0: 0.87", 1, 1, {255, 0, 0});
   EXPECT_TRUE(has(image, {255, 0, 0}));

@@ -26,7 +26,7 @@ LabelledFrame labelled(bool colour) {
   return frame;
 }
 
-TEST(ContactSheet, HoldsDepthColourAndLabelsOfEveryFrame) {
+TEST(ContactSheet, ShowsDepthColourAndLabelsOfEveryFrame) {
   const std::vector<LabelledFrame> frames(5, labelled(true));
   const ColourImage sheet = contact_sheet(frames, one_part(), 2, 64);
   const auto count = [&](Rgb colour) { return std::count(sheet.begin(), sheet.end(), colour); };
@@ -35,7 +35,7 @@ TEST(ContactSheet, HoldsDepthColourAndLabelsOfEveryFrame) {
   EXPECT_EQ(sheet.height() / 3 >= 48, true);
 }
 
-TEST(ContactSheet, LeavesOutColourWhereThereIsNone) {
+TEST(ContactSheet, LeavesOutMissingColour) {
   const ColourImage with = contact_sheet({labelled(true)}, one_part(), 1, 64);
   const ColourImage without = contact_sheet({labelled(false)}, one_part(), 1, 64);
   EXPECT_EQ(with.width() - without.width(), 64);

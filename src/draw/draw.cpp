@@ -25,7 +25,7 @@ struct DepthRange {
   int near_mm = 0;
   int far_mm = 0;
 
-  /// 0 at the near end, 1 at the far end.
+  /// Returns 0 at the near end of the range and 1 at the far end.
   float place(int depth_mm) const {
     if (far_mm == near_mm) return 0.F;
     const float t = static_cast<float>(depth_mm - near_mm) / static_cast<float>(far_mm - near_mm);
@@ -59,7 +59,7 @@ std::array<Rgb, 256> turbo_colours() {
   return colours;
 }
 
-/// Grey from near (lighter) to far (darker), dark enough for part colours to stand out; holes black.
+/// Draws depth in grey from near (lighter) to far (darker), dark enough for part colours to stand out. Holes are black.
 ColourImage dark_depth(const DepthImage& depth) {
   const DepthRange range = depth_range(depth);
   ColourImage picture(depth.width(), depth.height());
@@ -71,7 +71,7 @@ ColourImage dark_depth(const DepthImage& depth) {
   return picture;
 }
 
-/// The picture with the parts' names beside it, in columns as tall as it.
+/// Returns the picture with the parts' names beside it, in columns as tall as the picture.
 ColourImage with_legend(const ColourImage& picture, const BodyModel& body) {
   constexpr int kSwatch = 12;
   constexpr int kMargin = 6;
@@ -92,7 +92,7 @@ ColourImage with_legend(const ColourImage& picture, const BodyModel& body) {
   return result;
 }
 
-/// Tints the pixels of the mask and outlines them on their own side.
+/// Tints the pixels of the mask and draws its outline on pixels of the mask.
 void draw_mask(ColourImage& picture, const Mask& mask, Rgb colour) {
   const auto inside = [&mask](int u, int v) { return mask.contains(u, v) && mask(u, v) != 0; };
   for (int v = 0; v < mask.height(); ++v) {
@@ -104,11 +104,11 @@ void draw_mask(ColourImage& picture, const Mask& mask, Rgb colour) {
   }
 }
 
-/// Where a part's centre lies on the canvas, in 1/16 pixel; nothing where it cannot be drawn.
+/// Returns the position of a part's centre on the canvas in 1/16 pixel, or nothing if it cannot be drawn.
 std::optional<cv::Point> place_on_canvas(const SkeletonPart& part, const Camera& camera, int scale) {
   if (part.state == State::none || !part.centre.allFinite() || part.centre.z() <= 0.F) return std::nullopt;
   const Eigen::Vector2f pixel = camera.pixel(part.centre);
-  // Further out than a picture's size nothing of a disc or a plausible link would show, and integers overflow.
+  // Farther outside than the picture's size, no disc or plausible link would show, and integers would overflow.
   const auto near = [](float at, int size) {
     return at > -static_cast<float>(size) && at < 2.F * static_cast<float>(size);
   };
@@ -181,7 +181,7 @@ ColourImage draw_depth(const DepthImage& depth) {
   ColourImage picture(depth.width(), depth.height());
   for (std::size_t i = 0; i < depth.size(); ++i) {
     if (depth[i] == 0) continue;
-    // Turbo's two ends are nearly black; its middle nine tenths are not.
+    // The two ends of the Turbo colour map are nearly black; the middle nine tenths are not.
     picture[i] = colours[std::lround(243.F - 230.F * range.place(depth[i]))];
   }
   return picture;

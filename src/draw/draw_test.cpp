@@ -47,7 +47,7 @@ void put(Person& person, const Frame& frame, int part, float u, float v, State s
 
 long count(const ColourImage& image, Rgb colour) { return std::count(image.begin(), image.end(), colour); }
 
-TEST(DrawDepth, HolesAreBlackAndNothingElse) {
+TEST(DrawDepth, DrawsOnlyHolesInBlack) {
   DepthImage depth(40, 30);
   for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = static_cast<std::uint16_t>(i % 3 == 0 ? 0 : 500 + i);
   const ColourImage picture = draw_depth(depth);
@@ -55,7 +55,7 @@ TEST(DrawDepth, HolesAreBlackAndNothingElse) {
   for (std::size_t i = 0; i < depth.size(); ++i) EXPECT_EQ(picture[i] == (Rgb{0, 0, 0}), depth[i] == 0) << i;
 }
 
-TEST(DrawDepth, NearIsWarmFarIsCold) {
+TEST(DrawDepth, DrawsNearWarmAndFarCold) {
   DepthImage depth(100, 10);
   for (int v = 0; v < 10; ++v)
     for (int u = 0; u < 100; ++u) depth(u, v) = static_cast<std::uint16_t>(1000 + 10 * u);
@@ -64,7 +64,7 @@ TEST(DrawDepth, NearIsWarmFarIsCold) {
   EXPECT_GT(picture(85, 5).b, 2 * picture(85, 5).r);
 }
 
-TEST(DrawDepth, OutliersDoNotStretchTheRange) {
+TEST(DrawDepth, IgnoresOutliersInTheRange) {
   DepthImage depth(100, 10);
   for (int v = 0; v < 10; ++v)
     for (int u = 0; u < 100; ++u) depth(u, v) = static_cast<std::uint16_t>(1000 + 10 * u);
@@ -77,13 +77,13 @@ TEST(DrawDepth, OutliersDoNotStretchTheRange) {
   EXPECT_EQ(with_outliers(0, 5), plain(0, 0));
 }
 
-TEST(DrawDepth, FlatEmptyAndBlankPictures) {
+TEST(DrawDepth, DrawsFlatEmptyAndBlankPictures) {
   EXPECT_TRUE(draw_depth(DepthImage()).empty());
   EXPECT_EQ(count(draw_depth(DepthImage(8, 8)), {0, 0, 0}), 64);
   EXPECT_EQ(count(draw_depth(DepthImage(8, 8, 1500)), {0, 0, 0}), 0);
 }
 
-TEST(DrawLabels, PartColoursOverDarkDepth) {
+TEST(DrawLabels, DrawsPartColoursOverDarkDepth) {
   const BodyModel body = three_parts();
   DepthImage depth(640, 480, 3000);
   depth(1, 1) = 1000;
@@ -101,7 +101,7 @@ TEST(DrawLabels, PartColoursOverDarkDepth) {
   EXPECT_GT(picture(100, 100).r, 0);
 }
 
-TEST(DrawLabels, LegendShowsEveryPartBesideTheUntouchedPicture) {
+TEST(DrawLabels, DrawsTheLegendBesideThePicture) {
   BodyModel body = three_parts();
   for (int i = 0; i < 40; ++i)  // more than one column
     body.parts.push_back({.name = "part" + std::to_string(i), .colour = {static_cast<std::uint8_t>(100 + i), 3, 200}});
@@ -115,7 +115,7 @@ TEST(DrawLabels, LegendShowsEveryPartBesideTheUntouchedPicture) {
   for (const BodyPart& part : body.parts) EXPECT_GE(count(legend, part.colour), 100) << part.name;
 }
 
-TEST(DrawLabels, SmallPicturesAreDoubled) {
+TEST(DrawLabels, DoublesSmallPictures) {
   const BodyModel body = three_parts();
   const DepthImage depth(320, 240, 3000);
   LabelImage labels(320, 240, kBackground);
@@ -125,7 +125,7 @@ TEST(DrawLabels, SmallPicturesAreDoubled) {
   ASSERT_EQ(picture.height(), 480);
   EXPECT_EQ(count(picture, body.parts[1].colour), 4);
   EXPECT_EQ(picture(15, 19), body.parts[1].colour);
-  // A legend fits any picture, be it lower than one line of text.
+  // A legend fits any picture, even one that is lower than a line of text.
   const ColourImage tiny = draw_labels(LabelImage(4, 3, kBackground), DepthImage(4, 3, 900), body, true);
   for (const BodyPart& part : body.parts) EXPECT_GE(count(tiny, part.colour), 100) << part.name;
 }
@@ -137,7 +137,7 @@ TEST(DrawLabels, RefusesLabelsOfAnotherSizeOrBody) {
               ThrowsMessage<Error>(HasSubstr("label 3")));
 }
 
-TEST(DrawPeople, NobodyLeavesTheColourUntouched) {
+TEST(DrawPeople, LeavesColourUntouchedWithoutPeople) {
   Frame frame = plain_frame(640, 480);
   frame.colour(3, 4) = {1, 2, 3};
   EXPECT_EQ(draw_people(frame, {}, three_parts()), frame.colour);
@@ -145,7 +145,7 @@ TEST(DrawPeople, NobodyLeavesTheColourUntouched) {
   EXPECT_EQ(draw_people(frame, {}, three_parts()), draw_depth(frame.depth));
 }
 
-TEST(DrawPeople, OutlineLiesWhereTheMaskEnds) {
+TEST(DrawPeople, OutlinesTheMask) {
   const Frame frame = plain_frame(640, 480);
   const BodyModel body = three_parts();
   Person person = person_of(frame, body);
@@ -164,7 +164,7 @@ TEST(DrawPeople, OutlineLiesWhereTheMaskEnds) {
   EXPECT_EQ(picture(320, 200), frame.colour(320, 200));
 }
 
-TEST(DrawPeople, PeopleDifferInColour) {
+TEST(DrawPeople, DrawsPeopleInDifferentColours) {
   const Frame frame = plain_frame(640, 480);
   const BodyModel body = three_parts();
   std::vector<Person> people(2, person_of(frame, body));
@@ -174,12 +174,12 @@ TEST(DrawPeople, PeopleDifferInColour) {
   EXPECT_NE(picture(100, 300), picture(500, 300));
 }
 
-TEST(DrawPeople, ObservedPartsAreDiscsPredictedOnesRings) {
+TEST(DrawPeople, DrawsObservedPartsAsDiscsAndPredictedOnesAsRings) {
   const Frame frame = plain_frame(640, 480);
   const BodyModel body = three_parts();
   Person person = person_of(frame, body);
   put(person, frame, 0, 200.F, 200.F, State::observed);
-  put(person, frame, 2, 400.F, 300.F, State::predicted);  // not linked to part 0: no line through its centre
+  put(person, frame, 2, 400.F, 300.F, State::predicted);  // not linked to part 0, so no line goes through its centre
   const ColourImage picture = draw_people(frame, {person}, body);
   EXPECT_EQ(picture(200, 200), body.parts[0].colour);
   EXPECT_EQ(picture(400, 300), frame.colour(400, 300));
@@ -188,7 +188,7 @@ TEST(DrawPeople, ObservedPartsAreDiscsPredictedOnesRings) {
   EXPECT_GT(bluish, 8);
 }
 
-TEST(DrawPeople, LinksJoinPartsThatArePresent) {
+TEST(DrawPeople, LinksOnlyPartsThatArePresent) {
   const Frame frame = plain_frame(640, 480);
   const BodyModel body = three_parts();
   Person person = person_of(frame, body);
@@ -209,7 +209,7 @@ TEST(DrawPeople, LinksJoinPartsThatArePresent) {
   EXPECT_EQ(lit(draw_people(frame, {person}, body)), 0);
 }
 
-TEST(DrawPeople, SmallFramesAreDoubledWithTheirSkeletons) {
+TEST(DrawPeople, DoublesSmallFramesWithTheirSkeletons) {
   const Frame frame = plain_frame(320, 240);
   const BodyModel body = three_parts();
   Person person = person_of(frame, body);
@@ -221,7 +221,7 @@ TEST(DrawPeople, SmallFramesAreDoubledWithTheirSkeletons) {
   EXPECT_EQ(picture(400, 300), body.parts[1].colour);
 }
 
-TEST(DrawPeople, DrawsNoPartWhoseCentreIsNotInView) {
+TEST(DrawPeople, LeavesOutPartsWhoseCentreIsNotInView) {
   const Frame frame = plain_frame(64, 48);
   const BodyModel body = three_parts();
   Person person = person_of(frame, body);
