@@ -31,7 +31,7 @@ bool is_number(std::string_view cell) {
   return !cell.empty() && cell.front() >= '0' && cell.front() <= '9';
 }
 
-/// Of each column, whether its cells below the header are numbers or empty, and at least one is a number.
+/// Returns for each column whether its cells below the header are numbers or empty and at least one is a number.
 std::vector<bool> number_columns(const std::vector<std::vector<std::string>>& rows) {
   std::vector<bool> numbers(rows.front().size(), false);
   for (std::size_t column = 0; column < numbers.size(); ++column) {
@@ -69,7 +69,7 @@ std::string markdown_table(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-/// Fenced by more backticks than the text has in a row.
+/// Returns a listing, fenced by more backticks than occur in a row in the text.
 std::string markdown_listing(const std::string& text) {
   std::size_t longest = 2;
   std::size_t run = 0;

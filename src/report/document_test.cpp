@@ -16,7 +16,7 @@ using ::testing::ThrowsMessage;
 const std::string kSvg = "<svg></svg>";
 const std::string kPng = "\x89PNG\r\n\x1a\n";
 
-TEST(EscapeText, Base64AgreesWithRfc4648) {
+TEST(EscapeText, EncodesBase64AsInRfc4648) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
   EXPECT_EQ(base64("fo"), "Zm8=");
@@ -25,12 +25,12 @@ TEST(EscapeText, Base64AgreesWithRfc4648) {
   EXPECT_EQ(base64(std::string("\xff\xfe\x00", 3)), "//4A");
 }
 
-TEST(EscapeText, HtmlMarkupBecomesText) {
+TEST(EscapeText, TurnsHtmlMarkupIntoText) {
   EXPECT_EQ(escape_html("<a href=\"x\">&</a>"), "&lt;a href=&quot;x&quot;&gt;&amp;&lt;/a&gt;");
   EXPECT_EQ(escape_html(std::string("a\x1b[0m\n\tb")), "a [0m\n\tb");
 }
 
-TEST(EscapeText, MarkdownMarkupBecomesText) {
+TEST(EscapeText, TurnsMarkdownMarkupIntoText) {
   EXPECT_EQ(escape_markdown("a|b *c* `d` [e](f) <g>"), "a\\|b \\*c\\* \\`d\\` \\[e\\](f) \\<g\\>");
   EXPECT_EQ(escape_markdown("# 1"), "\\# 1");
   EXPECT_EQ(escape_markdown("- 1"), "\\- 1");
@@ -70,7 +70,7 @@ TEST(Document, IsOnePageOfHtmlWithItsPictures) {
   EXPECT_THAT(page, Not(HasSubstr("http")));  // opens offline
 }
 
-TEST(Document, PictureFilesHaveSafeUniqueNames) {
+TEST(Document, GivesPicturesSafeUniqueFileNames) {
   Document document("r");
   document.svg("../a b", kSvg, "");
   document.svg(".._a_b", kSvg, "");
@@ -81,7 +81,7 @@ TEST(Document, PictureFilesHaveSafeUniqueNames) {
   EXPECT_THAT(files, testing::ElementsAre("___a_b.svg", "___a_b-2.svg", "___a_b.png", "picture.svg"));
 }
 
-TEST(Document, RefusesOddTablesHeadingsAndPictures) {
+TEST(Document, RefusesInvalidTablesHeadingsAndPictures) {
   Document document("r");
   EXPECT_THAT([&] { document.heading(1, "x"); }, ThrowsMessage<Error>(HasSubstr("level 1, expected 2 to 6")));
   EXPECT_THAT(

@@ -14,7 +14,7 @@ bool is_word(char c) {
   return (byte >= '0' && byte <= '9') || (byte >= 'A' && byte <= 'Z') || (byte >= 'a' && byte <= 'z') || byte >= 0x80;
 }
 
-/// Whether character `i` would be read as markup. An underscore inside a word is none.
+/// Returns whether character `i` would be read as markup. An underscore inside a word would not.
 bool is_markdown(std::string_view text, std::size_t i) {
   const char c = text[i];
   if (c == '_') return i == 0 || i + 1 == text.size() || !is_word(text[i - 1]) || !is_word(text[i + 1]);

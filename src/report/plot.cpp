@@ -14,14 +14,14 @@ namespace vesalius {
 namespace {
 
 constexpr double kLimit_s = 30.0;
-constexpr std::size_t kMarks = 12;  ///< about as many marks a line, so that they stay apart
+constexpr std::size_t kMarks = 12;  ///< approximate number of marks on a line, so that they stay apart
 
 struct Style {
   const char* colour;
   int dash;   ///< gnuplot's dashtype
   int point;  ///< gnuplot's pointtype
 };
-/// Dark colours that also differ for the colour-blind (Okabe, Ito); a line is told by dash and mark.
+/// Dark colours that also differ for the colour-blind (Okabe, Ito). Dash and mark identify a line without colour.
 constexpr std::array<Style, 8> kStyles{{{"#000000", 1, 7},
                                         {"#0072b2", 2, 4},
                                         {"#d55e00", 4, 9},
@@ -31,7 +31,7 @@ constexpr std::array<Style, 8> kStyles{{{"#000000", 1, 7},
                                         {"#3d6fb6", 2, 11},
                                         {"#555555", 4, 12}}};
 
-/// A gnuplot string: in single quotes nothing but the quote itself means anything.
+/// Returns a gnuplot string in single quotes, where only the quote itself needs escaping.
 std::string in_quotes(std::string_view text) {
   std::string result = "'";
   for (const char c : text) {
@@ -88,7 +88,7 @@ std::string header(const LinePlot& plot) {
   return script;
 }
 
-/// `$s0 << END ... END`; a blank line breaks the line.
+/// Returns the block `$s0 << END ... END`. A blank line in it breaks the line of the plot.
 std::string data_block(const PlotSeries& series, std::size_t index) {
   std::string block = fmt::format("$s{} << END\n", index);
   for (const auto& point : series.points) {
@@ -128,7 +128,7 @@ std::string plot_svg(const LinePlot& plot) {
   check(plot);
   ProcessResult result;
   try {
-    result = run_process({"gnuplot", "-d"}, gnuplot_script(plot), kLimit_s);  // -d: no start-up file of the user's
+    result = run_process({"gnuplot", "-d"}, gnuplot_script(plot), kLimit_s);  // -d ignores the user's start-up file
   } catch (const Error& e) {
     throw Error(fmt::format("plot {}: {} (Debian: gnuplot-nox)", plot.title, e.what()));
   }

@@ -28,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
-/// A file without a name: unlike a pipe it neither blocks nor raises a signal when the other side does not use it.
+/// A file without a name. Unlike a pipe, it neither blocks nor raises a signal if the other side does not use it.
 using File = std::unique_ptr<std::FILE, Close>;
 
 File temporary_file(const std::string& content = "") {

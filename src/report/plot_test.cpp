@@ -37,7 +37,7 @@ std::size_t count(const std::string& text, const std::string& word) {
   return found;
 }
 
-/// PATH set to one folder while it lives.
+/// Sets PATH to one folder while an object of this class lives.
 class PathIs {
  public:
   explicit PathIs(const std::string& path) : old_(std::getenv("PATH")) { ::setenv("PATH", path.c_str(), 1); }
@@ -49,7 +49,7 @@ class PathIs {
   std::string old_;
 };
 
-TEST(Plot, LinesDifferWithoutColour) {
+TEST(Plot, DrawsLinesThatDifferWithoutColour) {
   NEEDS_GNUPLOT();
   const std::string svg = plot_svg(two_lines());
   EXPECT_THAT(svg, HasSubstr("<svg"));
@@ -61,7 +61,7 @@ TEST(Plot, LinesDifferWithoutColour) {
   EXPECT_EQ(plot_svg(two_lines()), svg);
 }
 
-TEST(Plot, TextsAreNoCommandsAndNoMarkup) {
+TEST(Plot, ShowsTextWithoutCommandsOrMarkup) {
   NEEDS_GNUPLOT();
   const test::TemporaryFolder folder;
   LinePlot plot = two_lines();
@@ -73,7 +73,7 @@ TEST(Plot, TextsAreNoCommandsAndNoMarkup) {
   EXPECT_THAT(svg, HasSubstr("` &lt;b>&amp;amp; _1 {x}<"));
 }
 
-TEST(Plot, GapsBreakLinesAndEmptySeriesStayInTheLegend) {
+TEST(Plot, BreaksLinesAtGapsAndNamesEmptySeriesInTheLegend) {
   NEEDS_GNUPLOT();
   LinePlot plot = two_lines();
   plot.series[0].points = {{1, 0.2}, {2, 0.4}, {kNaN, kNaN}, {3, 0.5}, {4, 0.9}};
@@ -84,7 +84,7 @@ TEST(Plot, GapsBreakLinesAndEmptySeriesStayInTheLegend) {
   EXPECT_NE(plot_svg(plot), svg);
 }
 
-TEST(Plot, HasTheRangesAndLogAxisAskedFor) {
+TEST(Plot, HasTheRequestedRangesAndLogAxis) {
   NEEDS_GNUPLOT();
   LinePlot plot = two_lines();
   plot.log_x = true;
@@ -93,7 +93,7 @@ TEST(Plot, HasTheRangesAndLogAxisAskedFor) {
   EXPECT_THAT(plot_svg(plot), HasSubstr("> 1000<"));
 }
 
-TEST(Plot, RefusesWhatCannotBeDrawn) {
+TEST(Plot, RefusesPlotsThatCannotBeDrawn) {
   LinePlot plot = two_lines();
   plot.series[0].points[0].first = 0.0;
   plot.log_x = true;
@@ -133,7 +133,7 @@ TEST(RunProcess, PassesInputAndReturnsOutputs) {
   EXPECT_EQ(run_process({"sh", "-c", "kill -9 $$"}, "", 10.0).exit_code, 137);
 }
 
-TEST(RunProcess, StopsWhatDoesNotEnd) {
+TEST(RunProcess, StopsAProgramThatDoesNotEnd) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_THAT(test::error_of([] { run_process({"sleep", "60"}, "", 0.2); }), HasSubstr("sleep: did not end in time"));
   EXPECT_THAT(test::error_of([] {
