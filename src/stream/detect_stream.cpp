@@ -16,11 +16,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kFramesAhead = 4;             // read, worked on or waiting to be written
-constexpr int kDetectors = 2;                       // stages that run on one thread leave the other to the next frame
-constexpr std::chrono::milliseconds kPatience(50);  // between questions whether to stop
+constexpr std::size_t kFramesAhead = 4;  // frames that are read, processed or waiting to be written
+constexpr int kDetectors = 2;  // while one frame is in a single-threaded stage, the next uses the other thread
+constexpr std::chrono::milliseconds kPatience(50);  // time between questions whether to stop
 
-/// False at the end of the source.
+/// Returns false at the end of the source.
 bool read_next(FrameSource& source, FoundFrame& to) {
   const auto start = Clock::now();
   try {
@@ -41,7 +41,7 @@ void detect(const Detector& detector, FoundFrame& in) {
   }
 }
 
-/// Says when a camera would have had the next frame ready.
+/// Tells when a camera would have the next frame ready.
 class Pace {
  public:
   explicit Pace(double rate) : period_s_(1.0 / rate) {}
@@ -56,18 +56,18 @@ class Pace {
  private:
   double period_s_;
   Clock::time_point start_ = Clock::now();
-  double first_s_ = 0.0;  ///< 0 where frames have no times
+  double first_s_ = 0.0;  ///< 0 if frames have no times
   int frames_ = 0;
 };
 
-/// A frame on its way. Whoever takes it out of the queue waits until it is worked on.
+/// A frame in the queues. Whoever takes it out of the writing queue waits until it is processed.
 struct Job {
   FoundFrame found;
   std::promise<void> done;
 };
 using JobPointer = std::shared_ptr<Job>;
 
-/// A thread that leaves all signals to the one that called.
+/// Starts a thread that leaves all signals to the calling thread.
 template <class Work>
 std::jthread helper(Work work) {
   return std::jthread([work = std::move(work)] {
@@ -112,12 +112,12 @@ class Stream {
     stopping_ = true;
     work_.close();
     written_.close();
-    helpers_.clear();  // joins
+    helpers_.clear();  // joins the threads
   }
 
   void read_ahead() {
     for (auto job = std::make_shared<Job>(); read_next(source_, job->found); job = std::make_shared<Job>()) {
-      // In the order of reading, and into the queue that bounds both.
+      // The job enters the writing queue first: that one keeps the order of reading and bounds both queues.
       if (!written_.push(job) || !work_.push(job)) break;
     }
     work_.close();
@@ -147,8 +147,8 @@ class Stream {
   FrameSource& source_;
   const Detector& detector_;
   const StreamOptions& options_;
-  FrameQueue<JobPointer> work_;     ///< read, to be worked on
-  FrameQueue<JobPointer> written_;  ///< in the order of writing
+  FrameQueue<JobPointer> work_;     ///< frames to be processed
+  FrameQueue<JobPointer> written_;  ///< the same frames in the order of writing
   std::atomic<int> dropped_ = 0;
   std::atomic<int> working_ = 0;
   std::atomic<bool> stopping_ = false;

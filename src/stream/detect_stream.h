@@ -11,26 +11,27 @@
 
 namespace vesalius {
 
-/// A frame and what was found in it, or why there is nothing.
+/// A frame with the people found in it, or the error that prevented it.
 struct FoundFrame {
-  std::optional<Frame> frame;  ///< none where it could not be read
+  std::optional<Frame> frame;  ///< empty if it could not be read
   std::vector<Person> people;
   StageTimes times;
   double read_ms = 0.0;
-  std::exception_ptr error;  ///< what reading or detecting threw; null where both went well
+  std::exception_ptr error;  ///< exception of reading or detecting; null if there was none
 };
 
 struct StreamOptions {
-  bool realtime = false;  ///< frames come when they were taken; those that find the detector busy are dropped
-  double rate = 30.0;     ///< frames per second of a source without times, in real time
-  std::function<bool()>
-      stop;  ///< asked at least every 50 ms whether to end; empty: never. Called in the caller's thread
+  /// In real time, frames come at the pace at which they were taken and are dropped while the detector is busy.
+  bool realtime = false;
+  double rate = 30.0;  ///< frames per second in real time, for a source without times
+  /// This function is asked at least every 50 ms, in the caller's thread, whether to end; empty means never.
+  std::function<bool()> stop;
 };
 
-/// Reads frames, finds people and hands both to `take`, in the caller's thread and in the source's order, until the
-/// source ends, `take` returns false or `stop` true. Where more than one thread is allowed (ThreadLimit), frames are
-/// read ahead and two are worked on at a time (in real time one). The people are the same for any number of threads.
-/// Passes on what `take` throws. Returns how many frames were dropped.
+/// Reads frames, finds people and passes both to `take`, in the caller's thread and in the source's order, until the
+/// source ends, `take` returns false or `stop` returns true. If more than one thread is allowed (ThreadLimit), frames
+/// are read ahead and two are processed at a time (in real time one). The people are the same for any number of
+/// threads. Exceptions of `take` are passed on. Returns the number of dropped frames.
 ///
 ///   Detector detector(load_model("default.forest"));
 ///   const auto source = open_source("frames/");

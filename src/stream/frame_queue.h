@@ -10,13 +10,13 @@
 
 namespace vesalius {
 
-/// Hands items from thread to thread in order. At most `capacity` of them wait.
+/// Passes items from one thread to another in order. At most `capacity` items wait in it.
 template <class T>
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  /// Waits for room, then adds the item. Returns false where the queue is closed: the item is then gone.
+  /// Waits for room, then adds the item. Returns false if the queue is closed; the item is then lost.
   bool push(T item) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || items_.size() < capacity_; });
@@ -26,7 +26,8 @@ class FrameQueue {
     return true;
   }
 
-  /// Adds the item without waiting: where there is no room the oldest item is given up. Returns how many were, 0 or 1.
+  /// Adds the item without waiting. If there is no room, the oldest item is dropped. Returns the number of dropped
+  /// items, 0 or 1.
   int push_newest(T item) {
     const std::scoped_lock lock(mutex_);
     int dropped = 0;
@@ -39,7 +40,8 @@ class FrameQueue {
     return dropped;
   }
 
-  /// Waits for the next item and takes it out. Returns none when the queue is closed and empty, or after `patience`.
+  /// Waits for the next item and removes it from the queue. Returns nothing if the queue is closed and empty, or after
+  /// `patience`.
   std::optional<T> pop(std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [&] { return closed_ || !items_.empty(); });
@@ -50,7 +52,7 @@ class FrameQueue {
     return item;
   }
 
-  /// Says that no more items come. Those that wait can still be taken.
+  /// Closes the queue to new items. Items in it can still be taken.
   void close() {
     const std::scoped_lock lock(mutex_);
     closed_ = true;

@@ -11,7 +11,7 @@ namespace {
 using std::chrono::milliseconds;
 
 // Labels: threads
-TEST(FrameQueueThreads, KeepsOrderAndBounds) {
+TEST(FrameQueueThreads, KeepsOrderAndCapacity) {
   FrameQueue<int> queue(2);
   std::jthread writer([&] {
     for (int i = 0; i < 100; ++i) queue.push(i);
@@ -25,7 +25,7 @@ TEST(FrameQueueThreads, KeepsOrderAndBounds) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(got[i], i);
 }
 
-TEST(FrameQueue, GivesUpTheOldest) {
+TEST(FrameQueue, DropsTheOldestItem) {
   FrameQueue<int> queue(2);
   EXPECT_EQ(queue.push_newest(1), 0);
   EXPECT_EQ(queue.push_newest(2), 0);
@@ -36,7 +36,7 @@ TEST(FrameQueue, GivesUpTheOldest) {
 }
 
 // Labels: threads
-TEST(FrameQueueThreads, ClosingWakesAWriterWithoutRoom) {
+TEST(FrameQueueThreads, WakesAWaitingWriterWhenClosed) {
   FrameQueue<int> queue(1);
   EXPECT_TRUE(queue.push(1));
   bool pushed = true;
