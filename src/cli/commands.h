@@ -6,7 +6,7 @@ class App;
 
 namespace vesalius::cli {
 
-// Each adds its subcommand to the program, with a callback that does the work and throws Error where it cannot.
+// Each function adds a subcommand to the program. Its callback does the work and throws Error if that fails.
 
 void add_detect(CLI::App& program);
 void add_info(CLI::App& program);
@@ -15,7 +15,7 @@ void add_bench(CLI::App& program);
 void add_options(CLI::App& program);
 void add_completion(CLI::App& program);
 
-// These come with satellites.h and are missing from a build that leaves theirs out.
+// The following commands belong to satellites (satellites.h); a build that leaves out a satellite lacks its commands.
 void add_synth(CLI::App& program);
 void add_train(CLI::App& program);
 void add_evaluate(CLI::App& program);

@@ -11,11 +11,11 @@ namespace vesalius::cli {
 namespace {
 
 struct Flag {
-  std::vector<std::string> names;  ///< with dashes; empty: positional
-  std::string choices;             ///< separated by spaces; empty: anything
+  std::vector<std::string> names;  ///< with dashes; empty for a positional argument
+  std::string choices;             ///< separated by spaces; empty if any word is allowed
 };
 
-/// CLI11 keeps the words that IsMember allows only in its description, "TEXT:{a,b}".
+/// Returns the words that an option allows. CLI11 keeps the words of IsMember only in its description, "TEXT:{a,b}".
 std::string choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{');

@@ -8,7 +8,7 @@ class App;
 
 namespace vesalius::cli {
 
-/// Returns a script for bash that completes the commands and flags of the program `app.get_name()`.
+/// Returns a bash script that completes the commands and flags of the program `app.get_name()`.
 std::string bash_completion(const CLI::App& app);
 
 }  // namespace vesalius::cli

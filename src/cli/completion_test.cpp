@@ -44,7 +44,7 @@ class Completion : public testing::Test {
     std::ofstream(path) << script;
     return path;
   }
-  /// What bash would offer for the last of these words.
+  /// Returns what bash would offer for the last of these words.
   std::string bash_offers(const std::string& words, int index) const {
     const std::string path = write("bash", bash_completion(app));
     return output_of("bash -c 'source " + path + "; COMP_WORDS=(" + words + "); COMP_CWORD=" + std::to_string(index) +
@@ -54,7 +54,7 @@ class Completion : public testing::Test {
   CLI::App app;
 };
 
-TEST_F(Completion, BashOffersCommandsFlagsAndChoices) {
+TEST_F(Completion, OffersCommandsFlagsAndChoicesInBash) {
   if (output_of("command -v bash").empty()) GTEST_SKIP() << "needs bash";
   EXPECT_EQ(bash_offers("vesalius de", 1), " detect \n");
   EXPECT_THAT(bash_offers("vesalius \"\"", 1),
@@ -66,7 +66,7 @@ TEST_F(Completion, BashOffersCommandsFlagsAndChoices) {
   EXPECT_THAT(bash_offers("vesalius completion b", 2), HasSubstr(" bash "));
 }
 
-TEST_F(Completion, QuotesDoNotEndTheScriptsStrings) {
+TEST_F(Completion, EscapesQuotesInTheScript) {
   CLI::App odd;
   odd.name("odd");
   odd.add_subcommand("x", "it's: [odd]")->add_flag("--y")->description("isn't [it]: so");

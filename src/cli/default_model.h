@@ -5,12 +5,12 @@
 
 namespace vesalius::cli {
 
-/// Returns the folders where models of this program are looked for, the first one first: $VESALIUS_MODELS where that is
-/// set, "models" beside the program (the build tree has a link there), and the installation's share/vesalius/models.
+/// Returns the folders in which the program looks for models, in order: $VESALIUS_MODELS if it is set, "models" beside
+/// the program (the build tree has a link there), and share/vesalius/models of the installation.
 std::vector<std::string> model_folders();
 
-/// Returns the path of the model that commands take without --model, default.forest in the first of these folders that
-/// has it. Throws Error naming the folders where none has.
+/// Returns the path of the model that commands use without --model: default.forest in the first of these folders that
+/// has it. Throws Error naming the folders if none has it.
 std::string default_model();
 
 }  // namespace vesalius::cli

@@ -15,7 +15,7 @@
 namespace vesalius::cli {
 namespace {
 
-/// Another kinematic tree or other joints for the same parts.
+/// Replaces the forest's body by one with the same parts but another kinematic tree or other joints.
 void replace_body(Forest& forest, const std::string& path) {
   BodyModel body = parse_body_model(read_file(path), path);
   const auto& trained = forest.body.parts;

@@ -11,19 +11,19 @@ class App;
 
 namespace vesalius::cli {
 
-/// The defaults, what the TOML file (empty: none) says, then the flags. Throws Error for a file that cannot be used,
-/// UsageError for options outside their range.
+/// Returns the default options, changed first by the TOML file (if the path is not empty) and then by the flags. Throws
+/// Error for a file that cannot be used and UsageError for options outside their range.
 DetectOptions detect_options(const std::string& options_file, const OptionFlags<DetectOptions>& flags);
 
-/// Flags that say which detector: --model, --body, --options and one for every detector option.
+/// The flags that define a detector: --model, --body, --options and one for every detector option.
 class DetectorFlags {
  public:
-  /// Must live as long as the command.
+  /// This object must live as long as the command.
   explicit DetectorFlags(CLI::App& command);
 
-  /// Throws Error for files that cannot be used, UsageError for options outside their range.
+  /// Makes the detector. Throws Error for files that cannot be used and UsageError for options outside their range.
   Detector make() const;
-  /// Returns the path of the model. Throws Error where none is given and there is no default one.
+  /// Returns the path of the model. Throws Error if none is given and there is no default model.
   std::string model() const;
 
  private:

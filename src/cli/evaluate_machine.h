@@ -4,7 +4,7 @@
 
 namespace vesalius::cli {
 
-/// What timings depend on, on one line: processor, threads in use, compiler and kind of build.
+/// Returns one line with the facts that timings depend on: processor, number of threads, compiler and kind of build.
 std::string machine_facts();
 
 }  // namespace vesalius::cli

@@ -31,7 +31,7 @@ std::vector<std::string> cpu_features() {
   return found;
 }
 
-/// What this build has of all that a build can have.
+/// Returns which optional parts this build has.
 Json part_facts() {
   Json facts = Json::object();
   for (const std::string& name : satellite_names()) facts[name] = "absent";
@@ -66,7 +66,7 @@ Json tree_facts(const Tree& tree) {
   return {{"depth", depth(tree)}, {"nodes", tree.nodes.size()}, {"leaves", tree.leaves.size()}};
 }
 
-/// Of the file, leaves and all included; null for a forest without nodes.
+/// Returns the bytes of the file per node, leaves included; null for a forest without nodes.
 Json bytes_per_node(std::size_t bytes, std::size_t nodes) {
   if (nodes == 0) return nullptr;
   return std::round(100.0 * static_cast<double>(bytes) / static_cast<double>(nodes)) / 100.0;
@@ -118,7 +118,7 @@ std::string plain(const Json& value) {
   return text;
 }
 
-/// "key: value" lines, inner objects indented, lists of words on one line.
+/// Appends "key: value" lines. Inner objects are indented, and lists of words are on one line.
 void append_text(std::string& text, const Json& object, const std::string& indent) {
   for (const auto& [key, value] : object.items()) {
     text += indent + key + ":";

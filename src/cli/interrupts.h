@@ -2,11 +2,12 @@
 
 namespace vesalius::cli {
 
-/// From here on Ctrl-C, a closed terminal and `kill` end the work after the frame at hand, so that no temporary file
-/// stays; the second one ends it at once. What the caller ignores (nohup, a job in the background) stays ignored.
+/// After this call, Ctrl-C, a closed terminal and `kill` end the work after the current frame, so that no temporary
+/// file remains. A second signal ends the program at once. Signals that the caller ignores (nohup, a background job)
+/// stay ignored.
 void watch_interrupts();
 
-/// Whether one has come.
+/// Returns whether a signal has arrived.
 bool interrupted();
 
 }  // namespace vesalius::cli

@@ -26,7 +26,7 @@ int complain(const std::string& message, int exit_code) {
   return exit_code;
 }
 
-/// An empty value is a variable that the caller's shell did not have, not the wish for none.
+/// Refuses empty values of flags: they come from unset shell variables rather than from an intention.
 void refuse_empty_values(CLI::App& program) {
   const auto check = [](const std::string& value) { return value.empty() ? "expected a value, found none" : ""; };
   for (CLI::App* command : program.get_subcommands({})) {
@@ -75,7 +75,8 @@ std::vector<std::string> names_in(const CLI::App& app) {
   return names;
 }
 
-/// What to say of a command line that CLI11 refused. Of a misspelt word it may only say what it misses instead.
+/// Returns the message for a command line that CLI11 refused. CLI11 may report what is missing instead of the misspelt
+/// word.
 std::string explain(const CLI::App& program, const CLI::ParseError& error) {
   const auto chosen = program.get_subcommands();
   const CLI::App& command = chosen.empty() ? program : *chosen.front();
@@ -107,10 +108,11 @@ int run(int argc, char** argv) {
   }
 }
 
-/// A file opened while one of the three standard streams is closed would get its number, and their text.
+/// Opens /dev/null for standard streams that are closed. Otherwise the next file would get the number of the closed
+/// stream, and receive its text.
 void occupy_standard_streams() {
   for (const auto& [fd, mode] : {std::pair(0, O_WRONLY), std::pair(1, O_RDONLY), std::pair(2, O_RDONLY)}) {
-    // The lowest free number is taken; the mode makes each use fail as with a closed one.
+    // open() takes the lowest free number. The mode makes every use fail, as it does with a closed stream.
     if (::fcntl(fd, F_GETFD) < 0) ::open("/dev/null", mode);
   }
 }
@@ -119,7 +121,7 @@ int guarded(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const BrokenPipe&) {
-    return kFailed;  // the reader left: nobody is there to be told
+    return kFailed;  // the reader has closed the pipe, so nobody would see a message
   } catch (const UsageError& e) {
     return complain(e.what(), kUsage);
   } catch (const Error& e) {
@@ -135,8 +137,8 @@ int guarded(int argc, char** argv) {
 }  // namespace vesalius::cli
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // so that a closed pipe unwinds and temporary files go
-  std::signal(SIGXFSZ, SIG_IGN);  // the same for a file over the shell's limit
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe throws instead, which removes temporary files
+  std::signal(SIGXFSZ, SIG_IGN);  // the same for a file that exceeds the shell's limit
   vesalius::cli::occupy_standard_streams();
   return vesalius::cli::guarded(argc, argv);
 }

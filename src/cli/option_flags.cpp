@@ -50,7 +50,7 @@ class Adder : public OptionVisitor {
   std::vector<Flag>& flags_;
 };
 
-/// Visits in the order in which the flags were added.
+/// Visits the options in the order in which their flags were added.
 template <class Flag>
 class Copier : public OptionVisitor {
  public:

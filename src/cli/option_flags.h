@@ -11,11 +11,12 @@ class App;
 
 namespace vesalius::cli {
 
-/// --threads of every command: how many there may be.
+/// Largest value of every command's --threads.
 inline constexpr int kMaxThreads = 1024;
 
-/// A flag for every option that `visit` shows, e.g. --search.min-parts; `visit` and what it shows must live as long as
-/// the command. They are left out of --help (there are many; `vesalius options` lists them) and known to completion.
+/// A flag for every option that `visit` shows, e.g. --search.min-parts. `visit` and the options must live as long as
+/// the command. --help leaves these flags out because there are many (`vesalius options` lists them); completion knows
+/// them.
 class FlagSet {
  public:
   FlagSet(CLI::App& command, const VisitAll& visit);
@@ -23,7 +24,7 @@ class FlagSet {
   FlagSet(const FlagSet&) = delete;
   FlagSet& operator=(const FlagSet&) = delete;
 
-  /// Overwrites those that the command line gave; `visit` shows options of the same kind.
+  /// Overwrites the options that were given on the command line. `visit` must show options of the same kind.
   void apply(const VisitAll& visit) const;
 
  private:
@@ -31,7 +32,7 @@ class FlagSet {
   std::vector<Flag> flags_;
 };
 
-/// The same for a struct with visit_options.
+/// A FlagSet for a struct that has visit_options.
 template <class Options>
 class OptionFlags {
  public:
@@ -43,7 +44,7 @@ class OptionFlags {
   }
 
  private:
-  Options values_;  ///< what the flags write into
+  Options values_;  ///< the flags write into these
   FlagSet flags_;
 };
 

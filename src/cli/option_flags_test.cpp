@@ -9,12 +9,12 @@
 namespace vesalius::cli {
 namespace {
 
-TEST(OptionFlags, OverwriteOnlyWhatTheCommandLineGave) {
+TEST(OptionFlags, OverwriteOnlyOptionsOfTheCommandLine) {
   CLI::App app;
   const OptionFlags<DetectOptions> flags(app);
   app.parse("--search.min-parts 9 --smooth.mode");
   DetectOptions options;
-  options.search.max_mean_error = 0.25F;  // as from a file
+  options.search.max_mean_error = 0.25F;  // as if read from a file
   options.search.min_parts = 5;
   flags.apply(options);
   EXPECT_EQ(options.search.min_parts, 9);
@@ -33,7 +33,7 @@ TEST(OptionFlags, SwitchesCanBeTurnedOff) {
   EXPECT_FALSE(options.smooth.mode);
 }
 
-TEST(OptionFlags, RefuseWhatIsNoValue) {
+TEST(OptionFlags, RefuseInvalidValues) {
   CLI::App app;
   const OptionFlags<DetectOptions> flags(app);
   EXPECT_THROW(app.parse("--search.min-parts many"), CLI::ParseError);

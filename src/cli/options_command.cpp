@@ -16,7 +16,7 @@ std::string detector_defaults() {
   return options_toml([&](OptionVisitor& visitor) { visit_options("", options, visitor); });
 }
 
-/// What prints the options of each command that has some.
+/// Returns for each command with options the function that prints them.
 std::map<std::string, std::string (*)()> all_defaults() {
   std::map<std::string, std::string (*)()> all{{"detect", detector_defaults}};
   for (const Satellite& satellite : satellites()) {

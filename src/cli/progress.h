@@ -7,16 +7,16 @@
 
 namespace vesalius::cli {
 
-/// Things done, rate and time left as a StatusLine.
+/// Shows the number of finished items, the rate and the time left on a StatusLine.
 class Progress {
  public:
-  /// `total` < 0: not known. Silent where not `shown`. `unit` is what is counted.
+  /// A negative `total` means that it is not known. Nothing is shown if `shown` is false. `unit` names the items.
   Progress(int total, bool shown, std::string unit = "frames");
 
   void step();
-  /// For work whose parts are not counted one by one, or whose total turns out on the way.
+  /// Sets both numbers, for work whose items are not counted one by one or whose total becomes known later.
   void set(int done, int total);
-  /// Removes the changing line, so that another text can be written.
+  /// Removes the changing line so that another text can be written.
   void clear() { line_.clear(); }
 
   int done() const { return done_; }

@@ -2,7 +2,7 @@
 
 namespace vesalius::cli {
 
-// satellites.inc, which CMake writes, names those of this build.
+// CMake writes satellites.inc, which names the satellites of this build.
 #define VESALIUS_SATELLITE(name) Satellite name##_satellite();
 #include "satellites.inc"
 #undef VESALIUS_SATELLITE

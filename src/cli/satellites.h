@@ -10,13 +10,15 @@ class App;
 
 namespace vesalius::cli {
 
-/// A part of the program that a build may leave out: VESALIUS_SYNTH, _TRAIN, _EVAL, _ASSETS of CMakeLists.txt.
+/// A part of the program that a build may leave out, by VESALIUS_SYNTH, _TRAIN, _EVAL and _ASSETS of CMakeLists.txt.
 struct Satellite {
   std::string name;
-  std::vector<void (*)(CLI::App&)> commands;  ///< each adds a subcommand
-  /// Returns the TOML text that `vesalius options NAME` prints; null where the satellite has no options.
+  std::vector<void (*)(CLI::App&)> commands;  ///< each function adds a subcommand
+  /// This function returns the TOML text that `vesalius options NAME` prints; it is null if the satellite has no
+  /// options.
   std::string (*default_options)() = nullptr;
-  /// Returns what `vesalius info` says of it, as names and values; null: nothing but that it is there.
+  /// This function returns names and values that `vesalius info` prints; if it is null, only the satellite's name is
+  /// printed.
   std::vector<std::pair<std::string, std::string>> (*facts)() = nullptr;
 };
 

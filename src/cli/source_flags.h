@@ -8,10 +8,10 @@ class App;
 
 namespace vesalius::cli {
 
-/// SOURCE and what its files may leave open: --fx --fy --cx --cy --depth-scale --camera --colour.
+/// Adds the flags for what the files of SOURCE may not state: --fx --fy --cx --cy --depth-scale --camera --colour.
 void add_camera_flags(CLI::App& command, SourceOptions& options);
 
-/// What SOURCE may be, for --help.
+/// The text of --help on what SOURCE may be.
 inline constexpr const char* kSourceHelp =
     "Frames: a folder (depth/*.png with meta.json or camera_info.yaml, TUM RGB-D, PNG or PCD files), a 16-bit depth "
     "PNG "

@@ -12,8 +12,8 @@ namespace {
 constexpr std::chrono::milliseconds kTerminalPeriod(100);
 constexpr std::chrono::seconds kPlainPeriod(10);
 
-/// How long a line may be on the terminal. One that filled the last column would wrap, and what stands on the row above
-/// could not be removed.
+/// Returns the length that a line may have on the terminal. A line that filled the last column would wrap, and its
+/// first row could not be removed any more.
 std::size_t terminal_width() {
   winsize size{};
   const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;

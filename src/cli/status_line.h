@@ -6,11 +6,11 @@
 
 namespace vesalius::cli {
 
-/// What is going on, on standard error: on a terminal one line that changes and is cut to the terminal's width,
-/// elsewhere a plain line every ten seconds.
+/// Shows progress on standard error. On a terminal this is one line that changes and is cut to the terminal's width;
+/// elsewhere a plain line is printed every ten seconds.
 class StatusLine {
  public:
-  /// Silent where not `shown`.
+  /// Nothing is shown if `shown` is false.
   explicit StatusLine(bool shown);
   /// Removes the changing line.
   ~StatusLine();
@@ -18,11 +18,11 @@ class StatusLine {
   StatusLine& operator=(const StatusLine&) = delete;
 
   bool shown() const { return shown_; }
-  /// Whether it is time for a new line: making one may cost something.
+  /// Returns whether it is time for a new line. Callers ask first because composing a line may be costly.
   bool due() const;
-  /// Shows it, due or not.
+  /// Shows the line, whether it is due or not.
   void show(const std::string& line);
-  /// Removes the changing line, so that another text can be written.
+  /// Removes the changing line so that another text can be written.
   void clear();
 
  private:
@@ -30,7 +30,7 @@ class StatusLine {
 
   bool shown_;
   bool terminal_;
-  std::size_t width_ = 0;  ///< of the line on the terminal now
+  std::size_t width_ = 0;  ///< length of the line that the terminal shows
   Clock::time_point last_shown_ = Clock::now();
 };
 

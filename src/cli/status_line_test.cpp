@@ -10,7 +10,7 @@
 namespace vesalius::cli {
 namespace {
 
-/// Standard error as a terminal of 40 columns while it lives.
+/// Makes standard error a terminal of 40 columns while an object of this class lives.
 class Terminal {
  public:
   Terminal() : stderr_(::dup(STDERR_FILENO)) {
@@ -25,7 +25,7 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// What was written since the last call; something must have been.
+  /// Returns what was written since the last call, and fails if nothing was.
   std::string written() const {
     std::array<char, 4096> bytes{};
     const ssize_t count = ::read(master_, bytes.data(), bytes.size());
@@ -36,7 +36,7 @@ class Terminal {
   int stderr_, master_ = -1, slave_ = -1;
 };
 
-TEST(StatusLine, IsCutToTheTerminalSoThatItCanBeRemoved) {
+TEST(StatusLine, IsCutToTheWidthOfTheTerminal) {
   const Terminal terminal;
   StatusLine line(true);
   line.show(std::string(100, 'x'));

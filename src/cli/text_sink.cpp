@@ -18,8 +18,9 @@ constexpr const char* kStdoutName = "standard output";
   throw Error(message);
 }
 
-/// Bytes of the control character that `text` begins with, 0 where it begins with another: those of ASCII, those of
-/// UTF-8 (U+0080 to U+009F), and single bytes that are no UTF-8 and that some terminals take for the latter.
+/// Returns the number of bytes of the control character at the beginning of `text`, or 0 if there is none. Control
+/// characters are those of ASCII, those of UTF-8 (U+0080 to U+009F), and single bytes that are not UTF-8 but that some
+/// terminals take for the latter.
 std::size_t control_at(std::string_view text, bool continues) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   if (byte(0) < 0x20 || byte(0) == 0x7f) return 1;
@@ -30,7 +31,7 @@ std::size_t control_at(std::string_view text, bool continues) {
 template <class Replace>
 std::string replace_controls(std::string_view text, Replace&& replace) {
   std::string out;
-  std::size_t follow = 0;  // bytes of a character that are still to come
+  std::size_t follow = 0;  // remaining bytes of the current character
   while (!text.empty()) {
     const std::size_t size = control_at(text, follow > 0);
     const auto first = static_cast<unsigned char>(text.front());
@@ -66,12 +67,12 @@ TextSink::TextSink(const std::string& path) : name_(path) {
 void TextSink::line(std::string_view text) {
   write(stream_.get(), text, name_);
   write(stream_.get(), "\n", name_);
-  // A reader at the other end of a pipe waits for this frame, not for the buffer to fill.
+  // A reader at the other end of a pipe should get this frame now and not when the buffer is full.
   if (!temporary_ && std::fflush(stream_.get()) != 0) fail(name_);
 }
 
 void TextSink::finish() {
-  if (std::ferror(stream_.get()) != 0) throw Error(name_ + ": cannot be written");  // what was said before is lost
+  if (std::ferror(stream_.get()) != 0) throw Error(name_ + ": cannot be written");  // earlier text was lost
   std::FILE* stream = stream_.release();
   if ((stream == stdout ? std::fflush(stream) : std::fclose(stream)) != 0) fail(name_);
   if (temporary_) temporary_->commit();

@@ -5,7 +5,7 @@
 namespace vesalius::cli {
 namespace {
 
-TEST(Escaped, NoControlCharacterReachesTheTerminal) {
+TEST(Escaped, KeepsControlCharactersFromTheTerminal) {
   EXPECT_EQ(escaped("a\x1b[31mred\x07\x7f\r"), "a\\x1b[31mred\\x07\\x7f\\x0d");
   EXPECT_EQ(escaped("csi \xc2\x9b"
                     "31m"),
@@ -19,12 +19,12 @@ TEST(Escaped, NoControlCharacterReachesTheTerminal) {
       << "and a single byte of 8-bit terminals";
 }
 
-TEST(Escaped, TextStaysAsItIs) {
+TEST(Escaped, LeavesPlainTextUnchanged) {
   EXPECT_EQ(escaped("two\nlines"), "two\nlines");
   EXPECT_EQ(escaped("Füße ✓ 人 \xf0\x9f\x99\x82"), "Füße ✓ 人 \xf0\x9f\x99\x82") << "their bytes include 0x80 to 0x9f";
 }
 
-TEST(OneLine, ControlCharactersBecomeSpaces) { EXPECT_EQ(one_line("one\ntwo\x1b[2J\xc2\x9b✓"), "one two [2J ✓"); }
+TEST(OneLine, TurnsControlCharactersIntoSpaces) { EXPECT_EQ(one_line("one\ntwo\x1b[2J\xc2\x9b✓"), "one two [2J ✓"); }
 
 }  // namespace
 }  // namespace vesalius::cli

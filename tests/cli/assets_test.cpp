@@ -26,7 +26,7 @@ std::string shared_assets() {
   return (shared != nullptr ? shared : std::string(VESALIUS_SOURCE_DIR "/../shared")) + "/assets";
 }
 
-/// The archives that the list in the program describes.
+/// Tests with archives as the program's list describes them.
 class RealAssets : public testing::Test {
  protected:
   void SetUp() override {
@@ -44,7 +44,7 @@ void expect_whole(const AssetPackage& package, const std::string& folder) {
   EXPECT_FALSE(fs::exists(folder + "/.unfinished"));
 }
 
-TEST_F(RealAssets, ComeFromAServer) {
+TEST_F(RealAssets, AreFetchedFromAServer) {
   TestServer server([](const std::string& path) {
     const std::string file = shared_assets() + path;
     return fs::exists(file) ? Reply{200, test::get(file)} : Reply{404, ""};
@@ -65,7 +65,7 @@ TEST_F(RealAssets, ComeFromAServer) {
   EXPECT_EQ(run_program("assets -q --dir " + home() + " --mirror /").err, "") << "nothing is looked for";
 }
 
-TEST_F(RealAssets, AreWholeAfterAKill) {
+TEST_F(RealAssets, AreCompletedAfterAKill) {
   const AssetPackage& package = asset_package("makehuman");
   ASSERT_EQ(run_program("assets -q makehuman --dir " + (folder_ / "mirror") + " --mirror " + shared_assets()).exit_code,
             0);
@@ -76,7 +76,7 @@ TEST_F(RealAssets, AreWholeAfterAKill) {
     const std::string file = (folder_ / "mirror") + path;
     if (++asked == kKilledAt) {
       while (child == 0) usleep(1000);
-      return Reply{200, test::get(file), "", 1000, true};  // half a file, and then nothing more
+      return Reply{200, test::get(file), "", 1000, true};  // half a file, then silence
     }
     return fs::exists(file) ? Reply{200, test::get(file)} : Reply{404, ""};
   });
@@ -112,8 +112,8 @@ TEST_F(RealAssets, AreWholeAfterAKill) {
   expect_whole(package, home());
 }
 
-TEST_F(RealAssets, SayThatTheDiskIsFull) {
-  // A limit on the size of files stands for it: 512 blocks of 1024 bytes.
+TEST_F(RealAssets, ReportAFullDisk) {
+  // A limit on the size of files (512 blocks of 1024 bytes) stands in for a full disk.
   const std::string command = "ulimit -f 512; '" VESALIUS_PROGRAM "' assets -q mocap --dir " + home() + " --mirror " +
                               shared_assets() + " 2>" + (folder_ / "err");
   const int status = std::system(("bash -c \"" + command + "\"").c_str());
@@ -122,7 +122,7 @@ TEST_F(RealAssets, SayThatTheDiskIsFull) {
   EXPECT_EQ(fs::exists(home() + "/.unfinished"), false);
 }
 
-TEST(AssetsCommand, ListsWhatThereIs) {
+TEST(AssetsCommand, ListsThePackages) {
   const test::TemporaryFolder folder;
   const Outcome run = run_program("assets --list --dir " + folder.path());
   EXPECT_EQ(run.exit_code, 0);
@@ -131,7 +131,7 @@ TEST(AssetsCommand, ListsWhatThereIs) {
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
-TEST(AssetsCommand, RefusesInOneLine) {
+TEST(AssetsCommand, ReportsErrorsInOneLine) {
   const test::TemporaryFolder folder;
   const auto refused = [&](const std::string& arguments, int exit_code, const std::string& reason) {
     const Outcome run = run_program("assets -q " + arguments);

@@ -16,7 +16,7 @@ using testing::StartsWith;
 
 class BadInput : public SmallWorld {
  protected:
-  /// One line on standard error, nothing on standard output, no file left behind.
+  /// Expects one line on standard error, nothing on standard output and no file left behind.
   static void expect_refused(const Outcome& run, int exit_code, const std::string& reason) {
     EXPECT_EQ(run.exit_code, exit_code) << run.err;
     EXPECT_EQ(run.out, "");
@@ -31,7 +31,7 @@ class BadInput : public SmallWorld {
   }
 };
 
-TEST_F(BadInput, Models) {
+TEST_F(BadInput, DamagedModelsAreRefused) {
   const std::string good = bytes_of(model());
   write("cut.forest", good.substr(0, good.size() / 2));
   std::string newer = good;
@@ -51,7 +51,7 @@ TEST_F(BadInput, Models) {
   detect(frames(), path("text.forest"), "", 1, "not a vesalius model");
 }
 
-TEST_F(BadInput, Bodies) {
+TEST_F(BadInput, DamagedBodiesAreRefused) {
   std::string other = bytes_of(std::string(VESALIUS_SOURCE_DIR) + "/data/bodies/paper25.toml");
   for (std::size_t at = 0; (at = other.find("\"neck\"", at)) != std::string::npos; ++at)
     other.replace(at, 6, "\"nape\"");
@@ -61,7 +61,7 @@ TEST_F(BadInput, Bodies) {
   detect(frames(), model(), " --body " + path("broken.toml"), 1, "broken.toml:1: not valid TOML");
 }
 
-TEST_F(BadInput, Frames) {
+TEST_F(BadInput, DamagedFramesAreRefused) {
   fs::create_directories(path("empty"));
   write_png(Image<std::uint8_t>(320, 240, 9), path("eight.png"));
   write_png(Image<std::uint16_t>(123, 77, 2000), path("odd.png"));
@@ -77,7 +77,7 @@ TEST_F(BadInput, Frames) {
   detect(path("tall.png"), model(), " --fx 50 --colour " + path("small.png"), 1, "small.png");
 }
 
-TEST_F(BadInput, Options) {
+TEST_F(BadInput, InvalidOptionsAreRefused) {
   write("unknown.toml", "serach.min-parts = 3\n");
   write("range.toml", "search.min-parts = 0\n");
   std::string deep = "a";
@@ -91,7 +91,7 @@ TEST_F(BadInput, Options) {
   detect(frames(), model(), " --search.min-parts few", 2, "few");
 }
 
-TEST_F(BadInput, CommandLines) {
+TEST_F(BadInput, InvalidCommandLinesAreRefused) {
   detect(frames(), model(), " --save mask", 2, "--save needs --out");
   detect(frames(), model(), " --out x --save masks", 2, "masks");
   detect(frames(), model(), " --threads -1", 2, "--threads");
@@ -110,7 +110,7 @@ TEST_F(BadInput, CommandLines) {
   expect_refused(run_program("convert a b c --to tum"), 2, "--to expects a source and one folder");
 }
 
-TEST_F(BadInput, PlacesThatCannotBeWritten) {
+TEST_F(BadInput, PlacesThatCannotBeWrittenAreRefused) {
   write("file", "");
   detect(frames(), model(), " --json /dev/full", 1, "/dev/full: cannot be written: No space left on device");
   detect(frames(), model(), " --json " + path("no/such/folder.jsonl"), 1, "folder.jsonl");
@@ -119,24 +119,24 @@ TEST_F(BadInput, PlacesThatCannotBeWritten) {
   expect_refused(run_program("--help >/dev/full"), 1, "standard output: cannot be written");
 }
 
-TEST_F(BadInput, OutputThatCannotArriveIsToldBeforeSuccessIs) {
+TEST_F(BadInput, FailedOutputIsAnError) {
   expect_refused(run_program("detect " + frames() + " -m " + model() + " >/dev/full"), 1,
                  "standard output: cannot be written: No space left on device");
 }
 
-TEST_F(BadInput, NamesCannotControlTheTerminal) {
+TEST_F(BadInput, NamesDoNotControlTheTerminal) {
   fs::create_directories(path("odd"));
   write("odd/depth.txt", "1 \x1b[31m.png\n");
   detect(path("odd"), model(), " --fx 50", 1, "/odd/ [31m.png: cannot be read");
 }
 
-TEST_F(BadInput, NoPictureReplacesThatOfAnotherFrame) {
+TEST_F(BadInput, PicturesOfDifferentFramesDoNotReplaceEachOther) {
   fs::copy(frames(), path("twins"), fs::copy_options::recursive);
   fs::copy(path("twins/depth/a.png"), path("twins/depth/a.PNG"));
   detect(path("twins"), model(), " --out " + path("twins_out"), 1, "frame \"a\": its pictures would replace");
 }
 
-TEST_F(BadInput, FilesOverTheShellsLimitLeaveNothingBehind) {
+TEST_F(BadInput, FilesOverTheShellsLimitAreRemoved) {
   const std::string command = "ulimit -f 1; '" VESALIUS_PROGRAM "' detect " + frames() + " -q -m " + model() +
                               " --json " + path("limited.jsonl") + " 2>" + path("limited.err");
   EXPECT_NE(std::system(("(" + command + ")").c_str()), 0);
@@ -146,13 +146,13 @@ TEST_F(BadInput, FilesOverTheShellsLimitLeaveNothingBehind) {
   }
 }
 
-TEST_F(BadInput, InterruptsKeepWhatWasDoneAndLeaveNothingHalfWritten) {
-  std::string list;  // longer than the test lasts
+TEST_F(BadInput, InterruptsKeepFinishedFramesOnly) {
+  std::string list;  // takes longer than the test
   for (int i = 0; i < 100000; ++i) list += std::to_string(i) + " ../frames/depth/c.png\n";
   fs::create_directories(path("long"));
   write("long/depth.txt", list);
-  // The signal is sent once the first output is there, however slow the machine. Not SIGINT: a shell makes what it
-  // starts in the background ignore it, and the program keeps to that.
+  // The signal is sent after the first output appears, however slow the machine is. It is not SIGINT, because a shell
+  // makes background programs ignore that one, and the program respects this.
   const auto interrupted = [](const std::string& signal, const std::string& arguments, const std::string& outputs) {
     const std::string err = path("interrupted.err");
     const std::string command =
@@ -175,7 +175,7 @@ TEST_F(BadInput, InterruptsKeepWhatWasDoneAndLeaveNothingHalfWritten) {
   interrupted("TERM", "convert " + path("long") + " " + path("converted") + " --fx 262 --to pcd", path("converted"));
 }
 
-TEST_F(BadInput, AReaderThatLeavesEndsTheProgramQuietly) {
+TEST_F(BadInput, AClosedPipeEndsTheProgramQuietly) {
   const Outcome run = run_program("detect " + frames() + " -m " + model() + " -q --json - | true");
   EXPECT_EQ(run.err, "");
 }

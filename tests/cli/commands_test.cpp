@@ -16,7 +16,7 @@ using testing::StartsWith;
 
 class Commands : public SmallWorld {};
 
-TEST_F(Commands, HelpAndVersion) {
+TEST_F(Commands, PrintHelpAndVersion) {
   const Outcome help = run_program("--help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, HasSubstr("vesalius detect frames/"));
@@ -29,7 +29,7 @@ TEST_F(Commands, HelpAndVersion) {
   EXPECT_EQ(nothing.err, help.out);
 }
 
-TEST_F(Commands, EveryCommandHasHelp) {
+TEST_F(Commands, AllHaveHelp) {
   for (const char* command : {"detect", "bench", "info", "convert", "assets", "options", "completion"}) {
     const Outcome run = run_program(std::string(command) + " --help");
     EXPECT_EQ(run.exit_code, 0) << command;
@@ -87,7 +87,7 @@ TEST_F(Commands, InfoDescribesAModel) {
   EXPECT_THAT(run_program("info " + model()).out, HasSubstr("  depth "));
 }
 
-TEST_F(Commands, InfoDoesNotObeyAModelsText) {
+TEST_F(Commands, InfoKeepsAModelsTextFromTheTerminal) {
   Forest forest = load_model(model());
   forest.recipe =
       "honest\n\x1b[2Jgone \xc2\x9b"
@@ -103,7 +103,7 @@ TEST_F(Commands, InfoDoesNotObeyAModelsText) {
   }
 }
 
-TEST_F(Commands, PrintedOptionsAreAnOptionsFile) {
+TEST_F(Commands, OptionsPrintsAnOptionsFile) {
   const Outcome run = run_program("options");
   ASSERT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.out, HasSubstr("\nsearch.min-parts = 4\n"));
@@ -114,7 +114,7 @@ TEST_F(Commands, PrintedOptionsAreAnOptionsFile) {
   EXPECT_EQ(with.out, run_program(detect).out) << "the defaults, once more";
 }
 
-TEST_F(Commands, ConvertMakesAModelOfTextTrees) {
+TEST_F(Commands, ConvertTurnsTextTreesIntoAModel) {
   write("one.txt", "1\n10 0 0 0 5\n3\n4\n");
   write("two.txt", "0\n24\n");
   const Outcome run = run_program("convert -q " + path("one.txt") + " " + path("two.txt") + " " + path("text.forest"));
@@ -127,7 +127,7 @@ TEST_F(Commands, ConvertMakesAModelOfTextTrees) {
   EXPECT_FALSE(std::filesystem::exists(path("bad.forest")));
 }
 
-TEST_F(Commands, ConvertedFramesGiveTheSamePeople) {
+TEST_F(Commands, ConvertKeepsThePeopleInFrames) {
   const std::string flags = " -q --json - -m " + model();
   const auto people = [&](const std::string& source) {
     std::vector<json> found;
@@ -150,7 +150,7 @@ TEST_F(Commands, ConvertedFramesGiveTheSamePeople) {
   }
 }
 
-TEST_F(Commands, ConvertInventsNoTimes) {
+TEST_F(Commands, ConvertRefusesTumWithoutTimes) {
   const Outcome refused = run_program("convert " + frames() + " " + path("timeless") + " --to tum");
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("frame a has no time, which this layout needs"));

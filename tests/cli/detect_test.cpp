@@ -34,7 +34,7 @@ class Detect : public SmallWorld {
     return parsed;
   }
 
-  /// Every file under a folder, by its path within.
+  /// Returns the bytes of every file below a folder by its relative path.
   static std::map<std::string, std::string> contents(const std::string& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -45,7 +45,7 @@ class Detect : public SmallWorld {
   }
 };
 
-TEST_F(Detect, PrintsALineAFrame) {
+TEST_F(Detect, PrintsALineForEachFrame) {
   const Outcome run = detect("");
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.out, MatchesRegex("a: 1 person: [0-9]+ parts at 2\\.[0-9]+ m .score [0-9.]+.\nb: 1 person: .*\nc: "
@@ -72,7 +72,7 @@ void expect_point(const json& point) {
   EXPECT_LE(point.at("confidence"), 1.0);
 }
 
-TEST_F(Detect, JsonOnStandardOutputIsNothingElse) {
+TEST_F(Detect, PrintsNothingBesideJson) {
   const Outcome run = detect(" --json -");
   EXPECT_EQ(run.exit_code, 0);
   const std::vector<json> found = lines(run.out);
@@ -102,7 +102,7 @@ TEST_F(Detect, FindsTheRenderedPersonWhereItStands) {
   const json person = lines(detect(" --json -").out).at(0).at("people").at(0);
   const json& chest = person.at("parts").at("l_chest");
   ASSERT_EQ(chest.at("state"), "observed");
-  EXPECT_NEAR(chest.at("xyz_m").at(2), 2.4, 0.2);  // the feet stand at 2.5 m, the chest's surface before
+  EXPECT_NEAR(chest.at("xyz_m").at(2), 2.4, 0.2);  // the feet stand at 2.5 m, and the chest's surface is nearer
   EXPECT_GT(chest.at("xyz_m").at(0), 0.0) << "the left of a person who faces the camera is on the right";
   const json& box = person.at("box_px");
   EXPECT_GT(chest.at("px").at(0), 159.5) << "so it is in the picture";
@@ -111,7 +111,7 @@ TEST_F(Detect, FindsTheRenderedPersonWhereItStands) {
 }
 
 // Labels: threads
-TEST_F(Detect, SameBytesForAnyNumberOfThreads) {
+TEST_F(Detect, WritesTheSameBytesForAnyNumberOfThreads) {
   std::map<std::string, std::string> first;
   for (const std::string threads : {"1", "2", "8"}) {
     const std::string out = path("threads" + threads);
@@ -126,7 +126,7 @@ TEST_F(Detect, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST_F(Detect, SavesWhatIsAskedFor) {
+TEST_F(Detect, SavesTheRequestedPictures) {
   const std::string out = path("saved");
   const Outcome run = detect(" --out " + out + " --save mask,labels,video");
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -150,14 +150,14 @@ TEST_F(Detect, SavesWhatIsAskedFor) {
   for (const auto& file : contents(out)) EXPECT_EQ(file.first.find(".tmp"), std::string::npos) << file.first;
 }
 
-TEST_F(Detect, OutAloneSavesOverlays) {
+TEST_F(Detect, SavesOverlaysByDefault) {
   const std::string out = path("pictures");
   ASSERT_EQ(detect(" --out " + out).exit_code, 0);
   EXPECT_EQ(contents(out).size(), 3U);
   EXPECT_TRUE(fs::exists(out + "/overlay/c.png"));
 }
 
-TEST_F(Detect, FlagsWinOverTheOptionsFile) {
+TEST_F(Detect, PrefersFlagsToTheOptionsFile) {
   write("strict.toml", "[search]\nmin-parts = 25\nmax-mean-error = 0.0001\n");
   const std::string file = " --json - --options " + path("strict.toml");
   const auto people = [](const Outcome& run) { return lines(run.out).at(0).at("people").size(); };
@@ -165,7 +165,7 @@ TEST_F(Detect, FlagsWinOverTheOptionsFile) {
   EXPECT_EQ(people(detect(file + " --search.min-parts 4 --search.max-mean-error 1")), 1U);
 }
 
-TEST_F(Detect, ADamagedFrameKeepsWhatWasDoneBefore) {
+TEST_F(Detect, KeepsFramesBeforeADamagedOne) {
   fs::copy(frames(), path("damaged"), fs::copy_options::recursive);
   write("damaged/depth/b.png", "no picture");
   const std::string out = path("damaged_out");
@@ -191,12 +191,12 @@ TEST_F(Detect, ADamagedFrameKeepsWhatWasDoneBefore) {
   EXPECT_EQ(found[2], json::parse(R"({"complete":false,"frames":2,"why":"1 of 3 frames failed"})"));
 }
 
-TEST_F(Detect, LinesOfTextComeOnlyWhereNothingElseIsAskedFor) {
+TEST_F(Detect, PrintsLinesOnlyWithoutOtherOutputs) {
   EXPECT_EQ(detect(" --json " + path("alone.jsonl")).out, "");
   EXPECT_EQ(detect(" --out " + path("alone")).out, "");
 }
 
-TEST_F(Detect, OnATerminalAResultHasALineOfItsOwn) {
+TEST_F(Detect, PrintsResultsOnSeparateLinesOfATerminal) {
   std::string list;
   for (int i = 0; i < 100; ++i) list += std::to_string(i) + " ../frames/depth/c.png\n";
   fs::create_directories(path("hundred"));
@@ -204,7 +204,7 @@ TEST_F(Detect, OnATerminalAResultHasALineOfItsOwn) {
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_TRUE(terminal >= 0 && ::grantpt(terminal) == 0 && ::unlockpt(terminal) == 0);
   const std::string name = ::ptsname(terminal);
-  const int held = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // so that reading does not end before the program begins
+  const int held = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // otherwise reading might end before the program begins
   std::string shown;
   std::thread reader([&] {
     std::array<char, 4096> buffer{};
@@ -221,7 +221,7 @@ TEST_F(Detect, OnATerminalAResultHasALineOfItsOwn) {
   std::istringstream in(shown);
   for (std::string line; std::getline(in, line);) {
     if (line.ends_with('\r')) line.pop_back();
-    line.erase(0, line.rfind('\r') + 1);  // what the terminal goes back over
+    line.erase(0, line.rfind('\r') + 1);  // the text that the terminal overwrites
     if (!line.ends_with(": nobody")) continue;
     EXPECT_THAT(line, MatchesRegex("[0-9]+: nobody"));
     ++results;
@@ -229,7 +229,7 @@ TEST_F(Detect, OnATerminalAResultHasALineOfItsOwn) {
   EXPECT_EQ(results, 100);
 }
 
-TEST_F(Detect, TheDefaultModelIsFoundWithoutBeingNamed) {
+TEST_F(Detect, FindsTheDefaultModel) {
   fs::create_directories(path("models"));
   fs::copy_file(model(), path("models/default.forest"));
   const Outcome chosen = run_program("detect " + frames() + " -q --json -", "VESALIUS_MODELS='" + path("models") + "'");
@@ -238,7 +238,7 @@ TEST_F(Detect, TheDefaultModelIsFoundWithoutBeingNamed) {
   EXPECT_EQ(run_program("detect " + frames() + " -q").exit_code, 0) << "the build tree has the shipped ones";
 }
 
-TEST_F(Detect, AMissingDefaultModelSaysWhereItWasLookedFor) {
+TEST_F(Detect, NamesTheFoldersThatLackTheDefaultModel) {
   fs::create_directories(path("bin"));
   fs::copy_file(VESALIUS_PROGRAM, path("bin/vesalius"));
   const std::string command =
@@ -251,14 +251,14 @@ TEST_F(Detect, AMissingDefaultModelSaysWhereItWasLookedFor) {
   EXPECT_EQ(std::system(command.c_str()), 0) << "as an installation has it: " << bytes_of(path("models.err"));
 }
 
-TEST_F(Detect, WhatNobodyCanReadStopsNothing) {
+TEST_F(Detect, GoesOnWithoutAReaderOfItsMessages) {
   const Outcome full = detect(" 2>/dev/full");
   EXPECT_EQ(full.exit_code, 0);
   EXPECT_EQ(std::ranges::count(full.out, '\n'), 3);
   EXPECT_EQ(detect(" 2>&-").exit_code, 0);
 }
 
-TEST_F(Detect, ClosedStreamsDoNotSpillIntoFiles) {
+TEST_F(Detect, WritesNoMessagesIntoFilesWhenStreamsAreClosed) {
   fs::copy(frames(), path("spilt"), fs::copy_options::recursive);
   write("spilt/depth/b.png", "no picture");
   const std::string people = path("spilt.jsonl");
@@ -266,13 +266,13 @@ TEST_F(Detect, ClosedStreamsDoNotSpillIntoFiles) {
   EXPECT_EQ(lines(bytes_of(people)).size(), 3U) << "two frames and the closing line";
 }
 
-TEST_F(Detect, AFrameIsALineWhateverItsName) {
+TEST_F(Detect, PrintsOneLineForAnyFrameName) {
   fs::create_directories(path("names"));
   fs::copy(frames() + "/depth/c.png", path("names/one\ntwo.png"));
   EXPECT_EQ(run_program("detect " + path("names") + " --fx 262 -m " + model()).out, "one two: nobody\n");
 }
 
-TEST_F(Detect, AnotherBodyMayHaveOtherJointsForTheSameParts) {
+TEST_F(Detect, TakesABodyWithOtherJointsForTheSameParts) {
   std::string body = bytes_of(std::string(VESALIUS_SOURCE_DIR) + "/data/bodies/paper25.toml");
   const std::size_t second_set = body.find("[[joint_set]]", body.find("[[joint_set]]") + 1);
   write("one_set.toml", body.substr(0, second_set));
@@ -281,7 +281,7 @@ TEST_F(Detect, AnotherBodyMayHaveOtherJointsForTheSameParts) {
   EXPECT_EQ(lines(run.out).at(0).at("people").at(0).at("joints").size(), 1U);
 }
 
-TEST_F(Detect, TimingIsATableOfStages) {
+TEST_F(Detect, PrintsTimesAsATableOfStages) {
   const Outcome run = detect(" -q --timing");
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_EQ(run.out, "");
@@ -289,7 +289,7 @@ TEST_F(Detect, TimingIsATableOfStages) {
   for (const char* stage : {"read", "label", "second pass", "detect", "write"}) EXPECT_THAT(run.err, HasSubstr(stage));
 }
 
-TEST_F(Detect, InRealTimeEveryFrameIsWrittenOrCounted) {
+TEST_F(Detect, WritesOrCountsEveryFrameInRealTime) {
   for (const std::string rate : {"4", "1000"}) {
     const Outcome run = detect(" --realtime --rate " + rate);
     EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -299,7 +299,7 @@ TEST_F(Detect, InRealTimeEveryFrameIsWrittenOrCounted) {
   }
 }
 
-TEST_F(Detect, InRealTimeErrorsStopItToo) {
+TEST_F(Detect, StopsAtErrorsInRealTimeToo) {
   fs::copy(frames(), path("broken"), fs::copy_options::recursive);
   write("broken/depth/a.png", "no picture");
   const Outcome run = run_program("detect " + path("broken") + " -q --realtime -m " + model());

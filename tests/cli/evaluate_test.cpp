@@ -21,7 +21,7 @@ using testing::StartsWith;
 
 bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null") == 0; }
 
-/// The small world's frames with a table of the people in them.
+/// Tests on the small world's frames with a table of the people in them.
 class Evaluate : public SmallWorld {
  protected:
   void SetUp() override { write("frames/frames.csv", "frame,people,posture\na,1,standing\nb,1,\nc,0,empty\n"); }
@@ -34,7 +34,7 @@ class Evaluate : public SmallWorld {
     return run_program("evaluate " + frames() + " -q -m " + model() + more);
   }
 
-  /// A dataset of one frame with a person and one without.
+  /// Returns a dataset of one frame with a person and one without.
   static std::string dataset() {
     const std::string folder = path("dataset");
     if (fs::exists(folder)) return folder;
@@ -48,7 +48,7 @@ class Evaluate : public SmallWorld {
   }
 };
 
-TEST_F(Evaluate, PrintsWhatASetCameTo) {
+TEST_F(Evaluate, PrintsTheMetricsOfASet) {
   const Outcome run = evaluate("");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out,
@@ -61,7 +61,7 @@ TEST_F(Evaluate, StepTakesTheFirstOfEveryN) {
   EXPECT_THAT(evaluate(" --step 2").out, StartsWith("frames: 2 frames, people 1 of 1"));
 }
 
-TEST_F(Evaluate, LabelsOnlyMeasuresNoPeople) {
+TEST_F(Evaluate, MeasuresNoPeopleWithLabelsOnly) {
   const Outcome run = evaluate(" --labels-only");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, StartsWith("frames: 3 frames, body on empty "));
@@ -70,7 +70,7 @@ TEST_F(Evaluate, LabelsOnlyMeasuresNoPeople) {
 
 TEST_F(Evaluate, WritesAReportWithPictures) {
   if (!has_gnuplot()) GTEST_SKIP() << "no program gnuplot (Debian: gnuplot-nox)";
-  // So that somebody is missed:
+  // With these options somebody is missed.
   const Outcome run = evaluate(" --refine.min-score 1 --no-refine.second-pass --report " + path("out"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::string html = bytes_of(path("out/report.html"));
@@ -86,7 +86,7 @@ TEST_F(Evaluate, WritesAReportWithPictures) {
   EXPECT_EQ(json::parse(bytes_of(path("out/report.json"))).at("sets").size(), 1U);
 }
 
-TEST_F(Evaluate, WritesWhatEachPartOfTheMethodIsWorth) {
+TEST_F(Evaluate, WritesTheContributionOfEachPartOfTheMethod) {
   if (!has_gnuplot()) GTEST_SKIP() << "no program gnuplot (Debian: gnuplot-nox)";
   const Outcome run = evaluate(" --ablation --step 3 --report " + path("out"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -108,7 +108,7 @@ TEST_F(Evaluate, WritesWhatEachPartOfTheMethodIsWorth) {
 }
 
 // Labels: threads
-TEST_F(Evaluate, MetricsAreTheSameForAnyThreadCount) {
+TEST_F(Evaluate, GivesTheSameMetricsForAnyNumberOfThreads) {
   std::vector<json> sets;
   for (const char* threads : {"1", "2", "5"}) {
     ASSERT_EQ(evaluate(" --json " + path("t.json") + " --threads " + threads).exit_code, 0);
@@ -119,7 +119,7 @@ TEST_F(Evaluate, MetricsAreTheSameForAnyThreadCount) {
   EXPECT_EQ(sets[0], sets[2]);
 }
 
-TEST_F(Evaluate, DatasetsHaveMetricsOfPixelsPartsAndJoints) {
+TEST_F(Evaluate, MeasuresPixelsPartsAndJointsOfDatasets) {
   const Outcome run = run_program("evaluate " + dataset() + " -q -m " + model() + " --json " + path("d.json"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json set = json::parse(bytes_of(path("d.json"))).at("sets").at(0);
@@ -128,7 +128,7 @@ TEST_F(Evaluate, DatasetsHaveMetricsOfPixelsPartsAndJoints) {
   EXPECT_GE(figures.at("pixels.mean_recall_inside").at("value"), figures.at("pixels.mean_recall").at("value"));
   EXPECT_GT(figures.at("pixels.person_iou").at("value"), 0.5);
   EXPECT_TRUE(figures.contains("parts.right"));
-  EXPECT_FALSE(figures.contains("joints.at_10cm"));  // the only person is in a frame for fitting
+  EXPECT_FALSE(figures.contains("joints.at_10cm"));  // the only person is in a frame that is used for fitting
   EXPECT_EQ(set.at("confusion").size(), 26U);
   EXPECT_EQ(set.at("curve_over_parts").size(), 25U);
 }
@@ -142,7 +142,7 @@ TEST_F(Evaluate, RefusesAModelOfOtherParts) {
   EXPECT_THAT(run.err, HasSubstr("part 0 is l_goot, in the model l_foot"));
 }
 
-TEST_F(Evaluate, ADamagedFrameEndsTheWorkUnlessItIsToKeepGoing) {
+TEST_F(Evaluate, StopsAtADamagedFrameUnlessToldToKeepGoing) {
   const std::string file = path("frames/depth/b.png");
   const std::string good = bytes_of(file);
   write("frames/depth/b.png", good.substr(0, good.size() / 2));
@@ -183,14 +183,14 @@ TEST_F(Evaluate, RefusesTruthThatCannotBeUsed) {
   EXPECT_THAT(run_program("evaluate /nowhere -m " + model()).err, HasSubstr("/nowhere: "));
 }
 
-TEST_F(Evaluate, JointsAreFittedOnFramesThatDoNotCount) {
+TEST_F(Evaluate, FitsJointsOnFramesThatAreNotMeasured) {
   write("frames/joints.csv",
         "frame,joint,x_m,y_m,z_m\na,head,0,-0.6,2.5\na,l_knee,0.1,0.5,2.5\nb,head,0,-0.6,2.5\nb,l_knee,0.1,0.5,2.5\n");
   const Outcome run = evaluate(" --json " + path("j.json") + " --fit-joints " + path("j.toml"));
   fs::remove(path("frames/joints.csv"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json set = json::parse(bytes_of(path("j.json"))).at("sets").at(0);
-  EXPECT_EQ(set.at("figures").at("joints.at_10cm").at("denominator"), 2.0);  // of frame b
+  EXPECT_EQ(set.at("figures").at("joints.at_10cm").at("denominator"), 2.0);  // the joints of frame b
   EXPECT_EQ(set.at("joint_precision").size(), 2U);
   const std::string toml = bytes_of(path("j.toml"));
   EXPECT_THAT(toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
@@ -199,7 +199,7 @@ TEST_F(Evaluate, JointsAreFittedOnFramesThatDoNotCount) {
   EXPECT_EQ(body.joint_sets.size(), paper_body().joint_sets.size() + 3);
 }
 
-TEST_F(Evaluate, FramesOfARecipeAreThoseThatSynthWrites) {
+TEST_F(Evaluate, RendersTheFramesThatSynthWrites) {
   write("small.toml",
         "sensor.width = 80\nsensor.height = 60\nsensor.colour = false\nbody.kind = 'builtin'\nbody.count = 2\n"
         "pose.captured = 0.0\n");
@@ -223,7 +223,7 @@ TEST_F(Evaluate, FramesOfARecipeAreThoseThatSynthWrites) {
   EXPECT_EQ(rendered.at("confusion"), stored.at("confusion"));
 }
 
-TEST_F(Evaluate, SaysWhatStandsInForMissingAssetsEvenWhenQuiet) {
+TEST_F(Evaluate, NamesSubstitutesForMissingAssetsEvenWhenQuiet) {
   write("captured.toml", "sensor.width = 80\nsensor.height = 60\nbody.count = 2\nbody.kind = 'auto'\n");
   fs::create_directories(path("no_assets"));
   const Outcome run = run_program("evaluate -q --recipe " + path("captured.toml") + " --count 1 --assets " +
@@ -235,7 +235,7 @@ TEST_F(Evaluate, SaysWhatStandsInForMissingAssetsEvenWhenQuiet) {
   EXPECT_THAT(notes.dump(), HasSubstr("mocap is not there"));
 }
 
-TEST_F(Evaluate, ARecipeNeedsACount) {
+TEST_F(Evaluate, NeedsACountForARecipe) {
   write("small.toml", "body.kind = 'builtin'\n");
   const Outcome run = run_program("evaluate --recipe " + path("small.toml") + " -m " + model());
   EXPECT_EQ(run.exit_code, 2);
@@ -243,8 +243,8 @@ TEST_F(Evaluate, ARecipeNeedsACount) {
   EXPECT_EQ(run_program("evaluate -m " + model()).exit_code, 2);
 }
 
-TEST_F(Evaluate, TheScoreIsFittedToFramesWithPeopleAndWithout) {
-  // Somebody in b, too, who is to be taken for nobody.
+TEST_F(Evaluate, FitsTheScoreToFramesWithAndWithoutPeople) {
+  // Frame b shows a person too, but the table says that it shows nobody.
   write("frames/frames.csv", "frame,people,posture\na,1,\nb,0,\nc,0,\n");
   fs::create_directories(path("frames/mask"));
   write_png(Image<std::uint8_t>(320, 240, 255), path("frames/mask/a.png"));
@@ -265,7 +265,7 @@ TEST_F(Evaluate, TheScoreIsFittedToFramesWithPeopleAndWithout) {
 
 class Compare : public Evaluate {};
 
-TEST_F(Compare, SaysWhatGotWorse) {
+TEST_F(Compare, NamesMetricsThatGotWorse) {
   ASSERT_EQ(evaluate(" --json " + path("good.json")).exit_code, 0);
   ASSERT_EQ(evaluate(" --json " + path("bad.json") + " --refine.min-score 1").exit_code, 0);
   const Outcome same = run_program("compare " + path("good.json") + " " + path("good.json"));
@@ -276,7 +276,7 @@ TEST_F(Compare, SaysWhatGotWorse) {
   EXPECT_THAT(run_program("compare --all " + path("good.json") + " " + path("bad.json")).out, HasSubstr("  same\n"));
 }
 
-TEST_F(Compare, RefusesWhatIsNoEvaluation) {
+TEST_F(Compare, RefusesFilesThatAreNoEvaluation) {
   ASSERT_EQ(evaluate(" --json " + path("good.json")).exit_code, 0);
   const auto error = [](const std::string& text) {
     write("x.json", text);

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs the commands of docs/retrain.md in a folder of its own, on frames few and small enough for a test.
+/// Runs the commands of docs/retrain.md in a folder of its own, on few and small frames.
 class Retrain : public testing::Test {
  protected:
   void SetUp() override {
@@ -30,7 +30,7 @@ class Retrain : public testing::Test {
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  /// Lines that begin with "vesalius" within the blocks of the tutorial, without that word.
+  /// Returns the lines in the tutorial's blocks that begin with "vesalius", without that word.
   static std::vector<std::string> commands() {
     std::ifstream file(fs::path(VESALIUS_SOURCE_DIR) / "docs/retrain.md");
     std::vector<std::string> commands;
@@ -42,7 +42,7 @@ class Retrain : public testing::Test {
     return commands;
   }
 
-  /// The command at the size of a test, its files in the test's folder; nothing is fetched.
+  /// Returns the command for small frames with its files in the test's folder. Nothing is fetched.
   std::string small(std::string command) const {
     for (const char* name :
          {"ceiling/", "empty/", "unseen/", "upper/", "people/", "found/", "report/", "look.png", "parts.png",
@@ -68,7 +68,7 @@ class Retrain : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(Retrain, TheTutorialsCommandsWork) {
+TEST_F(Retrain, RunsTheTutorialsCommands) {
   ASSERT_EQ(
       run_program("synth -q --count 5 --seed 9 --format folder --out " + path("empty/") + kSmallFrames + kEmptyFrames)
           .exit_code,

@@ -10,11 +10,11 @@ struct Outcome {
   std::string err;
 };
 
-/// Runs `vesalius ARGUMENTS` by the shell, with `environment` ("NAME=value ...") set. What the arguments redirect is
-/// not in the result.
+/// Runs `vesalius ARGUMENTS` in a shell with `environment` ("NAME=value ...") set. Output that the arguments redirect
+/// is not in the result.
 Outcome run_program(const std::string& arguments, const std::string& environment = "");
 
-/// Bytes of a file, empty where there is none.
+/// Returns the bytes of a file; empty if it does not exist.
 std::string bytes_of(const std::string& path);
 
 }  // namespace vesalius

@@ -9,8 +9,8 @@
 
 namespace vesalius {
 
-/// A folder with frames of a rendered person (a, b) and of an empty room (c), and a forest trained on them: all that
-/// the program needs, made once for all tests of this process and removed after them.
+/// A folder with frames of a rendered person (a, b) and of an empty room (c), and a forest trained on them. It is made
+/// once for all tests of a process and removed after them.
 class SmallWorld : public testing::Test {
  public:
   static void SetUpTestSuite();

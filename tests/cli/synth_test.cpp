@@ -23,13 +23,13 @@ class SynthProgram : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return folder_ / name; }
 
-  /// Small frames of few built-in bodies.
+  /// Returns a command that makes small frames with few built-in bodies.
   static std::string synth(const std::string& more) {
     return "synth -q --sensor.width 80 --sensor.height 60 --body.kind builtin --body.count 2 --seed 5 " + more;
   }
   static void expect_done(const Outcome& run) { EXPECT_EQ(run.exit_code, 0) << run.err; }
 
-  /// Name and bytes of every file of a folder.
+  /// Returns the name and bytes of every file of a folder.
   static std::vector<std::pair<std::string, std::string>> contents(const std::string& folder) {
     std::vector<std::pair<std::string, std::string>> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -45,7 +45,7 @@ class SynthProgram : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(SynthProgram, WritesFramesThatTheReaderGives) {
+TEST_F(SynthProgram, WritesFramesThatTheReaderReads) {
   expect_done(run_program(synth("--count 12 --out " + path("d"))));
   const DatasetReader reader(path("d"));
   ASSERT_EQ(reader.size(), 12);
@@ -56,16 +56,16 @@ TEST_F(SynthProgram, WritesFramesThatTheReaderGives) {
 }
 
 // Labels: threads
-TEST_F(SynthProgram, ThreadsDoNotChangeTheBytes) {
+TEST_F(SynthProgram, WritesTheSameBytesForAnyNumberOfThreads) {
   expect_done(run_program(synth("--count 20 --threads 1 --out " + path("one"))));
   expect_done(run_program(synth("--count 20 --threads 8 --out " + path("eight"))));
   EXPECT_EQ(contents(path("one")), contents(path("eight")));
 }
 
-TEST_F(SynthProgram, GoesOnAfterAKillWithTheSameBytes) {
+TEST_F(SynthProgram, ContinuesAfterAKillWithTheSameBytes) {
   const std::string frames = "--count 60 --shard 10 --out ";
   expect_done(run_program(synth(frames + path("whole"))));
-  // Killed when the first shard is there, however slow the machine.
+  // The program is killed when the first shard appears, however slow the machine is.
   const std::string kill = synth(frames + path("killed")) + " & pid=$!; i=0; while [ $i -lt 600 ] && ! ls " +
                            path("killed") +
                            " 2>/dev/null | grep -q shard; do sleep 0.05; i=$((i + 1)); done; kill -9 $pid; wait $pid";
@@ -75,7 +75,7 @@ TEST_F(SynthProgram, GoesOnAfterAKillWithTheSameBytes) {
   EXPECT_EQ(contents(path("killed")), contents(path("whole")));
 }
 
-TEST_F(SynthProgram, RefusesToGoOnWithAnotherRecipe) {
+TEST_F(SynthProgram, RefusesToContinueWithAnotherRecipe) {
   expect_done(run_program(synth("--count 4 --out " + path("d"))));
   const auto before = contents(path("d"));
   const Outcome run = run_program(synth("--count 8 --people.none 1 --out " + path("d")));
@@ -93,7 +93,7 @@ TEST_F(SynthProgram, ExportsFoldersThatDetectReads) {
   EXPECT_FALSE(frame->colour.empty());
 }
 
-TEST_F(SynthProgram, OneFrameCanBeMadeAgainAlone) {
+TEST_F(SynthProgram, MakesASingleFrameAgain) {
   expect_done(run_program(synth("--count 12 --out " + path("d"))));
   expect_done(run_program(synth("--first 11 --count 1 --format folder --out " + path("alone"))));
   const LabelledFrame in_a_row = DatasetReader(path("d")).read(11);
@@ -103,13 +103,13 @@ TEST_F(SynthProgram, OneFrameCanBeMadeAgainAlone) {
   EXPECT_EQ(read_png8(path("alone/labels/00000011.png")), in_a_row.labels);
 }
 
-TEST_F(SynthProgram, PreviewIsAPicture) {
+TEST_F(SynthProgram, WritesAPreviewPicture) {
   expect_done(run_program(synth("--preview 6 --out " + path("sheet.png"))));
   const ColourImage sheet = read_colour(path("sheet.png"));
   EXPECT_GT(sheet.width(), 300);
 }
 
-TEST_F(SynthProgram, RecipesRoundTrip) {
+TEST_F(SynthProgram, ReadsTheRecipesThatItWrites) {
   const Outcome options = run_program("options synth");
   expect_done(options);
   EXPECT_THAT(options.out, HasSubstr("sensor.preset = 'kinect-v1'"));
@@ -122,7 +122,7 @@ TEST_F(SynthProgram, RecipesRoundTrip) {
   EXPECT_EQ(contents(path("a")), contents(path("b")));
 }
 
-TEST_F(SynthProgram, BadInputIsOneClearLine) {
+TEST_F(SynthProgram, ReportsBadInputInOneLine) {
   const auto refused = [&](const std::string& arguments, int exit_code, const std::string& reason) {
     SCOPED_TRACE(arguments);
     const Outcome run = run_program(arguments);
@@ -137,7 +137,7 @@ TEST_F(SynthProgram, BadInputIsOneClearLine) {
   refused(synth("--count 0 --out " + path("x")), 2, "--count");
   refused(synth("--count 3 --people.one -1 --out " + path("x")), 2, "people.one");
   refused(synth("--count 3 --recipe " + path("none.toml") + " --out " + path("x")), 1, "none.toml");
-  std::string deep = "a";  // as many tables in each other: freeing them would exhaust the stack
+  std::string deep = "a";  // so many nested tables that freeing them would exhaust the stack
   for (int i = 0; i < 200000; ++i) deep += ".a";
   write_file_atomically(path("deep.toml"), deep + " = 1\n");
   refused(synth("--count 3 --recipe " + path("deep.toml") + " --out " + path("x")), 1, "deep.toml");
@@ -147,7 +147,7 @@ TEST_F(SynthProgram, BadInputIsOneClearLine) {
   EXPECT_FALSE(fs::exists(path("x")));
 }
 
-TEST_F(SynthProgram, FramesThatWereAskedForAreNotSilentlyOthers) {
+TEST_F(SynthProgram, NeverSubstitutesMissingAssetsSilently) {
   const std::string small = "sensor.width = 80\nsensor.height = 60\nbody.count = 2\n";
   write_file_atomically(path("any.toml"), small);
   write_file_atomically(path("moving.toml"), small + "pose.captured = 0.5\n");
@@ -167,7 +167,7 @@ TEST_F(SynthProgram, FramesThatWereAskedForAreNotSilentlyOthers) {
   EXPECT_THAT(DatasetReader(path("d")).info().recipe, HasSubstr("# mocap is not there, sampled poses instead\n"));
 }
 
-TEST_F(SynthProgram, ModelsThatUnfoldAreRefused) {
+TEST_F(SynthProgram, RefusesSmallModelFilesThatGrowLarge) {
   write_file_atomically(path("a.glb"), std::string("glTF\2\0\0\0\24\0\0\0\360\377\377\377JSON", 20));
   const Outcome run = run_program(synth("--preview 1 --models " + path("a.glb") + " --out " + path("p.png")));
   EXPECT_EQ(run.exit_code, 1);

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two small datasets made once for all tests, and a folder for each test, gone afterwards.
+/// Two small datasets that are made once for all tests, and a folder for each test, which is removed afterwards.
 class TrainProgram : public testing::Test {
  public:
   static void SetUpTestSuite() {
@@ -42,14 +42,14 @@ class TrainProgram : public testing::Test {
 
   static std::string data() { return (shared() / "data").string(); }
   static std::string synth(const std::string& more) { return "synth -q " + more + kSmallFrames; }
-  /// A forest grown in well under a second.
+  /// Returns a command that grows a forest in well under a second.
   static std::string train(const std::string& more, int trees = 3) {
     return fmt::format("train --trees {} --hard-trees 1 --depth 8 --candidates 20 --pixels 200 --held-out-share 0.1 {}",
                        trees, more);
   }
   static void expect_done(const Outcome& run) { EXPECT_EQ(run.exit_code, 0) << run.err; }
 
-  /// Rooms without people as depth pictures.
+  /// Returns a folder of depth pictures of rooms without people.
   std::string backgrounds() const {
     const std::string folder = path("empty");
     expect_done(run_program(synth("--count 5 --seed 9 --format folder --out " + folder + kEmptyFrames)));
@@ -94,7 +94,7 @@ TEST_F(TrainProgram, WritesAModelThatDetectLoads) {
       run_program("detect -q " + path("empty") + " --json " + path("people.jsonl") + " -m " + path("m.forest")));
 }
 
-TEST_F(TrainProgram, TheRecipeOfAModelTrainsItAgain) {
+TEST_F(TrainProgram, TrainsTheSameModelFromItsRecipe) {
   expect_done(run_program(train("-q --data " + data() + " --out " + path("a.forest"))));
   write_file_atomically(path("again.toml"), load_model(path("a.forest")).recipe);
   expect_done(
@@ -102,7 +102,7 @@ TEST_F(TrainProgram, TheRecipeOfAModelTrainsItAgain) {
   EXPECT_EQ(bytes_of(path("a.forest")), bytes_of(path("b.forest")));
 }
 
-TEST_F(TrainProgram, RenderingOnTheFlyIsTheSameAsADataset) {
+TEST_F(TrainProgram, TrainsAlikeOnRenderedFramesAndADataset) {
   expect_done(run_program("synth -q --recipe " + recipe() + " --seed 5 --count 30 --out " + path("d")));
   expect_done(run_program(train("-q --data " + path("d") + " --out " + path("a.forest"))));
   expect_done(run_program(train("-q --recipe " + recipe() + " --recipe-seed 5 --count 30 --out " + path("b.forest"))));
@@ -110,17 +110,17 @@ TEST_F(TrainProgram, RenderingOnTheFlyIsTheSameAsADataset) {
 }
 
 // Labels: threads
-TEST_F(TrainProgram, ThreadsDoNotChangeTheBytes) {
+TEST_F(TrainProgram, WritesTheSameBytesForAnyNumberOfThreads) {
   expect_done(run_program(train("-q --threads 1 --data " + data() + " --out " + path("one.forest"))));
   expect_done(run_program(train("-q --threads 4 --data " + data() + " --out " + path("four.forest"))));
   ASSERT_FALSE(bytes_of(path("one.forest")).empty());
   EXPECT_EQ(bytes_of(path("one.forest")), bytes_of(path("four.forest")));
 }
 
-TEST_F(TrainProgram, GoesOnAfterAKillWithTheSameBytes) {
+TEST_F(TrainProgram, ContinuesAfterAKillWithTheSameBytes) {
   const std::string command = train("-q --threads 1 --data " + data() + " --out ", 12);
   expect_done(run_program(command + path("whole.forest")));
-  // Killed when the second tree of the forest is there, however slow the machine.
+  // The program is killed when the forest's second tree appears, however slow the machine is.
   const std::string work = path("killed.forest") + ".work";
   run_program(command + path("killed.forest") + " & pid=$!; i=0; while [ $i -lt 6000 ] && ! [ -e " + work +
               "/tree-0001.forest ]; do sleep 0.005; i=$((i + 1)); done; kill -9 $pid; wait $pid");
@@ -137,10 +137,10 @@ TEST_F(TrainProgram, GoesOnAfterAKillWithTheSameBytes) {
   EXPECT_FALSE(fs::exists(work));
 }
 
-TEST_F(TrainProgram, AnInterruptKeepsWhatIsDone) {
+TEST_F(TrainProgram, KeepsFinishedTreesWhenInterrupted) {
   const std::string work = path("m.forest") + ".work";
   const std::string command = train("--threads 1 --data " + data() + " --out " + path("m.forest"), 200);
-  // A job in the background ignores Ctrl-C, so it is `kill`.
+  // A background job ignores Ctrl-C, so the signal is that of `kill`.
   run_program(command + " 2>" + path("said") + " & pid=$!; i=0; while [ $i -lt 6000 ] && ! [ -e " + work +
               "/tree-0001.forest ]; do sleep 0.005; i=$((i + 1)); done; kill -TERM $pid; wait $pid; echo $? >" +
               path("status"));
@@ -150,7 +150,7 @@ TEST_F(TrainProgram, AnInterruptKeepsWhatIsDone) {
   EXPECT_FALSE(fs::exists(path("m.forest")));
 }
 
-TEST_F(TrainProgram, RestartForgetsOtherTrees) {
+TEST_F(TrainProgram, DiscardsOtherTreesOnRestart) {
   fs::create_directories(path("m.forest.work"));
   write_file_atomically(path("m.forest.work/recipe.toml"), "trees = 5\n");
   const std::string command = train("-q --data " + data() + " --out " + path("m.forest"));
@@ -159,7 +159,7 @@ TEST_F(TrainProgram, RestartForgetsOtherTrees) {
   EXPECT_TRUE(fs::exists(path("m.forest")));
 }
 
-TEST_F(TrainProgram, EstimateSaysTimeAndMemoryAndWritesNothing) {
+TEST_F(TrainProgram, EstimatesTimeAndMemoryWithoutWriting) {
   const Outcome run = run_program(train("--estimate --data " + data()));
   expect_done(run);
   for (const char* line : {"frames ", "samples ", "evaluations ", "trees ", "time ", "memory "}) {
@@ -167,7 +167,7 @@ TEST_F(TrainProgram, EstimateSaysTimeAndMemoryAndWritesNothing) {
   }
 }
 
-TEST_F(TrainProgram, ReportsTablesAndPlots) {
+TEST_F(TrainProgram, WritesAReportWithTablesAndPlots) {
   expect_done(
       run_program(train("-q --curves --data " + data() + " --report " + path("r") + " --out " + path("m.forest"))));
   const std::string page = bytes_of(path("r/report.html"));
@@ -182,7 +182,7 @@ TEST_F(TrainProgram, ReportsTablesAndPlots) {
   }
 }
 
-TEST_F(TrainProgram, BadInputIsOneClearLine) {
+TEST_F(TrainProgram, ReportsBadInputInOneLine) {
   const std::string out = " --out " + path("x.forest");
   refused(train(out), 2, "--data or --recipe");
   refused(train("--data " + data()), 2, "--out");
@@ -209,7 +209,7 @@ TEST_F(TrainProgram, BadInputIsOneClearLine) {
   EXPECT_FALSE(fs::exists(path("x.forest.work")));
 }
 
-TEST_F(TrainProgram, FramesWithoutPeopleAreRefused) {
+TEST_F(TrainProgram, RefusesFramesWithoutPeople) {
   expect_done(run_program(synth("--count 4 --out " + path("d") + kEmptyFrames)));
   refused(train("-q --data " + path("d") + " --out " + path("x.forest")), 1, "no person in any of 4 frames");
 }

@@ -73,7 +73,7 @@ double term(const FrameScore& score, Metric metric) {
   return found == score.terms.end() ? 0.0 : found->numerator;
 }
 
-/// Frames of `now` that are not in `before`.
+/// Returns the frames of `now` that are not in `before`.
 std::vector<std::string> new_ones(const std::vector<std::string>& now, const std::vector<std::string>& before) {
   std::vector<std::string> found;
   std::ranges::copy_if(now, std::back_inserter(found),

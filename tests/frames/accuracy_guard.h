@@ -7,26 +7,26 @@
 
 namespace vesalius {
 
-/// A metric of docs/metrics.md that was accepted once, and by how much it may be worse.
+/// The accepted value of a metric of docs/metrics.md, and its tolerance.
 struct AcceptedMetric {
   std::string name;
   double value = 0.0;
   double tolerance = 0.0;
 };
 
-/// What was accepted of one model on one source: an entry of data/accuracy.toml.
+/// The accepted metrics of one model on one source: an entry of data/accuracy.toml.
 struct AcceptedSet {
-  std::string model;                      ///< file, relative to the project
-  std::string source;                     ///< the same; "shared:real/room" is in the developers' folder of real frames
-  int step = 1;                           ///< the first of every so many frames counts
-  std::vector<std::string> missed;        ///< frames in which somebody was not found
-  std::vector<std::string> false_people;  ///< frames in which somebody was found who is nobody
+  std::string model;                ///< path relative to the project
+  std::string source;               ///< path likewise; "shared:real/room" is in the developers' folder of real frames
+  int step = 1;                     ///< only the first of every `step` frames counts
+  std::vector<std::string> missed;  ///< frames in which a person was missed
+  std::vector<std::string> false_people;  ///< frames with a false person
   std::vector<AcceptedMetric> metrics;
 
   bool shared() const { return source.starts_with("shared:"); }
 };
 
-/// What such a set comes to now.
+/// The present metrics of such a set.
 struct MeasuredSet {
   int frames = 0;
   std::vector<std::string> missed;
@@ -37,14 +37,15 @@ struct MeasuredSet {
 /// Reads data/accuracy.toml. Throws Error with the line for unknown or missing keys.
 std::vector<AcceptedSet> parse_accuracy(std::string_view toml, const std::string& name);
 
-/// Detects the people in a source's frames, with joints of data/joints/evaluation.toml. `source`: path of the set.
+/// Measures the detection of people in a source's frames, with the joints of data/joints/evaluation.toml. `source` is
+/// the path of the frames.
 MeasuredSet measure(const AcceptedSet& set, const std::string& project, const std::string& source);
 
-/// A line for each metric that is worse than accepted by more than its tolerance or gone, and if there is any, a line
-/// for each kind of frames that changed. Empty: as good as before.
+/// Returns a line for each metric that is missing or worse than accepted by more than its tolerance. If there is any,
+/// lines for each kind of frames that changed follow. The list is empty if the set is as good as accepted.
 std::vector<std::string> what_got_worse(const AcceptedSet& accepted, const MeasuredSet& now);
 
-/// The set as it is now, as an entry for data/accuracy.toml with the tolerances that were accepted.
+/// Returns the present metrics as an entry for data/accuracy.toml, with the accepted tolerances.
 std::string accuracy_toml(const AcceptedSet& accepted, const MeasuredSet& now);
 
 }  // namespace vesalius

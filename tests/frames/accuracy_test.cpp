@@ -1,4 +1,4 @@
-// The metrics of data/accuracy.toml must not get worse.
+// These tests check that the metrics of data/accuracy.toml do not get worse.
 
 #include <gmock/gmock.h>
 
@@ -37,7 +37,7 @@ void expect_as_good(const AcceptedSet& set, const std::string& source) {
 }
 
 // Labels: real
-TEST(Accuracy, OnBundledFramesIsAsGoodAsAccepted) {
+TEST(Accuracy, IsAsGoodAsAcceptedOnBundledFrames) {
   int sets = 0;
   for (const AcceptedSet& set : accepted_sets()) {
     if (set.shared()) continue;
@@ -48,7 +48,7 @@ TEST(Accuracy, OnBundledFramesIsAsGoodAsAccepted) {
 }
 
 // Labels: real
-TEST(Accuracy, OnRealFramesIsAsGoodAsAccepted) {
+TEST(Accuracy, IsAsGoodAsAcceptedOnRealFrames) {
   VESALIUS_NEEDS_SHARED();
   int sets = 0;
   for (const AcceptedSet& set : accepted_sets()) {
@@ -63,13 +63,13 @@ AcceptedSet small_set() {
   return {"m.forest", "room", 1, {"a"}, {"z"}, {{"people.found", 0.9, 0.02}, {"people.false", 0.1, 0.05}}};
 }
 
-TEST(AccuracyGuard, WithinTheTolerancesNothingGotWorse) {
+TEST(AccuracyGuard, AcceptsDifferencesWithinTheTolerances) {
   EXPECT_THAT(what_got_worse(small_set(), {10, {"a", "b"}, {}, {{"people.found", 0.88}, {"people.false", 0.15}}}),
               IsEmpty());
   EXPECT_THAT(what_got_worse(small_set(), {10, {}, {}, {{"people.found", 1.0}, {"people.false", 0.0}}}), IsEmpty());
 }
 
-TEST(AccuracyGuard, SaysWhichMetricsAndFramesGotWorse) {
+TEST(AccuracyGuard, NamesMetricsAndFramesThatGotWorse) {
   const MeasuredSet now{10, {"b", "c"}, {"y", "z"}, {{"people.found", 0.87}, {"people.false", 0.1}}};
   EXPECT_THAT(what_got_worse(small_set(), now),
               ElementsAre("room: people.found is 0.8700, accepted were 0.9000 with a tolerance of 0.02",
@@ -83,7 +83,7 @@ TEST(AccuracyGuard, SaysWhichMetricsAndFramesGotWorse) {
               ElementsAre("room: no people.found any more"));
 }
 
-TEST(AccuracyGuard, TextIsReadAsItIsWritten) {
+TEST(AccuracyGuard, ReadsTheTextThatItWrites) {
   const MeasuredSet now{10, {"b"}, {}, {{"people.found", 0.875}, {"people.false", 0.0}}};
   const auto read = parse_accuracy(accuracy_toml(small_set(), now), "t");
   ASSERT_EQ(read.size(), 1U);
@@ -95,7 +95,7 @@ TEST(AccuracyGuard, TextIsReadAsItIsWritten) {
   EXPECT_EQ(read[0].metrics[0].tolerance, 0.02);
 }
 
-TEST(AccuracyGuard, SaysWhereTheTextIsWrong) {
+TEST(AccuracyGuard, NamesTheLineOfErrors) {
   const auto error = [](const std::string& toml) -> std::string {
     try {
       parse_accuracy(toml, "t");

@@ -1,4 +1,5 @@
-// The bundled forest on scenes it did not learn from: labelling, both passes, everything as shipped.
+// These tests run the bundled forest on scenes from which it did not learn: labelling, both passes, and the whole
+// detector with default options.
 
 #include <gmock/gmock.h>
 
@@ -39,7 +40,7 @@ CapsuleScene room(float wall_z_m) {
   return scene;
 }
 
-TEST(CapsuleForest, PartsLieWhereTheyAreSeen) {
+TEST(CapsuleForest, PutsPartsWhereTheyAreSeen) {
   const Detector detector = bundled_detector();
   int visible = 0, found = 0, within_4cm = 0, within_10cm = 0, people = 0;
   constexpr int kScenes = 12;
@@ -88,7 +89,7 @@ TEST(CapsuleForest, FindsAllOfThreePeople) {
   }
 }
 
-TEST(CapsuleForest, NobodyInEmptyRooms) {
+TEST(CapsuleForest, FindsNobodyInEmptyRooms) {
   const Detector detector = bundled_detector();
   for (int i = 0; i < 8; ++i) {
     Random random(9, static_cast<std::uint64_t>(i));

@@ -1,4 +1,4 @@
-// The released trees with default options, one setting for all, on real frames. Each test prints what it counted.
+// These tests run the released trees with the same default options on all real frames. Each test prints its counts.
 
 #include <gmock/gmock.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 Detector released_detector(const std::filesystem::path& shared) { return Detector(load_released_trees(shared)); }
 
-/// Sanitizers make a frame take seconds: every nth frame is enough for them.
+/// Returns n, such that every nth frame is tested. Under sanitizers a frame takes seconds, so fewer frames have to do.
 int stride() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return 25;
@@ -92,7 +92,7 @@ TEST(RealFrames, NobodyIsFoundWhereNobodyIs) {
 TEST(RealFrames, FourOfFivePeopleFromBehindAreFound) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
-  // A pixel on each trunk, left to right.
+  // These are pixels on the trunks, from left to right.
   const std::array<std::array<int, 2>, 5> trunks{{{90, 230}, {190, 260}, {345, 230}, {430, 230}, {560, 230}}};
   for (const RealFrame& real : load_real_set(shared, "pcl")) {
     if (real.people != 5) continue;
@@ -110,7 +110,7 @@ TEST(RealFrames, FourOfFivePeopleFromBehindAreFound) {
 }
 
 // Labels: real
-TEST(RealFrames, MasksOfOtherRoomsAreGood) {
+TEST(RealFrames, MasksInOtherRoomsAreGood) {
   VESALIUS_NEEDS_SHARED();
   const Detector detector = released_detector(shared);
   for (const char* set : {"uc3m", "uva_person"}) {
@@ -159,7 +159,7 @@ TEST(RealFrames, SameResultForAnyThreadCount) {
   }
 }
 
-/// Every `kEach`-th frame of all sets, with the shipped forest; VESALIUS_ALL_FRAMES=1 takes all.
+/// The shipped forest runs on every `kEach`-th frame of all sets, or on all frames if VESALIUS_ALL_FRAMES=1.
 // Labels: real threads
 TEST(RealFrames, SameResultForEveryInstructionSetAndThreadCount) {
   VESALIUS_NEEDS_SHARED();

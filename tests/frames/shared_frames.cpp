@@ -13,7 +13,7 @@
 namespace vesalius {
 namespace {
 
-/// frames.csv: set,frame,people,posture,has_rgb,has_mask.
+/// Reads frames.csv, whose columns are set,frame,people,posture,has_rgb,has_mask.
 std::map<std::string, int> people_of(const std::filesystem::path& shared, const std::string& set) {
   std::map<std::string, int> people;
   std::ifstream csv(shared / "real" / "frames.csv");

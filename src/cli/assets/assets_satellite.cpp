@@ -6,7 +6,7 @@
 namespace vesalius::cli {
 namespace {
 
-/// Which packages are where `vesalius assets` puts them.
+/// Returns for each package whether it is in the folder of `vesalius assets`.
 std::vector<std::pair<std::string, std::string>> packages() {
   std::vector<std::pair<std::string, std::string>> found;
   for (const AssetPackage& package : asset_packages()) {

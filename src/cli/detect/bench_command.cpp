@@ -38,11 +38,11 @@ struct Arguments {
   bool quiet = false;
 };
 
-/// Frames measured with one number of threads.
+/// Measurements with one number of threads.
 struct Run {
   int threads = 1;
   FrameTimes times;
-  double processor_ms = 0.0;  ///< of all threads, all frames
+  double processor_ms = 0.0;  ///< over all threads and frames
 
   double frames_per_s() const { return times.frames() == 0 ? 0.0 : 1000.0 / times.detect().mean; }
   double processor_ms_a_frame() const { return processor_ms / static_cast<double>(times.frames()); }
@@ -50,13 +50,13 @@ struct Run {
 
 struct Bench {
   std::vector<Run> runs;
-  double ready_s = 0.0;  ///< until model and detector were there
+  double ready_s = 0.0;  ///< time until model and detector were ready
   int width = 0, height = 0;
 };
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Of the whole process, so far, in units of 10^6 bytes.
+/// Returns the peak memory of the whole process so far, in units of 10^6 bytes.
 double peak_memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -88,7 +88,8 @@ void measure(const Detector& detector, const Frame& frame, double read_ms, Run& 
   run.times.add(stages, read_ms, -1.0);
 }
 
-/// Every frame by each number of threads in turn, so that what else the machine does meets all of them alike.
+/// Measures every frame with each number of threads in turn, so that other load on the machine affects all of them
+/// alike.
 void measure_all(const Arguments& arguments, const Detector& detector, Bench& bench) {
   auto source = open_source(arguments.source, arguments.camera);
   const int wanted = arguments.frames > 0 ? arguments.frames : source->size();
@@ -104,7 +105,7 @@ void measure_all(const Arguments& arguments, const Detector& detector, Bench& be
     const double read_ms = seconds_since(start) * 1e3;
     bench.width = frame->depth.width();
     bench.height = frame->depth.height();
-    if (progress.done() == 0) detector.detect(*frame);  // pages and caches
+    if (progress.done() == 0) detector.detect(*frame);  // fills pages and caches
     for (Run& run : bench.runs) measure(detector, *frame, read_ms, run);
     progress.step();
   }

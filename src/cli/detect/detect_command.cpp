@@ -41,7 +41,7 @@ struct Totals {
   FrameTimes times;
 };
 
-/// Writes what was found in one frame. Throws what reading or detecting threw.
+/// Writes the people found in one frame. Rethrows what reading or detecting threw.
 void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals) {
   if (found.error) std::rethrow_exception(found.error);
   const double write_ms = elapsed_ms([&] { outputs.write(*found.frame, found.people); });
@@ -55,7 +55,7 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
   StreamOptions options = arguments.stream;
   options.stop = interrupted;
   totals.dropped = stream_frames(source, detector, options, [&](const FoundFrame& found) {
-    // A terminal shows both: what is printed must not stand behind the changing line.
+    // On a terminal both appear, and a printed line must not follow the changing one in the same row.
     if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
     try {
       write_found(found, outputs, totals);
@@ -110,8 +110,8 @@ void run(const Arguments& arguments) {
   } catch (const Error& e) {
     progress.clear();
     try {
-      outputs.finish(e.what());  // what was done is kept
-    } catch (const Error&) {     // the first error is told
+      outputs.finish(e.what());  // the finished frames are kept
+    } catch (const Error&) {     // the first error is the one to report
     }
     if (progress.done() > 0) say_end();
     throw;

@@ -20,7 +20,7 @@ void make_folder(const fs::path& folder) {
   if (error) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
 }
 
-/// Mean distance of the parts seen, metres along the optical axis.
+/// Returns the mean distance of the observed parts in metres along the optical axis.
 double distance_m(const Skeleton& skeleton) {
   double sum = 0.0;
   int count = 0;

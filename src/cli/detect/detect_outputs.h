@@ -11,31 +11,33 @@
 
 namespace vesalius::cli {
 
-/// What `vesalius detect` is to write, and where.
+/// The outputs that `vesalius detect` writes.
 struct OutputRequest {
-  std::string json;               ///< file, "-" = standard output, empty = none
-  std::string folder;             ///< empty = no pictures
-  std::vector<std::string> save;  ///< of kSaveKinds; empty with a folder = overlay
+  std::string json;               ///< path; "-" means standard output, empty means none
+  std::string folder;             ///< folder for pictures; empty means none
+  std::vector<std::string> save;  ///< words of kSaveKinds; if empty and there is a folder, overlays
   double video_rate = 30.0;       ///< frames per second
-  bool quiet = false;             ///< no lines of text
+  bool quiet = false;             ///< print no lines of text
 
-  /// Returns whether a line of text per frame goes to standard output: where nothing else is asked for.
+  /// Returns whether each frame prints a line of text on standard output. It does so only if no other output is
+  /// requested.
   bool lines() const { return !quiet && json.empty() && folder.empty(); }
 };
 
 inline const std::set<std::string> kSaveKinds = {"overlay", "parts", "labels", "mask", "cloud", "video"};
 
-/// Throws UsageError for a request that cannot be meant.
+/// Throws UsageError for an invalid request.
 void check(const OutputRequest& request);
 
-/// Everything written per frame. Pictures appear one by one, JSON and video at `finish`. Whoever does not call it
-/// leaves neither.
+/// Writes the outputs of each frame. Pictures appear one by one; JSON and video appear at `finish`, and without that
+/// call they never do.
 class DetectOutputs {
  public:
-  /// Makes the folders; throws Error when it cannot, or cannot open a file.
+  /// Creates the folders. Throws Error if it cannot create them or cannot open a file.
   DetectOutputs(OutputRequest request, const BodyModel& body);
   void write(const Frame& frame, const std::vector<Person>& people);
-  /// Ends JSON and video. `why_not_all` says why frames are missing, which the JSON repeats; empty where none are.
+  /// Completes JSON and video. `why_not_all` says why frames are missing and is repeated in the JSON; it is empty if
+  /// none are.
   void finish(const std::string& why_not_all);
 
  private:
@@ -45,14 +47,14 @@ class DetectOutputs {
 
   OutputRequest request_;
   std::set<std::string> kinds_;
-  std::set<std::string> names_;  ///< of frames with pictures
+  std::set<std::string> names_;  ///< names of frames with pictures
   const BodyModel& body_;
   std::optional<TextSink> json_;
-  int frames_ = 0;  ///< written
+  int frames_ = 0;  ///< number of frames written
   std::optional<VideoWriter> video_;
 };
 
-/// "0172: 2 people: 23 parts at 2.31 m (score 0.87), ...".
+/// Returns a line such as "0172: 2 people: 23 parts at 2.31 m (score 0.87), ...".
 std::string describe(const Frame& frame, const std::vector<Person>& people);
 
 }  // namespace vesalius::cli

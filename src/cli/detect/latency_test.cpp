@@ -11,7 +11,7 @@ namespace {
 using testing::DoubleEq;
 using testing::HasSubstr;
 
-TEST(Latency, OfNoTimesIsZero) { EXPECT_EQ(summarise({}).longest, 0.0); }
+TEST(Latency, IsZeroWithoutTimes) { EXPECT_EQ(summarise({}).longest, 0.0); }
 
 TEST(Latency, TakesNearestRanks) {
   std::vector<double> ms;
@@ -41,7 +41,7 @@ TEST(FrameTimes, SumsStagesWithoutReadingAndWriting) {
   EXPECT_THAT(table(times), HasSubstr("label            2.00"));
 }
 
-TEST(StageClock, AddsToStagesAndBearsNull) {
+TEST(StageClock, AddsToStagesAndAcceptsNull) {
   StageTimes times;
   StageClock clock(&times);
   clock.lap(Stage::grow);
@@ -51,7 +51,7 @@ TEST(StageClock, AddsToStagesAndBearsNull) {
   StageClock(nullptr).lap(Stage::label);
 }
 
-TEST(StageClock, StagesSideBySideShareWhatPassed) {
+TEST(StageClock, DividesElapsedTimeAmongParallelStages) {
   StageTimes times;
   StageClock clock(&times);
   const double passed = elapsed_ms([] { std::this_thread::sleep_for(std::chrono::milliseconds(4)); });

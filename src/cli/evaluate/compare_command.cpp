@@ -28,7 +28,7 @@ void run(const std::string& first, const std::string& second, bool all) {
     throw Error(fmt::format("{} and {} have no set in common", first, second));
   }
   std::string text;
-  std::array<int, 3> tally{};  // by verdict
+  std::array<int, 3> tally{};  // number of metrics for each verdict
   for (const SetComparison& set : sets) {
     if (!set.in_both) {
       text += fmt::format("{}: only in {}\n", one_line(set.name), first);

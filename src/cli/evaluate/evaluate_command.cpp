@@ -39,7 +39,7 @@ namespace {
 constexpr int kMaxStep = 1000000;
 constexpr int kMaxCount = 1000000000;
 
-/// A set to be measured on, and how to open it.
+/// A set to be evaluated, and how to open it.
 struct Request {
   SetOptions set;
   bool is_recipe = false;
@@ -60,7 +60,7 @@ struct Arguments {
   bool quiet = false;
 };
 
-/// Valid UTF-8 on one line: names go into pictures and JSON.
+/// Returns the name as valid UTF-8 on one line, since names go into pictures and JSON.
 std::string clean(const std::string& name) {
   const nlohmann::json json = one_line(name);
   return nlohmann::json::parse(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
@@ -72,8 +72,7 @@ std::filesystem::path whole_path(const std::string& path) {
   return whole.has_filename() ? whole : whole.parent_path();
 }
 
-/// Names the sources so that they can be told apart: by their last folders, or where these are the same, by their
-/// paths.
+/// Gives each source a distinct name: its last folder or, if these are not distinct, its path.
 std::vector<Request> set_requests(const Arguments& arguments) {
   std::vector<Request> requests;
   std::set<std::string> paths, names;
@@ -96,7 +95,7 @@ std::vector<Request> set_requests(const Arguments& arguments) {
   return requests;
 }
 
-/// A word as a shell takes it back.
+/// Quotes a word for a shell.
 std::string shell_word(const std::string& word) {
   const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("/._-:+,=@%").find(static_cast<char>(c)) != std::string_view::npos;
@@ -107,7 +106,7 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
-/// An option as it was given: "--step 2", "--no-refine.second-pass", or the words of a positional one.
+/// Returns an option as it was given: "--step 2", "--no-refine.second-pass", or the words of a positional argument.
 std::string as_given(const CLI::Option& option) {
   const std::vector<std::string>& names = option.get_lnames();
   std::string text;
@@ -120,7 +119,7 @@ std::string as_given(const CLI::Option& option) {
   return text;
 }
 
-/// The command that was given, with every option in the order in which the program knows them.
+/// Returns the command as it was given, with the options in the order in which the program defines them.
 std::string command_line(const CLI::App& command) {
   std::string line = "vesalius " + command.get_name();
   for (const CLI::Option* option : command.get_options()) {
@@ -146,7 +145,7 @@ SetResult evaluate_shown(const Request& request, const Arguments& arguments, con
   return evaluate_set(*frames, request.set, scorer, variants, hooks);
 }
 
-/// Writes the detector options used, with the score fitted to all sets, and prints what that is worth.
+/// Writes the detector options of this run with the score fitted to all sets, and prints how good the fit is.
 void write_fitted_score(const Evaluation& evaluation, const std::string& path) {
   FittedOptions fitted = fit_score_options(evaluation);
   write_options([&](OptionVisitor& visitor) { visit_options("", fitted.options, visitor); }, path);

@@ -58,7 +58,7 @@ Eigen::Isometry3d parse_transform(const std::string& text, const std::string& na
   return transform;
 }
 
-/// Frames of the motion by picture, from one column of a table.
+/// Returns for each picture its frame of the motion, from one column of a table.
 std::vector<int> parse_frame_table(const std::string& text, const std::string& name, int column, int frame_count) {
   std::vector<int> frames;
   synth::TextScanner scan(text, name);
@@ -100,7 +100,7 @@ std::vector<NamedJoint> parse_joints(const std::string& text, const std::string&
   return joints;
 }
 
-/// All joints of a frame, world, the file's unit of length.
+/// Returns all joints of a frame in world coordinates and the file's unit of length.
 std::vector<Eigen::Vector3d> joint_positions(const synth::Motion& motion, int frame) {
   std::vector<Eigen::Vector3d> positions;
   for (const synth::MotionJoint& joint : motion.joints) {
@@ -146,7 +146,7 @@ class BvhTruth final : public TruthSource {
   std::vector<std::string> notes() const override { return source_.notes(); }
 
  private:
-  /// -1 where the motion does not reach.
+  /// Returns the motion's frame for a picture, or -1 if the motion has none.
   int motion_frame(const Frame& frame, int index) const {
     if (!frames_.empty()) {
       return static_cast<std::size_t>(index) < frames_.size() ? frames_[index] : -1;
@@ -169,7 +169,7 @@ class BvhTruth final : public TruthSource {
       if (const auto pose = trajectory_->world_from_camera(frame.time_s)) camera_from_world = pose->inverse();
     }
     const int at = motion_frame(frame, index);
-    if (at < 0 || !camera_from_world) return truth;  // somebody is there, nobody knows how
+    if (at < 0 || !camera_from_world) return truth;  // there is a person whose joints are unknown
     const std::vector<Eigen::Vector3d> world = joint_positions(motion_, at);
     const auto unit_m = static_cast<double>(options_.unit_m);
     std::vector<Eigen::Vector3f>& joints = truth.joints.emplace_back();
@@ -186,7 +186,7 @@ class BvhTruth final : public TruthSource {
   double start_s_ = 0.0;
   synth::Motion motion_;
   std::vector<NamedJoint> joints_;
-  std::vector<int> frames_;  ///< [picture]; empty = by time
+  std::vector<int> frames_;  ///< frame of the motion for each picture; empty means that times decide
   std::optional<Eigen::Isometry3d> camera_from_world_;
   std::optional<Trajectory> trajectory_;
 };

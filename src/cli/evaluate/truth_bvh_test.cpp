@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A chain of hips, knee and foot in centimetres, hanging down at rest; in frame 1 the thigh points along +x.
+/// A chain of hips, knee and foot in centimetres that hangs down at rest. In frame 1 the thigh points along +x.
 constexpr const char* kBvh = R"(HIERARCHY
 ROOT Hips
 {
@@ -44,7 +44,8 @@ Frame Time: 0.1
 0 100 0 90 0 0 0 0 0 0 0 0
 )";
 
-/// Three pictures of a camera 3 m in front of the world's origin, 1 m up, looking back at it; its own y points down.
+/// Three pictures of a camera 3 m in front of the world's origin and 1 m up. It looks at the origin, and its own y axis
+/// points down.
 class TruthBvh : public testing::Test {
  protected:
   void SetUp() override {
@@ -85,10 +86,10 @@ void expect_near(const Eigen::Vector3f& found, const Eigen::Vector3f& expected) 
   EXPECT_LT((found - expected).norm(), 1e-5F) << found.transpose() << ", expected " << expected.transpose();
 }
 
-TEST_F(TruthBvh, JointsInTheCamera) {
+TEST_F(TruthBvh, PutsJointsInTheCamerasFrame) {
   const auto source = open();
   EXPECT_EQ(source->size(), 3);
-  const auto a = source->next();  // frame 1 of the motion: the thigh was turned by 90 degrees about z
+  const auto a = source->next();  // frame 1 of the motion, with the thigh turned by 90 degrees about z
   EXPECT_EQ(a->truth.people, 1);
   EXPECT_EQ(a->truth.joint_set, "nite15");
   EXPECT_THAT(a->truth.joint_names, ElementsAre("l_hip", "l_knee", "l_foot"));
@@ -105,8 +106,8 @@ TEST_F(TruthBvh, JointsInTheCamera) {
   EXPECT_EQ(open(2)->size(), 2);
 }
 
-TEST_F(TruthBvh, ACameraThatMoves) {
-  // TUM's layout, whose names are times; the camera looks along the world's -z and goes back by 1 m.
+TEST_F(TruthBvh, FollowsAMovingCamera) {
+  // In TUM's layout names are times. The camera looks along the world's -z and moves back by 1 m.
   fs::remove_all(folder_ / "depth");
   fs::remove(folder_ / "meta.json");
   write_png(DepthImage(640, 480, 5000), (folder_ / "d.png").string());
@@ -118,16 +119,16 @@ TEST_F(TruthBvh, ACameraThatMoves) {
   const auto source = open();
   expect_near(source->next()->truth.joints[0][0], {0, 0.7F, 3});
   expect_near(source->next()->truth.joints[0][0], {0.7F, 0, 4});
-  EXPECT_TRUE(source->next()->truth.joints.empty());  // long after either ended
+  EXPECT_TRUE(source->next()->truth.joints.empty());  // long after the motion and the trajectory have ended
 }
 
-TEST_F(TruthBvh, OtherFoldersAsBefore) {
+TEST_F(TruthBvh, OpensOtherFoldersAsBefore) {
   fs::remove(folder_ / "truth_bvh.toml");
   put("frames.csv", "frame,people\na,2\nb,1\nc,0\n");
   EXPECT_EQ(open()->next()->truth.people, 2);
 }
 
-TEST_F(TruthBvh, SaysWhatIsMissingOrWrong) {
+TEST_F(TruthBvh, NamesMissingAndWrongOptions) {
   const auto without = [&](const std::string& key) {
     std::string toml = kToml;
     const std::size_t at = toml.find(key + " =");

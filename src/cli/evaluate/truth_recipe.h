@@ -10,16 +10,16 @@
 
 namespace vesalius::cli {
 
-/// Frames to be rendered from a recipe while they are measured on; none is kept.
+/// Frames that are rendered from a recipe while they are evaluated. No frame is kept.
 struct RenderedTruth {
   int count = 0;           ///< frames
-  std::uint64_t seed = 1;  ///< as of `vesalius synth`
+  std::uint64_t seed = 1;  ///< the seed of `vesalius synth`
   AssetPlaces assets;
 };
 
-/// The frames that `vesalius synth --recipe FILE --count N --seed S` would write, of every `step` the first, with the
-/// labels of `body`. Renders some frames at a time on all threads allowed. Its notes say
-/// which assets the frames are made from, so that two evaluations can be told to have seen the same. Throws as
+/// Opens the frames that `vesalius synth --recipe FILE --count N --seed S` would write, with the labels of `body`, and
+/// gives the first of every `step`. Several frames are rendered at a time on all allowed threads. The notes name the
+/// assets from which frames are made, so that one can tell whether two evaluations saw the same frames. Throws as
 /// make_recipe and load_assets do.
 std::unique_ptr<TruthSource> open_recipe_truth(const std::string& recipe_file, const RenderedTruth& rendered, int step,
                                                const BodyModel& body);

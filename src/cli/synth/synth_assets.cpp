@@ -26,7 +26,7 @@ std::vector<std::string> paths_of(const AssetPackage& package) {
   return paths;
 }
 
-/// The part of a path before `data/`, with it: MakeHuman's files keep their places in its repository.
+/// Returns the part of a path up to and including `data/`: MakeHuman's files keep the paths of its repository.
 std::string data_folder(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     const std::size_t at = path.find(kTargetFolder);
@@ -35,7 +35,7 @@ std::string data_folder(const std::vector<std::string>& paths) {
   throw Error("the list of MakeHuman's files names no targets");
 }
 
-/// All regular files below a folder, in order.
+/// Returns all regular files below a folder, sorted.
 std::vector<std::string> files_below(const std::string& folder) {
   std::vector<std::string> files;
   try {
@@ -49,7 +49,7 @@ std::vector<std::string> files_below(const std::string& folder) {
   return files;
 }
 
-/// Reads files and takes their sum as it goes.
+/// Reads files and adds each to a digest.
 class Loader {
  public:
   explicit Loader(const AssetPlaces& places) : places_(places) {}
@@ -108,7 +108,7 @@ class Loader {
     };
   }
 
-  /// A list of descriptions among the files is used.
+  /// Loads motions. A list of descriptions among the files is used as such.
   static void take_motions(const std::vector<std::string>& paths, const synth::ReadText& read,
                            const synth::Recipe& recipe, LoadedAssets& loaded) {
     std::vector<synth::MotionFile> motions = synth::list_motions(paths);

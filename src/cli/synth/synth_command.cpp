@@ -43,7 +43,7 @@ BodyModel body_of(const Arguments& arguments) {
   return arguments.body.empty() ? paper_body() : parse_body_model(read_file(arguments.body), arguments.body);
 }
 
-/// Frames of the given range in order; `prepare` runs on all threads, `take` in this one.
+/// Makes the frames of a range in order. `prepare` runs on all threads, `take` in the calling one.
 template <class Prepare, class Take>
 void make_frames(const synth::Generator& generator, std::uint64_t first, int count, Progress& progress,
                  const Prepare& prepare, const Take& take) {

@@ -8,19 +8,19 @@
 
 namespace vesalius::cli {
 
-/// What a recipe is put together from. Later ones win: the defaults, those of the mounting, the file, `sensor`,
-/// `camera`, the flags.
+/// The sources of a recipe. Later ones override earlier ones: the defaults, the defaults of the mounting, the file,
+/// `sensor`, `camera`, the flags.
 struct RecipeRequest {
-  std::string file{};                                 ///< TOML; empty: none
-  std::string sensor{};                               ///< preset; empty: the file's
-  std::string camera{};                               ///< file with intrinsics; empty: the preset's
+  std::string file{};                                 ///< path of a TOML file; empty for none
+  std::string sensor{};                               ///< name of a preset; empty for that of the file
+  std::string camera{};                               ///< path of a file with intrinsics; empty for those of the preset
   const OptionFlags<synth::Recipe>* flags = nullptr;  ///< may be null
 };
 
-/// Throws Error naming the file that cannot be used, UsageError for options out of range.
+/// Composes a recipe. Throws Error naming a file that cannot be used, and UsageError for options out of range.
 synth::Recipe make_recipe(const RecipeRequest& request);
 
-/// The recipe and what it was made with, as text: whoever has these files gets these frames.
+/// Returns the recipe and the digest of its assets as text. Anyone with the same files gets the same frames from it.
 std::string full_recipe(synth::Recipe recipe, const LoadedAssets& loaded);
 
 }  // namespace vesalius::cli

@@ -10,10 +10,10 @@ namespace vesalius::cli {
 namespace {
 
 constexpr int kCell_px = 20;
-constexpr int kLabel_px = 110;  ///< for names left of and above the cells
+constexpr int kLabel_px = 110;  ///< space for names at the left of the cells and above them
 constexpr int kTitle_px = 20;
 
-/// White for 0, dark blue for 1; the root lifts small shares, which are what one looks for.
+/// Returns white for 0 and dark blue for 1. The square root emphasises small shares, which are the interesting ones.
 std::string colour_of(double share) {
   const double dark = std::sqrt(std::clamp(share, 0.0, 1.0));
   const auto level = [&](double end) { return static_cast<int>(std::lround(255.0 + (end - 255.0) * dark)); };

@@ -8,7 +8,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(ConfusionSvg, ShowsSharesOfRowsUnderNames) {
+TEST(ConfusionSvg, ShowsTheSharesOfEachRow) {
   Confusion confusion(2);
   confusion.at(0, 0) = 3;
   confusion.at(0, 1) = 1;

@@ -15,19 +15,19 @@
 
 namespace vesalius::cli {
 
-/// While it lives, shows from a thread of its own how far the trees of a round are, and stops them when the user
-/// interrupts the program.
+/// Shows the progress of a round's trees from a thread of its own, and stops them when the user interrupts the program.
 class GrowDisplay {
  public:
-  /// `trees` are still to grow, of `max_depth` on the samples of `set`. `progress` is what they write to.
+  /// `trees` trees of up to `max_depth` levels are still to be grown on the samples of `set`, and they report to
+  /// `progress`.
   GrowDisplay(const std::string& round, const TrainingSet& set, int trees, int max_depth, GrowProgress& progress,
               bool shown);
   ~GrowDisplay();
   GrowDisplay(const GrowDisplay&) = delete;
   GrowDisplay& operator=(const GrowDisplay&) = delete;
 
-  /// A tree is done; from any thread. Its accuracy is measured by the display's own: a worker would have to wait, and
-  /// might be given another tree to grow meanwhile.
+  /// Adds a finished tree; any thread may call this. The display's own thread measures its accuracy, because a worker
+  /// that waits for the measurement might be given another tree to grow.
   void add(Tree tree);
   double seconds() const;
 
@@ -42,32 +42,32 @@ class GrowDisplay {
   GrowProgress& progress_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 
-  // The thread's own.
+  // The following members belong to the thread.
   StatusLine status_;
   const bool judged_;  ///< whether there are held-out samples
   HeldOutVotes votes_;
-  std::string accuracy_;  ///< of the trees so far, as text
+  std::string accuracy_;  ///< accuracy of the trees so far, as text
 
-  std::mutex mutex_;  ///< guards what follows
+  std::mutex mutex_;  ///< guards the following members
   std::condition_variable changed_;
   bool end_ = false;
-  std::vector<Tree> done_;  ///< not yet measured
+  std::vector<Tree> done_;  ///< trees not yet measured
 
-  std::thread thread_;  ///< last: it uses all of the above
+  std::thread thread_;  ///< declared last because it uses all other members
 };
 
-/// What growing trees came to.
+/// Totals of growing trees.
 struct GrowTotals {
-  std::uint64_t evaluations = 0;  ///< of this run; trees of an earlier one do not count
-  double seconds = 0.0;           ///< wall time of it
-  int resumed = 0;                ///< trees that an earlier run had done
+  std::uint64_t evaluations = 0;  ///< evaluations of this run, without trees of an earlier one
+  double seconds = 0.0;           ///< wall time of this run
+  int resumed = 0;                ///< number of trees that an earlier run finished
   std::size_t hard_negatives = 0;
 };
 
-/// Shows the rounds of a training and adds up what they come to.
+/// Shows the rounds of a training and adds up their totals.
 class TrainDisplay : public TrainObserver {
  public:
-  /// `set` is what the trees, at most `max_depth` deep, are grown on; it must outlive this.
+  /// `set` has the samples on which the trees, up to `max_depth` deep, are grown. It must outlive this object.
   TrainDisplay(const TrainingSet& set, int max_depth, bool shown);
 
   void begin_round(const TreeRound& round, GrowProgress& progress) override;
@@ -76,7 +76,7 @@ class TrainDisplay : public TrainObserver {
   void add_hard_negatives(std::size_t samples) override;
 
   const GrowTotals& totals() const { return totals_; }
-  /// How far the last round came: "3 of 8 trees of the forest".
+  /// Returns the progress of the last round: "3 of 8 trees of the forest".
   std::string done() const;
 
  private:
@@ -84,9 +84,9 @@ class TrainDisplay : public TrainObserver {
   int max_depth_;
   bool shown_;
   TreeRound round_;
-  GrowProgress* progress_ = nullptr;  ///< of the round that goes on
+  GrowProgress* progress_ = nullptr;  ///< progress of the current round
   std::optional<GrowDisplay> display_;
-  std::atomic<int> grown_{0};  ///< trees of the round, by this run
+  std::atomic<int> grown_{0};  ///< trees of the current round that this run has grown
   GrowTotals totals_;
 };
 

@@ -13,14 +13,14 @@ namespace {
 
 constexpr int kTrees = 2;
 
-/// Whether a frame of the set is held out.
+/// Returns for each frame of the set whether it is held out.
 std::vector<bool> held_out_frames(const TrainingSet& set) {
   std::vector<bool> held_out(set.frames().size(), false);
   for (const TrainingSample& sample : set.held_out()) held_out[sample.frame] = true;
   return held_out;
 }
 
-/// The first `share` of what `set` learns from.
+/// Returns a set of the first `share` of the frames that `set` learns from.
 TrainingSet smaller_set(const TrainInputs& inputs, const TrainingSet& set, std::size_t backgrounds,
                         const TrainOptions& options, double share) {
   SampleOptions sample = options.sample;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kMostFrames = 1'000'000'000;
 
-/// Labels are numbers: forests of the same parts in the same order only.
+/// Throws unless two bodies have the same parts in the same order. Labels are numbers, so others cannot be mixed.
 void expect_same_parts(const BodyModel& body, const std::string& name, const BodyModel& expected,
                        const std::string& expected_name) {
   for (std::size_t p = 0; p < std::max(body.parts.size(), expected.parts.size()); ++p) {
@@ -72,7 +72,7 @@ TrainInputs::TrainInputs(const TrainSources& sources) : background_camera_(sourc
   for (const std::string& source : sources.backgrounds) open_background(source);
 }
 
-/// Adds the frames of a DatasetReader or LabelledFolder.
+/// Adds the frames of a DatasetReader or a LabelledFolder.
 template <class Reader>
 void TrainInputs::open_labelled(std::shared_ptr<const Reader> reader, int count, TrainInput input) {
   if (reader->size() == 0) throw Error(input.name + ": no frames in it, expected some to train from");

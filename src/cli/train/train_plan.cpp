@@ -21,12 +21,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
-constexpr double kUsedShare = 0.8;         ///< of the machine's memory: others live on it too
-constexpr int kMeasuredFrames = 64;        ///< of each input
-constexpr double kMostMeasuring_s = 5.0;   ///< of each input
+constexpr double kUsedShare = 0.8;         ///< share of the machine's memory; other programs need some too
+constexpr int kMeasuredFrames = 64;        ///< frames of each input that are measured
+constexpr double kMostMeasuring_s = 5.0;   ///< longest time for measuring each input
 constexpr int kUnknownBackgrounds = 1000;  ///< frames of a source that does not say how many it has
-constexpr int kPackedFrames = 32;          ///< of each input, packed to see how much they take
-constexpr double kPackedMargin = 1.1;      ///< for what the others take
+constexpr int kPackedFrames = 32;          ///< frames of each input that are packed to see how much memory they take
+constexpr double kPackedMargin = 1.1;      ///< factor by which the other frames may take more
 
 double gib(std::uint64_t bytes) { return static_cast<double>(bytes) / kGiB; }
 
@@ -48,7 +48,8 @@ std::vector<FrameGroup> groups_of(const TrainInputs& inputs) {
   return groups;
 }
 
-/// What a frame of an input takes, from some of them: how well depth packs depends on what it shows.
+/// Estimates the memory of an input's frame from some of its frames, because the size of packed depth depends on its
+/// content.
 std::uint64_t measured_frame_bytes(const TrainInput& input) {
   const int count = std::min(input.frames, kPackedFrames);
   std::uint64_t bytes = 0;
@@ -65,7 +66,7 @@ std::uint64_t measured_frame_bytes(const TrainInput& input) {
   return static_cast<std::uint64_t>(kPackedMargin * static_cast<double>(bytes) / count);
 }
 
-/// groups_of with the bytes; `copies`: how many times all frames are held.
+/// Returns groups_of() with the measured bytes. All frames are held `copies` times.
 std::vector<FrameGroup> measured_groups(const TrainInputs& inputs, double copies) {
   std::vector<FrameGroup> groups = groups_of(inputs);
   for (FrameGroup& group : groups) {
@@ -80,7 +81,7 @@ std::vector<FrameGroup> measured_groups(const TrainInputs& inputs, double copies
   return groups;
 }
 
-/// Most memory that the program itself has taken so far, bytes: its libraries and the sources it has opened.
+/// Returns the peak memory in bytes that the program has taken so far, for its libraries and open sources.
 std::uint64_t own_memory() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -100,7 +101,7 @@ std::uint64_t own_memory() {
                   fit.pixels > 0 ? fmt::format(", or --pixels {}", fit.pixels) : ""));
 }
 
-/// Frames of an input made for a moment, and how long all of it will take.
+/// Measurements of an input: some frames that are made and dropped, and the time that all frames will take.
 struct Measured {
   std::vector<LabelledFrame> frames;
   double seconds = 0.0;

@@ -22,7 +22,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 bool is_comment(const std::string& line) { return line.starts_with('#'); }
 
-/// Options without the sentence above each: they are there to be read again, not to be learnt from.
+/// Returns options without their explanations, since this text is for programs to read.
 std::string without_help(const std::string& toml, std::string_view indent) {
   const std::vector<std::string> lines = lines_of(toml);
   std::string text;
@@ -68,7 +68,7 @@ std::string first_difference(const std::string& before, const std::string& now) 
     const std::string here = i < new_lines.size() ? new_lines[i] : "nothing";
     if (then == here) continue;
     difference = fmt::format("`{}` before, now `{}`", then, here);
-    if (!here.starts_with("# key ")) break;  // the key differs whenever anything does
+    if (!here.starts_with("# key ")) break;  // the key is skipped, since it differs whenever anything does
   }
   return difference;
 }

@@ -24,7 +24,7 @@ std::vector<std::string> class_names(const TrainingSet& set) {
   return names;
 }
 
-/// Both accuracies against 0, 1, ... or 1, 2, ...
+/// Plots both accuracies against numbers that begin with `first`, 0 or 1.
 std::string accuracy_plot(const std::string& x_label, const std::vector<AccuracyPoint>& points, int first) {
   LinePlot plot;
   plot.x_label = x_label;
@@ -35,7 +35,7 @@ std::string accuracy_plot(const std::string& x_label, const std::vector<Accuracy
     plot.series[0].points.emplace_back(x, points[i].parts_only);
     plot.series[1].points.emplace_back(x, points[i].with_background);
   }
-  // A point alone would span no range.
+  // The range is given because a single point would span none.
   plot.x_range = PlotRange{static_cast<double>(first), std::max(static_cast<double>(points.size()) - 1, 1.0) + first};
   plot.y_range = PlotRange{0.0, 1.0};
   return plot_svg(plot);
@@ -116,7 +116,7 @@ void add_classes(Document& document, const TrainingSet& set, const TrainFigures&
   document.table({"Class", "Pixels", "Samples", "Held out", "Recall among parts", "Recall"}, rows);
 }
 
-/// Accuracy among parts against `x_of` for the points that differ in nothing else from the largest run.
+/// Plots the accuracy among parts against `x_of`, for the points that differ from the largest run in nothing else.
 template <class XOf>
 std::string curve_plot(const std::string& x_label, const std::vector<CurvePoint>& curve, const XOf& x_of) {
   LinePlot plot;

@@ -10,19 +10,19 @@
 
 namespace vesalius::cli {
 
-/// A forest trained for a curve, and how good it is on the main set's held-out samples.
+/// A forest that was trained for a curve, and its accuracy on the main set's held-out samples.
 struct CurvePoint {
-  double frame_share = 1.0;  ///< of the frames learned from
+  double frame_share = 1.0;  ///< share of the frames learned from
   std::int64_t frames = 0;
   int candidates = 0;
   int trees = 0;
   AccuracyPoint accuracy;
-  double seconds = 0.0;  ///< growing it
+  double seconds = 0.0;  ///< time to grow the forest
 };
 
-/// What a report tells of a training.
+/// The figures of a training for its report.
 struct TrainFigures {
-  std::string model;  ///< its path
+  std::string model;  ///< path of the model
   std::uint64_t model_bytes = 0;
   GrowTotals grown;
   double reading_s = 0.0;
@@ -32,18 +32,19 @@ struct TrainFigures {
   std::vector<CurvePoint> curves;  ///< may be empty
 };
 
-/// Tables and plots on how a forest came out: accuracy on held-out samples against trees and levels, the confusion
-/// matrix, sizes, samples of each class, the recipe. Throws Error where gnuplot cannot be run.
+/// Returns a report with tables and plots: accuracy on held-out samples against trees and levels, the confusion matrix,
+/// sizes, samples of each class and the recipe. Throws Error if gnuplot cannot be run.
 Document train_report(const Forest& forest, const TrainingSet& set, const TrainFigures& figures);
 
-/// Rows are true classes, columns given ones, each cell as dark as its share of the row; SVG with the classes' names.
+/// Returns the confusion matrix as SVG with the classes' names. Rows are true classes, columns are given ones, and a
+/// cell is the darker the larger its share of the row.
 std::string confusion_svg(const Confusion& confusion, const std::vector<std::string>& names);
 
-/// Throws Error where gnuplot cannot be run: better known before the training than after it.
+/// Throws Error if gnuplot cannot be run. It is called before a training, so that the error does not come after it.
 void expect_plots();
 
-/// Writes `folder`/report.html, `folder`/report.md and the pictures that it links, each file whole. Throws Error naming
-/// what cannot be written.
+/// Writes `folder`/report.html, `folder`/report.md and the pictures that it links, each file atomically. Throws Error
+/// naming a file that cannot be written.
 void write_report(const Document& document, const std::string& folder);
 
 }  // namespace vesalius::cli

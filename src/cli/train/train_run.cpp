@@ -24,7 +24,7 @@ namespace {
 constexpr double kMiB = 1024.0 * 1024.0;
 constexpr double kGiB = 1024.0 * kMiB;
 
-/// Trains one forest: what the steps share.
+/// Trains one forest and holds what its steps share.
 class Training {
  public:
   Training(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs)
@@ -49,8 +49,8 @@ class Training {
   }
 
  private:
-  /// Backgrounds come first: the recipe names them by their bytes, and a run that does not fit the session is refused
-  /// before the rest is read.
+  /// Reads all frames, the backgrounds first: the recipe contains a hash of their bytes, so a run that does not match
+  /// the session is refused before the rest is read.
   void fill() {
     Progress progress(total_frames(), run_.shown);
     const auto add = [&](const LabelledFrame& frame) {
@@ -83,7 +83,7 @@ class Training {
     throw Error(fmt::format("no frame of {} is held out, --report expects some: --held-out-share up", frames));
   }
 
-  /// Backgrounds may not say how many they are.
+  /// Returns the number of frames with an estimate for backgrounds that do not know theirs.
   int total_frames() const {
     std::int64_t frames = inputs_.frames();
     for (const TrainBackground& background : inputs_.backgrounds()) {

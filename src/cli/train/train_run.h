@@ -8,21 +8,21 @@
 
 namespace vesalius::cli {
 
-/// How one forest is to be trained, apart from what decides the forest.
+/// The settings of a training that do not influence the forest.
 struct TrainRun {
-  std::string out;              ///< model to write; trees wait in a folder beside it, OUT.work
-  std::string report;           ///< folder; empty: none
-  bool curves = false;          ///< in the report
-  bool restart = false;         ///< forget the trees of an earlier run
-  bool shown = true;            ///< say on standard error what goes on
+  std::string out;              ///< model to write; finished trees are kept in OUT.work beside it
+  std::string report;           ///< folder of the report; empty for none
+  bool curves = false;          ///< whether the report has curves
+  bool restart = false;         ///< whether to discard the trees of an earlier run
+  bool shown = true;            ///< whether to show progress on standard error
   int trees_at_once = 1;        ///< most trees grown at a time
-  std::uint64_t max_bytes = 0;  ///< most that frames and samples may take
+  std::uint64_t max_bytes = 0;  ///< most memory for frames and samples
 };
 
-/// Reads all frames, grows the first round, adds hard negatives, grows the forest, writes model and report. Where an
-/// earlier run with the same inputs and options was cut short it goes on, and ends with the same model. Throws Error
-/// for unusable frames, more memory than allowed, files that cannot be written, and when the user interrupts: finished
-/// trees are kept then.
+/// Trains a forest: reads all frames, grows the first round, adds hard negatives, grows the forest, and writes model
+/// and report. If an earlier run with the same inputs and options was interrupted, its trees are used, and the model is
+/// the same as without the interruption. Throws Error for unusable frames, more memory than allowed, files that cannot
+/// be written, and when the user interrupts; finished trees are kept in that case.
 void train(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs);
 
 }  // namespace vesalius::cli

@@ -22,7 +22,7 @@ constexpr const char* kRecipeFile = "recipe.toml";
 
 bool is_ours(const std::string& name) { return name.starts_with("tree-") || name.starts_with(kRecipeFile); }
 
-/// What a killed run left half written.
+/// Returns whether a killed run left this file half written.
 bool is_leftover(const std::string& name) { return name.find(".tmp") != std::string::npos; }
 
 std::vector<fs::path> files_in(const std::string& folder) {
@@ -35,7 +35,7 @@ std::vector<fs::path> files_in(const std::string& folder) {
   return files;
 }
 
-/// Throws for a folder that is in use for something else.
+/// Throws if the folder has files of another kind.
 void expect_only_ours(const std::string& folder) {
   for (const fs::path& file : files_in(folder)) {
     const std::string name = file.filename().string();
@@ -58,7 +58,7 @@ TrainSession::TrainSession(const std::string& folder, Forest forest, bool restar
     if (difference.empty()) return;
     throw Error(fmt::format("{}: has trees of another training ({}); --restart removes them", folder_, difference));
   }
-  tidy(true);  // trees without a recipe are nobody's
+  tidy(true);  // trees without a recipe cannot be used
   write_file_atomically(recipe_path, forest_.recipe);
 }
 
@@ -83,7 +83,7 @@ std::optional<Tree> TrainSession::load(int number) {
     if (forest.recipe != forest_.recipe || forest.trees.size() != 1) return std::nullopt;
     return std::move(forest.trees.front());
   } catch (const Error&) {
-    return std::nullopt;  // damaged: grown again
+    return std::nullopt;  // a damaged tree is grown again
   }
 }
 
@@ -96,7 +96,7 @@ void TrainSession::save(int number, const Tree& tree) {
 void TrainSession::remove() {
   tidy(true);
   lock_.reset();
-  std::error_code ignored;  // whatever else was put there stays
+  std::error_code ignored;  // the folder remains if it has other files in it
   fs::remove(folder_, ignored);
 }
 

@@ -9,21 +9,21 @@
 
 namespace vesalius::cli {
 
-/// Keeps the trees of a forest that is being trained, each in a file of its own, so that a run that was cut short goes
-/// on. One process at a time.
+/// Keeps the trees of a forest in training, each in a file of its own, so that an interrupted run can be continued.
+/// Only one process at a time can use a folder.
 class TrainSession : public TreeStore {
  public:
-  /// Makes `folder`, or goes on with what an earlier run with the same recipe left there. With `restart`, what it left
-  /// is removed first. `forest` is the one being trained, with its recipe and without trees. Throws Error naming the
-  /// folder where it has other files in it, belongs to another recipe (naming the first difference), cannot be made, or
-  /// another process works there.
+  /// Creates `folder`, or continues with the trees of an earlier run with the same recipe. With `restart`, those trees
+  /// are removed first. `forest` is the forest in training, with its recipe and without trees. Throws Error naming the
+  /// folder if it has other files in it, belongs to another recipe (naming the first difference), cannot be created, or
+  /// is in use by another process.
   TrainSession(const std::string& folder, Forest forest, bool restart);
 
-  /// Returns a tree that was saved; none where it was not, or its file is damaged.
+  /// Returns a saved tree, or nothing if it was not saved or its file is damaged.
   std::optional<Tree> load(int number) override;
-  /// Writes a model of that one tree, whose file appears whole or not at all. Throws Error when it cannot be written.
+  /// Writes a model of one tree atomically. Throws Error if it cannot be written.
   void save(int number, const Tree& tree) override;
-  /// Removes the trees and the folder; the session is over.
+  /// Removes the trees and the folder, which ends the session.
   void remove();
 
   const std::string& folder() const { return folder_; }

@@ -58,7 +58,7 @@ TEST_F(TrainSessionTest, KeepsTreesForTheNextRun) {
   EXPECT_FALSE(again.load(2));
 }
 
-TEST_F(TrainSessionTest, DamagedAndForeignTreesAreNotThere) {
+TEST_F(TrainSessionTest, IgnoresDamagedAndForeignTrees) {
   TrainSession session(folder_, forest_of("a = 1\n"), false);
   Forest foreign = forest_of("a = 2\n");
   foreign.trees = {tree_of(1)};
@@ -68,7 +68,7 @@ TEST_F(TrainSessionTest, DamagedAndForeignTreesAreNotThere) {
   EXPECT_FALSE(session.load(1));
 }
 
-TEST_F(TrainSessionTest, AnotherRecipeIsRefusedOrForgotten) {
+TEST_F(TrainSessionTest, RefusesOrDiscardsAnotherRecipe) {
   TrainSession(folder_, forest_of("a = 1\nb = 2\n"), false).save(0, tree_of(1));
   EXPECT_THAT(refusal("a = 1\nb = 3\n"), HasSubstr("(`b = 2` before, now `b = 3`); --restart"));
   TrainSession restarted(folder_, forest_of("a = 1\nb = 3\n"), true);
@@ -76,14 +76,14 @@ TEST_F(TrainSessionTest, AnotherRecipeIsRefusedOrForgotten) {
   EXPECT_EQ(refusal("a = 1\nb = 3\n"), folder_ + ": another process is writing there");
 }
 
-TEST_F(TrainSessionTest, LeavesFoldersOfOthersAlone) {
+TEST_F(TrainSessionTest, RefusesFoldersWithOtherFiles) {
   fs::create_directories(folder_);
   put("thesis.txt");
   EXPECT_THAT(refusal("a = 1\n"), HasSubstr("another file in it, thesis.txt"));
   EXPECT_TRUE(fs::exists(fs::path(folder_) / "thesis.txt"));
 }
 
-TEST_F(TrainSessionTest, RemovesWhatItMade) {
+TEST_F(TrainSessionTest, RemovesItsFolder) {
   TrainSession session(folder_, forest_of("a = 1\n"), false);
   session.save(0, tree_of(1));
   put("tree-0001.forest.tmp.77");
@@ -91,7 +91,7 @@ TEST_F(TrainSessionTest, RemovesWhatItMade) {
   EXPECT_FALSE(fs::exists(folder_));
 }
 
-TEST(FirstDifference, PassesOverTheKey) {
+TEST(FirstDifference, SkipsTheKey) {
   EXPECT_EQ(first_difference("a\nb\n", "a\nb\n"), "");
   EXPECT_EQ(first_difference("# key 1\na\n", "# key 2\nb\n"), "`a` before, now `b`");
   EXPECT_EQ(first_difference("a\n", "a\nb\n"), "`nothing` before, now `b`");
