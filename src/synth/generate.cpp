@@ -18,7 +18,8 @@
 namespace vesalius::synth {
 namespace {
 
-/// What a stream of random numbers is for: each has its own, so that a change of one leaves the others alone.
+/// The purpose of a stream of random numbers. Each purpose has a stream of its own, so that a change of one leaves the
+/// others unchanged.
 enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise, cut_out };
 constexpr std::uint64_t kPurposes = 8;
 
@@ -26,7 +27,7 @@ Random random_for(std::uint64_t seed, Purpose purpose, std::uint64_t index) {
   return Random(seed * kPurposes + static_cast<std::uint64_t>(purpose), index);
 }
 
-/// Index drawn with probability proportional to its weight.
+/// Draws an index with probability proportional to its weight.
 std::size_t draw(const std::vector<float>& weights, Random& random) {
   double left = random.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -36,7 +37,7 @@ std::size_t draw(const std::vector<float>& weights, Random& random) {
   return weights.size() - 1;
 }
 
-/// Renderers hold a device, so each thread borrows one.
+/// A pool of renderers. Each holds a device, so threads borrow one.
 class RendererPool {
  public:
   template <class F>
@@ -68,7 +69,7 @@ class RendererPool {
 /// A body with its clothes.
 struct Dressed {
   Poser poser;
-  std::optional<BodyDetail> detail;  ///< where the recipe wants any
+  std::optional<BodyDetail> detail;  ///< empty if the recipe uses none
 
   Dressed(Poser the_poser, float detail_px) : poser(std::move(the_poser)) {
     if (detail_px > 0.F) detail.emplace(poser);
@@ -114,7 +115,7 @@ struct Generator::State {
     makehuman = wants_makehuman(recipe, assets);
   }
 
-  /// Body number k with its clothes: a function of (recipe, assets, seed, k).
+  /// Makes body number k with its clothes, which depends only on (recipe, assets, seed, k).
   std::unique_ptr<Dressed> make_person(std::size_t k) const {
     Random random = random_for(seed, Purpose::body, k);
     const BodyMesh naked = makehuman ? make_body(*assets.makehuman, sample_factors(random), body)

@@ -10,26 +10,26 @@
 
 namespace vesalius::synth {
 
-/// What comes from files: all optional.
+/// Data from files. All of it is optional.
 struct Assets {
   std::shared_ptr<const MakeHumanModel> makehuman;
   std::vector<SampledPose> captured;  ///< poses from motion capture
-  std::vector<SceneMesh> models;      ///< furniture of the user's
+  std::vector<SceneMesh> models;      ///< the user's own furniture
 };
 
-/// Makes labelled frames of people in rooms as a sensor sees them. Frame i is a function of (recipe, assets, seed, i)
-/// alone: any can be made again by itself, in any order, on any number of threads. Safe to call from several threads.
+/// Makes labelled frames of people in rooms as a sensor sees them. Frame i depends only on (recipe, assets, seed, i),
+/// so any frame can be made again, in any order and on any number of threads. It may be used from several threads.
 class Generator {
  public:
-  /// Throws UsageError for a recipe that cannot be meant, Error where it asks for bodies that the assets lack.
+  /// Throws UsageError for an invalid recipe, and Error if it requires bodies that the assets lack.
   Generator(const Recipe& recipe, Assets assets, const BodyModel& body, std::uint64_t seed);
   ~Generator();
   Generator(const Generator&) = delete;
   Generator& operator=(const Generator&) = delete;
 
-  /// With parts, and joints as joint_names() lists them.
+  /// Returns a frame with its parts, and with the joints of joint_names().
   LabelledFrame frame(std::uint64_t index) const;
-  /// What that frame looks at.
+  /// Returns the scene of that frame.
   BuiltScene scene(std::uint64_t index) const;
 
  private:

@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Small pictures and few bodies, so that tests are quick.
+/// Returns a recipe with small pictures and few bodies, so that tests are fast.
 Recipe small_recipe() {
   Recipe recipe;
   recipe.sensor.width = 160;
@@ -65,7 +65,7 @@ TEST(Generate, CutsPeopleOutOfTheirSurroundings) {
 }
 
 // Labels: threads
-TEST(GenerateThreads, AnyNumberGivesTheSameFrames) {
+TEST(GenerateThreads, GiveTheSameFramesForAnyNumber) {
   const Generator generator(small_recipe(), {}, paper_body(), 7);
   const std::vector<LabelledFrame> all = frames_of(generator, 0, 24);
   ASSERT_EQ(all.size(), 24U);
@@ -78,20 +78,20 @@ TEST(GenerateThreads, AnyNumberGivesTheSameFrames) {
   }
 }
 
-TEST(Generate, AFrameCanBeMadeAlone) {
+TEST(Generate, MakesAnyFrameAlone) {
   const Generator generator(small_recipe(), {}, paper_body(), 7);
   const LabelledFrame in_a_row = frames_of(generator, 10, 6).back();
   const Generator other(small_recipe(), {}, paper_body(), 7);
   expect_same(other.frame(15), in_a_row);
 }
 
-TEST(Generate, SeedsGiveOtherFrames) {
+TEST(Generate, MakesOtherFramesForOtherSeeds) {
   const Generator a(small_recipe(), {}, paper_body(), 1), b(small_recipe(), {}, paper_body(), 2);
   EXPECT_NE(a.frame(0).frame.depth, b.frame(0).frame.depth);
   EXPECT_NE(a.frame(0).frame.depth, a.frame(1).frame.depth);
 }
 
-TEST(Generate, JointsAreBehindTheirPersonsSurface) {
+TEST(Generate, PutsJointsBehindTheirPersonsSurface) {
   Recipe recipe = small_recipe();
   recipe.people = {.none = 0.F, .one = 1.F, .two = 1.F, .three = 0.F, .four = 0.F};
   recipe.sensor.noise = false;
@@ -104,7 +104,7 @@ TEST(Generate, JointsAreBehindTheirPersonsSurface) {
       ASSERT_EQ(labelled.joints[person].size(), joint_names().size());
       for (std::size_t j = 0; j < joint_names().size(); ++j) {
         const Eigen::Vector3f& p = labelled.joints[person][j];
-        if (p.z() < 0.2F || joint_names()[j].ends_with("hand_end")) continue;  // closed hands end before theirs
+        if (p.z() < 0.2F || joint_names()[j].ends_with("hand_end")) continue;  // closed hands end before it
         const Eigen::Vector2f pixel = labelled.frame.camera.pixel(p);
         const int u = static_cast<int>(std::lround(pixel.x())), v = static_cast<int>(std::lround(pixel.y()));
         if (!labelled.person.contains(u, v) || labelled.person(u, v) != person) continue;
@@ -117,7 +117,7 @@ TEST(Generate, JointsAreBehindTheirPersonsSurface) {
   EXPECT_GT(seen, 150);
 }
 
-TEST(Generate, CoarserSurfacesAreHardlyVisible) {
+TEST(Generate, ChangesLittleWithCoarserSurfaces) {
   Recipe recipe = small_recipe();
   recipe.sensor.noise = false;
   recipe.sensor.colour = false;
@@ -143,7 +143,7 @@ TEST(Generate, CoarserSurfacesAreHardlyVisible) {
   EXPECT_LT(moved, of_people * 4 / 100);
 }
 
-TEST(Generate, TruthIsWhereTheDepthIs) {
+TEST(Generate, HasTruthOnlyWhereThereIsDepth) {
   Recipe recipe = small_recipe();
   recipe.people = {.none = 0.F, .one = 1.F, .two = 1.F, .three = 0.F, .four = 0.F};
   recipe.sensor.noise = false;
@@ -166,7 +166,7 @@ TEST(Generate, TruthIsWhereTheDepthIs) {
   EXPECT_EQ(labels.size(), 25U) << "every part is seen from somewhere";
 }
 
-TEST(Generate, PicturesHaveAsManyPeopleAsAskedFor) {
+TEST(Generate, PutsTheGivenNumberOfPeopleIntoPictures) {
   Recipe recipe = small_recipe();
   recipe.people = {.none = 1.F, .one = 0.F, .two = 0.F, .three = 0.F, .four = 0.F};
   const Generator empty(recipe, {}, paper_body(), 3);
@@ -181,7 +181,7 @@ TEST(Generate, PicturesHaveAsManyPeopleAsAskedFor) {
   EXPECT_GE(people, 60U) << "of 80: some find no place";
 }
 
-TEST(Generate, RefusesWhatCannotBeMeant) {
+TEST(Generate, RefusesInvalidRecipes) {
   const auto make = [](auto change) {
     return [change] {
       Recipe recipe = small_recipe();

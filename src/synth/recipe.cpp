@@ -55,7 +55,7 @@ void visit(const std::string& prefix, PoseOptions& o, OptionVisitor& visitor) {
   visit_options(prefix + "sampler.", o.sampler, visitor);
 }
 
-/// "a, b c ,d" -> a | b c | d
+/// Splits a list at its commas: "a, b c ,d" gives "a", "b c" and "d".
 std::vector<std::string> words_of(const std::string& list) {
   std::vector<std::string> words;
   std::istringstream stream(list);
@@ -118,7 +118,7 @@ Sensor sensor_of(const SensorOptions& options) {
     throw UsageError("options sensor.width and sensor.height are given both or neither");
   }
   if (options.width > 0) {
-    const bool own = options.fx > 0.F;  // a camera of one's own may see more than the preset's
+    const bool own = options.fx > 0.F;  // a custom camera may see more than the preset
     sensor = (own ? reframed : resized)(sensor, options.width, options.height);
   }
   Camera camera = sensor.camera;

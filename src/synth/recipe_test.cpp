@@ -7,9 +7,9 @@
 namespace vesalius::synth {
 namespace {
 
-TEST(Recipe, DefaultsAreAllowed) { EXPECT_NO_THROW(check(Recipe{})); }
+TEST(Recipe, HasValidDefaults) { EXPECT_NO_THROW(check(Recipe{})); }
 
-TEST(Recipe, IntrinsicsWinOverThePreset) {
+TEST(Recipe, PrefersIntrinsicsToThePreset) {
   SensorOptions options;
   options.preset = "kinect-v1";
   const Camera native = sensor_of(options).camera;
@@ -27,7 +27,7 @@ TEST(Recipe, IntrinsicsWinOverThePreset) {
       << "noise in pixels follows the focal length";
 }
 
-TEST(Recipe, OwnIntrinsicsMayBeTallerThanThePreset) {
+TEST(Recipe, AllowsOwnIntrinsicsTallerThanThePreset) {
   SensorOptions options;
   options.width = 480;
   options.height = 640;
@@ -45,13 +45,13 @@ TEST(Recipe, OwnIntrinsicsMayBeTallerThanThePreset) {
   EXPECT_THROW(sensor_of(options), UsageError);
 }
 
-TEST(Recipe, WithoutNoiseTheSensorIsPerfect) {
+TEST(Recipe, HasAPerfectSensorWithoutNoise) {
   SensorOptions options;
   options.noise = false;
   EXPECT_EQ(sensor_of(options).kind, SensorKind::perfect);
 }
 
-TEST(Recipe, ListsOfWordsAreCutAtCommas) {
+TEST(Recipe, SplitsListsOfWordsAtCommas) {
   PoseOptions options;
   EXPECT_EQ(motion_choice(options).exclude, MotionChoice{}.exclude);
   EXPECT_TRUE(motion_choice(options).include.empty());
@@ -59,7 +59,7 @@ TEST(Recipe, ListsOfWordsAreCutAtCommas) {
   EXPECT_EQ(motion_choice(options).include, (std::vector<std::string>{"walk", "sit down"}));
 }
 
-TEST(Recipe, AsksForMotionsWhereItSaysAnythingAboutThem) {
+TEST(Recipe, RequiresMotionsIfItMentionsThem) {
   PoseOptions options;
   EXPECT_FALSE(asks_for_motions(options)) << "the default takes them where they are";
   options.captured = 0.5F;

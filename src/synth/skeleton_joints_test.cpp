@@ -25,7 +25,7 @@ std::size_t joint(const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-TEST(SkeletonJoints, AreBonesAndFreeEndsByName) {
+TEST(SkeletonJoints, HaveTheNamesOfBonesAndFreeEnds) {
   const auto& names = joint_names();
   ASSERT_EQ(names.size(), 24U);
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
@@ -38,7 +38,7 @@ TEST(SkeletonJoints, AreBonesAndFreeEndsByName) {
   EXPECT_GT(points[joint("head_end")].y(), points[joint("head")].y() + 0.1F);
 }
 
-TEST(SkeletonJoints, AreSeenFromTheCamera) {
+TEST(SkeletonJoints, AreInTheCamerasFrame) {
   const PosedBody body = posed({});
   const Isometry3f motion = Eigen::Translation3f(0.5F, -1.F, 3.F) * Eigen::AngleAxisf(0.7F, Vector3f::UnitY());
   const std::vector<Vector3f> own = joint_points(body, Isometry3f::Identity());
@@ -53,8 +53,8 @@ TEST(SkeletonJoints, LieInsideTheBody) {
     const auto& triangles = mesh().topology->triangles;
     const std::vector<Vector3f> points = joint_points(body, Isometry3f::Identity());
     for (std::size_t j = 0; j < points.size(); ++j) {
-      // Free ends lie on the surface, or as far from it as rounding of fingers and toes goes; those of closed hands
-      // where the open hand would end.
+      // Free ends lie on the surface, or off it by the rounding of fingers and toes. Those of closed hands lie where
+      // the open hand would end.
       const bool inside = is_inside(body.vertices, triangles, mesh().topology->body_triangles, points[j]);
       const float off =
           inside ? 0.F : distance_to(body.vertices, triangles, mesh().topology->body_triangles, points[j]);
@@ -64,7 +64,7 @@ TEST(SkeletonJoints, LieInsideTheBody) {
   }
 }
 
-TEST(SkeletonJoints, ChangeSidesInAMirror) {
+TEST(SkeletonJoints, SwapSidesInAMirror) {
   Random random(4);
   const Pose pose = random_pose(random, 0.6F);
   const std::vector<Vector3f> own = joint_points(posed(pose), Isometry3f::Identity());

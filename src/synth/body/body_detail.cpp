@@ -5,7 +5,7 @@
 namespace vesalius::synth {
 namespace {
 
-/// Every joint half bent, so that what bends is not flat.
+/// Returns a pose with every joint half bent, so that surfaces that bend are not flat in it.
 Pose half_bent() {
   BodyAngles angles;
   angles.trunk = {30.F, 10.F, 15.F};

@@ -7,16 +7,17 @@
 
 namespace vesalius::synth {
 
-/// Coarser surfaces of one body, worked out once. Their vertices are some of the body's own, so any pose of it serves.
+/// Coarser surfaces of one body, computed once. Their vertices are a subset of the body's own, so they fit any pose of
+/// it.
 class BodyDetail {
  public:
   explicit BodyDetail(const Poser& poser);
 
-  /// Returns the coarsest surface that strays at most so far from the full one; null where only the full one does.
+  /// Returns the coarsest surface that differs from the full one by at most `error_m`, or null if none does.
   const CoarseSurface* within(float error_m) const;
 
  private:
-  std::vector<CoarseSurface> levels_;  ///< coarser and coarser
+  std::vector<CoarseSurface> levels_;  ///< each one coarser than the previous
 };
 
 }  // namespace vesalius::synth

@@ -22,7 +22,7 @@ const BodyDetail& detail() {
   return levels;
 }
 
-TEST(BodyDetail, IsFullUpCloseAndCoarserFarAway) {
+TEST(BodyDetail, UsesCoarserSurfacesForLargerErrors) {
   EXPECT_EQ(detail().within(0.F), nullptr);
   EXPECT_EQ(detail().within(0.0004F), nullptr);
   std::size_t before = person().mesh().topology->triangles.size();

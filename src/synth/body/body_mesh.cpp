@@ -8,7 +8,7 @@ namespace {
 
 Eigen::Vector3f in_mirror(const Eigen::Vector3f& p) { return {-p.x(), p.y(), p.z()}; }
 
-/// "wrist.L" and "l_hand" belong to the other side in a mirror.
+/// Returns the name of the same thing on the other side, for names such as "wrist.L" and "l_hand".
 std::string name_in_mirror(std::string name) {
   const auto swap = [](char& c, char l, char r) { c = c == l ? r : c == r ? l : c; };
   if (name.starts_with("l_") || name.starts_with("r_")) swap(name.front(), 'l', 'r');
@@ -59,7 +59,7 @@ std::array<BoneSegment, kBoneCount> rest_bones(const BodyMesh& mesh) {
 BodyMesh mirrored(const BodyMesh& mesh, const BodyModel& body) {
   BodyMesh out = mesh;
   auto topology = std::make_shared<BodyTopology>(*mesh.topology);
-  for (Triangle& t : topology->triangles) std::swap(t[0], t[2]);  // keeps the outside outside
+  for (Triangle& t : topology->triangles) std::swap(t[0], t[2]);  // keeps the orientation
   for (std::uint8_t& part : topology->part) {
     if (part != kBackground) part = static_cast<std::uint8_t>(body.parts[part].mirror);
   }

@@ -13,16 +13,16 @@
 namespace vesalius::synth {
 namespace {
 
-constexpr float kSoftness = 0.008F;  // of the stature: how far limbs melt into each other
+constexpr float kSoftness = 0.008F;  // share of the stature over which limbs melt into each other
 
-/// Grid lines `step` apart, `fine` apart between two coordinates.
+/// Returns grid lines that are `step` apart, or `fine` apart between two coordinates.
 std::vector<float> grid_lines(float from, float to, float step, float fine_from, float fine_to, float fine) {
   std::vector<float> lines;
   for (float x = from; x < to; x += x >= fine_from && x < fine_to ? fine : step) lines.push_back(x);
   return lines;
 }
 
-/// Finer at the hands, which are far out along x, and at the head, which is on top.
+/// Returns a grid that is finer at the hands, which are far out along x, and at the head, which is at the top.
 HalfGrid grid_around(const std::vector<Limb>& limbs, const BuiltinFigure& figure, float stature_m) {
   Bounds all = bounds(limbs.front());
   for (const Limb& limb : limbs) {
@@ -40,14 +40,14 @@ HalfGrid grid_around(const std::vector<Limb>& limbs, const BuiltinFigure& figure
   return grid;
 }
 
-/// Share of the bone that starts at `change`, between those before and after.
+/// Returns the share of the bone that starts at `change`, in the blend with the previous bone.
 float rising(float along_m, const BoneChange& change) {
   if (change.blend_m <= 0.F) return along_m >= change.from_m ? 1.F : 0.F;
   const float t = std::clamp((along_m - change.from_m) / (2.F * change.blend_m) + 0.5F, 0.F, 1.F);
   return t * t * (3.F - 2.F * t);
 }
 
-/// The same bone on the other side.
+/// Returns the same bone on the other side.
 int mirrored_bone(int bone) {
   if (bone < kBoneCount) return index(mirror(static_cast<Bone>(bone)));
   return bone < kBoneCount + 3 ? bone + 3 : bone - 3;
@@ -89,7 +89,7 @@ SkinWeights in_mirror(SkinWeights skin) {
   return skin;
 }
 
-/// Weights of the half with x >= 0 by nearness to limbs, and their mirror images.
+/// Returns the weights of the half with x >= 0 by nearness to limbs, and their mirror images.
 std::vector<SkinWeights> skin_weights(const std::vector<Limb>& limbs, const Surface& surface, float softness_m) {
   std::vector<SkinWeights> skin;
   const auto twins = std::ranges::find_if(surface.vertices, [](const auto& p) { return p.x() < 0.F; });
@@ -131,7 +131,7 @@ RigBone finger(const BuiltinFigure& figure, FingerBone bone, bool left) {
   out.curl_rad = kDegrees[static_cast<std::size_t>(bone)] * std::numbers::pi_v<float> / 180.F;
   const BoneSegment& palm = figure.bones[index(hand)];
   const Eigen::Vector3f along = (palm.tail - palm.head).normalized();
-  // Palms face the thighs; the thumb closes over them, across the fingers.
+  // Palms face the thighs, and the thumb closes over them, across the fingers.
   const float inwards = left ? -1.F : 1.F;
   const Eigen::Vector3f palm_normal = (Eigen::Vector3f(inwards, 0.F, 0.F) - inwards * along.x() * along).normalized();
   const Eigen::Vector3f towards =
@@ -141,7 +141,7 @@ RigBone finger(const BuiltinFigure& figure, FingerBone bone, bool left) {
   return out;
 }
 
-/// Whether the bone of the figure points elsewhere than in the T: arms hang, legs stand apart.
+/// Returns whether the bone's direction in the figure differs from the T: arms hang, and legs stand apart.
 bool spread(Bone bone) {
   const Bone left = std::min(bone, mirror(bone));
   return left == Bone::l_upper_arm || left == Bone::l_forearm || left == Bone::l_hand || left == Bone::l_thigh ||
@@ -166,7 +166,7 @@ std::vector<RigBone> make_rig(const BuiltinFigure& figure) {
   for (std::size_t b = 0; b < rig.size(); ++b) {
     rig[b].head = figure.bones[b].head;
     rig[b].tail = figure.bones[b].tail;
-    const Bone bone = rig[b].from;  // fingers turn as their hand does
+    const Bone bone = rig[b].from;  // fingers turn with their hand
     if (!spread(bone)) continue;
     const BoneSegment& own = figure.bones[index(bone)];
     rig[b].t_from_rest = Eigen::Quaternionf::FromTwoVectors(own.tail - own.head, rest_direction(bone));
@@ -186,7 +186,7 @@ BodyMesh make_builtin_body(const BuiltinShape& shape, const BodyModel& body) {
   mesh.rig = make_rig(figure);
   for (int b = 0; b < kBoneCount; ++b) mesh.rig_of[b] = b;
   const auto [low, high] = std::ranges::minmax(surface.vertices, {}, [](const Eigen::Vector3f& p) { return p.y(); });
-  const float scale = wanted_m / (high.y() - low.y());  // melting and the grid move sole and crown by some millimetres
+  const float scale = wanted_m / (high.y() - low.y());  // melting and the grid shift sole and crown by some millimetres
   const auto placed = [&, bottom = low.y()](const Eigen::Vector3f& p) -> Eigen::Vector3f {
     return scale * Eigen::Vector3f(p.x(), p.y() - bottom, p.z());
   };

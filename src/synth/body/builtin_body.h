@@ -5,10 +5,10 @@
 
 namespace vesalius::synth {
 
-/// Returns a smooth parametric body of our own that needs no files, labelled by the surface rules of `body`, with about
-/// 14,000 triangles and its feet on y = 0. Left and right mirror each other to the last bit. Values outside their range
-/// are taken as the nearest within. Lengths follow Drillis and Contini (1966) as quoted by Winter (Biomechanics and
-/// Motor Control of Human Movement, fig. 4.1), girths ANSUR II (2012).
+/// Returns a smooth parametric body of our own that needs no files. It is labelled by the surface rules of `body`, has
+/// about 14,000 triangles, and stands on y = 0. Left and right are exact mirror images. Values outside their range are
+/// clamped. Lengths follow Drillis and Contini (1966) as quoted by Winter (Biomechanics and Motor Control of Human
+/// Movement, fig. 4.1), girths follow ANSUR II (2012).
 BodyMesh make_builtin_body(const BuiltinShape& shape, const BodyModel& body);
 
 }  // namespace vesalius::synth

@@ -23,7 +23,7 @@ std::vector<BuiltinShape> shapes() {
   return all;
 }
 
-TEST(BuiltinBody, HasTheStatureAskedForAndStandsOnTheFloor) {
+TEST(BuiltinBody, HasTheGivenStatureAndStandsOnTheFloor) {
   for (const BuiltinShape& shape : shapes()) {
     const BodyMesh mesh = make_builtin_body(shape, paper_body());
     const auto [low, high] = std::ranges::minmax(mesh.vertices, {}, [](const Vector3f& p) { return p.y(); });
@@ -37,7 +37,7 @@ TEST(BuiltinBody, HasTheStatureAskedForAndStandsOnTheFloor) {
   }
 }
 
-TEST(BuiltinBody, LeftAndRightMirrorEachOtherToTheLastBit) {
+TEST(BuiltinBody, HasExactlyMirroredSides) {
   for (const BuiltinShape& shape : shapes()) {
     const BodyMesh mesh = make_builtin_body(shape, paper_body());
     const BodyTopology& topology = *mesh.topology;
@@ -60,7 +60,7 @@ TEST(BuiltinBody, LeftAndRightMirrorEachOtherToTheLastBit) {
 }
 
 // Labels: statistics
-TEST(BuiltinBody, JointsAreInsideInAnyModeratePose) {
+TEST(BuiltinBody, HasItsJointsInsideInAnyModeratePose) {
   int outside = 0;
   int all = 0;
   for (const BuiltinShape& shape : shapes()) {
@@ -78,7 +78,7 @@ TEST(BuiltinBody, JointsAreInsideInAnyModeratePose) {
   EXPECT_EQ(outside, 0) << "of " << all;
 }
 
-TEST(BuiltinBody, CentresOfPartsAreInside) {
+TEST(BuiltinBody, HasTheCentresOfPartsInside) {
   int outside = 0;
   for (const BuiltinShape& shape : shapes()) {
     const auto mesh = std::make_shared<const BodyMesh>(make_builtin_body(shape, paper_body()));
@@ -91,14 +91,14 @@ TEST(BuiltinBody, CentresOfPartsAreInside) {
   EXPECT_EQ(outside, 0);
 }
 
-TEST(BuiltinBody, FaceAndFeetPointForwards) {
+TEST(BuiltinBody, FacesForwardsWithItsFeet) {
   const BodyMesh mesh = make_builtin_body({}, paper_body());
   const Vector3f& front =
       std::ranges::max(mesh.vertices, {}, [](const Vector3f& p) { return p.y() > 1.4F ? p.z() : -9.F; });
   const Vector3f& back =
       std::ranges::min(mesh.vertices, {}, [](const Vector3f& p) { return p.y() > 1.4F ? p.z() : 9.F; });
   EXPECT_EQ(front.x(), 0.F);                // the nose, on the middle line
-  EXPECT_GT(front.z(), -back.z() + 0.01F);  // sticks out further than the back of the head
+  EXPECT_GT(front.z(), -back.z() + 0.01F);  // extends further than the back of the head
   const Vector3f& toe =
       std::ranges::max(mesh.vertices, {}, [](const Vector3f& p) { return p.y() < 0.1F ? p.z() : -9.F; });
   EXPECT_GT(toe.z(), 0.12F);
@@ -125,7 +125,7 @@ TEST(BuiltinBody, FollowsItsShape) {
   EXPECT_GT(head_share(child), 1.3F * head_share(thin));
 }
 
-TEST(BuiltinBody, SameShapeSameBytes) {
+TEST(BuiltinBody, IsTheSameForTheSameShape) {
   const BodyMesh a = make_builtin_body({}, paper_body());
   const BodyMesh b = make_builtin_body({}, paper_body());
   EXPECT_EQ(a.vertices, b.vertices);

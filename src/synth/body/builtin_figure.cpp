@@ -9,7 +9,7 @@ namespace {
 using Eigen::Vector3f;
 
 Limb ellipsoid(Bone bone, const Vector3f& centre, const Vector3f& half_axes, bool paired) {
-  // Half axes come as x, y, z; an ellipsoid's line runs along y.
+  // Half axes are given as x, y, z; an ellipsoid's line runs along y.
   return {{{centre, half_axes.x(), half_axes.z(), half_axes.y()}},
           Vector3f::UnitX(),
           Vector3f::UnitY(),
@@ -17,7 +17,8 @@ Limb ellipsoid(Bone bone, const Vector3f& centre, const Vector3f& half_axes, boo
           paired};
 }
 
-/// Stations between those given, on a smooth line through them (Catmull-Rom): pieces of cones would show as folds.
+/// Returns additional stations on a smooth line through the given ones (Catmull-Rom), because straight cones would show
+/// as folds.
 std::vector<Station> smoothed(const std::vector<Station>& rough) {
   const auto mix = [](float a, float b, float c, float d, float t) {
     return b + 0.5F * t * (c - a + t * (2.F * a - 5.F * b + 4.F * c - d + t * (3.F * (b - c) + d - a)));
@@ -42,9 +43,9 @@ std::vector<Station> smoothed(const std::vector<Station>& rough) {
 }
 
 struct Ring {
-  float place;                          ///< 0 at the hip joints, 1 at the base of the neck
-  float woman_wide, man_wide, deep, z;  ///< parts of the stature
-  float waist;                          ///< how much of the build goes round the waist here
+  float place;                          ///< 0 is at the hip joints, 1 at the base of the neck
+  float woman_wide, man_wide, deep, z;  ///< shares of the stature
+  float waist;                          ///< share of the build that widens the waist here
 };
 
 void add_trunk(const Measures& m, BuiltinFigure& f) {
@@ -63,7 +64,7 @@ void add_trunk(const Measures& m, BuiltinFigure& f) {
   const float length = m.neck - m.hip;
   for (const Ring& r : kRings) {
     const float thick = m.h * std::lerp(m.trunk, m.waist, r.waist) * (1.F - 0.05F * m.child);
-    const float belly = std::max(0.F, m.waist - 1.F) * r.waist * 0.03F * m.h;  // fat goes to the front
+    const float belly = std::max(0.F, m.waist - 1.F) * r.waist * 0.03F * m.h;  // fat is at the front
     trunk.stations.push_back({{0.F, m.hip + r.place * length, r.z * m.h + belly},
                               std::lerp(r.woman_wide, r.man_wide, m.male) * thick,
                               r.deep * thick,
@@ -184,7 +185,7 @@ void add_leg(const Measures& m, BuiltinFigure& f) {
   f.limbs.push_back(leg);
   const float across = m.h * std::lerp(0.95F, 1.03F, m.male);
   const auto sole = [&](float z, float wide, float high) -> Station {
-    // Half an ellipse reaches below its middle: its height is the middle's.
+    // The height is the middle's; half an ellipse reaches below it.
     return {
         {leg_x(m, m.ankle) + 0.06F * (z + 0.03F) * m.h, high * m.h, z * m.h}, wide * across, high * m.h, 0.012F * m.h};
   };

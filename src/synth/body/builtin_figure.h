@@ -10,10 +10,11 @@
 
 namespace vesalius::synth {
 
-/// The skeleton and flesh of the built-in body: standing, arms 45 degrees down, palms facing the thighs. Metres.
+/// The skeleton and flesh of the built-in body, in metres. It stands with its arms 45 degrees down and its palms facing
+/// the thighs.
 struct BuiltinFigure {
-  std::array<BoneSegment, kBuiltinBoneCount> bones;  ///< of the built-in rig
-  std::vector<Limb> limbs;                           ///< paired ones: the left
+  std::array<BoneSegment, kBuiltinBoneCount> bones;  ///< bones of the built-in rig
+  std::vector<Limb> limbs;                           ///< of paired limbs only the left one
 };
 BuiltinFigure builtin_figure(const BuiltinShape& shape);
 

@@ -16,7 +16,8 @@ Measures measure(const BuiltinShape& shape) {
   m.limb = (1.F + (build > 0.F ? 0.28F : 0.16F) * build) * std::lerp(0.94F, 1.02F, m.male) * (1.F - 0.02F * m.child);
   m.trunk = 1.F + (build > 0.F ? 0.2F : 0.1F) * build;
   m.waist = 1.F + (build > 0.F ? 0.5F : 0.14F) * build + 0.1F * m.child;
-  // Head: 13 % of an adult's stature, 17.5 % at four years; legs shorter in turn (Drillis and Contini; WHO 2006).
+  // The head takes 13 % of an adult's stature and 17.5 % of a four-year-old's, whose legs are shorter in turn (Drillis
+  // and Contini; WHO 2006).
   m.head = std::lerp(0.130F, 0.178F, m.child) * m.h;
   m.chin = m.h - m.head;
   m.neck = m.chin - 0.022F * m.h;
@@ -71,7 +72,7 @@ void add_bones(const Measures& m, Bones& bones) {
          wrist + m.h * (0.056F * kDownArm + Vector3f(0.F, 0.F, 0.042F)));
 }
 
-/// Right bones mirror the left ones.
+/// Adds the right bones as mirror images of the left ones.
 void add_right_bones(Bones& bones) {
   const auto in_mirror = [](const BoneSegment& s) -> BoneSegment {
     return {{-s.head.x(), s.head.y(), s.head.z()}, {-s.tail.x(), s.tail.y(), s.tail.z()}};

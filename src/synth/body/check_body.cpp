@@ -60,7 +60,7 @@ void check_skin(const BodyMesh& mesh) {
       if (skin.bone[k] >= mesh.rig.size()) {
         fail(fmt::format("vertex {} hangs on bone {}, expected 0 to {}", v, skin.bone[k], mesh.rig.size() - 1));
       }
-      // A weight after a zero would be skipped when posing.
+      // Posing stops at the first zero, so a weight after it would be ignored.
       if (!(skin.weight[k] >= 0.F) || (k > 0 && skin.weight[k] > 0.F && skin.weight[k - 1] == 0.F)) {
         fail(fmt::format("vertex {}: expected weights from 0 to 1, zeros last", v));
       }

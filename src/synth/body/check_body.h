@@ -4,7 +4,7 @@
 
 namespace vesalius::synth {
 
-/// Throws Error naming what is wrong with a body: an index out of range, weights that do not sum to 1, a number that is
+/// Throws Error naming the fault if a body has an index out of range, weights that do not sum to 1, or a number that is
 /// not finite.
 void check(const BodyMesh& mesh, const BodyModel& body);
 

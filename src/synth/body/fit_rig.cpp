@@ -42,7 +42,7 @@ void map_follows(const std::vector<SkeletonBone>& skeleton, const RigMap& map, s
   }
 }
 
-/// The turns from this body's rest into the T, bone by bone of the poses.
+/// Returns the turns from this body's rest pose to the T for each bone of the poses.
 std::array<Eigen::Quaternionf, kBoneCount> rest_turns(const MappedRig& rig, const std::vector<Eigen::Vector3f>& heads,
                                                       const std::vector<Eigen::Vector3f>& tails) {
   std::array<Eigen::Quaternionf, kBoneCount> turns;
@@ -58,7 +58,7 @@ std::array<Eigen::Quaternionf, kBoneCount> rest_turns(const MappedRig& rig, cons
   return turns;
 }
 
-/// Axis about which a finger bone turns towards the palm.
+/// Returns the axis about which a finger bone turns towards the palm.
 Eigen::Vector3f curl_axis(const MappedRig& rig, const MappedRig::Finger& finger,
                           const std::vector<Eigen::Vector3f>& heads, const std::vector<Eigen::Vector3f>& tails) {
   const int b = finger.bone;

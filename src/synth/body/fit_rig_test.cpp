@@ -46,7 +46,7 @@ TEST(RigMap, FillsStarsForBothSides) {
   EXPECT_EQ(map.last_knuckle[1], "finger5-1.R");
 }
 
-TEST(RigMap, SaysWhatIsWrong) {
+TEST(RigMap, NamesTheReasonOfErrors) {
   expect_error("joint = \"pelvis.L\"", "joint = 3", "map.toml:10: joint: expected a name");
   expect_error("bone = \"spine\"", "bone = \"spin\"", "no bone of poses is called \"spin\"");
   expect_error("bone = \"spine\"", "bone = \"pelvis\"", "bone: listed twice");
@@ -64,7 +64,7 @@ TEST(RigMap, SaysWhatIsWrong) {
   EXPECT_THROW(parse_rig_map(std::string(100000, '.'), "x"), Error);
 }
 
-/// A skeleton of the bones that the map names, in a line.
+/// Returns a skeleton of the bones that the map names, in a line.
 std::vector<SkeletonBone> named_bones() {
   std::vector<SkeletonBone> bones;
   const RigMap& map = makehuman_rig_map();
@@ -79,7 +79,7 @@ std::vector<SkeletonBone> named_bones() {
   return bones;
 }
 
-TEST(MapRig, UnlistedBonesFollowTheirParents) {
+TEST(MapRig, LetsUnlistedBonesFollowTheirParents) {
   std::vector<SkeletonBone> bones = named_bones();
   const auto wrist = std::ranges::find(bones, "wrist.L", &SkeletonBone::name);
   bones.push_back({"nail", static_cast<int>(wrist - bones.begin()), {0}, {0}});
@@ -88,7 +88,7 @@ TEST(MapRig, UnlistedBonesFollowTheirParents) {
   EXPECT_EQ(rig.bones.back().grip, Grip::none);
 }
 
-TEST(MapRig, NamesTheBoneThatIsMissing) {
+TEST(MapRig, NamesAMissingBone) {
   std::vector<SkeletonBone> bones = named_bones();
   std::ranges::find(bones, "lowerleg01.R", &SkeletonBone::name)->name = "other";
   EXPECT_THAT([&] { map_rig(bones, makehuman_rig_map()); },

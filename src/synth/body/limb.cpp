@@ -7,7 +7,8 @@
 namespace vesalius::synth {
 namespace {
 
-/// A radial estimate of the distance to an ellipsoid with these half axes, exact on its surface and for spheres.
+/// Returns a radial estimate of the distance to an ellipsoid with these half axes. It is exact on the surface and for
+/// spheres.
 float ellipsoid_distance(const Eigen::Vector3f& offset, const Eigen::Vector3f& half_axes) {
   const float scaled = offset.cwiseQuotient(half_axes).norm();
   if (scaled < 1e-3F) return -half_axes.minCoeff();

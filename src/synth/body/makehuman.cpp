@@ -18,7 +18,7 @@ namespace {
 constexpr float kMetresPerUnit = 0.1F;  // MakeHuman's files are in decimetres
 constexpr std::size_t kMostTargets = 5000;
 
-/// Numbers the vertices that count: those of the surface first, then those of joints.
+/// Numbers the vertices that are used: first those of the surface, then those of joints.
 class Selection {
  public:
   explicit Selection(std::size_t vertex_count) : new_index_(vertex_count, kNone) {}
@@ -54,7 +54,7 @@ struct Target {
   }
 };
 
-/// The target's offsets of chosen vertices, under their new numbers.
+/// Returns the target's offsets of chosen vertices under their new numbers.
 MorphTarget chosen_of(const MorphTarget& all, const Selection& selection) {
   MorphTarget out;
   for (std::size_t k = 0; k < all.vertex.size(); ++k) {
@@ -75,7 +75,7 @@ Eigen::Vector3f mean(const std::vector<Eigen::Vector3f>& points, const std::vect
 }  // namespace
 
 struct MakeHumanModel::State {
-  std::vector<Eigen::Vector3f> base;  ///< surface first, then what joints are means of; decimetres
+  std::vector<Eigen::Vector3f> base;  ///< first vertices of the surface, then those of joints; decimetres
   std::size_t surface_count = 0;
   std::vector<Triangle> triangles;
   std::vector<SkinWeights> skin;

@@ -10,26 +10,26 @@
 
 namespace vesalius::synth {
 
-/// MakeHuman's base mesh, morph targets, rig and weights (CC0), ready to make bodies of.
+/// MakeHuman's base mesh, morph targets, rig and weights (CC0), from which bodies are made.
 class MakeHumanModel {
  public:
-  /// Paths of files as `read` takes them.
+  /// The paths of the files as `read` takes them.
   struct Files {
     std::string mesh;                  ///< 3dobjs/base.obj
     std::string skeleton;              ///< rigs/default.mhskel
     std::string weights;               ///< rigs/default_weights.mhw
-    std::vector<std::string> targets;  ///< targets/macrodetails/**.target; their names say when they apply
+    std::vector<std::string> targets;  ///< targets/macrodetails/**.target; a name says to which bodies it applies
   };
-  /// Returns the files below MakeHuman's folder `data`, given what targets there are.
+  /// Returns the files below MakeHuman's folder `data`, given the existing targets.
   static Files files(const std::string& data_folder, std::vector<std::string> targets);
 
-  /// Throws Error naming file and place for anything that does not fit together.
+  /// Throws Error naming file and place if the files are damaged or do not fit together.
   MakeHumanModel(const ReadText& read, const Files& files);
   ~MakeHumanModel();
   MakeHumanModel(const MakeHumanModel&) = delete;
   MakeHumanModel& operator=(const MakeHumanModel&) = delete;
 
-  /// Returns the bytes that the targets take.
+  /// Returns the memory of the targets in bytes.
   std::size_t target_bytes() const;
 
  private:
@@ -40,7 +40,7 @@ class MakeHumanModel {
 
 std::shared_ptr<const MakeHumanModel> load_makehuman(const ReadText& read, const MakeHumanModel::Files& files);
 
-/// Returns the body of these factors, labelled by the surface rules of `body`, its feet on y = 0. It is safe to call
+/// Returns the body of these factors, labelled by the surface rules of `body`, with its feet on y = 0. It may be called
 /// from several threads.
 BodyMesh make_body(const MakeHumanModel& model, const MakeHumanFactors& factors, const BodyModel& body);
 

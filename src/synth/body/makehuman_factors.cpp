@@ -40,7 +40,7 @@ float unit(float v) { return std::clamp(v, 0.F, 1.F); }
 }  // namespace
 
 FactorValues factor_values(const MakeHumanFactors& f) {
-  // MakeHuman's ages: "child" is 10 years old, "young" 25, "old" 90; between them two targets mix.
+  // In MakeHuman "child" is 10 years old, "young" 25 and "old" 90; ages between them mix two targets.
   const float child = unit((25.F - f.age_years) / 15.F);
   const float old = unit((f.age_years - 25.F) / 65.F);
   const float shares = std::max(f.african, 0.F) + std::max(f.asian, 0.F) + std::max(f.caucasian, 0.F);
@@ -108,7 +108,7 @@ MakeHumanFactors sample_factors(Random& random) {
   const Stature stature = stature_at(f.age_years, f.gender);
   const auto deviation = static_cast<float>(std::clamp(random.normal(), -2.5, 2.5));
   f.stature_m = stature.mean_m + deviation * stature.sigma_m;
-  f.height = 0.5F + 0.11F * deviation;  // 0.22 to 0.78: beyond, limbs are no longer human
+  f.height = 0.5F + 0.11F * deviation;  // 0.22 to 0.78; limbs outside this range do not look human
   return f;
 }
 

@@ -13,9 +13,9 @@ namespace vesalius::synth {
 namespace {
 
 constexpr std::size_t kMostVertices = 1'000'000;
-constexpr double kFarthest = 1000.0;  // decimetres; keeps later arithmetic finite
+constexpr double kFarthest = 1000.0;  // decimetres; keeps the arithmetic finite
 
-/// Vertex of a face's corner, "12" or "12/3" or "12/3/4", counted from 0.
+/// Returns the vertex of a face's corner, "12" or "12/3" or "12/3/4", counted from 0.
 std::uint32_t corner(const TextScanner& scan, std::string_view word, std::size_t vertex_count) {
   const std::string_view digits = word.substr(0, word.find('/'));
   std::uint32_t value = 0;
@@ -26,7 +26,7 @@ std::uint32_t corner(const TextScanner& scan, std::string_view word, std::size_t
   return value - 1;
 }
 
-/// The rest of a line as three coordinates, or more where `more` follows them.
+/// Reads three coordinates. If `more` is true, others may follow them on the line.
 Eigen::Vector3f point(TextScanner& scan, bool more) {
   Eigen::Vector3f p;
   for (float& x : p) {
@@ -48,7 +48,7 @@ void add_face(TextScanner& scan, ObjGroup& mesh) {
   }
 }
 
-/// Whether every edge is used once in each direction.
+/// Returns whether every edge is used once in each direction.
 bool closed(const std::vector<Triangle>& triangles) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   edges.reserve(3 * triangles.size());

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 using testing::StrEq;
 using testing::ThrowsMessage;
 
-// A tetrahedron with a helper vertex and a face of another group.
+// The text of a tetrahedron with a helper vertex and a face of another group.
 const std::string kObj =
     "# a comment\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 5 5 5\nvt 0 0\ng helper\nf 1 2 5\ng body\n"
     "f 1/1 3/2 2/3\nf 1/1/1 2/2/2 4/4/4\nf 2 3 4\nf 1 4 3\n";
@@ -43,7 +43,7 @@ TEST(ParseObj, CutsPolygonsIntoFans) {
   EXPECT_EQ(mesh.triangles[1], (Triangle{0, 2, 1}));
 }
 
-TEST(ParseObj, NamesTheLineOfWhatItCannotUse) {
+TEST(ParseObj, NamesTheLineOfErrors) {
   expect_obj_error(changed(kObj, "v 1 0 0", "v 1 x 0"),
                    "base.obj:3: expected a coordinate (a number up to 1e+06), found \"x\"");
   expect_obj_error(changed(kObj, "v 1 0 0", "v nan 0 0"), "found \"nan\"");
@@ -58,7 +58,7 @@ TEST(ParseObj, NamesTheLineOfWhatItCannotUse) {
   expect_obj_error("", "no faces in group \"body\"");
 }
 
-TEST(ParseObj, NoticesAFileCutShortAnywhereInItsFaces) {
+TEST(ParseObj, NoticesAFileTruncatedAnywhereInItsFaces) {
   const std::size_t first_face = kObj.find("f 1/1 3/2");
   for (std::size_t end = first_face + 1; end + 2 < kObj.size(); ++end) {
     EXPECT_THROW(parse_obj(kObj.substr(0, end), "base.obj", "body"), Error) << end;
@@ -72,7 +72,7 @@ TEST(ParseTarget, ReadsOffsetsAndSkipsComments) {
   EXPECT_TRUE(parse_target("# the base's own shape\n", "a.target", 5).vertex.empty());
 }
 
-TEST(ParseTarget, NamesTheLineOfWhatItCannotUse) {
+TEST(ParseTarget, NamesTheLineOfErrors) {
   const auto expect = [](const std::string& text, const std::string& message) {
     EXPECT_THAT([&] { parse_target(text, "a.target", 5); }, ThrowsMessage<Error>(HasSubstr(message)));
   };

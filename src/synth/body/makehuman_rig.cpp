@@ -33,7 +33,7 @@ std::string text_of(const json& in, const char* key, const std::string& file, co
   return found->get<std::string>();
 }
 
-/// Vertices whose mean is a joint.
+/// Returns the vertices whose mean is a joint.
 std::vector<std::uint32_t> joint(const json& joints, const std::string& key, std::size_t vertex_count,
                                  const std::string& file) {
   const auto found = joints.find(key);
@@ -51,7 +51,7 @@ std::vector<std::uint32_t> joint(const json& joints, const std::string& key, std
   return vertices;
 }
 
-/// Places every bone after its parent, keeping the order of names otherwise.
+/// Returns the bones with every bone after its parent, and otherwise in the order of names.
 std::vector<SkeletonBone> parents_first(const std::vector<SkeletonBone>& bones,
                                         const std::vector<std::string>& parent_names, const std::string& file) {
   std::vector<SkeletonBone> ordered;
@@ -75,7 +75,7 @@ std::vector<SkeletonBone> parents_first(const std::vector<SkeletonBone>& bones,
   return ordered;
 }
 
-/// Weights of one vertex while they are being read.
+/// The weights of one vertex while they are being read.
 struct Influence {
   std::uint16_t bone;
   float weight;

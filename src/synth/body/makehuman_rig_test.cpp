@@ -34,7 +34,7 @@ TEST(ParseSkeleton, PutsParentsFirst) {
   EXPECT_THAT(bones[1].tail, ElementsAre(4));
 }
 
-TEST(ParseSkeleton, SaysWhatIsWrong) {
+TEST(ParseSkeleton, NamesTheReasonOfErrors) {
   const auto expect = [](const std::string& from, const std::string& to, const std::string& message) {
     const std::string text = changed(kSkeleton, from, to);
     EXPECT_THAT([&] { parse_skeleton(text, "x.mhskel", 5); }, ThrowsMessage<Error>(HasSubstr(message))) << to;
@@ -70,7 +70,7 @@ TEST(ParseWeights, KeepsTheFourLargestAndMakesThemSumToOne) {
   EXPECT_EQ(weights[1].weight[1], 0.F);
 }
 
-TEST(ParseWeights, SaysWhatIsWrong) {
+TEST(ParseWeights, NamesTheReasonOfErrors) {
   std::vector<SkeletonBone> bones(1);
   bones[0].name = "a";
   const auto expect = [&](const std::string& text, const std::string& message) {

@@ -24,7 +24,7 @@ using Eigen::Vector3f;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(MakeHumanTargets, NamesTellTheirWeight) {
+TEST(MakeHumanTargets, HaveWeightsGivenByTheirNames) {
   MakeHumanFactors factors;
   factors.gender = 0.75F;
   factors.age_years = 25.F;
@@ -46,7 +46,7 @@ TEST(MakeHumanTargets, NamesTellTheirWeight) {
               ThrowsMessage<Error>(HasSubstr("targets/male-giant.target: \"giant\"")));
 }
 
-TEST(MakeHumanTargets, ComplementaryFactorsSumToOne) {
+TEST(MakeHumanTargets, HaveComplementaryFactorsThatSumToOne) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     Random random(2, i);
     const FactorValues v = factor_values(sample_factors(random));
@@ -59,7 +59,7 @@ TEST(MakeHumanTargets, ComplementaryFactorsSumToOne) {
   }
 }
 
-TEST(MakeHumanFactors, SampledHeightsAreHuman) {
+TEST(MakeHumanFactors, GiveHumanHeightsWhenSampled) {
   double sum = 0.0;
   for (std::uint64_t i = 0; i < 2000; ++i) {
     Random random(3, i);
@@ -72,7 +72,8 @@ TEST(MakeHumanFactors, SampledHeightsAreHuman) {
   EXPECT_NEAR(sum / 2000.0, 0.0, 0.08);
 }
 
-/// Files of a model so small that it can be written here: a cube for a body, a joint for every bone of the rig map.
+/// Returns the files of a model so small that it can be written here: a cube as body, and a joint for every bone of the
+/// rig map.
 std::map<std::string, std::string> small_files() {
   std::vector<std::string> bones{"root"};
   const auto add = [&](const std::string& name) {
@@ -121,7 +122,7 @@ TEST(MakeHuman, MorphsBodyAndJointsByTheTargets) {
   for (std::size_t v = 0; v < 8; ++v) EXPECT_LT((tall.vertices[v] - 2.F * man.vertices[v]).norm(), 1e-5F);
 }
 
-TEST(MakeHuman, NamesTheFileThatIsWrong) {
+TEST(MakeHuman, NamesTheFileOfErrors) {
   const auto expect = [](const std::string& path, const std::string& from, const std::string& to,
                          const std::string& message) {
     auto files = small_files();
@@ -139,7 +140,7 @@ TEST(MakeHuman, NamesTheFileThatIsWrong) {
   expect("d/rigs/default_weights.mhw", "\"root\"", "\"tail\"", "weights of bone \"tail\"");
 }
 
-/// The folder `data` of MakeHuman's files, unpacked from the developers' archive; nothing where there is none.
+/// Returns the folder `data` of MakeHuman's files, unpacked from the developers' archive; nothing if there is none.
 std::optional<std::filesystem::path> unpacked_makehuman() {
   const char* set = std::getenv("VESALIUS_SHARED");
   const std::filesystem::path shared = set != nullptr ? set : VESALIUS_SOURCE_DIR "/../shared";
@@ -179,7 +180,8 @@ void expect_good_body(const BodyMesh& mesh, const MakeHumanFactors& factors, std
   for (const float angle : {0.F, 0.5F}) {
     const Pose pose = random_pose(random, angle);
     PosedBody body = poser.pose(pose);
-    // In some old people the hollow of the mouth reaches 4 mm behind the head's joint: a closer look behind it.
+    // In some old people the hollow of the mouth extends 4 mm behind the head's joint, so the point behind it is
+    // tested.
     const auto head = static_cast<std::size_t>(Bone::head);
     body.joints[head] += world_rotations(pose)[head] * Vector3f(0.F, 0.F, -0.01F);
     for (std::size_t b = 0; b < kBoneCount; ++b) {
@@ -197,7 +199,8 @@ void expect_good_body(const BodyMesh& mesh, const MakeHumanFactors& factors, std
   EXPECT_EQ(std::set<int>(mesh.topology->part.begin(), mesh.topology->part.end()).size(), 25U);
 }
 
-/// Number of triangles whose mirror image, corner by corner within a millimetre, has another part than the mirror part.
+/// Returns the number of triangles whose mirror image, with all corners within a millimetre, does not have the mirrored
+/// part.
 int unlike_their_twins(const BodyMesh& mesh) {
   std::map<std::array<int, 3>, std::uint8_t> parts;
   const auto key = [&](const Triangle& t, float side) {
@@ -216,9 +219,10 @@ int unlike_their_twins(const BodyMesh& mesh) {
   return unlike;
 }
 
-// One test for all that needs MakeHuman's real files: unpacking and loading them takes a second or two.
+// This one test covers everything that needs MakeHuman's real files, because unpacking and loading them takes a second
+// or two.
 // Labels: statistics
-TEST(MakeHumanFilesTour, MakesManyGoodBodies) {
+TEST(MakeHumanFilesTour, MakesManyValidBodies) {
   const auto data = unpacked_makehuman();
   if (!data) GTEST_SKIP() << "no MakeHuman files: set VESALIUS_SHARED to the folder with assets/makehuman.tar.xz";
   const auto model = load_makehuman(slurp, MakeHumanModel::files(data->string(), targets_below(*data / "targets")));
@@ -229,14 +233,14 @@ TEST(MakeHumanFilesTour, MakesManyGoodBodies) {
     const BodyMesh mesh = make_body(*model, factors, paper_body());
     EXPECT_TRUE(is_closed(mesh.topology->triangles, mesh.topology->triangles.size()));
     expect_good_body(mesh, factors, i);
-    EXPECT_LT(unlike_their_twins(mesh), 130) << i;  // half a per cent: cells meet and quads are cut one way
+    EXPECT_LT(unlike_their_twins(mesh), 130) << i;  // half a per cent, since quads are cut the same way on both sides
   }
   MakeHumanFactors adult;
   adult.gender = 1.F;
   const float man_m = make_body(*model, adult, paper_body()).stature_m;
   adult.gender = 0.F;
   const float woman_m = make_body(*model, adult, paper_body()).stature_m;
-  EXPECT_NEAR(man_m, 1.76F, 0.12F);  // without scaling; MakeHuman's own averages
+  EXPECT_NEAR(man_m, 1.76F, 0.12F);  // without scaling, these are MakeHuman's own averages
   EXPECT_NEAR(woman_m, 1.63F, 0.12F);
   std::filesystem::remove_all(data->parent_path().parent_path().parent_path());
 }

@@ -11,12 +11,12 @@ namespace {
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 using Skin = std::vector<std::pair<std::uint16_t, float>>;
 
-/// Zeroth and first moment of the volume that each bone carries.
+/// The zeroth and first moment of the volume that each bone carries.
 class Moments {
  public:
   explicit Moments(std::size_t bones) : volume_(bones, 0.0), first_(bones, Eigen::Vector3d::Zero()) {}
 
-  /// The tetrahedron over a triangle, seen from the origin.
+  /// Adds the tetrahedron between a triangle and the origin.
   void add(const std::array<Eigen::Vector3d, 3>& p, const Skin& skin) {
     const double volume = p[0].dot(p[1].cross(p[2])) / 6.0;
     const Eigen::Vector3d centre = (p[0] + p[1] + p[2]) / 4.0;
@@ -28,7 +28,7 @@ class Moments {
 
   void write(int part, const Eigen::Vector3d& origin, std::vector<PartShare>& out) const {
     const double total = std::accumulate(volume_.begin(), volume_.end(), 0.0);
-    if (!(total > 1e-9)) return;  // a cubic millimetre: nothing that a centre can be told of
+    if (!(total > 1e-9)) return;  // below a cubic millimetre the centre is not defined well
     for (std::size_t bone = 0; bone < volume_.size(); ++bone) {
       if (volume_[bone] == 0.0 && first_[bone].isZero(0.0)) continue;
       const double share = volume_[bone] / total;
@@ -42,7 +42,7 @@ class Moments {
   std::vector<Eigen::Vector3d> first_;
 };
 
-/// Mean weights of some vertices.
+/// Returns the mean weights of some vertices.
 Skin mean_skin(const BodyMesh& mesh, std::span<const std::uint32_t> vertices) {
   Skin skin;
   const float scale = 1.F / static_cast<float>(vertices.size());
@@ -55,7 +55,7 @@ Skin mean_skin(const BodyMesh& mesh, std::span<const std::uint32_t> vertices) {
   return skin;
 }
 
-/// Edges that only one triangle of the part uses, the other way round: the rims of the lids that close it.
+/// Returns the reversed edges that only one triangle of the part uses. They are the rims of the lids that close it.
 std::vector<Edge> open_edges(const BodyMesh& mesh, const std::vector<std::uint32_t>& triangles) {
   std::vector<Edge> edges;
   for (const std::uint32_t t : triangles) {
@@ -70,7 +70,7 @@ std::vector<Edge> open_edges(const BodyMesh& mesh, const std::vector<std::uint32
   return open;
 }
 
-/// Groups connected edges: the rims, each with the mean of its points.
+/// Groups connected edges to rims, each with the mean of its points.
 class Rims {
  public:
   Rims(const BodyMesh& mesh, const std::vector<Edge>& edges) {
@@ -95,7 +95,7 @@ class Rims {
     auto at = parent_.try_emplace(v, v).first;
     while (at->second != at->first) {
       const auto up = parent_.find(at->second);
-      at->second = up->second;  // halves the way for the next search
+      at->second = up->second;  // halves the path for the next search
       at = up;
     }
     return at->first;
@@ -112,8 +112,8 @@ class Rims {
 void add_part(const BodyMesh& mesh, int part, const std::vector<std::uint32_t>& triangles,
               std::vector<PartShare>& out) {
   const auto point = [&](std::uint32_t v) -> Eigen::Vector3d { return mesh.vertices[v].cast<double>(); };
-  // The part's volume does not depend on the point that its tetrahedra share, but how bones share it does: a point amid
-  // the part, whatever the order of corners.
+  // The point that all tetrahedra share does not affect the part's volume, but it affects how bones share it. So it is
+  // a point in the middle of the part that does not depend on the order of corners.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   for (const std::uint32_t t : triangles) {
     for (const std::uint32_t v : mesh.topology->triangles[t]) origin += point(v);

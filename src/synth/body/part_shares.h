@@ -7,14 +7,15 @@
 
 namespace vesalius::synth {
 
-/// Volume of a part that moves with one rig bone, as a share of the part's; a part's shares sum to 1.
+/// The share of a part's volume that moves with one rig bone. The shares of a part sum to 1.
 struct PartShare {
   int part = 0;
   int bone = 0;
-  float share = 0.F;                                 ///< may be negative where the part's surface folds over itself
-  Eigen::Vector3f moment = Eigen::Vector3f::Zero();  ///< share times its centre at rest, metres
+  float share = 0.F;                                 ///< may be negative if the part's surface folds over itself
+  Eigen::Vector3f moment = Eigen::Vector3f::Zero();  ///< share multiplied by its centre at rest, metres
 };
-/// Returns the shares of all parts of the body's own surface, by part and bone. Flat fans close a part at its rims.
+/// Returns the shares of all parts of the body's own surface, by part and bone. A part's surface is closed at its rims
+/// by flat fans.
 std::vector<PartShare> part_shares(const BodyMesh& mesh, int part_count);
 
 }  // namespace vesalius::synth

@@ -10,7 +10,7 @@
 namespace vesalius::synth {
 namespace {
 
-/// Rows of the 3x4 matrix that takes a point at rest to its place in the pose.
+/// The rows of the 3x4 matrix that moves a point from rest to the pose.
 using Placement = std::array<float, 12>;
 
 Placement placement(const Eigen::Quaternionf& rotation, const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
@@ -25,12 +25,12 @@ Eigen::Vector3f moved(const Placement& m, const Eigen::Vector3f& p, float one = 
           m[8] * p.x() + m[9] * p.y() + m[10] * p.z() + m[11] * one};
 }
 
-/// `share` of the turn from one bone to the other that is about the first one's axis.
+/// Returns `share` of the turn from one bone to the other about the first one's axis.
 Eigen::Quaternionf shared_twist(const Eigen::Quaternionf& from, const Eigen::Quaternionf& to,
                                 const Eigen::Vector3f& axis, float share) {
   const Eigen::Quaternionf turn = from.conjugate() * to;
   const float along = turn.vec().dot(axis);
-  if (std::hypot(turn.w(), along) < 1e-4F) return from;  // turned right over: the twist is anything
+  if (std::hypot(turn.w(), along) < 1e-4F) return from;  // the axis is reversed, so the twist is undefined
   const float angle = 2.F * std::atan2(turn.w() < 0.F ? -along : along, std::abs(turn.w()));
   return from * Eigen::Quaternionf(Eigen::AngleAxisf(share * angle, axis));
 }
@@ -43,12 +43,12 @@ Eigen::Quaternionf blended(const RigBone& bone, const std::array<Eigen::Quaterni
   return from.slerp(bone.blend, to);
 }
 
-/// What without_yaw() takes off.
+/// Returns the heading, which without_yaw() removes.
 Eigen::Quaternionf heading(const Eigen::Quaternionf& rotation) {
   return (rotation * without_yaw(rotation).conjugate()).normalized();
 }
 
-/// Turns of each rig bone out of the body's own rest pose.
+/// Returns the turn of each rig bone from the body's own rest pose.
 std::vector<Eigen::Quaternionf> rig_rotations(const std::vector<RigBone>& rig, const Pose& pose) {
   const auto world = world_rotations(pose);
   std::vector<Eigen::Quaternionf> curls(rig.size());

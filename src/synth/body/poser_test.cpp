@@ -25,7 +25,7 @@ std::shared_ptr<const BodyMesh> person() {
 std::size_t at(Bone bone) { return static_cast<std::size_t>(bone); }
 std::size_t part(const char* name) { return static_cast<std::size_t>(paper_body().find_part(name)); }
 
-TEST(Poser, IdentityIsTheT) {
+TEST(Poser, TurnsTheIdentityIntoTheT) {
   const PosedBody body = Poser(person(), paper_body()).pose({});
   for (const Bone bone : {Bone::l_upper_arm, Bone::l_forearm, Bone::l_hand, Bone::r_upper_arm, Bone::r_forearm,
                           Bone::r_hand, Bone::l_thigh, Bone::l_shin, Bone::r_thigh, Bone::r_shin}) {
@@ -38,7 +38,7 @@ TEST(Poser, IdentityIsTheT) {
   EXPECT_GT(body.parts[part("l_face_top")].y(), body.parts[part("l_face_bottom")].y());
 }
 
-TEST(Poser, StandsOnTheFloorUnderThePelvis) {
+TEST(Poser, PutsTheBodyOnTheFloorUnderThePelvis) {
   const Poser poser(person(), paper_body());
   Random random(1);
   for (int i = 0; i < 50; ++i) {
@@ -50,7 +50,7 @@ TEST(Poser, StandsOnTheFloorUnderThePelvis) {
   }
 }
 
-TEST(Poser, BonesKeepTheirLengths) {
+TEST(Poser, KeepsTheLengthsOfBones) {
   const Poser poser(person(), paper_body());
   const auto rest = rest_bones(*person());
   Random random(2);
@@ -78,7 +78,7 @@ TEST(Poser, TurnsTheWholeBodyByThePelvisHeading) {
   }
 }
 
-TEST(Poser, AFistMovesFingersAlone) {
+TEST(Poser, MovesOnlyFingersForAFist) {
   const Poser poser(person(), paper_body());
   Pose open;
   open.l_grip = open.r_grip = 0.F;
@@ -99,11 +99,11 @@ TEST(Poser, AFistMovesFingersAlone) {
     EXPECT_TRUE(of_hand[v] || moved < 0.01F) << moved;
   }
   EXPECT_GT(farthest, 0.06F);
-  // Palms are down in the T, and fingers close towards the palm.
+  // In the T palms face down, and fingers close towards the palm.
   EXPECT_LT(b.parts[hand].y(), a.parts[hand].y() - 0.002F);
 }
 
-TEST(Poser, MirrorImagesPoseAsMirrorImages) {
+TEST(Poser, PosesMirrorImagesAsMirrorImages) {
   const auto twin = std::make_shared<const BodyMesh>(mirrored(*person(), paper_body()));
   const Poser poser(person(), paper_body());
   const Poser other(twin, paper_body());
@@ -123,15 +123,15 @@ TEST(Poser, MirrorImagesPoseAsMirrorImages) {
   }
 }
 
-TEST(Poser, CentresOfPartsAreThoseOfTheirVolumes) {
+TEST(Poser, GivesTheCentresOfThePartsVolumes) {
   const auto mesh = std::make_shared<const BodyMesh>(box_body(3, 5));
   const PosedBody body = Poser(mesh, paper_body()).pose({});
-  EXPECT_LT((body.parts[3] - Vector3f(0.5F, 1.F, 0.F)).norm(), 1e-5F);  // each half a box of its own
+  EXPECT_LT((body.parts[3] - Vector3f(0.5F, 1.F, 0.F)).norm(), 1e-5F);  // each half counts as a closed box
   EXPECT_LT((body.parts[5] - Vector3f(-0.5F, 1.F, 0.F)).norm(), 1e-5F);
   EXPECT_TRUE(body.parts[0].hasNaN());  // the box has no left foot
 }
 
-TEST(Poser, SharesOfAPartSumToOne) {
+TEST(Poser, HasSharesThatSumToOneForEachPart) {
   std::vector<float> sums(25, 0.F);
   for (const PartShare& s : part_shares(*person(), 25)) sums[s.part] += s.share;
   for (const float sum : sums) EXPECT_NEAR(sum, 1.F, 1e-4F);
@@ -147,7 +147,7 @@ TEST(Poser, RefusesAPoseThatIsNotFinite) {
   EXPECT_THROW(poser.pose(pose), Error);
 }
 
-TEST(BodyMesh, MirroringTwiceGivesTheSame) {
+TEST(BodyMesh, IsTheSameWhenMirroredTwice) {
   const BodyMesh twice = mirrored(mirrored(*person(), paper_body()), paper_body());
   EXPECT_EQ(twice.topology->part, person()->topology->part);
   EXPECT_EQ(twice.topology->triangles, person()->topology->triangles);

@@ -18,7 +18,7 @@ constexpr std::string_view kMakeHumanRig =
 #include "makehuman_rig.inc"
     ;
 
-// A key of many thousand dotted levels overruns the parser's stack; no honest map comes near this.
+// A key with many thousand dotted levels overruns the parser's stack. No real map is nearly as long as this limit.
 constexpr std::size_t kMostBytes = std::size_t{1} << 14;
 
 class MapReader {
@@ -60,7 +60,7 @@ class MapReader {
       fail(node, fmt::format("unknown key \"{}\", expected {}", shown(key.str()), list));
     }
   }
-  /// Tables of an array of tables; none where the key is missing.
+  /// Returns the tables of an array of tables; none if the key is missing.
   std::vector<const toml::table*> tables(const toml::table& root, std::string_view key) const {
     std::vector<const toml::table*> found;
     const toml::node* node = root.get(key);
@@ -74,7 +74,7 @@ class MapReader {
   const std::string& name_;
 };
 
-/// Fills the star: "l_" or "r_" for bones of poses, ".L" or ".R" for those of the rig.
+/// Replaces the star by "l_" or "r_" for bones of poses, and by ".L" or ".R" for those of the rig.
 std::string on_side(const std::string& text, bool left) {
   std::string out = text;
   if (out.starts_with("*_")) out.front() = left ? 'l' : 'r';
@@ -82,7 +82,7 @@ std::string on_side(const std::string& text, bool left) {
   return out;
 }
 
-/// Runs `work(left)` for both sides, or once where the table names no sides.
+/// Runs `work(left)` for both sides, or once if the table names no sides.
 template <class F>
 void for_sides(const std::string& name, F&& work) {
   work(true);

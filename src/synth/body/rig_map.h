@@ -9,12 +9,12 @@
 
 namespace vesalius::synth {
 
-/// How the bones of a rig file follow those of poses; data/rigs/makehuman_default.toml says what its fields mean.
+/// How the bones of a rig file follow those of poses. The fields are explained in data/rigs/makehuman_default.toml.
 struct RigMap {
   enum class Rest { keep, straighten, follow };
   struct Joint {
-    std::string joint;  ///< rig bone whose head it is
-    std::string tail;   ///< rig bone whose tail is the end; empty where the next bone begins there
+    std::string joint;  ///< rig bone whose head is the joint
+    std::string tail;   ///< rig bone whose tail is the end; empty if the next bone begins there
     Rest rest = Rest::keep;
   };
   struct Follow {
@@ -35,7 +35,7 @@ struct RigMap {
   std::array<Joint, kBoneCount> bones;
   std::vector<Follow> follows;
   std::vector<Finger> fingers;
-  std::array<std::string, 2> first_knuckle, last_knuckle;  ///< left, right; empty where there are no fingers
+  std::array<std::string, 2> first_knuckle, last_knuckle;  ///< left and right; empty if there are no fingers
 };
 
 /// Parses a map. Throws Error naming line and expectation.

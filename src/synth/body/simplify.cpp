@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLongestEdge_m = 0.06;      // beyond, the poses other than the measured one would show
-constexpr double kSmallestTurnCosine = 0.3;  // of a triangle that stays
-constexpr double kSmallestArea = 1e-12;      // keeps weights above 0 where a triangle has no area
+constexpr double kLongestEdge_m = 0.06;      // longer edges would be visible in poses other than the measured one
+constexpr double kSmallestTurnCosine = 0.3;  // largest turn of a remaining triangle
+constexpr double kSmallestArea = 1e-12;      // keeps weights above 0 if a triangle has no area
 
-/// Mean of squared distances to planes, each with a weight.
+/// The weighted mean of squared distances to planes.
 class Quadric {
  public:
   void add_plane(const Eigen::Vector3d& n, double d, double weight) {
@@ -42,17 +42,17 @@ class Quadric {
   double weight_ = 0.0;
 };
 
-/// What may happen to a vertex: anything, a move along the one border it lies on, or nothing.
+/// The allowed moves of a vertex: any, along the one border on which it lies, or none.
 enum class Kind : std::uint8_t { free, border, fixed };
 
-/// What simplify() works with: a surface that loses vertices.
+/// A surface that loses vertices.
 class Simplifier {
  public:
   /// Keeps a reference to `topology`.
   Simplifier(const BodyTopology& topology, const std::vector<Eigen::Vector3f>& points);
-  /// Moves vertices while any can go for that root mean square error.
+  /// Moves vertices as long as any can move within that root mean square error.
   void run_to(double error_m);
-  /// What is left.
+  /// Returns the remaining surface.
   CoarseSurface result(float error_m) const;
 
  private:
@@ -100,12 +100,13 @@ class Simplifier {
   const BodyTopology& topology_;
   std::vector<Eigen::Vector3d> points_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint8_t> alive_;                 ///< per triangle
-  std::vector<std::uint32_t> first_, last_, next_;  ///< per vertex, per vertex, per corner: corners at a vertex
+  std::vector<std::uint8_t> alive_;  ///< per triangle
+  std::vector<std::uint32_t> first_, last_,
+      next_;  ///< lists of the corners at each vertex: first and last by vertex, next by corner
   std::vector<Kind> kind_;
   std::vector<Quadric> quadrics_;
-  std::vector<double> waits_for_;  ///< per vertex: no target costs less; kNever: none until the neighbours change
-  std::vector<std::uint32_t> seen_, candidates_;  ///< scratch
+  std::vector<double> waits_for_;  ///< for each vertex the lowest cost of any target; kNever if there is none for now
+  std::vector<std::uint32_t> seen_, candidates_;  ///< temporary memory
   std::uint32_t epoch_ = 0;
 };
 
@@ -148,11 +149,11 @@ void Simplifier::add_planes() {
   }
 }
 
-/// Classifies vertices; and planes along borders, upright on their triangles, make leaving a border cost as much as
+/// Classifies vertices. Planes along borders, perpendicular to their triangles, make leaving a border cost as much as
 /// leaving the surface.
 void Simplifier::find_borders() {
   constexpr int kManyTriangles = 5;
-  std::vector<int> sides(points_.size(), 0);  // of borders' edges at a vertex: two an edge
+  std::vector<int> sides(points_.size(), 0);  // number of sides of border edges at a vertex, two for each edge
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
@@ -184,7 +185,7 @@ void Simplifier::add_border(std::uint32_t triangle, std::uint32_t a, std::uint32
   }
 }
 
-/// Whether an edge is anything but inside one part and fabric.
+/// Returns whether an edge is not inside one part and fabric.
 bool Simplifier::is_border(std::uint32_t a, std::uint32_t b) const {
   std::array<std::uint32_t, 2> beside{};
   std::size_t count = 0;
@@ -218,8 +219,8 @@ CoarseSurface Simplifier::result(float error_m) const {
   return out;
 }
 
-/// The triangles that are left, neighbours across a long edge one after the other, as SceneGeometry joins them to
-/// quads; those that stay alone last.
+/// Returns the remaining triangles in an order in which neighbours across a long edge follow each other, since
+/// SceneGeometry joins them to quads. Triangles without a partner are last.
 std::vector<std::uint32_t> Simplifier::paired() const {
   std::vector<std::uint32_t> order, alone;
   std::vector<std::uint8_t> taken(triangles_.size(), 0);
@@ -249,7 +250,7 @@ std::vector<std::uint32_t> Simplifier::paired() const {
   return order;
 }
 
-/// Mean squared error of moving a vertex onto its neighbour.
+/// Returns the mean squared error of moving a vertex onto its neighbour.
 double Simplifier::cost(std::uint32_t from, std::uint32_t to) const {
   if (kind_[from] == Kind::border && (kind_[to] == Kind::free || !is_border(from, to))) return kNever;
   if ((points_[from] - points_[to]).squaredNorm() > kLongestEdge_m * kLongestEdge_m) return kNever;
@@ -268,7 +269,8 @@ bool Simplifier::turns_over(std::uint32_t triangle, std::uint32_t from, std::uin
            along * along > kSmallestTurnCosine * kSmallestTurnCosine * before.squaredNorm() * after.squaredNorm());
 }
 
-/// Whether the surface stays one without folds: the ends share only the neighbours that their triangles do.
+/// Returns whether the surface stays simple and without folds. Both ends may share only the neighbours that their
+/// common triangles have.
 bool Simplifier::keeps_shape(std::uint32_t from, std::uint32_t to) {
   std::ptrdiff_t shared_triangles = 0, triangles = 0;
   bool turned = false;
@@ -287,7 +289,7 @@ bool Simplifier::keeps_shape(std::uint32_t from, std::uint32_t to) {
   return std::ranges::count_if(candidates_, [&](std::uint32_t n) { return seen_[n] == epoch_; }) == shared_triangles;
 }
 
-/// The neighbour that a vertex moves to; kNone where there is none, and when to look again is noted.
+/// Returns the neighbour onto which a vertex moves, or kNone. In the latter case it stores when to look again.
 std::uint32_t Simplifier::best_target(std::uint32_t from, double most) {
   std::array<std::pair<double, std::uint32_t>, 12> targets;
   std::size_t count = 0;
@@ -325,7 +327,7 @@ void Simplifier::collapse(std::uint32_t from, std::uint32_t to) {
   each_neighbour(to, [&](std::uint32_t n) { waits_for_[n] = 0.0; });
 }
 
-/// Moves every vertex that can go for that cost; whether any could.
+/// Moves every vertex that can move at that cost. Returns whether any could.
 bool Simplifier::sweep(double most) {
   bool moved = false;
   for (std::uint32_t v = 0; v < points_.size(); ++v) {
@@ -339,7 +341,7 @@ bool Simplifier::sweep(double most) {
 }
 
 void Simplifier::run_to(double error_m) {
-  while (sweep(error_m * error_m)) link_corners();  // without the triangles that are gone: lists stay short
+  while (sweep(error_m * error_m)) link_corners();  // drops removed triangles, which keeps the lists short
 }
 
 }  // namespace

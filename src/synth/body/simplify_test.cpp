@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// A surface without bones.
+/// A surface without a skeleton.
 struct Surface {
   BodyTopology topology;
   std::vector<Vector3f> points;
@@ -26,7 +26,8 @@ struct Surface {
 
 constexpr float kCell_m = 0.01F;
 
-/// Squares of 1 cm over a square of `cells`, part 1 beyond column `border`; `height` in metres.
+/// Returns a sheet of squares of 1 cm, `cells` in each direction. Columns beyond `border` have part 1. `height` returns
+/// metres.
 Surface sheet(std::uint32_t cells, std::uint32_t border, const std::function<float(float, float)>& height) {
   Surface s;
   for (std::uint32_t y = 0; y <= cells; ++y) {
@@ -47,7 +48,7 @@ Surface sheet(std::uint32_t cells, std::uint32_t border, const std::function<flo
   return s;
 }
 
-/// Sphere of radius 10 cm by rings of quads, closed by fans.
+/// Returns a sphere of radius 10 cm as rings of quads, closed by fans.
 Surface sphere(std::uint32_t rings, std::uint32_t sectors) {
   Surface s;
   const auto ring = [&](std::uint32_t i, std::uint32_t k) { return 1 + (i - 1) * sectors + k % sectors; };
@@ -89,7 +90,7 @@ std::map<int, float> areas(const std::vector<Vector3f>& points, const std::vecto
   return area;
 }
 
-TEST(Simplify, LeavesOfAFlatSheetLittleButItsPartsAsTheyWere) {
+TEST(Simplify, ReducesAFlatSheetButKeepsTheBorderOfParts) {
   const Surface s = sheet(20, 8, [](float, float) { return 0.F; });
   const CoarseSurface coarse = simplify(s.topology, s.points, {0.0005F})[0];
   EXPECT_LT(coarse.triangles.size(), s.topology.triangles.size() / 8);
@@ -106,7 +107,7 @@ TEST(Simplify, LeavesOfAFlatSheetLittleButItsPartsAsTheyWere) {
 }
 
 // Labels: statistics
-TEST(Simplify, StaysWithinItsBoundOnASphereAndClosed) {
+TEST(Simplify, KeepsASphereClosedAndWithinTheBound) {
   const Surface s = sphere(40, 80);
   ASSERT_TRUE(is_closed(s.topology.triangles, s.topology.triangles.size()));
   const std::vector<float> errors = {0.0002F, 0.0005F, 0.001F, 0.002F};
@@ -139,7 +140,7 @@ TEST(Simplify, KeepsRidges) {
   }
 }
 
-TEST(Simplify, TurnsHardlyAnyOfTheSurfaceOver) {
+TEST(Simplify, FlipsHardlyAnyTriangles) {
   const Surface s = sheet(16, 5, [](float x, float y) { return 0.01F * std::sin(60.F * x) * std::cos(50.F * y); });
   for (const CoarseSurface& level : simplify(s.topology, s.points, {0.0005F, 0.002F, 0.008F})) {
     float all = 0.F, turned = 0.F;
@@ -153,7 +154,7 @@ TEST(Simplify, TurnsHardlyAnyOfTheSurfaceOver) {
   }
 }
 
-TEST(Simplify, PutsNeighboursOneAfterTheOther) {
+TEST(Simplify, OrdersNeighboursOneAfterTheOther) {
   const Surface s = sphere(40, 80);
   const CoarseSurface coarse = simplify(s.topology, s.points, {0.0005F})[0];
   std::size_t pairs = 0;

@@ -40,7 +40,7 @@ Stature stature_at(float age_years, float maleness) {
   const float woman = std::lerp(low.woman_m, high.woman_m, share);
   const float man = std::lerp(low.man_m, high.man_m, share);
   const float mean = std::lerp(woman, man, std::clamp(maleness, 0.F, 1.F));
-  return {mean, 0.0393F * mean};  // 64 mm of 1.629 m and 69 mm of 1.756 m; children spread by about as much
+  return {mean, 0.0393F * mean};  // 64 mm of 1.629 m and 69 mm of 1.756 m; children vary about as much
 }
 
 }  // namespace vesalius::synth

@@ -5,7 +5,7 @@
 namespace vesalius::synth {
 namespace {
 
-TEST(Stature, MeetsTheTablesAndAnsur) {
+TEST(Stature, AgreesWithTheTablesAndAnsur) {
   EXPECT_NEAR(stature_at(30.F, 0.F).mean_m, 1.629F, 1e-4F);
   EXPECT_NEAR(stature_at(30.F, 1.F).mean_m, 1.756F, 1e-4F);
   EXPECT_NEAR(stature_at(30.F, 0.F).sigma_m, 0.064F, 1e-3F);

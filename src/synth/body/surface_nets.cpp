@@ -8,7 +8,7 @@
 namespace vesalius::synth {
 namespace {
 
-/// Sum over limbs at every grid point.
+/// The sum over limbs at every grid point.
 class Field {
  public:
   Field(const HalfGrid& grid, float softness_m) : lines_(grid.lines), softness_m_(softness_m) {
@@ -17,7 +17,7 @@ class Field {
   }
 
   void add(const Limb& limb, bool in_mirror) {
-    constexpr float kReach = 4.5F;  // a limb further than this many softnesses adds less than 1 %
+    constexpr float kReach = 4.5F;  // a limb at more than this many softnesses adds less than 1 %
     Bounds box = bounds(limb);
     if (in_mirror) box = {{-box.high.x(), box.low.y(), box.low.z()}, {-box.low.x(), box.high.y(), box.high.z()}};
     std::array<std::size_t, 3> first{};
@@ -28,7 +28,7 @@ class Field {
       first[a] = static_cast<std::size_t>(std::ranges::lower_bound(lines_[a], box.low[i] - reach) - lines_[a].begin());
       last[a] = static_cast<std::size_t>(std::ranges::upper_bound(lines_[a], box.high[i] + reach) - lines_[a].begin());
     }
-    first[0] = std::max<std::size_t>(first[0], 1);  // the first column is the second one's mirror image
+    first[0] = std::max<std::size_t>(first[0], 1);  // the first column mirrors the second
     const LimbDistance distance(limb);
     for (std::size_t k = first[2]; k < last[2]; ++k) {
       for (std::size_t j = first[1]; j < last[1]; ++j) {
@@ -49,7 +49,7 @@ class Field {
 
   std::size_t at(std::size_t i, std::size_t j, std::size_t k) const { return (k * size_[1] + j) * size_[0] + i; }
   bool inside(std::size_t i, std::size_t j, std::size_t k) const { return values_[at(i, j, k)] > 1.F; }
-  /// Whether the surface passes through the cell whose lowest corner this is.
+  /// Returns whether the surface passes through the cell with this lowest corner.
   bool cut(std::size_t corner) const {
     const std::size_t row = size_[0];
     const std::size_t layer = size_[0] * size_[1];
@@ -59,7 +59,7 @@ class Field {
     }
     return inside_count != 0 && inside_count != 8;
   }
-  /// Height over the surface in softnesses, negative inside.
+  /// Returns the height above the surface in softnesses; it is negative inside.
   float height(std::size_t point) const { return -std::log(std::max(values_[point], 1e-3F)); }
   const std::array<std::size_t, 3>& size() const { return size_; }
   Eigen::Vector3f point(const std::array<std::size_t, 3>& i) const {
@@ -75,7 +75,7 @@ class Field {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// Vertices of the half with x >= 0, one in every cell that the surface cuts.
+/// The vertices of the half with x >= 0, one in every cell that the surface cuts.
 class Nets {
  public:
   explicit Nets(const Field& field)
@@ -101,7 +101,7 @@ class Nets {
  private:
   using Cell = std::array<std::size_t, 3>;
 
-  /// Mean of the points where the surface cuts the cell's edges.
+  /// Adds the mean of the points where the surface cuts the cell's edges.
   void add_vertex(const Cell& cell) {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     int cuts = 0;
@@ -124,7 +124,7 @@ class Nets {
     if (cell[0] == 0) surface_.vertices.back().x() = 0.F;
   }
 
-  /// A quadrilateral for every edge from this point that the surface cuts, between the four cells around it.
+  /// Adds a quadrilateral between the four cells around each edge from this point that the surface cuts.
   void add_faces(const Cell& point) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       Cell to = point;

@@ -21,7 +21,7 @@ HalfGrid grid(float step) {
   return out;
 }
 
-TEST(SurfaceNets, ABallInTheMiddleHasItsRadius) {
+TEST(SurfaceNets, GiveABallItsRadius) {
   const Surface surface = melt({ball(Vector3f::Zero(), 0.3F, false)}, 0.01F, grid(0.02F));
   EXPECT_TRUE(is_closed(surface.triangles, surface.triangles.size()));
   for (const Vector3f& p : surface.vertices) EXPECT_NEAR(p.norm(), 0.3F, 0.004F);
@@ -30,10 +30,10 @@ TEST(SurfaceNets, ABallInTheMiddleHasItsRadius) {
     volume +=
         static_cast<double>(surface.vertices[t[0]].dot(surface.vertices[t[1]].cross(surface.vertices[t[2]]))) / 6.0;
   }
-  EXPECT_NEAR(volume, 4.0 / 3.0 * 3.14159 * 0.027, 0.003);  // positive: the outside is outside
+  EXPECT_NEAR(volume, 4.0 / 3.0 * 3.14159 * 0.027, 0.003);  // positive if triangles face outwards
 }
 
-TEST(SurfaceNets, PairsAreTwoAndMirrorImages) {
+TEST(SurfaceNets, TurnAPairedLimbIntoTwoMirrorImages) {
   const Surface surface = melt({ball({0.3F, 0.F, 0.1F}, 0.15F, true)}, 0.01F, grid(0.02F));
   EXPECT_TRUE(is_closed(surface.triangles, surface.triangles.size()));
   for (const Vector3f& p : surface.vertices) {
@@ -48,14 +48,14 @@ TEST(SurfaceNets, PairsAreTwoAndMirrorImages) {
   }
 }
 
-TEST(SurfaceNets, PairsThatMeetMeltIntoOneSurface) {
+TEST(SurfaceNets, MeltPairsThatMeetIntoOneSurface) {
   const Surface surface = melt({ball({0.1F, 0.F, 0.F}, 0.2F, true)}, 0.02F, grid(0.02F));
   EXPECT_TRUE(is_closed(surface.triangles, surface.triangles.size()));
   EXPECT_TRUE(is_inside(surface.vertices, surface.triangles, surface.triangles.size(), {0.001F, 0.001F, 0.F}));
   EXPECT_TRUE(std::ranges::any_of(surface.vertices, [](const Vector3f& p) { return p.x() == 0.F; }));
 }
 
-TEST(Limb, DistanceIsThatOfARoundCone) {
+TEST(Limb, HasTheDistanceOfARoundCone) {
   Limb limb;
   limb.stations = {{{0.F, 0.F, 0.F}, 0.1F, 0.1F, 0.1F}, {{0.F, 1.F, 0.F}, 0.2F, 0.2F, 0.2F}};
   const LimbDistance distance(limb);
@@ -67,7 +67,7 @@ TEST(Limb, DistanceIsThatOfARoundCone) {
   EXPECT_LT(distance.nearest({0.01F, 0.5F, 0.F}).distance_m, -0.1F);
 }
 
-TEST(Limb, NearestIsTheBestOfAllPieces) {
+TEST(Limb, FindsTheNearestOfAllPieces) {
   Random random(3);
   Limb limb;
   for (int k = 0; k < 6; ++k) {

@@ -14,7 +14,7 @@ namespace {
   throw Error(fmt::format("body model {}:{}: surface: {}", body.name, line, what));
 }
 
-/// Rules of a bone on one side, checked to meet end to end.
+/// Returns the rules of a bone on one side and checks that they meet end to end.
 std::vector<const SurfaceRule*> rules_of(const BodyModel& body, Bone bone, bool left) {
   std::vector<const SurfaceRule*> rules;
   for (const SurfaceRule& rule : body.surface) {
@@ -39,7 +39,8 @@ std::vector<const SurfaceRule*> rules_of(const BodyModel& body, Bone bone, bool 
   return rules;
 }
 
-/// Weight of a triangle's corners on each bone, in whole numbers so that the order of the corners does not matter.
+/// Returns the weight of a triangle's corners for each bone, as integers, so that the order of the corners does not
+/// matter.
 std::array<int, kBoneCount> bone_weights(const BodyMesh& mesh, const Triangle& triangle) {
   constexpr float kSteps = 4096.F;
   std::array<int, kBoneCount> weights{};
@@ -54,7 +55,7 @@ std::array<int, kBoneCount> bone_weights(const BodyMesh& mesh, const Triangle& t
   return weights;
 }
 
-/// In double, where sums of three floats are exact whatever their order.
+/// Returns the centre in double, in which sums of three floats are exact in any order.
 Eigen::Vector3d centre(const BodyMesh& mesh, const Triangle& t) {
   return (mesh.vertices[t[0]].cast<double>() + mesh.vertices[t[1]].cast<double>() +
           mesh.vertices[t[2]].cast<double>()) /

@@ -9,14 +9,14 @@
 
 namespace vesalius::synth {
 
-/// The surface rules of a body model by bone, side and place along the bone.
+/// The surface rules of a body model by bone, side and position along the bone.
 class SurfaceParts {
  public:
-  /// Throws Error where the model has no rules, names a bone that does not exist, or leaves a stretch of a bone without
-  /// a part.
+  /// Throws Error if the model has no rules, names an unknown bone, or leaves a stretch of a bone without a part.
   explicit SurfaceParts(const BodyModel& body);
 
-  /// Returns the part of the surface `along` the bone: 0 at its head, 1 at its tail, clamped to these.
+  /// Returns the part of the surface at the position `along` of the bone: 0 is its head, 1 its tail; other values are
+  /// clamped.
   std::uint8_t part(Bone bone, float along, bool left) const;
 
  private:
@@ -24,15 +24,15 @@ class SurfaceParts {
     float to;
     std::uint8_t part;
   };
-  std::array<std::array<std::vector<Stretch>, 2>, kBoneCount> stretches_;  ///< [bone][left], rising
+  std::array<std::array<std::vector<Stretch>, 2>, kBoneCount> stretches_;  ///< [bone][left], in rising order
 };
 
-/// Returns the part of every triangle of a body at rest: the rule of the bone that its corners' weights favour (on a
-/// tie, one of its own side), at the place of its centre along that bone. Mirrored surfaces get mirrored parts to the
-/// triangle.
+/// Returns the part of every triangle of a body at rest. It is given by the rule of the bone with the largest weights
+/// at the triangle's corners (on a tie, a bone of its own side), at the position of its centre along that bone.
+/// Mirrored surfaces get exactly mirrored parts.
 std::vector<std::uint8_t> surface_parts(const BodyMesh& mesh, const SurfaceParts& rules);
 
-/// Returns the bone of the pose that most moves each triangle, as surface_parts() finds it.
+/// Returns for each triangle the bone of the pose that moves it most, as surface_parts() finds it.
 std::vector<Bone> surface_bones(const BodyMesh& mesh);
 
 }  // namespace vesalius::synth

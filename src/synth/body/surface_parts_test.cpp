@@ -20,7 +20,7 @@ std::string part_name(const SurfaceParts& rules, Bone bone, float along, bool le
   return paper().parts[rules.part(bone, along, left)].name;
 }
 
-TEST(SurfaceParts, PaperBodyLabelsBonesByPlaceAndSide) {
+TEST(SurfaceParts, LabelThePaperBodyByPlaceAndSide) {
   const SurfaceParts rules(paper());
   EXPECT_EQ(part_name(rules, Bone::l_thigh, 0.5F, true), "l_thigh");
   EXPECT_EQ(part_name(rules, Bone::l_thigh, 0.5F, false), "l_thigh");  // limbs keep their side across the middle
@@ -32,14 +32,14 @@ TEST(SurfaceParts, PaperBodyLabelsBonesByPlaceAndSide) {
   EXPECT_EQ(part_name(rules, Bone::head, 0.9F, false), "r_face_top");
 }
 
-TEST(SurfaceParts, PlacesBeyondABonesEndsCountAsItsEnds) {
+TEST(SurfaceParts, ClampPlacesBeyondTheEndsOfABone) {
   const SurfaceParts rules(paper());
   EXPECT_EQ(part_name(rules, Bone::head, -0.6F, true), "l_face_bottom");  // the chin
   EXPECT_EQ(part_name(rules, Bone::head, 1.2F, true), "l_face_top");
   EXPECT_EQ(part_name(rules, Bone::l_forearm, -0.1F, true), "l_elbow");
 }
 
-TEST(SurfaceParts, EveryPartHasAreaOnThePersonsOwnSide) {
+TEST(SurfaceParts, GiveEveryPartAnAreaOnItsOwnSide) {
   const BodyMesh mesh = make_builtin_body({}, paper());
   std::vector<double> area(25, 0.0);
   std::vector<double> x(25, 0.0);
@@ -58,7 +58,7 @@ TEST(SurfaceParts, EveryPartHasAreaOnThePersonsOwnSide) {
   }
 }
 
-/// The paper's body with its surface rules changed.
+/// Returns the paper's body with changed surface rules.
 BodyModel changed(const std::function<void(std::vector<SurfaceRule>&)>& change) {
   BodyModel body = paper();
   change(body.surface);
@@ -69,7 +69,7 @@ SurfaceRule& rule_of(std::vector<SurfaceRule>& rules, const char* bone, float fr
   return *std::ranges::find_if(rules, [&](const SurfaceRule& r) { return r.bone == bone && r.from == from; });
 }
 
-TEST(SurfaceParts, OtherPartsAreDataAlone) {
+TEST(SurfaceParts, FollowOtherRulesWithoutOtherCode) {
   const BodyModel body = changed([](auto& rules) {
     for (SurfaceRule& rule : rules) rule.part = rule.bone == "head" ? 1 : 0;
   });
@@ -78,7 +78,7 @@ TEST(SurfaceParts, OtherPartsAreDataAlone) {
   EXPECT_THAT(mesh.topology->part, testing::Contains(1));
 }
 
-TEST(SurfaceParts, SaysWhatIsWrongWithRules) {
+TEST(SurfaceParts, NameTheFaultOfInvalidRules) {
   EXPECT_THAT([] { SurfaceParts(changed([](auto& r) { r.clear(); })); },
               ThrowsMessage<Error>(HasSubstr("no [[surface]] rules")));
   EXPECT_THAT([] { SurfaceParts(changed([](auto& r) { r[3].bone = "tail"; })); },

@@ -14,7 +14,7 @@
 
 namespace vesalius::synth {
 
-/// A pose whose every joint is turned by up to `most_rad` about any axis, and whose heading is free.
+/// Returns a pose in which every joint is turned by up to `most_rad` about any axis, with any heading.
 inline Pose random_pose(Random& random, float most_rad) {
   Pose pose;
   for (Eigen::Quaternionf& q : pose.local) {
@@ -30,10 +30,10 @@ inline Pose random_pose(Random& random, float most_rad) {
   return pose;
 }
 
-/// Returns whether a point is inside a closed surface: crossings of a ray counted with their direction.
+/// Returns whether a point is inside a closed surface, by counting a ray's crossings with their direction.
 inline bool is_inside(const std::vector<Eigen::Vector3f>& vertices, const std::vector<Triangle>& triangles,
                       std::size_t count, const Eigen::Vector3f& p) {
-  // Any direction serves; this one meets no edge of a grid.
+  // Any direction would do; this one meets no edge of a grid.
   const Eigen::Vector3d ray = Eigen::Vector3d(0.3141, 0.2718, 0.9093).normalized();
   int winding = 0;
   for (std::size_t t = 0; t < count; ++t) {
@@ -51,7 +51,7 @@ inline bool is_inside(const std::vector<Eigen::Vector3f>& vertices, const std::v
   return winding > 0;
 }
 
-/// Distance of a point from a triangle (Ericson, "Real-Time Collision Detection", 5.1.5).
+/// Returns the distance of a point from a triangle (Ericson, "Real-Time Collision Detection", 5.1.5).
 inline float distance_to(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                          const Eigen::Vector3f& p) {
   const Eigen::Vector3f ab = b - a, ac = c - a;
@@ -71,7 +71,7 @@ inline float distance_to(const Eigen::Vector3f& a, const Eigen::Vector3f& b, con
   return at(vb / (va + vb + vc), vc / (va + vb + vc));
 }
 
-/// Distance of a point from the nearest of the first `count` triangles.
+/// Returns the distance of a point from the nearest of the first `count` triangles.
 inline float distance_to(const std::vector<Eigen::Vector3f>& vertices, const std::vector<Triangle>& triangles,
                          std::size_t count, const Eigen::Vector3f& p) {
   float nearest = std::numeric_limits<float>::max();
@@ -95,8 +95,8 @@ inline bool is_closed(const std::vector<Triangle>& triangles, std::size_t count)
   return std::ranges::all_of(edges, [](const auto& e) { return e.second == 0; });
 }
 
-/// A box from -1 to 1 m moved by one rig bone for all bones of poses; the left half is `left_part`, the right one
-/// `right_part`. The middle plane cuts no triangle.
+/// Returns a box from -1 to 1 m, moved by one rig bone for all bones of poses. The left half is `left_part`, the right
+/// half `right_part`. The middle plane cuts no triangle.
 inline BodyMesh box_body(std::uint8_t left_part, std::uint8_t right_part) {
   BodyMesh mesh;
   auto topology = std::make_shared<BodyTopology>();

@@ -30,7 +30,7 @@ std::vector<Vector3f> vertex_normals(const BodyMesh& mesh) {
   return normals;
 }
 
-/// Long waves over the body: how the distance of cloth varies, -1 to 1.
+/// Long waves over the body, -1 to 1, by which the thickness of cloth varies.
 class Folds {
  public:
   explicit Folds(Random& random) {
@@ -58,12 +58,12 @@ class Folds {
   std::array<Wave, 5> waves_{};
 };
 
-/// Where an outfit covers the bare body.
+/// The places where an outfit covers the bare body.
 class Cover {
  public:
   Cover(const BodyMesh& mesh, const Outfit& outfit) : outfit_(outfit), bones_(rest_bones(mesh)) {}
 
-  /// Fabric on a bone at a place near it.
+  /// Returns the fabric at a place near a bone.
   Fabric fabric(Bone bone, const Vector3f& p) const {
     switch (bone) {
       case Bone::pelvis:
@@ -92,7 +92,7 @@ class Cover {
     }
   }
 
-  /// Distance of the surface from the skin before folds.
+  /// Returns the distance of the surface from the skin before folds are added.
   float thickness(Bone bone, const Vector3f& p) const {
     if (bone == Bone::head) return outfit_.hair_m * scalp(p);
     switch (fabric(bone, p)) {
@@ -114,20 +114,20 @@ class Cover {
     return (p - s.head).dot(axis) / std::max(axis.squaredNorm(), 1e-9F);
   }
 
-  /// 0 at shoulder or hip, 0.5 at elbow or knee, 1 at wrist or ankle.
+  /// Returns the place along a limb: 0 at shoulder or hip, 0.5 at elbow or knee, 1 at wrist or ankle.
   float limb_share(Bone bone, const Vector3f& p) const {
     const bool lower =
         bone == Bone::l_forearm || bone == Bone::r_forearm || bone == Bone::l_shin || bone == Bone::r_shin;
     return 0.5F * (std::clamp(along(bone, p), 0.F, 0.99F) + (lower ? 1.F : 0.F));
   }
 
-  /// 1 on the part of the head where hair grows, 0 on the face.
+  /// Returns 1 on the part of the head where hair grows and 0 on the face.
   float scalp(const Vector3f& p) const {
     const BoneSegment& head = bones_[index(Bone::head)];
     const float size = (head.tail - head.head).norm();
     const float up = (p.y() - head.head.y()) / size;
     const float front = (p.z() - head.head.z()) / size;
-    // The hairline from the nape past the ears to the forehead, in lengths of the head's bone.
+    // This is the hairline from the nape past the ears to the forehead, in lengths of the head's bone.
     const float line = front < 0.1F ? std::lerp(-0.4F, 0.15F, smooth_step(-0.7F, 0.1F, front))
                                     : std::lerp(0.15F, 0.72F, smooth_step(0.1F, 0.9F, front));
     return smooth_step(line - 0.06F, line + 0.12F, up);
@@ -137,7 +137,7 @@ class Cover {
   std::array<BoneSegment, kBoneCount> bones_;
 };
 
-/// Cloth and hair lift the skin along its normals.
+/// Moves the skin along its normals by the thickness of cloth and hair.
 void put_on_clothes(const BodyMesh& bare, const Outfit& outfit, Random& random, BodyMesh& out) {
   const Cover cover(bare, outfit);
   const Folds folds(random);

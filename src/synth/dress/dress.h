@@ -6,10 +6,9 @@
 
 namespace vesalius::synth {
 
-/// Returns the body with clothes and hair on and things in its hands. Clothes move the skin outwards and keep its
-/// labels; skirts, coats, hats and long hair are surfaces of their own, labelled as the part beneath; bags and things
-/// held belong to nobody (kBackground). `mesh` is bare: throws Error for one that has been dressed already. `random`
-/// decides the folds and sizes.
+/// Returns the body with clothes, hair and carried things. Clothes move the skin outwards and keep its labels. Skirts,
+/// coats, hats and long hair are surfaces of their own with the label of the part beneath; bags and held things belong
+/// to nobody (kBackground). `random` decides folds and sizes. Throws Error if `mesh` is already dressed.
 BodyMesh dress(const BodyMesh& mesh, const Outfit& outfit, const BodyModel& body, Random& random);
 
 }  // namespace vesalius::synth

@@ -26,7 +26,7 @@ BodyMesh dressed(const Outfit& outfit, std::uint64_t seed = 1) {
   return dress(bare(), outfit, paper_body(), random);
 }
 
-/// Areas of the triangles beyond the body's own, by part.
+/// Returns the parts of the triangles that were added to the body's own.
 std::set<int> added_parts(const BodyMesh& mesh) {
   return {mesh.topology->part.begin() + static_cast<std::ptrdiff_t>(mesh.topology->body_triangles),
           mesh.topology->part.end()};
@@ -34,7 +34,7 @@ std::set<int> added_parts(const BodyMesh& mesh) {
 
 int part(const char* name) { return paper_body().find_part(name); }
 
-TEST(Dress, ClothesLiftTheSkinByTheirThicknessAndKeepItsLabels) {
+TEST(Dress, MovesTheSkinByTheThicknessOfClothesAndKeepsItsLabels) {
   Outfit outfit;
   outfit.top_m = outfit.bottom_m = 0.015F;
   outfit.hair_m = 0.04F;
@@ -57,7 +57,7 @@ TEST(Dress, ClothesLiftTheSkinByTheirThicknessAndKeepItsLabels) {
   }
 }
 
-TEST(Dress, FoldsStayBetweenSkinAndThickestCloth) {
+TEST(Dress, KeepsFoldsBetweenSkinAndThickestCloth) {
   Outfit outfit;
   outfit.hair = Hair::bald;
   outfit.hair_m = 0.F;
@@ -72,10 +72,10 @@ TEST(Dress, FoldsStayBetweenSkinAndThickestCloth) {
       least = std::min(least, moved);
     }
   }
-  EXPECT_LT(least, 0.017F);  // folds are there
+  EXPECT_LT(least, 0.017F);  // there are folds
 }
 
-TEST(Dress, FabricsFollowTheOutfit) {
+TEST(Dress, GivesFabricsByTheOutfit) {
   Outfit outfit;
   outfit.sleeves = 0.5F;
   outfit.legs = 0.5F;
@@ -97,7 +97,7 @@ TEST(Dress, FabricsFollowTheOutfit) {
   EXPECT_GT(has("l_chest", Fabric::top), 50);
 }
 
-TEST(Dress, SkirtsAreLabelledAsTheLegsBeneath) {
+TEST(Dress, LabelsSkirtsAsTheLegsBeneath) {
   Outfit outfit;
   outfit.skirt = 0.8F;
   const BodyMesh mesh = dressed(outfit);
@@ -112,7 +112,7 @@ TEST(Dress, SkirtsAreLabelledAsTheLegsBeneath) {
   }
 }
 
-TEST(Dress, ASkirtHidesTheThighsOfAStandingPerson) {
+TEST(Dress, HidesTheThighsOfAStandingPersonBehindASkirt) {
   Outfit outfit;
   outfit.skirt = 0.6F;
   const BodyMesh mesh = dressed(outfit);
@@ -126,7 +126,7 @@ TEST(Dress, ASkirtHidesTheThighsOfAStandingPerson) {
   EXPECT_GT(widest_skirt, widest_leg);
 }
 
-TEST(Dress, HatsAndHairBelongToTheHead) {
+TEST(Dress, LabelsHatsAndHairAsTheHead) {
   Outfit outfit;
   for (const Hat hat : {Hat::beanie, Hat::cap, Hat::brimmed}) {
     outfit.hat = hat;
@@ -141,10 +141,10 @@ TEST(Dress, HatsAndHairBelongToTheHead) {
   EXPECT_THAT(added_parts(dressed(outfit)), testing::IsSupersetOf({part("l_face_bottom"), part("r_face_bottom")}));
 }
 
-TEST(Dress, ThingsCarriedBelongToNobodyAndMoveWithTheirBone) {
+TEST(Dress, LabelsCarriedThingsAsNobodysAndMovesThemWithTheirBone) {
   Outfit outfit;
   outfit.held = Held::box;
-  outfit.left_hand = false;  // the thing is in the left hand then
+  outfit.left_hand = false;  // so the thing is in the left hand
   const auto mesh = std::make_shared<const BodyMesh>(dressed(outfit));
   EXPECT_THAT(added_parts(*mesh), testing::ElementsAre(static_cast<int>(kBackground)));
   const Poser poser(mesh, paper_body());
@@ -158,7 +158,7 @@ TEST(Dress, ThingsCarriedBelongToNobodyAndMoveWithTheirBone) {
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(gap(poser.pose(random_pose(random, 1.F))), at_rest, 1e-4F);
 }
 
-TEST(Dress, ABagInAHandHangsWhateverTheArmDoes) {
+TEST(Dress, LetsABagHangDownWhateverTheArmDoes) {
   Outfit outfit;
   outfit.bag = Bag::in_hand;
   outfit.left_hand = true;
@@ -180,11 +180,11 @@ TEST(Dress, ABagInAHandHangsWhateverTheArmDoes) {
   }
 }
 
-TEST(Dress, WhatIsCarriedDoesNotLiftThePersonOffTheFloor) {
+TEST(Dress, KeepsAPersonWithABagOnTheFloor) {
   Outfit outfit;
   outfit.bag = Bag::in_hand;
   const auto mesh = std::make_shared<const BodyMesh>(dressed(outfit));
-  Pose bow;  // the hands reach the floor, the bag would be under it
+  Pose bow;  // the hands reach the floor, so the bag would be under it
   bow[Bone::spine] = Eigen::Quaternionf(Eigen::AngleAxisf(1.9F, Vector3f::UnitX()));
   for (const Bone arm : {Bone::l_upper_arm, Bone::r_upper_arm}) {
     const float side = arm == Bone::l_upper_arm ? 1.F : -1.F;
@@ -195,7 +195,7 @@ TEST(Dress, WhatIsCarriedDoesNotLiftThePersonOffTheFloor) {
   EXPECT_LT(feet, 0.12F);
 }
 
-TEST(Dress, EverySampledOutfitFitsEverySampledBody) {
+TEST(Dress, FitsEverySampledOutfitToEverySampledBody) {
   for (std::uint64_t i = 0; i < 30; ++i) {
     Random random(12, i);
     const BodyMesh body = make_builtin_body(sample_builtin_shape(random), paper_body());
@@ -209,7 +209,7 @@ TEST(Dress, EverySampledOutfitFitsEverySampledBody) {
   }
 }
 
-TEST(Dress, SameRandomSameBytesAndNotTwice) {
+TEST(Dress, IsTheSameForTheSameSeedAndRefusesADressedBody) {
   Outfit outfit;
   outfit.backpack = true;
   EXPECT_EQ(dressed(outfit, 3).vertices, dressed(outfit, 3).vertices);

@@ -19,7 +19,7 @@ Rgb mix(const Rgb& a, const Rgb& b, float share) {
   return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
 }
 
-/// Any hue, often muted, as cloth is.
+/// Draws a colour of cloth: any hue, often muted.
 Rgb cloth_colour(Random& random) {
   const float hue = uniform(random, 0.F, 6.F);
   const float saturation = std::pow(uniform(random, 0.F, 1.F), 1.5F) * 0.9F;
@@ -42,8 +42,8 @@ Material cloth(const OutfitOptions& options, Random& random) {
               : pattern < 0.85F ? Texture::checks
                                 : Texture::speckle;
   m.period_m = uniform(random, 0.015F, 0.12F);
-  m.infrared = uniform(random, 0.35F, 0.9F);  // dyes let infrared through
-  // Leather and many blacks do not: trousers without any depth are common in public frames.
+  m.infrared = uniform(random, 0.35F, 0.9F);  // most dyes hardly absorb infrared light
+  // Leather and many blacks absorb it: trousers without any depth are common in public frames.
   if (chance(random, options.dark_cloth)) m.infrared = std::exp(uniform(random, std::log(0.01F), std::log(0.2F)));
   return m;
 }
@@ -67,7 +67,7 @@ Material hair(const OutfitOptions& options, Random& random) {
   return plain(mix({110, 110, 112}, {225, 224, 220}, shade), uniform(random, 0.3F, 0.65F));
 }
 
-/// Thickness of cloth, most often thin.
+/// Draws the thickness of cloth, which is most often thin.
 float cloth_m(Random& random, float most) {
   const float u = uniform(random, 0.F, 1.F);
   return most * (0.1F + 0.9F * u * u);

@@ -17,13 +17,13 @@ double share(const OutfitOptions& options, F&& has) {
   return count / 2000.0;
 }
 
-TEST(Outfit, ProbabilitiesAreThoseAskedFor) {
+TEST(Outfit, FollowsTheGivenProbabilities) {
   OutfitOptions options;
   options.skirt = 0.3F;
   options.backpack = 0.7F;
   options.held = 0.F;
   options.hat = 1.F;
-  // Standard deviation of a share of 2000: at most 0.011.
+  // The standard deviation of a share of 2000 is at most 0.011.
   EXPECT_NEAR(share(options, [](const Outfit& o) { return o.skirt > 0.F; }), 0.3, 0.045);
   EXPECT_NEAR(share(options, [](const Outfit& o) { return o.backpack; }), 0.7, 0.045);
   EXPECT_EQ(share(options, [](const Outfit& o) { return o.held != Held::none; }), 0.0);
@@ -31,7 +31,7 @@ TEST(Outfit, ProbabilitiesAreThoseAskedFor) {
   EXPECT_NEAR(share(options, [](const Outfit& o) { return o.hair == Hair::bald; }), 0.08, 0.03);
 }
 
-TEST(Outfit, ClothAndHairStayWithinTheirLimits) {
+TEST(Outfit, KeepsClothAndHairWithinTheirLimits) {
   const OutfitOptions options;
   EXPECT_EQ(share(options, [](const Outfit& o) { return o.top_m > 0.02F || o.bottom_m > 0.02F || o.hair_m > 0.05F; }),
             0.0);
@@ -45,7 +45,7 @@ TEST(Outfit, RefusesOptionsOutOfRange) {
   EXPECT_THROW(sample_outfit(options, random), UsageError);
 }
 
-TEST(Look, ReflectsAsPeopleDo) {
+TEST(Look, HasTheReflectanceOfRealPeople) {
   int dark_hair = 0;
   for (std::uint64_t i = 0; i < 500; ++i) {
     Random random(8, i);
@@ -63,7 +63,7 @@ TEST(Look, ReflectsAsPeopleDo) {
   EXPECT_GT(dark_hair, 250);  // most hair is dark
 }
 
-TEST(Look, DarkClothAndHairSendBackNextToNothing) {
+TEST(Look, GivesDarkClothAndHairALowReflectance) {
   const auto share_dark = [](const OutfitOptions& options, Fabric fabric, float limit) {
     int dark = 0;
     for (std::uint64_t i = 0; i < 300; ++i) {
@@ -83,7 +83,7 @@ TEST(Look, DarkClothAndHairSendBackNextToNothing) {
   EXPECT_EQ(share_dark(options, Fabric::hair, 0.049F), 0.F);
 }
 
-TEST(Look, SameRandomSameLook) {
+TEST(Look, IsTheSameForTheSameSeed) {
   Random a(5, 1);
   Random b(5, 1);
   EXPECT_EQ(sample_look({}, a)[2].colour, sample_look({}, b)[2].colour);

@@ -12,7 +12,7 @@ using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr int kRound = 32;  // points of a ring
+constexpr int kRound = 32;  // number of points of a ring
 
 float uniform(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
 
@@ -23,7 +23,7 @@ float smooth_step(float low, float high, float x) {
   return t * t * (3.F - 2.F * t);
 }
 
-/// Ellipse in a level plane.
+/// Returns an ellipse in a level plane.
 std::vector<Vector3f> ring(float y, float half_width, float front, float back) {
   std::vector<Vector3f> points;
   const float depth = (front - back) / 2.F;
@@ -69,7 +69,7 @@ void Wardrobe::add_long_hair(float thickness_m, Random& random) {
     const float wide = skull.half_width * std::lerp(0.98F, 0.8F, static_cast<float>(r) / (kRows - 1));
     std::vector<Vector3f> row;
     for (int k = 0; k <= 16; ++k) {
-      const float turn = (static_cast<float>(k) / 16.F - 0.5F) * kPi;  // 0 at the back, the ears at the ends
+      const float turn = (static_cast<float>(k) / 16.F - 0.5F) * kPi;  // 0 is at the back; the ends are at the ears
       row.emplace_back(-wide * std::sin(turn), y, middle - (middle - back) * std::cos(turn));
     }
     sheet.rows.push_back(std::move(row));
@@ -155,7 +155,7 @@ void Wardrobe::add_hat(Hat hat, Random& random) {
     std::vector<Vector3f> edge =
         ring(base - 0.01F, skull.half_width + room + brim, skull.front + room + brim, skull.back - room - brim);
     for (std::size_t k = 0; hat == Hat::cap && k < edge.size(); ++k) {
-      // A cap's brim is in front only; elsewhere it shrinks to nothing.
+      // The brim of a cap is only at the front; elsewhere it has no width.
       const float in_front = smooth_step(0.4F, 0.8F, std::cos(2.F * kPi * static_cast<float>(k) / kRound));
       edge[k] = sheet.rows.back()[k] + in_front * (edge[k] - sheet.rows.back()[k]);
     }
@@ -279,7 +279,8 @@ void Wardrobe::add_box(const Vector3f& centre, const Matrix3f& half_axes, Bone b
 }
 
 void Wardrobe::add_box(const Vector3f& centre, const Matrix3f& half_axes, const SkinWeights& weights) {
-  // Twelve triangles over corners numbered by the signs of x, y, z; outwards where the axes are right-handed.
+  // The twelve triangles use corners that are numbered by the signs of x, y, z. They face outwards if the axes are
+  // right-handed.
   constexpr std::array<Triangle, 12> kFaces{{{0, 2, 3},
                                              {0, 3, 1},
                                              {4, 5, 7},
@@ -313,7 +314,7 @@ void Wardrobe::add_cylinder(const Vector3f& centre, const Vector3f& half_axis, f
   const Vector3f side = axis.unitOrthogonal();
   Sheet sheet;
   sheet.closed = true;
-  // Rings of no width at the ends are the lids.
+  // The rings without width at the ends are the lids.
   for (const auto& [along, wide] : {std::pair{1.F, 0.F}, {1.F, 1.F}, {-1.F, 1.F}, {-1.F, 0.F}}) {
     std::vector<Vector3f> row;
     for (int k = 0; k < kSides; ++k) {
@@ -345,7 +346,7 @@ SkinWeights Wardrobe::skin(std::initializer_list<Influence> influences) const {
 Matrix3f Wardrobe::hand_axes(bool left) const {
   const Bone hand = left ? Bone::l_hand : Bone::r_hand;
   const RigBone& rig = mesh_.rig[carrier_[index(hand)]];
-  Matrix3f t_axes;  // in the T palms are down and thumbs in front
+  Matrix3f t_axes;  // in the T, palms face down and thumbs are in front
   t_axes << rest_direction(hand), -Vector3f::UnitY(), Vector3f::UnitZ();
   return rig.t_from_rest.conjugate().toRotationMatrix() * t_axes;
 }

@@ -23,7 +23,7 @@ class AmcParser {
     for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
       const AsfBone& bone = skeleton.bones[b];
       index_[bone.name] = b;
-      Eigen::Vector3f offset = Eigen::Vector3f::Zero();  // a bone starts where its parent ends
+      Eigen::Vector3f offset = Eigen::Vector3f::Zero();  // a bone begins at the end of its parent
       if (bone.parent >= 0) {
         const AsfBone& parent = skeleton.bones[bone.parent];
         offset = parent.direction * parent.length;
@@ -41,7 +41,7 @@ class AmcParser {
   void finish_frame();
   Eigen::Quaterniond local(std::size_t bone) const;
 
-  /// Numbers of one bone in one frame by the dofs' numbers.
+  /// The numbers of one bone in one frame, in the order of the dofs' numbers.
   struct Values {
     std::array<double, kLengthDof + 1> by_dof{};
     bool given = false;

@@ -109,7 +109,7 @@ void AsfParser::root() {
     } else if (key == "axis") {
       bone.turn_order = turn_order();
     } else if (key == "position") {
-      triple("the root's position");  // where the first frame stood; every frame brings its own
+      triple("the root's position");  // not used, since every frame has its own position
     } else if (key == "orientation") {
       orientation = triple("the root's orientation");
     } else {

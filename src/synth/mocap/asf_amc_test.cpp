@@ -58,7 +58,7 @@ const std::string kAmc = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 1 2 3 10 20 30\nth
 Eigen::Quaterniond turn(const Eigen::Vector3d& axis, double degrees) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * kDegree, axis));
 }
-/// Rz Ry Rx.
+/// Returns Rz Ry Rx.
 Eigen::Quaterniond xyz(double x, double y, double z) {
   return turn(Eigen::Vector3d::UnitZ(), z) * turn(Eigen::Vector3d::UnitY(), y) * turn(Eigen::Vector3d::UnitX(), x);
 }
@@ -92,7 +92,7 @@ TEST(Asf, ReadsBonesParentsFirst) {
   EXPECT_TRUE(skeleton.degrees);
 }
 
-TEST(Asf, RefusesWithLineAndReason) {
+TEST(Asf, NamesLineAndReasonOfErrors) {
   EXPECT_THAT(parsing_asf(replaced(kAsf, "dof rx\r", "dof rx rw\r")),
               ThrowsMessage<Error>("s.asf:21: expected tx, ty, tz, rx, ry, rz or l, found \"rw\""));
   EXPECT_THAT(parsing_asf(replaced(kAsf, "20 XYZ", "20 XXZ")),
@@ -129,7 +129,7 @@ TEST(Amc, TurnsBonesAboutTheirAxes) {
   expect_same(motion.rotation(0, 2), thigh * d * xyz(70, 0, 0) * d.conjugate());
 }
 
-TEST(Amc, WhatAFrameLeavesOutIsZero) {
+TEST(Amc, TakesMissingValuesAsZero) {
   const Motion motion = parse_amc(kAmc, "m.amc", parse_asf(kAsf, "s.asf"), 120.F);
   const Eigen::Quaterniond d = xyz(0, 0, 20);
   expect_same(motion.rotation(1, 1), Eigen::Quaterniond::Identity());
@@ -143,7 +143,7 @@ TEST(Amc, TakesRadians) {
   expect_same(motion.rotation(0, 0), xyz(0, 90, 0));
 }
 
-TEST(Amc, RefusesWithLineAndReason) {
+TEST(Amc, NamesLineAndReasonOfErrors) {
   EXPECT_THAT(parsing_amc(replaced(kAmc, "shin 70", "toe 70")),
               ThrowsMessage<Error>("m.amc:6: bone \"toe\" is not in the skeleton s.asf"));
   EXPECT_THAT(parsing_amc(replaced(kAmc, "40 50 60", "40 50")),

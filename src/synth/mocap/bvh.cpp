@@ -16,7 +16,8 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr std::array<std::string_view, 6> kChannelNames = {"Xposition", "Yposition", "Zposition",
                                                            "Xrotation", "Yrotation", "Zrotation"};
 constexpr int kFirstRotation = 3;
-/// Joints nearer than this share of the longest offset coincide: their offset gives no direction.
+/// Joints that are nearer to each other than this share of the longest offset coincide, so their offset gives no
+/// direction.
 constexpr float kApart = 1e-4F;
 
 class BvhParser {
@@ -42,12 +43,13 @@ class BvhParser {
 
   TextScanner scan_;
   Motion motion_;
-  std::vector<std::vector<int>> channels_;             ///< per joint, indices of kChannelNames
-  std::vector<std::pair<int, Eigen::Vector3f>> ends_;  ///< end sites: parent, offset
+  std::vector<std::vector<int>> channels_;             ///< for each joint, indices of kChannelNames
+  std::vector<std::pair<int, Eigen::Vector3f>> ends_;  ///< end sites with their parent and offset
   int channel_count_ = 0;
 };
 
-/// The joints' blocks nest; a list of those still open stands for recursion, which a file could drive too deep.
+/// Reads the nested blocks of the joints. A list of open blocks replaces recursion, which a hostile file could make too
+/// deep.
 void BvhParser::hierarchy() {
   scan_.expect("HIERARCHY");
   scan_.expect("ROOT");
@@ -134,7 +136,7 @@ void BvhParser::frames() {
   const int count = scan_.whole("the number of frames", 1, 100'000'000);
   const auto total = static_cast<std::size_t>(count);
   if (channel_count_ == 0) scan_.fail("no joint has a channel");
-  // Every number takes at least a digit and a space: more frames than that cannot follow.
+  // Every number takes at least a digit and a space, so there cannot be more frames than that.
   if (total > scan_.bytes_left() / (2 * static_cast<std::size_t>(channel_count_)) + 1) {
     scan_.fail(fmt::format("{} frames of {} numbers: the file is too short for them", count, channel_count_));
   }

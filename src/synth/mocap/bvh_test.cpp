@@ -84,7 +84,7 @@ TEST(Bvh, AppliesChannelsInTheirOrder) {
   EXPECT_TRUE(motion.rotation(1, 2).toRotationMatrix().isApprox(leg, 1e-5F));
 }
 
-TEST(Bvh, TakesOtherLineEndsAndJointsThatMove) {
+TEST(Bvh, AcceptsOtherLineEndsAndMovingJoints) {
   const std::string crlf = synth::replaced(kFile, "\n", "\r\n");
   EXPECT_EQ(parse_bvh(crlf, "m.bvh").frame_count(), 2);
   std::string moving = replaced("CHANNELS 0", "CHANNELS 3 Zposition Xposition Yposition");
@@ -127,7 +127,7 @@ TEST(Bvh, RefusesSizesThatTheFileCannotHold) {
   EXPECT_THAT(parsing(deep), ThrowsMessage<Error>("m.bvh:3002: more than 1000 joints"));
 }
 
-TEST(Bvh, RefusesWhatIsNoBvh) {
+TEST(Bvh, RefusesOtherTexts) {
   EXPECT_THAT(parsing(""), ThrowsMessage<Error>("m.bvh:1: expected HIERARCHY, found the end of the file"));
   EXPECT_THAT(parsing(replaced("JOINT Leg", "JOINT LHip")), ThrowsMessage<Error>(HasSubstr("a second joint called")));
   EXPECT_THAT(parsing(replaced("End Site", "Ende")), ThrowsMessage<Error>(HasSubstr("expected JOINT, End or }")));

@@ -12,7 +12,7 @@
 namespace vesalius::synth {
 namespace {
 
-// The TOML library frees nested tables by recursion: this much cannot exhaust the stack.
+// The TOML library frees nested tables by recursion. A text of this size cannot exhaust the stack.
 constexpr std::size_t kMaxBytes = std::size_t{1} << 14;
 
 struct Builtin {

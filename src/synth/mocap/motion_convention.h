@@ -10,28 +10,28 @@
 
 namespace vesalius::synth {
 
-/// How a bone lies while the skeleton of a motion file is at rest, against the T of `Pose`.
+/// How a bone's direction in the rest pose of a motion file relates to the T of `Pose`.
 enum class RestRule : std::uint8_t {
-  same,  ///< the same way: the joint's rotation is the bone's
-  aim,   ///< elsewhere: the smallest turn from the T's direction to the joint's own comes first
-  like   ///< whatever turn another bone has
+  same,  ///< same direction: the joint's rotation is the bone's
+  aim,   ///< other direction: the smallest turn from the T's direction to the joint's own is applied first
+  like   ///< the turn of another bone is applied first
 };
 
-/// Where the rotation of one bone comes from.
+/// The source of one bone's rotation.
 struct BoneSource {
-  std::vector<std::string> from;  ///< one joint, or two: half way between them
+  std::vector<std::string> from;  ///< one joint, or two if the rotation is half way between them
   RestRule rest = RestRule::same;
-  Bone like = Bone::pelvis;  ///< for RestRule::like; its own rule is same or aim
+  Bone like = Bone::pelvis;  ///< the other bone of RestRule::like; that bone's rule is same or aim
 };
 
-/// How the joints of one family of motion files map to the bones of a pose. Data: see data/rigs.
+/// The mapping from joints of one family of motion files to bones of a pose. The mappings are data; see data/rigs.
 struct MotionConvention {
   std::string name;
-  int skip_frames = 0;  ///< frames at the start that nobody took (a T pose)
+  int skip_frames = 0;  ///< frames at the start that were not recorded (a T pose)
   std::array<BoneSource, kBoneCount> bones;
 };
 
-/// Parses such a mapping from TOML. Throws Error naming line and expectation; every bone must be there.
+/// Parses a mapping from TOML. Throws Error naming line and expectation. Every bone must be there.
 MotionConvention parse_convention(std::string_view toml, const std::string& name);
 
 /// Returns the conventions that come with the program: asf_amc, cmu_bvh, daz_bvh.

@@ -23,7 +23,7 @@ std::string lower(std::string_view text) {
 
 bool contains(const std::string& text, const std::string& word) { return text.find(lower(word)) != std::string::npos; }
 
-/// Path without its extension, and the extension in lower case.
+/// Returns the path without its extension, and the extension in lower case.
 std::pair<std::string, std::string> split_extension(const std::string& path) {
   const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
   if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return {path, ""};
@@ -43,7 +43,7 @@ std::string find_skeleton(std::string stem, const std::map<std::string, std::str
   return {};
 }
 
-/// Reads comma-separated rows (RFC 4180): a field between quotes may hold commas and doubled quotes.
+/// Reads comma-separated rows (RFC 4180). A quoted field may contain commas and doubled quotes.
 class CsvRows {
  public:
   CsvRows(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -92,7 +92,7 @@ class CsvRows {
 
 struct Described {
   std::string description;
-  float fps = 0.F;  ///< 0: not said
+  float fps = 0.F;  ///< 0 if not given
 };
 
 float fps_of(const CsvRows& rows, const std::string& text) {
@@ -151,7 +151,7 @@ std::vector<MotionFile> list_motions(std::span<const std::string> paths) {
 void describe_motions(std::vector<MotionFile>& motions, std::string_view csv, const std::string& name) {
   const std::map<std::string, Described> described = read_descriptions(csv, name);
   for (MotionFile& motion : motions) {
-    // Every ending of the path that begins after a slash could be the one named.
+    // The row may name any ending of the path that begins after a slash.
     for (std::size_t at = 0; at != std::string::npos;) {
       const auto found = described.find(motion.path.substr(at));
       if (found != described.end()) {

@@ -44,7 +44,7 @@ TEST(DescribeMotions, ReadsColumnsInAnyOrder) {
   EXPECT_EQ(motions[2].fps, 120.F);
 }
 
-TEST(DescribeMotions, RefusesWithLineAndReason) {
+TEST(DescribeMotions, NamesLineAndReasonOfErrors) {
   const auto reading = [](const char* csv) {
     return [csv] {
       std::vector<MotionFile> motions;
@@ -61,7 +61,7 @@ TEST(DescribeMotions, RefusesWithLineAndReason) {
   EXPECT_THAT(reading("file,description,fps\na,b,-3\n"), ThrowsMessage<Error>(HasSubstr("found \"-3\"")));
 }
 
-TEST(ChooseMotions, ByWordsWhateverTheirCase) {
+TEST(ChooseMotions, ComparesWordsWithoutRegardToCase) {
   std::vector<MotionFile> motions(4);
   motions[0] = {"1", "", "Walk and wave", 30.F};
   motions[1] = {"2", "", "cartwheel", 30.F};

@@ -18,17 +18,17 @@ namespace vesalius::synth {
 namespace {
 
 constexpr float kDegree = 3.14159265F / 180.F;
-constexpr float kUsualFps = 30.F;  // what faster recordings are brought down to
+constexpr float kUsualFps = 30.F;  // frame rate to which faster recordings are reduced
 
-/// Forearm and wrist together turn the hand by 90 degrees or a little more to either side; solvers of marker data
-/// sometimes lose the hand's turn and give anything.
+/// Returns whether a hand is turned impossibly far. Forearm and wrist together turn a hand by about 90 degrees to
+/// either side, but solvers of marker data sometimes lose the hand's turn and give any angle.
 bool hands_twisted(const Pose& pose) {
   constexpr float kMost = 110.F;
   const auto twisted = [&](bool left) { return std::abs(arm_angles(pose, left).pronation) > kMost; };
   return twisted(true) || twisted(false);
 }
 
-/// Loads motions; a skeleton that several share is read once.
+/// Loads motions. A skeleton that several motions share is read once.
 class MotionLoader {
  public:
   explicit MotionLoader(const ReadText& read) : read_(read) {}

@@ -24,7 +24,7 @@ using testing::ThrowsMessage;
 
 constexpr float kDegree = 3.14159265F / 180.F;
 
-/// A skeleton with all bones that asf_amc.toml asks for, all with three dofs, as a T.
+/// Returns a skeleton in a T with all bones of asf_amc.toml, each with three dofs.
 std::string t_skeleton() {
   const std::map<std::string, std::pair<std::string, std::string>> bones = {
       {"upperback", {"root", "0 1 0"}},      {"thorax", {"upperback", "0 1 0"}},    {"lowerneck", {"thorax", "0 1 0"}},
@@ -44,7 +44,7 @@ std::string t_skeleton() {
   return text + links + "end\n";
 }
 
-/// Files by their paths, and how often each was read.
+/// Files by their paths, with the number of times that each was read.
 struct Files {
   std::map<std::string, std::string> text;
   std::map<std::string, int> reads;
@@ -64,7 +64,8 @@ Files some_files() {
   files.text["1.asf"] = t_skeleton();
   files.text["1_a.amc"] = ":DEGREES\n1\nlradius 0 -40 0\n2\nlradius 0 -42 0\n3\nlradius 0 -50 0\n";
   files.text["1_b.amc"] =
-      "1\nlhumerus 0 0 -80\nrhumerus 0 0 80\n2\nlhumerus 0 -100 0\nlradius 0 -140 0\n";  // a hand in the chest
+      "1\nlhumerus 0 0 -80\nrhumerus 0 0 80\n2\nlhumerus 0 -100 0\nlradius 0 -140 0\n";  // this puts a hand inside the
+                                                                                         // chest
   files.text["2_a.amc"] = "1\nroot 0 0 0 0 0 0\n";
   return files;
 }
@@ -77,7 +78,7 @@ std::vector<MotionFile> listed(const Files& files) {
   return motions;
 }
 
-TEST(PoseLibrary, LoadsThinsAndSaysWhereFrom) {
+TEST(PoseLibrary, LoadsAndThinsPosesAndNamesTheirMotions) {
   Files files = some_files();
   files.text.erase("2_a.amc");
   const PoseLibrary library = load_pose_library(listed(files), files.reader(), {.every = 1, .min_angle_deg = 5.F});
@@ -97,7 +98,7 @@ TEST(PoseLibrary, TakesEveryNthFrame) {
   EXPECT_EQ(library.frames, 3) << "frames 1 and 3 of the first, 1 of the second";
 }
 
-TEST(PoseLibrary, TakesEvery4thFrameOfTheRecordingsAsTheyArePublished) {
+TEST(PoseLibrary, TakesEvery4thFrameOfRecordingsAt120Hertz) {
   Files slow, fast;
   slow.text["1.asf"] = fast.text["subjects/1/1.asf"] = t_skeleton();
   for (int i = 0; i < 17; ++i) {
@@ -124,7 +125,7 @@ TEST(PoseLibrary, LeavesOutHandsTurnedBackToFront) {
   EXPECT_THAT(library.poses, SizeIs(1));
 }
 
-TEST(PoseLibrary, SkipsWhatItCannotUseAndSaysWhy) {
+TEST(PoseLibrary, SkipsUnusableFilesAndSaysWhy) {
   Files files = some_files();
   files.text["1_c.amc"] = "1\nlradius 0 nan 0\n";
   const PoseLibrary library = load_pose_library(listed(files), files.reader(), {});
@@ -134,7 +135,7 @@ TEST(PoseLibrary, SkipsWhatItCannotUseAndSaysWhy) {
   EXPECT_FALSE(library.poses.empty());
 }
 
-TEST(PoseLibrary, RefusesWhereNothingIsLeft) {
+TEST(PoseLibrary, RefusesFilesOfWhichNoneIsUsable) {
   Files files;
   files.text["2_a.amc"] = "1\n";
   EXPECT_THAT([&] { load_pose_library(listed(files), files.reader(), {}); },
@@ -143,7 +144,7 @@ TEST(PoseLibrary, RefusesWhereNothingIsLeft) {
   EXPECT_TRUE(load_pose_library({}, files.reader(), {}).poses.empty());
 }
 
-/// Angle between the directions of a bone in two poses, degrees.
+/// Returns the angle in degrees between the directions of a bone in two poses.
 float apart(const Pose& a, const Pose& b, Bone bone) {
   const auto direction = [&](const Pose& pose) {
     return (world_rotations(pose)[index(bone)] * rest_direction(bone)).eval();
@@ -151,8 +152,8 @@ float apart(const Pose& a, const Pose& b, Bone bone) {
   return std::acos(std::clamp(direction(a).dot(direction(b)), -1.F, 1.F)) / kDegree;
 }
 
-/// Compares the BVH of a clip with its AMC. The BVH opens with a T pose, which is skipped, and then lies three
-/// quarters of a frame behind. Returns the median of the worst bone.
+/// Compares the BVH of a clip with its AMC. The BVH begins with a T pose, which is skipped, and is three quarters of a
+/// frame late. Returns the median of the worst bone.
 float median_difference_deg(const std::vector<Pose>& bvh, const std::vector<Pose>& amc) {
   std::array<std::vector<float>, kBoneCount> differences;
   for (std::size_t f = 0; f + 1 < amc.size() && f < bvh.size(); ++f) {
@@ -177,7 +178,7 @@ std::string slurp(const std::string& path) {
   return text.str();
 }
 
-TEST(PoseLibrary, OfRealMotionsIsPlausible) {
+TEST(PoseLibrary, IsPlausibleForRealMotions) {
   const char* given = std::getenv("VESALIUS_SHARED");
   const fs::path shared = given != nullptr ? fs::path(given) : fs::path(VESALIUS_SOURCE_DIR) / "../shared";
   const fs::path archive = shared / "assets/mocap.tar.xz";

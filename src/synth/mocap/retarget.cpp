@@ -10,16 +10,16 @@
 namespace vesalius::synth {
 namespace {
 
-/// The joints of one bone in a certain motion, and the turn before theirs.
+/// The joints of one bone in a given motion, and the turn that precedes theirs.
 struct Source {
   int first = -1;
-  int second = -1;  ///< -1: the first alone
+  int second = -1;  ///< -1 if only the first is used
   Eigen::Quaternionf source_from_t = Eigen::Quaternionf::Identity();
 };
 
 using Sources = std::array<Source, kBoneCount>;
 
-/// Name of a joint that the convention asks for and the motion lacks; empty where there is none.
+/// Returns the name of a joint that the convention uses and the motion lacks; empty if there is none.
 std::string missing_joint(const Motion& motion, const MotionConvention& convention) {
   for (const BoneSource& bone : convention.bones) {
     for (const std::string& joint : bone.from) {

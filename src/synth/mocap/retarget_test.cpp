@@ -17,7 +17,8 @@ Eigen::Quaternionf turn(float degrees, const Eigen::Vector3f& axis) {
   return Eigen::Quaternionf(Eigen::AngleAxisf(degrees * kPi / 180.F, axis));
 }
 
-/// One joint a bone, called as it; bones that are to aim point `along` the T turned by 20 degrees about z.
+/// Returns a convention with one joint for each bone, of the same name. Bones with RestRule::aim point along the T
+/// turned by 20 degrees about z.
 std::string toml(const std::string& extra = "") {
   std::string text = "name = \"t\"\nskip_frames = 1\n[bones]\n";
   for (int b = 0; b < kBoneCount; ++b) {
@@ -61,7 +62,7 @@ TEST(Retarget, PointsBonesWhereTheMotionDoes) {
   EXPECT_TRUE(direction(poses[0], Bone::l_upper_arm).isApprox(Eigen::Vector3f::UnitX(), 1e-5F)) << "rest: same";
 }
 
-TEST(Retarget, ABoneCanTakeTheTurnOfAnotherAndLieBetweenTwoJoints) {
+TEST(Retarget, TakesAnotherBonesTurnAndTheMeanOfTwoJoints) {
   std::string text = replaced(toml(), "[\"l_shin\"], rest = \"same\"", "[\"l_shin\"], rest = \"l_thigh\"");
   text = replaced(text, "from = [\"neck\"]", "from = [\"neck\", \"head\"]");
   Motion motion = still_motion(2);
@@ -71,7 +72,7 @@ TEST(Retarget, ABoneCanTakeTheTurnOfAnotherAndLieBetweenTwoJoints) {
   EXPECT_NEAR(pose[Bone::neck].angularDistance(Eigen::Quaternionf::Identity()), kPi / 6, 1e-4F);
 }
 
-TEST(Retarget, TakesTheHeadingOffAndKeepsTheTilt) {
+TEST(Retarget, RemovesTheHeadingAndKeepsTheTilt) {
   Motion motion = still_motion(2);
   const Eigen::Quaternionf tilt = turn(40.F, Eigen::Vector3f::UnitX()), heading = turn(130.F, Eigen::Vector3f::UnitY());
   for (int b = 0; b < kBoneCount; ++b) motion.world[kBoneCount + b] = heading * tilt;
@@ -80,7 +81,7 @@ TEST(Retarget, TakesTheHeadingOffAndKeepsTheTilt) {
   EXPECT_LT(pose[Bone::head].angularDistance(Eigen::Quaternionf::Identity()), 1e-3F);
 }
 
-TEST(Retarget, RefusesWhatDoesNotFit) {
+TEST(Retarget, RefusesMotionsThatDoNotFit) {
   Motion motion = still_motion(2);
   const MotionConvention convention = parse_convention(toml(), "c.toml");
   motion.joints[index(Bone::l_thigh)].along.setZero();
@@ -94,7 +95,7 @@ TEST(Retarget, RefusesWhatDoesNotFit) {
       ThrowsMessage<Error>(HasSubstr("fit none of the conventions known: asf_amc (no joint \"root\"), cmu_bvh")));
 }
 
-TEST(Convention, ComesWithThoseOfTheProgram) {
+TEST(Convention, IncludesThoseOfTheProgram) {
   std::vector<std::string> names;
   for (const MotionConvention& convention : builtin_conventions()) names.push_back(convention.name);
   EXPECT_THAT(names, testing::ElementsAre("asf_amc", "cmu_bvh", "daz_bvh"));
@@ -107,7 +108,7 @@ TEST(Convention, ComesWithThoseOfTheProgram) {
   }
 }
 
-TEST(Convention, RefusesWithLineAndReason) {
+TEST(Convention, NamesLineAndReasonOfErrors) {
   EXPECT_THAT(parsing(toml("tail = { from = [\"x\"], rest = \"same\" }\n")),
               ThrowsMessage<Error>("c.toml:23: no bone is called \"tail\""));
   EXPECT_THAT(parsing("name = \"t\"\nskip_frames = 0\n[bones]\n"),

@@ -10,12 +10,13 @@
 namespace vesalius::synth {
 namespace {
 
-/// Entries of the joints' rotation matrices, 9 each: a turn by some angle moves an entry by no more than the chord.
+/// The entries of the joints' rotation matrices, 9 for each joint. A turn by some angle changes an entry by at most the
+/// angle's chord.
 constexpr int kEntries = 9 * kBoneCount;
-/// Levels of the tree, which split by one entry each. 40 leave few bones out.
+/// The levels of the tree, each of which splits by one entry. 40 levels leave few bones out.
 constexpr int kLevels = 40;
 constexpr std::size_t kLeaf = 12;
-/// Poses that the choice of entries looks at.
+/// The number of poses from which entries are chosen.
 constexpr std::size_t kSample = 2000;
 
 using Entries = Eigen::Matrix<float, kEntries, 1>;
@@ -40,8 +41,8 @@ Entries entries_of(const Rotations& rotations) {
   return out;
 }
 
-/// The entries that tell poses apart best: each time the one that varies most beyond what those before it explain
-/// (Cholesky decomposition of the covariance with pivots).
+/// Returns the entries that distinguish poses best. Each is the one that varies most after subtracting what the earlier
+/// ones explain (Cholesky decomposition of the covariance with pivots).
 std::array<int, kLevels> telling_entries(std::span<const Pose> poses) {
   const std::size_t step = poses.size() / kSample + 1;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(kEntries);
@@ -59,26 +60,26 @@ std::array<int, kLevels> telling_entries(std::span<const Pose> poses) {
     Eigen::Index pivot = 0;
     const double variance = rest.diagonal().maxCoeff(&pivot);
     entry = static_cast<int>(pivot);
-    if (variance < 1e-9) continue;  // the others follow from those chosen
+    if (variance < 1e-9) continue;  // the chosen entries determine the others
     const Eigen::VectorXd column = rest.col(pivot);
     rest -= column * column.transpose() / variance;
   }
   return chosen;
 }
 
-/// Finds out whether a pose is nearer than an angle to one of those it was given. Level after level of the tree cuts
-/// one coordinate into cells as wide as the angle's chord: whatever is near lies in the same cell or beside it.
+/// Tells whether a pose is nearer than an angle to one of the poses added before. Each level of the tree divides one
+/// coordinate into cells as wide as the angle's chord, so every near pose is in the same cell or beside it.
 class NearPoses {
  public:
   NearPoses(std::array<int, kLevels> entries, float min_angle_rad)
       : entries_(entries),
         min_angle_(min_angle_rad),
         cos_half_(std::cos(0.5F * min_angle_rad)),
-        // The little more is for rounding.
+        // The small addition allows for rounding.
         cell_(2.F * std::sin(0.5F * std::min(min_angle_rad, 3.14159265F)) + 1e-5F),
         nodes_(1) {}
 
-  /// Adds the pose unless one is near; whether it did.
+  /// Adds the pose unless a near one was added before. Returns whether it was added.
   bool add_if_far(const Pose& pose) {
     const Rotations rotations = rotations_of(pose);
     const Entries all = entries_of(rotations);
@@ -101,8 +102,8 @@ class NearPoses {
   };
   struct Node {
     bool leaf = true;
-    std::vector<int> poses;       ///< of a leaf
-    std::vector<Child> children;  ///< else; by rising cells
+    std::vector<int> poses;       ///< poses of a leaf
+    std::vector<Child> children;  ///< children of an inner node, by rising cells
   };
   struct Place {
     int node;
@@ -130,7 +131,7 @@ class NearPoses {
     return false;
   }
 
-  /// largest_angle(a, b) < min_angle_. The dot product decides, but where it is too close to call.
+  /// Returns whether largest_angle(a, b) < min_angle_. The dot product decides unless the result is too close.
   bool near(const Rotations& a, const Rotations& b) const {
     constexpr float kTooClose = 2e-6F;
     for (std::size_t j = 0; j < kBoneCount; ++j) {
@@ -152,7 +153,7 @@ class NearPoses {
     for (const int i : moved) nodes_[descend(place, i).node].poses.push_back(i);
   }
 
-  /// The child for a pose, made where there is none.
+  /// Returns the child for a pose, and creates it if there is none.
   Place descend(const Place& place, int pose) {
     const int cell = cell_of(kept_[pose].at[place.level]);
     std::vector<Child>& children = nodes_[place.node].children;
@@ -160,7 +161,7 @@ class NearPoses {
     if (child == children.end() || child->cell != cell) {
       child = children.insert(child, {cell, static_cast<int>(nodes_.size())});
       const int made = child->node;
-      nodes_.emplace_back();  // ends the life of `children`
+      nodes_.emplace_back();  // invalidates `children`
       return {made, place.level + 1};
     }
     return {child->node, place.level + 1};

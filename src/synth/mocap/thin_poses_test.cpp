@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kFiveDegrees = 5.F * 3.14159265F / 180.F;
 
-/// Sampled poses, each followed by slow changes of itself, as the frames of a motion are.
+/// Returns sampled poses, each followed by slow changes of itself like the frames of a motion.
 std::vector<Pose> motion_like_poses(int count) {
   Random random(11);
   std::vector<Pose> poses;
@@ -32,7 +32,7 @@ std::vector<Pose> motion_like_poses(int count) {
   return poses;
 }
 
-/// largest_angle(a, b) >= min_angle_rad, without looking at more joints than it takes.
+/// Returns whether largest_angle(a, b) >= min_angle_rad, and stops at the first joint that decides it.
 bool far_apart(const Pose& a, const Pose& b, float min_angle_rad) {
   for (std::size_t j = 1; j < kBoneCount; ++j) {
     if (a.local[j].angularDistance(b.local[j]) >= min_angle_rad) return true;
@@ -50,7 +50,7 @@ std::vector<int> one_by_one(const std::vector<Pose>& poses, float min_angle_rad)
   return kept;
 }
 
-TEST(ThinPoses, KeepsWhatComparingAllPairsKeeps) {
+TEST(ThinPoses, AgreesWithComparingAllPairs) {
   const std::vector<Pose> poses = motion_like_poses(5000);
   const std::vector<int> kept = thin_poses(poses, kFiveDegrees);
   EXPECT_GT(kept.size(), 500U);
@@ -58,7 +58,7 @@ TEST(ThinPoses, KeepsWhatComparingAllPairsKeeps) {
   EXPECT_EQ(kept, one_by_one(poses, kFiveDegrees));
 }
 
-TEST(ThinPoses, HoldsForOtherAngles) {
+TEST(ThinPoses, AgreesForOtherAngles) {
   const std::vector<Pose> poses = motion_like_poses(600);
   for (const float angle : {0.01F, 0.5F, 1.5F, 3.F}) {
     EXPECT_EQ(thin_poses(poses, angle), one_by_one(poses, angle)) << angle;
@@ -67,7 +67,7 @@ TEST(ThinPoses, HoldsForOtherAngles) {
   EXPECT_EQ(thin_poses(poses, 0.F).size(), poses.size());
 }
 
-TEST(ThinPoses, SeesOneJointAndTheSignOfNoQuaternion) {
+TEST(ThinPoses, SeesASingleJointAndIgnoresTheSignsOfQuaternions) {
   std::vector<Pose> poses(3);
   poses[1][Bone::r_hand] = Eigen::Quaternionf(Eigen::AngleAxisf(1.01F * kFiveDegrees, Eigen::Vector3f::UnitZ()));
   poses[2][Bone::r_hand] = Eigen::Quaternionf(Eigen::AngleAxisf(0.5F * kFiveDegrees, Eigen::Vector3f::UnitZ()));
@@ -75,12 +75,12 @@ TEST(ThinPoses, SeesOneJointAndTheSignOfNoQuaternion) {
   EXPECT_THAT(thin_poses(poses, kFiveDegrees), testing::ElementsAre(0, 1));
 }
 
-TEST(ThinPoses, HandlesManyAlikeAndNone) {
+TEST(ThinPoses, HandlesManyEqualPosesAndNone) {
   EXPECT_TRUE(thin_poses({}, kFiveDegrees).empty());
   EXPECT_THAT(thin_poses(std::vector<Pose>(1000), kFiveDegrees), testing::ElementsAre(0));
 }
 
-TEST(ThinPoses, RefusesWhatIsNoNumber) {
+TEST(ThinPoses, RefusesNumbersThatAreNotFinite) {
   std::vector<Pose> poses(2);
   EXPECT_THROW(thin_poses(poses, -1.F), Error);
   EXPECT_THROW(thin_poses(poses, std::numeric_limits<float>::quiet_NaN()), Error);

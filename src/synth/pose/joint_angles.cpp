@@ -12,7 +12,7 @@ using Eigen::Quaternionf;
 using Eigen::Vector3f;
 
 constexpr float kDegree = 3.14159265F / 180.F;
-/// Spine and neck bones bend by half of what their region does.
+/// Each bone of spine and neck takes half of its region's bend.
 constexpr float kHalf = 0.5F;
 
 Quaternionf turn(const Vector3f& axis, float degrees) {
@@ -22,13 +22,14 @@ Quaternionf turn_x(float degrees) { return turn(Vector3f::UnitX(), degrees); }
 Quaternionf turn_y(float degrees) { return turn(Vector3f::UnitY(), degrees); }
 Quaternionf turn_z(float degrees) { return turn(Vector3f::UnitZ(), degrees); }
 
-/// The left side's rotation as the right side's: x -> -x.
+/// Mirrors (x -> -x) the left side's rotation for the right side.
 Quaternionf on_side(const Quaternionf& left_rotation, bool left) {
   const Quaternionf& q = left_rotation;
   return left ? q : Quaternionf(q.w(), q.x(), -q.y(), -q.z());
 }
 
-/// Turns the hanging upper arm by `elevation` towards `plane`, without a turn about itself; from the T.
+/// Returns the turn of the upper arm from the T to the hanging position and then by `elevation` towards `plane`,
+/// without a turn about its own axis.
 Quaternionf swing(float elevation, float plane) {
   return turn_y(-plane) * turn_z(elevation) * turn_y(plane) * turn_z(-90.F);
 }
@@ -54,7 +55,8 @@ void set_leg(Pose& pose, bool left, const LegAngles& leg) {
 
 void clamp(float& angle, const JointRange& range) { angle = std::clamp(angle, range.low, range.high); }
 
-/// Elevation that the shoulder allows in a plane: full to the side and the front, less the further back.
+/// Returns the largest elevation that the shoulder allows in a plane: the full one to the side and the front, and less
+/// the further back the arm goes.
 float largest_elevation(float plane) {
   const float back = std::clamp(-plane / 90.F, 0.F, 1.F);
   return range::kElevation.high + back * (range::kExtension - range::kElevation.high);
@@ -80,7 +82,7 @@ void clamp(LegAngles& leg) {
   clamp(leg.ankle, range::kAnkle);
 }
 
-/// Angle about the x axis of a rotation about it, degrees in [-180, 180].
+/// Returns the angle of a rotation about the x axis, in degrees in [-180, 180].
 float x_angle(const Quaternionf& q) {
   const float angle = 2.F * std::atan2(q.x(), q.w()) / kDegree;
   return angle > 180.F ? angle - 360.F : angle < -180.F ? angle + 360.F : angle;
@@ -139,7 +141,7 @@ bool arm_in_range(const ArmAngles& arm) {
   const auto in = [](float angle, const JointRange& range) {
     return angle >= range.low - kSlack && angle <= range.high + kSlack;
   };
-  // A hanging arm points nowhere: its plane says nothing.
+  // A hanging arm points in no direction, so it has no plane.
   const bool raised = arm.elevation > 10.F;
   return (!raised || in(arm.plane, range::kPlane)) && arm.elevation <= largest_elevation(arm.plane) + kSlack &&
          in(arm.external, range::kArmExternal) && in(arm.elbow, range::kElbow) &&
@@ -162,7 +164,7 @@ void reach(Pose& pose, bool left, const Vector3f& wrist_m, const Vector3f& elbow
   const float cos_elbow = std::clamp((a * a + b * b - d * d) / (2.F * a * b), -1.F, 1.F);
   const float elbow = 180.F - std::acos(cos_elbow) / kDegree;
 
-  Eigen::Matrix3f axes;  // the arm bends towards its own z
+  Eigen::Matrix3f axes;  // the elbow bends towards the arm's own z
   axes.col(0) = left ? along : Vector3f(-along);
   axes.col(2) = (n - n.dot(along) * along).normalized();
   axes.col(1) = axes.col(2).cross(axes.col(0));

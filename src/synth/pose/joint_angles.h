@@ -6,44 +6,44 @@
 
 namespace vesalius::synth {
 
-/// Angles of an arm in degrees, 0 where it hangs straight with the palm to the thigh.
+/// The angles of an arm in degrees. They are 0 if the arm hangs straight with its palm to the thigh.
 struct ArmAngles {
-  float elevation = 5.F;  ///< of the upper arm away from hanging, 0 to 180
-  float plane = 0.F;      ///< of that: 0 to the side, 90 to the front, -90 to the back, beyond 90 across the body
-  float external = 0.F;   ///< turn of the upper arm about itself; elbow's bend goes outwards
+  float elevation = 5.F;  ///< of the upper arm from the hanging position, 0 to 180
+  float plane = 0.F;      ///< direction of elevation: 0 is to the side, 90 front, -90 back, over 90 across the body
+  float external = 0.F;   ///< turn of the upper arm about its axis; turns the elbow's bend outwards
   float elbow = 0.F;      ///< bend
-  float pronation = 0.F;  ///< turn of the hand about the forearm: palm to the back where the arm hangs
-  float wrist = 0.F;      ///< bend to the palm
-  float ulnar = 0.F;      ///< bend to the little finger
-  float shrug = 0.F;      ///< clavicle up
-  float forward = 0.F;    ///< clavicle to the front
+  float pronation = 0.F;  ///< turn of the hand about the forearm; the palm of a hanging arm turns backwards
+  float wrist = 0.F;      ///< bend towards the palm
+  float ulnar = 0.F;      ///< bend towards the little finger
+  float shrug = 0.F;      ///< of the clavicle, upwards
+  float forward = 0.F;    ///< of the clavicle, to the front
 };
 
-/// Angles of a leg in degrees, 0 where it stands straight.
+/// The angles of a leg in degrees. They are 0 if the leg stands straight.
 struct LegAngles {
-  float flexion = 0.F;    ///< of the hip: knee to the front
-  float abduction = 0.F;  ///< knee outwards
-  float external = 0.F;   ///< turn of the thigh about itself: toes outwards
+  float flexion = 0.F;    ///< of the hip; moves the knee to the front
+  float abduction = 0.F;  ///< of the hip; moves the knee outwards
+  float external = 0.F;   ///< turn of the thigh about its axis; turns the toes outwards
   float knee = 0.F;       ///< bend
-  float ankle = 0.F;      ///< toes up
+  float ankle = 0.F;      ///< bend that lifts the toes
 };
 
-/// Angles of the lumbar and thoracic spine together, or of neck and head together, degrees.
+/// The angles of the lumbar and thoracic spine together, or of neck and head together, in degrees.
 struct SpineAngles {
   float flexion = 0.F;  ///< to the front
   float lateral = 0.F;  ///< to the person's left
   float turn = 0.F;     ///< to the person's left
 };
 
-/// A pose as anatomists write it. Arms and legs: [0] left, [1] right.
+/// A pose in the angles of anatomy. Of arms and legs, [0] is left and [1] right.
 struct BodyAngles {
-  float pitch = 0.F;  ///< of the pelvis, degrees: to the front; -90 lies on the back
-  float roll = 0.F;   ///< of the pelvis, degrees: to the person's left; 90 lies on the left side
+  float pitch = 0.F;  ///< of the pelvis to the front, degrees; a person at -90 lies on the back
+  float roll = 0.F;   ///< of the pelvis to the person's left, degrees; a person at 90 lies on the left side
   SpineAngles trunk;
   SpineAngles neck;
   std::array<ArmAngles, 2> arms;
   std::array<LegAngles, 2> legs;
-  std::array<float, 2> grip{0.3F, 0.3F};  ///< 0 stretched, 1 a fist
+  std::array<float, 2> grip{0.3F, 0.3F};  ///< 0 is a stretched hand, 1 a fist
 };
 
 /// The range of a joint, in degrees.
@@ -52,15 +52,15 @@ struct JointRange {
   float high;
 };
 
-/// Ranges of motion of healthy adults: American Academy of Orthopaedic Surgeons, "Joint Motion: Method of Measuring
-/// and Recording" (1965), as tabled in Norkin and White, "Measurement of Joint Motion". Three are wider, since other
-/// limbs and the body's weight push further than the muscles that were measured: knee 150 (AAOS 135), ankle 35 (20),
-/// internal turn of the arm 95, as it takes to put a hand on the back (AAOS 70; Kapandji, "The Physiology of the
-/// Joints", volume 1).
+/// The ranges of motion of healthy adults in degrees: American Academy of Orthopaedic Surgeons (AAOS), "Joint Motion:
+/// Method of Measuring and Recording" (1965), as tabulated in Norkin and White, "Measurement of Joint Motion". Three
+/// ranges are wider, because other limbs and the body's weight push joints further than the measured muscles do: knee
+/// 150 (AAOS 135), ankle 35 (AAOS 20), and internal turn of the arm 95, which putting a hand on the back takes (AAOS
+/// 70; Kapandji, "The Physiology of the Joints", volume 1).
 namespace range {
 inline constexpr JointRange kElevation{0.F, 180.F};
 inline constexpr float kExtension = 60.F;          ///< elevation to the back (plane -90)
-inline constexpr JointRange kPlane{-90.F, 135.F};  ///< 135: horizontal adduction of 45 past the front
+inline constexpr JointRange kPlane{-90.F, 135.F};  ///< 135 is a horizontal adduction of 45 past the front
 inline constexpr JointRange kArmExternal{-95.F, 90.F};
 inline constexpr JointRange kElbow{0.F, 150.F};
 inline constexpr JointRange kPronation{-80.F, 80.F};
@@ -81,24 +81,26 @@ inline constexpr JointRange kNeckLateral{-45.F, 45.F};
 inline constexpr JointRange kNeckTurn{-60.F, 60.F};
 }  // namespace range
 
-/// The angles with each put into its range.
+/// Returns the angles, each clamped to its range.
 BodyAngles within_range(BodyAngles angles);
 
-/// The pose of these angles. The trunk's are shared by spine and chest, the neck's by neck and head.
+/// Returns the pose of these angles. Spine and chest share the trunk's angles, neck and head the neck's.
 Pose pose_of(const BodyAngles& angles);
 
-/// The arm of a pose, as `pose_of` reads it; clavicles come out as 0.
+/// Returns the angles of a pose's arm, the inverse of `pose_of`. Angles of the clavicle are returned as 0.
 ArmAngles arm_angles(const Pose& pose, bool left);
 
-/// Returns whether the arm stays in the ranges, with 2 degrees for rounding and bodies between two measurements.
+/// Returns whether the arm stays within the ranges. Two degrees of tolerance allow for rounding and for interpolation
+/// between two measurements.
 bool arm_in_range(const ArmAngles& arm);
 
-/// Sets upper arm and forearm (clavicles and trunk as they are) so that the wrist of a person of standard proportions
-/// (stick_figure.h) gets to `wrist_m`, or as near as the arm is long and the elbow bends. Both in the frame of the
-/// stick figure; `elbow_towards` is the direction in which the elbow points. The hand stays in line with the forearm.
+/// Sets upper arm and forearm, without moving clavicles or trunk, such that the wrist of a person of standard
+/// proportions (stick_figure.h) reaches `wrist_m`, or comes as near as the arm's length and the elbow allow.
+/// `elbow_towards` is the direction in which the elbow points. Both are in the frame of the stick figure. The hand
+/// stays in line with the forearm.
 void reach(Pose& pose, bool left, const Eigen::Vector3f& wrist_m, const Eigen::Vector3f& elbow_towards);
 
-/// Sets the hand against the forearm, degrees as in ArmAngles.
+/// Sets the hand's angles relative to the forearm, in degrees as in ArmAngles.
 void set_hand(Pose& pose, bool left, float pronation, float wrist, float ulnar);
 
 }  // namespace vesalius::synth

@@ -11,11 +11,11 @@ namespace {
 using Eigen::Vector3f;
 
 Vector3f direction(const Pose& pose, Bone bone) { return world_rotations(pose)[index(bone)] * rest_direction(bone); }
-/// Where the palm faces: down in the T.
+/// Returns the direction in which the palm faces; it is down in the T.
 Vector3f palm(const Pose& pose, bool left) {
   return world_rotations(pose)[index(left ? Bone::l_hand : Bone::r_hand)] * -Vector3f::UnitY();
 }
-/// Both sides, mirrored to the left.
+/// Expects directions of both arms; those of the right one are mirrored to the left.
 void expect_arm(const ArmAngles& arm, const Vector3f& upper, const Vector3f& fore, const Vector3f& palm_normal) {
   BodyAngles angles;
   angles.arms = {arm, arm};
@@ -30,7 +30,7 @@ void expect_arm(const ArmAngles& arm, const Vector3f& upper, const Vector3f& for
 
 const Vector3f kLeft = Vector3f::UnitX(), kUp = Vector3f::UnitY(), kFront = Vector3f::UnitZ();
 
-TEST(JointAngles, ArmsAsAnatomistsHaveThem) {
+TEST(JointAngles, TurnArmsAsInAnatomy) {
   expect_arm({.elevation = 0.F}, -kUp, -kUp, -kLeft);
   expect_arm({.elevation = 0.F, .elbow = 90.F}, -kUp, kFront, -kLeft);
   expect_arm({.elevation = 0.F, .pronation = 90.F}, -kUp, -kUp, -kFront);
@@ -42,10 +42,10 @@ TEST(JointAngles, ArmsAsAnatomistsHaveThem) {
   expect_arm({.elevation = 90.F, .external = 90.F, .elbow = 90.F}, kLeft, kUp, kFront);
 }
 
-TEST(JointAngles, LegsAndTrunk) {
+TEST(JointAngles, TurnLegsAndTrunkAsInAnatomy) {
   BodyAngles angles;
   angles.legs[0] = {.flexion = 90.F, .abduction = 0.F, .external = 0.F, .knee = 90.F, .ankle = 0.F};
-  angles.legs[1] = {.flexion = 0.F, .abduction = 90.F};  // further than any, to see the direction
+  angles.legs[1] = {.flexion = 0.F, .abduction = 90.F};  // further than any leg, to show the direction
   angles.trunk.lateral = 90.F;
   const Pose pose = pose_of(angles);
   EXPECT_TRUE(direction(pose, Bone::l_thigh).isApprox(kFront, 1e-4F));
@@ -63,7 +63,7 @@ TEST(JointAngles, LegsAndTrunk) {
   EXPECT_TRUE((world_rotations(turned)[index(Bone::head)] * kFront).isApprox(kLeft, 1e-4F));
 }
 
-TEST(JointAngles, ThePelvisLiesAsItSays) {
+TEST(JointAngles, LayThePelvisDown) {
   BodyAngles angles;
   angles.pitch = -90.F;
   EXPECT_TRUE((pose_of(angles)[Bone::pelvis] * kFront).isApprox(kUp, 1e-4F)) << "on the back: looks up";
@@ -72,7 +72,7 @@ TEST(JointAngles, ThePelvisLiesAsItSays) {
   EXPECT_TRUE((pose_of(angles)[Bone::pelvis] * kUp).isApprox(kLeft, 1e-4F)) << "on the left side";
 }
 
-TEST(JointAngles, ArmAnglesAreReadBack) {
+TEST(JointAngles, OfArmsAreReadBack) {
   Random random(3);
   for (int i = 0; i < 200; ++i) {
     const auto between = [&](float low, float high) { return static_cast<float>(random.uniform(low, high)); };
@@ -96,7 +96,7 @@ TEST(JointAngles, ArmAnglesAreReadBack) {
   }
 }
 
-TEST(JointAngles, AreHeldInTheirRanges) {
+TEST(JointAngles, AreClampedToTheirRanges) {
   BodyAngles angles;
   angles.arms[0] = {.elevation = 170.F, .plane = -90.F, .elbow = 200.F, .pronation = -100.F};
   angles.legs[1].knee = -10.F;
@@ -111,7 +111,7 @@ TEST(JointAngles, AreHeldInTheirRanges) {
   EXPECT_TRUE(arm_in_range(within_range({}).arms[1]));
 }
 
-TEST(Reach, PutsTheWristThere) {
+TEST(Reach, PutsTheWristAtItsGoal) {
   BodyAngles angles;
   angles.trunk = {20.F, 10.F, 15.F};
   for (const bool left : {true, false}) {
@@ -127,7 +127,7 @@ TEST(Reach, PutsTheWristThere) {
   }
 }
 
-TEST(Reach, StretchesOutForWhatIsTooFar) {
+TEST(Reach, StretchesTheArmTowardsADistantGoal) {
   Pose pose = pose_of({});
   const Vector3f shoulder = stick_figure(pose).head_of(Bone::l_upper_arm);
   reach(pose, true, shoulder + Vector3f(0.F, 0.F, 3.F), -kUp);

@@ -18,12 +18,12 @@ std::vector<SampledPose> some_poses(int count) {
 
 bool same(const Pose& a, const Pose& b, Bone bone) { return a[bone].coeffs() == b[bone].coeffs(); }
 
-/// Whether the pose is one of those, but for grips.
+/// Returns whether the pose is one of those, apart from its grips.
 bool is_one_of(const Pose& pose, const std::vector<SampledPose>& poses) {
   return std::ranges::any_of(poses, [&](const SampledPose& p) { return largest_angle(p.pose, pose) < 1e-3F; });
 }
 
-TEST(MixLimbs, TakesThoseAskedForAndNoOthers) {
+TEST(MixLimbs, TakesOnlyTheGivenLimbs) {
   const std::vector<SampledPose> poses = some_poses(2);
   const Pose &a = poses[0].pose, &b = poses[1].pose;
   const Pose arm = mix_limbs(a, b, {.l_arm = true});
@@ -36,7 +36,7 @@ TEST(MixLimbs, TakesThoseAskedForAndNoOthers) {
   EXPECT_EQ(legs.l_grip, a.l_grip);
 }
 
-TEST(MixLimbs, AllButTheTrunkOfAPoseIsThatPoseOnAnotherTrunk) {
+TEST(MixLimbs, PutsAllLimbsOnAnotherTrunk) {
   const std::vector<SampledPose> poses = some_poses(2);
   const Pose all = mix_limbs(poses[0].pose, poses[1].pose, {true, true, true, true});
   for (int b = 0; b < kBoneCount; ++b) {
@@ -46,7 +46,7 @@ TEST(MixLimbs, AllButTheTrunkOfAPoseIsThatPoseOnAnotherTrunk) {
   }
 }
 
-TEST(DrawPose, GivesPosesThatArePossible) {
+TEST(DrawPose, DrawsPossiblePoses) {
   const std::vector<SampledPose> poses = some_poses(60);
   Random random(8);
   int known = 0;
@@ -59,14 +59,14 @@ TEST(DrawPose, GivesPosesThatArePossible) {
   EXPECT_LT(known, 60) << "most are mixtures";
 }
 
-TEST(DrawPose, MirrorsAndMixesAsOftenAsAsked) {
+TEST(DrawPose, MirrorsAndMixesWithTheGivenProbabilities) {
   const std::vector<SampledPose> poses = some_poses(60);
   Random random(8);
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(is_one_of(draw_pose(poses, 0.F, 0.F, random).pose, poses));
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(is_one_of(mirrored(draw_pose(poses, 0.F, 1.F, random).pose), poses));
 }
 
-TEST(DrawPose, SameSeedSamePoseAndNoneWithoutAny) {
+TEST(DrawPose, IsTheSameForTheSameSeedAndRefusesAnEmptyList) {
   const std::vector<SampledPose> poses = some_poses(20);
   Random a(1), b(1);
   const SampledPose first = draw_pose(poses, 0.5F, 0.5F, a), again = draw_pose(poses, 0.5F, 0.5F, b);

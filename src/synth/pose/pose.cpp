@@ -77,7 +77,8 @@ Pose mirrored(const Pose& pose) {
   Pose out;
   for (std::size_t b = 0; b < kBoneCount; ++b) {
     const Eigen::Quaternionf& q = pose.local[index(kBones[b].mirror)];
-    out.local[b] = {q.w(), q.x(), -q.y(), -q.z()};  // an axis is a pseudo-vector: the reflected normal stays
+    out.local[b] = {q.w(), q.x(), -q.y(),
+                    -q.z()};  // an axis is a pseudo-vector, so the component along the mirror's normal keeps its sign
   }
   out.l_grip = pose.r_grip;
   out.r_grip = pose.l_grip;
@@ -86,7 +87,7 @@ Pose mirrored(const Pose& pose) {
 
 Eigen::Quaternionf without_yaw(const Eigen::Quaternionf& rotation) {
   const float norm = std::hypot(rotation.w(), rotation.y());
-  if (norm < 1e-6F) return rotation;  // upside down: no heading to take off
+  if (norm < 1e-6F) return rotation;  // upside down, so there is no heading to remove
   const Eigen::Quaternionf yaw(rotation.w() / norm, 0.F, rotation.y() / norm, 0.F);
   return (yaw.conjugate() * rotation).normalized();
 }

@@ -3,8 +3,8 @@
 #include "synth/pose/joint_angles.h"
 #include "vesalius/base/random.h"
 
-/// The kinds of poses that sample_pose() draws from, one function for each. A pose may run through its own body; the
-/// sampler rejects it then.
+/// The kinds of poses from which sample_pose() draws, one function for each. A pose may intersect itself; the sampler
+/// then rejects it.
 namespace vesalius::synth::kinds {
 
 Pose idle(Random& random);
@@ -22,27 +22,27 @@ Pose floor_sitting(Random& random);
 Pose lying(Random& random);
 Pose kneeling(Random& random);
 Pose squatting(Random& random);
-/// Every angle uniform in its range, upright.
+/// Returns an upright pose with every angle uniform in its range.
 Pose any(Random& random);
 
 /// Returns a number uniform over [low, high).
 float between(Random& random, float low, float high);
 bool chance(Random& random, float probability);
 
-/// Returns the angles of somebody who stands: legs, trunk, neck and hanging arms.
+/// Returns the angles of a standing person: legs, trunk, neck and hanging arms.
 BodyAngles standing_angles(Random& random);
-/// Returns an arm that hangs, or is swung by so many degrees to the front and to the side.
+/// Returns a hanging arm that is swung by so many degrees to the front and to the side.
 ArmAngles hanging_arm(Random& random, float front, float side);
-/// Returns the angle of the ankle that puts the sole level under a pelvis of that pitch.
+/// Returns the ankle's angle at which the sole is level, given the pitch of the pelvis.
 float level_ankle(const LegAngles& leg, float pitch);
 
-/// Returns where a point fixed to a bone is in the stick figure's frame; `offset_m` is seen from the bone's head, at
-/// rest. For the left side: `left` false takes the mirror image.
+/// Returns the position of a point that is fixed to a bone, in the stick figure's frame. `offset_m` is the point's
+/// place from the bone's head at rest, for the left side; if `left` is false, it is mirrored.
 Eigen::Vector3f point_on(const Pose& pose, Bone bone, const Eigen::Vector3f& offset_m);
-/// Returns the vector for the left side, its mirror image (x -> -x) for the right.
+/// Returns the vector itself for the left side and its mirror image (x -> -x) for the right.
 Eigen::Vector3f on_side(const Eigen::Vector3f& v, bool left);
 
-/// These change the arms alone, whatever the legs do. Hands keep clear of trunk and legs as far as the pose lets them.
+/// These functions change only the arms, whatever the legs do. Hands avoid trunk and legs as far as the pose allows.
 void cross_arms(Pose& pose, Random& random);
 void fold_behind(Pose& pose, Random& random);
 void put_on_hip(Pose& pose, bool left, Random& random);

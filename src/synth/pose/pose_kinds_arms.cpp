@@ -17,13 +17,14 @@ Vector3f point_on(const Pose& pose, Bone bone, const Vector3f& offset_m) {
 
 namespace {
 
-/// A random point of a box, metres.
+/// Draws a point in a box, metres.
 Vector3f in_box(Random& random, const Vector3f& low, const Vector3f& high) {
   const float x = between(random, low.x(), high.x()), y = between(random, low.y(), high.y());
   return {x, y, between(random, low.z(), high.z())};
 }
 
-/// Brings the wrist to a point fixed to a bone; the elbow's direction turns with the chest. Both for the left side.
+/// Moves the wrist to a point that is fixed to a bone. The elbow's direction turns with the chest. Both are given for
+/// the left side.
 void reach_point(Pose& pose, bool left, Bone bone, const Vector3f& offset_m, const Vector3f& elbow_towards) {
   const Vector3f target = point_on(pose, bone, on_side(offset_m, left));
   const Eigen::Quaternionf chest = world_rotations(pose)[index(Bone::chest)];

@@ -8,13 +8,13 @@ namespace {
 
 constexpr float kDegree = 3.14159265F / 180.F;
 
-/// Bend of the knee that puts the foot as low as the seat, for a thigh that rises by so many degrees: shin and thigh
-/// are about as long, and hips lie some 7 % of that length higher above the ground than ankles do.
+/// Returns the bend of the knee that puts the foot as low as the seat, for a thigh that rises by so many degrees. Shin
+/// and thigh are about equally long, and hips are some 7 % of that length higher above the ground than ankles.
 float knee_for_rise(float rise) {
   return rise + std::asin(std::clamp(std::sin(rise * kDegree) + 0.07F, -1.F, 1.F)) / kDegree;
 }
 
-/// Hands of somebody who sits: lap, table, armrests, phone, face, or crossed.
+/// Places the hands of a sitting person: in the lap, on a table or armrests, at a phone or the face, or crossed.
 void seat_hands(Pose& pose, Random& random) {
   const std::uint32_t what = random.below(12);
   if (what == 0) return cross_arms(pose, random);
@@ -30,7 +30,7 @@ void seat_hands(Pose& pose, Random& random) {
   if (what == 11 && chance(random, 0.3F)) phone_to_ear(pose, chance(random, 0.5F), random);
 }
 
-/// Arms on armrests or hanging, before the hands find something to do.
+/// Returns an arm on an armrest or hanging, before the hand is placed.
 ArmAngles seat_arm(Random& random) {
   ArmAngles arm = hanging_arm(random, between(random, 0.F, 35.F), between(random, 10.F, 30.F));
   arm.elbow = between(random, 30.F, 95.F);
@@ -38,7 +38,7 @@ ArmAngles seat_arm(Random& random) {
   return arm;
 }
 
-/// One leg over the other: knee on knee, or ankle on knee.
+/// Crosses the legs, knee on knee or ankle on knee.
 void cross_legs(BodyAngles& angles, Random& random) {
   const std::size_t upper = random.below(2);
   LegAngles& over = angles.legs[upper];
@@ -68,7 +68,7 @@ BodyAngles seat_angles(Random& random) {
   const bool stretched = chance(random, 0.25F);
   for (std::size_t side = 0; side < 2; ++side) {
     LegAngles& leg = angles.legs[side];
-    const float thigh = between(random, 80.F, 100.F);  // from hanging down
+    const float thigh = between(random, 80.F, 100.F);  // angle from hanging down
     leg.flexion = angles.pitch + thigh;
     leg.abduction = between(random, 0.F, 25.F);
     leg.external = between(random, -10.F, 10.F);
@@ -143,18 +143,18 @@ Pose lie_on_front(Random& random) {
     leg.flexion = angles.pitch - 90.F + between(random, -5.F, 3.F);
     leg.knee = chance(random, 0.2F) ? between(random, 20.F, 100.F) : between(random, 0.F, 15.F);
     leg.ankle = between(random, -50.F, -42.F);
-    if (chance(random, 0.5F)) continue;  // else a hand beside or under the head
+    if (chance(random, 0.5F)) continue;  // otherwise a hand is beside or under the head
     ArmAngles& arm = angles.arms[side];
     arm.elevation = between(random, 90.F, 140.F);
-    arm.plane = between(random, -20.F, 0.F);  // no lower than the bed
+    arm.plane = between(random, -20.F, 0.F);  // not below the bed
     arm.external = between(random, 60.F, 90.F);
     arm.elbow = between(random, 60.F, 130.F);
   }
   return pose_of(within_range(angles));
 }
 
-/// Shin of somebody who kneels, the thigh at so many degrees to the front of plumb: the ankle lies higher than the knee
-/// by what the foot needs, stretched behind or standing on its toes.
+/// Sets the shin of a kneeling person whose thigh is so many degrees to the front of vertical. The ankle is higher than
+/// the knee by the height of the foot, which is stretched backwards or stands on its toes.
 void rest_on_knee(LegAngles& leg, float thigh, bool on_toes) {
   leg.knee = 90.F + thigh + (on_toes ? 17.F : 12.F);
   leg.ankle = on_toes ? 25.F : -50.F;
@@ -224,7 +224,8 @@ Pose kneeling(Random& random) {
   angles.pitch = between(random, -5.F, 30.F);
   angles.trunk.flexion = between(random, 0.F, 40.F);
   const bool one_knee = chance(random, 0.5F);
-  const float thigh = one_knee ? between(random, -15.F, 10.F) : between(random, 0.F, 50.F);  // to the front of plumb
+  const float thigh =
+      one_knee ? between(random, -15.F, 10.F) : between(random, 0.F, 50.F);  // degrees to the front of vertical
   const bool on_toes = chance(random, 0.5F);
   for (LegAngles& leg : angles.legs) {
     leg.flexion = angles.pitch + thigh;

@@ -10,7 +10,8 @@ namespace {
 constexpr float kPi = 3.14159265F;
 constexpr float kDegree = kPi / 180.F;
 
-/// Tilts the pelvis to the side until both feet are level, as far as hips go; the trunk straightens up.
+/// Tilts the pelvis to the side until both feet are level, as far as the hips allow. The trunk compensates and stays
+/// upright.
 void level_feet(BodyAngles& angles) {
   constexpr float kMost = 10.F;
   const StickFigure figure = stick_figure(pose_of(angles));
@@ -21,15 +22,15 @@ void level_feet(BodyAngles& angles) {
   angles.trunk.lateral -= roll;
 }
 
-/// 1 at phase `at`, falling to 0 at `width` to either side; phases are shares of a stride.
+/// Returns 1 at phase `at`, falling to 0 at the distance `width` on either side. Phases are shares of a stride.
 float bump(float phase, float at, float width) {
   float away = std::abs(phase - at);
   away = std::min(away, 1.F - away);
   return away >= width ? 0.F : 0.5F + 0.5F * std::cos(kPi * away / width);
 }
 
-/// Leg at a phase of the stride (0: heel strike). Fitted by eye to the sagittal curves of normal gait, natural
-/// cadence: Winter, "The Biomechanics and Motor Control of Human Gait" (1991).
+/// Returns the leg at a phase of the stride (0 is heel strike). The curve was fitted by eye to the sagittal curves of
+/// normal gait at natural cadence: Winter, "The Biomechanics and Motor Control of Human Gait" (1991).
 LegAngles stride(float phase, float length) {
   LegAngles leg;
   leg.flexion = length * (8.F + 22.F * std::cos(2.F * kPi * phase));
@@ -57,7 +58,7 @@ ArmAngles hanging_arm(Random& random, float front, float side) {
 BodyAngles standing_angles(Random& random) {
   BodyAngles angles;
   angles.pitch = between(random, -4.F, 6.F);
-  const int bent_leg = static_cast<int>(random.below(4));  // 0, 1: weight on the other leg
+  const int bent_leg = static_cast<int>(random.below(4));  // for 0 and 1 the weight is on the other leg
   for (int side = 0; side < 2; ++side) {
     LegAngles& leg = angles.legs[side];
     leg.abduction = between(random, 0.F, 12.F);
@@ -151,7 +152,7 @@ Pose bending(Random& random) {
   const float knees = between(random, 0.F, 70.F);
   for (LegAngles& leg : angles.legs) {
     leg.knee = std::max(0.F, knees + between(random, -10.F, 10.F));
-    leg.flexion = angles.pitch + 0.5F * leg.knee + between(random, -8.F, 0.F);  // hips move back to keep the balance
+    leg.flexion = angles.pitch + 0.5F * leg.knee + between(random, -8.F, 0.F);  // hips move back for balance
     leg.ankle = level_ankle(leg, angles.pitch);
   }
   const float chest = angles.pitch + angles.trunk.flexion;
@@ -191,7 +192,7 @@ Pose carrying(Random& random) {
     hold_in_front(pose, random);
     return pose;
   }
-  const bool left = chance(random, 0.5F), both = chance(random, 0.3F);  // bags hang from the hands
+  const bool left = chance(random, 0.5F), both = chance(random, 0.3F);  // as if bags hung from the hands
   if (left || both) pose.l_grip = 1.F;
   if (!left || both) pose.r_grip = 1.F;
   return pose;

@@ -15,14 +15,15 @@ namespace vesalius::synth {
 namespace {
 
 constexpr float kMaxWeight = 1000.F;
-/// Of people who sit on the floor one in three is possible (measured; of others more): so many tries never all fail.
+/// At least one in three draws of a kind is possible (measured: one in three for people who sit on the floor, more for
+/// others), so that many tries never fail.
 constexpr int kTries = 300;
 
 struct Kind {
   const char* name;
   float PoseSamplerOptions::*weight;
   Pose (*draw)(Random&);
-  std::optional<Posture> posture;  ///< nothing: as it turns out
+  std::optional<Posture> posture;  ///< empty if it follows from the pose
   const char* help;
 };
 

@@ -8,14 +8,14 @@
 
 namespace vesalius::synth {
 
-/// A pose and what holds the person up in it.
+/// A pose and its posture.
 struct SampledPose {
   Pose pose;
   Posture posture = Posture::standing;
 };
 
-/// How often each kind of pose is drawn: weights, of any sum above 0. All joints stay within the ranges of
-/// joint_angles.h.
+/// How often each kind of pose is drawn. The numbers are weights; their sum must be above 0. All joints stay within the
+/// ranges of joint_angles.h.
 struct PoseSamplerOptions {
   float idle = 1.0F;
   float walking = 1.0F;
@@ -37,8 +37,8 @@ struct PoseSamplerOptions {
 
 void visit_options(const std::string& prefix, PoseSamplerOptions& options, OptionVisitor& visitor);
 
-/// Draws a pose that needs no files. Same options and state of `random`, same pose. Throws UsageError where no weight
-/// is above 0, or one is not a number from 0 to 1000.
+/// Draws a pose without any files. The same options and state of `random` give the same pose. Throws UsageError if no
+/// weight is above 0, or one is not a number from 0 to 1000.
 SampledPose sample_pose(const PoseSamplerOptions& options, Random& random);
 
 }  // namespace vesalius::synth

@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Collects the names of weights, and sets all to 0 but one.
+/// Collects the names of the weights, and sets all of them except one to 0.
 class OnlyOne : public OptionVisitor {
  public:
   explicit OnlyOne(std::string name) : name_(std::move(name)) {}
@@ -54,7 +54,7 @@ std::vector<SampledPose> sampled(const std::string& kind, int count) {
   return out;
 }
 
-/// Mean place of a point over poses of a kind.
+/// Returns the mean position of a point over poses of a kind.
 template <class F>
 Vector3f mean(const std::vector<SampledPose>& poses, F&& point) {
   Vector3f sum = Vector3f::Zero();
@@ -62,7 +62,7 @@ Vector3f mean(const std::vector<SampledPose>& poses, F&& point) {
   return sum / static_cast<float>(poses.size());
 }
 
-TEST(PoseSampler, PosesAreDifferentPossibleAndHeldUpAsTheySay) {
+TEST(PoseSampler, DrawsDifferentPossiblePosesWithTheirPosture) {
   const std::map<std::string, Posture> kinds = {
       {"idle", Posture::standing},         {"walking", Posture::standing},
       {"reaching", Posture::standing},     {"waving", Posture::standing},
@@ -85,7 +85,7 @@ TEST(PoseSampler, PosesAreDifferentPossibleAndHeldUpAsTheySay) {
   }
 }
 
-TEST(PoseSampler, HandsAreWhereTheKindSays) {
+TEST(PoseSampler, PutsHandsWhereTheKindSays) {
   const auto left_wrist = [](const StickFigure& f) { return f.head_of(Bone::l_hand); };
   const auto right_wrist = [](const StickFigure& f) { return f.head_of(Bone::r_hand); };
   const std::vector<SampledPose> crossed = sampled("arms-crossed", 50);
@@ -103,7 +103,7 @@ TEST(PoseSampler, HandsAreWhereTheKindSays) {
   }
 }
 
-TEST(PoseSampler, FeetOfWhoStandsAreLevel) {
+TEST(PoseSampler, KeepsTheFeetOfStandingPeopleLevel) {
   for (const char* kind : {"idle", "arms-crossed", "hands-on-hips"}) {
     for (const SampledPose& p : sampled(kind, 50)) {
       const StickFigure f = stick_figure(p.pose);
@@ -113,7 +113,7 @@ TEST(PoseSampler, FeetOfWhoStandsAreLevel) {
   }
 }
 
-TEST(PoseSampler, AnyReachesAllOfAJointsRange) {
+TEST(PoseSampler, CoversTheRangesOfAllJoints) {
   float lowest = 180.F, highest = 0.F;
   for (const SampledPose& p : sampled("any", 300)) {
     const float elbow = arm_angles(p.pose, true).elbow;
@@ -124,14 +124,14 @@ TEST(PoseSampler, AnyReachesAllOfAJointsRange) {
   EXPECT_GT(highest, 135.F);
 }
 
-TEST(PoseSampler, SameSeedSamePose) {
+TEST(PoseSampler, IsTheSameForTheSameSeed) {
   Random a(1, 2), b(1, 2), c(1, 3);
   const SampledPose first = sample_pose({}, a), again = sample_pose({}, b), other = sample_pose({}, c);
   for (std::size_t j = 0; j < kBoneCount; ++j) EXPECT_EQ(first.pose.local[j].coeffs(), again.pose.local[j].coeffs());
   EXPECT_GT(largest_angle(first.pose, other.pose), 0.02F);
 }
 
-TEST(PoseSampler, WeightsDecideTheShares) {
+TEST(PoseSampler, DrawsKindsByTheirWeights) {
   PoseSamplerOptions options = only("lying");
   options.idle = 3.F;
   Random random(9);
@@ -140,7 +140,7 @@ TEST(PoseSampler, WeightsDecideTheShares) {
   EXPECT_NEAR(lying, 250, 55) << "4 standard deviations";
 }
 
-TEST(PoseSampler, RefusesWeightsThatCannotBeMeant) {
+TEST(PoseSampler, RefusesInvalidWeights) {
   Random random(1);
   PoseSamplerOptions none = only("idle");
   none.idle = 0.F;

@@ -30,7 +30,7 @@ Pose any_pose(std::uint64_t seed) {
   return pose;
 }
 
-TEST(Bone, NamesAreFoundAndUnique) {
+TEST(Bone, HasAUniqueNameByWhichItIsFound) {
   std::set<std::string> names;
   for (int b = 0; b < kBoneCount; ++b) {
     const auto bone = static_cast<Bone>(b);
@@ -42,7 +42,7 @@ TEST(Bone, NamesAreFoundAndUnique) {
   EXPECT_EQ(bone_name(Bone::r_shin), "r_shin");
 }
 
-TEST(Bone, ParentsComeFirstAndMirrorWithTheirChildren) {
+TEST(Bone, ComesAfterItsParentAndMirrorsWithIt) {
   EXPECT_EQ(parent(Bone::pelvis), Bone::pelvis);
   for (int b = 1; b < kBoneCount; ++b) {
     const auto bone = static_cast<Bone>(b);
@@ -56,10 +56,10 @@ TEST(Bone, ParentsComeFirstAndMirrorWithTheirChildren) {
   EXPECT_EQ(parent(Bone::l_thigh), Bone::pelvis);
 }
 
-TEST(Pose, WorldRotationsAreProductsFromThePelvisOutwards) {
+TEST(Pose, HasWorldRotationsThatAreProductsFromThePelvis) {
   Pose pose;
-  pose[Bone::pelvis] = turn(kPi / 2, Eigen::Vector3f::UnitY());    // faces its left
-  pose[Bone::l_thigh] = turn(-kPi / 2, Eigen::Vector3f::UnitX());  // knee up to the front
+  pose[Bone::pelvis] = turn(kPi / 2, Eigen::Vector3f::UnitY());    // the person faces their left
+  pose[Bone::l_thigh] = turn(-kPi / 2, Eigen::Vector3f::UnitX());  // the knee is lifted to the front
   pose[Bone::l_shin] = turn(kPi / 2, Eigen::Vector3f::UnitX());
   const auto world = world_rotations(pose);
   const auto direction = [&](Bone bone) { return (world[index(bone)] * rest_direction(bone)).eval(); };
@@ -69,14 +69,14 @@ TEST(Pose, WorldRotationsAreProductsFromThePelvisOutwards) {
   EXPECT_TRUE(direction(Bone::l_upper_arm).isApprox(-Eigen::Vector3f::UnitZ(), 1e-5F));
 }
 
-TEST(Pose, WorldRotationsGiveThePoseBack) {
+TEST(Pose, IsRecoveredFromItsWorldRotations) {
   const Pose pose = any_pose(1);
   const Pose again = from_world_rotations(world_rotations(pose));
   EXPECT_LT(largest_angle(pose, again), 1e-3F);
   for (int b = 0; b < kBoneCount; ++b) EXPECT_NEAR(again.local[b].norm(), 1.F, 1e-5F);
 }
 
-TEST(Pose, AMirrorReflectsWorldRotations) {
+TEST(Pose, HasReflectedWorldRotationsInAMirror) {
   const Pose pose = any_pose(2);
   const auto world = world_rotations(pose);
   const auto seen = world_rotations(mirrored(pose));
@@ -87,7 +87,7 @@ TEST(Pose, AMirrorReflectsWorldRotations) {
   }
 }
 
-TEST(Pose, MirroredTwiceIsTheSame) {
+TEST(Pose, IsTheSameWhenMirroredTwice) {
   const Pose pose = any_pose(3);
   const Pose again = mirrored(mirrored(pose));
   for (int b = 0; b < kBoneCount; ++b) EXPECT_EQ(again.local[b].coeffs(), pose.local[b].coeffs());
@@ -95,7 +95,7 @@ TEST(Pose, MirroredTwiceIsTheSame) {
   EXPECT_EQ(mirrored(pose).l_grip, pose.r_grip);
 }
 
-TEST(Pose, LargestAngleIsTheLargestOfOneJoint) {
+TEST(Pose, DiffersByTheLargestAngleOfOneJoint) {
   const Pose a = any_pose(4);
   Pose b = a;
   EXPECT_NEAR(largest_angle(a, b), 0.F, 1e-3F);
@@ -106,7 +106,7 @@ TEST(Pose, LargestAngleIsTheLargestOfOneJoint) {
   EXPECT_NEAR(largest_angle(a, b), 0.5F, 1e-4F);
 }
 
-TEST(Pose, HeadingDoesNotCount) {
+TEST(Pose, DoesNotDifferByItsHeading) {
   const Pose a = any_pose(5);
   Pose b = a;
   b[Bone::pelvis] = turn(2.F, Eigen::Vector3f::UnitY()) * a[Bone::pelvis];

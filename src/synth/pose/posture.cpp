@@ -7,8 +7,8 @@
 namespace vesalius::synth {
 namespace {
 
-/// Rough share of the body's mass at the middle of a bone; Winter, table 4.1: trunk with head 0.578, arms 0.05 each,
-/// thighs 0.1, shins with feet 0.061 each.
+/// Approximate share of the body's mass at the middle of each bone; Winter, table 4.1: trunk with head 0.578, arms 0.05
+/// each, thighs 0.1, shins with feet 0.061 each.
 constexpr std::array<float, kBoneCount> kMass = {0.142F,  0.139F,  0.216F, 0.02F,   0.061F, 0.F,    0.028F,
                                                  0.016F,  0.006F,  0.F,    0.028F,  0.016F, 0.006F, 0.1F,
                                                  0.0465F, 0.0145F, 0.1F,   0.0465F, 0.0145F};
@@ -29,7 +29,7 @@ float lowest_y(const StickFigure& figure) {
   return lowest;
 }
 
-/// Distance on the floor from the weight to the line between the middles of the feet.
+/// Returns the horizontal distance of the centre of mass from the line between the middles of the feet.
 float out_of_balance_m(const StickFigure& figure) {
   const auto middle = [&](Bone foot) {
     const Eigen::Vector3f m = 0.5F * (figure.head_of(foot) + figure.tail_of(foot));
@@ -41,7 +41,8 @@ float out_of_balance_m(const StickFigure& figure) {
   return (p - (a + std::clamp(along, 0.F, 1.F) * (b - a))).norm();
 }
 
-/// A knee carries: it is as low as anything, and no higher than its ankle by more than a foot's height.
+/// Returns whether a knee carries weight. It does if no point is lower and it is not higher than its ankle by more than
+/// a foot's height.
 bool kneels(const StickFigure& figure, Bone shin, float floor_y) {
   const float knee = figure.head_of(shin).y();
   return knee < floor_y + 0.10F && knee < figure.tail_of(shin).y() + 0.08F;

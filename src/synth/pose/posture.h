@@ -4,9 +4,9 @@
 
 namespace vesalius::synth {
 
-/// Returns what a person in this pose needs under them, judged by where bones point and what is lowest: lying where
-/// trunk and pelvis are near level and low, kneeling on a knee that is as low as the foot, sitting where the pelvis is
-/// low and the feet do not stand under the weight; else standing (squatting and bending too).
+/// Returns the posture of a pose from the directions of bones and the lowest points. The person lies if trunk and
+/// pelvis are low and nearly level, kneels if a knee is as low as the foot, and sits if the pelvis is low and the feet
+/// are not under the body's weight. Otherwise the person stands; this includes squatting and bending.
 Posture classify_posture(const Pose& pose);
 
 }  // namespace vesalius::synth

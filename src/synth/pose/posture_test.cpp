@@ -15,7 +15,7 @@ BodyAngles legs(float flexion, float knee, float ankle = 0.F) {
 
 Posture posture_of(const BodyAngles& angles) { return classify_posture(pose_of(angles)); }
 
-TEST(ClassifyPosture, StandsWithFeetUnderTheWeight) {
+TEST(ClassifyPosture, FindsStandingPeopleByFeetUnderTheirWeight) {
   EXPECT_EQ(posture_of({}), Posture::standing);
   BodyAngles bent = legs(80.F, 10.F, 10.F);
   bent.pitch = 70.F;
@@ -29,7 +29,7 @@ TEST(ClassifyPosture, StandsWithFeetUnderTheWeight) {
   EXPECT_EQ(posture_of(one_leg), Posture::standing);
 }
 
-TEST(ClassifyPosture, SitsWhereTheFeetCarryNothing) {
+TEST(ClassifyPosture, FindsSittingPeopleByFeetThatCarryNoWeight) {
   EXPECT_EQ(posture_of(legs(90.F, 90.F)), Posture::sitting) << "on a chair";
   EXPECT_EQ(posture_of(legs(90.F, 10.F)), Posture::sitting) << "on the floor, legs stretched";
   BodyAngles sofa = legs(75.F, 60.F);
@@ -37,7 +37,7 @@ TEST(ClassifyPosture, SitsWhereTheFeetCarryNothing) {
   EXPECT_EQ(posture_of(sofa), Posture::sitting);
 }
 
-TEST(ClassifyPosture, LiesOnBackFrontAndSides) {
+TEST(ClassifyPosture, FindsPeopleWhoLieOnBackFrontAndSides) {
   for (const float pitch : {-90.F, 90.F}) {
     BodyAngles angles;
     angles.pitch = pitch;
@@ -48,7 +48,7 @@ TEST(ClassifyPosture, LiesOnBackFrontAndSides) {
   EXPECT_EQ(posture_of(side), Posture::lying);
 }
 
-TEST(ClassifyPosture, KneelsOnOneOrTwoKneesOrAllFours) {
+TEST(ClassifyPosture, FindsPeopleWhoKneelOnOneOrTwoKneesOrAllFours) {
   EXPECT_EQ(posture_of(legs(0.F, 102.F, -50.F)), Posture::kneeling);
   BodyAngles one = legs(0.F, 102.F, -50.F);
   one.legs[0] = {.flexion = 90.F, .knee = 90.F};
@@ -59,7 +59,7 @@ TEST(ClassifyPosture, KneelsOnOneOrTwoKneesOrAllFours) {
   EXPECT_EQ(posture_of(fours), Posture::kneeling);
 }
 
-TEST(ClassifyPosture, IsTheSameInAMirror) {
+TEST(ClassifyPosture, GivesTheSameInAMirror) {
   BodyAngles angles = legs(0.F, 102.F, -50.F);
   angles.legs[1] = {.flexion = 90.F, .knee = 90.F};
   EXPECT_EQ(classify_posture(mirrored(pose_of(angles))), posture_of(angles));

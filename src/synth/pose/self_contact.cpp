@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// What a capsule belongs to; those of one region are never compared, nor are neighbours.
+/// The region of a capsule. Capsules of one region are never compared, nor are those of neighbouring regions.
 enum class Region : std::uint8_t {
   hips,
   waist,
@@ -27,7 +27,7 @@ enum class Region : std::uint8_t {
   r_lower_leg
 };
 
-/// Round piece of the body: from one point of a bone to another, in the bone's rest frame, metres.
+/// A rounded piece of the body from one point of a bone to another, in the bone's rest frame, metres.
 struct Shape {
   Region region;
   Bone bone;
@@ -35,8 +35,9 @@ struct Shape {
   float radius;
 };
 
-// Sizes of a slim adult, 1.72 m tall, measured along the bones' rest directions: a trunk of capsules lying across,
-// since it is wider than deep. Thighs and upper arms begin below the joint, where they leave the trunk.
+// These are the sizes of a slim adult 1.72 m tall, measured along the bones' rest directions. The trunk consists of
+// capsules that lie across, since it is wider than deep. Thighs and upper arms begin below the joint, where they leave
+// the trunk.
 constexpr std::array<Shape, 25> kShapes{{
     {Region::hips, Bone::pelvis, {-0.07F, 0.02F, -0.02F}, {0.07F, 0.02F, -0.02F}, 0.105F},
     {Region::waist, Bone::spine, {-0.05F, 0.06F, 0.F}, {0.05F, 0.06F, 0.F}, 0.095F},
@@ -65,7 +66,7 @@ constexpr std::array<Shape, 25> kShapes{{
     {Region::head, Bone::head, {0.F, 0.02F, 0.05F}, {0.F, 0.06F, 0.06F}, 0.05F},
 }};
 
-/// Regions that meet in a joint or fold onto each other, where contact is how bodies are built.
+/// Returns whether two regions meet in a joint or fold onto each other, so that contact between them is normal.
 bool neighbours(Region a, Region b) {
   if (a > b) std::swap(a, b);
   if (a == b) return true;
@@ -98,7 +99,7 @@ struct Segment {
   Vector3f to;
 };
 
-/// Distance between two segments: Ericson, "Real-Time Collision Detection", section 5.1.9.
+/// Returns the distance between two segments (Ericson, "Real-Time Collision Detection", section 5.1.9).
 float distance(const Segment& first, const Segment& second) {
   const Vector3f d1 = first.to - first.from, d2 = second.to - second.from, r = first.from - second.from;
   const float a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), b = d1.dot(d2);

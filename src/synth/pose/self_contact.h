@@ -4,14 +4,14 @@
 
 namespace vesalius::synth {
 
-/// Deepest overlap of two limbs, or of a limb with trunk or head, on a body of standard proportions and rounded
-/// shapes, metres; 0 or less where nothing touches. Limbs that meet in a joint are not compared.
+/// Returns the deepest overlap in metres of two limbs, or of a limb with trunk or head, on a body of standard
+/// proportions with rounded shapes. It is 0 or less if nothing touches. Limbs that meet in a joint are not compared.
 float self_overlap_m(const Pose& pose);
 
-/// Flesh gives way and bodies differ: so much overlap is a touch (hands on hips, crossed arms and legs).
+/// Largest overlap that counts as a touch (hands on hips, crossed arms and legs), since flesh yields and bodies differ.
 inline constexpr float kTouch_m = 0.03F;
 
-/// Returns whether the body runs through itself by more than a touch.
+/// Returns whether the body intersects itself by more than a touch.
 bool intersects_itself(const Pose& pose);
 
 }  // namespace vesalius::synth

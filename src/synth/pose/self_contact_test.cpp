@@ -17,7 +17,7 @@ Pose with_hand_at(const Vector3f& offset_from_shoulder) {
   return pose;
 }
 
-TEST(SelfContact, LeavesPlainPosesAlone) {
+TEST(SelfContact, FindsNothingInPlainPoses) {
   EXPECT_LT(self_overlap_m(Pose()), 0.F) << "a T";
   EXPECT_FALSE(intersects_itself(pose_of({}))) << "arms hang";
   BodyAngles sits;
@@ -28,13 +28,13 @@ TEST(SelfContact, LeavesPlainPosesAlone) {
   EXPECT_FALSE(intersects_itself(pose_of(bent_arms))) << "a forearm folds onto its upper arm";
 }
 
-TEST(SelfContact, SeesHandsInTheBody) {
+TEST(SelfContact, FindsHandsInTheBody) {
   EXPECT_TRUE(intersects_itself(with_hand_at({-0.22F, -0.25F, 0.F}))) << "in the chest";
   EXPECT_TRUE(intersects_itself(with_hand_at({-0.22F, 0.25F, 0.02F}))) << "in the head";
   EXPECT_FALSE(intersects_itself(with_hand_at({-0.22F, -0.25F, 0.25F}))) << "in front of it";
 }
 
-TEST(SelfContact, SeesLegsInEachOther) {
+TEST(SelfContact, FindsLegsInEachOther) {
   BodyAngles angles;
   for (LegAngles& leg : angles.legs) leg.abduction = -15.F;
   EXPECT_TRUE(intersects_itself(pose_of(angles)));

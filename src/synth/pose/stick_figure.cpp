@@ -3,19 +3,19 @@
 namespace vesalius::synth {
 namespace {
 
-/// Shares of the stature.
+/// The proportions of a bone as shares of the stature.
 struct Proportion {
   float length;
-  std::array<float, 3> offset;  ///< head of the bone from the head of its parent, at rest
+  std::array<float, 3> offset;  ///< from the head of its parent to its own, at rest
 };
 
 constexpr std::array<Proportion, kBoneCount> kProportions{{
-    {0.060F, {0.F, 0.F, 0.F}},         // pelvis: from between the hips up to the lumbar spine
+    {0.060F, {0.F, 0.F, 0.F}},         // pelvis: from midway between the hips to the lumbar spine
     {0.110F, {0.F, 0.060F, -0.010F}},  // spine
-    {0.120F, {0.F, 0.110F, 0.F}},      // chest, up to the neck
+    {0.120F, {0.F, 0.110F, 0.F}},      // chest: up to the neck
     {0.052F, {0.F, 0.120F, 0.F}},      // neck
     {0.130F, {0.F, 0.052F, 0.010F}},   // head
-    {0.099F, {0.014F, 0.112F, 0.F}},   // clavicles: the joints lie inside of the shoulders' width
+    {0.099F, {0.014F, 0.112F, 0.F}},   // clavicles: the joints are within the width of the shoulders
     {0.186F, {0.099F, 0.F, 0.F}},      // upper arms
     {0.146F, {0.186F, 0.F, 0.F}},      // forearms
     {0.108F, {0.146F, 0.F, 0.F}},      // hands
@@ -23,7 +23,7 @@ constexpr std::array<Proportion, kBoneCount> kProportions{{
     {0.186F, {-0.099F, 0.F, 0.F}},     //
     {0.146F, {-0.186F, 0.F, 0.F}},     //
     {0.108F, {-0.146F, 0.F, 0.F}},     //
-    {0.245F, {0.055F, 0.F, 0.F}},      // thighs: the joints lie inside of the hips' width
+    {0.245F, {0.055F, 0.F, 0.F}},      // thighs: the joints are within the width of the hips
     {0.246F, {0.F, -0.245F, 0.F}},     // shins
     {0.110F, {0.F, -0.246F, 0.F}},     // feet: in front of the ankle
     {0.245F, {-0.055F, 0.F, 0.F}},     //

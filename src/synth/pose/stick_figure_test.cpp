@@ -7,7 +7,7 @@ namespace {
 
 constexpr float kPi = 3.14159265F;
 
-TEST(StickFigure, AtRestHasTheProportionsOfAnAdult) {
+TEST(StickFigure, HasTheProportionsOfAnAdult) {
   const StickFigure figure = stick_figure(Pose());
   const float ankle_m = 0.039F * kStickStature_m;  // Drillis and Contini: the rest of the height is below the ankle
   const float floor_y = figure.tail_of(Bone::l_shin).y() - ankle_m;
@@ -20,7 +20,7 @@ TEST(StickFigure, AtRestHasTheProportionsOfAnAdult) {
   EXPECT_GT(figure.tail_of(Bone::r_foot).z(), 0.F);
 }
 
-TEST(StickFigure, BonesMeetAndKeepTheirLengths) {
+TEST(StickFigure, HasConnectedBonesOfConstantLength) {
   Pose pose;
   for (int b = 0; b < kBoneCount; ++b) {
     pose.local[b] =

@@ -20,7 +20,8 @@ namespace {
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
 
-/// Upright box of the room's frame that holds the camera, some of what it looks at, people and what they sit on.
+/// Returns an upright box in the room's frame that contains the camera, a part of its view, and people with their seats
+/// and beds.
 Eigen::AlignedBox3f extent_of(const Stage& stage, const std::vector<PeopleGroup>& groups,
                               const Isometry3f& room_from_world, Random& random) {
   constexpr float kEyeClear_m = 0.12F;
@@ -43,14 +44,14 @@ Eigen::AlignedBox3f extent_of(const Stage& stage, const std::vector<PeopleGroup>
   return extent;
 }
 
-/// The walls stand about all that is there, some near, some far.
+/// Draws the room around everything that is placed, with some walls near and some far.
 RoomShape draw_room(const SceneOptions& options, const Stage& stage, const std::vector<PeopleGroup>& groups,
                     Random& random) {
   constexpr float kWallGap_m = 0.02F, kSmallest_m = 1.8F;
   RoomShape room;
   room.open = chance(options.open_share, random);
   float yaw = between(-std::numbers::pi / 4, std::numbers::pi / 4, random);
-  if (!stage.groups.empty() && chance(0.5, random)) {  // furniture in use tends to stand square to the walls
+  if (!stage.groups.empty() && chance(0.5, random)) {  // furniture in use often stands parallel to the walls
     const Vector3f front = stage.groups[0].world_from_group.linear().col(2);
     yaw = std::atan2(front.x(), front.z());
   }
@@ -65,7 +66,7 @@ RoomShape draw_room(const SceneOptions& options, const Stage& stage, const std::
   return room;
 }
 
-/// Lamps below the ceiling, some of the light from everywhere.
+/// Adds lamps below the ceiling and ambient light.
 void add_lights(const RoomShape& room, Scene& scene, Random& random) {
   constexpr float kFromWall_m = 0.5F;
   scene.ambient = between(0.3, 0.6, random);
@@ -82,9 +83,9 @@ void add_lights(const RoomShape& room, Scene& scene, Random& random) {
   }
 }
 
-/// How far the surface of a person in the world may stray: so many pixels where they are nearest to the camera.
+/// Returns the allowed error of a person's surface: `detail_px` pixels at their point nearest to the camera.
 float tolerance_m(const View& view, const PosedBody& body, float detail_px) {
-  constexpr float kFlesh_m = 0.3F;  // nearer than the bones
+  constexpr float kFlesh_m = 0.3F;  // the skin is nearer to the camera than the bones
   float nearest_m = std::numeric_limits<float>::max();
   for (const auto* points : {&body.joints, &body.ends}) {
     for (const Vector3f& p : *points) nearest_m = std::min(nearest_m, (view.camera_from_world * p).z());
@@ -92,7 +93,7 @@ float tolerance_m(const View& view, const PosedBody& body, float detail_px) {
   return detail_px * std::max(0.F, nearest_m - kFlesh_m) / std::max(view.camera.fx, view.camera.fy);
 }
 
-/// By day more often than by night; out of sight in a hall it is dim.
+/// Draws the colour outside: more often day than night, and dim beyond a hall's edge.
 Rgb draw_sky(const RoomShape& room, Random& random) {
   const bool day = !room.open && chance(0.7, random);
   const float light = day ? between(0.7, 1.0, random) : between(0.02, 0.2, random);
@@ -156,7 +157,7 @@ void add_people(const std::vector<PersonPlan>& plans, float detail_px, std::vect
   }
 }
 
-/// Whole pieces of black leather or lacquer, which depth cameras see in blotches or not at all.
+/// Makes whole pieces black leather or lacquer, of which depth cameras see only blotches or nothing.
 void darken_furniture(float share, Scene& scene, Random& random) {
   constexpr std::size_t kRoom = 0;
   for (std::size_t i = kRoom + 1; i < scene.meshes.size(); ++i) {

@@ -14,25 +14,25 @@
 namespace vesalius::synth {
 
 struct PlacedPerson {
-  PosedBody body;  ///< all in world coordinates
+  PosedBody body;  ///< body in world coordinates
   Eigen::Isometry3f world_from_body = Eigen::Isometry3f::Identity();
   int mesh = 0;  ///< index in scene.meshes
-  int plan = 0;  ///< index of the plan
+  int plan = 0;  ///< index of the person's plan
 };
 
 struct BuiltScene {
   Scene scene;
   View view;
-  std::vector<PlacedPerson> people;  ///< person i has index i in the images
+  std::vector<PlacedPerson> people;  ///< people; person i has index i in the images
   RoomShape room;
-  std::vector<OrientedBox> solids;  ///< furniture as it was kept apart from people
+  std::vector<OrientedBox> solids;  ///< furniture as boxes that were kept apart from people
 };
 
-/// Puts the people of the plans into a room in front of a camera: standing and kneeling on the floor, sitting on seats
-/// made to fit, lying on beds, sofas or the floor; furniture around them, things in front of them. Nobody is inside
-/// furniture, walls or others by more than 3 cm. Who finds no place after a bounded number of tries is left out.
-/// `models` are pieces of furniture of the user's, standing on y = 0 about the origin. Same arguments, same scene.
-/// Throws UsageError for options that cannot be meant.
+/// Puts the people of the plans into a room in front of a camera. They stand or kneel on the floor, sit on seats that
+/// are made to fit, or lie on beds, sofas or the floor. Furniture stands around them, and some things in front of them.
+/// Nobody is inside furniture, walls or other people by more than 3 cm. People who find no place after a bounded number
+/// of tries are left out. `models` are the user's own pieces of furniture, standing on y = 0 about the origin. The same
+/// arguments give the same scene. Throws UsageError for invalid options.
 BuiltScene build_scene(const SceneOptions& options, const CameraPlacement& placement, const Camera& intrinsics,
                        const std::vector<PersonPlan>& plans, const std::vector<SceneMesh>& models, Random random);
 

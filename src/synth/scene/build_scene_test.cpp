@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(BuildScene, PeopleAreInThePictureWithTheirOwnNumber) {
+TEST(BuildScene, ShowsPeopleUnderTheirOwnNumber) {
   Renderer renderer;
   int seen = 0, all = 0;
   for (std::uint64_t i = 0; i < 60; ++i) {
@@ -33,7 +33,7 @@ TEST(BuildScene, PeopleAreInThePictureWithTheirOwnNumber) {
   EXPECT_GE(seen, all * 9 / 10);
 }
 
-TEST(BuildScene, WhoFacesTheCameraHasTheLeftHandOnTheRightOfThePicture) {
+TEST(BuildScene, ShowsTheLeftHandOfAFacingPersonOnTheRight) {
   SceneOptions options;
   options.furniture_max = 0;
   options.occluder_probability = 0.F;
@@ -55,7 +55,7 @@ TEST(BuildScene, WhoFacesTheCameraHasTheLeftHandOnTheRightOfThePicture) {
 }
 
 // Labels: statistics
-TEST(BuildScene, HeadingsFollowTheFrontalShare) {
+TEST(BuildScene, FollowsTheFrontalShare) {
   int frontal = 0, all = 0;
   SceneOptions options;
   options.furniture_max = 0;
@@ -69,7 +69,7 @@ TEST(BuildScene, HeadingsFollowTheFrontalShare) {
       ++all;
     }
   }
-  // 45 % on purpose and a third of the others by chance; five standard deviations either way
+  // 45 % face the camera on purpose and a third of the others by chance; the tolerance is five standard deviations.
   const double expected = 0.45 + 0.55 / 3.0;
   EXPECT_NEAR(frontal / static_cast<double>(all), expected, 5.0 * std::sqrt(expected * (1.0 - expected) / all));
 }
@@ -83,12 +83,12 @@ bool same(const BuiltScene& a, const BuiltScene& b) {
   return a.view.camera_from_world.matrix() == b.view.camera_from_world.matrix();
 }
 
-TEST(BuildScene, SameSeedSameSceneOtherSeedAnother) {
+TEST(BuildScene, DependsOnTheSeedAlone) {
   EXPECT_TRUE(same(build(7, 3), build(7, 3)));
   EXPECT_FALSE(same(build(7, 3), build(8, 3)));
 }
 
-TEST(BuildScene, EmptyRoomsHaveNobody) {
+TEST(BuildScene, LeavesEmptyRoomsWithoutPeople) {
   const BuiltScene built = build(9, 0);
   EXPECT_TRUE(built.people.empty());
   EXPECT_GE(built.scene.meshes.size(), 1U);
@@ -96,7 +96,7 @@ TEST(BuildScene, EmptyRoomsHaveNobody) {
   EXPECT_EQ(std::ranges::count(out.labels, kBackground), static_cast<std::ptrdiff_t>(out.labels.size()));
 }
 
-TEST(BuildScene, CamerasStandAsMounted) {
+TEST(BuildScene, PlacesCamerasByTheirMounting) {
   for (const char* mounting : {"room", "ceiling", "wheelchair"}) {
     const CameraPlacement placement = camera_placement(mounting);
     int placed = 0;
@@ -111,7 +111,7 @@ TEST(BuildScene, CamerasStandAsMounted) {
   }
 }
 
-TEST(BuildScene, DarkensWholePiecesAndNothingElse) {
+TEST(BuildScene, DarkensOnlyWholePieces) {
   SceneOptions options;
   options.furniture_min = 4;
   options.dark_furniture = 0.F;
@@ -138,7 +138,7 @@ TEST(BuildScene, DarkensWholePiecesAndNothingElse) {
   EXPECT_GE(pieces, 2);
 }
 
-TEST(BuildScene, SomethingLargeStandsCloseAsOftenAsAsked) {
+TEST(BuildScene, PlacesSomethingLargeCloseWithTheGivenProbability) {
   SceneOptions options;
   options.furniture_max = 0;
   options.occluder_probability = 0.F;
@@ -156,7 +156,7 @@ TEST(BuildScene, SomethingLargeStandsCloseAsOftenAsAsked) {
   EXPECT_GE(near_pieces(1.F), 40);
 }
 
-TEST(BuildScene, UsesTheModelsGiven) {
+TEST(BuildScene, UsesTheGivenModels) {
   SceneMesh model;
   model.vertices = {{-0.2F, 0.F, -0.2F}, {0.2F, 0.F, -0.2F}, {0.2F, 0.F, 0.2F}, {0.F, 0.5F, 0.F}};
   model.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
@@ -170,7 +170,7 @@ TEST(BuildScene, UsesTheModelsGiven) {
   EXPECT_GT(found, 10);
 }
 
-TEST(BuildScene, SaysWhatCannotBeMeant) {
+TEST(BuildScene, NamesInvalidOptions) {
   SceneOptions options;
   options.furniture_min = 5;
   options.furniture_max = 2;

@@ -13,7 +13,7 @@ using Eigen::Vector3f;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(CameraPose, LevelLooksAlongMinusZWithTheSkyUp) {
+TEST(CameraPose, LooksAlongMinusZWhenLevel) {
   const Eigen::Isometry3f pose = CameraPose{1.5F, 0.F, 0.F}.world_from_camera();
   EXPECT_TRUE(pose.linear().isUnitary(1e-6F));
   EXPECT_NEAR(pose.linear().determinant(), 1.F, 1e-6F);
@@ -27,11 +27,11 @@ TEST(CameraPose, PitchTiltsDownAndRollTurnsTheHorizon) {
   const Vector3f axis = down.linear().col(2);
   EXPECT_NEAR(axis.y(), -std::sin(0.5F), 1e-6F);
   EXPECT_NEAR(axis.z(), -std::cos(0.5F), 1e-6F);
-  // Clockwise roll: the camera's right side drops.
+  // With a clockwise roll the camera's right side goes down.
   EXPECT_NEAR((CameraPose{1.F, 0.F, 0.3F}.world_from_camera().linear().col(0)).y(), -std::sin(0.3F), 1e-6F);
 }
 
-TEST(CameraPose, StaysWithinItsOptions) {
+TEST(CameraPose, StaysWithinTheOptions) {
   for (const char* mounting : {"room", "ceiling", "wheelchair"}) {
     const CameraPlacement options = camera_placement(mounting);
     check(options);
@@ -65,7 +65,7 @@ TEST(CameraPose, LooksAtItsTarget) {
   }
 }
 
-TEST(CameraPose, SaysWhatCannotBeMeant) {
+TEST(CameraPose, NamesInvalidOptions) {
   EXPECT_THAT([] { camera_placement("roof"); }, ThrowsMessage<UsageError>(HasSubstr("room, ceiling or wheelchair")));
   CameraPlacement options;
   options.height_min_m = 2.F;

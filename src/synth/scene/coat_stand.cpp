@@ -15,7 +15,7 @@ void add_blob(FurnitureBuilder& piece, const Vector3f& centre, const Vector3f& h
   add_ellipsoid(piece.piece.mesh, pose, half, material, 10);
 }
 
-/// Round a coat's shoulders, a hanging one's chest, waist and hem.
+/// Adds a hanging coat as rings around its shoulders, chest, waist and hem.
 void add_coat(FurnitureBuilder& piece, const Vector3f& shoulders, float length, Random& random) {
   const std::uint8_t cloth = piece.stuff(Stuff::cloth);
   const float half = between(0.17, 0.24, random), thick = between(0.07, 0.13, random);

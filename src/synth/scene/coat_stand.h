@@ -5,9 +5,9 @@
 
 namespace vesalius::synth {
 
-/// Returns a stand with one or two hanging coats, perhaps a hat: it resembles a person.
+/// Returns a stand with one or two hanging coats and perhaps a hat, which resembles a person.
 Furniture make_coat_stand(Random& random);
-/// Returns a torso on a pole, perhaps with a head: it resembles a person.
+/// Returns a torso on a pole, perhaps with a head, which resembles a person.
 Furniture make_mannequin(Random& random);
 
 }  // namespace vesalius::synth

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Twice the polygon's area along its normal (Newell).
+/// Returns a vector along the polygon's normal whose length is twice its area (Newell).
 Vector3f normal_of(const std::vector<Vector3f>& corners) {
   Vector3f sum = Vector3f::Zero();
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -35,7 +35,7 @@ std::vector<Triangle> cut_polygon(const std::vector<Vector3f>& corners) {
   };
   std::vector<Triangle> triangles;
   while (left.size() > 3) {
-    std::size_t ear = 1;  // where there is none, any will do
+    std::size_t ear = 1;  // if no corner is an ear, any is cut
     for (std::size_t i = 0; i < left.size(); ++i) {
       if (!is_ear((i + 1) % left.size())) continue;
       ear = (i + 1) % left.size();

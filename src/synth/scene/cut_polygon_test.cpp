@@ -11,7 +11,7 @@ using Eigen::Vector3f;
 
 Vector3f doubled_area(const Vector3f& a, const Vector3f& b, const Vector3f& c) { return (b - a).cross(c - a); }
 
-/// Expects n - 2 triangles that all turn as the polygon does and add up to its area.
+/// Expects n - 2 triangles with the polygon's orientation whose areas add up to its own.
 void expect_covered(const std::vector<Vector3f>& corners, float area) {
   const std::vector<Triangle> triangles = cut_polygon(corners);
   ASSERT_EQ(triangles.size(), corners.size() - 2);
@@ -41,7 +41,7 @@ TEST(CutPolygon, CoversAStar) {
   expect_covered(corners, kPoints / 2 * 0.4F * std::sin(6.2831853F / kPoints));
 }
 
-TEST(CutPolygon, CutsWhatHasNoAreaAnyhow) {
+TEST(CutPolygon, CutsPolygonsWithoutArea) {
   EXPECT_EQ(cut_polygon(std::vector<Vector3f>(5, Vector3f::Zero())).size(), 3U);
   EXPECT_EQ(cut_polygon({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2U);  // crosses itself
 }

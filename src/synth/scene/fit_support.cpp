@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 constexpr float kLowestSeat_m = 0.16F;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Bone that moves each vertex most.
+/// Returns the bone that moves each vertex most.
 std::vector<Bone> main_bones(const BodyMesh& mesh) {
   std::vector<Bone> of_rig;
   for (const RigBone& bone : mesh.rig) of_rig.push_back(bone.blend < 0.5F ? bone.from : bone.to);
@@ -34,7 +34,7 @@ bool is_lower_leg(Bone bone) {
   return bone == Bone::l_shin || bone == Bone::r_shin || bone == Bone::l_foot || bone == Bone::r_foot;
 }
 
-/// Below the hips, turned to where the hips face.
+/// Returns the frame below the hips that is turned to the direction in which they face.
 Eigen::Isometry3f body_from_hips(const PosedBody& body) {
   const Vector3f& left = body.joints[index(Bone::l_thigh)];
   const Vector3f& right = body.joints[index(Bone::r_thigh)];
@@ -43,7 +43,7 @@ Eigen::Isometry3f body_from_hips(const PosedBody& body) {
   return standing_at(middle.x(), 0.F, middle.z(), std::atan2(front.x(), front.z()));
 }
 
-/// Measures of a sitting body in a frame whose z runs forwards from below the hips.
+/// The measures of a sitting body in a frame whose z axis runs forwards from below the hips.
 class Sitter {
  public:
   Sitter(const BodyMesh& mesh, const PosedBody& body)
@@ -85,7 +85,7 @@ class Sitter {
     });
     return std::isfinite(lowest) ? lowest : 0.F;
   }
-  /// Of the line that touches the small of the back and the shoulder blades.
+  /// Returns the lean of the line that touches the small of the back and the shoulder blades.
   float lean(float height) const {
     constexpr float kLow = 0.1F, kMiddle = 0.27F, kHigh = 0.5F;
     float low_z = kInfinity, high_z = kInfinity;
@@ -103,7 +103,7 @@ class Sitter {
     });
     return std::isfinite(back) ? back : -0.15F;
   }
-  /// Where the lower legs come down in front of the seat; legs that are under it do not count.
+  /// Returns where the lower legs descend in front of the seat. Legs below the seat do not count.
   float front_of_calves(float height) const {
     float front = kInfinity;
     for_each(is_lower_leg, [&](const Vector3f& p) {
@@ -161,7 +161,7 @@ std::optional<Furniture> make_fitting_seat(const SeatFit& fit, const BodyOutline
     const SeatShape shape = draw_shape(fit, kind, random);
     Furniture seat = make_seat(shape, random);
     Eigen::Isometry3f place = fit.body_from_seat;
-    if (kind == SeatKind::sofa) {  // anywhere on it, not just in the middle
+    if (kind == SeatKind::sofa) {  // the person sits anywhere on it
       const float room = 0.5F * shape.width_m - fit.half_width_m;
       place = place * Eigen::Translation3f(between(-1.0, 1.0, random) * std::max(0.F, room), 0.F, 0.F);
     }

@@ -22,7 +22,7 @@ class Furnisher {
             const Vector3f& eye, Occupancy& occupancy, Random& random)
       : options_(options), room_(room), models_(models), eye_(eye), occupancy_(occupancy), random_(random) {}
 
-  /// Something on the way from the camera to a person.
+  /// Places something between the camera and a person.
   void occlude(const Vector3f& person) {
     constexpr std::array<FurnitureKind, 8> kKinds = {FurnitureKind::table, FurnitureKind::chair, FurnitureKind::box,
                                                      FurnitureKind::plant, FurnitureKind::desk,  FurnitureKind::shelf,
@@ -46,7 +46,7 @@ class Furnisher {
     }
   }
 
-  /// Something large right in front of the camera, at the side.
+  /// Places something large close to the camera, at the side.
   void loom() {
     constexpr std::array<FurnitureKind, 5> kKinds = {FurnitureKind::panel, FurnitureKind::panel, FurnitureKind::panel,
                                                      FurnitureKind::wardrobe, FurnitureKind::desk};
@@ -95,19 +95,19 @@ class Furnisher {
     const float z = !along_x    ? room_.low.y() + share * size.y()
                     : wall == 0 ? room_.low.y() + inset
                                 : room_.high.y() - inset;
-    constexpr std::array<float, 4> kQuarterTurns = {0.F, -1.F, 2.F, 1.F};  // the back to the wall
+    constexpr std::array<float, 4> kQuarterTurns = {0.F, -1.F, 2.F, 1.F};  // turns the back to the wall
     return room_.world_from_room * standing_at(x, 0.F, z, kQuarterTurns[wall] * std::numbers::pi_v<float> / 2.F);
   }
 
-  /// Where the camera looks, rather than behind it.
+  /// Draws a place in the camera's direction rather than behind it.
   Isometry3f place_anywhere() {
     const float far = between(0.6, 6.0, random_), bearing = between(-0.9, 0.9, random_);
     return standing_at(far * std::sin(bearing), 0.F, -far * std::cos(bearing), any_turn());
   }
 
-  /// Whether the piece is so near that it would fill the picture.
+  /// Returns whether the piece is so near that it would fill the picture.
   bool looms(const std::vector<OrientedBox>& solids) const {
-    constexpr float kLarge_m = 0.35F;  // half diagonal
+    constexpr float kLarge_m = 0.35F;  // half the diagonal
     return std::ranges::any_of(solids, [&](const OrientedBox& box) {
       const Vector3f way = box.pose.translation() - eye_;
       return box.radius() > kLarge_m && way.norm() < 2.F * box.radius() + 0.2F && way.z() < 0.F;

@@ -7,20 +7,20 @@
 
 namespace vesalius::synth {
 
-/// A thing in a room. Its own frame: metres, y up, standing on y = 0 about the origin, its front towards +z.
+/// A piece of furniture in its own frame: metres, y up, standing on y = 0 about the origin, with its front towards +z.
 struct Furniture {
   SceneMesh mesh;
-  std::vector<OrientedBox> solids;  ///< what bodies and other things must keep out of; holds the mesh's bulk
+  std::vector<OrientedBox> solids;  ///< bodies and other things must stay out of these; they hold most of the mesh
 };
 
-/// Moves mesh and solids.
+/// Moves a piece with its mesh and solids.
 void move(Furniture& piece, const Eigen::Isometry3f& motion);
 
-/// Returns a motion that turns by `yaw_rad` about y (positive: counter-clockwise seen from above) and puts at (x,
-/// height, z).
+/// Returns a motion that turns by `yaw_rad` about y (positive is counter-clockwise when seen from above) and then moves
+/// to (x, height, z).
 Eigen::Isometry3f standing_at(float x_m, float height_m, float z_m, float yaw_rad);
 
-/// Returns a piece made of a mesh of the user's: its bounding box is its solid.
+/// Returns a piece made of a user's mesh. Its solid is the bounding box.
 Furniture as_furniture(SceneMesh mesh);
 
 }  // namespace vesalius::synth

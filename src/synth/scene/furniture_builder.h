@@ -8,28 +8,28 @@
 
 namespace vesalius::synth {
 
-/// Puts a piece of furniture together. Lengths in metres, points in the piece's frame.
+/// Composes a piece of furniture. Lengths are in metres and points in the piece's frame.
 class FurnitureBuilder {
  public:
   explicit FurnitureBuilder(Random& random) : random_(random) {}
 
   std::uint8_t stuff(Stuff kind) { return add_material(piece.mesh, sample_material(kind, random_)); }
 
-  /// Upright box that is solid.
+  /// Adds an upright box that is solid.
   void box(const Eigen::Vector3f& low, const Eigen::Vector3f& high, std::uint8_t material) {
     add_box(piece.mesh, low, high, material);
     solid(low, high);
   }
-  /// Tilted box that is solid.
+  /// Adds a tilted box that is solid.
   void box(const Eigen::Isometry3f& pose, const Eigen::Vector3f& size, std::uint8_t material) {
     add_box(piece.mesh, pose, size, material);
     piece.solids.push_back({pose, 0.5F * size});
   }
-  /// Upright round post that is solid.
+  /// Adds an upright round post that is solid.
   void post(float x, float z, float low, float high, float radius, std::uint8_t material) {
     cone({x, low, z}, {x, high, z}, radius, radius, material);
   }
-  /// Upright cone that is solid as its bounding box.
+  /// Adds an upright cone whose bounding box is solid.
   void cone(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float from_radius, float to_radius,
             std::uint8_t material) {
     add_cone(piece.mesh, from, to, from_radius, to_radius, material, 12);
@@ -37,7 +37,7 @@ class FurnitureBuilder {
     solid(from.cwiseMin(to) - Eigen::Vector3f(reach, 0.F, reach),
           from.cwiseMax(to) + Eigen::Vector3f(reach, 0.F, reach));
   }
-  /// Four legs under a board whose corners are at +-x and z_low, z_high.
+  /// Adds four legs under a board whose corners are at +-x and z_low, z_high.
   void legs(float x, float z_low, float z_high, float height, float thickness, std::uint8_t material) {
     for (const float z : {z_low, z_high - thickness}) {
       for (const float left : {-x, x - thickness}) {

@@ -36,7 +36,7 @@ TEST_P(EveryKind, StandsOnTheFloorAndIsOfHumanSize) {
   }
 }
 
-TEST_P(EveryKind, MeshIsSound) {
+TEST_P(EveryKind, HasAValidMesh) {
   for (std::uint64_t i = 0; i < 60; ++i) {
     const SceneMesh mesh = make(i).mesh;
     ASSERT_EQ(mesh.material.size(), mesh.triangles.size());
@@ -49,7 +49,7 @@ TEST_P(EveryKind, MeshIsSound) {
   }
 }
 
-TEST_P(EveryKind, SolidsFillTheMeshAndLittleElse) {
+TEST_P(EveryKind, HasSolidsThatFillItsMesh) {
   for (std::uint64_t i = 0; i < 60; ++i) {
     const Furniture piece = make(i);
     ASSERT_FALSE(piece.solids.empty());
@@ -59,7 +59,7 @@ TEST_P(EveryKind, SolidsFillTheMeshAndLittleElse) {
       for (const Vector3f& corner : corners(box)) solid.extend(corner);
     }
     Eigen::AlignedBox3f bounds = bounds_of(piece.mesh);
-    bounds.min().array() -= 0.09F;  // boards' solids are thicker than they look
+    bounds.min().array() -= 0.09F;  // the solids of boards are thicker than the boards
     bounds.max().array() += 0.09F;
     EXPECT_TRUE(bounds.contains(solid)) << i;
     EXPECT_GT(solid.volume(), 0.15F * bounds_of(piece.mesh).volume()) << i;
@@ -73,7 +73,7 @@ TEST_P(EveryKind, IsTheSameForTheSameSeed) {
 
 INSTANTIATE_TEST_SUITE_P(Furniture, EveryKind, testing::Range(0, kFurnitureKindCount));
 
-TEST(Furniture, SeatsAreWhereTheShapeSays) {
+TEST(Furniture, HasSeatsWhereTheShapeSays) {
   for (const SeatKind kind : {SeatKind::chair, SeatKind::stool, SeatKind::armchair, SeatKind::sofa}) {
     for (std::uint64_t i = 0; i < 20; ++i) {
       Random random(5, i);
@@ -92,7 +92,7 @@ TEST(Furniture, SeatsAreWhereTheShapeSays) {
         }
       }
       if (kind == SeatKind::stool) continue;
-      const float up = 0.4F;  // along the back
+      const float up = 0.4F;  // distance along the back
       const Vector3f on_back(0.F, 0.43F + up * std::cos(0.15F), -up * std::sin(0.15F));
       EXPECT_TRUE(filled(on_back - Vector3f(0.F, 0.F, 0.015F)));
       EXPECT_FALSE(filled(on_back + Vector3f(0.F, 0.F, 0.015F)));
@@ -100,7 +100,7 @@ TEST(Furniture, SeatsAreWhereTheShapeSays) {
   }
 }
 
-TEST(Furniture, BedsCarryAtTheirHeight) {
+TEST(Furniture, HasBedsThatCarryAtTheirHeight) {
   Random random(6);
   const Furniture bed = make_bed(1.F, 2.F, 0.5F, random);
   float top = 0.F;

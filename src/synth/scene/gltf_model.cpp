@@ -23,7 +23,7 @@ static_assert(std::endian::native == std::endian::little, "glTF's buffers are li
 constexpr std::size_t kMostPrimitives = 100'000;
 constexpr double kMostNumber = 1e6;
 
-/// The codes of glTF 2.0.
+/// The type codes of glTF 2.0.
 enum ComponentType : int { kUint8 = 5121, kUint16 = 5123, kUint32 = 5125, kFloat = 5126 };
 enum PrimitiveMode : int { kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6 };
 
@@ -63,7 +63,7 @@ Chunks split(const ModelFiles& files, std::string bytes) {
   return chunks;
 }
 
-/// Returns nothing for text that is not base64.
+/// Decodes base64. Returns nothing if the text is not base64.
 std::optional<std::string> from_base64(std::string_view text) {
   std::string bytes;
   std::uint32_t bits = 0;
@@ -100,7 +100,7 @@ class GltfReader {
   }
 
  private:
-  /// Extensions that a model cannot be read without, but for those of looks.
+  /// Throws for required extensions, except for those that affect only the appearance.
   void refuse_extensions() const {
     for (const json& name : list(root_, "extensionsRequired")) {
       const std::string extension = name.is_string() ? name.get<std::string>() : "";
@@ -109,7 +109,7 @@ class GltfReader {
     }
   }
 
-  // What JSON says, or an Error that names the place.
+  // The following functions read values of the JSON. They throw an Error that names the place.
 
   const json& list(const json& of, const char* key) const {
     static const json kNone = json::array();
@@ -135,7 +135,7 @@ class GltfReader {
     if (found == of.end() || !found->is_string()) files_.fail(fmt::format("{}: expected a text \"{}\"", place, key));
     return found->get<std::string>();
   }
-  /// `otherwise` where the key is missing; without it the key must be there.
+  /// Returns a whole number. If the key is missing, returns `otherwise`; without that the key is required.
   std::size_t whole(const json& of, const char* key, const std::string& place,
                     std::optional<std::size_t> otherwise = std::nullopt) const {
     const auto found = of.find(key);
@@ -146,7 +146,7 @@ class GltfReader {
     }
     return found->get<std::size_t>();
   }
-  /// The numbers of a list of that length; `out` stays as it is where the key is missing.
+  /// Reads a list of exactly that many numbers. If the key is missing, `out` is unchanged.
   template <std::size_t N>
   void numbers(const json& of, const char* key, const std::string& place, std::array<float, N>& out) const {
     const json& all = list(of, key);
@@ -170,7 +170,7 @@ class GltfReader {
     if (node.contains("matrix")) {
       std::array<float, 16> m{};
       numbers(node, "matrix", place, m);
-      return Eigen::Affine3f(Eigen::Map<const Eigen::Matrix4f>(m.data()));  // by columns, as Eigen's
+      return Eigen::Affine3f(Eigen::Map<const Eigen::Matrix4f>(m.data()));  // column by column, as in Eigen
     }
     std::array<float, 3> move{}, scale{1.F, 1.F, 1.F};
     std::array<float, 4> turn{0.F, 0.F, 0.F, 1.F};
@@ -182,7 +182,8 @@ class GltfReader {
            Eigen::Scaling(scale[0], scale[1], scale[2]);
   }
 
-  /// Adds what hangs below a node of a scene. A graph in which a node has two parents would unfold without end.
+  /// Adds a node of a scene with its descendants. It refuses a node with two parents, since such a graph could expand
+  /// without end.
   void walk(std::size_t first, const Eigen::Affine3f& scene_from_parent) {
     std::vector<std::pair<std::size_t, Eigen::Affine3f>> open{{first, scene_from_parent}};
     while (!open.empty()) {
@@ -207,7 +208,7 @@ class GltfReader {
       if (++primitives_ > kMostPrimitives) files_.fail(fmt::format("more than {} primitives", kMostPrimitives));
       if (!primitive.is_object()) files_.fail(place + ": expected objects as primitives");
       const int mode = static_cast<int>(whole(primitive, "mode", place, kTriangles));
-      if (mode < kTriangles) continue;  // points and lines
+      if (mode < kTriangles) continue;  // points and lines are skipped
       if (mode > kTriangleFan) files_.fail(fmt::format("{}: mode {}, expected 0 to 6", place, mode));
       const std::size_t positions = whole(object(primitive, "attributes", place), "POSITION", place);
       const auto base = static_cast<std::uint32_t>(mesh_.vertices().size());
@@ -236,7 +237,7 @@ class GltfReader {
     }
   }
 
-  /// The elements of an accessor, which all lie within its buffer.
+  /// The elements of an accessor. All of them lie within its buffer.
   struct View {
     const char* data = nullptr;
     std::size_t count = 0;
@@ -296,7 +297,7 @@ class GltfReader {
     return value;
   }
 
-  /// Reads a buffer when it is first asked for.
+  /// Returns a buffer, which is read when it is first used.
   const std::string& buffer(std::size_t index) {
     const auto [at, is_new] = buffers_.try_emplace(index);
     if (!is_new) return at->second;
@@ -344,7 +345,7 @@ class GltfReader {
   ModelFiles& files_;
   ModelMesh& mesh_;
   json root_;
-  std::string binary_;  ///< of a .glb
+  std::string binary_;  ///< binary chunk of a .glb
   std::vector<bool> visited_;
   std::size_t primitives_ = 0;
   std::map<std::size_t, std::string> buffers_;

@@ -4,10 +4,10 @@
 
 namespace vesalius::synth {
 
-/// Reads the scene of a glTF 2.0 model, as JSON (.gltf) or with its buffer behind it (.glb): nodes with their
+/// Reads the scene of a glTF 2.0 model in JSON (.gltf) or with its binary buffer (.glb). It reads nodes with their
 /// transforms, triangles, strips and fans with positions as floats, and the base colours of materials. Textures,
-/// animations, skins and cameras are passed over. Throws Error naming the file and the place in it for what cannot be
-/// used: buffers that end too early, sparse or compressed positions, indices out of range, nodes that are no tree.
+/// animations, skins and cameras are ignored. Throws Error naming the file and the place in it for unusable content:
+/// buffers that end too early, sparse or compressed positions, indices out of range, nodes that do not form a tree.
 void read_gltf_model(ModelFiles& files, ModelMesh& mesh);
 
 }  // namespace vesalius::synth

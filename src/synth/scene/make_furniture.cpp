@@ -116,7 +116,7 @@ Furniture make_plant(Random& random) {
   Eigen::AlignedBox3f crown;
   for (const Vector3f& p : plant.piece.mesh.vertices) crown.extend(p);
   crown.min().y() = pot_height;
-  const Vector3f give = Vector3f(0.15F, 0.F, 0.15F).cwiseProduct(crown.sizes());  // leaves bend
+  const Vector3f give = Vector3f(0.15F, 0.F, 0.15F).cwiseProduct(crown.sizes());  // leaves yield
   plant.solid(crown.min() + give, crown.max() - give);
   return std::move(plant.piece);
 }

@@ -14,7 +14,7 @@ enum class FurnitureKind : std::uint8_t {
   sofa,
   bed,
   table,
-  desk,  ///< with monitor, and things on it
+  desk,  ///< with a monitor and other things on it
   shelf,
   wardrobe,
   lamp,
@@ -28,10 +28,10 @@ enum class FurnitureKind : std::uint8_t {
 };
 inline constexpr int kFurnitureKindCount = 17;
 
-/// Returns a piece of random size and look.
+/// Returns a piece of random size and appearance.
 Furniture make_furniture(FurnitureKind kind, Random& random);
 
-/// Returns a table about the origin.
+/// Returns a table centred on the origin.
 Furniture make_table(float width_m, float depth_m, float height_m, Random& random);
 
 }  // namespace vesalius::synth

@@ -19,7 +19,7 @@ using Eigen::Vector3f;
 
 constexpr float kSmallest_m = 0.01F, kLargest_m = 20.F;
 
-/// Scales the mesh to metres, turns y up and puts it on the floor about the origin.
+/// Scales the mesh to metres, turns y upwards and places it on the floor about the origin.
 void settle(const ModelFiles& files, const ImportOptions& options, SceneMesh& mesh) {
   for (Vector3f& p : mesh.vertices) {
     if (options.z_up) p = Vector3f(p.x(), p.z(), -p.y());

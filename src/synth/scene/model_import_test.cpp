@@ -61,7 +61,7 @@ TEST(ModelImport, TurnsZUpwards) {
   EXPECT_NEAR(highest, 2.F, 1e-6F);
 }
 
-/// A right triangle of three floats a corner, then its indices, as t.bin.
+/// Returns a right triangle as t.bin: three floats for each corner, then the indices.
 std::string triangle_bytes() {
   const float points[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   return std::string(reinterpret_cast<const char*>(points), sizeof points) + std::string("\0\0\1\0\2\0\0\0", 8);
@@ -108,7 +108,7 @@ TEST(ModelImport, ReadsABinaryGltfAndOneWithItsBufferInBase64) {
   EXPECT_NEAR(highest_of(import_model("t.gltf", files({{"t.gltf", replaced(kGltf, "t.bin", data)}}))), 2.F, 1e-6F);
 }
 
-TEST(ModelImport, PutsNodesWhereTheirParentsAre) {
+TEST(ModelImport, PlacesNodesRelativeToTheirParents) {
   const std::string nodes = replaced(
       kGltf, R"([{"mesh":0,"scale":[2,2,2]}])",
       R"([{"children":[1,2],"translation":[0,1,0]},{"mesh":0},{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,4,0,1]}])");
@@ -121,7 +121,7 @@ void expect_error(const std::string& path, std::map<std::string, std::string> of
   EXPECT_THAT([&] { import_model(path, files(of)); }, ThrowsMessage<Error>(HasSubstr(words))) << path;
 }
 
-TEST(ModelImport, SaysWhatIsWrongWithAFile) {
+TEST(ModelImport, NamesTheFaultOfAFile) {
   expect_error("a.stl", {{"a.stl", "solid"}}, "a.stl: expected a .obj, .gltf or .glb file");
   expect_error("a.obj", {}, "a.obj: cannot open");
   expect_error("a.obj", {{"a.obj", ""}}, "a.obj: has no triangles");
@@ -140,7 +140,7 @@ void expect_gltf_error(const std::string& from, const std::string& to, const std
   expect_error("a.gltf", {{"a.gltf", replaced(kGltf, from, to)}, {"t.bin", triangle_bytes()}}, words);
 }
 
-TEST(ModelImport, NamesThePlaceInAGltfThatCannotBeUsed) {
+TEST(ModelImport, NamesThePlaceOfAFaultInAGltf) {
   expect_gltf_error("\"2.0\"", "\"1.0\"", "glTF \"1.0\", expected 2");
   expect_gltf_error("\"nodes\":[0]", "\"nodes\":[7]", "a node \"7\"");
   expect_gltf_error("\"mesh\":0", "\"mesh\":1", "meshes 1, expected one of 1");
@@ -154,15 +154,15 @@ TEST(ModelImport, NamesThePlaceInAGltfThatCannotBeUsed) {
   expect_gltf_error("\"scene\":0", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"scene\":0", "KHR_draco");
 }
 
-// Each of these took gigabytes, many seconds or the vertex.
+// The files of the following tests once made the reader take gigabytes or many seconds, or drop the vertex.
 
-TEST(ModelImport, RefusesABinaryGltfThatPromisesMoreThanItHolds) {
+TEST(ModelImport, RefusesABinaryGltfThatClaimsMoreThanItHolds) {
   const std::string bytes = "glTF" + number_bytes(2) + number_bytes(20) + number_bytes(0xFFFFFFF0U) + "JSON";
   ASSERT_EQ(bytes.size(), 20U);
   expect_error("a.glb", {{"a.glb", bytes}}, "a.glb: a chunk of 4294967280 bytes at byte 12, expected at most the 0");
 }
 
-TEST(ModelImport, RefusesNodesThatAreNoTree) {
+TEST(ModelImport, RefusesNodesThatDoNotFormATree) {
   std::string nodes = "[";
   for (int i = 1; i <= 40; ++i) nodes += "{\"children\":[" + std::to_string(i) + "," + std::to_string(i) + "]},";
   expect_gltf_error(R"([{"mesh":0,"scale":[2,2,2]}])", nodes + R"({"mesh":0}])", "is reached twice, expected a tree");
@@ -185,7 +185,7 @@ TEST(ModelImport, RefusesAFaceOfVeryManyCorners) {
   expect_error("a.obj", {{"a.obj", polygon(100'000)}}, "a.obj:100001: a face of more than 128 corners");
 }
 
-TEST(ModelImport, RefusesVerticesThatAreNoNumbers) {
+TEST(ModelImport, RefusesVerticesThatAreNotFinite) {
   expect_error("a.obj", {{"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 nan 0\nf 1 2 3\n"}},
                "a.obj:4: expected a coordinate");
   std::string bytes = triangle_bytes();
@@ -199,7 +199,7 @@ TEST(ModelImport, RefusesFilesThatAreTooLarge) {
                "a model of more than 67108864 bytes");
 }
 
-TEST(ModelImport, KeepsToItsLimits) {
+TEST(ModelImport, RespectsItsLimits) {
   ImportOptions options;
   options.max_triangles = 11;
   const ReadText read = files({{"cube.obj", kCube}, {"cube.mtl", kColours}});
@@ -227,7 +227,7 @@ TEST(ModelImport, ReadsNoFileOutsideTheModelsFolder) {
   EXPECT_THAT(asked, testing::ElementsAre("m/cube.obj", "m/t.gltf"));
 }
 
-TEST(ModelImport, ReadsFacesThatGoOnOverLinesAndCountBackwards) {
+TEST(ModelImport, ReadsContinuedFacesAndNegativeIndices) {
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf -4//1 -3//1 \\\n -2//1 -1//1\nl 1 2\n";
   EXPECT_EQ(import_model("a.obj", files({{"a.obj", obj}})).triangles.size(), 2U);
 }

@@ -27,7 +27,7 @@ Vector3f three(TextScanner& scan, std::string_view what) {
   return p;
 }
 
-/// Returns the words that are left on the line, with a space between them.
+/// Returns the remaining words of the line, with a space between them.
 std::string rest_of_line(TextScanner& scan) {
   std::string rest;
   while (!scan.at_line_end()) rest.append(rest.empty() ? "" : " ").append(scan.word("a name"));
@@ -91,7 +91,8 @@ class ObjReader {
     material_ = at->second;
   }
 
-  /// Returns the vertex of a face's corner: "12", "12/3", "12//4" or "12/3/4", counted from 1, or back from -1.
+  /// Returns the vertex of a face's corner: "12", "12/3", "12//4" or "12/3/4". Numbers count from 1, or backwards from
+  /// -1.
   std::uint32_t corner(const TextScanner& scan, std::string_view word) const {
     const std::string_view digits = word.substr(0, word.find('/'));
     const auto count = std::ssize(mesh_.vertices());
@@ -103,7 +104,7 @@ class ObjReader {
     return static_cast<std::uint32_t>(value > 0 ? value - 1 : count + value);
   }
 
-  /// Takes a face to the end of its line, or of the line after one that ends in a backslash.
+  /// Reads a face to the end of its line. A backslash at the end continues the line.
   void face(TextScanner& scan) {
     std::vector<std::uint32_t> vertices;
     std::vector<Vector3f> points;
@@ -127,7 +128,7 @@ class ObjReader {
   ModelMesh& mesh_;
   std::set<std::string> libraries_;
   std::map<std::string, Rgb> colours_;
-  std::map<std::string, std::uint8_t> materials_;  ///< in use, by their names
+  std::map<std::string, std::uint8_t> materials_;  ///< materials in use by their names
   std::uint8_t material_ = 0;
 };
 

@@ -7,11 +7,11 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kSampledSink_m = 0.025F;  ///< between the points that are looked at it may go a little deeper
+constexpr float kSampledSink_m = 0.025F;  ///< below kMaxSink_m, since the sampled points may miss the deepest one
 constexpr float kEyeClear_m = 0.2F;
 
-/// Half thickness of each bone's flesh as a share of stature: of a slim adult, so that clothes may touch.
-/// Order of `Bone`.
+/// Half the thickness of the flesh around each bone as a share of the stature, in the order of `Bone`. The values are
+/// those of a slim adult, so that clothes may touch.
 constexpr std::array<float, kBoneCount> kFlesh = {0.065F, 0.06F,  0.065F, 0.03F,  0.05F, 0.03F,  0.024F,
                                                   0.02F,  0.015F, 0.03F,  0.024F, 0.02F, 0.015F, 0.038F,
                                                   0.027F, 0.02F,  0.038F, 0.027F, 0.02F};
@@ -23,7 +23,7 @@ Eigen::AlignedBox3f bounds_of(const OrientedBox& box) {
   return {box.pose.translation() - reach, box.pose.translation() + reach};
 }
 
-/// Smallest distance between two straight pieces (Ericson, Real-Time Collision Detection, 5.1.9).
+/// Returns the smallest distance between two segments (Ericson, Real-Time Collision Detection, 5.1.9).
 float distance(const Capsule& a, const Capsule& b) {
   const Vector3f d1 = a.to - a.from, d2 = b.to - b.from, r = a.from - b.from;
   const float aa = d1.squaredNorm(), ee = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), bb = d1.dot(d2);

@@ -10,33 +10,34 @@
 
 namespace vesalius::synth {
 
-/// How far bodies may sink into things and into each other.
+/// Largest depth to which bodies may sink into things and into each other.
 inline constexpr float kMaxSink_m = 0.03F;
 
-/// Thick line about a bone. Metres.
+/// A thick line about a bone. Lengths are in metres.
 struct Capsule {
   Eigen::Vector3f from, to;
   float radius_m;
 };
 
-/// What keeps a posed person apart from things: points spread over the skin, and the bones with flesh.
+/// The shape by which a posed person is kept apart from things: points spread over the skin, and bones with their
+/// thickness.
 struct BodyOutline {
   std::vector<Eigen::Vector3f> points;
   std::array<Capsule, kBoneCount> bones;
   Eigen::AlignedBox3f bounds;
 };
 
-/// Of a body in its own frame; one vertex in three.
+/// Returns the outline of a body in its own frame. It has every third vertex.
 BodyOutline outline_of(const PosedBody& body, float stature_m);
 BodyOutline moved(BodyOutline outline, const Eigen::Isometry3f& motion);
 
-/// Returns whether a body sinks into any of the solids too far; thin ones let it in less deep, so that no limb goes
-/// through.
+/// Returns whether a body sinks too far into any of the solids. The allowed depth is smaller for thin solids, so that
+/// no limb passes through them.
 bool sinks_in(const BodyOutline& body, const std::vector<OrientedBox>& solids);
-/// Returns whether two bodies' bones sink into each other too far.
+/// Returns whether the bones of two bodies sink too far into each other.
 bool sinks_in(const BodyOutline& a, const BodyOutline& b);
 
-/// Who and what stands where, in world coordinates.
+/// The people and furniture placed so far, in world coordinates.
 class Occupancy {
  public:
   void set_eye(const Eigen::Vector3f& eye) { eye_ = eye; }
@@ -44,14 +45,14 @@ class Occupancy {
   void add(const BodyOutline& body) { bodies_.push_back(body); }
   void add(const std::vector<OrientedBox>& solids) { solids_.insert(solids_.end(), solids.begin(), solids.end()); }
 
-  /// Returns whether a body or piece of furniture can be put there: apart from all others, from the camera and from the
+  /// Returns whether a body or a piece of furniture can be placed, apart from everything else, the camera and the
   /// walls.
   bool free_for(const BodyOutline& body) const;
   bool free_for(const std::vector<OrientedBox>& solids) const;
 
   const std::vector<OrientedBox>& solids() const { return solids_; }
 
-  /// Largest share of any one person's bones that these solids would hide from the camera.
+  /// Returns the largest share of any person's bones that these solids would hide from the camera.
   float hidden_share(const std::vector<OrientedBox>& solids) const;
 
  private:

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// A stick of 1.8 m about the origin: every bone lies on it.
+/// Returns a stick of 1.8 m about the origin; every bone lies on it.
 BodyOutline stick(float x_m, float z_m) {
   PosedBody body;
   for (int i = 0; i <= 180; ++i) body.vertices.emplace_back(x_m, 0.01F * static_cast<float>(i), z_m);
@@ -18,7 +18,7 @@ BodyOutline stick(float x_m, float z_m) {
     body.ends[b] = {x_m, 0.09F * static_cast<float>(b) + 0.09F, z_m};
   }
   BodyOutline outline = outline_of(body, 1.8F);
-  outline.bounds.min().array() -= 0.12F;  // as flesh would
+  outline.bounds.min().array() -= 0.12F;  // as if there were flesh
   outline.bounds.max().array() += 0.12F;
   return outline;
 }
@@ -30,7 +30,7 @@ std::vector<OrientedBox> cube_at(const Vector3f& centre, float half_m) {
   return {box};
 }
 
-TEST(Occupancy, BodiesMayTouchThingsButNotSinkIn) {
+TEST(Occupancy, LetsBodiesTouchThingsButNotSinkIn) {
   const BodyOutline body = stick(0.F, 0.F);
   EXPECT_FALSE(sinks_in(body, cube_at({0.52F, 1.F, 0.F}, 0.5F)));
   EXPECT_FALSE(sinks_in(body, cube_at({0.48F, 1.F, 0.F}, 0.5F)));  // 2 cm
@@ -38,19 +38,19 @@ TEST(Occupancy, BodiesMayTouchThingsButNotSinkIn) {
   EXPECT_FALSE(sinks_in(body, cube_at({0.46F, 2.6F, 0.F}, 0.5F)));
 }
 
-TEST(Occupancy, NoLimbGoesThroughAThinBoard) {
+TEST(Occupancy, KeepsLimbsFromPassingThroughAThinBoard) {
   std::vector<OrientedBox> board = cube_at({0.F, 1.F, 0.F}, 0.5F);
   board[0].half.y() = 0.03F;
   EXPECT_TRUE(sinks_in(stick(0.F, 0.F), board));
 }
 
-TEST(Occupancy, BodiesKeepApart) {
+TEST(Occupancy, KeepsBodiesApart) {
   EXPECT_FALSE(sinks_in(stick(0.F, 0.F), stick(0.4F, 0.F)));
   EXPECT_TRUE(sinks_in(stick(0.F, 0.F), stick(0.1F, 0.05F)));
   EXPECT_TRUE(sinks_in(moved(stick(0.4F, 0.F), standing_at(-0.35F, 0.F, 0.F, 0.F)), stick(0.F, 0.F)));
 }
 
-TEST(Occupancy, RefusesWhatIsInTheWayOfOthersTheCameraOrWalls) {
+TEST(Occupancy, RefusesPlacesNearOthersTheCameraOrWalls) {
   Occupancy occupancy;
   occupancy.set_eye({0.F, 1.F, 3.F});
   RoomShape room;

@@ -7,7 +7,7 @@
 namespace vesalius::synth {
 namespace {
 
-/// Half the box's extent along a unit direction.
+/// Returns half the box's extent along a unit direction.
 float reach(const OrientedBox& box, const Eigen::Vector3f& axis) {
   return (box.pose.linear().transpose() * axis).cwiseAbs().dot(box.half);
 }

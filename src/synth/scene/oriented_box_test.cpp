@@ -23,16 +23,16 @@ OrientedBox random_box(Random& random) {
   return box;
 }
 
-TEST(OrientedBox, DepthIsTheWayToTheNearestFace) {
+TEST(OrientedBox, HasTheDistanceToTheNearestFaceAsDepth) {
   OrientedBox box;
   box.pose = Eigen::Translation3f(1.F, 2.F, 3.F) * Eigen::AngleAxisf(1.5707964F, Vector3f::UnitY());
-  box.half = {0.5F, 1.F, 2.F};  // 2 along world x, 0.5 along world z
+  box.half = {0.5F, 1.F, 2.F};  // after the turn, 2 along world x and 0.5 along world z
   EXPECT_NEAR(depth_inside(box, {1.F, 2.F, 3.F}), 0.5F, 1e-6F);
   EXPECT_NEAR(depth_inside(box, {2.9F, 2.F, 3.F}), 0.1F, 1e-5F);
   EXPECT_NEAR(depth_inside(box, {1.F, 2.F, 3.6F}), -0.1F, 1e-5F);
 }
 
-TEST(OrientedBox, OverlapAgreesWithPointsDrawnInside) {
+TEST(OrientedBox, OverlapsWhereSampledPointsAreInBothBoxes) {
   Random random(1);
   int overlapping = 0;
   for (int i = 0; i < 400; ++i) {
@@ -51,7 +51,7 @@ TEST(OrientedBox, OverlapAgreesWithPointsDrawnInside) {
   EXPECT_LT(overlapping, 350);
 }
 
-TEST(OrientedBox, BlocksWhereAPointOfTheWayIsInside) {
+TEST(OrientedBox, BlocksLinesWithAPointInside) {
   Random random(2);
   int blocked = 0;
   for (int i = 0; i < 500; ++i) {
@@ -61,7 +61,7 @@ TEST(OrientedBox, BlocksWhereAPointOfTheWayIsInside) {
     for (int k = 0; k <= 2000; ++k) {
       deepest = std::max(deepest, depth_inside(box, a + (b - a) * static_cast<float>(k) / 2000.F));
     }
-    if (std::abs(deepest) < 2e-3F) continue;  // grazes
+    if (std::abs(deepest) < 2e-3F) continue;  // the line only grazes the box
     EXPECT_EQ(blocks(box, a, b), deepest > 0.F) << i;
     blocked += deepest > 0.F ? 1 : 0;
   }

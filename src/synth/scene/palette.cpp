@@ -7,7 +7,7 @@
 namespace vesalius::synth {
 namespace {
 
-/// sRGB of hue (0-1, round the circle), saturation and value (0-1).
+/// Returns the sRGB of hue (0-1, cyclic), saturation and value (0-1).
 Rgb from_hsv(double hue, double saturation, double value) {
   const auto channel = [&](double shift) {
     const double k = std::fmod(shift + hue * 6.0, 6.0);
@@ -17,11 +17,11 @@ Rgb from_hsv(double hue, double saturation, double value) {
   return {channel(5.0), channel(3.0), channel(1.0)};
 }
 
-/// Ranges that a stuff's looks are drawn from.
+/// The ranges from which the look of a stuff is drawn.
 struct Range {
   double hue_low, hue_high, saturation_low, saturation_high, value_low, value_high;
   double infrared_low, infrared_high;
-  double pattern;  ///< share with one
+  double pattern;  ///< share that has a pattern
   double period_low_m, period_high_m;
 };
 
@@ -62,7 +62,7 @@ Material sample_material(Stuff stuff, Random& random) {
   material.colour = from_hsv(hue, saturation, value);
   material.second = material.colour;
   material.infrared = between(range.infrared_low, range.infrared_high, random);
-  // Leather and black cloth: whole sofas are without depth in real frames.
+  // Some cloth is leather or black, since whole sofas lack depth in real frames.
   if (stuff == Stuff::cloth && chance(0.2, random)) {
     material.infrared = static_cast<float>(std::exp(random.uniform(std::log(0.01), std::log(0.2))));
   }

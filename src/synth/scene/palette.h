@@ -5,15 +5,15 @@
 
 namespace vesalius::synth {
 
-/// Kinds of stuff that things in a room are made of.
+/// The kinds of stuff of which things in a room are made.
 enum class Stuff { wood, cloth, paint, metal, plastic, leaf, cardboard, wall, floor, glass };
 
-/// A look that this stuff may have: colour, pattern, and how well it sends infrared light back. Most things are pale
-/// in the infrared whatever their colour; black plastic, screens and dark metal are not.
+/// Draws a look for a stuff: colour, pattern and infrared reflectance. Most things reflect much infrared light whatever
+/// their colour; black plastic, screens and dark metal do not.
 Material sample_material(Stuff stuff, Random& random);
 
-/// Uniform over [low, high), as float. Draws stand in declarations or braces, never side by side in a call, whose order
-/// is the compiler's.
+/// Draws a float uniformly from [low, high). Calls stand in declarations or braces and never as two arguments of one
+/// call, because compilers choose the order of arguments.
 inline float between(double low, double high, Random& random) { return static_cast<float>(random.uniform(low, high)); }
 
 inline bool chance(double probability, Random& random) { return random.uniform() < probability; }

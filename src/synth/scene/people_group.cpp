@@ -15,11 +15,11 @@ namespace {
 using Eigen::Isometry3f;
 using Eigen::Translation3f;
 
-/// A person posed, before it is known what is under them.
+/// A posed person before their seat or bed is chosen.
 struct Posed {
   GroupMember member;
   Posture posture = Posture::standing;
-  std::optional<SeatFit> seat;  ///< of those who sit on one
+  std::optional<SeatFit> seat;  ///< seat of a person who sits on one
 };
 
 Posed pose_of(const PersonPlan& plan, int number) {
@@ -47,7 +47,7 @@ bool keeps_clear(const PeopleGroup& group, const Furniture& piece) {
          });
 }
 
-/// A table before somebody who sits, above the knees where there is room for them.
+/// Adds a table in front of a sitting person, above the knees if there is room for them.
 void add_table(const SeatFit& fit, PeopleGroup& group, Random& random) {
   constexpr int kTries = 3;
   for (int i = 0; i < kTries; ++i) {
@@ -74,7 +74,7 @@ std::optional<PeopleGroup> sitting_group(const SceneOptions& options, Posed pose
   return group;
 }
 
-/// Both on one sofa, in its frame; nothing where they differ too much or get in each other's way.
+/// Returns both people on one sofa in its frame, or nothing if they differ too much or are in each other's way.
 std::optional<PeopleGroup> sofa_group(const Posed& left, const Posed& right, Random& random) {
   constexpr float kMaxDifference_m = 0.03F;
   const SeatFit &a = *left.seat, &b = *right.seat;
@@ -125,8 +125,8 @@ PeopleGroup lying_group(const SceneOptions& options, Posed posed, Random& random
   return group;
 }
 
-/// Side by side, looking about the same way, as close as arms and clothes let them or a hand's breadth apart; nothing
-/// where their limbs keep them further apart than that.
+/// Returns two people side by side who look in about the same direction, as close as arms and clothes allow or a hand's
+/// breadth apart. Returns nothing if their limbs keep them further apart.
 std::optional<PeopleGroup> standing_pair(const Posed& one, const Posed& other, Random& random) {
   constexpr float kNearest_m = 0.25F, kFurthest_m = 0.9F, kStep_m = 0.02F;
   const float side = chance(0.5, random) ? 1.F : -1.F;
@@ -140,13 +140,14 @@ std::optional<PeopleGroup> standing_pair(const Posed& one, const Posed& other, R
   for (float apart = kNearest_m; apart <= kFurthest_m; apart += kStep_m) {
     if (!clear(apart)) continue;
     GroupMember beside = other.member;
-    put(beside, place(clear(apart + gap) ? apart + gap : apart));  // not into an arm held out
+    put(beside, place(clear(apart + gap) ? apart + gap : apart));  // avoids an outstretched arm
     return PeopleGroup{{one.member, std::move(beside)}, {}};
   }
   return std::nullopt;
 }
 
-/// The next after `people[first]` who has a seat like them, or is of the same posture without; -1: nobody.
+/// Returns the next person after `people[first]` who has a seat as well, or has the same posture without a seat; -1 if
+/// there is none.
 int partner_of(const std::vector<std::optional<Posed>>& people, std::size_t first) {
   const Posed& one = *people[first];
   for (std::size_t i = first + 1; i < people.size(); ++i) {
@@ -156,8 +157,8 @@ int partner_of(const std::vector<std::optional<Posed>>& people, std::size_t firs
   return -1;
 }
 
-/// That somebody is put together with another of the same posture. Nothing: scenes without the option draw no number
-/// for it, and stay as they were.
+/// Returns the probability that a person is placed together with another of the same posture. Returns nothing if the
+/// option is off: then no random number is drawn, so scenes are the same as before the option existed.
 std::optional<double> probability_of_company(const SceneOptions& options, const Posed& posed) {
   if (posed.seat) return options.sofa_probability;
   if (posed.posture != Posture::standing || options.beside_probability == 0.F) return std::nullopt;

@@ -15,18 +15,18 @@ struct GroupMember {
   int plan = 0;
   PosedBody body;  ///< in the body's own frame
   Eigen::Isometry3f group_from_body = Eigen::Isometry3f::Identity();
-  BodyOutline outline;  ///< group frame
+  BodyOutline outline;  ///< outline in the group's frame
 };
 
-/// People and what holds them up, to be put into the room as one. Group frame: metres, y up, floor y = 0; the people
-/// face about +z.
+/// People with their seats or beds, to be placed in the room together. In the group's frame, in metres, y points up,
+/// the floor is y = 0 and the people face about +z.
 struct PeopleGroup {
   std::vector<GroupMember> members;
   std::vector<Furniture> furniture;
 };
 
-/// Poses the people of the plans and gives those who sit or lie something that fits; some share a sofa, some stand side
-/// by side. Whoever finds no seat is left out.
+/// Poses the people of the plans and gives those who sit or lie something that fits. Some share a sofa, some stand side
+/// by side. People who find no seat are left out.
 std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vector<PersonPlan>& plans, Random& random);
 
 }  // namespace vesalius::synth

@@ -9,14 +9,15 @@
 
 namespace vesalius::synth {
 
-/// A person who is to be in the picture.
+/// A person to be placed in the picture.
 struct PersonPlan {
   const Poser* poser = nullptr;        ///< must outlive the call
-  const BodyDetail* detail = nullptr;  ///< its coarser surfaces, must outlive the call; none: always the full one
+  const BodyDetail* detail = nullptr;  ///< coarser surfaces, must outlive the call; null uses only the full one
   Pose pose;
   Posture posture = Posture::standing;
   std::array<Material, kFabricCount> look;
-  /// Heading, 0 = towards the camera, positive = turned to the person's own left; drawn by the options where not given.
+  /// The heading: 0 is towards the camera, positive is turned to the person's own left. If it is not given, it is drawn
+  /// by the options.
   std::optional<float> yaw_rad;
 };
 

@@ -14,7 +14,8 @@ using Eigen::Vector3f;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// Half the angle about the vertical within which a camera sees the floor, with something for people at the border.
+/// Returns half the angle about the vertical within which a camera sees the floor, with a margin for people at the
+/// border.
 float half_fan(const Camera& camera, float pitch_rad) {
   const float half_u = std::atan(0.5F * static_cast<float>(camera.width) / camera.fx);
   const float half_v = std::atan(0.5F * static_cast<float>(camera.height) / camera.fy);
@@ -22,7 +23,7 @@ float half_fan(const Camera& camera, float pitch_rad) {
   return std::min(kPi, 1.15F * std::atan2(std::tan(half_u), std::cos(std::abs(pitch_rad) + half_v)));
 }
 
-/// Share of the bones' ends that are in the picture.
+/// Returns the share of the bones' ends that are in the picture.
 float visible_share(const BodyOutline& body, const View& view) {
   int seen = 0;
   for (const Capsule& bone : body.bones) {
@@ -60,7 +61,7 @@ class Placer {
       constexpr int kCameras = 5;
       bool placed = place(static_cast<int>(g));
       for (int i = 1; i < kCameras && !placed && stage_.groups.empty(); ++i) {
-        hold_camera(middle_of(groups_[g]).y());  // nobody is in view yet: look elsewhere
+        hold_camera(middle_of(groups_[g]).y());  // nobody is in view yet, so the camera is drawn anew
         placed = place(static_cast<int>(g));
       }
     }
@@ -98,7 +99,7 @@ class Placer {
     const Vector3f middle = middle_of(group);
     const float rise = stage_.camera.height_m - middle.y();
     const float far = sample_distance(placement_, random_);
-    // Straight below the camera where the distance is less than the height.
+    // If the distance is less than the height, the place is straight below the camera.
     const float along = std::sqrt(std::max(0.F, far * far - rise * rise)) + between(0.0, 0.3, random_);
     const float fan = half_fan(view_.camera, stage_.camera.pitch_rad);
     const float bearing = between(-fan, fan, random_);

@@ -8,20 +8,20 @@
 
 namespace vesalius::synth {
 
-/// Where a group of people has been put.
+/// The place of a group of people.
 struct PlacedGroup {
   int group = 0;  ///< index
   Eigen::Isometry3f world_from_group = Eigen::Isometry3f::Identity();
 };
 
-/// Camera and people before the room is built about them.
+/// Camera and people, before the room is built around them.
 struct Stage {
   CameraPose camera;
   std::vector<PlacedGroup> groups;
-  Occupancy occupancy;  ///< of those people and what holds them up
+  Occupancy occupancy;  ///< these people with their seats and beds
 };
 
-/// Holds a camera and puts the groups into its view, apart from each other. Groups that find no place are left out.
+/// Places a camera and puts the groups into its view, apart from each other. Groups that find no place are left out.
 Stage place_people(const SceneOptions& options, const CameraPlacement& placement, const Camera& intrinsics,
                    const std::vector<PersonPlan>& plans, const std::vector<PeopleGroup>& groups, Random& random);
 

@@ -24,7 +24,7 @@ float deepest_in_solids(const PlacedPerson& person, const std::vector<OrientedBo
 }
 
 // Labels: statistics
-TEST(BuildScene, NobodyIsInsideFurnitureOrWalls) {
+TEST(BuildScene, KeepsPeopleOutOfFurnitureAndWalls) {
   constexpr int kScenes = 1000;
   int planned = 0, placed = 0, beyond = 0;
   float deepest = 0.F, through_wall = 0.F, off_floor = 0.F;
@@ -57,7 +57,7 @@ TEST(BuildScene, NobodyIsInsideFurnitureOrWalls) {
 }
 
 // Labels: statistics
-TEST(BuildScene, FeetAreOnTheFloorOfThoseWhoStandAndKneel) {
+TEST(BuildScene, PutsTheFeetOfStandingAndKneelingPeopleOnTheFloor) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     Random random(21, i);
     std::vector<PersonPlan> plans = draw_plans(2, random);
@@ -84,7 +84,7 @@ PoseSamplerOptions only_sitting() {
 }
 
 // Labels: statistics
-TEST(BuildScene, SeatsAreRightUnderThoseWhoSit) {
+TEST(BuildScene, PutsSeatsDirectlyUnderSittingPeople) {
   int sitters = 0, supported = 0;
   for (std::uint64_t i = 0; i < 150; ++i) {
     Random random(31, i);
@@ -93,7 +93,7 @@ TEST(BuildScene, SeatsAreRightUnderThoseWhoSit) {
     const BuiltScene built = build_scene({}, {}, kCamera, plans, {}, Random(32, i));
     for (const PlacedPerson& person : built.people) {
       ++sitters;
-      // Just below the lowest skin by the hips there is a seat.
+      // There is a seat just below the lowest skin at the hips.
       const Vector3f hips =
           0.5F * (person.body.joints[index(Bone::l_thigh)] + person.body.joints[index(Bone::r_thigh)]);
       float lowest = hips.y();
@@ -111,7 +111,7 @@ TEST(BuildScene, SeatsAreRightUnderThoseWhoSit) {
   EXPECT_GE(supported, sitters * 95 / 100);
 }
 
-/// Whether a ray from the point along x meets the body's surface an odd number of times.
+/// Returns whether a ray from the point along x meets the body's surface an odd number of times.
 bool is_inside(const Vector3f& p, const PosedBody& body, const std::vector<Triangle>& triangles) {
   bool inside = false;
   for (const Triangle& t : triangles) {
@@ -125,7 +125,7 @@ bool is_inside(const Vector3f& p, const PosedBody& body, const std::vector<Trian
 }
 
 // Labels: statistics
-TEST(BuildScene, PeopleKeepApart) {
+TEST(BuildScene, KeepsPeopleApart) {
   float deepest = 0.F;
   int near = 0;
   for (std::uint64_t i = 0; i < 120; ++i) {
@@ -153,7 +153,7 @@ TEST(BuildScene, PeopleKeepApart) {
   EXPECT_LT(deepest, kMaxSink_m);
 }
 
-/// Smallest distance of two people's skins; infinite where not even their bounds come near.
+/// Returns the smallest distance between two people's skins, or infinity if their bounds are far apart.
 float apart(const PlacedPerson& one, const PlacedPerson& other) {
   constexpr float kFar_m = 0.3F;
   Eigen::AlignedBox3f bounds;
@@ -167,7 +167,8 @@ float apart(const PlacedPerson& one, const PlacedPerson& other) {
   return std::sqrt(nearest);
 }
 
-/// Of scenes with two people who stand: in how many they nearly touch. `sunk` becomes true where they do so too deep.
+/// Returns the number of scenes with two standing people in which they nearly touch. `sunk` becomes true if two people
+/// overlap too much.
 int close_pairs(float beside_probability, int scenes, bool& sunk) {
   int close = 0;
   for (int i = 0; i < scenes; ++i) {
@@ -189,7 +190,7 @@ int close_pairs(float beside_probability, int scenes, bool& sunk) {
   return close;
 }
 
-TEST(BuildScene, PeopleStandSideBySideAsOftenAsAsked) {
+TEST(BuildScene, PlacesPeopleSideBySideWithTheGivenProbability) {
   constexpr int kScenes = 40;
   bool sunk = false;
   const int never = close_pairs(0.F, kScenes, sunk);

@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kHall_m = 40.F;  ///< half the side of an open hall's floor, beyond what any sensor sees
+constexpr float kHall_m = 40.F;  ///< half the side of an open hall's floor, farther than any sensor sees
 
-/// A part of a wall that is not wall: metres along it and above the floor.
+/// An opening in a wall: metres along it and above the floor.
 struct Opening {
   float left, right, bottom, top;
   bool door;
@@ -23,7 +23,7 @@ struct Looks {
   std::uint8_t wall, frame, door, curtain, metal;
 };
 
-/// A wall seen from inside: `along` runs left to right at its foot, `in` points into the room.
+/// A wall as seen from inside. `along` runs from left to right at its foot, `in` points into the room.
 class Wall {
  public:
   Wall(SceneMesh& mesh, const Vector3f& foot, const Vector3f& along, float length_m, float height_m, const Looks& looks)
@@ -77,7 +77,7 @@ class Wall {
       bar({o.left + 0.07F, 1.02F, -0.02F}, {o.left + 0.19F, 1.04F, 0.035F}, looks_.metal);
       return;
     }
-    const float deep = -between(0.9, 2.5, random);  // open, to a corridor
+    const float deep = -between(0.9, 2.5, random);  // an open door to a corridor
     const Vector3f a = at(o.left, 0.F), b = at(o.right, 0.F), c = at(o.right, 0.F, deep), d = at(o.left, 0.F, deep);
     const Vector3f up(0.F, o.top, 0.F);
     add_quad(mesh_, a, b, c, d, looks_.door);

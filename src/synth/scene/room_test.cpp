@@ -18,7 +18,7 @@ RoomShape turned_room() {
   return room;
 }
 
-TEST(Room, ClearanceIsTheWayToTheNearestSurface) {
+TEST(Room, HasTheDistanceToTheNearestSurfaceAsClearance) {
   const RoomShape room = turned_room();
   EXPECT_NEAR(clearance(room, room.world_from_room * Vector3f(0.F, 1.2F, 0.F)), 1.2F, 1e-5F);
   EXPECT_NEAR(clearance(room, room.world_from_room * Vector3f(2.9F, 1.2F, 0.F)), 0.1F, 1e-5F);
@@ -26,7 +26,7 @@ TEST(Room, ClearanceIsTheWayToTheNearestSurface) {
   EXPECT_NEAR(clearance(room, room.world_from_room * Vector3f(0.F, 2.5F, 0.F)), 0.1F, 1e-5F);
 }
 
-TEST(Room, EnclosesWhoIsInsideButForItsWindows) {
+TEST(Room, IsClosedExceptForItsWindows) {
   const RoomShape room = turned_room();
   Renderer renderer;
   int holes = 0, pixels = 0;
@@ -50,7 +50,7 @@ TEST(Room, EnclosesWhoIsInsideButForItsWindows) {
           holes += z == 0.F ? 1 : 0;
           if (z == 0.F) continue;
           const Vector3f p = pose * view.camera.point(static_cast<float>(u), static_cast<float>(v), z);
-          // Frames, skirting and curtains stand in front of the walls, corridors lie behind.
+          // Frames, skirting and curtains are in front of the walls, corridors behind them.
           ASSERT_LT(clearance(room, p), 0.2F);
           ASSERT_GT(clearance(room, p), -2.6F);
         }
@@ -61,7 +61,7 @@ TEST(Room, EnclosesWhoIsInsideButForItsWindows) {
   EXPECT_LT(holes, pixels / 4);
 }
 
-TEST(Room, AnOpenHallIsAFloor) {
+TEST(Room, IsOnlyAFloorInAnOpenHall) {
   RoomShape room;
   room.open = true;
   Random random(1);

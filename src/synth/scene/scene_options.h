@@ -6,28 +6,28 @@
 
 namespace vesalius::synth {
 
-/// What rooms are like and how people are put into them.
+/// The properties of rooms, and how people are placed in them.
 struct SceneOptions {
-  float open_share = 0.12F;  ///< of scenes that are a hall whose walls are out of sight
-  int furniture_min = 0;     ///< pieces beside those that people sit and lie on
+  float open_share = 0.12F;  ///< share of scenes in a hall whose walls are out of sight
+  int furniture_min = 0;     ///< pieces other than those on which people sit and lie
   int furniture_max = 10;
-  float mannequin_share = 0.1F;       ///< of those pieces that resemble people
+  float mannequin_share = 0.1F;       ///< share of these pieces that resemble people
   float occluder_probability = 0.3F;  ///< something stands between the camera and a person
   float near_probability = 0.15F;     ///< something large stands close to the camera
   float table_probability = 0.35F;    ///< a table stands in front of a sitting person
   float sofa_probability = 0.4F;      ///< two sitting people share a sofa
   float beside_probability = 0.F;     ///< two standing people stand shoulder to shoulder
   float bed_probability = 0.6F;       ///< a lying person has a bed or sofa rather than the floor
-  float frontal_share = 0.45F;  ///< of people who face the camera within `frontal_range_deg`; others face anywhere
+  float frontal_share = 0.45F;        ///< share of people who face the camera within `frontal_range_deg`
   float frontal_range_deg = 60.F;
-  float dark_furniture = 0.1F;  ///< of all pieces: send back next to no infrared light
-  float min_visible = 0.3F;     ///< share of a person's bones within the picture
-  float detail_px = 0.35F;      ///< how far a coarser surface of somebody far away may stray from the full one; 0: none
+  float dark_furniture = 0.1F;  ///< share of all pieces that reflect almost no infrared light
+  float min_visible = 0.3F;     ///< smallest share of a person's bones within the picture
+  float detail_px = 0.35F;      ///< largest error of coarser surfaces for people far away; 0 uses none
 };
 
 void visit_options(const std::string& prefix, SceneOptions& options, OptionVisitor& visitor);
 
-/// Throws UsageError naming an option out of its range.
+/// Throws UsageError naming an option that is out of its range.
 void check(const SceneOptions& options);
 
 }  // namespace vesalius::synth

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Stands on the seat's back edge and leans backwards from there.
+/// Returns the frame of a back that stands on the seat's back edge and leans backwards from there.
 Eigen::Isometry3f back_pose(const SeatShape& shape, float thickness, float foot) {
   Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
   pose.linear() = Eigen::AngleAxisf(-shape.lean_rad, Vector3f::UnitX()).toRotationMatrix();
@@ -20,7 +20,7 @@ Eigen::Isometry3f back_pose(const SeatShape& shape, float thickness, float foot)
   return pose;
 }
 
-/// Boards are thin, but whoever sits must not come through.
+/// Thickness of a board as a solid: boards are thin, but a body must not pass through.
 constexpr float kSeatSolid_m = 0.08F;
 
 void board(FurnitureBuilder& seat, const SeatShape& shape, float thickness, std::uint8_t material) {
@@ -44,7 +44,7 @@ void chair(const SeatShape& shape, FurnitureBuilder& seat, Random& random) {
   board(seat, shape, thick, cover);
   if (chance(0.75, random)) {
     seat.legs(half, 0.F, shape.depth_m, shape.height_m - thick, leg, frame);
-  } else {  // an office chair's star
+  } else {  // the star of an office chair
     const float z = shape.depth_m / 2;
     seat.post(0.F, z, 0.06F, shape.height_m - thick, 0.03F, frame);
     seat.box({-half * 0.9F, 0.02F, z - 0.03F}, {half * 0.9F, 0.07F, z + 0.03F}, frame);
@@ -71,7 +71,7 @@ void stool(const SeatShape& shape, FurnitureBuilder& seat, Random& random) {
   }
 }
 
-/// Armchairs and sofas: a base, a thick back, arms to either side.
+/// Makes an armchair or a sofa: a base, a thick back and arms at both sides.
 void upholstered(const SeatShape& shape, FurnitureBuilder& seat, Random& random) {
   const std::uint8_t cloth = seat.stuff(Stuff::cloth), feet = seat.stuff(Stuff::wood);
   const float half = shape.width_m / 2, arm = between(0.1, 0.2, random), thickness = between(0.12, 0.22, random);
@@ -124,7 +124,7 @@ Furniture make_bed(float width_m, float length_m, float height_m, Random& random
     bed.box({-x, 0.F, z}, {x, top, z + between(0.03, 0.1, random)}, wood);
   }
   if (chance(0.3, random)) bed.box({-x, 0.F, -z - 0.04F}, {x, height_m + 0.1F, -z}, wood);
-  if (chance(0.5, random)) {  // beside where a head lies: solid, so that it stays where there is room for it
+  if (chance(0.5, random)) {  // beside the place of the head; it is solid, so it is dropped if there is no room
     Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
     pose.translation() = Vector3f(0.F, height_m + 0.03F, z - 0.1F);
     const Vector3f half(std::min(0.3F, 0.8F * x), 0.06F, 0.12F);

@@ -18,7 +18,7 @@ void add_triangle(SceneMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32
   mesh.material.push_back(material);
 }
 
-/// Strips between consecutive rings of `count` vertices each, starting at vertex `base`.
+/// Adds strips between consecutive rings of `count` vertices each, starting at vertex `base`.
 void join_rings(SceneMesh& mesh, std::uint32_t base, int rings, int count, bool closed, std::uint8_t material) {
   const int columns = closed ? count : count - 1;
   const auto at = [&](int ring, int column) {

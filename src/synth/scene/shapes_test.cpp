@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// By the divergence theorem; positive where triangles run counter-clockwise seen from outside.
+/// Returns the volume by the divergence theorem. It is positive if triangles are counter-clockwise when seen from
+/// outside.
 double volume(const SceneMesh& mesh) {
   double sum = 0.0;
   for (const Triangle& t : mesh.triangles) {
@@ -21,7 +22,7 @@ double volume(const SceneMesh& mesh) {
   return sum;
 }
 
-TEST(Shapes, BoxesAreClosedAndFaceOutwards) {
+TEST(Shapes, IncludeClosedBoxesThatFaceOutwards) {
   SceneMesh mesh;
   add_box(mesh, Vector3f(1.F, 2.F, 3.F), Vector3f(2.F, 4.F, 6.F), 0);
   EXPECT_NEAR(volume(mesh), 6.0, 1e-5);
@@ -35,7 +36,7 @@ TEST(Shapes, BoxesAreClosedAndFaceOutwards) {
   }
 }
 
-TEST(Shapes, ConesAndEllipsoidsHaveTheirVolume) {
+TEST(Shapes, GiveConesAndEllipsoidsTheirVolume) {
   SceneMesh cylinder;
   add_cone(cylinder, {0.F, 0.F, 0.F}, {0.F, 2.F, 0.F}, 0.5F, 0.5F, 0, 64);
   EXPECT_NEAR(std::abs(volume(cylinder)), std::numbers::pi * 0.25 * 2.0, 0.01);
@@ -49,7 +50,7 @@ TEST(Shapes, ConesAndEllipsoidsHaveTheirVolume) {
   EXPECT_NEAR(std::abs(volume(ellipsoid)), 4.0 / 3.0 * std::numbers::pi, 0.03);
 }
 
-TEST(Shapes, CurtainsHangBetweenTheirCorners) {
+TEST(Shapes, HangCurtainsBetweenTheirCorners) {
   SceneMesh mesh;
   add_curtain(mesh, {0.F, 2.F, 1.F}, {1.5F, 2.F, 1.F}, 1.8F, 0.06F, 5, 0);
   Eigen::AlignedBox3f bounds;
@@ -59,7 +60,7 @@ TEST(Shapes, CurtainsHangBetweenTheirCorners) {
   EXPECT_NEAR(bounds.sizes().z(), 0.06F, 0.01F);
 }
 
-TEST(Shapes, EveryTriangleHasItsMaterial) {
+TEST(Shapes, GiveEveryTriangleItsMaterial) {
   SceneMesh mesh;
   const std::uint8_t first = add_material(mesh, {}), second = add_material(mesh, {});
   add_box(mesh, Vector3f::Zero(), Vector3f::Ones(), first);

@@ -7,7 +7,7 @@
 #include "synth/pose/pose_sampler.h"
 #include "synth/scene/build_scene.h"
 
-// People for scenes.
+// Plans of people that the tests of scenes share.
 namespace vesalius::synth::test {
 
 inline constexpr Camera kCamera{320, 240, 262.5F, 262.5F, 159.5F, 119.5F};

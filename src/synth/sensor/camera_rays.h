@@ -7,10 +7,10 @@
 
 namespace vesalius::synth {
 
-/// Rays (x, y, 1) through the centres of a camera's pixels: Camera::point() at 1 m, without its divisions.
+/// The rays (x, y, 1) through the centres of a camera's pixels: Camera::point() at 1 m without its divisions.
 class CameraRays {
  public:
-  static constexpr int kBeyond = 3;  ///< columns and rows past the picture that have rays too, for tiles of 4 pixels
+  static constexpr int kBeyond = 3;  ///< extra columns and rows beside the picture, for tiles of 4 pixels
 
   explicit CameraRays(const Camera& camera) {
     x_.reserve(camera.width + kBeyond);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What Embree 3 and Embree 4 call differently, in one place.
+// The calls that differ between Embree 3 and Embree 4.
 
 #if VESALIUS_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -10,7 +10,7 @@
 
 namespace vesalius::synth {
 
-/// First hit of 16 rays that run much the same way; `valid` holds -1 for rays to cast and 0 for others.
+/// Finds the first hit of 16 rays of similar direction. `valid` is -1 for rays to cast and 0 for the others.
 inline void intersect_packet(const int* valid, RTCScene scene, RTCRayHit16& rays) {
 #if VESALIUS_EMBREE_MAJOR >= 4
   RTCIntersectArguments arguments;
@@ -25,7 +25,7 @@ inline void intersect_packet(const int* valid, RTCScene scene, RTCRayHit16& rays
 #endif
 }
 
-/// Sets tfar of each ray that meets anything to -infinity.
+/// Sets tfar of each ray that meets a surface to -infinity.
 inline void occlude_packet(const int* valid, RTCScene scene, RTCRay16& rays) {
 #if VESALIUS_EMBREE_MAJOR >= 4
   RTCOccludedArguments arguments;

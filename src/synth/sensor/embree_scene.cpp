@@ -14,7 +14,7 @@ namespace vesalius::synth {
 namespace {
 
 constexpr int kPacket = 16;
-constexpr int kTile = 4;  ///< pixels; a packet covers a square of the picture
+constexpr int kTile = 4;  ///< side in pixels of the square that a packet of rays covers
 static_assert(kTile - 1 == CameraRays::kBeyond && kTile * kTile == kPacket);
 
 void check(RTCDevice device) {
@@ -24,7 +24,7 @@ void check(RTCDevice device) {
                           code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : ""));
 }
 
-/// Rays from one point; only what differs between them is written anew for each packet.
+/// Rays from one point. Only what differs between packets is written for each.
 struct Packet {
   alignas(64) std::array<int, kPacket> valid{};
   alignas(64) RTCRayHit16 rays{};
@@ -49,8 +49,8 @@ struct Packet {
 }  // namespace
 
 struct EmbreeScene::State {
-  // Embree's "threads=1" would hold all TBB work of the process to one thread. An arena of one slot holds Embree
-  // alone, and keeps a waiting thread from taking up other work, such as the next frame, in between.
+  // Embree's "threads=1" would limit all TBB work of the process to one thread. An arena with one slot limits Embree
+  // alone, and keeps a waiting thread from starting other work, such as the next frame, in between.
   tbb::task_arena alone{1};
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
@@ -58,7 +58,7 @@ struct EmbreeScene::State {
   State() {
     alone.execute([this] { device = rtcNewDevice(nullptr); });
     if (device != nullptr && rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_TASKING_SYSTEM) != 1) {
-      rtcReleaseDevice(device);  // built with threads of its own, which that switch does hold
+      rtcReleaseDevice(device);  // this Embree has threads of its own, which the switch limits
       device = rtcNewDevice("threads=1");
     }
     if (device == nullptr) check(nullptr);

@@ -11,29 +11,30 @@
 
 namespace vesalius::synth {
 
-/// Ray casting in a SceneGeometry: the one unit that knows Embree. Works in the calling thread alone.
+/// Casts rays in a SceneGeometry. This is the only unit that uses Embree. It works in the calling thread alone.
 class EmbreeScene {
  public:
-  /// Throws Error where Embree cannot start.
+  /// Throws Error if Embree cannot start.
   EmbreeScene();
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// Sorts the geometry, which must live and stay as it is until the next build. Throws Error when out of memory.
+  /// Builds the search tree. The geometry must live and stay unchanged until the next build. Throws Error if memory
+  /// runs out.
   void build(const SceneGeometry& geometry);
 
   static constexpr std::uint32_t kNothing = 0xFFFFFFFFU;
-  /// Returns what the ray through each pixel's centre meets first: 2 * quad + (0 or 1: which of its triangles), or
+  /// Finds the first triangle that the ray through each pixel's centre meets. Its number is 2 * quad + 0 or 1, or
   /// kNothing.
   void cast(const Camera& camera, Image<std::uint32_t>& hits);
 
-  /// Way from a surface to the projector.
+  /// The line from a surface to the projector.
   struct ShadowRay {
     Eigen::Vector3f from;
     std::uint32_t pixel;
   };
-  /// Sets the pixel of every ray that reaches `projector` without meeting anything.
+  /// Sets the pixel of every ray that reaches `projector` without meeting a surface.
   void light(const std::vector<ShadowRay>& rays, const Eigen::Vector3f& projector, Mask& lit);
 
  private:
@@ -41,7 +42,7 @@ class EmbreeScene {
   std::unique_ptr<State> state_;
 };
 
-/// "Embree 3.13.5".
+/// Returns the version, e.g. "Embree 3.13.5".
 const char* embree_version();
 
 }  // namespace vesalius::synth

@@ -18,7 +18,7 @@ constexpr float kSmallestJump_m = 0.08F;
 constexpr float kFurthestJitter = 3.F;  // sigma
 constexpr float kSmallestLight = 1e-6F;
 
-/// x with P(normal > x) = p.
+/// Returns x such that P(normal > x) = p.
 float exceeded_by(float p) {
   float low = -5.F;
   float high = 5.F;
@@ -29,7 +29,7 @@ float exceeded_by(float p) {
   return low;
 }
 
-/// Halves away from zero, as std::lround(), which is a call that costs more than all else here.
+/// Rounds halves away from zero, as std::lround() does. A call of that would cost more than everything else here.
 int whole_px(float pixels) { return static_cast<int>(pixels + std::copysign(0.5F, pixels)); }
 
 float angle_of(float c) {
@@ -37,12 +37,12 @@ float angle_of(float c) {
   return std::sqrt(1.F - c) * (a[0] + c * (a[1] + c * (a[2] + a[3] * c)));
 }
 
-/// How far a silhouette makes itself felt.
+/// Returns the distance at which a silhouette has an effect.
 int influence_px(const Sensor& sensor, int reach_px) {
   return std::max({1, reach_px, static_cast<int>(std::ceil(kFurthestJitter * sensor.lateral_px))});
 }
 
-/// Depth of the surfaces that the sensor's light and eye both reach; 0 elsewhere.
+/// Returns the depth of the surfaces that both the sensor's light and its eye reach; 0 elsewhere.
 Image<float> seen_depth(const Rendering& rendering, const Sensor& sensor) {
   Image<float> seen = rendering.depth_m;
   for (std::size_t i = 0; i < rendering.lit.size(); ++i) seen[i] = rendering.lit[i] != 0 ? seen[i] : 0.F;
@@ -102,14 +102,14 @@ Aim::Spot Aim::look(int u, int v) const {
   return {u, v, at, in_.depth_m[at], std::clamp(facing, kSmallestCosine, 1.F)};
 }
 
-/// How much the depth of a continuous surface can change within `distance_px`.
+/// Returns how much the depth of a continuous surface can change within `distance_px`.
 float Aim::slope_m(const Spot& spot, float distance_px) const {
   const float c = spot.cosine;
   return kSmallestJump_m + 2.F * distance_px * spot.z / in_.view.camera.fx * std::sqrt(1.F - c * c) / c;
 }
 
-/// The spot that is read instead: the read-out position jitters, and with it every silhouette. A surface that goes on
-/// is left in place, for its axial noise was measured with the jitter in it.
+/// Returns the spot that is read instead. The read-out position jitters, and with it every silhouette. A continuous
+/// surface stays in place, because its axial noise was measured with the jitter included.
 Aim::Spot Aim::displaced(const Spot& spot) const {
   if (sensor_.lateral_px == 0.F) return spot;
   const float angle = angle_of(spot.cosine);
@@ -123,15 +123,15 @@ Aim::Spot Aim::displaced(const Spot& spot) const {
   return goes_on ? spot : look(spot.u + du, spot.v + dv);
 }
 
-/// Whether a surface within reach is nearer than the slope of this one explains.
+/// Returns whether a surface within reach is nearer than the slope of this one explains.
 bool Aim::beyond_silhouette(const Spot& spot) const {
   const float limit =
       spot.z > 0.F ? spot.z - slope_m(spot, static_cast<float>(reach_px_)) : std::numeric_limits<float>::max();
   return nearest_m_[spot.at] < limit;
 }
 
-/// The nearest surface that the matching window around the spot covers: it wins over what is behind it, and fills the
-/// rim of a shadow. No surface where the window covers none.
+/// Returns the nearest surface that the matching window around the spot covers. It hides surfaces behind it and fills
+/// the rim of a shadow. Returns no surface if the window covers none.
 Aim::Spot Aim::grown(const Spot& spot) const {
   const bool seen = seen_m_[spot.at] > 0.F;
   float nearest = seen ? spot.z - kSmallestJump_m : std::numeric_limits<float>::max();
@@ -148,7 +148,7 @@ Aim::Spot Aim::grown(const Spot& spot) const {
   return seen ? spot : Spot{};
 }
 
-/// What is read where something nearer may grow over the spot, or its rim be lost.
+/// Returns the spot that is read near a silhouette, where a nearer surface may grow over it or its rim may be lost.
 Aim::Spot Aim::at_silhouette(const Spot& spot, float loss) {
   const bool beyond = beyond_silhouette(spot);
   const Spot read = beyond || seen_m_[spot.at] == 0.F ? grown(spot) : spot;
@@ -157,7 +157,7 @@ Aim::Spot Aim::at_silhouette(const Spot& spot, float loss) {
   return sensor_.mixed_px > 0.F ? mixed(read) : read;
 }
 
-/// The neighbour, of four, whose depth differs most, if by more than 8 cm; else no surface.
+/// Returns that of the four neighbours whose depth differs most, if by more than 8 cm; otherwise no surface.
 Aim::Spot Aim::across_silhouette(const Spot& spot) const {
   Spot other;
   float widest = kSmallestJump_m;
@@ -171,10 +171,11 @@ Aim::Spot Aim::across_silhouette(const Spot& spot) const {
   return other;
 }
 
-/// Where a silhouette runs through the pixel, light of both sides adds up; no surface where the driver notices it.
+/// Returns the reading of a pixel through which a silhouette runs: the light of both sides adds up. Returns no surface
+/// if the driver removes the reading.
 Aim::Spot Aim::mixed(const Spot& spot) {
   const Spot other = across_silhouette(spot);
-  // The silhouette is anywhere within one pixel; the mixture reaches half its width to this side.
+  // The silhouette is anywhere within one pixel, and the mixture extends half its width to this side.
   const auto offset = static_cast<float>(random_.uniform());
   if (other.z == 0.F || offset >= 0.5F * sensor_.mixed_px) return spot;
   if (random_.uniform() < sensor_.mixed_loss) return {};

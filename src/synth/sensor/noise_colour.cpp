@@ -10,7 +10,7 @@ namespace vesalius::synth {
 namespace {
 
 constexpr double kExposure = 0.15;                 // sigma of the logarithm of the gain
-constexpr double kBalance = 0.04;                  // the same between channels
+constexpr double kBalance = 0.04;                  // sigma of the logarithm between channels
 constexpr double kQuietest = 2.0, kLoudest = 6.0;  // sigma of a pixel, of 255
 
 std::uint8_t clipped(int value) { return static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value); }

@@ -40,7 +40,7 @@ TEST(ColourNoise, ClipsInsteadOfWrapping) {
   }
 }
 
-TEST(ColourNoise, RepeatsItself) {
+TEST(ColourNoise, IsTheSameForTheSameSeed) {
   ColourImage a(20, 10, Rgb{10, 120, 200});
   ColourImage b = a;
   add_colour_noise(a, Random(3));

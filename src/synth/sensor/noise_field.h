@@ -17,22 +17,22 @@ inline float quick_normal(Random& random) {
   return static_cast<float>(sum - 510) / kSigma;
 }
 
-/// Standard normal noise over a picture whose values hang together: cubic B-splines over a lattice of normal numbers,
-/// scaled so that the variance is 1 in every pixel. The correlation of two values is about 1/2 at a distance of half a
-/// window and 1/20 at a window.
+/// Standard normal noise over a picture with correlated neighbours: cubic B-splines over a lattice of normal numbers,
+/// scaled such that the variance is 1 in every pixel. The correlation of two values is about 1/2 at a distance of half
+/// a window and 1/20 at a whole window.
 class NoiseField {
  public:
-  /// `window_px` from 1.
+  /// `window_px` must be at least 1.
   NoiseField(int width, int height, float window_px, Random& random);
-  /// Another one of the same size and window.
+  /// Makes another field of the same size and window.
   NoiseField(const NoiseField& like, Random& random);
 
   float at(int u, int v) const;
-  /// The values of row v, padded as noise_kernel.h wants it.
+  /// Returns the values of row v, padded as noise_kernel.h requires.
   const Eigen::ArrayXf& row(int v);
 
  private:
-  struct Tap {  ///< what a column or row of pixels takes from the lattice
+  struct Tap {  ///< the lattice values and weights for a column or row of pixels
     std::size_t first;
     float weight[4];
   };

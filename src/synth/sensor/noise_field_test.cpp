@@ -7,7 +7,7 @@
 namespace vesalius::synth {
 namespace {
 
-/// Mean product of values `du` columns and `dv` rows apart, over many fields.
+/// Returns the mean product of values that are `du` columns and `dv` rows apart, over many fields.
 double correlation(float window_px, int du, int dv) {
   double sum = 0.0;
   int count = 0;
@@ -26,7 +26,7 @@ TEST(NoiseField, HasUnitVarianceForEveryWindow) {
     EXPECT_NEAR(correlation(window_px, 0, 0), 1.0, 0.04) << window_px;
 }
 
-TEST(NoiseField, HangsTogetherOverItsWindow) {
+TEST(NoiseField, IsCorrelatedWithinItsWindow) {
   for (const float window_px : {4.F, 8.F, 14.F}) {
     const int half = static_cast<int>(window_px) / 2;
     EXPECT_NEAR(correlation(window_px, half, 0), 0.5, 0.06) << window_px;

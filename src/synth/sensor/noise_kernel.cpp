@@ -29,8 +29,8 @@ HWY_INLINE Vec AngleOf(Vec c) {
   return hn::Mul(hn::Sqrt(hn::Sub(Number(1.F), c)), series);
 }
 
-/// Logarithm to the base 2 of normal numbers, error below 2e-7 of 1 or of the value: exponent, and the series of
-/// artanh for a mantissa between 0.7 and 1.5.
+/// Returns the logarithm to the base 2 of normal numbers with an error below 2e-7 of 1 or of the value. It uses the
+/// exponent, and the series of artanh for a mantissa between 0.7 and 1.5.
 HWY_INLINE Vec Log2(Vec x) {
   const Floats d;
   const Ints ints;
@@ -52,7 +52,7 @@ HWY_INLINE Vec AxialSigma(const Sensor& sensor, Vec z) {
   return Plus(Times(Square(Plus(z, -sensor.axial_z0_m)), sensor.axial_z2), sensor.axial_base_m);
 }
 
-/// Depth of disparities that come in steps.
+/// Returns the depth of disparities that are quantised.
 HWY_INLINE Vec Quantised(const Sensor& sensor, Vec disparity_px) {
   const float step = sensor.disparity_step_px;
   const Vec steps = hn::Floor(Plus(Times(disparity_px, 1.F / step), 0.5F));
@@ -60,14 +60,14 @@ HWY_INLINE Vec Quantised(const Sensor& sensor, Vec disparity_px) {
 }
 
 HWY_INLINE Vec StructuredLight(const Sensor& sensor, Vec z, Vec angle, Vec error) {
-  // Nguyen et al. 2012: axial sigma += 0.0001 / sqrt(z) t^2, t = angle / (pi/2 - angle), cut where it grows without
-  // bound.
+  // Nguyen et al. 2012 give the axial sigma 0.0001 / sqrt(z) t^2 with t = angle / (pi/2 - angle) as an addition. It is
+  // limited where it grows without bound.
   constexpr float kGrazing = 0.0001F, kLargestAngle = 1.55F, kHalfPi = 1.57079633F, kNearest_m = 0.1F;
   const Vec limited = hn::Min(angle, Number(kLargestAngle));
   const Vec t = hn::Div(limited, hn::Sub(Number(kHalfPi), limited));
   const Vec grazing = hn::Mul(Times(hn::Div(Number(1.F), hn::Sqrt(z)), kGrazing), Square(t));
   const Vec sigma = hn::Add(AxialSigma(sensor, z), grazing);
-  // The formula was measured behind the quantisation, whose share must not count twice.
+  // The formula was measured after the quantisation, whose share must not count twice.
   const Vec step = Times(Square(z), sensor.disparity_step_px / sensor.disparity_px_m);
   const Vec variance = hn::Sub(Square(sigma), Times(Square(step), 1.F / 12.F));
   const Vec before = hn::Sqrt(hn::Max(variance, Number(0.F)));
@@ -86,18 +86,19 @@ HWY_INLINE Vec TimeOfFlight(const Sensor& sensor, Vec z, Vec signal, Vec error) 
   return hn::Add(z, hn::Mul(sigma, error));
 }
 
-/// Largest loss noise at which there still is a reading: the surface must send back enough light and not be too flat.
+/// Returns the largest loss noise at which there still is a reading: the surface must reflect enough light and not be
+/// too slanted.
 HWY_INLINE Vec Kept(const Sensor& sensor, Vec z, Vec angle, Vec signal) {
-  // How fast readings vanish, in sigma of the noise that decides: per doubling of the signal, per radian.
+  // How fast readings vanish, in sigma of the deciding noise: per doubling of the signal and per radian.
   constexpr float kKeptPerDoubling = 1.2F, kKeptPerRad = 1.F / 0.052F;  // 3 degrees
-  constexpr float kReference_m = 2.F;                                   // where Sensor::min_infrared holds
+  constexpr float kReference_m = 2.F;  // distance for which Sensor::min_infrared is stated
   constexpr float kLeast = 1e-30F;
   const Vec arriving = hn::Mul(signal, Square(hn::Div(Number(kReference_m), z)));
   const Vec doublings = Log2(hn::Max(Times(arriving, 1.F / sensor.min_infrared), Number(kLeast)));
   return hn::Min(Times(doublings, kKeptPerDoubling), Times(hn::Sub(Number(sensor.max_angle_rad), angle), kKeptPerRad));
 }
 
-/// Metres.
+/// Returns the measured depth in metres.
 template <SensorKind kKind>
 HWY_INLINE Vec Measured(const Sensor& sensor, Vec z, Vec angle, Vec signal, Vec error) {
   if constexpr (kKind == SensorKind::structured_light) return StructuredLight(sensor, z, angle, error);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kHalfPi = 1.5707963267948966;
 
-/// Arrays as the kernels want them: `width` values, then room that belongs to nobody.
+/// Arrays as the kernels require them: `width` values, then padding.
 struct Row {
   std::vector<float> z, cosine, infrared, fall_off, loss, error;
 
@@ -37,11 +37,11 @@ struct Row {
 };
 
 struct Expected {
-  double z_m = 0.0;        ///< what is measured where there is a reading
-  double clearance = 0.0;  ///< how far the loss noise is from deciding otherwise
+  double z_m = 0.0;        ///< measured depth if there is a reading
+  double clearance = 0.0;  ///< distance of the loss noise from the opposite decision
 };
 
-/// The formulas of the sensors, in doubles and with the library's functions.
+/// Computes the formulas of the sensors in doubles with the library's functions.
 Expected plainly(const Sensor& s, const Row& row, std::size_t i) {
   const double z = row.z[i], error = row.error[i], angle = std::acos(static_cast<double>(row.cosine[i]));
   const double signal = static_cast<double>(row.infrared[i]) * row.cosine[i] * row.fall_off[i];
@@ -66,7 +66,7 @@ Expected plainly(const Sensor& s, const Row& row, std::size_t i) {
   return out;
 }
 
-/// Distance to the next value, of a sensor whose values come in steps.
+/// Returns the distance to the next value of a sensor with quantised values.
 double step_m(const Sensor& s, double z) {
   return s.disparity_px_m > 0.F ? z * z * s.disparity_step_px / s.disparity_px_m : 0.0;
 }
@@ -97,7 +97,7 @@ void expect_formulas(const Sensor& sensor, const Row& row, int width, const std:
   EXPECT_GT(holes, width / 10) << sensor.name;
 }
 
-TEST(NoiseKernel, ReadsByTheFormulasAndAlikeOnEveryInstructionSet) {
+TEST(NoiseKernel, ReadsByTheFormulasOnEveryInstructionSet) {
   for (const Sensor& sensor : sensors()) {
     if (sensor.kind == SensorKind::perfect) continue;
     Random random(7);
@@ -115,12 +115,12 @@ TEST(NoiseKernel, ReadsByTheFormulasAndAlikeOnEveryInstructionSet) {
   }
 }
 
-TEST(NoiseKernel, FacesByTheFormulasAndAlikeOnEveryInstructionSet) {
+TEST(NoiseKernel, ComputesAnglesByTheFormulasOnEveryInstructionSet) {
   Random random(8);
   for (const int width : {1, 15, 16, 77}) {
     const auto count = static_cast<std::size_t>(width);
     std::vector<Eigen::Vector3f> normals(count);
-    std::vector<float> x(count);  // without padding: nothing beyond may be read
+    std::vector<float> x(count);  // without padding, because nothing beyond may be read
     for (std::size_t i = 0; i < count; ++i) {
       normals[i] = Eigen::Vector3f(static_cast<float>(random.normal()), static_cast<float>(random.normal()), -1.F);
       normals[i].normalize();

@@ -9,10 +9,10 @@ namespace vesalius::synth {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-// A slanted plane's columns are evenly spaced; rounding alone must not hide one behind its neighbour.
+// The columns of a slanted plane are evenly spaced, and rounding alone must not hide one behind its neighbour.
 constexpr float kSlack_px = 1e-3F;
 
-/// Each pixel joined with all within `radius` of it, to left and right and then up and down.
+/// Joins each pixel with all within `radius` of it, first to left and right and then up and down.
 template <class T, class Join>
 Image<T> spread(const Image<T>& image, int radius, Join join) {
   const int width = image.width(), height = image.height();
@@ -42,7 +42,8 @@ Mask hidden_from_eye(const Image<float>& depth_m, const Camera& camera, float ey
   const float shift = camera.fx * eye_m;
   const bool to_right = eye_m > 0.F;
   for (int v = 0; v < depth_m.height(); ++v) {
-    // What is near moves against the eye: walking with that motion, a column that falls behind one before is covered.
+    // Near surfaces shift against the eye's motion. Going along that shift, a column that falls behind an earlier one
+    // is hidden.
     float front = to_right ? kNothing : -kNothing;
     const float* row = depth_m.row(v);
     std::uint8_t* out = hidden.row(v);

@@ -14,7 +14,7 @@ constexpr float kNear_m = 1.F;
 constexpr float kFar_m = 2.5F;
 const Camera kCamera{160, 4, 525.F, 525.F, 79.5F, 1.5F};
 
-/// A wall with a board from column 60 to 99 in front of it.
+/// Returns a wall with a board in front of it, from column 60 to 99.
 Image<float> board() {
   Image<float> depth(kCamera.width, kCamera.height, kFar_m);
   for (int v = 0; v < depth.height(); ++v) std::fill(depth.row(v) + 60, depth.row(v) + 100, kNear_m);
@@ -27,7 +27,7 @@ int width_of(const Mask& mask, int begin, int end) {
   return width;
 }
 
-TEST(HiddenFromEye, IsAsWideAsTheDisparitiesDiffer) {
+TEST(HiddenFromEye, IsAsWideAsTheDifferenceOfDisparities) {
   constexpr float kEye_m = 0.025F;
   const float expected_px = kCamera.fx * kEye_m * (1.F / kNear_m - 1.F / kFar_m);  // 7.9
   const Mask right = hidden_from_eye(board(), kCamera, kEye_m);
@@ -81,7 +81,7 @@ TEST(NearJumps, AgreesWithBruteForce) {
   EXPECT_EQ(near_jumps(depth, 0.1F, kRadius), expected);
 }
 
-/// Three levels and holes at random.
+/// Returns random patches of three levels and holes.
 Image<float> patches(int width, int height, std::uint64_t seed) {
   Random random(seed);
   Image<float> depth(width, height, kFar_m);

@@ -14,7 +14,7 @@ using test::statistics_of;
 using test::tilt;
 using test::wall;
 
-TEST(StructuredLight, ErrsByTheFormulaOfNguyenAndOthers) {
+TEST(StructuredLight, ErrsByTheFormulaOfNguyen) {
   const Sensor sensor = resized(sensor_named("kinect-v1"), 160, 120);
   for (const float z : {1.F, 2.F, 3.F, 4.F}) {
     const double expected = 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
@@ -22,7 +22,7 @@ TEST(StructuredLight, ErrsByTheFormulaOfNguyenAndOthers) {
   }
 }
 
-TEST(StructuredLight, ErrsMoreWhereTheSurfaceIsSlanted) {
+TEST(StructuredLight, ErrsMoreOnSlantedSurfaces) {
   const Sensor sensor = resized(sensor_named("kinect-v1"), 160, 120);
   for (const float angle : {1.05F, 1.25F}) {
     const double t = angle / (1.5707963 - angle);
@@ -43,7 +43,7 @@ TEST(StructuredLight, ReadsDisparitiesInEighthsOfAPixel) {
   }
 }
 
-/// Mean number of pixels without reading in columns [begin, end).
+/// Returns the mean number of pixels without a reading in columns [begin, end).
 double hole_width(const DepthImage& depth, int begin, int end) {
   int holes = 0;
   for (int v = 0; v < depth.height(); ++v)
@@ -51,7 +51,7 @@ double hole_width(const DepthImage& depth, int begin, int end) {
   return static_cast<double>(holes) / depth.height();
 }
 
-TEST(StructuredLight, LosesTheProjectorsShadowButForItsRims) {
+TEST(StructuredLight, LosesTheProjectorsShadowExceptItsRims) {
   Sensor sensor = sensor_named("kinect-v1-raw");
   sensor.edge_loss = 0.F;
   Rendering r = board(sensor.camera, 1.2F, 3.F, 300, 420);
@@ -63,7 +63,7 @@ TEST(StructuredLight, LosesTheProjectorsShadowButForItsRims) {
   EXPECT_LT(hole_width(depth, 400, 460), 0.1);
 }
 
-TEST(StructuredLight, LosesWhatTheDisplacedEyeDoesNotSee) {
+TEST(StructuredLight, LosesPixelsHiddenFromTheDisplacedEye) {
   Sensor sensor = sensor_named("kinect-v1");
   sensor.edge_loss = 0.F;
   const DepthImage depth = sense(board(sensor.camera, 1.F, 3.F, 300, 420), sensor, Random(4));

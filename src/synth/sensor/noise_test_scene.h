@@ -6,10 +6,10 @@
 
 #include "synth/sensor/sensor_noise.h"
 
-// Renderings filled by hand, for the tests of the sensors' noise.
+// Renderings made by hand for the tests of the sensors' noise.
 namespace vesalius::synth::test {
 
-/// A bright wall that faces the camera, lit everywhere.
+/// Returns a bright, fully lit wall that faces the camera.
 inline Rendering wall(const Camera& camera, float z_m) {
   Rendering r;
   r.view.camera = camera;
@@ -20,14 +20,14 @@ inline Rendering wall(const Camera& camera, float z_m) {
   return r;
 }
 
-/// The wall with a board before it in columns [begin, end).
+/// Returns the wall with a board in front of it, in columns [begin, end).
 inline Rendering board(const Camera& camera, float near_m, float far_m, int begin, int end) {
   Rendering r = wall(camera, far_m);
   for (int v = 0; v < camera.height; ++v) std::fill(r.depth_m.row(v) + begin, r.depth_m.row(v) + end, near_m);
   return r;
 }
 
-/// A preset without border, so that every pixel counts.
+/// Returns a preset without border, so that every pixel counts.
 inline Sensor sensor_named(const char* name) {
   Sensor s = find_sensor(name);
   s.border_low = s.border_high = {};
@@ -39,7 +39,7 @@ struct Statistics {
   double share_lost = 0.0;
 };
 
-/// Over walls at and just beyond `z_m`, so that no step of the disparity is favoured.
+/// Returns statistics over walls at and just beyond `z_m`, so that no step of the disparity is favoured.
 inline Statistics statistics_of(const Sensor& sensor, float z_m, const std::function<void(Rendering&)>& change = {}) {
   double square = 0.0;
   int read = 0;
@@ -58,7 +58,7 @@ inline Statistics statistics_of(const Sensor& sensor, float z_m, const std::func
   return {std::sqrt(square / std::max(1, read)), 1.0 - static_cast<double>(read) / all};
 }
 
-/// Turns every pixel's normal so that its ray meets the surface at this angle.
+/// Turns every pixel's normal such that its ray meets the surface at this angle.
 inline void tilt(Rendering& r, float angle_rad) {
   for (int v = 0; v < r.normal.height(); ++v) {
     for (int u = 0; u < r.normal.width(); ++u) {

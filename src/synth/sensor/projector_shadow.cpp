@@ -6,9 +6,10 @@
 namespace vesalius::synth {
 namespace {
 
-/// On the way to the projector a ray's image runs along the row, one pixel a pixel of disparity f b / z. So the ray of
-/// pixel u is cut off where some u' on that side has disparity(u') - disparity(u) >= |u' - u|: where the running
-/// maximum of disparity - position exceeds the pixel's own value.
+/// Finds shadows along a row. On its way to the projector the image of a ray runs along the row, one pixel for each
+/// pixel of disparity f b / z. So the ray of pixel u is blocked if some u' on that side has disparity(u') -
+/// disparity(u) >= |u' - u|, which means that the running maximum of disparity - position exceeds the pixel's own
+/// value.
 class RowScan {
  public:
   RowScan(const Camera& camera, float baseline_m)
@@ -19,7 +20,7 @@ class RowScan {
         disparity_(camera.width) {}
 
   void mark(const float* depth_m, std::uint8_t* maybe) {
-    constexpr float kSlackPx = 0.6F;  // less than the 1 px by which a level surface stays below its neighbour's ray
+    constexpr float kSlackPx = 0.6F;  // less than the 1 px by which a flat surface stays below its neighbour's ray
     constexpr float kStepPx = 0.5F;
     constexpr float kFar = std::numeric_limits<float>::infinity();
     for (int u = 0; u < width_; ++u) disparity_[at(u)] = scale_px_m_ / (depth_m[u] > 0.F ? depth_m[u] : kFar);
@@ -39,7 +40,7 @@ class RowScan {
   }
 
  private:
-  static constexpr float kNearestBlocker_m = 0.5F;  ///< beside the picture
+  static constexpr float kNearestBlocker_m = 0.5F;  ///< nearest blocker outside the picture
   static std::size_t at(int u) { return static_cast<std::size_t>(u); }
 
   int width_, step_, start_;
@@ -47,7 +48,7 @@ class RowScan {
   std::vector<float> disparity_;
 };
 
-/// Where a shadow ends within a pixel is for the neighbours to say.
+/// Marks the neighbours of marked pixels, since a shadow may end within a pixel.
 void widen(const Mask& marked, const Image<float>& depth_m, Mask& wide) {
   constexpr int kReach = 2;
   const int width = marked.width();

@@ -15,7 +15,7 @@
 namespace vesalius::synth {
 namespace {
 
-constexpr float kOffSurface_m = 0.0005F;  ///< where shadow rays start, so that a surface does not shade itself
+constexpr float kOffSurface_m = 0.0005F;  ///< shadow rays start at this distance, so no surface shades itself
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 
 void check(const View& view, const RenderOptions& options) {
@@ -36,14 +36,14 @@ void check(const Scene& scene) {
   if (!(scene.ambient >= 0.F && std::isfinite(scene.ambient))) throw Error("ambient light: expected 0 or more");
 }
 
-/// The triangle that a ray met. Its plane is used to work out anew where: Embree says which triangle, but its distance
-/// depends on the instructions the processor has.
+/// The triangle that a ray hit. The hit point is computed again from its plane: Embree identifies the triangle, but its
+/// distance depends on the processor's instructions.
 struct Met {
   std::uint32_t hit = EmbreeScene::kNothing;
   Face face;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of any length
   double offset = 0.0;
-  float near_m = 0.F, far_m = 0.F;  ///< extent along the optical axis
+  float near_m = 0.F, far_m = 0.F;  ///< extent along the optical axis, metres
   bool has_area = false;
   float infrared = 0.F;
   Eigen::Vector3f towards = Eigen::Vector3f::Zero();  ///< unit normal, to the camera's side
@@ -66,7 +66,7 @@ struct Met {
     infrared = geometry.materials[face.material].infrared;
   }
 
-  /// Where the ray (x, y, 1) meets its plane.
+  /// Returns the depth at which the ray (x, y, 1) meets the plane.
   float depth_of(float ray_x, float ray_y) const {
     const double along = normal.x() * ray_x + normal.y() * ray_y + normal.z();
     return std::clamp(static_cast<float>(offset / along), near_m, far_m);
@@ -89,7 +89,7 @@ struct Renderer::State {
 void Renderer::State::fill_surfaces(Rendering& out) const {
   const Camera& camera = out.view.camera;
   const CameraRays rays(camera);
-  Met met;  // neighbours often meet the same
+  Met met;  // kept, since neighbours often hit the same triangle
   for (int v = 0; v < camera.height; ++v) {
     const std::uint32_t* hit = hits.row(v);
     float* depth = out.depth_m.row(v);
@@ -101,7 +101,7 @@ void Renderer::State::fill_surfaces(Rendering& out) const {
       if (hit[u] == EmbreeScene::kNothing) continue;
       if (hit[u] != met.hit) met.look_up(geometry, hit[u]);
       const float depth_m = met.depth_of(rays.x(u), rays.y(v));
-      if (!(depth_m > 0.F && met.has_area)) continue;  // a triangle without area, met on its edge
+      if (!(depth_m > 0.F && met.has_area)) continue;  // a triangle without area that was hit on its edge
       depth[u] = depth_m;
       normal[u] = met.towards;
       label[u] = met.face.part;
@@ -139,13 +139,13 @@ void Renderer::State::fill_lit(const Eigen::Vector3f& projector, Rendering& out)
   out.lit = Mask(camera.width, camera.height);
   for (int v = 0; v < camera.height; ++v) {
     const float* depth_m = out.depth_m.row(v);
-    const Eigen::Vector3f* normal = out.normal.row(v);  // zero where there is no surface
+    const Eigen::Vector3f* normal = out.normal.row(v);  // zero if there is no surface
     std::uint8_t* lit = out.lit.row(v);
     for (int u = 0; u < camera.width; ++u) lit[u] = normal[u].dot(projector - at(u, v, depth_m[u])) > 0.F ? 1 : 0;
   }
   const Mask uncertain = beside ? maybe_shaded(out.depth_m, camera, projector.x()) : out.lit;
   shadow_rays.clear();
-  // Column by column within some rows: rays of one packet then run close together, which is quicker.
+  // Pixels are taken column by column within some rows. The rays of a packet are then close together, which is faster.
   constexpr int kRows = 4;
   for (int top = 0; top < camera.height; top += kRows) {
     const int bottom = std::min(top + kRows, camera.height);

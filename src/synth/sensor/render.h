@@ -7,25 +7,27 @@
 
 namespace vesalius::synth {
 
-/// The images of a view, free of noise. All images have the camera's size.
+/// The images of a view without noise. All have the camera's size.
 struct Rendering {
   View view;
-  Image<float> depth_m;           ///< along the optical axis, metres; 0 where no surface is hit
-  LabelImage labels;              ///< part, kBackground elsewhere
-  Image<std::uint8_t> person;     ///< index of the person, kBackground elsewhere
-  Image<Eigen::Vector3f> normal;  ///< unit, camera frame, towards the camera; zero where no surface is hit
-  ColourImage colour;             ///< empty unless asked for
-  Image<float> infrared;          ///< share of infrared light sent back, 0-1; 0 where no surface is hit
-  Mask lit;                       ///< non-zero where the projector's light arrives; empty without a projector
+  Image<float> depth_m;           ///< along the optical axis, metres; 0 if the ray hits nothing
+  LabelImage labels;              ///< index of the part, or kBackground
+  Image<std::uint8_t> person;     ///< index of the person, or kBackground
+  Image<Eigen::Vector3f> normal;  ///< unit vector in the camera frame towards the camera, or zero
+  ColourImage colour;             ///< empty unless requested
+  Image<float> infrared;          ///< share of reflected infrared light, 0-1; 0 if the ray hits nothing
+  Mask lit;                       ///< non-zero in the projector's light; empty without a projector
 };
 
 struct RenderOptions {
   bool colour = true;
-  /// Where the pattern of a structured-light sensor (or the second eye of a stereo one) sits, camera frame, metres.
+  /// Position of a structured-light sensor's projector (or a stereo sensor's second eye), in metres in the camera
+  /// frame.
   std::optional<Eigen::Vector3f> projector;
 };
 
-/// Casts rays with Embree. Holds a device; use one per thread. Same scene and view, same bytes.
+/// Casts rays with Embree. It holds a device, so each thread needs its own. The same scene and view give the same
+/// bytes.
 class Renderer {
  public:
   Renderer();
@@ -33,7 +35,8 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Throws Error for a camera that cannot be, or a mesh with an index out of range or a number that is not finite.
+  /// Renders a view. Throws Error for an invalid camera, or a mesh with an index out of range or a number that is not
+  /// finite.
   Rendering render(const Scene& scene, const View& view, const RenderOptions& options = {});
 
  private:
@@ -41,7 +44,7 @@ class Renderer {
   std::unique_ptr<State> state_;
 };
 
-/// "Embree 3.13.5".
+/// Returns e.g. "Embree 3.13.5".
 const char* renderer_version();
 
 }  // namespace vesalius::synth

@@ -14,7 +14,7 @@ using Eigen::Vector3f;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(Render, TrianglesOfAPersonWithoutAPartAreNobodys) {
+TEST(Render, LabelsTrianglesWithoutAPartAsNobodys) {
   const View view = view_of(8, 8, 10.F);
   Scene scene;
   scene.meshes = {of_person(wall(2.F), 2)};
@@ -25,7 +25,7 @@ TEST(Render, TrianglesOfAPersonWithoutAPartAreNobodys) {
   EXPECT_EQ(out.depth_m(4, 4), 2.F);
 }
 
-TEST(Render, AnEmptySceneIsEmpty) {
+TEST(Render, RendersAnEmptyScene) {
   const Rendering out = Renderer().render(Scene{}, view_of(8, 6, 10.F), {true, Vector3f(0.1F, 0.F, 0.F)});
   for (std::size_t i = 0; i < out.depth_m.size(); ++i) {
     ASSERT_EQ(out.depth_m[i], 0.F);
@@ -35,7 +35,7 @@ TEST(Render, AnEmptySceneIsEmpty) {
 
 TEST(Render, SeesNothingBehindTheCamera) {
   Scene scene;
-  scene.meshes = {wall(-1.F), quad({-1.F, 1.F, -5.F}, {2.F, 0.F, 0.F}, {0.F, 0.F, 10.F})};  // a floor passing below
+  scene.meshes = {wall(-1.F), quad({-1.F, 1.F, -5.F}, {2.F, 0.F, 0.F}, {0.F, 0.F, 10.F})};  // a floor that passes below
   const View view = view_of(40, 31, 20.F);
   const Rendering out = Renderer().render(scene, view);
   for (int v = 0; v < 15; ++v) ASSERT_EQ(out.depth_m(20, v), 0.F);
@@ -46,7 +46,7 @@ void expect_error(const Scene& scene, const View& view, const std::string& words
   EXPECT_THAT([&] { Renderer().render(scene, view); }, ThrowsMessage<Error>(HasSubstr(words)));
 }
 
-TEST(Render, SaysWhatIsWrongWithAScene) {
+TEST(Render, NamesTheFaultOfAScene) {
   const View view = view_of(8, 6, 10.F);
   Scene good;
   good.meshes = {wall(1.F), wall(2.F)};

@@ -15,9 +15,9 @@ using namespace test;
 
 using Eigen::Vector3f;
 
-TEST(Render, PlaneHasItsDepthAndNormalInEveryPixel) {
+TEST(Render, GivesAPlaneItsDepthAndNormalInEveryPixel) {
   View view = view_of(64, 48, 60.F);
-  view.camera.cx = 20.3F;  // an off-centre camera sees it just so
+  view.camera.cx = 20.3F;  // an off-centre camera gives the same result
   const Vector3f normal = Vector3f(0.3F, -0.5F, -1.F).normalized();
   const Vector3f foot(0.1F, 0.2F, 2.5F);
   const Vector3f along = normal.cross(Vector3f::UnitY()).normalized();
@@ -36,7 +36,7 @@ TEST(Render, PlaneHasItsDepthAndNormalInEveryPixel) {
   }
 }
 
-TEST(Render, SphereOfManyTrianglesIsASphere) {
+TEST(Render, RendersASphereOfManyTriangles) {
   const View view = view_of(160, 120, 150.F);
   const Vector3f centre(0.2F, -0.1F, 2.F);
   constexpr float kRadius = 0.5F;
@@ -53,7 +53,7 @@ TEST(Render, SphereOfManyTrianglesIsASphere) {
         ASSERT_EQ(out.depth_m(u, v), 0.F);
         ASSERT_EQ(out.person(u, v), kBackground);
         ASSERT_TRUE(out.normal(u, v).isZero());
-      } else if (root > 2e-2F) {  // away from the rim, where facets are seen from their edge
+      } else if (root > 2e-2F) {  // not at the rim, where facets are seen edge-on
         const float z = (b - std::sqrt(root)) / a;
         ASSERT_NEAR(out.depth_m(u, v), z, 5e-4F);
         ASSERT_GT(out.normal(u, v).dot((z * ray - centre) / kRadius), 0.999F);
@@ -66,10 +66,10 @@ TEST(Render, SphereOfManyTrianglesIsASphere) {
   EXPECT_GT(hits, 3000);
 }
 
-TEST(Render, RaysPassThroughPixelCentres) {
+TEST(Render, CastsRaysThroughPixelCentres) {
   const View view = view_of(40, 30, 50.F);
   Scene scene;
-  // Covers x >= 0.1 m at 2 m: u = 0.1 / 2 * 50 + 19.5 = 22 is the edge; 22.02 lies to the right of it.
+  // The wall covers x >= 0.1 m at 2 m. Its edge is at u = 0.1 / 2 * 50 + 19.5 = 22, and 22.02 is to the right of it.
   scene.meshes = {wall(2.F, 0.1008F), wall(4.F)};
   const Rendering out = Renderer().render(scene, view);
   for (int v = 0; v < 30; ++v) {
@@ -77,11 +77,12 @@ TEST(Render, RaysPassThroughPixelCentres) {
   }
 }
 
-TEST(Render, ShadowOfAStepIsAsWideAsItsDisparity) {
+TEST(Render, CastsAShadowAsWideAsTheDisparityOfAStep) {
   constexpr float kFocal = 525.F, kBaseline = 0.075F, kNear = 1.F, kFar = 2.F;
   const View view = view_of(640, 20, kFocal);
   Scene scene;
-  scene.meshes = {wall(kNear, 0.0007F), wall(kFar)};  // the near one covers the right half: shade falls to its left
+  scene.meshes = {wall(kNear, 0.0007F),
+                  wall(kFar)};  // the near wall covers the right half, and its shadow falls to the left
   RenderOptions options;
   options.projector = Vector3f(kBaseline, 0.F, 0.F);
   const Rendering out = Renderer().render(scene, view, options);
@@ -91,12 +92,12 @@ TEST(Render, ShadowOfAStepIsAsWideAsItsDisparity) {
   EXPECT_EQ(out.lit(319, 10), 0);
   EXPECT_NE(out.lit(320, 10), 0);
 
-  options.projector = Vector3f(-kBaseline, 0.F, 0.F);  // from the other side the step hides its own shade
+  options.projector = Vector3f(-kBaseline, 0.F, 0.F);  // from the other side the step hides its own shadow
   const Rendering other = Renderer().render(scene, view, options);
   for (int u = 0; u < 640; ++u) ASSERT_NE(other.lit(u, 10), 0) << u;
 }
 
-TEST(Render, SparingShadowRaysChangesAlmostNothing) {
+TEST(Render, ChangesLittleByOmittingShadowRays) {
   const View view = view_of(320, 240, 280.F);
   Scene scene;
   for (int i = 0; i < 6; ++i) {
@@ -109,7 +110,7 @@ TEST(Render, SparingShadowRaysChangesAlmostNothing) {
   for (const float baseline : {0.075F, -0.075F}) {
     options.projector = Vector3f(baseline, 0.F, 0.F);
     const Rendering sparing = renderer.render(scene, view, options);
-    options.projector->y() = 1e-6F;  // out of line: every pixel gets a ray
+    options.projector->y() = 1e-6F;  // not in a row with the camera, so every pixel gets a ray
     const Rendering all = renderer.render(scene, view, options);
     int dark = 0, different = 0;
     for (std::size_t i = 0; i < all.lit.size(); ++i) {
@@ -121,7 +122,7 @@ TEST(Render, SparingShadowRaysChangesAlmostNothing) {
   }
 }
 
-TEST(Render, MirroredSceneGivesTheMirroredImage) {
+TEST(Render, MirrorsTheImageOfAMirroredScene) {
   View view = view_of(160, 120, 140.F);
   view.camera.cx = 71.25F;
   view.camera_from_world.linear() = Eigen::AngleAxisf(0.2F, Vector3f(0.4F, 1.F, 0.3F).normalized()).toRotationMatrix();
@@ -154,7 +155,7 @@ bool same(const Rendering& a, const Rendering& b) {
 }
 
 // Labels: threads
-TEST(Render, SameBytesAgainAndFromAnyThread) {
+TEST(Render, GivesTheSameBytesOnAnyThread) {
   const View view = view_of(160, 120, 140.F);
   Scene scene = confetti(20000);
   scene.lights = {Light{}};
@@ -162,7 +163,7 @@ TEST(Render, SameBytesAgainAndFromAnyThread) {
   options.projector = Vector3f(0.05F, 0.01F, 0.F);
   Renderer renderer;
   const Rendering first = renderer.render(scene, view, options);
-  renderer.render(confetti(10), view_of(30, 50, 20.F));  // leaves nothing behind
+  renderer.render(confetti(10), view_of(30, 50, 20.F));  // must not affect the next picture
   EXPECT_TRUE(same(first, renderer.render(scene, view, options)));
   std::vector<Rendering> others(4);
   parallel_for(4, [&](int i) { others[i] = Renderer().render(scene, view, options); });
@@ -170,14 +171,14 @@ TEST(Render, SameBytesAgainAndFromAnyThread) {
 }
 
 // Labels: threads
-TEST(Render, ARendererLeavesOtherThreadsTheirWork) {
+TEST(Render, LeavesOtherThreadsTheirWork) {
   const int before = thread_count();
   Renderer renderer;
   renderer.render(confetti(100), view_of(32, 24, 30.F));
   EXPECT_EQ(thread_count(), before);
 }
 
-TEST(Render, TheSkyIsWhereThereIsNoSurface) {
+TEST(Render, ShowsTheSkyWhereThereIsNoSurface) {
   Scene scene;
   scene.sky = {10, 20, 30};
   scene.meshes = {wall(2.F, 0.F)};
@@ -187,13 +188,13 @@ TEST(Render, TheSkyIsWhereThereIsNoSurface) {
   EXPECT_EQ(out.depth_m(0, 4), 0.F);
 }
 
-TEST(Render, ColourIsLambertsLaw) {
+TEST(Render, ShadesByLambertsLaw) {
   const View view = view_of(3, 3, 10.F);
   Scene scene;
   scene.meshes = {wall(2.F)};
   scene.meshes[0].materials = {Material{{200, 100, 50}, {}, Texture::plain, 0.1F, 0.25F}};
   scene.ambient = 0.25F;
-  scene.lights = {Light{{0.F, 0.F, 0.F}, 2.F}};  // 2 m away: 2 / 2^2 more
+  scene.lights = {Light{{0.F, 0.F, 0.F}, 2.F}};  // at a distance of 2 m it adds 2 / 2^2
   const Rendering out = Renderer().render(scene, view);
   EXPECT_EQ(out.colour(1, 1), (Rgb{150, 75, 38}));
   EXPECT_EQ(out.infrared(1, 1), 0.25F);

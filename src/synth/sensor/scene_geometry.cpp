@@ -43,7 +43,7 @@ void check(const SceneMesh& mesh, std::size_t number) {
   }
 }
 
-/// The two triangles as a quad where they share an edge and run round it the same way.
+/// Returns the two triangles as a quad if they share an edge and have the same orientation.
 std::optional<Quad> joined(const Triangle& a, const Triangle& b) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::uint32_t first = a[i], second = a[(i + 1) % 3];
@@ -60,7 +60,7 @@ void SceneGeometry::add_vertices(const SceneMesh& mesh, std::size_t number) {
   const std::size_t base = vertices.size();
   vertices.resize(base + mesh.vertices.size());
   outside_.resize(vertices.size());
-  float sum = 0.F;  // finite as long as every coordinate is
+  float sum = 0.F;  // finite if every coordinate is
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Eigen::Vector3f p = camera_from_world_ * mesh.vertices[i];
     sum += 0.F * (p.x() + p.y() + p.z());
@@ -119,7 +119,8 @@ void SceneGeometry::add(const SceneMesh& mesh, std::size_t number) {
 }
 
 void SceneGeometry::set_planes(const Camera& camera, const std::optional<Eigen::Vector3f>& projector) {
-  // The sides of the view, a pixel wider, pushed out far enough that shadow rays to the projector stay inside.
+  // These are the sides of the view, a pixel wider, and moved outwards such that shadow rays to the projector stay
+  // inside.
   const float left = (-1.F - camera.cx) / camera.fx;
   const float right = (static_cast<float>(camera.width) - camera.cx) / camera.fx;
   const float top = (-1.F - camera.cy) / camera.fy;

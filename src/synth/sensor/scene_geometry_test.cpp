@@ -17,7 +17,7 @@ View wide_view() {
   return view;
 }
 
-/// Corners of all triangles of the quads, the lowest first.
+/// Returns the corners of all triangles of the quads, with the lowest first.
 std::multiset<Triangle> triangles_of(const SceneGeometry& geometry) {
   std::multiset<Triangle> result;
   for (const auto& q : geometry.quads) {
@@ -30,7 +30,7 @@ std::multiset<Triangle> triangles_of(const SceneGeometry& geometry) {
   return result;
 }
 
-TEST(SceneGeometry, QuadsHoldJustTheTrianglesOfTheScene) {
+TEST(SceneGeometry, HasExactlyTheTrianglesOfTheScene) {
   Random random(3);
   SceneMesh mesh;
   for (int i = 0; i < 60; ++i) {
@@ -57,7 +57,7 @@ TEST(SceneGeometry, QuadsHoldJustTheTrianglesOfTheScene) {
   EXPECT_LT(geometry.quads.size(), mesh.triangles.size());
 }
 
-TEST(SceneGeometry, FacesKeepPartPersonAndMaterialOfTheirTriangles) {
+TEST(SceneGeometry, KeepsPartPersonAndMaterialOfTriangles) {
   SceneMesh mesh;
   mesh.vertices = {{0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -73,13 +73,13 @@ TEST(SceneGeometry, FacesKeepPartPersonAndMaterialOfTheirTriangles) {
   const auto& [first, second] = geometry.faces[0];
   EXPECT_EQ(first.part, 4);
   EXPECT_EQ(first.person, 3);
-  EXPECT_EQ(first.material, 2);  // after the other mesh's own
+  EXPECT_EQ(first.material, 2);  // after the materials of the other mesh
   EXPECT_EQ(second.part, kBackground);
   EXPECT_EQ(second.person, kBackground);
   EXPECT_EQ(second.material, 1);
 }
 
-TEST(SceneGeometry, LeavesOutOnlyWhatNoRayCanMeet) {
+TEST(SceneGeometry, LeavesOutOnlyTrianglesThatNoRayCanMeet) {
   const auto kept = [](const Vector3f& at, const std::optional<Vector3f>& projector) {
     SceneMesh mesh;
     mesh.vertices = {at, at + Vector3f(0.01F, 0.F, 0.F), at + Vector3f(0.F, 0.01F, 0.F)};
@@ -95,7 +95,7 @@ TEST(SceneGeometry, LeavesOutOnlyWhatNoRayCanMeet) {
   EXPECT_FALSE(kept({1.1F, 0.F, 1.F}, {}));
   EXPECT_FALSE(kept({0.F, -1.2F, 1.F}, {}));
   EXPECT_FALSE(kept({0.F, 0.F, -1.F}, {}));
-  // A projector 20 cm to the right: its light crosses what the camera does not see.
+  // The light of a projector 20 cm to the right passes through space that the camera does not see.
   EXPECT_TRUE(kept({1.1F, 0.F, 1.F}, Vector3f(0.2F, 0.F, 0.F)));
   EXPECT_FALSE(kept({-1.1F, 0.F, 1.F}, Vector3f(0.2F, 0.F, 0.F)));
 }

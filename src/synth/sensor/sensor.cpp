@@ -13,13 +13,13 @@ namespace {
 constexpr int kSmallest = 16, kLargest = 8192;
 constexpr float kDegree = 3.14159265F / 180.F;
 
-/// PrimeSense's structured light, as in Kinect v1 and Xtion, depth warped onto the colour camera as OpenNI does.
-/// Axial and lateral noise: Nguyen, Izadi, Lovell, "Modeling Kinect Sensor Noise for Improved 3D Reconstruction and
-/// Tracking", 2012. Projector, colour camera and infrared eye stand in this order, 50 and 25 mm apart; disparities in
-/// steps of 1/8 pixel at f = 580 px: Khoshelham, Oude Elberink, "Accuracy and Resolution of Kinect Depth Data", 2012.
-/// Window, fattening, edges, borders and dark limit are tuned to public frames of eight Kinects and Xtions: silhouette
-/// holes 4 px narrower than the shadow, a third of silhouettes with a hole of 6 to 14 px even without a shadow, border
-/// of 0-43, 7-35, 0-34 and 0-16 px.
+/// Returns PrimeSense's structured light as in Kinect v1 and Xtion, with depth warped onto the colour camera as OpenNI
+/// does. Axial and lateral noise: Nguyen, Izadi, Lovell, "Modeling Kinect Sensor Noise for Improved 3D Reconstruction
+/// and Tracking", 2012. Projector, colour camera and infrared eye are in this order, 50 and 25 mm apart. Disparities
+/// have steps of 1/8 pixel at f = 580 px: Khoshelham, Oude Elberink, "Accuracy and Resolution of Kinect Depth Data",
+/// 2012. Window, fattening, edges, borders and dark limit are tuned to public frames of eight Kinects and Xtions:
+/// silhouette holes are 4 px narrower than the shadow, a third of silhouettes have a hole of 6 to 14 px even without a
+/// shadow, and borders have 0-43, 7-35, 0-34 and 0-16 px.
 Sensor registered_kinect() {
   Sensor s;
   s.name = "kinect-v1";
@@ -47,7 +47,8 @@ Sensor registered_kinect() {
   return s;
 }
 
-/// The infrared camera's own picture: f from the 7-Scenes and Khoshelham calibrations; its last 8 columns are empty.
+/// Returns the infrared camera's own picture. f comes from the 7-Scenes and Khoshelham calibrations; its last 8 columns
+/// are empty.
 Sensor raw_kinect() {
   Sensor s = registered_kinect();
   s.name = "kinect-v1-raw";
@@ -59,7 +60,7 @@ Sensor raw_kinect() {
   return s;
 }
 
-/// The same PrimeSense module at OpenNI's nominal f = 570.3 px for the infrared eye.
+/// Returns the same PrimeSense module at OpenNI's nominal f = 570.3 px for the infrared eye.
 Sensor xtion() {
   Sensor s = registered_kinect();
   s.name = "xtion";
@@ -76,14 +77,15 @@ Sensor time_of_flight(const char* name, const char* title, const Camera& camera)
   s.camera = camera;
   s.near_m = 0.5F;
   s.mixed_px = 1.F;
-  s.mixed_loss = 0.5F;  // the drivers' filters for mixed pixels catch about every other one
+  s.mixed_loss = 0.5F;  // the drivers' filters remove about every other mixed pixel
   s.window_px = 3.F;
   s.max_angle_rad = 85.F * kDegree;
   return s;
 }
 
-/// f and centre: common calibrations (libfreenect2). Range and noise: Wasenmüller, Stricker, "Comparison of Kinect v1
-/// and v2 Depth Images in Terms of Accuracy and Precision", 2016: 1 mm near, some 3 mm at 4 m on a bright wall.
+/// Returns Kinect v2. f and centre: common calibrations (libfreenect2). Range and noise: Wasenmüller, Stricker,
+/// "Comparison of Kinect v1 and v2 Depth Images in Terms of Accuracy and Precision", 2016: 1 mm near, some 3 mm at 4 m
+/// on a bright wall.
 Sensor kinect_v2() {
   Sensor s =
       time_of_flight("kinect-v2", "Microsoft Kinect for Xbox One", {512, 424, 365.456F, 365.456F, 254.878F, 205.395F});
@@ -94,20 +96,21 @@ Sensor kinect_v2() {
   return s;
 }
 
-/// Narrow, unbinned: range from Microsoft's hardware specification, which bounds the random error by 17 mm; half of
-/// Kinect v2's slope: Kurillo et al., "Evaluating the Accuracy of the Azure Kinect and Kinect v2", 2022.
+/// Returns the narrow unbinned mode of an Azure Kinect. The range comes from Microsoft's hardware specification, which
+/// bounds the random error by 17 mm; the noise has half of Kinect v2's slope: Kurillo et al., "Evaluating the Accuracy
+/// of the Azure Kinect and Kinect v2", 2022.
 Sensor azure_kinect(const char* name, const char* title) {
   Sensor s = time_of_flight(name, title, {640, 576, 504.F, 504.F, 320.F, 330.F});
-  s.far_m = 5.46F;  // 3.86 m is specified; returns from brighter surfaces reach the end of the phase's period
+  s.far_m = 5.46F;  // 3.86 m is specified; bright surfaces are seen up to the end of the phase's period
   s.axial_base_m = 0.0007F;
   s.amplitude_z2 = 0.00005F;
   s.min_infrared = 0.01F;
   return s;
 }
 
-/// Intel, "D400 Series datasheet": baselines, nearest depth, 848x480 as best resolution. Noise: RMS = z^2 s / (f B) of
-/// Intel's tuning guide (Grunnet-Jepsen et al., "Best-known methods for tuning D400 depth cameras", 2018); 5 fractional
-/// bits of disparity.
+/// Returns a RealSense. Baselines, nearest depth and the best resolution of 848x480: Intel, "D400 Series datasheet".
+/// Noise: RMS = z^2 s / (f B) of Intel's tuning guide (Grunnet-Jepsen et al., "Best-known methods for tuning D400 depth
+/// cameras", 2018), with 5 fractional bits of disparity.
 Sensor realsense(const char* name, const char* title, float baseline_m, float nearest_m) {
   Sensor s;
   s.name = name;
@@ -191,7 +194,7 @@ Sensor reframed(const Sensor& sensor, int width, int height) {
   const float scale = static_cast<float>(width) / static_cast<float>(sensor.camera.width);
   const int full = scaled(sensor.camera.height, scale);
   Camera camera = sensor.camera.resized(width, full);
-  camera.fy = sensor.camera.fy * scale;  // square pixels stay square where the full height was rounded
+  camera.fy = sensor.camera.fy * scale;  // square pixels stay square although the full height was rounded
   camera.cy -= static_cast<float>(full - height) * 0.5F;
   camera.height = height;
   Sensor other = with_camera(sensor, camera);

@@ -16,9 +16,9 @@ namespace {
 
 using Array = Eigen::ArrayXf;
 
-// A hole's rim is rough: share of the deciding noise that is independent from pixel to pixel.
+// Share of the deciding noise that is independent from pixel to pixel, which makes the rims of holes rough.
 constexpr float kLossGrain = 0.08F;
-// Holes are larger than what errors hang together over.
+// Size of holes in windows: they are larger than the window within which errors are correlated.
 constexpr float kLossWindows = 2.F;
 
 Border draw_border(const Sensor& sensor, Random& random) {
@@ -51,7 +51,7 @@ std::uint16_t millimetres(const Sensor& sensor, float z_m) {
   return static_cast<std::uint16_t>(std::min(65535.F, z_m * 1000.F + 0.5F));
 }
 
-/// One frame being read, row by row.
+/// Reads one frame row by row.
 class Reading {
  public:
   Reading(const Rendering& rendering, const Sensor& sensor, Random& random);
@@ -67,7 +67,7 @@ class Reading {
   Border border_;
   Aim aim_;
   NoiseField error_, loss_;
-  Array white_, grainy_;  ///< scratch, padded
+  Array white_, grainy_;  ///< temporary memory, padded
   std::vector<std::uint16_t> read_mm_;
 };
 
@@ -102,7 +102,8 @@ DepthImage Reading::run(Image<std::uint32_t>* source) {
   return depth;
 }
 
-/// Normal noise that decides which readings are lost: smooth, so that holes are blotches, with rough rims.
+/// Returns the normal noise that decides which readings are lost. It is smooth, so holes are blotches; a share of
+/// independent noise makes their rims rough.
 const Array& Reading::losses(int v) {
   const float smooth = std::sqrt(1.F - kLossGrain * kLossGrain);
   const Array& field = loss_.row(v);
@@ -110,7 +111,8 @@ const Array& Reading::losses(int v) {
   return grainy_;
 }
 
-/// Normal noise of the depth: alike within a matching window; with time of flight each pixel measures for itself.
+/// Returns the normal noise of the depth. It is correlated within a matching window; with time of flight each pixel is
+/// independent.
 const Array& Reading::errors(int v) {
   if (sensor_.kind != SensorKind::time_of_flight) return error_.row(v);
   std::generate_n(white_.data(), width_, [&] { return quick_normal(random_); });

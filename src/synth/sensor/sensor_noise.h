@@ -9,13 +9,14 @@
 
 namespace vesalius::synth {
 
-/// Returns where the sensor's projector or second eye sits, in the camera frame; nothing for sensors that have none.
+/// Returns the position of the sensor's projector or second eye in the camera frame, or nothing if it has none.
 std::optional<Eigen::Vector3f> projector_of(const Sensor& sensor);
 
-/// Returns depth as the sensor reports it: uint16 millimetres, 0 = no reading. Same (rendering, sensor, random), same
-/// bytes. `source`, if asked for, is given the pixel (row-major index) of the rendering whose surface was read, for
-/// silhouettes wobble and grow and the truth must follow (`as_read`); the pixel itself where nothing was read.
-/// Throws Error when the images of the rendering differ in size, or `lit` is missing for a sensor with a projector.
+/// Returns depth as the sensor reports it: uint16 millimetres, 0 = no reading. The same (rendering, sensor, random)
+/// gives the same bytes. Silhouettes wobble and grow, and the truth must follow: `source`, if not null, receives for
+/// each pixel the pixel (row-major index) of the rendering whose surface was read, to be used with `as_read`; it is the
+/// pixel itself if nothing was read. Throws Error if the images of the rendering differ in size, or `lit` is missing
+/// for a sensor with a projector.
 DepthImage sense(const Rendering& rendering, const Sensor& sensor, Random random,
                  Image<std::uint32_t>* source = nullptr);
 

@@ -18,7 +18,7 @@ using test::tilt;
 using test::wall;
 using testing::HasSubstr;
 
-TEST(Loss, TakesHalfAtTheLargestAngle) {
+TEST(Loss, TakesHalfOfTheReadingsAtTheLargestAngle) {
   const Sensor sensor = resized(sensor_named("kinect-v1"), 80, 60);
   const auto lost_at = [&](float radians) {
     return statistics_of(sensor, 2.F, [&](Rendering& r) { tilt(r, radians); }).share_lost;
@@ -28,10 +28,10 @@ TEST(Loss, TakesHalfAtTheLargestAngle) {
   EXPECT_GT(lost_at(1.545F), 0.9);
 }
 
-TEST(Loss, TakesHalfOfWhatIsAsDarkAsTheLimit) {
+TEST(Loss, TakesHalfOfTheReadingsAtTheDarkLimit) {
   for (const char* name : {"kinect-v1", "azure-kinect", "d435"}) {
     Sensor sensor = resized(sensor_named(name), 160, 90);
-    sensor.camera.fx = sensor.camera.fy = 4000.F;  // all rays near the axis
+    sensor.camera.fx = sensor.camera.fy = 4000.F;  // so that all rays are near the axis
     const auto lost_at = [&](float infrared, float z_m) {
       return statistics_of(sensor, z_m, [&](Rendering& r) { r.infrared.fill(infrared); }).share_lost;
     };
@@ -60,7 +60,7 @@ TEST(Loss, MakesBlotchesRatherThanSpeckles) {
   EXPECT_LT(alone, holes / 100);
 }
 
-TEST(Range, EndsWhereTheSensorSays) {
+TEST(Range, EndsAtTheSensorsLimits) {
   for (const Sensor& preset : sensors()) {
     const Sensor sensor = resized(preset, 64, 32);
     const auto lost = [&](float z) { return statistics_of(sensor, z).share_lost; };
@@ -98,7 +98,7 @@ TEST(Stereo, ErrsByItsMatchingError) {
   }
 }
 
-TEST(Stereo, ErrsAlikeWithinItsWindow) {
+TEST(Stereo, HasEqualErrorsWithinItsWindow) {
   const Sensor sensor = sensor_named("d435");
   constexpr float kWall_m = 3.F;
   const auto correlation = [&](int du) {
@@ -122,7 +122,7 @@ TEST(Stereo, ErrsAlikeWithinItsWindow) {
   EXPECT_LT(correlation(9), 0.1);
 }
 
-TEST(Stereo, FattensWhatIsInFront) {
+TEST(Stereo, FattensSurfacesInFront) {
   Sensor sensor = sensor_named("d435");
   sensor.edge_loss = sensor.lateral_px = 0.F;
   const DepthImage depth = sense(board(sensor.camera, 1.5F, 3.F, 400, 440), sensor, Random(11));
@@ -148,7 +148,7 @@ TEST(TimeOfFlight, ErrsBySquareOfDistanceOverAmplitude) {
   }
 }
 
-TEST(TimeOfFlight, MixesNearAndFarAtSilhouettesOnly) {
+TEST(TimeOfFlight, MixesNearAndFarOnlyAtSilhouettes) {
   const Sensor sensor = sensor_named("azure-kinect");
   const DepthImage depth = sense(board(sensor.camera, 1.5F, 3.F, 300, 340), sensor, Random(12));
   const auto between = [&](int u) {
@@ -157,7 +157,8 @@ TEST(TimeOfFlight, MixesNearAndFarAtSilhouettesOnly) {
     return count / 576.0;
   };
   for (const int u : {100, 297, 298, 301, 320, 341, 500}) EXPECT_EQ(between(u), 0.0) << u;
-  // Half of the pixels beside the silhouette straddle it, the driver drops half of them; the rest counts by light.
+  // The silhouette runs through half of the pixels beside it, and the driver drops half of these. The rest is weighted
+  // by light.
   EXPECT_NEAR(between(299) + between(300), 0.4, 0.12);
   EXPECT_NEAR(between(339) + between(340), 0.4, 0.12);
 }
@@ -176,7 +177,7 @@ TEST(Sense, RoundsThePerfectSensorToMillimetres) {
   EXPECT_EQ(depth(3, 3), 1234);
 }
 
-TEST(Sense, RepeatsItselfAndVariesWithTheStream) {
+TEST(Sense, DependsOnTheRandomStreamAlone) {
   for (const Sensor& sensor : sensors()) {
     if (sensor.kind == SensorKind::perfect) continue;
     const Rendering r = board(sensor.camera, 1.5F, 3.F, 200, 300);
@@ -186,7 +187,7 @@ TEST(Sense, RepeatsItselfAndVariesWithTheStream) {
   }
 }
 
-TEST(Sense, TellsWhichSurfaceEachReadingIsOf) {
+TEST(Sense, TellsTheSurfaceOfEachReading) {
   for (const char* name : {"kinect-v1", "d435", "perfect"}) {
     const Sensor sensor = sensor_named(name);
     const Rendering r = board(sensor.camera, 1.5F, 3.F, 300, 340);
@@ -204,7 +205,7 @@ TEST(Sense, TellsWhichSurfaceEachReadingIsOf) {
   }
 }
 
-TEST(Sense, FindsNothingWhereNothingIs) {
+TEST(Sense, ReadsNothingWithoutASurface) {
   for (const Sensor& sensor : sensors()) {
     Rendering r = wall(sensor.camera, 0.F);
     r.infrared.fill(0.F);
@@ -231,7 +232,7 @@ TEST(Sense, RefusesPicturesThatDoNotFit) {
   EXPECT_THAT(complaint([](Rendering& r) { r.depth_m = {}; }), HasSubstr("one size"));
 }
 
-TEST(ProjectorOf, StandsWhereTheSensorSays) {
+TEST(ProjectorOf, IsAtTheSensorsBaseline) {
   EXPECT_EQ(projector_of(find_sensor("d455")), Eigen::Vector3f(0.095F, 0.F, 0.F));
   EXPECT_FALSE(projector_of(find_sensor("azure-kinect")));
   Sensor silent = find_sensor("kinect-v1");

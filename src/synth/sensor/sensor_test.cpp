@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Sensors, HaveNamesOfTheirOwnAndUsableNumbers) {
+TEST(Sensors, HaveUniqueNamesAndUsableNumbers) {
   std::set<std::string> names;
   for (const Sensor& s : sensors()) {
     EXPECT_TRUE(names.insert(s.name).second) << s.name;
@@ -33,7 +33,7 @@ TEST(Sensors, HaveNamesOfTheirOwnAndUsableNumbers) {
   }
 }
 
-TEST(Sensors, SayWhichThereAre) {
+TEST(Sensors, ListTheirNamesForAnUnknownOne) {
   try {
     find_sensor("kinect-v3");
     FAIL();
@@ -42,7 +42,7 @@ TEST(Sensors, SayWhichThereAre) {
   }
 }
 
-TEST(Sensors, SeeTheSameWhenBinned) {
+TEST(Sensors, KeepTheirViewWhenBinned) {
   const Sensor& full = find_sensor("kinect-v1");
   const Sensor half = resized(full, 320, 240);
   EXPECT_EQ(half.camera, full.camera.resized(320, 240));
@@ -53,7 +53,7 @@ TEST(Sensors, SeeTheSameWhenBinned) {
   EXPECT_FLOAT_EQ(half.disparity_step_px, full.disparity_step_px);
 }
 
-TEST(Sensors, CropAroundTheMiddleRow) {
+TEST(Sensors, AreCroppedAroundTheMiddleRow) {
   const Sensor cropped = resized(find_sensor("d435"), 424, 120);
   EXPECT_EQ(cropped.camera.width, 424);
   EXPECT_EQ(cropped.camera.height, 120);
@@ -63,7 +63,7 @@ TEST(Sensors, CropAroundTheMiddleRow) {
   EXPECT_EQ(resized(find_sensor("kinect-v1"), 640, 400).border_high.bottom, 0);
 }
 
-TEST(Sensors, RefuseSizesThatTheyCannotShow) {
+TEST(Sensors, RefuseImpossibleSizes) {
   const Sensor& s = find_sensor("kinect-v1");
   EXPECT_THROW(resized(s, 8, 6), UsageError);
   EXPECT_THROW(resized(s, 320, 241), UsageError);

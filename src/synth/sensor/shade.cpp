@@ -6,14 +6,14 @@
 namespace vesalius::synth {
 namespace {
 
-/// Number of the cell along one axis. Surfaces tend to lie at round coordinates, where rounding would tear cells:
-/// hence the odd shift.
+/// Returns the number of the cell along one axis. The odd shift keeps rounding from tearing cells, since surfaces are
+/// often at round coordinates.
 std::int64_t cell(float at, float period_m) {
   constexpr double kShift = 0.3719;
   return static_cast<std::int64_t>(std::floor(static_cast<double>(at) / static_cast<double>(period_m) + kShift));
 }
 
-/// 0-255, the same within a cell.
+/// Returns 0-255, the same within a cell.
 std::uint32_t speckle(const Eigen::Vector3f& point, float period_m) {
   std::uint32_t hash = 2166136261U;
   for (int axis = 0; axis < 3; ++axis) {
@@ -53,7 +53,7 @@ Rgb colour_at(const Material& material, const Eigen::Vector3f& point, const Eige
 
 float brightness(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const std::vector<Light>& lights,
                  float ambient) {
-  constexpr float kNearestSquared = 0.09F;  // a lamp is no point: nothing gets closer than 0.3 m
+  constexpr float kNearestSquared = 0.09F;  // a lamp is not a point: distances count as at least 0.3 m
   float sum = ambient;
   for (const Light& light : lights) {
     const Eigen::Vector3f way = light.position - point;

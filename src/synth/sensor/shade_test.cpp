@@ -18,7 +18,7 @@ Material striped(Texture texture) {
   return material;
 }
 
-TEST(Shade, StripesRunLevelOnWallsAndAlongZOnFloors) {
+TEST(Shade, DrawsStripesLevelOnWallsAndAlongZOnFloors) {
   const Material material = striped(Texture::stripes);
   const Vector3f wall = Vector3f::UnitZ(), floor = Vector3f::UnitY();
   EXPECT_EQ(colour_at(material, {0.F, 1.F, 0.F}, wall), colour_at(material, {0.73F, 1.F, 2.F}, wall));
@@ -27,17 +27,17 @@ TEST(Shade, StripesRunLevelOnWallsAndAlongZOnFloors) {
   EXPECT_NE(colour_at(material, {0.F, 0.F, 0.F}, floor), colour_at(material, {0.1F, 0.F, 0.F}, floor));
 }
 
-TEST(Shade, ChecksChangeFromCellToCell) {
+TEST(Shade, ChangesChecksFromCellToCell) {
   const Material material = striped(Texture::checks);
   const Rgb here = colour_at(material, {0.F, 0.F, 0.F}, Vector3f::UnitY());
   EXPECT_NE(here, colour_at(material, {0.1F, 0.F, 0.F}, Vector3f::UnitY()));
   EXPECT_NE(here, colour_at(material, {0.F, 0.F, 0.1F}, Vector3f::UnitY()));
   EXPECT_EQ(here, colour_at(material, {0.1F, 0.F, 0.1F}, Vector3f::UnitY()));
-  // A floor's points are at y = 0 but for rounding.
+  // The points of a floor are at y = 0, apart from rounding.
   EXPECT_EQ(here, colour_at(material, {0.F, -1e-6F, 0.F}, Vector3f::UnitY()));
 }
 
-TEST(Shade, SpeckleMixesTheTwoColours) {
+TEST(Shade, MixesTwoColoursInSpeckle) {
   const Material material = striped(Texture::speckle);
   std::set<int> reds;
   for (int i = 0; i < 100; ++i) {
@@ -48,7 +48,7 @@ TEST(Shade, SpeckleMixesTheTwoColours) {
   EXPECT_GT(reds.size(), 40U);
 }
 
-TEST(Shade, BrightnessFallsWithTheSquareAndTheCosine) {
+TEST(Shade, DimsLightByTheSquareAndTheCosine) {
   const std::vector<Light> lights = {Light{{0.F, 2.F, 0.F}, 3.F}};
   EXPECT_NEAR(brightness(Vector3f::Zero(), Vector3f::UnitY(), lights, 0.1F), 0.1F + 3.F / 4.F, 1e-6F);
   const Vector3f tilted = Vector3f(1.F, 1.F, 0.F).normalized();

@@ -6,7 +6,7 @@
 #include "synth/sensor/render.h"
 #include "vesalius/base/random.h"
 
-// Scenes of simple shapes, seen along z by a camera that stands in the origin.
+// Scenes of simple shapes, seen along z by a camera at the origin.
 namespace vesalius::synth::test {
 
 inline constexpr std::uint8_t kPart = 7;
@@ -25,7 +25,7 @@ inline SceneMesh quad(const Eigen::Vector3f& corner, const Eigen::Vector3f& alon
   return mesh;
 }
 
-/// Wide square facing the camera.
+/// Returns a wide square that faces the camera.
 inline SceneMesh wall(float z_m, float left_m = -50.F) {
   return quad({left_m, -50.F, z_m}, {50.F - left_m, 0.F, 0.F}, {0.F, 100.F, 0.F});
 }
@@ -59,7 +59,7 @@ inline SceneMesh of_person(SceneMesh mesh, int person) {
   return mesh;
 }
 
-/// Random triangles of random parts in front of the camera.
+/// Returns random triangles of random parts in front of the camera.
 inline Scene confetti(int count) {
   Random random(5);
   SceneMesh mesh;

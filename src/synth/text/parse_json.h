@@ -6,8 +6,8 @@
 
 namespace vesalius::synth {
 
-/// Parses JSON that a stranger wrote: at most 4 million values, nested at most 100 deep. `name` stands for the file in
-/// errors. Throws Error naming the line and what was expected.
+/// Parses untrusted JSON: at most 4 million values, nested at most 100 deep. `name` is used as the path in errors.
+/// Throws Error naming the line and what was expected.
 nlohmann::json parse_json(std::string_view text, const std::string& name);
 
 }  // namespace vesalius::synth

@@ -5,8 +5,8 @@
 
 namespace vesalius::synth {
 
-/// Gives the bytes of a file; throws Error naming it. Loaders of several files get one, so that the folder opens none
-/// itself.
+/// A function that returns the bytes of a file and throws Error naming it. Loaders of several files get one, so that
+/// src/synth opens no file itself.
 using ReadText = std::function<std::string(const std::string& path)>;
 
 }  // namespace vesalius::synth

@@ -18,7 +18,7 @@ bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' |
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// from_chars takes no plus sign.
+/// Removes a plus sign, which from_chars does not accept.
 std::string_view without_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
 }
@@ -74,7 +74,7 @@ double TextScanner::number(std::string_view what) {
   const std::string_view found = without_plus(word(what));
   double value = 0.0;
   const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
-  // A number too small for a double ("1e-400") is out of range for from_chars and means 0.
+  // For from_chars a number too small for a double ("1e-400") is out of range; it means 0.
   if (error == std::errc::result_out_of_range && end == found.data() + found.size() &&
       found.find("e-") != std::string_view::npos) {
     return 0.0;

@@ -33,7 +33,7 @@ TEST(TextScanner, SkipsTheRestOfALine) {
   EXPECT_TRUE(scan.at_end());
 }
 
-TEST(TextScanner, NamesLineAndExpectation) {
+TEST(TextScanner, NamesTheLineAndWhatWasExpected) {
   const auto number = [](const char* text) {
     return [text] {
       TextScanner scan(text, "t");
@@ -55,13 +55,13 @@ TEST(TextScanner, NamesLineAndExpectation) {
   EXPECT_THAT([&] { scan.expect("MOTION"); }, ThrowsMessage<Error>("t:1: expected MOTION, found \"x?\""));
 }
 
-TEST(TextScanner, ShowsStrangersTextOnOneShortLine) {
+TEST(TextScanner, ShowsUntrustedTextOnOneShortLine) {
   EXPECT_EQ(shown("a\nb\x1b[1m\xff"), "a?b?[1m?");
   EXPECT_EQ(shown(std::string(100, 'x')), std::string(40, 'x') + "...");
   EXPECT_EQ(in_quotes("a\tb"), "\"a?b\"");
 }
 
-TEST(TextScanner, ComparesWordsWhateverTheirCase) {
+TEST(TextScanner, ComparesWordsWithoutRegardToCase) {
   EXPECT_TRUE(same_word("Xrotation", "XROTATION"));
   EXPECT_FALSE(same_word("Xrotation", "Xrotatio"));
 }
