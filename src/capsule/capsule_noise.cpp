@@ -16,12 +16,13 @@ constexpr double kFocalPx = 580.0;
 constexpr double kBaselineM = 0.075;
 constexpr double kStepsPerPx = 8.0;  // disparity resolution
 constexpr double kGrazing = 80.0 / 180.0 * std::numbers::pi;
-constexpr int kEdgeMm = 100;  // depth step that is a silhouette
+constexpr int kEdgeMm = 100;  // depth step that counts as a silhouette
 constexpr double kEdgeLoss = 0.5;
 constexpr int kNearestMm = 400, kFurthestMm = 10000;
 constexpr int kBorderShare = 80;
 
-/// Angle between the viewing ray and the surface's normal, from the two shorter depth steps beside the pixel.
+/// Returns the angle between the viewing ray and the surface's normal, from the two shorter depth steps beside the
+/// pixel.
 double incidence(const DepthImage& depth, const Camera& camera, int u, int v) {
   const int z = depth(u, v);
   const auto slope_mm = [&](int du, int dv) {
@@ -53,7 +54,7 @@ bool at_silhouette(const DepthImage& depth, int u, int v) {
   return false;
 }
 
-/// Which pixels of a row the projector, one baseline to the right, cannot reach.
+/// Returns which pixels of a row the projector, one baseline to the right, cannot reach.
 std::vector<bool> shadow(const DepthImage& depth, const Camera& camera, int v) {
   std::vector<bool> dark(static_cast<std::size_t>(depth.width()), false);
   const double fb_mm = camera.fx * kBaselineM * 1000.0;
@@ -67,7 +68,7 @@ std::vector<bool> shadow(const DepthImage& depth, const Camera& camera, int v) {
   return dark;
 }
 
-/// A reading of the true surface at (u, v); 0 where the sensor gives none.
+/// Returns a reading of the true surface at (u, v); 0 if the sensor gives none.
 int sense(const Frame& truth, int u, int v, Random& random) {
   const DepthImage& depth = truth.depth;
   const double theta = incidence(depth, truth.camera, u, v);

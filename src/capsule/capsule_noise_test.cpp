@@ -22,15 +22,15 @@ double share_of_holes(const DepthImage& depth) {
   return static_cast<double>(std::ranges::count(depth, 0)) / static_cast<double>(depth.size());
 }
 
-// Axial noise plus the rounding of the disparity, uniform over one step.
-TEST(SensorNoise, SpreadOnAWallFollowsTheFormula) {
+// The spread is that of the axial noise plus the rounding of the disparity, which is uniform over one step.
+TEST(SensorNoise, HasTheFormulasSpreadOnAWall) {
   for (const int z_mm : {1000, 2000, 3500}) {
     Frame frame = wall(z_mm);
     add_sensor_noise(frame, 1);
     double sum = 0.0, squares = 0.0;
     int count = 0;
     for (int v = 100; v < 140; ++v) {
-      for (int u = 140; u < 180; ++u) {  // seen head on
+      for (int u = 140; u < 180; ++u) {  // columns that face the wall
         ASSERT_NE(frame.depth(u, v), 0);
         const double error = frame.depth(u, v) - z_mm;
         sum += error;
@@ -48,7 +48,7 @@ TEST(SensorNoise, SpreadOnAWallFollowsTheFormula) {
   }
 }
 
-TEST(SensorNoise, ReadingsLieOnDisparitySteps) {
+TEST(SensorNoise, ReadsDepthInDisparitySteps) {
   Frame frame = wall(3000);
   add_sensor_noise(frame, 2);
   for (const std::uint16_t read : frame.depth) {
@@ -59,7 +59,7 @@ TEST(SensorNoise, ReadingsLieOnDisparitySteps) {
   }
 }
 
-TEST(SensorNoise, BordersAreHoles) {
+TEST(SensorNoise, LeavesHolesAtTheBorders) {
   Frame frame = wall(2000);
   add_sensor_noise(frame, 3);
   const int border = kCamera.width / 80;
@@ -70,7 +70,7 @@ TEST(SensorNoise, BordersAreHoles) {
   }
 }
 
-TEST(SensorNoise, ProjectorShadowIsAsWideAsTheBaselineSays) {
+TEST(SensorNoise, CastsAShadowAsWideAsTheBaselineImplies) {
   Frame frame = wall(4000);
   for (int v = 0; v < kCamera.height; ++v) {
     for (int u = 150; u < 200; ++u) frame.depth(u, v) = 1000;
@@ -84,10 +84,10 @@ TEST(SensorNoise, ProjectorShadowIsAsWideAsTheBaselineSays) {
   }
 }
 
-TEST(SensorNoise, HalfOfTheSilhouetteIsLost) {
+TEST(SensorNoise, LosesHalfOfTheSilhouette) {
   Frame frame = wall(1500);
   for (int v = 0; v < kCamera.height; ++v) {
-    for (int u = 0; u < 160; ++u) frame.depth(u, v) = 1200;  // edge on the lit side
+    for (int u = 0; u < 160; ++u) frame.depth(u, v) = 1200;  // an edge on the lit side
   }
   add_sensor_noise(frame, 5);
   int lost = 0;
@@ -95,7 +95,7 @@ TEST(SensorNoise, HalfOfTheSilhouetteIsLost) {
   EXPECT_NEAR(lost, kCamera.height / 2, 35);  // 4.5 sigma
 }
 
-TEST(SensorNoise, GrazingSurfacesDropOut) {
+TEST(SensorNoise, LosesSurfacesAtGrazingAngles) {
   CapsuleScene scene;
   scene.wall_z_m = 0.F;
   scene.floor_y_m = 0.3F;
@@ -105,7 +105,7 @@ TEST(SensorNoise, GrazingSurfacesDropOut) {
   EXPECT_NE(floor.depth(160, 235), 0) << "floor 0.75 m ahead, seen at 22 degrees";
 }
 
-TEST(SensorNoise, OutOfRangeIsNoReading) {
+TEST(SensorNoise, ReadsNothingOutOfRange) {
   Frame near = wall(300);
   add_sensor_noise(near, 7);
   EXPECT_EQ(share_of_holes(near.depth), 1.0);
@@ -115,7 +115,7 @@ TEST(SensorNoise, OutOfRangeIsNoReading) {
 }
 
 // Labels: threads
-TEST(SensorNoise, SameSeedSameBytesForAnyThreadCount) {
+TEST(SensorNoise, GivesTheSameBytesForAnyNumberOfThreads) {
   CapsuleScene scene;
   scene.people.emplace_back();
   const LabelledFrame clean = render(scene, kCamera, paper_body());

@@ -12,7 +12,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Axes of a body frame: x to the person's left, y up, z to the front.
+// In a body frame x points to the person's left, y up and z to the front. Lengths are fractions of the stature: Drillis
+// and Contini, Body Segment Parameters, 1966.
 
 // Lengths as fractions of the stature: Drillis and Contini, Body Segment Parameters, 1966.
 constexpr double kAnkleHeight = 0.039, kKneeHeight = 0.285, kHipHeight = 0.530, kShoulderHeight = 0.818;
@@ -20,23 +21,23 @@ constexpr double kChinHeight = 0.870, kHeadHeight = 0.130;
 constexpr double kShoulderBreadth = 0.259, kHipBreadth = 0.191;
 constexpr double kUpperArm = 0.186, kForearm = 0.146, kHand = 0.108, kFoot = 0.152, kFootBreadth = 0.055;
 
-// Radii as fractions of the stature: not in that table; set by eye.
+// Radii are fractions of the stature. They are not in that table, but were set by eye.
 constexpr double kUpperArmRadius = 0.028, kForearmRadius = 0.023, kThighRadius = 0.043, kLegRadius = 0.029;
 constexpr double kNeckRadius = 0.034, kYokeRadius = 0.030, kFootRadius = 0.0195;
 constexpr double kChestBreadth = 0.170, kTrunkDepth = 0.060, kTrunkRound = 0.050;
 
-// Where one part ends and the next begins.
+// The borders between parts.
 constexpr double kWaistHeight = 0.620;                         // chest above, hips below
-constexpr double kElbowSection = 0.030, kKneeSection = 0.035;  // to either side of the joint
+constexpr double kElbowSection = 0.030, kKneeSection = 0.035;  // on either side of the joint
 constexpr double kHipJointX = 0.052;
-/// Hanging arms clear the hips by this angle, which fades out as the arm is raised.
+/// Angle by which hanging arms keep clear of the hips. It decreases to 0 as the arm is raised.
 constexpr double kRestRaise = 0.14;
 
 Matrix3d about_x(double angle) { return Eigen::AngleAxisd(angle, Vector3d::UnitX()).toRotationMatrix(); }
 Matrix3d about_y(double angle) { return Eigen::AngleAxisd(angle, Vector3d::UnitY()).toRotationMatrix(); }
 Matrix3d about_z(double angle) { return Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix(); }
 
-/// A turned place in the world.
+/// A position and orientation in the world.
 struct Place {
   Matrix3d turn;
   Vector3d at;
@@ -70,7 +71,7 @@ class Builder {
  private:
   double length(double fraction) const { return fraction * stature_; }
   double radius(double fraction) const { return fraction * stature_ * girth_; }
-  /// Height above the hip joints of a point at this fraction of the stature.
+  /// Returns the height above the hip joints of a point at this fraction of the stature.
   double up(double fraction) const { return length(fraction - kHipHeight); }
 
   const CapsulePose::Leg& leg(int side) const { return side > 0 ? pose_.l_leg : pose_.r_leg; }
@@ -87,7 +88,7 @@ class Builder {
   }
   Vector3d ankle(int side) const { return shin(side)(0.0, -length(kKneeHeight - kAnkleHeight), 0.0); }
 
-  /// Moves the hips so that the ankles' middle stands over `feet` and the lower sole on the ground.
+  /// Moves the hips such that the middle between the ankles is above `feet` and the lower sole is on the ground.
   void place_feet(const Vector3d& feet) {
     const Vector3d left = ankle(1), right = ankle(-1);
     const Vector3d middle = 0.5 * (left + right);
@@ -107,8 +108,8 @@ class Builder {
     solid.split = split;
   }
 
-  /// A bone of a limb from `top` along -y. Of an upper bone the last `section` belongs to the joint, of a lower bone
-  /// the first.
+  /// Adds a bone of a limb from `top` along -y. The last `section` of an upper bone, or the first of a lower bone,
+  /// belongs to the joint.
   BodySolid& add_bone(const Place& top, double bone_m, double radius_m, Rgb colour) {
     return add({top.turn, top(0.0, -0.5 * bone_m, 0.0)}, Vector3d::Constant(radius_m), 0.5 * bone_m, colour);
   }
@@ -121,7 +122,7 @@ class Builder {
     set_parts(add_bone(top, bone_m, radius_m, colour), bone, joint, (0.5 * bone_m - length(section)) / radius_m);
   }
 
-  /// A solid of the trunk between two heights, hips below the waist and chest above.
+  /// Adds a solid of the trunk between two heights, with hips below the waist and chest above.
   void add_trunk_solid(const Place& trunk, double low, double high, double breadth, Rgb colour) {
     const double middle = 0.5 * (low + high);
     const Vector3d scale(radius(0.5 * breadth), length(kTrunkRound), radius(kTrunkDepth));
@@ -134,7 +135,7 @@ class Builder {
   void add_trunk(const Place& trunk) {
     add_trunk_solid(trunk, 0.590, 0.822, kChestBreadth, build_.shirt);
     add_trunk_solid(trunk, 0.475, 0.655, kHipBreadth * 0.95, build_.trousers);
-    // The yoke from shoulder to shoulder: its axis points to the left.
+    // This is the yoke from shoulder to shoulder, whose axis points to the left.
     Matrix3d across;
     across.col(0) = -trunk.turn.col(1);
     across.col(1) = trunk.turn.col(0);
@@ -150,7 +151,7 @@ class Builder {
 
   double shoulder_x() const { return length(0.5 * kShoulderBreadth - kUpperArmRadius); }
 
-  /// `base` is where the head turns on the neck.
+  /// Adds the head, which turns on the neck at `base`.
   void add_head(const Place& base) {
     const Matrix3d turn = base.turn * about_y(pose_.head_yaw) * about_x(pose_.head_pitch);
     const Vector3d scale(length(0.043), length(0.5 * kHeadHeight), length(0.055));
@@ -186,13 +187,13 @@ class Builder {
     const int knee = sided(side, "knee");
     add_upper_bone(thigh(side), length(kHipHeight - kKneeHeight), radius(kThighRadius), build_.trousers,
                    sided(side, "thigh"), knee, kKneeSection);
-    // The shin ends where its rounded end just clears the ground.
+    // The shin ends where its rounded end just does not touch the ground.
     const double shin_m = length(kKneeHeight) - std::max(length(kAnkleHeight), radius(kLegRadius));
     add_lower_bone(shin(side), shin_m, radius(kLegRadius), build_.trousers, sided(side, "leg"), knee, kKneeSection);
     add_foot(side);
   }
 
-  /// Level, its axis to the front, the heel a quarter of its length behind the ankle.
+  /// Adds a level foot with its axis to the front. The heel is a quarter of its length behind the ankle.
   void add_foot(int side) {
     Matrix3d forward;
     forward.col(0) = -hips_.turn.col(0);
@@ -209,7 +210,7 @@ class Builder {
   const CapsulePose& pose_;
   double stature_;
   double girth_;
-  Place hips_;  ///< middle between the hip joints, turned by the yaw
+  Place hips_;  ///< at the middle between the hip joints, turned by the yaw
   std::vector<BodySolid> solids_;
 };
 

@@ -17,13 +17,13 @@ namespace vesalius {
 /// Joint angles of a capsule person, in radians. With all of them zero the person stands upright, faces the camera, and
 /// the arms hang just clear of the trunk. Left and right are the person's own. Soles stay level.
 struct CapsulePose {
-  float yaw = 0.F;        ///< about the vertical axis; positive turns the person to its own left
+  float yaw = 0.F;        ///< about the vertical axis; positive turns the person to their own left
   float lean = 0.F;       ///< trunk forward (positive) or backward
   float side_lean = 0.F;  ///< trunk towards the person's left
   float head_yaw = 0.F;
   float head_pitch = 0.F;  ///< positive looks down
   struct Arm {
-    float raise = 0.F;    ///< sideways away from the trunk, 0 hanging, pi/2 horizontal
+    float raise = 0.F;    ///< sideways from the trunk; 0 hangs, pi/2 is horizontal
     float forward = 0.F;  ///< swing to the front
     float elbow = 0.F;    ///< flexion, 0 straight
   } l_arm, r_arm;
@@ -34,15 +34,15 @@ struct CapsulePose {
   } l_leg, r_leg;
 };
 
-/// Sizes and clothes.
+/// The size and clothes of a person.
 struct CapsuleBuild {
   float stature_m = 1.75F;  ///< 0.5 to 2.5
-  float girth = 1.F;        ///< multiplies all radii but the head's; 0.5 to 1.5
+  float girth = 1.F;        ///< multiplies all radii except the head's; 0.5 to 1.5
   Rgb skin{224, 172, 138}, hair{60, 42, 30}, shirt{52, 101, 164}, trousers{60, 60, 70}, shoes{30, 30, 30};
 };
 
-/// A person standing somewhere: `feet` is the point on the ground between the ankles (metres, optical frame of a camera
-/// whose y axis points down; the person stands upright along -y, the lower sole on the ground).
+/// A standing person. `feet` is the point on the ground between the ankles, in metres in the optical frame of a camera
+/// whose y axis points down. The person stands upright along -y with the lower sole on the ground.
 struct CapsulePerson {
   CapsuleBuild build;
   CapsulePose pose;
@@ -56,7 +56,7 @@ struct BodySolid {
   double split = 0.0;
   std::array<std::array<int, 2>, 2> part{};  ///< [0: below or at the split, 1: above][0: x < 0, 1: x >= 0], 0-24
   Rgb colour;
-  Rgb crown;  ///< of the top and back; differs from `colour` on the head only
+  Rgb crown;  ///< colour of the top and back; differs from `colour` only on the head
 
   int part_at(const Eigen::Vector3d& local) const { return part[local.y() > split][local.x() >= 0.0]; }
 };

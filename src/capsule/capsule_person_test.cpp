@@ -19,7 +19,7 @@ Vector3d centre(const CapsulePerson& person, const std::string& part) {
   return part_centres(make_solids(person))[paper_body().find_part(part)];
 }
 
-/// Lowest point of all solids (largest y, as y points down).
+/// Returns the y of the lowest point of all solids. It is the largest y, as y points down.
 double lowest_y(const CapsulePerson& person) {
   double lowest = -1e9;
   for (const BodySolid& solid : make_solids(person)) {
@@ -43,7 +43,7 @@ double highest_y(const CapsulePerson& person) {
   return highest;
 }
 
-TEST(CapsulePerson, EveryPartOfThePaperIsThere) {
+TEST(CapsulePerson, HasEveryPartOfThePaper) {
   std::set<int> parts;
   for (const BodySolid& solid : make_solids({})) {
     for (const auto& halves : solid.part) parts.insert(halves.begin(), halves.end());
@@ -65,7 +65,7 @@ TEST(CapsulePerson, StandsOnTheGroundAsTallAsItsStature) {
   }
 }
 
-TEST(CapsulePerson, LowerFootStaysOnTheGroundInEveryPose) {
+TEST(CapsulePerson, KeepsTheLowerFootOnTheGroundInEveryPose) {
   CapsulePerson walking;
   walking.pose.l_leg = {0.F, 0.6F, 0.2F};
   walking.pose.r_leg = {0.F, -0.3F, 0.5F};
@@ -76,7 +76,7 @@ TEST(CapsulePerson, LowerFootStaysOnTheGroundInEveryPose) {
   EXPECT_GT(highest_y(sitting), highest_y({}) + 0.3) << "sitting is lower than standing";
 }
 
-TEST(CapsulePerson, FeetStandWhereToldAtAnyYaw) {
+TEST(CapsulePerson, PutsTheFeetInTheirPlaceAtAnyYaw) {
   for (const float yaw : {0.F, 1.F, 3.F, -2.F}) {
     CapsulePerson person;
     person.feet = {0.3F, 1.F, 2.F};
@@ -87,8 +87,8 @@ TEST(CapsulePerson, FeetStandWhereToldAtAnyYaw) {
   }
 }
 
-// Facing the camera, the person's left is on the picture's right.
-TEST(CapsulePerson, LeftIsThePersonsOwn) {
+// The left side of a person who faces the camera is on the picture's right.
+TEST(CapsulePerson, NamesSidesFromThePersonsView) {
   CapsulePerson person;
   EXPECT_GT(centre(person, "l_hand").x(), 0.1);
   EXPECT_LT(centre(person, "r_hand").x(), -0.1);
@@ -96,11 +96,11 @@ TEST(CapsulePerson, LeftIsThePersonsOwn) {
   person.pose.yaw = 2.F * kRightAngle;
   EXPECT_LT(centre(person, "l_hand").x(), -0.1);
   EXPECT_GT(centre(person, "l_foot").z(), 2.5);
-  person.pose.yaw = kRightAngle;  // turned to the own left: to the picture's right
+  person.pose.yaw = kRightAngle;  // turned to their own left, which is the picture's right
   EXPECT_GT(centre(person, "l_foot").x(), 0.0);
 }
 
-TEST(CapsulePerson, AnglesMoveWhatTheyAreNamedAfter) {
+TEST(CapsulePerson, MovesTheLimbThatAnAngleNames) {
   const CapsulePerson rest;
   CapsulePerson person;
   person.pose.l_arm.raise = kRightAngle;
@@ -131,7 +131,7 @@ TEST(CapsulePerson, AnglesMoveWhatTheyAreNamedAfter) {
   EXPECT_GT(centre(person, "l_foot").y(), centre(person, "l_knee").y() + 0.3);
 }
 
-TEST(CapsulePerson, PartsFollowEachOtherAlongTheLimbs) {
+TEST(CapsulePerson, HasItsPartsInOrderAlongTheLimbs) {
   const std::vector<std::string> down = {"face_top", "face_bottom", "chest", "hips", "thigh", "knee", "leg", "foot"};
   const std::vector<std::string> arm = {"upper_arm", "elbow", "forearm", "hand"};
   for (const std::string side : {"l_", "r_"}) {
@@ -143,7 +143,7 @@ TEST(CapsulePerson, PartsFollowEachOtherAlongTheLimbs) {
   }
 }
 
-TEST(CapsulePerson, MirroredPoseHasMirroredCentres) {
+TEST(CapsulePerson, HasMirroredCentresInAMirroredPose) {
   CapsulePerson person, mirrored;
   person.feet = {0.4F, 1.F, 2.F};
   person.pose.yaw = 0.7F;
@@ -164,7 +164,7 @@ TEST(CapsulePerson, MirroredPoseHasMirroredCentres) {
   }
 }
 
-TEST(CapsulePerson, ImpossibleBuildsAreErrors) {
+TEST(CapsulePerson, RefusesImpossibleBuilds) {
   CapsulePerson person;
   person.build.stature_m = 0.F;
   EXPECT_THROW(make_solids(person), Error);

@@ -13,14 +13,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A solid on stage: whose it is and which pixels it may cover.
+/// A solid with its person and the pixels that it may cover.
 struct Actor {
   BodySolid solid;
   std::uint8_t person;
   int u_low, u_high, v_low, v_high;  ///< inclusive
 };
 
-/// What a ray meets first.
+/// The first surface that a ray meets.
 struct Surface {
   double t = std::numeric_limits<double>::infinity();
   Vector3d normal = Vector3d::Zero();
@@ -30,8 +30,8 @@ struct Surface {
   std::uint8_t person = kBackground;
 };
 
-/// First and last pixel that a sphere, seen from the front, can cover along one axis; everything where it reaches
-/// behind the camera.
+/// Returns the first and last pixel that a sphere may cover along one axis, or all pixels if it extends behind the
+/// camera.
 std::pair<int, int> covered(double x, double z, double r, double focal, double centre, int size) {
   const double near_z = z - r;
   if (near_z < 1e-3) return {0, size - 1};
@@ -57,10 +57,10 @@ Actor make_actor(const BodySolid& solid, std::size_t person, const Matrix3d& cam
   return actor;
 }
 
-/// Texture cells a metre: fine on people, coarse on furniture and walls.
+/// Texture cells per metre: fine ones on people, coarse ones on furniture and walls.
 constexpr double kFineCells = 25.0, kCoarseCells = 3.0;
 
-/// Wall or floor: the plane where coordinate `axis` is `at`.
+/// Meets a wall or floor, which is the plane where coordinate `axis` is `at`.
 void meet_plane(const Vector3d& ray, int axis, double at, Rgb colour, Surface& first) {
   const double t = at / ray[axis];
   if (!(t > 0.0 && t < first.t)) return;
@@ -73,7 +73,7 @@ void meet_box(const Vector3d& ray, const SceneBox& box, Surface& first) {
   int side = -1;
   for (int axis = 0; axis < 3; ++axis) {
     double t1 = box.low[axis] / ray[axis], t2 = box.high[axis] / ray[axis];
-    if (ray[axis] == 0.0) {  // 0/0 must not decide
+    if (ray[axis] == 0.0) {  // avoids 0/0
       const bool between = box.low[axis] <= 0.F && box.high[axis] >= 0.F;
       t1 = between ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
       t2 = std::numeric_limits<double>::infinity();
@@ -100,7 +100,7 @@ void meet_actor(const Vector3d& ray, const Actor& actor, const std::vector<std::
                   actor.person};
 }
 
-/// 0.9 to 1.1, the same within each cell of a surface: brightness that leaves the hue alone.
+/// Returns 0.9 to 1.1, the same within each cell of a surface. It is a brightness, which leaves the hue unchanged.
 double texture(const Vector3d& at) {
   std::uint32_t hash = 2166136261U;
   for (int axis = 0; axis < 3; ++axis) {
@@ -110,7 +110,7 @@ double texture(const Vector3d& at) {
   return 0.9 + 0.2 * ((hash * 2246822519U) >> 24U) / 255.0;
 }
 
-/// Lambert's law under a lamp above and behind the camera.
+/// Shades a surface by Lambert's law under a lamp above and behind the camera.
 Rgb shade(const Surface& surface) {
   const Vector3d to_lamp = Vector3d(0.0, -0.5, -0.85).normalized();
   const double light = (0.45 + 0.55 * std::max(0.0, surface.normal.dot(to_lamp))) * texture(surface.texture);
@@ -130,7 +130,7 @@ Surface first_surface(const Vector3d& ray, const CapsuleScene& scene) {
   return first;
 }
 
-/// Label in `body` of each of the paper's parts.
+/// Returns the label in `body` of each of the paper's parts.
 std::vector<std::uint8_t> match_parts(const BodyModel& body) {
   const BodyModel& paper = paper_body();
   std::vector<int> parent(paper.parts.size(), -1);
@@ -146,7 +146,8 @@ std::vector<std::uint8_t> match_parts(const BodyModel& body) {
   return label_of;
 }
 
-/// Mean of the centres of the paper's parts that each part of `body` stands for; NaN where there is none.
+/// Returns for each part of `body` the mean of the centres of the paper's parts for which it stands; NaN if there is
+/// none.
 std::vector<Eigen::Vector3f> centres_in(const std::vector<BodySolid>& solids, const Matrix3d& camera_from_world,
                                         const std::vector<std::uint8_t>& label_of, const BodyModel& body) {
   std::vector<Vector3d> sum(body.parts.size(), Vector3d::Zero());
@@ -183,7 +184,7 @@ void check(const CapsuleScene& scene) {
 
 void write_pixel(const Surface& surface, int u, int v, LabelledFrame& out) {
   const double depth_mm = surface.t * 1000.0 + 0.5;
-  // Too far for 16 bits, or nothing in sight.
+  // The surface is too far for 16 bits, or there is none.
   if (!(depth_mm < 65536.0) || depth_mm < 1.0) return;
   out.frame.depth(u, v) = static_cast<std::uint16_t>(depth_mm);
   out.frame.colour(u, v) = shade(surface);

@@ -13,7 +13,7 @@
 namespace vesalius {
 namespace {
 
-// No pixel looks straight ahead: the middle plane falls between pixels.
+// No pixel looks straight ahead, since the middle plane lies between pixels.
 const Camera kCamera{320, 240, 262.5F, 262.5F, 159.5F, 119.5F};
 
 CapsuleScene empty_room() {
@@ -33,7 +33,7 @@ CapsuleScene one_person(float yaw = 0.F) {
 
 std::set<int> labels_of(const LabelledFrame& frame) { return {frame.labels.begin(), frame.labels.end()}; }
 
-TEST(CapsuleRender, WallAndFloorLieWhereTheyShould) {
+TEST(CapsuleRender, PutsWallAndFloorInTheirPlaces) {
   CapsuleScene scene;
   scene.floor_y_m = 1.F;
   scene.wall_z_m = 4.5F;
@@ -47,12 +47,12 @@ TEST(CapsuleRender, WallAndFloorLieWhereTheyShould) {
   EXPECT_EQ(labels_of(out), std::set<int>{kBackground});
 }
 
-TEST(CapsuleRender, NothingInSightIsNoReading) {
+TEST(CapsuleRender, GivesNoReadingWithoutASurface) {
   const LabelledFrame out = render(empty_room(), kCamera, paper_body());
   EXPECT_THAT(std::vector<int>(out.frame.depth.begin(), out.frame.depth.end()), testing::Each(0));
 }
 
-TEST(CapsuleRender, BoxFacesTheCameraWithItsNearSide) {
+TEST(CapsuleRender, ShowsTheNearSideOfABox) {
   CapsuleScene scene = empty_room();
   scene.boxes.push_back({{-0.5F, -0.5F, 2.F}, {0.5F, 0.5F, 3.F}});
   const LabelledFrame out = render(scene, kCamera, paper_body());
@@ -62,7 +62,7 @@ TEST(CapsuleRender, BoxFacesTheCameraWithItsNearSide) {
   EXPECT_EQ(out.frame.depth(160 + half_width + 2, 120), 0);
 }
 
-TEST(CapsuleRender, PitchedCameraSeesTheFloorAhead) {
+TEST(CapsuleRender, ShowsTheFloorToAPitchedCamera) {
   CapsuleScene scene = empty_room();
   scene.floor_y_m = 1.F;
   scene.pitch = std::numbers::pi_v<float> / 2.F;  // straight down
@@ -71,8 +71,8 @@ TEST(CapsuleRender, PitchedCameraSeesTheFloorAhead) {
   EXPECT_EQ(out.frame.depth(300, 200), 1000);
 }
 
-// The neck stands upright: a cylinder whose depth in its own rows is known in closed form.
-TEST(CapsuleRender, NeckIsACylinderOfTheRightRadius) {
+// The neck is an upright cylinder whose depth in its own rows is known in closed form.
+TEST(CapsuleRender, ShowsTheNeckAsACylinderOfItsRadius) {
   CapsuleScene scene = one_person();
   const double radius_m = 0.034 * 1.75;
   const Eigen::Vector3f neck = scene.people[0].feet - Eigen::Vector3f(0.F, 0.848F * 1.75F, 0.F);
@@ -80,7 +80,7 @@ TEST(CapsuleRender, NeckIsACylinderOfTheRightRadius) {
   const int v = static_cast<int>(std::lround(at.y()));
   const LabelledFrame out = render(scene, kCamera, paper_body());
   for (const int u : {157, 159, 160, 162}) {
-    // |(x(t), z(t)) - (0, 2.5)| = r for the ray (s t, t)
+    // This solves |(x(t), z(t)) - (0, 2.5)| = r for the ray (s t, t).
     const double s = (u - 159.5) / 262.5, a = s * s + 1.0;
     const double z_m = (2.5 - std::sqrt(2.5 * 2.5 - a * (2.5 * 2.5 - radius_m * radius_m))) / a;
     EXPECT_NEAR(out.frame.depth(u, v), z_m * 1000.0, 0.51) << u;
@@ -88,7 +88,7 @@ TEST(CapsuleRender, NeckIsACylinderOfTheRightRadius) {
   }
 }
 
-TEST(CapsuleRender, VisiblePixelsLieAroundTheirPartsCentre) {
+TEST(CapsuleRender, PutsPixelsAroundTheirPartsCentre) {
   for (const float yaw : {0.F, 1.F, 2.F, 4.F}) {
     CapsuleScene scene = one_person(yaw);
     scene.pitch = 0.15F;
@@ -104,19 +104,19 @@ TEST(CapsuleRender, VisiblePixelsLieAroundTheirPartsCentre) {
   }
 }
 
-TEST(CapsuleRender, EveryPartShowsFromTheFrontAndFromBehind) {
+TEST(CapsuleRender, ShowsEveryPartFromTheFrontAndFromBehind) {
   const float half_turn = std::numbers::pi_v<float>;
   EXPECT_EQ(labels_of(render(one_person(0.F), kCamera, paper_body())).size(), 26U);
   EXPECT_EQ(labels_of(render(one_person(half_turn), kCamera, paper_body())).size(), 26U);
 }
 
-TEST(CapsuleRender, SeenFromTheSideTheFarArmIsHidden) {
+TEST(CapsuleRender, HidesTheFarArmOfAPersonSeenFromTheSide) {
   const std::set<int> seen = labels_of(render(one_person(std::numbers::pi_v<float> / 2.F), kCamera, paper_body()));
   EXPECT_TRUE(seen.contains(paper_body().find_part("r_upper_arm")));
   EXPECT_FALSE(seen.contains(paper_body().find_part("l_upper_arm")));
 }
 
-/// Scene with a posed, turned person, and its reflection in the plane x = 0.
+/// Returns a scene with a posed and turned person, and its reflection in the plane x = 0.
 std::pair<CapsuleScene, CapsuleScene> scene_and_reflection() {
   CapsuleScene scene, mirrored;
   scene.pitch = mirrored.pitch = 0.1F;
@@ -135,7 +135,7 @@ std::pair<CapsuleScene, CapsuleScene> scene_and_reflection() {
   return {scene, mirrored};
 }
 
-TEST(CapsuleRender, ReflectionGivesTheReflectedPictureWithSidesSwapped) {
+TEST(CapsuleRender, ReflectsThePictureAndSwapsSidesForAReflectedScene) {
   const auto [scene, mirrored] = scene_and_reflection();
   const LabelledFrame a = render(scene, kCamera, paper_body());
   const LabelledFrame b = render(mirrored, kCamera, paper_body());
@@ -153,7 +153,7 @@ TEST(CapsuleRender, ReflectionGivesTheReflectedPictureWithSidesSwapped) {
   EXPECT_GT(body_pixels, 3000);
 }
 
-TEST(CapsuleRender, OccludersHideWhatIsBehindThem) {
+TEST(CapsuleRender, HidesSurfacesBehindOccluders) {
   CapsuleScene scene = one_person();
   scene.people.push_back(scene.people[0]);
   scene.people[1].feet.z() = 3.5F;  // behind the first
@@ -172,7 +172,7 @@ TEST(CapsuleRender, OccludersHideWhatIsBehindThem) {
   EXPECT_LT(second, std::ranges::count(alone.person, 0) / 5) << "only a rim of the person behind shows";
 }
 
-TEST(CapsuleRender, ClothesAndSkinAreWhereTheyBelong) {
+TEST(CapsuleRender, PutsClothesAndSkinInTheirPlaces) {
   const LabelledFrame out = render(one_person(), kCamera, paper_body());
   const auto colour_of = [&](const char* part) {
     const Eigen::Vector2f at = kCamera.pixel(out.parts[0][paper_body().find_part(part)]);
@@ -184,7 +184,7 @@ TEST(CapsuleRender, ClothesAndSkinAreWhereTheyBelong) {
 }
 
 // Labels: threads
-TEST(CapsuleRender, SameBytesForAnyThreadCount) {
+TEST(CapsuleRender, GivesTheSameBytesForAnyNumberOfThreads) {
   const CapsuleScene scene = scene_and_reflection().first;
   std::vector<LabelledFrame> results;
   for_threads({1, 2, 8}, [&] { results.push_back(render(scene, kCamera, paper_body())); });
@@ -195,7 +195,7 @@ TEST(CapsuleRender, SameBytesForAnyThreadCount) {
   }
 }
 
-TEST(CapsuleRender, OtherBodiesTakeTheirPartsByName) {
+TEST(CapsuleRender, MatchesPartsOfOtherBodiesByName) {
   BodyModel body;
   for (const char* name : {"tail", "neck", "l_chest", "l_upper_arm"}) {
     BodyPart part;
@@ -223,7 +223,7 @@ TEST(CapsuleRender, RendersAPersonAsCloseAsTheLens) {
   EXPECT_NO_THROW(render(scene, kCamera, paper_body()));
 }
 
-TEST(CapsuleRender, ImpossibleScenesAreErrors) {
+TEST(CapsuleRender, RefusesImpossibleScenes) {
   EXPECT_THROW(render({}, Camera{}, paper_body()), Error);
   CapsuleScene scene;
   scene.pitch = std::numeric_limits<float>::quiet_NaN();

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Entry into the unit sphere around (0, y, 0); NaN where the ray misses.
+/// Returns where a ray enters the unit sphere around (0, y, 0); NaN if it misses.
 double enter_sphere(const Vector3d& origin, const Vector3d& direction, double y) {
   const Vector3d o(origin.x(), origin.y() - y, origin.z());
   const double a = direction.squaredNorm();
@@ -17,12 +17,12 @@ double enter_sphere(const Vector3d& origin, const Vector3d& direction, double y)
   return (-b - std::sqrt(b * b - a * (o.squaredNorm() - 1.0))) / a;
 }
 
-/// Entry into the unit capsule; NaN where the ray misses.
+/// Returns where a ray enters the unit capsule; NaN if it misses.
 double enter_capsule(const Vector3d& o, const Vector3d& d, double half_length) {
   const double a = d.x() * d.x() + d.z() * d.z();
   const double b = o.x() * d.x() + o.z() * d.z();
   const double c = o.x() * o.x() + o.z() * o.z() - 1.0;
-  // Along the axis only an end can be hit first.
+  // A ray along the axis can only hit an end first.
   if (a <= 1e-14 * d.squaredNorm()) return enter_sphere(o, d, d.y() > 0.0 ? -half_length : half_length);
   const double t = (-b - std::sqrt(b * b - a * c)) / a;
   const double y = o.y() + t * d.y();

@@ -11,7 +11,7 @@ struct CapsuleShape {
   Eigen::Matrix3d world_from_shape = Eigen::Matrix3d::Identity();  ///< rotation
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();              ///< metres, world
   Eigen::Vector3d scale_m = Eigen::Vector3d::Ones();               ///< half axes of the ends, metres
-  double half_length = 0.0;                                        ///< of the straight part, in units of scale_m.y
+  double half_length = 0.0;  ///< half length of the straight part, in units of scale_m.y
 
   /// Returns the world position of a point in shape units.
   Eigen::Vector3d world(const Eigen::Vector3d& local) const {
@@ -25,7 +25,8 @@ struct ShapeHit {
   Eigen::Vector3d local;  ///< entry point in shape units
 };
 
-/// Returns where the ray origin + t direction, t > 0, first enters the shape; nothing where it misses or starts inside.
+/// Returns where the ray origin + t direction, t > 0, first enters the shape, or nothing if it misses the shape or
+/// starts inside it.
 std::optional<ShapeHit> intersect(const CapsuleShape& shape, const Eigen::Vector3d& origin,
                                   const Eigen::Vector3d& direction);
 

@@ -31,14 +31,14 @@ CapsuleShape random_shape(Random& random) {
   return shape;
 }
 
-/// Distance from the unit capsule's axis segment, in shape units: below 1 inside.
+/// Returns the distance from the unit capsule's axis segment in shape units; it is below 1 inside.
 double radius_at(const CapsuleShape& shape, const Vector3d& world) {
   const Vector3d local = (shape.world_from_shape.transpose() * (world - shape.centre_m)).cwiseQuotient(shape.scale_m);
   const double on_axis = std::clamp(local.y(), -shape.half_length, shape.half_length);
   return (local - Vector3d(0, on_axis, 0)).norm();
 }
 
-TEST(CapsuleShape, RayMeetsSphereWhereGeometrySays) {
+TEST(CapsuleShape, IsMetByRaysWhereGeometrySays) {
   const auto hit = intersect(sphere({0, 0, 3}, 0.5), Vector3d::Zero(), Vector3d(0, 0, 1));
   ASSERT_TRUE(hit);
   EXPECT_DOUBLE_EQ(hit->t, 2.5);
@@ -47,7 +47,7 @@ TEST(CapsuleShape, RayMeetsSphereWhereGeometrySays) {
   EXPECT_FALSE(intersect(sphere({0, 0, 0.2}, 0.5), Vector3d::Zero(), Vector3d(0, 0, 1))) << "starts inside";
 }
 
-TEST(CapsuleShape, RayAlongTheAxisMeetsTheNearEnd) {
+TEST(CapsuleShape, IsMetAtTheNearEndByRaysAlongTheAxis) {
   CapsuleShape shape = sphere({0, 0, 3}, 0.5);
   shape.half_length = 2.0;
   const auto hit = intersect(shape, {0.0, -4.0, 3.0}, Vector3d(0, 1, 0));
@@ -56,8 +56,8 @@ TEST(CapsuleShape, RayAlongTheAxisMeetsTheNearEnd) {
   EXPECT_FALSE(intersect(shape, {0.6, -4.0, 3.0}, Vector3d(0, 1, 0)));
 }
 
-// Oracle: marching along the ray in small steps.
-TEST(CapsuleShape, EntryAgreesWithMarchingAlongTheRay) {
+// The oracle marches along the ray in small steps.
+TEST(CapsuleShape, IsEnteredWhereMarchingAlongTheRaySays) {
   Random random(7);
   int hits = 0;
   for (int i = 0; i < 700; ++i) {
@@ -75,7 +75,7 @@ TEST(CapsuleShape, EntryAgreesWithMarchingAlongTheRay) {
     }
     ++hits;
     EXPECT_NEAR(radius_at(shape, hit->t * ray), 1.0, 1e-9);
-    // The march may step over a grazing entry.
+    // The march may miss a grazing entry between two steps.
     if (marched >= 0.0) {
       EXPECT_NEAR(hit->t, marched, 0.0011) << "shape " << i;
     }
@@ -83,7 +83,7 @@ TEST(CapsuleShape, EntryAgreesWithMarchingAlongTheRay) {
   EXPECT_GT(hits, 100);
 }
 
-TEST(CapsuleShape, NormalPointsWhereTheRadiusGrowsFastest) {
+TEST(CapsuleShape, HasNormalsAlongTheGradientOfTheRadius) {
   Random random(8);
   for (int i = 0; i < 100; ++i) {
     const CapsuleShape shape = random_shape(random);
@@ -100,7 +100,7 @@ TEST(CapsuleShape, NormalPointsWhereTheRadiusGrowsFastest) {
   }
 }
 
-TEST(CapsuleShape, SlabsOfASphereHaveTheVolumesAndCentroidsOfTheTables) {
+TEST(CapsuleShape, GivesSlabsOfASphereTheirVolumesAndCentroids) {
   const CapsuleShape ball = sphere(Vector3d::Zero(), 0.5);
   const double volume = 4.0 / 3.0 * std::numbers::pi * 0.125;
   const Slab whole = measure_slab(ball, -5.0, 5.0);
@@ -112,7 +112,7 @@ TEST(CapsuleShape, SlabsOfASphereHaveTheVolumesAndCentroidsOfTheTables) {
   EXPECT_NEAR(top.y, 3.0 / 8.0, 1e-3);
 }
 
-TEST(CapsuleShape, SlabInTheStraightPartIsACylinder) {
+TEST(CapsuleShape, GivesSlabsOfTheStraightPartACylindersVolume) {
   CapsuleShape shape = sphere(Vector3d::Zero(), 0.5);
   shape.half_length = 2.0;
   const Slab slab = measure_slab(shape, 0.5, 1.5);

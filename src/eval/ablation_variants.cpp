@@ -11,9 +11,10 @@
 namespace vesalius {
 namespace {
 
-/// Depth steps up to this join neighbouring pixels where the look is colour alone: any within a person's reach.
+/// Largest depth step between joined neighbours when only colour separates people. It is larger than any within a
+/// person's reach.
 constexpr float kAnyStep_m = 1.F;
-constexpr float kAskEverywhere = 2.F;  ///< a probability that no background has
+constexpr float kAskEverywhere = 2.F;  ///< a probability that no background reaches
 
 class VariantList {
  public:
@@ -73,7 +74,7 @@ class VariantList {
         add(fmt::format("root {} alone", forest_.body.parts[root].name), std::move(one_root), options);
       }
     }
-    // Votes cannot be smoothed by their mean: the mode comes with them.
+    // Votes cannot be smoothed by their mean, so this variant smooths by mode.
     if (labeller_->has_distributions()) add("votes, smoothed by mode", with_hard_votes(forest_));
     for (const int trees : {1, 2, 4}) {
       if (trees >= std::ssize(forest_.trees)) break;

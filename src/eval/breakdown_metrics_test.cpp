@@ -12,7 +12,7 @@ namespace {
 
 const Camera kCamera{160, 120, 131.25F, 131.25F, 79.5F, 59.5F};
 
-/// A capsule person turned about the vertical, so many metres away.
+/// Returns a frame of a capsule person at this distance, turned about the vertical.
 TrueFrame frame_of(float distance_m, float turn_rad) {
   CapsuleScene scene;
   CapsulePerson person;
@@ -35,7 +35,7 @@ std::set<std::string> names(const MetricTerms& terms) {
   return all;
 }
 
-TEST(Breakdown, TellsDistanceHeadingAndWhatIsVisible) {
+TEST(Breakdown, CountsByDistanceHeadingAndVisibleShare) {
   constexpr float kPi = std::numbers::pi_v<float>;
   const Person found;
   EXPECT_THAT(names(breakdown_terms(frame_of(2.5F, 0.F), {&found}, paper_body())),
@@ -46,7 +46,7 @@ TEST(Breakdown, TellsDistanceHeadingAndWhatIsVisible) {
               testing::IsSupersetOf({"distance.4m-", "heading.side"}));
 }
 
-TEST(Breakdown, CountsWhoWasFound) {
+TEST(Breakdown, CountsFoundPeople) {
   const TrueFrame frame = frame_of(2.5F, 0.F);
   const Person found;
   for (const MetricTerm& term : breakdown_terms(frame, {&found}, paper_body())) EXPECT_EQ(term.numerator, 1.0);
@@ -56,7 +56,7 @@ TEST(Breakdown, CountsWhoWasFound) {
   }
 }
 
-TEST(Breakdown, HiddenPartsAreNotVisible) {
+TEST(Breakdown, CountsHiddenPartsAsNotVisible) {
   TrueFrame frame = frame_of(2.5F, 0.F);
   for (int v = 45; v < kCamera.height; ++v) {
     for (int u = 0; u < kCamera.width; ++u) frame.truth.labels(u, v) = kBackground;
@@ -65,7 +65,7 @@ TEST(Breakdown, HiddenPartsAreNotVisible) {
   EXPECT_FALSE(all.contains("visible.75-100%"));
 }
 
-TEST(Breakdown, FramesWithoutLabelsHaveNone) {
+TEST(Breakdown, IsEmptyWithoutLabels) {
   TrueFrame frame = frame_of(2.5F, 0.F);
   frame.truth.labels = {};
   EXPECT_TRUE(breakdown_terms(frame, {nullptr}, paper_body()).empty());

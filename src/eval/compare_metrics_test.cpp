@@ -9,7 +9,7 @@ namespace {
 
 using Verdict = Comparison::Verdict;
 
-/// A metric over `frames` frames whose values have a spread of 0.1, the same one for every `shift`.
+/// Returns a metric over `frames` frames whose values have a spread of 0.1, which is the same for every `shift`.
 Estimate estimate(Metric metric, double shift, std::uint64_t seed, int frames = 300, const char* set = "a") {
   MetricTable table;
   for (int i = 0; i < frames; ++i) {
@@ -19,22 +19,22 @@ Estimate estimate(Metric metric, double shift, std::uint64_t seed, int frames = 
   return table.estimates().front();
 }
 
-TEST(Compare, PairedFramesShowDifferencesThatSpreadHides) {
+TEST(Compare, FindsSmallDifferencesOfPairedFrames) {
   const Estimate before = estimate(Metric::mask_iou, 0.0, 1);
-  const Estimate after = estimate(Metric::mask_iou, 0.002, 1);  // every frame a little better
+  const Estimate after = estimate(Metric::mask_iou, 0.002, 1);  // every frame is slightly better
   EXPECT_EQ(compare(before, after, true).verdict, Verdict::better);
   EXPECT_EQ(compare(after, before, true).verdict, Verdict::worse);
   EXPECT_EQ(compare(before, after, false).verdict, Verdict::same);
   EXPECT_NEAR(compare(before, after, true).difference, 0.002, 1e-9);
 }
 
-TEST(Compare, LowerIsBetterForErrors) {
+TEST(Compare, PrefersLowerErrors) {
   const Estimate before = estimate(Metric::joints_error, 0.0, 1);
   const Estimate after = estimate(Metric::joints_error, -0.05, 1);
   EXPECT_EQ(compare(before, after, true).verdict, Verdict::better);
 }
 
-TEST(Compare, AnEstimateIsTheSameAsItself) {
+TEST(Compare, FindsNoDifferenceOfAnEstimateToItself) {
   const Estimate one = estimate(Metric::mask_iou, 0.0, 1);
   const Comparison same = compare(one, one, true);
   EXPECT_EQ(same.verdict, Verdict::same);
@@ -42,7 +42,7 @@ TEST(Compare, AnEstimateIsTheSameAsItself) {
   EXPECT_DOUBLE_EQ(same.interval.high, 0.0);
 }
 
-/// Newcombe (1998), table II, method 10: 56/70 against 48/80 gives 0.2 with 0.0524 to 0.3339.
+/// Newcombe (1998), table II, method 10, compares 56/70 with 48/80: 0.2, from 0.0524 to 0.3339.
 TEST(Compare, AgreesWithNewcombesExample) {
   const auto share_of = [](double successes, double trials) {
     Estimate share{Metric::people_found, successes / trials};
@@ -56,8 +56,8 @@ TEST(Compare, AgreesWithNewcombesExample) {
   EXPECT_EQ(result.verdict, Verdict::better);
 }
 
-/// Of many pairs without a difference the intervals must miss 0 in about one of twenty.
-TEST(Compare, ChanceAloneIsSeldomCalledADifference) {
+/// For pairs without a difference, about one interval in twenty may miss 0.
+TEST(Compare, SeldomTakesChanceForADifference) {
   int called = 0;
   constexpr int kPairs = 100;
   for (std::uint64_t i = 0; i < kPairs; ++i) {

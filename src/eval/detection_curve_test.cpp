@@ -7,7 +7,7 @@
 namespace vesalius {
 namespace {
 
-/// Four frames with three people: two found, one of them poorly; two proposals of nobody.
+/// Returns four frames with three people. Two people are found, one of them poorly; two proposals show nobody.
 DetectionLog by_hand() {
   DetectionLog log;
   log.frames = 4;
@@ -52,7 +52,7 @@ TEST(DetectionCurve, FallsWithItsThreshold) {
   }
 }
 
-TEST(DetectionCurve, WithNobodyToBeFoundHasNoRate) {
+TEST(DetectionCurve, HasNoRateWithoutPeople) {
   DetectionLog log;
   log.frames = 2;
   EXPECT_TRUE(std::isnan(sweep_parts(log, 1, 0.0)[0].rate));

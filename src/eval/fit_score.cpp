@@ -16,12 +16,12 @@ using Features = Eigen::Matrix<double, kFeatures, 1>;
 using Weights = Eigen::Matrix<double, kFeatures + 1, 1>;  // the bias last
 using Curvature = Eigen::Matrix<double, kFeatures + 1, kFeatures + 1>;
 
-/// A false person costs as much as so many missed ones.
+/// Cost of a false person in missed ones.
 constexpr double kCostOfFalse = 3.0;
 constexpr double kRidge = 1e-3;  // per unit of the samples' weight, on standardised features
 constexpr int kMostSteps = 100;
 constexpr double kSmallestStep = 1e-10;
-constexpr double kSmallestSpread = 0.1;  // of evidence: what hardly differs among few candidates tells nothing
+constexpr double kSmallestSpread = 0.1;  // of evidence; if values of few candidates hardly differ, they say nothing
 
 Features features(const Evidence& e) {
   Features x;
@@ -29,9 +29,9 @@ Features features(const Evidence& e) {
   return x;
 }
 
-/// What a candidate has in common with people, in units of what a match needs.
+/// The overlap of a candidate with people, in units of what a match needs.
 struct Likeness {
-  double as_person = 0.0;  ///< IoU with one person, or the larger share with the mask of all
+  double as_person = 0.0;  ///< IoU with one person, or the larger share for the mask of all people
   double on_people = 0.0;  ///< share of its pixels on people
 };
 
@@ -80,7 +80,8 @@ std::vector<Weighted> weighted(const std::vector<std::vector<ScoreSample>>& sets
   return all;
 }
 
-/// Share of the pairs of a person and a nobody of which the person has more; half a pair where they are equal.
+/// Returns the share of the pairs of a person and a nobody in which the person's score is higher; equal scores count
+/// half.
 double area_under_curve(const std::vector<Weighted>& samples, const ScoreOptions& options) {
   std::vector<std::pair<float, bool>> scored;
   for (const Weighted& s : samples) {
@@ -102,7 +103,7 @@ double area_under_curve(const std::vector<Weighted>& samples, const ScoreOptions
   return pairs / (people * nobodies);
 }
 
-/// Newton's method on standardised features.
+/// Fits weights by Newton's method on standardised features.
 Weights logistic_weights(const std::vector<Weighted>& samples) {
   Features mean = Features::Zero(), spread = Features::Zero();
   double total = 0.0;

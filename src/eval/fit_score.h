@@ -8,7 +8,7 @@
 
 namespace vesalius {
 
-/// What spoke for a candidate of which it is known whether it was a person.
+/// The evidence for a candidate, and whether it is a person.
 struct ScoreSample {
   Evidence evidence;
   bool person = false;
@@ -29,10 +29,10 @@ struct ScoreFit {
   double area_after = 0.0;
 };
 
-/// Fits weights and bias of the person score by logistic regression, so that 0.5 lies between people and nobodies; the
-/// other options are those of `start`. The people of every set weigh the same together, and so do its nobodies: a long
-/// sequence does not drown a short one. A small ridge keeps the weights finite for sets that a line parts wholly.
-/// Throws Error where there are no people or no nobodies.
+/// Fits weights and bias of the person score by logistic regression such that 0.5 separates people from nobodies. All
+/// other options are those of `start`. The people of every set have the same total weight, and so have its nobodies, so
+/// a long sequence does not outweigh a short one. A small ridge keeps the weights finite for sets that a line separates
+/// completely. Throws Error if there are no people or no nobodies.
 ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const ScoreOptions& start);
 
 }  // namespace vesalius

@@ -20,7 +20,7 @@ Evidence random_evidence(Random& random) {
   return e;
 }
 
-/// Candidates that are people with the probability that the score gives them.
+/// Returns candidates that are people with the probability of their score.
 std::vector<ScoreSample> drawn(const ScoreOptions& truth, int count, std::uint64_t seed) {
   Random random(seed);
   std::vector<ScoreSample> samples;
@@ -45,7 +45,7 @@ TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
   truth.border_weight = -3.F;
   truth.bias = -4.F;
   const ScoreFit fit = fit_score({drawn(truth, 40000, 3)}, {});
-  // People and nobodies weigh differently: only the bias feels it.
+  // People and nobodies have different weights, which affects only the bias.
   EXPECT_NEAR(fit.options.likelihood_weight, truth.likelihood_weight, 0.25);
   EXPECT_NEAR(fit.options.explained_weight, truth.explained_weight, 0.25);
   EXPECT_NEAR(fit.options.open_weight, truth.open_weight, 0.25);
@@ -62,7 +62,7 @@ TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
   EXPECT_GE(fit.area_after, fit.area_before);
 }
 
-TEST(FitScore, SetsThatALineSeparatesGiveFiniteWeights) {
+TEST(FitScore, GivesFiniteWeightsForSeparableSets) {
   std::vector<ScoreSample> samples;
   for (int i = 0; i < 20; ++i) {
     const float x = (i < 10 ? 0.F : 0.4F) + 0.03F * static_cast<float>(i);
@@ -73,11 +73,11 @@ TEST(FitScore, SetsThatALineSeparatesGiveFiniteWeights) {
   for (const ScoreSample& sample : samples) {
     EXPECT_EQ(person_score(sample.evidence, fit.options) > 0.5F, sample.person) << sample.evidence.likelihood;
   }
-  EXPECT_NEAR(fit.options.open_weight, 0.F, 1e-3F);  // says nothing
+  EXPECT_NEAR(fit.options.open_weight, 0.F, 1e-3F);  // this evidence says nothing
 }
 
-TEST(FitScore, ALongSequenceDoesNotDrownAShortOne) {
-  // In the long one the outline tells, in the short one the core.
+TEST(FitScore, WeighsShortAndLongSequencesAlike) {
+  // In the long sequence the outline separates people from nobodies, in the short one the core.
   std::vector<ScoreSample> longer, shorter;
   for (int i = 0; i < 1000; ++i) longer.push_back({{0.5F, 0.5F, i % 2 == 0 ? 0.8F : 0.2F, 0.5F}, i % 2 == 0});
   for (int i = 0; i < 10; ++i) shorter.push_back({{0.5F, 0.5F, 0.5F, i % 2 == 0 ? 0.8F : 0.2F}, i % 2 == 0});
@@ -85,7 +85,7 @@ TEST(FitScore, ALongSequenceDoesNotDrownAShortOne) {
   EXPECT_GT(fit.options.core_weight, 0.8F * fit.options.open_weight);
 }
 
-TEST(FitScore, EqualScoresCountAsHalfInOrder) {
+TEST(FitScore, CountsEqualScoresAsHalfInOrder) {
   const Evidence same{0.5F, 0.5F, 0.5F, 0.5F};
   const ScoreFit fit = fit_score({{{same, true}, {same, false}, {same, false}}}, {});
   EXPECT_EQ(fit.area_before, 0.5);
@@ -97,7 +97,7 @@ TEST(FitScore, NeedsPeopleAndNobodies) {
   EXPECT_THAT([&] { fit_score({{{e, false}}}, {}); }, ThrowsMessage<Error>(HasSubstr("to be a person")));
 }
 
-/// A candidate with a mask of the given columns of a picture of 10 x 1.
+/// Returns a candidate whose mask has the given columns of a picture of 10 x 1.
 Trace trace_of(int from, int to) {
   Trace trace;
   Trace::Candidate candidate;
@@ -121,8 +121,8 @@ TEST(ScoreSamples, AreJudgedByTheirOverlap) {
   };
   EXPECT_THAT(kinds(truth, 0, 4), testing::ElementsAre(1));
   EXPECT_THAT(kinds(truth, 2, 4), testing::ElementsAre(1));  // IoU 0.5
-  EXPECT_THAT(kinds(truth, 2, 6), testing::IsEmpty());       // 1/3: not to be told
-  EXPECT_THAT(kinds(truth, 0, 1), testing::IsEmpty());       // a piece of somebody
+  EXPECT_THAT(kinds(truth, 2, 6), testing::IsEmpty());       // IoU 1/3, which is undecided
+  EXPECT_THAT(kinds(truth, 0, 1), testing::IsEmpty());       // a piece of a person
   EXPECT_THAT(kinds(truth, 5, 9), testing::ElementsAre(0));
 
   FrameTruth mask_only;

@@ -13,10 +13,10 @@
 namespace vesalius {
 namespace {
 
-constexpr double kZ = 1.959963984540054;  // of 95 %
+constexpr double kZ = 1.959963984540054;  // for 95 %
 constexpr std::uint64_t kBootstrapStream = 0xb007;
 
-/// By inversion: multiplies the probability of 0, 1, 2, ... up until `uniform` is passed.
+/// Draws by inversion: adds the probabilities of 0, 1, 2, ... until `uniform` is exceeded.
 std::uint8_t poisson_of_mean_1(double uniform) {
   double probability = std::exp(-1.0);
   double sum = probability;

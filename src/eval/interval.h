@@ -7,24 +7,23 @@
 
 namespace vesalius {
 
-/// Bounds of 95 % confidence; NaN where nothing is known.
+/// The bounds of 95 % confidence; NaN if nothing is known.
 struct Interval {
   double low = 0.0;
   double high = 1.0;
 };
 
-/// Returns Wilson's score interval of a share (E. B. Wilson 1927), 0 to 1 without trials. Throws Error unless 0 <=
-/// successes
-/// <= trials.
+/// Returns Wilson's score interval of a share (E. B. Wilson 1927). Without trials it is 0 to 1. Throws Error for
+/// negative numbers or more successes than trials.
 Interval wilson(double successes, double trials);
 
-/// Number of resamples of a set. They are the same ones whatever is computed from them.
+/// The number of resamples of a set. All computations use the same resamples.
 inline constexpr std::size_t kReplicates = 200;
 using Weights = std::array<std::uint8_t, kReplicates>;
 
-/// Returns how often each resample holds the frame of this key: Poisson numbers of mean 1 (the Poisson bootstrap, which
-/// need not know how many frames will come). They depend on the key alone, so that two evaluations of the same frames
-/// resample them alike and their difference has an interval of its own.
+/// Returns how often each resample contains the frame of this key: Poisson numbers of mean 1 (the Poisson bootstrap,
+/// which need not know the number of frames in advance). They depend only on the key, so two evaluations of the same
+/// frames are resampled alike and their difference has an interval of its own.
 Weights bootstrap_weights(std::uint64_t frame_key);
 
 /// Returns a key for a frame from the names of its set and its own (64-bit FNV-1a).

@@ -10,7 +10,7 @@
 namespace vesalius {
 namespace {
 
-/// The bounds solve (share - p)^2 = z^2 p (1 - p) / n: found here by bisection instead of by formula.
+/// The bounds solve (share - p)^2 = z^2 p (1 - p) / n. Here they are found by bisection instead of the formula.
 double wilson_bound(double successes, double trials, bool low) {
   const double share = successes / trials;
   double inside = share;
@@ -41,7 +41,7 @@ TEST(Wilson, SolvesItsEquation) {
   }
 }
 
-TEST(Wilson, NoTrialsGiveAllAndNonsenseIsRefused) {
+TEST(Wilson, CoversEverythingWithoutTrialsAndRefusesInvalidCounts) {
   EXPECT_DOUBLE_EQ(wilson(0, 0).low, 0.0);
   EXPECT_DOUBLE_EQ(wilson(0, 0).high, 1.0);
   EXPECT_THROW(wilson(3, 2), Error);
@@ -49,7 +49,7 @@ TEST(Wilson, NoTrialsGiveAllAndNonsenseIsRefused) {
   EXPECT_THROW(wilson(std::nan(""), 2), Error);
 }
 
-TEST(Bootstrap, WeightsArePoissonOfMeanOne) {
+TEST(Bootstrap, HasPoissonWeightsOfMeanOne) {
   std::array<double, 4> seen{};
   double sum = 0.0, squares = 0.0, n = 0.0;
   for (std::uint64_t key = 0; key < 500; ++key) {
@@ -76,7 +76,7 @@ TEST(Bootstrap, DependsOnTheKeyAlone) {
   EXPECT_NE(frame_key("a", "b"), frame_key("b", "a"));
 }
 
-TEST(PercentileInterval, InterpolatesAndLeavesOutWhatIsNotFinite) {
+TEST(PercentileInterval, InterpolatesAndIgnoresValuesThatAreNotFinite) {
   std::vector<double> values{std::nan("")};
   for (int i = 100; i >= 0; --i) values.push_back(i);
   const Interval interval = percentile_interval(values);

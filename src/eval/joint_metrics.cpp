@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Joints that both sides have, as columns.
+/// The joints that both sides have, as columns.
 struct Common {
   Eigen::Matrix3Xd truth;
   Eigen::Matrix3Xd found;
@@ -57,7 +57,8 @@ double root_aligned(const Common& common, const std::vector<std::string>& names)
 double after_procrustes(const Common& common) {
   if (common.joints.size() < 3) return kNaN;
   const Eigen::Vector3d middle = common.found.rowwise().mean();
-  if ((common.found.colwise() - middle).squaredNorm() < 1e-12) return kNaN;  // all in one place: no scale fits
+  if ((common.found.colwise() - middle).squaredNorm() < 1e-12)
+    return kNaN;  // all joints are at one place, so no scale fits
   const Eigen::Matrix4d fit = Eigen::umeyama(common.found, common.truth, true);
   const Eigen::Matrix3Xd moved =
       (fit.topLeftCorner<3, 3>() * common.found).colwise() + fit.topRightCorner<3, 1>().col(0);

@@ -16,7 +16,8 @@ inline constexpr double kJointTolerance_m = 0.1;
 /// Largest distance of the curve over distances, centimetres.
 inline constexpr int kJointCurve_cm = 30;
 
-/// Joints of one true person under the names of its data set, and where they were found; NaN = not known or not found.
+/// The joints of one true person under the names of its data set, and where they were found. NaN means not known or not
+/// found.
 struct JointPair {
   std::vector<Eigen::Vector3f> truth;
   std::vector<Eigen::Vector3f> found;  ///< of the same length
@@ -35,11 +36,11 @@ const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::str
 /// Returns the distance of each joint in metres: NaN where the truth is not known, infinity where it was not found.
 std::vector<double> joint_errors(const JointPair& pair);
 
-/// Mean distance of the joints that both have; NaN where a mean or a fit has too few joints.
+/// The mean distance of the joints that both have; NaN if there are too few joints for a mean or a fit.
 struct MeanErrors {
   double absolute_m = 0.0;
-  double root_aligned_m = 0.0;  ///< with the mean of the joints whose names contain "hip" moved onto the true one
-  double procrustes_m = 0.0;    ///< after the similarity that fits best in squares (Umeyama 1991)
+  double root_aligned_m = 0.0;  ///< after moving the mean of the joints named "...hip..." onto the true one
+  double procrustes_m = 0.0;    ///< after the similarity with the least squared error (Umeyama 1991)
 };
 MeanErrors mean_joint_errors(const JointPair& pair, const std::vector<std::string>& names);
 

@@ -21,7 +21,7 @@ using Eigen::Vector3f;
 const Vector3f kNothing = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 const std::vector<std::string> kNames{"head", "l_hip", "r_hip", "l_hand"};
 
-/// Head 5 cm too deep, a hip 20 cm aside, the other right, no hand.
+/// Returns joints with the head 5 cm too deep, one hip 20 cm aside, the other hip right, and no hand.
 JointPair by_hand() {
   return {{{0, -1, 2}, {0.2F, 0, 2}, {-0.2F, 0, 2}, {0.5F, 0, 2}},
           {{0, -1, 2.05F}, {0.4F, 0, 2}, {-0.2F, 0, 2}, kNothing}};
@@ -36,11 +36,11 @@ TEST(JointMetrics, AgreeWithCountingByHand) {
   EXPECT_TRUE(std::isnan(value_of(terms, "joint.l_hand.error_m")));
   EXPECT_NEAR(value_of(terms, "joint.head.error_m"), 0.05, 1e-6);
   EXPECT_NEAR(value_of(terms, "joints.error_m"), 0.25 / 3, 1e-6);
-  // The mean of the hips is 10 cm aside; moved back, head is off by (0.1, 0, 0.05), the hips by 0.1 each.
+  // The mean of the hips is 10 cm aside. After moving it back, the head is off by (0.1, 0, 0.05) and each hip by 0.1.
   EXPECT_NEAR(value_of(terms, "joints.root_aligned_error_m"), (std::hypot(0.1, 0.05) + 0.2) / 3, 1e-6);
 }
 
-TEST(JointMetrics, UnknownTruthDoesNotCount) {
+TEST(JointMetrics, IgnoreUnknownTruth) {
   JointPair pair = by_hand();
   pair.truth[3] = kNothing;
   const MetricTerms terms = joint_terms(pair, kNames);
@@ -48,7 +48,7 @@ TEST(JointMetrics, UnknownTruthDoesNotCount) {
   EXPECT_TRUE(std::isnan(value_of(terms, "joint.l_hand.at_10cm")));
 }
 
-TEST(JointMetrics, AMissedPersonHasNoJointRight) {
+TEST(JointMetrics, CountAllJointsOfAMissedPersonAsWrong) {
   JointPair pair = by_hand();
   std::ranges::fill(pair.found, kNothing);
   const MetricTerms terms = joint_terms(pair, kNames);
@@ -70,7 +70,7 @@ JointPair random_pair(std::uint64_t seed, double noise_m) {
   return pair;
 }
 
-TEST(JointMetrics, ProcrustesUndoesASimilarity) {
+TEST(JointMetrics, UndoASimilarityByProcrustes) {
   const std::vector<std::string> names(12, "l_hip");
   const JointPair pair = random_pair(1, 0.0);
   const MeanErrors errors = mean_joint_errors(pair, names);
@@ -78,8 +78,8 @@ TEST(JointMetrics, ProcrustesUndoesASimilarity) {
   EXPECT_LT(errors.procrustes_m, 1e-5);
 }
 
-/// No similarity near the one that was undone may fit better (in squares, which is what it minimises).
-TEST(JointMetrics, ProcrustesIsTheBestFit) {
+/// No similarity near the one that was undone may have a smaller squared error.
+TEST(JointMetrics, FitBestByProcrustes) {
   const std::vector<std::string> names(12, "l_hip");
   const JointPair pair = random_pair(2, 0.05);
   const MeanErrors errors = mean_joint_errors(pair, names);
@@ -88,7 +88,7 @@ TEST(JointMetrics, ProcrustesIsTheBestFit) {
   EXPECT_LE(errors.procrustes_m, errors.root_aligned_m);
 }
 
-TEST(JointMetrics, TooFewJointsGiveNoFit) {
+TEST(JointMetrics, HaveNoFitOfTooFewJoints) {
   JointPair pair = by_hand();
   pair.found[0] = kNothing;
   EXPECT_TRUE(std::isnan(mean_joint_errors(pair, kNames).procrustes_m));
@@ -98,7 +98,7 @@ TEST(JointMetrics, TooFewJointsGiveNoFit) {
   EXPECT_FALSE(std::isnan(mean_joint_errors(pair, kNames).absolute_m));
 }
 
-TEST(JointCurve, HasTheSharesWithinDistances) {
+TEST(JointCurve, GivesTheSharesWithinDistances) {
   JointCurve curve;
   curve.add({0.005, 0.095, 0.105, std::numeric_limits<double>::infinity(), std::nan("")});
   EXPECT_DOUBLE_EQ(curve.share(1), 0.25);
@@ -108,7 +108,7 @@ TEST(JointCurve, HasTheSharesWithinDistances) {
   EXPECT_TRUE(std::isnan(JointCurve{}.share(10)));
 }
 
-TEST(JointsByName, ComeInTheOrderOfTheTruth) {
+TEST(JointsByName, AreInTheOrderOfTheTruth) {
   const JointSet& set = paper_body().joint_sets.front();  // nite15
   std::vector<Joint> joints(set.joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) joints[j] = {State::observed, {static_cast<float>(j), 0, 1}, 1.F};

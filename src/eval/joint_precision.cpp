@@ -8,7 +8,7 @@
 namespace vesalius {
 namespace {
 
-/// The true joint nearest to a proposal that is within the tolerance and not taken; -1 for none.
+/// Returns the true joint nearest to a proposal that is within the tolerance and not taken, or -1.
 int nearest_free(const Eigen::Vector3f& at, std::size_t joint, const std::vector<std::vector<Eigen::Vector3f>>& truth,
                  const std::vector<char>& taken) {
   int nearest = -1;

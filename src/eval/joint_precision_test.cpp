@@ -18,28 +18,29 @@ const std::vector<std::string> kHead{"head"};
 
 JointProposals proposal(float score, float x) { return {score, {{x, 0.F, 2.F}}}; }
 
-/// Average precision of the head; NaN where it does not occur.
+/// Returns the average precision of the head; NaN if it does not occur.
 double average(const JointPrecision& precision) {
   const auto averages = precision.averages();
   return averages.empty() ? std::nan("") : averages.front().second;
 }
 
 TEST(JointPrecision, AgreesWithCountingByHand) {
-  // True heads at 0 and 5. By score: right, wrong, right, so precision 1, 1/2, 2/3 at recall 1/2, 1/2, 1.
+  // The true heads are at 0 and 5. In the order of scores proposals are right, wrong, right, so the precision is 1,
+  // 1/2, 2/3 at recall 1/2, 1/2, 1.
   JointPrecision precision;
   precision.add(kHead, {proposal(0.2F, 5.F), proposal(0.9F, 0.05F), proposal(0.5F, 2.F)},
                 {{{0.F, 0.F, 2.F}}, {{5.F, 0.F, 2.F}}}, 2);
   EXPECT_DOUBLE_EQ(average(precision), 0.5 * 1.0 + 0.5 * 2.0 / 3.0);
 }
 
-TEST(JointPrecision, ASecondProposalOfTheSameJointIsWrong) {
+TEST(JointPrecision, CountsASecondProposalOfAJointAsWrong) {
   JointPrecision precision;
   const std::vector<std::vector<Vector3f>> truth{{{0.F, 0.F, 2.F}}, {{5.F, 0.F, 2.F}}};
   precision.add(kHead, {proposal(0.9F, 0.F), proposal(0.8F, 0.01F), proposal(0.7F, 5.F)}, truth, 2);
   EXPECT_DOUBLE_EQ(average(precision), 0.5 + 0.5 * 2.0 / 3.0);
 }
 
-TEST(JointPrecision, MissedJointsLowerRecallAndFarOnesAreWrong) {
+TEST(JointPrecision, LosesRecallByMissedAndPrecisionByFarJoints) {
   JointPrecision precision;
   precision.add(kHead, {proposal(0.9F, 0.11F)}, {{{0.F, 0.F, 2.F}}}, 1);
   EXPECT_DOUBLE_EQ(average(precision), 0.0);
@@ -48,7 +49,7 @@ TEST(JointPrecision, MissedJointsLowerRecallAndFarOnesAreWrong) {
   EXPECT_DOUBLE_EQ(average(precision), 1.0 / 3.0);
 }
 
-TEST(JointPrecision, PeopleWhoDoNotCountAndUnknownJointsChangeNothing) {
+TEST(JointPrecision, IgnoresUncountedPeopleAndUnknownJoints) {
   JointPrecision precision;
   precision.add(kHead, {proposal(0.9F, 0.F), proposal(0.95F, 5.F)}, {{{0.F, 0.F, 2.F}}, {{5.F, 0.F, 2.F}}}, 1);
   EXPECT_DOUBLE_EQ(average(precision), 1.0);
@@ -58,7 +59,7 @@ TEST(JointPrecision, PeopleWhoDoNotCountAndUnknownJointsChangeNothing) {
   EXPECT_DOUBLE_EQ(average(precision), 1.0);
 }
 
-TEST(JointPrecision, EmptyFramesHoldWrongProposals) {
+TEST(JointPrecision, CountsProposalsInEmptyFramesAsWrong) {
   JointPrecision precision;
   precision.add(kHead, {proposal(0.9F, 0.F)}, {}, 0);
   EXPECT_TRUE(precision.averages().empty()) << "nothing was there to be found";
@@ -66,7 +67,7 @@ TEST(JointPrecision, EmptyFramesHoldWrongProposals) {
   EXPECT_DOUBLE_EQ(average(precision), 0.5);
 }
 
-/// Recall and precision at every threshold, integrated by steps of recall.
+/// Returns recall and precision at every threshold, integrated over steps of recall.
 double slow_average(const std::vector<std::pair<float, bool>>& judged, int known) {
   double area = 0.0;
   for (int found = 1; found <= known; ++found) {
@@ -85,14 +86,14 @@ double slow_average(const std::vector<std::pair<float, bool>>& judged, int known
   return area;
 }
 
-TEST(JointPrecision, IsTheAreaUnderTheCurveWhateverTheOrderOfFrames) {
+TEST(JointPrecision, IsTheAreaUnderTheCurveInAnyOrderOfFrames) {
   Random random(4);
   for (int round = 0; round < 50; ++round) {
     JointPrecision forward, backward;
     std::vector<JointPrecision> frames;
     std::vector<std::pair<float, bool>> judged;
     for (int i = 0; i < 30; ++i) {
-      const float score = static_cast<float>(random.below(8)) / 8.F;  // many are equal
+      const float score = static_cast<float>(random.below(8)) / 8.F;  // many scores are equal
       const bool right = random.below(2) == 0;
       frames.emplace_back().add(kHead, {proposal(score, right ? 0.F : 1.F)}, {{{0.F, 0.F, 2.F}}}, 1);
       judged.emplace_back(score, right);

@@ -6,7 +6,7 @@
 namespace vesalius {
 namespace {
 
-/// Pixels with a reading of each true person, and how many of them a mask has.
+/// The pixels with a reading of each true person, and how many of them a mask has.
 struct Areas {
   std::vector<long> of_person;
   std::vector<long> shared;
@@ -56,7 +56,7 @@ bool lies_on(const Mask& found, const Mask& truth, const DepthImage& depth) {
   return inside > 0 && static_cast<double>(inside) >= kShareOnMask * static_cast<double>(std::min(pixels, true_pixels));
 }
 
-/// Visible surface across the viewing direction of each person with joints.
+/// Returns the visible area, perpendicular to the viewing direction, of each person with joints.
 std::vector<double> visible_areas_cm2(const TrueFrame& frame) {
   const Camera& camera = frame.frame.camera;
   const double scale = 1e-2 / (static_cast<double>(camera.fx) * static_cast<double>(camera.fy));  // mm^2 to cm^2

@@ -10,7 +10,7 @@ using Kind = Match::Kind;
 constexpr int kWidth = 20;
 const DepthImage kDepth(kWidth, 1, 1000);
 
-/// Pixels [begin, end) of a picture of one row.
+/// Returns the pixels [begin, end) of a picture of one row.
 Mask span(int begin, int end) {
   Mask mask(kWidth, 1, 0);
   for (int u = begin; u < end; ++u) mask(u, 0) = 1;
@@ -25,18 +25,18 @@ std::vector<Kind> kinds(const std::vector<Mask>& masks, const FrameTruth& truth)
   return kinds;
 }
 
-TEST(MatchPeople, CountsAloneMatchWhoeverIsFound) {
+TEST(MatchPeople, MatchesAnyPersonIfOnlyTheCountIsKnown) {
   FrameTruth truth;
   truth.people = 2;
   EXPECT_THAT(kinds({span(0, 1), span(1, 2), span(2, 3)}, truth),
               testing::ElementsAre(Kind::person, Kind::person, Kind::nobody));
   truth.people = 0;
   EXPECT_THAT(kinds({span(0, 1)}, truth), testing::ElementsAre(Kind::nobody));
-  truth.people = -1;  // somebody: one is right, of more nothing is known
+  truth.people = -1;  // at least one person: one is right, more are undecided
   EXPECT_THAT(kinds({span(0, 1), span(1, 2)}, truth), testing::ElementsAre(Kind::person, Kind::ignored));
 }
 
-TEST(MatchPeople, ProposalsMustLieOnTheCommonMask) {
+TEST(MatchPeople, RequiresProposalsOnTheCommonMask) {
   FrameTruth truth;
   truth.people = 1;
   truth.mask = span(0, 10);
@@ -44,7 +44,7 @@ TEST(MatchPeople, ProposalsMustLieOnTheCommonMask) {
               testing::ElementsAre(Kind::nobody, Kind::person, Kind::nobody));
 }
 
-/// Two people side by side whose pixels are known apart.
+/// Returns two people side by side whose pixels are known separately.
 FrameTruth two_people() {
   FrameTruth truth;
   truth.people = 2;
@@ -55,7 +55,7 @@ FrameTruth two_people() {
   return truth;
 }
 
-TEST(MatchPeople, EachPersonIsMatchedOnceByIou) {
+TEST(MatchPeople, MatchesEachPersonOnceByIou) {
   const FrameTruth truth = two_people();
   const Mask right = span(10, 18), again = span(10, 20), left = span(0, 4), small = span(0, 3);
   std::vector<Proposal> proposals;
@@ -69,7 +69,7 @@ TEST(MatchPeople, EachPersonIsMatchedOnceByIou) {
   EXPECT_EQ(matches[3].person, 0);
 }
 
-TEST(MatchPeople, PixelsWithoutReadingDoNotCount) {
+TEST(MatchPeople, IgnoresPixelsWithoutReading) {
   const FrameTruth truth = two_people();
   DepthImage depth = kDepth;
   for (int u = 3; u < 8; ++u) depth(u, 0) = 0;
@@ -77,7 +77,7 @@ TEST(MatchPeople, PixelsWithoutReadingDoNotCount) {
   EXPECT_EQ(match_people({{&small, nullptr, 1.F}}, truth, depth)[0].kind, Kind::person);
 }
 
-TEST(VisiblePeople, ComeBeforeThoseOfWhomTooLittleIsSeen) {
+TEST(VisiblePeople, ComeBeforePeopleWhoAreMostlyHidden) {
   TrueFrame frame;
   frame.frame.depth = kDepth;
   frame.frame.camera = {kWidth, 1, 10.F, 10.F, 10.F, 0.F};  // 100 cm^2 a pixel at 1 m
@@ -94,7 +94,7 @@ TEST(VisiblePeople, ComeBeforeThoseOfWhomTooLittleIsSeen) {
   EXPECT_THAT(kinds({span(0, 4), span(10, 20)}, frame.truth), testing::ElementsAre(Kind::ignored, Kind::person));
 }
 
-TEST(DistinctProposals, LeaveOutRepetitionsOfSurerOnes) {
+TEST(DistinctProposals, LeaveOutRepetitionsWithLowerScores) {
   Trace trace;
   const auto add = [&](const Mask& mask, int found, float score) {
     trace.candidates.emplace_back();

@@ -17,7 +17,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double ratio(double numerator, double denominator) { return denominator > 0.0 ? numerator / denominator : kNaN; }
 
-/// The mean of a family's members; members that a resample lacks do not count in its mean.
+/// Returns the mean of a family's members. Members that a resample lacks do not count in its mean.
 Estimate mean_of(Metric metric, const std::vector<Estimate>& members) {
   Estimate mean{metric};
   for (const Estimate& member : members) mean.numerator += member.value;

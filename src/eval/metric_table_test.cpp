@@ -21,7 +21,7 @@ std::vector<std::string> names(const std::vector<Estimate>& estimates) {
   return all;
 }
 
-TEST(MetricTable, MetricsAreRatiosOfSumsAndMeansOfFamilies) {
+TEST(MetricTable, GivesRatiosOfSumsAndMeansOfFamilies) {
   MetricTable table;
   table.add(1, {{Metric::mask_iou, 0.5, 1.0}, {recall(0, "a"), 1.0, 4.0}, {recall(1, "b"), 3.0, 3.0}});
   table.add(2, {{Metric::mask_iou, 0.9, 1.0}, {recall(0, "a"), 1.0, 0.0}});
@@ -30,13 +30,13 @@ TEST(MetricTable, MetricsAreRatiosOfSumsAndMeansOfFamilies) {
   EXPECT_THAT(names(estimates), ElementsAre("mask.iou", "pixels.recall.a", "pixels.recall.b", "pixels.mean_recall"));
   EXPECT_DOUBLE_EQ(estimates[0].value, 0.7);
   EXPECT_DOUBLE_EQ(estimates[1].value, 0.5);
-  EXPECT_DOUBLE_EQ(estimates[3].value, 0.75);  // of a and b; c never occurred
+  EXPECT_DOUBLE_EQ(estimates[3].value, 0.75);  // the mean of a and b, as c never occurred
   EXPECT_EQ(find_estimate(estimates, Metric::pixel_recall, "b"), &estimates[2]);
   EXPECT_EQ(find_estimate(estimates, Metric::pixel_recall, "c"), nullptr);
   EXPECT_EQ(find_estimate(estimates, Metric::people_found), nullptr);
 }
 
-TEST(MetricTable, EstimatesComeInTheOrderOfTheMetricsWhateverCameFirst) {
+TEST(MetricTable, ListsEstimatesInTheOrderOfTheMetrics) {
   MetricTable table;
   table.add(1,
             {{Metric::joints_error, 1.0}, {{Metric::distance, 3, "3-4m"}, 1.0}, {{Metric::heading, 2, "back"}, 1.0}});
@@ -47,7 +47,7 @@ TEST(MetricTable, EstimatesComeInTheOrderOfTheMetricsWhateverCameFirst) {
                                                     "heading.front", "heading.side", "heading.back", "joints.error_m"));
 }
 
-TEST(MetricTable, AMemberWithSeveralPlacesIsOneMetric) {
+TEST(MetricTable, TakesAMemberWithSeveralPlacesAsOneMetric) {
   MetricTable table;
   table.add(1, {{{Metric::joint_error, 1, "head"}, 0.1}, {{Metric::joint_error, 0, "neck"}, 0.1}});
   table.add(2, {{{Metric::joint_error, 0, "head"}, 0.3}, {{Metric::joint_error, 1, "neck"}, 0.1}});
@@ -56,7 +56,7 @@ TEST(MetricTable, AMemberWithSeveralPlacesIsOneMetric) {
   EXPECT_DOUBLE_EQ(estimates[0].value, 0.2);
 }
 
-TEST(MetricTable, SharesOfTrialsHaveWilsonsInterval) {
+TEST(MetricTable, GivesSharesOfTrialsWilsonsInterval) {
   MetricTable table;
   for (std::uint64_t i = 0; i < 10; ++i) table.add(i, {{Metric::people_found, i < 9 ? 1.0 : 0.0, 1.0}});
   const Estimate found = table.estimates().front();
@@ -65,8 +65,8 @@ TEST(MetricTable, SharesOfTrialsHaveWilsonsInterval) {
   EXPECT_EQ(text_with_interval(found), "90.00 % (59.58 to 98.21)");
 }
 
-/// The standard error of a mean is known; the bootstrap's interval must have about 3.92 of it.
-TEST(MetricTable, TheBootstrapGivesTheIntervalOfAMean) {
+/// The standard error of a mean is known, and the bootstrap's interval must be about 3.92 times as wide.
+TEST(MetricTable, GivesMeansTheirIntervalByTheBootstrap) {
   MetricTable table;
   Random random(5);
   constexpr int kFrames = 2000;
@@ -81,7 +81,7 @@ TEST(MetricTable, TheBootstrapGivesTheIntervalOfAMean) {
   EXPECT_GT(mean.interval.high, mean.value);
 }
 
-TEST(MetricTable, TheOrderOfFramesDoesNotMatter) {
+TEST(MetricTable, DoesNotDependOnTheOrderOfFrames) {
   MetricTable forwards, backwards;
   const auto terms = [](std::uint64_t i) { return MetricTerms{{Metric::mask_iou, static_cast<double>(i), 1.0}}; };
   for (std::uint64_t i = 0; i < 9; ++i) forwards.add(i, terms(i));

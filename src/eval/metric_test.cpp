@@ -7,7 +7,7 @@
 namespace vesalius {
 namespace {
 
-TEST(Metric, EveryNameIsReadAsTheMetricThatHasIt) {
+TEST(Metric, IsFoundByItsName) {
   std::set<std::string> names;
   for (const MetricInfo& metric : kMetrics) {
     const std::string parameter = metric.is_family() ? "l_hand" : "";
@@ -20,7 +20,7 @@ TEST(Metric, EveryNameIsReadAsTheMetricThatHasIt) {
   }
 }
 
-TEST(Metric, EveryMetricHasATitleOfItsOwn) {
+TEST(Metric, HasAUniqueTitle) {
   std::set<std::string_view> titles;
   for (const MetricInfo& metric : kMetrics) {
     EXPECT_FALSE(metric.title.empty()) << metric.name;
@@ -28,20 +28,20 @@ TEST(Metric, EveryMetricHasATitleOfItsOwn) {
   }
 }
 
-TEST(Metric, OtherNamesAreNone) {
+TEST(Metric, IsNotFoundByOtherNames) {
   for (const char* name :
        {"", "people", "people.found.", "posture.", "joint..at_10cm", "joint.head", "*", "mask.iou "}) {
     EXPECT_FALSE(parse_metric(name)) << name;
   }
 }
 
-TEST(Metric, FamiliesTakeAnyParameter) {
+TEST(Metric, MayHaveAnyParameterInAFamily) {
   EXPECT_EQ(MetricId(Metric::joint_at_10cm, 0, "head").name(), "joint.head.at_10cm");
   EXPECT_EQ(MetricId(Metric::distance, 0, "4m-").name(), "distance.4m-");
   EXPECT_EQ(parse_metric("joint.a.at_10cm.at_10cm")->parameter, "a.at_10cm");
 }
 
-TEST(Metric, ErrorsAndFalseFindingsAreBetterWhenLower) {
+TEST(Metric, IsBetterWhenLowerForErrorsAndFalsePeople) {
   std::set<std::string_view> lower;
   for (const MetricInfo& metric : kMetrics) {
     if (metric.direction == MetricDirection::lower_is_better) lower.insert(metric.name);
@@ -51,13 +51,13 @@ TEST(Metric, ErrorsAndFalseFindingsAreBetterWhenLower) {
                                                "joints.procrustes_error_m"}));
 }
 
-TEST(Metric, OnlySeparateTrialsHaveWilsonsInterval) {
+TEST(Metric, HasWilsonsIntervalOnlyForSeparateTrials) {
   EXPECT_EQ(info(Metric::people_found).kind, MetricKind::trials);
   EXPECT_EQ(info(Metric::joint_at_10cm).kind, MetricKind::trials);
-  EXPECT_EQ(info(Metric::joints_at_10cm).kind, MetricKind::ratio);  // joints of one frame go wrong together
+  EXPECT_EQ(info(Metric::joints_at_10cm).kind, MetricKind::ratio);  // errors of the joints of one frame are correlated
 }
 
-TEST(Metric, ValuesAreWrittenInTheirUnit) {
+TEST(Metric, IsWrittenWithItsUnit) {
   EXPECT_EQ(metric_text(Metric::people_found, 0.972), "97.20 %");
   EXPECT_EQ(metric_text(Metric::joints_error, 0.0412), "0.041 m");
   EXPECT_EQ(metric_text(Metric::people_false, 0.0125), "0.013 a frame");

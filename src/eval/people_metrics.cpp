@@ -27,7 +27,7 @@ void add_mask_terms(const TrueFrame& frame, const std::vector<Person>& people, b
   if (found) terms.push_back({Metric::mask_iou_where_found, iou, 1.0});
 }
 
-/// A true person who was not found has none of its parts observed.
+/// Adds the terms of parts. A true person who was not found has no observed part.
 void add_part_terms(const std::vector<Person>& people, const std::vector<Match>& matches, double expected,
                     const BodyModel& body, MetricTerms& terms) {
   for (int part = 0; part < body.part_count(); ++part) {

@@ -15,7 +15,7 @@ using test::value_of;
 const Camera kCamera{4, 1, 20.F, 20.F, 1.5F, 0.F};  // at 1 m a pixel is 25 cm^2
 constexpr std::uint8_t kNone = kBackground;
 
-/// Two pixels of the left foot, one of the neck, one of nobody.
+/// Returns a frame with two pixels of the left foot, one of the neck and one of nobody.
 TrueFrame frame_of_pixels() {
   TrueFrame frame;
   frame.frame.camera = kCamera;
@@ -43,13 +43,13 @@ Person person_with(const std::vector<std::pair<int, Eigen::Vector3f>>& observed,
 
 TEST(VisibleParts, LieAtTheMeanOfTheirPixels) {
   const std::vector<Eigen::Vector3f> parts = visible_parts(frame_of_pixels(), 0, paper_body());
-  EXPECT_NEAR(parts[0].x(), -0.05, 1e-6);  // pixels at -1.5 and -0.5 of 20 a metre
+  EXPECT_NEAR(parts[0].x(), -0.05, 1e-6);  // pixels at -1.5 and -0.5, with 20 pixels per metre
   EXPECT_NEAR(parts[10].x(), 0.025, 1e-6);
   EXPECT_NEAR(parts[10].z(), 1.0, 1e-6);
   EXPECT_TRUE(parts[1].hasNaN());
 }
 
-TEST(VisibleParts, LeaveOutThoseOfWhichTooLittleIsSeen) {
+TEST(VisibleParts, LeaveOutPartsThatAreMostlyHidden) {
   TrueFrame frame = frame_of_pixels();
   std::ranges::fill(frame.frame.depth, std::uint16_t{800});  // 16 cm^2 a pixel
   const std::vector<Eigen::Vector3f> parts = visible_parts(frame, 0, paper_body());
@@ -57,7 +57,7 @@ TEST(VisibleParts, LeaveOutThoseOfWhichTooLittleIsSeen) {
   EXPECT_TRUE(parts[10].hasNaN());
 }
 
-TEST(CountParts, APartIsRightIfItIsObservedNearby) {
+TEST(CountParts, CountsAPartAsRightIfItIsObservedNearby) {
   const std::vector<Eigen::Vector3f> visible = visible_parts(frame_of_pixels(), 0, paper_body());
   const Person near = person_with({{0, {-0.05F, 0, 1.1F}}, {10, {0.025F, 0, 1.2F}}, {11, {0, 0, 1}}}, Mask(4, 1, 1));
   const PartCounts counts = count_parts(near.skeleton, visible, paper_body());
@@ -72,7 +72,7 @@ TEST(CountParts, APartIsRightIfItIsObservedNearby) {
   EXPECT_EQ(on_trust.right_upper, 2);
 }
 
-TEST(VisiblePartTerms, MissedPeopleHaveNoPartRight) {
+TEST(VisiblePartTerms, CountNoPartOfMissedPeopleAsRight) {
   const TrueFrame frame = frame_of_pixels();
   const Person person = person_with({{10, {0.025F, 0, 1.F}}}, Mask(4, 1, 1));
   EXPECT_DOUBLE_EQ(value_of(visible_part_terms(frame, {&person}, paper_body()), "parts.right"), 0.5);
@@ -105,7 +105,7 @@ TEST(PeopleTerms, AgreeWithCountingByHand) {
   EXPECT_TRUE(std::isnan(value_of(terms, "frames.empty_with_person")));
 }
 
-TEST(PeopleTerms, OfAnEmptyFrameCountFalsePeopleAlone) {
+TEST(PeopleTerms, CountOnlyFalsePeopleInAnEmptyFrame) {
   TrueFrame frame = frame_of_pixels();
   frame.truth = {};
   frame.truth.people = 0;

@@ -20,7 +20,7 @@ void add_term(MetricTerms& terms, MetricId id, std::uint64_t numerator, std::uin
   terms.push_back({std::move(id), static_cast<double>(numerator), static_cast<double>(denominator)});
 }
 
-/// Pixels of both and of either, of the parts taken together.
+/// The numbers of pixels of both and of either, for all parts together.
 struct Overlap {
   std::uint64_t both = 0;
   std::uint64_t either = 0;

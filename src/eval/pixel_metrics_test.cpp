@@ -85,7 +85,7 @@ TEST(PixelConfusion, RefusesOtherSizesAndLabels) {
   EXPECT_THROW(confusion.add(PixelConfusion(3)), Error);
 }
 
-TEST(MaskIou, CountsReadingsOnly) {
+TEST(MaskIou, CountsOnlyReadings) {
   const Mask a = row<std::uint8_t>({1, 1, 1, 0, 0, 1});
   const Mask b = row<std::uint8_t>({0, 7, 1, 1, 0, 0});
   const DepthImage depth = row<std::uint16_t>({5, 5, 5, 5, 5, 0});
@@ -93,7 +93,7 @@ TEST(MaskIou, CountsReadingsOnly) {
   EXPECT_DOUBLE_EQ(mask_iou(Mask(6, 1, 0), Mask(6, 1, 0), depth), 0.0);
 }
 
-TEST(MaskTerms, ArePersonIouOrTheShareOfAnEmptyFrame) {
+TEST(MaskTerms, GivePersonIouOrTheFalseShareOfAnEmptyFrame) {
   FrameTruth truth;
   truth.people = 1;
   truth.mask = row<std::uint8_t>({1, 1, 0, 0, 0});

@@ -4,10 +4,11 @@
 
 namespace vesalius {
 
-/// Returns the forest with the likeliest class alone in every leaf, the first of equals: a forest of votes.
+/// Returns the forest with only the likeliest class in every leaf, which makes it a forest of votes. Among equals the
+/// first is taken.
 Forest with_hard_votes(Forest forest);
 
-/// Returns the forest of the first `count` trees. Throws Error unless there are as many.
+/// Returns the forest of the first `count` trees. Throws Error if there are fewer.
 Forest with_first_trees(const Forest& forest, int count);
 
 }  // namespace vesalius

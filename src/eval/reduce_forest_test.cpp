@@ -19,7 +19,7 @@ Forest three_leaves() {
   return forest;
 }
 
-TEST(ReduceForest, HardVotesKeepTheLikeliestClassAlone) {
+TEST(ReduceForest, KeepsOnlyTheLikeliestClassForHardVotes) {
   const Forest hard = with_hard_votes(three_leaves());
   EXPECT_TRUE(has_distributions(three_leaves()));
   EXPECT_FALSE(has_distributions(hard));

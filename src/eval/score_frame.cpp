@@ -72,7 +72,7 @@ Mask labelled_pixels(const FrameTruth& truth) {
   return pixels;
 }
 
-/// The found person of each true one, null where it was missed.
+/// Returns the found person for each true one, or null if that one was missed.
 std::vector<const Person*> found_of_each(const std::vector<Person>& people, const std::vector<Match>& matches,
                                          int expected) {
   std::vector<const Person*> found(expected, nullptr);
@@ -82,7 +82,8 @@ std::vector<const Person*> found_of_each(const std::vector<Person>& people, cons
   return found;
 }
 
-/// The skeleton that a perfect labelling of this person gives: joints fitted to it do not depend on any model.
+/// Returns the skeleton that a perfect labelling of this person gives. Joints that are fitted to it do not depend on
+/// any model.
 Skeleton as_seen(const TrueFrame& frame, int person, const BodyModel& body) {
   Skeleton skeleton;
   for (const Eigen::Vector3f& centre : visible_parts(frame, person, body)) {

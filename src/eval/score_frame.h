@@ -16,25 +16,25 @@
 
 namespace vesalius {
 
-/// Everything that one frame adds to the metrics of its set, and what shows why.
+/// Everything that one frame adds to the metrics of its set, and the pictures that explain it.
 struct FrameScore {
   MetricTerms terms;
   int expected = 0;  ///< true people
   std::vector<JudgedProposal> proposals;
-  std::vector<ScoreSample> samples;                 ///< to fit the score on
-  std::vector<std::vector<double>> joint_errors_m;  ///< of each true person (joint_errors)
-  JointPrecision joint_precision;                   ///< of all people proposed, whatever their score
-  std::optional<PixelConfusion> confusion;          ///< where the true labels are known
-  std::vector<JointOffset> offsets;                 ///< of a frame to fit joints on
+  std::vector<ScoreSample> samples;                 ///< for fitting the score
+  std::vector<std::vector<double>> joint_errors_m;  ///< joint_errors() of each true person
+  JointPrecision joint_precision;                   ///< over all proposed people, whatever their score
+  std::optional<PixelConfusion> confusion;          ///< empty if the true labels are not known
+  std::vector<JointOffset> offsets;                 ///< only of frames for fitting joints
 
-  std::string what_went_wrong;  ///< empty where nothing did
-  double detect_s = 0.0;        ///< time that the detector took; 0 where only labels were asked for
-  double badness = 0.0;         ///< 0 = all is right; ranks the frames worth looking at
+  std::string what_went_wrong;  ///< empty if nothing did
+  double detect_s = 0.0;        ///< time of the detector; 0 if only labels were requested
+  double badness = 0.0;         ///< 0 if everything is right; ranks the frames for reports
   std::vector<Person> people;
-  LabelImage labels;  ///< first pass, smoothed
+  LabelImage labels;  ///< smoothed labels of the first pass
 };
 
-/// Runs the detector over frames whose truth is known and judges what it finds. Safe to call from several threads.
+/// Runs the detector on frames whose truth is known and judges the result. It may be used from several threads.
 class FrameScorer {
  public:
   struct Options {
@@ -42,11 +42,11 @@ class FrameScorer {
     bool labels_only = false;  ///< only the pixel metrics of the first pass: much faster
   };
 
-  /// Throws as Detector does.
+  /// Throws the errors of Detector.
   FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options);
 
-  /// Judges one frame. With `fit_joints` the score has joint offsets instead of joint metrics, from the true labels
-  /// where these are known, else from the people found. Throws Error where truth and frame do not fit together.
+  /// Judges one frame. With `fit_joints` the score has joint offsets instead of joint metrics; they come from the true
+  /// labels or, if these are not known, from the people found. Throws Error if truth and frame do not fit together.
   FrameScore score(TrueFrame frame, bool fit_joints) const;
 
   const BodyModel& body() const { return detector_.body(); }
@@ -56,7 +56,7 @@ class FrameScorer {
   /// Returns the labels that the detector gave; `asked`: Trace::person.
   FrameLabels find_people(const TrueFrame& frame, const Mask* asked, bool fit_joints, FrameScore& score) const;
   void log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const;
-  /// The body's joint set that has all of the truth's joints; null where there are none.
+  /// Returns the body's joint set that has all of the truth's joints; null if there is none.
   const JointSet* joint_set_of(const FrameTruth& truth) const;
   void judge_joint_proposals(const TrueFrame& frame, const std::vector<Proposal>& proposals, FrameScore& score) const;
   void judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,

@@ -24,7 +24,8 @@ using ::testing::ThrowsMessage;
 
 const Camera kCamera{160, 120, 131.25F, 131.25F, 79.5F, 59.5F};
 
-/// Gives every pixel its true label but for a mistake: the left half of the picture's people become background.
+/// A labeller that gives every pixel its true label. With its mistake, the people's pixels in the picture's left half
+/// become background.
 class Labeller : public PixelLabeller {
  public:
   Labeller(LabelImage truth, bool half_blind) : truth_(std::move(truth)), half_blind_(half_blind) {}
@@ -47,14 +48,14 @@ class Labeller : public PixelLabeller {
   bool has_background() const override { return true; }
   bool has_distributions() const override { return true; }
 
-  mutable std::atomic<int> asked = 0;  ///< how often
+  mutable std::atomic<int> asked = 0;  ///< number of calls
 
  private:
   LabelImage truth_;
   bool half_blind_;
 };
 
-/// A frame with the truth that a labelled dataset gives, in the names of joints that the body knows.
+/// Returns a frame with the truth of a labelled dataset under names of joints that the body has.
 TrueFrame labelled(const std::vector<float>& people_x_m) {
   CapsuleScene scene;
   scene.wall_z_m = 4.F;
@@ -91,7 +92,7 @@ FrameScorer scorer(const TrueFrame& frame, bool half_blind, bool labels_only = f
 
 double value(const FrameScore& score, const std::string& name) { return test::value_of(score.terms, name); }
 
-TEST(FrameScorer, PerfectLabelsGivePerfectMetrics) {
+TEST(FrameScorer, GivesPerfectMetricsForPerfectLabels) {
   const TrueFrame frame = labelled({0.F});
   const FrameScore score = scorer(frame, false).score(frame, false);
   EXPECT_EQ(score.expected, 1);
@@ -112,7 +113,7 @@ TEST(FrameScorer, PerfectLabelsGivePerfectMetrics) {
   EXPECT_GT(score.proposals[0].counts.right, 15);
 }
 
-TEST(FrameScorer, AGridIsJudgedOnTheWholePicture) {
+TEST(FrameScorer, JudgesAGridOnTheWholePicture) {
   const TrueFrame frame = labelled({0.F});
   FrameScorer::Options options;
   options.detect.grid.step = 2;
@@ -132,13 +133,13 @@ TEST(FrameScorer, AGridIsJudgedOnTheWholePicture) {
   EXPECT_EQ(quick.score(frame, false).labels, score.labels);
 }
 
-TEST(FrameScorer, HalfOfTheLabelsWrongLowersIouAndRecall) {
+TEST(FrameScorer, GivesLowerIouAndRecallForWrongLabels) {
   const TrueFrame frame = labelled({0.F});
   const FrameScore score = scorer(frame, true).score(frame, false);
   EXPECT_LT(value(score, "pixels.person_iou"), 0.6);
   EXPECT_GT(value(score, "pixels.person_iou"), 0.4);
   EXPECT_LT(value(score, "pixels.recall.r_upper_arm"), 0.1);         // at the left of the picture
-  EXPECT_GT(value(score, "pixels.recall_inside.r_upper_arm"), 0.9);  // but the best of the parts
+  EXPECT_GT(value(score, "pixels.recall_inside.r_upper_arm"), 0.9);  // but it is the best of the parts
   EXPECT_GT(value(score, "pixels.recall.l_upper_arm"), 0.9);
 }
 
@@ -174,12 +175,12 @@ TEST(FrameScorer, FitsJointsInsteadOfScoringThem) {
   EXPECT_THAT(score.joint_precision.averages(), IsEmpty());
   ASSERT_EQ(score.offsets.size(), 3U);
   for (const JointOffset& offset : score.offsets) {
-    EXPECT_GT(offset.behind_m, 0.0);  // the middle of a part lies behind its surface
+    EXPECT_GT(offset.behind_m, 0.0);  // the middle of a part is behind its surface
     EXPECT_LT(offset.behind_m, 0.15);
   }
 }
 
-TEST(FrameScorer, LabelsOnlyAreThoseOfTheDetector) {
+TEST(FrameScorer, GivesTheDetectorsLabelsWithLabelsOnly) {
   const TrueFrame frame = labelled({0.F});
   const FrameScore quick = scorer(frame, true, true).score(frame, false);
   const FrameScore whole = scorer(frame, true).score(frame, false);

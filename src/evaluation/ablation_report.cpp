@@ -10,7 +10,7 @@
 namespace vesalius {
 namespace {
 
-/// Metrics of the table, where the set has them. Of parts seen and parts right one is enough.
+/// The metrics of the table if the set has them. Either parts seen or parts right is enough.
 constexpr std::array kColumns{
     Metric::people_found,   Metric::people_false, Metric::empty_with_person,        Metric::mask_iou,
     Metric::part_mean_seen, Metric::parts_right,  Metric::pixel_mean_recall_inside, Metric::joints_at_10cm};
@@ -26,7 +26,7 @@ std::vector<Metric> columns_of(const std::vector<Estimate>& estimates) {
   return columns;
 }
 
-/// Returns the difference with its interval, and a star where that does not hold 0.
+/// Returns the difference with its interval, and a star if the interval does not contain 0.
 std::string difference_text(const Comparison& c) {
   const Metric metric = c.id.metric;
   return fmt::format("{} ({} to {}){}", metric_difference_text(metric, c.difference),

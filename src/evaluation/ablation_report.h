@@ -7,9 +7,8 @@
 
 namespace vesalius {
 
-/// Adds the table of a set's ablation to a document. For each variant it has the metrics that say most, their
-/// difference to the method as it was asked for with its interval, and the time a frame. Adds nothing where there was
-/// no ablation.
+/// Adds the table of a set's ablation to a document. For each variant it has the most telling metrics, their difference
+/// to the unchanged method with its interval, and the time per frame. Adds nothing if there was no ablation.
 void add_ablation(const SetResult& set, Document& document);
 
 /// Returns a line for each variant, for a terminal; empty without ablation.

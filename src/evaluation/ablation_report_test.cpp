@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-/// Forty frames of one person each, found in all; a variant misses every second one and takes half the time.
+/// Returns forty frames of one person each. All are found; a variant misses every second one and takes half the time.
 SetResult set_of_forty() {
   SetResult set;
   set.name = "room, left";
@@ -61,7 +61,7 @@ TEST(Ablation, IsWrittenAsCsvAndJson) {
   EXPECT_EQ(json[0].at("figures").at("mask.iou").at("verdict"), "same");
 }
 
-TEST(Ablation, AddsNothingWhereNoneWasAskedFor) {
+TEST(Ablation, AddsNothingUnlessRequested) {
   SetResult set = set_of_forty();
   set.ablation.clear();
   Document document("t");

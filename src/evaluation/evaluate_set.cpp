@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kFramesPerThread = 4;
 constexpr std::size_t kFailuresKept = 10;
 
-/// A frame on its way through the scorer.
+/// A frame that is being scored.
 struct Item {
   TrueFrame frame;
   int index = 0;
@@ -26,7 +26,7 @@ struct Item {
   std::string failure;
 };
 
-/// What a variant's frames came to so far.
+/// The sums over a variant's frames so far.
 struct VariantSums {
   MetricTable metrics;
   std::vector<double> frame_ms;
@@ -80,7 +80,7 @@ class SetEvaluation {
     throw Error(fmt::format("{}: {} parts, the model has {}", options_.source, names.size(), parts.size()));
   }
 
-  /// The next frames, fewer at the end; those that cannot be read are reported.
+  /// Returns the next frames, fewer at the end. Frames that cannot be read are reported.
   std::vector<Item> read(std::size_t count) {
     std::vector<Item> items;
     while (items.size() < count) {
@@ -96,7 +96,7 @@ class SetEvaluation {
     return items;
   }
 
-  /// Frames beside each other take each other's threads, so that only all of them together can be timed.
+  /// Scores frames in parallel. They share threads, so only all of them together can be timed.
   void score_all(std::vector<Item>& items) const {
     if (variants_.empty()) {
       parallel_for(static_cast<int>(items.size()), [&](int i) { score(items[i]); });
@@ -111,7 +111,7 @@ class SetEvaluation {
       item.score = scorer_.score(item.frame, fit);
       for (const Variant& variant : variants_) {
         FrameScore& score = item.of_variants.emplace_back(variant.scorer->score(item.frame, fit));
-        score.people.clear();  // only metrics are kept of a variant; pictures of all would fill the memory
+        score.people.clear();  // only a variant's metrics are kept, since its pictures would fill the memory
         score.labels = {};
       }
     } catch (const Error& e) {

@@ -22,7 +22,7 @@ using testing::ThrowsMessage;
 
 const Camera kCamera{80, 60, 65.F, 65.F, 39.5F, 29.5F};
 
-/// Calls every pixel background: nobody is ever found.
+/// A labeller that calls every pixel background, so nobody is ever found.
 class BlindLabeller : public PixelLabeller {
  public:
   void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
@@ -39,7 +39,7 @@ class BlindLabeller : public PixelLabeller {
 
 FrameScorer blind_scorer() { return FrameScorer(std::make_shared<BlindLabeller>(), {}); }
 
-/// Frames of one person each; the ones whose index is in `damaged` cannot be read.
+/// Frames of one person each. Those whose index is in `damaged` cannot be read.
 class Frames : public TruthSource {
  public:
   explicit Frames(int count, std::vector<int> damaged = {}, std::vector<std::string> parts = {})
@@ -82,7 +82,7 @@ TEST(EvaluateSet, SumsAllFramesAndKeepsTheWorst) {
   EXPECT_THAT(summary_lines(set), StartsWith("room: 12 frames, people 0 of 12, false 0, "));
 }
 
-TEST(EvaluateSet, TellsWhatFailedAndGoesOnWhereAsked) {
+TEST(EvaluateSet, ReportsFailuresAndContinuesIfAsked) {
   Frames stops(5, {2});
   EXPECT_THAT(
       [&] {
@@ -106,7 +106,7 @@ TEST(EvaluateSet, TellsWhatFailedAndGoesOnWhereAsked) {
   EXPECT_EQ(last, 4);
 }
 
-TEST(EvaluateSet, RefusesOtherPartsAndEmptySourcesAndStops) {
+TEST(EvaluateSet, RefusesOtherPartsAndEmptySourcesAndCanBeStopped) {
   Frames other(1, {}, {"tail"});
   EXPECT_THAT(
       [&] {
@@ -129,7 +129,7 @@ TEST(EvaluateSet, RefusesOtherPartsAndEmptySourcesAndStops) {
       ThrowsMessage<Error>(HasSubstr("a: interrupted after ")));
 }
 
-TEST(EvaluationJson, IsReadAsItWasWritten) {
+TEST(EvaluationJson, IsReadBackAsWritten) {
   Frames frames(4);
   Evaluation evaluation;
   evaluation.body = paper_body();

@@ -19,47 +19,47 @@
 
 namespace vesalius {
 
-/// A frame worth looking at.
+/// A frame that is shown in the report.
 struct WorstFrame {
   Frame frame;
   FrameScore score;
 };
 
-/// What a set came to with one thing of the method changed.
+/// The figures of a set for one variant of the method.
 struct AblationRow {
   std::string variant;
   std::vector<Estimate> metrics;
   double frame_ms = 0.0;  ///< as SetResult's
 };
 
-/// What an evaluation found out about one set of frames.
+/// The results of an evaluation on one set of frames.
 struct SetResult {
   std::string name;
   std::string source;
   int frames = 0;
   int failed = 0;
   double seconds = 0.0;
-  double frame_ms = 0.0;           ///< median time of the detector on a frame, all threads on it; only with an ablation
-  std::vector<std::string> notes;  ///< what the source says of its frames, a line each
-  std::vector<std::string> failures;  ///< the first ones, a line each
+  double frame_ms = 0.0;           ///< median time of the detector on a frame with all threads; only with an ablation
+  std::vector<std::string> notes;  ///< remarks of the source on its frames, one line each
+  std::vector<std::string> failures;  ///< the first failures, one line each
   MetricTable metrics;
   DetectionLog log;
   JointCurve joint_curve;
   JointPrecision joint_precision;
   std::optional<PixelConfusion> confusion;
   std::map<std::string, std::map<std::string, std::vector<double>>> offsets_m;  ///< [joint set][joint]
-  std::vector<ScoreSample> samples;                                             ///< to fit the score on
+  std::vector<ScoreSample> samples;                                             ///< for fitting the score
   std::vector<WorstFrame> worst;                                                ///< the worst first
-  std::vector<AblationRow> ablation;                                            ///< the same frames by each variant
+  std::vector<AblationRow> ablation;                                            ///< the same frames with each variant
 };
 
-/// A model on some sets of frames: what reports are made from.
+/// The results of a model on some sets of frames, from which reports are made.
 struct Evaluation {
-  std::string command;  ///< that repeats it
+  std::string command;  ///< command that repeats the evaluation
   std::string model;    ///< path
   std::string model_checksum;
-  std::string version;  ///< of the program
-  std::string machine;  ///< what timings depend on, on one line
+  std::string version;  ///< version of the program
+  std::string machine;  ///< facts about the machine that timings depend on, on one line
   DetectOptions options;
   BodyModel body;
   bool labels_only = false;

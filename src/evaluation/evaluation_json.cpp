@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no NaN: null where the value is not finite.
+/// Returns null for a value that is not finite, since JSON has no NaN.
 Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 double number(const Json& json) {
@@ -27,7 +27,7 @@ double number(const Json& json) {
 Json metric_json(const Estimate& estimate) {
   Json replicates = Json::array();
   for (const double value : estimate.replicates) {
-    // Five digits are plenty for the spread of a mean and keep the file small.
+    // Five digits suffice for the spread of a mean and keep the file small.
     replicates.push_back(json_number(std::round(value * 1e5) / 1e5));
   }
   return {{"value", json_number(estimate.value)},        {"low", json_number(estimate.interval.low)},

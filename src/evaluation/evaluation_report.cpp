@@ -25,14 +25,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Metrics of the table at the top.
+/// The metrics of the table at the top.
 constexpr std::array kOverview{
     Metric::people_found,     Metric::people_false,      Metric::empty_with_person,        Metric::mask_iou_where_found,
     Metric::pixel_person_iou, Metric::pixel_mean_recall, Metric::pixel_mean_recall_inside, Metric::body_on_empty,
     Metric::joints_at_10cm};
 static_assert(std::ranges::is_sorted(kOverview));
 
-/// Families of which each is a column of a table whose rows are parts or joints.
+/// The families that are columns of a table whose rows are parts or joints.
 constexpr std::array kPartColumns{Metric::part_seen, Metric::pixel_recall, Metric::pixel_recall_inside};
 constexpr std::array kJointColumns{Metric::joint_at_10cm, Metric::joint_error};
 
@@ -55,7 +55,7 @@ void add_overview(const Evaluation& evaluation, Document& document) {
   document.table(header, rows);
 }
 
-/// Adds the metrics that are no column of a table of parts or joints.
+/// Adds the metrics that are not columns of a table of parts or joints.
 void add_metrics(const std::vector<Estimate>& estimates, Document& document) {
   std::vector<std::vector<std::string>> rows;
   for (const Estimate& e : estimates) {
@@ -190,7 +190,7 @@ void add_confusion(const PixelConfusion& confusion, const BodyModel& body, Docum
   document.table({"class", "pixels", "right", "taken for"}, rows);
 }
 
-/// Returns the people found beside the labels of the first pass, which show why.
+/// Returns a picture of the people found beside the labels of the first pass, which explain the result.
 ColourImage picture_of(const WorstFrame& worst, const BodyModel& body) {
   const ColourImage people = draw_people(worst.frame, worst.score.people, body);
   const ColourImage labels = draw_labels(worst.score.labels, worst.frame.depth, body, false);

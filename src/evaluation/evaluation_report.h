@@ -6,8 +6,8 @@
 
 namespace vesalius {
 
-/// Makes `folder` if it is missing. Throws Error where it cannot, or where plots cannot be made: an evaluation takes
-/// long, and that should not turn out at its end.
+/// Creates `folder` if it is missing. Throws Error if it cannot, or if plots cannot be made. It is called before the
+/// evaluation, so that a long run does not fail at its end.
 void prepare_report(const std::string& folder);
 
 /// Writes report.html, report.md with its pictures, report.json, figures.csv and, after an ablation, ablation.csv into

@@ -8,7 +8,7 @@
 namespace vesalius {
 namespace {
 
-/// The metrics of a set's line besides the people, where it has them.
+/// The metrics in a set's line besides the people, if the set has them.
 constexpr std::array kLine{Metric::mask_iou,
                            Metric::mask_iou_where_found,
                            Metric::part_mean_seen,
@@ -36,7 +36,7 @@ constexpr std::array kFamilies{Metric::posture,
                                Metric::joint_at_10cm};
 static_assert(std::ranges::is_sorted(kFamilies));
 
-/// "people 56 of 56, false 0".
+/// Returns e.g. "people 56 of 56, false 0".
 std::string people_text(const SetResult& set, const std::vector<Estimate>& estimates) {
   std::string text;
   if (const Estimate* found = find_estimate(estimates, Metric::people_found)) {
@@ -52,7 +52,7 @@ std::string people_text(const SetResult& set, const std::vector<Estimate>& estim
   return text;
 }
 
-/// "  parts seen, %: neck 100, l_hand 87, ...".
+/// Returns e.g. "  parts seen, %: neck 100, l_hand 87, ...".
 std::string family_line(const std::vector<Estimate>& estimates, Metric family) {
   std::string text;
   for (const Estimate& estimate : estimates) {

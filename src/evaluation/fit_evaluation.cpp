@@ -11,10 +11,10 @@
 namespace vesalius {
 namespace {
 
-/// A hundredth of a weight changes no score by more than a quarter of that.
+/// Rounds a weight to hundredths, which changes no score by more than a quarter of a hundredth.
 float rounded(float weight) { return std::round(weight * 100.F) / 100.F; }
 
-/// The depth offset is the median of the samples, or the joint's own where there are none.
+/// Returns a joint whose depth offset is the median of the samples, or the joint's own if there are none.
 std::string joint_toml(const JointDefinition& joint, const std::vector<double>& samples_m, const BodyModel& body) {
   std::string parts, weights;
   for (std::size_t i = 0; i < joint.parts.size(); ++i) {
