@@ -22,7 +22,7 @@ class TileUnpacker {
  public:
   explicit TileUnpacker(std::uint16_t hole_mm) : hole_(hn::Set(Lanes(), hole_mm)) {}
 
-  /// Codes of 8 bits.
+  /// Unpacks codes of 8 bits.
   HWY_INLINE void FromBytes(std::uint32_t base_mm, const std::uint8_t* HWY_RESTRICT codes,
                             std::uint16_t* HWY_RESTRICT tile) const {
     const Lanes d;
@@ -98,7 +98,7 @@ HWY_EXPORT(UnpackTiles);
 
 using Tile = std::array<std::uint16_t, TileGrid::kPixels>;
 
-/// Pixels beyond the frame are holes.
+/// Reads a tile. Pixels outside the frame are holes.
 Tile read_tile(const DepthImage& depth, int left, int top) {
   Tile tile{};
   for (int v = top; v < std::min(top + TileGrid::kHeight, depth.height()); ++v) {
@@ -109,7 +109,7 @@ Tile read_tile(const DepthImage& depth, int left, int top) {
   return tile;
 }
 
-/// 0 for a tile of holes.
+/// Returns the base of a tile's codes; 0 for a tile of holes.
 int code_base(const Tile& tile) {
   int nearest = 0;
   for (const int mm : tile) {

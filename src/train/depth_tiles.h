@@ -9,11 +9,12 @@
 
 namespace vesalius {
 
-/// Layout of a frame whose depth is kept in tiles of 8x4 pixels, so that the probes around a pixel touch few of them.
+/// The layout of a frame whose depth is kept in tiles of 8x4 pixels, so that the probes around a pixel touch few of
+/// them.
 struct TileGrid {
   static constexpr int kWidth = 8, kHeight = 4, kPixels = kWidth * kHeight;
 
-  std::int32_t width = 0, height = 0;  ///< of the frame, pixels
+  std::int32_t width = 0, height = 0;  ///< size of the frame in pixels
 
   std::int32_t per_row() const { return (width + kWidth - 1) / kWidth; }
   std::int32_t rows() const { return (height + kHeight - 1) / kHeight; }
@@ -30,8 +31,8 @@ struct TileGrid {
 /// The first pixel's code is in the lowest bits.
 struct PackedTiles {
   TileGrid grid;
-  const std::uint32_t* row_starts = nullptr;  ///< of each row of tiles, in chunks
-  const std::uint32_t* headers = nullptr;     ///< of each tile: what base_mm, code_bits and chunk_in_row take apart
+  const std::uint32_t* row_starts = nullptr;  ///< start of each row of tiles, in chunks
+  const std::uint32_t* headers = nullptr;     ///< for each tile a word that base_mm, code_bits and chunk_in_row decode
   const std::uint8_t* chunks = nullptr;       ///< kChunk bytes each, one after the other in the order of the tiles
 
   static constexpr std::size_t kChunk = 16;
@@ -43,7 +44,7 @@ struct PackedTiles {
   std::uint16_t depth_mm(int u, int v) const;
 };
 
-/// Largest side of a frame, pixels.
+/// Largest side of a frame in pixels.
 constexpr int kLargestTiledSide = 32767;
 
 /// Packs `depth`, which has at most kLargestTiledSide pixels a side. Returns words that `packed_tiles` reads; the last

@@ -11,7 +11,7 @@
 namespace vesalius {
 namespace {
 
-/// Tiles of every width of code, with holes: readings up to `spread` apart within a patch.
+/// Returns tiles of every width of code with holes. Readings within a patch differ by up to `spread`.
 DepthImage patches(int width, int height, Random& random) {
   constexpr std::array<std::uint32_t, 6> kSpreads{1, 15, 16, 255, 256, 64000};
   DepthImage depth(width, height, 0);
@@ -40,14 +40,14 @@ void expect_same_pixels(const DepthImage& depth) {
   });
 }
 
-TEST(DepthTiles, GiveBackEveryPixelOfFramesOfAnySize) {
+TEST(DepthTiles, KeepEveryPixelOfFramesOfAnySize) {
   Random random(13);
   for (const auto& [width, height] : {std::pair{320, 240}, std::pair{1, 1}, std::pair{9, 5}, std::pair{37, 21}}) {
     expect_same_pixels(patches(width, height, random));
   }
 }
 
-TEST(DepthTiles, GiveBackTheLargestAndTheLeastReading) {
+TEST(DepthTiles, KeepTheLargestAndTheSmallestReading) {
   DepthImage depth(8, 4, 0);
   expect_same_pixels(depth);
   depth(3, 1) = 65535;

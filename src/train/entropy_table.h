@@ -5,8 +5,8 @@
 
 namespace vesalius {
 
-/// Entropies as integers, so that no order of adding changes a split: the table gives 1024 n log2 n, rounded, for n up
-/// to kMostCounted. Sums over the classes of a node stay below 2^31.
+/// Entropies as integers, so that splits do not depend on the order of additions. The table gives 1024 n log2 n,
+/// rounded, for n up to kMostCounted. Sums over the classes of a node stay below 2^31.
 class EntropyTable {
  public:
   static constexpr double kUnitsPerBit = 1024.0;

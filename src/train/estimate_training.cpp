@@ -14,16 +14,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kPilotSamples = 400000.0;   ///< some seconds, and more frames than caches hold
-constexpr double kLargestPilotShare = 0.25;  ///< of the real run: else it could as well be done
+constexpr double kPilotSamples = 400000.0;   ///< enough for some seconds and more frames than caches hold
+constexpr double kLargestPilotShare = 0.25;  ///< largest share of the real run
 constexpr int kFirstPilotTree = 2000;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 struct Pilot {
   TrainingSet set;
-  TrainOptions options;  ///< the run's, with less memory for rows
-  double scale = 1.0;    ///< samples of the run for each of the pilot
+  TrainOptions options;  ///< options of the run, with less memory for rows
+  double scale = 1.0;    ///< samples of the run for each sample of the pilot
 };
 
 Pilot make_pilot(const std::vector<LabelledFrame>& frames, const BodyModel& body, double samples,
@@ -33,24 +33,24 @@ Pilot make_pilot(const std::vector<LabelledFrame>& frames, const BodyModel& body
   Pilot pilot{TrainingSet(body, training_convention(own), own.sample, static_cast<std::uint64_t>(own.grow.seed)), own,
               1.0};
   const double wanted = std::min(kPilotSamples, samples * kLargestPilotShare);
-  const std::size_t most = frames.size() * 1000;  // frames that give no sample would go on for ever
+  const std::size_t most = frames.size() * 1000;  // otherwise frames without samples would never end
   for (std::size_t i = 0; i < most && static_cast<double>(pilot.set.samples().size()) < wanted; ++i) {
     pilot.set.add(frames[i % frames.size()]);
   }
   if (pilot.set.samples().empty()) throw Error("training: no pixel with a label and a reading in the first frames");
   pilot.scale = std::max(1.0, samples / static_cast<double>(pilot.set.samples().size()));
-  // As many samples of a frame at a time as in the run, so that unpacking it weighs the same.
+  // The pilot takes as many samples of a frame at a time as the run, so that unpacking has the same weight.
   pilot.options.grow.row_bytes = static_cast<std::size_t>(static_cast<double>(options.grow.row_bytes) / pilot.scale);
   return pilot;
 }
 
-/// Samples evaluated for each candidate by one tree of the pilot, and of the run.
+/// The number of samples that one tree evaluates for each candidate, in the pilot and in the run.
 struct TreeWork {
   double pilot = 0.0;
   double run = 0.0;
 };
 
-/// Samples at each node and leaf, and how deep they lie.
+/// The samples at each node and leaf, and their levels.
 struct TreeShape {
   std::vector<double> leaves, nodes;
   std::vector<int> leaf_level, node_level;
@@ -73,7 +73,8 @@ TreeShape shape_of(const Tree& tree, const TrainingSet& set) {
   return shape;
 }
 
-/// Levels that it took the pilot to halve the samples of a node, on average over samples: splits are not even.
+/// Returns the number of levels in which the pilot halves the samples of a node, averaged over samples, since splits
+/// are not even.
 double levels_per_halving(const TreeShape& shape, double samples) {
   double levels = 0.0, halvings = 0.0;
   for (std::size_t l = 0; l < shape.leaves.size(); ++l) {
@@ -84,9 +85,10 @@ double levels_per_halving(const TreeShape& shape, double samples) {
   return halvings > 0.0 ? levels / halvings : 1.0;
 }
 
-/// Nodes of as many samples cost as much and split as well in the run; there are more of them, and they lie deeper by
-/// the levels that it takes to get down to them, some below the deepest level. Above, nodes look at no more samples
-/// than `split_pixels`, so that all levels there cost what one costs, in the pilot as in the run.
+/// Estimates the work of the run's tree from the pilot's. Nodes with equally many samples cost the same and split alike
+/// in both. The run has more of them, and they are deeper by the levels that lead to them; some would be below the
+/// deepest level. Nodes above look at no more samples than `split_pixels`, so each level there costs the same in pilot
+/// and run.
 TreeWork work_of(const Tree& tree, const Pilot& pilot) {
   const TreeShape shape = shape_of(tree, pilot.set);
   const GrowTreeOptions& grow = pilot.options.grow;

@@ -23,11 +23,11 @@
 
 namespace vesalius {
 
-/// What growing a forest will take.
+/// The time and work of growing a forest.
 struct GrowthEstimate {
-  double evaluations = 0.0;        ///< values of eq. 1, of all trees of both rounds
-  double evaluations_per_s = 0.0;  ///< of all threads allowed together
-  double hard_search_s = 0.0;      ///< looking for hard negatives
+  double evaluations = 0.0;        ///< values of eq. 1 for all trees of both rounds
+  double evaluations_per_s = 0.0;  ///< rate of all allowed threads together
+  double hard_search_s = 0.0;      ///< time of the search for hard negatives
   double seconds() const { return evaluations / evaluations_per_s + hard_search_s; }
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Camera kCamera{80, 60, 66.F, 66.F, 39.5F, 29.5F};
 
-/// People in different poses, noisy, so that no leaf is pure for nothing.
+/// Returns noisy frames of people in different poses, so that leaves are not pure by accident.
 std::vector<LabelledFrame> people(int count) {
   std::vector<LabelledFrame> frames;
   for (int i = 0; i < count; ++i) {
@@ -48,7 +48,7 @@ TEST(EstimateGrowth, CountsEvaluationsWithinThirtyPercent) {
   EXPECT_EQ(estimate.hard_search_s, 0.0);
 }
 
-TEST(EstimateGrowth, TreesOfBothRoundsCount) {
+TEST(EstimateGrowth, CountsTreesOfBothRounds) {
   const std::vector<LabelledFrame> frames = people(20);
   TrainOptions options;
   options.trees = 4;

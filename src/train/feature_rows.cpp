@@ -18,7 +18,7 @@ using Lanes = hn::CappedTag<std::int32_t, CandidateTable::kLanes>;
 using ULanes = hn::RebindToUnsigned<Lanes>;
 using Int32 = hn::Vec<Lanes>;
 
-/// Where the probes of one sample read; the constants of a frame, a camera and a pixel in registers.
+/// Computes where the probes of one sample read. The constants of a frame, a camera and a pixel are in registers.
 class Placer {
  public:
   Placer(const TiledDepth& depth, const TrainingSample& sample) : scale_(depth.scaler.at(sample.depth_mm)) {
@@ -31,7 +31,7 @@ class Placer {
     outside_ = hn::Set(d, static_cast<std::int32_t>(depth.grid.tiles() * TileGrid::kPixels));
   }
 
-  /// Index in TiledDepth::tiles.
+  /// Returns an index in TiledDepth::tiles.
   HWY_INLINE Int32 operator()(Int32 du, Int32 dv) const {
     const Lanes d;
     const Int32 half = hn::Set(d, 32768);
@@ -45,7 +45,7 @@ class Placer {
   }
 
  private:
-  /// 0 <= x <= last
+  /// Returns whether 0 <= x <= last.
   static HWY_INLINE hn::Mask<Lanes> UpTo(Int32 x, hn::Vec<ULanes> last) {
     const auto unsigned_x = hn::BitCast(ULanes(), x);
     return hn::RebindMask(Lanes(), hn::Eq(hn::Min(unsigned_x, last), unsigned_x));
@@ -56,7 +56,7 @@ class Placer {
   hn::Vec<ULanes> last_u_, last_v_;
 };
 
-// Loads one by one: a gather takes longer (docs/performance.md).
+// Values are loaded one by one, because a gather takes longer (docs/performance.md).
 void EvaluateCandidates(const TiledDepth& depth, const FeatureConvention& convention, const TrainingSample& sample,
                         const std::int16_t* HWY_RESTRICT du1, int padded, std::int16_t* HWY_RESTRICT values) {
   const Lanes d;
@@ -73,7 +73,7 @@ void EvaluateCandidates(const TiledDepth& depth, const FeatureConvention& conven
     hn::Store(place(load(du1 + i), load(dv1 + i)), d, first_at + i);
     hn::Store(place(load(du2 + i), load(dv2 + i)), d, second_at + i);
   }
-  alignas(64) std::uint32_t read[kBlockCandidates];  // the first probe's in the low half
+  alignas(64) std::uint32_t read[kBlockCandidates];  // the first probe's value is in the low half
   const std::uint16_t* HWY_RESTRICT tiles = depth.tiles;
   for (std::size_t i = 0; i < count; ++i) {
     read[i] = tiles[first_at[i]] | static_cast<std::uint32_t>(tiles[second_at[i]]) << 16U;

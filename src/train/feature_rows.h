@@ -8,7 +8,7 @@
 
 namespace vesalius {
 
-/// Values of up to kBlockCandidates candidates at samples of one node: row after row of `width` numbers (mm).
+/// The values of up to kBlockCandidates candidates at samples of one node. Each row has `width` numbers (mm).
 struct FeatureRows {
   const std::int16_t* values = nullptr;
   const std::uint8_t* labels = nullptr;  ///< class of each row
@@ -20,7 +20,7 @@ struct FeatureRows {
 /// values each. `values` takes as many, in mm, clamped to int16. The numbers are the same from every instruction set.
 void evaluate_candidates(const TiledDepth& depth, const FeatureConvention& convention, const TrainingSample& sample,
                          const std::int16_t* offsets, int padded, std::int16_t* values);
-/// Computes the same numbers without unpacking the frame, which is quicker for few samples of it.
+/// Computes the same numbers without unpacking the frame, which is faster for few samples of it.
 void evaluate_candidates(const FrameStore::View& view, const FeatureConvention& convention,
                          const TrainingSample& sample, const std::int16_t* offsets, int padded, std::int16_t* values);
 

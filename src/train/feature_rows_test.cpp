@@ -14,7 +14,7 @@
 namespace vesalius {
 namespace {
 
-/// Noise with holes: every probe reads something else.
+/// Returns noise with holes, so that every probe reads a different value.
 DepthImage random_depth(int width, int height, Random& random) {
   DepthImage depth(width, height, 0);
   for (std::size_t i = 0; i < depth.size(); ++i) {
@@ -33,7 +33,7 @@ TrainingSample random_sample(const DepthImage& depth, Random& random) {
   return sample;
 }
 
-/// What detection computes, brought into the range of a row.
+/// Returns the value that detection computes, clamped to the range of a row.
 std::int16_t truth(const DepthImage& depth, const Camera& camera, const FeatureConvention& convention,
                    const TrainingSample& sample, const TreeNode& node) {
   const OffsetScale scale = OffsetScaler(convention, camera).at(sample.depth_mm);
@@ -42,7 +42,7 @@ std::int16_t truth(const DepthImage& depth, const Camera& camera, const FeatureC
   return static_cast<std::int16_t>(std::clamp<int>(value, Limits::min(), Limits::max()));
 }
 
-TEST(FeatureRows, AreWhatDetectionComputesOnEveryInstructionSet) {
+TEST(FeatureRows, AgreeWithDetectionOnEveryInstructionSet) {
   FeatureConvention clipped;
   clipped.clip_mm = 1000;
   FeatureConvention odd;
@@ -78,7 +78,7 @@ TEST(FeatureRows, AreWhatDetectionComputesOnEveryInstructionSet) {
   }
 }
 
-TEST(WalkSamples, FeatureIsWhatDetectionComputes) {
+TEST(WalkSamples, ComputesTheFeatureOfDetection) {
   Random random(12);
   FeatureConvention convention;
   convention.clip_mm = 800;

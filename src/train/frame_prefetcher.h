@@ -8,13 +8,13 @@
 
 namespace vesalius {
 
-/// Asks memory for the next frame's depth, a few cache lines with every sample of the frame at hand; unpacking the next
-/// frame would wait for memory otherwise. Results do not depend on it.
+/// Prefetches the next frame's depth, a few cache lines with every sample of the current frame, because unpacking it
+/// would otherwise wait for memory. Results do not depend on it.
 class FramePrefetcher {
  public:
   FramePrefetcher(const FrameStore& frames, std::span<const TrainingSample> samples);
 
-  /// Is called before sample `index` is read. Indices ascend by one.
+  /// Prefetches; called before sample `index` is read. Indices increase by one.
   void step(std::size_t index);
 
  private:

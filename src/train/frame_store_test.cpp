@@ -14,7 +14,7 @@ DepthImage random_depth(int width, int height, Random& random) {
   return depth;
 }
 
-TEST(FrameStore, GivesBackFramesOfDifferentSizes) {
+TEST(FrameStore, KeepsFramesOfDifferentSizes) {
   Random random(13);
   FeatureConvention convention;
   convention.hole_mm = 9000;

@@ -15,7 +15,7 @@
 namespace vesalius {
 namespace {
 
-/// Most steps to the furthest probe: what a byte holds, so that nodes take 8 bytes (packed_tree.h).
+/// Largest number of steps to the furthest probe. It fits in a byte, so nodes take 8 bytes (packed_tree.h).
 constexpr float kMostSteps = 127.F;
 
 /// Grows the trees of a round that the store lacks, and returns all of the round in order.
@@ -38,7 +38,8 @@ std::vector<Tree> grow_round(Executor& executor, const Forest& forest, const Tra
     observer.add_tree(*trees[t]);
   };
   try {
-    // In batches: a thread that waits within a tree may otherwise begin another one, and hold the memory of both.
+    // Trees grow in batches. Otherwise a thread that waits within a tree may begin another one and hold the memory of
+    // both.
     for (int begin = 0; begin < round.missing; begin += trees_at_once) {
       parallel_for(std::min(round.missing - begin, trees_at_once), [&](int i) { grow(missing[begin + i]); });
     }

@@ -13,24 +13,24 @@
 
 namespace vesalius {
 
-/// All that decides what forest comes of given frames.
+/// Everything that determines the forest of given frames.
 struct TrainOptions {
   int trees = 8;
-  int hard_trees = 2;         ///< trees of the first round, which finds hard negatives; 0 = no such round
-  float probe_clip_m = 0.5F;  ///< probes are clamped to the centre's depth +- this; 0 = not
+  int hard_trees = 2;         ///< trees of the first round, which finds hard negatives; 0 leaves it out
+  float probe_clip_m = 0.5F;  ///< probes are clamped to the centre's depth +- this; 0 does not clamp
   SampleOptions sample;
   GrowTreeOptions grow;
 };
 void visit_options(const std::string& prefix, TrainOptions& options, OptionVisitor& visitor);
 
-/// Throws UsageError naming the first option out of its range.
+/// Throws UsageError naming the first option that is out of its range.
 void check(const TrainOptions& options);
 
-/// Returns how features are to be read: offsets in steps of 5 mm, or as long as 127 of them reach the furthest probe,
-/// holes and the world outside the picture far, probes clamped as the options say.
+/// Returns how features are read: offsets have steps of 5 mm, or longer ones if 127 steps would not reach the furthest
+/// probe; holes and the world outside the picture are far; probes are clamped as the options say.
 FeatureConvention training_convention(const TrainOptions& options);
 
-/// Numbers of the trees of the first round begin here, so that they draw other tests than those that are kept.
+/// First number of the first round's trees. It differs from the kept trees' numbers, so their nodes draw other tests.
 inline constexpr int kFirstHardTree = 1000;
 
 /// Trees that are grown together.
@@ -38,19 +38,19 @@ struct TreeRound {
   std::string name;  ///< "first round" or "forest"
   int first = 0;     ///< number of the first tree
   int trees = 0;
-  int missing = 0;  ///< how many of them the store lacks
+  int missing = 0;  ///< number of its trees that the store lacks
 };
 
-/// What a training tells while it runs. The default says nothing.
+/// Receives reports of a training while it runs. The default ignores them.
 class TrainObserver {
  public:
   virtual ~TrainObserver() = default;
-  /// `progress` is what the missing trees of the round write to, until `end_round`; setting its `stop` ends the
-  /// training with Interrupted.
+  /// The missing trees of the round write to `progress` until `end_round`. Setting its `stop` ends the training with
+  /// Interrupted.
   virtual void begin_round(const TreeRound& /*round*/, GrowProgress& /*progress*/) {}
-  /// A missing tree of the round is grown and saved; from any thread.
+  /// Called from any thread when a missing tree of the round is grown and saved.
   virtual void add_tree(const Tree& /*tree*/) {}
-  /// Called also where growing a tree throws.
+  /// Called at the end of the round, also if growing a tree throws.
   virtual void end_round() {}
   virtual void add_hard_negatives(std::size_t /*samples*/) {}
 };
@@ -62,7 +62,8 @@ class TrainObserver {
 Forest train_forest(Executor& executor, Forest forest, const TrainOptions& options, TreeStore& store,
                     TrainObserver& observer, int trees_at_once = 1);
 
-/// Adds as samples what `forest` takes for a body by mistake, as many as the options allow; returns how many.
+/// Adds background that `forest` takes for a body as samples, at most as many as the options allow. Returns their
+/// number.
 std::size_t add_hard_negatives(Executor& executor, const Forest& forest, const SampleOptions& options);
 
 /// Trains a forest on frames in memory, in one call. The forest is the same for any number of threads. Throws Error for

@@ -73,7 +73,8 @@ TEST(GrowForest, LearnsToLabelAStandingPerson) {
   EXPECT_GT(share_right(forest, unseen), 0.85);
 }
 
-// The shelf's upper half is one part, its lower half another: told apart by what lies above and below.
+// The shelf's upper half is one part and its lower half another. They can be told apart by what is above and below
+// them.
 TEST(GrowForest, SolvesAToyProblem) {
   BodyModel body;
   body.parts.resize(2);
@@ -99,7 +100,7 @@ TEST(GrowForest, SolvesAToyProblem) {
   EXPECT_LE(wrong, 64 * 48 / 50);
 }
 
-TEST(TrainingConvention, OffsetsReachTheFurthestProbeWithinAByte) {
+TEST(TrainingConvention, HasOffsetsThatReachTheFurthestProbeWithinAByte) {
   for (const bool half_normal : {false, true}) {
     for (const float furthest_m : {0.1F, 0.5F, 0.64F, 1.5F, 10.F}) {
       TrainOptions options;
@@ -118,7 +119,7 @@ TEST(TrainingConvention, OffsetsReachTheFurthestProbeWithinAByte) {
 }
 
 // Labels: threads
-TEST(GrowForest, SameForestForAnyNumberOfThreads) {
+TEST(GrowForest, GrowsTheSameForestOnAnyNumberOfThreads) {
   const std::vector<LabelledFrame> frames = standing_people(6);
   const auto grow = [&](int threads) {
     const ThreadLimit limit(threads);
@@ -127,7 +128,7 @@ TEST(GrowForest, SameForestForAnyNumberOfThreads) {
   EXPECT_EQ(grow(1), grow(2));
 }
 
-TEST(GrowForest, SameForestHoweverFewValuesAreHeldAtATime) {
+TEST(GrowForest, GrowsTheSameForestWithLittleMemory) {
   const std::vector<LabelledFrame> frames = standing_people(6);
   TrainOptions options = small_options();
   const std::vector<Tree> trees = grow_forest(frames, paper_body(), options).trees;
@@ -135,7 +136,7 @@ TEST(GrowForest, SameForestHoweverFewValuesAreHeldAtATime) {
   EXPECT_EQ(grow_forest(frames, paper_body(), options).trees, trees);
 }
 
-TEST(GrowForest, TreesAndSeedsDiffer) {
+TEST(GrowForest, GrowsDifferentTreesForDifferentNumbersAndSeeds) {
   const std::vector<LabelledFrame> frames = standing_people(3);
   TrainOptions options = small_options();
   const Forest forest = grow_forest(frames, paper_body(), options);
@@ -144,7 +145,7 @@ TEST(GrowForest, TreesAndSeedsDiffer) {
   EXPECT_NE(grow_forest(frames, paper_body(), options).trees, forest.trees);
 }
 
-TEST(GrowForest, KeepsToItsLimits) {
+TEST(GrowForest, RespectsItsLimits) {
   const std::vector<LabelledFrame> frames = standing_people(6);
   TrainOptions options = small_options();
   options.grow.leaf.max_depth = 4;
@@ -159,7 +160,7 @@ TEST(GrowForest, KeepsToItsLimits) {
   for (const Tree& tree : grow_forest(frames, paper_body(), options).trees) EXPECT_LE(tree.leaves.size(), 9U);
 }
 
-TEST(GrowForest, UnusableInputIsAnError) {
+TEST(GrowForest, RefusesUnusableInput) {
   EXPECT_THROW(grow_forest({}, paper_body(), {}), Error);
   EXPECT_THROW(grow_forest(standing_people(1), BodyModel{}, {}), Error);
   std::vector<LabelledFrame> holes = standing_people(1);

@@ -5,7 +5,8 @@
 namespace vesalius {
 namespace {
 
-/// Nodes are numbered as in a heap, root 1, children 2n and 2n + 1: no number repeats within this depth.
+/// Nodes are numbered as in a heap: the root is 1, its children are 2n and 2n + 1. Numbers are unique within this
+/// depth.
 constexpr int kDeepest = 30;
 
 }  // namespace

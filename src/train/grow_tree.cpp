@@ -16,19 +16,19 @@
 namespace vesalius {
 namespace {
 
-/// A node of the level being grown.
+/// A node of the current level.
 struct OpenNode {
   LevelNode node;
-  std::size_t at = 0;  ///< in the tree being built
-  int classes = 0;     ///< that its samples have
+  std::size_t at = 0;  ///< index in the tree
+  int classes = 0;     ///< number of its samples' classes
   TreeNode split;
-  double gain = 0;  ///< bits a sample; 0: none found
+  double gain = 0;  ///< bits per sample; 0 if no split was found
 };
 
-/// Bytes that a shard's values of one counted sample take.
+/// Bytes of a shard's values of one counted sample.
 constexpr std::int64_t kRowBytes = sizeof(std::int16_t) * kBlockCandidates;
 
-/// Grows a tree level by level from what the shards reply.
+/// Grows a tree level by level from the shards' replies.
 class TreeDriver {
  public:
   TreeDriver(TreeExecutor& shards, const Forest& forest, const GrowTreeOptions& options, int tree,
@@ -56,7 +56,7 @@ class TreeDriver {
   }
 
  private:
-  /// Makes a node of the next level, or a leaf where nothing is left to ask. Returns the node's index or kSettled.
+  /// Makes a node of the next level, or a leaf if no split is possible. Returns the node's index or kSettled.
   std::int32_t open_or_settle(std::uint32_t number, std::size_t at, const std::int64_t* counts, int depth) {
     const std::size_t classes = samples_.samples.size();
     const std::int64_t size = std::accumulate(counts, counts + classes, std::int64_t{0});
@@ -84,7 +84,7 @@ class TreeDriver {
     shards_.open_level(level);
   }
 
-  /// Splits a range of nodes into runs of at most `most` bytes each, but of one node at least.
+  /// Splits a range of nodes into runs of at most `most` bytes, but at least one node each.
   template <class BytesOf>
   std::vector<NodeRange> runs(NodeRange nodes, std::size_t most, const BytesOf& bytes_of) const {
     std::vector<NodeRange> runs;
@@ -162,7 +162,7 @@ class TreeDriver {
     if (!splits.empty()) shards_.set_splits(splits);
   }
 
-  /// Fewest counted samples on a side, so that about `min_samples` of all go there.
+  /// Returns the smallest number of counted samples on a side at which about `min_samples` of all samples go there.
   int least_samples(const OpenNode& open) const {
     const LevelNode& node = open.node;
     return static_cast<int>((options_.leaf.min_samples * node.counted + node.size - 1) / node.size);

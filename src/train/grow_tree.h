@@ -11,15 +11,15 @@
 
 namespace vesalius {
 
-/// What trees being grown have done so far, summed over all of them; for display only.
+/// The progress of trees that are being grown, summed over all of them. It is only for display.
 struct GrowProgress {
   std::atomic<std::uint64_t> evaluations{0};  ///< values of eq. 1
   std::atomic<std::uint64_t> nodes{0};
-  std::atomic<std::uint64_t> settled{0};  ///< samples x levels done: a tree ends at samples x max_depth
-  std::atomic<bool> stop{false};          ///< set it to have grow_tree throw Interrupted
+  std::atomic<std::uint64_t> settled{0};  ///< samples times levels done; a tree ends at samples times max_depth
+  std::atomic<bool> stop{false};          ///< if set, grow_tree throws Interrupted
 };
 
-/// What grow_tree throws when it is asked to stop.
+/// grow_tree throws this error when it is asked to stop.
 class Interrupted : public Error {
  public:
   using Error::Error;

@@ -20,8 +20,7 @@
 namespace vesalius {
 namespace {
 
-/// The trainer written down as plainly as it can be: node by node, pixel by pixel, on depth images, with the code of
-/// detection.
+/// The trainer in its plainest form: node by node and pixel by pixel on depth images, with the code of detection.
 class ObviousTrainer {
  public:
   ObviousTrainer(const TrainingSet& set, const std::vector<LabelledFrame>& frames, const GrowTreeOptions& options,
@@ -72,7 +71,7 @@ class ObviousTrainer {
     return at;
   }
 
-  /// Evenly spaced samples, at most `split_pixels`.
+  /// Returns evenly spaced samples, at most `split_pixels`.
   Samples counted(const Samples& samples) const {
     const auto size = std::ssize(samples);
     const auto most = std::min<std::ptrdiff_t>(size, options_.split.split_pixels);
@@ -95,7 +94,8 @@ class ObviousTrainer {
     return best;
   }
 
-  /// The candidate whose best edge between bins scores highest, then the best of all thresholds beside that edge.
+  /// Returns the candidate whose best edge between bins has the highest score, with the best of all thresholds beside
+  /// that edge.
   Choice choose_of_block(const Samples& samples, const CandidateTable& table, int least) const {
     int best_candidate = -1, best_bin = 0;
     std::int64_t best_score = std::numeric_limits<std::int64_t>::min();
@@ -200,7 +200,7 @@ TrainingSet set_of(const std::vector<LabelledFrame>& frames, int pixels, std::si
   return set;
 }
 
-/// The tree that shards within this process grow, shard i holding the frames [ends[i - 1], ends[i]).
+/// Returns the tree that shards within this process grow; shard i has the frames [ends[i - 1], ends[i]).
 Tree grow_over(const std::vector<std::size_t>& ends, const std::vector<LabelledFrame>& frames, const TrainingSet& whole,
                int pixels, const GrowTreeOptions& options, int tree) {
   std::vector<TrainingSet> sets;
@@ -231,20 +231,20 @@ void expect_obvious_tree(const std::vector<LabelledFrame>& frames, int pixels, c
   }
 }
 
-TEST(GrowTree, IsThatOfTheObviousTrainer) {
+TEST(GrowTree, AgreesWithTheObviousTrainer) {
   const std::vector<LabelledFrame> frames = people(8);
   GrowTreeOptions options;
   options.split.candidates = 12;
   options.leaf.max_depth = 7;
   options.leaf.min_samples = 6;
   expect_obvious_tree(frames, 300, options, 3);
-  options.split.split_pixels = 150;  // most nodes choose by some of their samples
+  options.split.split_pixels = 150;  // most nodes choose from a part of their samples
   options.split.bins = 5;
   options.leaf.prior_correction = 1.F;
   expect_obvious_tree(frames, 300, options, 4);
 }
 
-TEST(GrowTree, IsThatOfTheObviousTrainerForMoreThanOneBlockOfCandidates) {
+TEST(GrowTree, AgreesWithTheObviousTrainerForSeveralBlocksOfCandidates) {
   const std::vector<LabelledFrame> frames = people(2);
   GrowTreeOptions options;
   options.leaf.max_depth = 4;
@@ -256,11 +256,11 @@ TEST(GrowTree, IsThatOfTheObviousTrainerForMoreThanOneBlockOfCandidates) {
   expect_obvious_tree(frames, 150, options, 0);
 }
 
-TEST(GrowTree, IsThatOfTheObviousTrainerWhereShardsLackClasses) {
+TEST(GrowTree, AgreesWithTheObviousTrainerIfShardsLackClasses) {
   std::vector<LabelledFrame> frames = people(6);
   const int chest = paper_body().find_part("l_chest");
   ASSERT_GE(chest, 0);
-  for (int f = 0; f < 6; ++f) {  // the first frames have no background, the last one has nothing but a chest and it
+  for (int f = 0; f < 6; ++f) {  // the first frames have no background; the last has only background and a chest
     for (std::size_t p = 0; p < frames[f].labels.size(); ++p) {
       const bool background = frames[f].labels[p] == kBackground;
       if (f < 3 ? background : f == 5 && !background && frames[f].labels[p] != chest) frames[f].frame.depth[p] = 0;
@@ -273,7 +273,7 @@ TEST(GrowTree, IsThatOfTheObviousTrainerWhereShardsLackClasses) {
   expect_obvious_tree(frames, 200, options, 2);
 }
 
-TEST(GrowTree, SameTreeHoweverLittleIsHeldAtATime) {
+TEST(GrowTree, GrowsTheSameTreeWithLittleMemory) {
   const std::vector<LabelledFrame> frames = people(5);
   const TrainingSet set = set_of(frames, 300);
   GrowTreeOptions options;
@@ -286,7 +286,7 @@ TEST(GrowTree, SameTreeHoweverLittleIsHeldAtATime) {
   EXPECT_EQ(grow_over({2, 5}, frames, set, 300, options, 0), whole);
 }
 
-TEST(GrowTree, SharedFeaturesAreAllThatNodesTest) {
+TEST(GrowTree, TestsOnlySharedFeaturesIfThereAreAny) {
   const std::vector<LabelledFrame> frames = people(3);
   const TrainingSet set = set_of(frames, 300);
   GrowTreeOptions options;
@@ -306,7 +306,7 @@ TEST(GrowTree, SharedFeaturesAreAllThatNodesTest) {
 }
 
 // Labels: threads
-TEST(GrowTree, SameTreeForAnyNumberOfThreads) {
+TEST(GrowTree, GrowsTheSameTreeOnAnyNumberOfThreads) {
   const std::vector<LabelledFrame> frames = people(10);
   const TrainingSet set = set_of(frames, 2000);  // more samples than one thread takes at a time
   std::optional<Tree> alone;
@@ -319,7 +319,7 @@ TEST(GrowTree, SameTreeForAnyNumberOfThreads) {
   });
 }
 
-TEST(GrowTree, LeavesHoldTheSharesOfTheSamplesThatReachThem) {
+TEST(GrowTree, GivesLeavesTheSharesOfTheirSamples) {
   const std::vector<LabelledFrame> frames = people(6);
   const TrainingSet set = set_of(frames, 400);
   GrowTreeOptions options;
@@ -344,7 +344,7 @@ TEST(GrowTree, LeavesHoldTheSharesOfTheSamplesThatReachThem) {
   }
 }
 
-TEST(GrowTree, CountsWhatItDoes) {
+TEST(GrowTree, CountsItsProgress) {
   const std::vector<LabelledFrame> frames = people(4);
   const TrainingSet set = set_of(frames, 400);
   GrowTreeOptions options;

@@ -7,11 +7,11 @@ namespace vesalius {
 /// Bytes of a cache line.
 inline constexpr std::size_t kLineBytes = 64;
 
-/// Zeroed memory straight from the system, in huge pages where it has them, since random reads over gigabytes wait for
-/// the page table otherwise.
+/// Zeroed memory directly from the system, in huge pages if it has them. With small pages, random reads over gigabytes
+/// wait for the page table.
 class HugeBuffer {
  public:
-  /// Throws std::bad_alloc where the system has no such memory.
+  /// Throws std::bad_alloc if the system has not enough memory.
   explicit HugeBuffer(std::size_t bytes);
   ~HugeBuffer();
   HugeBuffer(HugeBuffer&& other) noexcept;

@@ -7,7 +7,7 @@
 namespace vesalius {
 namespace {
 
-/// In proportion to `factors`, the largest 2^24 and none 0.
+/// Returns integers in proportion to `factors`. The largest is 2^24 and none is 0.
 std::vector<std::uint64_t> fixed_point(const std::vector<double>& factors) {
   constexpr double kLargest = 16777216.0;
   const double largest = factors.empty() ? 1.0 : *std::ranges::max_element(factors);
@@ -38,7 +38,7 @@ LeafShares::LeafShares(const SampleCounts& counts, int parts, const LeafOptions&
   balance_ = fixed_point(factors);
 }
 
-/// Shares the parts' sum out anew.
+/// Distributes the parts' total share anew.
 void LeafShares::balance_parts(const std::int64_t* counts, std::vector<std::uint64_t>& shares) const {
   std::uint64_t before = 0;
   std::uint64_t after = 0;

@@ -8,7 +8,8 @@
 namespace vesalius {
 namespace {
 
-/// A set whose pictures have `pixels` readings of the two parts and the background, and `samples` of them drawn.
+/// Returns a set whose pictures have `pixels` readings of the two parts and the background, of which `samples` are
+/// drawn.
 TrainingSet set_with(int width, const SampleOptions& options) {
   BodyModel body;
   body.parts.resize(2);
@@ -51,7 +52,7 @@ TEST(LeafShares, AreTheLargestFourRoundedDown) {
   EXPECT_THAT(leaf.probability, testing::ElementsAre(127, 63, 25, 25));  // floor(255 share)
 }
 
-TEST(LeafShares, OfOneClassAreCertain) {
+TEST(LeafShares, AreCertainForOneClass) {
   const TrainingSet set = set_with(100, half_background());
   const std::vector<std::int64_t> counts{0, 3, 0};
   const TreeLeaf leaf = shares_of(set, 0.5F, 0.F).leaf(counts.data());
@@ -59,21 +60,22 @@ TEST(LeafShares, OfOneClassAreCertain) {
   EXPECT_THAT(leaf.probability, testing::ElementsAre(255, 0, 0, 0));
 }
 
-TEST(LeafShares, UndoSamplingWhenAsked) {
-  const TrainingSet set = set_with(102, half_background());  // 9 + 11 of 1020 readings are body, half of the samples
+TEST(LeafShares, UndoTheSamplingIfAsked) {
+  const TrainingSet set =
+      set_with(102, half_background());  // 9 + 11 of 1020 readings are body, but half of the samples are
   const std::vector<std::int64_t> counts{0, 50, 50};
   const auto share_of_background = [&](float correction) {
     const TreeLeaf leaf = shares_of(set, correction, 0.F).leaf(counts.data());
     return (leaf.label[0] == 2 ? leaf.probability[0] : leaf.probability[1]) / 255.0;
   };
   EXPECT_NEAR(share_of_background(0.F), 0.5, 0.005);
-  // Odds of 1000 background to 20 body readings in place of 1 to 1; the parts' own shares differ by chance.
+  // The odds are 1000 background readings to 20 of the body instead of 1 to 1. The parts' own shares differ by chance.
   EXPECT_NEAR(share_of_background(1.F), 1000.0 / 1020.0, 0.01);
   const double root = std::sqrt(50.0);
   EXPECT_NEAR(share_of_background(0.5F), root / (root + 1.0), 0.02);
 }
 
-TEST(LeafShares, PartsCountAlikeWhenAskedAndTheBackgroundStays) {
+TEST(LeafShares, CountPartsAlikeIfAskedAndKeepTheBackground) {
   const TrainingSet set = set_with(102, half_background());
   std::vector<std::int64_t> drawn(3, 0);
   for (const TrainingSample& sample : set.samples()) ++drawn[sample.label];
@@ -95,7 +97,7 @@ TEST(LeafShares, PartsCountAlikeWhenAskedAndTheBackgroundStays) {
   }
 }
 
-TEST(PrunedTree, MergesLeavesThatSayTheSameAllTheWayUp) {
+TEST(PrunedTree, MergesEqualLeavesUpToTheRoot) {
   TreeLeaf yes, no;
   yes.label[0] = 1;
   yes.probability[0] = 255;

@@ -7,7 +7,7 @@
 namespace vesalius {
 namespace {
 
-/// Replies of all shards, asked one after the other, as one.
+/// Asks all shards one after the other and returns the merged reply.
 template <class Shards, class Ask>
 auto merged(Shards& shards, const Ask& ask) {
   auto all = ask(shards.front());

@@ -9,12 +9,12 @@
 
 namespace vesalius {
 
-/// Shards within this process, for one tree. Requests about a batch go to one shard after the other on the thread that
-/// asks, all others to all shards at once, each on all threads allowed.
+/// The shards of one tree within this process. Requests about a batch go to one shard after the other on the calling
+/// thread; all others go to all shards at once, each on all allowed threads.
 class LocalTree : public TreeExecutor {
  public:
-  /// One shard of each set, in the order of their frames; at least one. The sets must outlive this and stay as they
-  /// are.
+  /// Makes one shard for each set, in the order of their frames; there is at least one. The sets must outlive this
+  /// object and not change.
   LocalTree(const std::vector<const TrainingSet*>& sets, const GrowTreeOptions& options, int tree);
 
   SampleCounts sample_counts() override;
@@ -33,7 +33,7 @@ class LocalTree : public TreeExecutor {
 /// All shards of a training within this process.
 class LocalExecutor : public Executor {
  public:
-  /// The sets must outlive this. At least one.
+  /// There must be at least one set, and all must outlive this object.
   explicit LocalExecutor(std::vector<TrainingSet*> sets);
 
   std::unique_ptr<TreeExecutor> begin_tree(const GrowTreeOptions& options, int tree) override;
@@ -42,7 +42,7 @@ class LocalExecutor : public Executor {
 
  private:
   std::vector<TrainingSet*> sets_;
-  std::vector<HardCounts> hard_;  ///< of each set, as counted last
+  std::vector<HardCounts> hard_;  ///< last counts of each set
 };
 
 }  // namespace vesalius

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Camera kCamera{80, 60, 66.F, 66.F, 39.5F, 29.5F};
 
-/// People with noise, an empty room after every third.
+/// Returns noisy frames of people with an empty room after every third.
 std::vector<LabelledFrame> frames_of(int count) {
   std::vector<LabelledFrame> frames;
   for (int i = 0; i < count; ++i) {
@@ -46,7 +46,7 @@ TrainOptions small_options() {
   return options;
 }
 
-/// Counts what a training tells, and may stop it after some trees.
+/// Counts the reports of a training, and may stop it after some trees.
 class Listener : public TrainObserver {
  public:
   explicit Listener(int stop_after = 1000) : stop_after_(stop_after) {}
@@ -68,7 +68,7 @@ class Listener : public TrainObserver {
   GrowProgress* progress_ = nullptr;
 };
 
-/// Trains over shards of which shard i holds the frames [ends[i - 1], ends[i]).
+/// Trains on shards; shard i has the frames [ends[i - 1], ends[i]).
 Forest train_over(const std::vector<int>& ends, const std::vector<LabelledFrame>& frames, const TrainOptions& options,
                   TreeStore& store, Listener& listener, int trees_at_once = 1) {
   std::vector<TrainingSet> sets;
@@ -92,7 +92,7 @@ Forest train_over(const std::vector<int>& ends, const std::vector<LabelledFrame>
   return forest;
 }
 
-TEST(LocalExecutor, SameForestFromAnyNumberOfShards) {
+TEST(LocalExecutor, GrowsTheSameForestFromAnyNumberOfShards) {
   const std::vector<LabelledFrame> frames = frames_of(24);
   for (const float hard_share : {0.F, 0.05F, 0.2F, 10.F}) {  // none, some with ties at the cut, all
     TrainOptions options = small_options();
@@ -109,7 +109,7 @@ TEST(LocalExecutor, SameForestFromAnyNumberOfShards) {
   }
 }
 
-TEST(LocalExecutor, SameForestWithoutBackgroundClass) {
+TEST(LocalExecutor, GrowsTheSameForestWithoutBackgroundClass) {
   const std::vector<LabelledFrame> frames = frames_of(8);
   TrainOptions options = small_options();
   options.sample.background_share = 0.F;
@@ -118,7 +118,7 @@ TEST(LocalExecutor, SameForestWithoutBackgroundClass) {
   EXPECT_EQ(train_over({3, 4, 8}, frames, options).trees, train_over({8}, frames, options).trees);
 }
 
-TEST(TrainForest, GoesOnFromStoredTreesWithTheSameForest) {
+TEST(TrainForest, ContinuesFromStoredTreesWithTheSameForest) {
   const std::vector<LabelledFrame> frames = frames_of(12);
   const TrainOptions options = small_options();
   const Forest whole = train_over({12}, frames, options);
@@ -135,7 +135,7 @@ TEST(TrainForest, GoesOnFromStoredTreesWithTheSameForest) {
   }
 }
 
-TEST(TrainForest, SameForestForAnyNumberOfTreesAtOnce) {
+TEST(TrainForest, GrowsTheSameForestForAnyNumberOfTreesAtOnce) {
   const std::vector<LabelledFrame> frames = frames_of(12);
   TrainOptions options = small_options();
   options.trees = 5;

@@ -22,7 +22,7 @@ double mean_part_recall(const Confusion& confusion, int part_count) {
   return parts > 0 ? sum / parts : 0.0;
 }
 
-/// Runs `work(begin, end)` on ranges of samples that cover [0, count), on all threads allowed.
+/// Runs `work(begin, end)` on ranges that cover [0, count), on all allowed threads.
 template <class Work>
 void for_sample_ranges(std::size_t count, const Work& work) {
   constexpr std::size_t kSamplesPerRange = 2048;
@@ -59,7 +59,7 @@ SampleAccuracy accuracy_of_votes(const TrainingSet& set, std::span<const Trainin
   return total;
 }
 
-/// A curve needs no more: its standard error is below 0.004 then.
+/// Number of samples for a curve; its standard error is then below 0.004.
 constexpr std::size_t kMostMeasured = 20000;
 
 std::vector<TrainingSample> evenly_chosen(std::span<const TrainingSample> samples) {
@@ -75,7 +75,7 @@ std::int32_t child_of(const Tree& tree, std::int32_t at, const FrameStore& frame
                                                                                                   : node.right;
 }
 
-/// Training samples of each class that pass each node and reach each leaf of one tree.
+/// The training samples of each class that pass each node and reach each leaf of one tree.
 class NodeCounts {
  public:
   NodeCounts(const Tree& tree, const TrainingSet& set)
@@ -96,7 +96,7 @@ class NodeCounts {
     }
   }
 
-  /// One count for each class; `at` is a node, or ~leaf.
+  /// Returns one count for each class; `at` is a node, or ~leaf.
   const std::uint32_t* of(std::int32_t at) const {
     return at >= 0 ? nodes_.data() + at * classes_ : leaves_.data() + ~at * classes_;
   }
@@ -106,7 +106,7 @@ class NodeCounts {
   std::vector<std::uint32_t> leaves_, nodes_;
 };
 
-/// Sums over trees of the class shares where samples stand at each level.
+/// The sums over trees of the class shares at each level of each sample's walk.
 class LevelVotes {
  public:
   LevelVotes(const TrainingSet& set, std::vector<TrainingSample> samples, std::size_t levels)
@@ -129,7 +129,7 @@ class LevelVotes {
   }
 
  private:
-  /// One sample down one tree; below its leaf it keeps the leaf's shares.
+  /// Adds the walk of one sample down one tree. Below its leaf the leaf's shares continue.
   void add_walk(const Tree& tree, const NodeCounts& counts, std::size_t i) {
     const TrainingSample& sample = samples_[i];
     std::vector<float> shares(classes_, 0.F);
@@ -142,7 +142,7 @@ class LevelVotes {
     }
   }
 
-  /// Where no training sample came by, those of the node above stand.
+  /// Sets the shares of a node. If no training sample passed it, those of its parent remain.
   void set_shares(const std::uint32_t* counts, std::vector<float>& shares) const {
     std::uint64_t total = 0;
     for (std::size_t c = 0; c < classes_; ++c) total += counts[c];

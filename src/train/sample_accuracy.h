@@ -1,7 +1,7 @@
 #pragma once
 
-// Accuracy of a forest on samples. Samples are drawn pixels, so these numbers compare forests on the same samples; they
-// do not compare with metrics over all pixels of a picture.
+// The accuracy of a forest on samples. Samples are drawn pixels, so these numbers can be compared between forests on
+// the same samples, but not with metrics over all pixels of a picture.
 
 #include <cstdint>
 #include <span>
@@ -12,10 +12,10 @@
 
 namespace vesalius {
 
-/// How often samples of a true class (row) were given a class (column).
+/// The numbers of samples of each true class (row) that were given each class (column).
 struct Confusion {
   int classes = 0;
-  std::vector<std::uint64_t> counts;  ///< classes x classes, row after row
+  std::vector<std::uint64_t> counts;  ///< classes x classes, row by row
 
   explicit Confusion(int class_count = 0) : classes(class_count), counts(std::size_t{1} * class_count * class_count) {}
   std::uint64_t at(int truth, int given) const { return counts[index(truth, given)]; }
@@ -29,18 +29,18 @@ struct Confusion {
   std::size_t index(int truth, int given) const { return std::size_t{1} * truth * classes + given; }
 };
 
-/// How a forest did on samples, with and without the background as a rival of the parts.
+/// The result of a forest on samples, with and without the background as a rival of the parts.
 struct SampleAccuracy {
-  Confusion all;    ///< of all classes, the background among them where the forest has it
-  Confusion parts;  ///< of samples of parts, which are given the likeliest part: free of the background's prior
+  Confusion all;    ///< over all classes, with the background if the forest has one
+  Confusion parts;  ///< over samples of parts, each given the likeliest part
 
-  /// Both return the mean recall of the parts that have samples, 0 to 1; 0 without any.
+  /// Both return the mean recall, 0 to 1, of the parts that have samples; 0 if none has.
   double with_background() const;
   double parts_only() const;
 };
 
-/// Adds up the posteriors of a set's held-out samples, tree by tree (eq. 2). One call at a time; each uses all threads
-/// allowed. The counts do not depend on how many those are.
+/// Adds up the posteriors of a set's held-out samples tree by tree (eq. 2). It is called from one thread at a time, and
+/// each call uses all allowed threads. The counts do not depend on the number of threads.
 class HeldOutVotes {
  public:
   /// `set` must outlive this.
@@ -62,12 +62,12 @@ struct AccuracyPoint {
   double parts_only = 0.0;
 };
 
-/// Returns the accuracy of the first tree, the first two trees, ... of the forest on the held-out samples.
+/// Returns the accuracy of the first tree, of the first two trees and so on, on the held-out samples.
 std::vector<AccuracyPoint> accuracy_by_trees(const Forest& forest, const TrainingSet& set);
 
-/// Returns the accuracy of the forest cut at level 0, 1, ... of its deepest tree, where an inner node answers with the
-/// classes of the training samples that pass through it. It is measured on at most 20,000 held-out samples, evenly
-/// chosen.
+/// Returns the accuracy of the forest cut off at level 0, 1, ... of its deepest tree, where an inner node answers with
+/// the classes of the training samples that pass through it. It is measured on at most 20,000 evenly chosen held-out
+/// samples.
 std::vector<AccuracyPoint> accuracy_by_level(const Forest& forest, const TrainingSet& set);
 
 }  // namespace vesalius

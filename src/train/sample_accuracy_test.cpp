@@ -48,7 +48,7 @@ class SampleAccuracyTest : public testing::Test {
   Forest forest_;
 };
 
-TEST_F(SampleAccuracyTest, CountsWhatTheDetectorsLabellerSays) {
+TEST_F(SampleAccuracyTest, AgreesWithTheDetectorsLabeller) {
   const ForestLabeller labeller(forest_);
   Confusion all(26), parts(25);
   std::map<std::uint32_t, Posteriors> of_frame;
@@ -67,7 +67,7 @@ TEST_F(SampleAccuracyTest, CountsWhatTheDetectorsLabellerSays) {
 }
 
 // Labels: threads
-TEST_F(SampleAccuracyTest, TheSameForAnyNumberOfThreads) {
+TEST_F(SampleAccuracyTest, IsTheSameForAnyNumberOfThreads) {
   const auto counts = [&](int threads) {
     const ThreadLimit limit(threads);
     HeldOutVotes votes(*set_);
@@ -77,7 +77,7 @@ TEST_F(SampleAccuracyTest, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(counts(1), counts(4));
 }
 
-TEST_F(SampleAccuracyTest, PointsByTreesEndWithTheForest) {
+TEST_F(SampleAccuracyTest, EndsWithTheForestByTrees) {
   const std::vector<AccuracyPoint> points = accuracy_by_trees(forest_, *set_);
   ASSERT_EQ(points.size(), 3U);
   HeldOutVotes votes(*set_);
@@ -89,18 +89,18 @@ TEST_F(SampleAccuracyTest, PointsByTreesEndWithTheForest) {
   EXPECT_GT(points[2].parts_only, 0.3) << "chance is 0.04";
 }
 
-TEST_F(SampleAccuracyTest, LevelsBeginWithOneGuessForAllAndEndWithTheForest) {
+TEST_F(SampleAccuracyTest, BeginsWithOneGuessAndEndsWithTheForestByLevels) {
   const std::vector<AccuracyPoint> points = accuracy_by_level(forest_, *set_);
   int deepest = 0;
   for (const Tree& tree : forest_.trees) deepest = std::max(deepest, depth(tree));
   ASSERT_EQ(points.size(), static_cast<std::size_t>(deepest) + 1);
   EXPECT_NEAR(points.front().parts_only, 1.0 / 25, 0.01) << "the most frequent part for every sample";
-  // Leaves of the model keep four classes in 1/255, the curve all of them exactly.
+  // The model's leaves keep four classes in 1/255; the curve keeps all of them exactly.
   EXPECT_NEAR(points.back().parts_only, accuracy_by_trees(forest_, *set_).back().parts_only, 0.03);
   EXPECT_GT(points.back().parts_only, points[3].parts_only);
 }
 
-TEST(Confusion, MeanRecallIsOverPartsThatOccur) {
+TEST(Confusion, AveragesRecallOverPartsThatOccur) {
   SampleAccuracy accuracy{Confusion(4), Confusion(3)};
   accuracy.all.at(0, 0) = 3;  // of 4
   accuracy.all.at(0, 3) = 1;

@@ -9,12 +9,12 @@
 namespace vesalius {
 namespace {
 
-constexpr int kEmptyFramePool = 4;  ///< a frame without people offers this many times as much background
+constexpr int kEmptyFramePool = 4;  ///< factor for the background that a frame without people offers
 
 /// Indices of the pixels of one frame that have a reading.
 struct PixelPools {
-  std::vector<std::vector<int>> parts;  ///< one pool for each part in view
-  std::vector<int> body;                ///< all of them
+  std::vector<std::vector<int>> parts;  ///< one pool for each visible part
+  std::vector<int> body;                ///< pixels of all parts
   std::vector<int> background;
 };
 
@@ -47,7 +47,7 @@ PixelPools make_pools(const LabelledFrame& labelled, int part_count, std::vector
   return pools;
 }
 
-/// Draws from one frame.
+/// Draws pixels from one frame.
 class Drawer {
  public:
   Drawer(const LabelledFrame& labelled, const PixelPools& pools, const SampleOptions& options, int part_count,
@@ -87,7 +87,8 @@ class Drawer {
     return near ? draw_near() : draw(pools_.background);
   }
 
-  /// Beside a person, where furniture, floor and walls are taken for limbs. Any background where none is met.
+  /// Draws a background pixel beside a person, where furniture, floor and walls are taken for limbs. Draws any
+  /// background pixel if none is found there.
   int draw_near() {
     constexpr int kTries = 10;
     const int width = labelled_.labels.width();

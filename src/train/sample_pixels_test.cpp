@@ -30,7 +30,7 @@ std::map<int, int> count_labels(const std::vector<TrainingSample>& samples) {
   return counts;
 }
 
-TEST(SamplePixels, LabelsAndDepthAreThoseOfTheFrame) {
+TEST(SamplePixels, TakesLabelsAndDepthFromTheFrame) {
   const LabelledFrame frame = one_frame();
   for (const TrainingSample& each : sample(frame, {})) {
     const int truth = frame.labels(each.u, each.v);
@@ -40,7 +40,7 @@ TEST(SamplePixels, LabelsAndDepthAreThoseOfTheFrame) {
   }
 }
 
-TEST(SamplePixels, BackgroundHasItsShare) {
+TEST(SamplePixels, GivesTheBackgroundItsShare) {
   SampleOptions options;
   options.pixels_per_frame = 1000;
   options.background_share = 0.3F;
@@ -50,7 +50,7 @@ TEST(SamplePixels, BackgroundHasItsShare) {
   EXPECT_EQ(count_labels(sample(one_frame(), options)).count(25), 0U);
 }
 
-TEST(SamplePixels, BalancedPartsComeEquallyOften) {
+TEST(SamplePixels, DrawsBalancedPartsEquallyOften) {
   SampleOptions options;
   options.pixels_per_frame = 25000;
   options.background_share = 0.F;
@@ -63,7 +63,7 @@ TEST(SamplePixels, BalancedPartsComeEquallyOften) {
   EXPECT_GT(counts[paper_body().find_part("l_chest")], 5 * counts[paper_body().find_part("l_elbow")]);
 }
 
-TEST(SamplePixels, NearBackgroundLiesBesidePeople) {
+TEST(SamplePixels, DrawsNearBackgroundBesidePeople) {
   const LabelledFrame frame = one_frame();
   SampleOptions options;
   options.background_share = 1.F;
@@ -82,7 +82,7 @@ TEST(SamplePixels, NearBackgroundLiesBesidePeople) {
   EXPECT_GT(std::ranges::count_if(samples, beside), 0.9 * static_cast<double>(samples.size()));
 }
 
-TEST(SamplePixels, PoolIsBackgroundAndLargerInEmptyRooms) {
+TEST(SamplePixels, DrawsAPoolOfBackgroundThatIsLargerInEmptyRooms) {
   SampleOptions options;
   options.hard_pool = 50;
   Random random(1);
@@ -105,7 +105,7 @@ TEST(SamplePixels, CountsReadingsOfEveryClass) {
   EXPECT_EQ(draw_samples(frame, paper_body(), {}, random, "frame").class_pixels, truth);
 }
 
-TEST(SamplePixels, UnusableFramesAreErrorsThatNameThem) {
+TEST(SamplePixels, NamesUnusableFrames) {
   Random random(1);
   LabelledFrame frame = one_frame();
   frame.labels(3, 4) = 25;

@@ -59,7 +59,7 @@ CandidateTable draw_candidates(const FeatureConvention& convention, const SplitO
     TreeNode node;
     node.du1 = first.du;
     node.dv1 = first.dv;
-    // One probe at the pixel itself tells what lies before or behind it (Shotton et al. 2011).
+    // A probe at the pixel itself shows what is in front of it or behind it (Shotton et al. 2011).
     if (random.uniform() >= static_cast<double>(options.one_sided)) {
       const Probe second = draw_probe(convention, options, random);
       node.du2 = second.du;

@@ -10,7 +10,7 @@
 namespace vesalius {
 namespace {
 
-/// Samples on both sides of a threshold that moves up.
+/// The samples on both sides of a rising threshold.
 class Sides {
  public:
   Sides(const ClassIndex& classes, const EntropyTable& entropy)
@@ -82,7 +82,7 @@ ValueInterval beside(const BinSplit& split, const Binning& binning, int node) {
 ThresholdSplit refine_split(IntervalValues values, const BinSplit& split, const SplitHistogram& histogram,
                             const ClassIndex& classes, int least, const EntropyTable& entropy) {
   Sides sides(classes, entropy);
-  const std::int64_t before = sides.score();  // everything on one side
+  const std::int64_t before = sides.score();  // the score with all samples on one side
   for (std::size_t k = 0; k < classes.size(); ++k) {
     std::int32_t below = 0;
     for (int bin = 0; bin < split.bin; ++bin) below += histogram.at(k, bin, split.candidate);
@@ -98,7 +98,7 @@ ThresholdSplit refine_split(IntervalValues values, const BinSplit& split, const 
     const int next = i + 1 < around.size() ? around[i + 1].value : here + 1;
     if (here == next || sides.smaller() < least || sides.score() <= best) continue;
     best = sides.score();
-    result.threshold_mm = (here + next) >> 1;  // towards minus infinity, so never `next`
+    result.threshold_mm = (here + next) >> 1;  // rounded towards minus infinity, so it is never `next`
   }
   if (best == std::numeric_limits<std::int64_t>::min()) return result;
   const std::int64_t samples = std::accumulate(classes.totals.begin(), classes.totals.end(), std::int64_t{0});

@@ -1,7 +1,7 @@
 #pragma once
 
-// How a node's split is chosen. A shard makes replies from its rows of feature values (node_values, count_bins,
-// values_in); the driver chooses from the merged replies (best_split, refine_split) and sees no row.
+// The choice of a node's split. A shard makes replies from its rows of feature values (node_values, count_bins,
+// values_in). The driver chooses from the merged replies (best_split, refine_split) and sees no row.
 
 #include <cstdint>
 
@@ -21,30 +21,30 @@ SplitHistogram count_bins(const FeatureRows& rows, const CountTask& task);
 /// Returns the rows whose value lies in an interval.
 IntervalValues values_in(const FeatureRows& rows, const ValueInterval& interval);
 
-/// The threshold between `bin` and the next of one candidate. `score` is the sum of n log2 n over both sides and all
-/// classes, less that of the sides, in units of EntropyTable; it is highest where most information is gained.
+/// The threshold between `bin` and the next one of a candidate. `score` is the sum of n log2 n over both sides and all
+/// classes minus that of the sides, in units of EntropyTable; it is largest where most information is gained.
 struct BinSplit {
-  int candidate = -1;  ///< -1: no threshold leaves `least` samples on both sides
+  int candidate = -1;  ///< -1 if no threshold leaves `least` samples on both sides
   int bin = 0;
   std::int32_t score = 0;
 };
 
-/// Returns the best over the first `candidates` candidates: on a tie the first candidate, then the lowest bin.
+/// Returns the best split over the first `candidates` candidates; on a tie the first candidate, then the lowest bin.
 BinSplit best_split(const SplitHistogram& histogram, int candidates, const ClassIndex& classes, int least,
                     const EntropyTable& entropy);
 
 /// Returns the interval of the values in the bins on either side of a split.
 ValueInterval beside(const BinSplit& split, const Binning& binning, int node);
 
-/// A threshold in mm and what it gains, in bits a sample.
+/// A threshold in mm and its gain in bits per sample.
 struct ThresholdSplit {
   int threshold_mm = 0;
   double gain = 0;
 };
 
-/// Returns the best threshold of the chosen candidate among all that lie in the bins on either side of `split`: midway
-/// between two values that follow each other, the lowest on a tie. `values` are those of `beside`, `histogram` is the
-/// one that the split was found in.
+/// Returns the best threshold of the chosen candidate in the bins on either side of `split`: midway between two
+/// consecutive values, the lowest on a tie. `values` are those of `beside`; `histogram` is the one in which the split
+/// was found.
 ThresholdSplit refine_split(IntervalValues values, const BinSplit& split, const SplitHistogram& histogram,
                             const ClassIndex& classes, int least, const EntropyTable& entropy);
 

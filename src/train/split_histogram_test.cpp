@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kClasses = 7;
 
-/// Rows in memory of their own.
+/// Rows with their own memory.
 struct Rows {
   std::vector<std::int16_t> values;
   std::vector<std::uint8_t> labels;
@@ -24,7 +24,8 @@ struct Rows {
   int value(std::size_t row, int candidate) const { return values[row * width + candidate]; }
 };
 
-/// Every candidate has a spread of its own, from none to all of int16; labels follow some of the values.
+/// Returns random rows. Every candidate has a spread of its own, from none to all of int16, and labels depend on some
+/// of the values.
 Rows random_rows(std::size_t count, int width, Random& random) {
   Rows rows{{}, {}, width};
   for (std::size_t r = 0; r < count; ++r) {
@@ -39,7 +40,7 @@ Rows random_rows(std::size_t count, int width, Random& random) {
   return rows;
 }
 
-/// How the rows of one shard are counted.
+/// Returns the task that counts the rows of one shard.
 CountTask task_of(const Rows& rows, int bins) {
   const NodeValues values = node_values(rows.view(), kClasses + 1);
   return {{values.ranges, bins}, ClassIndex(values.class_counts)};
@@ -52,7 +53,7 @@ double entropy_bits(const std::vector<int>& counts) {
   return sum;
 }
 
-/// Information gained by a threshold, from its definition.
+/// Returns the information gained by a threshold, from the definition.
 double gain_of(const Rows& rows, int candidate, int threshold) {
   std::vector<int> left(kClasses + 1, 0), right(kClasses + 1, 0), all(kClasses + 1, 0);
   for (std::size_t r = 0; r < rows.labels.size(); ++r) {
@@ -81,7 +82,7 @@ TEST(EntropyTable, IsNLogN) {
   EXPECT_GT(entropy(kMostCounted), 0) << "fits";
 }
 
-TEST(Binning, LastValueIsTheThresholdOfItsBin) {
+TEST(Binning, HasTheLastValueOfABinAsItsThreshold) {
   Random random(1);
   for (const int bins : {2, 8, 16, 32}) {
     const Rows rows = random_rows(300, 32, random);
@@ -99,7 +100,7 @@ TEST(Binning, LastValueIsTheThresholdOfItsBin) {
   }
 }
 
-TEST(Binning, FewValuesHaveABinEach) {
+TEST(Binning, GivesEachOfFewValuesABin) {
   Rows rows{{}, {0, 0, 1, 1}, 16};
   for (const std::int16_t value : std::array<std::int16_t, 4>{-1, 0, 1, 1})
     rows.values.insert(rows.values.end(), 16, value);
@@ -126,7 +127,8 @@ TEST(SplitHistogram, CountsEveryRowOnceInItsBinOnEveryInstructionSet) {
   });
 }
 
-/// All thresholds between bins of all candidates, in order, from the definition with the same integers.
+/// Returns the best of all thresholds between bins of all candidates, in order, from the definition with the same
+/// integers.
 BinSplit obvious_split(const Rows& rows, const Binning& binning, int candidates, int least,
                        const EntropyTable& entropy) {
   BinSplit best{-1, 0, std::numeric_limits<std::int32_t>::min()};
@@ -150,7 +152,7 @@ BinSplit obvious_split(const Rows& rows, const Binning& binning, int candidates,
   return best;
 }
 
-TEST(BestSplit, IsThatOfTryingEveryThresholdOnEveryInstructionSet) {
+TEST(BestSplit, AgreesWithTryingEveryThresholdOnEveryInstructionSet) {
   const EntropyTable entropy;
   Random random(4);
   for_each_target([&](const char* target) {
@@ -192,7 +194,7 @@ TEST(RefineSplit, FindsTheBestThresholdOfBothBins) {
   }
 }
 
-TEST(RefineSplit, LiesMidwayAndKeepsWhatOneBinEdgeAloneTells) {
+TEST(RefineSplit, LiesMidwayBetweenValuesAndKeepsASingleBinEdge) {
   const EntropyTable entropy;
   Rows rows{{}, {0, 0, 1, 1}, 16};
   for (const std::int16_t value : std::array<std::int16_t, 4>{-100, -90, 300, 301})

@@ -57,7 +57,7 @@ void CountRows(const FeatureRows& rows, const Binning& binning, const std::uint8
   }
 }
 
-/// Sum of a table's values at each lane.
+/// Returns the sum of a table's values at each lane.
 template <class Vector>
 Vector LookUp(const EntropyTable& entropy, Vector n) {
   return hn::GatherIndex(Lanes32(), entropy.data(), n);

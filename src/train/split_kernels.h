@@ -8,16 +8,16 @@
 
 namespace vesalius::kernels {
 
-// Inner loops of split_histogram.h for the instruction set at hand. All instruction sets give the same numbers.
+// The inner loops of split_histogram.h for the processor's instruction set. All instruction sets give the same numbers.
 
-/// Widens `low` and `high`, of `rows.width` values each, to the values of the rows.
+/// Extends `low` and `high`, of `rows.width` values each, to the values of the rows.
 void update_ranges(const FeatureRows& rows, std::int16_t* low, std::int16_t* high);
 
-/// Adds the rows to `counts`, which are laid out as in SplitHistogram; class_of[class] is the renumbered class.
+/// Adds the rows to `counts`, which have the layout of SplitHistogram; class_of[class] is the renumbered class.
 void count_rows(const FeatureRows& rows, const Binning& binning, const std::uint8_t* class_of, std::uint16_t* counts);
 
-/// Writes the best score and bin of each of kBlockCandidates candidates; the score is INT32_MIN where no threshold
-/// leaves `least` samples on both sides. `totals` are the samples of each renumbered class.
+/// Writes the best score and bin of each of kBlockCandidates candidates; the score is INT32_MIN if no threshold leaves
+/// `least` samples on both sides. `totals` are the samples of each renumbered class.
 void scan_bins(const SplitHistogram& histogram, const std::int32_t* totals, std::int32_t least,
                const EntropyTable& entropy, std::int32_t* scores, std::int32_t* bins);
 

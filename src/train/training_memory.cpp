@@ -10,17 +10,17 @@
 namespace vesalius {
 namespace {
 
-constexpr std::uint64_t kGrowing = 2;  ///< capacity of a vector for each element in it, at worst
-constexpr std::uint64_t kRowBytes = 2 * kBlockCandidates + 5;  ///< a sample's values; its label and number
+constexpr std::uint64_t kGrowing = 2;                          ///< largest ratio of a vector's capacity to its size
+constexpr std::uint64_t kRowBytes = 2 * kBlockCandidates + 5;  ///< a sample's values, label and number
 constexpr std::uint64_t kPerSample = 4 + 4 + 1;                ///< its node, row and side
-constexpr double kEmptyShare = 0.2;                            ///< of synthetic frames, at most; their pool is larger
+constexpr double kEmptyShare = 0.2;  ///< largest share of empty synthetic frames, whose pool is larger
 constexpr double kEmptyPool = 4.0;
 
 double background_share(const FrameGroup& group, const TrainOptions& options) {
   return group.empty ? 1.0 : static_cast<double>(options.sample.background_share);
 }
 
-/// Samples of one frame, hard negatives not among them.
+/// Returns the samples of one frame, without hard negatives.
 double samples_of_frame(const FrameGroup& group, const TrainOptions& options) {
   const double pixels = options.sample.pixels_per_frame;
   return group.empty ? pixels * static_cast<double>(options.sample.background_share) : pixels;
@@ -43,7 +43,7 @@ std::vector<FrameGroup> scaled(std::span<const FrameGroup> groups, double share)
   return fewer;
 }
 
-/// Largest of 0 .. most that `fits`, if all below it do.
+/// Returns the largest of 0 .. most that `fits`, provided that all below it fit.
 template <class Fits>
 int largest(int most, const Fits& fits) {
   int low = 0;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
 
-TEST(TrainingMemory, HundredThousandFramesFitSixteenGigabytes) {
+TEST(TrainingMemory, FitsAHundredThousandFramesInSixteenGigabytes) {
   const DepthImage room = render({}, {320, 240, 262.F, 262.F, 159.5F, 119.5F}, paper_body()).frame.depth;
   const FrameGroup group{100000, FrameStore::frame_bytes(room), false};
   const TrainingMemory memory = training_memory({&group, 1}, {}, 26);
@@ -29,7 +29,7 @@ TEST(TrainingMemory, GrowsWithFramesPixelsAndTrees) {
   EXPECT_EQ(base.total(3) - base.total(1), 2 * base.tree);
 }
 
-TEST(TrainingMemory, CoversWhatASetTakes) {
+TEST(TrainingMemory, IsAnUpperBoundOfASetsMemory) {
   CapsuleScene scene;
   scene.people = {CapsulePerson{}};
   const LabelledFrame person = render(scene, {160, 120, 131.F, 131.F, 79.5F, 59.5F}, paper_body());
@@ -46,7 +46,7 @@ TEST(TrainingMemory, CoversWhatASetTakes) {
               0.1 * static_cast<double>(set.samples().size()));
 }
 
-TEST(TrainingFit, WhatIsSaidToFitFitsAndMoreDoesNot) {
+TEST(TrainingFit, IsTheLargestThatFits) {
   const FrameGroup group{40000, 300000, false};
   const TrainOptions options;
   const std::uint64_t bytes = 8 * kGiB;
@@ -61,7 +61,7 @@ TEST(TrainingFit, WhatIsSaidToFitFitsAndMoreDoesNot) {
   EXPECT_EQ(fit.pixels, 0) << "depth alone is too much";
 }
 
-TEST(TrainingFit, FewerPixelsDoWhereDepthFits) {
+TEST(TrainingFit, ReducesPixelsIfDepthFits) {
   const FrameGroup group{40000, 20000, false};
   TrainOptions options;
   options.sample.pixels_per_frame = 20000;

@@ -1,9 +1,9 @@
 #pragma once
 
-// What the driver of training and the shards of its samples tell each other, as plain structs of integers;
-// training_protocol.h says in which order. Each reply of a shard merges with those of the others: `merge(all, other)`
-// adds the reply of one more shard. Integers make the result independent of the order of merging, except where a
-// comment says otherwise. All `merge` throw Error for replies that are not about the same nodes, classes or bins.
+// The messages between the driver of a training and the shards of its samples, as plain structs of integers.
+// training_protocol.h explains their order. `merge(all, other)` adds the reply of one more shard. Since numbers are
+// integers, the result does not depend on the order of merging, unless a comment says otherwise. Every `merge` throws
+// Error if the replies are about different nodes, classes or bins.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace vesalius {
 
-/// Candidates that one block has: as many as keep a node's histogram in the second-level cache.
+/// Number of candidates in a block. A node's histogram of so many stays in the second-level cache.
 inline constexpr int kBlockCandidates = 64;
-/// Most samples of a node that choose its split: their counts fit 16 bits.
+/// Largest number of samples that choose a node's split; counts of so many fit 16 bits.
 inline constexpr int kMostCounted = 65535;
-/// In place of the index of a node: the samples have reached a leaf.
+/// Replaces the index of a node for samples that have reached a leaf.
 inline constexpr std::int32_t kSettled = -1;
 
-/// Reply: samples to learn from, by class, and the pixels of each class in the pictures that they were drawn from.
+/// Reply: the samples of each class, and the pixels of each class in the pictures from which they were drawn.
 struct SampleCounts {
   std::vector<std::int64_t> samples;  ///< [class]
   std::vector<std::uint64_t> pixels;  ///< [class]
@@ -30,14 +30,14 @@ void merge(SampleCounts& all, const SampleCounts& other);
 
 /// A node whose split is to be chosen.
 struct LevelNode {
-  std::uint32_t number = 1;  ///< as in a heap: root 1, children 2n and 2n + 1
-  std::int64_t size = 0;     ///< samples of all shards
-  std::int64_t counted = 0;  ///< how many of them choose the split, evenly spaced; at most kMostCounted
+  std::uint32_t number = 1;  ///< numbered as in a heap: root 1, children 2n and 2n + 1
+  std::int64_t size = 0;     ///< number of samples in all shards
+  std::int64_t counted = 0;  ///< number of evenly spaced samples that choose the split; at most kMostCounted
 };
 
 /// Request: the nodes of the next level.
 struct Level {
-  std::vector<std::int32_t> node_of_child;  ///< index in `nodes`, or kSettled; for the first level of the root alone
+  std::vector<std::int32_t> node_of_child;  ///< index in `nodes`, or kSettled; in the first level only for the root
   std::vector<LevelNode> nodes;
 };
 
@@ -47,7 +47,7 @@ struct NodeRange {
   std::int32_t size() const { return end - begin; }
 };
 
-/// Smallest and largest value of each candidate, mm; low > high where there is no sample.
+/// The smallest and largest value of each candidate in mm; low > high if there is no sample.
 struct ValueRanges {
   std::vector<std::int16_t> low, high;  ///< [candidate]
 
@@ -56,17 +56,18 @@ struct ValueRanges {
 };
 void merge(ValueRanges& all, const ValueRanges& other);
 
-/// Reply: what one node's counted samples are, before they are counted in bins.
+/// Reply: the classes and values of a node's counted samples, before they are counted in bins.
 struct NodeValues {
   std::vector<std::int32_t> class_counts;  ///< [class]
   ValueRanges ranges;
 };
 void merge(NodeValues& all, const NodeValues& other);
 
-/// Returns how many bins a node of so many counted samples uses, at most `most`: few samples do not tell many apart.
+/// Returns the number of bins for a node of so many counted samples, at most `most`; few samples do not distinguish
+/// many bins.
 int bins_for(std::int64_t samples, int most);
 
-/// How values become bins: bin = (2 min(value - low, 32767) * factor) >> 16.
+/// The mapping from values to bins: bin = (2 min(value - low, 32767) * factor) >> 16.
 struct Binning {
   int bins = 0;
   std::vector<std::int16_t> low;      ///< [candidate]
@@ -78,13 +79,13 @@ struct Binning {
   int last_value(int candidate, int bin) const;
 };
 
-/// Which classes the counted samples of a node have, renumbered without gaps. The numbers follow from the counts of all
-/// shards together, so that all shards number alike.
+/// The classes of a node's counted samples, renumbered without gaps. The numbers follow from the counts of all shards
+/// together, so all shards use the same.
 struct ClassIndex {
-  std::vector<std::uint8_t> index;   ///< [class]; 0 for those that the node lacks
-  std::vector<std::int32_t> totals;  ///< [renumbered class]: samples counted
+  std::vector<std::uint8_t> index;   ///< [class]; 0 for classes that the node lacks
+  std::vector<std::int32_t> totals;  ///< [renumbered class]: number of counted samples
 
-  /// Of the merged `NodeValues::class_counts`.
+  /// `class_counts` are the merged `NodeValues::class_counts`.
   explicit ClassIndex(std::span<const std::int32_t> class_counts);
   std::size_t size() const { return totals.size(); }
 };
@@ -98,7 +99,7 @@ struct CountTask {
 /// Reply: counts[(class * bins + bin) * kBlockCandidates + candidate] of the counted samples of one node.
 struct SplitHistogram {
   int bins = 0;
-  std::size_t classes = 0;  ///< renumbered
+  std::size_t classes = 0;  ///< number of renumbered classes
   std::vector<std::uint16_t> counts;
 
   SplitHistogram() = default;
@@ -107,7 +108,7 @@ struct SplitHistogram {
     return counts[(class_index * bins + bin) * kBlockCandidates + candidate];
   }
 };
-/// Throws Error also where a sum leaves 16 bits.
+/// Throws Error also if a sum exceeds 16 bits.
 void merge(SplitHistogram& all, const SplitHistogram& other);
 
 /// Request: the values in (above, last] of one candidate of one node.
@@ -128,14 +129,14 @@ struct IntervalValues {
 };
 void merge(IntervalValues& all, const IntervalValues& other);
 
-/// Request: the split that is best so far for a node; for the same node a later one takes its place.
+/// Request: the best split of a node so far. A later one for the same node replaces it.
 struct NodeSplit {
   std::int32_t node = 0;
   std::int32_t candidate = 0;  ///< in the block at hand
   TreeNode split;              ///< offsets and threshold
 };
 
-/// Reply: samples of each class at the children of each node of a level; those of node n are 2n and 2n + 1.
+/// Reply: the samples of each class at the children of each node of a level. The children of node n are 2n and 2n + 1.
 struct ChildCounts {
   std::int32_t classes = 0;
   std::vector<std::int64_t> counts;  ///< [child * classes + class]
@@ -145,32 +146,33 @@ struct ChildCounts {
 };
 void merge(ChildCounts& all, const ChildCounts& other);
 
-/// Samples at each child, of the shards before one: a sample's rank in its node counts from there. What each shard gets
-/// with a level follows from what those before it replied: an exclusive prefix sum.
+/// The samples at each child in all shards before one. A sample's rank in its node counts from there. For each shard
+/// this is an exclusive prefix sum of the replies of the shards before it.
 using ChildSizes = std::vector<std::int64_t>;
 ChildSizes child_sizes(const ChildCounts& counts);
 void merge(ChildSizes& all, const ChildSizes& other);
 
-/// Reply: background that a forest takes for a body, by how much it does.
+/// Reply: the background that a forest takes for a body, by the parts' share.
 struct HardCounts {
-  std::int64_t background = 0;        ///< samples of the background that are learned from already
-  std::vector<std::uint64_t> counts;  ///< [share of the parts in 1/255 over all trees]: pixels of the pool above half
+  std::int64_t background = 0;        ///< background samples from which the forest already learns
+  std::vector<std::uint64_t> counts;  ///< [parts' share in 1/255 over all trees]: pixels of the pool above half
 };
 void merge(HardCounts& all, const HardCounts& other);
 
-/// Request: which pixels of the pool become samples: all of a share above `above`, and of those of just that share the
-/// first `ties`.
+/// Request: the pixels of the pool that become samples: all with a share above `above`, and the first `ties` with
+/// exactly that share.
 struct HardCut {
   std::uint32_t above = 0;
   std::uint64_t ties = 0;
 };
-/// The `most` worst of all shards, the earlier on a tie.
+/// Returns the cut that takes the `most` worst pixels of all shards, and on a tie the earlier ones.
 HardCut hard_cut(const HardCounts& all, std::uint64_t most);
-/// What `cut` asks of a shard that counted `own`; takes its ties from `cut`, so that the next shard gets the rest.
+/// Returns the part of `cut` for a shard that counted `own`, and subtracts its ties from `cut`, so that the next shard
+/// gets the rest.
 HardCut take_part(HardCut& cut, const HardCounts& own);
 
 namespace detail {
-/// Throws Error naming `what` two shards do not agree about.
+/// Throws Error naming `what` if two shards disagree about it.
 void expect_alike(bool alike, const char* what);
 }  // namespace detail
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kClasses = 6, kWidth = 32;
 
-/// Rows of one node, some of whose classes only its last third has.
+/// Rows of one node. Some classes occur only in its last third.
 struct Rows {
   std::vector<std::int16_t> values;
   std::vector<std::uint8_t> labels;
@@ -34,7 +34,7 @@ Rows random_rows(std::size_t count, Random& random) {
   return rows;
 }
 
-/// What the driver makes of the replies of shards that hold rows [ends[i - 1], ends[i]).
+/// Returns the driver's split from the replies of shards that have rows [ends[i - 1], ends[i]).
 ThresholdSplit split_over(const Rows& rows, const std::vector<std::size_t>& ends) {
   std::vector<FeatureRows> shards;
   for (std::size_t i = 0; i < ends.size(); ++i) shards.push_back(rows.part(i > 0 ? ends[i - 1] : 0, ends[i]));
@@ -53,7 +53,7 @@ ThresholdSplit split_over(const Rows& rows, const std::vector<std::size_t>& ends
                       task.classes, 20, entropy);
 }
 
-TEST(TrainingMessages, SplitsFollowFromMergedRepliesAsFromOneShard) {
+TEST(TrainingMessages, GiveTheSameSplitsMergedAsFromOneShard) {
   Random random(3);
   for (int i = 0; i < 10; ++i) {
     const Rows rows = random_rows(700, random);
@@ -68,7 +68,7 @@ TEST(TrainingMessages, SplitsFollowFromMergedRepliesAsFromOneShard) {
   }
 }
 
-TEST(TrainingMessages, RepliesAboutDifferentThingsDoNotMerge) {
+TEST(TrainingMessages, RefuseToMergeRepliesAboutDifferentThings) {
   NodeValues values{{1, 2}, ValueRanges(16)};
   EXPECT_THROW(merge(values, {{1, 2, 3}, ValueRanges(16)}), Error);
   EXPECT_THROW(merge(values, {{1, 2}, ValueRanges(32)}), Error);
@@ -87,7 +87,7 @@ TEST(TrainingMessages, RepliesAboutDifferentThingsDoNotMerge) {
   EXPECT_THROW(merge(samples, {{1}, {3}}), Error);
 }
 
-TEST(TrainingMessages, CountsBeyondSixteenBitsAreRefused) {
+TEST(TrainingMessages, RefuseCountsBeyondSixteenBits) {
   SplitHistogram histogram(1, 2);
   SplitHistogram other = histogram;
   histogram.counts[5] = 65000;
@@ -98,7 +98,7 @@ TEST(TrainingMessages, CountsBeyondSixteenBitsAreRefused) {
   EXPECT_THROW(merge(histogram, other), Error);
 }
 
-TEST(ClassIndex, NumbersTheClassesThatOccurWithoutGaps) {
+TEST(ClassIndex, NumbersOccurringClassesWithoutGaps) {
   const ClassIndex classes(std::vector<std::int32_t>{0, 4, 0, 0, 9, 1});
   EXPECT_THAT(classes.totals, testing::ElementsAre(4, 9, 1));
   EXPECT_EQ(classes.index[1], 0);
@@ -110,7 +110,7 @@ TEST(ChildSizes, AddUpTheClasses) {
   EXPECT_THAT(child_sizes({3, {1, 2, 3, 0, 0, 0, 5, 0, 1}}), testing::ElementsAre(6, 0, 6));
 }
 
-TEST(HardCut, TakesTheWorstAndOfEquallyBadOnesTheEarlier) {
+TEST(HardCut, TakesTheWorstAndTheEarlierOfEquals) {
   HardCounts first{0, {0, 0, 0, 2, 4, 1}}, second{0, {0, 0, 0, 0, 3, 2}};
   HardCounts all = first;
   merge(all, second);

@@ -46,28 +46,27 @@
 
 namespace vesalius {
 
-/// What the shards keep while one tree grows. All members throw Error where a shard cannot be asked. One call at a
-/// time, but the four about batches may be called from several threads at once for batches without common nodes.
+/// The shards' state for one growing tree. All members throw Error if a shard cannot be asked. Calls come one at a
+/// time, except that the four about batches may come from several threads at once for batches without common nodes.
 class TreeExecutor {
  public:
   virtual ~TreeExecutor() = default;
 
   virtual SampleCounts sample_counts() = 0;
-  /// Moves each sample to its node of `level`. What a shard's ranks begin with follows from the child sizes of the
-  /// shards before it (ChildSizes), which the executor knows from the last `route`, or for the first level from their
-  /// numbers of samples.
+  /// Moves each sample to its node of `level`. The first rank of a shard follows from the child sizes of the shards
+  /// before it (ChildSizes). The executor knows these from the last `route`, or for the first level from their numbers
+  /// of samples.
   virtual void open_level(const Level& level) = 0;
-  /// Computes the rows of a group of nodes for one block of candidates; earlier rows are forgotten.
+  /// Computes the rows of a group of nodes for one block of candidates. Earlier rows are dropped.
   virtual void evaluate(NodeRange group, int block) = 0;
 
-  // About a batch: nodes of the group evaluated last.
+  // The following are about a batch, which is nodes of the last evaluated group.
   virtual std::vector<NodeValues> node_values(NodeRange batch) = 0;
   virtual std::vector<SplitHistogram> histograms(NodeRange batch, const std::vector<CountTask>& tasks) = 0;
   virtual std::vector<IntervalValues> values_in(const std::vector<ValueInterval>& intervals) = 0;
   virtual void set_splits(const std::vector<NodeSplit>& splits) = 0;
 
-  /// Sends all samples of the nodes that were split to a side, and counts them. The counts of the other nodes mean
-  /// nothing.
+  /// Sends all samples of split nodes to a side and counts them. The counts of other nodes have no meaning.
   virtual ChildCounts route() = 0;
 };
 
@@ -76,10 +75,10 @@ class Executor {
  public:
   virtual ~Executor() = default;
 
-  /// Trees may grow at the same time, from several threads, but not while hard negatives are added.
+  /// Begins a tree. Trees may grow at the same time from several threads, but not while hard negatives are added.
   virtual std::unique_ptr<TreeExecutor> begin_tree(const GrowTreeOptions& options, int tree) = 0;
   virtual HardCounts count_hard_negatives(const Forest& forest) = 0;
-  /// Adds samples of the pixels counted last, each shard its part of the ties (take_part); returns how many.
+  /// Adds the pixels counted last as samples, in each shard its part of the ties (take_part). Returns their number.
   virtual std::size_t add_hard_negatives(const HardCut& cut) = 0;
 };
 

@@ -4,7 +4,7 @@
 
 namespace vesalius {
 
-/// One pixel to learn from.
+/// A pixel from which a forest learns.
 struct TrainingSample {
   std::uint32_t frame = 0;     ///< index in the set's FrameStore
   std::int16_t u = 0, v = 0;   ///< pixel

@@ -15,7 +15,7 @@
 namespace vesalius {
 namespace {
 
-/// How much of a sample's posterior the parts have together, in 1/(255 trees).
+/// Returns the parts' share of a sample's posterior in 1/(255 trees).
 std::uint32_t body_share(const Forest& forest, const FrameStore& frames, const TrainingSample& sample) {
   std::uint32_t sum = 0;
   for (const Tree& tree : forest.trees) {
@@ -27,7 +27,7 @@ std::uint32_t body_share(const Forest& forest, const FrameStore& frames, const T
   return sum;
 }
 
-/// By frame, within it along bands 16 pixels high: samples that follow each other read the same cache lines.
+/// Sorts by frame, and within it along bands 16 pixels high, so that consecutive samples read the same cache lines.
 void sort_samples(std::vector<TrainingSample>::iterator begin, std::vector<TrainingSample>::iterator end) {
   const auto key = [](const TrainingSample& sample) { return std::tuple(sample.frame, sample.v / 16, sample.u); };
   std::stable_sort(begin, end, [&](const TrainingSample& a, const TrainingSample& b) { return key(a) < key(b); });

@@ -14,47 +14,48 @@
 
 namespace vesalius {
 
-/// What a forest learns from: packed depth of many frames and the pixels drawn from them. All trees share the pixels;
-/// they differ by the tests that their nodes draw. Where several sets are the shards of one training, each holds frames
-/// that follow those of the set before it.
+/// The data from which a forest learns: packed depth of many frames and the pixels drawn from them. All trees share the
+/// pixels; they differ by the tests that their nodes draw. If several sets are the shards of one training, each has the
+/// frames that follow those of the set before it.
 class TrainingSet {
  public:
-  /// `first_frame` is how many frames the sets before this one hold. Throws UsageError for options out of range, Error
-  /// for a body without parts or with more than 254.
+  /// `first_frame` is the number of frames in the sets before this one. Throws UsageError for options out of range, and
+  /// Error for a body without parts or with more than 254.
   TrainingSet(BodyModel body, FeatureConvention convention, const SampleOptions& options, std::uint64_t seed,
               std::size_t first_frame = 0);
 
-  /// Draws this frame's pixels and keeps its depth; the labels are not kept. The pixels depend on the seed, the number
-  /// of frames added before and the frame. One thread at a time. Throws Error for a frame whose images differ in size
-  /// or whose labels the body lacks.
+  /// Draws this frame's pixels and keeps its depth; labels are not kept. The pixels depend on the seed, the number of
+  /// frames added before and the frame. It is called from one thread at a time. Throws Error if the frame's images
+  /// differ in size or the body lacks a label.
   void add(const LabelledFrame& labelled);
 
-  /// Finds the background pixels of the pool to which `forest` gives the parts together more than half: what it would
-  /// take for a body. Throws Error for a set without background class.
+  /// Finds the background pixels of the pool for which `forest` gives the parts together more than half, so that it
+  /// would take them for a body. Throws Error for a set without background class.
   HardCounts count_hard_negatives(const Forest& forest);
-  /// Makes samples of the pixels that `cut` asks for, as counted last; returns how many. The pool is empty afterwards.
+  /// Makes samples of the pixels that `cut` selects from the last count, and returns their number. The pool is empty
+  /// afterwards.
   std::size_t add_hard_negatives(const HardCut& cut);
 
-  /// Samples by class, and the pixels of each class in all frames learned from.
+  /// Returns the samples by class, and the pixels of each class in all frames of learning.
   SampleCounts sample_counts() const;
 
   const BodyModel& body() const { return body_; }
   const FeatureConvention& convention() const { return convention_; }
   bool has_background() const { return options_.background_share > 0.F; }
   int class_count() const { return body_.part_count() + (has_background() ? 1 : 0); }
-  /// A forest without trees for this set's classes and convention.
+  /// Returns a forest without trees for this set's classes and convention.
   Forest untrained_forest() const;
 
   const FrameStore& frames() const { return frames_; }
-  /// Samples to learn from, ordered by frame.
+  /// The samples for learning, ordered by frame.
   std::span<const TrainingSample> samples() const { return samples_; }
-  /// Samples to measure accuracy on, ordered by frame; `samples` has none of their frames.
+  /// The samples for measuring accuracy, ordered by frame. `samples` has none of their frames.
   std::span<const TrainingSample> held_out() const { return held_out_; }
 
-  /// Pixels of each class in all frames learned from, the background last.
+  /// The pixels of each class in all frames of learning, the background last.
   std::span<const std::uint64_t> class_pixels() const { return class_pixels_; }
 
-  /// Bytes that depth, samples and pool take.
+  /// Returns the memory of depth, samples and pool in bytes.
   std::size_t bytes() const;
 
  private:
@@ -65,7 +66,7 @@ class TrainingSet {
   std::size_t first_frame_;
   FrameStore frames_;
   std::vector<TrainingSample> samples_, pool_, held_out_;
-  std::vector<std::uint32_t> pool_shares_;  ///< of the parts, in 1/255 over all trees; 0 up to half
+  std::vector<std::uint32_t> pool_shares_;  ///< shares of the parts, in 1/255 over all trees; 0 up to half
   std::vector<std::uint64_t> class_pixels_;
 };
 

@@ -32,7 +32,7 @@ std::vector<std::tuple<int, int, int>> places(std::span<const TrainingSample> sa
   return result;
 }
 
-/// Takes everything nearer than 10 cm in front of what lies to its right for a chest.
+/// Returns a forest that takes every surface more than 10 cm in front of what is at its right for a chest.
 Forest credulous_forest() {
   Forest forest;
   forest.body = paper_body();
@@ -53,7 +53,7 @@ Forest credulous_forest() {
   return forest;
 }
 
-/// What the driver does with one shard.
+/// Adds hard negatives as the driver does with one shard.
 std::size_t add_hard_negatives(TrainingSet& set, const Forest& forest, float hard_share) {
   const HardCounts hard = set.count_hard_negatives(forest);
   return set.add_hard_negatives(
@@ -80,7 +80,7 @@ TEST(TrainingSet, DependsOnTheSeedAlone) {
   EXPECT_NE(places(set_of(4, {}).samples()), places(set_of(4, {}, 2).samples()));
 }
 
-TEST(TrainingSet, CountsPixelsOfFramesLearnedFromOnly) {
+TEST(TrainingSet, CountsOnlyPixelsOfFramesForLearning) {
   SampleOptions options;
   options.held_out_share = 0.5F;
   const LabelledFrame frame = frame_with(1);
@@ -92,7 +92,7 @@ TEST(TrainingSet, CountsPixelsOfFramesLearnedFromOnly) {
   EXPECT_EQ(set.class_pixels()[chest], 2U * static_cast<std::uint64_t>(pixels));
 }
 
-TEST(TrainingSet, AddsTheBackgroundThatAForestTakesForABody) {
+TEST(TrainingSet, AddsBackgroundThatAForestTakesForABody) {
   SampleOptions options;
   options.held_out_share = 0.F;
   const Forest forest = credulous_forest();
@@ -115,7 +115,7 @@ TEST(TrainingSet, AddsTheBackgroundThatAForestTakesForABody) {
 }
 
 // Labels: threads
-TEST(TrainingSet, AddsNoMoreHardNegativesThanAllowedOnAnyNumberOfThreads) {
+TEST(TrainingSet, LimitsHardNegativesOnAnyNumberOfThreads) {
   SampleOptions options;
   options.held_out_share = 0.F;
   const auto grow = [&](int threads) {
@@ -129,7 +129,7 @@ TEST(TrainingSet, AddsNoMoreHardNegativesThanAllowedOnAnyNumberOfThreads) {
   EXPECT_EQ(grow(1), grow(3));
 }
 
-TEST(TrainingSet, KnowsItsMemory) {
+TEST(TrainingSet, ReportsItsMemory) {
   const TrainingSet set = set_of(20, {});
   EXPECT_GE(set.bytes(), set.frames().bytes() + set.samples().size() * sizeof(TrainingSample));
   EXPECT_LT(set.bytes(), set.frames().bytes() + 20U * 4U * 2000U * sizeof(TrainingSample));

@@ -14,17 +14,19 @@ namespace {
 
 constexpr std::uint32_t kNoRow = std::numeric_limits<std::uint32_t>::max();
 constexpr int kGrain = 8192;       ///< samples that a thread takes at a time
-constexpr std::size_t kAhead = 3;  ///< samples whose table and row are asked for beforehand
-/// Samples of a frame from which on unpacking all of it pays: all candidates at each, and one feature at each.
+constexpr std::size_t kAhead = 3;  ///< number of samples whose table and row are prefetched
+/// Numbers of samples of a frame from which unpacking all of it is worthwhile: if all candidates are computed, and if
+/// one feature is.
 constexpr double kFewEvaluated = 12.0, kFewRouted = 150.0;
 
-/// Neighbouring samples are in nodes far apart: without this each waits for its node's table and row.
+/// Prefetches memory. Neighbouring samples are in unrelated nodes, so each would otherwise wait for its node's table
+/// and row.
 void prefetch_lines(const void* from, std::size_t bytes) {
   const char* at = static_cast<const char*>(from);
   for (std::size_t i = 0; i < bytes; i += kLineBytes) __builtin_prefetch(at + i, 0, 3);
 }
 
-/// How many of the first `rank` samples of a node are counted.
+/// Returns how many of the first `rank` samples of a node are counted.
 std::int64_t counted_before(const LevelNode& node, std::int64_t rank) {
   return node.counted == node.size ? rank : rank * node.counted / node.size;
 }
@@ -62,7 +64,7 @@ void TreeShard::open_level(const Level& level, const ChildSizes& before) {
   assign_rows();
 }
 
-/// Gives a row to every counted sample, those of a node one after the other.
+/// Gives a row to every counted sample. The rows of a node are consecutive.
 void TreeShard::assign_rows() {
   std::vector<std::int64_t> ranks(level_.size());
   std::ranges::transform(level_, ranks.begin(), &Node::first_rank);
@@ -183,7 +185,7 @@ void TreeShard::set_splits(const std::vector<NodeSplit>& splits) {
   }
 }
 
-/// Sends the samples of a node to a side by the values at hand.
+/// Sends the samples of a node to a side by the present rows.
 void TreeShard::route_by_rows(Node& node, int candidate) {
   const FeatureRows rows = rows_of(node);
   const std::uint32_t* sample = row_samples_.data() + (node.row_begin - level_[group_.begin].row_begin);
@@ -194,7 +196,7 @@ void TreeShard::route_by_rows(Node& node, int candidate) {
   node.routed = true;
 }
 
-/// Does the same for nodes of which not all samples were in rows.
+/// Does the same for nodes of which only some samples have rows.
 void TreeShard::route_the_rest() {
   const auto unrouted = [](const Node& node) { return node.divided && !node.routed; };
   std::int64_t samples = 0;

@@ -12,20 +12,20 @@
 
 namespace vesalius {
 
-/// One shard's part in growing one tree: where its samples stand, and the rows of the group at hand. It answers the
+/// One shard's part in growing one tree: the nodes of its samples, and the rows of the current group. It answers the
 /// requests of TreeExecutor (training_protocol.h) for its own samples, under the same names.
 ///
-/// Samples are evaluated in the order of their frames, whatever node they are in: a frame is read from memory once for
-/// all of its samples and stays in the cache meanwhile. The values go to rows ordered by node.
+/// Samples are evaluated in the order of their frames, whatever their node: a frame is read from memory once for all of
+/// its samples and stays in the cache meanwhile. The values go to rows ordered by node.
 class TreeShard {
  public:
-  /// `set` must outlive this and stay as it is.
+  /// `set` must outlive this object and not change.
   TreeShard(const TrainingSet& set, const GrowTreeOptions& options, int tree);
 
   SampleCounts sample_counts() const { return set_.sample_counts(); }
-  /// Samples of this shard at each child of the level at hand since `route`; all of them as one child before.
+  /// The samples of this shard at each child of the current level after `route`; before it, all of them as one child.
   const ChildSizes& child_sizes() const { return child_sizes_; }
-  /// `before` are the child sizes of all shards before this one together.
+  /// `before` are the total child sizes of all shards before this one.
   void open_level(const Level& level, const ChildSizes& before);
   void evaluate(NodeRange group, int block);
   std::vector<NodeValues> node_values(NodeRange batch) const;
@@ -35,19 +35,19 @@ class TreeShard {
   ChildCounts route();
 
  private:
-  /// A node of the level, as far as this shard has samples of it.
+  /// A node of the level with this shard's samples.
   struct Node {
-    LevelNode all;                ///< of all shards together
+    LevelNode all;                ///< the node over all shards
     std::int64_t size = 0;        ///< samples of this shard
-    std::int64_t first_rank = 0;  ///< of the first of them
-    std::int64_t row_begin = 0;   ///< of this shard's counted samples
+    std::int64_t first_rank = 0;  ///< rank of the first of them
+    std::int64_t row_begin = 0;   ///< first row of this shard's counted samples
     std::int64_t row_end = 0;
     TreeNode split;
-    bool divided = false;  ///< has a split
-    bool routed = false;   ///< the side of every sample is known from the rows
+    bool divided = false;  ///< whether it has a split
+    bool routed = false;   ///< whether the rows give the side of every sample
   };
 
-  /// Candidates of the nodes of a group, one after the other, each laid out as in CandidateTable.
+  /// The candidates of the nodes of a group, one after the other, each with the layout of CandidateTable.
   struct Tables {
     int padded = 0;
     std::vector<std::int16_t> offsets;
@@ -67,13 +67,13 @@ class TreeShard {
   std::span<const TrainingSample> samples_;
   GrowTreeOptions options_;
   int tree_;
-  ChildSizes child_sizes_;  ///< of this shard, at the last level
+  ChildSizes child_sizes_;  ///< child sizes of this shard at the last level
   std::vector<Node> level_;
   std::vector<std::int32_t> node_of_;   ///< [sample]: index in `level_`, or kSettled
   std::vector<std::uint32_t> row_of_;   ///< [sample]
-  std::vector<std::uint8_t> on_right_;  ///< [sample]: the side that it goes to
+  std::vector<std::uint8_t> on_right_;  ///< [sample]: its side
 
-  // Rows of the group at hand for one block, kept from group to group.
+  // The rows of the current group for one block. Their memory is kept from group to group.
   NodeRange group_;
   Tables tables_;
   HugeBuffer values_{0};

@@ -8,18 +8,18 @@
 
 namespace vesalius {
 
-/// Where finished trees of a training are kept, so that a run that was cut short goes on. All members may be called
-/// from several threads at once.
+/// Keeps the finished trees of a training, so that an interrupted run can be continued. All members may be called from
+/// several threads at once.
 class TreeStore {
  public:
   virtual ~TreeStore() = default;
-  /// Returns a tree that was saved; none where it was not, or cannot be read any more.
+  /// Returns a saved tree, or nothing if it was not saved or cannot be read any more.
   virtual std::optional<Tree> load(int number) = 0;
-  /// Throws Error where the tree cannot be kept.
+  /// Saves a tree. Throws Error if it cannot.
   virtual void save(int number, const Tree& tree) = 0;
 };
 
-/// Keeps trees as long as it lives.
+/// Keeps trees in memory.
 class MemoryTreeStore : public TreeStore {
  public:
   std::optional<Tree> load(int number) override {

@@ -9,8 +9,8 @@
 
 namespace vesalius {
 
-/// Returns eq. 1 at a sample, in mm. `read(u, v)` returns what a probe inside the picture reads, mm, holes as the
-/// convention has it.
+/// Returns eq. 1 at a sample in mm. `read(u, v)` returns the value in mm of a probe inside the picture, with holes as
+/// the convention says.
 template <class Read>
 int feature_from(const OffsetScaler& scaler, TileGrid grid, const FeatureConvention& convention,
                  const TrainingSample& sample, const TreeNode& node, const Read& read) {
