@@ -48,7 +48,7 @@ std::filesystem::path shared_folder() {
   return given != nullptr ? given : VESALIUS_SOURCE_DIR "/../shared";
 }
 
-/// One whole person standing in a living room.
+/// Returns a frame of one whole person who stands in a living room.
 Frame alina_frame(const std::filesystem::path& depth_file) {
   auto frame = open_source(depth_file.string())->next();
   if (!frame) throw Error(depth_file.string() + ": expected a frame");

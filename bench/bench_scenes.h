@@ -9,20 +9,21 @@
 
 namespace vesalius {
 
-/// A frame, a forest that was made for such frames, and what every stage of the detector receives for them.
+/// A frame, a forest made for such frames, and the input of every stage of the detector for them.
 struct BenchScene {
   std::string name;
   Frame frame;
   Forest forest;
   Posteriors posteriors;
-  LabelImage labels;  ///< smoothed
+  LabelImage labels;  ///< smoothed labels
   Clusters clusters;
   std::vector<Skeleton> rough;
 };
 
-/// Two capsule people in a room, 640x480 with sensor noise, and the sample's forest; and where VESALIUS_SHARED or the
-/// folder `shared` beside the repository has them, a real frame with the reference trees and, where
-/// VESALIUS_BENCH_MODEL names one, with that model ("model"). Throws Error for a file that cannot be read.
+/// Returns the scenes of the benchmarks. There is always one of two capsule people in a room, 640x480 with sensor
+/// noise, with the sample's forest. If the developers' real frames are there (in VESALIUS_SHARED or the folder `shared`
+/// beside the repository), there is also a real frame with the reference trees and, if VESALIUS_BENCH_MODEL names a
+/// model, with that one ("model"). Throws Error for a file that cannot be read.
 std::vector<BenchScene> bench_scenes();
 
 }  // namespace vesalius

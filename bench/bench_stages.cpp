@@ -1,5 +1,5 @@
-// Time of each stage of the detector and of the whole, on all processors, and of making synthetic frames on one. `./dev
-// bench --help` lists the flags.
+// Measures the time of each stage of the detector and of the whole on all processors, and the time of making synthetic
+// frames on one. `./dev bench --help` lists the flags.
 
 #include <benchmark/benchmark.h>
 #include <hwy/targets.h>
@@ -31,7 +31,7 @@ void keep(T&& value) {
   benchmark::DoNotOptimize(value);
 }
 
-/// Section 4.3 as it is written down: what the kernels are measured against.
+/// Labels pixels as section 4.3 describes it, without any optimisation. The kernels are compared with this.
 Posteriors label_plainly(const Forest& forest, const DepthImage& depth, const Camera& camera) {
   Posteriors out{depth.width(), depth.height(), forest.class_count(), static_cast<int>(forest.trees.size()), {}};
   out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
@@ -52,7 +52,8 @@ Posteriors label_plainly(const Forest& forest, const DepthImage& depth, const Ca
   return out;
 }
 
-/// The kernels of labelling and smoothing on every instruction set of this machine, and the plain code.
+/// Adds benchmarks of the kernels of labelling and smoothing for every instruction set of this machine, and of the
+/// plain code.
 void add_targets(const BenchScene& s, const std::shared_ptr<const ForestLabeller>& labeller) {
   add("label_pixels:plain", s, [&s] { keep(label_plainly(s.forest, s.frame.depth, s.frame.camera)); });
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

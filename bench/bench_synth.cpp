@@ -29,10 +29,10 @@ namespace {
 using namespace synth;
 
 constexpr std::uint64_t kSeed = 1;
-constexpr std::uint64_t kFrames = 64;  ///< that the stages go round, so that a mean over scenes is measured
+constexpr std::uint64_t kFrames = 64;  ///< number of frames that the stages repeat, which gives a mean over scenes
 constexpr std::uint64_t kBodies = 20;
 
-/// A value made when it is first asked for: only what the filter selects costs its preparation.
+/// A value that is made when it is first used, so that only benchmarks selected by the filter are prepared.
 template <class T>
 class Later {
  public:
@@ -48,7 +48,7 @@ class Later {
 };
 using AssetsLater = std::shared_ptr<Later<Assets>>;
 
-/// Frames of a recipe, with what each stage of making them takes in.
+/// Frames of a recipe, with the input of each stage of making them.
 struct Stages {
   Sensor sensor;
   std::unique_ptr<Generator> generator;
@@ -76,11 +76,11 @@ struct Stages {
   }
 };
 
-/// Times `work(i)`, i going round below `count`.
+/// Measures `work(i)`, where i cycles through the numbers below `count`.
 template <class Work>
 void add(const std::string& name, std::uint64_t count, Work work) {
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-    work(0);  // prepares what the work needs
+    work(0);  // makes the input of the work
     std::uint64_t i = 0;
     for (auto _ : state) benchmark::DoNotOptimize(work(i++ % count));
   })->Unit(benchmark::kMillisecond);
@@ -102,7 +102,7 @@ void add_stages(const std::string& kind, const AssetsLater& assets, int width, i
   });
 }
 
-/// The steps that a new body takes.
+/// Adds benchmarks of the steps that make a new body.
 void add_body_steps(const std::string& kind, const AssetsLater& assets) {
   const auto bare = [assets](Random& random) {
     const Assets& a = **assets;
@@ -135,7 +135,8 @@ void add_kind(const std::string& kind, const AssetsLater& assets) {
   add_stages(kind, assets, 640, 480);
 }
 
-/// Poses of `steps` each along motions that start at sampled ones and turn every joint a degree or so a step.
+/// Returns poses along `count` motions of `steps` poses each. A motion starts at a sampled pose and turns every joint
+/// by about one degree per step.
 std::vector<Pose> motion_poses(std::size_t count, int steps) {
   Random random(kSeed);
   std::vector<Pose> poses;

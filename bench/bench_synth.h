@@ -3,8 +3,8 @@
 namespace vesalius {
 
 /// Registers the benchmarks of making synthetic frames: a whole frame and its stages at 320x240 and 640x480 with Kinect
-/// v1 noise and no colour, and the steps that a new body takes; with built-in bodies, and with MakeHuman's and captured
-/// poses where `vesalius assets` put both packages (VESALIUS_ASSETS names another folder).
+/// v1 noise and without colour, and the steps that make a new body. They use built-in bodies and, if `vesalius assets`
+/// has fetched both packages (into VESALIUS_ASSETS or the default folder), MakeHuman's bodies and captured poses.
 void add_synth_benchmarks();
 
 }  // namespace vesalius

@@ -6,7 +6,7 @@
 #include "synth/mocap/retarget.h"
 #include "vesalius/base/error.h"
 
-/// A skeleton, a byte 0, and a motion of it.
+/// The input is a skeleton, a byte 0, and a motion of the skeleton.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view both(reinterpret_cast<const char*>(data), size);
   const std::size_t cut = both.find('\0');

@@ -22,7 +22,7 @@ void read_frame(const std::string& bytes) {
   try {
     vesalius::encode_frame(frame, kParts);
   } catch (const vesalius::Error&) {
-    std::terminate();  // what is accepted must be a frame
+    std::terminate();  // accepted bytes must be a valid frame
   }
 }
 

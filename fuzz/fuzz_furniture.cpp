@@ -5,7 +5,7 @@
 #include "synth/scene/model_import.h"
 #include "vesalius/base/error.h"
 
-/// A model of the user's in each of its formats; whatever it refers to holds the same bytes.
+/// The input is read as a model in each of the formats. Every file to which the model refers has the same bytes.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   for (const char* name : {"chair.obj", "chair.gltf", "chair.glb"}) {

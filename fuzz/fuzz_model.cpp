@@ -13,7 +13,7 @@
 
 namespace {
 
-/// Makes size and checksum fit: a fuzzer cannot guess them and would stop at the header.
+/// Corrects size and checksum. A fuzzer cannot guess them and would not get past the header.
 std::string with_fitting_header(std::string bytes) {
   if (bytes.size() < 28) return bytes;
   const std::uint64_t size = bytes.size();
@@ -24,7 +24,8 @@ std::string with_fitting_header(std::string bytes) {
   return bytes;
 }
 
-/// A tree whose sizes and columns are the input's, the columns then compressed: nor can it guess a zstd frame.
+/// Returns a tree whose sizes and columns come from the input. The columns are compressed here because a fuzzer cannot
+/// guess a zstd frame either.
 std::string packed_tree(std::string_view input) {
   vesalius::ByteWriter out, columns;
   const auto byte = [&] {

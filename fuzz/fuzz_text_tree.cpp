@@ -13,11 +13,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const vesalius::Error&) {
     return 0;
   }
-  for (vesalius::TreeLeaf& leaf : forest.trees[0].leaves) leaf.label[0] = 0;  // the body is not the format's
+  for (vesalius::TreeLeaf& leaf : forest.trees[0].leaves)
+    leaf.label[0] = 0;  // the text format does not know the body's labels
   try {
     vesalius::check(forest);
   } catch (const vesalius::Error&) {
-    std::terminate();  // what is accepted must be walkable
+    std::terminate();  // an accepted tree must be valid
   }
   return 0;
 }
