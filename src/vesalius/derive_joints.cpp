@@ -14,7 +14,7 @@ struct Neighbour {
   float length_m = 0.F;
 };
 
-/// Observed parts linked to `index`.
+/// Returns the observed parts that are linked to `index`.
 std::vector<Neighbour> observed_neighbours(const BodyModel& body, const Skeleton& skeleton, int index) {
   std::vector<Neighbour> found;
   for (const BodyLink& link : body.links) {
@@ -47,7 +47,7 @@ Joint derive(const JointDefinition& definition, const Skeleton& skeleton) {
   if (definition.parts.empty() || weight < kLeastWeight) return joint;
   const Eigen::Vector3f surface = sum / weight;
   joint.position = surface + definition.depth_offset_m * surface.normalized();
-  joint.confidence = std::clamp(confidence, 0.F, 1.F);  // of the whole weight: missing parts count as unsure
+  joint.confidence = std::clamp(confidence, 0.F, 1.F);  // relative to the whole weight, so missing parts lower it
   joint.state = all_observed ? State::observed : State::predicted;
   return joint;
 }

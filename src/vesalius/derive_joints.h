@@ -16,12 +16,12 @@ struct Joint {
   float confidence = 0.F;                              ///< 0-1
 };
 
-/// Fills in parts that were not seen but lie between two that were: on the line between these, in the proportion of the
-/// link lengths. Their state is predicted, and their confidence half of the weaker neighbour's.
+/// Fills in unseen parts that lie between two seen ones, on the line between these and in the proportion of the link
+/// lengths. Their state is predicted, and their confidence is half of the weaker neighbour's.
 void predict_missing_parts(const BodyModel& body, Skeleton& skeleton);
 
-/// Returns the joints of all joint sets of the body model, [set][joint]. A joint needs parts that carry at least half
-/// of its weight.
+/// Returns the joints of all joint sets of the body model, [set][joint]. A joint needs seen or predicted parts with at
+/// least half of its weight.
 std::vector<std::vector<Joint>> derive_joints(const BodyModel& body, const Skeleton& skeleton);
 
 }  // namespace vesalius

@@ -46,7 +46,7 @@ TEST(PredictMissingParts, PutsAnElbowBetweenArmAndForearm) {
   EXPECT_FLOAT_EQ(elbow.confidence, 0.2F);
 }
 
-TEST(PredictMissingParts, LeavesTheEndsOfLimbsAlone) {
+TEST(PredictMissingParts, PredictsNoEndsOfLimbs) {
   Skeleton s = whole_skeleton();
   part_of(s, "l_hand") = {};
   part_of(s, "r_elbow") = {};
@@ -65,7 +65,7 @@ TEST(DeriveJoints, MovesTheSurfaceIntoTheBody) {
   EXPECT_FLOAT_EQ(neck.confidence, 0.8F);
 }
 
-TEST(DeriveJoints, JointWithoutItsPartsIsNotThere) {
+TEST(DeriveJoints, OmitsAJointWithoutItsParts) {
   Skeleton s = whole_skeleton();
   part_of(s, "l_knee") = {};
   const auto sets = derive_joints(paper_body(), s);
@@ -76,7 +76,7 @@ TEST(DeriveJoints, JointWithoutItsPartsIsNotThere) {
   EXPECT_EQ(joint_of(sets, "nite15", "r_knee").state, State::observed);
 }
 
-TEST(DeriveJoints, HalfTheWeightSufficesAndIsMarked) {
+TEST(DeriveJoints, AcceptsHalfOfTheWeightAndMarksTheJoint) {
   Skeleton s = whole_skeleton();
   part_of(s, "l_chest") = {};  // 0.3 of a shoulder
   const auto sets = derive_joints(paper_body(), s);

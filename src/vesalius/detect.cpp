@@ -11,7 +11,7 @@
 
 namespace vesalius {
 
-/// What is the same for all frames, and memory that one uses after the other.
+/// The data that all frames share, and memory that they reuse.
 struct Method {
   Method(std::shared_ptr<const PixelLabeller> pixels, const DetectOptions& given)
       : labeller(pixels, {given.label, given.smooth, given.grow.plane}), options(given), body(labeller.body()) {
@@ -28,20 +28,20 @@ namespace {
 
 using Candidate = Trace::Candidate;
 
-/// What the first pass finds in a frame.
+/// The result of the first pass on a frame.
 struct Scene {
   SceneLabels labels;
-  LabelImage proposals;  ///< labels of all pixels that may be a part
+  LabelImage proposals;  ///< labels with the proposals' weight of the background
   Clusters clusters;
   std::vector<Skeleton> rough;  ///< best first
 };
 
-/// Sections 4 to 6 on the whole picture.
+/// Runs sections 4 to 6 on the whole picture.
 Scene first_pass(const Method& method, const Frame& frame, StageClock& clock) {
   const DetectOptions& options = method.options;
   Scene scene;
   scene.labels = method.labeller.label_scene(frame, clock, method.memory.take());
-  // What may be a part is taken for one; the score of the whole tells people from what is none.
+  // Every pixel that may be a part is proposed as one. The score later separates people from the rest.
   scene.proposals = method.labeller.choose(scene.labels, frame, options.label.proposal_weight);
   clock.lap(Stage::choose);
   scene.clusters = find_clusters(scene.proposals, frame.depth, frame.camera, method.body, options.cluster);
@@ -59,8 +59,8 @@ std::size_t count_rivals(const std::vector<Skeleton>& rough, const Method& metho
   return std::min(strong, static_cast<std::size_t>(method.options.refine.max_candidates));
 }
 
-/// Section 7. Every rough skeleton grows alone; the likelier ones also against each other, which keeps people apart who
-/// touch. Which of the two was right, the second pass tells.
+/// Grows masks (section 7). Every rough skeleton grows alone; the likelier ones also grow against each other, which
+/// separates people who touch. The second pass decides which result is better.
 std::vector<Candidate> grow_rough(const Method& method, const Scene& scene, const PersonGrower& grower) {
   const std::size_t count =
       std::min(scene.rough.size(), static_cast<std::size_t>(method.options.refine.max_candidates));
@@ -87,7 +87,7 @@ std::vector<Candidate> grow_rough(const Method& method, const Scene& scene, cons
   return candidates;
 }
 
-/// Looks for each known person's skeleton where the person is expected, and grows it with the known appearance.
+/// Searches for each known person's skeleton where the person is expected, and grows it with the known appearance.
 std::vector<Candidate> grow_known(const Method& method, const Frame& frame, const Scene& scene, const Prior& prior,
                                   const PersonGrower& grower) {
   std::vector<Candidate> candidates;
@@ -116,7 +116,7 @@ std::vector<Candidate> propose(const Method& method, const Frame& frame, const S
   return candidates;
 }
 
-/// Returns the best skeleton of the candidate's labels, which lie in `box`; one without parts where there is none.
+/// Returns the best skeleton of the candidate's labels, which are within `box`, or one without parts if there is none.
 Skeleton second_pass(const Method& method, const Frame& frame, const Candidate& candidate, const Box& box) {
   ClusterOptions options = method.options.cluster;
   const float scale = method.options.refine.area_scale;
@@ -128,7 +128,7 @@ Skeleton second_pass(const Method& method, const Frame& frame, const Candidate& 
   return found.empty() ? Skeleton{} : std::move(found.front());
 }
 
-/// Second iteration: the same stages on one person, and the better of its two skeletons.
+/// Runs the same stages on one person a second time, and keeps the better of the two skeletons.
 Candidate refine(const Method& method, const Frame& frame, const Scene& scene, Candidate candidate) {
   const Box box = bounding_box(candidate.grown);
   if (box.width == 0) return candidate;
@@ -148,7 +148,7 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, C
   return candidate;
 }
 
-/// Returns whether the mask mostly repeats what is taken already.
+/// Returns whether most of the mask is already taken.
 bool repeats(const Mask& mask, const Mask& taken, float max_overlap) {
   long pixels = 0;
   long shared = 0;
@@ -175,8 +175,8 @@ Person make_person(const BodyModel& body, const Candidate& candidate, const Mask
   return person;
 }
 
-/// Returns those of the candidates, which come surest first, who are people, and marks them as accepted. Who mostly
-/// repeats a surer one is dropped; pixels that two share stay with the surer.
+/// Returns those candidates that are people, and marks them as accepted. `candidates` are sorted by certainty. A
+/// candidate that mostly repeats a more certain one is dropped; pixels that two share belong to the more certain one.
 std::vector<Person> choose_people(const Method& method, const Frame& frame, std::vector<Candidate>& candidates) {
   const RefineOptions& options = method.options.refine;
   std::vector<Person> people;
@@ -204,7 +204,7 @@ void fill(Trace& trace, const Method& method, const Frame& frame, Scene& scene, 
   if (!person.empty()) trace.inside = method.labeller.label_person(scene.labels, frame, person, bounding_box(person));
 }
 
-/// The method on one frame, whatever its size.
+/// Runs the method on one frame of any size.
 std::vector<Person> detect_everywhere(const Method& method, const Frame& frame, const Prior& prior, Trace* trace,
                                       const Mask& person, StageTimes* times) {
   StageClock clock(times);

@@ -20,13 +20,13 @@ namespace vesalius {
 
 /// Second iteration and acceptance (section 7).
 struct RefineOptions {
-  bool second_pass = true;        ///< off: the rough skeleton and its grown mask are the result
+  bool second_pass = true;        ///< if false, the rough skeleton and its grown mask are the result
   float area_scale = 0.5F;        ///< multiplies the smallest area of a part in the second pass
   int max_candidates = 12;        ///< most rough skeletons refined in one frame
-  float rival_likelihood = 0.2F;  ///< rough skeletons of at least this likelihood a part grow against each other
+  float rival_likelihood = 0.2F;  ///< rough skeletons of at least this likelihood per part grow against each other
   int min_parts = 6;              ///< fewest parts of a person after the second pass
   float min_score = 0.5F;         ///< lowest score of a person
-  float max_overlap = 0.3F;       ///< share of its mask that a person may have in common with a surer one
+  float max_overlap = 0.3F;       ///< share of the mask that a person may have in common with a more certain one
 };
 
 struct DetectOptions {
@@ -37,36 +37,36 @@ struct DetectOptions {
   SearchOptions search;
   GrowOptions grow;
   RefineOptions refine;
-  ScoreOptions score;  ///< with forests that have a background class
-  ScoreOptions score_without_background = vesalius::score_without_background();  ///< with others
+  ScoreOptions score;  ///< for forests that have a background class
+  ScoreOptions score_without_background = vesalius::score_without_background();  ///< for other forests
 };
 void visit_options(const std::string& prefix, DetectOptions& options, OptionVisitor& visitor);
 
-/// Labels of one frame's pixels, of its size.
+/// The labels of one frame's pixels, in its size.
 struct FrameLabels {
-  LabelImage labels;  ///< of the first pass, smoothed: Trace::labels
-  LabelImage inside;  ///< of a person's pixels, as the second pass labels them; empty where no person was given
+  LabelImage labels;  ///< smoothed labels of the first pass: Trace::labels
+  LabelImage inside;  ///< labels of a person's pixels by the second pass; empty if no person was given
 };
 
 struct Method;
 
-/// The whole method: people of one frame. Keeps only memory between frames, and copies of it share that; safe to call
-/// from several threads.
+/// The whole method: it finds the people in one frame. Between frames it keeps only memory, which its copies share. It
+/// may be called from several threads.
 class Detector {
  public:
-  /// Throws Error for an inconsistent forest, UsageError for an option outside its range.
+  /// Throws Error for an inconsistent forest, and UsageError for an option outside its range.
   explicit Detector(Forest forest, DetectOptions options = {});
   explicit Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options = {});
 
-  /// Returns the people in the frame, surest first; none when nobody is in view. `prior` says what earlier frames tell
-  /// about them. Adds to `times` what each stage took. Throws Error for a frame whose images do not fit its camera, or
-  /// a prior that does not fit the frame.
+  /// Returns the people in the frame, the most certain first; none if nobody is in view. `prior` says what earlier
+  /// frames tell about them. Adds the time of each stage to `times`. Throws Error for a frame whose images do not fit
+  /// its camera, or a prior that does not fit the frame.
   std::vector<Person> detect(const Frame& frame, const Prior& prior, Trace* trace = nullptr,
                              StageTimes* times = nullptr) const;
   std::vector<Person> detect(const Frame& frame, Trace* trace = nullptr, StageTimes* times = nullptr) const;
 
-  /// Returns the labels of the first pass, and nothing else of the method; with `person`, also those that the second
-  /// pass gives the pixels where that is non-zero. Throws Error for a frame whose images do not fit its camera.
+  /// Returns the labels of the first pass and runs no other stage. With `person`, also returns the second pass's labels
+  /// of the pixels where it is non-zero. Throws Error for a frame whose images do not fit its camera.
   FrameLabels label(const Frame& frame, const Mask* person = nullptr) const;
 
   const BodyModel& body() const;

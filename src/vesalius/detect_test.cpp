@@ -14,7 +14,7 @@ namespace {
 
 const Camera kCamera{320, 240, 262.5F, 262.5F, 159.5F, 119.5F};
 
-/// Knows the truth: what the stages after labelling make of perfect labels.
+/// A labeller that knows the truth. It shows what the stages after labelling make of perfect labels.
 class TruthLabeller : public PixelLabeller {
  public:
   TruthLabeller(LabelImage truth, BodyModel body, bool background)
@@ -23,7 +23,7 @@ class TruthLabeller : public PixelLabeller {
   void label_into(const DepthImage& depth, const Camera& camera, float /*gate*/, Posteriors& out) const override {
     out = {depth.width(), depth.height(), body_.part_count() + (background_ ? 1 : 0), 1, {}};
     out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
-    // The second pass shows a part of the picture: its principal point tells which.
+    // The second pass shows a part of the picture. Its principal point tells which one.
     const int left = static_cast<int>(std::lround(kCamera.cx - camera.cx));
     const int top = static_cast<int>(std::lround(kCamera.cy - camera.cy));
     for (int v = 0; v < depth.height(); ++v) {
@@ -51,7 +51,7 @@ class TruthLabeller : public PixelLabeller {
 CapsuleScene one_person(float z_m) {
   CapsuleScene scene;
   scene.people.emplace_back();
-  // From nearby the camera must stand higher to have the head in view.
+  // A near camera must be higher to have the head in view.
   scene.floor_y_m = z_m < 1.5F ? 1.3F : 0.9F;
   scene.people[0].feet = {0.1F, scene.floor_y_m, z_m};
   scene.people[0].pose.l_arm.raise = 0.9F;
@@ -66,7 +66,7 @@ std::vector<Person> detect_truth(const LabelledFrame& truth, bool background, co
   return detector.detect(truth.frame, trace);
 }
 
-/// Mean of the part's visible surface on person `who`, and its pixels.
+/// Returns the mean of the part's visible surface on person `who`, and its number of pixels.
 std::pair<Eigen::Vector3f, int> visible_centre(const LabelledFrame& truth, int who, int part) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int n = 0;
@@ -95,7 +95,7 @@ TEST_P(Distances, EveryVisiblePartIsWithinFourCentimetres) {
     const auto [centre, pixels] = visible_centre(truth, 0, part);
     const float area_cm2 = static_cast<float>(pixels) * z * z / (262.5F * 262.5F) * 1e4F;
     if (pixels < 25 || area_cm2 < 25.F) continue;
-    // Without a background class the floor is taken out first, and at 4 m with it what is lower than 7 cm.
+    // Without a background class the floor is removed first, and at 4 m everything lower than 7 cm with it.
     if (!background && z > 3.5F && paper_body().parts[part].name.ends_with("foot")) continue;
     ++visible;
     const SkeletonPart& found = people[0].skeleton.parts[part];
@@ -148,7 +148,7 @@ TEST(Detector, WorksWithoutColour) {
   EXPECT_EQ(detect_truth(truth, true).size(), 1U);
 }
 
-TEST(Detector, MaskLabelsBoxAndScoreOfAPersonAgree) {
+TEST(Detector, GivesAPersonConsistentMaskLabelsBoxAndScore) {
   const LabelledFrame truth = render(one_person(2.5F), kCamera, paper_body());
   Trace trace;
   const std::vector<Person> people = detect_truth(truth, false, paper_body(), {}, &trace);
@@ -176,7 +176,7 @@ TEST(Detector, MaskLabelsBoxAndScoreOfAPersonAgree) {
   EXPECT_EQ(trace.raw_labels.width(), kCamera.width);
 }
 
-TEST(Detector, WithoutSecondPassTheRoughSkeletonIsTheResult) {
+TEST(Detector, ReturnsTheRoughSkeletonWithoutSecondPass) {
   const LabelledFrame truth = render(one_person(2.5F), kCamera, paper_body());
   DetectOptions options;
   options.refine.second_pass = false;
@@ -188,7 +188,7 @@ TEST(Detector, WithoutSecondPassTheRoughSkeletonIsTheResult) {
   EXPECT_TRUE(detect_truth(truth, true, paper_body(), options).empty());
 }
 
-/// Twelve parts above the waist, as a user would write them.
+/// Returns a body of twelve parts above the waist, as a user would write it.
 BodyModel upper_body() {
   const std::vector<std::string> names{"neck",   "l_face_top",  "r_face_top",  "l_chest",   "r_chest",   "l_hips",
                                        "r_hips", "l_upper_arm", "r_upper_arm", "l_forearm", "r_forearm", "l_hand"};
@@ -242,7 +242,7 @@ void expect_same(const std::vector<Person>& a, const std::vector<Person>& b) {
 }
 
 // Labels: threads
-TEST(Detector, SameResultForAnyThreadCountAndEveryTime) {
+TEST(Detector, GivesTheSameResultForAnyNumberOfThreadsAndEveryTime) {
   CapsuleScene scene = one_person(2.5F);
   scene.people.push_back(scene.people[0]);
   scene.people[1].feet.x() = -0.8F;
@@ -254,7 +254,7 @@ TEST(Detector, SameResultForAnyThreadCountAndEveryTime) {
   for (std::size_t i = 1; i < results.size(); ++i) expect_same(results[0], results[i]);
 }
 
-TEST(Detector, LooksAtAGridOfLargePicturesAndAnswersForAllPixels) {
+TEST(Detector, LooksAtAGridOfLargePicturesAndLabelsAllPixels) {
   const Camera large{640, 480, 525.F, 525.F, 319.F, 239.F};  // every second pixel is kCamera's
   const LabelledFrame truth = render(one_person(2.F), large, paper_body());
   const Detector detector(std::make_shared<TruthLabeller>(every_nth(truth.labels, 2), paper_body(), true));
@@ -306,7 +306,8 @@ TEST(Detector, RefusesOptionsOutOfRangeAndFramesOfTwoSizes) {
   EXPECT_THROW(detect_truth(wrong, true), Error);
 }
 
-/// Gives the background more weight than the parts on one person, as a forest does on somebody in unusual clothes.
+/// A labeller that gives the background more weight than the parts on one person, as a forest does for somebody in
+/// unusual clothes.
 class DoubtfulLabeller : public TruthLabeller {
  public:
   DoubtfulLabeller(const LabelledFrame& truth, int doubted)
@@ -328,7 +329,7 @@ class DoubtfulLabeller : public TruthLabeller {
   int doubted_;
 };
 
-/// Two people, of whom the second one is doubted by the labeller.
+/// Two people. The labeller doubts the second one.
 class DetectorWithPrior : public testing::Test {
  protected:
   void SetUp() override {
@@ -339,7 +340,7 @@ class DetectorWithPrior : public testing::Test {
     detector = std::make_unique<Detector>(std::make_shared<DoubtfulLabeller>(truth, 1));
   }
 
-  /// Where a person is, moved by some pixels to the right.
+  /// Returns the pixels of a person, moved to the right by some pixels.
   Mask mask_of(int who, int moved = 0) const {
     Mask mask(kCamera.width, kCamera.height, 0);
     for (int v = 0; v < mask.height(); ++v) {
@@ -361,7 +362,7 @@ class DetectorWithPrior : public testing::Test {
   std::unique_ptr<Detector> detector;
 };
 
-TEST_F(DetectorWithPrior, FindsAgainWhomTheLabelsLose) {
+TEST_F(DetectorWithPrior, FindsAPersonWhomTheLabelsLose) {
   const std::vector<Person> alone = detector->detect(truth.frame);
   ASSERT_EQ(alone.size(), 1U);
   EXPECT_GT(overlap(alone[0].mask, 0), 0.9);
@@ -391,14 +392,14 @@ TEST_F(DetectorWithPrior, ChangesNothingWithoutMasksOfPeople) {
   expect_same(detector->detect(truth.frame, only_looks), expected);
 }
 
-TEST_F(DetectorWithPrior, InventsNobodyWhereNobodyIs) {
+TEST_F(DetectorWithPrior, FindsNobodyInAnEmptyMask) {
   Mask wall(kCamera.width, kCamera.height, 0);
   for (int v = 20; v < 120; ++v) std::fill_n(wall.row(v) + 250, 40, std::uint8_t{1});
   expect_same(detector->detect(truth.frame, {{{wall, {}}, {Mask(kCamera.width, kCamera.height, 0), {}}}}),
               detector->detect(truth.frame));
 }
 
-TEST_F(DetectorWithPrior, MasksAreOfTheFramesSizeOnAGridToo) {
+TEST_F(DetectorWithPrior, TakesMasksOfTheFramesSizeOnAGridToo) {
   DetectOptions options;
   options.grid.step = 2;
   options.cluster.min_pixels = 3;
@@ -444,7 +445,7 @@ TEST_F(DetectorWithPrior, LabelsAsDetectionDoes) {
   }
 }
 
-TEST(Detector, TimesOfStagesAddUp) {
+TEST(Detector, MeasuresTimesThatAddUp) {
   const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
   const Detector detector(std::make_shared<TruthLabeller>(truth.labels, paper_body(), true));
   StageTimes times;

@@ -10,7 +10,7 @@
 namespace vesalius {
 namespace {
 
-/// Sums over the pixels of one cluster, double so that far clusters keep their covariance.
+/// The sums over the pixels of one cluster. They are double so that distant clusters keep their covariance.
 struct Moments {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
@@ -60,7 +60,7 @@ class ClusterFinder {
     return (a - b).squaredNorm() <= gap * gap;
   }
 
-  /// Breadth-first search from (u, v); leaves the cluster's pixels in queue_.
+  /// Runs a breadth-first search from (u, v). Leaves the cluster's pixels in queue_.
   PartCluster fill(int u, int v, std::int32_t id, Image<std::int32_t>& index) {
     PartCluster cluster;
     cluster.label = labels_(u, v);

@@ -26,7 +26,7 @@ struct PartCluster {
   int label = -1;
   int pixels = 0;
   int first_pixel = -1;  ///< row-major index of its first pixel
-  float area_m2 = 0.F;   ///< sum of the pixels' areas across the viewing direction
+  float area_m2 = 0.F;   ///< sum of the pixels' areas perpendicular to the viewing direction
   Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
   Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
   Eigen::Vector3f eigenvalues = Eigen::Vector3f::Zero();  ///< of the covariance, largest first, square metres
@@ -35,12 +35,12 @@ struct PartCluster {
 
 struct Clusters {
   std::vector<PartCluster> items;  ///< largest area first within each label, labels ascending
-  Image<std::int32_t> index;       ///< item that each pixel belongs to, -1 = none
+  Image<std::int32_t> index;       ///< index of each pixel's item, or -1
 };
 
 /// Returns the part proposals of a labelling, found by breadth-first search over the 8-neighbourhood (section 5).
-/// Neighbours of equal label closer than the gap are one cluster; clusters too small, or longer than their part can be,
-/// are dropped. Pixels without a reading belong to none.
+/// Neighbours with equal labels that are closer than the gap belong to one cluster. Clusters that are too small, or
+/// longer than their part can be, are dropped. Pixels without a reading belong to none.
 Clusters find_clusters(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
                        const ClusterOptions& options);
 

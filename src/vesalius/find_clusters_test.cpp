@@ -13,7 +13,7 @@ namespace {
 
 const Camera kCamera{64, 48, 60.F, 60.F, 31.5F, 23.5F};
 
-/// Keeps everything, so that partitions can be compared.
+/// Returns options that keep every cluster, so that partitions can be compared.
 ClusterOptions keep_all() {
   ClusterOptions o;
   o.min_area_cm2 = 0.F;
@@ -84,7 +84,7 @@ TEST(FindClusters, AgreesWithUnionFind) {
   }
 }
 
-/// A w x h rectangle of label 6 (l_... any part) at depth z, top left at (u, v).
+/// Paints a w x h rectangle of label 6 (any part l_...) at depth z with its top left at (u, v).
 void paint(LabelImage& labels, DepthImage& depth, int u, int v, int w, int h, std::uint16_t z, std::uint8_t label = 6) {
   for (int y = v; y < v + h; ++y) {
     for (int x = u; x < u + w; ++x) {
@@ -97,20 +97,20 @@ void paint(LabelImage& labels, DepthImage& depth, int u, int v, int w, int h, st
 TEST(FindClusters, MeasuresARectangle) {
   LabelImage labels(64, 48, kBackground);
   DepthImage depth(64, 48, 4000);
-  paint(labels, depth, 22, 21, 20, 6, 1200);  // centred on the optical axis: 20 mm a pixel
+  paint(labels, depth, 22, 21, 20, 6, 1200);  // centred on the optical axis, with 20 mm per pixel
   const Clusters clusters = find_clusters(labels, depth, kCamera, paper_body(), keep_all());
   ASSERT_EQ(clusters.items.size(), 1U);
   const PartCluster& c = clusters.items[0];
   EXPECT_EQ(c.pixels, 120);
   EXPECT_NEAR(c.area_m2, 120 * 0.02 * 0.02, 1e-5);
   EXPECT_NEAR((c.centroid - Eigen::Vector3f(0.F, 0.F, 1.2F)).norm(), 0.0, 1e-4);
-  EXPECT_NEAR(c.covariance(0, 0), 0.02 * 0.02 * (20 * 20 - 1) / 12.0, 1e-5);  // of a row of points
+  EXPECT_NEAR(c.covariance(0, 0), 0.02 * 0.02 * (20 * 20 - 1) / 12.0, 1e-5);  // the variance of a row of points
   EXPECT_NEAR(c.covariance(1, 1), 0.02 * 0.02 * (6 * 6 - 1) / 12.0, 1e-5);
   EXPECT_NEAR(c.eigenvalues.x(), c.covariance(0, 0), 1e-6);
   EXPECT_NEAR(c.extent_m, 0.4, 0.001);
 }
 
-TEST(FindClusters, SmallestPartIsAnAreaNotAPixelCount) {
+TEST(FindClusters, LimitsTheAreaOfPartsNotTheirPixels) {
   ClusterOptions options;
   options.min_area_cm2 = 20.F;
   options.min_pixels = 4;
@@ -126,7 +126,7 @@ TEST(FindClusters, SmallestPartIsAnAreaNotAPixelCount) {
   EXPECT_EQ(found(1, 3000), 0U);  // 25 cm^2 again, but a single pixel
 }
 
-TEST(FindClusters, DropsPartsLongerThanTheyCanBe) {
+TEST(FindClusters, DropsPartsThatAreTooLong) {
   LabelImage labels(64, 48, kBackground);
   DepthImage depth(64, 48, 4000);
   const int knee = paper_body().find_part("l_knee");                          // up to 0.6 m

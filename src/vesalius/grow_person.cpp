@@ -7,7 +7,7 @@
 namespace vesalius {
 namespace {
 
-/// Fewest pixels that a colour is learned from.
+/// Smallest number of pixels from which colours are learned.
 constexpr int kLeastColourSamples = 200;
 
 /// Blurs `count` values from `begin` on with a box of `reach` bins each way.
@@ -24,7 +24,7 @@ void blur(std::array<float, ColourModel::kBins>& values, int begin, int count, i
   }
 }
 
-/// Returns how far the body extends around each part: further where a neighbouring part was not seen.
+/// Returns the distance to which the body extends around each part. It is larger if a neighbouring part was not seen.
 std::vector<float> reach_of_parts(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
   std::vector<float> reach(body.parts.size(), options.reach_m);
   for (const BodyLink& link : body.links) {
@@ -37,8 +37,8 @@ std::vector<float> reach_of_parts(const Skeleton& rough, const BodyModel& body, 
   return reach;
 }
 
-/// Returns how near to each part a colour that the seeds do not have may be the person's all the same: close to any
-/// part, and as far as parts reach that were not seen (hair, hands, shoes).
+/// Returns for each part the radius within which a colour that the seeds lack may still be the person's: small around
+/// any part, and the reach of unseen parts such as hair, hands and shoes.
 std::vector<float> any_colour_radius(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
   std::vector<float> radius(body.parts.size(), options.own_colour_m);
   for (const BodyLink& link : body.links) {
@@ -100,7 +100,7 @@ void ColourModel::finish(const GrowOptions& options) {
   blur(probabilities_, kHues, kGreys, std::min(kGreys - 1, steps(options.lightness_tolerance, 256.F / kGreys)), false);
   float total = 0.F;
   for (const float p : probabilities_) total += p;
-  // A share for the unseen keeps ratios finite.
+  // A share for unseen colours keeps ratios finite.
   constexpr float kUnseen = 0.05F;
   for (float& p : probabilities_) p = (total > 0.F ? (1.F - kUnseen) * p / total : 0.F) + kUnseen / kBins;
 }
@@ -129,7 +129,8 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
   for (std::size_t i = 0; i < rough.parts.size(); ++i) {
     if (rough.parts[i].state != State::observed || reach[i] <= 0.F) continue;
     const Eigen::Vector3f& centre = rough.parts[i].centre;
-    // Picture rows and columns that the sphere can project to; nearer than its own radius it may fill the picture.
+    // These are the rows and columns to which the sphere can project. If it is nearer than its own radius, it may fill
+    // the picture.
     const float nearest = std::max(0.1F, centre.z() - reach[i]);
     const Eigen::Vector2f middle = frame_.camera.pixel(centre);
     const float ru =

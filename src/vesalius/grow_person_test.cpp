@@ -12,14 +12,14 @@ namespace {
 
 const Camera kCamera{320, 240, 262.5F, 262.5F, 159.5F, 119.5F};
 
-/// A scene with its true labels, proposals made from some of its parts and one rough skeleton a person.
+/// A scene with its true labels, proposals made from some of its parts, and one rough skeleton for each person.
 struct Scene {
   LabelledFrame truth;
   Clusters clusters;
   std::vector<Skeleton> rough;
 };
 
-/// `seen`: parts that the rough skeleton has.
+/// `seen` names the parts of the rough skeleton.
 Scene make_scene(const CapsuleScene& capsules, const std::vector<std::string>& seen) {
   Scene scene;
   scene.truth = render(capsules, kCamera, paper_body());
@@ -58,7 +58,7 @@ const std::vector<std::string> kHalf{"neck",       "l_chest",   "r_chest",     "
 
 struct Overlap {
   double iou = 0.0;
-  long leaked = 0;  ///< mask pixels off the person
+  long leaked = 0;  ///< mask pixels outside the person
   long person = 0;
 };
 
@@ -109,7 +109,7 @@ TEST(GrowPerson, DoesNotLeakIntoAWallAtTheBack) {
   EXPECT_GT(o.iou, 0.93);
 }
 
-TEST(GrowPerson, TouchingNeighboursKeepTheirOwnPixels) {
+TEST(GrowPerson, GivesTouchingNeighboursTheirOwnPixels) {
   CapsuleScene capsules;
   capsules.people.resize(2);
   capsules.people[0].feet = {-0.22F, 1.F, 2.5F};
@@ -128,7 +128,7 @@ TEST(GrowPerson, ReachesAnUnseenLimbButNotAcrossTheRoom) {
   CapsuleScene capsules;
   capsules.people.emplace_back();
   capsules.people[0].pose.l_arm.raise = 1.5F;  // stretched out sideways
-  // A box that touches the hand and goes on for two metres.
+  // The box touches the hand and extends for two metres.
   capsules.boxes.push_back({{0.7F, -0.6F, 2.45F}, {3.F, -0.2F, 2.55F}, {90, 160, 90}});
   const Scene scene = make_scene(capsules, kHalf);
   const Mask mask = grow_all(scene)[0];
@@ -146,7 +146,7 @@ TEST(GrowPerson, ReachesAnUnseenLimbButNotAcrossTheRoom) {
   EXPECT_EQ(on_box_far, 0);
 }
 
-/// A person with a red box against the outer side of a leg, no gap in depth.
+/// Returns a person with a red box against the outer side of a leg, without a gap in depth.
 CapsuleScene person_with_box() {
   CapsuleScene capsules;
   capsules.people.emplace_back();
@@ -161,14 +161,14 @@ std::vector<std::string> all_parts() {
   return names;
 }
 
-TEST(GrowPerson, ColourStopsWhereDepthDoesNot) {
-  // Every part is known, so no unseen limb can be what the box is.
+TEST(GrowPerson, StopsAtOtherColoursWhereDepthIsContinuous) {
+  // Every part is known, so the box cannot be an unseen limb.
   const Scene scene = make_scene(person_with_box(), all_parts());
   GrowOptions blind;
   blind.use_colour = false;
   const long with = compare(grow_all(scene)[0], scene.truth.person, 0).leaked;
   const long without = compare(grow_all(scene, blind)[0], scene.truth.person, 0).leaked;
-  EXPECT_GT(without, 200);  // depth alone runs onto the box
+  EXPECT_GT(without, 200);  // depth alone lets the mask grow onto the box
   EXPECT_LT(with, without / 2);
 }
 
@@ -181,8 +181,8 @@ TEST(GrowPerson, WorksWithoutColour) {
   EXPECT_EQ(grow_all(scene), expected);
 }
 
-TEST(GrowPerson, KnownColoursStopWhereThoseOfTheSeedsAreTooFew) {
-  // So little of the person is seen in this frame that no colour can be learned from it.
+TEST(GrowPerson, StopsAtKnownColoursIfTheSeedsHaveTooFew) {
+  // This frame shows too little of the person to learn colours from it.
   const Scene scene = make_scene(person_with_box(), {"l_knee"});
   const Mask flat = flat_pixels(scene.truth.frame.depth, kCamera, {});
   GrowOptions options;
@@ -200,7 +200,7 @@ TEST(GrowPerson, KnownColoursStopWhereThoseOfTheSeedsAreTooFew) {
   EXPECT_EQ(grower.grow(scene.rough, scene.clusters, {ColourModel{}}), grower.grow(scene.rough, scene.clusters));
 }
 
-TEST(ColourModel, HuesWrapAndGreysHaveNone) {
+TEST(ColourModel, WrapsHuesAndBinsGreysByLightness) {
   constexpr float kGuard = 0.2F;
   const int red = ColourModel::bin({200, 20, 20}, kGuard);
   EXPECT_EQ(red, 0);

@@ -9,7 +9,7 @@
 namespace vesalius {
 namespace {
 
-/// Readings looked through for one beyond a hole: silhouettes have a rim without any.
+/// Number of pixels without a reading that are skipped at the outline, because silhouettes have a rim without any.
 constexpr int kRim = 5;
 
 /// The pixels of a mask.
@@ -54,12 +54,12 @@ float share_explained(const Frame& frame, const Inside& inside, const LabelImage
   return pixels > 0 ? static_cast<float>(explained) / static_cast<float>(pixels) : 0.F;
 }
 
-/// What lies beyond the sides of a mask's pixels that are its outline.
+/// The surroundings of the outline: counts of the sides of a mask's pixels by what is beyond them.
 struct Outline {
-  long open = 0;      ///< further away, or nothing
-  long closed = 0;    ///< as far away
+  long open = 0;      ///< further away, or without a reading
+  long closed = 0;    ///< at the same distance
   long occluded = 0;  ///< nearer
-  long border = 0;    ///< the picture ends
+  long border = 0;    ///< at the end of the picture
 
   float share_open() const { return share(open, open + closed); }
   float share_occluded() const { return share(occluded, open + closed + occluded); }
@@ -98,9 +98,9 @@ Outline look_around(const Frame& frame, const Inside& inside, float step_m) {
   return outline;
 }
 
-/// How sure the forest is of the mask's pixels, means over them; 0 without pixels.
+/// The forest's certainty about the mask's pixels, as means over them; 0 without pixels.
 struct Certainty {
-  double body = 0.0;  ///< the parts' share of all classes: 1 where there is no background class
+  double body = 0.0;  ///< the parts' share of all classes; 1 if there is no background class
   double part = 0.0;  ///< the likeliest part's share of all parts
 };
 
@@ -120,7 +120,7 @@ Certainty certainty_of(const Inside& inside, const Posteriors& posteriors, int p
   return {sum.body / static_cast<double>(pixels), sum.part / static_cast<double>(pixels)};
 }
 
-/// How large it is and how far away.
+/// The size of a mask and its distance.
 struct Extent {
   double area_m2 = 0.0;
   double mean_depth_m = 0.0;  ///< 0 without pixels

@@ -30,25 +30,25 @@ struct ScoreOptions {
 };
 void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisitor& visitor);
 
-/// Returns the defaults for forests without background class, fitted with the paper's released trees. Furniture cut out
-/// looks like a body to them, so the outline tells more.
+/// Returns the defaults for forests without background class, fitted with the paper's released trees. Cut-out furniture
+/// looks like a body to them, so the outline matters more.
 ScoreOptions score_without_background();
 
-/// What speaks for a grown mask and its skeleton being a person; all 0-1.
+/// The evidence that a grown mask and its skeleton are a person. All numbers are 0-1.
 struct Evidence {
   float likelihood = 0.F;  ///< accumulated likelihood of the skeleton over the number of the body's parts
   float explained = 0.F;   ///< share of the mask whose label's part, or its mirror partner, was found nearby
-  float open = 0.F;        ///< share of the outline, occluded and cut-off outline apart, with nothing close behind
+  float open = 0.F;        ///< share of the free outline (not occluded or cut off) with nothing close behind
   float core = 0.F;        ///< share found of the search's roots and the parts next to them
   float body = 0.F;        ///< mean over the mask of the parts' share of the posterior; 1 without background class
-  float size = 0.F;        ///< the mask's area over the usual one, or the other way round: the smaller of the two
-  float occluded = 0.F;    ///< share of the outline with something nearer beyond it: it excuses what is missing
-  float near = 0.F;        ///< one metre over the mean depth, at most 1: what is far is told from a body less surely
+  float size = 0.F;        ///< ratio of the mask's area and the usual one, or its inverse if that is smaller
+  float occluded = 0.F;    ///< share of the outline beside something nearer, which excuses missing parts
+  float near = 0.F;        ///< one metre divided by the mean depth, at most 1, since distant people are less certain
   float certain = 0.F;  ///< mean over the mask of the likeliest part's share of all parts: furniture looks like several
   float border = 0.F;   ///< share of the outline at the picture's border
 };
 
-/// A kind of evidence and the option that says what it weighs.
+/// A kind of evidence and the option with its weight.
 struct EvidenceWeight {
   float Evidence::*evidence;
   float ScoreOptions::*weight;
@@ -65,12 +65,12 @@ inline constexpr std::array<EvidenceWeight, 10> kEvidenceWeights{
      {&Evidence::certain, &ScoreOptions::certain_weight},
      {&Evidence::border, &ScoreOptions::border_weight}}};
 
-/// Measures what speaks for a mask and a skeleton being a person. `labels` are the part labels inside `mask`,
+/// Measures the evidence that a mask and a skeleton are a person. `labels` are the part labels inside `mask`,
 /// `posteriors` those of the first pass; all have the frame's size.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
                          const Skeleton& skeleton, const BodyModel& body, const ScoreOptions& options);
 
-/// Returns how surely it is a person, 0-1, by a logistic function whose weights were fitted to frames with and without
+/// Returns the score of a person, 0-1, by a logistic function whose weights were fitted to frames with and without
 /// people.
 float person_score(const Evidence& evidence, const ScoreOptions& options);
 

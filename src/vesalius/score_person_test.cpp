@@ -9,7 +9,7 @@ namespace {
 
 const Camera kCamera{40, 30, 100.F, 100.F, 19.5F, 14.5F};
 
-/// A square of 10 x 10 pixels, 2 m away, before something at `behind_mm`.
+/// A square of 10 x 10 pixels at 2 m, in front of a surface at `behind_mm`.
 struct Square {
   explicit Square(std::uint16_t behind_mm) {
     frame.camera = kCamera;
@@ -38,13 +38,13 @@ struct Square {
   Skeleton skeleton;
 };
 
-TEST(GatherEvidence, OutlineIsOpenBeforeAFarWallAndClosedOnIt) {
+TEST(GatherEvidence, FindsAnOpenOutlineBeforeAFarWallAndAClosedOneOnIt) {
   EXPECT_FLOAT_EQ(Square(3000).evidence().open, 1.F);
   EXPECT_FLOAT_EQ(Square(0).evidence().open, 1.F);  // holes are far
   EXPECT_FLOAT_EQ(Square(2050).evidence().open, 0.F);
 }
 
-TEST(GatherEvidence, ARimWithoutReadingIsLookedThrough) {
+TEST(GatherEvidence, SkipsARimWithoutReadings) {
   Square s(2050);
   for (int v = 8; v < 22; ++v) {
     for (int u = 13; u < 27; ++u) {
@@ -54,15 +54,15 @@ TEST(GatherEvidence, ARimWithoutReadingIsLookedThrough) {
   EXPECT_FLOAT_EQ(s.evidence().open, 0.F);
 }
 
-TEST(GatherEvidence, OutlineBehindAnOccluderDoesNotCount) {
+TEST(GatherEvidence, IgnoresTheOutlineBehindAnOccluder) {
   Square s(3000);
-  for (int u = 15; u < 25; ++u) s.frame.depth(u, 20) = 1500;  // something in front of its lower edge
+  for (int u = 15; u < 25; ++u) s.frame.depth(u, 20) = 1500;  // a surface in front of its lower edge
   EXPECT_FLOAT_EQ(s.evidence().open, 1.F);
-  for (int u = 15; u < 25; ++u) s.frame.depth(u, 9) = 2010;  // and something it touches above
+  for (int u = 15; u < 25; ++u) s.frame.depth(u, 9) = 2010;  // and a surface that it touches above
   EXPECT_NEAR(s.evidence().open, 20.F / 30.F, 1e-5);
 }
 
-TEST(GatherEvidence, OccludedIsTheShareOfTheOutlineBehindSomethingNearer) {
+TEST(GatherEvidence, MeasuresTheOccludedShareOfTheOutline) {
   Square s(3000);
   EXPECT_FLOAT_EQ(s.evidence().occluded, 0.F);
   for (int u = 15; u < 25; ++u) s.frame.depth(u, 20) = 1500;
@@ -71,7 +71,7 @@ TEST(GatherEvidence, OccludedIsTheShareOfTheOutlineBehindSomethingNearer) {
   EXPECT_FLOAT_EQ(s.evidence().occluded, 0.F);
 }
 
-TEST(GatherEvidence, NearFallsWithTheMeanDepthBeyondAMetre) {
+TEST(GatherEvidence, MeasuresNearnessByTheMeanDepthBeyondAMetre) {
   Square s(3000);
   EXPECT_FLOAT_EQ(s.evidence().near, 0.5F);
   for (int v = 10; v < 20; ++v) {
@@ -84,7 +84,7 @@ TEST(GatherEvidence, NearFallsWithTheMeanDepthBeyondAMetre) {
   EXPECT_FLOAT_EQ(s.evidence().near, 1.F);
 }
 
-TEST(GatherEvidence, ExplainedByTheLabelsPartOrItsPartnerNearby) {
+TEST(GatherEvidence, MeasuresPixelsExplainedByTheirPartOrItsPartnerNearby) {
   Square s(3000);
   const auto knee = static_cast<std::uint8_t>(paper_body().find_part("l_knee"));
   for (int v = 10; v < 20; ++v) {
@@ -97,7 +97,7 @@ TEST(GatherEvidence, ExplainedByTheLabelsPartOrItsPartnerNearby) {
   EXPECT_FLOAT_EQ(s.evidence().explained, 0.F);
 }
 
-TEST(GatherEvidence, CoreIsTheRootsAndWhatIsNextToThem) {
+TEST(GatherEvidence, MeasuresTheFoundRootsAndTheirNeighbours) {
   Square s(3000);
   EXPECT_FLOAT_EQ(s.evidence().core, 0.F);
   s.observe("neck", {0.F, 0.F, 2.F});
@@ -106,7 +106,7 @@ TEST(GatherEvidence, CoreIsTheRootsAndWhatIsNextToThem) {
   EXPECT_FLOAT_EQ(s.evidence().core, 2.F / 7.F);  // neck, four face quarters, two chest halves
 }
 
-TEST(GatherEvidence, BodyIsThePartsShareOfThePosterior) {
+TEST(GatherEvidence, MeasuresThePartsShareOfThePosterior) {
   Square s(3000);
   for (int v = 10; v < 20; ++v) {
     for (int u = 15; u < 25; ++u) {
@@ -120,13 +120,13 @@ TEST(GatherEvidence, BodyIsThePartsShareOfThePosterior) {
   EXPECT_FLOAT_EQ(s.evidence().body, 1.F);  // without background
 }
 
-TEST(GatherEvidence, CertainIsTheLikeliestPartsShareOfAllParts) {
+TEST(GatherEvidence, MeasuresTheLikeliestPartsShareOfAllParts) {
   Square s(3000);
   for (int v = 10; v < 20; ++v) {
     for (int u = 15; u < 25; ++u) {
       s.posteriors.at(u, v)[3] = 50;
       s.posteriors.at(u, v)[7] = u < 20 ? 150 : 50;  // 0.75 and 0.5
-      s.posteriors.at(u, v)[25] = 200;               // of the background nothing is asked
+      s.posteriors.at(u, v)[25] = 200;               // the background is ignored
     }
   }
   EXPECT_FLOAT_EQ(s.evidence().certain, 0.5F * (0.75F + 0.5F));
@@ -134,7 +134,7 @@ TEST(GatherEvidence, CertainIsTheLikeliestPartsShareOfAllParts) {
   EXPECT_NEAR(s.evidence().certain, 0.5F * (0.75F + 0.5F) - 0.0075F, 1e-6);
 }
 
-TEST(GatherEvidence, BorderIsTheShareOfTheOutlineWhereThePictureEnds) {
+TEST(GatherEvidence, MeasuresTheShareOfTheOutlineAtThePicturesBorder) {
   Square s(3000);
   EXPECT_FLOAT_EQ(s.evidence().border, 0.F);
   s.mask = Mask(40, 30, 0);
@@ -150,7 +150,7 @@ TEST(GatherEvidence, BorderIsTheShareOfTheOutlineWhereThePictureEnds) {
   EXPECT_FLOAT_EQ(s.evidence().occluded, 0.5F);
 }
 
-TEST(GatherEvidence, SizeIsOneForTheUsualAreaAndLessForMoreAndLess) {
+TEST(GatherEvidence, MeasuresSizeAsOneOnlyForTheUsualArea) {
   const Square s(3000);  // 100 pixels of 4 cm^2
   ScoreOptions options;
   options.usual_area_m2 = 0.04F;

@@ -6,11 +6,11 @@
 namespace vesalius {
 namespace {
 
-/// Visible area of a part, as a share of its typical area, that is not held against it.
+/// Share of a part's typical area above which its visible area costs no likelihood.
 constexpr float kLeastAreaShare = 0.25F;
 constexpr float kMostAreaShare = 2.5F;
 
-/// The kinematic tree seen from one root: links are followed away from it.
+/// The kinematic tree as seen from one root; links are followed away from it.
 struct RootedTree {
   int root = -1;
   std::vector<std::vector<int>> children;  ///< [part]
@@ -33,7 +33,7 @@ RootedTree root_tree(const BodyModel& body, int root) {
   return tree;
 }
 
-/// Distance that the centres of two parts may have.
+/// The range of distances of the centres of two parts.
 struct Span {
   float low_m = 0.F;
   float high_m = 0.F;
@@ -43,15 +43,15 @@ struct Span {
 
 Span span_of(const BodyLink& link) { return {link.length_m, link.length_m, link.tolerance_m, 0.F}; }
 
-/// Two links in a row: from folded to half to stretched out.
+/// Returns the range for two consecutive links, from half folded to stretched out.
 Span span_of(const BodyLink& a, const BodyLink& b) {
   const float most = a.length_m + b.length_m;
   const float least = std::max(std::abs(a.length_m - b.length_m), 0.5F * most);
   return {least, most, std::max(a.tolerance_m, b.tolerance_m), 0.5F * most};
 }
 
-/// d_n of section 6, in tolerances: deviation of the distance between two clusters from what their parts should
-/// have, and the empty space between their extents.
+/// Returns d_n of section 6 in tolerances: the deviation of the distance between two clusters from that of their parts,
+/// and the empty space between their extents.
 float normalised_distance(const PartCluster& a, const PartCluster& b, const Span& span, const SearchOptions& options) {
   const Eigen::Vector3f line = b.centroid - a.centroid;
   const float distance = line.norm();
@@ -65,13 +65,13 @@ float normalised_distance(const PartCluster& a, const PartCluster& b, const Span
   return std::hypot(outside / tolerance, gap / options.gap_tolerance_m);
 }
 
-/// A cluster that hangs together with another, and how badly.
+/// A cluster that is consistent with another one, and its error.
 struct Partner {
   int cluster = -1;
   float error = 0.F;
 };
 
-/// Chosen continuation from a cluster to one child part: the child itself, or grandchildren past a missing child.
+/// The chosen continuation from a cluster to one child part: the child itself, or grandchildren past a missing child.
 struct Branch {
   float value = 0.F;
   std::vector<Partner> partners;
@@ -121,7 +121,7 @@ class SkeletonSearch {
   }
 
  private:
-  /// Likelihood that a part of this size adds: 1 for a feasible area, less for slivers and slabs.
+  /// Returns the likelihood that a part of this size adds: 1 for a feasible area, less for slivers and slabs.
   float gain(const PartCluster& cluster) const {
     const float share = cluster.area_m2 / body_.parts[cluster.label].typical_area_m2;
     const float off = std::max({0.F, std::log(kLeastAreaShare / share), std::log(share / kMostAreaShare)});
@@ -156,7 +156,8 @@ class SkeletonSearch {
     }
   }
 
-  /// Best accumulated likelihood over the partners of `from` that are of part `part`; value 0 for none.
+  /// Returns the best accumulated likelihood over the partners of `from` that are of part `part`; its value is 0 if
+  /// there is none.
   Branch best_partner(int from, int part, const std::vector<std::vector<Partner>>& pairs,
                       const std::vector<float>& values) const {
     Branch best;
@@ -169,7 +170,7 @@ class SkeletonSearch {
     return best;
   }
 
-  /// The better of the child and, skipping it, its children (section 6: two degrees of separation).
+  /// Returns the better of the child and, skipping it, its children (section 6: two degrees of separation).
   Branch best_branch(const RootedTree& tree, int from, int child, const std::vector<float>& values) const {
     Branch direct = best_partner(from, child, one_step_, values);
     Branch skipped;
@@ -181,7 +182,7 @@ class SkeletonSearch {
     return skipped.value > direct.value ? skipped : direct;
   }
 
-  /// Likelihood of the best subtree under every cluster, leaves first.
+  /// Returns the likelihood of the best subtree under every cluster, leaves first.
   std::vector<float> accumulate(const RootedTree& tree) const {
     std::vector<float> values(clusters_.size(), 0.F);
     for (auto part = tree.order.rbegin(); part != tree.order.rend(); ++part) {

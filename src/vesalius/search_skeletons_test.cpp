@@ -14,7 +14,7 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-/// A six-part body: trunk - neck - head, trunk - left, trunk - right - hand.
+/// Returns a six-part body: trunk - neck - head, trunk - left, trunk - right - hand.
 BodyModel small_body() {
   BodyModel body;
   for (const char* name : {"trunk", "neck", "head", "left", "right", "hand"}) {
@@ -41,7 +41,7 @@ PartCluster cluster(int label, const Vector3f& centre, float area_m2 = 0.02F, fl
   return c;
 }
 
-/// Where the parts of a person at `at` are.
+/// Returns the places of the parts of a person at `at`.
 std::vector<Vector3f> person_at(const Vector3f& at) {
   return {at,
           at + Vector3f(0.F, -0.2F, 0.F),
@@ -51,7 +51,7 @@ std::vector<Vector3f> person_at(const Vector3f& at) {
           at + Vector3f(-0.3F, 0.2F, 0.F)};
 }
 
-/// The same likelihood by trying every assignment of clusters to parts.
+/// Computes the same likelihood by trying every assignment of clusters to parts.
 class Exhaustive {
  public:
   Exhaustive(const std::vector<PartCluster>& clusters, const BodyModel& body, const SearchOptions& options)
@@ -86,7 +86,7 @@ class Exhaustive {
     return best;
   }
 
-  /// Links on the way from `part` to `root`, nearest the part first.
+  /// Returns the links from `part` to `root`, beginning at the part.
   std::vector<const BodyLink*> way(int part, int root, int from = -1) const {
     if (part == root) return {};
     for (const BodyLink& link : body_.links) {
@@ -169,14 +169,12 @@ void expect_what_exhaustive_search_finds(bool any_root) {
     EXPECT_NEAR(found[0].score, best, 1e-4) << "seed " << seed;
     with_several_parts += found[0].found >= 3 ? 1 : 0;
   }
-  EXPECT_GT(with_several_parts, 30);  // the cases are worth something
+  EXPECT_GT(with_several_parts, 30);  // most cases are not trivial
 }
 
-TEST(SearchSkeletons, FindsTheBestTreeThatExhaustiveSearchFinds) { expect_what_exhaustive_search_finds(true); }
+TEST(SearchSkeletons, AgreesWithExhaustiveSearch) { expect_what_exhaustive_search_finds(true); }
 
-TEST(SearchSkeletons, FromTheBodysRootsFindsTheBestTreeThatExhaustiveSearchFinds) {
-  expect_what_exhaustive_search_finds(false);
-}
+TEST(SearchSkeletons, AgreesWithExhaustiveSearchFromTheBodysRoots) { expect_what_exhaustive_search_finds(false); }
 
 std::vector<PartCluster> people(const std::vector<Vector3f>& places) {
   std::vector<PartCluster> clusters;
@@ -194,28 +192,31 @@ TEST(SearchSkeletons, GivesEachProposalToOnePerson) {
   for (const Skeleton& s : found) {
     EXPECT_EQ(s.found, 6);
     for (const SkeletonPart& part : s.parts) EXPECT_TRUE(used.insert(part.cluster).second);
-    // All of one person: nobody borrows a neighbour's hand.
+    // All parts belong to one person; nobody borrows a neighbour's hand.
     EXPECT_LT((s.parts[5].centre - s.parts[0].centre).norm(), 0.4F);
   }
 }
 
 TEST(SearchSkeletons, BridgesOneMissingPartButNotTwo) {
   std::vector<PartCluster> clusters = people({{0.F, 0.F, 2.F}});
-  std::erase_if(clusters, [](const PartCluster& c) { return c.label == 4; });  // right: hand hangs on trunk
+  std::erase_if(clusters,
+                [](const PartCluster& c) { return c.label == 4; });  // without `right`, the hand is linked to the trunk
   std::vector<Skeleton> found = search_skeletons(clusters, small_body(), {});
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].parts[4].state, State::none);
   EXPECT_EQ(found[0].parts[5].state, State::observed);
-  std::erase_if(clusters, [](const PartCluster& c) { return c.label == 0; });  // and the trunk: nothing to hang on
+  std::erase_if(clusters, [](const PartCluster& c) {
+    return c.label == 0;
+  });  // without the trunk as well, it is linked to nothing
   SearchOptions options;
   options.min_parts = 2;
   found = search_skeletons(clusters, small_body(), options);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].parts[5].state, State::none);
-  EXPECT_EQ(found[0].parts[3].state, State::observed);  // left hangs on the neck
+  EXPECT_EQ(found[0].parts[3].state, State::observed);  // `left` is linked to the neck
 }
 
-TEST(SearchSkeletons, WithoutGrandparentsNothingHangsPastAMissingPart) {
+TEST(SearchSkeletons, SkipsNoMissingPartWithoutGrandparents) {
   std::vector<PartCluster> clusters = people({{0.F, 0.F, 2.F}});
   SearchOptions options;
   options.grandparents = false;
@@ -246,11 +247,11 @@ TEST(SearchSkeletons, FindsAPersonWithoutHeadAndNeckUnlessRootedThere) {
   EXPECT_TRUE(search_skeletons(clusters, small_body(), options).empty());
 }
 
-TEST(SearchSkeletons, RootsAPersonSeenWholeInTheBody) {
+TEST(SearchSkeletons, RootsAFullyVisiblePersonInTheBody) {
   EXPECT_EQ(search_skeletons(people({{0.F, 0.F, 2.F}}), small_body(), {}).at(0).root, 1);
 }
 
-TEST(SearchSkeletons, EveryAcceptanceParameterRejects) {
+TEST(SearchSkeletons, RejectsByEveryAcceptanceParameter) {
   std::vector<PartCluster> clusters = people({{0.F, 0.F, 2.F}});
   for (PartCluster& c : clusters) c.centroid *= 1.03F;  // a little too large
   const BodyModel body = small_body();
@@ -280,8 +281,8 @@ TEST(SearchSkeletons, PrefersAPartOfFeasibleSize) {
   EXPECT_EQ(found[0].parts[5].cluster, static_cast<int>(clusters.size()) - 1);
 }
 
-TEST(SearchSkeletons, CovarianceAlongTheLineExcusesADeviation) {
-  // The hand a little too far: a long hand reaches back to the arm, a ball does not.
+TEST(SearchSkeletons, ExcusesADeviationByTheCovarianceAlongTheLine) {
+  // The hand is a little too far away: a long hand reaches back to the arm, a ball does not.
   std::vector<PartCluster> clusters = people({{0.F, 0.F, 2.F}});
   PartCluster& hand = clusters.back();
   ASSERT_EQ(hand.label, 5);

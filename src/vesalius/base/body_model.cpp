@@ -21,7 +21,7 @@ class Reader : public TomlReader {
  public:
   using TomlReader::TomlReader;
 
-  /// Names end up in JSON, pictures and file names.
+  /// Reads a name. It must be safe in JSON, pictures and file names.
   std::string name(const toml::table& table, std::string_view key) const {
     const toml::node& node = need(table, key);
     std::string value = string(node, key);
@@ -34,7 +34,7 @@ class Reader : public TomlReader {
     return value;
   }
 
-  /// Index of the part that `node` names.
+  /// Returns the index of the part that `node` names.
   int part(const BodyModel& body, const toml::node& node, std::string_view what) const {
     const std::string value = string(node, what);
     const int index = body.find_part(value);
@@ -43,7 +43,7 @@ class Reader : public TomlReader {
   }
 };
 
-// Metres and square metres that a part of a person, or of a giant, can have; keeps later arithmetic finite.
+// Limits in metres and square metres on a part of a person, even a giant. They keep later arithmetic finite.
 constexpr double kSmallest = 1e-3;
 constexpr double kLargest = 100.0;
 
@@ -74,7 +74,7 @@ void read_parts(const Reader& reader, const toml::table& root, BodyModel& body) 
     part.upper_body = reader.boolean(table, "upper_body");
     body.parts.push_back(std::move(part));
   }
-  for (std::size_t i = 0; i < array.size(); ++i) {  // partners may come later than the part that names them
+  for (std::size_t i = 0; i < array.size(); ++i) {  // a partner may come after the part that names it
     body.parts[i].mirror = reader.part(body, reader.need(*array.get(i)->as_table(), "mirror"), "mirror");
   }
   for (std::size_t i = 0; i < array.size(); ++i) {
@@ -86,7 +86,8 @@ void read_parts(const Reader& reader, const toml::table& root, BodyModel& body) 
   }
 }
 
-/// Follows parents; a part that reaches no top within as many steps as there are parts hangs in a ring.
+/// Throws if links form a ring. A part that does not reach the top within as many steps as there are parts is in a
+/// ring.
 void check_no_ring(const Reader& reader, const toml::array& array, const BodyModel& body,
                    const std::vector<int>& parent) {
   for (std::size_t link = 0; link < body.links.size(); ++link) {

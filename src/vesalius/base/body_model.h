@@ -18,7 +18,7 @@ struct BodyPart {
   bool upper_body = false;      ///< one of the parts above the pelvis (section 8.3)
 };
 
-/// Two parts that touch, and how far apart their centres are (section 6, d_m).
+/// Two parts that touch, and the distance of their centres (section 6, d_m).
 struct BodyLink {
   int parent = -1;
   int child = -1;
@@ -26,10 +26,10 @@ struct BodyLink {
   float tolerance_m = 0.F;  ///< deviation that counts as one unit of normalised distance
 };
 
-/// A point derived from part centres: the weighted mean of those present, e.g. a wrist between forearm and hand.
+/// A point derived from part centres: the weighted mean of the present ones, e.g. a wrist between forearm and hand.
 struct JointDefinition {
   std::string name;
-  std::vector<int> parts;      ///< empty: the set has this joint and this body cannot supply it
+  std::vector<int> parts;      ///< empty if this body cannot supply a joint of the set
   std::vector<float> weights;  ///< same length as parts; need not be positive (extrapolation), sums to 1
   float depth_offset_m = 0.F;  ///< added along the viewing ray: from the visible surface into the body
 };
@@ -40,15 +40,15 @@ struct JointSet {
   std::vector<JointDefinition> joints;
 };
 
-/// Which triangles of a synthetic body's surface belong to a part: those that move with `bone` of the synthetic
-/// skeleton and lie from `from` to `to` along it. What lies before the bone's head or beyond its tail counts as 0 or 1.
+/// The triangles of a synthetic body's surface that belong to a part: those that move with `bone` of the synthetic
+/// skeleton and lie from `from` to `to` along it. Places before the bone's head or beyond its tail count as 0 or 1.
 struct SurfaceRule {
-  /// Half of the body cut by its middle plane; left is the person's own.
+  /// Half of the body, which its middle plane divides. Left is the person's own.
   enum class Side { both, left, right };
 
   int part = -1;
   std::string bone;  ///< name in synth's skeleton, e.g. "l_thigh"; synth checks it
-  float from = 0.F;  ///< 0: the bone's head (nearer to the trunk), 1: its tail
+  float from = 0.F;  ///< 0 is the bone's head (nearer to the trunk), 1 its tail
   float to = 1.F;    ///< above `from`
   Side side = Side::both;
   int line = 0;  ///< in the body's TOML, for messages
@@ -60,13 +60,13 @@ struct BodyModel {
   std::string name;
   std::vector<BodyPart> parts;
   std::vector<BodyLink> links;  ///< a tree over all parts
-  std::vector<int> roots;       ///< parts a search may start from, the steadiest first
+  std::vector<int> roots;       ///< parts from which a search may start, the most reliable first
   std::vector<JointSet> joint_sets;
   std::vector<SurfaceRule> surface;  ///< for training on synthetic people; may be empty: detection needs none
   std::string toml;                  ///< the text this was read from, embedded in model files
 
   int part_count() const { return static_cast<int>(parts.size()); }
-  /// Returns the index of the part, -1 where there is none of that name.
+  /// Returns the index of the part of that name, or -1 if there is none.
   int find_part(std::string_view part_name) const;
 };
 

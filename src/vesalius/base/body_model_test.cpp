@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
-// Three parts: the smallest body with a pair. Line numbers are part of the tests.
+// The smallest body with a pair has three parts. The tests depend on its line numbers.
 constexpr const char* kSmall = R"(name = "small"
 roots = ["trunk"]
 [[part]]
@@ -63,7 +63,7 @@ name = "tail"
 parts = []
 )";
 
-/// The small body with the first `from` after `after` replaced.
+/// Returns the small body's text with the first `from` after `after` replaced.
 std::string changed(const std::string& from, const std::string& to, const std::string& after = "") {
   std::string text = kSmall;
   const std::size_t start = after.empty() ? 0 : text.find(after);
@@ -102,14 +102,14 @@ TEST(BodyModel, ReadsEveryField) {
   EXPECT_EQ(body.find_part("r_ar"), -1);
 }
 
-TEST(BodyModel, PaperBodyIsTheFileInTheRepository) {
+TEST(BodyModel, ContainsThePaperBodyOfTheRepository) {
   std::ifstream file(std::string(VESALIUS_SOURCE_DIR) + "/data/bodies/paper25.toml");
   std::stringstream text;
   text << file.rdbuf();
   EXPECT_EQ(paper_body().toml, text.str());
 }
 
-TEST(BodyModel, PaperBodyHasTheNumbersOfTheReleasedTrees) {
+TEST(BodyModel, NumbersThePaperBodyAsTheReleasedTreesDo) {
   const BodyModel& body = paper_body();
   ASSERT_EQ(body.part_count(), 25);
   EXPECT_EQ(body.find_part("l_foot"), 0);
@@ -128,7 +128,7 @@ TEST(BodyModel, PaperBodyHasTheNumbersOfTheReleasedTrees) {
   EXPECT_EQ(upper, 17);
 }
 
-TEST(BodyModel, PaperBodyMirrorsOntoItself) {
+TEST(BodyModel, MirrorsThePaperBodyOntoItself) {
   const BodyModel& body = paper_body();
   const auto mirrored = [&](int part) { return body.parts[part].mirror; };
   std::set<std::pair<int, int>> links;
@@ -185,7 +185,7 @@ TEST(BodyModel, NamesTheLineOfABadSurfaceRule) {
   expect("bone = \"chest\"\n", "", "b:49: missing key \"bone\"");
 }
 
-TEST(BodyModel, PaperBodyHasASurfaceRuleForEveryPart) {
+TEST(BodyModel, HasASurfaceRuleForEveryPartOfThePaperBody) {
   const BodyModel& body = paper_body();
   std::set<int> parts;
   for (const SurfaceRule& rule : body.surface) parts.insert(rule.part);
@@ -267,8 +267,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"too_many", many_parts(201), "3: part: expected 1 to 200 parts, found 201"}),
     [](const auto& param_info) { return std::string(param_info.param.why); });
 
-TEST(BodyModel, LinksInARingAreRefused) {
-  // l_arm and r_arm hang on each other; the trunk on nothing.
+TEST(BodyModel, RefusesLinksInARing) {
+  // Here l_arm and r_arm are linked to each other, and the trunk to nothing.
   std::string text = changed("parent = \"trunk\"", "parent = \"r_arm\"");
   const std::size_t second = text.rfind("parent = \"trunk\"");
   text.replace(second, 16, "parent = \"l_arm\"");
@@ -281,7 +281,7 @@ TEST(BodyModel, HoldsFromOneTo200Parts) {
   EXPECT_EQ(parse_body_model(many_parts(200), "most").part_count(), 200);
 }
 
-TEST(BodyModel, AnyPrefixIsReadOrRefused) {
+TEST(BodyModel, ReadsOrRefusesAnyPrefixOfItsText) {
   const std::string text = paper_body().toml;
   for (std::size_t n = 0; n < text.size(); n += 97) {
     try {
@@ -292,7 +292,7 @@ TEST(BodyModel, AnyPrefixIsReadOrRefused) {
   }
 }
 
-TEST(ParseBodyModel, EndlessKeyIsAnErrorNotACrash) {
+TEST(ParseBodyModel, RefusesAnEndlessKey) {
   std::string endless = "name = \"x\"\na";
   for (int i = 0; i < 100000; ++i) endless += ".a";
   EXPECT_THAT([&] { parse_body_model(endless + " = 1\n", "b.toml"); },

@@ -5,20 +5,20 @@
 
 namespace vesalius {
 
-/// What ends an operation: an unusable file, option or device.
-/// The message is one line and names the file, the place in it and what was expected.
+/// An error that ends an operation: an unusable file, option or device. The message is one line and names the file, the
+/// place in it and what was expected.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A command line or option value that cannot be meant (exit code 2 of the program).
+/// An invalid command line or option value (exit code 2 of the program).
 class UsageError : public Error {
  public:
   using Error::Error;
 };
 
-/// Runs `f` and prefixes the message of any Error it throws with "context: ".
+/// Runs `f` and adds the prefix "context: " to the message of any Error that it throws.
 template <class F>
 auto with_context(const std::string& context, F&& f) -> decltype(f()) {
   try {

@@ -6,8 +6,8 @@
 
 namespace vesalius {
 
-/// Calls `work(name)` once for each instruction set, e.g. "AVX3", that this machine has and the build made code for,
-/// while kernels run on it. For tests and measurements; no other thread may run kernels meanwhile.
+/// Calls `work(name)` once for each instruction set, e.g. "AVX3", that this machine has and the build supports; kernels
+/// run on it meanwhile. It is for tests and measurements, and no other thread may run kernels at the same time.
 template <class Work>
 void for_each_target(const Work& work) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

@@ -12,12 +12,12 @@ namespace vesalius {
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
-  /// Returns the next frame, or nothing at the end. Throws Error for a frame that cannot be read; the next call passes
-  /// over it.
+  /// Returns the next frame, or nothing at the end. Throws Error if the frame cannot be read; the next call then
+  /// continues after it.
   virtual std::optional<Frame> next() = 0;
-  /// Returns the number of frames in all, -1 where it is not known.
+  /// Returns the total number of frames, or -1 if it is not known.
   virtual int size() const = 0;
-  /// Returns what a user should know, one line each: guessed intrinsics, depth pictures without colour.
+  /// Returns remarks for the user, one line each, such as guessed intrinsics or depth pictures without colour.
   virtual std::vector<std::string> notes() const { return {}; }
 };
 

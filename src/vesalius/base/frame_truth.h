@@ -12,20 +12,20 @@ namespace vesalius {
 /// Whether the camera stood still when it took a frame.
 enum class CameraMotion { unknown, still, moving };
 
-/// What is known about a frame; what is not known is empty.
+/// The known facts about a frame. Unknown ones are empty.
 struct FrameTruth {
-  int people = -1;             ///< exact number in view; -1: at least one
-  std::string posture;         ///< a word for what they do
+  int people = -1;             ///< exact number in view, or -1 for at least one
+  std::string posture;         ///< one word for their posture
   Mask mask;                   ///< non-zero on the pixels of all people
   Image<std::uint8_t> person;  ///< index of each pixel's person, kBackground elsewhere
   LabelImage labels;           ///< part of each pixel, kBackground elsewhere
-  std::string joint_set;       ///< of the body, to compare joints with; empty: the first one that has all of them
+  std::string joint_set;       ///< joint set of the body to compare with; if empty, the first that has all joints
   std::vector<std::string> joint_names;
   std::vector<std::vector<Eigen::Vector3f>> joints;  ///< [person][joint]: metres, optical frame; NaN = not known
   CameraMotion camera_motion = CameraMotion::unknown;
 };
 
-/// A frame with whatever is known about it.
+/// A frame with its truth.
 struct TrueFrame {
   Frame frame;
   FrameTruth truth;

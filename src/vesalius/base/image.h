@@ -14,7 +14,7 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// Row-major picture of `width` x `height` values; u counts columns from the left, v rows from the top.
+/// A row-major picture of `width` x `height` values; u counts columns from the left, v rows from the top.
 template <class T>
 class Image {
  public:
@@ -39,7 +39,8 @@ class Image {
   T* data() { return pixels_.data(); }
   const T* data() const { return pixels_.data(); }
 
-  /// Compares as unsigned numbers: negative coordinates are huge ones, which halves the tests of the innermost loops.
+  /// The comparison is unsigned, so negative coordinates are huge numbers. This halves the tests of the innermost
+  /// loops.
   bool contains(int u, int v) const {
     return static_cast<unsigned>(u) < static_cast<unsigned>(width_) &&
            static_cast<unsigned>(v) < static_cast<unsigned>(height_);
@@ -66,7 +67,7 @@ class Image {
   std::vector<T> pixels_;
 };
 
-/// Upright rectangle of pixels.
+/// An upright rectangle of pixels.
 struct Box {
   int u = 0, v = 0, width = 0, height = 0;
 };
@@ -87,7 +88,7 @@ using LabelImage = Image<std::uint8_t>;
 using Mask = Image<std::uint8_t>;
 using ColourImage = Image<Rgb>;
 
-/// Returns the smallest box around what is inside the mask; an empty one where nothing is.
+/// Returns the smallest box around the pixels inside the mask, or an empty box if there are none.
 inline Box bounding_box(const Mask& mask) {
   int left = mask.width(), right = -1, top = mask.height(), bottom = -1;
   const auto inside = [](std::uint8_t value) { return value != 0; };

@@ -7,7 +7,7 @@
 namespace vesalius {
 namespace {
 
-TEST(Crop, TakesWhatLiesInTheBox) {
+TEST(Crop, ReturnsThePixelsInTheBox) {
   Image<int> image(5, 4);
   for (int v = 0; v < 4; ++v) {
     for (int u = 0; u < 5; ++u) image(u, v) = 10 * v + u;
@@ -20,7 +20,7 @@ TEST(Crop, TakesWhatLiesInTheBox) {
   EXPECT_TRUE(crop(image, {0, 0, 0, 0}).empty());
 }
 
-TEST(BoundingBox, IsTheSmallestAroundAllInside) {
+TEST(BoundingBox, IsTheSmallestAroundThePixelsInside) {
   const Box none = bounding_box(Mask(7, 5, 0));
   EXPECT_EQ(none.width, 0);
   EXPECT_EQ(none.height, 0);

@@ -6,9 +6,9 @@
 
 namespace vesalius {
 
-/// Makes this process keep the memory that it frees, so that the pictures of one frame use that of the frame before;
-/// otherwise the C library gives up to 5 MB a frame back to the system and asks for it anew. Programs that look at many
-/// frames call it once at their start. It does nothing where the C library is not glibc.
+/// Makes this process keep memory that it frees, so that the pictures of one frame reuse that of the previous frame.
+/// Otherwise the C library returns up to 5 MB per frame to the system and requests it again. Programs that process many
+/// frames call it once at their start. It has no effect if the C library is not glibc.
 inline void keep_freed_memory() {
 #if defined(__GLIBC__)
   constexpr int kMost = 512 * 1024 * 1024;

@@ -8,7 +8,7 @@
 namespace vesalius {
 namespace {
 
-/// `low` and `high` in the value's own precision, so that the ends of the range are in it.
+/// Converts `low` and `high` to the value's own precision, so that the ends of the range are included.
 template <class T>
 void check_range(const std::string& name, T value, const OptionInfo& info) {
   if (std::isfinite(static_cast<double>(value)) && value >= static_cast<T>(info.low) &&

@@ -22,7 +22,7 @@ TEST(RangeCheck, AcceptsTheRangeWithItsEnds) {
   for (const int value : {1, 13, 25}) EXPECT_NO_THROW(check_count(value));
 }
 
-TEST(RangeCheck, AnEndWithoutExactFloatIsInTheRange) {
+TEST(RangeCheck, AcceptsAnEndThatIsNoExactFloat) {
   float low = 0.1F;
   float high = 0.3F;
   EXPECT_NO_THROW(RangeCheck().option("x", low, {"", 0.1, 0.3, "A share."}));
@@ -34,7 +34,7 @@ TEST(RangeCheck, NamesOptionValueRangeAndUnit) {
   EXPECT_THAT([] { check_count(0); }, ThrowsMessage<UsageError>("option search.parts is 0, expected 1 to 25"));
 }
 
-TEST(RangeCheck, RefusesWhatIsNoNumber) {
+TEST(RangeCheck, RefusesValuesThatAreNotFinite) {
   EXPECT_THROW(check_real(std::numeric_limits<float>::quiet_NaN()), UsageError);
   EXPECT_THROW(check_real(std::numeric_limits<float>::infinity()), UsageError);
 }

@@ -20,7 +20,8 @@ void parallel_ranges(int count, int grain, const std::function<void(int, int)>& 
 }
 
 struct ThreadLimit::State {
-  // Made in place: oneTBB knows the control by its address, and a copy would end the limit with the original.
+  // The control is made in place, because oneTBB knows it by its address and a copy would end the limit together with
+  // the original.
   explicit State(int threads)
       : control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)) {}
   tbb::global_control control;

@@ -8,9 +8,9 @@
 
 namespace vesalius {
 
-/// Makes items 0 .. count-1 on all threads allowed and hands them over in order. `make(i)` returns an item; `take(i,
-/// item)` gets it in the calling thread, while later ones are being made, and returns whether to go on. At most two
-/// batches of 8 items a thread are held. The first exception of either is rethrown.
+/// Makes items 0 .. count-1 on all allowed threads and passes them on in order. `make(i)` returns an item. `take(i,
+/// item)` gets it in the calling thread, while later ones are being made, and returns whether to continue. At most two
+/// batches of 8 items per thread are held. The first exception of either function is rethrown.
 template <class Make, class Take>
 void parallel_in_order(int count, const Make& make, const Take& take) {
   constexpr int kItemsPerThread = 8;
@@ -22,7 +22,7 @@ void parallel_in_order(int count, const Make& make, const Take& take) {
     parallel_for(static_cast<int>(items.size()), [&](int i) { items[i] = make(begin + i); });
     return items;
   };
-  // With one thread allowed the next batch waits for the caller.
+  // If only one thread is allowed, the next batch waits for the caller.
   const auto policy = threads > 1 ? std::launch::async : std::launch::deferred;
   std::future<std::vector<Item>> next = std::async(policy, make_batch, 0);
   for (int begin = 0; begin < count; begin += batch) {

@@ -12,7 +12,7 @@ namespace vesalius {
 namespace {
 
 // Labels: threads
-TEST(ParallelInOrderThreads, HandsOverInOrderInTheCallersThread) {
+TEST(ParallelInOrderThreads, PassesItemsInOrderInTheCallersThread) {
   for (const int threads : {1, 2, 8}) {
     const ThreadLimit limit(threads);
     const auto caller = std::this_thread::get_id();
@@ -34,7 +34,7 @@ TEST(ParallelInOrder, ReturnsAtOnceWithoutItems) {
       0, [](int i) { return i; }, [](int, int) { return ADD_FAILURE(), true; });
 }
 
-TEST(ParallelInOrder, StopsWhenToldAndMakesLittleBeyond) {
+TEST(ParallelInOrder, StopsWhenToldAndMakesFewItemsBeyond) {
   const ThreadLimit limit(2);
   std::atomic<int> made = 0;
   parallel_in_order(
@@ -42,7 +42,7 @@ TEST(ParallelInOrder, StopsWhenToldAndMakesLittleBeyond) {
   EXPECT_LE(made, 3 * 16);
 }
 
-TEST(ParallelInOrder, PassesOnWhatIsThrown) {
+TEST(ParallelInOrder, RethrowsExceptions) {
   const auto run = [](int made, int taken) {
     parallel_in_order(
         50, [=](int i) { return i == made ? throw std::runtime_error("made") : i; },

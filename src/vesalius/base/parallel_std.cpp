@@ -1,5 +1,5 @@
-// The same contract over std::thread. For the thread sanitizer alone: it cannot see how oneTBB, which is not built
-// with it, hands work from thread to thread, and would report every hand-over as a race.
+// This implements the same functions with std::thread, only for the thread sanitizer. That cannot see how oneTBB, which
+// is not built with it, passes work between threads, and would report every such transfer as a race.
 
 #include <algorithm>
 #include <atomic>
@@ -17,7 +17,7 @@ namespace {
 constexpr int kNoLimit = std::numeric_limits<int>::max();
 std::atomic<int> thread_limit{kNoLimit};
 
-/// Threads take the next index until there are none.
+/// Each thread takes the next index until none is left.
 void run(int count, const std::function<void(int)>& work) {
   std::atomic<int> next{0};
   std::exception_ptr first;
@@ -35,7 +35,7 @@ void run(int count, const std::function<void(int)>& work) {
   std::vector<std::jthread> helpers;
   for (int i = 1; i < std::min(count, thread_count()); ++i) helpers.emplace_back(take);
   take();
-  helpers.clear();  // joins
+  helpers.clear();  // joins the threads
   if (first) std::rethrow_exception(first);
 }
 

@@ -12,7 +12,7 @@ namespace vesalius {
 namespace {
 
 // Labels: threads
-TEST(ParallelThreads, ForVisitsEveryIndexOnce) {
+TEST(ParallelThreads, VisitEveryIndexOnce) {
   for_threads({1, 2, 8}, [] {
     std::vector<std::atomic<int>> visits(1000);
     parallel_for(1000, [&](int i) { ++visits[i]; });
@@ -21,7 +21,7 @@ TEST(ParallelThreads, ForVisitsEveryIndexOnce) {
 }
 
 // Labels: threads
-TEST(ParallelThreads, RangesCoverEverythingOnceWhateverTheGrain) {
+TEST(ParallelThreads, CoverEverythingOnceWithRangesOfAnyGrain) {
   for (const int count : {0, 1, 7, 100}) {
     for (const int grain : {0, 1, 3, 1000}) {
       std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));
@@ -34,7 +34,7 @@ TEST(ParallelThreads, RangesCoverEverythingOnceWhateverTheGrain) {
 }
 
 // Labels: threads
-TEST(ParallelThreads, AnExceptionReachesTheCaller) {
+TEST(ParallelThreads, PassAnExceptionToTheCaller) {
   EXPECT_THROW(parallel_for(100,
                             [](int i) {
                               if (i == 50) throw std::runtime_error("fifty");
@@ -43,7 +43,7 @@ TEST(ParallelThreads, AnExceptionReachesTheCaller) {
 }
 
 // Labels: threads
-TEST(ParallelThreads, LimitsNestAndEnd) {
+TEST(ParallelThreads, FollowNestedLimits) {
   const int before = thread_count();
   {
     const ThreadLimit outer(2);

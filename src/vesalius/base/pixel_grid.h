@@ -13,20 +13,22 @@
 
 namespace vesalius {
 
-/// Which of a picture's pixels the method looks at.
+/// Options of the grid of pixels at which the method looks.
 struct GridOptions {
-  /// Columns and rows from one pixel of the grid to the next; 0: the least that leaves at most kMostPixels.
+  /// Columns and rows from one pixel of the grid to the next; 0 takes the smallest step that leaves at most
+  /// kMostPixels.
   int step = 0;
 };
 void visit_options(const std::string& prefix, GridOptions& options, OptionVisitor& visitor);
 
-/// Pictures of up to so many pixels are looked at whole, e.g. 512x424; of 640x480 and 848x480 every second pixel.
+/// The method looks at every pixel of pictures of up to this size, e.g. 512x424, and at every second pixel of 640x480
+/// and 848x480.
 inline constexpr long kMostPixels = 250'000;
 
 /// Returns the step for pictures of this camera, at least 1.
 int grid_step(const Camera& camera, const GridOptions& options);
 
-/// Returns every `step`-th pixel of every `step`-th row, from the first on.
+/// Returns every `step`-th pixel of every `step`-th row, beginning with the first.
 template <class T>
 Image<T> every_nth(const Image<T>& image, int step) {
   Image<T> coarse((image.width() + step - 1) / step, (image.height() + step - 1) / step);
@@ -38,10 +40,10 @@ Image<T> every_nth(const Image<T>& image, int step) {
   return coarse;
 }
 
-/// Returns the same of depth and colour, with the camera that gives each of these pixels the point that it had.
+/// Returns these pixels of depth and colour, with the camera that gives each of them the same point as before.
 Frame every_nth(const Frame& frame, int step);
 
-/// Returns the camera of the picture inside a box, where each pixel has the point that it had.
+/// Returns the camera of the picture inside a box, which gives each pixel the same point as before.
 Camera cropped(Camera camera, const Box& box);
 
 /// A pixel of a grid, in the whole picture's coordinates.
@@ -50,8 +52,8 @@ struct GridPixel {
   int u = 0, v = 0;
 };
 
-/// Returns that one of the grid's up to four pixels around (u, v) whose depth is nearest to that of (u, v), or none
-/// where all differ by more than `within_mm`. A pixel of the grid has only itself around it. Of equally near ones the
+/// Returns that one of the up to four grid pixels around (u, v) whose depth is nearest to that of (u, v), or none if
+/// all differ by more than `within_mm`. A pixel of the grid has only itself around it. If several are equally near, the
 /// first in row order is returned.
 inline GridPixel nearest_on_grid(const DepthImage& depth, int step, int u, int v, int within_mm) {
   GridPixel nearest;
@@ -68,8 +70,8 @@ inline GridPixel nearest_on_grid(const DepthImage& depth, int step, int u, int v
   return nearest;
 }
 
-/// Brings what was found on a grid back to all pixels. Each pixel takes the value of that grid pixel around it which is
-/// nearest in depth; that one must be within 5 cm, and 3 mm more for every square metre of the pixel's own depth.
+/// Transfers results on a grid to all pixels. Each pixel takes the value of the surrounding grid pixel that is nearest
+/// in depth; the difference must be within 5 cm and 3 mm more for every square metre of the pixel's own depth.
 class GridGuide {
  public:
   /// `depth` is the whole picture and must outlive the guide. Throws Error for a step below 1.
@@ -81,7 +83,7 @@ class GridGuide {
     return enlarge(coarse, outside, {0, 0, coarse.width(), coarse.height()});
   }
 
-  /// Does the same quicker for a coarse picture that holds nothing but `outside` beyond `box`.
+  /// Does the same faster for a coarse picture that has only `outside` beyond `box`.
   template <class T>
   Image<T> enlarge(const Image<T>& coarse, T outside, const Box& box) const {
     Image<T> out(depth_.width(), depth_.height(), outside);
@@ -108,16 +110,16 @@ class GridGuide {
  private:
   static constexpr int kRows = 16;
 
-  /// Returns how much a pixel's depth may differ from that of the grid pixel that it takes its value from.
+  /// Returns by how much a pixel's depth may differ from that of the grid pixel whose value it takes.
   static int within(int z_mm) { return 50 + static_cast<int>(static_cast<std::int64_t>(z_mm) * z_mm * 3 / 1'000'000); }
 
   const DepthImage& depth_;
   int step_;
 };
 
-/// Runs `work(grid, step)` on the grid's pixels of a frame and brings what it returns to all pixels by
-/// `enlarge(guide, result)`. Where the grid is the whole picture, `work` gets the frame itself and nothing is enlarged.
-/// Adds the time that picking and enlarging take to Stage::grid.
+/// Runs `work(grid, step)` on the grid's pixels of a frame and transfers its result to all pixels by `enlarge(guide,
+/// result)`. If the grid is the whole picture, `work` gets the frame itself and nothing is enlarged. Adds the time of
+/// selecting and enlarging to Stage::grid.
 template <class Work, class Enlarge>
 auto on_grid(const Frame& frame, const GridOptions& options, StageTimes* times, const Work& work,
              const Enlarge& enlarge) {

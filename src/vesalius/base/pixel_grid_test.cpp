@@ -10,7 +10,7 @@
 namespace vesalius {
 namespace {
 
-TEST(GridStep, LeastThatLeavesFewEnoughPixels) {
+TEST(GridStep, IsTheSmallestThatLeavesFewEnoughPixels) {
   const auto step = [](int width, int height, int wanted = 0) {
     return grid_step({width, height, 500.F, 500.F, 0.F, 0.F}, {wanted});
   };
@@ -28,7 +28,7 @@ TEST(GridStep, LeastThatLeavesFewEnoughPixels) {
   EXPECT_EQ(step(1, 1), 1);
 }
 
-TEST(EveryNth, PixelsKeepTheirPoints) {
+TEST(EveryNth, KeepsThePointsOfPixels) {
   CapsuleScene scene;
   scene.people.emplace_back();
   Frame frame = render(scene, {163, 121, 131.F, 129.F, 80.2F, 61.7F}, paper_body()).frame;
@@ -54,9 +54,9 @@ TEST(EveryNth, PixelsKeepTheirPoints) {
   EXPECT_EQ(every_nth(frame, 1).camera, frame.camera);
 }
 
-TEST(GridGuide, TakesAfterTheNeighbourOfNearestDepth) {
+TEST(GridGuide, TakesTheValueOfTheNeighbourWithTheNearestDepth) {
   DepthImage depth(5, 3, 2000);
-  depth(2, 0) = 1000;  // somebody before a wall
+  depth(2, 0) = 1000;  // a person in front of a wall
   depth(1, 0) = 1010;
   depth(3, 0) = 1990;
   depth(3, 1) = 0;
@@ -74,7 +74,7 @@ TEST(GridGuide, TakesAfterTheNeighbourOfNearestDepth) {
   EXPECT_EQ(all(4, 2), 9);
 }
 
-/// What the header says, pixel by pixel and over the whole grid.
+/// Enlarges as the header describes, pixel by pixel over the whole grid.
 LabelImage enlarge_slowly(const LabelImage& coarse, const DepthImage& depth, int step) {
   LabelImage out(depth.width(), depth.height(), kBackground);
   for (int v = 0; v < depth.height(); ++v) {
@@ -97,7 +97,7 @@ LabelImage enlarge_slowly(const LabelImage& coarse, const DepthImage& depth, int
 }
 
 // Labels: threads
-TEST(GridGuideThreads, AnyNumberAgreesWithLookingAtAllPixels) {
+TEST(GridGuideThreads, AgreeWithThePlainSearchForAnyNumber) {
   Random random(41);
   for (int trial = 0; trial < 40; ++trial) {
     const int step = 1 + static_cast<int>(random.below(4));
@@ -111,7 +111,7 @@ TEST(GridGuideThreads, AnyNumberAgreesWithLookingAtAllPixels) {
   }
 }
 
-TEST(GridGuide, ABoxOfTheGridIsEnough) {
+TEST(GridGuide, NeedsOnlyABoxOfTheGrid) {
   DepthImage depth(23, 17, 1500);
   const GridGuide guide(depth, 3);
   Mask coarse(8, 6, 0);

@@ -6,12 +6,12 @@
 
 namespace vesalius {
 
-/// Values whose memory is worth keeping, handed from one user to the next: new pages cost as much as a small stage of
-/// the detector. Safe to use from several threads at once.
+/// A pool of values whose memory is reused, because new pages cost as much as a small stage of the detector. It may be
+/// used from several threads at once.
 template <class T>
 class Pool {
  public:
-  /// Returns a value that somebody gave back, in whatever state, or a new one.
+  /// Returns a value that was given back, in whatever state it is, or a new one.
   T take() {
     const std::scoped_lock lock(mutex_);
     if (free_.empty()) return T{};

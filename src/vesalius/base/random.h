@@ -5,8 +5,8 @@
 
 namespace vesalius {
 
-/// Small seeded generator (PCG32, O'Neill 2014): the same numbers on every platform, unlike the distributions of
-/// the standard library. Seed it by (seed, stream), e.g. (run seed, image index), never by time.
+/// A small seeded generator (PCG32, O'Neill 2014). It gives the same numbers on every platform, unlike the
+/// distributions of the standard library. Seed it by (seed, stream), e.g. (run seed, image index), never by time.
 class Random {
  public:
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : increment_((stream << 1U) | 1U) {

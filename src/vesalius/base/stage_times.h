@@ -7,12 +7,13 @@
 
 namespace vesalius {
 
-/// What a Detector does, in this order. Picking the grid's pixels before all and enlarging after all are `grid`.
+/// The stages of a Detector in their order. `grid` is the selection of the grid's pixels before all others and the
+/// enlarging after them.
 enum class Stage { planes, label, smooth, choose, cluster, search, grow, second_pass, people, grid };
 inline constexpr std::array kStageNames = {"planes", "label", "smooth",      "choose", "cluster",
                                            "search", "grow",  "second pass", "people", "grid"};
 
-/// Milliseconds that each stage of one detection took, by the clock on the wall.
+/// The wall-clock time of each stage of one detection in milliseconds.
 struct StageTimes {
   std::array<double, kStageNames.size()> ms{};
 
@@ -20,7 +21,7 @@ struct StageTimes {
   double total() const { return std::accumulate(ms.begin(), ms.end(), 0.0); }
 };
 
-/// Returns how long `work` takes, in milliseconds by the clock on the wall.
+/// Returns the wall-clock time of `work` in milliseconds.
 template <class Work>
 double elapsed_ms(Work&& work) {
   const auto begin = std::chrono::steady_clock::now();
@@ -28,14 +29,14 @@ double elapsed_ms(Work&& work) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Adds the time since its last `lap`, or since it was made, to a stage; does nothing for null.
+/// Adds the time since its last `lap`, or since its construction, to a stage. Does nothing for null.
 class StageClock {
  public:
   explicit StageClock(StageTimes* times) : times_(times) {}
 
   void lap(Stage stage) { add_to(stage, since_last()); }
 
-  /// Adds the time to two stages that ran side by side, in proportion to what each took for itself.
+  /// Adds the time to two stages that ran in parallel, in proportion to the time that each took.
   void lap(const std::array<Stage, 2>& stages, const std::array<double, 2>& took_ms) {
     const double passed = since_last();
     const double sum = took_ms[0] + took_ms[1];

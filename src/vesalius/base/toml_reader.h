@@ -14,10 +14,10 @@
 
 #include "vesalius/base/error.h"
 
-// For sources that read TOML; headers that others include do not include it.
+// This header is for sources that read TOML. Headers must not include it, because it is slow to compile.
 namespace vesalius {
 
-/// Returns a stranger's text fit for a one-line message: at most 64 characters, control characters as "?".
+/// Makes untrusted text fit for a one-line message: at most 64 characters, with control characters as "?".
 inline std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMost = 64;
   std::string out = "\"";
@@ -25,11 +25,11 @@ inline std::string in_quotes(std::string_view text) {
   return out + (text.size() > kMost ? "...\"" : "\"");
 }
 
-/// Reads typed values from TOML. Throws Error that names the source and the line of what is missing, of another type or
+/// Reads typed values from TOML. Throws Error naming the source and the line if a value is missing, of another type or
 /// out of range.
 class TomlReader {
  public:
-  /// `source` stands for the path in errors and must outlive this.
+  /// `source` is used as the path in errors and must outlive this object.
   explicit TomlReader(const std::string& source) : source_(source) {}
 
   toml::table parse(std::string_view text) const {
@@ -113,7 +113,7 @@ class TomlReader {
   }
 
  private:
-  /// A key of many thousand dotted levels, which only a very long line can hold, overruns the parser's stack.
+  /// Throws for very long lines: a key with many thousand dotted levels overruns the parser's stack.
   void check_lines(std::string_view text) const {
     constexpr std::size_t kLongestLine = 4096;
     std::size_t begin = 0;

@@ -8,8 +8,8 @@
 namespace vesalius {
 namespace {
 
-/// Largest difference in depth to a neighbour whose posteriors a pixel takes over: parts of a body a hand's breadth
-/// apart are not one surface.
+/// Largest difference in depth between a pixel and a neighbour whose posteriors it takes. Parts of a body that are a
+/// hand's breadth apart are not one surface.
 constexpr int kGuideMm = 50;
 
 }  // namespace

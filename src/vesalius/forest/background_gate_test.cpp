@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kStep = BackgroundGate::kStep;
 
-/// Two classes, the second the background; one tree.
+/// Returns posteriors of one tree with two classes, the second of which is the background.
 Posteriors even(const DepthImage& depth, std::uint16_t background) {
   Posteriors p{depth.width(), depth.height(), 2, 1, {}};
   for (std::size_t i = 0; i < depth.size(); ++i) p.sums.insert(p.sums.end(), {std::uint16_t{0}, background});
@@ -37,17 +37,17 @@ TEST(TakeFromGrid, TakesTheNearestInDepth) {
   EXPECT_FALSE(take_from_grid(depth, kStep, 2, 2, p));
 }
 
-TEST(TakeFromGrid, LooksAtBothEndsOnly) {
+TEST(TakeFromGrid, LooksOnlyAtBothEnds) {
   DepthImage depth(9, 9, 0);
   depth(4, 2) = 1000;
-  depth(8, 0) = depth(8, 4) = depth(0, 0) = 1000;  // none of them is an end of the column piece (4, 0) to (4, 4)
+  depth(8, 0) = depth(8, 4) = depth(0, 0) = 1000;  // none of them is an end of the column from (4, 0) to (4, 4)
   Posteriors p = even(depth, 0);
   EXPECT_FALSE(take_from_grid(depth, kStep, 4, 2, p));
   depth(4, 4) = 1000;
   EXPECT_TRUE(take_from_grid(depth, kStep, 4, 2, p));
 }
 
-TEST(BackgroundGate, OpensAroundWhatIsUnsure) {
+TEST(BackgroundGate, OpensAroundUncertainPixels) {
   const DepthImage depth(17, 13, 2000);
   Posteriors p = even(depth, 204);
   p.at(8, 4)[1] = 203;  // one below 0.8
@@ -61,7 +61,7 @@ TEST(BackgroundGate, OpensAroundWhatIsUnsure) {
   }
 }
 
-TEST(BackgroundGate, LeavesHolesOutButNeedsSomeReading) {
+TEST(BackgroundGate, IgnoresHolesButNeedsSomeReading) {
   DepthImage depth(5, 5, 2000);
   Posteriors p = even(depth, 255);
   depth(0, 0) = depth(4, 0) = depth(0, 4) = 0;

@@ -15,7 +15,7 @@ namespace {
 
 void check_child(std::int32_t child, std::size_t parent, std::size_t tree, const Tree& t) {
   if (child >= 0) {
-    // Children after their parent: no walk can turn in a circle.
+    // Children come after their parent, so no walk can go in a circle.
     if (static_cast<std::size_t>(child) <= parent || static_cast<std::size_t>(child) >= t.nodes.size()) {
       bad_tree(tree, "node " + std::to_string(parent) + " has child " + std::to_string(child) +
                          ", expected a later node below " + std::to_string(t.nodes.size()));
@@ -58,7 +58,7 @@ void check_tree(const Tree& t, std::size_t tree, int classes) {
 void check(const Forest& forest) {
   if (forest.body.parts.empty()) throw Error("forest: body model without parts");
   if (forest.trees.empty()) throw Error("forest: no trees");
-  // 16-bit sums of probabilities in 1/255.
+  // Sums of probabilities in 1/255 must fit 16 bits.
   if (forest.trees.size() > 256) throw Error("forest: " + std::to_string(forest.trees.size()) + " trees, at most 256");
   const FeatureConvention& c = forest.convention;
   if (!std::isfinite(c.offset_unit) || c.offset_unit <= 0.F || !std::isfinite(c.reference_focal_px) ||
@@ -77,7 +77,7 @@ int depth(const Tree& tree) {
     for (const std::int32_t child : {tree.nodes[n].left, tree.nodes[n].right}) {
       if (child < 0) continue;
       int& child_depth = depth_of[child];
-      child_depth = std::max(child_depth, below);  // nodes may share it
+      child_depth = std::max(child_depth, below);  // several nodes may share a child
     }
   }
   return deepest;

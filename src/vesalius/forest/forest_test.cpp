@@ -19,7 +19,7 @@ TreeLeaf vote(std::uint8_t label) {
   return leaf;
 }
 
-/// Root, one inner node on its right, three leaves.
+/// Returns a forest of a root, one inner node on its right, and three leaves.
 Forest small_forest() {
   Forest forest;
   forest.body = paper_body();
@@ -30,16 +30,16 @@ Forest small_forest() {
   return forest;
 }
 
-TEST(Forest, AcceptsASoundOne) { EXPECT_NO_THROW(check(small_forest())); }
+TEST(Forest, IsAcceptedIfConsistent) { EXPECT_NO_THROW(check(small_forest())); }
 
-TEST(Forest, ALeafAloneIsATree) {
+TEST(Forest, MayHaveATreeOfOneLeaf) {
   Forest forest = small_forest();
   forest.trees = {Tree{.nodes = {}, .leaves = {vote(1)}}};
   EXPECT_NO_THROW(check(forest));
   EXPECT_EQ(depth(forest.trees[0]), 0);
 }
 
-TEST(Forest, BackgroundIsAClassOnlyWhereItSaysSo) {
+TEST(Forest, HasABackgroundClassOnlyIfItSaysSo) {
   Forest forest = small_forest();
   forest.trees[0].leaves[1] = vote(25);
   EXPECT_THAT([&] { check(forest); }, ThrowsMessage<Error>(HasSubstr("leaf 1 names class 25 of 25")));
@@ -47,13 +47,13 @@ TEST(Forest, BackgroundIsAClassOnlyWhereItSaysSo) {
   EXPECT_NO_THROW(check(forest));
 }
 
-TEST(Forest, LabelOfAnUnusedSlotIsIgnored) {
+TEST(Forest, MayHaveAnyLabelInAnUnusedSlot) {
   Forest forest = small_forest();
   forest.trees[0].leaves[0].label[3] = 200;
   EXPECT_NO_THROW(check(forest));
 }
 
-TEST(Forest, RefusesChildrenOutsideTheArraysOrBeforeTheirParents) {
+TEST(Forest, IsRefusedForChildrenOutsideTheArraysOrBeforeTheirParents) {
   for (const std::int32_t child : {0, 1, 2, ~3, std::numeric_limits<std::int32_t>::min()}) {
     Forest forest = small_forest();
     forest.trees[0].nodes[1].left = child;
@@ -61,7 +61,7 @@ TEST(Forest, RefusesChildrenOutsideTheArraysOrBeforeTheirParents) {
   }
 }
 
-TEST(Forest, RefusesOffsetsProbabilitiesAndTreesAboveTheirLimits) {
+TEST(Forest, IsRefusedForOffsetsProbabilitiesOrTreesAboveTheirLimits) {
   Forest far = small_forest();
   far.trees[0].nodes[0].dv1 = kMaxOffset + 1;
   EXPECT_THAT([&] { check(far); }, ThrowsMessage<Error>(HasSubstr("offset 1024")));
@@ -73,7 +73,7 @@ TEST(Forest, RefusesOffsetsProbabilitiesAndTreesAboveTheirLimits) {
   EXPECT_THAT([&] { check(many); }, ThrowsMessage<Error>(HasSubstr("257 trees")));
 }
 
-TEST(Forest, RefusesMissingPieces) {
+TEST(Forest, IsRefusedIfAPieceIsMissing) {
   Forest no_trees = small_forest();
   no_trees.trees.clear();
   EXPECT_THROW(check(no_trees), Error);
@@ -90,7 +90,7 @@ TEST(Forest, RefusesMissingPieces) {
   }
 }
 
-TEST(Forest, DepthCountsTheEdgesOfTheLongestBranch) {
+TEST(Forest, HasTheEdgesOfTheLongestBranchAsDepth) {
   EXPECT_EQ(depth(small_forest().trees[0]), 2);
   Tree chain;
   for (std::int32_t n = 0; n < 30; ++n) chain.nodes.push_back({.left = ~0, .right = n < 29 ? n + 1 : ~0});
@@ -98,7 +98,7 @@ TEST(Forest, DepthCountsTheEdgesOfTheLongestBranch) {
   EXPECT_EQ(depth(chain), 30);
 }
 
-TEST(Forest, DistributionsAreMoreThanVotes) {
+TEST(Forest, HasDistributionsIfLeavesHaveSeveralClasses) {
   Forest forest = small_forest();
   EXPECT_FALSE(has_distributions(forest));
   forest.trees[0].leaves[2].probability = {200, 55, 0, 0};

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kRowGrain = 8;
 
-/// Weighted posteriors of one pixel in fixed point, so that every platform chooses alike.
+/// The weighted posteriors of one pixel in fixed point, so that every platform makes the same choice.
 class Weights {
  public:
   Weights(const LabelChoice& choice, const LabelOptions& options)
@@ -38,7 +38,7 @@ class Weights {
   int parts_;
 };
 
-/// How many of the eight neighbours have a label.
+/// Returns how many of the eight neighbours have a label.
 int count_neighbours(const LabelImage& labels, int u, int v, std::uint8_t label) {
   int count = 0;
   for (int nv = v - 1; nv <= v + 1; ++nv) {
@@ -49,8 +49,8 @@ int count_neighbours(const LabelImage& labels, int u, int v, std::uint8_t label)
   return count;
 }
 
-/// Section 4.3 for one picture: every pixel by itself first, then the unsure ones by their neighbours. Until the end
-/// the background is class part_count.
+/// Chooses the labels of one picture (section 4.3): first for every pixel by itself, then for the uncertain ones by
+/// their neighbours. Until the end the background is class part_count.
 class Chooser {
  public:
   Chooser(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice, const LabelOptions& options)
@@ -84,7 +84,7 @@ class Chooser {
   }
 
  private:
-  /// `skip` becomes 1 where no part may be, `parts` what the parts have elsewhere.
+  /// `skip` becomes 1 where no part is possible; elsewhere `parts` receives the two best parts.
   void choose_alone(int v, std::vector<std::uint8_t>& skip, std::vector<TopTwo>& parts) {
     const std::uint16_t* depth = depth_.row(v) + box_.u;
     const std::uint8_t* prior = choice_.prior != nullptr ? choice_.prior->row(v) + box_.u : nullptr;
@@ -107,7 +107,7 @@ class Chooser {
     }
   }
 
-  /// The best part or the background, whichever weighs more; a part where they weigh the same.
+  /// Chooses the best part or the background, whichever has more weight; on a tie the part.
   void choose_between(const TopTwo& parts, std::uint16_t background_sum, std::uint8_t& label,
                       std::uint8_t& unsure) const {
     const std::int64_t part = weight_.of_part(parts.first);
@@ -119,7 +119,7 @@ class Chooser {
     unsure = second > 0 && first - second < margin_ ? 1 : 0;
   }
 
-  /// That class of the near-best which most neighbours have.
+  /// Returns that one of the nearly best classes which most neighbours have.
   std::uint8_t ask_neighbours(int u, int v) const {
     const std::uint16_t* sums = posteriors_.at(u, v);
     std::uint8_t label = first_(u, v);
@@ -152,10 +152,10 @@ void add_leaf(const TreeLeaf& leaf, std::uint16_t* sums) {
   }
 }
 
-/// Just before they are written, while they are in the cache.
+/// Clears rows just before they are written, so that they are in the cache.
 void clear_rows(int begin, int end, Posteriors& out) { std::fill(out.at(0, begin), out.at(0, end), std::uint16_t{0}); }
 
-/// Sums of the rows' pixels, which are still zero.
+/// Adds up the posteriors of the rows' pixels, which are still zero.
 void label_rows(const std::vector<PackedTree>& trees, const PaddedDepth& depth, const WalkPixels& pixels,
                 Posteriors& out) {
   const std::size_t stride = pixels.padded_size();
@@ -167,8 +167,8 @@ void label_rows(const std::vector<PackedTree>& trees, const PaddedDepth& depth, 
   }
 }
 
-/// Posteriors of a picture where the forest is not asked about all pixels: about those of the gate's grid first, then
-/// about what the gate leaves open.
+/// The posteriors of a picture for which the forest is not asked about all pixels: first about those of the gate's
+/// grid, then about those that the gate leaves open.
 class GatedLabels {
  public:
   GatedLabels(const std::vector<PackedTree>& trees, const FeatureConvention& convention, const DepthImage& depth,
@@ -201,7 +201,7 @@ class GatedLabels {
     }
   }
 
-  /// Asks the forest about those pixels of the rows that lie on a grid and are not done yet.
+  /// Asks the forest about those pixels of the rows that are on a grid and not yet done.
   void ask(int begin, int end, int step) {
     WalkPixels pixels(static_cast<std::size_t>(depth_.width()) * static_cast<std::size_t>(end - begin), scaler_,
                       convention_);

@@ -36,7 +36,7 @@ TreeLeaf random_leaf(Random& random, int classes) {
   return leaf;
 }
 
-/// Complete tree of `levels`, children after parents.
+/// Returns a complete tree of `levels` with children after parents.
 Tree random_tree(Random& random, int levels, int classes) {
   Tree tree;
   const int nodes = (1 << levels) - 1;
@@ -62,7 +62,7 @@ DepthImage random_depth(Random& random, int width = kCamera.width, int height = 
   return depth;
 }
 
-/// Eq. 1 and 2 written out plainly in floating point.
+/// Computes eq. 1 and 2 plainly in floating point.
 std::vector<int> plain_sums(const Forest& forest, const DepthImage& depth, int u, int v) {
   std::vector<int> sums(static_cast<std::size_t>(forest.class_count()), 0);
   const FeatureConvention& c = forest.convention;
@@ -106,11 +106,11 @@ TEST(ForestLabeller, AgreesWithThePlainDefinition) {
       }
     }
   }
-  // Fixed point rounds a probe that falls on the border of two pixels its own way.
+  // For a probe on the border of two pixels, fixed point may round differently.
   EXPECT_LE(differing, 3072 / 200);
 }
 
-/// Eq. 2 by the walk of one pixel after the other.
+/// Computes eq. 2 by walking one pixel after the other.
 std::vector<std::uint16_t> walked_sums(const Forest& forest, const DepthImage& depth, const Camera& camera) {
   const auto classes = static_cast<std::size_t>(forest.class_count());
   std::vector<std::uint16_t> sums(depth.size() * classes, 0);
@@ -131,12 +131,12 @@ std::vector<std::uint16_t> walked_sums(const Forest& forest, const DepthImage& d
 }
 
 // Labels: threads
-TEST(ForestLabeller, SumsTheLeavesOfThePlainWalkForAnySizeAndThreadCount) {
+TEST(ForestLabeller, SumsTheLeavesOfThePlainWalkForAnySizeAndThreads) {
   Random random(17);
   for (const bool background : {false, true}) {
     Forest forest = empty_forest(background);
     for (int t = 0; t < 3; ++t) forest.trees.push_back(random_tree(random, 6, forest.class_count()));
-    forest.trees.push_back(leaf_tree({{3, 200, 4, 0}, {100, 0, 50, 0}}));  // an unused slot may hold anything
+    forest.trees.push_back(leaf_tree({{3, 200, 4, 0}, {100, 0, 50, 0}}));  // an unused slot may have any label
     const ForestLabeller labeller(forest);
     for (const auto& [width, height] : {std::pair{0, 0}, std::pair{1, 1}, std::pair{53, 31}, std::pair{16000, 2}}) {
       const DepthImage depth = random_depth(random, width, height);
@@ -159,7 +159,7 @@ TEST(ForestLabeller, AveragesTheTrees) {
 }
 
 // Labels: threads
-TEST(ForestLabeller, SameBytesForAnyThreadCount) {
+TEST(ForestLabeller, GivesTheSameBytesForAnyNumberOfThreads) {
   Random random(3);
   Forest forest = empty_forest(true);
   forest.trees.push_back(random_tree(random, 8, forest.class_count()));
@@ -170,12 +170,12 @@ TEST(ForestLabeller, SameBytesForAnyThreadCount) {
   EXPECT_THAT(results, testing::Each(results[0]));
 }
 
-/// Background on the left half of the depths' range, parts on the right.
+/// Returns a forest that finds background in one half of the range of depths and parts in the other.
 Forest forest_by_depth(Random& random) {
   Forest forest = empty_forest(true);
   for (int t = 0; t < 2; ++t) {
     Tree tree;
-    TreeNode node;  // probe of the reading itself against one far to the right: nearer than what is there, or not
+    TreeNode node;  // compares the reading with a probe far to the right
     node.du2 = 100;
     node.threshold_mm = 0;
     node.left = ~0;
@@ -188,7 +188,7 @@ Forest forest_by_depth(Random& random) {
 }
 
 // Labels: threads
-TEST(ForestLabeller, GateLeavesOutWhatIsSurelyBackgroundOnly) {
+TEST(ForestLabeller, LeavesOutOnlyCertainBackgroundByItsGate) {
   Random random(31);
   const ForestLabeller labeller(forest_by_depth(random));
   const int background = 25;
@@ -233,11 +233,11 @@ TEST(ForestLabeller, RefusesPicturesOfMoreThan16000PixelsASide) {
 
 TEST(ForestLabeller, RefusesAnInconsistentForest) {
   Forest forest = empty_forest(false);
-  forest.trees.push_back(leaf_tree({{25, 0, 0, 0}, {255, 0, 0, 0}}));  // class 25 is the background it lacks
+  forest.trees.push_back(leaf_tree({{25, 0, 0, 0}, {255, 0, 0, 0}}));  // class 25 would be the background
   EXPECT_THROW(ForestLabeller{forest}, Error);
 }
 
-/// Posteriors of a 3x3 picture with three parts and background, one tree.
+/// The posteriors of a 3x3 picture with three parts and background, from one tree.
 class ChooseLabels : public testing::Test {
  protected:
   Posteriors posteriors{3, 3, 4, 1, std::vector<std::uint16_t>(36, 0)};
@@ -265,26 +265,26 @@ TEST_F(ChooseLabels, TakesTheLikeliest) {
   EXPECT_EQ(labels(0, 0), kBackground);
 }
 
-TEST_F(ChooseLabels, UnsurePixelFollowsItsNeighbours) {
+TEST_F(ChooseLabels, GivesUncertainPixelsTheLabelOfTheirNeighbours) {
   set_all({0, 0, 255, 0});
-  set(1, 1, {100, 0, 95, 0});  // 0.02 apart: unsure
+  set(1, 1, {100, 0, 95, 0});  // 0.02 apart, so uncertain
   EXPECT_EQ(choose()(1, 1), 2);
-  set(1, 1, {140, 0, 95, 0});  // 0.18 apart: sure
+  set(1, 1, {140, 0, 95, 0});  // 0.18 apart, so certain
   EXPECT_EQ(choose()(1, 1), 0);
-  set(1, 1, {100, 99, 0, 0});  // the neighbours' label is no rival
+  set(1, 1, {100, 99, 0, 0});  // the neighbours' label is not among the best
   EXPECT_EQ(choose()(1, 1), 0);
 }
 
-TEST_F(ChooseLabels, WeightsMoveTheBackground) {
+TEST_F(ChooseLabels, WeighsTheBackground) {
   set_all({120, 0, 0, 100});
   EXPECT_EQ(choose()(1, 1), 0);
   options.background_weight = 2.F;
   EXPECT_EQ(choose()(1, 1), kBackground);
 }
 
-TEST_F(ChooseLabels, OutsideItsBoxIsBackgroundAndInsideAsWithout) {
+TEST_F(ChooseLabels, GivesBackgroundOnlyOutsideItsBox) {
   set_all({10, 200, 0, 40});
-  set(1, 2, {100, 99, 0, 0});  // unsure: its neighbours decide, those outside the box no longer
+  set(1, 2, {100, 99, 0, 0});  // uncertain, so its neighbours decide, except those outside the box
   const LabelImage whole = choose();
   const Box box{1, 1, 2, 2};
   const LabelImage labels = choose_labels(posteriors, depth, {3, true, nullptr, &box}, options);
@@ -295,7 +295,7 @@ TEST_F(ChooseLabels, OutsideItsBoxIsBackgroundAndInsideAsWithout) {
   }
 }
 
-TEST_F(ChooseLabels, SettledPixelsAreBackgroundUnlessThePriorSaysOtherwise) {
+TEST_F(ChooseLabels, TakesSettledPixelsAsBackgroundUnlessThePriorDisagrees) {
   set_all({0, 200, 0, 40});
   posteriors.settled = Mask(3, 3, 0);
   posteriors.settled(1, 1) = posteriors.settled(2, 1) = 1;
@@ -308,7 +308,7 @@ TEST_F(ChooseLabels, SettledPixelsAreBackgroundUnlessThePriorSaysOtherwise) {
   EXPECT_EQ(labels(2, 1), kBackground);
 }
 
-TEST_F(ChooseLabels, PriorDecidesAboutTheBackground) {
+TEST_F(ChooseLabels, LetsThePriorDecideAboutTheBackground) {
   set_all({0, 30, 10, 215});
   Mask prior(3, 3, 0);
   prior(1, 1) = 1;

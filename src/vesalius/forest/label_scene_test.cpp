@@ -9,7 +9,8 @@ namespace {
 
 const Camera kCamera{160, 120, 131.25F, 131.25F, 79.5F, 59.5F};
 
-/// Takes every reading for part 3, as a forest that never saw a background may; notes the picture it was shown last.
+/// A labeller that takes every reading for part 3, as a forest without background class may. It remembers the last
+/// picture that it was shown.
 class EverythingIsBody : public PixelLabeller {
  public:
   void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
@@ -67,7 +68,7 @@ TEST_F(SceneLabellerTest, ShowsAPersonAloneToALabellerWithoutBackground) {
   for (std::size_t i = 0; i < chosen.size(); ++i) ASSERT_EQ(chosen[i], person[i] != 0 ? 3 : kBackground);
 }
 
-TEST_F(SceneLabellerTest, GivesTheSameWhateverMemoryItIsGiven) {
+TEST_F(SceneLabellerTest, GivesTheSameInReusedMemory) {
   SceneLabels other;
   other.flat = Mask(3, 3, 1);
   other.shown = DepthImage(5, 5, 9);

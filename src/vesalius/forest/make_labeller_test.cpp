@@ -23,7 +23,7 @@ TEST(MakeLabeller, LabelsWithTheForestOnTheProcessor) {
   }
 }
 
-TEST(MakeLabeller, RefusesADeviceThatIsNotThere) {
+TEST(MakeLabeller, RefusesAnUnknownDevice) {
   for (const char* device : {"", "cuda", "CPU"}) {
     EXPECT_THAT([&] { make_labeller(one_leaf(), device); },
                 testing::ThrowsMessage<UsageError>(testing::HasSubstr("is not available, expected \"cpu\"")));

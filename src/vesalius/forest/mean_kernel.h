@@ -10,8 +10,8 @@
 
 namespace vesalius {
 
-/// Says which neighbours smoothing looks at: those of a square around the pixel, itself among them, whose depth differs
-/// from its depth by at most `gate_mm`.
+/// The neighbours that smoothing uses: those in a square around the pixel, including itself, whose depth differs from
+/// its depth by at most `gate_mm`.
 struct SmoothWindow {
   int each_way = 0;  ///< neighbours to each side, upwards and downwards
   int spacing = 1;   ///< pixels from one neighbour to the next

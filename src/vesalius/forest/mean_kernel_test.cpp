@@ -15,7 +15,7 @@ struct Picture {
   Posteriors posteriors;
 };
 
-/// A wall with a few steps and holes, so that windows of every kind occur; posteriors up to the largest.
+/// Returns a wall with a few steps and holes, so that windows of every kind occur, and posteriors up to the largest.
 Picture random_picture(Random& random, int width, int height, int classes, int trees) {
   Picture p{DepthImage(width, height, 1500), {width, height, classes, trees, {}}};
   for (std::uint16_t& mm : p.depth) {
@@ -51,7 +51,7 @@ std::vector<std::uint16_t> plain_means(const Picture& p, const SmoothWindow& win
   return means;
 }
 
-/// On every instruction set, in ranges of rows that end anywhere.
+/// Expects plain means on every instruction set, in ranges of rows with any end.
 void expect_plain_means(const Picture& p, const SmoothWindow& window) {
   const std::vector<std::uint16_t> expected = plain_means(p, window);
   const int height = p.depth.height();
@@ -65,7 +65,7 @@ void expect_plain_means(const Picture& p, const SmoothWindow& window) {
   });
 }
 
-TEST(MeanKernel, IsThePlainMeanOnEveryInstructionSet) {
+TEST(MeanKernel, AgreesWithThePlainMeanOnEveryInstructionSet) {
   Random random(31);
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{4, 9}, std::pair{9, 9}, std::pair{41, 23}}) {
     for (const int classes : {1, 5, 16, 26, 40}) {
@@ -77,7 +77,7 @@ TEST(MeanKernel, IsThePlainMeanOnEveryInstructionSet) {
   }
 }
 
-TEST(MeanKernel, LeavesSettledPixelsAsTheyAre) {
+TEST(MeanKernel, KeepsSettledPixels) {
   Random random(33);
   Picture p = random_picture(random, 41, 23, 26, 10);
   p.posteriors.settled = Mask(41, 23, 0);

@@ -12,17 +12,17 @@ namespace {
 
 constexpr std::size_t kMaxNodes = std::size_t{1} << 26U;
 
-/// Largest absolute difference of two probes, mm.
+/// Returns the largest absolute difference of two probes in mm.
 int feature_limit_mm(const FeatureConvention& convention) {
   return convention.clip_mm != 0 ? 2 * convention.clip_mm : 65535;
 }
 
 int clamped_threshold(const TreeNode& node, int limit) { return std::clamp<int>(node.threshold_mm, -limit - 1, limit); }
 
-/// Bits of a two's complement number.
+/// Returns the bits of a two's complement number.
 int signed_bits(int value) { return std::bit_width(static_cast<unsigned>(value < 0 ? ~value : value)) + 1; }
 
-/// Links of the inner nodes: node n has link n + 1, as 0 means leaf.
+/// Returns the link of an inner node: node n has link n + 1, as 0 means leaf.
 std::uint32_t link_of(std::int32_t node) { return static_cast<std::uint32_t>(node) + 1; }
 
 std::uint32_t half_words(int low, int high) {

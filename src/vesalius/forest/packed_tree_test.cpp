@@ -7,7 +7,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Root with a leaf on the left and, on the right, a node whose children are leaves.
+/// Returns a root with a leaf on the left and, on the right, a node whose children are leaves.
 Tree small_tree() {
   Tree tree;
   tree.nodes = {{.du1 = 1, .dv1 = -2, .du2 = 127, .dv2 = -128, .threshold_mm = -3, .left = ~2, .right = 1},
@@ -16,7 +16,7 @@ Tree small_tree() {
   return tree;
 }
 
-TEST(PackedTree, PutsChildrenSideBySide) {
+TEST(PackedTree, HasChildrenSideBySide) {
   const PackedTree packed = pack(small_tree(), {});
   EXPECT_FALSE(packed.wide);
   EXPECT_EQ(packed.link_bits, 28) << "-3 and 5 take four bits";
@@ -27,7 +27,7 @@ TEST(PackedTree, PutsChildrenSideBySide) {
                                         0, 0, 1, 0));             // those of node 1, link 2
 }
 
-TEST(PackedTree, IsWideWhereOffsetsOrLinksNeedIt) {
+TEST(PackedTree, IsWideIfOffsetsOrLinksNeedIt) {
   Tree tree = small_tree();
   tree.nodes[1].dv2 = 128;
   const PackedTree packed = pack(tree, {});
@@ -35,7 +35,7 @@ TEST(PackedTree, IsWideWhereOffsetsOrLinksNeedIt) {
   EXPECT_THAT(std::vector<std::uint32_t>(packed.words.begin(), packed.words.begin() + 4),
               ElementsAre(0xFFFE0001, 0xFF80007F, static_cast<std::uint32_t>(-3), 1));
   EXPECT_EQ(packed.words.size(), 24U);
-  // A chain of as many nodes as 16 bits of link can tell apart, and one more.
+  // The chain has one node more than 16 bits of link can distinguish.
   Tree chain;
   chain.leaves.resize(1);
   for (std::int32_t n = 0; n < 65535; ++n) {
@@ -47,8 +47,8 @@ TEST(PackedTree, IsWideWhereOffsetsOrLinksNeedIt) {
   EXPECT_FALSE(pack(chain, {.clip_mm = 1000}).wide) << "a feature is at least -2000 then";
 }
 
-TEST(PackedTree, LevelsAreThoseOfTheLongestWay) {
-  Tree tree = small_tree();  // the last node hangs on the first and on the second
+TEST(PackedTree, HasTheLevelsOfTheLongestPath) {
+  Tree tree = small_tree();  // the last node is a child of the first and of the second
   tree.nodes[0].left = 2;
   tree.nodes[1].left = 2;
   tree.nodes.push_back({.left = ~0, .right = ~1});
@@ -57,7 +57,7 @@ TEST(PackedTree, LevelsAreThoseOfTheLongestWay) {
   EXPECT_EQ(pack(tree, {}).levels, 3);
 }
 
-TEST(PackedTree, WithoutNodesIsALeaf) {
+TEST(PackedTree, IsALeafWithoutNodes) {
   Tree tree;
   tree.leaves = {{{7, 99, 99, 3}, {200, 0, 0, 50}}};
   const PackedTree packed = pack(tree, {});

@@ -5,7 +5,7 @@
 namespace vesalius {
 namespace {
 
-TEST(PaddedDepth, HoldsWhatProbesRead) {
+TEST(PaddedDepth, HasTheValuesThatProbesRead) {
   DepthImage depth(2, 2, 1000);
   depth(1, 0) = 0;
   depth(0, 1) = 65535;

@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kRowGrain = 8;
 
-/// Says whether a whole window holds one label, whatever the depth: most of a picture needs no counting.
+/// Tells whether all pixels of a window have one label, whatever their depth. Most of a picture then needs no counting.
 class EvenWindows {
  public:
-  /// For windows around the pixels of rows `begin` to `end` - 1.
+  /// Prepares for windows around the pixels of rows `begin` to `end` - 1.
   EvenWindows(const LabelImage& labels, int window, int begin, int end)
       : labels_(labels),
         reach_(window / 2),
@@ -91,7 +91,7 @@ void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& v
 }
 
 SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
-  constexpr float kSpacings = 140.F;  // in the focal length
+  constexpr float kSpacings = 140.F;  // number of spacings in the focal length
   if (options.spacing == 0) options.spacing = std::max(1, static_cast<int>(std::lround(camera.fx / kSpacings)));
   return options;
 }

@@ -11,29 +11,29 @@ namespace vesalius {
 
 struct SmoothOptions {
   int window = 5;   ///< neighbours along a side of the square; an even number counts as the next odd one; 1 = none
-  int spacing = 0;  ///< pixels from one neighbour to the next where posteriors are smoothed; 0: see `spaced`
+  int spacing = 0;  ///< pixels from one neighbour to the next when smoothing posteriors; 0: see `spaced`
   int depth_gate_mm = 60;        ///< posteriors of neighbours further away than this in depth do not count
   bool mode = false;             ///< smooth labels by their mode even where the forest has distributions
   int mode_depth_gate_mm = 300;  ///< the depth gate of the mode, which needs many neighbours more than near ones
 };
 void visit_options(const std::string& prefix, SmoothOptions& options, OptionVisitor& visitor);
 
-/// Returns the options with a spacing. Where it is 0, it becomes 1/140 of the focal length in pixels, rounded, at least
-/// 1: a step of 18 mm at 2.5 m.
+/// Returns the options with a spacing. If it is 0, it becomes 1/140 of the focal length in pixels, rounded, at least 1,
+/// which is a step of 18 mm at 2.5 m.
 SmoothOptions spaced(SmoothOptions options, const Camera& camera);
 
 /// Returns for each pixel the most frequent label of the pixels within the window, the depth gate and the picture
-/// (section 4.2.1); spacing plays no part. A pixel keeps its label on a tie that includes it; other ties go to the
-/// lowest label. Background counts as a label. Pixels without a reading become background.
+/// (section 4.2.1); spacing is ignored. A pixel keeps its label on a tie that includes it; other ties go to the lowest
+/// label. Background counts as a label. Pixels without a reading become background.
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options);
 
-/// Returns for each pixel the mean of the posteriors of such neighbours, `spacing` apart, rounded down, in the range of
-/// one pixel's sums, so that choose_labels reads both alike. Pixels next to each other mostly err alike; as many
-/// further apart say more. Where the sums over a window exceed 16 bits (with the default window: of more than 10
-/// trees), each loses its lowest bits beforehand.
+/// Returns for each pixel the mean of the posteriors of the neighbours within the window and the depth gate, `spacing`
+/// apart. It is rounded down and in the range of one pixel's sums, so that choose_labels reads both alike. Adjacent
+/// pixels mostly have the same errors, so the same number of pixels further apart says more. If the sums over a window
+/// exceed 16 bits (with the default window: for more than 10 trees), each loses its lowest bits beforehand.
 Posteriors mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
                        const SmoothOptions& options);
-/// Writes the same to `out`, whose memory is used again and which must not be `posteriors`.
+/// Writes the same to `out` and reuses its memory. `out` must not be `posteriors`.
 void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
                  const SmoothOptions& options, Posteriors& out);
 

@@ -12,7 +12,7 @@
 namespace vesalius {
 namespace {
 
-/// With neighbours next to each other.
+/// At this focal length, neighbours are adjacent pixels.
 constexpr Camera kSmallCamera{37, 23, 40.F, 40.F, 18.F, 11.F};
 
 struct Picture {
@@ -28,7 +28,7 @@ Picture random_picture(std::uint64_t seed) {
   return p;
 }
 
-/// Patches of one label with few speckles, so that some windows hold one label and some nearly do.
+/// Returns patches of one label with few speckles, so that some windows have one label and some nearly do.
 Picture patchy_picture(std::uint64_t seed) {
   Random random(seed, 1);
   Picture p = random_picture(seed);
@@ -67,7 +67,7 @@ std::uint8_t slow_mode(const Picture& p, int u, int v, const SmoothOptions& o) {
 
 class Windows : public testing::TestWithParam<int> {};
 
-TEST_P(Windows, ModeAgreesWithCounting) {
+TEST_P(Windows, GiveTheModeThatCountingGives) {
   const SmoothOptions options{.window = GetParam(), .mode = true};
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const Picture p = seed < 3 ? random_picture(seed) : patchy_picture(seed);
@@ -107,13 +107,13 @@ void expect_plain_mean(const SmoothOptions& options) {
   }
 }
 
-TEST_P(Windows, MeanAgreesWithSumming) {
+TEST_P(Windows, GiveTheMeanThatSummingGives) {
   for (const int spacing : {0, 1, 2, 3}) {
     expect_plain_mean({.window = GetParam(), .spacing = spacing, .depth_gate_mm = 250});
   }
 }
 
-TEST(MeanFilter, LeavesSettledPixelsAsTheyAre) {
+TEST(MeanFilter, KeepsSettledPixels) {
   const DepthImage depth(9, 9, 1000);
   Posteriors in{9, 9, 6, 1, std::vector<std::uint16_t>(9 * 9 * 6, 0)};
   in.settled = Mask(9, 9, 0);
@@ -126,7 +126,7 @@ TEST(MeanFilter, LeavesSettledPixelsAsTheyAre) {
   EXPECT_EQ(out.at(5, 4)[5], 10) << "counts for its neighbours";
 }
 
-TEST(MeanFilter, LosesTheLowestBitsWhereSumsOfAWindowExceed16) {
+TEST(MeanFilter, LosesTheLowestBitsIfSumsExceed16Bits) {
   const Picture p = random_picture(9);
   for (const auto& [trees, bits] : {std::pair{10, 0}, std::pair{11, 1}, std::pair{20, 1}, std::pair{40, 2}}) {
     Posteriors in{37, 23, 26, trees, {}};
@@ -174,12 +174,12 @@ TEST(ModeFilter, RemovesASpeckleButNotAcrossADepthStep) {
   DepthImage depth(7, 7, 1500);
   labels(3, 3) = 8;
   EXPECT_EQ(mode_filter(labels, depth, {})(3, 3), 3);
-  depth(3, 3) = 1900;  // 400 mm behind: alone in its gate
+  depth(3, 3) = 1900;  // 400 mm behind, so no neighbour is within the gate
   EXPECT_EQ(mode_filter(labels, depth, {})(3, 3), 8);
 }
 
 // Labels: threads
-TEST(ModeFilter, SameBytesForAnyThreadCount) {
+TEST(ModeFilter, GivesTheSameBytesForAnyNumberOfThreads) {
   const Picture p = random_picture(4);
   std::vector<LabelImage> results;
   for_threads({1, 2, 8}, [&] { results.push_back(mode_filter(p.labels, p.depth, {})); });

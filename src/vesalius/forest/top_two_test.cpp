@@ -23,7 +23,7 @@ TopTwo plain_top_two(const std::uint16_t* sums, int classes) {
   return top;
 }
 
-TEST(TopTwo, AreThoseOfThePlainSearchOnEveryInstructionSet) {
+TEST(TopTwo, AgreeWithThePlainSearchOnEveryInstructionSet) {
   Random random(3);
   constexpr int kPixels = 500;
   for (const int classes : {1, 2, 7, 8, 15, 16, 17, 25, 26, 32, 40}) {

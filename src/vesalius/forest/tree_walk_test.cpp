@@ -18,7 +18,7 @@ DepthImage random_depth(std::uint64_t seed) {
   return depth;
 }
 
-/// Eq. 1 in double precision. `sure` becomes false where rounding may go either way.
+/// Computes eq. 1 in double precision. `sure` becomes false if rounding could give either result.
 double exact_feature(const DepthImage& depth, const FeatureConvention& c, int u, int v, const TreeNode& n, bool& sure) {
   const double z_m = depth(u, v) / 1000.0;
   const auto read = [&](int du, int dv) {
@@ -34,7 +34,7 @@ double exact_feature(const DepthImage& depth, const FeatureConvention& c, int u,
   return read(n.du1, n.dv1) - read(n.du2, n.dv2);
 }
 
-TEST(TreeWalk, FeatureIsEquationOne) {
+TEST(TreeWalk, ComputesEquationOne) {
   Random random(1);
   const FeatureConvention conventions[] = {
       {}, {.offset_unit = 1.F, .reference_focal_px = 640.F, .hole_mm = 9000, .outside_mm = 8000}, {.clip_mm = 500}};
@@ -58,7 +58,7 @@ TEST(TreeWalk, FeatureIsEquationOne) {
   EXPECT_GT(compared, 4000);
 }
 
-TEST(TreeWalk, HolesAndTheOutsideReadWhatTheConventionSays) {
+TEST(TreeWalk, ReadsHolesAndTheOutsideByTheConvention) {
   DepthImage depth(4, 4, 1000);
   depth(2, 1) = 0;
   const FeatureConvention convention{.hole_mm = 7777, .outside_mm = 8888};
@@ -68,7 +68,7 @@ TEST(TreeWalk, HolesAndTheOutsideReadWhatTheConventionSays) {
   EXPECT_EQ(probe_mm(depth, convention, 1, 3), 1000);
 }
 
-TEST(TreeWalk, TheFurthestProbeOfTheNearestPixelStaysInRange) {
+TEST(TreeWalk, KeepsTheFurthestProbeOfTheNearestPixelInRange) {
   const DepthImage depth(2, 2, 1);
   const Camera wide{2, 2, 1e6F, 1e6F, 0.F, 0.F};
   const FeatureConvention convention;
@@ -77,7 +77,7 @@ TEST(TreeWalk, TheFurthestProbeOfTheNearestPixelStaysInRange) {
   EXPECT_EQ(feature_mm(depth, convention, scaler.at(1), 1, 1, node), 0);
 }
 
-TEST(TreeWalk, EqualToTheThresholdGoesLeft) {
+TEST(TreeWalk, GoesLeftAtTheThreshold) {
   DepthImage depth(3, 1, 1000);
   depth(2, 0) = 1100;
   const FeatureConvention convention;
@@ -89,7 +89,7 @@ TEST(TreeWalk, EqualToTheThresholdGoesLeft) {
   }
 }
 
-TEST(TreeWalk, TreeWithoutNodesIsItsLeaf) {
+TEST(TreeWalk, EndsInTheLeafOfATreeWithoutNodes) {
   Tree tree;
   tree.leaves.resize(1);
   EXPECT_EQ(&walk(tree, DepthImage(1, 1, 1000), {}, {1, 1}, 0, 0), tree.leaves.data());

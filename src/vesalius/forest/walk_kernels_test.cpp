@@ -13,10 +13,10 @@ struct TreeKind {
   int max_depth = 20;
   int max_offset = 127;
   int max_threshold_mm = 2000;
-  bool shared = false;  ///< some children have several parents
+  bool shared = false;  ///< whether some children have several parents
 };
 
-/// A tree that is deep rather than full. Leaves are as many as end open branches.
+/// Returns a tree that is deep rather than complete. There are as many leaves as are needed to end its open branches.
 Tree random_tree(Random& random, const TreeKind& kind) {
   const auto within = [&](int limit) {
     const int value = static_cast<int>(random.below(static_cast<std::uint32_t>(2 * limit + 1))) - limit;
@@ -68,7 +68,7 @@ Tree random_tree(Random& random, const TreeKind& kind) {
   return tree;
 }
 
-/// Holes, walls, noise, and the ends of the range.
+/// Returns holes, walls, noise, and the ends of the range.
 DepthImage random_depth(Random& random, int width, int height) {
   DepthImage depth(width, height, 0);
   const std::uint16_t ends[] = {1, 2, 65535, 400};
@@ -135,7 +135,7 @@ TEST(WalkKernels, FindTheLeavesOfThePlainWalkOnEveryInstructionSet) {
   }
 }
 
-TEST(WalkKernels, TheFurthestProbesOfTheLargestPictureStayOutside) {
+TEST(WalkKernels, KeepTheFurthestProbesOfTheLargestPictureOutside) {
   Random random(22);
   const FeatureConvention convention;
   for (const auto& [width, height] : {std::pair{PaddedDepth::kMaxSide, 2}, std::pair{2, PaddedDepth::kMaxSide}}) {
@@ -147,7 +147,7 @@ TEST(WalkKernels, TheFurthestProbesOfTheLargestPictureStayOutside) {
   }
 }
 
-TEST(WalkPixels, AreThoseWithAReading) {
+TEST(WalkPixels, AreThePixelsWithAReading) {
   DepthImage depth(3, 3, 0);
   depth(2, 0) = 500;
   depth(0, 1) = 1000;
