@@ -12,7 +12,7 @@ void add_completion(CLI::App& program) {
   const auto shell = std::make_shared<std::string>();
   command->add_option("SHELL", *shell, "Shell to write for")->required()->check(CLI::IsMember({"bash"}));
   command->footer(R"(
-An installed vesalius brings this script with it.
+An installed vesalius includes this script.
 
 Example:
   source <(vesalius completion bash))");

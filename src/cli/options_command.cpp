@@ -36,7 +36,7 @@ void add_options(CLI::App& program) {
       ->check(CLI::IsMember(std::move(names)))
       ->capture_default_str();
   command->footer(R"(
-What it prints is a file for `vesalius detect --options FILE`, `vesalius synth --recipe FILE` or
+The output is a file for `vesalius detect --options FILE`, `vesalius synth --recipe FILE` or
 `vesalius train --options FILE`; each name is a flag of that command as well.
 
 Examples:

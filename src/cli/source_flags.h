@@ -15,6 +15,6 @@ void add_camera_flags(CLI::App& command, SourceOptions& options);
 inline constexpr const char* kSourceHelp =
     "Frames: a folder (depth/*.png with meta.json or camera_info.yaml, TUM RGB-D, PNG or PCD files), a 16-bit depth "
     "PNG "
-    "or an organised PCD file; tum:FOLDER:SCALE and the like say which";
+    "or an organised PCD file; tum:FOLDER:SCALE and similar prefixes state the kind";
 
 }  // namespace vesalius::cli

@@ -74,15 +74,17 @@ void run(const Arguments& arguments) {
 void add_assets(CLI::App& program) {
   CLI::App* command = program.add_subcommand("assets", "Fetch the bodies and motions that `vesalius synth` can use");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("NAME", arguments->names, "Which (makehuman, mocap); all that can be had where none is named");
+  command->add_option("NAME", arguments->names,
+                      "Packages (makehuman, mocap); all that can be fetched if none is named");
   command->add_option("--mirror", arguments->mirror,
                       "Folder or address (http://, https://, file://) that holds NAME.tar.xz or the files below NAME/");
   command->add_option("--dir", arguments->folder,
-                      "Where they go (default: $VESALIUS_ASSETS, else vesalius in $XDG_DATA_HOME or ~/.local/share)");
-  command->add_flag("--list", arguments->list, "Only print what there is: size, licence, credit, whether it is there");
+                      "Folder for them (default: $VESALIUS_ASSETS, else vesalius in $XDG_DATA_HOME or ~/.local/share)");
+  command->add_flag("--list", arguments->list,
+                    "Only list the packages: size, licence, credit and whether each is there");
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
-Each file gets its name once its SHA-256 is right; run again, the command fetches what is missing.
+Each file gets its name only if its SHA-256 is right. Running the command again fetches missing files.
 
 Examples:
   vesalius assets makehuman

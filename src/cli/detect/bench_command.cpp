@@ -172,7 +172,9 @@ void add_bench(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>(*command);
   command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
   add_camera_flags(*command, arguments->camera);
-  command->add_option("--frames", arguments->frames, "Frames to measure, the source over and over; 0 = all of it, once")
+  command
+      ->add_option("--frames", arguments->frames,
+                   "Frames to measure, repeating the source if needed; 0 = the whole source once")
       ->type_name("N")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
@@ -182,8 +184,8 @@ void add_bench(CLI::App& program) {
   command->add_option("--json", arguments->json, "The figures as JSON; - is standard output")->type_name("FILE");
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
-Times are those of the clock on the wall, from a frame in memory to its people; "read" is getting it there. Frames/s are
-those of one detection after the other. Every detector option is a flag too; `vesalius options` lists them.
+Times are wall-clock times from a frame in memory to its people; "read" is the time to load it. Frames/s count one
+detection after the other. Every detector option is a flag too; `vesalius options` lists them.
 
 Example:
   vesalius bench frames/ --frames 300 --json bench.json)");

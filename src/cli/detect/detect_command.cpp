@@ -125,7 +125,9 @@ void add_output_flags(CLI::App& command, OutputRequest& outputs) {
   command.add_option("--json", outputs.json, "People as JSON, one line a frame; - is standard output")
       ->type_name("FILE")
       ->group(group);
-  command.add_option("--out", outputs.folder, "Folder for pictures; made if missing")->type_name("DIR")->group(group);
+  command.add_option("--out", outputs.folder, "Folder for pictures, created if missing")
+      ->type_name("DIR")
+      ->group(group);
   command
       .add_option(
           "--save", outputs.save,
@@ -148,9 +150,9 @@ void add_time_flags(CLI::App& command, Arguments& arguments) {
   command.add_flag("--timing", arguments.timing, "Print at the end how long each stage took")->group(group);
   command
       .add_flag("--realtime", arguments.stream.realtime,
-                "Take frames at the times at which the camera took them, drop those that come too fast, count them")
+                "Process frames at the pace of the camera; drop and count those that come too fast")
       ->group(group);
-  command.add_option("--rate", arguments.stream.rate, "Frames per second in real time of a source without times")
+  command.add_option("--rate", arguments.stream.rate, "Frames per second with --realtime if the source has no times")
       ->type_name("N")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str()
@@ -170,7 +172,7 @@ void add_detect(CLI::App& program) {
       ->check(CLI::Range(0, kMaxThreads))
       ->group(kDetectorGroup);
   add_time_flags(*command, *arguments);
-  command->add_flag("--keep-going", arguments->keep_going, "Pass over frames that fail; exit code 1 at the end");
+  command->add_flag("--keep-going", arguments->keep_going, "Skip frames that fail; the exit code is then 1");
   command->add_flag("-q,--quiet", arguments->outputs.quiet, "Print errors only");
   command->footer(R"(
 Every detector option is a flag too, e.g. --search.min-parts 6; `vesalius options` lists them.

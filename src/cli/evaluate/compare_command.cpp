@@ -47,17 +47,16 @@ void run(const std::string& first, const std::string& second, bool all) {
 }  // namespace
 
 void add_compare(CLI::App& program) {
-  CLI::App* command =
-      program.add_subcommand("compare", "Say what a second evaluation has better or worse than a first");
+  CLI::App* command = program.add_subcommand("compare", "Compare two evaluations metric by metric");
   const auto first = std::make_shared<std::string>();
   const auto second = std::make_shared<std::string>();
   const auto all = std::make_shared<bool>(false);
   command->add_option("FIRST", *first, "report.json of `vesalius evaluate`")->required();
-  command->add_option("SECOND", *second, "The same of another model or other options")->required();
-  command->add_flag("--all", *all, "Also metrics that do not differ");
+  command->add_option("SECOND", *second, "The same for another model or other options")->required();
+  command->add_flag("--all", *all, "Print also metrics that do not differ");
   command->footer(R"(
-Where both saw the same frames the difference is resampled frame by frame, so that small ones show. Of twenty metrics
-that do not differ about one is called better or worse by chance.)");
+If both evaluations saw the same frames, differences are resampled frame by frame, which shows even small ones. About one
+in twenty metrics without a difference is called better or worse by chance.)");
   command->callback([first, second, all] { run(*first, *second, *all); });
 }
 

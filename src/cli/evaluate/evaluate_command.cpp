@@ -211,7 +211,7 @@ void add_evaluate(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::Range(1, kMaxCount));
   command->add_option("--render-seed", arguments->rendered.seed, "Seed of the recipes' frames")->type_name("N");
-  command->add_option("--assets", arguments->rendered.assets.folder, "Where `vesalius assets` put its files")
+  command->add_option("--assets", arguments->rendered.assets.folder, "Folder in which `vesalius assets` put its files")
       ->type_name("DIR");
   command->add_option("-m,--model", arguments->model, "Trained forest")->type_name("FILE")->required();
   command
@@ -227,7 +227,8 @@ void add_evaluate(CLI::App& program) {
                                                "Only the pixel labels of the first pass: much faster");
   command
       ->add_flag("--ablation", arguments->ablation,
-                 "Also without each part of the method in turn, with time a frame: some fifteen times as long")
+                 "Evaluate also without each part of the method in turn, with the time per frame; takes about fifteen "
+                 "times as long")
       ->excludes(labels_only);
   command
       ->add_option("--joints", arguments->joints_file,
@@ -245,8 +246,8 @@ void add_evaluate(CLI::App& program) {
   command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The metrics are the same")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads));
-  command->add_flag("--keep-going", arguments->keep_going, "Pass over frames that fail; exit code 1 at the end");
-  command->add_flag("-q,--quiet", arguments->quiet, "No progress");
+  command->add_flag("--keep-going", arguments->keep_going, "Skip frames that fail; the exit code is then 1");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print no progress");
   command->footer(R"(
 Every detector option is a flag too, e.g. --search.min-parts 6; `vesalius options` lists them. docs/metrics.md says what
 the metrics mean.

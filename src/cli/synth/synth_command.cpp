@@ -157,7 +157,7 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
       ->group(group);
   command
       .add_option("--out", arguments.out,
-                  "Folder for the frames, made if missing; a run that was cut short goes on. For --preview the "
+                  "Folder for the frames, created if missing; an interrupted run continues. With --preview the "
                   "picture (default: preview.png)")
       ->type_name("PATH")
       ->group(group);
@@ -165,7 +165,7 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
       ->check(CLI::IsMember({"shards", "folder"}))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--seed", arguments.seed, "Same recipe, seed and number, same frame")
+  command.add_option("--seed", arguments.seed, "A frame depends only on the recipe, this seed and its number")
       ->type_name("N")
       ->capture_default_str()
       ->group(group);
@@ -189,7 +189,7 @@ void add_recipe_flags(CLI::App& command, Arguments& arguments) {
                   fmt::format("Depth camera: {} (default: {})", fmt::join(names, ", "), synth::SensorOptions{}.preset))
       ->type_name("NAME")
       ->group(group);
-  command.add_option("--camera", arguments.camera, "Its intrinsics, if they differ: meta.json or camera_info YAML")
+  command.add_option("--camera", arguments.camera, "Other intrinsics for the camera: meta.json or camera_info YAML")
       ->type_name("FILE")
       ->group(group);
   command.get_option("--mounting")->type_name("NAME")->group(group);
@@ -203,7 +203,7 @@ void add_recipe_flags(CLI::App& command, Arguments& arguments) {
   command.add_option("--motions", arguments.motions, "Motions of your own: a folder of .bvh, or .amc with .asf")
       ->type_name("DIR")
       ->group(group);
-  command.add_option("--assets", arguments.assets, "Where `vesalius assets` put its files")
+  command.add_option("--assets", arguments.assets, "Folder in which `vesalius assets` put its files")
       ->type_name("DIR")
       ->group(group);
 }

@@ -93,7 +93,7 @@ void add_source_flags(CLI::App& command, TrainSources& sources) {
   add("--recipe", sources.recipes, "TOML files of synth: frames are rendered and not kept", "FILE");
   add("--count", sources.count, "Frames to render of each recipe; most frames to take of each dataset", "N")
       ->check(CLI::Range(1, kMaxFrames));
-  add("--recipe-seed", sources.render_seed, "Frames rendered are those of `vesalius synth --seed`", "N")
+  add("--recipe-seed", sources.render_seed, "Seed of the rendered frames, as in `vesalius synth --seed`", "N")
       ->capture_default_str();
   add("--background", sources.backgrounds, "Frames of rooms without people: all that `vesalius detect` reads",
       "SOURCE");
@@ -101,18 +101,18 @@ void add_source_flags(CLI::App& command, TrainSources& sources) {
   add("--models", sources.assets.models, "Furniture of your own for --recipe: OBJ or glTF, metres, y up", "FILE");
   add("--motions", sources.assets.motions, "Motions of your own for --recipe: a folder of .bvh, or .amc with .asf",
       "DIR");
-  add("--assets", sources.assets.folder, "Where `vesalius assets` put its files", "DIR");
+  add("--assets", sources.assets.folder, "Folder in which `vesalius assets` put its files", "DIR");
   add_camera_flags(command, sources.camera);
 }
 
 void add_run_flags(CLI::App& command, Arguments& arguments) {
   const std::string group = "Run";
-  command.add_flag("--estimate", arguments.estimate, "Only say what time and memory it takes")->group(group);
+  command.add_flag("--estimate", arguments.estimate, "Only estimate time and memory")->group(group);
   command.add_option("--memory", arguments.memory_gib, "GiB it may take (default: 80 % of what the machine has)")
       ->type_name("GIB")
       ->check(CLI::Range(0.01, 1e6))
       ->group(group);
-  command.add_flag("--restart", arguments.restart, "Forget the trees of a run that was cut short")->group(group);
+  command.add_flag("--restart", arguments.restart, "Discard the trees of an interrupted run")->group(group);
   command.add_option("--report", arguments.report, "Folder for a report, as web page and Markdown; needs gnuplot")
       ->type_name("DIR")
       ->group(group);
@@ -132,7 +132,7 @@ void add_train(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>(*command);
   add_source_flags(*command, arguments->sources);
   const std::string group = "Forest";
-  command->add_option("--out", arguments->out, "Model to write; OUT.work keeps trees until all are there")
+  command->add_option("--out", arguments->out, "Model to write; OUT.work keeps trees until all are grown")
       ->type_name("FILE")
       ->group(group);
   command->add_option("--options", arguments->options_file, "TOML file of options; `vesalius options train` prints one")
@@ -144,7 +144,7 @@ void add_train(CLI::App& program) {
   add_run_flags(*command, *arguments);
   command->footer(R"(
 The options that decide how a forest is trained are flags too, e.g. --min-samples 20; `vesalius options train` lists
-them. A run that was cut short goes on when the same command is given again, and ends with the same model.
+them. An interrupted run continues when the same command is given again, and ends with the same model.
 
 Examples:
   vesalius train --data train/ --out my.forest --report report/
