@@ -26,7 +26,7 @@ bool has_assets(const AssetPackage& package, const std::string& folder);
 std::function<std::string(const std::string& path)> asset_reader(const AssetPackage& package,
                                                                  const std::string& folder);
 
-/// What an installation did.
+/// The result of an installation.
 struct InstallReport {
   std::size_t fetched = 0;  ///< number of files
   std::size_t kept = 0;     ///< number of files that were there with the right digest

@@ -19,7 +19,7 @@ struct CapsuleShape {
   }
 };
 
-/// Where a ray enters a shape.
+/// The point where a ray enters a shape.
 struct ShapeHit {
   double t = 0.0;         ///< multiple of the ray's direction
   Eigen::Vector3d local;  ///< entry point in shape units

@@ -20,20 +20,19 @@ inline constexpr int kJointCurve_cm = 30;
 /// found.
 struct JointPair {
   std::vector<Eigen::Vector3f> truth;
-  std::vector<Eigen::Vector3f> found;  ///< of the same length
+  std::vector<Eigen::Vector3f> found;  ///< found positions, of the same length
 };
 
 /// Returns the positions of `joints`, which are in the order of `set`, in the order of `names`. Joints that were not
-/// found are NaN; of a person who was not found (`joints` is empty) all are. Throws Error for a name that the set
-/// lacks.
+/// found are NaN; if the person was not found (`joints` is empty), all are. Throws Error for a name that the set lacks.
 std::vector<Eigen::Vector3f> joints_by_name(const std::vector<std::string>& names, const JointSet& set,
                                             const std::vector<Joint>& joints);
 
-/// Returns the joint set called `wanted` if it has all of these joints, else the first one that does; null for none.
+/// Returns the joint set called `wanted` if it has all of these joints, otherwise the first one that has them, or null.
 const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names,
                                std::string_view wanted = "");
 
-/// Returns the distance of each joint in metres: NaN where the truth is not known, infinity where it was not found.
+/// Returns the distance of each joint in metres: NaN if the truth is not known, infinity if the joint was not found.
 std::vector<double> joint_errors(const JointPair& pair);
 
 /// The mean distance of the joints that both have; NaN if there are too few joints for a mean or a fit.
@@ -44,11 +43,11 @@ struct MeanErrors {
 };
 MeanErrors mean_joint_errors(const JointPair& pair, const std::vector<std::string>& names);
 
-/// Returns the joint metrics of one person. Joints that were not found count as wrong in the shares of right ones and
-/// not at all in the mean errors.
+/// Returns the joint metrics of one person. Joints that were not found count as wrong in the shares of right joints,
+/// and are left out of the mean errors.
 MetricTerms joint_terms(const JointPair& pair, const std::vector<std::string>& names);
 
-/// How many joints lie within 1, 2, ... kJointCurve_cm centimetres of the truth.
+/// The numbers of joints within 1, 2, ... kJointCurve_cm centimetres of the truth.
 struct JointCurve {
   std::array<long, kJointCurve_cm> within{};
   long joints = 0;
@@ -58,14 +57,14 @@ struct JointCurve {
   double share(int cm) const;
 };
 
-/// How far behind its visible surface a joint's truth lies along the viewing ray: a sample for a depth_offset.
+/// The distance of a true joint behind its visible surface along the viewing ray, which is a sample for a depth_offset.
 struct JointOffset {
   std::string set;
   std::string joint;
   double behind_m = 0.0;
 };
 
-/// Returns the samples of the joints that both have, counted from the surface: without the set's own depth offsets.
+/// Returns the samples of the joints that both have. They count from the surface, without the set's own depth offsets.
 std::vector<JointOffset> joint_offsets(const JointPair& pair, const std::vector<std::string>& names,
                                        const JointSet& set);
 

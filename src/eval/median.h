@@ -5,7 +5,7 @@
 
 namespace vesalius {
 
-/// Returns the middle value, of an even number the upper of the two; 0 for none.
+/// Returns the middle value, or the upper of the two middle ones; 0 for no values.
 inline double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -43,16 +43,16 @@ enum class Metric {
 
 enum class MetricUnit { share, per_frame, metres };
 enum class MetricDirection { higher_is_better, lower_is_better };
-/// How a metric is made from the terms of its frames, which decides its interval.
+/// How a metric is computed from the terms of its frames, which determines its interval.
 enum class MetricKind {
-  trials,  ///< share of separate trials: Wilson's interval
-  ratio,   ///< ratio of two sums over the frames: the bootstrap's interval
-  mean,    ///< mean over the members of the family `mean_of`: the bootstrap's interval
+  trials,  ///< share of independent trials, with Wilson's interval
+  ratio,   ///< ratio of two sums over the frames, with the bootstrap's interval
+  mean,    ///< mean over the members of the family `mean_of`, with the bootstrap's interval
 };
 
 struct MetricInfo {
   Metric metric;
-  std::string_view name;  ///< in files; the parameter of a family stands at the '*'
+  std::string_view name;  ///< name in files; '*' stands for the parameter of a family
   std::string_view title;
   MetricUnit unit = MetricUnit::share;
   MetricDirection direction = MetricDirection::higher_is_better;
@@ -62,7 +62,7 @@ struct MetricInfo {
   constexpr bool is_family() const { return name.find('*') != std::string_view::npos; }
 };
 
-/// The only place that knows names, titles and kinds of metrics; in the order of `Metric`.
+/// The names, titles and kinds of all metrics, in the order of `Metric`. No other place has them.
 inline constexpr auto kMetrics = [] {
   using enum MetricUnit;
   using enum MetricDirection;
@@ -114,22 +114,22 @@ constexpr const MetricInfo& info(Metric metric) { return kMetrics[static_cast<st
 /// One metric, or one member of a family.
 struct MetricId {
   Metric metric{};
-  int place = 0;          ///< of the parameter among those of its family, e.g. the part's index; 0 for other metrics
+  int place = 0;          ///< index of the parameter in its family, e.g. the part's; 0 for other metrics
   std::string parameter;  ///< e.g. "l_hand"; empty for other metrics
 
   MetricId(Metric m) : metric(m) {}  // NOLINT(google-explicit-constructor): a metric without a parameter is one
   MetricId(Metric m, int place_in_family, std::string of)
       : metric(m), place(place_in_family), parameter(std::move(of)) {}
 
-  /// The name in files: "joint.l_hand.at_10cm".
+  /// Returns the name in files: "joint.l_hand.at_10cm".
   std::string name() const;
 };
 
-/// Returns the metric of that name, or nothing for a name that is not in kMetrics. `place` of a family's member stays
-/// 0.
+/// Returns the metric of that name, or nothing for a name that is not in kMetrics. For a member of a family `place`
+/// stays 0.
 std::optional<MetricId> parse_metric(std::string_view name);
 
-/// Returns "higher" or "lower": which values are better, as files say it.
+/// Returns "higher" or "lower", the word in files for the better values.
 const char* better_word(Metric metric);
 
 /// Returns a value in its unit: "97.20 %", "0.041 m", "0.013 a frame".

@@ -13,7 +13,8 @@
 
 namespace vesalius {
 
-/// What one frame adds to a metric. Every metric is a ratio of two sums over the frames, or a mean of such ratios.
+/// The term that one frame adds to a metric. Every metric is a ratio of two sums over the frames, or a mean of such
+/// ratios.
 struct MetricTerm {
   MetricId id;
   double numerator = 0.0;
@@ -28,16 +29,16 @@ struct Estimate {
   Interval interval{};
   double numerator = 0.0;
   double denominator = 0.0;
-  std::vector<double> replicates{};  ///< kReplicates values of the resampled set; NaN where it held no term
+  std::vector<double> replicates{};  ///< kReplicates values of the resampled set; NaN if it had no term
 };
 
-/// Returns the estimate of a metric, of a family the one with that parameter; null for none.
+/// Returns the estimate of a metric, for a family the one with that parameter; null if there is none.
 const Estimate* find_estimate(const std::vector<Estimate>& estimates, Metric metric, std::string_view parameter = "");
 
 /// Returns an estimate's value with its interval: "97.20 % (95.10 to 98.40)".
 std::string text_with_interval(const Estimate& estimate);
 
-/// Sums the terms of a set's frames; its size does not depend on their number.
+/// Sums the terms of a set's frames. Its size does not depend on their number.
 class MetricTable {
  public:
   /// Adds a frame; `key` names it (frame_key). Throws Error for a term that is not finite.
@@ -49,7 +50,7 @@ class MetricTable {
 
  private:
   struct Sums {
-    int place = 0;  ///< the smallest one given for this member of a family
+    int place = 0;  ///< the smallest place given for this member of a family
     double numerator = 0.0;
     double denominator = 0.0;
     std::array<double, kReplicates> numerators{};

@@ -10,17 +10,18 @@
 
 namespace vesalius {
 
-/// Which parts of a true person can be seen, and which of these a skeleton has in the right place.
+/// The numbers of visible parts of a true person, and of those among them that a skeleton has in the right place.
 struct PartCounts {
   int visible = 0;
   int right = 0;
-  int visible_upper = 0;  ///< of the body's upper parts
+  int visible_upper = 0;  ///< of these, parts of the upper body
   int right_upper = 0;
 };
 
 /// Smallest visible area of a part that counts as visible, cm^2.
 inline constexpr double kVisiblePart_cm2 = 20.0;
-/// How far a part's found centre may lie from the mean of its true pixels, metres: the paper's tolerance of every link.
+/// Largest distance in metres of a part's found centre from the mean of its true pixels: the paper's tolerance of every
+/// link.
 inline constexpr double kPartTolerance_m = 0.15;
 
 /// Returns for each part of a true person the mean of its pixels' points; NaN where it is not visible. The frame must

@@ -1,6 +1,6 @@
 #pragma once
 
-// How long growing will take, from a small tree grown now.
+// Estimates how long growing will take from a small tree that is grown first.
 //
 // A pilot of S' samples out of whole frames grows trees that look at split_pixels x S'/S samples where a node chooses
 // its split, S being the samples of the real run. Its tree then stands for the upper part of a real one: a pilot node

@@ -56,7 +56,7 @@ class HeldOutVotes {
   std::vector<std::uint16_t> sums_;  ///< [sample][class], in 1/255
 };
 
-/// Both mean recalls of a part of a forest.
+/// The two mean recalls of a part of a forest.
 struct AccuracyPoint {
   double with_background = 0.0;
   double parts_only = 0.0;

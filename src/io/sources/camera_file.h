@@ -10,7 +10,7 @@
 
 namespace vesalius {
 
-/// What is known about a camera; whatever a file leaves out is empty.
+/// The known facts about a camera. Anything that a file leaves out is empty.
 struct CameraFacts {
   std::optional<float> fx, fy, cx, cy;  ///< pixels
   std::optional<int> width, height;     ///< size of the pictures that fx ... cy are for

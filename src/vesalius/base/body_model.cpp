@@ -122,7 +122,7 @@ void read_links(const Reader& reader, const toml::table& root, BodyModel& body) 
   }
   check_no_ring(reader, array, body, parent);
   if (body.links.size() + 1 != body.parts.size()) {
-    // Without rings and second parents, each missing link leaves one more part without parent.
+    // If there are no rings and no second parents, each missing link leaves one more part without a parent.
     reader.fail(array.empty() ? static_cast<const toml::node&>(root) : array,
                 "link: expected " + std::to_string(body.parts.size() - 1) + " links, one tree over all parts, found " +
                     std::to_string(body.links.size()));

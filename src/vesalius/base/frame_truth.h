@@ -9,7 +9,7 @@
 
 namespace vesalius {
 
-/// Whether the camera stood still when it took a frame.
+/// Tells whether the camera moved when it took a frame.
 enum class CameraMotion { unknown, still, moving };
 
 /// The known facts about a frame. Unknown ones are empty.

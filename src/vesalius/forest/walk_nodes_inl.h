@@ -1,4 +1,5 @@
-// How the kernel reads nodes of PackedTree, for each instruction set: included by walk_kernels.cpp alone.
+// The functions by which the kernel reads nodes of PackedTree, for each instruction set. Only walk_kernels.cpp includes
+// this file.
 
 // Highway's guard: once for each target.
 #if defined(VESALIUS_WALK_NODES_INL_H) == defined(HWY_TARGET_TOGGLE)
