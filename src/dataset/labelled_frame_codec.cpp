@@ -10,7 +10,9 @@
 namespace vesalius {
 namespace {
 
+// Bits of a frame's flags.
 constexpr std::uint8_t kHasColour = 1;
+constexpr std::uint8_t kHasTime = 2;
 constexpr std::size_t kMaxName = 255;
 
 void write_camera(ByteWriter& out, const Camera& camera) {
@@ -123,15 +125,17 @@ std::string encode_frame(const DatasetFrame& frame, int part_count) {
   ByteWriter out;
   out.number(frame.index);
   out.number(frame.seed);
-  out.number(labelled.frame.colour.empty() ? std::uint8_t{0} : kHasColour);
-  out.text(labelled.frame.name);
-  out.real(labelled.frame.time_s);
-  write_camera(out, labelled.frame.camera);
+  const Frame& picture = labelled.frame;
+  const int flags = (picture.colour.empty() ? 0 : kHasColour) | (picture.time_s ? kHasTime : 0);
+  out.number(static_cast<std::uint8_t>(flags));
+  out.text(picture.name);
+  out.real(picture.time_s.value_or(0.0));
+  write_camera(out, picture.camera);
   write_people(out, labelled);
-  write_depth_plane(out, labelled.frame.depth);
+  write_depth_plane(out, picture.depth);
   write_byte_plane(out, labelled.labels);
   write_byte_plane(out, labelled.person);
-  if (!labelled.frame.colour.empty()) write_colour_plane(out, labelled.frame.colour);
+  if (!picture.colour.empty()) write_colour_plane(out, picture.colour);
   return std::move(out.bytes());
 }
 
@@ -141,18 +145,24 @@ DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::str
   frame.index = in.number<std::uint64_t>("index");
   frame.seed = in.number<std::uint64_t>("seed");
   const auto flags = in.number<std::uint8_t>("flags");
-  if (flags > kHasColour) in.fail(fmt::format("unknown flags {}", flags));
+  if (flags > (kHasColour | kHasTime)) in.fail(fmt::format("unknown flags {}", flags));
   LabelledFrame& labelled = frame.labelled;
   labelled.frame.name = in.text("name");
-  labelled.frame.time_s = in.real64("time");
+  const double time_s = in.real64("time");
+  if ((flags & kHasTime) != 0) labelled.frame.time_s = time_s;
   labelled.frame.camera = read_camera(in);
   read_people(in, part_count, labelled);
   const auto [width, height] = std::pair(labelled.frame.camera.width, labelled.frame.camera.height);
   labelled.frame.depth = read_depth_plane(in, width, height);
   labelled.labels = read_byte_plane(in, width, height);
   labelled.person = read_byte_plane(in, width, height);
-  if (flags == kHasColour && with_colour) labelled.frame.colour = read_colour_plane(in, width, height);
-  if (flags == kHasColour && !with_colour) skip_colour_plane(in);
+  if ((flags & kHasColour) != 0) {
+    if (with_colour) {
+      labelled.frame.colour = read_colour_plane(in, width, height);
+    } else {
+      skip_colour_plane(in);
+    }
+  }
   in.expect_end();
   if (!std::isfinite(labelled.frame.time_s)) in.fail("time is not finite");
   with_context(name, [&] { check_truth(labelled, part_count); });

@@ -25,6 +25,14 @@ TEST(FrameCodec, KeepsEveryField) {
   }
 }
 
+TEST(FrameCodec, TellsNoTimeFromTheTimeZero) {
+  LabelledFrame labelled = random_labelled(3);
+  for (const std::optional<double> time_s : {std::optional<double>{}, std::optional<double>{0.0}}) {
+    labelled.frame.time_s = time_s;
+    EXPECT_EQ(decode_frame(encode_frame({0, 0, labelled}, kParts), kParts, "test").labelled.frame.time_s, time_s);
+  }
+}
+
 TEST(FrameCodec, LeavesOutColourIfNotWanted) {
   const LabelledFrame labelled = random_labelled(3);
   const DatasetFrame back = decode_frame(encode_frame({0, 0, labelled}, kParts), kParts, "test", false);

@@ -128,7 +128,7 @@ FrameTruth TruthFolder::truth_of(const Frame& frame) const {
     truth.people = facts->second.people;
     truth.posture = facts->second.posture;
   }
-  if (camera_) truth.camera_motion = camera_->motion(frame.time_s);
+  if (camera_ && frame.time_s) truth.camera_motion = camera_->motion(*frame.time_s);
   const auto joints = joints_.find(frame.name);
   if (joints != joints_.end()) {
     if (facts == facts_.end()) truth.people = 1;

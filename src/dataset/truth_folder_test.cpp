@@ -75,7 +75,7 @@ TEST(TruthFolder, TellsWhetherTheCameraMoves) {
   EXPECT_EQ(TruthFolder(folder.path()).truth_of(frame("a")).camera_motion, CameraMotion::unknown);
   test::put(folder / "groundtruth.txt", "7.0 0 0 0 0 0 0 1\n7.1 0 0 0 0 0 0 1\n7.2 0.1 0 0 0 0 0 1\n");
   const TruthFolder truth(folder.path());
-  const auto motion_at = [&](double time_s) {
+  const auto motion_at = [&](std::optional<double> time_s) {
     Frame at = frame("a");
     at.time_s = time_s;
     return truth.truth_of(at).camera_motion;
@@ -83,6 +83,7 @@ TEST(TruthFolder, TellsWhetherTheCameraMoves) {
   EXPECT_EQ(motion_at(7.05), CameraMotion::still);
   EXPECT_EQ(motion_at(7.14), CameraMotion::moving);
   EXPECT_EQ(motion_at(0.0), CameraMotion::unknown);
+  EXPECT_EQ(motion_at({}), CameraMotion::unknown);
 }
 
 TEST(TruthFolder, NamesMissingAndWrongFiles) {

@@ -49,14 +49,14 @@ class Pace {
   Clock::time_point due(const Frame& frame) {
     if (frames_ == 0) first_s_ = frame.time_s;
     const double by_rate = period_s_ * frames_++;
-    const double wait_s = frame.time_s != 0.0 && first_s_ != 0.0 ? frame.time_s - first_s_ : by_rate;
+    const double wait_s = frame.time_s && first_s_ ? *frame.time_s - *first_s_ : by_rate;
     return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
   }
 
  private:
   double period_s_;
   Clock::time_point start_ = Clock::now();
-  double first_s_ = 0.0;  ///< 0 if frames have no times
+  std::optional<double> first_s_;  ///< none if frames have no times
   int frames_ = 0;
 };
 

@@ -81,7 +81,7 @@ std::string frame_json(const Frame& frame, const std::vector<Person>& people, co
                     {"joints", joints_json(person, body, frame.camera)}});
   }
   return line({{"frame", frame.name},
-               {"time_s", frame.time_s != 0.0 ? Json(rounded(frame.time_s, 1e6)) : Json()},
+               {"time_s", frame.time_s ? Json(rounded(*frame.time_s, 1e6)) : Json()},
                {"camera", camera_json(frame.camera)},
                {"people", std::move(list)}});
 }

@@ -64,7 +64,7 @@ TEST(PersonJson, ListsEveryPartAndJoint) {
 
 TEST(PersonJson, AnUnknownTimeIsNull) {
   Frame frame = named("f");
-  frame.time_s = 0.0;
+  frame.time_s.reset();
   EXPECT_TRUE(json::parse(frame_json(frame, {}, paper_body())).at("time_s").is_null());
 }
 

@@ -151,10 +151,10 @@ class BvhTruth final : public TruthSource {
     if (!frames_.empty()) {
       return static_cast<std::size_t>(index) < frames_.size() ? frames_[index] : -1;
     }
-    if (frame.time_s == 0.0) {
+    if (!frame.time_s) {
       throw Error(fmt::format("{}: frame {} has no time, expected a table as frames", path_, frame.name));
     }
-    const double at = std::round((frame.time_s - start_s_) * static_cast<double>(motion_.fps));
+    const double at = std::round((*frame.time_s - start_s_) * static_cast<double>(motion_.fps));
     return at >= 0.0 && at < motion_.frame_count() ? static_cast<int>(at) : -1;
   }
 
@@ -164,9 +164,9 @@ class BvhTruth final : public TruthSource {
     truth.joint_set = options_.joint_set;
     for (const NamedJoint& joint : joints_) truth.joint_names.push_back(joint.name);
     std::optional<Eigen::Isometry3d> camera_from_world = camera_from_world_;
-    if (trajectory_) {
-      truth.camera_motion = trajectory_->motion(frame.time_s);
-      if (const auto pose = trajectory_->world_from_camera(frame.time_s)) camera_from_world = pose->inverse();
+    if (trajectory_ && frame.time_s) {
+      truth.camera_motion = trajectory_->motion(*frame.time_s);
+      if (const auto pose = trajectory_->world_from_camera(*frame.time_s)) camera_from_world = pose->inverse();
     }
     const int at = motion_frame(frame, index);
     if (at < 0 || !camera_from_world) return truth;  // there is a person whose joints are unknown

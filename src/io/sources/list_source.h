@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,9 @@ namespace vesalius {
 /// The files of one frame.
 struct FrameFiles {
   std::string name;
-  double time_s = 0.0;  ///< seconds; 0 = not known
-  std::string depth;    ///< path of a 16-bit PNG
-  std::string colour;   ///< path of a PNG or JPEG of the same size; empty = none
+  std::optional<double> time_s;  ///< seconds, as in Frame
+  std::string depth;             ///< path of a 16-bit PNG
+  std::string colour;            ///< path of a PNG or JPEG of the same size; empty = none
 };
 
 /// Frames whose depth and colour pictures are files of their own, in order.

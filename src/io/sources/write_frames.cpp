@@ -117,9 +117,9 @@ class TumWriter final : public FolderWriter {
 
  private:
   std::string file_name(const Frame& frame) override {
-    const int number = ++count_;  // counts from 1, because time 0 means that there is none
-    if (frame.time_s != 0.0) return fmt::format("{:.6f}", frame.time_s);
-    if (options_.frame_rate) return fmt::format("{:.6f}", number / double{*options_.frame_rate});
+    const int index = count_++;
+    if (frame.time_s) return fmt::format("{:.6f}", *frame.time_s);
+    if (options_.frame_rate) return fmt::format("{:.6f}", index / double{*options_.frame_rate});
     throw Error(fmt::format(
         "frame {} has no time, which this layout needs: expected a source with times or a frame rate (--rate)",
         frame.name));

@@ -105,8 +105,8 @@ TEST(WriteFrames, RefusesTumWithoutTimes) {
   options.frame_rate = 10.F;
   write_all(FrameFormat::tum, folder / "rated", sample_frames(), options);
   const std::vector<Frame> rated = read_all(folder / "rated");
-  EXPECT_EQ(rated.at(0).time_s, 0.1);
-  EXPECT_EQ(rated.at(2).time_s, 0.3);
+  EXPECT_EQ(rated.at(0).time_s, 0.0);
+  EXPECT_EQ(rated.at(2).time_s, 0.2);
 }
 
 TEST(WriteFrames, RefusesDepthThatDoesNotFitTum) {

@@ -1,15 +1,12 @@
 #include "synth/body/rig_map.h"
 
-#define TOML_EXCEPTIONS 1
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "synth/text/text_scanner.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/toml_reader.h"
 
 namespace vesalius::synth {
 namespace {
@@ -18,47 +15,29 @@ constexpr std::string_view kMakeHumanRig =
 #include "makehuman_rig.inc"
     ;
 
-// A key with many thousand dotted levels overruns the parser's stack. No real map is nearly as long as this limit.
+// No real map is nearly as long as this limit.
 constexpr std::size_t kMostBytes = std::size_t{1} << 14;
 
-class MapReader {
+/// TomlReader with what maps of rigs need: names, keys that may be missing, tables of a kind.
+class MapReader : public TomlReader {
  public:
-  explicit MapReader(const std::string& name) : name_(name) {}
+  using TomlReader::TomlReader;
 
-  [[noreturn]] void fail(const toml::node& at, const std::string& what) const {
-    throw Error(fmt::format("{}:{}: {}", name_, at.source().begin.line, what));
-  }
-  std::string text(const toml::table& table, std::string_view key) const {
-    const auto value = table[key].value_exact<std::string>();
-    if (!value || value->empty() || shown(*value) != *value) {
+  std::string name(const toml::table& table, std::string_view key) const {
+    std::string value = string(need(table, key), key);
+    if (value.empty() || shown(value) != value) {
       fail(table, fmt::format("{}: expected a name of at most 40 characters", key));
     }
-    return *value;
+    return value;
   }
-  std::string text_or_empty(const toml::table& table, std::string_view key) const {
-    return table.contains(key) ? text(table, key) : "";
+  std::string name_or_empty(const toml::table& table, std::string_view key) const {
+    return table.contains(key) ? name(table, key) : "";
   }
-  float number(const toml::table& table, std::string_view key, double low, double high) const {
-    if (!table.contains(key)) return 0.F;
-    const auto value = table[key].is_number() ? table[key].value<double>() : std::nullopt;
-    if (!value || !(*value >= low && *value <= high)) {
-      fail(table, fmt::format("{}: expected a number from {} to {}", key, low, high));
-    }
-    return static_cast<float>(*value);
+  float number_or_zero(const toml::table& table, std::string_view key, double low, double high) const {
+    return table.contains(key) ? number(table, key, low, high) : 0.F;
   }
-  bool boolean(const toml::table& table, std::string_view key) const {
-    if (!table.contains(key)) return false;
-    const auto value = table[key].value_exact<bool>();
-    if (!value) fail(table, fmt::format("{}: expected true or false", key));
-    return *value;
-  }
-  void expect_keys(const toml::table& table, std::initializer_list<std::string_view> known) const {
-    for (const auto& [key, node] : table) {
-      if (std::ranges::find(known, key.str()) != known.end()) continue;
-      std::string list;
-      for (const std::string_view k : known) list.append(list.empty() ? "" : ", ").append(k);
-      fail(node, fmt::format("unknown key \"{}\", expected {}", shown(key.str()), list));
-    }
+  bool boolean_or_false(const toml::table& table, std::string_view key) const {
+    return table.contains(key) && boolean(table, key);
   }
   /// Returns the tables of an array of tables; none if the key is missing.
   std::vector<const toml::table*> tables(const toml::table& root, std::string_view key) const {
@@ -69,9 +48,6 @@ class MapReader {
     for (const toml::node& each : *node->as_array()) found.push_back(each.as_table());
     return found;
   }
-
- private:
-  const std::string& name_;
 };
 
 /// Replaces the star by "l_" or "r_" for bones of poses, and by ".L" or ".R" for those of the rig.
@@ -90,14 +66,14 @@ void for_sides(const std::string& name, F&& work) {
 }
 
 Bone bone_named(const MapReader& reader, const toml::table& table, std::string_view key, bool left) {
-  const std::string name = on_side(reader.text(table, key), left);
+  const std::string name = on_side(reader.name(table, key), left);
   const int found = find_bone(name);
   if (found < 0) reader.fail(table, fmt::format("{}: no bone of poses is called \"{}\"", key, name));
   return static_cast<Bone>(found);
 }
 
 RigMap::Rest read_rest(const MapReader& reader, const toml::table& table) {
-  const std::string rest = reader.text(table, "rest");
+  const std::string rest = reader.name(table, "rest");
   if (rest == "keep") return RigMap::Rest::keep;
   if (rest == "straighten") return RigMap::Rest::straighten;
   if (rest == "follow") return RigMap::Rest::follow;
@@ -107,11 +83,11 @@ RigMap::Rest read_rest(const MapReader& reader, const toml::table& table) {
 void read_bones(const MapReader& reader, const toml::table& root, RigMap& map) {
   for (const toml::table* table : reader.tables(root, "bone")) {
     reader.expect_keys(*table, {"bone", "joint", "tail", "rest"});
-    for_sides(reader.text(*table, "bone"), [&](bool left) {
+    for_sides(reader.name(*table, "bone"), [&](bool left) {
       RigMap::Joint& joint = map.bones[index(bone_named(reader, *table, "bone", left))];
       if (!joint.joint.empty()) reader.fail(*table, "bone: listed twice");
-      joint.joint = on_side(reader.text(*table, "joint"), left);
-      joint.tail = on_side(reader.text_or_empty(*table, "tail"), left);
+      joint.joint = on_side(reader.name(*table, "joint"), left);
+      joint.tail = on_side(reader.name_or_empty(*table, "tail"), left);
       joint.rest = read_rest(reader, *table);
     });
   }
@@ -129,14 +105,14 @@ void read_bones(const MapReader& reader, const toml::table& root, RigMap& map) {
 void read_follows(const MapReader& reader, const toml::table& root, RigMap& map) {
   for (const toml::table* table : reader.tables(root, "follow")) {
     reader.expect_keys(*table, {"rig", "from", "to", "blend", "twist"});
-    const std::string rig = reader.text(*table, "rig");
+    const std::string rig = reader.name(*table, "rig");
     for_sides(rig, [&](bool left) {
       RigMap::Follow follow;
       follow.rig = on_side(rig, left);
       follow.from = bone_named(reader, *table, "from", left);
       follow.to = table->contains("to") ? bone_named(reader, *table, "to", left) : follow.from;
-      follow.blend = reader.number(*table, "blend", 0.0, 1.0);
-      follow.twist = reader.boolean(*table, "twist");
+      follow.blend = reader.number_or_zero(*table, "blend", 0.0, 1.0);
+      follow.twist = reader.boolean_or_false(*table, "twist");
       map.follows.push_back(follow);
     });
   }
@@ -145,10 +121,10 @@ void read_follows(const MapReader& reader, const toml::table& root, RigMap& map)
 void read_fingers(const MapReader& reader, const toml::table& root, RigMap& map) {
   for (const toml::table* table : reader.tables(root, "finger")) {
     reader.expect_keys(*table, {"rig", "degrees", "across"});
-    const std::string rig = reader.text(*table, "rig");
+    const std::string rig = reader.name(*table, "rig");
     if (on_side(rig, true) == rig) reader.fail(*table, "rig: expected a name that ends in \".*\"");
-    const float radians = reader.number(*table, "degrees", -180.0, 180.0) * std::numbers::pi_v<float> / 180.F;
-    const float across = reader.number(*table, "across", 0.0, 10.0);
+    const float radians = reader.number_or_zero(*table, "degrees", -180.0, 180.0) * std::numbers::pi_v<float> / 180.F;
+    const float across = reader.number_or_zero(*table, "across", 0.0, 10.0);
     for (const bool left : {true, false}) {
       map.fingers.push_back({on_side(rig, left), left ? Grip::left : Grip::right, radians, across});
     }
@@ -158,27 +134,19 @@ void read_fingers(const MapReader& reader, const toml::table& root, RigMap& map)
   if (knuckles == nullptr) throw Error(fmt::format("{}: fingers without a table [knuckles]", map.name));
   reader.expect_keys(*knuckles, {"first", "last"});
   for (const bool left : {true, false}) {
-    map.first_knuckle[left ? 0 : 1] = on_side(reader.text(*knuckles, "first"), left);
-    map.last_knuckle[left ? 0 : 1] = on_side(reader.text(*knuckles, "last"), left);
-  }
-}
-
-toml::table parse(std::string_view text, const std::string& name) {
-  if (text.size() > kMostBytes) {
-    throw Error(fmt::format("{}: {} bytes, expected at most {}", name, text.size(), kMostBytes));
-  }
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& e) {
-    throw Error(fmt::format("{}:{}: not valid TOML", name, e.source().begin.line));
+    map.first_knuckle[left ? 0 : 1] = on_side(reader.name(*knuckles, "first"), left);
+    map.last_knuckle[left ? 0 : 1] = on_side(reader.name(*knuckles, "last"), left);
   }
 }
 
 }  // namespace
 
 RigMap parse_rig_map(std::string_view toml, const std::string& name) {
-  const toml::table root = parse(toml, name);
+  if (toml.size() > kMostBytes) {
+    throw Error(fmt::format("{}: {} bytes, expected at most {}", name, toml.size(), kMostBytes));
+  }
   const MapReader reader(name);
+  const toml::table root = reader.parse(toml);
   reader.expect_keys(root, {"bone", "follow", "knuckles", "finger"});
   RigMap map;
   map.name = name;

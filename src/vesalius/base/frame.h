@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,8 @@ namespace vesalius {
 
 /// One RGB-D picture: depth, colour registered to it (or none), and the camera of the depth grid.
 struct Frame {
-  std::string name;     ///< file stem or time stamp; unique within a source
-  double time_s = 0.0;  ///< seconds; 0 where the source has no times
+  std::string name;              ///< file stem or time stamp; unique within a source
+  std::optional<double> time_s;  ///< seconds since any moment the source counts from; none where it has no times
   Camera camera;
   DepthImage depth;
   ColourImage colour;  ///< empty, or the size of `depth`
