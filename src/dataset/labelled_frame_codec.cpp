@@ -164,7 +164,7 @@ DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::str
     }
   }
   in.expect_end();
-  if (!std::isfinite(labelled.frame.time_s)) in.fail("time is not finite");
+  if (!std::isfinite(time_s)) in.fail("time is not finite");
   with_context(name, [&] { check_truth(labelled, part_count); });
   return frame;
 }

@@ -151,7 +151,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
       {"machine", evaluation.machine},
       {"labels_only", evaluation.labels_only},
       {"sets", std::move(sets)}};
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::vector<StoredSet> read_evaluation(const std::string& path) {

@@ -259,7 +259,7 @@ void write_report(const Evaluation& evaluation, const std::string& folder) {
   if (std::ranges::any_of(evaluation.sets, has_ablation)) {
     write_file_atomically((path / "ablation.csv").string(), ablation_csv(evaluation.sets));
   }
-  write_file_atomically((path / "report.json").string(), evaluation_json(evaluation));
+  write_file_atomically((path / "report.json").string(), evaluation_json(evaluation) + "\n");
 }
 
 }  // namespace vesalius

@@ -119,6 +119,12 @@ TEST_F(Evaluate, GivesTheSameMetricsForAnyNumberOfThreads) {
   EXPECT_EQ(sets[0], sets[2]);
 }
 
+TEST_F(Evaluate, PrintsNothingButJsonToStandardOutput) {
+  const Outcome run = evaluate(" --json -");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out).at("sets").size(), 1U);
+}
+
 TEST_F(Evaluate, MeasuresPixelsPartsAndJointsOfDatasets) {
   const Outcome run = run_program("evaluate " + dataset() + " -q -m " + model() + " --json " + path("d.json"));
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -145,10 +145,14 @@ SetResult evaluate_shown(const Request& request, const Arguments& arguments, con
   return evaluate_set(*frames, request.set, scorer, variants, hooks);
 }
 
+/// Returns whether nothing but the JSON may go to standard output.
+bool prints_json(const Arguments& arguments) { return arguments.json == "-"; }
+
 /// Writes the detector options of this run with the score fitted to all sets, and prints how good the fit is.
-void write_fitted_score(const Evaluation& evaluation, const std::string& path) {
+void write_fitted_score(const Evaluation& evaluation, const std::string& path, bool quiet) {
   FittedOptions fitted = fit_score_options(evaluation);
   write_options([&](OptionVisitor& visitor) { visit_options("", fitted.options, visitor); }, path);
+  if (quiet) return;
   const ScoreFit& fit = fitted.fit;
   print(fmt::format(
       "score fitted to {} candidates that were people and {} that were not: area under the curve {:.3f}, was {:.3f}\n",
@@ -156,10 +160,14 @@ void write_fitted_score(const Evaluation& evaluation, const std::string& path) {
 }
 
 void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
-  if (!arguments.json.empty()) write_file_atomically(arguments.json, evaluation_json(evaluation));
+  if (!arguments.json.empty()) {
+    TextSink sink(arguments.json);
+    sink.line(evaluation_json(evaluation));
+    sink.finish();
+  }
   if (!arguments.report.empty()) write_report(evaluation, arguments.report);
   if (!arguments.fit_joints.empty()) write_file_atomically(arguments.fit_joints, fitted_joints_toml(evaluation));
-  if (!arguments.fit_score.empty()) write_fitted_score(evaluation, arguments.fit_score);
+  if (!arguments.fit_score.empty()) write_fitted_score(evaluation, arguments.fit_score, prints_json(arguments));
 }
 
 void run(const Arguments& arguments, const std::string& command) {
@@ -188,7 +196,7 @@ void run(const Arguments& arguments, const std::string& command) {
   for (const Request& request : requests) {
     evaluation.sets.push_back(evaluate_shown(request, arguments, scorer, variants));
     failed += evaluation.sets.back().failed;
-    print(summary_lines(evaluation.sets.back()) + ablation_lines(evaluation.sets.back()));
+    if (!prints_json(arguments)) print(summary_lines(evaluation.sets.back()) + ablation_lines(evaluation.sets.back()));
     std::fflush(stdout);  // a set can take minutes
   }
   write_outputs(arguments, evaluation);
@@ -218,7 +226,7 @@ void add_evaluate(CLI::App& program) {
       ->add_option("--report", arguments->report,
                    "Folder for report.html, report.md, report.json, figures.csv (and ablation.csv)")
       ->type_name("DIR");
-  command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`")->type_name("FILE");
+  command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`; - for standard output")->type_name("FILE");
   command->add_option("--options", arguments->options_file, "TOML file of detector options")->type_name("FILE");
   command->add_option("--step", arguments->step, "Only the first of every N frames")
       ->type_name("N")

@@ -47,7 +47,7 @@ TEST(RigMap, FillsStarsForBothSides) {
 }
 
 TEST(RigMap, NamesTheReasonOfErrors) {
-  expect_error("joint = \"pelvis.L\"", "joint = 3", "map.toml:10: joint: expected a name");
+  expect_error("joint = \"pelvis.L\"", "joint = 3", "map.toml:12: joint: expected a string");
   expect_error("bone = \"spine\"", "bone = \"spin\"", "no bone of poses is called \"spin\"");
   expect_error("bone = \"spine\"", "bone = \"pelvis\"", "bone: listed twice");
   expect_error("rest = \"keep\"", "rest = \"kept\"", "rest \"kept\": expected keep, straighten or follow");
