@@ -141,10 +141,9 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, C
   if (candidate.refined.found == 0 || candidate.refined.score < candidate.rough.score) {
     candidate.refined = candidate.rough;
   }
-  const ScoreOptions& options = method.options.score;
   candidate.evidence = gather_evidence(frame, candidate.grown, candidate.labels, scene.labels.posteriors(),
-                                       candidate.refined, method.body, options);
-  candidate.score = person_score(candidate.evidence, options);
+                                       candidate.refined, method.body);
+  candidate.score = person_score(candidate.evidence, method.options.score);
   return candidate;
 }
 

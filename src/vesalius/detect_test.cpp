@@ -388,7 +388,7 @@ TEST_F(DetectorWithPrior, ChangesNothingWithoutMasksOfPeople) {
   const std::vector<Person> expected = detector->detect(truth.frame);
   expect_same(detector->detect(truth.frame, Prior{}), expected);
   Prior only_looks;
-  only_looks.people.push_back({{}, learn_appearance(truth.frame, mask_of(1), {})});
+  only_looks.people.push_back({{}, learn_appearance(truth.frame, mask_of(1))});
   expect_same(detector->detect(truth.frame, only_looks), expected);
 }
 

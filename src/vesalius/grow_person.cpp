@@ -10,18 +10,14 @@ namespace {
 /// Smallest number of pixels from which colours are learned.
 constexpr int kLeastColourSamples = 200;
 
-/// Blurs `count` values from `begin` on with a box of `reach` bins each way.
-void blur(std::array<float, ColourModel::kBins>& values, int begin, int count, int reach, bool wraps) {
+/// Blurs `count` values from `begin` on with a box of three bins; neighbouring hues, 5 degrees apart, look alike.
+void blur(std::array<float, ColourModel::kBins>& values, int begin, int count, bool wraps) {
   const auto source = values;
-  for (int i = 0; i < count; ++i) {
-    float sum = 0.F;
-    for (int d = -reach; d <= reach; ++d) {
-      int j = i + d;
-      if (wraps) j = ((j % count) + count) % count;
-      if (j >= 0 && j < count) sum += source[begin + j];
-    }
-    values[begin + i] = sum / static_cast<float>(2 * reach + 1);
-  }
+  const auto value = [&](int i) {
+    if (wraps) i = (i + count) % count;
+    return i >= 0 && i < count ? source[begin + i] : 0.F;
+  };
+  for (int i = 0; i < count; ++i) values[begin + i] = (value(i - 1) + value(i) + value(i + 1)) / 3.F;
 }
 
 /// Returns the distance to which the body extends around each part. It is larger if a neighbouring part was not seen.
@@ -61,10 +57,6 @@ void visit_options(const std::string& prefix, GrowOptions& o, OptionVisitor& vis
   visitor.option(prefix + "reach", o.reach_m, {"m", 0.0, 3.0, "How far a person extends around a part's centre."});
   visitor.option(prefix + "missing-reach", o.missing_reach_m,
                  {"m", 0.0, 3.0, "Added to the reach of a part next to one that was not seen."});
-  visitor.option(prefix + "hue-tolerance", o.hue_tolerance_deg, {"degrees", 0.0, 180.0, "Blur of the learned hues."});
-  visitor.option(prefix + "lightness-tolerance", o.lightness_tolerance,
-                 {"of 255", 0.0, 255.0, "Blur of the learned lightness of greys."});
-  visitor.option(prefix + "min-saturation", o.min_saturation, {"", 0.0, 1.0, "Colours less saturated count as greys."});
   visitor.option(
       prefix + "colour-veto", o.colour_veto,
       {"log ratio", 0.0, 100.0, "A colour this much likelier elsewhere than on the person stops the growth."});
@@ -74,11 +66,12 @@ void visit_options(const std::string& prefix, GrowOptions& o, OptionVisitor& vis
   visit_options(prefix + "plane-", o.plane, visitor);
 }
 
-int ColourModel::bin(Rgb c, float min_saturation) {
+int ColourModel::bin(Rgb c) {
+  constexpr float kMinSaturation = 0.2F;  // below it a hue means nothing
   const int high = std::max({c.r, c.g, c.b});
   const int low = std::min({c.r, c.g, c.b});
   const int span = high - low;
-  if (high < 24 || static_cast<float>(span) < min_saturation * static_cast<float>(high)) {
+  if (high < 24 || static_cast<float>(span) < kMinSaturation * static_cast<float>(high)) {
     return kHues + std::min(kGreys - 1, high * kGreys / 256);
   }
   float sixth = 0.F;  // position on the colour circle, in sixths
@@ -93,11 +86,10 @@ int ColourModel::bin(Rgb c, float min_saturation) {
   return (hue + kHues) % kHues;
 }
 
-void ColourModel::finish(const GrowOptions& options) {
+void ColourModel::finish() {
   for (std::size_t i = 0; i < counts_.size(); ++i) probabilities_[i] = static_cast<float>(counts_[i]);
-  const auto steps = [](float tolerance, float bin) { return static_cast<int>(std::lround(tolerance / bin)); };
-  blur(probabilities_, 0, kHues, std::min(kHues / 2 - 1, steps(options.hue_tolerance_deg, 360.F / kHues)), true);
-  blur(probabilities_, kHues, kGreys, std::min(kGreys - 1, steps(options.lightness_tolerance, 256.F / kGreys)), false);
+  blur(probabilities_, 0, kHues, true);
+  blur(probabilities_, kHues, kGreys, false);
   float total = 0.F;
   for (const float p : probabilities_) total += p;
   // A share for unseen colours keeps ratios finite.
@@ -107,10 +99,10 @@ void ColourModel::finish(const GrowOptions& options) {
 
 long ColourModel::samples() const { return std::accumulate(counts_.begin(), counts_.end(), 0L); }
 
-ColourModel learn_appearance(const Frame& frame, const Mask& mask, const GrowOptions& options) {
+ColourModel learn_appearance(const Frame& frame, const Mask& mask) {
   ColourModel model;
   for (std::size_t i = 0; i < frame.colour.size(); ++i) {
-    if (mask[i] != 0) model.add(ColourModel::bin(frame.colour[i], options.min_saturation));
+    if (mask[i] != 0) model.add(ColourModel::bin(frame.colour[i]));
   }
   return model;
 }
@@ -120,7 +112,7 @@ PersonGrower::PersonGrower(const Frame& frame, const Mask& flat, const BodyModel
   if (!options.use_colour) return;
   bins_.reserve(frame.colour.size());
   for (const Rgb colour : frame.colour) {
-    bins_.push_back(static_cast<std::uint8_t>(ColourModel::bin(colour, options.min_saturation)));
+    bins_.push_back(static_cast<std::uint8_t>(ColourModel::bin(colour)));
   }
 }
 
@@ -167,8 +159,8 @@ Mask PersonGrower::refused_colours(const Skeleton& rough, const Mask& seeds, con
     }
   }
   if (person.samples() < kLeastColourSamples || rest.samples() < kLeastColourSamples) return refused;
-  person.finish(options_);
-  rest.finish(options_);
+  person.finish();
+  rest.finish();
   const Mask any_colour = around_parts(rough, any_colour_radius(rough, body_, options_));
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (reach[i] == 0 || seeds[i] != 0 || any_colour[i] != 0) continue;

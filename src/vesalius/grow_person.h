@@ -15,15 +15,12 @@
 namespace vesalius {
 
 struct GrowOptions {
-  float radius_m = 0.05F;           ///< 3-D distance that neighbouring pixels of a person may have
-  float radius_per_z2 = 0.003F;     ///< added per square metre of depth: a structured-light sensor's depth step
-  float reach_m = 0.3F;             ///< how far a person extends around the centre of a part
-  float missing_reach_m = 0.2F;     ///< added once for each unseen part beyond
-  float hue_tolerance_deg = 5.F;    ///< blur of the learned hues
-  float lightness_tolerance = 8.F;  ///< blur of the learned lightness of greys, of 255
-  float min_saturation = 0.2F;      ///< a colour below it counts as grey, since its hue has no meaning
-  float colour_veto = 2.F;          ///< a colour is refused if the log of its likelihood is lower on the person by this
-  float own_colour_m = 0.12F;       ///< any colour this near to a part's centre is the person's
+  float radius_m = 0.05F;        ///< 3-D distance that neighbouring pixels of a person may have
+  float radius_per_z2 = 0.003F;  ///< added per square metre of depth: a structured-light sensor's depth step
+  float reach_m = 0.3F;          ///< how far a person extends around the centre of a part
+  float missing_reach_m = 0.2F;  ///< added once for each unseen part beyond
+  float colour_veto = 2.F;       ///< a colour is refused if the log of its likelihood is lower on the person by this
+  float own_colour_m = 0.12F;    ///< any colour this near to a part's centre is the person's
   bool use_colour = true;
   PlaneOptions plane;
 };
@@ -37,13 +34,13 @@ class ColourModel {
   static constexpr int kBins = kHues + kGreys;
 
   /// Returns the bin of a colour: its hue, or its lightness if its saturation is too low for a hue.
-  static int bin(Rgb colour, float min_saturation);
+  static int bin(Rgb colour);
 
   void add(int bin) { ++counts_[bin]; }
   /// Returns the number of added pixels.
   long samples() const;
-  /// Blurs over the tolerances (hues wrap) and normalises; an empty model is uniform.
-  void finish(const GrowOptions& options);
+  /// Blurs over the next bin on either side (hues wrap) and normalises; an empty model is uniform.
+  void finish();
   float probability(int bin) const { return probabilities_[bin]; }
 
  private:
@@ -53,7 +50,7 @@ class ColourModel {
 
 /// Returns the appearance of the pixels inside `mask`, which has the frame's size; it is empty for a frame without
 /// colour.
-ColourModel learn_appearance(const Frame& frame, const Mask& mask, const GrowOptions& options);
+ColourModel learn_appearance(const Frame& frame, const Mask& mask);
 
 /// Grows people from rough skeletons in one frame (section 7). It clusters pixels by place and colour, beginning with
 /// the pixels of the skeleton's proposals, within the body's reach, and never along floor, walls or other people.

@@ -191,7 +191,7 @@ TEST(GrowPerson, StopsAtKnownColoursIfTheSeedsHaveTooFew) {
   const PersonGrower grower(scene.truth.frame, flat, paper_body(), options);
   Mask person(kCamera.width, kCamera.height, 0);
   for (std::size_t i = 0; i < person.size(); ++i) person[i] = scene.truth.person[i] == 0 ? 1 : 0;
-  const ColourModel known = learn_appearance(scene.truth.frame, person, options);
+  const ColourModel known = learn_appearance(scene.truth.frame, person);
   EXPECT_EQ(known.samples(), std::ranges::count(person, 1));
   const long without = compare(grower.grow(scene.rough, scene.clusters)[0], scene.truth.person, 0).leaked;
   const long with = compare(grower.grow(scene.rough, scene.clusters, {known})[0], scene.truth.person, 0).leaked;
@@ -201,20 +201,19 @@ TEST(GrowPerson, StopsAtKnownColoursIfTheSeedsHaveTooFew) {
 }
 
 TEST(ColourModel, WrapsHuesAndBinsGreysByLightness) {
-  constexpr float kGuard = 0.2F;
-  const int red = ColourModel::bin({200, 20, 20}, kGuard);
+  const int red = ColourModel::bin({200, 20, 20});
   EXPECT_EQ(red, 0);
-  EXPECT_EQ(ColourModel::bin({200, 20, 36}, kGuard), 71);  // 355 degrees
-  EXPECT_EQ(ColourModel::bin({20, 200, 20}, kGuard), 24);  // 120 degrees
-  EXPECT_EQ(ColourModel::bin({20, 20, 200}, kGuard), 48);
+  EXPECT_EQ(ColourModel::bin({200, 20, 36}), 71);  // 355 degrees
+  EXPECT_EQ(ColourModel::bin({20, 200, 20}), 24);  // 120 degrees
+  EXPECT_EQ(ColourModel::bin({20, 20, 200}), 48);
   // Near-greys are binned by lightness whatever their hue.
-  EXPECT_EQ(ColourModel::bin({120, 118, 121}, kGuard), ColourModel::bin({121, 120, 117}, kGuard));
-  EXPECT_GE(ColourModel::bin({120, 118, 121}, kGuard), ColourModel::kHues);
-  EXPECT_NE(ColourModel::bin({30, 30, 30}, kGuard), ColourModel::bin({220, 220, 220}, kGuard));
+  EXPECT_EQ(ColourModel::bin({120, 118, 121}), ColourModel::bin({121, 120, 117}));
+  EXPECT_GE(ColourModel::bin({120, 118, 121}), ColourModel::kHues);
+  EXPECT_NE(ColourModel::bin({30, 30, 30}), ColourModel::bin({220, 220, 220}));
 
   ColourModel model;
   for (int i = 0; i < 100; ++i) model.add(red);
-  model.finish({});
+  model.finish();
   EXPECT_GT(model.probability(71), 10.F * model.probability(36));  // the blur crosses 0 degrees
   float sum = 0.F;
   for (int b = 0; b < ColourModel::kBins; ++b) sum += model.probability(b);

@@ -9,6 +9,8 @@
 namespace vesalius {
 namespace {
 
+constexpr float kExplainedRadius_m = 0.25F;  // a pixel is explained by an observed part of its label this near
+constexpr int kOpenStep_mm = 100;            // an outline stands free where what lies behind is this much further
 /// Number of pixels without a reading that are skipped at the outline, because silhouettes have a rim without any.
 constexpr int kRim = 5;
 
@@ -33,13 +35,14 @@ class Inside {
   Box box_;
 };
 
-bool near_part(const Skeleton& skeleton, int part, const Eigen::Vector3f& point, float radius_m) {
+bool near_part(const Skeleton& skeleton, int part, const Eigen::Vector3f& point) {
   const SkeletonPart& found = skeleton.parts[part];
-  return found.state == State::observed && (found.centre - point).squaredNorm() <= radius_m * radius_m;
+  return found.state == State::observed &&
+         (found.centre - point).squaredNorm() <= kExplainedRadius_m * kExplainedRadius_m;
 }
 
 float share_explained(const Frame& frame, const Inside& inside, const LabelImage& labels, const Skeleton& skeleton,
-                      const BodyModel& body, float radius_m) {
+                      const BodyModel& body) {
   long pixels = 0;
   long explained = 0;
   inside.each([&](int u, int v) {
@@ -49,7 +52,7 @@ float share_explained(const Frame& frame, const Inside& inside, const LabelImage
     const Eigen::Vector3f point = point_at(frame.camera, frame.depth, u, v);
     // Seen from the side a labelling mixes left and right; either is an explanation.
     const int mirror = body.parts[label].mirror;
-    if (near_part(skeleton, label, point, radius_m) || near_part(skeleton, mirror, point, radius_m)) ++explained;
+    if (near_part(skeleton, label, point) || near_part(skeleton, mirror, point)) ++explained;
   });
   return pixels > 0 ? static_cast<float>(explained) / static_cast<float>(pixels) : 0.F;
 }
@@ -69,9 +72,8 @@ struct Outline {
   static float share(long some, long all) { return all > 0 ? static_cast<float>(some) / static_cast<float>(all) : 0.F; }
 };
 
-Outline look_around(const Frame& frame, const Inside& inside, float step_m) {
+Outline look_around(const Frame& frame, const Inside& inside) {
   const Mask& mask = inside.mask();
-  const int step_mm = static_cast<int>(std::lround(step_m * 1e3F));
   constexpr std::array<std::array<int, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
   Outline outline;
   inside.each([&](int u, int v) {
@@ -86,9 +88,9 @@ Outline look_around(const Frame& frame, const Inside& inside, float step_m) {
         beyond = frame.depth(u + k * du, v + k * dv);
       }
       const int here = frame.depth(u, v);
-      if (beyond == 0 || beyond > here + step_mm) {
+      if (beyond == 0 || beyond > here + kOpenStep_mm) {
         ++outline.open;
-      } else if (beyond >= here - step_mm) {
+      } else if (beyond >= here - kOpenStep_mm) {
         ++outline.closed;
       } else {
         ++outline.occluded;
@@ -139,9 +141,9 @@ Extent extent_of(const Frame& frame, const Inside& inside) {
   return extent;
 }
 
-float likeness_of_area(const Extent& extent, float usual_m2) {
-  const double usual = static_cast<double>(usual_m2);
-  return static_cast<float>(std::min(extent.area_m2, usual) / std::max(extent.area_m2, usual));
+float likeness_of_area(const Extent& extent) {
+  constexpr auto kUsual = static_cast<double>(kUsualArea_m2);
+  return static_cast<float>(std::min(extent.area_m2, kUsual) / std::max(extent.area_m2, kUsual));
 }
 
 float nearness(const Extent& extent) { return static_cast<float>(1.0 / std::max(1.0, extent.mean_depth_m)); }
@@ -188,11 +190,6 @@ void visit_options(const std::string& prefix, ScoreOptions& o, OptionVisitor& vi
   visitor.option(prefix + "border-weight", o.border_weight,
                  {"", -1000.0, 1000.0, "Weight of the share of the outline that the picture's border cuts off."});
   visitor.option(prefix + "bias", o.bias, {"", -1000.0, 1000.0, "Constant of the score."});
-  visitor.option(prefix + "explained-radius", o.explained_radius_m,
-                 {"m", 0.0, 10.0, "A pixel is explained by an observed part of its label this near."});
-  visitor.option(prefix + "open-step", o.open_step_m,
-                 {"m", 0.0, 10.0, "An outline stands free where what lies behind is this much further."});
-  visitor.option(prefix + "usual-area", o.usual_area_m2, {"m^2", 0.001, 10.0, "Usual area of a person's mask."});
 }
 
 ScoreOptions score_without_background() {
@@ -212,17 +209,17 @@ ScoreOptions score_without_background() {
 }
 
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
-                         const Skeleton& skeleton, const BodyModel& body, const ScoreOptions& options) {
+                         const Skeleton& skeleton, const BodyModel& body) {
   const Inside inside(mask);
-  const Outline outline = look_around(frame, inside, options.open_step_m);
+  const Outline outline = look_around(frame, inside);
   const Extent extent = extent_of(frame, inside);
   const Certainty certainty = certainty_of(inside, posteriors, body.part_count());
   return {skeleton.score / static_cast<float>(body.part_count()),
-          share_explained(frame, inside, labels, skeleton, body, options.explained_radius_m),
+          share_explained(frame, inside, labels, skeleton, body),
           outline.share_open(),
           share_of_core(skeleton, body),
           static_cast<float>(certainty.body),
-          likeness_of_area(extent, options.usual_area_m2),
+          likeness_of_area(extent),
           outline.share_occluded(),
           nearness(extent),
           static_cast<float>(certainty.part),

@@ -24,15 +24,14 @@ struct ScoreOptions {
   float certain_weight = 17.76F;    ///< of how sure the forest is which part each pixel is
   float border_weight = -8.86F;     ///< of the share of the outline that the picture's border cuts off
   float bias = -19.7F;
-  float explained_radius_m = 0.25F;  ///< a pixel is explained by an observed part of its label this near
-  float open_step_m = 0.1F;          ///< an outline stands free where what lies behind is this much further
-  float usual_area_m2 = 0.45F;       ///< of a person's mask; a standing adult's front
 };
 void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisitor& visitor);
 
 /// Returns the defaults for forests without background class, fitted with the paper's released trees. Cut-out furniture
 /// looks like a body to them, so the outline matters more.
 ScoreOptions score_without_background();
+
+inline constexpr float kUsualArea_m2 = 0.45F;  ///< of a person's mask: a standing adult's front
 
 /// The evidence that a grown mask and its skeleton are a person. All numbers are 0-1.
 struct Evidence {
@@ -41,7 +40,7 @@ struct Evidence {
   float open = 0.F;        ///< share of the free outline (not occluded or cut off) with nothing close behind
   float core = 0.F;        ///< share found of the search's roots and the parts next to them
   float body = 0.F;        ///< mean over the mask of the parts' share of the posterior; 1 without background class
-  float size = 0.F;        ///< ratio of the mask's area and the usual one, or its inverse if that is smaller
+  float size = 0.F;        ///< ratio of the mask's area and kUsualArea_m2, or its inverse if that is smaller
   float occluded = 0.F;    ///< share of the outline beside something nearer, which excuses missing parts
   float near = 0.F;        ///< one metre divided by the mean depth, at most 1, since distant people are less certain
   float certain = 0.F;  ///< mean over the mask of the likeliest part's share of all parts: furniture looks like several
@@ -68,7 +67,7 @@ inline constexpr std::array<EvidenceWeight, 10> kEvidenceWeights{
 /// Measures the evidence that a mask and a skeleton are a person. `labels` are the part labels inside `mask`,
 /// `posteriors` those of the first pass; all have the frame's size.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
-                         const Skeleton& skeleton, const BodyModel& body, const ScoreOptions& options);
+                         const Skeleton& skeleton, const BodyModel& body);
 
 /// Returns the score of a person, 0-1, by a logistic function whose weights were fitted to frames with and without
 /// people.

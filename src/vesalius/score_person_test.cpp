@@ -22,9 +22,7 @@ struct Square {
     }
     skeleton.parts.resize(paper_body().parts.size());
   }
-  Evidence evidence(const ScoreOptions& options = {}) const {
-    return gather_evidence(frame, mask, labels, posteriors, skeleton, paper_body(), options);
-  }
+  Evidence evidence() const { return gather_evidence(frame, mask, labels, posteriors, skeleton, paper_body()); }
   void observe(const char* part, const Eigen::Vector3f& centre) {
     SkeletonPart& p = skeleton.parts[paper_body().find_part(part)];
     p.state = State::observed;
@@ -151,14 +149,17 @@ TEST(GatherEvidence, MeasuresTheShareOfTheOutlineAtThePicturesBorder) {
 }
 
 TEST(GatherEvidence, MeasuresSizeAsOneOnlyForTheUsualArea) {
-  const Square s(3000);  // 100 pixels of 4 cm^2
-  ScoreOptions options;
-  options.usual_area_m2 = 0.04F;
-  EXPECT_NEAR(s.evidence(options).size, 1.F, 1e-5F);
-  options.usual_area_m2 = 0.08F;
-  EXPECT_NEAR(s.evidence(options).size, 0.5F, 1e-5F);
-  options.usual_area_m2 = 0.02F;
-  EXPECT_NEAR(s.evidence(options).size, 0.5F, 1e-5F);
+  Square s(60000);  // 100 pixels of 4 cm^2 at 2 m
+  EXPECT_NEAR(s.evidence().size, 0.04 / kUsualArea_m2, 1e-5);
+  const auto at = [&](double z_m) {  // the area grows with the square of the distance
+    for (std::size_t i = 0; i < s.mask.size(); ++i) {
+      if (s.mask[i] != 0) s.frame.depth[i] = static_cast<std::uint16_t>(std::lround(1000.0 * z_m));
+    }
+    return s.evidence().size;
+  };
+  const double usual_at_m = 2.0 * std::sqrt(kUsualArea_m2 / 0.04);
+  EXPECT_NEAR(at(usual_at_m), 1.F, 1e-3F);
+  EXPECT_NEAR(at(usual_at_m * std::sqrt(2.0)), 0.5F, 1e-3F);
 }
 
 TEST(PersonScore, IsALogisticSum) {

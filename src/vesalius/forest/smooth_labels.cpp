@@ -86,8 +86,6 @@ void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& v
                  {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
   visitor.option(prefix + "mode", o.mode,
                  {"", 0, 1, "Smooth labels by their mode even if the forest has distributions."});
-  visitor.option(prefix + "mode-depth-gate", o.mode_depth_gate_mm,
-                 {"mm", 0, 10000, "The depth gate of smoothing by mode."});
 }
 
 SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
@@ -98,7 +96,7 @@ SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
 
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
   LabelImage out(labels.width(), labels.height(), kBackground);
-  const SmoothWindow window{options.window / 2, 1, options.mode_depth_gate_mm};
+  const SmoothWindow window{options.window / 2, 1, kModeDepthGate_mm};
   parallel_ranges(labels.height(), kRowGrain, [&](int begin, int end) {
     const EvenWindows even(labels, options.window, begin, end);
     std::array<std::uint16_t, 256> count{};

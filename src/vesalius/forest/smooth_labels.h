@@ -12,9 +12,8 @@ namespace vesalius {
 struct SmoothOptions {
   int window = 5;   ///< neighbours along a side of the square; an even number counts as the next odd one; 1 = none
   int spacing = 0;  ///< pixels from one neighbour to the next when smoothing posteriors; 0: see `spaced`
-  int depth_gate_mm = 60;        ///< posteriors of neighbours further away than this in depth do not count
-  bool mode = false;             ///< smooth labels by their mode even where the forest has distributions
-  int mode_depth_gate_mm = 300;  ///< the depth gate of the mode, which needs many neighbours more than near ones
+  int depth_gate_mm = 60;  ///< posteriors of neighbours further away than this in depth do not count
+  bool mode = false;       ///< smooth labels by their mode even where the forest has distributions
 };
 void visit_options(const std::string& prefix, SmoothOptions& options, OptionVisitor& visitor);
 
@@ -22,9 +21,11 @@ void visit_options(const std::string& prefix, SmoothOptions& options, OptionVisi
 /// which is a step of 18 mm at 2.5 m.
 SmoothOptions spaced(SmoothOptions options, const Camera& camera);
 
-/// Returns for each pixel the most frequent label of the pixels within the window, the depth gate and the picture
-/// (section 4.2.1); spacing is ignored. A pixel keeps its label on a tie that includes it; other ties go to the lowest
-/// label. Background counts as a label. Pixels without a reading become background.
+inline constexpr int kModeDepthGate_mm = 300;  ///< of the mode, which needs many neighbours more than near ones
+
+/// Returns for each pixel the most frequent label of the pixels within the window, kModeDepthGate_mm and the
+/// picture (section 4.2.1); spacing is ignored. A pixel keeps its label on a tie that includes it; other ties go to the
+/// lowest label. Background counts as a label. Pixels without a reading become background.
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options);
 
 /// Returns for each pixel the mean of the posteriors of the neighbours within the window and the depth gate, `spacing`

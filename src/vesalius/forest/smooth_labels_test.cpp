@@ -55,7 +55,7 @@ void neighbours(const DepthImage& depth, int u, int v, int window, int spacing, 
 std::uint8_t slow_mode(const Picture& p, int u, int v, const SmoothOptions& o) {
   if (p.depth(u, v) == 0) return kBackground;
   std::map<std::uint8_t, int> count;
-  neighbours(p.depth, u, v, o.window, 1, o.mode_depth_gate_mm, [&](int nu, int nv) { ++count[p.labels(nu, nv)]; });
+  neighbours(p.depth, u, v, o.window, 1, kModeDepthGate_mm, [&](int nu, int nv) { ++count[p.labels(nu, nv)]; });
   int most = 0;
   for (const auto& [label, n] : count) most = std::max(most, n);
   if (count[p.labels(u, v)] == most) return p.labels(u, v);
