@@ -17,10 +17,12 @@ namespace {
 constexpr int kStep = 4;             // every fourth pixel each way is enough for surfaces this large
 constexpr int kHypotheses = 150;     // tried for each plane
 constexpr float kMostSlant = 0.25F;  // cosine below which a pixel's surface is not stretched further
-constexpr int kRefits = 4;           // least-squares steps from the best hypothesis
-constexpr float kLeastRefit = 0.9F;  // share of its surface that a step may not lose
-constexpr int kCellReach = 3;        // a plane reaches this many steps beyond its samples
-constexpr float kAligned = 0.85F;    // cosine above which a sample's surface is turned like the plane
+constexpr int kMaxPlanes = 8;
+constexpr float kMinPiece_m2 = 0.6F;  // a smaller connected piece of a plane may be part of a body
+constexpr int kRefits = 4;            // least-squares steps from the best hypothesis
+constexpr float kLeastRefit = 0.9F;   // share of its surface that a step may not lose
+constexpr int kCellReach = 3;         // a plane reaches this many steps beyond its samples
+constexpr float kAligned = 0.85F;     // cosine above which a sample's surface is turned like the plane
 
 /// Distance from its plane within which a point at depth z counts as lying on it.
 float thickness(const PlaneOptions& options, float z_m) {
@@ -139,9 +141,6 @@ void visit_options(const std::string& prefix, PlaneOptions& o, OptionVisitor& vi
                  {"m", 0.0, 1.0, "Distance from such a surface that still is it."});
   visitor.option(prefix + "thickness-per-z2", o.thickness_per_z2,
                  {"m per m^2", 0.0, 0.1, "Added to the thickness times depth squared: sensor noise."});
-  visitor.option(prefix + "min-piece", o.min_piece_m2,
-                 {"m^2", 0.0, 100.0, "Smaller connected pieces of such a surface may be part of a body."});
-  visitor.option(prefix + "max", o.max_planes, {"", 0, 64, "Most flat surfaces looked for."});
 }
 
 namespace {
@@ -171,7 +170,7 @@ std::vector<Plane> planes_of(std::vector<Sample> samples, const DepthImage& dept
   const Surface surface(depth, camera);
   const int reach = std::max(6, depth.width() / 12);
   Random random(1);
-  while (static_cast<int>(planes.size()) < options.max_planes && samples.size() >= 3) {
+  while (static_cast<int>(planes.size()) < kMaxPlanes && samples.size() >= 3) {
     const SurfaceColumns columns = columns_of(samples, options);
     Plane best = best_hypothesis(samples, columns, surface, reach, random);
     if (best.area_m2 < options.min_area_m2) break;
@@ -251,9 +250,9 @@ Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptio
     }
     return static_cast<float>(area / static_cast<double>(camera.fx * camera.fy));
   };
-  const double surely_large_mm2 = 1e6 * static_cast<double>(options.min_piece_m2 * camera.fx * camera.fy);
+  const double surely_large_mm2 = 1e6 * static_cast<double>(kMinPiece_m2 * camera.fx * camera.fy);
   return without_body_pieces(depth, out, surely_large_mm2,
-                             [&](const std::vector<int>& pixels) { return area_m2(pixels) >= options.min_piece_m2; });
+                             [&](const std::vector<int>& pixels) { return area_m2(pixels) >= kMinPiece_m2; });
 }
 
 }  // namespace vesalius

@@ -15,8 +15,6 @@ struct PlaneOptions {
   float min_area_m2 = 1.F;          ///< smallest surface that counts: no person shows this much flat
   float thickness_m = 0.02F;        ///< distance from the plane that still belongs to it
   float thickness_per_z2 = 0.003F;  ///< added per square metre of depth: sensor noise
-  int max_planes = 8;
-  float min_piece_m2 = 0.6F;  ///< smaller connected pieces of such a surface may be part of a body
 };
 void visit_options(const std::string& prefix, PlaneOptions& options, OptionVisitor& visitor);
 
