@@ -30,46 +30,53 @@ constexpr std::string_view kFilePrefix = "file://";
 bool is_web_address(const std::string& place) { return place.starts_with("http://") || place.starts_with("https://"); }
 
 std::string without_slashes(std::string text) {
-  while (text.size() > 1 && text.ends_with('/')) text.pop_back();
+  while (text.ends_with('/')) text.pop_back();
   return text;
 }
 
-/// Returns an address without "user:password@".
-std::string without_password(const std::string& address) {
-  const std::size_t host = address.find("://") + 3;
-  const std::size_t end = std::min(address.find('/', host), address.size());
-  const std::size_t at = address.rfind('@', end);
-  return at == std::string::npos || at < host ? address : address.substr(0, host) + address.substr(at + 1);
-}
-
-int hex_value(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
-/// Decodes the folder of a file:// address.
-std::string unescaped(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool code =
-        text[i] == '%' && i + 2 < text.size() && hex_value(text[i + 1]) >= 0 && hex_value(text[i + 2]) >= 0;
-    out += code ? static_cast<char>(hex_value(text[i + 1]) * 16 + hex_value(text[i + 2])) : text[i];
-    if (code) i += 2;
+/// An address in its parts.
+class Url {
+ public:
+  /// Throws UsageError if it is not an address. The message does not repeat it, because it may hold a password.
+  explicit Url(const std::string& address) {
+    const CURLUcode code = curl_url_set(handle_.get(), CURLUPART_URL, address.c_str(), 0);
+    if (code != CURLUE_OK) throw UsageError(std::string("not an address: ") + curl_url_strerror(code));
   }
-  return out;
-}
+  Url(const Url& other) : handle_(curl_url_dup(other.handle_.get())) {}
+  Url& operator=(const Url&) = delete;
+  ~Url() = default;
 
-/// Encodes a path as part of an address.
-std::string escaped(std::string_view path) {
-  std::string out;
-  for (const char c : path) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       std::string_view("/-._~").find(c) != std::string_view::npos;
-    out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  std::string decoded_path() const { return get(CURLUPART_PATH, CURLU_URLDECODE); }
+  /// Returns the address of a file below this one.
+  std::string with(const std::string& decoded_path_below) const {
+    const Url url(*this);
+    const std::string path = without_slashes(decoded_path()) + "/" + decoded_path_below;
+    const CURLUcode code = curl_url_set(url.handle_.get(), CURLUPART_PATH, path.c_str(), CURLU_URLENCODE);
+    if (code != CURLUE_OK) throw Error(fmt::format("libcurl: {}", curl_url_strerror(code)));
+    return url.get(CURLUPART_URL, 0);
   }
-  return out;
-}
+  std::string without_password() const {
+    const Url shown(*this);
+    curl_url_set(shown.handle_.get(), CURLUPART_USER, nullptr, 0);
+    curl_url_set(shown.handle_.get(), CURLUPART_PASSWORD, nullptr, 0);
+    return shown.get(CURLUPART_URL, 0);
+  }
+
+ private:
+  struct Free {
+    void operator()(CURLU* handle) const { curl_url_cleanup(handle); }
+  };
+
+  std::string get(CURLUPart part, unsigned flags) const {
+    char* text = nullptr;
+    if (curl_url_get(handle_.get(), part, &text, flags) != CURLUE_OK) return "";
+    std::string out = text;
+    curl_free(text);
+    return out;
+  }
+
+  std::unique_ptr<CURLU, Free> handle_{curl_url()};
+};
 
 /// State that a transfer shares with libcurl's callbacks. No exception may pass through those.
 struct Transfer {
@@ -123,7 +130,7 @@ bool passing(CURLcode code, long status) {
 /// One connection. It is kept for the next file.
 class Origin::Server {
  public:
-  Server(std::string address, const FetchOptions& options) : address_(std::move(address)), options_(options) {
+  Server(const Url& address, const FetchOptions& options) : address_(address), options_(options) {
     static const CURLcode ready = curl_global_init(CURL_GLOBAL_DEFAULT);
     handle_.reset(ready == CURLE_OK ? curl_easy_init() : nullptr);
     if (!handle_) throw Error("libcurl cannot be used on this system");
@@ -143,7 +150,7 @@ class Origin::Server {
   }
 
   bool get(const std::string& path, const std::string& shown, VerifiedFile& file) {
-    set(CURLOPT_URL, (address_ + "/" + escaped(path)).c_str());
+    set(CURLOPT_URL, address_.with(path).c_str());
     for (int attempt = 1;; ++attempt) {
       file.restart();
       Transfer transfer{file, options_, nullptr};
@@ -192,7 +199,7 @@ class Origin::Server {
     }
   }
 
-  std::string address_;
+  const Url address_;
   const FetchOptions& options_;
   std::unique_ptr<CURL, Close> handle_;
   std::array<char, CURL_ERROR_SIZE> reason_{};
@@ -200,18 +207,20 @@ class Origin::Server {
 
 Origin::Origin(const std::string& place, FetchOptions options) : options_(std::move(options)) {
   if (is_web_address(place)) {
-    place_ = without_slashes(without_password(place));
-    server_ = std::make_unique<Server>(without_slashes(place), options_);
+    const Url address(place);
+    place_ = without_slashes(address.without_password());
+    server_ = std::make_unique<Server>(address, options_);
     return;
   }
   if (place.starts_with(kFilePrefix)) {
-    place_ = unescaped(std::string_view(place).substr(kFilePrefix.size()));
+    place_ = Url(place).decoded_path();
   } else if (place.find("://") != std::string::npos) {
     throw UsageError(place + ": expected an address with http://, https:// or file://, or a folder");
   } else {
     place_ = place;
   }
   place_ = without_slashes(place_);
+  if (place_.empty()) place_ = "/";
   std::error_code ignored;
   if (!fs::is_directory(place_, ignored)) throw UsageError(place_ + ": no such folder");
 }

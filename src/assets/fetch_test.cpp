@@ -55,6 +55,9 @@ TEST(Fetch, ReadsFromFolders) {
 TEST(Fetch, RefusesOtherPlaces) {
   EXPECT_THROW(Origin("ftp://example.org"), UsageError);
   EXPECT_THAT(test::error_of([] { Origin("ftp://example.org"); }), HasSubstr("expected an address with http://"));
+  const std::string message = test::error_of([] { Origin("http://user:secret@ho st/"); });
+  EXPECT_THAT(message, StartsWith("not an address: "));
+  EXPECT_THAT(message, testing::Not(HasSubstr("secret")));
   EXPECT_THAT(test::error_of([] { Origin("/no/such/folder"); }), HasSubstr("no such folder"));
   EXPECT_THAT(test::error_of([] { Origin("file:///no/such/folder"); }), HasSubstr("no such folder"));
 }

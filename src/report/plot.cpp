@@ -1,6 +1,7 @@
 #include "report/plot.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -122,9 +123,44 @@ std::string first_line(std::string_view text) {
   return std::string(text.substr(begin, text.find('\n', begin) - begin));
 }
 
-}  // namespace
+void check(const MatrixPlot& plot) {
+  const auto is_share = [](double share) { return share >= 0.0 && share <= 1.0; };
+  const auto is_row = [&](const std::vector<double>& row) {
+    return row.size() == plot.names.size() && std::ranges::all_of(row, is_share);
+  };
+  if (!plot.names.empty() && plot.shares.size() == plot.names.size() && std::ranges::all_of(plot.shares, is_row))
+    return;
+  throw UsageError(
+      fmt::format("plot {}: expected {} rows of as many shares from 0 to 1", plot.title, plot.names.size()));
+}
 
-std::string plot_svg(const LinePlot& plot) {
+std::string gnuplot_script(const MatrixPlot& plot) {
+  constexpr int kCell_px = 20;
+  constexpr int kLabel_px = 150;  // for names and the label beside them
+  const auto size_px = kLabel_px + kCell_px * static_cast<int>(plot.names.size()) + kCell_px;
+  const double last = static_cast<double>(plot.names.size()) - 0.5;
+  std::string tics;
+  std::string rows;
+  for (std::size_t i = 0; i < plot.names.size(); ++i) {
+    tics += fmt::format("{}{} {}", i == 0 ? "" : ", ", in_quotes(plot.names[i]), i);
+    rows += fmt::format("{}\n", fmt::join(plot.shares[i], " "));
+  }
+  return fmt::format(
+      "set encoding utf8\n"
+      "set terminal svg size {0},{0} dynamic noenhanced background rgb 'white' font 'sans-serif,11'\n"
+      "set palette defined (0 '#ffffff', 1 '#08306b')\nset cbrange [0:1]\nunset colorbox\n"
+      "set key off\nset border 0\nset tics scale 0\nset size ratio -1\nunset xtics\n"
+      "set xrange [-0.5:{1}]\nset x2range [-0.5:{1}]\nset yrange [{1}:-0.5]\n"
+      "set x2tics rotate by 90 ({2})\nset ytics ({2})\nset x2label {3}\nset ylabel {4}\n"
+      "$m << END\n{5}END\n"
+      // The square root emphasises small shares, which are the interesting ones.
+      "plot $m matrix using 1:2:(sqrt($3)) with image pixels, $m matrix using 1:2:($3 >= 0.005 ? sprintf('%.0f', 100 * "
+      "$3) : ''):($3 > 0.3 ? 0xffffff : 0) with labels font ',9' tc rgb variable\n",
+      size_px, last, tics, in_quotes(plot.column_label), in_quotes(plot.row_label), rows);
+}
+
+template <class Plot>
+std::string svg_of(const Plot& plot) {
   check(plot);
   ProcessResult result;
   try {
@@ -136,5 +172,11 @@ std::string plot_svg(const LinePlot& plot) {
   throw Error(fmt::format("plot {}: gnuplot failed with exit code {}: {}", plot.title, result.exit_code,
                           first_line(result.err)));
 }
+
+}  // namespace
+
+std::string plot_svg(const LinePlot& plot) { return svg_of(plot); }
+
+std::string plot_svg(const MatrixPlot& plot) { return svg_of(plot); }
 
 }  // namespace vesalius

@@ -34,4 +34,17 @@ struct LinePlot {
 /// s, and UsageError for a plot without a finite point, an empty or infinite range, or x <= 0 on a log axis.
 std::string plot_svg(const LinePlot& plot);
 
+/// A matrix of shares with the same names for rows and columns, such as a confusion matrix.
+struct MatrixPlot {
+  std::string title;  ///< for messages; the picture has none
+  std::string row_label;
+  std::string column_label;
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> shares;  ///< [row][column], 0 to 1
+};
+
+/// Draws the matrix as SVG, dark for large shares, with percents in the cells of half a percent and more. Throws as the
+/// function above does; UsageError also for shares outside 0 to 1 and rows of another length than the names.
+std::string plot_svg(const MatrixPlot& plot);
+
 }  // namespace vesalius

@@ -93,6 +93,35 @@ TEST(Plot, HasTheRequestedRangesAndLogAxis) {
   EXPECT_THAT(plot_svg(plot), HasSubstr("> 1000<"));
 }
 
+MatrixPlot two_classes() {
+  return {"Confusion", "true class", "given class", {"l_hand", "back<ground"}, {{0.75, 0.25}, {0.004, 0.0}}};
+}
+
+TEST(Plot, DrawsTheSharesOfAMatrix) {
+  NEEDS_GNUPLOT();
+  const std::string svg = plot_svg(two_classes());
+  EXPECT_THAT(svg, HasSubstr(">75<"));
+  EXPECT_THAT(svg, HasSubstr(">25<"));
+  EXPECT_THAT(svg, Not(HasSubstr(">0<")));
+  EXPECT_EQ(count(svg, ">l_hand<"), 2U);
+  EXPECT_EQ(count(svg, ">back&lt;ground<"), 2U);
+  EXPECT_LT(svg.find(">75<"), svg.find(">25<"));
+}
+
+TEST(Plot, RefusesMatricesThatCannotBeDrawn) {
+  const auto error = [](auto change) {
+    MatrixPlot plot = two_classes();
+    change(plot);
+    return test::error_of([&] { plot_svg(plot); });
+  };
+  const char* expected = "plot Confusion: expected 2 rows of as many shares from 0 to 1";
+  EXPECT_THAT(error([](MatrixPlot& plot) { plot.shares.pop_back(); }), HasSubstr(expected));
+  EXPECT_THAT(error([](MatrixPlot& plot) { plot.shares[1].push_back(0.5); }), HasSubstr(expected));
+  EXPECT_THAT(error([](MatrixPlot& plot) { plot.shares[0][1] = kNaN; }), HasSubstr(expected));
+  EXPECT_THAT(error([](MatrixPlot& plot) { plot.shares[0][1] = 1.1; }), HasSubstr(expected));
+  EXPECT_THAT(error([](MatrixPlot& plot) { plot = {"Confusion", "", "", {}, {}}; }), HasSubstr("expected 0 rows"));
+}
+
 TEST(Plot, RefusesPlotsThatCannotBeDrawn) {
   LinePlot plot = two_lines();
   plot.series[0].points[0].first = 0.0;

@@ -97,10 +97,23 @@ void add_levels(Document& document, const TrainFigures& figures) {
   document.table({"Level", "Among parts", "Background a rival"}, rows);
 }
 
+/// Plots the shares of the samples of each class that were given each class.
+std::string confusion_plot(const Confusion& confusion, const std::vector<std::string>& names) {
+  MatrixPlot plot{"confusion matrix", "true class", "given class", names, {}};
+  for (int truth = 0; truth < confusion.classes; ++truth) {
+    std::vector<double>& row = plot.shares.emplace_back();
+    const auto sum = static_cast<double>(std::max(confusion.row_sum(truth), std::uint64_t{1}));
+    for (int given = 0; given < confusion.classes; ++given) {
+      row.push_back(static_cast<double>(confusion.at(truth, given)) / sum);
+    }
+  }
+  return plot_svg(plot);
+}
+
 void add_classes(Document& document, const TrainingSet& set, const TrainFigures& figures) {
   const std::vector<std::string> names = class_names(set);
   document.heading(2, "Classes");
-  document.svg("confusion", confusion_svg(figures.accuracy.all, names),
+  document.svg("confusion", confusion_plot(figures.accuracy.all, names),
                "Confusion matrix: percent of a true class (row) that were given a class (column)");
   std::vector<std::uint64_t> samples(names.size(), 0);
   for (const TrainingSample& sample : set.samples()) ++samples[sample.label];

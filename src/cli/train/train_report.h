@@ -36,10 +36,6 @@ struct TrainFigures {
 /// sizes, samples of each class and the recipe. Throws Error if gnuplot cannot be run.
 Document train_report(const Forest& forest, const TrainingSet& set, const TrainFigures& figures);
 
-/// Returns the confusion matrix as SVG with the classes' names. Rows are true classes, columns are given ones, and a
-/// cell is the darker the larger its share of the row.
-std::string confusion_svg(const Confusion& confusion, const std::vector<std::string>& names);
-
 /// Throws Error if gnuplot cannot be run. It is called before a training, so that the error does not come after it.
 void expect_plots();
 
