@@ -226,7 +226,8 @@ void add_evaluate(CLI::App& program) {
       ->add_option("--report", arguments->report,
                    "Folder for report.html, report.md, report.json, figures.csv (and ablation.csv)")
       ->type_name("DIR");
-  command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`; - for standard output")->type_name("FILE");
+  command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`; - for standard output")
+      ->type_name("FILE");
   command->add_option("--options", arguments->options_file, "TOML file of detector options")->type_name("FILE");
   command->add_option("--step", arguments->step, "Only the first of every N frames")
       ->type_name("N")
