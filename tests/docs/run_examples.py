@@ -136,7 +136,7 @@ class Wrapper:
             return 0
         if words[0] == "vesalius":
             words = words[1:]
-        if any(w.startswith("real/") for w in words) and not Path("real").exists():
+        if any(w.startswith("real/") for w in words) and not (Path("real").is_dir() and any(Path("real").iterdir())):
             print("example not run, no real frames: vesalius", *words, file=sys.stderr)
             return 0
         words = self.without_motions(words)
@@ -207,6 +207,15 @@ def blocks_of_help(program):
     return blocks
 
 
+def mirror_of(shared, folder):
+    """A folder like that of the developers' real frames, in which examples may write: links to the sets."""
+    (folder / "real").mkdir(parents=True)
+    if (shared / "real").is_dir():
+        for each in (shared / "real").iterdir():
+            (folder / "real" / each.name).symlink_to(each.resolve())
+    return folder
+
+
 def main():
     program, source, work, what = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve(), sys.argv[4]
     shutil.rmtree(work, ignore_errors=True)
@@ -217,11 +226,12 @@ def main():
         f'#!/bin/sh\nexec "{sys.executable}" "{Path(__file__).resolve()}" --as-vesalius "$@"\n')
     (bin_folder / "vesalius").chmod(0o755)
     shared = Path(os.environ.get("VESALIUS_SHARED", source / "../shared"))
+    mirror = mirror_of(shared, work / "shared")
     log = work / "log"
     log.touch()
     environment = {**os.environ, "PATH": f"{bin_folder}:{os.environ['PATH']}", "EXAMPLE_PROGRAM": program,
                    "EXAMPLE_STAND_INS": str(work / "stand_ins"), "EXAMPLE_SOURCE": str(source), "EXAMPLE_LOG": str(log),
-                   "HOME": str(work)}
+                   "HOME": str(work), "VESALIUS_SHARED": str(mirror)}
     blocks = blocks_of_help(program) if what == "--help" else blocks_of(source / what)
     if not blocks:
         sys.exit(f"{what}: no example of a command")
@@ -235,8 +245,7 @@ def main():
             (folder / "motions").mkdir()
             for body in (source / "data/bodies").glob("upper_body.toml"):
                 shutil.copy(body, folder)
-            if (shared / "real").is_dir():
-                (folder / "real").symlink_to(shared / "real")
+            (folder / "real").symlink_to(mirror / "real")
         script = "set -eo pipefail\n" + re.sub(r"^(\./dev|cmake|ctest|build/|bench/)", r": \1", block, flags=re.MULTILINE)
         done = subprocess.run(["bash", "-c", script], cwd=folder, env=environment, check=False, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
