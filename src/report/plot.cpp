@@ -159,24 +159,28 @@ std::string gnuplot_script(const MatrixPlot& plot) {
       size_px, last, tics, in_quotes(plot.column_label), in_quotes(plot.row_label), rows);
 }
 
-template <class Plot>
-std::string svg_of(const Plot& plot) {
-  check(plot);
+std::string svg_of(const std::string& title, const std::string& script) {
   ProcessResult result;
   try {
-    result = run_process({"gnuplot", "-d"}, gnuplot_script(plot), kLimit_s);  // -d ignores the user's start-up file
+    result = run_process({"gnuplot", "-d"}, script, kLimit_s);  // -d ignores the user's start-up file
   } catch (const Error& e) {
-    throw Error(fmt::format("plot {}: {} (Debian: gnuplot-nox)", plot.title, e.what()));
+    throw Error(fmt::format("plot {}: {} (Debian: gnuplot-nox)", title, e.what()));
   }
   if (result.exit_code == 0 && result.out.find("</svg>") != std::string::npos) return std::move(result.out);
-  throw Error(fmt::format("plot {}: gnuplot failed with exit code {}: {}", plot.title, result.exit_code,
-                          first_line(result.err)));
+  throw Error(
+      fmt::format("plot {}: gnuplot failed with exit code {}: {}", title, result.exit_code, first_line(result.err)));
 }
 
 }  // namespace
 
-std::string plot_svg(const LinePlot& plot) { return svg_of(plot); }
+std::string plot_svg(const LinePlot& plot) {
+  check(plot);
+  return svg_of(plot.title, gnuplot_script(plot));
+}
 
-std::string plot_svg(const MatrixPlot& plot) { return svg_of(plot); }
+std::string plot_svg(const MatrixPlot& plot) {
+  check(plot);
+  return svg_of(plot.title, gnuplot_script(plot));
+}
 
 }  // namespace vesalius

@@ -19,7 +19,7 @@ struct GrowOptions {
   float radius_per_z2 = 0.003F;  ///< added per square metre of depth: a structured-light sensor's depth step
   float reach_m = 0.3F;          ///< how far a person extends around the centre of a part
   float missing_reach_m = 0.2F;  ///< added once for each unseen part beyond
-  float colour_veto = 2.F;       ///< a colour is refused if the log of its likelihood is lower on the person by this
+  float colour_veto = 2.F;       ///< a colour is refused if it is likelier elsewhere by this, as a log of the ratio
   float own_colour_m = 0.12F;    ///< any colour this near to a part's centre is the person's
   bool use_colour = true;
   PlaneOptions plane;
