@@ -38,9 +38,11 @@ std::string truth_json(const LabelledFrame& labelled, const BodyModel& body, con
     if (!labelled.joints.empty()) {
       for (std::size_t j = 0; j < joints.size(); ++j) person["joints_m"][joints[j]] = point_json(labelled.joints[i][j]);
     }
+    if (!labelled.postures.empty()) person["posture"] = labelled.postures[i];
     people.push_back(std::move(person));
   }
-  const Json json = {{"frame", labelled.frame.name}, {"people", std::move(people)}};
+  Json json = {{"frame", labelled.frame.name}, {"people", std::move(people)}};
+  if (labelled.up) json["up"] = {labelled.up->x(), labelled.up->y(), labelled.up->z()};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -12,7 +12,7 @@ namespace vesalius {
 
 /// Writes labelled frames as plain files that any program can read: depth/, rgb/ and meta.json in the layout of
 /// `open_source`, labels/NAME.png and person/NAME.png (8-bit, 255 = background), truth/NAME.json (part centres and
-/// joints in metres, optical frame), and body.toml, which names the labels.
+/// joints in metres, postures, the upward direction; optical frame), and body.toml, which names the labels.
 class LabelledExporter {
  public:
   /// Creates `folder`. Throws Error if it cannot be created or already has files in it. `joints` names the joints of

@@ -38,6 +38,11 @@ Eigen::Vector3f point_of(const Json& json, bool or_null, const std::string& what
   return point;
 }
 
+std::string text_of(const Json& json, const std::string& what) {
+  if (!json.is_string()) throw Error(what + ": expected a word");
+  return json.get<std::string>();
+}
+
 const Json& member(const Json& json, const std::string& key, const std::string& expected) {
   const auto found = json.is_object() ? json.find(key) : json.end();
   if (found == json.end()) throw Error(fmt::format("no \"{}\", expected {}", key, expected));
@@ -58,14 +63,32 @@ void read_people(const std::string& path, const BodyModel& body, LabelledFrame& 
   with_context(path, [&] {
     const Json& people = member(json, "people", "a JSON object with a list of people");
     if (!people.is_array()) throw Error("people: expected a list");
+    const auto up = json.find("up");
+    if (up != json.end()) labelled.up = point_of(*up, false, "up");
     for (const Json& person : people) {
       labelled.parts.push_back(parts_of(person, body));
+      const auto posture = person.find("posture");
+      if (posture != person.end()) labelled.postures.push_back(text_of(*posture, "posture"));
       const auto joints = person.find("joints_m");
       if (joints == person.end() || !joints->is_object()) continue;
       Points& points = labelled.joints.emplace_back();
       for (const auto& [name, point] : joints->items()) points.push_back(point_of(point, false, name));
     }
   });
+}
+
+/// Returns the names of the joints in a frame's truth; none for a file that cannot be used, which `read` will name.
+std::vector<std::string> joint_names_in(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return {};
+  const Json json = Json::parse(read_file(path, kMaxTruthBytes), nullptr, false);
+  const Json people = json.is_object() ? json.value("people", Json::array()) : Json::array();
+  std::vector<std::string> names;
+  if (!people.is_array() || people.empty() || !people[0].is_object()) return names;
+  const Json joints = people[0].value("joints_m", Json::object());
+  if (!joints.is_object()) return names;
+  for (const auto& [name, point] : joints.items()) names.push_back(name);
+  return names;
 }
 
 std::string body_path(const std::string& folder) { return (fs::path(folder) / "body.toml").string(); }
@@ -83,7 +106,10 @@ bool is_labelled_folder(const std::string& path) {
 LabelledFolder::LabelledFolder(const std::string& folder)
     : folder_(folder),
       body_(parse_body_model(read_file(body_path(folder)), body_path(folder))),
-      frames_(list_folder(folder, {})) {}
+      frames_(list_folder(folder, {})) {
+  for (std::uint64_t i = 0; i < size() && joint_names_.empty(); ++i)
+    joint_names_ = joint_names_in(file("truth", i, ".json"));
+}
 
 std::string LabelledFolder::file(const char* kind, std::uint64_t index, const char* extension) const {
   return (fs::path(folder_) / kind / (frames_.list().frames[index].name + extension)).string();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "io/sources/list_source.h"
 #include "vesalius/base/body_model.h"
@@ -17,6 +18,8 @@ class LabelledFolder {
 
   std::uint64_t size() const { return frames_.size(); }
   const BodyModel& body() const { return body_; }
+  /// Returns the names of the people's joints, as the first frame that has any gives them.
+  const std::vector<std::string>& joint_names() const { return joint_names_; }
 
   /// Returns frame `index` in the order of the frames' names; `index` must be below size(). Parts and joints are given
   /// to a tenth of a millimetre, and joints have the order of the file. Throws Error naming the file that cannot be
@@ -33,6 +36,7 @@ class LabelledFolder {
   std::string folder_;
   BodyModel body_;
   FrameListReader frames_;
+  std::vector<std::string> joint_names_;
 };
 
 /// Returns whether `path` is a folder of labelled frames, which has body.toml, depth/, labels/, person/ and truth/.

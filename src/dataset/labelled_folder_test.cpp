@@ -25,7 +25,10 @@ struct Exported {
   std::string path() const { return folder / "out"; }
   static LabelledFrame frame(std::uint64_t i) {
     LabelledFrame labelled = random_labelled(i);
+    labelled.up = Eigen::Vector3f(0.F, -0.8F, 0.6F);
+    labelled.postures = {"standing", "sitting"};
     if (i != 3) return labelled;
+    labelled.postures.clear();
     labelled.parts.clear();
     labelled.joints.clear();
     labelled.labels.fill(kBackground);
@@ -51,10 +54,13 @@ TEST(LabelledFolder, ReadsWhatWasExported) {
   const LabelledFolder folder(exported.path());
   ASSERT_EQ(folder.size(), 3U);
   EXPECT_EQ(folder.body().toml, paper_body().toml);
+  EXPECT_EQ(folder.joint_names(), test::kJoints);
   for (const std::uint64_t i : {2U, 0U, 1U}) {
     const LabelledFrame expected = Exported::frame(i + 1);
     const LabelledFrame read = folder.read(i);
     EXPECT_EQ(read.frame.name, expected.frame.name);
+    EXPECT_EQ(read.postures, expected.postures);
+    EXPECT_EQ(read.up, expected.up);
     EXPECT_EQ(read.frame.camera, expected.frame.camera);
     EXPECT_EQ(read.frame.depth, expected.frame.depth);
     EXPECT_EQ(read.frame.colour, expected.frame.colour);

@@ -13,6 +13,9 @@ namespace {
 // Bits of a frame's flags.
 constexpr std::uint8_t kHasColour = 1;
 constexpr std::uint8_t kHasTime = 2;
+constexpr std::uint8_t kHasUp = 4;
+constexpr std::uint8_t kHasPostures = 8;
+constexpr int kAllFlags = kHasColour | kHasTime | kHasUp | kHasPostures;
 constexpr std::size_t kMaxName = 255;
 
 void write_camera(ByteWriter& out, const Camera& camera) {
@@ -66,6 +69,23 @@ void read_people(ByteReader& in, int part_count, LabelledFrame& labelled) {
   for (int i = 0; joints > 0 && i < people; ++i) labelled.joints.push_back(read_points(in, joints, "joint"));
 }
 
+int flags_of(const LabelledFrame& labelled) {
+  const Frame& picture = labelled.frame;
+  return (picture.colour.empty() ? 0 : kHasColour) | (picture.time_s ? kHasTime : 0) | (labelled.up ? kHasUp : 0) |
+         (labelled.postures.empty() ? 0 : kHasPostures);
+}
+
+void write_circumstances(ByteWriter& out, const LabelledFrame& labelled) {
+  if (labelled.up) write_points(out, {*labelled.up});
+  for (const std::string& posture : labelled.postures) out.text(posture);
+}
+
+void read_circumstances(ByteReader& in, int flags, LabelledFrame& labelled) {
+  if ((flags & kHasUp) != 0) labelled.up = read_points(in, 1, "upward direction").front();
+  if ((flags & kHasPostures) == 0) return;
+  for (std::size_t i = 0; i < labelled.parts.size(); ++i) labelled.postures.emplace_back(in.text("posture"));
+}
+
 /// Returns the first value that is neither background nor below `count`. The loop does not stop early, so that the
 /// compiler can vectorise it; most often there is no such value.
 std::optional<std::uint8_t> first_beyond(const Image<std::uint8_t>& plane, std::size_t count) {
@@ -89,6 +109,19 @@ void check_joints(const LabelledFrame& labelled) {
     for (const Eigen::Vector3f& p : joints) {
       if (!p.allFinite()) throw Error("joint is not finite");
     }
+  }
+}
+
+void check_circumstances(const LabelledFrame& labelled) {
+  if (labelled.up && !(std::abs(labelled.up->norm() - 1.F) <= 1e-3F)) {
+    throw Error("upward direction is not of unit length");
+  }
+  const std::vector<std::string>& postures = labelled.postures;
+  if (!postures.empty() && postures.size() != labelled.parts.size()) {
+    throw Error(fmt::format("postures of {} people, expected {} or none", postures.size(), labelled.parts.size()));
+  }
+  for (const std::string& posture : postures) {
+    if (posture.size() > kMaxName) throw Error(fmt::format("posture of more than {} bytes", kMaxName));
   }
 }
 
@@ -117,6 +150,7 @@ void check_truth(const LabelledFrame& labelled, int part_count) {
     }
   }
   check_joints(labelled);
+  check_circumstances(labelled);
 }
 
 std::string encode_frame(const DatasetFrame& frame, int part_count) {
@@ -126,12 +160,12 @@ std::string encode_frame(const DatasetFrame& frame, int part_count) {
   out.number(frame.index);
   out.number(frame.seed);
   const Frame& picture = labelled.frame;
-  const int flags = (picture.colour.empty() ? 0 : kHasColour) | (picture.time_s ? kHasTime : 0);
-  out.number(static_cast<std::uint8_t>(flags));
+  out.number(static_cast<std::uint8_t>(flags_of(labelled)));
   out.text(picture.name);
   out.real(picture.time_s.value_or(0.0));
   write_camera(out, picture.camera);
   write_people(out, labelled);
+  write_circumstances(out, labelled);
   write_depth_plane(out, picture.depth);
   write_byte_plane(out, labelled.labels);
   write_byte_plane(out, labelled.person);
@@ -145,13 +179,14 @@ DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::str
   frame.index = in.number<std::uint64_t>("index");
   frame.seed = in.number<std::uint64_t>("seed");
   const auto flags = in.number<std::uint8_t>("flags");
-  if (flags > (kHasColour | kHasTime)) in.fail(fmt::format("unknown flags {}", flags));
+  if (flags > kAllFlags) in.fail(fmt::format("unknown flags {}", flags));
   LabelledFrame& labelled = frame.labelled;
   labelled.frame.name = in.text("name");
   const double time_s = in.real64("time");
   if ((flags & kHasTime) != 0) labelled.frame.time_s = time_s;
   labelled.frame.camera = read_camera(in);
   read_people(in, part_count, labelled);
+  read_circumstances(in, flags, labelled);
   const auto [width, height] = std::pair(labelled.frame.camera.width, labelled.frame.camera.height);
   labelled.frame.depth = read_depth_plane(in, width, height);
   labelled.labels = read_byte_plane(in, width, height);

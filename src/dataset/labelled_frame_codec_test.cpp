@@ -25,6 +25,23 @@ TEST(FrameCodec, KeepsEveryField) {
   }
 }
 
+TEST(FrameCodec, KeepsPosturesAndTheUpwardDirection) {
+  LabelledFrame labelled = random_labelled(3);
+  labelled.up = Eigen::Vector3f(0.F, -0.8F, 0.6F);
+  test::expect_same(decode_frame(encode_frame({1, 2, labelled}, kParts), kParts, "test").labelled, labelled);
+  labelled.postures = {"sitting", ""};
+  test::expect_same(decode_frame(encode_frame({1, 2, labelled}, kParts), kParts, "test").labelled, labelled);
+}
+
+TEST(FrameCodec, RefusesPosturesAndDirectionsThatDoNotFit) {
+  LabelledFrame labelled = random_labelled(3);
+  labelled.postures = {"sitting"};
+  EXPECT_THAT(error_of([&] { encode_frame({1, 2, labelled}, kParts); }), HasSubstr("postures of 1 people, expected 2"));
+  labelled.postures.clear();
+  labelled.up = Eigen::Vector3f(0.F, -2.F, 0.F);
+  EXPECT_THAT(error_of([&] { encode_frame({1, 2, labelled}, kParts); }), HasSubstr("not of unit length"));
+}
+
 TEST(FrameCodec, TellsNoTimeFromTheTimeZero) {
   LabelledFrame labelled = random_labelled(3);
   for (const std::optional<double> time_s : {std::optional<double>{}, std::optional<double>{0.0}}) {

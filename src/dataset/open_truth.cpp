@@ -5,6 +5,7 @@
 
 #include "dataset/labelled_dataset.h"
 #include "dataset/labelled_folder.h"
+#include "dataset/skeleton_truth.h"
 #include "dataset/truth_folder.h"
 #include "dataset/truth_itop.h"
 #include "io/sources/open_source.h"
@@ -33,6 +34,9 @@ class FolderTruth final : public TruthSource {
   TruthFolder truth_;
 };
 
+const std::vector<std::string>& joints_of(const DatasetReader& reader) { return reader.info().joints; }
+const std::vector<std::string>& joints_of(const LabelledFolder& folder) { return folder.joint_names(); }
+
 /// Gives the frames of a DatasetReader or LabelledFolder as truth.
 template <class Reader>
 class LabelledTruth final : public TruthSource {
@@ -44,7 +48,7 @@ class LabelledTruth final : public TruthSource {
   std::optional<TrueFrame> next() override {
     if (next_ >= reader_.size()) return std::nullopt;
     const std::uint64_t index = std::exchange(next_, next_ + step_);
-    return as_true_frame(reader_.read(index), part_names());
+    return as_true_frame(reader_.read(index), joints_of(reader_));
   }
   int size() const override { return static_cast<int>((reader_.size() + step_ - 1) / step_); }
   std::vector<std::string> part_names() const override { return part_names_of(reader_.body()); }
@@ -57,14 +61,16 @@ class LabelledTruth final : public TruthSource {
 
 }  // namespace
 
-TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& part_names) {
+TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& joint_names) {
   TrueFrame result;
   FrameTruth& truth = result.truth;
   truth.people = static_cast<int>(labelled.parts.size());
   truth.mask = Mask(labelled.person.width(), labelled.person.height(), 0);
   for (std::size_t i = 0; i < truth.mask.size(); ++i) truth.mask[i] = labelled.person[i] == kBackground ? 0 : 1;
-  truth.joint_names = part_names;
-  truth.joints = std::move(labelled.parts);
+  add_skeleton_truth(joint_names, labelled.joints, truth);
+  truth.parts = std::move(labelled.parts);
+  truth.postures = std::move(labelled.postures);
+  truth.up = labelled.up;
   truth.person = std::move(labelled.person);
   truth.labels = std::move(labelled.labels);
   result.frame = std::move(labelled.frame);

@@ -11,13 +11,12 @@
 namespace vesalius {
 
 /// Opens frames with their truth: a labelled dataset, a folder of labelled frames (LabelledExporter), depth maps of
-/// ITOP (truth_itop.h), or any other source that `open_source` opens and TruthFolder has truth for. The joints of
-/// labelled datasets and folders are the parts' centres under the parts' names. Gives the first of every `step` frames.
-/// Throws Error as those readers do.
+/// ITOP (truth_itop.h), or any other source that `open_source` opens and TruthFolder has truth for. Gives the first of
+/// every `step` frames. Throws Error as those readers do.
 std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step = 1, const SourceOptions& options = {});
 
-/// Converts a labelled frame to truth. Its joints are the parts' centres under the parts' names.
-TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& part_names);
+/// Converts a labelled frame to truth. `joint_names` names its skeletons' joints (skeleton_truth.h).
+TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& joint_names = {});
 
 /// Returns the names of a body's parts, in order.
 std::vector<std::string> part_names_of(const BodyModel& body);

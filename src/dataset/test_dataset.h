@@ -46,6 +46,8 @@ inline void expect_same(const LabelledFrame& a, const LabelledFrame& b) {
   EXPECT_EQ(a.labels, b.labels);
   EXPECT_EQ(a.person, b.person);
   EXPECT_EQ(a.joints, b.joints);
+  EXPECT_EQ(a.postures, b.postures);
+  EXPECT_EQ(a.up, b.up);
   ASSERT_EQ(a.parts.size(), b.parts.size());
   for (std::size_t i = 0; i < a.parts.size(); ++i) {
     ASSERT_EQ(a.parts[i].size(), b.parts[i].size());

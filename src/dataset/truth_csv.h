@@ -26,13 +26,14 @@ class CsvTable {
   int integer(std::size_t row, std::size_t column, int low, int high) const;
   /// Returns e.g. "frames.csv:12" for messages.
   std::string place(std::size_t row) const;
+  /// Throws Error naming line, column and the cell's text.
+  [[noreturn]] void fail(std::size_t row, std::size_t column, const std::string& expected) const;
 
  private:
   struct Row {
     int line = 0;
     std::vector<std::string> cells;
   };
-  [[noreturn]] void fail(std::size_t row, std::size_t column, const std::string& expected) const;
 
   std::string name_;
   std::vector<std::string> header_;

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "dataset/truth_csv.h"
+#include "dataset/truth_headings.h"
 #include "io/files/image_file.h"
 #include "io/sources/folder_source.h"
 #include "vesalius/base/error.h"
@@ -80,10 +81,13 @@ void TruthFolder::read_people(const std::string& path, const std::string& set) {
   const std::size_t people = table.column("people");
   const bool has_posture = table.has("posture");
   const std::size_t posture = has_posture ? table.column("posture") : 0;
+  const bool has_heading = table.has("heading");
+  const std::size_t heading = has_heading ? table.column("heading") : 0;
   const std::size_t set_column = set.empty() ? 0 : table.column("set");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (!set.empty() && table.cell(row, set_column) != set) continue;
-    Facts facts{table.integer(row, people, -1, kMostPeople), has_posture ? table.cell(row, posture) : ""};
+    Facts facts{table.integer(row, people, -1, kMostPeople), has_posture ? table.cell(row, posture) : "",
+                has_heading ? heading_in(table, row, heading) : std::nullopt};
     const std::string name = frame_name(table.cell(row, frame));
     if (!facts_.emplace(name, std::move(facts)).second) {
       throw Error(fmt::format("{}: frame {} comes twice", table.place(row), name));
@@ -127,8 +131,14 @@ FrameTruth TruthFolder::truth_of(const Frame& frame) const {
   if (facts != facts_.end()) {
     truth.people = facts->second.people;
     truth.posture = facts->second.posture;
+    truth.heading = facts->second.heading;
   }
-  if (camera_ && frame.time_s) truth.camera_motion = camera_->motion(*frame.time_s);
+  if (camera_ && frame.time_s) {
+    truth.camera_motion = camera_->motion(*frame.time_s);
+    if (const auto pose = camera_->world_from_camera(*frame.time_s)) {
+      truth.up = (pose->linear().transpose() * Eigen::Vector3d::UnitZ()).cast<float>();
+    }
+  }
   const auto joints = joints_.find(frame.name);
   if (joints != joints_.end()) {
     if (facts == facts_.end()) truth.people = 1;

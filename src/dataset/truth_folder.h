@@ -11,8 +11,9 @@
 namespace vesalius {
 
 /// The truth that lies beside the pictures of a folder of frames (docs/metrics.md). `frames.csv`, in the folder or one
-/// above it, has the number of people and their posture; `mask/*.png` has their pixels; `joints.csv` has one person's
-/// joints; `groundtruth.txt` has the camera's poses (TUM RGB-D), which tell whether the camera moved.
+/// above it, has the number of people, their posture and heading; `mask/*.png` has their pixels; `joints.csv` has one
+/// person's joints; `groundtruth.txt` has the camera's poses in a world whose z points up (TUM RGB-D), which tell
+/// whether the camera moved and where up is.
 class TruthFolder {
  public:
   /// Throws Error naming file and line of a table that cannot be used, and the folder if it has no truth at all.
@@ -29,6 +30,7 @@ class TruthFolder {
   struct Facts {
     int people = -1;
     std::string posture;
+    std::optional<Heading> heading;
   };
   std::string folder_;
   bool has_masks_ = false;

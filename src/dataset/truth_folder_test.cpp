@@ -69,6 +69,20 @@ TEST(TruthFolder, ReadsJoints) {
   EXPECT_EQ(b.joints[0][1], Eigen::Vector3f(1, 2, 3));
 }
 
+TEST(TruthFolder, KnowsTheUpwardDirectionOfATrackedCamera) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "frames.csv", "frame,people\na,1\n");
+  // The camera looks along the world's x axis, and its own x axis points down: it is rolled by 90 degrees.
+  test::put(folder / "groundtruth.txt", "7.0 0 0 0 0 0.70710678 0 0.70710678\n");
+  Frame at = frame("a");
+  at.time_s = 7.0;
+  const FrameTruth truth = TruthFolder(folder.path()).truth_of(at);
+  ASSERT_TRUE(truth.up);
+  EXPECT_LT((*truth.up - Eigen::Vector3f(-1, 0, 0)).norm(), 1e-5F);
+  at.time_s = 9.0;
+  EXPECT_FALSE(TruthFolder(folder.path()).truth_of(at).up);
+}
+
 TEST(TruthFolder, TellsWhetherTheCameraMoves) {
   const test::TemporaryFolder folder;
   test::put(folder / "frames.csv", "frame,people\na,1\n");

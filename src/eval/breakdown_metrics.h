@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "eval/metric_table.h"
@@ -9,11 +10,13 @@
 
 namespace vesalius {
 
-/// Returns whether each true person was found, by distance, by the side turned to the camera (front: within 60 degrees,
-/// back: beyond 120) and by the visible share of the body's parts. `of_person` has the found person for each true one,
-/// or null if the person was missed. Only frames of datasets have such terms, because their joints are the centres of
-/// parts. The heading follows from the parts called l_... and their partners; people whose left side is above their
-/// right, as when lying on a side, have none.
+/// Returns by how many degrees the camera is turned about its viewing direction, 0 (upright) to 180; nothing if the
+/// truth lacks the upward direction or the camera looks within 20 degrees of straight up or down.
+std::optional<double> camera_roll_deg(const FrameTruth& truth);
+
+/// Returns whether each true person was found, by each of these that is known: distance, the side turned to the camera
+/// (heading_of), the visible share of the body's parts, the person's own posture, stature, and the camera's roll.
+/// `of_person` has the found person for each true one, or null if the person was missed.
 MetricTerms breakdown_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person, const BodyModel& body);
 
 }  // namespace vesalius

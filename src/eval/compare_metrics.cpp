@@ -20,6 +20,18 @@ Interval independent_interval(const Estimate& first, const Estimate& second, dou
   return {difference - down, difference + up};
 }
 
+/// Returns whether a change is for the better; `up` says that it surely is one upwards.
+bool is_better(const Comparison& change, bool up) {
+  switch (info(change.id.metric).direction) {
+    case MetricDirection::higher_is_better:
+      return up;
+    case MetricDirection::lower_is_better:
+      return !up;
+    default:
+      return std::abs(change.second) < std::abs(change.first);
+  }
+}
+
 }  // namespace
 
 Comparison compare(const Estimate& first, const Estimate& second, bool paired) {
@@ -31,8 +43,7 @@ Comparison compare(const Estimate& first, const Estimate& second, bool paired) {
   const bool up = result.interval.low > 0.0;
   const bool down = result.interval.high < 0.0;
   if (up || down) {
-    const bool better = up == (info(first.id.metric).direction == MetricDirection::higher_is_better);
-    result.verdict = better ? Comparison::Verdict::better : Comparison::Verdict::worse;
+    result.verdict = is_better(result, up) ? Comparison::Verdict::better : Comparison::Verdict::worse;
   }
   return result;
 }

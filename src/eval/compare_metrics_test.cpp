@@ -34,6 +34,15 @@ TEST(Compare, PrefersLowerErrors) {
   EXPECT_EQ(compare(before, after, true).verdict, Verdict::better);
 }
 
+TEST(Compare, PrefersBiasesNearerZero) {
+  const Estimate high = estimate(Metric::joint_up, 0.0, 1);    // 0.5
+  const Estimate low = estimate(Metric::joint_up, -0.8, 1);    // -0.3
+  const Estimate lower = estimate(Metric::joint_up, -1.2, 1);  // -0.7
+  EXPECT_EQ(compare(high, low, true).verdict, Verdict::better);
+  EXPECT_EQ(compare(high, lower, true).verdict, Verdict::worse);
+  EXPECT_EQ(compare(lower, low, true).verdict, Verdict::better);
+}
+
 TEST(Compare, FindsNoDifferenceOfAnEstimateToItself) {
   const Estimate one = estimate(Metric::mask_iou, 0.0, 1);
   const Comparison same = compare(one, one, true);

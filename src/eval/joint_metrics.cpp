@@ -5,14 +5,18 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 #include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
 
+constexpr double kMillimetres = 1e3;
+constexpr double kLeastAxis_m = 0.05;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The joints that both sides have, as columns.
@@ -65,8 +69,66 @@ double after_procrustes(const Common& common) {
   return mean_distance(common.truth, moved);
 }
 
-void add_mean(MetricTerms& terms, MetricId id, double mean_m) {
-  if (std::isfinite(mean_m)) terms.push_back({std::move(id), mean_m, 1.0});
+void add_mean(MetricTerms& terms, MetricId id, double mean) {
+  if (std::isfinite(mean)) terms.push_back({std::move(id), mean, 1.0});
+}
+
+/// The metrics of the errors of single joints.
+struct ErrorMetrics {
+  Metric each_right, all_right, each_error;
+};
+
+void add_errors(const JointPair& pair, const std::vector<std::string>& names, const ErrorMetrics& metrics,
+                MetricTerms& terms) {
+  const std::vector<double> errors = joint_errors(pair);
+  double right = 0.0;
+  double known = 0.0;
+  for (std::size_t j = 0; j < errors.size(); ++j) {
+    if (std::isnan(errors[j])) continue;
+    const bool is_right = errors[j] < kJointTolerance_m;
+    known += 1.0;
+    right += is_right ? 1.0 : 0.0;
+    const int place = static_cast<int>(j);
+    terms.push_back({{metrics.each_right, place, names[j]}, is_right ? 1.0 : 0.0, 1.0});
+    add_mean(terms, {metrics.each_error, place, names[j]}, errors[j]);
+  }
+  if (known > 0.0) terms.push_back({metrics.all_right, right, known});
+}
+
+/// Unit vectors of a body.
+struct BodyAxes {
+  Eigen::Vector3d up;    ///< from the hips to the neck
+  Eigen::Vector3d left;  ///< from the right to the left hip and shoulder, perpendicular to `up`
+};
+
+/// Returns the mean of those of the joints that are known; nothing if none is.
+std::optional<Eigen::Vector3d> middle_of(const std::vector<Eigen::Vector3f>& truth,
+                                         const std::vector<std::string>& names,
+                                         std::initializer_list<std::string_view> joints) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    if (std::ranges::find(joints, names[j]) == joints.end() || !truth[j].allFinite()) continue;
+    sum += truth[j].cast<double>();
+    count += 1.0;
+  }
+  return count == static_cast<double>(joints.size()) ? std::optional(Eigen::Vector3d(sum / count)) : std::nullopt;
+}
+
+std::optional<BodyAxes> body_axes(const std::vector<Eigen::Vector3f>& truth, const std::vector<std::string>& names) {
+  const auto of = [&](std::initializer_list<std::string_view> joints) { return middle_of(truth, names, joints); };
+  const auto left = of({"l_hip", "l_shoulder"}), right = of({"r_hip", "r_shoulder"});
+  auto low = of({"hip_center"}), high = of({"shoulder_center"});
+  if (!low) low = of({"l_hip", "r_hip"});
+  if (!high) high = of({"neck"});
+  if (!high) high = of({"l_shoulder", "r_shoulder"});
+  if (!left || !right || !low || !high) return std::nullopt;
+  const Eigen::Vector3d up = *high - *low;
+  const Eigen::Vector3d across = *left - *right;
+  if (up.norm() < kLeastAxis_m) return std::nullopt;
+  const Eigen::Vector3d level = across - across.dot(up) / up.squaredNorm() * up;
+  if (level.norm() < kLeastAxis_m) return std::nullopt;
+  return BodyAxes{up.normalized(), level.normalized()};
 }
 
 }  // namespace
@@ -91,9 +153,8 @@ const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::str
     const auto has = [&](const std::string& name) {
       return std::ranges::find(set.joints, name, &JointDefinition::name) != set.joints.end();
     };
-    if (!std::ranges::all_of(names, has)) continue;
-    if (set.name == wanted) return &set;
-    if (first == nullptr) first = &set;
+    if (set.name == wanted && std::ranges::any_of(names, has)) return &set;
+    if (first == nullptr && std::ranges::all_of(names, has)) first = &set;
   }
   return first;
 }
@@ -119,23 +180,37 @@ MeanErrors mean_joint_errors(const JointPair& pair, const std::vector<std::strin
 
 MetricTerms joint_terms(const JointPair& pair, const std::vector<std::string>& names) {
   MetricTerms terms;
-  const std::vector<double> errors = joint_errors(pair);
-  double right = 0.0;
-  double known = 0.0;
-  for (std::size_t j = 0; j < errors.size(); ++j) {
-    if (std::isnan(errors[j])) continue;
-    const bool is_right = errors[j] < kJointTolerance_m;
-    known += 1.0;
-    right += is_right ? 1.0 : 0.0;
-    const int place = static_cast<int>(j);
-    terms.push_back({{Metric::joint_at_10cm, place, names[j]}, is_right ? 1.0 : 0.0, 1.0});
-    add_mean(terms, {Metric::joint_error, place, names[j]}, errors[j]);
-  }
-  if (known > 0.0) terms.push_back({Metric::joints_at_10cm, right, known});
+  add_errors(pair, names, {Metric::joint_at_10cm, Metric::joints_at_10cm, Metric::joint_error}, terms);
   const MeanErrors means = mean_joint_errors(pair, names);
   add_mean(terms, Metric::joints_error, means.absolute_m);
   add_mean(terms, Metric::joints_root_aligned_error, means.root_aligned_m);
   add_mean(terms, Metric::joints_procrustes_error, means.procrustes_m);
+  return terms;
+}
+
+MetricTerms centre_terms(const JointPair& pair, const std::vector<std::string>& names) {
+  MetricTerms terms;
+  add_errors(pair, names, {Metric::centre_at_10cm, Metric::centres_at_10cm, Metric::centre_error}, terms);
+  const Common common = common_joints(pair);
+  add_mean(terms, Metric::centres_error, mean_distance(common.truth, common.found));
+  return terms;
+}
+
+MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names) {
+  const std::optional<BodyAxes> axes = body_axes(pair.truth, names);
+  const Common common = common_joints(pair);
+  MetricTerms terms;
+  for (std::size_t c = 0; c < common.joints.size(); ++c) {
+    const std::size_t joint = common.joints[c];
+    const Eigen::Vector3d truth = common.truth.col(static_cast<Eigen::Index>(c));
+    const Eigen::Vector3d off_mm = kMillimetres * (common.found.col(static_cast<Eigen::Index>(c)) - truth);
+    const auto id = [&](Metric metric) { return MetricId(metric, static_cast<int>(joint), names[joint]); };
+    if (axes) {
+      add_mean(terms, id(Metric::joint_up), off_mm.dot(axes->up));
+      add_mean(terms, id(Metric::joint_left), off_mm.dot(axes->left));
+    }
+    add_mean(terms, id(Metric::joint_behind), off_mm.dot(truth.normalized()));
+  }
   return terms;
 }
 

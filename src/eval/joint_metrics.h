@@ -28,7 +28,8 @@ struct JointPair {
 std::vector<Eigen::Vector3f> joints_by_name(const std::vector<std::string>& names, const JointSet& set,
                                             const std::vector<Joint>& joints);
 
-/// Returns the joint set called `wanted` if it has all of these joints, otherwise the first one that has them, or null.
+/// Returns the joint set called `wanted` if the body has it and it has any of these joints, otherwise the first one
+/// that has all of them, or null.
 const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names,
                                std::string_view wanted = "");
 
@@ -46,6 +47,13 @@ MeanErrors mean_joint_errors(const JointPair& pair, const std::vector<std::strin
 /// Returns the joint metrics of one person. Joints that were not found count as wrong in the shares of right joints,
 /// and are left out of the mean errors.
 MetricTerms joint_terms(const JointPair& pair, const std::vector<std::string>& names);
+/// Returns the shares and mean errors of the centres of one person's parts, in the same way.
+MetricTerms centre_terms(const JointPair& pair, const std::vector<std::string>& names);
+
+/// Returns how far the joints that both have lie from the truth, in millimetres with a sign: along the true body's axis
+/// from the middle of the hips to the neck (up), across it towards the person's own left (left), and along the viewing
+/// ray away from the camera (behind). There are no terms up and left unless the truth has hips and neck or shoulders.
+MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names);
 
 /// The numbers of joints within 1, 2, ... kJointCurve_cm centimetres of the truth.
 struct JointCurve {

@@ -57,6 +57,35 @@ TEST(JointMetrics, CountAllJointsOfAMissedPersonAsWrong) {
   EXPECT_EQ(terms.size(), 5U);
 }
 
+TEST(CentreMetrics, AreThoseOfJointsUnderOtherNames) {
+  const MetricTerms terms = centre_terms(by_hand(), kNames);
+  EXPECT_DOUBLE_EQ(value_of(terms, "centres.at_10cm"), 0.5);
+  EXPECT_NEAR(value_of(terms, "centre.head.error_m"), 0.05, 1e-6);
+  EXPECT_NEAR(value_of(terms, "centres.error_m"), 0.25 / 3, 1e-6);
+  EXPECT_TRUE(std::isnan(value_of(terms, "joints.at_10cm")));
+}
+
+TEST(JointBias, IsMeasuredAlongTheTrueBody) {
+  const std::vector<std::string> names{"neck", "l_shoulder", "r_shoulder", "l_hip", "r_hip", "l_hand"};
+  // A person on the side: the head is at the picture's right, the own left side is below.
+  JointPair pair{{{0.6F, 0, 2}, {0.5F, 0.2F, 2}, {0.5F, -0.2F, 2}, {0, 0.1F, 2}, {0, -0.1F, 2}, {0, 0, 2}}, {}};
+  pair.found = pair.truth;
+  pair.found[0].x() -= 0.03F;  // towards the hips
+  pair.found[5] += Vector3f(0.F, 0.02F, 0.05F);
+  const MetricTerms terms = joint_bias_terms(pair, names);
+  EXPECT_NEAR(value_of(terms, "joint.neck.up_mm"), -30.0, 1e-3);
+  EXPECT_NEAR(value_of(terms, "joint.neck.left_mm"), 0.0, 1e-3);
+  EXPECT_NEAR(value_of(terms, "joint.l_hip.up_mm"), 0.0, 1e-3);
+  EXPECT_NEAR(value_of(terms, "joint.l_hand.left_mm"), 20.0, 1e-3);
+  EXPECT_NEAR(value_of(terms, "joint.l_hand.behind_mm"), 50.0, 1e-3);
+}
+
+TEST(JointBias, HasNoBodyAxesWithoutHips) {
+  const MetricTerms terms = joint_bias_terms({{{0, 0, 2}}, {{0, 0, 2.01F}}}, {"head"});
+  ASSERT_EQ(terms.size(), 1U);
+  EXPECT_NEAR(value_of(terms, "joint.head.behind_mm"), 10.0, 1e-3);
+}
+
 JointPair random_pair(std::uint64_t seed, double noise_m) {
   Random random(seed);
   JointPair pair;

@@ -56,11 +56,23 @@ bool lies_on(const Mask& found, const Mask& truth, const DepthImage& depth) {
   return inside > 0 && static_cast<double>(inside) >= kShareOnMask * static_cast<double>(std::min(pixels, true_pixels));
 }
 
-/// Returns the visible area, perpendicular to the viewing direction, of each person with joints.
+/// Returns the number of people of whom more is known than their pixels.
+std::size_t person_count(const FrameTruth& truth) { return std::max(truth.parts.size(), truth.joints.size()); }
+
+/// Puts a list of people, if there is one, into another order.
+template <class T>
+void reorder(std::vector<T>& list, const std::vector<std::size_t>& order) {
+  if (list.empty()) return;
+  std::vector<T> sorted;
+  for (const std::size_t from : order) sorted.push_back(std::move(list[from]));
+  list = std::move(sorted);
+}
+
+/// Returns the visible area, perpendicular to the viewing direction, of each person.
 std::vector<double> visible_areas_cm2(const TrueFrame& frame) {
   const Camera& camera = frame.frame.camera;
   const double scale = 1e-2 / (static_cast<double>(camera.fx) * static_cast<double>(camera.fy));  // mm^2 to cm^2
-  std::vector<double> areas(frame.truth.joints.size(), 0.0);
+  std::vector<double> areas(person_count(frame.truth), 0.0);
   for (std::size_t i = 0; i < frame.frame.depth.size(); ++i) {
     const std::size_t who = frame.truth.person[i];
     const double depth_mm = frame.frame.depth[i];
@@ -84,12 +96,11 @@ void put_visible_people_first(TrueFrame& frame) {
     if (area_cm2[who] < kVisiblePerson_cm2) order.push_back(who);
   }
   std::vector<std::uint8_t> new_index(area_cm2.size());
-  std::vector<std::vector<Eigen::Vector3f>> joints;
-  for (std::size_t to = 0; to < order.size(); ++to) {
-    new_index[order[to]] = static_cast<std::uint8_t>(to);
-    joints.push_back(std::move(truth.joints[order[to]]));
-  }
-  truth.joints = std::move(joints);
+  for (std::size_t to = 0; to < order.size(); ++to) new_index[order[to]] = static_cast<std::uint8_t>(to);
+  reorder(truth.parts, order);
+  reorder(truth.joints, order);
+  reorder(truth.postures, order);
+  reorder(truth.statures_m, order);
   for (std::uint8_t& who : truth.person) who = who < new_index.size() ? new_index[who] : kBackground;
 }
 
@@ -99,7 +110,7 @@ std::vector<Match> match_people(const std::vector<Proposal>& proposals, const Fr
                                 const DepthImage& depth) {
   const int expected = expected_people(truth);
   const Match surplus{truth.people < 0 ? Match::Kind::ignored : Match::Kind::nobody, -1};
-  std::vector<bool> taken(truth.joints.size(), false);
+  std::vector<bool> taken(person_count(truth), false);
   std::vector<Match> matches;
   int right = 0;
   for (const Proposal& proposal : proposals) {

@@ -36,7 +36,7 @@ struct Match {
 /// adult's front. A person with less is neither missed nor false.
 inline constexpr double kVisiblePerson_cm2 = 500.0;
 
-/// Sorts the persons of a frame, in masks and joints, such that those who are expected to be found have the indices 0
+/// Sorts the persons of a frame, in masks and lists, such that those who are expected to be found have the indices 0
 /// to truth.people - 1. Does nothing if pixels are not known per person.
 void put_visible_people_first(TrueFrame& frame);
 

@@ -85,9 +85,15 @@ TEST(VisiblePeople, ComeBeforePeopleWhoAreMostlyHidden) {
   for (int u = 4; u < 8; ++u) frame.truth.person(u, 0) = kBackground;  // 400 cm^2 are left of person 0
   frame.truth.joint_names = {"head"};
   frame.truth.joints = {{{1, 0, 0}}, {{2, 0, 0}}};
+  frame.truth.parts = {{{3, 0, 0}}, {{4, 0, 0}}};
+  frame.truth.postures = {"sitting", "standing"};
+  frame.truth.statures_m = {1.5F, 1.8F};
   put_visible_people_first(frame);
   EXPECT_EQ(frame.truth.people, 1);
   EXPECT_EQ(frame.truth.joints[0][0].x(), 2.F);
+  EXPECT_EQ(frame.truth.parts[0][0].x(), 4.F);
+  EXPECT_THAT(frame.truth.postures, testing::ElementsAre("standing", "sitting"));
+  EXPECT_THAT(frame.truth.statures_m, testing::ElementsAre(1.8F, 1.5F));
   EXPECT_EQ(frame.truth.person(15, 0), 0);
   EXPECT_EQ(frame.truth.person(0, 0), 1);
   EXPECT_EQ(frame.truth.person(9, 0), kBackground);

@@ -27,7 +27,14 @@ std::optional<MetricId> parse_metric(std::string_view name) {
 }
 
 const char* better_word(Metric metric) {
-  return info(metric).direction == MetricDirection::higher_is_better ? "higher" : "lower";
+  switch (info(metric).direction) {
+    case MetricDirection::higher_is_better:
+      return "higher";
+    case MetricDirection::lower_is_better:
+      return "lower";
+    default:
+      return "zero";
+  }
 }
 
 std::string metric_text(Metric metric, double value) {
@@ -36,6 +43,8 @@ std::string metric_text(Metric metric, double value) {
       return fmt::format("{:.3f} m", value);
     case MetricUnit::per_frame:
       return fmt::format("{:.3f} a frame", value);
+    case MetricUnit::millimetres:
+      return fmt::format("{:+.0f} mm", value);
     default:
       return fmt::format("{:.2f} %", 100.0 * value);
   }
@@ -47,6 +56,8 @@ std::string metric_difference_text(Metric metric, double difference) {
       return fmt::format("{:+.3f} m", difference);
     case MetricUnit::per_frame:
       return fmt::format("{:+.3f}", difference);
+    case MetricUnit::millimetres:
+      return fmt::format("{:+.0f} mm", difference);
     default:
       return fmt::format("{:+.2f} %", 100.0 * difference);
   }

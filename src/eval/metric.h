@@ -20,12 +20,26 @@ enum class Metric {
   heading,   ///< family
   visible,   ///< family
   motion,    ///< family
+  stature,   ///< family
+  roll,      ///< family
   mask_iou,
   mask_iou_where_found,
   part_seen,  ///< family
   part_mean_seen,
   parts_right,
   parts_right_upper,
+  given_right,
+  given_mirrored,
+  given_elsewhere,
+  given_right_heading,      ///< family
+  given_mirrored_heading,   ///< family
+  given_elsewhere_heading,  ///< family
+  sides_swapped,
+  sides_swapped_heading,  ///< family
+  sides_order,
+  sides_order_heading,  ///< family
+  sides_order_arms,
+  sides_order_arms_heading,  ///< family
   pixel_person_iou,
   pixel_background_iou,
   pixel_recall,  ///< family
@@ -39,10 +53,23 @@ enum class Metric {
   joints_error,
   joints_root_aligned_error,
   joints_procrustes_error,
+  joints_given_right,
+  joints_given_mirrored,
+  joints_given_elsewhere,
+  joints_given_right_heading,      ///< family
+  joints_given_mirrored_heading,   ///< family
+  joints_given_elsewhere_heading,  ///< family
+  joint_up,                        ///< family
+  joint_left,                      ///< family
+  joint_behind,                    ///< family
+  centre_at_10cm,                  ///< family
+  centres_at_10cm,
+  centre_error,  ///< family
+  centres_error,
 };
 
-enum class MetricUnit { share, per_frame, metres };
-enum class MetricDirection { higher_is_better, lower_is_better };
+enum class MetricUnit { share, per_frame, metres, millimetres };
+enum class MetricDirection { higher_is_better, lower_is_better, nearer_zero_is_better };
 /// How a metric is computed from the terms of its frames, which determines its interval.
 enum class MetricKind {
   trials,  ///< share of independent trials, with Wilson's interval
@@ -77,12 +104,26 @@ inline constexpr auto kMetrics = [] {
       {M::heading, "heading.*", "found by heading", share, higher_is_better, trials},
       {M::visible, "visible.*", "found by parts visible", share, higher_is_better, trials},
       {M::motion, "motion.*", "found by camera motion", share, higher_is_better, trials},
+      {M::stature, "stature.*", "found by stature", share, higher_is_better, trials},
+      {M::roll, "roll.*", "found by camera roll", share, higher_is_better, trials},
       {M::mask_iou, "mask.iou", "mask IoU with misses"},
       {M::mask_iou_where_found, "mask.iou_where_found", "mask IoU where found"},
       {M::part_seen, "part.seen.*", "parts seen", share, higher_is_better, trials},
       {M::part_mean_seen, "part.mean_seen", "parts seen on average", share, higher_is_better, mean, M::part_seen},
       {M::parts_right, "parts.right", "visible parts right"},
       {M::parts_right_upper, "parts.right_upper", "visible upper parts right"},
+      {M::given_right, "given.right", "given-out parts right"},
+      {M::given_mirrored, "given.mirrored", "given-out parts mirrored", share, lower_is_better},
+      {M::given_elsewhere, "given.elsewhere", "given-out parts elsewhere", share, lower_is_better},
+      {M::given_right_heading, "given.right.*", "given-out parts right by heading"},
+      {M::given_mirrored_heading, "given.mirrored.*", "given-out parts mirrored by heading", share, lower_is_better},
+      {M::given_elsewhere_heading, "given.elsewhere.*", "given-out parts elsewhere by heading", share, lower_is_better},
+      {M::sides_swapped, "sides.swapped", "people with swapped sides", share, lower_is_better, trials},
+      {M::sides_swapped_heading, "sides.swapped.*", "swapped sides by heading", share, lower_is_better, trials},
+      {M::sides_order, "sides.order", "pairs in order"},
+      {M::sides_order_heading, "sides.order.*", "pairs in order by heading"},
+      {M::sides_order_arms, "sides.order_arms", "arms in order"},
+      {M::sides_order_arms_heading, "sides.order_arms.*", "arms in order by heading"},
       {M::pixel_person_iou, "pixels.person_iou", "person IoU of labels"},
       {M::pixel_background_iou, "pixels.background_iou", "background IoU of labels"},
       {M::pixel_recall, "pixels.recall.*", "recall with background"},
@@ -97,6 +138,21 @@ inline constexpr auto kMetrics = [] {
       {M::joints_error, "joints.error_m", "mean error of joints", metres, lower_is_better},
       {M::joints_root_aligned_error, "joints.root_aligned_error_m", "root-aligned", metres, lower_is_better},
       {M::joints_procrustes_error, "joints.procrustes_error_m", "Procrustes", metres, lower_is_better},
+      {M::joints_given_right, "joints.given_right", "given-out joints right"},
+      {M::joints_given_mirrored, "joints.given_mirrored", "given-out joints mirrored", share, lower_is_better},
+      {M::joints_given_elsewhere, "joints.given_elsewhere", "given-out joints elsewhere", share, lower_is_better},
+      {M::joints_given_right_heading, "joints.given_right.*", "given-out joints right by heading"},
+      {M::joints_given_mirrored_heading, "joints.given_mirrored.*", "given-out joints mirrored by heading", share,
+       lower_is_better},
+      {M::joints_given_elsewhere_heading, "joints.given_elsewhere.*", "given-out joints elsewhere by heading", share,
+       lower_is_better},
+      {M::joint_up, "joint.*.up_mm", "too high", millimetres, nearer_zero_is_better},
+      {M::joint_left, "joint.*.left_mm", "too far left", millimetres, nearer_zero_is_better},
+      {M::joint_behind, "joint.*.behind_mm", "too far behind", millimetres, nearer_zero_is_better},
+      {M::centre_at_10cm, "centre.*.at_10cm", "centre within 10 cm", share, higher_is_better, trials},
+      {M::centres_at_10cm, "centres.at_10cm", "parts' centres at 10 cm"},
+      {M::centre_error, "centre.*.error_m", "mean error of centre", metres, lower_is_better},
+      {M::centres_error, "centres.error_m", "mean error of centres", metres, lower_is_better},
   });
 }();
 
@@ -105,7 +161,7 @@ static_assert(
       for (std::size_t i = 0; i < kMetrics.size(); ++i) {
         if (kMetrics[i].metric != static_cast<Metric>(i)) return false;
       }
-      return kMetrics.size() == static_cast<std::size_t>(Metric::joints_procrustes_error) + 1;
+      return kMetrics.size() == static_cast<std::size_t>(Metric::centres_error) + 1;
     }(),
     "kMetrics is in the order of Metric");
 
@@ -129,10 +185,10 @@ struct MetricId {
 /// stays 0.
 std::optional<MetricId> parse_metric(std::string_view name);
 
-/// Returns "higher" or "lower", the word in files for the better values.
+/// Returns "higher", "lower" or "zero", the word in files for the better values.
 const char* better_word(Metric metric);
 
-/// Returns a value in its unit: "97.20 %", "0.041 m", "0.013 a frame".
+/// Returns a value in its unit: "97.20 %", "0.041 m", "0.013 a frame", "+12 mm".
 std::string metric_text(Metric metric, double value);
 /// Returns a difference of two values: "+1.20 %", "-0.003 m", "+0.013".
 std::string metric_difference_text(Metric metric, double difference);

@@ -46,9 +46,9 @@ const Estimate* find_estimate(const std::vector<Estimate>& estimates, Metric met
 }
 
 std::string text_with_interval(const Estimate& estimate) {
-  const bool share = info(estimate.id.metric).unit == MetricUnit::share;
-  const double scale = share ? 100.0 : 1.0;
-  const int digits = share ? 2 : 3;
+  const MetricUnit unit = info(estimate.id.metric).unit;
+  const double scale = unit == MetricUnit::share ? 100.0 : 1.0;
+  const int digits = unit == MetricUnit::share ? 2 : unit == MetricUnit::millimetres ? 0 : 3;
   return fmt::format("{} ({:.{}f} to {:.{}f})", metric_text(estimate.id.metric, estimate.value),
                      scale * estimate.interval.low, digits, scale * estimate.interval.high, digits);
 }

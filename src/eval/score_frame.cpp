@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "eval/breakdown_metrics.h"
+#include "eval/heading.h"
 #include "eval/match_people.h"
+#include "eval/side_metrics.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -46,7 +48,7 @@ void append(MetricTerms& terms, MetricTerms more) {
 }
 
 /// Throws Error unless the truth fits the frame and itself.
-void check_truth(const TrueFrame& frame) {
+void check_truth(const TrueFrame& frame, const BodyModel& body) {
   const FrameTruth& truth = frame.truth;
   const auto fits = [&](const Image<std::uint8_t>& image) {
     return image.empty() || image.same_size(frame.frame.depth);
@@ -63,6 +65,14 @@ void check_truth(const TrueFrame& frame) {
     throw Error(fmt::format("truth of frame {}: {} joints, expected {}", frame.frame.name, joints.size(),
                             truth.joint_names.size()));
   }
+  for (const auto& parts : truth.parts) {
+    if (parts.size() == body.parts.size()) continue;
+    throw Error(fmt::format("truth of frame {}: centres of {} parts, expected {}", frame.frame.name, parts.size(),
+                            body.parts.size()));
+  }
+  if (truth.parts.empty() || truth.joints.empty() || truth.parts.size() == truth.joints.size()) return;
+  throw Error(fmt::format("truth of frame {}: parts of {} people and joints of {}", frame.frame.name,
+                          truth.parts.size(), truth.joints.size()));
 }
 
 /// Returns 1 where the true label is a part; empty where no labels are known.
@@ -102,7 +112,7 @@ FrameScorer::FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options 
 
 FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
   check(frame.frame);
-  check_truth(frame);
+  check_truth(frame, body());
   put_visible_people_first(frame);
   FrameScore score;
   score.expected = expected_people(frame.truth);
@@ -129,14 +139,24 @@ FrameLabels FrameScorer::find_people(const TrueFrame& frame, const Mask* asked, 
   append(score.terms, visible_part_terms(frame, of_person, body()));
   append(score.terms, breakdown_terms(frame, of_person, body()));
   log_proposals(frame, trace, fit_joints, score);
-  judge_joints(frame, of_person, fit_joints, score);
+  append(score.terms, given_part_terms(frame, of_person, body()));
+  append(score.terms, side_order_terms(frame, of_person, body()));
+  if (fit_joints) {
+    fit_points(frame, of_person, score);
+  } else {
+    judge_points(frame, of_person, score);
+  }
   return {std::move(trace.labels), std::move(trace.inside)};
 }
 
 void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const {
   score.samples = score_samples(trace, frame.truth, frame.frame.depth);
   const auto proposals = distinct_proposals(trace, options_.detect.refine.max_overlap);
-  if (!fit_joints) judge_joint_proposals(frame, proposals, score);
+  if (!fit_joints) {
+    const auto joints = known_joints(frame.truth), centres = known_centres(frame.truth);
+    if (joints) judge_proposed_points(*joints, proposals, score.expected, score.joint_precision);
+    if (centres) judge_proposed_points(*centres, proposals, score.expected, score.centre_precision);
+  }
   const std::vector<Match> matches = match_people(proposals, frame.truth, frame.frame.depth);
   for (std::size_t i = 0; i < proposals.size(); ++i) {
     if (matches[i].kind == Match::Kind::ignored) continue;
@@ -150,46 +170,79 @@ void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool
   }
 }
 
-const JointSet* FrameScorer::joint_set_of(const FrameTruth& truth) const {
-  return truth.joint_names.empty() ? nullptr : find_joint_set(body(), truth.joint_names, truth.joint_set);
+std::optional<FrameScorer::KnownPoints> FrameScorer::known_joints(const FrameTruth& truth) const {
+  if (truth.joint_names.empty()) return std::nullopt;
+  const JointSet* set = find_joint_set(body(), truth.joint_names, truth.joint_set);
+  if (set == nullptr) return std::nullopt;
+  KnownPoints known{set, {}, std::vector<std::vector<Eigen::Vector3f>>(truth.joints.size())};
+  for (std::size_t j = 0; j < truth.joint_names.size(); ++j) {
+    if (std::ranges::find(set->joints, truth.joint_names[j], &JointDefinition::name) == set->joints.end()) continue;
+    known.names.push_back(truth.joint_names[j]);
+    for (std::size_t who = 0; who < truth.joints.size(); ++who) known.of_person[who].push_back(truth.joints[who][j]);
+  }
+  return known;
 }
 
-void FrameScorer::judge_joint_proposals(const TrueFrame& frame, const std::vector<Proposal>& proposals,
-                                        FrameScore& score) const {
-  const FrameTruth& truth = frame.truth;
-  const JointSet* set = joint_set_of(truth);
-  if (set == nullptr) return;
-  const auto index = set - body().joint_sets.data();
+std::optional<FrameScorer::KnownPoints> FrameScorer::known_centres(const FrameTruth& truth) const {
+  if (truth.parts.empty()) return std::nullopt;
+  KnownPoints known{nullptr, sided(body()).names, truth.parts};
+  known.set = find_joint_set(body(), known.names);
+  return known.set != nullptr ? std::optional(std::move(known)) : std::nullopt;
+}
+
+std::vector<Eigen::Vector3f> FrameScorer::points_of(const Skeleton& skeleton, const KnownPoints& known) const {
+  return joints_by_name(known.names, *known.set, derive_joints(body(), skeleton)[known.set - body().joint_sets.data()]);
+}
+
+void FrameScorer::judge_proposed_points(const KnownPoints& known, const std::vector<Proposal>& proposals, int expected,
+                                        JointPrecision& precision) const {
   std::vector<JointProposals> judged;
   for (const Proposal& proposal : proposals) {
     Skeleton skeleton = *proposal.skeleton;
     predict_missing_parts(body(), skeleton);
-    judged.push_back({proposal.score, joints_by_name(truth.joint_names, *set, derive_joints(body(), skeleton)[index])});
+    judged.push_back({proposal.score, points_of(skeleton, known)});
   }
-  score.joint_precision.add(truth.joint_names, std::move(judged), truth.joints, score.expected);
+  precision.add(known.names, std::move(judged), known.of_person, expected);
 }
 
-void FrameScorer::judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
+void FrameScorer::judge_points(const TrueFrame& frame, const std::vector<const Person*>& of_person,
                                FrameScore& score) const {
-  const FrameTruth& truth = frame.truth;
-  const JointSet* set = joint_set_of(truth);
-  if (set == nullptr) return;
-  const auto index = set - body().joint_sets.data();
-  for (std::size_t who = 0; who < of_person.size() && who < truth.joints.size(); ++who) {
-    std::vector<Joint> joints;
-    if (fit && !truth.labels.empty()) {
-      joints = derive_joints(body(), as_seen(frame, static_cast<int>(who), body()))[index];
+  const auto each = [&](const std::optional<KnownPoints>& known, const auto& judge) {
+    for (std::size_t who = 0; known && who < of_person.size() && who < known->of_person.size(); ++who) {
+      std::vector<Joint> joints;
+      if (of_person[who] != nullptr) joints = of_person[who]->joints[known->set - body().joint_sets.data()];
+      judge(who, *known, JointPair{known->of_person[who], joints_by_name(known->names, *known->set, joints)});
+    }
+  };
+  each(known_joints(frame.truth), [&](std::size_t who, const KnownPoints& known, const JointPair& pair) {
+    append(score.terms, joint_terms(pair, known.names));
+    append(score.terms, joint_bias_terms(pair, known.names));
+    const GivenPoints given = count_given(sided(known.names), pair.found, pair.truth, kJointTolerance_m);
+    append(score.terms,
+           given_terms(given, GivenKind::joints, heading_of(frame.truth, who, body()), frame.truth.parts.empty()));
+    score.joint_errors_m.push_back(joint_errors(pair));
+  });
+  each(known_centres(frame.truth), [&](std::size_t /*who*/, const KnownPoints& known, const JointPair& pair) {
+    append(score.terms, centre_terms(pair, known.names));
+  });
+}
+
+void FrameScorer::fit_points(const TrueFrame& frame, const std::vector<const Person*>& of_person,
+                             FrameScore& score) const {
+  const bool labelled = !frame.truth.labels.empty();
+  auto known = known_centres(frame.truth);
+  if (!known) known = known_joints(frame.truth);
+  for (std::size_t who = 0; known && who < of_person.size() && who < known->of_person.size(); ++who) {
+    std::vector<Eigen::Vector3f> found;
+    if (labelled) {
+      found = points_of(as_seen(frame, static_cast<int>(who), body()), *known);
     } else if (of_person[who] != nullptr) {
-      joints = of_person[who]->joints[index];
-    }
-    const JointPair pair{truth.joints[who], joints_by_name(truth.joint_names, *set, joints)};
-    if (fit) {
-      const std::vector<JointOffset> offsets = joint_offsets(pair, truth.joint_names, *set);
-      score.offsets.insert(score.offsets.end(), offsets.begin(), offsets.end());
+      found = joints_by_name(known->names, *known->set, of_person[who]->joints[known->set - body().joint_sets.data()]);
     } else {
-      append(score.terms, joint_terms(pair, truth.joint_names));
-      score.joint_errors_m.push_back(joint_errors(pair));
+      continue;
     }
+    const auto offsets = joint_offsets({known->of_person[who], std::move(found)}, known->names, *known->set);
+    score.offsets.insert(score.offsets.end(), offsets.begin(), offsets.end());
   }
 }
 

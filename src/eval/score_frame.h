@@ -24,6 +24,7 @@ struct FrameScore {
   std::vector<ScoreSample> samples;                 ///< for fitting the score
   std::vector<std::vector<double>> joint_errors_m;  ///< joint_errors() of each true person
   JointPrecision joint_precision;                   ///< over all proposed people, whatever their score
+  JointPrecision centre_precision;                  ///< the same of the parts' centres
   std::optional<PixelConfusion> confusion;          ///< empty if the true labels are not known
   std::vector<JointOffset> offsets;                 ///< only of frames for fitting joints
 
@@ -56,11 +57,20 @@ class FrameScorer {
   /// Returns the labels that the detector gave; `asked`: Trace::person.
   FrameLabels find_people(const TrueFrame& frame, const Mask* asked, bool fit_joints, FrameScore& score) const;
   void log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const;
-  /// Returns the body's joint set that has all of the truth's joints; null if there is none.
-  const JointSet* joint_set_of(const FrameTruth& truth) const;
-  void judge_joint_proposals(const TrueFrame& frame, const std::vector<Proposal>& proposals, FrameScore& score) const;
-  void judge_joints(const TrueFrame& frame, const std::vector<const Person*>& of_person, bool fit,
-                    FrameScore& score) const;
+  /// Points of the true people that a joint set of the body predicts.
+  struct KnownPoints {
+    const JointSet* set = nullptr;
+    std::vector<std::string> names;  ///< those that the set has
+    std::vector<std::vector<Eigen::Vector3f>> of_person;
+  };
+  std::optional<KnownPoints> known_joints(const FrameTruth& truth) const;
+  /// Returns the centres of the parts, for which a set must have a joint under each part's name.
+  std::optional<KnownPoints> known_centres(const FrameTruth& truth) const;
+  std::vector<Eigen::Vector3f> points_of(const Skeleton& skeleton, const KnownPoints& known) const;
+  void judge_proposed_points(const KnownPoints& known, const std::vector<Proposal>& proposals, int expected,
+                             JointPrecision& precision) const;
+  void judge_points(const TrueFrame& frame, const std::vector<const Person*>& of_person, FrameScore& score) const;
+  void fit_points(const TrueFrame& frame, const std::vector<const Person*>& of_person, FrameScore& score) const;
   void judge_labels(const TrueFrame& frame, const FrameLabels& labels, FrameScore& score) const;
 
   Options options_;

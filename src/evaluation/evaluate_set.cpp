@@ -146,6 +146,7 @@ class SetEvaluation {
     result_.samples.insert(result_.samples.end(), score.samples.begin(), score.samples.end());
     for (const auto& errors_m : score.joint_errors_m) result_.joint_curve.add(errors_m);
     result_.joint_precision.add(score.joint_precision);
+    result_.centre_precision.add(score.centre_precision);
     for (const JointOffset& offset : score.offsets)
       result_.offsets_m[offset.set][offset.joint].push_back(offset.behind_m);
     if (score.confusion) {

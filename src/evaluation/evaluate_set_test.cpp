@@ -51,7 +51,7 @@ class Frames : public TruthSource {
     if (std::ranges::find(damaged_, index) != damaged_.end()) throw Error(std::to_string(index) + ": damaged");
     CapsuleScene scene;
     scene.people.emplace_back();
-    TrueFrame frame = as_true_frame(render(scene, kCamera, paper_body()), part_names_of(paper_body()));
+    TrueFrame frame = as_true_frame(render(scene, kCamera, paper_body()));
     frame.frame.name = "f" + std::to_string(index);
     return frame;
   }

@@ -46,6 +46,7 @@ struct SetResult {
   DetectionLog log;
   JointCurve joint_curve;
   JointPrecision joint_precision;
+  JointPrecision centre_precision;
   std::optional<PixelConfusion> confusion;
   std::map<std::string, std::map<std::string, std::vector<double>>> offsets_m;  ///< [joint set][joint]
   std::vector<ScoreSample> samples;                                             ///< for fitting the score

@@ -104,6 +104,7 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
   }
   if (set.joint_curve.joints > 0) json["joints_within_cm"] = joint_curve_json(set.joint_curve);
   for (const auto& [joint, precision] : set.joint_precision.averages()) json["joint_precision"][joint] = precision;
+  for (const auto& [part, precision] : set.centre_precision.averages()) json["centre_precision"][part] = precision;
   if (!set.ablation.empty()) json["ablation"] = ablation_json(set);
   if (set.confusion) json["confusion"] = confusion_json(*set.confusion);
   Json worst = Json::array();

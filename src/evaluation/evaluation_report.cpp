@@ -27,14 +27,17 @@ namespace fs = std::filesystem;
 
 /// The metrics of the table at the top.
 constexpr std::array kOverview{
-    Metric::people_found,     Metric::people_false,      Metric::empty_with_person,        Metric::mask_iou_where_found,
-    Metric::pixel_person_iou, Metric::pixel_mean_recall, Metric::pixel_mean_recall_inside, Metric::body_on_empty,
-    Metric::joints_at_10cm};
+    Metric::people_found,         Metric::people_false,      Metric::empty_with_person,
+    Metric::mask_iou_where_found, Metric::given_right,       Metric::sides_swapped,
+    Metric::pixel_person_iou,     Metric::pixel_mean_recall, Metric::pixel_mean_recall_inside,
+    Metric::body_on_empty,        Metric::joints_at_10cm};
 static_assert(std::ranges::is_sorted(kOverview));
 
 /// The families that are columns of a table whose rows are parts or joints.
-constexpr std::array kPartColumns{Metric::part_seen, Metric::pixel_recall, Metric::pixel_recall_inside};
-constexpr std::array kJointColumns{Metric::joint_at_10cm, Metric::joint_error};
+constexpr std::array kPartColumns{Metric::part_seen, Metric::pixel_recall, Metric::pixel_recall_inside,
+                                  Metric::centre_at_10cm, Metric::centre_error};
+constexpr std::array kJointColumns{Metric::joint_at_10cm, Metric::joint_error, Metric::joint_up, Metric::joint_left,
+                                   Metric::joint_behind};
 
 std::string cell(const std::vector<Estimate>& estimates, Metric metric, const std::string& parameter = "") {
   const Estimate* found = find_estimate(estimates, metric, parameter);
@@ -149,19 +152,19 @@ void add_joint_curve(const SetResult& set, Document& document) {
   add_plot(plot, set.name + "_joints", "Share of joints within a distance of the truth", document);
 }
 
-/// Adds the average precision of each joint over all people proposed.
-void add_joint_precision(const SetResult& set, Document& document) {
-  const auto averages = set.joint_precision.averages();
+/// Adds the average precision of each joint, or each part's centre, over all people proposed.
+void add_precision(const JointPrecision& precision, const std::string& what, Document& document) {
+  const auto averages = precision.averages();
   if (averages.empty()) return;
   std::vector<std::vector<std::string>> rows;
   double sum = 0.0;
-  for (const auto& [joint, precision] : averages) {
-    rows.push_back({joint, fmt::format("{:.1f} %", 100.0 * precision)});
-    sum += precision;
+  for (const auto& [name, average] : averages) {
+    rows.push_back({name, fmt::format("{:.1f} %", 100.0 * average)});
+    sum += average;
   }
   rows.push_back({"mean", fmt::format("{:.1f} %", 100.0 * sum / static_cast<double>(averages.size()))});
-  document.paragraph("Average precision of the joints of all people proposed, within 10 cm:");
-  document.table({"joint", "average precision"}, rows);
+  document.paragraph(fmt::format("Average precision of the {}s of all people proposed, within 10 cm:", what));
+  document.table({what, "average precision"}, rows);
 }
 
 /// Adds for each class how many of its pixels are right, and the classes that the others are most often taken for.
@@ -209,7 +212,8 @@ void add_set(const SetResult& set, const Evaluation& evaluation, Document& docum
   add_tables(set.metrics.estimates(), document);
   add_detection_curves(set, evaluation, document);
   add_joint_curve(set, document);
-  add_joint_precision(set, document);
+  add_precision(set.joint_precision, "joint", document);
+  add_precision(set.centre_precision, "part's centre", document);
   add_ablation(set, document);
   if (set.confusion) add_confusion(*set.confusion, evaluation.body, document);
   for (const WorstFrame& worst : set.worst) {

@@ -14,6 +14,12 @@ constexpr std::array kLine{Metric::mask_iou,
                            Metric::part_mean_seen,
                            Metric::parts_right,
                            Metric::parts_right_upper,
+                           Metric::given_right,
+                           Metric::given_mirrored,
+                           Metric::given_elsewhere,
+                           Metric::sides_swapped,
+                           Metric::sides_order,
+                           Metric::sides_order_arms,
                            Metric::pixel_person_iou,
                            Metric::pixel_background_iou,
                            Metric::pixel_mean_recall,
@@ -22,7 +28,11 @@ constexpr std::array kLine{Metric::mask_iou,
                            Metric::joints_at_10cm,
                            Metric::joints_error,
                            Metric::joints_root_aligned_error,
-                           Metric::joints_procrustes_error};
+                           Metric::joints_procrustes_error,
+                           Metric::joints_given_right,
+                           Metric::joints_given_mirrored,
+                           Metric::joints_given_elsewhere,
+                           Metric::centres_at_10cm};
 static_assert(std::ranges::is_sorted(kLine));
 
 /// The families that have a line of their own.
@@ -31,9 +41,19 @@ constexpr std::array kFamilies{Metric::posture,
                                Metric::heading,
                                Metric::visible,
                                Metric::motion,
+                               Metric::stature,
+                               Metric::roll,
                                Metric::part_seen,
+                               Metric::given_right_heading,
+                               Metric::given_mirrored_heading,
+                               Metric::sides_swapped_heading,
+                               Metric::sides_order_heading,
+                               Metric::sides_order_arms_heading,
                                Metric::pixel_recall_inside,
-                               Metric::joint_at_10cm};
+                               Metric::joint_at_10cm,
+                               Metric::joints_given_right_heading,
+                               Metric::joints_given_mirrored_heading,
+                               Metric::joint_up};
 static_assert(std::ranges::is_sorted(kFamilies));
 
 /// Returns e.g. "people 56 of 56, false 0".
@@ -52,14 +72,17 @@ std::string people_text(const SetResult& set, const std::vector<Estimate>& estim
   return text;
 }
 
-/// Returns e.g. "  parts seen, %: neck 100, l_hand 87, ...".
+/// Returns e.g. "  parts seen, %: neck 100, l_hand 87, ...", or in mm with a sign.
 std::string family_line(const std::vector<Estimate>& estimates, Metric family) {
+  const bool is_share = info(family).unit == MetricUnit::share;
   std::string text;
   for (const Estimate& estimate : estimates) {
     if (estimate.id.metric != family) continue;
-    text += fmt::format("{}{} {:.0f}", text.empty() ? "" : ", ", estimate.id.parameter, 100.0 * estimate.value);
+    const std::string value =
+        is_share ? fmt::format("{:.0f}", 100.0 * estimate.value) : fmt::format("{:+.0f}", estimate.value);
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", estimate.id.parameter, value);
   }
-  return text.empty() ? "" : fmt::format("  {}, %: {}\n", info(family).title, text);
+  return text.empty() ? "" : fmt::format("  {}, {}: {}\n", info(family).title, is_share ? "%" : "mm", text);
 }
 
 }  // namespace

@@ -197,11 +197,13 @@ LabelledFrame Generator::frame(std::uint64_t index) const {
   if (s.recipe.sensor.noise && !result.frame.colour.empty()) {
     add_colour_noise(result.frame.colour, random_for(s.seed, Purpose::colour_noise, index));
   }
+  result.up = built.view.camera_from_world.linear() * Eigen::Vector3f::UnitY();
   for (const PlacedPerson& person : built.people) {
     std::vector<Eigen::Vector3f> parts;
     for (const Eigen::Vector3f& p : person.body.parts) parts.emplace_back(built.view.camera_from_world * p);
     result.parts.push_back(std::move(parts));
     result.joints.push_back(joint_points(person.body, built.view.camera_from_world));
+    result.postures.emplace_back(to_string(person.posture));
   }
   return result;
 }

@@ -27,7 +27,7 @@ class Generator {
   Generator(const Generator&) = delete;
   Generator& operator=(const Generator&) = delete;
 
-  /// Returns a frame with its parts, and with the joints of joint_names().
+  /// Returns a frame with its parts, the joints of joint_names(), postures and the upward direction.
   LabelledFrame frame(std::uint64_t index) const;
   /// Returns the scene of that frame.
   BuiltScene scene(std::uint64_t index) const;

@@ -117,6 +117,27 @@ TEST(Generate, PutsJointsBehindTheirPersonsSurface) {
   EXPECT_GT(seen, 150);
 }
 
+TEST(Generate, KnowsPosturesAndTheUpwardDirection) {
+  Recipe recipe = small_recipe();
+  recipe.people = {.none = 0.F, .one = 1.F, .two = 1.F, .three = 0.F, .four = 0.F};
+  recipe.camera.roll_max_deg = 0.F;
+  const Generator generator(recipe, {}, paper_body(), 5);
+  for (std::uint64_t i = 0; i < 4; ++i) {
+    const LabelledFrame labelled = generator.frame(i);
+    ASSERT_EQ(labelled.postures.size(), labelled.parts.size());
+    ASSERT_TRUE(labelled.up);
+    EXPECT_NEAR(labelled.up->norm(), 1.F, 1e-5F);
+    EXPECT_NEAR(labelled.up->x(), 0.F, 1e-5F);  // the camera is not rolled
+    EXPECT_LT(labelled.up->y(), 0.F);
+    for (std::size_t person = 0; person < labelled.joints.size(); ++person) {
+      if (labelled.postures[person] != "standing") continue;
+      const Eigen::Vector3f upwards =
+          labelled.joints[person][index(Bone::head)] - labelled.joints[person][index(Bone::l_foot)];
+      EXPECT_GT(upwards.dot(*labelled.up), 0.3F);
+    }
+  }
+}
+
 TEST(Generate, ChangesLittleWithCoarserSurfaces) {
   Recipe recipe = small_recipe();
   recipe.sensor.noise = false;

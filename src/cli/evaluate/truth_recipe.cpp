@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "assets/assets.h"
 #include "cli/synth/synth_recipe.h"
 #include "dataset/open_truth.h"
+#include "synth/skeleton_joints.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 
@@ -20,7 +22,9 @@ class RecipeTruth final : public TruthSource {
   RecipeTruth(const std::string& recipe_file, const RenderedTruth& rendered, int step, const BodyModel& body)
       : names_(part_names_of(body)), count_((rendered.count + step - 1) / step), step_(step) {
     const synth::Recipe recipe = make_recipe({.file = recipe_file});
-    LoadedAssets loaded = load_assets(recipe, rendered.assets);
+    AssetPlaces places = rendered.assets;
+    if (places.folder.empty()) places.folder = default_assets_folder();
+    LoadedAssets loaded = load_assets(recipe, places);
     notes_ = std::move(loaded.notes);
     notes_.push_back(fmt::format("rendered with seed {}: bodies {}, {} captured poses, checksum of the files used {}",
                                  rendered.seed, loaded.assets.makehuman ? "of MakeHuman" : "built in",
@@ -32,7 +36,7 @@ class RecipeTruth final : public TruthSource {
     if (next_ == count_) return std::nullopt;
     if (taken_ == ready_.size()) render();
     ++next_;
-    return as_true_frame(std::move(ready_[taken_++]), names_);
+    return as_true_frame(std::move(ready_[taken_++]), synth::joint_names());
   }
   int size() const override { return count_; }
   std::vector<std::string> notes() const override { return notes_; }

@@ -141,6 +141,7 @@ void add_people(const std::vector<PersonPlan>& plans, float detail_px, std::vect
       person.world_from_body = placed.world_from_group * member.group_from_body;
       person.body = moved(std::move(member.body), person.world_from_body);
       person.plan = member.plan;
+      person.posture = plans[member.plan].posture;
       person.mesh = static_cast<int>(built.scene.meshes.size());
       const PersonPlan& plan = plans[member.plan];
       const float tolerance = tolerance_m(built.view, person.body, detail_px);

@@ -18,6 +18,7 @@ struct PlacedPerson {
   Eigen::Isometry3f world_from_body = Eigen::Isometry3f::Identity();
   int mesh = 0;  ///< index in scene.meshes
   int plan = 0;  ///< index of the person's plan
+  Posture posture = Posture::standing;
 };
 
 struct BuiltScene {

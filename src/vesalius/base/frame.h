@@ -40,6 +40,8 @@ struct LabelledFrame {
   /// [person][joint]: where joints of the skeleton are, metres, optical frame; empty where nobody knows. Whoever makes
   /// the frames names them, the same ones in all (synth/skeleton_joints.h; DatasetInfo::joints).
   std::vector<std::vector<Eigen::Vector3f>> joints;
+  std::vector<std::string> postures;  ///< [person]: one word, e.g. "sitting"; empty where nobody knows
+  std::optional<Eigen::Vector3f> up;  ///< unit vector away from the ground, optical frame
 };
 
 }  // namespace vesalius

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,16 +13,25 @@ namespace vesalius {
 /// Tells whether the camera moved when it took a frame.
 enum class CameraMotion { unknown, still, moving };
 
-/// The known facts about a frame. Unknown ones are empty.
+/// The side that a person turns to the camera: front within 60 degrees, back beyond 120.
+enum class Heading { front, side, back };
+const char* to_string(Heading heading);
+
+/// The known facts about a frame. Unknown ones are empty. Lists of people have one order, that of `person`.
 struct FrameTruth {
-  int people = -1;             ///< exact number in view, or -1 for at least one
-  std::string posture;         ///< one word for their posture
-  Mask mask;                   ///< non-zero on the pixels of all people
-  Image<std::uint8_t> person;  ///< index of each pixel's person, kBackground elsewhere
-  LabelImage labels;           ///< part of each pixel, kBackground elsewhere
-  std::string joint_set;       ///< joint set of the body to compare with; if empty, the first that has all joints
+  int people = -1;                                  ///< exact number in view, or -1 for at least one
+  std::string posture;                              ///< one word for the posture of all
+  std::optional<Heading> heading;                   ///< of all
+  Mask mask;                                        ///< non-zero on the pixels of all people
+  Image<std::uint8_t> person;                       ///< index of each pixel's person, kBackground elsewhere
+  LabelImage labels;                                ///< part of each pixel, kBackground elsewhere
+  std::vector<std::vector<Eigen::Vector3f>> parts;  ///< [person][part]: centre of the part's volume, metres; or NaN
+  std::string joint_set;  ///< joint set of the body to compare with; if empty, the first that has all joints
   std::vector<std::string> joint_names;
   std::vector<std::vector<Eigen::Vector3f>> joints;  ///< [person][joint]: metres, optical frame; NaN = not known
+  std::vector<std::string> postures;                 ///< [person]: one word
+  std::vector<float> statures_m;                     ///< [person]: height of the body standing upright; NaN = not known
+  std::optional<Eigen::Vector3f> up;                 ///< unit vector away from the ground, optical frame
   CameraMotion camera_motion = CameraMotion::unknown;
 };
 
