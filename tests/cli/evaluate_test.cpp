@@ -139,6 +139,17 @@ TEST_F(Evaluate, MeasuresPixelsPartsAndJointsOfDatasets) {
   EXPECT_EQ(set.at("curve_over_parts").size(), 25U);
 }
 
+TEST_F(Evaluate, ReadsHeadingsBesideTheFrames) {
+  write("headings.csv", "set,frame,heading\nframes,a,front\n");
+  const Outcome run = evaluate(" --headings " + path("headings.csv") + " --json " + path("h.json"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json figures = json::parse(bytes_of(path("h.json"))).at("sets").at(0).at("figures");
+  EXPECT_EQ(figures.at("heading.front").at("denominator"), 1.0);
+  EXPECT_FALSE(figures.contains("heading.back"));
+  write("headings.csv", "set,frame,heading\nframes,a,up\n");
+  EXPECT_THAT(evaluate(" --headings " + path("headings.csv")).err, HasSubstr("headings.csv:2: column heading: \"up\""));
+}
+
 TEST_F(Evaluate, RefusesAModelOfOtherParts) {
   std::string toml = paper_body().toml;
   for (std::size_t at = toml.find("l_foot"); at != toml.npos; at = toml.find("l_foot", at + 1)) toml[at + 2] = 'g';

@@ -19,6 +19,7 @@
 #include "cli/progress.h"
 #include "cli/text_sink.h"
 #include "dataset/truth_folder.h"
+#include "dataset/truth_headings.h"
 #include "evaluation/ablation_report.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
@@ -50,7 +51,7 @@ struct Arguments {
 
   std::vector<std::string> sources, recipes;
   RenderedTruth rendered;
-  std::string model, options_file, report, json, joints_file, fit_joints, fit_score;
+  std::string model, options_file, report, json, joints_file, headings_file, fit_joints, fit_score;
   OptionFlags<DetectOptions> detector_flags;
   int step = 1;
   int threads = 0;
@@ -130,9 +131,13 @@ std::string command_line(const CLI::App& command) {
 
 SetResult evaluate_shown(const Request& request, const Arguments& arguments, const FrameScorer& scorer,
                          const std::vector<Variant>& variants) {
-  const auto frames = request.is_recipe
-                          ? open_recipe_truth(request.set.source, arguments.rendered, arguments.step, scorer.body())
-                          : open_evaluation_truth(request.set.source, arguments.step);
+  auto frames = request.is_recipe
+                    ? open_recipe_truth(request.set.source, arguments.rendered, arguments.step, scorer.body())
+                    : open_evaluation_truth(request.set.source, arguments.step);
+  if (!arguments.headings_file.empty()) {
+    const std::string set = whole_path(request.set.source).filename().string();
+    frames = with_headings(std::move(frames), HeadingTable::read(arguments.headings_file), set);
+  }
   for (const std::string& note : frames->notes()) say(fmt::format("note: {}: {}", request.set.name, note));
   Progress progress(-1, !arguments.quiet);
   EvaluationHooks hooks;
@@ -242,6 +247,11 @@ void add_evaluate(CLI::App& program) {
   command
       ->add_option("--joints", arguments->joints_file,
                    "TOML with joint sets named as the truth names its joints, instead of those built in")
+      ->type_name("FILE");
+  command
+      ->add_option("--headings", arguments->headings_file,
+                   "Table of the side that people turn to the camera: columns set (the last folder of the source), "
+                   "frame, heading (front, side, back)")
       ->type_name("FILE");
   command
       ->add_option("--fit-joints", arguments->fit_joints,
