@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -43,6 +45,15 @@ fs::path plain(const std::string& folder) {
 /// Returns the name of a frame; tables may give it with or without the extension of a picture.
 std::string frame_name(const std::string& text) {
   return text.ends_with(".png") ? text.substr(0, text.size() - 4) : text;
+}
+
+/// Returns when a frame was taken. Pictures that were copied out of a TUM recording have the time as their name.
+std::optional<double> time_of(const Frame& frame) {
+  if (frame.time_s) return frame.time_s;
+  double time_s = 0.0;
+  const char* end = frame.name.data() + frame.name.size();
+  const auto [stop, error] = std::from_chars(frame.name.data(), end, time_s);
+  return error == std::errc() && stop == end && std::isfinite(time_s) ? std::optional(time_s) : std::nullopt;
 }
 
 Mask read_mask(const std::string& path, const Frame& frame) {
@@ -133,9 +144,9 @@ FrameTruth TruthFolder::truth_of(const Frame& frame) const {
     truth.posture = facts->second.posture;
     truth.heading = facts->second.heading;
   }
-  if (camera_ && frame.time_s) {
-    truth.camera_motion = camera_->motion(*frame.time_s);
-    if (const auto pose = camera_->world_from_camera(*frame.time_s)) {
+  if (const auto time_s = time_of(frame); camera_ && time_s) {
+    truth.camera_motion = camera_->motion(*time_s);
+    if (const auto pose = camera_->world_from_camera(*time_s)) {
       truth.up = (pose->linear().transpose() * Eigen::Vector3d::UnitZ()).cast<float>();
     }
   }

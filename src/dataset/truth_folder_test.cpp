@@ -81,6 +81,9 @@ TEST(TruthFolder, KnowsTheUpwardDirectionOfATrackedCamera) {
   EXPECT_LT((*truth.up - Eigen::Vector3f(-1, 0, 0)).norm(), 1e-5F);
   at.time_s = 9.0;
   EXPECT_FALSE(TruthFolder(folder.path()).truth_of(at).up);
+  test::put(folder / "frames.csv", "frame,people\n7.000,1\n7.0x,1\n");  // without times, names may be times
+  EXPECT_TRUE(TruthFolder(folder.path()).truth_of(frame("7.000")).up);
+  EXPECT_FALSE(TruthFolder(folder.path()).truth_of(frame("7.0x")).up);
 }
 
 TEST(TruthFolder, TellsWhetherTheCameraMoves) {
