@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+#include "eval/heading.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -93,6 +94,13 @@ void add_errors(const JointPair& pair, const std::vector<std::string>& names, co
     add_mean(terms, {metrics.each_error, place, names[j]}, errors[j]);
   }
   if (known > 0.0) terms.push_back({metrics.all_right, right, known});
+}
+
+/// Returns whether a joint lies nearer to its partner's truth than to its own.
+bool is_swapped(const JointPair& pair, std::size_t joint, int partner) {
+  if (partner < 0 || !pair.truth[partner].allFinite()) return false;
+  const Eigen::Vector3f& found = pair.found[joint];
+  return (found - pair.truth[partner]).norm() < (found - pair.truth[joint]).norm();
 }
 
 /// Unit vectors of a body.
@@ -200,8 +208,10 @@ MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::strin
   const std::optional<BodyAxes> axes = body_axes(pair.truth, names);
   const Common common = common_joints(pair);
   MetricTerms terms;
+  const SidedNames sides = sided(names);
   for (std::size_t c = 0; c < common.joints.size(); ++c) {
     const std::size_t joint = common.joints[c];
+    if (is_swapped(pair, joint, sides.partner[joint])) continue;
     const Eigen::Vector3d truth = common.truth.col(static_cast<Eigen::Index>(c));
     const Eigen::Vector3d off_mm = kMillimetres * (common.found.col(static_cast<Eigen::Index>(c)) - truth);
     const auto id = [&](Metric metric) { return MetricId(metric, static_cast<int>(joint), names[joint]); };

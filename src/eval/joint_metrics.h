@@ -52,7 +52,8 @@ MetricTerms centre_terms(const JointPair& pair, const std::vector<std::string>& 
 
 /// Returns how far the joints that both have lie from the truth, in millimetres with a sign: along the true body's axis
 /// from the middle of the hips to the neck (up), across it towards the person's own left (left), and along the viewing
-/// ray away from the camera (behind). There are no terms up and left unless the truth has hips and neck or shoulders.
+/// ray away from the camera (behind). There are no terms up and left unless the truth has hips and neck or shoulders,
+/// and none of joints nearer to their partner's truth than to their own: one swapped arm would outweigh many biases.
 MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names);
 
 /// The numbers of joints within 1, 2, ... kJointCurve_cm centimetres of the truth.

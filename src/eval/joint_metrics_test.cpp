@@ -80,6 +80,14 @@ TEST(JointBias, IsMeasuredAlongTheTrueBody) {
   EXPECT_NEAR(value_of(terms, "joint.l_hand.behind_mm"), 50.0, 1e-3);
 }
 
+TEST(JointBias, LeavesOutSwappedJoints) {
+  const std::vector<std::string> names{"l_hand", "r_hand"};
+  const std::vector<Vector3f> truth{{0.3F, 0, 2}, {-0.3F, 0, 2}};
+  const MetricTerms terms = joint_bias_terms({truth, {{-0.25F, 0, 2}, {-0.25F, 0, 2}}}, names);
+  EXPECT_TRUE(std::isnan(value_of(terms, "joint.l_hand.behind_mm")));
+  EXPECT_FALSE(std::isnan(value_of(terms, "joint.r_hand.behind_mm")));
+}
+
 TEST(JointBias, HasNoBodyAxesWithoutHips) {
   const MetricTerms terms = joint_bias_terms({{{0, 0, 2}}, {{0, 0, 2.01F}}}, {"head"});
   ASSERT_EQ(terms.size(), 1U);
