@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <iterator>
+#include <utility>
 
 #include "eval/reduce_forest.h"
 #include "vesalius/forest/make_labeller.h"
@@ -18,20 +19,21 @@ constexpr float kAskEverywhere = 2.F;  ///< a probability that no background rea
 
 class VariantList {
  public:
-  VariantList(const Forest& forest, const DetectOptions& options)
-      : forest_(forest), labeller_(make_labeller(forest)), options_(options) {}
+  VariantList(const Forest& forest, FrameScorer::Options whole)
+      : forest_(forest), labeller_(make_labeller(forest)), whole_(std::move(whole)), options_(whole_.detect) {}
 
   void add(const std::string& name, const std::function<void(FrameScorer::Options&)>& change) {
-    FrameScorer::Options options{options_};
+    FrameScorer::Options options = whole_;
     change(options);
     variants_.push_back({name, std::make_unique<FrameScorer>(labeller_, options)});
   }
 
   void add(const std::string& name, Forest forest) { add(name, std::move(forest), options_); }
 
-  void add(const std::string& name, Forest forest, const DetectOptions& options) {
-    variants_.push_back(
-        {name, std::make_unique<FrameScorer>(make_labeller(std::move(forest)), FrameScorer::Options{options})});
+  void add(const std::string& name, Forest forest, const DetectOptions& detect) {
+    FrameScorer::Options options = whole_;
+    options.detect = detect;
+    variants_.push_back({name, std::make_unique<FrameScorer>(make_labeller(std::move(forest)), std::move(options))});
   }
 
   void add_options() {
@@ -87,13 +89,14 @@ class VariantList {
  private:
   const Forest& forest_;
   std::shared_ptr<const PixelLabeller> labeller_;
-  DetectOptions options_;
+  const FrameScorer::Options whole_;
+  const DetectOptions& options_;
   std::vector<Variant> variants_;
 };
 
 }  // namespace
 
-std::vector<Variant> ablation_variants(const Forest& forest, const DetectOptions& options) {
+std::vector<Variant> ablation_variants(const Forest& forest, const FrameScorer::Options& options) {
   VariantList list(forest, options);
   list.add_options();
   list.add_forests();

@@ -19,6 +19,6 @@ struct Variant {
 /// second iteration, colour or depth of the appearance, smoothing, links past an unseen part, each root alone, votes
 /// instead of distributions, fewer trees, half resolution (docs/metrics.md, "Ablation"). Changes without effect are
 /// left out.
-std::vector<Variant> ablation_variants(const Forest& forest, const DetectOptions& options);
+std::vector<Variant> ablation_variants(const Forest& forest, const FrameScorer::Options& options);
 
 }  // namespace vesalius

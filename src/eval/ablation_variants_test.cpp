@@ -34,7 +34,7 @@ TEST(AblationVariants, ChangeOneThingEach) {
   Forest forest = forest_of(5, {{3, 4}, {200, 50}});
   forest.has_background = true;
   const DetectOptions options;
-  const auto variants = ablation_variants(forest, options);
+  const auto variants = ablation_variants(forest, {options});
   EXPECT_THAT(names(variants),
               ElementsAre("no second iteration", "look by depth alone", "look by colour alone", "no smoothing",
                           "smoothing by mode", "no links past unseen parts", "roots of the body alone",
@@ -67,7 +67,7 @@ TEST(AblationVariants, LeaveOutChangesWithoutEffect) {
   options.grid.step = 2;
   Forest votes = forest_of(2, {{3}, {255}});
   votes.body.roots.resize(1);
-  EXPECT_THAT(names(ablation_variants(votes, options)),
+  EXPECT_THAT(names(ablation_variants(votes, {options})),
               ElementsAre("second iteration", "look by depth and colour", "links past unseen parts", "any part as root",
                           "every pixel", "1 tree"));
 }

@@ -108,7 +108,13 @@ Skeleton as_seen(const TrueFrame& frame, int person, const BodyModel& body) {
 }  // namespace
 
 FrameScorer::FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options)
-    : options_(std::move(options)), detector_(std::move(labeller), options_.detect) {}
+    : options_(std::move(options)), detector_(std::move(labeller), options_.detect) {
+  const std::vector<JointSet>& sets = body().joint_sets;
+  if (options_.joint_set.empty() || std::ranges::find(sets, options_.joint_set, &JointSet::name) != sets.end()) return;
+  std::string names;
+  for (const JointSet& set : sets) names += (names.empty() ? "" : ", ") + set.name;
+  throw UsageError(fmt::format("joint set \"{}\", expected one of {}", options_.joint_set, names));
+}
 
 FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
   check(frame.frame);
@@ -172,7 +178,8 @@ void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool
 
 std::optional<FrameScorer::KnownPoints> FrameScorer::known_joints(const FrameTruth& truth) const {
   if (truth.joint_names.empty()) return std::nullopt;
-  const JointSet* set = find_joint_set(body(), truth.joint_names, truth.joint_set);
+  const std::string& wanted = options_.joint_set.empty() ? truth.joint_set : options_.joint_set;
+  const JointSet* set = find_joint_set(body(), truth.joint_names, wanted);
   if (set == nullptr) return std::nullopt;
   KnownPoints known{set, {}, std::vector<std::vector<Eigen::Vector3f>>(truth.joints.size())};
   for (std::size_t j = 0; j < truth.joint_names.size(); ++j) {
@@ -230,7 +237,7 @@ void FrameScorer::judge_points(const TrueFrame& frame, const std::vector<const P
 void FrameScorer::fit_points(const TrueFrame& frame, const std::vector<const Person*>& of_person,
                              FrameScore& score) const {
   const bool labelled = !frame.truth.labels.empty();
-  auto known = known_centres(frame.truth);
+  auto known = options_.joint_set.empty() ? known_centres(frame.truth) : known_joints(frame.truth);
   if (!known) known = known_joints(frame.truth);
   for (std::size_t who = 0; known && who < of_person.size() && who < known->of_person.size(); ++who) {
     std::vector<Eigen::Vector3f> found;

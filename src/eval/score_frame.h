@@ -41,9 +41,10 @@ class FrameScorer {
   struct Options {
     DetectOptions detect;
     bool labels_only = false;  ///< only the pixel metrics of the first pass: much faster
+    std::string joint_set{};   ///< joint set to compare joints with and to fit; empty means the truth's own choice
   };
 
-  /// Throws the errors of Detector.
+  /// Throws the errors of Detector, and UsageError if the body has no such joint set.
   FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options);
 
   /// Judges one frame. With `fit_joints` the score has joint offsets instead of joint metrics; they come from the true

@@ -180,6 +180,21 @@ TEST(FrameScorer, FitsJointsInsteadOfScoringThem) {
   }
 }
 
+TEST(FrameScorer, ComparesJointsWithTheSetAskedFor) {
+  const TrueFrame frame = labelled({0.F});
+  FrameScorer::Options options;
+  options.detect.label.background_weight = 1.F;
+  options.joint_set = "k4abt32";
+  const auto labeller = std::make_shared<Labeller>(frame.truth.labels, false);
+  const FrameScore fitted = FrameScorer(labeller, options).score(frame, true);
+  ASSERT_FALSE(fitted.offsets.empty());
+  for (const JointOffset& offset : fitted.offsets) EXPECT_EQ(offset.set, "k4abt32");
+  EXPECT_DOUBLE_EQ(value(FrameScorer(labeller, options).score(frame, false), "joints.at_10cm"), 1.0);
+  options.joint_set = "kinect99";
+  EXPECT_THAT([&] { FrameScorer(labeller, options); },
+              ThrowsMessage<UsageError>(HasSubstr("joint set \"kinect99\", expected one of nite15, k4abt32")));
+}
+
 TEST(FrameScorer, GivesTheDetectorsLabelsWithLabelsOnly) {
   const TrueFrame frame = labelled({0.F});
   const FrameScore quick = scorer(frame, true, true).score(frame, false);

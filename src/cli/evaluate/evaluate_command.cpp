@@ -51,7 +51,7 @@ struct Arguments {
 
   std::vector<std::string> sources, recipes;
   RenderedTruth rendered;
-  std::string model, options_file, report, json, joints_file, headings_file, fit_joints, fit_score;
+  std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_score;
   OptionFlags<DetectOptions> detector_flags;
   int step = 1;
   int threads = 0;
@@ -191,9 +191,10 @@ void run(const Arguments& arguments, const std::string& command) {
   evaluation.model_checksum = model_checksum(bytes);
   evaluation.version = VESALIUS_VERSION;
   evaluation.machine = machine_facts();
+  const FrameScorer::Options scored{evaluation.options, arguments.labels_only, arguments.joint_set};
   std::vector<Variant> variants;
-  if (arguments.ablation) variants = ablation_variants(forest, evaluation.options);
-  const FrameScorer scorer(make_labeller(std::move(forest)), {evaluation.options, arguments.labels_only});
+  if (arguments.ablation) variants = ablation_variants(forest, scored);
+  const FrameScorer scorer(make_labeller(std::move(forest)), scored);
   evaluation.body = scorer.body();
   if (!arguments.report.empty()) prepare_report(arguments.report);
   watch_interrupts();
@@ -248,6 +249,11 @@ void add_evaluate(CLI::App& program) {
       ->add_option("--joints", arguments->joints_file,
                    "TOML with joint sets named as the truth names its joints, instead of those built in")
       ->type_name("FILE");
+  command
+      ->add_option(
+          "--joint-set", arguments->joint_set,
+          "Joint set to compare the truth's joints with and to fit, e.g. kinect20; by default the truth's choice")
+      ->type_name("NAME");
   command
       ->add_option("--headings", arguments->headings_file,
                    "Table of the side that people turn to the camera: columns set (the last folder of the source), "
