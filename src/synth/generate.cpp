@@ -118,8 +118,9 @@ struct Generator::State {
   /// Makes body number k with its clothes, which depends only on (recipe, assets, seed, k).
   std::unique_ptr<Dressed> make_person(std::size_t k) const {
     Random random = random_for(seed, Purpose::body, k);
-    const BodyMesh naked = makehuman ? make_body(*assets.makehuman, sample_factors(random), body)
-                                     : make_builtin_body(sample_builtin_shape(random), body);
+    const Population& who = recipe.body.people;
+    const BodyMesh naked = makehuman ? make_body(*assets.makehuman, sample_factors(who, random), body)
+                                     : make_builtin_body(sample_builtin_shape(who, random), body);
     const Outfit outfit = sample_outfit(recipe.outfit, random);
     return std::make_unique<Dressed>(Poser(std::make_shared<const BodyMesh>(dress(naked, outfit, body, random)), body),
                                      recipe.scene.detail_px);

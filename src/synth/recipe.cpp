@@ -42,6 +42,7 @@ void visit(const std::string& prefix, BodyOptions& o, OptionVisitor& visitor) {
   visitor.option(prefix + "kind", o.kind,
                  {"", 0, 0, "makehuman, builtin, or auto: makehuman where `vesalius assets` put its files."});
   visitor.option(prefix + "count", o.count, {"", 1, 10000, "How many different dressed bodies there are."});
+  visit_options(prefix, o.people, visitor);
 }
 
 void visit(const std::string& prefix, PoseOptions& o, OptionVisitor& visitor) {
@@ -90,6 +91,7 @@ void check(const Recipe& recipe) {
   (void)camera_placement(recipe.mounting);
   check(recipe.camera);
   check(recipe.scene);
+  check(recipe.body.people);
   if (std::ranges::find(kBodyKinds, recipe.body.kind) == kBodyKinds.end()) {
     throw UsageError(fmt::format("option body.kind is \"{}\", expected auto, makehuman or builtin", recipe.body.kind));
   }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "synth/body/population.h"
 #include "synth/dress/outfit.h"
 #include "synth/mocap/motion_list.h"
 #include "synth/mocap/pose_library.h"
@@ -21,6 +22,7 @@ struct PeopleOptions {
 struct BodyOptions {
   std::string kind = "auto";  ///< makehuman, builtin, or auto: makehuman if its files are there
   int count = 300;            ///< number of different bodies; each is dressed once
+  Population people;          ///< whose bodies they are
 };
 
 struct PoseOptions {

@@ -45,6 +45,16 @@ TEST(Recipe, AllowsOwnIntrinsicsTallerThanThePreset) {
   EXPECT_THROW(sensor_of(options), UsageError);
 }
 
+TEST(Recipe, ChecksWhoseBodiesItAsksFor) {
+  Recipe recipe;
+  recipe.body.people.age_min_years = 30.F;
+  recipe.body.people.age_max_years = 10.F;
+  EXPECT_THROW(check(recipe), UsageError);
+  recipe = {};
+  recipe.body.people.stature_min_m = 3.F;
+  EXPECT_THROW(check(recipe), UsageError);
+}
+
 TEST(Recipe, HasAPerfectSensorWithoutNoise) {
   SensorOptions options;
   options.noise = false;

@@ -18,7 +18,7 @@ std::vector<BuiltinShape> shapes() {
                                 {1.75F, 1.F, 1.F, 50.F}, {1.6F, 0.F, -1.F, 20.F}, {1.6F, 0.F, 1.F, 70.F}};
   for (std::uint64_t i = 0; i < 14; ++i) {
     Random random(11, i);
-    all.push_back(sample_builtin_shape(random));
+    all.push_back(sample_builtin_shape({}, random));
   }
   return all;
 }
@@ -135,7 +135,7 @@ TEST(BuiltinBody, IsTheSameForTheSameShape) {
 TEST(BuiltinBody, SamplesPeopleOfHumanHeight) {
   for (std::uint64_t i = 0; i < 2000; ++i) {
     Random random(1, i);
-    const BuiltinShape shape = sample_builtin_shape(random);
+    const BuiltinShape shape = sample_builtin_shape({}, random);
     EXPECT_GT(shape.stature_m, shape.age_years < 18.F ? 0.9F : 1.38F);
     EXPECT_LT(shape.stature_m, shape.maleness > 0.5F ? 1.95F : 1.86F);
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vesalius/base/random.h"
+#include "synth/body/population.h"
 
 namespace vesalius::synth {
 
@@ -12,7 +12,7 @@ struct BuiltinShape {
   float age_years = 30.F;  ///< 4 to 90; below 18 the body has a child's proportions
 };
 
-/// Draws a person: age 4 to 85, stature within 2.5 standard deviations of its age and sex.
-BuiltinShape sample_builtin_shape(Random& random);
+/// Draws a person of a population: age 4 to 85, stature within 2.5 standard deviations of its age and sex.
+BuiltinShape sample_builtin_shape(const Population& population, Random& random);
 
 }  // namespace vesalius::synth

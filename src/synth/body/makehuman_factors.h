@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/random.h"
+#include "synth/body/population.h"
 
 namespace vesalius::synth {
 
@@ -21,8 +21,8 @@ struct MakeHumanFactors {
   float stature_m = 0.F;  ///< stature to which the body is scaled; 0 leaves it as it is
 };
 
-/// Draws a person: age 5 to 85, stature within 2.5 standard deviations of its age and sex.
-MakeHumanFactors sample_factors(Random& random);
+/// Draws a person of a population: age 5 to 85, stature within 2.5 standard deviations of its age and sex.
+MakeHumanFactors sample_factors(const Population& population, Random& random);
 
 /// The values of all words that make up the names of targets: "female", "child", "maxmuscle", "asian", ...
 inline constexpr std::size_t kFactorWords = 19;

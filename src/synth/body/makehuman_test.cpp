@@ -49,7 +49,7 @@ TEST(MakeHumanTargets, HaveWeightsGivenByTheirNames) {
 TEST(MakeHumanTargets, HaveComplementaryFactorsThatSumToOne) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     Random random(2, i);
-    const FactorValues v = factor_values(sample_factors(random));
+    const FactorValues v = factor_values(sample_factors({}, random));
     EXPECT_NEAR(v[0] + v[1], 1.F, 1e-5F);
     EXPECT_NEAR(v[2] + v[3] + v[4], 1.F, 1e-5F);
     EXPECT_NEAR(v[5] + v[6] + v[7], 1.F, 1e-5F);
@@ -63,7 +63,7 @@ TEST(MakeHumanFactors, GiveHumanHeightsWhenSampled) {
   double sum = 0.0;
   for (std::uint64_t i = 0; i < 2000; ++i) {
     Random random(3, i);
-    const MakeHumanFactors f = sample_factors(random);
+    const MakeHumanFactors f = sample_factors({}, random);
     const Stature expected = stature_at(f.age_years, f.gender);
     EXPECT_LE(std::abs(f.stature_m - expected.mean_m), 2.51F * expected.sigma_m);
     EXPECT_TRUE(f.height >= 0.22F && f.height <= 0.78F);
@@ -229,7 +229,7 @@ TEST(MakeHumanFilesTour, MakesManyValidBodies) {
   EXPECT_LT(model->target_bytes(), 64U << 20U);
   for (std::uint64_t i = 0; i < 12; ++i) {
     Random random(4, i);
-    const MakeHumanFactors factors = sample_factors(random);
+    const MakeHumanFactors factors = sample_factors({}, random);
     const BodyMesh mesh = make_body(*model, factors, paper_body());
     EXPECT_TRUE(is_closed(mesh.topology->triangles, mesh.topology->triangles.size()));
     expect_good_body(mesh, factors, i);

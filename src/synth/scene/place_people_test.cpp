@@ -72,24 +72,14 @@ TEST(BuildScene, PutsTheFeetOfStandingAndKneelingPeopleOnTheFloor) {
   }
 }
 
-PoseSamplerOptions only_sitting() {
-  PoseSamplerOptions options;
-  for (float* weight :
-       {&options.idle, &options.walking, &options.reaching, &options.waving, &options.bending, &options.arms_crossed,
-        &options.arms_behind, &options.hands_on_hips, &options.carrying, &options.phone, &options.floor_sitting,
-        &options.lying, &options.kneeling, &options.squatting, &options.any}) {
-    *weight = 0.F;
-  }
-  return options;
-}
-
 // Labels: statistics
 TEST(BuildScene, PutsSeatsDirectlyUnderSittingPeople) {
   int sitters = 0, supported = 0;
   for (std::uint64_t i = 0; i < 150; ++i) {
     Random random(31, i);
-    const std::vector<PersonPlan> plans = {plan_of(sample_pose(only_sitting(), random), random.next()),
-                                           plan_of(sample_pose(only_sitting(), random), random.next())};
+    const std::vector<PersonPlan> plans = {
+        plan_of(sample_pose(only(&PoseSamplerOptions::sitting), random), random.next()),
+        plan_of(sample_pose(only(&PoseSamplerOptions::sitting), random), random.next())};
     const BuiltScene built = build_scene({}, {}, kCamera, plans, {}, Random(32, i));
     for (const PlacedPerson& person : built.people) {
       ++sitters;

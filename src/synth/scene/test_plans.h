@@ -18,7 +18,7 @@ inline const std::vector<std::unique_ptr<Poser>>& posers() {
     Random random(3);
     for (int i = 0; i < 4; ++i) {
       made.push_back(std::make_unique<Poser>(
-          std::make_shared<const BodyMesh>(make_builtin_body(sample_builtin_shape(random), paper_body())),
+          std::make_shared<const BodyMesh>(make_builtin_body(sample_builtin_shape({}, random), paper_body())),
           paper_body()));
     }
     return made;
@@ -32,6 +32,19 @@ inline PersonPlan plan_of(const SampledPose& sampled, std::uint32_t body) {
   plan.pose = sampled.pose;
   plan.posture = sampled.posture;
   return plan;
+}
+
+/// Returns the options that draw one kind of pose alone.
+inline PoseSamplerOptions only(float PoseSamplerOptions::*kind) {
+  PoseSamplerOptions options;
+  for (float* weight :
+       {&options.idle, &options.walking, &options.reaching, &options.waving, &options.bending, &options.arms_crossed,
+        &options.arms_behind, &options.hands_on_hips, &options.carrying, &options.phone, &options.sitting,
+        &options.floor_sitting, &options.lying, &options.kneeling, &options.squatting, &options.any}) {
+    *weight = 0.F;
+  }
+  options.*kind = 1.F;
+  return options;
 }
 
 inline std::vector<PersonPlan> draw_plans(int count, Random& random) {

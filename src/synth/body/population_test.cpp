@@ -1,0 +1,100 @@
+#include "synth/body/population.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "synth/body/builtin_body.h"
+#include "synth/body/builtin_shape.h"
+#include "synth/body/makehuman_factors.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(Population, MakesBodiesOfTheStaturesAskedFor) {
+  for (const auto& [low, high] : {std::pair{1.F, 1.2F}, {1.5F, 1.6F}, {1.95F, 2.05F}}) {
+    Population population;
+    population.stature_min_m = low;
+    population.stature_max_m = high;
+    for (std::uint64_t i = 0; i < 8; ++i) {
+      Random random(6, i);
+      const BodyMesh body = make_builtin_body(sample_builtin_shape(population, random), paper_body());
+      EXPECT_GE(body.stature_m, low - 0.002F);
+      EXPECT_LE(body.stature_m, high + 0.002F);
+      const float stature_m = sample_factors(population, random).stature_m;
+      EXPECT_GE(stature_m, low);
+      EXPECT_LE(stature_m, high);
+    }
+  }
+}
+
+TEST(Population, HasTheSharesOfSexAndAge) {
+  Population population;
+  population.men = 0.8F;
+  population.children = 0.6F;
+  population.old = 0.F;
+  int men = 0, children = 0;
+  constexpr int kPeople = 2000;
+  for (std::uint64_t i = 0; i < kPeople; ++i) {
+    Random random(7, i), other(8, i);
+    const BuiltinShape shape = sample_builtin_shape(population, random);
+    const MakeHumanFactors factors = sample_factors(population, other);
+    men += (shape.maleness > 0.5F ? 1 : 0) + (factors.gender > 0.5F ? 1 : 0);
+    children += (shape.age_years < 18.F ? 1 : 0) + (factors.age_years < 18.F ? 1 : 0);
+    EXPECT_LE(shape.age_years, 60.F);
+  }
+  EXPECT_NEAR(men / (2.0 * kPeople), 0.8, 0.03);
+  EXPECT_NEAR(children / (2.0 * kPeople), 0.6, 0.04);
+}
+
+TEST(Population, KeepsToItsAgesEvenIfTheSharesHaveNobodyOfThem) {
+  Population population;
+  population.age_min_years = 5.F;
+  population.age_max_years = 8.F;
+  for (const float children : {0.F, 0.2F}) {
+    population.children = children;
+    for (std::uint64_t i = 0; i < 20; ++i) {
+      Random random(9, i);
+      const BuiltinShape shape = sample_builtin_shape(population, random);
+      EXPECT_GE(shape.age_years, 5.F);
+      EXPECT_LE(shape.age_years, 8.F);
+      EXPECT_LT(shape.stature_m, 1.45F) << "a child's";
+    }
+  }
+}
+
+TEST(Population, IsThinOrHeavyByItsBuild) {
+  const auto mean_weight = [](float build) {
+    Population population;
+    population.build = build;
+    double sum = 0.0;
+    for (std::uint64_t i = 0; i < 400; ++i) {
+      Random random(10, i), other(11, i);
+      sum += static_cast<double>(sample_factors(population, random).weight);
+      sum += 0.5 + 0.5 * static_cast<double>(sample_builtin_shape(population, other).build);
+    }
+    return sum / 800.0;
+  };
+  EXPECT_LT(mean_weight(-1.F), 0.35);
+  EXPECT_NEAR(mean_weight(0.F), 0.55, 0.03);
+  EXPECT_GT(mean_weight(1.F), 0.75);
+}
+
+TEST(Population, NamesWhatIsWrong) {
+  Population population;
+  population.children = 0.7F;
+  population.old = 0.4F;
+  EXPECT_THAT([&] { check(population); }, ThrowsMessage<UsageError>(HasSubstr("body.children 0.7 and body.old 0.4")));
+  population = {};
+  population.age_min_years = 91.F;
+  EXPECT_THAT([&] { check(population); }, ThrowsMessage<UsageError>(HasSubstr("body.age-min")));
+  population = {};
+  population.stature_max_m = 0.8F;
+  EXPECT_THAT([&] { check(population); }, ThrowsMessage<UsageError>(HasSubstr("body.stature-min")));
+}
+
+}  // namespace
+}  // namespace vesalius::synth
