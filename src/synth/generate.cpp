@@ -20,7 +20,7 @@ namespace {
 
 /// The purpose of a stream of random numbers. Each purpose has a stream of its own, so that a change of one leaves the
 /// others unchanged.
-enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise, cut_out };
+enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise, cut_out, filter };
 constexpr std::uint64_t kPurposes = 8;
 
 Random random_for(std::uint64_t seed, Purpose purpose, std::uint64_t index) {
@@ -189,6 +189,10 @@ LabelledFrame Generator::frame(std::uint64_t index) const {
   const Random noise = random_for(s.seed, Purpose::noise, index);
   Image<std::uint32_t> source;
   result.frame.depth = sense(seen, s.sensor, noise, &source);
+  Random filter = random_for(s.seed, Purpose::filter, index);
+  if (s.recipe.sensor.noise && filter.uniform() < s.recipe.sensor.filter.share) {
+    apply(draw_filter(s.recipe.sensor.filter, filter), result.frame.depth, &source);
+  }
   result.labels = as_read(seen.labels, source);
   result.person = as_read(seen.person, source);
   if (!built.people.empty() && random_for(s.seed, Purpose::cut_out, index).uniform() < s.recipe.people.cut_out) {

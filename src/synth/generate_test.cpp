@@ -64,6 +64,23 @@ TEST(Generate, CutsPeopleOutOfTheirSurroundings) {
   EXPECT_GT(person_pixels, 1000);
 }
 
+TEST(Generate, FiltersTheGivenShareOfPictures) {
+  Recipe recipe = small_recipe();
+  const Generator plain(recipe, {}, paper_body(), 7);
+  recipe.sensor.filter.share = 0.5F;
+  recipe.sensor.filter.fill_share = 1.F;
+  const Generator filtered(recipe, {}, paper_body(), 7);
+  int changed = 0;
+  for (std::uint64_t i = 0; i < 24; ++i) {
+    const DepthImage before = plain.frame(i).frame.depth, after = filtered.frame(i).frame.depth;
+    if (before == after) continue;
+    ++changed;
+    EXPECT_LT(std::ranges::count(after, 0), std::ranges::count(before, 0));
+  }
+  EXPECT_GE(changed, 6);
+  EXPECT_LE(changed, 18);
+}
+
 // Labels: threads
 TEST(GenerateThreads, GiveTheSameFramesForAnyNumber) {
   const Generator generator(small_recipe(), {}, paper_body(), 7);
