@@ -53,6 +53,10 @@ void visit_options(const std::string& prefix, CameraPlacement& o, OptionVisitor&
   visitor.option(prefix + "pitch-min", o.pitch_min_deg, {"deg", -60.0, 90.0, "Least tilt downwards."});
   visitor.option(prefix + "pitch-max", o.pitch_max_deg, {"deg", -60.0, 90.0, "Greatest tilt downwards; 90: straight."});
   visitor.option(prefix + "roll-max", o.roll_max_deg, {"deg", 0.0, 180.0, "Greatest tilt to either side."});
+  visitor.option(prefix + "rolled-share", o.rolled_share,
+                 {"", 0.0, 1.0, "Share of cameras in hands and on their sides, rolled up to rolled-max instead."});
+  visitor.option(prefix + "rolled-max", o.rolled_max_deg,
+                 {"deg", 0.0, 180.0, "Greatest tilt of those to either side; 90: on its side."});
   visitor.option(prefix + "aim-error", o.aim_error_deg,
                  {"deg", 0.0, 90.0, "Standard deviation of the tilt about the one that aims at the first person."});
   visitor.option(prefix + "distance-min", o.distance_min_m, {"m", 0.3, 20.0, "Nearest person."});
@@ -89,6 +93,9 @@ CameraPose sample_camera(const CameraPlacement& options, float target_height_m, 
   const float aim_deg = std::asin(drop) / kRadPerDeg + static_cast<float>(random.normal(0.0, options.aim_error_deg));
   pose.pitch_rad = std::clamp(aim_deg, options.pitch_min_deg, options.pitch_max_deg) * kRadPerDeg;
   pose.roll_rad = between(-options.roll_max_deg, options.roll_max_deg, random) * kRadPerDeg;
+  if (options.rolled_share > 0.F && random.uniform() < options.rolled_share) {  // off: draws no random numbers
+    pose.roll_rad = between(-options.rolled_max_deg, options.rolled_max_deg, random) * kRadPerDeg;
+  }
   return pose;
 }
 

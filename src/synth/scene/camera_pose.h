@@ -15,6 +15,8 @@ struct CameraPlacement {
   float pitch_min_deg = -15.F;  ///< downwards; a camera at 90 looks straight down
   float pitch_max_deg = 45.F;
   float roll_max_deg = 4.F;     ///< to either side
+  float rolled_share = 0.F;     ///< share of cameras that are rolled up to `rolled_max_deg` instead
+  float rolled_max_deg = 90.F;  ///< to either side; 90 stands on its side
   float aim_error_deg = 6.F;    ///< standard deviation of the pitch about the one that aims at the first person
   float distance_min_m = 0.6F;  ///< distance from the camera to the middle of a person
   float distance_max_m = 5.5F;

@@ -31,6 +31,22 @@ TEST(CameraPose, PitchTiltsDownAndRollTurnsTheHorizon) {
   EXPECT_NEAR((CameraPose{1.F, 0.F, 0.3F}.world_from_camera().linear().col(0)).y(), -std::sin(0.3F), 1e-6F);
 }
 
+TEST(CameraPose, RollsTheGivenShareWidely) {
+  CameraPlacement options;
+  options.rolled_share = 0.3F;
+  int wide = 0;
+  constexpr int kCameras = 2000;
+  for (std::uint64_t i = 0; i < kCameras; ++i) {
+    Random random(2, i), same(2, i);
+    const CameraPose pose = sample_camera(options, 1.F, 2.F, random);
+    const float roll_deg = std::abs(pose.roll_rad) * 57.29578F;
+    EXPECT_LE(roll_deg, 90.01F);
+    wide += roll_deg > options.roll_max_deg ? 1 : 0;
+    EXPECT_EQ(sample_camera({}, 1.F, 2.F, same).pitch_rad, pose.pitch_rad);
+  }
+  EXPECT_NEAR(wide / static_cast<double>(kCameras), 0.3 * 86.0 / 90.0, 0.05);
+}
+
 TEST(CameraPose, StaysWithinTheOptions) {
   for (const char* mounting : {"room", "ceiling", "wheelchair"}) {
     const CameraPlacement options = camera_placement(mounting);
