@@ -10,9 +10,7 @@ namespace {
 using Eigen::Vector3f;
 
 void add_blob(FurnitureBuilder& piece, const Vector3f& centre, const Vector3f& half, std::uint8_t material) {
-  Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
-  pose.translation() = centre;
-  add_ellipsoid(piece.piece.mesh, pose, half, material, 10);
+  add_ellipsoid(piece.piece.mesh, placed_at(centre), half, material, 10);
 }
 
 /// Adds a hanging coat as rings around its shoulders, chest, waist and hem.

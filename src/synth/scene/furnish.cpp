@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "synth/scene/make_furniture.h"
+#include "synth/scene/nobody.h"
 #include "synth/scene/palette.h"
 
 namespace vesalius::synth {
@@ -39,10 +40,10 @@ class Furnisher {
 
   void add_piece() {
     constexpr float kMostHidden = 0.35F;
-    Furniture piece = draw_piece();
-    const bool at_wall = !room_.open && chance(0.6, random_);
+    const Piece drawn = draw_piece();
+    const bool at_wall = drawn.hangs || (!room_.open && chance(0.6, random_));
     for (int i = 0; i < kTries; ++i) {
-      if (put(piece, at_wall ? place_at_wall(piece) : place_anywhere(), kMostHidden)) return;
+      if (put(drawn.piece, at_wall ? place_at_wall(drawn.piece) : place_anywhere(), kMostHidden)) return;
     }
   }
 
@@ -51,7 +52,11 @@ class Furnisher {
     constexpr std::array<FurnitureKind, 5> kKinds = {FurnitureKind::panel, FurnitureKind::panel, FurnitureKind::panel,
                                                      FurnitureKind::wardrobe, FurnitureKind::desk};
     constexpr float kMostHidden = 0.5F;
-    const Furniture piece = make_furniture(kKinds[random_.below(kKinds.size())], random_);
+    constexpr std::array<NobodyKind, 6> kNobodies = {NobodyKind::board,   NobodyKind::board,   NobodyKind::board,
+                                                     NobodyKind::machine, NobodyKind::machine, NobodyKind::screens};
+    const bool nobody = asked(options_.near_nobody_share, random_);
+    const Furniture piece = nobody ? make_nobody(kNobodies[random_.below(kNobodies.size())], random_)
+                                   : make_furniture(kKinds[random_.below(kKinds.size())], random_);
     for (int i = 0; i < kTries; ++i) {
       const float far = between(0.45, 1.3, random_);
       const float bearing = between(0.15, 0.8, random_) * (chance(0.5, random_) ? 1.F : -1.F);
@@ -63,19 +68,32 @@ class Furnisher {
   std::vector<Furniture> take() { return std::move(placed_); }
 
  private:
+  /// A piece, and whether it hangs on a wall.
+  struct Piece {
+    Furniture piece;
+    bool hangs = false;
+  };
+
   float any_turn() { return between(-std::numbers::pi, std::numbers::pi, random_); }
 
-  Furniture draw_piece() {
+  Piece draw_piece() {
     if (!models_.empty() && chance(0.3, random_)) {
-      return as_furniture(models_[random_.below(static_cast<std::uint32_t>(models_.size()))]);
+      return {as_furniture(models_[random_.below(static_cast<std::uint32_t>(models_.size()))])};
     }
+    if (asked(options_.nobody_share, random_)) return draw_nobody();
     if (chance(options_.mannequin_share, random_)) {
       constexpr std::array<FurnitureKind, 3> kLike = {FurnitureKind::coat_stand, FurnitureKind::mannequin,
                                                       FurnitureKind::pillar};
-      return make_furniture(kLike[random_.below(kLike.size())], random_);
+      return {make_furniture(kLike[random_.below(kLike.size())], random_)};
     }
     constexpr std::uint32_t kOrdinary = static_cast<std::uint32_t>(FurnitureKind::pillar);
-    return make_furniture(static_cast<FurnitureKind>(random_.below(kOrdinary)), random_);
+    return {make_furniture(static_cast<FurnitureKind>(random_.below(kOrdinary)), random_)};
+  }
+
+  Piece draw_nobody() {
+    auto kind = static_cast<NobodyKind>(random_.below(kNobodyKindCount));
+    if (hangs_on_wall(kind) && room_.open) kind = NobodyKind::clothes_rack;
+    return {make_nobody(kind, random_), hangs_on_wall(kind)};
   }
 
   Isometry3f place_at_wall(const Furniture& piece) {

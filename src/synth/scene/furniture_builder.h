@@ -45,10 +45,12 @@ class FurnitureBuilder {
       }
     }
   }
+  /// Flattens what is below the floor, as of soft or limp things that lie on it.
+  void press_on_floor() {
+    for (Eigen::Vector3f& p : piece.mesh.vertices) p.y() = std::max(p.y(), 0.F);
+  }
   void solid(const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
-    Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
-    pose.translation() = 0.5F * (low + high);
-    piece.solids.push_back({pose, 0.5F * (high - low)});
+    piece.solids.push_back({placed_at(0.5F * (low + high)), 0.5F * (high - low)});
   }
 
   Furniture piece;

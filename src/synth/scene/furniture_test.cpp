@@ -4,17 +4,13 @@
 
 #include "synth/scene/make_furniture.h"
 #include "synth/scene/seats.h"
+#include "synth/scene/test_furniture.h"
 
 namespace vesalius::synth {
 namespace {
 
+using namespace test;
 using Eigen::Vector3f;
-
-Eigen::AlignedBox3f bounds_of(const SceneMesh& mesh) {
-  Eigen::AlignedBox3f bounds;
-  for (const Vector3f& p : mesh.vertices) bounds.extend(p);
-  return bounds;
-}
 
 class EveryKind : public testing::TestWithParam<int> {
  protected:
@@ -38,14 +34,7 @@ TEST_P(EveryKind, StandsOnTheFloorAndIsOfHumanSize) {
 
 TEST_P(EveryKind, HasAValidMesh) {
   for (std::uint64_t i = 0; i < 60; ++i) {
-    const SceneMesh mesh = make(i).mesh;
-    ASSERT_EQ(mesh.material.size(), mesh.triangles.size());
-    EXPECT_LT(mesh.triangles.size(), 3000U);
-    for (const Vector3f& p : mesh.vertices) ASSERT_TRUE(p.allFinite());
-    for (const Triangle& t : mesh.triangles) {
-      for (const std::uint32_t corner : t) ASSERT_LT(corner, mesh.vertices.size());
-    }
-    for (const std::uint8_t material : mesh.material) ASSERT_LT(material, mesh.materials.size());
+    expect_valid(make(i).mesh, 3000);
   }
 }
 

@@ -18,4 +18,8 @@ inline float between(double low, double high, Random& random) { return static_ca
 
 inline bool chance(double probability, Random& random) { return random.uniform() < probability; }
 
+/// As chance(), for options that are off by default: at 0 no random number is drawn, so that scenes are the same as
+/// before the option existed.
+inline bool asked(double probability, Random& random) { return probability > 0.0 && chance(probability, random); }
+
 }  // namespace vesalius::synth

@@ -12,6 +12,12 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
   visitor.option(prefix + "furniture-max", o.furniture_max, {"", 0, 50, "Most pieces of furniture."});
   visitor.option(prefix + "mannequin-share", o.mannequin_share,
                  {"", 0.0, 1.0, "Share of furniture that resembles people: coats on stands, mannequins, pillars."});
+  visitor.option(prefix + "nobody-share", o.nobody_share,
+                 {"", 0.0, 1.0,
+                  "Share of furniture that is taken for people: hung clothes, jackets on chairs, machines with arms, "
+                  "tilted boards and screens, bags, heaps of cushions and blankets."});
+  visitor.option(prefix + "near-nobody-share", o.near_nobody_share,
+                 {"", 0.0, 1.0, "Share of large things close to the camera that are of this sort."});
   visitor.option(prefix + "occluder-probability", o.occluder_probability,
                  {"", 0.0, 1.0, "Probability that something stands between the camera and a person."});
   visitor.option(prefix + "near-probability", o.near_probability,

@@ -12,13 +12,15 @@ struct SceneOptions {
   int furniture_min = 0;     ///< pieces other than those on which people sit and lie
   int furniture_max = 10;
   float mannequin_share = 0.1F;       ///< share of these pieces that resemble people
+  float nobody_share = 0.F;           ///< share of these pieces that are of nobody.h
+  float near_nobody_share = 0.F;      ///< share of large near things that are of nobody.h
   float occluder_probability = 0.3F;  ///< something stands between the camera and a person
   float near_probability = 0.15F;     ///< something large stands close to the camera
   float table_probability = 0.35F;    ///< a table stands in front of a sitting person
   float sofa_probability = 0.4F;      ///< two sitting people share a sofa
   float beside_probability = 0.F;     ///< two standing people stand shoulder to shoulder
   float bed_probability = 0.6F;       ///< a lying person has a bed or sofa rather than the floor
-  float frontal_share = 0.45F;        ///< share of people who face the camera within `frontal_range_deg`
+  float frontal_share = 0.45F;         ///< share of people who face the camera within `frontal_range_deg`
   float frontal_range_deg = 60.F;
   float dark_furniture = 0.1F;  ///< share of all pieces that reflect almost no infrared light
   float min_visible = 0.3F;     ///< smallest share of a person's bones within the picture

@@ -32,12 +32,35 @@ void join_rings(SceneMesh& mesh, std::uint32_t base, int rings, int count, bool 
   }
 }
 
+/// Adds a sphere that is scaled to `half` after `shape` was applied to each coordinate of its unit vectors.
+template <class Shape>
+void add_round(SceneMesh& mesh, const Eigen::Isometry3f& pose, const Vector3f& half, int rings, std::uint8_t material,
+               Shape shape) {
+  const std::uint32_t base = vertex_count(mesh);
+  const int columns = rings + rings / 2;
+  for (int i = 0; i <= rings; ++i) {
+    const float polar = kPi * static_cast<float>(i) / static_cast<float>(rings);
+    for (int j = 0; j < columns; ++j) {
+      const float turn = -2.F * kPi * static_cast<float>(j) / static_cast<float>(columns);
+      const Vector3f unit(std::sin(polar) * std::cos(turn), std::cos(polar), std::sin(polar) * std::sin(turn));
+      mesh.vertices.emplace_back(pose * half.cwiseProduct(unit.unaryExpr(shape)));
+    }
+  }
+  join_rings(mesh, base, rings + 1, columns, true, material);
+}
+
 }  // namespace
 
 std::uint8_t add_material(SceneMesh& mesh, const Material& material) {
   assert(mesh.materials.size() < 256);
   mesh.materials.push_back(material);
   return static_cast<std::uint8_t>(mesh.materials.size() - 1);
+}
+
+Eigen::Isometry3f placed_at(const Vector3f& place) {
+  Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
+  pose.translation() = place;
+  return pose;
 }
 
 void add_box(SceneMesh& mesh, const Eigen::Isometry3f& pose, const Vector3f& size, std::uint8_t material) {
@@ -55,9 +78,7 @@ void add_box(SceneMesh& mesh, const Eigen::Isometry3f& pose, const Vector3f& siz
 }
 
 void add_box(SceneMesh& mesh, const Vector3f& low, const Vector3f& high, std::uint8_t material) {
-  Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
-  pose.translation() = 0.5F * (low + high);
-  add_box(mesh, pose, high - low, material);
+  add_box(mesh, placed_at(0.5F * (low + high)), high - low, material);
 }
 
 void add_cone(SceneMesh& mesh, const Vector3f& from, const Vector3f& to, float from_radius, float to_radius,
@@ -83,17 +104,28 @@ void add_cone(SceneMesh& mesh, const Vector3f& from, const Vector3f& to, float f
 
 void add_ellipsoid(SceneMesh& mesh, const Eigen::Isometry3f& pose, const Vector3f& half, std::uint8_t material,
                    int rings) {
+  add_round(mesh, pose, half, rings, material, [](float v) { return v; });
+}
+
+void add_cushion(SceneMesh& mesh, const Eigen::Isometry3f& pose, const Vector3f& half, std::uint8_t material) {
+  add_round(mesh, pose, half, 9, material, [](float v) { return std::copysign(std::sqrt(std::abs(v)), v); });
+}
+
+void add_garment(SceneMesh& mesh, std::span<const Ring> rings, int folds, float fold_m, std::uint8_t material) {
+  assert(rings.size() >= 2);
+  constexpr int kColumns = 24;
   const std::uint32_t base = vertex_count(mesh);
-  const int columns = rings + rings / 2;
-  for (int i = 0; i <= rings; ++i) {
-    const float polar = kPi * static_cast<float>(i) / static_cast<float>(rings);
-    for (int j = 0; j < columns; ++j) {
-      const float turn = -2.F * kPi * static_cast<float>(j) / static_cast<float>(columns);
-      const Vector3f unit(std::sin(polar) * std::cos(turn), std::cos(polar), std::sin(polar) * std::sin(turn));
-      mesh.vertices.emplace_back(pose * half.cwiseProduct(unit));
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    const float depth = 0.5F * fold_m * static_cast<float>(i) / static_cast<float>(rings.size() - 1);
+    for (int j = 0; j < kColumns; ++j) {
+      const float turn = -2.F * kPi * static_cast<float>(j) / static_cast<float>(kColumns);
+      const float wave = depth * std::cos(turn * static_cast<float>(folds));
+      const Vector3f out((rings[i].half_x + wave) * std::cos(turn), 0.F, (rings[i].half_z + wave) * std::sin(turn));
+      mesh.vertices.emplace_back(rings[i].centre + out);
     }
   }
-  join_rings(mesh, base, rings + 1, columns, true, material);
+  join_rings(mesh, base, static_cast<int>(rings.size()), kColumns, true, material);
+  for (std::uint32_t j = 1; j + 1 < kColumns; ++j) add_triangle(mesh, base, base + j + 1, base + j, material);
 }
 
 void add_quad(SceneMesh& mesh, const Vector3f& a, const Vector3f& b, const Vector3f& c, const Vector3f& d,

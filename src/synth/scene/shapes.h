@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 
 #include "synth/scene/scene.h"
 
@@ -11,6 +12,9 @@ namespace vesalius::synth {
 
 /// Adds a material and returns its index. A mesh has room for 256.
 std::uint8_t add_material(SceneMesh& mesh, const Material& material);
+
+/// Returns a pose at a place without any turn.
+Eigen::Isometry3f placed_at(const Eigen::Vector3f& place);
 
 /// Adds a box of the given size. The pose's origin is its centre.
 void add_box(SceneMesh& mesh, const Eigen::Isometry3f& pose, const Eigen::Vector3f& size, std::uint8_t material);
@@ -24,6 +28,18 @@ void add_cone(SceneMesh& mesh, const Eigen::Vector3f& from, const Eigen::Vector3
 /// Adds an ellipsoid with the given half axes.
 void add_ellipsoid(SceneMesh& mesh, const Eigen::Isometry3f& pose, const Eigen::Vector3f& half, std::uint8_t material,
                    int rings = 8);
+
+/// Adds a cushion with the given half sizes: an ellipsoid with fuller corners.
+void add_cushion(SceneMesh& mesh, const Eigen::Isometry3f& pose, const Eigen::Vector3f& half, std::uint8_t material);
+
+/// A level ellipse about a point.
+struct Ring {
+  Eigen::Vector3f centre;
+  float half_x = 0.F, half_z = 0.F;
+};
+/// Adds a cloth that hangs around two or more rings, from the first, where it is closed, down to the last. It has so
+/// many folds, which deepen from none at the first ring to `fold_m` at the last.
+void add_garment(SceneMesh& mesh, std::span<const Ring> rings, int folds, float fold_m, std::uint8_t material);
 
 /// Adds a flat or nearly flat face with four corners, which are given in order around it.
 void add_quad(SceneMesh& mesh, const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
