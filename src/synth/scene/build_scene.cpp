@@ -20,16 +20,14 @@ namespace {
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
 
-/// Returns an upright box in the room's frame that contains the camera, a part of its view, and people with their seats
-/// and beds.
+/// Returns an upright box in the room's frame that contains the camera, and people with their seats and beds.
 Eigen::AlignedBox3f extent_of(const Stage& stage, const std::vector<PeopleGroup>& groups,
-                              const Isometry3f& room_from_world, Random& random) {
+                              const Isometry3f& room_from_world) {
   constexpr float kEyeClear_m = 0.12F;
   Eigen::AlignedBox3f extent;
   const Vector3f eye = room_from_world * Vector3f(0.F, stage.camera.height_m, 0.F);
   extent.extend(eye + Vector3f::Constant(kEyeClear_m));
   extent.extend(eye - Vector3f::Constant(kEyeClear_m));
-  extent.extend(room_from_world * Vector3f(0.F, 0.F, -between(1.5, 5.0, random)));
   for (const PlacedGroup& placed : stage.groups) {
     const PeopleGroup& group = groups[placed.group];
     const Isometry3f room_from_group = room_from_world * placed.world_from_group;
@@ -56,9 +54,20 @@ RoomShape draw_room(const SceneOptions& options, const Stage& stage, const std::
     yaw = std::atan2(front.x(), front.z());
   }
   room.world_from_room = Isometry3f(Eigen::AngleAxisf(yaw, Vector3f::UnitY()));
-  const Eigen::AlignedBox3f extent = extent_of(stage, groups, room.world_from_room.inverse(), random);
+  const bool wall_behind = !stage.groups.empty() && asked(options.wall_probability, random);
+  if (wall_behind) {  // the room's back wall is where the camera sees the first people
+    room.open = false;
+    const Vector3f at = stage.groups[0].world_from_group.translation();
+    room.world_from_room =
+        Isometry3f(Eigen::AngleAxisf(std::atan2(-at.x(), -at.z()) + between(-0.4, 0.4, random), Vector3f::UnitY()));
+  }
+  const Isometry3f room_from_world = room.world_from_room.inverse();
+  Eigen::AlignedBox3f extent = extent_of(stage, groups, room_from_world);
+  if (!wall_behind) extent.extend(room_from_world * Vector3f(0.F, 0.F, -between(1.5, 5.0, random)));
   const auto spare = [&] { return kWallGap_m + (chance(0.25, random) ? 0.F : between(0.0, 3.0, random)); };
-  const float left = spare(), back = spare(), right = spare(), front = spare();
+  const float left = spare();
+  const float back = wall_behind ? kWallGap_m + between(0.0, options.wall_gap_max_m, random) : spare();
+  const float right = spare(), front = spare();
   room.low = {extent.min().x() - left, extent.min().z() - back};
   room.high = {extent.max().x() + right, extent.max().z() + front};
   room.high = room.high.cwiseMax(room.low + Eigen::Vector2f::Constant(kSmallest_m));

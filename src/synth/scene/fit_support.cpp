@@ -6,6 +6,7 @@
 
 #include "synth/scene/palette.h"
 #include "synth/scene/seats.h"
+#include "synth/scene/soft_support.h"
 
 namespace vesalius::synth {
 namespace {
@@ -152,12 +153,15 @@ SeatShape draw_shape(const SeatFit& fit, SeatKind kind, Random& random) {
 
 std::optional<SeatFit> fit_seat(const BodyMesh& mesh, const PosedBody& body) { return Sitter(mesh, body).fit(); }
 
-std::optional<Furniture> make_fitting_seat(const SeatFit& fit, const BodyOutline& body, Random& random) {
+std::optional<Furniture> make_fitting_seat(const SeatFit& fit, const BodyOutline& body, float swell_m, Random& random) {
   constexpr int kTries = 5;
+  const bool soft = swell_m > 0.F;
   for (int i = 0; i < kTries; ++i) {
     constexpr std::array<SeatKind, 6> kDraws = {SeatKind::chair,    SeatKind::chair, SeatKind::stool,
                                                 SeatKind::armchair, SeatKind::sofa,  SeatKind::sofa};
-    const SeatKind kind = i + 1 == kTries ? SeatKind::stool : kDraws[random.below(kDraws.size())];
+    constexpr std::uint32_t kSoftFrom = 3;
+    const std::uint32_t from = soft ? kSoftFrom : 0;
+    const SeatKind kind = i + 1 == kTries ? SeatKind::stool : kDraws[from + random.below(kDraws.size() - from)];
     const SeatShape shape = draw_shape(fit, kind, random);
     Furniture seat = make_seat(shape, random);
     Eigen::Isometry3f place = fit.body_from_seat;
@@ -165,6 +169,7 @@ std::optional<Furniture> make_fitting_seat(const SeatFit& fit, const BodyOutline
       const float room = 0.5F * shape.width_m - fit.half_width_m;
       place = place * Eigen::Translation3f(between(-1.0, 1.0, random) * std::max(0.F, room), 0.F, 0.F);
     }
+    if (soft && kind != SeatKind::stool) add_seat_cushions(shape, swell_m, seat, random);
     move(seat, place);
     if (!sinks_in(body, seat.solids)) return seat;
   }

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "synth/scene/desk.h"
 #include "synth/scene/fit_support.h"
 #include "synth/scene/make_furniture.h"
 #include "synth/scene/palette.h"
 #include "synth/scene/seats.h"
+#include "synth/scene/soft_support.h"
 
 namespace vesalius::synth {
 namespace {
@@ -63,14 +65,79 @@ void add_table(const SeatFit& fit, PeopleGroup& group, Random& random) {
   }
 }
 
+/// Adds a desk or counter whose near side is `near_m` or more before `group_from_front`, where limbs leave room for it.
+void add_desk(const Isometry3f& group_from_front, float near_m, float low_m, float high_m,
+              Furniture (*make)(float height_m, Random& random), PeopleGroup& group, Random& random) {
+  constexpr int kTries = 4;
+  for (int i = 0; i < kTries; ++i) {
+    const float height = between(low_m, high_m, random), aside = between(-0.3, 0.3, random);
+    const float near = near_m + 0.12F * static_cast<float>(i) * between(0.5, 1.0, random);
+    Furniture desk = make(height, random);
+    move(desk, group_from_front * Translation3f(aside, 0.F, near));
+    if (!keeps_clear(group, desk)) continue;
+    group.furniture.push_back(std::move(desk));
+    return;
+  }
+}
+
+/// Draws how far cushions swell, or 0 for a hard seat or bed.
+float draw_swell(const SceneOptions& options, Random& random) {
+  return asked(options.soft_probability, random) ? options.soft_depth_m * between(0.25, 1.0, random) : 0.F;
+}
+
+/// Adds a blanket, which is no solid, to the furniture of a group. `group_from_place` is the frame of the place.
+void add_blanket(const BlanketPlace& place, const Isometry3f& group_from_place, const GroupMember& member,
+                 PeopleGroup& group, Random& random) {
+  std::vector<Eigen::Vector3f> points = member.outline.points;
+  const Isometry3f place_from_group = group_from_place.inverse();
+  for (Eigen::Vector3f& p : points) p = place_from_group * p;
+  Furniture blanket;
+  blanket.mesh = drape_blanket(place, points, random);
+  move(blanket, group_from_place);
+  group.furniture.push_back(std::move(blanket));
+}
+
+/// Covers the legs of a person who sits from the lap to below the knees.
+void add_lap_blanket(const SeatFit& fit, const GroupMember& member, PeopleGroup& group, Random& random) {
+  const float half = fit.half_width_m + between(0.05, 0.2, random);
+  const float from = between(0.15, 0.3, random), to = fit.depth_m + between(0.15, 0.35, random);
+  add_blanket({.low = {-half, from},
+               .high = {half, std::max(to, from + 0.2F)},
+               .ground_m = fit.height_m,
+               .edge_z = fit.depth_m,
+               .top_m = fit.height_m + 0.28F},
+              fit.body_from_seat, member, group, random);
+}
+
 std::optional<PeopleGroup> sitting_group(const SceneOptions& options, Posed posed, Random& random) {
-  std::optional<Furniture> seat = make_fitting_seat(*posed.seat, posed.member.outline, random);
+  const float swell = draw_swell(options, random);
+  std::optional<Furniture> seat = make_fitting_seat(*posed.seat, posed.member.outline, swell, random);
   if (!seat) return std::nullopt;
   PeopleGroup group;
   group.furniture.push_back(std::move(*seat));
   const SeatFit fit = *posed.seat;
   group.members.push_back(std::move(posed.member));
-  if (chance(options.table_probability, random)) add_table(fit, group, random);
+  if (asked(options.desk_probability, random)) {
+    add_desk(fit.body_from_seat, 0.6F * fit.depth_m, fit.height_m + 0.2F, fit.height_m + 0.36F, make_desk_before, group,
+             random);
+  } else if (chance(options.table_probability, random)) {
+    add_table(fit, group, random);
+  }
+  if (asked(options.blanket_probability, random)) add_lap_blanket(fit, group.members[0], group, random);
+  return group;
+}
+
+/// Returns a person who stands, perhaps behind a counter.
+PeopleGroup standing_group(const SceneOptions& options, const std::vector<PersonPlan>& plans, Posed posed,
+                           Random& random) {
+  PeopleGroup group;
+  const float stature = plans[posed.member.plan].poser->mesh().stature_m;
+  group.members.push_back(std::move(posed.member));
+  if (posed.posture == Posture::standing && asked(options.desk_probability, random)) {
+    const Eigen::Vector3f& hips = group.members[0].body.joints[index(Bone::pelvis)];
+    add_desk(Isometry3f(Translation3f(hips.x(), 0.F, hips.z())), 0.2F, 0.45F * stature, 0.72F * stature, make_counter,
+             group, random);
+  }
   return group;
 }
 
@@ -104,24 +171,66 @@ std::optional<PeopleGroup> sofa_group(const Posed& left, const Posed& right, Ran
   return group;
 }
 
+/// Returns the chest of a lying person as the far end of a blanket in the bed's frame, whose feet are at -z.
+BlanketPlace draw_cover(const BedFit& fit, float ground_m, Random& random) {
+  const float half = 0.5F * fit.width_m + between(0.05, 0.25, random), length = 0.5F * fit.length_m;
+  return {.low = {-half, -length - between(0.02, 0.1, random)},
+          .high = {half, length - between(0.25, 0.75, random)},
+          .ground_m = ground_m,
+          .top_m = ground_m + 0.7F};
+}
+
+/// Returns a sofa below a body that lies along it at a height, in the body's frame, or nothing if it is too wide.
+std::optional<Furniture> make_lying_sofa(const BedFit& fit, float height_m, float swell_m, Random& random) {
+  constexpr float kWidest_m = 0.85F;
+  if (fit.width_m > kWidest_m) return std::nullopt;
+  SeatShape shape;
+  shape.kind = SeatKind::sofa;
+  shape.height_m = height_m;
+  shape.width_m = fit.length_m + between(0.06, 0.3, random);
+  shape.depth_m = std::max(between(0.55, 0.7, random), fit.width_m + 0.02F);
+  shape.back_m = between(0.3, 0.5, random);
+  shape.lean_rad = between(0.0, 0.3, random);
+  Furniture sofa = make_seat(shape, random);
+  if (swell_m > 0.F) add_seat_cushions(shape, swell_m, sofa, random);
+  const float side = chance(0.5, random) ? 1.F : -1.F;  // which end the head is at
+  move(sofa, fit.body_from_bed * Eigen::AngleAxisf(side * 1.5707963F, Eigen::Vector3f::UnitY()) *
+                 Translation3f(0.F, 0.F, -0.5F * fit.width_m - 0.02F));
+  return sofa;
+}
+
 PeopleGroup lying_group(const SceneOptions& options, Posed posed, Random& random) {
   PeopleGroup group;
   const BedFit fit = fit_bed(posed.member.body);
+  float ground = 0.F;
   if (chance(options.bed_probability, random)) {
     const float height = between(0.25, 0.6, random);
     GroupMember raised = posed.member;
     put(raised, Isometry3f(Translation3f(0.F, height - kCushion_m, 0.F)));
+    const float swell = draw_swell(options, random);
+    if (asked(options.lying_sofa_probability, random)) {
+      std::optional<Furniture> sofa = make_lying_sofa(fit, height, swell, random);
+      if (sofa && !sinks_in(raised.outline, sofa->solids)) group.furniture.push_back(std::move(*sofa));
+    }
     constexpr int kTries = 3;
     for (int i = 0; i < kTries && group.furniture.empty(); ++i) {
       const float width = std::max(between(0.8, 1.8, random), fit.width_m + 0.05F);
       const float length = std::max(between(1.9, 2.1, random), fit.length_m + 0.1F);
       Furniture bed = make_bed(width, length, height, random);
+      if (swell > 0.F) add_soft_mattress(width, length, height, swell, bed, random);
       move(bed, fit.body_from_bed);
       if (!sinks_in(raised.outline, bed.solids)) group.furniture.push_back(std::move(bed));
     }
-    if (!group.furniture.empty()) posed.member = std::move(raised);
+    if (!group.furniture.empty()) {
+      posed.member = std::move(raised);
+      ground = height;
+    }
   }
   group.members.push_back(std::move(posed.member));
+  if (asked(options.blanket_probability, random)) {
+    const BlanketPlace cover = draw_cover(fit, ground, random);
+    add_blanket(cover, fit.body_from_bed, group.members[0], group, random);
+  }
   return group;
 }
 
@@ -189,7 +298,7 @@ std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vec
     } else if (posed.posture == Posture::lying) {
       group = lying_group(options, std::move(posed), random);
     } else {
-      group = PeopleGroup{{std::move(posed.member)}, {}};
+      group = standing_group(options, plans, std::move(posed), random);
     }
     if (group) groups.push_back(std::move(*group));
   }

@@ -23,21 +23,27 @@ float half_fan(const Camera& camera, float pitch_rad) {
   return std::min(kPi, 1.15F * std::atan2(std::tan(half_u), std::cos(std::abs(pitch_rad) + half_v)));
 }
 
-/// Returns the share of the bones' ends that are in the picture.
-float visible_share(const BodyOutline& body, const View& view) {
-  int seen = 0;
+/// The shares of the bones' ends that are in the picture, and beside it to the left or right.
+struct Visible {
+  float inside = 0.F, beside = 0.F;
+};
+
+Visible visible_share(const BodyOutline& body, const View& view) {
+  int seen = 0, beside = 0;
   for (const Capsule& bone : body.bones) {
     for (const Vector3f& end : {bone.from, bone.to}) {
       const Vector3f p = view.camera_from_world * end;
       if (p.z() < 0.1F) continue;
       const Eigen::Vector2f pixel = view.camera.pixel(p);
+      beside += pixel.x() < 0.F || pixel.x() > static_cast<float>(view.camera.width - 1) ? 1 : 0;
       seen += pixel.x() > 0.F && pixel.y() > 0.F && pixel.x() < static_cast<float>(view.camera.width - 1) &&
                       pixel.y() < static_cast<float>(view.camera.height - 1)
                   ? 1
                   : 0;
     }
   }
-  return static_cast<float>(seen) / (2.F * static_cast<float>(kBoneCount));
+  constexpr float kEnds = 2.F * static_cast<float>(kBoneCount);
+  return {static_cast<float>(seen) / kEnds, static_cast<float>(beside) / kEnds};
 }
 
 Vector3f middle_of(const PeopleGroup& group) {
@@ -77,10 +83,12 @@ class Placer {
   }
 
   bool place(int g) {
-    constexpr int kTries = 24;
+    constexpr int kTries = 24, kTriesAtBorder = 18;
+    const bool at_border = asked(options_.border_share, random_);
     for (int i = 0; i < kTries; ++i) {
-      const Isometry3f world_from_group = draw_place(groups_[g]);
-      if (accept(groups_[g], world_from_group)) {
+      const bool cut = at_border && i < kTriesAtBorder;
+      const Isometry3f world_from_group = draw_place(groups_[g], cut);
+      if (accept(groups_[g], world_from_group, cut)) {
         stage_.groups.push_back({g, world_from_group});
         return true;
       }
@@ -95,27 +103,41 @@ class Placer {
     return chance(options_.frontal_share, random_) ? between(-frontal, frontal, random_) : between(-kPi, kPi, random_);
   }
 
-  Isometry3f draw_place(const PeopleGroup& group) {
+  /// Draws the angle from the view's middle, or from about its border, from where one sees a group.
+  float draw_bearing(bool at_border) {
+    const float fan = half_fan(view_.camera, stage_.camera.pitch_rad);
+    if (!at_border) return between(-fan, fan, random_);
+    const float half_u = std::atan(0.5F * static_cast<float>(view_.camera.width) / view_.camera.fx);
+    return (chance(0.5, random_) ? 1.F : -1.F) * std::min(fan, half_u * between(0.75, 1.25, random_));
+  }
+
+  Isometry3f draw_place(const PeopleGroup& group, bool at_border) {
     const Vector3f middle = middle_of(group);
     const float rise = stage_.camera.height_m - middle.y();
     const float far = sample_distance(placement_, random_);
     // If the distance is less than the height, the place is straight below the camera.
     const float along = std::sqrt(std::max(0.F, far * far - rise * rise)) + between(0.0, 0.3, random_);
-    const float fan = half_fan(view_.camera, stage_.camera.pitch_rad);
-    const float bearing = between(-fan, fan, random_);
+    const float bearing = draw_bearing(at_border);
     const Vector3f at(along * std::sin(bearing), 0.F, -along * std::cos(bearing));
     const float to_camera = std::atan2(-at.x(), -at.z());
     const Isometry3f turned = standing_at(0.F, 0.F, 0.F, to_camera + draw_heading(group));
     return Eigen::Translation3f(at) * turned * Eigen::Translation3f(-middle.x(), 0.F, -middle.z());
   }
 
-  bool accept(const PeopleGroup& group, const Isometry3f& world_from_group) {
+  /// Takes a place if it is free and enough of everybody is in the picture, and adds what stands there. At the border,
+  /// it must cut somebody.
+  bool accept(const PeopleGroup& group, const Isometry3f& world_from_group, bool at_border) {
+    constexpr float kLeastCut = 0.15F;
+    float cut = 0.F;
     std::vector<BodyOutline> bodies;
     for (const GroupMember& member : group.members) {
       bodies.push_back(moved(member.outline, world_from_group));
-      if (visible_share(bodies.back(), view_) < options_.min_visible) return false;
+      const Visible visible = visible_share(bodies.back(), view_);
+      if (visible.inside < options_.min_visible) return false;
+      cut = std::max(cut, visible.beside);
       if (!stage_.occupancy.free_for(bodies.back())) return false;
     }
+    if (at_border && cut < kLeastCut) return false;
     std::vector<OrientedBox> solids;
     for (const Furniture& piece : group.furniture) {
       for (const OrientedBox& box : piece.solids) solids.push_back(moved(box, world_from_group));

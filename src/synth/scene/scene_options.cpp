@@ -30,6 +30,22 @@ void visit_options(const std::string& prefix, SceneOptions& o, OptionVisitor& vi
                  {"", 0.0, 1.0, "Probability that two standing people stand side by side and touch, or nearly."});
   visitor.option(prefix + "bed-probability", o.bed_probability,
                  {"", 0.0, 1.0, "Probability that a lying person has a bed rather than the floor."});
+  visitor.option(prefix + "soft-probability", o.soft_probability,
+                 {"", 0.0, 1.0, "Probability that cushions swell around a person on a sofa, an armchair or a bed."});
+  visitor.option(prefix + "soft-depth", o.soft_depth_m, {"m", 0.0, 0.2, "How deep people sink into those at most."});
+  visitor.option(prefix + "blanket-probability", o.blanket_probability,
+                 {"", 0.0, 1.0, "Probability of a blanket over a lying person or the legs of a sitting one."});
+  visitor.option(prefix + "lying-sofa-probability", o.lying_sofa_probability,
+                 {"", 0.0, 1.0, "Probability of a sofa instead of the bed of a lying person."});
+  visitor.option(prefix + "desk-probability", o.desk_probability,
+                 {"", 0.0, 1.0,
+                  "Probability of a desk with screens or a counter close before a sitting or standing person, which "
+                  "hides all but head and shoulders from in front."});
+  visitor.option(prefix + "wall-probability", o.wall_probability,
+                 {"", 0.0, 1.0, "Probability of a wall close behind the people, as the camera sees them."});
+  visitor.option(prefix + "wall-gap-max", o.wall_gap_max_m, {"m", 0.0, 2.0, "Greatest distance to that wall."});
+  visitor.option(prefix + "border-share", o.border_share,
+                 {"", 0.0, 1.0, "Share of people whom the left or right border of the picture is to cut."});
   visitor.option(prefix + "dark-furniture", o.dark_furniture,
                  {"", 0.0, 1.0, "Share of furniture that sends back next to no infrared light, as black leather."});
   visitor.option(prefix + "frontal-share", o.frontal_share,

@@ -20,6 +20,14 @@ struct SceneOptions {
   float sofa_probability = 0.4F;      ///< two sitting people share a sofa
   float beside_probability = 0.F;     ///< two standing people stand shoulder to shoulder
   float bed_probability = 0.6F;       ///< a lying person has a bed or sofa rather than the floor
+  float soft_probability = 0.F;       ///< cushions swell around a person who sits on a sofa or lies on a bed
+  float soft_depth_m = 0.08F;         ///< greatest swell of those
+  float blanket_probability = 0.F;  ///< a blanket lies over the legs of a sitting person, or up to a lying one's chest
+  float lying_sofa_probability = 0.F;  ///< a lying person who has a bed gets a sofa instead, if they fit on it
+  float desk_probability = 0.F;        ///< a desk with screens or a counter stands close before a person
+  float wall_probability = 0.F;        ///< a wall is close behind the people as the camera sees them
+  float wall_gap_max_m = 0.4F;         ///< greatest distance of that wall
+  float border_share = 0.F;            ///< share of groups of people whom the left or right border is to cut
   float frontal_share = 0.45F;         ///< share of people who face the camera within `frontal_range_deg`
   float frontal_range_deg = 60.F;
   float dark_furniture = 0.1F;  ///< share of all pieces that reflect almost no infrared light

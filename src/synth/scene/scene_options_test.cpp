@@ -1,0 +1,169 @@
+#include "synth/scene/scene_options.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "synth/scene/occupancy.h"
+#include "synth/scene/test_plans.h"
+#include "synth/sensor/render.h"
+
+// What the options that are off by default do to whole scenes.
+namespace vesalius::synth {
+namespace {
+
+using namespace test;
+using Eigen::Vector3f;
+
+/// Returns the plan of one person whose pose is of one kind.
+std::vector<PersonPlan> plan_of_kind(float PoseSamplerOptions::*kind, std::uint64_t stream) {
+  Random random(41, stream);
+  const SampledPose pose = sample_pose(only(kind), random);
+  return {plan_of(pose, random.next())};
+}
+
+SceneOptions bare() {
+  SceneOptions options;
+  options.open_share = options.occluder_probability = options.near_probability = options.table_probability = 0.F;
+  options.furniture_max = 0;
+  return options;
+}
+
+/// Builds scenes of one person of a kind each.
+void for_scenes(int count, const SceneOptions& options, float PoseSamplerOptions::*kind,
+                const std::function<void(const BuiltScene&)>& use) {
+  for (int i = 0; i < count; ++i) {
+    const auto stream = static_cast<std::uint64_t>(i);
+    use(build_scene(options, {}, kCamera, plan_of_kind(kind, stream), {}, Random(42, stream)));
+  }
+}
+
+/// Returns the mean number of pixels of people.
+double person_pixels(const SceneOptions& options, float PoseSamplerOptions::*kind) {
+  Renderer renderer;
+  double sum = 0.0;
+  constexpr int kScenes = 30;
+  for_scenes(kScenes, options, kind, [&](const BuiltScene& built) {
+    const Rendering out = renderer.render(built.scene, built.view, {.colour = false, .projector = {}});
+    sum +=
+        static_cast<double>(out.labels.size() - static_cast<std::size_t>(std::ranges::count(out.labels, kBackground)));
+  });
+  return sum / kScenes;
+}
+
+TEST(SceneOptions, KeepPeopleOutOfSolidsAndWallsWithAllOn) {
+  SceneOptions options;
+  options.nobody_share = options.near_nobody_share = 0.5F;
+  options.soft_probability = options.blanket_probability = options.lying_sofa_probability = 0.5F;
+  options.desk_probability = options.wall_probability = options.border_share = 0.5F;
+  int placed = 0;
+  constexpr int kScenes = 120;
+  for (std::uint64_t i = 0; i < kScenes; ++i) {
+    Random random(43, i);
+    const BuiltScene built = build_scene(options, {}, kCamera, draw_plans(2, random), {}, Random(44, i));
+    placed += static_cast<int>(built.people.size());
+    for (const PlacedPerson& person : built.people) {
+      for (const Vector3f& p : person.body.vertices) {
+        ASSERT_TRUE(built.room.open || clearance(built.room, {p.x(), 1.F, p.z()}) >= 0.F) << i;
+        for (const OrientedBox& box : built.solids) ASSERT_LE(depth_inside(box, p), kMaxSink_m) << i;
+      }
+    }
+  }
+  EXPECT_GT(placed, 2 * kScenes * 9 / 10);
+}
+
+TEST(SceneOptions, HidePartsOfPeopleInCushions) {
+  SceneOptions options = bare();
+  const double hard = person_pixels(options, &PoseSamplerOptions::sitting);
+  options.soft_probability = 1.F;
+  options.soft_depth_m = 0.1F;
+  const double soft = person_pixels(options, &PoseSamplerOptions::sitting);
+  EXPECT_LT(soft, 0.95 * hard);
+  EXPECT_GT(soft, 0.5 * hard) << "people are still to be seen";
+}
+
+TEST(SceneOptions, CoverLyingPeopleWithBlankets) {
+  SceneOptions options = bare();
+  const double bare_pixels = person_pixels(options, &PoseSamplerOptions::lying);
+  options.blanket_probability = 1.F;
+  const double covered = person_pixels(options, &PoseSamplerOptions::lying);
+  EXPECT_LT(covered, 0.6 * bare_pixels);
+  EXPECT_GT(covered, 0.05 * bare_pixels);
+}
+
+TEST(SceneOptions, PutLyingPeopleOnSofas) {
+  SceneOptions options = bare();
+  options.bed_probability = 1.F;
+  options.lying_sofa_probability = 1.F;
+  int sofas = 0, people = 0;
+  for_scenes(40, options, &PoseSamplerOptions::lying, [&](const BuiltScene& built) {
+    if (built.people.empty()) return;
+    ++people;
+    // The back of a sofa is a long box that begins at its seat; beds have none.
+    sofas += std::ranges::any_of(built.solids,
+                                 [](const OrientedBox& box) {
+                                   return box.half.x() > 0.7F && box.half.y() > 0.13F && box.half.z() < 0.12F;
+                                 })
+                 ? 1
+                 : 0;
+  });
+  EXPECT_GE(people, 30);
+  EXPECT_GE(sofas, people / 3) << "others are too wide for one";
+}
+
+TEST(SceneOptions, PutCountersBeforeStandingPeople) {
+  SceneOptions options = bare();
+  options.desk_probability = 1.F;
+  int counters = 0, people = 0;
+  for_scenes(40, options, &PoseSamplerOptions::idle, [&](const BuiltScene& built) {
+    people += static_cast<int>(built.people.size());
+    counters += built.solids.empty() ? 0 : 1;
+  });
+  EXPECT_GE(people, 35);
+  EXPECT_GE(counters, people * 3 / 4);
+}
+
+TEST(SceneOptions, PutWallsCloseBehindPeople) {
+  SceneOptions options = bare();
+  const auto near_walls = [&] {
+    int near = 0;
+    for_scenes(60, options, &PoseSamplerOptions::idle, [&](const BuiltScene& built) {
+      if (built.people.empty() || built.room.open) return;
+      const Vector3f chest = built.people[0].body.joints[index(Bone::chest)];
+      const Vector3f in_room = built.room.world_from_room.inverse() * chest;
+      near += in_room.z() - built.room.low.y() < 0.9F ? 1 : 0;  // half a person and the gap
+    });
+    return near;
+  };
+  EXPECT_LE(near_walls(), 20);
+  options.wall_probability = 1.F;
+  EXPECT_GE(near_walls(), 50);
+}
+
+TEST(SceneOptions, CutPeopleByTheBorder) {
+  SceneOptions options = bare();
+  const auto cut = [&] {
+    int people = 0;
+    for_scenes(80, options, &PoseSamplerOptions::idle, [&](const BuiltScene& built) {
+      if (built.people.empty()) return;
+      const auto& joints = built.people[0].body.joints;
+      people += std::ranges::any_of(joints,
+                                    [&](const Vector3f& joint) {
+                                      const Vector3f p = built.view.camera_from_world * joint;
+                                      const float u = built.view.camera.pixel(p).x();
+                                      return p.z() > 0.1F && (u < 0.F || u > static_cast<float>(kCamera.width - 1));
+                                    })
+                    ? 1
+                    : 0;
+    });
+    return people;
+  };
+  const int usual = cut();
+  options.border_share = 1.F;
+  EXPECT_GE(cut(), 60);
+  EXPECT_LE(usual, 40);
+}
+
+}  // namespace
+}  // namespace vesalius::synth
