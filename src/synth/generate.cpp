@@ -190,7 +190,7 @@ LabelledFrame Generator::frame(std::uint64_t index) const {
   Image<std::uint32_t> source;
   result.frame.depth = sense(seen, s.sensor, noise, &source);
   Random filter = random_for(s.seed, Purpose::filter, index);
-  if (s.recipe.sensor.noise && filter.uniform() < s.recipe.sensor.filter.share) {
+  if (filter.uniform() < s.recipe.sensor.filter.share) {
     apply(draw_filter(s.recipe.sensor.filter, filter), result.frame.depth, &source);
   }
   result.labels = as_read(seen.labels, source);

@@ -44,7 +44,7 @@ struct SensorOptions {
   float fx = 0.F, fy = 0.F, cx = -1.F, cy = -1.F;  ///< pixels at that size; fx 0 and cx, cy < 0 take the preset's
   bool noise = true;
   bool colour = true;
-  DepthFilterOptions filter;  ///< belongs to the noise: none without
+  DepthFilterOptions filter;  ///< applied with and without noise
 };
 
 /// Everything that decides how synthetic frames look (section 4.1). Together with a seed and the files of `Assets` it

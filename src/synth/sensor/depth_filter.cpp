@@ -1,5 +1,6 @@
 #include "synth/sensor/depth_filter.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,20 +17,55 @@ bool fills(HoleFill fill, std::uint16_t candidate, std::uint16_t best) {
   return best == 0 || (fill == HoleFill::nearest ? candidate < best : candidate > best);
 }
 
+/// Returns the distance of each pixel from the nearest reading, along columns and rows, up to 65535.
+Image<std::uint16_t> distances_from_readings(const DepthImage& depth) {
+  constexpr int kFar = 65535;
+  const int width = depth.width(), height = depth.height();
+  Image<std::uint16_t> distance(width, height, kFar);
+  const auto pass = [&](int u, int v, int step) {
+    if (depth(u, v) != 0) {
+      distance(u, v) = 0;
+      return;
+    }
+    int least = distance(u, v);
+    for (const auto& [from_u, from_v] : {std::pair{u - step, v}, std::pair{u, v - step}}) {
+      if (distance.contains(from_u, from_v)) least = std::min(least, distance(from_u, from_v) + 1);
+    }
+    distance(u, v) = static_cast<std::uint16_t>(least);
+  };
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) pass(u, v, 1);
+  }
+  for (int v = height - 1; v >= 0; --v) {
+    for (int u = width - 1; u >= 0; --u) pass(u, v, -1);
+  }
+  return distance;
+}
+
+/// Returns the smallest rectangle with all readings as [low, high] of columns and rows; it is empty without readings.
+Eigen::AlignedBox2i extent_of_readings(const DepthImage& depth) {
+  Eigen::AlignedBox2i extent;
+  for (int v = 0; v < depth.height(); ++v) {
+    for (int u = 0; u < depth.width(); ++u) {
+      if (depth(u, v) != 0) extent.extend(Eigen::Vector2i(u, v));
+    }
+  }
+  return extent;
+}
+
 void fill_holes(HoleFill fill, int reach_px, DepthImage& depth, Image<std::uint32_t>* source) {
   using Step = std::array<int, 2>;
   constexpr std::array<Step, 5> kAround = {Step{-1, 0}, Step{-1, -1}, Step{0, -1}, Step{-1, 1}, Step{0, 1}};
   const std::size_t count = fill == HoleFill::left ? 1 : kAround.size();
-  Image<std::uint16_t> filled(depth.width(), depth.height(), 0);  // how far each reading has come
-  for (int v = 0; v < depth.height(); ++v) {
-    for (int u = 0; u < depth.width(); ++u) {
-      if (depth(u, v) != 0) continue;
+  const Image<std::uint16_t> distance = distances_from_readings(depth);
+  const Eigen::AlignedBox2i extent = extent_of_readings(depth);
+  for (int v = extent.min().y(); v <= extent.max().y(); ++v) {
+    for (int u = extent.min().x(); u <= extent.max().x(); ++u) {
+      if (depth(u, v) != 0 || distance(u, v) > reach_px) continue;
       for (std::size_t k = 0; k < count; ++k) {
         const int from_u = u + kAround[k][0], from_v = v + kAround[k][1];
-        if (!depth.contains(from_u, from_v) || filled(from_u, from_v) >= reach_px) continue;
-        if (!fills(fill, depth(from_u, from_v), depth(u, v))) continue;
+        if (!depth.contains(from_u, from_v) || !fills(fill, depth(from_u, from_v), depth(u, v))) continue;
         depth(u, v) = depth(from_u, from_v);
-        filled(u, v) = static_cast<std::uint16_t>(filled(from_u, from_v) + 1);
         if (source != nullptr) (*source)(u, v) = (*source)(from_u, from_v);
       }
     }

@@ -41,7 +41,8 @@ struct DepthFilter {
 /// Draws each amount evenly from nothing to the greatest; smoothing from half of it.
 DepthFilter draw_filter(const DepthFilterOptions& options, Random& random);
 
-/// Fills, smooths and then blurs a depth picture. Holes that are not filled stay and do not count. `source`, of the
+/// Fills, smooths and then blurs a depth picture. Columns and rows at its borders without any reading, and other holes
+/// that are not filled, stay and do not count. `source`, of the
 /// size of the depth and if not null, tells for each pixel whose surface was read (sense()); filled pixels take over
 /// that of their neighbour. The other pixels keep theirs although their depth becomes a mixture.
 void apply(const DepthFilter& filter, DepthImage& depth, Image<std::uint32_t>* source = nullptr);

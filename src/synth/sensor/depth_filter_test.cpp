@@ -35,6 +35,21 @@ TEST(DepthFilter, FillsHolesFromTheNeighbourThatIsAskedFor) {
   }
 }
 
+TEST(DepthFilter, LeavesBordersWithoutReadings) {
+  DepthImage depth = step(1000, 3000);
+  for (int v = 0; v < kHeight; ++v) std::fill(depth.row(v) + kWidth - 8, depth.row(v) + kWidth, std::uint16_t{0});
+  for (int v = 0; v < 3; ++v) std::fill_n(depth.row(v), kWidth, std::uint16_t{0});
+  for (const HoleFill fill : {HoleFill::left, HoleFill::farthest, HoleFill::nearest}) {
+    DepthImage filled = depth;
+    apply({.fill = fill}, filled);
+    EXPECT_EQ(filled, depth);
+  }
+  const DepthImage nothing(kWidth, kHeight, 0);
+  DepthImage filled = nothing;
+  apply({.fill = HoleFill::nearest, .smoothing = 0.5F, .passes = 1, .blur_px = 4.F}, filled);
+  EXPECT_EQ(filled, nothing);
+}
+
 TEST(DepthFilter, LeavesHolesAtTheLeftBorderWithoutANeighbour) {
   DepthImage depth = step(1000, 3000);
   punch(depth, 0, 4);
@@ -44,10 +59,15 @@ TEST(DepthFilter, LeavesHolesAtTheLeftBorderWithoutANeighbour) {
 
 TEST(DepthFilter, FillsNoFartherThanItsReach) {
   DepthImage depth = step(1000, 3000);
-  punch(depth, 10, kEdge);
-  apply({.fill = HoleFill::left, .fill_px = 6}, depth);
-  EXPECT_EQ(depth(15, 15), 1000);
-  EXPECT_EQ(depth(16, 15), 0);
+  for (int v = 0; v < kHeight; ++v) std::fill(depth.row(v) + 10, depth.row(v) + kEdge, std::uint16_t{0});
+  for (const HoleFill fill : {HoleFill::left, HoleFill::farthest, HoleFill::nearest}) {
+    DepthImage filled = depth;
+    apply({.fill = fill, .fill_px = 6}, filled);
+    for (int v = 0; v < kHeight; ++v) {
+      EXPECT_EQ(filled(15, v), 1000) << "without teeth, row " << v;
+      EXPECT_EQ(filled(16, v), 0);
+    }
+  }
 }
 
 TEST(DepthFilter, MovesTheTruthWithFilledReadings) {
