@@ -9,7 +9,7 @@ namespace vesalius::synth {
 void visit_options(const std::string& prefix, Population& o, OptionVisitor& visitor) {
   visitor.option(prefix + "men", o.men, {"", 0, 1, "Share of men and boys."});
   visitor.option(prefix + "children", o.children, {"", 0, 1, "Share of people below 18 years."});
-  visitor.option(prefix + "old", o.old, {"", 0, 1, "Share of people above 60 years."});
+  visitor.option(prefix + "old", o.old, {"", 0, 1, "Share of people above 60 years, as far as children leave room."});
   visitor.option(prefix + "age-min", o.age_min_years, {"years", 4, 90, "Younger people are left out."});
   visitor.option(prefix + "age-max", o.age_max_years, {"years", 4, 90, "Older people are left out."});
   visitor.option(prefix + "stature-min", o.stature_min_m, {"m", 0.9, 2.2, "Smaller people are left out."});
@@ -18,9 +18,6 @@ void visit_options(const std::string& prefix, Population& o, OptionVisitor& visi
 }
 
 void check(const Population& p) {
-  if (p.children + p.old > 1.F) {
-    throw UsageError(fmt::format("options body.children {} and body.old {} sum to more than 1", p.children, p.old));
-  }
   if (p.age_min_years > p.age_max_years) {
     throw UsageError(fmt::format("option body.age-min is {}, above body.age-max {}", p.age_min_years, p.age_max_years));
   }

@@ -11,7 +11,7 @@ namespace vesalius::synth {
 struct Population {
   float men = 0.5F;           ///< share of men and boys
   float children = 0.2F;      ///< share of people below 18
-  float old = 0.2F;           ///< share of people above 60
+  float old = 0.2F;           ///< share of people above 60, as far as children leave room
   float age_min_years = 4.F;  ///< people of other ages are left out
   float age_max_years = 90.F;
   float stature_min_m = 0.9F;  ///< people of other statures are left out
@@ -21,7 +21,7 @@ struct Population {
 
 void visit_options(const std::string& prefix, Population& options, OptionVisitor& visitor);
 
-/// Throws UsageError if shares sum to more than 1 or a minimum is above its maximum.
+/// Throws UsageError if a minimum is above its maximum.
 void check(const Population& population);
 
 /// Draws sex: whether it is a woman or a girl.

@@ -66,6 +66,15 @@ TEST(Population, KeepsToItsAgesEvenIfTheSharesHaveNobodyOfThem) {
   }
 }
 
+TEST(Population, HasChildrenAloneIfTheyAreAsked) {
+  Population population;
+  population.children = 1.F;
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    Random random(12, i);
+    EXPECT_LE(sample_builtin_shape(population, random).age_years, 18.F);
+  }
+}
+
 TEST(Population, IsThinOrHeavyByItsBuild) {
   const auto mean_weight = [](float build) {
     Population population;
@@ -85,10 +94,6 @@ TEST(Population, IsThinOrHeavyByItsBuild) {
 
 TEST(Population, NamesWhatIsWrong) {
   Population population;
-  population.children = 0.7F;
-  population.old = 0.4F;
-  EXPECT_THAT([&] { check(population); }, ThrowsMessage<UsageError>(HasSubstr("body.children 0.7 and body.old 0.4")));
-  population = {};
   population.age_min_years = 91.F;
   EXPECT_THAT([&] { check(population); }, ThrowsMessage<UsageError>(HasSubstr("body.age-min")));
   population = {};
