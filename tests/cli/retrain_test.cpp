@@ -44,9 +44,9 @@ class Retrain : public testing::Test {
 
   /// Returns the command for small frames with its files in the test's folder. Nothing is fetched.
   std::string small(std::string command) const {
-    for (const char* name :
-         {"ceiling/", "empty/", "unseen/", "upper/", "people/", "found/", "report/", "look.png", "parts.png",
-          "people.jsonl", "hands.jsonl", "ceiling.forest", "upper.forest", "upper_body.toml"}) {
+    for (const char* name : {"ceiling/", "empty/", "unseen/", "upper/", "people/", "found/", "report/", "look.png",
+                             "parts.png", "children.png", "children/", "children.forest", "people.jsonl", "hands.jsonl",
+                             "ceiling.forest", "upper.forest", "upper_body.toml"}) {
       replace_word(command, name, path(name));
     }
     replace_word(command, "20000", "150");
@@ -83,7 +83,7 @@ TEST_F(Retrain, RunsTheTutorialsCommands) {
     EXPECT_GT(accuracy_in(run.err), 0.25) << "chance is at most 0.06: " << run.err;
     ++trained;
   }
-  EXPECT_EQ(trained, 2);
+  EXPECT_EQ(trained, 3);
   EXPECT_EQ(load_model(path("ceiling.forest")).body.name, "paper25");
   EXPECT_EQ(load_model(path("upper.forest")).body.name, "upper_body");
   for (const char* made : {"look.png", "parts.png", "report/report.html", "people.jsonl", "hands.jsonl"}) {
