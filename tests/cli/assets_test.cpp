@@ -44,6 +44,27 @@ void expect_whole(const AssetPackage& package, const std::string& folder) {
   EXPECT_FALSE(fs::exists(folder + "/.unfinished"));
 }
 
+TEST(Assets, AreSoughtInTheirDefaultFolderByAllThatRender) {
+  const test::TemporaryFolder folder;
+  const std::string made = folder / "packages";
+  for (const AssetFile& file : asset_package("makehuman").files) {  // of the right sizes, without contents
+    const fs::path path = fs::path(made) / "makehuman" / file.path;
+    fs::create_directories(path.parent_path());
+    test::put(path.string(), "");
+    fs::resize_file(path, file.digest.bytes);
+  }
+  const std::string recipe = folder / "recipe.toml";
+  test::put(recipe, "body.kind = 'makehuman'\npose.captured = 0\n");
+  const std::string forest = VESALIUS_SOURCE_DIR "/data/models/capsule.forest";
+  for (const std::string& command : {"synth --recipe " + recipe + " --count 1 --out " + (folder / "frames"),
+                                     "evaluate --recipe " + recipe + " --count 1 -m " + forest,
+                                     "train --recipe " + recipe + " --count 1 --out " + (folder / "new.forest")}) {
+    const Outcome run = run_program(command + " -q", "VESALIUS_ASSETS=" + made);
+    EXPECT_EQ(run.exit_code, 1) << command;
+    EXPECT_THAT(run.err, HasSubstr("base.obj")) << command;
+  }
+}
+
 TEST_F(RealAssets, AreFetchedFromAServer) {
   TestServer server([](const std::string& path) {
     const std::string file = shared_assets() + path;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "assets/assets.h"
 #include "cli/synth/synth_recipe.h"
 #include "dataset/open_truth.h"
 #include "synth/skeleton_joints.h"
@@ -22,9 +21,7 @@ class RecipeTruth final : public TruthSource {
   RecipeTruth(const std::string& recipe_file, const RenderedTruth& rendered, int step, const BodyModel& body)
       : names_(part_names_of(body)), count_((rendered.count + step - 1) / step), step_(step) {
     const synth::Recipe recipe = make_recipe({.file = recipe_file});
-    AssetPlaces places = rendered.assets;
-    if (places.folder.empty()) places.folder = default_assets_folder();
-    LoadedAssets loaded = load_assets(recipe, places);
+    LoadedAssets loaded = load_assets(recipe, rendered.assets);
     notes_ = std::move(loaded.notes);
     notes_.push_back(fmt::format("rendered with seed {}: bodies {}, {} captured poses, checksum of the files used {}",
                                  rendered.seed, loaded.assets.makehuman ? "of MakeHuman" : "built in",

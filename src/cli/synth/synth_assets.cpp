@@ -137,8 +137,10 @@ class Loader {
 }  // namespace
 
 LoadedAssets load_assets(const synth::Recipe& recipe, const AssetPlaces& places) {
+  AssetPlaces found = places;
+  if (found.folder.empty()) found.folder = default_assets_folder();
   LoadedAssets loaded;
-  Loader loader(places);
+  Loader loader(found);
   loader.load_makehuman(recipe, loaded);
   loader.load_motions(recipe, loaded);
   loader.load_models(loaded);

@@ -18,7 +18,7 @@ struct LoadedAssets {
 
 /// The places of files.
 struct AssetPlaces {
-  std::string folder;               ///< the folder in which `vesalius assets` keeps packages
+  std::string folder;               ///< the folder in which `vesalius assets` keeps packages; empty takes its default
   std::string motions;              ///< the user's own motions (.bvh, .amc with .asf), used instead; may be empty
   std::vector<std::string> models;  ///< the user's own furniture: OBJ, glTF
 };

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "assets/assets.h"
 #include "cli/commands.h"
 #include "cli/interrupts.h"
 #include "cli/option_flags.h"
@@ -125,9 +124,7 @@ void run(const Arguments& arguments) {
                                             .flags = &arguments.recipe_flags});
   const BodyModel body = body_of(arguments);
   const LoadedAssets loaded =
-      load_assets(recipe, {.folder = arguments.assets.empty() ? default_assets_folder() : arguments.assets,
-                           .motions = arguments.motions,
-                           .models = arguments.models});
+      load_assets(recipe, {.folder = arguments.assets, .motions = arguments.motions, .models = arguments.models});
   if (!arguments.quiet) {
     for (const std::string& note : loaded.notes) say("note: " + note);
   }
