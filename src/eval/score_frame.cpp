@@ -75,11 +75,17 @@ void check_truth(const TrueFrame& frame, const BodyModel& body) {
                           truth.parts.size(), truth.joints.size()));
 }
 
-/// Returns 1 where the true label is a part; empty where no labels are known.
-Mask labelled_pixels(const FrameTruth& truth) {
-  Mask pixels(truth.labels.width(), truth.labels.height(), 0);
-  std::ranges::transform(truth.labels, pixels.begin(), [](std::uint8_t l) -> std::uint8_t { return l != kBackground; });
-  return pixels;
+/// Returns a number of its own for each person where the true label is a part, 1 where people are not known apart;
+/// empty where no labels are known.
+Mask labelled_people(const FrameTruth& truth) {
+  constexpr std::uint8_t kMost = 254;
+  Mask people(truth.labels.width(), truth.labels.height(), 0);
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    if (truth.labels[i] == kBackground) continue;
+    const bool known = !truth.person.empty() && truth.person[i] < kMost;
+    people[i] = static_cast<std::uint8_t>(known ? truth.person[i] + 1 : 1);
+  }
+  return people;
 }
 
 /// Returns the found person for each true one, or null if that one was missed.
@@ -122,7 +128,7 @@ FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
   put_visible_people_first(frame);
   FrameScore score;
   score.expected = expected_people(frame.truth);
-  const Mask people = labelled_pixels(frame.truth);
+  const Mask people = labelled_people(frame.truth);
   const Mask* asked = people.empty() ? nullptr : &people;
   FrameLabels labels =
       options_.labels_only ? detector_.label(frame.frame, asked) : find_people(frame, asked, fit_joints, score);

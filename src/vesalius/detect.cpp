@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "vesalius/base/parallel.h"
@@ -190,6 +191,22 @@ std::vector<Person> choose_people(const Method& method, const Frame& frame, std:
   return people;
 }
 
+/// Labels everybody whose pixels have a number of their own in `people`, as the second pass does.
+LabelImage label_people(const Method& method, const SceneLabels& scene, const Frame& frame, const Mask& people) {
+  LabelImage labels(people.width(), people.height(), kBackground);
+  const std::set<std::uint8_t> numbers(people.begin(), people.end());
+  for (const std::uint8_t number : numbers) {
+    if (number == 0) continue;
+    Mask one(people.width(), people.height(), 0);
+    for (std::size_t i = 0; i < one.size(); ++i) one[i] = people[i] == number ? 1 : 0;
+    const LabelImage inside = method.labeller.label_person(scene, frame, one, bounding_box(one));
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      if (one[i] != 0 || labels[i] == kBackground) labels[i] = inside[i];
+    }
+  }
+  return labels;
+}
+
 /// `person` is Trace::person on the grid.
 void fill(Trace& trace, const Method& method, const Frame& frame, Scene& scene, std::vector<Candidate> candidates,
           const Mask& person) {
@@ -200,7 +217,7 @@ void fill(Trace& trace, const Method& method, const Frame& frame, Scene& scene, 
   trace.flat = scene.labels.flat;
   trace.candidates = std::move(candidates);
   trace.inside = {};
-  if (!person.empty()) trace.inside = method.labeller.label_person(scene.labels, frame, person, bounding_box(person));
+  if (!person.empty()) trace.inside = label_people(method, scene.labels, frame, person);
 }
 
 /// Runs the method on one frame of any size.
@@ -226,7 +243,7 @@ FrameLabels label_everywhere(const Method& method, const Frame& frame, const Mas
   SceneLabels scene = method.labeller.label_scene(frame, clock, method.memory.take());
   FrameLabels labels;
   labels.labels = method.labeller.choose(scene, frame, method.options.label.background_weight);
-  if (person != nullptr) labels.inside = method.labeller.label_person(scene, frame, *person, bounding_box(*person));
+  if (person != nullptr) labels.inside = label_people(method, scene, frame, *person);
   method.memory.give_back(std::move(scene));
   return labels;
 }

@@ -66,7 +66,8 @@ class Detector {
   std::vector<Person> detect(const Frame& frame, Trace* trace = nullptr, StageTimes* times = nullptr) const;
 
   /// Returns the labels of the first pass and runs no other stage. With `person`, also returns the second pass's labels
-  /// of the pixels where it is non-zero. Throws Error for a frame whose images do not fit its camera.
+  /// of the pixels where it is non-zero; those of one person have the same number. Throws Error for a frame whose
+  /// images do not fit its camera.
   FrameLabels label(const Frame& frame, const Mask* person = nullptr) const;
 
   const BodyModel& body() const;

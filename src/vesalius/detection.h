@@ -54,7 +54,8 @@ struct Trace {
   Clusters clusters;            ///< pass 1, of labels with the proposals' weight of the background
   std::vector<Skeleton> rough;  ///< pass 1, best first
   Mask flat;                    ///< pixels of floor, walls and other large flat surfaces
-  /// Input: if it is set before detection, `inside` is filled for its pixels. It has the frame's size.
+  /// Input: if it is set before detection, `inside` is filled for its non-zero pixels. Those of one person have the
+  /// same number. It has the frame's size.
   const Mask* person = nullptr;
   LabelImage inside;  ///< the second pass's labels of those pixels; empty if none were given
 

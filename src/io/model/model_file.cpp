@@ -11,6 +11,7 @@
 #include "io/files/read_file.h"
 #include "io/model/model_trees.h"
 #include "vesalius/base/error.h"
+#include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {
 namespace {
@@ -22,6 +23,7 @@ constexpr std::size_t kSizeAt = 12;
 constexpr std::size_t kChecksumAt = 20;
 constexpr std::size_t kHeaderBytes = 28;
 constexpr std::uint16_t kFlagBackground = 1;
+constexpr std::uint16_t kFlagLogits = 2;  ///< leaves were learned jointly and have logits
 
 std::uint64_t checksum(std::string_view bytes) {
   XXH64_state_t state;
@@ -75,6 +77,14 @@ void check_body_text(const BodyModel& body) {
   }
 }
 
+void read_facing(ByteReader& in, Forest& forest) {
+  forest.facing = {forest.headings, forest.body.part_count(), {}};
+  const auto count = in.number<std::uint32_t>("weights of headings");
+  const std::size_t expected = forest.facing.features() * static_cast<std::size_t>(forest.headings);
+  if (count != 0 && count != expected) in.fail(fmt::format("{} weights of headings, expected {}", count, expected));
+  for (std::uint32_t i = 0; i < count; ++i) forest.facing.weights.push_back(in.real32("weights of headings"));
+}
+
 }  // namespace
 
 std::string serialise_model(const Forest& forest) {
@@ -83,7 +93,8 @@ std::string serialise_model(const Forest& forest) {
   ByteWriter out;
   out.bytes() += kMagic;
   out.number(static_cast<std::uint16_t>(kModelVersion));
-  out.number(static_cast<std::uint16_t>(forest.has_background ? kFlagBackground : 0));
+  const bool logits = forest.logit_unit != 0.F;
+  out.number(static_cast<std::uint16_t>((forest.has_background ? kFlagBackground : 0) | (logits ? kFlagLogits : 0)));
   out.number(std::uint64_t{0});  // size and checksum, filled in at the end
   out.number(std::uint64_t{0});
   out.text(forest.body.toml);
@@ -94,6 +105,13 @@ std::string serialise_model(const Forest& forest) {
   out.number(forest.convention.outside_mm);
   out.number(forest.convention.clip_mm);
   write_trees(out, forest.trees);
+  if (logits) {
+    out.real(forest.logit_unit);
+    out.number(static_cast<std::uint16_t>(forest.headings));
+    write_logits(out, forest.trees);
+    out.number(static_cast<std::uint32_t>(forest.facing.weights.size()));
+    for (const float weight : forest.facing.weights) out.real(weight);
+  }
   overwrite(out.bytes(), kSizeAt, static_cast<std::uint64_t>(out.bytes().size()));
   overwrite(out.bytes(), kChecksumAt, checksum(out.bytes()));
   return std::move(out.bytes());
@@ -104,10 +122,10 @@ Forest parse_model(std::string_view bytes, const std::string& name) {
   ByteReader in(bytes, name);
   in.take(kMagic.size() + sizeof(std::uint16_t), "header");
   const auto flags = in.number<std::uint16_t>("flags");
-  if (flags > kFlagBackground) in.fail(fmt::format("unknown flags {}", flags));
+  if (flags > (kFlagBackground | kFlagLogits)) in.fail(fmt::format("unknown flags {}", flags));
   in.take(kHeaderBytes - kSizeAt, "header");
   Forest forest;
-  forest.has_background = flags == kFlagBackground;
+  forest.has_background = (flags & kFlagBackground) != 0;
   forest.body = parse_body_model(in.text("body model"), name + ": body model");
   forest.recipe = in.text("recipe");
   forest.convention.offset_unit = in.real32("convention");
@@ -116,6 +134,13 @@ Forest parse_model(std::string_view bytes, const std::string& name) {
   forest.convention.outside_mm = in.number<std::uint16_t>("convention");
   forest.convention.clip_mm = in.number<std::uint16_t>("convention");
   forest.trees = read_trees(in);
+  if ((flags & kFlagLogits) != 0) {
+    forest.logit_unit = in.real32("unit of logits");
+    forest.headings = in.number<std::uint16_t>("headings");
+    const LogitLayout layout(forest.body, forest.has_background, forest.headings);
+    read_logits(in, static_cast<std::size_t>(layout.size()), forest.trees);
+    read_facing(in, forest);
+  }
   in.expect_end();
   with_context(name, [&] { check(forest); });
   return forest;

@@ -45,6 +45,40 @@ TEST(ModelFile, KeepsEverythingInARoundTrip) {
   }
 }
 
+TEST(ModelFile, KeepsLogitsAndHeadings) {
+  for (const int headings : {0, 8}) {
+    Forest forest = random_forest(3);
+    Random random(9, 0);
+    test::add_logits(forest, headings, random);
+    const std::string bytes = serialise_model(forest);
+    const Forest again = parse_model(bytes, "m");
+    EXPECT_EQ(again.trees, forest.trees);
+    EXPECT_EQ(again.logit_unit, forest.logit_unit);
+    EXPECT_EQ(again.headings, headings);
+    EXPECT_EQ(again.facing, forest.facing);
+    EXPECT_EQ(bytes, serialise_model(again));
+  }
+}
+
+TEST(ModelFile, RefusesDamagedLogits) {
+  Forest forest = tiny_forest();
+  Random random(9, 0);
+  test::add_logits(forest, 8, random);
+  const std::string bytes = serialise_model(forest);
+  for (std::size_t n = 28; n < bytes.size(); ++n) {
+    EXPECT_THROW(parse_model(forged(bytes.substr(0, n), n, ""), "m"), Error) << n;
+    const std::string changed = forged(bytes, n, std::string(1, static_cast<char>(bytes[n] ^ 0x55)));
+    try {
+      const Forest again = parse_model(changed, "m");
+      EXPECT_NO_THROW(check(again));
+    } catch (const Error& e) {
+      EXPECT_THAT(e.what(), StartsWith("m"));
+    }
+  }
+  forest.trees[0].logits.pop_back();
+  EXPECT_THROW(serialise_model(forest), Error);
+}
+
 // Labels: threads
 TEST(ModelFile, WritesTheSameBytesForTheSameForest) {
   const std::string bytes = serialise_model(random_forest(5));

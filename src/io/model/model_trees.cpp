@@ -212,6 +212,18 @@ void read_leaves(ByteReader& in, std::vector<TreeLeaf>& leaves) {
   }
 }
 
+/// Returns the logits of a tree, the first one of every leaf first.
+std::string by_columns(const Tree& tree) {
+  const std::size_t size = tree.logits.size() / tree.leaves.size();
+  std::string columns(tree.logits.size(), '\0');
+  for (std::size_t c = 0; c < size; ++c) {
+    for (std::size_t leaf = 0; leaf < tree.leaves.size(); ++leaf) {
+      columns[c * tree.leaves.size() + leaf] = static_cast<char>(tree.logits[leaf * size + c]);
+    }
+  }
+  return columns;
+}
+
 struct PackedTree {
   std::size_t nodes, leaves;
   std::string_view bytes;
@@ -223,7 +235,7 @@ Tree unpack_tree(const PackedTree& packed, const std::string& name) {
   const std::string far_bytes = read_packed(in, 0, 2 * kWidestIndex * packed.nodes, "far children");
   const std::string far_name = name + ": far children";
   ByteReader far(far_bytes, far_name);
-  Tree tree{std::vector<TreeNode>(packed.nodes), std::vector<TreeLeaf>(packed.leaves)};
+  Tree tree{std::vector<TreeNode>(packed.nodes), std::vector<TreeLeaf>(packed.leaves), {}};
   read_children(tree, kinds, far);
   far.expect_end();
   read_numbers(in, tree.nodes);
@@ -283,6 +295,30 @@ std::vector<Tree> read_trees(ByteReader& in) {
   parallel_for(static_cast<int>(trees.size()),
                [&](int t) { trees[t] = unpack_tree(packed[t], fmt::format("{}: tree {}", in.name(), t)); });
   return trees;
+}
+
+void write_logits(ByteWriter& out, const std::vector<Tree>& trees) {
+  std::vector<std::string> packed(trees.size());
+  parallel_for(static_cast<int>(trees.size()), [&](int t) { packed[t] = pack(by_columns(trees[t]), kLevel); });
+  for (const std::string& tree : packed) out.text(tree);
+}
+
+void read_logits(ByteReader& in, std::size_t size, std::vector<Tree>& trees) {
+  std::vector<std::string_view> packed;
+  for (std::size_t t = 0; t < trees.size(); ++t) packed.push_back(in.text("logits"));
+  parallel_for(static_cast<int>(trees.size()), [&](int t) {
+    const std::size_t count = trees[t].leaves.size();
+    const std::string name = fmt::format("{}: logits of tree {}", in.name(), t);
+    ByteReader bytes(packed[t], name);
+    const std::string columns = read_packed(bytes, count * size, count * size, "logits");
+    bytes.expect_end();
+    trees[t].logits.resize(count * size);
+    for (std::size_t c = 0; c < size; ++c) {
+      for (std::size_t leaf = 0; leaf < count; ++leaf) {
+        trees[t].logits[leaf * size + c] = static_cast<std::int8_t>(columns[c * count + leaf]);
+      }
+    }
+  });
 }
 
 }  // namespace vesalius

@@ -21,4 +21,9 @@ inline constexpr std::size_t kMaxModelNodes = std::size_t{1} << 23U;
 void write_trees(ByteWriter& out, const std::vector<Tree>& trees);
 std::vector<Tree> read_trees(ByteReader& in);
 
+/// Writes the logits of all leaves, by columns: first the first one of every leaf.
+void write_logits(ByteWriter& out, const std::vector<Tree>& trees);
+/// Reads `size` logits for each leaf of trees that read_trees returned.
+void read_logits(ByteReader& in, std::size_t size, std::vector<Tree>& trees);
+
 }  // namespace vesalius

@@ -6,6 +6,7 @@
 #include "io/files/byte_stream.h"
 #include "vesalius/base/random.h"
 #include "vesalius/forest/forest.h"
+#include "vesalius/forest/leaf_logits.h"
 
 // Forests that the tests of model files share.
 namespace vesalius::test {
@@ -100,6 +101,20 @@ upper_body = true
     for (TreeLeaf& leaf : tree.leaves) leaf.label = {};
   }
   return forest;
+}
+
+/// Gives the leaves of a forest random logits and the forest a random regression of headings.
+inline void add_logits(Forest& forest, int headings, Random& random) {
+  const LogitLayout layout(forest.body, forest.has_background, headings);
+  forest.logit_unit = 0.0625F;
+  forest.headings = headings;
+  for (Tree& tree : forest.trees) {
+    tree.logits.resize(tree.leaves.size() * static_cast<std::size_t>(layout.size()));
+    for (std::int8_t& logit : tree.logits) logit = static_cast<std::int8_t>(static_cast<int>(random.below(256)) - 128);
+  }
+  forest.facing = {headings, forest.body.part_count(), {}};
+  forest.facing.weights.resize(forest.facing.features() * static_cast<std::size_t>(headings));
+  for (float& weight : forest.facing.weights) weight = static_cast<float>(random.uniform(-1.0, 1.0));
 }
 
 }  // namespace vesalius::test

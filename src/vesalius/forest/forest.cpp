@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "vesalius/base/error.h"
+#include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {
 namespace {
@@ -53,6 +54,29 @@ void check_tree(const Tree& t, std::size_t tree, int classes) {
   }
 }
 
+void check_logits(const Forest& forest) {
+  constexpr int kMostHeadings = 64;
+  const bool has = forest.logit_unit != 0.F;
+  if (!std::isfinite(forest.logit_unit) || forest.logit_unit < 0.F) throw Error("forest: unit of logits below 0");
+  if (forest.headings < 0 || forest.headings > kMostHeadings || (!has && forest.headings != 0)) {
+    throw Error("forest: " + std::to_string(forest.headings) + " headings, expected 0 to 64");
+  }
+  const FacingModel& facing = forest.facing;
+  const bool fits = facing.headings == forest.headings && facing.parts == forest.body.part_count() &&
+                    facing.weights.size() == facing.features() * static_cast<std::size_t>(facing.headings);
+  if (!facing.empty() && !fits) throw Error("forest: regression of headings for other parts or headings");
+  if (std::ranges::any_of(facing.weights, [](float w) { return !std::isfinite(w); })) {
+    throw Error("forest: regression of headings has a weight that is no number");
+  }
+  const std::size_t size = LogitLayout(forest.body, forest.has_background, forest.headings).size();
+  for (std::size_t t = 0; t < forest.trees.size(); ++t) {
+    const std::size_t expected = has ? forest.trees[t].leaves.size() * size : 0;
+    if (forest.trees[t].logits.size() != expected) {
+      bad_tree(t, std::to_string(forest.trees[t].logits.size()) + " logits, expected " + std::to_string(expected));
+    }
+  }
+}
+
 }  // namespace
 
 void check(const Forest& forest) {
@@ -66,6 +90,7 @@ void check(const Forest& forest) {
     throw Error("forest: offset unit and reference focal length must be positive");
   }
   for (std::size_t t = 0; t < forest.trees.size(); ++t) check_tree(forest.trees[t], t, forest.class_count());
+  check_logits(forest);
 }
 
 int depth(const Tree& tree) {
@@ -84,6 +109,7 @@ int depth(const Tree& tree) {
 }
 
 bool has_distributions(const Forest& forest) {
+  if (forest.logit_unit > 0.F) return true;
   const auto mixed = [](const TreeLeaf& leaf) {
     return std::ranges::count_if(leaf.probability, [](int p) { return p != 0; }) > 1;
   };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vesalius/base/body_model.h"
+#include "vesalius/forest/facing.h"
 
 namespace vesalius {
 
@@ -46,6 +47,8 @@ struct TreeLeaf {
 struct Tree {
   std::vector<TreeNode> nodes;
   std::vector<TreeLeaf> leaves;
+  /// Where leaves were learned jointly, their logits (leaf_logits.h) in the forest's unit: [leaf][LogitLayout].
+  std::vector<std::int8_t> logits = {};
   friend bool operator==(const Tree&, const Tree&) = default;
 };
 
@@ -55,7 +58,10 @@ struct Forest {
   FeatureConvention convention;
   bool has_background = false;  ///< whether class `body.part_count()` is the background
   std::vector<Tree> trees;
-  std::string recipe;  ///< free text on how it was made
+  float logit_unit = 0.F;  ///< of the leaves' logits in nats; 0 where leaves have distributions instead
+  int headings = 0;        ///< headings that the leaves' logits tell apart
+  FacingModel facing;      ///< how a person's heading follows from them; may be empty
+  std::string recipe;      ///< free text on how it was made
 
   int class_count() const { return body.part_count() + (has_background ? 1 : 0); }
 };

@@ -34,7 +34,7 @@ TEST(Forest, IsAcceptedIfConsistent) { EXPECT_NO_THROW(check(small_forest())); }
 
 TEST(Forest, MayHaveATreeOfOneLeaf) {
   Forest forest = small_forest();
-  forest.trees = {Tree{.nodes = {}, .leaves = {vote(1)}}};
+  forest.trees = {Tree{.nodes = {}, .leaves = {vote(1)}, .logits = {}}};
   EXPECT_NO_THROW(check(forest));
   EXPECT_EQ(depth(forest.trees[0]), 0);
 }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/forest/background_gate.h"
+#include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/packed_tree.h"
 #include "vesalius/forest/top_two.h"
 #include "vesalius/forest/tree_walk.h"
@@ -155,14 +157,40 @@ void add_leaf(const TreeLeaf& leaf, std::uint16_t* sums) {
 /// Clears rows just before they are written, so that they are in the cache.
 void clear_rows(int begin, int end, Posteriors& out) { std::fill(out.at(0, begin), out.at(0, end), std::uint16_t{0}); }
 
-/// Adds up the posteriors of the rows' pixels, which are still zero.
-void label_rows(const std::vector<PackedTree>& trees, const PaddedDepth& depth, const WalkPixels& pixels,
-                Posteriors& out) {
+/// The trees as pixels walk them, and how their leaves are read.
+struct PackedForest {
+  BodyModel body;
+  FeatureConvention convention;
+  bool background = false;
+  bool distributions = false;
+  int classes = 0;
+  float logit_unit = 0.F;
+  LogitLayout layout;  ///< where leaves have logits
+  FacingModel facing;
+  std::vector<PackedTree> trees;
+
+  bool has_logits() const { return logit_unit > 0.F; }
+};
+
+/// Finds the posteriors of pixels, which are still zero.
+void label_rows(const PackedForest& forest, const PaddedDepth& depth, const WalkPixels& pixels, Posteriors& out) {
+  const std::vector<PackedTree>& trees = forest.trees;
   const std::size_t stride = pixels.padded_size();
   std::vector<std::uint32_t> leaves(trees.size() * stride);
   for (std::size_t t = 0; t < trees.size(); ++t) walk_pixels(trees[t], depth, pixels, leaves.data() + t * stride);
+  std::optional<LogitReader> reader;
+  if (forest.has_logits()) reader.emplace(forest.layout, forest.logit_unit, static_cast<int>(trees.size()));
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    std::uint16_t* sums = out.at(pixels.column(WalkPixels::kU)[i], pixels.column(WalkPixels::kV)[i]);
+    const int u = pixels.column(WalkPixels::kU)[i];
+    const int v = pixels.column(WalkPixels::kV)[i];
+    std::uint16_t* sums = out.at(u, v);
+    if (reader) {
+      for (std::size_t t = 0; t < trees.size(); ++t) {
+        reader->add(trees[t].logits.data() + leaves[t * stride + i] * trees[t].logit_stride);
+      }
+      reader->read(sums, out.turns_at(u, v));
+      continue;
+    }
     for (std::size_t t = 0; t < trees.size(); ++t) add_leaf(trees[t].leaves[leaves[t * stride + i]], sums);
   }
 }
@@ -171,10 +199,9 @@ void label_rows(const std::vector<PackedTree>& trees, const PaddedDepth& depth, 
 /// grid, then about those that the gate leaves open.
 class GatedLabels {
  public:
-  GatedLabels(const std::vector<PackedTree>& trees, const FeatureConvention& convention, const DepthImage& depth,
-              const PaddedDepth& padded, const OffsetScaler& scaler, Posteriors& out)
-      : trees_(trees),
-        convention_(convention),
+  GatedLabels(const PackedForest& forest, const DepthImage& depth, const PaddedDepth& padded,
+              const OffsetScaler& scaler, Posteriors& out)
+      : forest_(forest),
         depth_(depth),
         padded_(padded),
         scaler_(scaler),
@@ -204,7 +231,7 @@ class GatedLabels {
   /// Asks the forest about those pixels of the rows that are on a grid and not yet done.
   void ask(int begin, int end, int step) {
     WalkPixels pixels(static_cast<std::size_t>(depth_.width()) * static_cast<std::size_t>(end - begin), scaler_,
-                      convention_);
+                      forest_.convention);
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < depth_.width(); ++u) {
         if (depth_(u, v) == 0 || done_(u, v) != 0 || u % step != 0 || v % step != 0) continue;
@@ -213,7 +240,7 @@ class GatedLabels {
         done_(u, v) = 1;
       }
     }
-    label_rows(trees_, padded_, pixels, out_);
+    label_rows(forest_, padded_, pixels, out_);
   }
 
   void settle(const BackgroundGate& closed, int begin, int end) {
@@ -228,8 +255,7 @@ class GatedLabels {
     }
   }
 
-  const std::vector<PackedTree>& trees_;
-  const FeatureConvention& convention_;
+  const PackedForest& forest_;
   const DepthImage& depth_;
   const PaddedDepth& padded_;
   const OffsetScaler& scaler_;
@@ -253,20 +279,20 @@ void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& vi
                   "probability all around, it is not asked about pixels between; above 1 it is asked about all."});
 }
 
-struct ForestLabeller::Packed {
-  BodyModel body;
-  FeatureConvention convention;
-  bool background = false;
-  bool distributions = false;
-  int classes = 0;
-  std::vector<PackedTree> trees;
-};
+struct ForestLabeller::Packed : PackedForest {};
 
 ForestLabeller::ForestLabeller(Forest forest) {
   check(forest);
-  Packed packed{forest.body,           forest.convention,
-                forest.has_background, vesalius::has_distributions(forest),
-                forest.class_count(),  std::vector<PackedTree>(forest.trees.size())};
+  Packed packed;
+  packed.body = forest.body;
+  packed.convention = forest.convention;
+  packed.background = forest.has_background;
+  packed.distributions = vesalius::has_distributions(forest);
+  packed.classes = forest.class_count();
+  packed.facing = forest.facing;
+  packed.logit_unit = forest.logit_unit;
+  packed.layout = LogitLayout(forest.body, forest.has_background, forest.headings);
+  packed.trees.resize(forest.trees.size());
   parallel_for(static_cast<int>(packed.trees.size()), [&](int t) {
     packed.trees[t] = pack(forest.trees[t], forest.convention);
     forest.trees[t] = {};
@@ -277,6 +303,7 @@ ForestLabeller::ForestLabeller(Forest forest) {
 ForestLabeller::~ForestLabeller() = default;
 
 const BodyModel& ForestLabeller::body() const { return packed_->body; }
+const FacingModel& ForestLabeller::facing_model() const { return packed_->facing; }
 bool ForestLabeller::has_background() const { return packed_->background; }
 bool ForestLabeller::has_distributions() const { return packed_->distributions; }
 
@@ -285,16 +312,22 @@ void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, f
     throw Error("depth image of " + std::to_string(depth.width()) + "x" + std::to_string(depth.height()) +
                 " pixels, expected at most " + std::to_string(PaddedDepth::kMaxSide) + " a side");
   }
-  out.resize_like({depth.width(), depth.height(), packed_->classes, static_cast<int>(packed_->trees.size()), {}, {}});
+  out.resize_like({.width = depth.width(),
+                   .height = depth.height(),
+                   .classes = packed_->classes,
+                   .trees = static_cast<int>(packed_->trees.size()),
+                   .sums = {}});
+  out.headings = packed_->layout.headings;
+  out.turns.resize(depth.size() * out.turn_count());
   const OffsetScaler scaler(packed_->convention, camera);
   const PaddedDepth padded(depth, packed_->convention);
   if (gate <= 1.F && packed_->background) {
-    GatedLabels(packed_->trees, packed_->convention, depth, padded, scaler, out).run(gate);
+    GatedLabels(*packed_, depth, padded, scaler, out).run(gate);
     return;
   }
   parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
     clear_rows(begin, end, out);
-    label_rows(packed_->trees, padded, WalkPixels(depth, begin, end, scaler, packed_->convention), out);
+    label_rows(*packed_, padded, WalkPixels(depth, begin, end, scaler, packed_->convention), out);
   });
 }
 

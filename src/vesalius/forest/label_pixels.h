@@ -6,6 +6,7 @@
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
 #include "vesalius/base/options.h"
+#include "vesalius/forest/facing.h"
 #include "vesalius/forest/forest.h"
 #include "vesalius/forest/posteriors.h"
 
@@ -48,6 +49,11 @@ class PixelLabeller {
   virtual bool has_background() const = 0;
   /// Returns whether posteriors are more than one vote for each tree.
   virtual bool has_distributions() const = 0;
+  /// Returns how a person's heading follows from the posteriors' headings, if it has any.
+  virtual const FacingModel& facing_model() const {
+    static const FacingModel kNone;
+    return kNone;
+  }
 };
 
 /// Labels on the processor (section 4.3, eq. 2): the posteriors of a pixel are the mean over the trees of the
@@ -63,6 +69,7 @@ class ForestLabeller : public PixelLabeller {
   const BodyModel& body() const override;
   bool has_background() const override;
   bool has_distributions() const override;
+  const FacingModel& facing_model() const override;
 
  private:
   struct Packed;

@@ -8,6 +8,7 @@
 #include "vesalius/base/random.h"
 #include "vesalius/base/test_threads.h"
 #include "vesalius/forest/background_gate.h"
+#include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {
@@ -23,7 +24,7 @@ Forest empty_forest(bool background) {
   return forest;
 }
 
-Tree leaf_tree(TreeLeaf leaf) { return {{}, {leaf}}; }
+Tree leaf_tree(TreeLeaf leaf) { return {{}, {leaf}, {}}; }
 
 TreeLeaf random_leaf(Random& random, int classes) {
   TreeLeaf leaf;
@@ -315,6 +316,73 @@ TEST_F(ChooseLabels, LetsThePriorDecideAboutTheBackground) {
   const LabelImage labels = choose(&prior);
   EXPECT_EQ(labels(1, 1), 1);
   EXPECT_EQ(labels(0, 1), kBackground);
+}
+
+/// Returns a forest of random trees whose leaves have random logits.
+Forest forest_with_logits(Random& random) {
+  Forest forest = empty_forest(true);
+  for (int t = 0; t < 3; ++t) forest.trees.push_back(random_tree(random, 4, 26));
+  forest.logit_unit = 0.03F;
+  forest.headings = 8;
+  const LogitLayout layout(forest.body, true, 8);
+  for (Tree& tree : forest.trees) {
+    tree.logits.resize(tree.leaves.size() * static_cast<std::size_t>(layout.size()));
+    for (std::int8_t& logit : tree.logits) logit = static_cast<std::int8_t>(static_cast<int>(random.below(256)) - 128);
+  }
+  return forest;
+}
+
+TEST(ForestLabeller, ReadsTheLogitsOfTheLeavesThatPixelsReach) {
+  Random random(21, 0);
+  const Forest forest = forest_with_logits(random);
+  const LogitLayout layout(forest.body, true, 8);
+  const DepthImage depth = random_depth(random);
+  const ForestLabeller labeller(forest);
+  EXPECT_TRUE(labeller.has_distributions());
+  const Posteriors posteriors = labeller.label(depth, kCamera);
+  ASSERT_EQ(posteriors.headings, 8);
+  const OffsetScaler scaler(forest.convention, kCamera);
+  LogitReader reader(layout, forest.logit_unit, 3);
+  for (int v = 0; v < depth.height(); ++v) {
+    for (int u = 0; u < depth.width(); ++u) {
+      if (depth(u, v) == 0) {
+        EXPECT_EQ(posteriors.at(u, v)[0], 0);
+        continue;
+      }
+      for (const Tree& tree : forest.trees) {
+        const TreeLeaf* leaf = &walk(tree, depth, forest.convention, scaler.at(depth(u, v)), u, v);
+        const auto at = static_cast<std::size_t>(leaf - tree.leaves.data());
+        std::vector<std::int8_t> row(reader.padded(), 0);
+        std::copy_n(tree.logits.data() + at * layout.size(), layout.size(), row.data());
+        reader.add(row.data());
+      }
+      std::vector<std::uint16_t> expected(26), turns(24);
+      reader.read(expected.data(), turns.data());
+      EXPECT_TRUE(std::equal(expected.begin(), expected.end(), posteriors.at(u, v)));
+      EXPECT_TRUE(std::equal(turns.begin(), turns.end(), posteriors.turns_at(u, v)));
+    }
+  }
+}
+
+TEST(ForestLabeller, RefusesLogitsThatDoNotFitTheForest) {
+  Random random(22, 0);
+  const Forest good = forest_with_logits(random);
+  EXPECT_NO_THROW(check(good));
+  Forest forest = good;
+  forest.headings = 7;
+  EXPECT_THROW(check(forest), Error);
+  forest = good;
+  forest.trees[1].logits.clear();
+  EXPECT_THROW(check(forest), Error);
+  forest = good;
+  forest.logit_unit = 0.F;
+  EXPECT_THROW(check(forest), Error);
+  forest = good;
+  forest.logit_unit = -1.F;
+  EXPECT_THROW(check(forest), Error);
+  forest = good;
+  forest.facing = {3, 25, {1.F, 2.F}};
+  EXPECT_THROW(check(forest), Error);
 }
 
 }  // namespace

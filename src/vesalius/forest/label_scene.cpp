@@ -6,6 +6,7 @@
 
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/pixel_grid.h"
+#include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {
 namespace {
@@ -36,11 +37,20 @@ LabelImage uncropped(const LabelImage& part, const Box& box, const Camera& camer
   return out;
 }
 
+/// Returns the box with so many more pixels on all sides, as far as the picture goes.
+Box grown(const Box& box, int by, const Camera& camera) {
+  const int left = std::max(0, box.u - by), top = std::max(0, box.v - by);
+  const int right = std::min(camera.width, box.u + box.width + by);
+  const int bottom = std::min(camera.height, box.v + box.height + by);
+  return {left, top, right - left, bottom - top};
+}
+
 }  // namespace
 
 SceneLabeller::SceneLabeller(std::shared_ptr<const PixelLabeller> labeller, SceneLabelOptions options)
     : labeller_(std::move(labeller)),
       options_(options),
+      sides_(LogitLayout(labeller_->body(), labeller_->has_background(), 0).side),
       by_mode_(options.smooth.mode || !labeller_->has_distributions()) {}
 
 SceneLabels SceneLabeller::label_scene(const Frame& frame, StageClock& clock, SceneLabels used) const {
@@ -92,7 +102,22 @@ LabelImage SceneLabeller::label_person(const SceneLabels& scene, const Frame& fr
                                        const Box& box) const {
   if (box.width == 0) return {frame.camera.width, frame.camera.height, kBackground};
   if (!labeller_->has_background()) return label_alone(frame, person, box);
+  if (!labeller_->facing_model().empty() && scene.smoothed) return label_turned(scene, frame, person, box);
   return choose(scene.posteriors(), frame.depth, options_.label.background_weight, &person, &box);
+}
+
+LabelImage SceneLabeller::label_turned(const SceneLabels& scene, const Frame& frame, const Mask& person,
+                                       const Box& box) const {
+  const Eigen::VectorXf features = facing_features(scene.raw, body().part_count(), person, box);
+  const Box around =
+      grown(box, options_.smooth.window / 2 * spaced(options_.smooth, frame.camera).spacing, frame.camera);
+  const DepthImage depth = crop(frame.depth, around);
+  Posteriors turned, smooth;
+  turn_posteriors(scene.raw, sides_, facing(labeller_->facing_model(), features), around, turned);
+  mean_filter(turned, depth, frame.camera, options_.smooth, smooth);
+  const Mask inside = crop(person, around);
+  const Box within{box.u - around.u, box.v - around.v, box.width, box.height};
+  return uncropped(choose(smooth, depth, options_.label.background_weight, &inside, &within), around, frame.camera);
 }
 
 LabelImage SceneLabeller::label_alone(const Frame& frame, const Mask& person, const Box& box) const {

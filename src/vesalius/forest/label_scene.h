@@ -50,15 +50,18 @@ class SceneLabeller {
 
   /// Returns the likeliest part of each pixel of a person and kBackground elsewhere, except for a rim if labels are
   /// smoothed. `person` is non-zero on the person's pixels, and `box` is the smallest box around them.
+  /// Where leaves have headings, parts are those of the heading that all of the person's pixels tell.
   LabelImage label_person(const SceneLabels& scene, const Frame& frame, const Mask& person, const Box& box) const;
 
  private:
   LabelImage choose(const Posteriors& posteriors, const DepthImage& depth, float background_weight,
                     const Mask* prior = nullptr, const Box* box = nullptr) const;
+  LabelImage label_turned(const SceneLabels& scene, const Frame& frame, const Mask& person, const Box& box) const;
   LabelImage label_alone(const Frame& frame, const Mask& person, const Box& box) const;
 
   std::shared_ptr<const PixelLabeller> labeller_;
   SceneLabelOptions options_;
+  std::vector<std::uint8_t> sides_;
   bool by_mode_;
 };
 

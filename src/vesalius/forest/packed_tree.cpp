@@ -10,6 +10,7 @@
 namespace vesalius {
 namespace {
 
+constexpr std::size_t kLogitRow = 64;  // bytes: a cache line
 constexpr std::size_t kMaxNodes = std::size_t{1} << 26U;
 
 /// Returns the largest absolute difference of two probes in mm.
@@ -56,10 +57,21 @@ class Packer {
     for (TreeLeaf& leaf : packed_.leaves) {
       for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) leaf.label[k] = leaf.probability[k] != 0 ? leaf.label[k] : 0;
     }
+    pack_logits();
     return std::move(packed_);
   }
 
  private:
+  void pack_logits() {
+    if (tree_.logits.empty()) return;
+    const std::size_t size = tree_.logits.size() / tree_.leaves.size();
+    packed_.logit_stride = (size + kLogitRow - 1) / kLogitRow * kLogitRow;
+    packed_.logits.assign(tree_.leaves.size() * packed_.logit_stride, 0);
+    for (std::size_t leaf = 0; leaf < tree_.leaves.size(); ++leaf) {
+      std::copy_n(tree_.logits.data() + leaf * size, size, packed_.logits.data() + leaf * packed_.logit_stride);
+    }
+  }
+
   /// Writes a node or a leaf, as children are numbered in a TreeNode.
   void put(std::size_t place, std::int32_t child) {
     std::uint32_t* words = packed_.words.data() + place * static_cast<std::size_t>(packed_.words_per_node());

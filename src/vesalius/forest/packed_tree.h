@@ -24,6 +24,10 @@ struct PackedTree {
   std::vector<std::uint32_t> words;
   std::vector<TreeLeaf> leaves;  ///< as the tree's, unused slots with label 0: adding all four slots does no harm
 
+  /// Logits of the leaves where they were learned jointly, in rows of `logit_stride` bytes.
+  std::vector<std::int8_t> logits;
+  std::size_t logit_stride = 0;
+
   int words_per_node() const { return wide ? 4 : 2; }
 };
 

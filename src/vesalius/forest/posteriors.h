@@ -17,6 +17,10 @@ struct Posteriors {
   int classes = 0;
   int trees = 0;  ///< sums / (255 * trees) are probabilities
   std::vector<std::uint16_t> sums;
+  int headings = 0;  ///< headings that `turns` tells apart; 0: none
+  /// P(side, heading | x, body) in 1/65535 of every pixel about which the forest was asked: for each pixel the headings
+  /// of the middle parts, of the left ones and of the right ones (leaf_logits.h). Others are undefined.
+  std::vector<std::uint16_t> turns = {};
   /// 1 on settled pixels, around which the labeller was so certain of the background that it gave them a neighbour's
   /// posteriors. They are background, and smoothing leaves them as they are. Empty if the labeller looked at every
   /// pixel.
@@ -27,6 +31,13 @@ struct Posteriors {
                              static_cast<std::size_t>(classes);
   }
   std::uint16_t* at(int u, int v) { return const_cast<std::uint16_t*>(std::as_const(*this).at(u, v)); }
+
+  std::size_t turn_count() const { return 3U * static_cast<std::size_t>(headings); }
+  const std::uint16_t* turns_at(int u, int v) const {
+    return turns.data() +
+           (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)) * turn_count();
+  }
+  std::uint16_t* turns_at(int u, int v) { return const_cast<std::uint16_t*>(std::as_const(*this).turns_at(u, v)); }
 
   /// Takes the size and the settled pixels of `other`. The numbers are undefined.
   void resize_like(const Posteriors& other) {

@@ -1,0 +1,132 @@
+#include "vesalius/forest/facing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "vesalius/base/parallel.h"
+#include "vesalius/forest/leaf_logits.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kRowGrain = 8;
+/// Least probability of a heading that a pixel can tell: what less is depends on chance.
+constexpr float kLeastShare = 0.003F;
+/// A pixel does not count for parts of less than this posterior, which saves time.
+constexpr double kLeastShareOfPart = 0.01;
+/// Parts with less of a person's pixels than this tell nothing of the heading.
+constexpr double kLeastPart = 0.002;
+
+bool has_turns(const Posteriors& posteriors, int u, int v) {
+  return posteriors.settled.empty() || posteriors.settled(u, v) == 0;
+}
+
+}  // namespace
+
+FacingEvidence::FacingEvidence(int parts, int headings)
+    : parts_(parts),
+      headings_(headings),
+      logs_(static_cast<std::size_t>(parts) * headings, 0.0),
+      shares_(parts, 0.0),
+      of_pixel_(headings) {}
+
+void FacingEvidence::add(const std::uint16_t* posteriors, const std::uint16_t* turns) {
+  double body = 0.0;
+  for (int p = 0; p < parts_; ++p) body += posteriors[p];
+  float total = 0.F;
+  for (int i = 0; i < kSides * headings_; ++i) total += static_cast<float>(turns[i]);
+  if (body == 0.0 || total == 0.F) return;
+  float mean = 0.F;
+  for (int h = 0; h < headings_; ++h) {
+    const auto share = static_cast<float>(turns[h] + turns[headings_ + h] + turns[2 * headings_ + h]) / total;
+    of_pixel_[h] = std::log(std::max(share, kLeastShare));
+    mean += of_pixel_[h] / static_cast<float>(headings_);
+  }
+  for (int p = 0; p < parts_; ++p) {
+    const double share = posteriors[p] / body;
+    if (share < kLeastShareOfPart) continue;
+    shares_[p] += share;
+    for (int h = 0; h < headings_; ++h) {
+      logs_[p * headings_ + h] += share * static_cast<double>(of_pixel_[h] - mean);
+    }
+  }
+  pixels_ += 1.0;
+}
+
+Eigen::VectorXf FacingEvidence::features() const {
+  Eigen::VectorXf features = Eigen::VectorXf::Zero(parts_ * headings_ + parts_ + 1);
+  features[features.size() - 1] = 1.F;
+  if (pixels_ == 0.0) return features;
+  for (int p = 0; p < parts_; ++p) {
+    features[parts_ * headings_ + p] = static_cast<float>(shares_[p] / pixels_);
+    if (shares_[p] < kLeastPart * pixels_) continue;
+    for (int h = 0; h < headings_; ++h) {
+      features[p * headings_ + h] = static_cast<float>(logs_[p * headings_ + h] / shares_[p]);
+    }
+  }
+  return features;
+}
+
+Eigen::VectorXf facing_features(const Posteriors& posteriors, int parts, const Mask& person, const Box& box) {
+  FacingEvidence evidence(parts, posteriors.headings);
+  for (int v = box.v; v < box.v + box.height; ++v) {
+    for (int u = box.u; u < box.u + box.width; ++u) {
+      if (person(u, v) == 0 || !has_turns(posteriors, u, v)) continue;
+      evidence.add(posteriors.at(u, v), posteriors.turns_at(u, v));
+    }
+  }
+  return evidence.features();
+}
+
+Eigen::VectorXf facing(const FacingModel& model, const Eigen::VectorXf& features) {
+  const int headings = model.headings;
+  if (model.empty()) return Eigen::VectorXf::Constant(headings, 1.F / static_cast<float>(headings));
+  const Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> weights(
+      model.weights.data(), headings, static_cast<Eigen::Index>(model.features()));
+  Eigen::VectorXf logits = weights * features;
+  logits = (logits.array() - logits.maxCoeff()).exp();
+  return logits / logits.sum();
+}
+
+void turn_posteriors(const Posteriors& posteriors, const std::vector<std::uint8_t>& sides,
+                     const Eigen::VectorXf& facing, const Box& box, Posteriors& out) {
+  const auto parts = static_cast<int>(sides.size());
+  const int headings = posteriors.headings;
+  out.width = box.width;
+  out.height = box.height;
+  out.classes = posteriors.classes;
+  out.trees = posteriors.trees;
+  out.settled = posteriors.settled.empty() ? Mask{} : crop(posteriors.settled, box);
+  out.sums.resize(static_cast<std::size_t>(box.width) * box.height * out.classes);
+  parallel_ranges(box.height, kRowGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < box.width; ++u) {
+        const std::uint16_t* from = posteriors.at(box.u + u, box.v + v);
+        std::uint16_t* to = out.at(u, v);
+        std::copy_n(from, out.classes, to);
+        if (!has_turns(posteriors, box.u + u, box.v + v)) continue;
+        const std::uint16_t* turns = posteriors.turns_at(box.u + u, box.v + v);
+        std::array<float, kSides> before{}, after{};
+        for (int h = 0; h < headings; ++h) {
+          float all = 0.F;
+          for (int s = 0; s < kSides; ++s) all += static_cast<float>(turns[s * headings + h]);
+          if (all == 0.F) continue;
+          for (int s = 0; s < kSides; ++s) {
+            const auto share = static_cast<float>(turns[s * headings + h]);
+            before[s] += share;
+            after[s] += facing[h] * share / all;
+          }
+        }
+        const float total = before[0] + before[1] + before[2];
+        std::array<float, kSides> scale{};
+        for (int s = 0; s < kSides; ++s) scale[s] = before[s] > 0.F ? after[s] * total / before[s] : 0.F;
+        for (int p = 0; p < parts; ++p) {
+          to[p] = static_cast<std::uint16_t>(std::min(65535.F, static_cast<float>(from[p]) * scale[sides[p]] + 0.5F));
+        }
+      }
+    }
+  });
+}
+
+}  // namespace vesalius
