@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "train/fit_facing.h"
 #include "train/local_executor.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
@@ -63,12 +64,16 @@ void visit_options(const std::string& prefix, TrainOptions& options, OptionVisit
                  {"m", 0, 60, "Probes read at most this much nearer or further than the pixel; 0: whatever there is"});
   visit_options(prefix, options.sample, visitor);
   visit_options(prefix, options.grow, visitor);
+  visit_options(prefix, options.leaves, visitor);
 }
 
 void check(const TrainOptions& options) {
   TrainOptions copy = options;
   RangeCheck range;
   visit_options("", copy, range);
+  if (options.leaves.headings != 0 && options.leaves.headings != kHeadings) {
+    throw UsageError(fmt::format("leaf-headings {}, expected 0 or {}", options.leaves.headings, kHeadings));
+  }
 }
 
 FeatureConvention training_convention(const TrainOptions& options) {
@@ -97,7 +102,22 @@ Forest train_forest(Executor& executor, Forest forest, const TrainOptions& optio
     observer.add_hard_negatives(add_hard_negatives(executor, forest, options.sample));
   }
   grow("forest", 0, options.trees);
+  relearn_leaves(executor, forest, options.leaves, store, observer);
   return forest;
+}
+
+void relearn_leaves(Executor& executor, Forest& forest, const LeafLearningOptions& options, TreeStore& store,
+                    TrainObserver& observer) {
+  if (options.rounds == 0 || !forest.has_background) return;
+  const LogitLayout layout(forest.body, forest.has_background, options.headings);
+  const auto end_round = [&](int round, double likelihood) {
+    return observer.end_leaf_round(round, options.rounds, likelihood);
+  };
+  const LeafLogits logits =
+      learn_leaves(*executor.begin_leaves(forest, layout), forest, layout, options, store, end_round);
+  set_logits(forest, layout, logits);
+  forest.facing = fit_facing(executor.facing_samples(forest), layout.parts, layout.headings);
+  check(forest);
 }
 
 Forest grow_forest(const std::vector<LabelledFrame>& frames, const BodyModel& body, const TrainOptions& options) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "train/grow_tree.h"
+#include "train/learn_leaves.h"
 #include "train/training_protocol.h"
 #include "train/tree_store.h"
 #include "vesalius/base/body_model.h"
@@ -20,6 +21,7 @@ struct TrainOptions {
   float probe_clip_m = 0.5F;  ///< probes are clamped to the centre's depth +- this; 0 does not clamp
   SampleOptions sample;
   GrowTreeOptions grow;
+  LeafLearningOptions leaves;
 };
 void visit_options(const std::string& prefix, TrainOptions& options, OptionVisitor& visitor);
 
@@ -53,18 +55,26 @@ class TrainObserver {
   /// Called at the end of the round, also if growing a tree throws.
   virtual void end_round() {}
   virtual void add_hard_negatives(std::size_t /*samples*/) {}
+  /// Called after each round of learning leaves, of which there are `rounds`, with its number from 0 and the geometric
+  /// mean of what the true classes get. Returns false to end the training with Interrupted.
+  virtual bool end_leaf_round(int /*round*/, int /*rounds*/, double /*likelihood*/) { return true; }
 };
 
-/// Runs the loop of training_protocol.h: grows the first round, adds hard negatives, grows the forest. Trees that
-/// `store` has are not grown again. At most `trees_at_once` trees grow at a time, each of which needs memory. Returns
-/// `forest`, which says what is trained, with its trees. Throws Interrupted when the observer stops it, with all
-/// finished trees saved, and Error as grow_tree and the executor do.
+/// Runs the loop of training_protocol.h: grows the first round, adds hard negatives, grows the forest, learns its
+/// leaves together. What `store` has is not done again. At most `trees_at_once` trees grow at a time, each of which
+/// needs memory. Returns `forest`, which says what is trained, with its trees. Throws Interrupted when the observer
+/// stops it, with all finished trees saved, and Error as grow_tree and the executor do.
 Forest train_forest(Executor& executor, Forest forest, const TrainOptions& options, TreeStore& store,
                     TrainObserver& observer, int trees_at_once = 1);
 
 /// Adds background that `forest` takes for a body as samples, at most as many as the options allow. Returns their
 /// number.
 std::size_t add_hard_negatives(Executor& executor, const Forest& forest, const SampleOptions& options);
+
+/// Learns the leaves of a forest together, and how a person's heading follows from them. Does nothing where the options
+/// ask for no rounds or the forest has no background class.
+void relearn_leaves(Executor& executor, Forest& forest, const LeafLearningOptions& options, TreeStore& store,
+                    TrainObserver& observer);
 
 /// Trains a forest on frames in memory, in one call. The forest is the same for any number of threads. Throws Error for
 /// unusable frames, UsageError for an option out of range.

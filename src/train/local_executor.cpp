@@ -1,5 +1,7 @@
 #include "train/local_executor.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "vesalius/base/parallel.h"
@@ -61,6 +63,26 @@ ChildCounts LocalTree::route() {
   return merged(replies, [](ChildCounts& reply) { return std::move(reply); });
 }
 
+LocalLeaves::LocalLeaves(const std::vector<const TrainingSet*>& sets, const Forest& forest, const LogitLayout& layout) {
+  for (const TrainingSet* set : sets) shards_.emplace_back(*set, forest, layout);
+}
+
+LabelCounts LocalLeaves::label_counts() {
+  return merged(shards_, [](const LeafShard& shard) { return shard.label_counts(); });
+}
+
+void LocalLeaves::set_weights(const SampleWeights& weights) {
+  for (LeafShard& shard : shards_) shard.set_weights(weights);
+}
+
+LeafCounts LocalLeaves::leaf_counts(int tree) {
+  return merged(shards_, [&](const LeafShard& shard) { return shard.leaf_counts(tree); });
+}
+
+LeafGradient LocalLeaves::gradient(const LeafLogits& logits, const GradientTask& task) {
+  return merged(shards_, [&](const LeafShard& shard) { return shard.gradient(logits, task); });
+}
+
 LocalExecutor::LocalExecutor(std::vector<TrainingSet*> sets) : sets_(std::move(sets)) {}
 
 std::unique_ptr<TreeExecutor> LocalExecutor::begin_tree(const GrowTreeOptions& options, int tree) {
@@ -78,6 +100,17 @@ std::size_t LocalExecutor::add_hard_negatives(const HardCut& cut) {
   std::size_t added = 0;
   for (std::size_t i = 0; i < sets_.size(); ++i) added += sets_[i]->add_hard_negatives(take_part(rest, hard_[i]));
   return added;
+}
+
+std::unique_ptr<LeafExecutor> LocalExecutor::begin_leaves(const Forest& forest, const LogitLayout& layout) {
+  return std::make_unique<LocalLeaves>(std::vector<const TrainingSet*>(sets_.begin(), sets_.end()), forest, layout);
+}
+
+std::vector<FacingSample> LocalExecutor::facing_samples(const Forest& forest) {
+  std::vector<FacingSample> all;
+  for (const TrainingSet* set : sets_)
+    std::ranges::move(vesalius::facing_samples(*set, forest), std::back_inserter(all));
+  return all;
 }
 
 }  // namespace vesalius

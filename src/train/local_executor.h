@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "train/leaf_shard.h"
 #include "train/training_protocol.h"
 #include "train/training_set.h"
 #include "train/tree_shard.h"
@@ -30,6 +31,21 @@ class LocalTree : public TreeExecutor {
   std::vector<TreeShard> shards_;
 };
 
+/// The shards of learning leaves within this process, asked one after the other; each uses all allowed threads.
+class LocalLeaves : public LeafExecutor {
+ public:
+  /// As LocalTree.
+  LocalLeaves(const std::vector<const TrainingSet*>& sets, const Forest& forest, const LogitLayout& layout);
+
+  LabelCounts label_counts() override;
+  void set_weights(const SampleWeights& weights) override;
+  LeafCounts leaf_counts(int tree) override;
+  LeafGradient gradient(const LeafLogits& logits, const GradientTask& task) override;
+
+ private:
+  std::vector<LeafShard> shards_;
+};
+
 /// All shards of a training within this process.
 class LocalExecutor : public Executor {
  public:
@@ -39,6 +55,8 @@ class LocalExecutor : public Executor {
   std::unique_ptr<TreeExecutor> begin_tree(const GrowTreeOptions& options, int tree) override;
   HardCounts count_hard_negatives(const Forest& forest) override;
   std::size_t add_hard_negatives(const HardCut& cut) override;
+  std::unique_ptr<LeafExecutor> begin_leaves(const Forest& forest, const LogitLayout& layout) override;
+  std::vector<FacingSample> facing_samples(const Forest& forest) override;
 
  private:
   std::vector<TrainingSet*> sets_;

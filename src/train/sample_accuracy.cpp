@@ -5,6 +5,7 @@
 #include <mutex>
 #include <numeric>
 
+#include "train/sample_logits.h"
 #include "train/walk_samples.h"
 #include "vesalius/base/parallel.h"
 
@@ -195,6 +196,22 @@ void HeldOutVotes::add(const Tree& tree) {
 SampleAccuracy HeldOutVotes::accuracy() const {
   const std::size_t classes = set_.class_count();
   return accuracy_of_votes(set_, set_.held_out(), [&](std::size_t i) { return sums_.data() + i * classes; });
+}
+
+SampleAccuracy held_out_accuracy(const Forest& forest, const TrainingSet& set) {
+  if (forest.logit_unit == 0.F) {
+    HeldOutVotes votes(set);
+    for (const Tree& tree : forest.trees) votes.add(tree);
+    return votes.accuracy();
+  }
+  const std::span<const TrainingSample> samples = set.held_out();
+  const std::size_t classes = set.class_count();
+  std::vector<std::uint16_t> posteriors(samples.size() * classes);
+  for_sample_ranges(samples.size(), [&](std::size_t begin, std::size_t end) {
+    SampleLogits logits(forest);
+    for (std::size_t i = begin; i < end; ++i) logits.read(set.frames(), samples[i], posteriors.data() + i * classes);
+  });
+  return accuracy_of_votes(set, samples, [&](std::size_t i) { return posteriors.data() + i * classes; });
 }
 
 std::vector<AccuracyPoint> accuracy_by_trees(const Forest& forest, const TrainingSet& set) {

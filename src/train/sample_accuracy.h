@@ -56,6 +56,9 @@ class HeldOutVotes {
   std::vector<std::uint16_t> sums_;  ///< [sample][class], in 1/255
 };
 
+/// Returns the accuracy of a whole forest on the held-out samples, by its logits if it has them.
+SampleAccuracy held_out_accuracy(const Forest& forest, const TrainingSet& set);
+
 /// The two mean recalls of a part of a forest.
 struct AccuracyPoint {
   double with_background = 0.0;

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "vesalius/base/body_heading.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -47,12 +50,27 @@ PixelPools make_pools(const LabelledFrame& labelled, int part_count, std::vector
   return pools;
 }
 
+/// Returns the heading of every person of a frame.
+std::vector<std::uint8_t> headings_of(const LabelledFrame& labelled, const BodyModel& body) {
+  std::vector<std::uint8_t> headings;
+  for (const std::vector<Eigen::Vector3f>& centres : labelled.parts) {
+    const std::optional<float> yaw = body_yaw(centres, body);
+    headings.push_back(yaw ? static_cast<std::uint8_t>(heading_of_yaw(*yaw, kHeadings)) : kNoHeading);
+  }
+  return headings;
+}
+
 /// Draws pixels from one frame.
 class Drawer {
  public:
-  Drawer(const LabelledFrame& labelled, const PixelPools& pools, const SampleOptions& options, int part_count,
+  Drawer(const LabelledFrame& labelled, const PixelPools& pools, const SampleOptions& options, const BodyModel& body,
          Random& random)
-      : labelled_(labelled), pools_(pools), options_(options), part_count_(part_count), random_(random) {}
+      : labelled_(labelled),
+        pools_(pools),
+        options_(options),
+        part_count_(body.part_count()),
+        headings_(headings_of(labelled, body)),
+        random_(random) {}
 
   std::vector<TrainingSample> ordinary() {
     const auto background =
@@ -112,6 +130,10 @@ class Drawer {
     sample.depth_mm = labelled_.frame.depth(sample.u, sample.v);
     const std::uint8_t label = labelled_.labels(sample.u, sample.v);
     sample.label = label == kBackground ? static_cast<std::uint8_t>(part_count_) : label;
+    if (label != kBackground && labelled_.person.contains(sample.u, sample.v)) {
+      const std::uint8_t person = labelled_.person(sample.u, sample.v);
+      if (person < headings_.size()) sample.heading = headings_[person];
+    }
     return sample;
   }
 
@@ -119,6 +141,7 @@ class Drawer {
   const PixelPools& pools_;
   const SampleOptions& options_;
   int part_count_;
+  std::vector<std::uint8_t> headings_;  ///< [person]
   Random& random_;
 };
 
@@ -147,10 +170,33 @@ DrawnSamples draw_samples(const LabelledFrame& labelled, const BodyModel& body, 
   DrawnSamples drawn;
   drawn.class_pixels.assign(body.parts.size() + 1, 0);
   const PixelPools pools = make_pools(labelled, body.part_count(), drawn.class_pixels, where);
-  Drawer drawer(labelled, pools, options, body.part_count(), random);
+  Drawer drawer(labelled, pools, options, body, random);
   drawn.samples = drawer.ordinary();
   drawn.pool = drawer.pool();
   return drawn;
+}
+
+void draw_people(const LabelledFrame& labelled, const BodyModel& body, std::uint32_t frame,
+                 std::vector<TrainingSample>& samples, std::vector<PersonSamples>& people) {
+  constexpr std::size_t kMost = 400, kFewest = 100;
+  const std::vector<std::uint8_t> headings = headings_of(labelled, body);
+  std::vector<std::vector<TrainingSample>> of_person(headings.size());
+  for (int v = 0; v < labelled.person.height(); ++v) {
+    for (int u = 0; u < labelled.person.width(); ++u) {
+      const std::uint8_t who = labelled.person(u, v);
+      if (who >= headings.size() || headings[who] == kNoHeading || labelled.frame.depth(u, v) == 0) continue;
+      of_person[who].push_back({frame, static_cast<std::int16_t>(u), static_cast<std::int16_t>(v),
+                                labelled.frame.depth(u, v), labelled.labels(u, v), headings[who]});
+    }
+  }
+  for (std::size_t who = 0; who < of_person.size(); ++who) {
+    const std::vector<TrainingSample>& all = of_person[who];
+    if (all.size() < kFewest) continue;
+    const std::size_t count = std::min(all.size(), kMost);
+    const auto begin = static_cast<std::uint32_t>(samples.size());
+    for (std::size_t i = 0; i < count; ++i) samples.push_back(all[i * all.size() / count]);
+    people.push_back({headings[who], begin, static_cast<std::uint32_t>(samples.size())});
+  }
 }
 
 }  // namespace vesalius

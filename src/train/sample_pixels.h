@@ -34,6 +34,11 @@ struct DrawnSamples {
   std::vector<std::uint64_t> class_pixels;  ///< readings of each class, the background last
 };
 
+/// Appends evenly spaced pixels of each person of a frame whose heading is known, at most 400 of each, and who they
+/// are. People of few pixels are left out. `TrainingSample::frame` is `frame`.
+void draw_people(const LabelledFrame& labelled, const BodyModel& body, std::uint32_t frame,
+                 std::vector<TrainingSample>& samples, std::vector<PersonSamples>& people);
+
 /// Draws pixels with a reading, with replacement. A frame without people gives only its share of background, a frame
 /// without background only its share of body. `where` names the frame in errors. Throws Error if images differ in size
 /// or the body lacks a label.

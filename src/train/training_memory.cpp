@@ -35,6 +35,17 @@ std::uint64_t tree_bytes(std::uint64_t samples, int class_count, const TrainOpti
          2 * level_nodes * static_cast<std::uint64_t>(class_count) * sizeof(std::int64_t);
 }
 
+std::uint64_t leaves_bytes(std::uint64_t samples, int class_count, const TrainOptions& options) {
+  if (options.leaves.rounds == 0 || options.sample.background_share <= 0.F) return 0;
+  const auto least = static_cast<std::uint64_t>(std::max(1, options.grow.leaf.min_samples));
+  const std::uint64_t leaves = samples / least + 1;
+  const auto logits = static_cast<std::uint64_t>(class_count + kSides * options.leaves.headings + LogitSoftmax::kLanes);
+  // Logits now and at the start, the gradient, and the samples' weights.
+  const std::uint64_t of_logit = 2 * sizeof(std::int16_t) + sizeof(std::int32_t) + sizeof(float);
+  const std::uint64_t of_tree = samples * sizeof(std::uint32_t) + leaves * logits * of_logit;
+  return of_tree * static_cast<std::uint64_t>(options.trees);
+}
+
 std::vector<FrameGroup> scaled(std::span<const FrameGroup> groups, double share) {
   std::vector<FrameGroup> fewer(groups.begin(), groups.end());
   for (FrameGroup& group : fewer) {
@@ -85,6 +96,7 @@ TrainingMemory training_memory(std::span<const FrameGroup> groups, const TrainOp
   const auto all = static_cast<std::uint64_t>(samples + hard);
   memory.samples = kGrowing * (all + static_cast<std::uint64_t>(pool)) * sizeof(TrainingSample);
   memory.tree = tree_bytes(all, class_count, options);
+  memory.leaves = leaves_bytes(all, class_count, options);
   return memory;
 }
 

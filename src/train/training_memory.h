@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -19,9 +20,10 @@ struct TrainingMemory {
   std::uint64_t depth = 0;    ///< of all frames
   std::uint64_t samples = 0;  ///< samples with hard negatives and their pool
   std::uint64_t tree = 0;     ///< memory for growing one tree
+  std::uint64_t leaves = 0;   ///< memory for learning the leaves of all trees, which begins when they are grown
 
   std::uint64_t total(int trees_at_once) const {
-    return depth + samples + tree * static_cast<std::uint64_t>(trees_at_once);
+    return depth + samples + std::max(tree * static_cast<std::uint64_t>(trees_at_once), leaves);
   }
 };
 TrainingMemory training_memory(std::span<const FrameGroup> groups, const TrainOptions& options, int class_count);

@@ -46,6 +46,19 @@ TEST(TrainingMemory, IsAnUpperBoundOfASetsMemory) {
               0.1 * static_cast<double>(set.samples().size()));
 }
 
+TEST(TrainingMemory, CountsLearningLeavesAfterGrowing) {
+  const FrameGroup group{10000, 100000, false};
+  TrainOptions options;
+  const TrainingMemory grown = training_memory({&group, 1}, options, 26);
+  EXPECT_EQ(grown.leaves, 0U);
+  options.leaves.rounds = 10;
+  const TrainingMemory learned = training_memory({&group, 1}, options, 26);
+  EXPECT_GT(learned.leaves, learned.tree);
+  EXPECT_EQ(learned.total(1), learned.depth + learned.samples + learned.leaves);
+  options.leaves.headings = 0;
+  EXPECT_LT(training_memory({&group, 1}, options, 26).leaves, learned.leaves);
+}
+
 TEST(TrainingFit, IsTheLargestThatFits) {
   const FrameGroup group{40000, 300000, false};
   const TrainOptions options;

@@ -32,6 +32,12 @@
 //     after the first round
 //       count_hard_negatives               background that its trees take for a body, by how much they do
 //       add_hard_negatives                 the worst of it becomes samples
+//   for the leaves of all trees together (learn_leaves.h), if they are learned
+//     label_counts                         how many samples of each class and heading there are; from them weights
+//     for each tree: leaf_counts           weights by class and heading in each leaf, where the logits start
+//     for each round: gradient             over one portion of the frames; every logit takes a step
+//     facing_samples                       what the new leaves tell of held-out people; from them the headings'
+//     regression
 //
 // Replies are integers and merge in any order to the same numbers, and all that depends on the order of samples is said
 // in ranks. So the forest does not depend on how many shards there are, nor on how many threads each of them uses.
@@ -41,6 +47,7 @@
 #include <vector>
 
 #include "train/grow_options.h"
+#include "train/leaf_messages.h"
 #include "train/training_messages.h"
 #include "vesalius/forest/forest.h"
 
@@ -70,6 +77,18 @@ class TreeExecutor {
   virtual ChildCounts route() = 0;
 };
 
+/// The shards' state while the leaves of a forest are learned together. Calls come one at a time. All members throw
+/// Error if a shard cannot be asked.
+class LeafExecutor {
+ public:
+  virtual ~LeafExecutor() = default;
+
+  virtual LabelCounts label_counts() = 0;
+  virtual void set_weights(const SampleWeights& weights) = 0;
+  virtual LeafCounts leaf_counts(int tree) = 0;
+  virtual LeafGradient gradient(const LeafLogits& logits, const GradientTask& task) = 0;
+};
+
 /// All shards of a training.
 class Executor {
  public:
@@ -80,6 +99,10 @@ class Executor {
   virtual HardCounts count_hard_negatives(const Forest& forest) = 0;
   /// Adds the pixels counted last as samples, in each shard its part of the ties (take_part). Returns their number.
   virtual std::size_t add_hard_negatives(const HardCut& cut) = 0;
+  /// Begins to learn the leaves of the forest's trees. Nothing else may go on meanwhile.
+  virtual std::unique_ptr<LeafExecutor> begin_leaves(const Forest& forest, const LogitLayout& layout) = 0;
+  /// Returns the held-out people as a forest with logits sees them, in the order of their frames.
+  virtual std::vector<FacingSample> facing_samples(const Forest& forest) = 0;
 };
 
 }  // namespace vesalius

@@ -64,6 +64,7 @@ void TrainingSet::add(const LabelledFrame& labelled) {
   const std::size_t period = options_.held_out_share > 0.F ? std::lround(1.F / options_.held_out_share) : 0;
   if (period > 0 && index % period == period - 1) {
     held_out_.insert(held_out_.end(), drawn.samples.begin(), drawn.samples.end());
+    draw_people(labelled, body_, frame, people_samples_, people_);
     return;
   }
   samples_.insert(samples_.end(), drawn.samples.begin(), drawn.samples.end());
@@ -123,7 +124,9 @@ SampleCounts TrainingSet::sample_counts() const {
 }
 
 std::size_t TrainingSet::bytes() const {
-  return frames_.bytes() + (samples_.capacity() + pool_.capacity() + held_out_.capacity()) * sizeof(TrainingSample);
+  return frames_.bytes() +
+         (samples_.capacity() + pool_.capacity() + held_out_.capacity() + people_samples_.capacity()) *
+             sizeof(TrainingSample);
 }
 
 }  // namespace vesalius

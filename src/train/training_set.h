@@ -47,10 +47,16 @@ class TrainingSet {
   Forest untrained_forest() const;
 
   const FrameStore& frames() const { return frames_; }
+  /// The number of frames in the sets before this one.
+  std::size_t first_frame() const { return first_frame_; }
   /// The samples for learning, ordered by frame.
   std::span<const TrainingSample> samples() const { return samples_; }
   /// The samples for measuring accuracy, ordered by frame. `samples` has none of their frames.
   std::span<const TrainingSample> held_out() const { return held_out_; }
+
+  /// The people of held-out frames whose heading is known, and their samples.
+  std::span<const PersonSamples> held_out_people() const { return people_; }
+  std::span<const TrainingSample> people_samples() const { return people_samples_; }
 
   /// The pixels of each class in all frames of learning, the background last.
   std::span<const std::uint64_t> class_pixels() const { return class_pixels_; }
@@ -65,7 +71,8 @@ class TrainingSet {
   std::uint64_t seed_;
   std::size_t first_frame_;
   FrameStore frames_;
-  std::vector<TrainingSample> samples_, pool_, held_out_;
+  std::vector<TrainingSample> samples_, pool_, held_out_, people_samples_;
+  std::vector<PersonSamples> people_;
   std::vector<std::uint32_t> pool_shares_;  ///< shares of the parts, in 1/255 over all trees; 0 up to half
   std::vector<std::uint64_t> class_pixels_;
 };

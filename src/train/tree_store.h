@@ -4,12 +4,19 @@
 #include <mutex>
 #include <optional>
 
+#include "train/leaf_messages.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {
 
-/// Keeps the finished trees of a training, so that an interrupted run can be continued. All members may be called from
-/// several threads at once.
+/// Where the learning of leaves is.
+struct LeafState {
+  int rounds = 0;  ///< done
+  LeafLogits logits;
+};
+
+/// Keeps the finished trees of a training, and the leaves in learning, so that an interrupted run can be continued. The
+/// members about trees may be called from several threads at once.
 class TreeStore {
  public:
   virtual ~TreeStore() = default;
@@ -17,6 +24,10 @@ class TreeStore {
   virtual std::optional<Tree> load(int number) = 0;
   /// Saves a tree. Throws Error if it cannot.
   virtual void save(int number, const Tree& tree) = 0;
+  /// Returns what was saved last, or nothing if nothing was or it cannot be read any more.
+  virtual std::optional<LeafState> load_leaves() = 0;
+  /// Replaces what was saved before. Throws Error if it cannot.
+  virtual void save_leaves(const LeafState& state) = 0;
 };
 
 /// Keeps trees in memory.
@@ -31,10 +42,13 @@ class MemoryTreeStore : public TreeStore {
     const std::scoped_lock lock(mutex_);
     trees_[number] = tree;
   }
+  std::optional<LeafState> load_leaves() override { return leaves_; }
+  void save_leaves(const LeafState& state) override { leaves_ = state; }
 
  private:
   std::mutex mutex_;
   std::map<int, Tree> trees_;
+  std::optional<LeafState> leaves_;
 };
 
 }  // namespace vesalius

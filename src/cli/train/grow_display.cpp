@@ -98,7 +98,28 @@ void TrainDisplay::add_hard_negatives(std::size_t samples) {
   if (shown_) say(fmt::format("{} hard negatives", samples));
 }
 
+bool TrainDisplay::end_leaf_round(int round, int rounds, double likelihood) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!leaves_) {
+    leaves_.emplace(shown_);
+    leaves_start_ = now;  // the first round is not in the rate: trees are walked before it
+    first_leaf_round_ = round;
+  }
+  leaf_rounds_ = round + 1;
+  all_leaf_rounds_ = rounds;
+  const double spent_s = std::chrono::duration<double>(now - leaves_start_).count();
+  const double per_round_s = round > first_leaf_round_ ? spent_s / (round - first_leaf_round_) : 0.0;
+  if (leaves_->due() || leaf_rounds_ == rounds) {
+    leaves_->show(fmt::format("leaves: {} of {} rounds, true classes at {:.3f}, {:.1f} s a round, {:.0f} s left",
+                              leaf_rounds_, rounds, likelihood, per_round_s, per_round_s * (rounds - leaf_rounds_)));
+  }
+  if (leaf_rounds_ == rounds) leaves_.reset();
+  return !interrupted();
+}
+
 std::string TrainDisplay::done() const {
+  if (all_leaf_rounds_ > 0)
+    return fmt::format("the trees and {} of {} rounds of leaves", leaf_rounds_, all_leaf_rounds_);
   return fmt::format("{} of {} trees of the {}", round_.trees - round_.missing + grown_, round_.trees, round_.name);
 }
 

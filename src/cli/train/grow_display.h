@@ -74,9 +74,10 @@ class TrainDisplay : public TrainObserver {
   void add_tree(const Tree& tree) override;
   void end_round() override;
   void add_hard_negatives(std::size_t samples) override;
+  bool end_leaf_round(int round, int rounds, double likelihood) override;
 
   const GrowTotals& totals() const { return totals_; }
-  /// Returns the progress of the last round: "3 of 8 trees of the forest".
+  /// Returns what is done of the last round: "3 of 8 trees of the forest", "the trees and 5 of 24 rounds of leaves".
   std::string done() const;
 
  private:
@@ -88,6 +89,11 @@ class TrainDisplay : public TrainObserver {
   std::optional<GrowDisplay> display_;
   std::atomic<int> grown_{0};  ///< trees of the current round that this run has grown
   GrowTotals totals_;
+  std::optional<StatusLine> leaves_;  ///< while leaves are learned
+  std::chrono::steady_clock::time_point leaves_start_;
+  int leaf_rounds_ = 0;        ///< rounds of leaves done
+  int all_leaf_rounds_ = 0;    ///< rounds of leaves to do; 0 before leaves are learned
+  int first_leaf_round_ = -1;  ///< of this run
 };
 
 }  // namespace vesalius::cli

@@ -26,7 +26,7 @@ struct Arguments {
   explicit Arguments(CLI::App& command) : train_flags(command) {}
 
   TrainSources sources;
-  std::string out, options_file, report;
+  std::string out, options_file, report, trees_of;
   OptionFlags<TrainOptions> train_flags;
   double memory_gib = 0.0;
   int threads = 0;
@@ -49,6 +49,9 @@ void check(const Arguments& arguments, const TrainOptions& options) {
   std::error_code ignored;
   if (written_directly(arguments.out) || std::filesystem::is_directory(arguments.out, ignored)) {
     throw UsageError(arguments.out + ": expected the name of a file to write");
+  }
+  if (!arguments.trees_of.empty() && (options.leaves.rounds == 0 || options.sample.background_share <= 0.F)) {
+    throw UsageError("--trees-of keeps the trees and learns leaves: expected --leaf-rounds above 0 and a background");
   }
   if (arguments.curves && arguments.report.empty()) throw UsageError("--curves expects --report, where they go");
   if (!arguments.report.empty() && options.sample.held_out_share <= 0.F) {
@@ -75,6 +78,7 @@ void run(const Arguments& arguments) {
   if (arguments.estimate) return print(estimate_text(inputs, options, plan));
   watch_interrupts();
   train({.out = arguments.out,
+         .trees_of = arguments.trees_of,
          .report = arguments.report,
          .curves = arguments.curves,
          .restart = arguments.restart,
@@ -136,6 +140,9 @@ void add_train(CLI::App& program) {
       ->type_name("FILE")
       ->group(group);
   command->add_option("--options", arguments->options_file, "TOML file of options; `vesalius options train` prints one")
+      ->type_name("FILE")
+      ->group(group);
+  command->add_option("--trees-of", arguments->trees_of, "Keep the trees of this model and only learn leaves anew")
       ->type_name("FILE")
       ->group(group);
   for (const char* name : {"--trees", "--depth", "--candidates", "--pixels"}) {

@@ -6,6 +6,7 @@
 
 #include "assets/sha256.h"
 #include "io/files/options_file.h"
+#include "io/model/model_file.h"
 
 namespace vesalius::cli {
 namespace {
@@ -34,6 +35,13 @@ std::string without_help(const std::string& toml, std::string_view indent) {
   return text;
 }
 
+/// Returns the text with every line as a comment.
+std::string commented(const std::string& text) {
+  std::string all;
+  for (const std::string& line : lines_of(text)) all.append("#   ").append(line).append("\n");
+  return all;
+}
+
 std::string sha256_of(const std::string& text) {
   Sha256 sum;
   sum.update(text);
@@ -43,7 +51,7 @@ std::string sha256_of(const std::string& text) {
 }  // namespace
 
 std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
-                         const std::vector<BackgroundFacts>& backgrounds) {
+                         const std::vector<BackgroundFacts>& backgrounds, const Forest* trees_of) {
   const auto all = [&](OptionVisitor& visitor) { visit_options("", options, visitor); };
   std::string text = without_help(options_toml(all), "");
   text += fmt::format("# body {}: sha256 {}\n", inputs.body().name, sha256_of(inputs.body().toml));
@@ -55,6 +63,10 @@ std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
     text += fmt::format("# data {}: {} frames, seed {}, hash {:016x}, made by\n", i + 1, input.frames, input.seed,
                         input.hash);
     text += without_help(input.made_by, "#   ");
+  }
+  if (trees_of != nullptr) {
+    text += fmt::format("# trees of a model of checksum {}, made by\n{}", model_checksum(serialise_model(*trees_of)),
+                        commented(trees_of->recipe));
   }
   return fmt::format("# vesalius train {}\n# key {}\n{}", VESALIUS_VERSION, sha256_of(text), text);
 }

@@ -12,7 +12,7 @@ namespace vesalius::cli {
 /// its hash and, as comments, the recipe that makes it. Folders are not named, so the same data in another place gives
 /// the same text. Equal texts give equal forests. `vesalius train --options` reads the text.
 std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
-                         const std::vector<BackgroundFacts>& backgrounds);
+                         const std::vector<BackgroundFacts>& backgrounds, const Forest* trees_of = nullptr);
 
 /// Returns the first line in which two such texts differ, as "`candidates = 50` before, now `candidates = 60`"; empty
 /// if they are equal.

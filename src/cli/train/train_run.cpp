@@ -24,6 +24,19 @@ namespace {
 constexpr double kMiB = 1024.0 * 1024.0;
 constexpr double kGiB = 1024.0 * kMiB;
 
+/// Returns the forest whose trees are kept, if there is one, or throws unless it has the inputs' parts and a
+/// background.
+std::optional<Forest> kept_trees(const TrainRun& run, const TrainInputs& inputs) {
+  if (run.trees_of.empty()) return std::nullopt;
+  Forest forest = load_model(run.trees_of);
+  if (!std::ranges::equal(forest.body.parts, inputs.body().parts, {}, &BodyPart::name, &BodyPart::name)) {
+    throw Error(run.trees_of + ": has other body parts than the frames, expected the same");
+  }
+  if (!forest.has_background)
+    throw Error(run.trees_of + ": has no background class, expected one to learn leaves with");
+  return forest;
+}
+
 /// Trains one forest and holds what its steps share.
 class Training {
  public:
@@ -31,7 +44,8 @@ class Training {
       : run_(run),
         options_(options),
         inputs_(inputs),
-        set_(inputs.body(), training_convention(options), options.sample,
+        trees_of_(kept_trees(run, inputs)),
+        set_(inputs.body(), trees_of_ ? trees_of_->convention : training_convention(options), options.sample,
              static_cast<std::uint64_t>(options.grow.seed)) {}
 
   void run() {
@@ -63,7 +77,7 @@ class Training {
     };
     const std::vector<BackgroundFacts> backgrounds = inputs_.read_backgrounds(add);
     background_frames_ = set_.frames().size();
-    recipe_ = train_recipe(options_, inputs_, backgrounds);
+    recipe_ = train_recipe(options_, inputs_, backgrounds, trees_of_ ? &*trees_of_ : nullptr);
     session_.emplace(run_.out + ".work", untrained_forest(), run_.restart);
     inputs_.read({}, add);
     figures_.reading_s = progress.seconds();
@@ -103,7 +117,9 @@ class Training {
     LocalExecutor executor({&set_});
     TrainDisplay display(set_, options_.grow.leaf.max_depth, run_.shown);
     try {
-      Forest forest = train_forest(executor, untrained_forest(), options_, *session_, display, run_.trees_at_once);
+      Forest forest =
+          trees_of_ ? learn_again(executor, display)
+                    : train_forest(executor, untrained_forest(), options_, *session_, display, run_.trees_at_once);
       figures_.grown = display.totals();
       return forest;
     } catch (const Interrupted&) {
@@ -112,10 +128,17 @@ class Training {
     }
   }
 
+  /// Learns the leaves of the kept trees. Background that their old leaves take for a body is learned from as well.
+  Forest learn_again(LocalExecutor& executor, TrainDisplay& display) {
+    Forest forest = *trees_of_;
+    forest.recipe = recipe_;
+    if (options_.hard_trees > 0) display.add_hard_negatives(add_hard_negatives(executor, forest, options_.sample));
+    relearn_leaves(executor, forest, options_.leaves, *session_, display);
+    return forest;
+  }
+
   void summarise(const Forest& forest) {
-    HeldOutVotes votes(set_);
-    for (const Tree& tree : forest.trees) votes.add(tree);
-    figures_.accuracy = votes.accuracy();
+    figures_.accuracy = held_out_accuracy(forest, set_);
     figures_.model = run_.out;
     figures_.model_bytes = std::filesystem::file_size(run_.out);
     figures_.threads = thread_count();
@@ -140,6 +163,7 @@ class Training {
   const TrainRun& run_;
   const TrainOptions& options_;
   const TrainInputs& inputs_;
+  std::optional<Forest> trees_of_;
   TrainingSet set_;
   std::size_t background_frames_ = 0;
   std::string recipe_;

@@ -8,9 +8,10 @@
 
 namespace vesalius::cli {
 
-/// The settings of a training that do not influence the forest.
+/// The settings of a training that are no options.
 struct TrainRun {
   std::string out;              ///< model to write; finished trees are kept in OUT.work beside it
+  std::string trees_of;         ///< model whose trees are kept, so that only leaves are learned; empty for none
   std::string report;           ///< folder of the report; empty for none
   bool curves = false;          ///< whether the report has curves
   bool restart = false;         ///< whether to discard the trees of an earlier run

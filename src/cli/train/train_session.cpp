@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -9,9 +10,13 @@
 
 #include "cli/train/train_recipe.h"
 #include "io/files/atomic_file.h"
+#include "io/files/byte_stream.h"
+#include "io/files/packed.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
+#include "io/model/model_trees.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
 
 namespace vesalius::cli {
 namespace {
@@ -20,7 +25,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRecipeFile = "recipe.toml";
 
-bool is_ours(const std::string& name) { return name.starts_with("tree-") || name.starts_with(kRecipeFile); }
+constexpr const char* kLeavesFile = "leaves";
+constexpr int kLeavesLevel = 1;  ///< of compression: they are written every few rounds
+constexpr std::size_t kMostStride = 4096;
+
+bool is_ours(const std::string& name) {
+  return name.starts_with("tree-") || name.starts_with(kRecipeFile) || name.starts_with(kLeavesFile);
+}
 
 /// Returns whether a killed run left this file half written.
 bool is_leftover(const std::string& name) { return name.find(".tmp") != std::string::npos; }
@@ -91,6 +102,46 @@ void TrainSession::save(int number, const Tree& tree) {
   Forest one_tree = forest_;
   one_tree.trees = {tree};
   save_model(one_tree, path(number));
+}
+
+std::string TrainSession::leaves_path() const { return (fs::path(folder_) / kLeavesFile).string(); }
+
+std::optional<LeafState> TrainSession::load_leaves() {
+  std::error_code ignored;
+  if (!fs::exists(leaves_path(), ignored)) return std::nullopt;
+  try {
+    const std::string bytes = read_file(leaves_path());
+    ByteReader in(bytes, leaves_path());
+    LeafState state;
+    state.rounds = static_cast<int>(in.number<std::uint32_t>("rounds"));
+    state.logits.stride = in.number<std::uint32_t>("stride");
+    const auto trees = in.number<std::uint32_t>("trees");
+    if (state.logits.stride > kMostStride) in.fail("stride");
+    for (std::uint32_t t = 0; t < trees; ++t) {
+      const std::string raw = read_packed(in, 0, kMaxModelNodes * kMostStride, "logits");
+      std::vector<std::int16_t>& logits = state.logits.of_trees.emplace_back(raw.size() / sizeof(std::int16_t));
+      std::memcpy(logits.data(), raw.data(), logits.size() * sizeof(std::int16_t));
+    }
+    in.expect_end();
+    return state;
+  } catch (const Error&) {
+    return std::nullopt;  // damaged leaves are learned again
+  }
+}
+
+void TrainSession::save_leaves(const LeafState& state) {
+  std::vector<std::string> packed(state.logits.of_trees.size());
+  parallel_for(static_cast<int>(packed.size()), [&](int t) {
+    const std::vector<std::int16_t>& logits = state.logits.of_trees[t];
+    packed[t] =
+        pack({reinterpret_cast<const char*>(logits.data()), logits.size() * sizeof(std::int16_t)}, kLeavesLevel);
+  });
+  ByteWriter out;
+  out.number(static_cast<std::uint32_t>(state.rounds));
+  out.number(static_cast<std::uint32_t>(state.logits.stride));
+  out.number(static_cast<std::uint32_t>(packed.size()));
+  for (const std::string& tree : packed) out.bytes() += tree;
+  write_file_atomically(leaves_path(), out.bytes());
 }
 
 void TrainSession::remove() {

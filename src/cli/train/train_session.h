@@ -23,6 +23,9 @@ class TrainSession : public TreeStore {
   std::optional<Tree> load(int number) override;
   /// Writes a model of one tree atomically. Throws Error if it cannot be written.
   void save(int number, const Tree& tree) override;
+  std::optional<LeafState> load_leaves() override;
+  /// Writes the state atomically. Throws Error if it cannot be written.
+  void save_leaves(const LeafState& state) override;
   /// Removes the trees and the folder, which ends the session.
   void remove();
 
@@ -30,6 +33,7 @@ class TrainSession : public TreeStore {
 
  private:
   std::string path(int number) const;
+  std::string leaves_path() const;
   void tidy(bool all) const;
 
   std::string folder_;
