@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/detector_flags.h"
 #include "cli/interrupts.h"
 #include "cli/progress.h"
 #include "cli/source_flags.h"
@@ -20,20 +21,25 @@ constexpr const char* kModelExtension = ".forest";
 
 struct Arguments {
   std::vector<std::string> paths;
-  std::string format;
+  std::string format, body;
   SourceOptions camera;
   WriteOptions write;
   bool quiet = false;
 };
 
-void convert_model(std::vector<std::string> paths, bool quiet) {
+void convert_model(std::vector<std::string> paths, const std::string& body, bool quiet) {
   const std::string out = paths.back();
   paths.pop_back();
   if (!out.ends_with(kModelExtension)) {
     throw UsageError(
         fmt::format("{}: expected a name that ends in {} (frames are converted with --to)", out, kModelExtension));
   }
-  const Forest forest = import_text_trees(paths);
+  const bool is_model = paths.front().ends_with(kModelExtension);
+  if (is_model && (paths.size() > 1 || body.empty())) {
+    throw UsageError(fmt::format("{}: expected --body and one other name, since it is a model", paths.front()));
+  }
+  Forest forest = is_model ? load_model(paths.front()) : import_text_trees(paths);
+  if (!body.empty()) replace_body(forest, body);
   save_model(forest, out);
   if (!quiet) say(fmt::format("{}: {} trees", out, forest.trees.size()));
 }
@@ -62,15 +68,20 @@ void convert_frames(const Arguments& arguments) {
 }  // namespace
 
 void add_convert(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("convert", "Turn text trees into a model, or frames into another layout");
+  CLI::App* command = program.add_subcommand(
+      "convert", "Turn text trees into a model, change a model's body, or turn frames into another layout");
   const auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option("PATH", arguments->paths,
-                   "Text trees (.txt or .txt.bz2) and the .forest to write; with --to a source and a folder")
+      ->add_option(
+          "PATH", arguments->paths,
+          "Text trees (.txt or .txt.bz2) or a model, and the .forest to write; with --to a source and a folder")
       ->required()
       ->expected(2, 257);
+  command->add_option("--body", arguments->body, "Body model to put into the .forest, for the same parts")
+      ->type_name("FILE");
   command->add_option("--to", arguments->format, "Write frames in this layout")
-      ->check(CLI::IsMember({"folder", "tum", "pcd"}));
+      ->check(CLI::IsMember({"folder", "tum", "pcd"}))
+      ->excludes("--body");
   command
       ->add_option("--rate", arguments->write.frame_rate,
                    "Frames per second, for --to tum of a source that does not know its frames' times")
@@ -81,11 +92,12 @@ void add_convert(CLI::App& program) {
   command->footer(R"(
 Examples:
   vesalius convert tree_1.txt.bz2 tree_2.txt.bz2 released.forest
+  vesalius convert old.forest new.forest --body data/bodies/paper25.toml
   vesalius convert tum:walking frames/ --to folder
   vesalius convert frames/ as_tum/ --to tum --rate 30)");
   command->callback([arguments] {
     if (arguments->format.empty()) {
-      convert_model(arguments->paths, arguments->quiet);
+      convert_model(arguments->paths, arguments->body, arguments->quiet);
     } else {
       convert_frames(*arguments);
     }

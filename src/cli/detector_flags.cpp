@@ -13,9 +13,6 @@
 #include "vesalius/base/error.h"
 
 namespace vesalius::cli {
-namespace {
-
-/// Replaces the forest's body by one with the same parts but another kinematic tree or other joints.
 void replace_body(Forest& forest, const std::string& path) {
   BodyModel body = parse_body_model(read_file(path), path);
   const auto& trained = forest.body.parts;
@@ -28,8 +25,6 @@ void replace_body(Forest& forest, const std::string& path) {
   }
   forest.body = std::move(body);
 }
-
-}  // namespace
 
 DetectOptions detect_options(const std::string& options_file, const OptionFlags<DetectOptions>& flags) {
   DetectOptions options;

@@ -4,6 +4,7 @@
 
 #include "cli/option_flags.h"
 #include "vesalius/detect.h"
+#include "vesalius/forest/forest.h"
 
 namespace CLI {
 class App;
@@ -14,6 +15,10 @@ namespace vesalius::cli {
 /// Returns the default options, changed first by the TOML file (if the path is not empty) and then by the flags. Throws
 /// Error for a file that cannot be used and UsageError for options outside their range.
 DetectOptions detect_options(const std::string& options_file, const OptionFlags<DetectOptions>& flags);
+
+/// Replaces the forest's body by that of a file with the same parts but another kinematic tree or other joints. Throws
+/// Error for a file that cannot be used or has other parts.
+void replace_body(Forest& forest, const std::string& path);
 
 /// The flags that define a detector: --model, --body, --options and one for every detector option.
 class DetectorFlags {

@@ -127,6 +127,21 @@ TEST_F(Commands, ConvertTurnsTextTreesIntoAModel) {
   EXPECT_FALSE(std::filesystem::exists(path("bad.forest")));
 }
 
+TEST_F(Commands, ConvertPutsAnotherBodyIntoAModel) {
+  std::string text = paper_body().toml;
+  text.replace(text.find("length = "), 9, "length = 1");
+  write("longer.toml", text);
+  const Outcome run =
+      run_program("convert -q " + model() + " " + path("longer.forest") + " --body " + path("longer.toml"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Forest forest = load_model(path("longer.forest"));
+  EXPECT_EQ(forest.body.toml, text);
+  EXPECT_EQ(forest.trees, load_model(model()).trees);
+  const Outcome refused = run_program("convert " + model() + " " + path("same.forest"));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("expected --body and one other name"));
+}
+
 TEST_F(Commands, ConvertKeepsThePeopleInFrames) {
   const std::string flags = " -q --json - -m " + model();
   const auto people = [&](const std::string& source) {
