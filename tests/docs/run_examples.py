@@ -93,7 +93,10 @@ class Wrapper:
                 self.place(name, "evaluation.json")
         if command == "convert":
             for name in self.positional(words)[:-1]:
-                self.place(name, "walking" if name.startswith("tum:") else "frames" if "--to" in words else "tree.txt")
+                if name.endswith(".forest"):
+                    self.place(name, "some.forest")
+                else:
+                    self.place(name, "walking" if name.startswith("tum:") else "frames" if "--to" in words else "tree.txt")
         if command == "info":
             for name in self.positional(words):
                 self.place(name, "some.forest")
