@@ -75,19 +75,6 @@ void check_truth(const TrueFrame& frame, const BodyModel& body) {
                           truth.parts.size(), truth.joints.size()));
 }
 
-/// Returns a number of its own for each person where the true label is a part, 1 where people are not known apart;
-/// empty where no labels are known.
-Mask labelled_people(const FrameTruth& truth) {
-  constexpr std::uint8_t kMost = 254;
-  Mask people(truth.labels.width(), truth.labels.height(), 0);
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    if (truth.labels[i] == kBackground) continue;
-    const bool known = !truth.person.empty() && truth.person[i] < kMost;
-    people[i] = static_cast<std::uint8_t>(known ? truth.person[i] + 1 : 1);
-  }
-  return people;
-}
-
 /// Returns the found person for each true one, or null if that one was missed.
 std::vector<const Person*> found_of_each(const std::vector<Person>& people, const std::vector<Match>& matches,
                                          int expected) {

@@ -6,13 +6,15 @@
 
 #include "capsule/capsule_person.h"
 #include "train/grow_forest.h"
-#include "train/local_executor.h"
 #include "train/sample_accuracy.h"
+#include "train/test_training.h"
 #include "vesalius/base/random.h"
 #include "vesalius/base/test_threads.h"
 
 namespace vesalius {
 namespace {
+
+using test::train_over;
 
 constexpr Camera kCamera{80, 60, 66.F, 66.F, 39.5F, 29.5F};
 
@@ -66,21 +68,6 @@ class Listener : public TrainObserver {
  private:
   int stop_after_;
 };
-
-/// Trains on shards; shard i has the frames [ends[i - 1], ends[i]).
-Forest train_over(const std::vector<int>& ends, const std::vector<LabelledFrame>& frames, const TrainOptions& options,
-                  TreeStore& store, Listener& listener) {
-  std::vector<TrainingSet> sets;
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    const int begin = i > 0 ? ends[i - 1] : 0;
-    sets.emplace_back(paper_body(), training_convention(options), options.sample, 1, begin);
-    for (int f = begin; f < ends[i]; ++f) sets.back().add(frames[f]);
-  }
-  std::vector<TrainingSet*> shards;
-  for (TrainingSet& set : sets) shards.push_back(&set);
-  LocalExecutor executor(shards);
-  return train_forest(executor, sets.front().untrained_forest(), options, store, listener);
-}
 
 Forest train_over(const std::vector<int>& ends, const std::vector<LabelledFrame>& frames, const TrainOptions& options) {
   MemoryTreeStore store;

@@ -52,7 +52,8 @@ int run(int argc, char** argv) {
       throw Error(fmt::format("{}: expected frames labelled with the parts of the body {}", uri, body.name));
     }
     while (const auto frame = source->next()) {
-      lengths.add(*frame, detector ? detector->label(frame->frame, &frame->truth.mask).inside : frame->truth.labels);
+      const Mask people = labelled_people(frame->truth);
+      lengths.add(*frame, detector ? detector->label(frame->frame, &people).inside : frame->truth.labels);
     }
   }
   print(body, lengths.figures());

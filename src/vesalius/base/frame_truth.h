@@ -41,4 +41,8 @@ struct TrueFrame {
   FrameTruth truth;
 };
 
+/// Returns a number of its own for each person where the true label is a part, 1 where people are not known apart;
+/// empty where no labels are known.
+Mask labelled_people(const FrameTruth& truth);
+
 }  // namespace vesalius
