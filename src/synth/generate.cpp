@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -20,7 +21,7 @@ namespace {
 
 /// The purpose of a stream of random numbers. Each purpose has a stream of its own, so that a change of one leaves the
 /// others unchanged.
-enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise, cut_out, filter };
+enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise, cut_out, filter, matching };
 constexpr std::uint64_t kPurposes = 8;
 
 Random random_for(std::uint64_t seed, Purpose purpose, std::uint64_t index) {
@@ -188,7 +189,12 @@ LabelledFrame Generator::frame(std::uint64_t index) const {
   result.frame.camera = s.sensor.camera;
   const Random noise = random_for(s.seed, Purpose::noise, index);
   Image<std::uint32_t> source;
-  result.frame.depth = sense(seen, s.sensor, noise, &source);
+  Sensor sensor = s.sensor;
+  if (s.recipe.sensor.matching_max > 1.F) {
+    const double share = random_for(s.seed, Purpose::matching, index).uniform();
+    sensor.matching_px *= static_cast<float>(std::pow(s.recipe.sensor.matching_max, share));
+  }
+  result.frame.depth = sense(seen, sensor, noise, &source);
   Random filter = random_for(s.seed, Purpose::filter, index);
   if (filter.uniform() < s.recipe.sensor.filter.share) {
     apply(draw_filter(s.recipe.sensor.filter, filter), result.frame.depth, &source);

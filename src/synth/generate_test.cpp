@@ -81,6 +81,38 @@ TEST(Generate, FiltersTheGivenShareOfPictures) {
   EXPECT_LE(changed, 18);
 }
 
+TEST(Generate, MakesStereoErrorsLargerUpToTheGivenFactor) {
+  Recipe recipe = small_recipe();
+  recipe.sensor.preset = "d435";
+  const auto errors_mm = [&](float matching_max) {
+    recipe.sensor.matching_max = matching_max;
+    const Generator noisy(recipe, {}, paper_body(), 7);
+    std::vector<double> mean;
+    for (std::uint64_t i = 0; i < 8; ++i) {
+      double sum = 0.0, pixels = 0.0;
+      const DepthImage depth = noisy.frame(i).frame.depth;
+      for (int v = 0; v < depth.height(); ++v) {
+        for (int u = 2; u < depth.width(); ++u) {
+          if (depth(u, v) == 0 || depth(u - 1, v) == 0) continue;
+          sum += std::min(200, std::abs(depth(u, v) - depth(u - 1, v)));
+          pixels += 1.0;
+        }
+      }
+      mean.push_back(sum / pixels);
+    }
+    return mean;
+  };
+  const std::vector<double> usual = errors_mm(1.F), larger = errors_mm(8.F);
+  double most = 0.0, least = 100.0;
+  for (std::size_t i = 0; i < usual.size(); ++i) {
+    EXPECT_GE(larger[i], 0.95 * usual[i]);
+    most = std::max(most, larger[i] / usual[i]);
+    least = std::min(least, larger[i] / usual[i]);
+  }
+  EXPECT_GT(most, 2.0);
+  EXPECT_LT(least, 1.6);
+}
+
 // Labels: threads
 TEST(GenerateThreads, GiveTheSameFramesForAnyNumber) {
   const Generator generator(small_recipe(), {}, paper_body(), 7);

@@ -44,6 +44,7 @@ struct SensorOptions {
   float fx = 0.F, fy = 0.F, cx = -1.F, cy = -1.F;  ///< pixels at that size; fx 0 and cx, cy < 0 take the preset's
   bool noise = true;
   bool colour = true;
+  float matching_max = 1.F;   ///< a stereo camera's matching errors grow by up to this factor, drawn for each frame
   DepthFilterOptions filter;  ///< applied with and without noise
 };
 
