@@ -20,6 +20,7 @@
 #include "cli/text_sink.h"
 #include "dataset/truth_folder.h"
 #include "dataset/truth_headings.h"
+#include "dataset/turned_truth.h"
 #include "evaluation/ablation_report.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
@@ -54,6 +55,7 @@ struct Arguments {
   std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_score;
   OptionFlags<DetectOptions> detector_flags;
   int step = 1;
+  double turn_deg = 0.0;
   int threads = 0;
   bool labels_only = false;
   bool ablation = false;
@@ -138,6 +140,7 @@ SetResult evaluate_shown(const Request& request, const Arguments& arguments, con
     const std::string set = whole_path(request.set.source).filename().string();
     frames = with_headings(std::move(frames), HeadingTable::read(arguments.headings_file), set);
   }
+  if (arguments.turn_deg != 0.0) frames = with_turn(std::move(frames), arguments.turn_deg);
   for (const std::string& note : frames->notes()) say(fmt::format("note: {}: {}", request.set.name, note));
   Progress progress(-1, !arguments.quiet);
   EvaluationHooks hooks;
@@ -238,6 +241,10 @@ void add_evaluate(CLI::App& program) {
   command->add_option("--step", arguments->step, "Only the first of every N frames")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxStep));
+  command
+      ->add_option("--turn", arguments->turn_deg, "Turn every picture clockwise by so much, as a rolled camera sees it")
+      ->type_name("DEGREES")
+      ->check(CLI::Range(-180.0, 180.0));
   CLI::Option* labels_only = command->add_flag("--labels-only", arguments->labels_only,
                                                "Only the pixel labels of the first pass: much faster");
   command
