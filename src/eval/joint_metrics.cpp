@@ -238,16 +238,4 @@ double JointCurve::share(int cm) const {
   return joints > 0 ? static_cast<double>(within.at(cm - 1)) / static_cast<double>(joints) : kNaN;
 }
 
-std::vector<JointOffset> joint_offsets(const JointPair& pair, const std::vector<std::string>& names,
-                                       const JointSet& set) {
-  std::vector<JointOffset> offsets;
-  for (const std::size_t j : common_joints(pair).joints) {
-    const auto definition = std::ranges::find(set.joints, names[j], &JointDefinition::name);
-    const Eigen::Vector3d found = pair.found[j].cast<double>();
-    const double behind_m = (pair.truth[j].cast<double>() - found).dot(found.normalized());
-    offsets.push_back({set.name, names[j], behind_m + static_cast<double>(definition->depth_offset_m)});
-  }
-  return offsets;
-}
-
 }  // namespace vesalius

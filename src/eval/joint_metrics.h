@@ -66,15 +66,4 @@ struct JointCurve {
   double share(int cm) const;
 };
 
-/// The distance of a true joint behind its visible surface along the viewing ray, which is a sample for a depth_offset.
-struct JointOffset {
-  std::string set;
-  std::string joint;
-  double behind_m = 0.0;
-};
-
-/// Returns the samples of the joints that both have. They count from the surface, without the set's own depth offsets.
-std::vector<JointOffset> joint_offsets(const JointPair& pair, const std::vector<std::string>& names,
-                                       const JointSet& set);
-
 }  // namespace vesalius

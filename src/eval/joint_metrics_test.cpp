@@ -163,18 +163,5 @@ TEST(JointsByName, AreInTheOrderOfTheTruth) {
   EXPECT_EQ(find_joint_set(paper_body(), {"tail"}), nullptr);
 }
 
-TEST(JointOffsets, AreMeasuredAlongTheRayBehindTheSurface) {
-  const JointSet& set = paper_body().joint_sets.front();
-  const float own_m = set.joints[0].depth_offset_m;  // of the head
-  const Vector3f surface = Vector3f(0.6F, 0, 0.8F) * 2.F;
-  const Vector3f ray = surface.normalized();
-  const Vector3f aside(-0.8F, 0, 0.6F);
-  const JointPair pair{{surface + 0.12F * ray + 0.3F * aside, {0, 0, 1}}, {surface + own_m * ray, kNothing}};
-  const std::vector<JointOffset> offsets = joint_offsets(pair, {"head", "neck"}, set);
-  ASSERT_EQ(offsets.size(), 1U);
-  EXPECT_EQ(offsets[0].joint, "head");
-  EXPECT_NEAR(offsets[0].behind_m, 0.12, 1e-6);
-}
-
 }  // namespace
 }  // namespace vesalius

@@ -85,19 +85,6 @@ std::vector<const Person*> found_of_each(const std::vector<Person>& people, cons
   return found;
 }
 
-/// Returns the skeleton that a perfect labelling of this person gives. Joints that are fitted to it do not depend on
-/// any model.
-Skeleton as_seen(const TrueFrame& frame, int person, const BodyModel& body) {
-  Skeleton skeleton;
-  for (const Eigen::Vector3f& centre : visible_parts(frame, person, body)) {
-    SkeletonPart& part = skeleton.parts.emplace_back();
-    if (centre.hasNaN()) continue;
-    part.state = State::observed;
-    part.centre = centre;
-  }
-  return skeleton;
-}
-
 }  // namespace
 
 FrameScorer::FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options)
@@ -141,7 +128,7 @@ FrameLabels FrameScorer::find_people(const TrueFrame& frame, const Mask* asked, 
   append(score.terms, given_part_terms(frame, of_person, body()));
   append(score.terms, side_order_terms(frame, of_person, body()));
   if (fit_joints) {
-    fit_points(frame, of_person, score);
+    keep_known_people(frame, of_person, score);
   } else {
     judge_points(frame, of_person, score);
   }
@@ -227,22 +214,22 @@ void FrameScorer::judge_points(const TrueFrame& frame, const std::vector<const P
   });
 }
 
-void FrameScorer::fit_points(const TrueFrame& frame, const std::vector<const Person*>& of_person,
-                             FrameScore& score) const {
-  const bool labelled = !frame.truth.labels.empty();
-  auto known = options_.joint_set.empty() ? known_centres(frame.truth) : known_joints(frame.truth);
-  if (!known) known = known_joints(frame.truth);
-  for (std::size_t who = 0; known && who < of_person.size() && who < known->of_person.size(); ++who) {
-    std::vector<Eigen::Vector3f> found;
-    if (labelled) {
-      found = points_of(as_seen(frame, static_cast<int>(who), body()), *known);
-    } else if (of_person[who] != nullptr) {
-      found = joints_by_name(known->names, *known->set, of_person[who]->joints[known->set - body().joint_sets.data()]);
-    } else {
-      continue;
+void FrameScorer::keep_known_people(const TrueFrame& frame, const std::vector<const Person*>& of_person,
+                                    FrameScore& score) const {
+  const auto joints = known_joints(frame.truth);
+  // The joints of rendered skeletons are those of every tracker, others only those of one.
+  const bool any_set = options_.joint_set.empty() && !frame.truth.parts.empty();
+  for (std::size_t who = 0; who < of_person.size(); ++who) {
+    if (of_person[who] == nullptr) continue;
+    KnownPerson person;
+    person.skeleton = of_person[who]->skeleton;
+    if (joints && who < frame.truth.joints.size()) {
+      if (!any_set) person.joint_set = joints->set->name;
+      person.joint_names = frame.truth.joint_names;
+      person.joints = frame.truth.joints[who];
     }
-    const auto offsets = joint_offsets({known->of_person[who], std::move(found)}, known->names, *known->set);
-    score.offsets.insert(score.offsets.end(), offsets.begin(), offsets.end());
+    if (options_.joint_set.empty() && who < frame.truth.parts.size()) person.part_centres = frame.truth.parts[who];
+    score.known_people.push_back(std::move(person));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/detection_curve.h"
+#include "eval/fit_joints.h"
 #include "eval/fit_score.h"
 #include "eval/joint_metrics.h"
 #include "eval/joint_precision.h"
@@ -26,7 +27,7 @@ struct FrameScore {
   JointPrecision joint_precision;                   ///< over all proposed people, whatever their score
   JointPrecision centre_precision;                  ///< the same of the parts' centres
   std::optional<PixelConfusion> confusion;          ///< empty if the true labels are not known
-  std::vector<JointOffset> offsets;                 ///< only of frames for fitting joints
+  std::vector<KnownPerson> known_people;            ///< only of frames for fitting joints
 
   std::string what_went_wrong;  ///< empty if nothing did
   double detect_s = 0.0;        ///< time of the detector; 0 if only labels were requested
@@ -47,8 +48,8 @@ class FrameScorer {
   /// Throws the errors of Detector, and UsageError if the body has no such joint set.
   FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options);
 
-  /// Judges one frame. With `fit_joints` the score has joint offsets instead of joint metrics; they come from the true
-  /// labels or, if these are not known, from the people found. Throws Error if truth and frame do not fit together.
+  /// Judges one frame. With `fit_joints` the score has the people found with their truth instead of joint metrics.
+  /// Throws Error if truth and frame do not fit together.
   FrameScore score(TrueFrame frame, bool fit_joints) const;
 
   const BodyModel& body() const { return detector_.body(); }
@@ -71,7 +72,7 @@ class FrameScorer {
   void judge_proposed_points(const KnownPoints& known, const std::vector<Proposal>& proposals, int expected,
                              JointPrecision& precision) const;
   void judge_points(const TrueFrame& frame, const std::vector<const Person*>& of_person, FrameScore& score) const;
-  void fit_points(const TrueFrame& frame, const std::vector<const Person*>& of_person, FrameScore& score) const;
+  void keep_known_people(const TrueFrame& frame, const std::vector<const Person*>& of_person, FrameScore& score) const;
   void judge_labels(const TrueFrame& frame, const FrameLabels& labels, FrameScore& score) const;
 
   Options options_;

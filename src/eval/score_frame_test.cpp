@@ -173,11 +173,14 @@ TEST(FrameScorer, FitsJointsInsteadOfScoringThem) {
   EXPECT_TRUE(std::isnan(value(score, "joints.at_10cm")));
   EXPECT_THAT(score.joint_errors_m, IsEmpty());
   EXPECT_THAT(score.joint_precision.averages(), IsEmpty());
-  ASSERT_EQ(score.offsets.size(), 3U);
-  for (const JointOffset& offset : score.offsets) {
-    EXPECT_GT(offset.behind_m, 0.0);  // the middle of a part is behind its surface
-    EXPECT_LT(offset.behind_m, 0.15);
-  }
+  ASSERT_EQ(score.known_people.size(), 1U);
+  const KnownPerson& person = score.known_people[0];
+  EXPECT_EQ(person.joint_set, "nite15");  // joints that are not those of a rendered skeleton
+  EXPECT_EQ(person.joint_names, frame.truth.joint_names);
+  const Eigen::Vector3f neck = person.skeleton.parts[paper_body().find_part("neck")].centre;
+  EXPECT_GT(person.joints[0].norm(), neck.norm());  // the middle of a part is behind its surface
+  EXPECT_LT((person.joints[0] - neck).norm(), 0.15F);
+  EXPECT_THAT(person.part_centres, IsEmpty());
 }
 
 TEST(FrameScorer, ComparesJointsWithTheSetAskedFor) {
@@ -187,8 +190,8 @@ TEST(FrameScorer, ComparesJointsWithTheSetAskedFor) {
   options.joint_set = "k4abt32";
   const auto labeller = std::make_shared<Labeller>(frame.truth.labels, false);
   const FrameScore fitted = FrameScorer(labeller, options).score(frame, true);
-  ASSERT_FALSE(fitted.offsets.empty());
-  for (const JointOffset& offset : fitted.offsets) EXPECT_EQ(offset.set, "k4abt32");
+  ASSERT_EQ(fitted.known_people.size(), 1U);
+  EXPECT_EQ(fitted.known_people[0].joint_set, "k4abt32");
   EXPECT_DOUBLE_EQ(value(FrameScorer(labeller, options).score(frame, false), "joints.at_10cm"), 1.0);
   options.joint_set = "kinect99";
   EXPECT_THAT([&] { FrameScorer(labeller, options); },

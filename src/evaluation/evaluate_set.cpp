@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <utility>
 
 #include "eval/median.h"
@@ -107,7 +108,7 @@ class SetEvaluation {
 
   void score(Item& item) const {
     try {
-      const bool fit = item.index % kFitEvery == 0;
+      const bool fit = options_.fit_joints || item.index % kFitEvery == 0;
       item.score = scorer_.score(item.frame, fit);
       for (const Variant& variant : variants_) {
         FrameScore& score = item.of_variants.emplace_back(variant.scorer->score(item.frame, fit));
@@ -147,8 +148,7 @@ class SetEvaluation {
     for (const auto& errors_m : score.joint_errors_m) result_.joint_curve.add(errors_m);
     result_.joint_precision.add(score.joint_precision);
     result_.centre_precision.add(score.centre_precision);
-    for (const JointOffset& offset : score.offsets)
-      result_.offsets_m[offset.set][offset.joint].push_back(offset.behind_m);
+    if (options_.fit_joints) std::ranges::move(score.known_people, std::back_inserter(result_.known_people));
     if (score.confusion) {
       if (!result_.confusion) result_.confusion.emplace(score.confusion->parts());
       result_.confusion->add(*score.confusion);

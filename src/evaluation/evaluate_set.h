@@ -12,13 +12,14 @@
 
 namespace vesalius {
 
-/// The first of every so many frames is used for fitting joint offsets and is left out of the joints' metrics.
+/// The first of every so many frames is for fitting joints and is left out of the joints' metrics.
 inline constexpr int kFitEvery = 10;
 
 struct SetOptions {
   std::string name;         ///< part of the frames' keys: sets compare by name
   std::string source;       ///< where the frames come from, for reports and errors
   bool keep_going = false;  ///< counts frames that fail and continues
+  bool fit_joints = false;  ///< all frames are for fitting joints: keeps the people found with their truth
   std::size_t worst = 3;    ///< how many of the worst frames to keep
 };
 
@@ -30,10 +31,11 @@ struct EvaluationHooks {
 };
 
 /// Scores all frames of a source on all allowed threads. Its memory grows by 28 bytes for each proposal, 8 for each
-/// joint of one and 20 for each sample, but not with the frames themselves. With `variants`, frames are processed one
-/// after the other, each by `scorer` and by all variants in turn, and are timed; so times of one frame can be compared
-/// even if the machine's speed changes. Throws Error for labels of other parts than the model's, a source without
-/// frames, the first frame that fails (unless it is to keep going), and when it is stopped.
+/// joint of one and 20 for each sample, for fitting joints by 4 kB for each person found, but not with the frames
+/// themselves. With `variants`, frames are processed one after the other, each by `scorer` and by all variants in turn,
+/// and are timed; so times of one frame can be compared even if the machine's speed changes. Throws Error for labels of
+/// other parts than the model's, a source without frames, the first frame that fails (unless it is to keep going), and
+/// when it is stopped.
 SetResult evaluate_set(TruthSource& frames, const SetOptions& options, const FrameScorer& scorer,
                        const std::vector<Variant>& variants = {}, const EvaluationHooks& hooks = {});
 

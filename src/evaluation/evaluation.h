@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "eval/detection_curve.h"
+#include "eval/fit_joints.h"
 #include "eval/fit_score.h"
 #include "eval/joint_metrics.h"
 #include "eval/joint_precision.h"
@@ -48,10 +48,10 @@ struct SetResult {
   JointPrecision joint_precision;
   JointPrecision centre_precision;
   std::optional<PixelConfusion> confusion;
-  std::map<std::string, std::map<std::string, std::vector<double>>> offsets_m;  ///< [joint set][joint]
-  std::vector<ScoreSample> samples;                                             ///< for fitting the score
-  std::vector<WorstFrame> worst;                                                ///< the worst first
-  std::vector<AblationRow> ablation;                                            ///< the same frames with each variant
+  std::vector<KnownPerson> known_people;  ///< for fitting joints
+  std::vector<ScoreSample> samples;       ///< for fitting the score
+  std::vector<WorstFrame> worst;          ///< the worst first
+  std::vector<AblationRow> ablation;      ///< the same frames with each variant
 };
 
 /// The results of a model on some sets of frames, from which reports are made.

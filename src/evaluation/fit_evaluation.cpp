@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
 
-#include "eval/median.h"
+#include "eval/fit_joints.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -14,39 +13,39 @@ namespace {
 /// Rounds a weight to hundredths, which changes no score by more than a quarter of a hundredth.
 float rounded(float weight) { return std::round(weight * 100.F) / 100.F; }
 
-/// Returns a joint whose depth offset is the median of the samples, or the joint's own if there are none.
-std::string joint_toml(const JointDefinition& joint, const std::vector<double>& samples_m, const BodyModel& body) {
+/// Returns a number that TOML reads as a float: "1.0", not "1".
+std::string number(float value) {
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string joint_toml(const JointDefinition& joint, const BodyModel& body) {
   std::string parts, weights;
   for (std::size_t i = 0; i < joint.parts.size(); ++i) {
     const char* comma = i > 0 ? ", " : "";
     parts += fmt::format("{}\"{}\"", comma, body.parts[joint.parts[i]].name);
-    weights += fmt::format("{}{}", comma, joint.weights[i]);
+    weights += fmt::format("{}{}", comma, number(joint.weights[i]));
   }
   std::string toml = fmt::format("\n[[joint_set.joint]]\nname = \"{}\"\nparts = [{}]\n", joint.name, parts);
   if (joint.parts.empty()) return toml;
-  const double offset_m = samples_m.empty() ? static_cast<double>(joint.depth_offset_m) : median(samples_m);
-  return toml + fmt::format("weights = [{}]\ndepth_offset = {:.3f}\n", weights, offset_m);
+  toml += fmt::format("weights = [{}]\ndepth_offset = {}\n", weights, number(joint.depth_offset_m));
+  if (joint.up_offset_m != 0.F) toml += fmt::format("up_offset = {}\n", number(joint.up_offset_m));
+  return toml;
 }
 
 }  // namespace
 
 std::string fitted_joints_toml(const Evaluation& evaluation) {
-  std::map<std::string, std::map<std::string, std::vector<double>>> samples_m;
+  std::vector<KnownPerson> people;
   for (const SetResult& set : evaluation.sets) {
-    for (const auto& [joint_set, joints] : set.offsets_m) {
-      for (const auto& [joint, offsets] : joints) {
-        auto& all = samples_m[joint_set][joint];
-        all.insert(all.end(), offsets.begin(), offsets.end());
-      }
-    }
+    people.insert(people.end(), set.known_people.begin(), set.known_people.end());
   }
-  if (samples_m.empty()) throw Error("no joints to fit: expected a source with joints that a set of the body has");
+  const std::vector<JointSet> fitted = fit_joint_sets(people, evaluation.body);
+  if (fitted.empty()) throw Error("no joints to fit: expected people found whose joints a set of the body has");
   std::string toml;
-  for (const JointSet& set : evaluation.body.joint_sets) {
-    if (!samples_m.contains(set.name)) continue;
-    toml += fmt::format("[[joint_set]]\nname = \"{}\"\n", set.name);
-    for (const JointDefinition& joint : set.joints)
-      toml += joint_toml(joint, samples_m[set.name][joint.name], evaluation.body);
+  for (const JointSet& set : fitted) {
+    toml += fmt::format("{}[[joint_set]]\nname = \"{}\"\n", toml.empty() ? "" : "\n", set.name);
+    for (const JointDefinition& joint : set.joints) toml += joint_toml(joint, evaluation.body);
   }
   return toml;
 }

@@ -7,8 +7,8 @@
 
 namespace vesalius {
 
-/// Returns as TOML the joint sets with which the sets' truth was compared. Their depth offsets are the medians over the
-/// frames that were reserved for fitting. Throws Error if there was nothing to fit.
+/// Returns as TOML the joint sets of the body that the people kept for fitting have joints of (SetOptions::fit_joints),
+/// fitted to them (fit_joint_sets). Throws Error if there was nothing to fit.
 std::string fitted_joints_toml(const Evaluation& evaluation);
 
 /// The detector options of an evaluation with the person score fitted to all its sets.

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "vesalius/base/body_heading.h"
+
 namespace vesalius {
 namespace {
 
 constexpr float kLeastWeight = 0.5F;
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 struct Neighbour {
   const SkeletonPart* part = nullptr;
@@ -26,8 +29,17 @@ std::vector<Neighbour> observed_neighbours(const BodyModel& body, const Skeleton
   return found;
 }
 
-Joint derive(const JointDefinition& definition, const Skeleton& skeleton) {
-  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+}  // namespace
+
+std::vector<Eigen::Vector3f> given_centres(const Skeleton& skeleton) {
+  std::vector<Eigen::Vector3f> centres;
+  for (const SkeletonPart& part : skeleton.parts) {
+    centres.push_back(part.state != State::none ? part.centre : Eigen::Vector3f::Constant(kNaN));
+  }
+  return centres;
+}
+
+Joint derive_joint(const JointDefinition& definition, const Skeleton& skeleton, const Eigen::Vector3f& up) {
   Joint joint{State::none, Eigen::Vector3f::Constant(kNaN), 0.F};
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float weight = 0.F;
@@ -46,13 +58,11 @@ Joint derive(const JointDefinition& definition, const Skeleton& skeleton) {
   }
   if (definition.parts.empty() || weight < kLeastWeight) return joint;
   const Eigen::Vector3f surface = sum / weight;
-  joint.position = surface + definition.depth_offset_m * surface.normalized();
+  joint.position = surface + definition.depth_offset_m * surface.normalized() + definition.up_offset_m * up;
   joint.confidence = std::clamp(confidence, 0.F, 1.F);  // relative to the whole weight, so missing parts lower it
   joint.state = all_observed ? State::observed : State::predicted;
   return joint;
 }
-
-}  // namespace
 
 void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {
   std::vector<SkeletonPart> predicted = skeleton.parts;
@@ -70,10 +80,11 @@ void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {
 }
 
 std::vector<std::vector<Joint>> derive_joints(const BodyModel& body, const Skeleton& skeleton) {
+  const Eigen::Vector3f up = body_up(given_centres(skeleton), body);
   std::vector<std::vector<Joint>> sets;
   for (const JointSet& set : body.joint_sets) {
     std::vector<Joint>& joints = sets.emplace_back();
-    for (const JointDefinition& definition : set.joints) joints.push_back(derive(definition, skeleton));
+    for (const JointDefinition& definition : set.joints) joints.push_back(derive_joint(definition, skeleton, up));
   }
   return sets;
 }

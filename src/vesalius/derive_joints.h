@@ -20,8 +20,14 @@ struct Joint {
 /// lengths. Their state is predicted, and their confidence is half of the weaker neighbour's.
 void predict_missing_parts(const BodyModel& body, Skeleton& skeleton);
 
-/// Returns the joints of all joint sets of the body model, [set][joint]. A joint needs seen or predicted parts with at
-/// least half of its weight.
+/// Returns the centres of the parts that were observed or predicted, NaN for the others.
+std::vector<Eigen::Vector3f> given_centres(const Skeleton& skeleton);
+
+/// Returns one joint. It needs seen or predicted parts with at least half of its weight; the weights of those count for
+/// all, and the offsets stay. `up` is the body's axis (body_up).
+Joint derive_joint(const JointDefinition& definition, const Skeleton& skeleton, const Eigen::Vector3f& up);
+
+/// Returns the joints of all joint sets of the body model, [set][joint].
 std::vector<std::vector<Joint>> derive_joints(const BodyModel& body, const Skeleton& skeleton);
 
 }  // namespace vesalius

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "vesalius/base/body_heading.h"
+
 namespace vesalius {
 namespace {
 
@@ -56,33 +58,56 @@ TEST(PredictMissingParts, PredictsNoEndsOfLimbs) {
   EXPECT_EQ(part_of(s, "r_elbow").state, State::none);
 }
 
-TEST(DeriveJoints, MovesTheSurfaceIntoTheBody) {
-  Skeleton s = whole_skeleton();
-  part_of(s, "neck").centre = {0.F, 0.F, 2.F};
-  const Joint neck = joint_of(derive_joints(paper_body(), s), "nite15", "neck");
-  EXPECT_EQ(neck.state, State::observed);
-  EXPECT_NEAR(neck.position.z(), 2.05F, 1e-5);
-  EXPECT_FLOAT_EQ(neck.confidence, 0.8F);
+const Eigen::Vector3f kUp(0.F, -1.F, 0.F);
+
+/// Returns a joint made of two parts of the left arm.
+JointDefinition elbow() {
+  return {"elbow", {paper_body().find_part("l_elbow"), paper_body().find_part("l_forearm")}, {0.6F, 0.4F}, 0.04F, 0.1F};
 }
 
-TEST(DeriveJoints, OmitsAJointWithoutItsParts) {
+TEST(DeriveJoints, MovesTheSurfaceIntoTheBodyAndAlongIt) {
   Skeleton s = whole_skeleton();
-  part_of(s, "l_knee") = {};
-  const auto sets = derive_joints(paper_body(), s);
-  const Joint& knee = joint_of(sets, "nite15", "l_knee");
-  EXPECT_EQ(knee.state, State::none);
-  EXPECT_TRUE(std::isnan(knee.position.x()));
+  part_of(s, "l_elbow").centre = part_of(s, "l_forearm").centre = {0.F, 0.F, 2.F};
+  const Joint joint = derive_joint(elbow(), s, Eigen::Vector3f(1.F, 0.F, 0.F));  // somebody who lies
+  EXPECT_EQ(joint.state, State::observed);
+  EXPECT_LT((joint.position - Eigen::Vector3f(0.1F, 0.F, 2.04F)).norm(), 1e-5F);
+  EXPECT_FLOAT_EQ(joint.confidence, 0.8F);
+}
+
+TEST(DeriveJoints, KeepsTheOffsetsWhereAPartIsMissing) {
+  Skeleton s = whole_skeleton();
+  part_of(s, "l_elbow").centre = {0.F, 0.F, 2.F};
+  part_of(s, "l_forearm") = {};
+  const Joint joint = derive_joint(elbow(), s, kUp);
+  EXPECT_EQ(joint.state, State::predicted);
+  EXPECT_LT((joint.position - Eigen::Vector3f(0.F, -0.1F, 2.04F)).norm(), 1e-5F);
+  EXPECT_FLOAT_EQ(joint.confidence, 0.6F * 0.8F);
+}
+
+TEST(DeriveJoints, TakesTheBodysAxisFromTheParts) {
+  Skeleton s = whole_skeleton();
+  for (int i = 0; i < paper_body().part_count(); ++i) {
+    s.parts[i].centre = {paper_body().parts[i].upper_body ? 0.5F : -0.5F, 0.F, 2.F};
+  }
+  const Eigen::Vector3f up = body_up(given_centres(s), paper_body());
+  EXPECT_LT((up - Eigen::Vector3f(1.F, 0.F, 0.F)).norm(), 1e-5F);
+  BodyModel body = paper_body();
+  body.joint_sets = {{"one", {elbow()}}};
+  EXPECT_LT((derive_joints(body, s)[0][0].position - derive_joint(elbow(), s, up).position).norm(), 1e-6F);
+}
+
+TEST(DeriveJoints, HasNoJointThatTheBodyLacks) {
+  const auto sets = derive_joints(paper_body(), whole_skeleton());
   EXPECT_EQ(joint_of(sets, "coco17", "l_ear").state, State::none);  // these parts have no ears
-  EXPECT_EQ(joint_of(sets, "nite15", "r_knee").state, State::observed);
+  EXPECT_EQ(joint_of(sets, "coco17", "r_knee").state, State::observed);
 }
 
-TEST(DeriveJoints, AcceptsHalfOfTheWeightAndMarksTheJoint) {
+TEST(DeriveJoints, NeedsHalfOfTheWeight) {
   Skeleton s = whole_skeleton();
-  part_of(s, "l_chest") = {};  // 0.3 of a shoulder
-  const auto sets = derive_joints(paper_body(), s);
-  const Joint& shoulder = joint_of(sets, "nite15", "l_shoulder");
-  EXPECT_EQ(shoulder.state, State::predicted);
-  EXPECT_NEAR(shoulder.position.x(), part_of(s, "l_upper_arm").centre.x(), 0.05F);
+  part_of(s, "l_elbow") = {};  // 0.6 of the joint
+  const Joint joint = derive_joint(elbow(), s, kUp);
+  EXPECT_EQ(joint.state, State::none);
+  EXPECT_TRUE(joint.position.hasNaN());
 }
 
 }  // namespace

@@ -203,12 +203,17 @@ TEST_F(Evaluate, RefusesTruthThatCannotBeUsed) {
 TEST_F(Evaluate, FitsJointsOnFramesThatAreNotMeasured) {
   write("frames/joints.csv",
         "frame,joint,x_m,y_m,z_m\na,head,0,-0.6,2.5\na,l_knee,0.1,0.5,2.5\nb,head,0,-0.6,2.5\nb,l_knee,0.1,0.5,2.5\n");
-  const Outcome run = evaluate(" --json " + path("j.json") + " --fit-joints " + path("j.toml"));
+  const auto measured = [&](const std::string& more) {
+    const Outcome run = evaluate(" --json " + path("j.json") + more);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return json::parse(bytes_of(path("j.json"))).at("sets").at(0);
+  };
+  const json set = measured("");
+  const json fitted = measured(" --fit-joints " + path("j.toml"));
   fs::remove(path("frames/joints.csv"));
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const json set = json::parse(bytes_of(path("j.json"))).at("sets").at(0);
   EXPECT_EQ(set.at("figures").at("joints.at_10cm").at("denominator"), 2.0);  // the joints of frame b
   EXPECT_EQ(set.at("joint_precision").size(), 2U);
+  EXPECT_FALSE(fitted.at("figures").contains("joints.at_10cm"));
   const std::string toml = bytes_of(path("j.toml"));
   EXPECT_THAT(toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
   const BodyModel body = parse_body_model(

@@ -82,7 +82,7 @@ std::vector<Request> set_requests(const Arguments& arguments) {
   const auto add = [&](const std::string& source, const std::filesystem::path& path, std::string name, bool is_recipe) {
     if (!paths.insert(path.string()).second) throw UsageError(fmt::format("{}: given twice", source));
     if (!names.insert(name).second) name = clean(path.string());
-    requests.push_back({{name, source, arguments.keep_going}, is_recipe});
+    requests.push_back({{name, source, arguments.keep_going, !arguments.fit_joints.empty()}, is_recipe});
   };
   for (const std::string& source : arguments.sources) {
     for (const std::string& set : sets_in(source)) {
@@ -267,9 +267,12 @@ void add_evaluate(CLI::App& program) {
                    "frame, heading (front, side, back)")
       ->type_name("FILE");
   command
-      ->add_option("--fit-joints", arguments->fit_joints,
-                   "Write the joint sets used, with depth offsets fitted on every 10th frame")
-      ->type_name("FILE");
+      ->add_option(
+          "--fit-joints", arguments->fit_joints,
+          "Write the joint sets of the model's body fitted to the people found in these frames, whose joints are then "
+          "not measured")
+      ->type_name("FILE")
+      ->excludes(labels_only);
   command
       ->add_option("--fit-score", arguments->fit_score,
                    "Write the detector options used, with the weights of the person score fitted to these frames")

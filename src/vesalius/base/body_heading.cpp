@@ -30,15 +30,15 @@ class MeanPoint {
   float count_ = 0.F;
 };
 
-/// Returns the direction from the lower to the upper body, or upwards in the picture for bodies without a lower one.
-Vector3f up_of(const std::vector<Vector3f>& centres, const BodyModel& body) {
+}  // namespace
+
+Vector3f body_up(const std::vector<Vector3f>& centres, const BodyModel& body) {
   MeanPoint upper, lower;
   for (std::size_t p = 0; p < centres.size(); ++p) (body.parts[p].upper_body ? upper : lower).add(centres[p]);
-  if (upper.empty() || lower.empty()) return -Vector3f::UnitY();
-  return (upper.value() - lower.value()).normalized();
+  const Vector3f up = upper.value() - lower.value();
+  if (upper.empty() || lower.empty() || up.norm() < kLeastAcross_m) return -Vector3f::UnitY();
+  return up.normalized();
 }
-
-}  // namespace
 
 std::optional<float> body_yaw(const std::vector<Vector3f>& centres, const BodyModel& body) {
   MeanPoint across, middle;
@@ -47,7 +47,7 @@ std::optional<float> body_yaw(const std::vector<Vector3f>& centres, const BodyMo
     if (body.parts[p].name.starts_with("l_")) across.add(centres[p] - centres[body.parts[p].mirror]);
   }
   if (across.empty() || middle.value().norm() == 0.F) return std::nullopt;
-  const Vector3f up = up_of(centres, body);
+  const Vector3f up = body_up(centres, body);
   const Vector3f left = across.value() - across.value().dot(up) * up;
   if (left.norm() < kLeastAcross_m) return std::nullopt;
   const Vector3f to_left = left.normalized();

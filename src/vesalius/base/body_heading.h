@@ -8,6 +8,11 @@
 
 namespace vesalius {
 
+/// Returns the body's axis as a unit vector from the mean of the lower body's parts to the mean of the upper body's, or
+/// upwards in the picture where one of the two is not known. `centres` are those of the parts in metres, optical frame;
+/// NaN = not known.
+Eigen::Vector3f body_up(const std::vector<Eigen::Vector3f>& centres, const BodyModel& body);
+
 /// Returns which way a person is turned about the body's own axis, as the camera sees it: 0 faces the camera, positive
 /// is turned to the person's own left, between -pi and pi. It follows from what is left of what and what is above what
 /// in the body, so that the camera's roll does not matter and lying people have a heading too.

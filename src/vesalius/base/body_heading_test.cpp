@@ -88,6 +88,23 @@ TEST(BodyYaw, NeedsOnlySomePairs) {
   EXPECT_LT(apart(*found, 1.F), 0.3F);
 }
 
+TEST(BodyUp, PointsFromTheLowerToTheUpperBody) {
+  EXPECT_GT(body_up(centres_of(turned(1.F)), paper_body()).dot(-Vector3f::UnitY()), 0.95F);
+  std::vector<Vector3f> lying = centres_of(turned(0.F));
+  for (Vector3f& c : lying) c = Vector3f(-c.y(), c.x(), c.z());  // the head at the picture's right
+  EXPECT_GT(body_up(lying, paper_body()).x(), 0.95F);
+}
+
+TEST(BodyUp, IsThePicturesWhereTheBodyDoesNotTell) {
+  std::vector<Vector3f> lying = centres_of(turned(0.F));
+  for (std::size_t p = 0; p < lying.size(); ++p) {
+    lying[p] = Vector3f(-lying[p].y(), lying[p].x(), lying[p].z());
+    if (!paper_body().parts[p].upper_body) lying[p].setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  EXPECT_EQ(body_up(lying, paper_body()), -Vector3f::UnitY());
+  EXPECT_EQ(body_up(std::vector<Vector3f>(25, Vector3f(0, 0, 2)), paper_body()), -Vector3f::UnitY());
+}
+
 TEST(HeadingOfYaw, IsTheNearestOfEvenlySpacedOnes) {
   EXPECT_EQ(heading_of_yaw(0.F, 8), 0);
   EXPECT_EQ(heading_of_yaw(0.39F, 8), 0);

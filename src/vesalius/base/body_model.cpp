@@ -143,7 +143,7 @@ void read_roots(const Reader& reader, const toml::table& root, BodyModel& body) 
 
 JointDefinition read_joint(const Reader& reader, const toml::node& node, const BodyModel& body) {
   const toml::table& table = reader.table(node, "joint");
-  reader.expect_keys(table, {"name", "parts", "weights", "depth_offset"});
+  reader.expect_keys(table, {"name", "parts", "weights", "depth_offset", "up_offset"});
   JointDefinition joint;
   joint.name = reader.name(table, "name");
   for (const toml::node& part : reader.array(table, "parts")) {
@@ -162,6 +162,7 @@ JointDefinition read_joint(const Reader& reader, const toml::node& node, const B
   }
   if (std::abs(sum - 1.0) > 1e-3) reader.fail(weights, "weights: expected a sum of 1, found " + std::to_string(sum));
   joint.depth_offset_m = reader.number(table, "depth_offset", -1.0, 1.0);
+  if (table.contains("up_offset")) joint.up_offset_m = reader.number(table, "up_offset", -1.0, 1.0);
   return joint;
 }
 

@@ -32,6 +32,7 @@ struct JointDefinition {
   std::vector<int> parts;      ///< empty if this body cannot supply a joint of the set
   std::vector<float> weights;  ///< same length as parts; need not be positive (extrapolation), sums to 1
   float depth_offset_m = 0.F;  ///< added along the viewing ray: from the visible surface into the body
+  float up_offset_m = 0.F;     ///< added along the body's axis, towards the head (body_up)
 };
 
 /// Joints under the names and in the order that another tracker uses, e.g. "nite15".

@@ -96,6 +96,9 @@ TEST(BodyModel, ReadsEveryField) {
   EXPECT_EQ(set.joints[0].parts, (std::vector<int>{1, 2}));
   EXPECT_EQ(set.joints[0].weights, (std::vector<float>{0.25F, 0.75F}));
   EXPECT_FLOAT_EQ(set.joints[0].depth_offset_m, 0.05F);
+  EXPECT_EQ(set.joints[0].up_offset_m, 0.F);
+  const std::string with_up = changed("depth_offset = 0.05", "depth_offset = 0.05\nup_offset = -0.02");
+  EXPECT_FLOAT_EQ(parse_body_model(with_up, "b.toml").joint_sets[0].joints[0].up_offset_m, -0.02F);
   EXPECT_TRUE(set.joints[1].parts.empty());
   EXPECT_EQ(body.toml, kSmall);
   EXPECT_EQ(body.find_part("r_arm"), 2);
@@ -228,6 +231,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"empty", "", "1: missing key \"name\""}, Bad{"no_toml", "name = \"x\"\nparts {", "2: not valid TOML"},
         Bad{"unknown_key", changed("area", "size"), "8: unknown key \"size\", expected name, colour"},
         Bad{"missing_key", changed("area = 0.1\n", ""), "3: missing key \"area\""},
+        Bad{"up_offset", changed("depth_offset = 0.05", "depth_offset = 0.05\nup_offset = 2"),
+            "41: up_offset: expected"},
         Bad{"name_type", changed("\"trunk\"\ncolour", "7\ncolour"), "4: name: expected a string"},
         Bad{"name_empty", changed("\"l_arm\"", "\"\""), "11: name \"\": expected 1 to 64"},
         Bad{"name_path", changed("\"l_arm\"", "\"../x\""), "11: name \"../x\": expected 1 to 64"},
