@@ -67,12 +67,12 @@ bool same_parts(const JointDefinition& a, const JointDefinition& b) {
 }
 
 /// Returns the terms from which the joint may be made: those of its own parts, then those linked to them.
-std::vector<Term> candidate_terms(const JointDefinition& joint, const BodyModel& body) {
+std::vector<Term> candidate_terms(const JointDefinition& joint, const BodyModel& body, bool with_neighbours) {
   std::vector<int> parts = joint.parts;
   const auto add = [&](int part) {
     if (std::ranges::find(parts, part) == parts.end()) parts.push_back(part);
   };
-  for (const int part : joint.parts) {
+  for (const int part : with_neighbours ? joint.parts : std::vector<int>{}) {
     for (const BodyLink& link : body.links) {
       if (link.parent == part) add(link.child);
       if (link.child == part) add(link.parent);
@@ -212,12 +212,16 @@ double mean_loss(const JointDefinition& joint, const std::vector<Prepared>& samp
   return sum / static_cast<double>(samples.size());
 }
 
+bool is_set_of_parts(const JointSet& set, const BodyModel& body) {
+  const JointSet* centres = find_joint_set(body, sided(body).names);
+  return centres != nullptr && centres->name == set.name;
+}
+
 /// Returns the true place of a joint of `set`; nothing if it is not known.
 std::optional<Eigen::Vector3f> true_joint(const KnownPerson& person, const JointSet& set, const std::string& joint,
                                           const BodyModel& body) {
   const std::vector<std::string> parts = sided(body).names;
-  const JointSet* centres = find_joint_set(body, parts);
-  const bool of_parts = centres != nullptr && centres->name == set.name;
+  const bool of_parts = is_set_of_parts(set, body);
   if (!of_parts && !person.joint_set.empty() && person.joint_set != set.name) return std::nullopt;
   const auto& names = of_parts ? parts : person.joint_names;
   const auto& places = of_parts ? person.part_centres : person.joints;
@@ -237,10 +241,10 @@ std::vector<JointSample> samples_of(const std::vector<KnownPerson>& people, cons
 
 /// Fits the joint and its partner on the other side to the samples of both.
 void fit_pair(JointDefinition& joint, JointDefinition& partner, std::vector<JointSample> samples,
-              const std::vector<JointSample>& of_partner, const BodyModel& body) {
+              const std::vector<JointSample>& of_partner, const BodyModel& body, bool with_neighbours) {
   for (const JointSample& one : of_partner) samples.push_back({mirrored(one.skeleton, body), one.truth});
   const std::string name = partner.name;
-  joint = fit_joint(joint, samples, body);
+  joint = fit_joint(joint, samples, body, with_neighbours);
   partner = mirrored(joint, body);
   partner.name = name;
 }
@@ -258,11 +262,11 @@ Skeleton mirrored(const Skeleton& skeleton, const BodyModel& body) {
   return other;
 }
 
-JointDefinition fit_joint(const JointDefinition& joint, const std::vector<JointSample>& samples,
-                          const BodyModel& body) {
+JointDefinition fit_joint(const JointDefinition& joint, const std::vector<JointSample>& samples, const BodyModel& body,
+                          bool with_neighbours) {
   const std::vector<Prepared> prepared = prepare(samples, joint, body);
   if (joint.parts.empty() || prepared.size() < kLeastJointSamples) return joint;
-  const std::vector<Term> terms = candidate_terms(joint, body);
+  const std::vector<Term> terms = candidate_terms(joint, body, with_neighbours);
   JointDefinition best = joint;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t count = 1; count <= std::min(kMostTerms, terms.size()); ++count) {
@@ -289,6 +293,7 @@ std::vector<JointSet> fit_joint_sets(const std::vector<KnownPerson>& people, con
   std::vector<JointSet> fitted;
   for (const JointSet& set : body.joint_sets) {
     JointSet result = set;
+    const bool of_parts = is_set_of_parts(set, body);
     std::vector<std::string> names;
     for (const JointDefinition& joint : set.joints) names.push_back(joint.name);
     const SidedNames sides = sided(names);
@@ -299,10 +304,10 @@ std::vector<JointSet> fit_joint_sets(const std::vector<KnownPerson>& people, con
       const int partner = sides.partner[j];
       const bool paired = partner >= 0 && same_parts(mirrored(set.joints[j], body), set.joints[partner]);
       if (!paired) {
-        result.joints[j] = fit_joint(set.joints[j], samples, body);
+        result.joints[j] = fit_joint(set.joints[j], samples, body, !of_parts);
       } else if (sides.is_left(j)) {
         fit_pair(result.joints[j], result.joints[partner], std::move(samples),
-                 samples_of(people, set, names[partner], body), body);
+                 samples_of(people, set, names[partner], body), body, !of_parts);
       }
     }
     if (known) fitted.push_back(std::move(result));

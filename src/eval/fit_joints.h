@@ -25,7 +25,9 @@ inline constexpr std::size_t kLeastJointSamples = 100;
 /// joint that is its own mirror image stays so: its parts of both sides share a weight. Parts that hardly lower the
 /// loss are left out. Weights are rounded to hundredths, offsets to millimetres. Returns the joint as it is if it has
 /// no parts or fewer than kLeastJointSamples count.
-JointDefinition fit_joint(const JointDefinition& joint, const std::vector<JointSample>& samples, const BodyModel& body);
+/// Without `with_neighbours` only its own parts are used.
+JointDefinition fit_joint(const JointDefinition& joint, const std::vector<JointSample>& samples, const BodyModel& body,
+                          bool with_neighbours = true);
 
 /// A person who was found, with the truth about that person. Places are in metres, optical frame; NaN = not known.
 struct KnownPerson {
@@ -37,7 +39,8 @@ struct KnownPerson {
 };
 
 /// Returns the body's joint sets of which the people's truth has joints, fitted to them; a joint that it lacks stays as
-/// it is. A set with a joint under each part's name is fitted to the parts' centres. Joints of both sides are fitted
+/// it is. A set with a joint under each part's name is fitted to the parts' centres,
+/// each from its own part. Joints of both sides are fitted
 /// together where their definitions are mirror images.
 std::vector<JointSet> fit_joint_sets(const std::vector<KnownPerson>& people, const BodyModel& body);
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
@@ -201,6 +202,24 @@ MetricTerms centre_terms(const JointPair& pair, const std::vector<std::string>& 
   add_errors(pair, names, {Metric::centre_at_10cm, Metric::centres_at_10cm, Metric::centre_error}, terms);
   const Common common = common_joints(pair);
   add_mean(terms, Metric::centres_error, mean_distance(common.truth, common.found));
+  return terms;
+}
+
+MetricTerms predicted_part_terms(const Skeleton& skeleton, const JointPair& centres) {
+  constexpr std::array kRanges{"0-20%", "20-40%", "40-60%", "60-80%", "80-100%"};
+  const std::vector<double> errors = joint_errors(centres);
+  MetricTerms terms;
+  for (std::size_t p = 0; p < errors.size(); ++p) {
+    const SkeletonPart& part = skeleton.parts[p];
+    if (part.state == State::observed || std::isnan(errors[p])) continue;
+    const bool predicted = part.state == State::predicted;
+    const double right = predicted && errors[p] < kJointTolerance_m ? 1.0 : 0.0;
+    terms.push_back({Metric::missing_right, right, 1.0});
+    if (!predicted) continue;
+    const int range = std::clamp(static_cast<int>(part.confidence * 5.F), 0, static_cast<int>(kRanges.size()) - 1);
+    terms.push_back({Metric::predicted_right, right, 1.0});
+    terms.push_back({{Metric::predicted_right_confidence, range, kRanges[range]}, right, 1.0});
+  }
   return terms;
 }
 

@@ -50,6 +50,11 @@ MetricTerms joint_terms(const JointPair& pair, const std::vector<std::string>& n
 /// Returns the shares and mean errors of the centres of one person's parts, in the same way.
 MetricTerms centre_terms(const JointPair& pair, const std::vector<std::string>& names);
 
+/// Returns how many of a person's parts that were not observed have a predicted place within kJointTolerance_m, of
+/// those with a predicted place (also by their confidence) and of all that were not observed. `centres` are those of
+/// the parts' volumes, true and found.
+MetricTerms predicted_part_terms(const Skeleton& skeleton, const JointPair& centres);
+
 /// Returns how far the joints that both have lie from the truth, in millimetres with a sign: along the true body's axis
 /// from the middle of the hips to the neck (up), across it towards the person's own left (left), and along the viewing
 /// ray away from the camera (behind). There are no terms up and left unless the truth has hips and neck or shoulders,

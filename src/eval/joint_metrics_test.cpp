@@ -135,6 +135,25 @@ TEST(JointMetrics, HaveNoFitOfTooFewJoints) {
   EXPECT_FALSE(std::isnan(mean_joint_errors(pair, kNames).absolute_m));
 }
 
+TEST(PredictedParts, AreJudgedByTheirConfidence) {
+  Skeleton skeleton;
+  skeleton.parts.resize(4);
+  JointPair centres;
+  for (std::size_t p = 0; p < 4; ++p) centres.truth.emplace_back(0.F, 0.1F * static_cast<float>(p), 2.F);
+  centres.found = centres.truth;
+  skeleton.parts[0].state = State::observed;
+  skeleton.parts[1].state = skeleton.parts[2].state = State::predicted;
+  skeleton.parts[1].confidence = 0.5F;
+  skeleton.parts[2].confidence = 1.F;
+  centres.found[2].x() = 0.2F;
+  centres.found[3] = kNothing;
+  const MetricTerms terms = predicted_part_terms(skeleton, centres);
+  EXPECT_DOUBLE_EQ(value_of(terms, "predicted.right"), 0.5);
+  EXPECT_DOUBLE_EQ(value_of(terms, "predicted.right.40-60%"), 1.0);
+  EXPECT_DOUBLE_EQ(value_of(terms, "predicted.right.80-100%"), 0.0);
+  EXPECT_DOUBLE_EQ(value_of(terms, "missing.right"), 1.0 / 3.0);
+}
+
 TEST(JointCurve, GivesTheSharesWithinDistances) {
   JointCurve curve;
   curve.add({0.005, 0.095, 0.105, std::numeric_limits<double>::infinity(), std::nan("")});

@@ -12,6 +12,7 @@
 #include "eval/match_people.h"
 #include "eval/side_metrics.h"
 #include "vesalius/base/error.h"
+#include "vesalius/predict_parts.h"
 
 namespace vesalius {
 namespace {
@@ -209,8 +210,9 @@ void FrameScorer::judge_points(const TrueFrame& frame, const std::vector<const P
            given_terms(given, GivenKind::joints, heading_of(frame.truth, who, body()), frame.truth.parts.empty()));
     score.joint_errors_m.push_back(joint_errors(pair));
   });
-  each(known_centres(frame.truth), [&](std::size_t /*who*/, const KnownPoints& known, const JointPair& pair) {
+  each(known_centres(frame.truth), [&](std::size_t who, const KnownPoints& known, const JointPair& pair) {
     append(score.terms, centre_terms(pair, known.names));
+    if (of_person[who] != nullptr) append(score.terms, predicted_part_terms(of_person[who]->skeleton, pair));
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "eval/fit_distribution.h"
 #include "eval/fit_joints.h"
 #include "vesalius/base/error.h"
 
@@ -12,6 +13,14 @@ namespace {
 
 /// Rounds a weight to hundredths, which changes no score by more than a quarter of a hundredth.
 float rounded(float weight) { return std::round(weight * 100.F) / 100.F; }
+
+std::vector<KnownPerson> people_of(const Evaluation& evaluation) {
+  std::vector<KnownPerson> people;
+  for (const SetResult& set : evaluation.sets) {
+    people.insert(people.end(), set.known_people.begin(), set.known_people.end());
+  }
+  return people;
+}
 
 /// Returns a number that TOML reads as a float: "1.0", not "1".
 std::string number(float value) {
@@ -36,16 +45,32 @@ std::string joint_toml(const JointDefinition& joint, const BodyModel& body) {
 }  // namespace
 
 std::string fitted_joints_toml(const Evaluation& evaluation) {
-  std::vector<KnownPerson> people;
-  for (const SetResult& set : evaluation.sets) {
-    people.insert(people.end(), set.known_people.begin(), set.known_people.end());
-  }
-  const std::vector<JointSet> fitted = fit_joint_sets(people, evaluation.body);
+  const std::vector<JointSet> fitted = fit_joint_sets(people_of(evaluation), evaluation.body);
   if (fitted.empty()) throw Error("no joints to fit: expected people found whose joints a set of the body has");
   std::string toml;
   for (const JointSet& set : fitted) {
     toml += fmt::format("{}[[joint_set]]\nname = \"{}\"\n", toml.empty() ? "" : "\n", set.name);
     for (const JointDefinition& joint : set.joints) toml += joint_toml(joint, evaluation.body);
+  }
+  return toml;
+}
+
+std::string fitted_distribution_toml(const Evaluation& evaluation) {
+  const PartDistribution fitted = fit_distribution(people_of(evaluation), evaluation.body);
+  const auto numbers = [](const auto& values) {
+    std::string text;
+    for (const float value : values) text += fmt::format("{}{:.4f}", text.empty() ? "" : ", ", value);
+    return text;
+  };
+  std::string toml = fmt::format("[distribution]\nfactors = {}\nnoise = {}\nconfidence = [{:.3f}, {:.3f}]\n",
+                                 fitted.factors, fitted.noise_m, fitted.confidence_bias, fitted.confidence_slope);
+  for (std::size_t p = 0; p < fitted.parts.size(); ++p) {
+    const PartDistribution::Part& part = fitted.parts[p];
+    toml += fmt::format("\n[[distribution.part]]\nname = \"{}\"\nmean = [{}]\nresidual = {:.4f}\n",
+                        evaluation.body.parts[p].name, numbers(part.mean_m), part.residual_m);
+    for (std::size_t axis = 0; axis < part.factors_m.size(); ++axis) {
+      toml += fmt::format("{} = [{}]\n", "xyz"[axis], numbers(part.factors_m[axis]));
+    }
   }
   return toml;
 }

@@ -11,6 +11,10 @@ namespace vesalius {
 /// fitted to them (fit_joint_sets). Throws Error if there was nothing to fit.
 std::string fitted_joints_toml(const Evaluation& evaluation);
 
+/// Returns the distribution of parts fitted to those people (fit_distribution) as TOML of a body model. Throws Error if
+/// there are too few.
+std::string fitted_distribution_toml(const Evaluation& evaluation);
+
 /// The detector options of an evaluation with the person score fitted to all its sets.
 struct FittedOptions {
   DetectOptions options;

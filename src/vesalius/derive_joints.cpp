@@ -12,23 +12,6 @@ namespace {
 constexpr float kLeastWeight = 0.5F;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-struct Neighbour {
-  const SkeletonPart* part = nullptr;
-  float length_m = 0.F;
-};
-
-/// Returns the observed parts that are linked to `index`.
-std::vector<Neighbour> observed_neighbours(const BodyModel& body, const Skeleton& skeleton, int index) {
-  std::vector<Neighbour> found;
-  for (const BodyLink& link : body.links) {
-    const int other = link.parent == index ? link.child : link.child == index ? link.parent : -1;
-    if (other < 0) continue;
-    const SkeletonPart& part = skeleton.parts[other];
-    if (part.state == State::observed) found.push_back({&part, link.length_m});
-  }
-  return found;
-}
-
 }  // namespace
 
 std::vector<Eigen::Vector3f> given_centres(const Skeleton& skeleton) {
@@ -62,21 +45,6 @@ Joint derive_joint(const JointDefinition& definition, const Skeleton& skeleton, 
   joint.confidence = std::clamp(confidence, 0.F, 1.F);  // relative to the whole weight, so missing parts lower it
   joint.state = all_observed ? State::observed : State::predicted;
   return joint;
-}
-
-void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {
-  std::vector<SkeletonPart> predicted = skeleton.parts;
-  for (int i = 0; i < body.part_count(); ++i) {
-    SkeletonPart& part = predicted[i];
-    if (part.state != State::none) continue;
-    const std::vector<Neighbour> around = observed_neighbours(body, skeleton, i);
-    if (around.size() != 2) continue;
-    const float share = around[0].length_m / (around[0].length_m + around[1].length_m);
-    part.state = State::predicted;
-    part.centre = around[0].part->centre + share * (around[1].part->centre - around[0].part->centre);
-    part.confidence = 0.5F * std::min(around[0].part->confidence, around[1].part->confidence);
-  }
-  skeleton.parts = std::move(predicted);
 }
 
 std::vector<std::vector<Joint>> derive_joints(const BodyModel& body, const Skeleton& skeleton) {

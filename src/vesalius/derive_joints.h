@@ -16,10 +16,6 @@ struct Joint {
   float confidence = 0.F;                              ///< 0-1
 };
 
-/// Fills in unseen parts that lie between two seen ones, on the line between these and in the proportion of the link
-/// lengths. Their state is predicted, and their confidence is half of the weaker neighbour's.
-void predict_missing_parts(const BodyModel& body, Skeleton& skeleton);
-
 /// Returns the centres of the parts that were observed or predicted, NaN for the others.
 std::vector<Eigen::Vector3f> given_centres(const Skeleton& skeleton);
 

@@ -35,29 +35,6 @@ const Joint& joint_of(const std::vector<std::vector<Joint>>& sets, const char* s
   return sets[0][0];
 }
 
-TEST(PredictMissingParts, PutsAnElbowBetweenArmAndForearm) {
-  Skeleton s = whole_skeleton();
-  part_of(s, "l_upper_arm").centre = {0.F, 0.F, 2.F};
-  part_of(s, "l_forearm").centre = {0.F, 0.25F, 2.F};
-  part_of(s, "l_forearm").confidence = 0.4F;
-  part_of(s, "l_elbow") = {};
-  predict_missing_parts(paper_body(), s);
-  const SkeletonPart& elbow = part_of(s, "l_elbow");
-  EXPECT_EQ(elbow.state, State::predicted);
-  EXPECT_NEAR(elbow.centre.y(), 0.25F * 0.12F / 0.23F, 1e-5);  // links of 0.12 and 0.11 m
-  EXPECT_FLOAT_EQ(elbow.confidence, 0.2F);
-}
-
-TEST(PredictMissingParts, PredictsNoEndsOfLimbs) {
-  Skeleton s = whole_skeleton();
-  part_of(s, "l_hand") = {};
-  part_of(s, "r_elbow") = {};
-  part_of(s, "r_forearm") = {};  // the elbow's neighbour is missing too
-  predict_missing_parts(paper_body(), s);
-  EXPECT_EQ(part_of(s, "l_hand").state, State::none);
-  EXPECT_EQ(part_of(s, "r_elbow").state, State::none);
-}
-
 const Eigen::Vector3f kUp(0.F, -1.F, 0.F);
 
 /// Returns a joint made of two parts of the left arm.

@@ -9,6 +9,7 @@
 #include "vesalius/base/pool.h"
 #include "vesalius/forest/label_scene.h"
 #include "vesalius/forest/make_labeller.h"
+#include "vesalius/predict_parts.h"
 
 namespace vesalius {
 

@@ -52,7 +52,8 @@ struct Arguments {
 
   std::vector<std::string> sources, recipes;
   RenderedTruth rendered;
-  std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_score;
+  std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
+      fit_score;
   OptionFlags<DetectOptions> detector_flags;
   int step = 1;
   double turn_deg = 0.0;
@@ -82,7 +83,9 @@ std::vector<Request> set_requests(const Arguments& arguments) {
   const auto add = [&](const std::string& source, const std::filesystem::path& path, std::string name, bool is_recipe) {
     if (!paths.insert(path.string()).second) throw UsageError(fmt::format("{}: given twice", source));
     if (!names.insert(name).second) name = clean(path.string());
-    requests.push_back({{name, source, arguments.keep_going, !arguments.fit_joints.empty()}, is_recipe});
+    requests.push_back(
+        {{name, source, arguments.keep_going, !arguments.fit_joints.empty() || !arguments.fit_parts.empty()},
+         is_recipe});
   };
   for (const std::string& source : arguments.sources) {
     for (const std::string& set : sets_in(source)) {
@@ -175,6 +178,9 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   }
   if (!arguments.report.empty()) write_report(evaluation, arguments.report);
   if (!arguments.fit_joints.empty()) write_file_atomically(arguments.fit_joints, fitted_joints_toml(evaluation));
+  if (!arguments.fit_parts.empty()) {
+    write_file_atomically(arguments.fit_parts, fitted_distribution_toml(evaluation));
+  }
   if (!arguments.fit_score.empty()) write_fitted_score(evaluation, arguments.fit_score, prints_json(arguments));
 }
 
@@ -271,6 +277,12 @@ void add_evaluate(CLI::App& program) {
           "--fit-joints", arguments->fit_joints,
           "Write the joint sets of the model's body fitted to the people found in these frames, whose joints are then "
           "not measured")
+      ->type_name("FILE")
+      ->excludes(labels_only);
+  command
+      ->add_option("--fit-parts", arguments->fit_parts,
+                   "Write how the parts of the people found lie to each other, from which a body model predicts hidden "
+                   "parts; rendered people only, whose joints are then not measured")
       ->type_name("FILE")
       ->excludes(labels_only);
   command

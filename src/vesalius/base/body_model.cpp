@@ -1,6 +1,7 @@
 #include "vesalius/base/body_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -187,6 +188,51 @@ void read_joint_sets(const Reader& reader, const toml::table& root, BodyModel& b
   }
 }
 
+constexpr int kMaxFactors = 64;
+
+/// Reads an array of as many numbers, each at most 10 m from 0.
+std::vector<float> read_lengths(const Reader& reader, const toml::table& table, std::string_view key, int count) {
+  const toml::array& values = reader.array(table, key);
+  if (static_cast<int>(values.size()) != count) {
+    reader.fail(values, std::string(key) + ": expected " + std::to_string(count) + " numbers, found " +
+                            std::to_string(values.size()));
+  }
+  std::vector<float> read;
+  for (const toml::node& value : values) read.push_back(reader.number(value, key, -10.0, 10.0));
+  return read;
+}
+
+void read_distribution(const Reader& reader, const toml::table& root, BodyModel& body) {
+  if (!root.contains("distribution")) return;
+  const toml::table& table = reader.table(reader.need(root, "distribution"), "distribution");
+  reader.expect_keys(table, {"factors", "noise", "confidence", "part"});
+  PartDistribution& distribution = body.distribution;
+  distribution.factors = static_cast<int>(reader.integer(reader.need(table, "factors"), "factors", 0, kMaxFactors));
+  distribution.noise_m = reader.number(table, "noise", 1e-3, 1.0);
+  const std::vector<float> confidence = read_lengths(reader, table, "confidence", 2);
+  distribution.confidence_bias = confidence[0];
+  distribution.confidence_slope = confidence[1];
+  const toml::array& parts = reader.array(table, "part");
+  if (parts.size() != body.parts.size()) {
+    reader.fail(parts, "part: expected the " + std::to_string(body.parts.size()) + " parts of the body, found " +
+                           std::to_string(parts.size()));
+  }
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const toml::table& entry = reader.table(*parts.get(p), "part");
+    reader.expect_keys(entry, {"name", "mean", "residual", "x", "y", "z"});
+    if (reader.name(entry, "name") != body.parts[p].name) {
+      reader.fail(entry, "name: expected " + in_quotes(body.parts[p].name) + ", parts in the body's order");
+    }
+    PartDistribution::Part& part = distribution.parts.emplace_back();
+    std::ranges::copy(read_lengths(reader, entry, "mean", 3), part.mean_m.begin());
+    part.residual_m = reader.number(entry, "residual", 0.0, 10.0);
+    constexpr std::array kAxes{"x", "y", "z"};
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+      part.factors_m[axis] = read_lengths(reader, entry, kAxes[axis], distribution.factors);
+    }
+  }
+}
+
 SurfaceRule::Side read_side(const Reader& reader, const toml::table& table) {
   const toml::node* node = table.get("side");
   if (node == nullptr) return SurfaceRule::Side::both;
@@ -229,13 +275,14 @@ int BodyModel::find_part(std::string_view part_name) const {
 BodyModel parse_body_model(std::string_view toml, const std::string& source) {
   const Reader reader(source);
   const toml::table root = reader.parse(toml);
-  reader.expect_keys(root, {"name", "roots", "part", "link", "joint_set", "surface"});
+  reader.expect_keys(root, {"name", "roots", "part", "link", "joint_set", "distribution", "surface"});
   BodyModel body;
   body.name = reader.name(root, "name");
   read_parts(reader, root, body);
   read_links(reader, root, body);
   read_roots(reader, root, body);
   read_joint_sets(reader, root, body);
+  read_distribution(reader, root, body);
   read_surface(reader, root, body);
   body.toml = toml;
   return body;

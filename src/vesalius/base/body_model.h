@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,23 @@ struct SurfaceRule {
   int line = 0;  ///< in the body's TOML, for messages
 };
 
+/// How the centres of the visible surfaces of parts lie to each other in a population of bodies and poses: a point
+/// distribution model (Cootes et al. 1995), a Gaussian with few factors. Its axes are those of a mean body.
+struct PartDistribution {
+  struct Part {
+    std::array<float, 3> mean_m{};
+    std::array<std::vector<float>, 3> factors_m;  ///< [axis][factor]: what a standard deviation of the factor adds
+    float residual_m = 0.F;                       ///< standard deviation along an axis that the factors leave
+  };
+
+  int factors = 0;
+  float noise_m = 0.F;  ///< standard deviation along an axis of an observed centre
+  /// Logit of the probability that a predicted part lies within 10 cm of the truth: bias + slope * log(sigma in m).
+  float confidence_bias = 0.F;
+  float confidence_slope = 0.F;
+  std::vector<Part> parts;  ///< one for each part of the body, or none: the distribution is not known
+};
+
 /// The body as data: parts, kinematic tree, joints. Read from TOML (docs/formats.md); nothing else in the program
 /// knows how many parts there are or what they are called.
 struct BodyModel {
@@ -63,6 +81,7 @@ struct BodyModel {
   std::vector<BodyLink> links;  ///< a tree over all parts
   std::vector<int> roots;       ///< parts from which a search may start, the most reliable first
   std::vector<JointSet> joint_sets;
+  PartDistribution distribution;
   std::vector<SurfaceRule> surface;  ///< for training on synthetic people; may be empty: detection needs none
   std::string toml;                  ///< the text this was read from, embedded in model files
 

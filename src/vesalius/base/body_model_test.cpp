@@ -105,6 +105,59 @@ TEST(BodyModel, ReadsEveryField) {
   EXPECT_EQ(body.find_part("r_ar"), -1);
 }
 
+constexpr const char* kDistribution = R"(
+[distribution]
+factors = 2
+noise = 0.04
+confidence = [-3.5, -1.5]
+[[distribution.part]]
+name = "trunk"
+mean = [0.1, 0.2, 0.3]
+residual = 0.05
+x = [1.0, 2.0]
+y = [3.0, 4.0]
+z = [5.0, 6.0]
+[[distribution.part]]
+name = "l_arm"
+mean = [0.0, 0.0, 0.0]
+residual = 0.0
+x = [0.0, 0.0]
+y = [0.0, 0.0]
+z = [0.0, 0.0]
+[[distribution.part]]
+name = "r_arm"
+mean = [0.0, 0.0, 0.0]
+residual = 0.0
+x = [0.0, 0.0]
+y = [0.0, 0.0]
+z = [0.0, 0.0]
+)";
+
+TEST(BodyModel, HasTheDistributionOfItsParts) {
+  const PartDistribution d = parse_body_model(std::string(kSmall) + kDistribution, "b").distribution;
+  EXPECT_EQ(d.factors, 2);
+  EXPECT_FLOAT_EQ(d.noise_m, 0.04F);
+  EXPECT_FLOAT_EQ(d.confidence_bias, -3.5F);
+  EXPECT_FLOAT_EQ(d.confidence_slope, -1.5F);
+  ASSERT_EQ(d.parts.size(), 3U);
+  EXPECT_FLOAT_EQ(d.parts[0].mean_m[2], 0.3F);
+  EXPECT_FLOAT_EQ(d.parts[0].residual_m, 0.05F);
+  EXPECT_EQ(d.parts[0].factors_m[1], (std::vector<float>{3.F, 4.F}));
+  EXPECT_TRUE(parse_body_model(kSmall, "b").distribution.parts.empty());
+}
+
+TEST(BodyModel, RefusesADistributionOfOtherParts) {
+  const auto expect = [](const std::string& from, const std::string& to, const std::string& message) {
+    std::string text = kDistribution;
+    text.replace(text.find(from), from.size(), to);
+    EXPECT_THAT([&] { parse_body_model(kSmall + text, "b"); }, ThrowsMessage<Error>(HasSubstr(message)));
+  };
+  expect("l_arm", "r_arm", "name: expected \"l_arm\", parts in the body's order");
+  expect("[3.0, 4.0]", "[3.0]", "y: expected 2 numbers, found 1");
+  expect("factors = 2", "factors = -1", "factors: expected");
+  expect("[0.1, 0.2, 0.3]", "[0.1, 0.2, 30.0]", "mean: expected a number from -10 to 10");
+}
+
 TEST(BodyModel, ContainsThePaperBodyOfTheRepository) {
   std::ifstream file(std::string(VESALIUS_SOURCE_DIR) + "/data/bodies/paper25.toml");
   std::stringstream text;

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Puts fitted joint sets into files that have sets of those names.
+"""Puts what `vesalius evaluate` fitted into body models.
 
-`vesalius evaluate --fit-joints FITTED` writes joint sets. In each FILE (a body model, or sets for evaluation) every set
-that FITTED has as well is replaced by it; comments, order and everything else stay.
+FITTED is what --fit-joints or --fit-parts wrote. In each FILE (a body model, or joint sets for evaluation) every joint
+set that FITTED has as well is replaced by it; comments, order and everything else stay. A distribution of parts
+replaces the file's, or is put at its end.
 
-Usage: put_joints.py FITTED FILE... [--sets NAME,NAME]: only these sets.
+Usage: put_fitted.py FITTED FILE... [--sets NAME,NAME]: only these joint sets.
 """
 
 import argparse
@@ -14,8 +15,8 @@ from pathlib import Path
 
 SET = "[[joint_set]]"
 NAME = re.compile(r'^name = "([\w-]+)"', re.MULTILINE)
-# A table, or a comment, that is no part of a joint set.
-END = re.compile(r"^(?:#|\[\[(?!joint_set\.joint\]\]))", re.MULTILINE)
+# A comment, or a table that is no part of a joint set.
+END = re.compile(r"^(?:#|\[(?!\[joint_set\.joint\]\]))", re.MULTILINE)
 
 
 def joint_sets(text):
@@ -38,6 +39,25 @@ def put(fitted, text, only=None):
     return text, replaced
 
 
+def distribution(text):
+    """Returns (begin, end) of the distribution of parts in a TOML text, both its length where there is none."""
+    start = re.search(r"^\[distribution\]", text, re.MULTILINE)
+    if not start:
+        return len(text), len(text)
+    end = re.compile(r"^(?:#|\[(?!\[distribution\.part\]\]))", re.MULTILINE).search(text, start.end())
+    return start.start(), start.start() + len(text[start.start() : end.start() if end else len(text)].rstrip())
+
+
+def put_distribution(fitted, text):
+    """Returns the text with the distribution of `fitted`, if that has one, and whether it has."""
+    begin, end = distribution(fitted)
+    if begin == end:
+        return text, False
+    at, after = distribution(text)
+    new = fitted[begin:end]
+    return (text.rstrip() + "\n\n" + new + "\n" if at == after else text[:at] + new + text[after:]), True
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("fitted", type=Path)
@@ -48,8 +68,10 @@ def main():
     only = arguments.sets.split(",") if arguments.sets else None
     for path in arguments.files:
         text, replaced = put(fitted, path.read_text(), only)
+        text, has_distribution = put_distribution(fitted, text)
+        replaced += ["distribution"] if has_distribution else []
         path.write_text(text)
-        print(f"{path}: {', '.join(replaced) or 'no set of those names'}")
+        print(f"{path}: {', '.join(replaced) or 'nothing of those names'}")
     return 0
 
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Tests put_joints.py."""
+"""Tests put_fitted.py."""
 
 import unittest
 
-from put_joints import put
+from put_fitted import put, put_distribution
 
 BODY = """name = "small"
 
@@ -42,7 +42,7 @@ name = "others"
 """
 
 
-class PutJoints(unittest.TestCase):
+class PutFitted(unittest.TestCase):
     def test_replaces_only_the_sets_of_both(self):
         text, replaced = put(FITTED, BODY)
         self.assertEqual(replaced, ["theirs"])
@@ -54,6 +54,14 @@ class PutJoints(unittest.TestCase):
     def test_does_nothing_twice(self):
         once, _ = put(FITTED, BODY)
         self.assertEqual(put(FITTED, once)[0], once)
+
+    def test_puts_a_distribution_at_the_end_or_in_its_place(self):
+        first = "[distribution]\nnoise = 1\n\n[[distribution.part]]\nname = \"trunk\"\n"
+        self.assertEqual(put_distribution(FITTED, BODY), (BODY, False))
+        once, _ = put_distribution(first, BODY)
+        self.assertEqual(once, BODY + "\n" + first)
+        middle = once + "\n[[surface]]\n"
+        self.assertEqual(put_distribution(first.replace("1", "2"), middle)[0], middle.replace("noise = 1", "noise = 2"))
 
 
 if __name__ == "__main__":

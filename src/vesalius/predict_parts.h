@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "vesalius/base/body_model.h"
+#include "vesalius/search_skeletons.h"
+
+namespace vesalius {
+
+/// The place of a part that follows from others.
+struct PredictedPart {
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< metres, optical frame
+  float sigma_m = 0.F;                               ///< standard deviation along each axis
+};
+
+/// Fewest known parts from which others are predicted: three tell how a body is turned.
+inline constexpr int kLeastKnownParts = 3;
+/// Least confidence of a predicted part. Places that are wrong more often than four times in five help nobody.
+inline constexpr float kLeastPredictedConfidence = 0.2F;
+
+/// Returns the places of all parts, also the known ones, given those that are known (NaN = not known): the known ones
+/// are turned onto the distribution's mean, and the others' means and variances given them are those of a Gaussian.
+/// Known parts far from where the others expect them count less. Returns nothing for fewer than kLeastKnownParts.
+std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
+                                         const std::vector<Eigen::Vector3f>& centres);
+
+/// Returns the probability that a predicted part lies within 10 cm of the truth.
+float predicted_confidence(const PartDistribution& distribution, float sigma_m);
+
+/// Fills in the parts that were not observed. With a distribution in the body those get a place that reach
+/// kLeastPredictedConfidence; without, those between two observed ones, on the line between these and in the proportion
+/// of the link lengths, with half of the weaker neighbour's confidence. Their state is predicted.
+void predict_missing_parts(const BodyModel& body, Skeleton& skeleton);
+
+/// Returns the rotation that turns `from` onto `onto` with the least squared error, with the columns' weights, both
+/// taken from their weighted means (Kabsch 1976).
+Eigen::Matrix3d best_rotation(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& onto,
+                              const Eigen::VectorXd& weights);
+
+}  // namespace vesalius

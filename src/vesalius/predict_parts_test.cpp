@@ -1,0 +1,155 @@
+#include "vesalius/predict_parts.h"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+namespace vesalius {
+namespace {
+
+using Eigen::Vector3f;
+
+const Vector3f kUnknown = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+
+BodyModel without_distribution() {
+  BodyModel body = paper_body();
+  body.distribution = {};
+  return body;
+}
+
+Skeleton whole_skeleton() {
+  Skeleton s;
+  for (int i = 0; i < paper_body().part_count(); ++i) {
+    SkeletonPart part;
+    part.state = State::observed;
+    part.centre = Vector3f(0.1F * static_cast<float>(i), 0.F, 2.F);
+    part.confidence = 0.8F;
+    s.parts.push_back(part);
+  }
+  return s;
+}
+
+SkeletonPart& part_of(Skeleton& s, const char* name) { return s.parts[paper_body().find_part(name)]; }
+
+TEST(PredictMissingParts, PutsAnElbowBetweenArmAndForearm) {
+  Skeleton s = whole_skeleton();
+  part_of(s, "l_upper_arm").centre = {0.F, 0.F, 2.F};
+  part_of(s, "l_forearm").centre = {0.F, 0.25F, 2.F};
+  part_of(s, "l_forearm").confidence = 0.4F;
+  part_of(s, "l_elbow") = {};
+  predict_missing_parts(without_distribution(), s);
+  const SkeletonPart& elbow = part_of(s, "l_elbow");
+  EXPECT_EQ(elbow.state, State::predicted);
+  EXPECT_NEAR(elbow.centre.y(), 0.25F * 0.12F / 0.23F, 1e-5);  // links of 0.12 and 0.11 m
+  EXPECT_FLOAT_EQ(elbow.confidence, 0.2F);
+}
+
+TEST(PredictMissingParts, PredictsNoEndsOfLimbs) {
+  Skeleton s = whole_skeleton();
+  part_of(s, "l_hand") = {};
+  part_of(s, "r_elbow") = {};
+  part_of(s, "r_forearm") = {};  // the elbow's neighbour is missing too
+  predict_missing_parts(without_distribution(), s);
+  EXPECT_EQ(part_of(s, "l_hand").state, State::none);
+  EXPECT_EQ(part_of(s, "r_elbow").state, State::none);
+}
+
+/// Five parts on a cross; one factor moves the fifth, and less the fourth, along z.
+PartDistribution cross() {
+  PartDistribution d;
+  d.factors = 1;
+  d.noise_m = 0.01F;
+  d.confidence_bias = -4.F;
+  d.confidence_slope = -2.F;
+  const std::array<std::array<float, 3>, 5> means{
+      {{0, -0.5F, 0}, {0, 0.5F, 0}, {0.3F, 0, 0}, {-0.3F, 0, 0}, {0, 0, 0.4F}}};
+  for (std::size_t p = 0; p < means.size(); ++p) {
+    PartDistribution::Part part;
+    part.mean_m = means[p];
+    part.factors_m = {{{0.F}, {0.F}, {p == 4 ? 0.2F : p == 3 ? 0.1F : 0.F}}};
+    part.residual_m = 0.02F;
+    d.parts.push_back(part);
+  }
+  return d;
+}
+
+/// Returns the cross's parts where the factor has this value, turned and shifted.
+std::vector<Vector3f> placed(float factor) {
+  const PartDistribution d = cross();
+  const Eigen::AngleAxisf turn(2.F, Vector3f(1.F, 2.F, -1.F).normalized());
+  std::vector<Vector3f> places;
+  for (const PartDistribution::Part& part : d.parts) {
+    const Vector3f place(part.mean_m[0], part.mean_m[1], part.mean_m[2] + factor * part.factors_m[2][0]);
+    places.emplace_back(turn * place + Vector3f(0.3F, -0.2F, 2.F));
+  }
+  return places;
+}
+
+TEST(PredictParts, FindsAPartOfABodyTurnedAnyWay) {
+  std::vector<Vector3f> seen = placed(0.F);
+  const Vector3f hidden = seen[2];
+  seen[2] = kUnknown;
+  const std::vector<PredictedPart> predicted = predict_parts(cross(), seen);
+  ASSERT_EQ(predicted.size(), 5U);
+  EXPECT_LT((predicted[2].centre - hidden).norm(), 0.01F);
+  EXPECT_LT((predicted[0].centre - seen[0]).norm(), 0.01F);
+}
+
+TEST(PredictParts, FollowsWhatMovesWithIt) {
+  std::vector<Vector3f> seen = placed(1.F);
+  const Vector3f hidden = seen[4];
+  seen[4] = kUnknown;
+  EXPECT_LT((predict_parts(cross(), seen)[4].centre - hidden).norm(), 0.08F);
+  EXPECT_GT((placed(0.F)[4] - hidden).norm(), 0.19F);
+}
+
+TEST(PredictParts, IsLessSureOfWhatMovesFreely) {
+  std::vector<Vector3f> seen = placed(0.F);
+  seen[2] = seen[4] = kUnknown;
+  const std::vector<PredictedPart> with = predict_parts(cross(), seen);
+  EXPECT_GT(with[4].sigma_m, with[2].sigma_m);
+  seen[3] = kUnknown;                                 // it moves with the fifth
+  EXPECT_TRUE(predict_parts(cross(), seen).empty());  // two are known
+  seen[2] = placed(0.F)[2];
+  EXPECT_GT(predict_parts(cross(), seen)[4].sigma_m, with[4].sigma_m);
+  EXPECT_GT(predicted_confidence(cross(), 0.05F), predicted_confidence(cross(), 0.1F));
+}
+
+TEST(PredictMissingParts, GivesThoseAPlaceThatAreSureEnough) {
+  BodyModel body;
+  body.parts.resize(5);
+  body.distribution = cross();
+  Skeleton s;
+  for (const Vector3f& place : placed(0.F)) {
+    SkeletonPart part;
+    part.state = State::observed;
+    part.centre = place;
+    s.parts.push_back(part);
+  }
+  const Vector3f hidden = s.parts[2].centre;
+  s.parts[2] = s.parts[4] = {};
+  predict_missing_parts(body, s);
+  EXPECT_EQ(s.parts[2].state, State::predicted);
+  EXPECT_LT((s.parts[2].centre - hidden).norm(), 0.02F);
+  EXPECT_GT(s.parts[2].confidence, kLeastPredictedConfidence);
+  body.distribution.confidence_bias = -20.F;
+  s.parts[2] = {};
+  predict_missing_parts(body, s);
+  EXPECT_EQ(s.parts[2].state, State::none);
+}
+
+TEST(BestRotation, UndoesATurnAndMakesNoMirrorImage) {
+  Eigen::Matrix3Xd points(3, 4);
+  points << 0, 1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, -1, 2).normalized()).toRotationMatrix();
+  const Eigen::Matrix3Xd turned = (turn * points).colwise() + Eigen::Vector3d(1, 2, 3);
+  EXPECT_TRUE(best_rotation(points, turned, Eigen::VectorXd::Ones(4)).isApprox(turn, 1e-9));
+  Eigen::Matrix3Xd mirrored = points;
+  mirrored.row(0) *= -1.0;
+  EXPECT_NEAR(best_rotation(points, mirrored, Eigen::VectorXd::Ones(4)).determinant(), 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace vesalius
