@@ -41,5 +41,21 @@ TEST(ReduceForest, KeepsTheFirstTrees) {
   EXPECT_THROW(with_first_trees(forest, 4), Error);
 }
 
+TEST(ReduceForest, TakesForestsWhoseLeavesWereLearnedTogether) {
+  Forest forest = three_leaves();
+  forest.logit_unit = 0.05F;
+  for (Tree& tree : forest.trees) tree.logits.assign(26 * tree.leaves.size(), 0);
+  forest.trees[0].logits[7] = 90;
+  forest.trees[1].logits[25] = 5;
+  const Forest two = with_first_trees(forest, 2);
+  check(two);
+  EXPECT_EQ(two.logit_unit, forest.logit_unit);
+  const Forest votes = with_hard_votes(forest);
+  check(votes);
+  EXPECT_EQ(votes.logit_unit, 0.F);
+  EXPECT_EQ(votes.trees[0].leaves[0], (TreeLeaf{{7}, {255}}));
+  EXPECT_EQ(votes.trees[1].leaves[0], (TreeLeaf{{25}, {255}}));
+}
+
 }  // namespace
 }  // namespace vesalius
