@@ -26,11 +26,12 @@ class Turn {
         bottom = std::max(bottom, sin_ * du + cos_ * dv);
       }
     }
+    const auto whole = [](double pixels) { return std::ceil(pixels - 1e-6); };  // a quarter is not quite a quarter
     to_ = from;
-    to_.cx = static_cast<float>(std::ceil(-left));
-    to_.cy = static_cast<float>(std::ceil(-top));
-    to_.width = static_cast<int>(std::ceil(-left) + std::ceil(right)) + 1;
-    to_.height = static_cast<int>(std::ceil(-top) + std::ceil(bottom)) + 1;
+    to_.cx = static_cast<float>(whole(-left));
+    to_.cy = static_cast<float>(whole(-top));
+    to_.width = static_cast<int>(whole(-left) + whole(right)) + 1;
+    to_.height = static_cast<int>(whole(-top) + whole(bottom)) + 1;
   }
 
   const Camera& camera() const { return to_; }

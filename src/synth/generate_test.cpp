@@ -84,6 +84,7 @@ TEST(Generate, FiltersTheGivenShareOfPictures) {
 TEST(Generate, MakesStereoErrorsLargerUpToTheGivenFactor) {
   Recipe recipe = small_recipe();
   recipe.sensor.preset = "d435";
+  recipe.sensor.height = 80;
   const auto errors_mm = [&](float matching_max) {
     recipe.sensor.matching_max = matching_max;
     const Generator noisy(recipe, {}, paper_body(), 7);
