@@ -137,6 +137,24 @@ Weights logistic_weights(const std::vector<Weighted>& samples) {
   return w;
 }
 
+/// Fits weights of which none contradicts what its evidence means: as long as some do, the largest of them is left out
+/// and the others are fitted anew.
+Weights plausible_weights(std::vector<Weighted> samples) {
+  while (true) {
+    const Weights w = logistic_weights(samples);
+    int worst = -1;
+    double most = 0.0;
+    for (int i = 0; i < kFeatures; ++i) {
+      const double against = -kEvidenceWeights[i].sign * w[i];
+      if (against <= most) continue;
+      most = against;
+      worst = i;
+    }
+    if (worst < 0) return w;
+    for (Weighted& s : samples) s.x[worst] = 0.0;
+  }
+}
+
 }  // namespace
 
 std::vector<ScoreSample> score_samples(const Trace& trace, const FrameTruth& truth, const DepthImage& depth) {
@@ -160,7 +178,7 @@ ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const Scor
   fit.nobodies = static_cast<long>(samples.size()) - fit.people;
   if (fit.people == 0) throw Error("fitting the score: the frames have no candidate that is known to be a person");
   if (fit.nobodies == 0) throw Error("fitting the score: the frames have no candidate that is known to be nobody");
-  const Weights w = logistic_weights(samples);
+  const Weights w = plausible_weights(samples);
   for (int i = 0; i < kFeatures; ++i) {
     fit.options.*kEvidenceWeights[i].weight = static_cast<float>(w[i]);
   }

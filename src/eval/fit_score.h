@@ -32,7 +32,8 @@ struct ScoreFit {
 /// Fits weights and bias of the person score by logistic regression such that 0.5 separates people from nobodies. All
 /// other options are those of `start`. The people of every set have the same total weight, and so have its nobodies, so
 /// a long sequence does not outweigh a short one. A small ridge keeps the weights finite for sets that a line separates
-/// completely. Throws Error if there are no people or no nobodies.
+/// completely. Evidence whose weight would contradict its sign (EvidenceWeight) gets none. Throws Error if there are no
+/// people or no nobodies.
 ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const ScoreOptions& start);
 
 }  // namespace vesalius

@@ -31,19 +31,26 @@ std::vector<ScoreSample> drawn(const ScoreOptions& truth, int count, std::uint64
   return samples;
 }
 
-TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
+ScoreOptions drawn_weights() {
   ScoreOptions truth;
   truth.likelihood_weight = 4.F;
   truth.explained_weight = 2.F;
-  truth.open_weight = -1.F;
+  truth.open_weight = 1.F;
   truth.core_weight = 3.F;
   truth.body_weight = 1.F;
-  truth.size_weight = -2.F;
+  truth.size_weight = 2.F;
   truth.occluded_weight = 3.F;
   truth.near_weight = 1.5F;
   truth.certain_weight = 2.F;
   truth.border_weight = -3.F;
-  truth.bias = -4.F;
+  truth.beside_weight = -2.F;
+  truth.resolution_weight = 1.F;
+  truth.bias = -7.F;
+  return truth;
+}
+
+TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
+  const ScoreOptions truth = drawn_weights();
   const ScoreFit fit = fit_score({drawn(truth, 40000, 3)}, {});
   // People and nobodies have different weights, which affects only the bias.
   EXPECT_NEAR(fit.options.likelihood_weight, truth.likelihood_weight, 0.25);
@@ -56,10 +63,23 @@ TEST(FitScore, FindsTheWeightsThatMadeTheSamples) {
   EXPECT_NEAR(fit.options.near_weight, truth.near_weight, 0.25);
   EXPECT_NEAR(fit.options.certain_weight, truth.certain_weight, 0.25);
   EXPECT_NEAR(fit.options.border_weight, truth.border_weight, 0.25);
+  EXPECT_NEAR(fit.options.beside_weight, truth.beside_weight, 0.25);
+  EXPECT_NEAR(fit.options.resolution_weight, truth.resolution_weight, 0.25);
   const double odds = static_cast<double>(fit.people) / static_cast<double>(fit.nobodies);
   EXPECT_NEAR(fit.options.bias, truth.bias - std::log(3.0 * odds), 0.3);
   EXPECT_EQ(fit.people + fit.nobodies, 40000);
   EXPECT_GE(fit.area_after, fit.area_before);
+}
+
+TEST(FitScore, GivesNoWeightThatContradictsTheEvidence) {
+  ScoreOptions truth = drawn_weights();
+  truth.open_weight = -2.F;   // standing free cannot speak against a person
+  truth.beside_weight = 2.F;  // nor body all around for one
+  const ScoreFit fit = fit_score({drawn(truth, 20000, 5)}, {});
+  EXPECT_EQ(fit.options.open_weight, 0.F);
+  EXPECT_EQ(fit.options.beside_weight, 0.F);
+  EXPECT_GT(fit.options.likelihood_weight, 3.F);  // what is left out makes the others a little weaker
+  EXPECT_LT(fit.options.border_weight, -2.F);
 }
 
 TEST(FitScore, GivesFiniteWeightsForSeparableSets) {

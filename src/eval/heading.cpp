@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "vesalius/base/body_heading.h"
+
 namespace vesalius {
 namespace {
 
@@ -21,6 +23,10 @@ Eigen::Vector2f right_to_left(const SidedNames& names, const std::vector<Vector3
   }
   const Vector3f mean = mean_known(across);
   return {mean.x(), mean.z()};
+}
+
+Heading side_of_turn(float turn_rad) {
+  return turn_rad <= kFront_rad ? Heading::front : turn_rad <= kBack_rad ? Heading::side : Heading::back;
 }
 
 }  // namespace
@@ -65,11 +71,15 @@ std::optional<Heading> heading_of(const SidedNames& names, const std::vector<Vec
   if (left.norm() < kLeastAcross_m || to_camera.norm() == 0.F) return std::nullopt;
   const Eigen::Vector2f front(left.y(), -left.x());  // whose left is at the picture's right faces the camera
   const float turn = std::acos(std::clamp(front.dot(to_camera) / (front.norm() * to_camera.norm()), -1.F, 1.F));
-  return turn <= kFront_rad ? Heading::front : turn <= kBack_rad ? Heading::side : Heading::back;
+  return side_of_turn(turn);
 }
 
 std::optional<Heading> heading_of(const FrameTruth& truth, std::size_t person, const BodyModel& body) {
-  if (person < truth.parts.size()) return heading_of(sided(body), truth.parts[person]);
+  if (person < truth.parts.size()) {
+    const std::optional<float> yaw = body_yaw(truth.parts[person], body);
+    if (!yaw) return std::nullopt;
+    return side_of_turn(std::abs(*yaw));
+  }
   if (truth.heading || person >= truth.joints.size()) return truth.heading;
   return heading_of(sided(truth.joint_names), truth.joints[person]);
 }

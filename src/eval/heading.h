@@ -30,8 +30,8 @@ SidedNames sided(const std::vector<std::string>& names);
 /// as when lying on a side, or if no pair is known.
 std::optional<Heading> heading_of(const SidedNames& names, const std::vector<Eigen::Vector3f>& points);
 
-/// Returns the heading of a true person: from the centres of the parts, from the truth of the whole frame, or from the
-/// joints, whichever is known first.
+/// Returns the heading of a true person: from the centres of the parts by body_yaw, from the truth of the whole frame,
+/// or from the joints, whichever is known first.
 std::optional<Heading> heading_of(const FrameTruth& truth, std::size_t person, const BodyModel& body);
 
 }  // namespace vesalius

@@ -15,13 +15,14 @@ enum class Metric {
   people_found,
   people_false,
   empty_with_person,
-  posture,   ///< family
-  distance,  ///< family
-  heading,   ///< family
-  visible,   ///< family
-  motion,    ///< family
-  stature,   ///< family
-  roll,      ///< family
+  posture,      ///< family
+  distance,     ///< family
+  heading,      ///< family
+  visible,      ///< family
+  motion,       ///< family
+  stature,      ///< family
+  roll,         ///< family
+  score_right,  ///< family
   mask_iou,
   mask_iou_where_found,
   part_seen,  ///< family
@@ -43,6 +44,9 @@ enum class Metric {
   sides_order_heading,  ///< family
   sides_order_arms,
   sides_order_arms_heading,  ///< family
+  yaw_right,
+  yaw_right_heading,     ///< family
+  yaw_right_confidence,  ///< family
   pixel_person_iou,
   pixel_background_iou,
   pixel_recall,  ///< family
@@ -109,6 +113,7 @@ inline constexpr auto kMetrics = [] {
       {M::motion, "motion.*", "found by camera motion", share, higher_is_better, trials},
       {M::stature, "stature.*", "found by stature", share, higher_is_better, trials},
       {M::roll, "roll.*", "found by camera roll", share, higher_is_better, trials},
+      {M::score_right, "score.right_at.*", "people among proposals by score", share, higher_is_better, trials},
       {M::mask_iou, "mask.iou", "mask IoU with misses"},
       {M::mask_iou_where_found, "mask.iou_where_found", "mask IoU where found"},
       {M::part_seen, "part.seen.*", "parts seen", share, higher_is_better, trials},
@@ -130,6 +135,10 @@ inline constexpr auto kMetrics = [] {
       {M::sides_order_heading, "sides.order.*", "pairs in order by heading"},
       {M::sides_order_arms, "sides.order_arms", "arms in order"},
       {M::sides_order_arms_heading, "sides.order_arms.*", "arms in order by heading"},
+      {M::yaw_right, "yaw.right", "yaw within 45 degrees", share, higher_is_better, trials},
+      {M::yaw_right_heading, "yaw.right.*", "yaw within 45 degrees by heading", share, higher_is_better, trials},
+      {M::yaw_right_confidence, "yaw.right_at.*", "yaw within 45 degrees by its confidence", share, higher_is_better,
+       trials},
       {M::pixel_person_iou, "pixels.person_iou", "person IoU of labels"},
       {M::pixel_background_iou, "pixels.background_iou", "background IoU of labels"},
       {M::pixel_recall, "pixels.recall.*", "recall with background"},

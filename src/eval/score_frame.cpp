@@ -86,6 +86,12 @@ std::vector<const Person*> found_of_each(const std::vector<Person>& people, cons
   return found;
 }
 
+/// Whether a proposal is a person, by the tenth in which its score lies.
+MetricTerm score_term(float score, bool person) {
+  const int tenth = std::clamp(static_cast<int>(10.F * score), 0, 9);
+  return {{Metric::score_right, tenth, fmt::format("{}_to_{}", 10 * tenth, 10 * tenth + 10)}, person ? 1.0 : 0.0, 1.0};
+}
+
 }  // namespace
 
 FrameScorer::FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options)
@@ -128,6 +134,7 @@ FrameLabels FrameScorer::find_people(const TrueFrame& frame, const Mask* asked, 
   log_proposals(frame, trace, fit_joints, score);
   append(score.terms, given_part_terms(frame, of_person, body()));
   append(score.terms, side_order_terms(frame, of_person, body()));
+  append(score.terms, yaw_terms(frame, of_person, body()));
   if (fit_joints) {
     keep_known_people(frame, of_person, score);
   } else {
@@ -147,6 +154,9 @@ void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool
   const std::vector<Match> matches = match_people(proposals, frame.truth, frame.frame.depth);
   for (std::size_t i = 0; i < proposals.size(); ++i) {
     if (matches[i].kind == Match::Kind::ignored) continue;
+    if (proposals[i].skeleton->found >= options_.detect.refine.min_parts) {
+      score.terms.push_back(score_term(proposals[i].score, matches[i].kind == Match::Kind::person));
+    }
     JudgedProposal judged{proposals[i].score, proposals[i].skeleton->found, matches[i].kind == Match::Kind::person, {}};
     if (judged.person) {
       std::vector<Eigen::Vector3f> visible;

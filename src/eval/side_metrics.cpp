@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "eval/breakdown_metrics.h"
 #include "eval/people_metrics.h"
+#include "vesalius/base/body_heading.h"
 
 namespace vesalius {
 namespace {
@@ -16,6 +18,14 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr double kMostRoll_deg = 45.0;
+constexpr float kYawTolerance_rad = std::numbers::pi_v<float> / 4.F;
+struct ConfidenceRange {
+  float below;
+  const char* name;
+};
+constexpr std::array kYawConfidences{ConfidenceRange{0.6F, "below_60"}, ConfidenceRange{0.8F, "60_to_80"},
+                                     ConfidenceRange{0.9F, "80_to_90"}, ConfidenceRange{0.97F, "90_to_97"},
+                                     ConfidenceRange{2.F, "over_97"}};
 constexpr std::array kArmWords{"elbow", "forearm", "hand"};
 
 double distance_m(const Vector3f& a, const Vector3f& b) { return static_cast<double>((a - b).norm()); }
@@ -136,6 +146,23 @@ MetricTerms side_order_terms(const TrueFrame& frame, const std::vector<const Per
     }
     add_by_heading(Metric::sides_order, Metric::sides_order_heading, heading, in_order[0], pairs[0], terms);
     add_by_heading(Metric::sides_order_arms, Metric::sides_order_arms_heading, heading, in_order[1], pairs[1], terms);
+  }
+  return terms;
+}
+
+MetricTerms yaw_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person, const BodyModel& body) {
+  MetricTerms terms;
+  for (std::size_t who = 0; who < of_person.size() && who < frame.truth.parts.size(); ++who) {
+    if (of_person[who] == nullptr || !of_person[who]->yaw) continue;
+    const std::optional<float> yaw = body_yaw(frame.truth.parts[who], body);
+    if (!yaw) continue;
+    const YawEstimate& found = *of_person[who]->yaw;
+    const float off = std::abs(std::remainder(found.yaw_rad - *yaw, 2.F * std::numbers::pi_v<float>));
+    const int right = off <= kYawTolerance_rad ? 1 : 0;
+    add_by_heading(Metric::yaw_right, Metric::yaw_right_heading, heading_of(frame.truth, who, body), right, 1, terms);
+    const auto bin = std::ranges::find_if(kYawConfidences, [&](const auto& b) { return found.confidence < b.below; });
+    terms.push_back(
+        {{Metric::yaw_right_confidence, static_cast<int>(bin - kYawConfidences.begin()), bin->name}, 1.0 * right, 1.0});
   }
   return terms;
 }

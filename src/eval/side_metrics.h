@@ -44,4 +44,8 @@ MetricTerms given_part_terms(const TrueFrame& frame, const std::vector<const Per
 MetricTerms side_order_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person,
                              const BodyModel& body);
 
+/// Returns whether the yaw of each found person lies within 45 degrees of that of the true parts' centres, by the true
+/// heading and by the confidence that the yaw was given with.
+MetricTerms yaw_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person, const BodyModel& body);
+
 }  // namespace vesalius

@@ -127,5 +127,20 @@ TEST(SideOrder, LeavesOutPeopleWhoAreNotUprightInThePicture) {
   EXPECT_FALSE(side_order_terms(frame, {&person}, paper_body()).empty());
 }
 
+TEST(Yaw, IsRightWithin45DegreesOfTheTrueOne) {
+  const TrueFrame frame = frame_of(kHalfTurn);
+  Person person = person_at(frame, false);
+  EXPECT_TRUE(yaw_terms(frame, {&person}, paper_body()).empty());  // none was given
+  person.yaw = YawEstimate{-kHalfTurn + 0.7F, 0.95F};
+  const MetricTerms near = yaw_terms(frame, {&person}, paper_body());
+  EXPECT_EQ(value_of(near, "yaw.right"), 1.0);
+  EXPECT_EQ(value_of(near, "yaw.right.back"), 1.0);
+  EXPECT_EQ(value_of(near, "yaw.right_at.90_to_97"), 1.0);
+  person.yaw = YawEstimate{0.F, 0.2F};
+  const MetricTerms far = yaw_terms(frame, {&person, nullptr}, paper_body());
+  EXPECT_EQ(value_of(far, "yaw.right"), 0.0);
+  EXPECT_EQ(value_of(far, "yaw.right_at.below_60"), 0.0);
+}
+
 }  // namespace
 }  // namespace vesalius

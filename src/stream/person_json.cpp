@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace vesalius {
 namespace {
@@ -65,6 +66,13 @@ Json joints_json(const Person& person, const BodyModel& body, const Camera& came
   return sets;
 }
 
+Json yaw_json(const std::optional<YawEstimate>& yaw) {
+  if (!yaw) return {};
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  return {{"degrees", rounded(kDegrees * static_cast<double>(yaw->yaw_rad), 10)},
+          {"confidence", rounded(yaw->confidence)}};
+}
+
 /// File names need not be UTF-8; JSON must.
 std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
@@ -76,6 +84,7 @@ std::string frame_json(const Frame& frame, const std::vector<Person>& people, co
     const Person& person = people[i];
     list.push_back({{"index", i},
                     {"score", rounded(person.score)},
+                    {"yaw", yaw_json(person.yaw)},
                     {"box_px", {person.box.u, person.box.v, person.box.width, person.box.height}},
                     {"parts", parts_json(person.skeleton, body, frame.camera)},
                     {"joints", joints_json(person, body, frame.camera)}});

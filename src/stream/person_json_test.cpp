@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace vesalius {
 namespace {
@@ -50,6 +51,7 @@ TEST(PersonJson, ListsEveryPartAndJoint) {
   const json person = json::parse(line).at("people").at(0);
   EXPECT_EQ(person.at("index"), 0);
   EXPECT_EQ(person.at("score"), 0.5);
+  EXPECT_TRUE(person.at("yaw").is_null());
   EXPECT_EQ(person.at("box_px"), json({10, 20, 30, 40}));
   EXPECT_EQ(person.at("parts").size(), 25U);
   EXPECT_EQ(person.at("parts").at("neck"),
@@ -60,6 +62,14 @@ TEST(PersonJson, ListsEveryPartAndJoint) {
   EXPECT_EQ(person.at("joints").at("nite15").size(), 15U);
   EXPECT_EQ(person.at("joints").at("nite15").at("neck").at("xyz_m"), json({0.0, 0.5, 2.0}));
   EXPECT_TRUE(person.at("joints").at("coco17").at("nose").at("xyz_m").is_null());
+}
+
+TEST(PersonJson, AYawIsGivenInDegrees) {
+  const BodyModel& body = paper_body();
+  Person person = half_seen(body);
+  person.yaw = YawEstimate{-std::numbers::pi_v<float> / 2.F, 0.875F};
+  const json yaw = json::parse(frame_json(named("f"), {person}, body)).at("people").at(0).at("yaw");
+  EXPECT_EQ(yaw, json::parse(R"({"degrees":-90.0,"confidence":0.875})"));
 }
 
 TEST(PersonJson, AnUnknownTimeIsNull) {

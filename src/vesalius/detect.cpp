@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -98,7 +99,7 @@ std::vector<Candidate> grow_known(const Method& method, const Frame& frame, cons
     if (known.mask.empty()) continue;
     Candidate candidate;
     candidate.known = static_cast<int>(i);
-    candidate.labels = method.labeller.label_person(scene.labels, frame, known.mask, bounding_box(known.mask));
+    candidate.labels = method.labeller.label_person(scene.labels, frame, known.mask, bounding_box(known.mask)).labels;
     const Clusters clusters =
         find_clusters(candidate.labels, frame.depth, frame.camera, method.body, method.options.cluster);
     std::vector<Skeleton> rough = search_skeletons(clusters.items, method.body, method.options.search);
@@ -110,11 +111,32 @@ std::vector<Candidate> grow_known(const Method& method, const Frame& frame, cons
   return candidates;
 }
 
+/// Returns where nobody grows: on flat surfaces and where the forest is sure enough of the background.
+Mask barred(const Method& method, const SceneLabels& labels) {
+  Mask barred = labels.flat;
+  const float least = method.options.grow.least_body;
+  const Posteriors& posteriors = labels.posteriors();
+  const int parts = method.body.part_count();
+  if (least <= 0.F || posteriors.classes == parts) return barred;
+  for (int v = 0; v < posteriors.height; ++v) {
+    for (int u = 0; u < posteriors.width; ++u) {
+      const std::uint16_t* sums = posteriors.at(u, v);
+      const int body = std::accumulate(sums, sums + parts, 0);
+      if (static_cast<float>(body) < least * static_cast<float>(body + sums[parts])) barred(u, v) = 1;
+    }
+  }
+  return barred;
+}
+
 std::vector<Candidate> propose(const Method& method, const Frame& frame, const Scene& scene, const Prior& prior) {
   if (scene.rough.empty() && prior.people.empty()) return {};
-  const PersonGrower grower(frame, scene.labels.flat, method.body, method.options.grow);
+  const Mask none = barred(method, scene.labels);
+  const PersonGrower grower(frame, none, method.body, method.options.grow);
   std::vector<Candidate> candidates = grow_rough(method, scene, grower);
-  std::ranges::move(grow_known(method, frame, scene, prior, grower), std::back_inserter(candidates));
+  if (prior.people.empty()) return candidates;
+  // The background's posterior does not hold back known people.
+  const PersonGrower of_known(frame, scene.labels.flat, method.body, method.options.grow);
+  std::ranges::move(grow_known(method, frame, scene, prior, of_known), std::back_inserter(candidates));
   return candidates;
 }
 
@@ -134,17 +156,22 @@ Skeleton second_pass(const Method& method, const Frame& frame, const Candidate& 
 Candidate refine(const Method& method, const Frame& frame, const Scene& scene, Candidate candidate) {
   const Box box = bounding_box(candidate.grown);
   if (box.width == 0) return candidate;
+  PersonLabels person;
   if (method.options.refine.second_pass) {
-    candidate.labels = method.labeller.label_person(scene.labels, frame, candidate.grown, box);
+    person = method.labeller.label_person(scene.labels, frame, candidate.grown, box);
+    candidate.labels = person.labels;
     candidate.refined = second_pass(method, frame, candidate, box);
-  } else if (candidate.known < 0) {
-    candidate.labels = scene.proposals;
+  } else {
+    if (candidate.known < 0) candidate.labels = scene.proposals;
+    person.certain = mean_certainty(scene.labels.posteriors(), candidate.grown, method.body.part_count());
   }
+  person.labels = candidate.labels;
   if (candidate.refined.found == 0 || candidate.refined.score < candidate.rough.score) {
     candidate.refined = candidate.rough;
   }
-  candidate.evidence = gather_evidence(frame, candidate.grown, candidate.labels, scene.labels.posteriors(),
-                                       candidate.refined, method.body);
+  candidate.evidence =
+      gather_evidence(frame, candidate.grown, person, scene.labels.posteriors(), candidate.refined, method.body);
+  if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
   candidate.score = person_score(candidate.evidence, method.options.score);
   return candidate;
 }
@@ -166,6 +193,7 @@ Person make_person(const BodyModel& body, const Candidate& candidate, const Mask
   predict_missing_parts(body, person.skeleton);
   person.joints = derive_joints(body, person.skeleton);
   person.score = candidate.score;
+  person.yaw = candidate.yaw;
   person.mask = candidate.grown;
   person.labels = candidate.labels;
   for (std::size_t i = 0; i < taken.size(); ++i) {
@@ -200,7 +228,7 @@ LabelImage label_people(const Method& method, const SceneLabels& scene, const Fr
     if (number == 0) continue;
     Mask one(people.width(), people.height(), 0);
     for (std::size_t i = 0; i < one.size(); ++i) one[i] = people[i] == number ? 1 : 0;
-    const LabelImage inside = method.labeller.label_person(scene, frame, one, bounding_box(one));
+    const LabelImage inside = method.labeller.label_person(scene, frame, one, bounding_box(one)).labels;
     for (std::size_t i = 0; i < one.size(); ++i) {
       if (one[i] != 0 || labels[i] == kBackground) labels[i] = inside[i];
     }

@@ -337,7 +337,8 @@ class DetectorWithPrior : public testing::Test {
     scene.people.push_back(scene.people[0]);
     scene.people[1].feet.x() = -0.8F;
     truth = render(scene, kCamera, paper_body());
-    detector = std::make_unique<Detector>(std::make_shared<DoubtfulLabeller>(truth, 1));
+    options.score.bias = -10.F;  // lets pass whom the labeller doubts that much
+    detector = std::make_unique<Detector>(std::make_shared<DoubtfulLabeller>(truth, 1), options);
   }
 
   /// Returns the pixels of a person, moved to the right by some pixels.
@@ -359,6 +360,7 @@ class DetectorWithPrior : public testing::Test {
   }
 
   LabelledFrame truth;
+  DetectOptions options;
   std::unique_ptr<Detector> detector;
 };
 
@@ -400,7 +402,6 @@ TEST_F(DetectorWithPrior, FindsNobodyInAnEmptyMask) {
 }
 
 TEST_F(DetectorWithPrior, TakesMasksOfTheFramesSizeOnAGridToo) {
-  DetectOptions options;
   options.grid.step = 2;
   options.cluster.min_pixels = 3;
   LabelledFrame coarse = truth;

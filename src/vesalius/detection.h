@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vesalius/base/frame.h"
@@ -8,6 +9,7 @@
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/derive_joints.h"
 #include "vesalius/find_clusters.h"
+#include "vesalius/forest/facing.h"
 #include "vesalius/grow_person.h"
 #include "vesalius/score_person.h"
 #include "vesalius/search_skeletons.h"
@@ -22,6 +24,7 @@ struct Person {
   LabelImage labels;                       ///< part of each of the person's pixels, kBackground elsewhere
   Box box;                                 ///< smallest box around the mask
   float score = 0.F;                       ///< 0-1, higher is more certain
+  std::optional<YawEstimate> yaw;          ///< which way the person faces, if the forest's leaves have headings
 };
 
 /// What earlier frames tell about the people of a frame; a tracker provides it. Each mask starts a candidate of its
@@ -69,6 +72,7 @@ struct Trace {
     Skeleton refined;   ///< pass 2, or the rough one if that is likelier
     Evidence evidence;
     float score = 0.F;
+    std::optional<YawEstimate> yaw;
     bool accepted = false;
   };
   std::vector<Candidate> candidates;  ///< most certain first

@@ -62,6 +62,10 @@ void visit_options(const std::string& prefix, GrowOptions& o, OptionVisitor& vis
       {"log ratio", 0.0, 100.0, "A colour this much likelier elsewhere than on the person stops the growth."});
   visitor.option(prefix + "own-colour", o.own_colour_m,
                  {"m", 0.0, 3.0, "This near to a part's centre any colour is the person's."});
+  visitor.option(
+      prefix + "least-body", o.least_body,
+      {"", 0.0, 1.0,
+       "A person does not grow over pixels that the forest takes for body with less than this probability."});
   visitor.option(prefix + "use-colour", o.use_colour, {"", 0, 1, "Whether colour takes part where there is any."});
   visit_options(prefix + "plane-", o.plane, visitor);
 }

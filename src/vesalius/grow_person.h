@@ -22,6 +22,7 @@ struct GrowOptions {
   float colour_veto = 2.F;       ///< a colour is refused if it is likelier elsewhere by this, as a log of the ratio
   float own_colour_m = 0.12F;    ///< any colour this near to a part's centre is the person's
   bool use_colour = true;
+  float least_body = 0.25F;  ///< least body share of the posterior of pixels that a person grows over
   PlaneOptions plane;
 };
 void visit_options(const std::string& prefix, GrowOptions& options, OptionVisitor& visitor);

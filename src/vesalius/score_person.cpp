@@ -100,44 +100,38 @@ Outline look_around(const Frame& frame, const Inside& inside) {
   return outline;
 }
 
-/// The forest's certainty about the mask's pixels, as means over them; 0 without pixels.
-struct Certainty {
-  double body = 0.0;  ///< the parts' share of all classes; 1 if there is no background class
-  double part = 0.0;  ///< the likeliest part's share of all parts
-};
-
-Certainty certainty_of(const Inside& inside, const Posteriors& posteriors, int parts) {
-  Certainty sum;
+/// Returns the mean over the mask of the parts' share of all classes: 1 if there is no background class, 0 without
+/// pixels.
+float share_of_body(const Inside& inside, const Posteriors& posteriors, int parts) {
+  double sum = 0.0;
   long pixels = 0;
   inside.each([&](int u, int v) {
     const std::uint16_t* sums = posteriors.at(u, v);
     const double body = std::accumulate(sums, sums + parts, 0.0);
     const double all = std::accumulate(sums + parts, sums + posteriors.classes, body);
     if (all == 0.0) return;  // no reading
-    sum.body += body / all;
-    if (body > 0.0) sum.part += *std::max_element(sums, sums + parts) / body;
+    sum += body / all;
     ++pixels;
   });
-  if (pixels == 0) return {};
-  return {sum.body / static_cast<double>(pixels), sum.part / static_cast<double>(pixels)};
+  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
 }
 
 /// The size of a mask and its distance.
 struct Extent {
+  long pixels = 0;
   double area_m2 = 0.0;
   double mean_depth_m = 0.0;  ///< 0 without pixels
 };
 
 Extent extent_of(const Frame& frame, const Inside& inside) {
   Extent extent;
-  long pixels = 0;
   inside.each([&](int u, int v) {
     const double z = 1e-3 * frame.depth(u, v);
     extent.area_m2 += z * z / (static_cast<double>(frame.camera.fx) * static_cast<double>(frame.camera.fy));
     extent.mean_depth_m += z;
-    ++pixels;
+    ++extent.pixels;
   });
-  if (pixels > 0) extent.mean_depth_m /= static_cast<double>(pixels);
+  if (extent.pixels > 0) extent.mean_depth_m /= static_cast<double>(extent.pixels);
   return extent;
 }
 
@@ -147,6 +141,11 @@ float likeness_of_area(const Extent& extent) {
 }
 
 float nearness(const Extent& extent) { return static_cast<float>(1.0 / std::max(1.0, extent.mean_depth_m)); }
+
+float resolution_of(const Extent& extent) {
+  constexpr double kDecades = 5.0;
+  return static_cast<float>(std::log10(static_cast<double>(std::max(1L, extent.pixels))) / kDecades);
+}
 
 float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
   std::vector<char> core(body.parts.size(), 0);
@@ -165,6 +164,27 @@ float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
     if (skeleton.parts[i].state == State::observed) found += 1.F;
   }
   return all > 0.F ? found / all : 0.F;
+}
+
+/// Returns the mean body share of the pixels at most kAside pixels beside the mask, on the four sides of its pixels.
+float body_beside(const Inside& inside, const Posteriors& posteriors, int parts) {
+  constexpr int kAside = 4;
+  constexpr std::array<std::array<int, 2>, 4> kSides{{{-kAside, 0}, {kAside, 0}, {0, -kAside}, {0, kAside}}};
+  const Mask& mask = inside.mask();
+  double sum = 0.0;
+  long pixels = 0;
+  inside.each([&](int u, int v) {
+    for (const auto& [du, dv] : kSides) {
+      if (!mask.contains(u + du, v + dv) || mask(u + du, v + dv) != 0) continue;
+      const std::uint16_t* sums = posteriors.at(u + du, v + dv);
+      const double body = std::accumulate(sums, sums + parts, 0.0);
+      const double all = std::accumulate(sums + parts, sums + posteriors.classes, body);
+      if (all == 0.0) continue;  // no reading
+      sum += body / all;
+      ++pixels;
+    }
+  });
+  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
 }
 
 }  // namespace
@@ -186,9 +206,13 @@ void visit_options(const std::string& prefix, ScoreOptions& o, OptionVisitor& vi
                  {"", -1000.0, 1000.0, "Weight of the share of the outline that something nearer cuts off."});
   visitor.option(prefix + "near-weight", o.near_weight, {"", -1000.0, 1000.0, "Weight of how near the camera it is."});
   visitor.option(prefix + "certain-weight", o.certain_weight,
-                 {"", -1000.0, 1000.0, "Weight of how sure the forest is which part each pixel is."});
+                 {"", -1000.0, 1000.0, "Weight of how sure the second pass is which part each pixel is."});
   visitor.option(prefix + "border-weight", o.border_weight,
                  {"", -1000.0, 1000.0, "Weight of the share of the outline that the picture's border cuts off."});
+  visitor.option(prefix + "beside-weight", o.beside_weight,
+                 {"", -1000.0, 1000.0, "Weight of how much body the forest sees beside the mask."});
+  visitor.option(prefix + "resolution-weight", o.resolution_weight,
+                 {"", -1000.0, 1000.0, "Weight of the logarithm of the mask's number of pixels."});
   visitor.option(prefix + "bias", o.bias, {"", -1000.0, 1000.0, "Constant of the score."});
 }
 
@@ -204,31 +228,34 @@ ScoreOptions score_without_background() {
   options.near_weight = 0.F;
   options.certain_weight = 0.F;
   options.border_weight = 0.F;
-  options.bias = -17.F;
+  options.beside_weight = 0.F;
+  options.resolution_weight = 0.F;
+  options.bias = -18.65F;
   return options;
 }
 
-Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
+Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
                          const Skeleton& skeleton, const BodyModel& body) {
   const Inside inside(mask);
   const Outline outline = look_around(frame, inside);
   const Extent extent = extent_of(frame, inside);
-  const Certainty certainty = certainty_of(inside, posteriors, body.part_count());
   return {skeleton.score / static_cast<float>(body.part_count()),
-          share_explained(frame, inside, labels, skeleton, body),
+          share_explained(frame, inside, labels.labels, skeleton, body),
           outline.share_open(),
           share_of_core(skeleton, body),
-          static_cast<float>(certainty.body),
+          share_of_body(inside, posteriors, body.part_count()),
           likeness_of_area(extent),
           outline.share_occluded(),
           nearness(extent),
-          static_cast<float>(certainty.part),
-          outline.share_border()};
+          labels.certain,
+          outline.share_border(),
+          body_beside(inside, posteriors, body.part_count()),
+          resolution_of(extent)};
 }
 
 float person_score(const Evidence& e, const ScoreOptions& o) {
   float sum = 0.F;
-  for (const auto& [evidence, weight] : kEvidenceWeights) sum += o.*weight * e.*evidence;
+  for (const EvidenceWeight& piece : kEvidenceWeights) sum += o.*piece.weight * e.*piece.evidence;
   sum += o.bias;
   return 1.F / (1.F + std::exp(-sum));
 }

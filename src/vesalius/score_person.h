@@ -8,22 +8,25 @@
 #include "vesalius/base/image.h"
 #include "vesalius/base/options.h"
 #include "vesalius/forest/label_pixels.h"
+#include "vesalius/forest/person_labels.h"
 #include "vesalius/search_skeletons.h"
 
 namespace vesalius {
 
 struct ScoreOptions {
-  float likelihood_weight = 1.35F;  ///< of the skeleton's likelihood, as a share of all parts' (0-1)
-  float explained_weight = 0.1F;    ///< of the share of the mask that the skeleton explains
-  float open_weight = 0.29F;        ///< of the share of the outline that stands free
-  float core_weight = 1.65F;        ///< of the share of head, neck and chest parts found
-  float body_weight = 10.41F;       ///< of how sure the forest is that the mask is body
-  float size_weight = 5.42F;        ///< of how near the mask's area is to a person's
-  float occluded_weight = 4.45F;    ///< of the share of the outline that something nearer cuts off
-  float near_weight = 1.95F;        ///< of how near the camera it is
-  float certain_weight = 17.76F;    ///< of how sure the forest is which part each pixel is
-  float border_weight = -8.86F;     ///< of the share of the outline that the picture's border cuts off
-  float bias = -19.7F;
+  float likelihood_weight = 2.03F;   ///< of the skeleton's likelihood, as a share of all parts' (0-1)
+  float explained_weight = 0.F;      ///< of the share of the mask that the skeleton explains
+  float open_weight = 0.F;           ///< of the share of the outline that stands free
+  float core_weight = 0.24F;         ///< of the share of head, neck and chest parts found
+  float body_weight = 11.95F;        ///< of how sure the forest is that the mask is body
+  float size_weight = 0.58F;         ///< of how near the mask's area is to a person's
+  float occluded_weight = 3.67F;     ///< of the share of the outline that something nearer cuts off
+  float near_weight = -3.43F;        ///< of how near the camera it is
+  float certain_weight = 2.51F;      ///< of how sure the forest is which part each pixel is
+  float border_weight = 2.58F;       ///< of the share of the outline that the picture's border cuts off
+  float beside_weight = -0.79F;      ///< of how much body the forest sees beside the mask
+  float resolution_weight = 11.41F;  ///< of the number of pixels
+  float bias = -18.2F;
 };
 void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisitor& visitor);
 
@@ -43,30 +46,35 @@ struct Evidence {
   float size = 0.F;        ///< ratio of the mask's area and kUsualArea_m2, or its inverse if that is smaller
   float occluded = 0.F;    ///< share of the outline beside something nearer, which excuses missing parts
   float near = 0.F;        ///< one metre divided by the mean depth, at most 1, since distant people are less certain
-  float certain = 0.F;  ///< mean over the mask of the likeliest part's share of all parts: furniture looks like several
-  float border = 0.F;   ///< share of the outline at the picture's border
+  float certain = 0.F;     ///< PersonLabels::certain: furniture looks like several parts
+  float border = 0.F;      ///< share of the outline at the picture's border
+  float beside = 0.F;      ///< mean body share of pixels a few pixels beside the mask: around noise it is high as well
+  float resolution = 0.F;  ///< log10 of the mask's number of pixels, over 5
 };
 
 /// A kind of evidence and the option with its weight.
 struct EvidenceWeight {
   float Evidence::*evidence;
   float ScoreOptions::*weight;
+  int sign = 0;  ///< 1 if more of it can only speak for a person, -1 if only against, 0 if that is open
 };
-inline constexpr std::array<EvidenceWeight, 10> kEvidenceWeights{
-    {{&Evidence::likelihood, &ScoreOptions::likelihood_weight},
-     {&Evidence::explained, &ScoreOptions::explained_weight},
-     {&Evidence::open, &ScoreOptions::open_weight},
-     {&Evidence::core, &ScoreOptions::core_weight},
-     {&Evidence::body, &ScoreOptions::body_weight},
-     {&Evidence::size, &ScoreOptions::size_weight},
+inline constexpr std::array<EvidenceWeight, 12> kEvidenceWeights{
+    {{&Evidence::likelihood, &ScoreOptions::likelihood_weight, 1},
+     {&Evidence::explained, &ScoreOptions::explained_weight, 1},
+     {&Evidence::open, &ScoreOptions::open_weight, 1},
+     {&Evidence::core, &ScoreOptions::core_weight, 1},
+     {&Evidence::body, &ScoreOptions::body_weight, 1},
+     {&Evidence::size, &ScoreOptions::size_weight, 1},
      {&Evidence::occluded, &ScoreOptions::occluded_weight},
      {&Evidence::near, &ScoreOptions::near_weight},
-     {&Evidence::certain, &ScoreOptions::certain_weight},
-     {&Evidence::border, &ScoreOptions::border_weight}}};
+     {&Evidence::certain, &ScoreOptions::certain_weight, 1},
+     {&Evidence::border, &ScoreOptions::border_weight},
+     {&Evidence::beside, &ScoreOptions::beside_weight, -1},
+     {&Evidence::resolution, &ScoreOptions::resolution_weight}}};
 
-/// Measures the evidence that a mask and a skeleton are a person. `labels` are the part labels inside `mask`,
-/// `posteriors` those of the first pass; all have the frame's size.
-Evidence gather_evidence(const Frame& frame, const Mask& mask, const LabelImage& labels, const Posteriors& posteriors,
+/// Measures the evidence that a mask and a skeleton are a person. `labels` are those inside `mask`, `posteriors` those
+/// of the first pass; all have the frame's size.
+Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
                          const Skeleton& skeleton, const BodyModel& body);
 
 /// Returns the score of a person, 0-1, by a logistic function whose weights were fitted to frames with and without

@@ -31,7 +31,7 @@ struct Square {
 
   Frame frame;
   Mask mask{40, 30, 0};
-  LabelImage labels{40, 30, kBackground};
+  PersonLabels labels{LabelImage(40, 30, kBackground), {}, 0.F};
   Posteriors posteriors{40, 30, 26, 1, std::vector<std::uint16_t>(std::size_t{40} * 30 * 26, 0)};
   Skeleton skeleton;
 };
@@ -86,7 +86,7 @@ TEST(GatherEvidence, MeasuresPixelsExplainedByTheirPartOrItsPartnerNearby) {
   Square s(3000);
   const auto knee = static_cast<std::uint8_t>(paper_body().find_part("l_knee"));
   for (int v = 10; v < 20; ++v) {
-    for (int u = 15; u < 20; ++u) s.labels(u, v) = knee;
+    for (int u = 15; u < 20; ++u) s.labels.labels(u, v) = knee;
   }
   EXPECT_FLOAT_EQ(s.evidence().explained, 0.F);
   s.observe("r_knee", {0.F, 0.F, 2.F});
@@ -118,18 +118,26 @@ TEST(GatherEvidence, MeasuresThePartsShareOfThePosterior) {
   EXPECT_FLOAT_EQ(s.evidence().body, 1.F);  // without background
 }
 
-TEST(GatherEvidence, MeasuresTheLikeliestPartsShareOfAllParts) {
+TEST(GatherEvidence, TakesTheCertaintyOfTheSecondPass) {
   Square s(3000);
-  for (int v = 10; v < 20; ++v) {
-    for (int u = 15; u < 25; ++u) {
-      s.posteriors.at(u, v)[3] = 50;
-      s.posteriors.at(u, v)[7] = u < 20 ? 150 : 50;  // 0.75 and 0.5
-      s.posteriors.at(u, v)[25] = 200;               // the background is ignored
+  s.labels.certain = 0.375F;
+  EXPECT_FLOAT_EQ(s.evidence().certain, 0.375F);
+}
+
+TEST(GatherEvidence, MeasuresTheBodyBesideTheMask) {
+  Square s(3000);
+  EXPECT_FLOAT_EQ(s.evidence().beside, 0.F);  // nothing is known there
+  for (int v = 0; v < 30; ++v) {
+    for (int u = 0; u < 40; ++u) {
+      s.posteriors.at(u, v)[3] = u < 15 ? 100 : 50;  // left of the square half, elsewhere a quarter
+      s.posteriors.at(u, v)[25] = u < 15 ? 100 : 150;
     }
   }
-  EXPECT_FLOAT_EQ(s.evidence().certain, 0.5F * (0.75F + 0.5F));
-  s.posteriors.at(15, 10)[3] = s.posteriors.at(15, 10)[7] = 0;  // surely background
-  EXPECT_NEAR(s.evidence().certain, 0.5F * (0.75F + 0.5F) - 0.0075F, 1e-6);
+  EXPECT_FLOAT_EQ(s.evidence().beside, (0.5F + 3.F * 0.25F) / 4.F);
+}
+
+TEST(GatherEvidence, MeasuresTheResolutionByTheNumberOfPixels) {
+  EXPECT_FLOAT_EQ(Square(3000).evidence().resolution, 0.4F);  // 100 pixels
 }
 
 TEST(GatherEvidence, MeasuresTheShareOfTheOutlineAtThePicturesBorder) {
@@ -174,6 +182,8 @@ TEST(PersonScore, IsALogisticSum) {
   options.near_weight = 0.F;
   options.certain_weight = 0.F;
   options.border_weight = -0.5F;
+  options.beside_weight = 0.F;
+  options.resolution_weight = 0.F;
   options.bias = -1.F;
   EXPECT_FLOAT_EQ(person_score({0.5F, 0.9F, 0.F, 0.9F, 0.9F, 0.F}, options), 0.5F);
   EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 0.F}, options), 1.0 / (1.0 + std::exp(-1.0)), 1e-6);
@@ -185,10 +195,10 @@ TEST(PersonScore, IsALogisticSum) {
 }
 
 TEST(PersonScore, EachEvidenceSpeaksForAPerson) {
-  const Evidence some{0.5F, 0.6F, 0.6F, 0.7F};
+  const Evidence some{0.5F, 0.6F, 0.6F, 0.7F, 0.8F, 0.5F, 0.F, 0.4F, 0.5F, 0.F, 0.1F, 0.8F};
   const float before = person_score(some, {});
   for (float Evidence::*field :
-       {&Evidence::likelihood, &Evidence::explained, &Evidence::core, &Evidence::body, &Evidence::certain}) {
+       {&Evidence::likelihood, &Evidence::core, &Evidence::body, &Evidence::certain, &Evidence::resolution}) {
     Evidence more = some;
     more.*field += 0.1F;
     EXPECT_GT(person_score(more, {}), before);

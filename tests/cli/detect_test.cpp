@@ -86,7 +86,7 @@ TEST_F(Detect, PrintsNothingBesideJson) {
   EXPECT_EQ(found[3], json::parse(R"({"complete":true,"frames":3})"));
   ASSERT_EQ(found[0].at("people").size(), 1U);
   const json& person = found[0].at("people").at(0);
-  EXPECT_EQ(person.size(), 5U);
+  EXPECT_EQ(person.size(), 6U);
   EXPECT_EQ(person.at("index"), 0);
   EXPECT_EQ(person.at("box_px").size(), 4U);
   EXPECT_EQ(person.at("parts").size(), 25U);

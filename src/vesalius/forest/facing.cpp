@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "vesalius/base/parallel.h"
 #include "vesalius/forest/leaf_logits.h"
@@ -87,6 +88,23 @@ Eigen::VectorXf facing(const FacingModel& model, const Eigen::VectorXf& features
   Eigen::VectorXf logits = weights * features;
   logits = (logits.array() - logits.maxCoeff()).exp();
   return logits / logits.sum();
+}
+
+YawEstimate estimate_yaw(const Eigen::VectorXf& facing) {
+  const auto headings = static_cast<int>(facing.size());
+  int best = 0;
+  facing.maxCoeff(&best);
+  YawEstimate estimate;
+  float ahead = 0.F, aside = 0.F;
+  for (const int h : {best - 1, best, best + 1}) {
+    const float share = facing[(h + headings) % headings];
+    const float yaw = 2.F * std::numbers::pi_v<float> * static_cast<float>(h) / static_cast<float>(headings);
+    ahead += share * std::cos(yaw);
+    aside += share * std::sin(yaw);
+    estimate.confidence += share;
+  }
+  estimate.yaw_rad = std::atan2(aside, ahead);
+  return estimate;
 }
 
 void turn_posteriors(const Posteriors& posteriors, const std::vector<std::uint8_t>& sides,

@@ -52,6 +52,15 @@ Eigen::VectorXf facing_features(const Posteriors& posteriors, int parts, const M
 /// Returns the probability of each heading; even ones without a model.
 Eigen::VectorXf facing(const FacingModel& model, const Eigen::VectorXf& features);
 
+/// Which way a person faces (body_yaw), and how sure that is.
+struct YawEstimate {
+  float yaw_rad = 0.F;     ///< 0 faces the camera, positive is turned to the person's own left; -pi to pi
+  float confidence = 0.F;  ///< probability of the likeliest heading and its two neighbours, 0-1
+};
+
+/// Returns the mean direction of the likeliest heading and its two neighbours. `facing` is not empty.
+YawEstimate estimate_yaw(const Eigen::VectorXf& facing);
+
 /// Writes to `out` what the posteriors in `box` are for a person whose heading has the given probabilities, in a
 /// picture of the box's size. The parts of each side together become as likely as the heading makes them; the
 /// background stays.

@@ -95,5 +95,25 @@ TEST(TurnPosteriors, HaveTheBoxesSize) {
   EXPECT_EQ(out.at(0, 0)[3], 255);
 }
 
+TEST(EstimateYaw, LiesBetweenTheLikeliestHeadings) {
+  Eigen::VectorXf facing = Eigen::VectorXf::Zero(8);
+  facing[2] = 0.5F;  // turned to the own left
+  facing[3] = 0.5F;
+  const YawEstimate left = estimate_yaw(facing);
+  EXPECT_NEAR(left.yaw_rad, 2.5F * std::numbers::pi_v<float> / 4.F, 1e-5);
+  EXPECT_FLOAT_EQ(left.confidence, 1.F);
+}
+
+TEST(EstimateYaw, WrapsAroundTheFrontAndCountsOnlyNeighbours) {
+  Eigen::VectorXf facing = Eigen::VectorXf::Zero(8);
+  facing << 0.4F, 0.1F, 0.F, 0.F, 0.3F, 0.F, 0.F, 0.2F;
+  const YawEstimate ahead = estimate_yaw(facing);
+  EXPECT_NEAR(ahead.confidence, 0.7F, 1e-6);
+  EXPECT_LT(ahead.yaw_rad, 0.F);
+  EXPECT_GT(ahead.yaw_rad, -0.3F);
+  facing << 0.F, 0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F;
+  EXPECT_NEAR(std::abs(estimate_yaw(facing).yaw_rad), std::numbers::pi_v<float>, 1e-5);
+}
+
 }  // namespace
 }  // namespace vesalius

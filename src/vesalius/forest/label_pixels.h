@@ -13,9 +13,9 @@
 namespace vesalius {
 
 struct LabelOptions {
-  float background_weight = 0.65F;  ///< multiplies the background's posterior, which corrects its prior
-  float proposal_weight = 0.35F;    ///< the factor used instead for part proposals
-  float unsure_margin = 0.05F;      ///< difference in probability below which neighbours decide
+  float background_weight = 0.5F;  ///< multiplies the background's posterior, which corrects its prior
+  float proposal_weight = 0.35F;   ///< the factor used instead for part proposals
+  float unsure_margin = 0.05F;     ///< difference in probability below which neighbours decide
   /// If the background's probability is at least this at every fourth pixel of every fourth row around a pixel, and
   /// depth is continuous, the forest is not asked about the pixel. Above 1 it is asked about every pixel.
   float gate = 0.9F;

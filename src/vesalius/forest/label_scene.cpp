@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "vesalius/base/parallel.h"
@@ -46,6 +47,22 @@ Box grown(const Box& box, int by, const Camera& camera) {
 }
 
 }  // namespace
+
+float mean_certainty(const Posteriors& posteriors, const Mask& inside, int parts) {
+  double sum = 0.0;
+  long pixels = 0;
+  for (int v = 0; v < posteriors.height; ++v) {
+    for (int u = 0; u < posteriors.width; ++u) {
+      if (inside(u, v) == 0) continue;
+      const std::uint16_t* sums = posteriors.at(u, v);
+      const double body = std::accumulate(sums, sums + parts, 0.0);
+      if (body == 0.0) continue;
+      sum += *std::max_element(sums, sums + parts) / body;
+      ++pixels;
+    }
+  }
+  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
+}
 
 SceneLabeller::SceneLabeller(std::shared_ptr<const PixelLabeller> labeller, SceneLabelOptions options)
     : labeller_(std::move(labeller)),
@@ -98,35 +115,43 @@ LabelImage SceneLabeller::choose_raw(const SceneLabels& scene, const Frame& fram
   return choose_labels(scene.raw, scene.shown.empty() ? frame.depth : scene.shown, choice, options_.label);
 }
 
-LabelImage SceneLabeller::label_person(const SceneLabels& scene, const Frame& frame, const Mask& person,
-                                       const Box& box) const {
-  if (box.width == 0) return {frame.camera.width, frame.camera.height, kBackground};
+PersonLabels SceneLabeller::label_person(const SceneLabels& scene, const Frame& frame, const Mask& person,
+                                         const Box& box) const {
+  if (box.width == 0) return {LabelImage(frame.camera.width, frame.camera.height, kBackground), {}, 0.F};
   if (!labeller_->has_background()) return label_alone(frame, person, box);
   if (!labeller_->facing_model().empty() && scene.smoothed) return label_turned(scene, frame, person, box);
-  return choose(scene.posteriors(), frame.depth, options_.label.background_weight, &person, &box);
+  return {choose(scene.posteriors(), frame.depth, options_.label.background_weight, &person, &box),
+          {},
+          mean_certainty(scene.posteriors(), person, body().part_count())};
 }
 
-LabelImage SceneLabeller::label_turned(const SceneLabels& scene, const Frame& frame, const Mask& person,
-                                       const Box& box) const {
-  const Eigen::VectorXf features = facing_features(scene.raw, body().part_count(), person, box);
+PersonLabels SceneLabeller::label_turned(const SceneLabels& scene, const Frame& frame, const Mask& person,
+                                         const Box& box) const {
+  PersonLabels result;
+  result.facing = facing(labeller_->facing_model(), facing_features(scene.raw, body().part_count(), person, box));
   const Box around =
       grown(box, options_.smooth.window / 2 * spaced(options_.smooth, frame.camera).spacing, frame.camera);
   const DepthImage depth = crop(frame.depth, around);
   Posteriors turned, smooth;
-  turn_posteriors(scene.raw, sides_, facing(labeller_->facing_model(), features), around, turned);
+  turn_posteriors(scene.raw, sides_, result.facing, around, turned);
   mean_filter(turned, depth, frame.camera, options_.smooth, smooth);
   const Mask inside = crop(person, around);
   const Box within{box.u - around.u, box.v - around.v, box.width, box.height};
-  return uncropped(choose(smooth, depth, options_.label.background_weight, &inside, &within), around, frame.camera);
+  result.labels =
+      uncropped(choose(smooth, depth, options_.label.background_weight, &inside, &within), around, frame.camera);
+  result.certain = mean_certainty(smooth, inside, body().part_count());
+  return result;
 }
 
-LabelImage SceneLabeller::label_alone(const Frame& frame, const Mask& person, const Box& box) const {
+PersonLabels SceneLabeller::label_alone(const Frame& frame, const Mask& person, const Box& box) const {
   const DepthImage alone = keep_only(frame.depth, person, box);
   const Camera camera = cropped(frame.camera, box);
   Posteriors posteriors;
   labeller_->label_into(alone, camera, options_.label.gate, posteriors);
   if (!by_mode_) posteriors = mean_filter(posteriors, alone, camera, options_.smooth);
-  return uncropped(choose(posteriors, alone, options_.label.background_weight), box, frame.camera);
+  return {uncropped(choose(posteriors, alone, options_.label.background_weight), box, frame.camera),
+          {},
+          mean_certainty(posteriors, crop(person, box), body().part_count())};
 }
 
 }  // namespace vesalius

@@ -5,6 +5,7 @@
 #include "vesalius/base/frame.h"
 #include "vesalius/base/stage_times.h"
 #include "vesalius/forest/label_pixels.h"
+#include "vesalius/forest/person_labels.h"
 #include "vesalius/forest/smooth_labels.h"
 #include "vesalius/planes/find_planes.h"
 
@@ -26,6 +27,10 @@ struct SceneLabels {
 
   const Posteriors& posteriors() const { return smoothed ? smooth : raw; }
 };
+
+/// Returns the mean over the pixels of `inside` of the likeliest part's share of all parts, 0-1. Pixels without a
+/// reading or surely background do not count. Both have the same size.
+float mean_certainty(const Posteriors& posteriors, const Mask& inside, int parts);
 
 /// Labels scenes and the people in them (section 4). It is the only class that knows how labellers differ. A labeller
 /// without a background class takes walls and floor for bodies, so it is shown scenes without their flat surfaces, and
@@ -51,13 +56,13 @@ class SceneLabeller {
   /// Returns the likeliest part of each pixel of a person and kBackground elsewhere, except for a rim if labels are
   /// smoothed. `person` is non-zero on the person's pixels, and `box` is the smallest box around them.
   /// Where leaves have headings, parts are those of the heading that all of the person's pixels tell.
-  LabelImage label_person(const SceneLabels& scene, const Frame& frame, const Mask& person, const Box& box) const;
+  PersonLabels label_person(const SceneLabels& scene, const Frame& frame, const Mask& person, const Box& box) const;
 
  private:
   LabelImage choose(const Posteriors& posteriors, const DepthImage& depth, float background_weight,
                     const Mask* prior = nullptr, const Box* box = nullptr) const;
-  LabelImage label_turned(const SceneLabels& scene, const Frame& frame, const Mask& person, const Box& box) const;
-  LabelImage label_alone(const Frame& frame, const Mask& person, const Box& box) const;
+  PersonLabels label_turned(const SceneLabels& scene, const Frame& frame, const Mask& person, const Box& box) const;
+  PersonLabels label_alone(const Frame& frame, const Mask& person, const Box& box) const;
 
   std::shared_ptr<const PixelLabeller> labeller_;
   SceneLabelOptions options_;

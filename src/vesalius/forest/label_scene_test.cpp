@@ -62,7 +62,7 @@ TEST_F(SceneLabellerTest, ShowsAPersonAloneToALabellerWithoutBackground) {
   long pixels = 0;
   for (std::size_t i = 0; i < person.size(); ++i) pixels += person[i] = truth.person[i] == 0 ? 1 : 0;
   const Box box = bounding_box(person);
-  const LabelImage chosen = labeller.label_person(labels, truth.frame, person, box);
+  const LabelImage chosen = labeller.label_person(labels, truth.frame, person, box).labels;
   EXPECT_EQ(everything->shown.width(), box.width);
   EXPECT_EQ(std::ranges::count_if(everything->shown, [](std::uint16_t mm) { return mm != 0; }), pixels);
   for (std::size_t i = 0; i < chosen.size(); ++i) ASSERT_EQ(chosen[i], person[i] != 0 ? 3 : kBackground);
@@ -83,7 +83,7 @@ TEST_F(SceneLabellerTest, GivesTheSameInReusedMemory) {
 
 TEST_F(SceneLabellerTest, LabelsNobodyInAnEmptyMask) {
   const LabelImage nobody(kCamera.width, kCamera.height, kBackground);
-  EXPECT_EQ(labeller.label_person(labels, truth.frame, Mask(kCamera.width, kCamera.height, 0), {}), nobody);
+  EXPECT_EQ(labeller.label_person(labels, truth.frame, Mask(kCamera.width, kCamera.height, 0), {}).labels, nobody);
 }
 
 /// A labeller that finds left and right hands equally likely everywhere: left ones of people seen from the front, right
@@ -135,12 +135,27 @@ TEST(SceneLabellerFacing, LabelsAPersonsPixelsByTheHeadingOfTheWholePerson) {
   for (int v = 0; v < box.height; ++v) {
     for (int u = 0; u < box.width; ++u) person(box.u + u, box.v + v) = 1;
   }
-  const LabelImage inside = scene_labeller.label_person(labels, frame, person, box);
+  const LabelImage inside = scene_labeller.label_person(labels, frame, person, box).labels;
   for (int v = 0; v < kCamera.height; ++v) {
     for (int u = 0; u < kCamera.width; ++u) {
       EXPECT_EQ(inside(u, v), person(u, v) != 0 ? labeller->r_hand : kBackground);
     }
   }
+}
+
+TEST(MeanCertainty, IsTheLikeliestPartsShareOfAllParts) {
+  Posteriors posteriors{4, 1, 26, 1, std::vector<std::uint16_t>(std::size_t{4} * 26, 0)};
+  for (int u = 0; u < 4; ++u) {
+    posteriors.at(u, 0)[3] = 50;
+    posteriors.at(u, 0)[7] = u < 2 ? 150 : 50;  // 0.75 and 0.5
+    posteriors.at(u, 0)[25] = 200;              // the background is ignored
+  }
+  Mask inside(4, 1, 1);
+  EXPECT_FLOAT_EQ(mean_certainty(posteriors, inside, 25), 0.625F);
+  posteriors.at(0, 0)[3] = posteriors.at(0, 0)[7] = 0;  // surely background
+  inside(3, 0) = 0;
+  EXPECT_FLOAT_EQ(mean_certainty(posteriors, inside, 25), 0.625F);
+  EXPECT_FLOAT_EQ(mean_certainty(posteriors, Mask(4, 1, 0), 25), 0.F);
 }
 
 }  // namespace
