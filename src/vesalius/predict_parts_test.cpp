@@ -42,7 +42,7 @@ TEST(PredictMissingParts, PutsAnElbowBetweenArmAndForearm) {
   predict_missing_parts(without_distribution(), s);
   const SkeletonPart& elbow = part_of(s, "l_elbow");
   EXPECT_EQ(elbow.state, State::predicted);
-  EXPECT_NEAR(elbow.centre.y(), 0.25F * 0.12F / 0.23F, 1e-5);  // links of 0.12 and 0.11 m
+  EXPECT_NEAR(elbow.centre.y(), 0.25F * 0.196F / 0.331F, 1e-5);  // links of 0.196 and 0.135 m
   EXPECT_FLOAT_EQ(elbow.confidence, 0.2F);
 }
 
