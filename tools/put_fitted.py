@@ -13,20 +13,26 @@ import re
 import sys
 from pathlib import Path
 
-SET = "[[joint_set]]"
 NAME = re.compile(r'^name = "([\w-]+)"', re.MULTILINE)
-# A comment, or a table that is no part of a joint set.
-END = re.compile(r"^(?:#|\[(?!\[joint_set\.joint\]\]))", re.MULTILINE)
+
+
+def sections(text, table, entry):
+    """Returns [(begin, end)] of the tables with this header in a TOML text, each with its entries and without blank
+    lines at its end. A comment or another table ends one."""
+    end = re.compile(rf"^(?:#|\[(?!\[{re.escape(entry)}\]\]))", re.MULTILINE)
+    found = []
+    for start in re.finditer("^" + re.escape(table), text, re.MULTILINE):
+        stop = end.search(text, start.end())
+        found.append((start.start(), len(text[: stop.start() if stop else len(text)].rstrip())))
+    return found
 
 
 def joint_sets(text):
-    """Returns {name: (begin, end)} of the joint sets in a TOML text, without blank lines at their ends."""
-    found = {}
-    for start in re.finditer(re.escape(SET), text):
-        end = END.search(text, start.end())
-        body = text[start.start() : end.start() if end else len(text)].rstrip()
-        found[NAME.search(body).group(1)] = (start.start(), start.start() + len(body))
-    return found
+    """Returns {name: (begin, end)} of the joint sets in a TOML text."""
+    named = [(NAME.search(text, *place), place) for place in sections(text, "[[joint_set]]", "joint_set.joint")]
+    if not all(name for name, _ in named):
+        raise ValueError('a joint set without name = "..."')
+    return {name.group(1): place for name, place in named}
 
 
 def put(fitted, text, only=None):
@@ -41,11 +47,7 @@ def put(fitted, text, only=None):
 
 def distribution(text):
     """Returns (begin, end) of the distribution of parts in a TOML text, both its length where there is none."""
-    start = re.search(r"^\[distribution\]", text, re.MULTILINE)
-    if not start:
-        return len(text), len(text)
-    end = re.compile(r"^(?:#|\[(?!\[distribution\.part\]\]))", re.MULTILINE).search(text, start.end())
-    return start.start(), start.start() + len(text[start.start() : end.start() if end else len(text)].rstrip())
+    return next(iter(sections(text, "[distribution]", "distribution.part")), (len(text), len(text)))
 
 
 def put_distribution(fitted, text):
@@ -64,14 +66,24 @@ def main():
     parser.add_argument("files", type=Path, nargs="+", metavar="FILE")
     parser.add_argument("--sets", help="names of joint sets, separated by commas")
     arguments = parser.parse_args()
-    fitted = arguments.fitted.read_text()
     only = arguments.sets.split(",") if arguments.sets else None
-    for path in arguments.files:
-        text, replaced = put(fitted, path.read_text(), only)
-        text, has_distribution = put_distribution(fitted, text)
-        replaced += ["distribution"] if has_distribution else []
-        path.write_text(text)
-        print(f"{path}: {', '.join(replaced) or 'nothing of those names'}")
+    changed = []
+    path = arguments.fitted
+    try:
+        fitted = path.read_text()
+        joint_sets(fitted)  # so that an error names this file
+        for path in arguments.files:
+            text, replaced = put(fitted, path.read_text(), only)
+            text, has_distribution = put_distribution(fitted, text)
+            changed.append((path, text, replaced + (["distribution"] if has_distribution else [])))
+        for path, text, replaced in changed:
+            beside = path.with_name(path.name + ".part")
+            beside.write_text(text)
+            beside.replace(path)
+            print(f"{path}: {', '.join(replaced) or 'nothing of those names'}")
+    except (OSError, ValueError) as error:
+        print(f"put_fitted: {path}: {getattr(error, 'strerror', None) or error}", file=sys.stderr)
+        return 1
     return 0
 
 

@@ -1,9 +1,15 @@
 #include "dataset/turned_truth.h"
 
-#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "dataset/mapped_truth.h"
+#include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
@@ -67,27 +73,16 @@ class Turn {
   double cos_ = 1.0, sin_ = 0.0;
 };
 
-class TurnedTruth final : public TruthSource {
- public:
-  TurnedTruth(std::unique_ptr<TruthSource> frames, double degrees) : frames_(std::move(frames)), degrees_(degrees) {}
-
-  std::optional<TrueFrame> next() override {
-    const std::optional<TrueFrame> frame = frames_->next();
-    return frame ? std::optional(turned(*frame, degrees_)) : std::nullopt;
-  }
-  int size() const override { return frames_->size(); }
-  std::vector<std::string> notes() const override { return frames_->notes(); }
-  std::vector<std::string> part_names() const override { return frames_->part_names(); }
-
- private:
-  std::unique_ptr<TruthSource> frames_;
-  double degrees_;
-};
-
 }  // namespace
 
 TrueFrame turned(const TrueFrame& frame, double degrees) {
-  const Turn turn(frame.frame.camera, degrees);
+  constexpr float kMostUneven = 0.05F;
+  const Camera& camera = frame.frame.camera;
+  if (std::abs(camera.fx - camera.fy) > kMostUneven * camera.fx) {
+    throw Error(fmt::format("frame {}: fx {} and fy {}, expected square pixels to turn it", frame.frame.name, camera.fx,
+                            camera.fy));
+  }
+  const Turn turn(camera, degrees);
   TrueFrame out = frame;
   out.frame.camera = turn.camera();
   out.frame.depth = turn.picture(frame.frame.depth, std::uint16_t{0});
@@ -102,7 +97,7 @@ TrueFrame turned(const TrueFrame& frame, double degrees) {
 }
 
 std::unique_ptr<TruthSource> with_turn(std::unique_ptr<TruthSource> frames, double degrees) {
-  return std::make_unique<TurnedTruth>(std::move(frames), degrees);
+  return mapped(std::move(frames), [degrees](const TrueFrame& frame) { return turned(frame, degrees); });
 }
 
 }  // namespace vesalius

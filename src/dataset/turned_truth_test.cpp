@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "vesalius/base/error.h"
+
 namespace vesalius {
 namespace {
 
@@ -49,6 +51,12 @@ TEST(TurnedTruth, KeepsAllOfThePicture) {
   EXPECT_EQ(std::ranges::count(oblique.frame.depth, 0) + std::ranges::count(oblique.frame.depth, 1000) +
                 std::ranges::count(oblique.frame.depth, 3000),
             static_cast<long>(oblique.frame.depth.size()));
+}
+
+TEST(TurnedTruth, RefusesPixelsThatAreNotSquare) {
+  TrueFrame frame = small_frame();
+  frame.frame.camera.fy = 12.F;
+  EXPECT_THROW(turned(frame, 30.0), Error);
 }
 
 }  // namespace

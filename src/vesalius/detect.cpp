@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
-#include <numeric>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -113,25 +113,27 @@ std::vector<Candidate> grow_known(const Method& method, const Frame& frame, cons
 
 /// Returns where nobody grows: on flat surfaces and where the forest is sure enough of the background.
 Mask barred(const Method& method, const SceneLabels& labels) {
+  constexpr int kRowGrain = 8;
   Mask barred = labels.flat;
-  const float least = method.options.grow.least_body;
+  const auto least = static_cast<double>(method.options.grow.least_body);
   const Posteriors& posteriors = labels.posteriors();
   const int parts = method.body.part_count();
-  if (least <= 0.F || posteriors.classes == parts) return barred;
-  for (int v = 0; v < posteriors.height; ++v) {
-    for (int u = 0; u < posteriors.width; ++u) {
-      const std::uint16_t* sums = posteriors.at(u, v);
-      const int body = std::accumulate(sums, sums + parts, 0);
-      if (static_cast<float>(body) < least * static_cast<float>(body + sums[parts])) barred(u, v) = 1;
+  if (least == 0.0 || posteriors.classes == parts) return barred;
+  parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      for (int u = 0; u < posteriors.width; ++u) {
+        const std::optional<double> share = body_share(posteriors, u, v, parts);
+        if (share && *share < least) barred(u, v) = 1;
+      }
     }
-  }
+  });
   return barred;
 }
 
 std::vector<Candidate> propose(const Method& method, const Frame& frame, const Scene& scene, const Prior& prior) {
   if (scene.rough.empty() && prior.people.empty()) return {};
-  const Mask none = barred(method, scene.labels);
-  const PersonGrower grower(frame, none, method.body, method.options.grow);
+  const Mask nobody = barred(method, scene.labels);
+  const PersonGrower grower(frame, nobody, method.body, method.options.grow);
   std::vector<Candidate> candidates = grow_rough(method, scene, grower);
   if (prior.people.empty()) return candidates;
   // The background's posterior does not hold back known people.
@@ -140,14 +142,14 @@ std::vector<Candidate> propose(const Method& method, const Frame& frame, const S
   return candidates;
 }
 
-/// Returns the best skeleton of the candidate's labels, which are within `box`, or one without parts if there is none.
-Skeleton second_pass(const Method& method, const Frame& frame, const Candidate& candidate, const Box& box) {
+/// Returns the best skeleton of a candidate's labels, which are within `box`, or one without parts if there is none.
+Skeleton second_pass(const Method& method, const Frame& frame, const LabelImage& labels, const Box& box) {
   ClusterOptions options = method.options.cluster;
   const float scale = method.options.refine.area_scale;
   options.min_area_cm2 *= scale;
   options.min_pixels = std::max(1, static_cast<int>(static_cast<float>(options.min_pixels) * scale));
-  const Clusters clusters = find_clusters(crop(candidate.labels, box), crop(frame.depth, box),
-                                          cropped(frame.camera, box), method.body, options);
+  const Clusters clusters =
+      find_clusters(crop(labels, box), crop(frame.depth, box), cropped(frame.camera, box), method.body, options);
   std::vector<Skeleton> found = search_skeletons(clusters.items, method.body, method.options.search);
   return found.empty() ? Skeleton{} : std::move(found.front());
 }
@@ -159,13 +161,11 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, C
   PersonLabels person;
   if (method.options.refine.second_pass) {
     person = method.labeller.label_person(scene.labels, frame, candidate.grown, box);
-    candidate.labels = person.labels;
-    candidate.refined = second_pass(method, frame, candidate, box);
+    candidate.refined = second_pass(method, frame, person.labels, box);
   } else {
-    if (candidate.known < 0) candidate.labels = scene.proposals;
+    person.labels = candidate.known < 0 ? scene.proposals : std::move(candidate.labels);
     person.certain = mean_certainty(scene.labels.posteriors(), candidate.grown, method.body.part_count());
   }
-  person.labels = candidate.labels;
   if (candidate.refined.found == 0 || candidate.refined.score < candidate.rough.score) {
     candidate.refined = candidate.rough;
   }
@@ -173,6 +173,7 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, C
       gather_evidence(frame, candidate.grown, person, scene.labels.posteriors(), candidate.refined, method.body);
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
   candidate.score = person_score(candidate.evidence, method.options.score);
+  candidate.labels = std::move(person.labels);
   return candidate;
 }
 

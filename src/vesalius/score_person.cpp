@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <optional>
 #include <vector>
 
 namespace vesalius {
@@ -106,11 +106,9 @@ float share_of_body(const Inside& inside, const Posteriors& posteriors, int part
   double sum = 0.0;
   long pixels = 0;
   inside.each([&](int u, int v) {
-    const std::uint16_t* sums = posteriors.at(u, v);
-    const double body = std::accumulate(sums, sums + parts, 0.0);
-    const double all = std::accumulate(sums + parts, sums + posteriors.classes, body);
-    if (all == 0.0) return;  // no reading
-    sum += body / all;
+    const std::optional<double> share = body_share(posteriors, u, v, parts);
+    if (!share) return;
+    sum += *share;
     ++pixels;
   });
   return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
@@ -166,7 +164,7 @@ float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
   return all > 0.F ? found / all : 0.F;
 }
 
-/// Returns the mean body share of the pixels at most kAside pixels beside the mask, on the four sides of its pixels.
+/// Returns the mean body share of the pixels kAside pixels beside the mask's on their four sides.
 float body_beside(const Inside& inside, const Posteriors& posteriors, int parts) {
   constexpr int kAside = 4;
   constexpr std::array<std::array<int, 2>, 4> kSides{{{-kAside, 0}, {kAside, 0}, {0, -kAside}, {0, kAside}}};
@@ -176,11 +174,9 @@ float body_beside(const Inside& inside, const Posteriors& posteriors, int parts)
   inside.each([&](int u, int v) {
     for (const auto& [du, dv] : kSides) {
       if (!mask.contains(u + du, v + dv) || mask(u + du, v + dv) != 0) continue;
-      const std::uint16_t* sums = posteriors.at(u + du, v + dv);
-      const double body = std::accumulate(sums, sums + parts, 0.0);
-      const double all = std::accumulate(sums + parts, sums + posteriors.classes, body);
-      if (all == 0.0) continue;  // no reading
-      sum += body / all;
+      const std::optional<double> share = body_share(posteriors, u + du, v + dv, parts);
+      if (!share) continue;
+      sum += *share;
       ++pixels;
     }
   });

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -49,5 +51,14 @@ struct Posteriors {
     sums.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(classes));
   }
 };
+
+/// Returns the share of the first `parts` classes in all of a pixel's, 0-1: how probably it is a body. Returns nothing
+/// where depth has no reading.
+inline std::optional<double> body_share(const Posteriors& posteriors, int u, int v, int parts) {
+  const std::uint16_t* sums = posteriors.at(u, v);
+  const int body = std::accumulate(sums, sums + parts, 0);
+  const int all = std::accumulate(sums + parts, sums + posteriors.classes, body);
+  return all > 0 ? std::optional(static_cast<double>(body) / all) : std::nullopt;
+}
 
 }  // namespace vesalius
