@@ -278,6 +278,14 @@ FrameLabels label_everywhere(const Method& method, const Frame& frame, const Mas
   return labels;
 }
 
+/// Returns the frame, or `memory` with a copy of it if some of its readings were blended with holes.
+const Frame& without_blended(const Frame& frame, const BlendOptions& options, Frame& memory) {
+  std::optional<DepthImage> depth = vesalius::without_blended(frame.depth, options);
+  if (!depth) return frame;
+  memory = {frame.name, frame.time_s, frame.camera, std::move(*depth), frame.colour};
+  return memory;
+}
+
 }  // namespace
 
 Detector::Detector(Forest forest, DetectOptions options) : Detector(make_labeller(std::move(forest)), options) {}
@@ -288,9 +296,13 @@ Detector::Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions 
   method_ = std::make_shared<const Method>(std::move(labeller), options);
 }
 
-std::vector<Person> Detector::detect(const Frame& frame, const Prior& prior, Trace* trace, StageTimes* times) const {
-  check(frame);
-  check(prior, frame);
+std::vector<Person> Detector::detect(const Frame& given, const Prior& prior, Trace* trace, StageTimes* times) const {
+  check(given);
+  check(prior, given);
+  StageClock clock(times);
+  Frame memory;
+  const Frame& frame = without_blended(given, method_->options.blend, memory);
+  clock.lap(Stage::grid);
   return on_grid(
       frame, method_->options.grid, times,
       [&](const Frame& grid, int step) {
@@ -308,8 +320,10 @@ std::vector<Person> Detector::detect(const Frame& frame, Trace* trace, StageTime
   return detect(frame, Prior{}, trace, times);
 }
 
-FrameLabels Detector::label(const Frame& frame, const Mask* person) const {
-  check(frame);
+FrameLabels Detector::label(const Frame& given, const Mask* person) const {
+  check(given);
+  Frame memory;
+  const Frame& frame = without_blended(given, method_->options.blend, memory);
   return on_grid(
       frame, method_->options.grid, nullptr,
       [&](const Frame& grid, int step) {

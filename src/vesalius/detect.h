@@ -30,6 +30,7 @@ struct RefineOptions {
 };
 
 struct DetectOptions {
+  BlendOptions blend;
   GridOptions grid;
   LabelOptions label;
   SmoothOptions smooth;

@@ -21,6 +21,7 @@ void visit_options(const std::string& prefix, RefineOptions& o, OptionVisitor& v
 }  // namespace
 
 void visit_options(const std::string& prefix, DetectOptions& o, OptionVisitor& visitor) {
+  visit_options(prefix + "blend.", o.blend, visitor);
   visit_options(prefix + "grid.", o.grid, visitor);
   visit_options(prefix + "label.", o.label, visitor);
   visit_options(prefix + "smooth.", o.smooth, visitor);

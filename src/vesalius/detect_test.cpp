@@ -458,5 +458,38 @@ TEST(Detector, MeasuresTimesThatAddUp) {
   EXPECT_GT(times.total(), once);
 }
 
+/// Returns the frame's depth with the ramps around its holes that resizing by interpolation leaves.
+DepthImage with_ramps(DepthImage depth) {
+  const DepthImage sharp = depth;
+  for (int v = 0; v < depth.height(); ++v) {
+    for (int u = 1; u < depth.width(); ++u) {
+      if (sharp(u, v) != 0 && sharp(u - 1, v) == 0) depth(u, v) = static_cast<std::uint16_t>(sharp(u, v) / 2);
+    }
+  }
+  return depth;
+}
+
+TEST(Blended, ReadingsBesideHolesBelongToNobody) {
+  LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
+  // A hole down the middle of the person.
+  for (int v = 0; v < kCamera.height; ++v) {
+    for (int u = 165; u < 168; ++u) truth.frame.depth(u, v) = 0;
+  }
+  truth.frame.depth = with_ramps(truth.frame.depth);
+  const std::vector<Person> people = detect_truth(truth, true);
+  ASSERT_EQ(people.size(), 1U);
+  DetectOptions as_it_is;
+  as_it_is.blend.least_share = 0.F;
+  const std::vector<Person> with = detect_truth(truth, true, paper_body(), as_it_is);
+  ASSERT_EQ(with.size(), 1U);
+  int ramps = 0, kept = 0;
+  for (int v = 0; v < kCamera.height; ++v) {
+    ramps += people[0].mask(168, v);
+    kept += people[0].mask(169, v);
+  }
+  EXPECT_EQ(ramps, 0);
+  EXPECT_GT(kept, 20);
+}
+
 }  // namespace
 }  // namespace vesalius

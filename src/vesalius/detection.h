@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "vesalius/base/blended_depth.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
 #include "vesalius/base/pixel_grid.h"

@@ -1,0 +1,71 @@
+#include "vesalius/base/blended_depth.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "vesalius/base/parallel.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kRowGrain = 16;
+constexpr int kWidest = 3;  ///< pixels of a ramp: as far as cubic interpolation reaches, and a pixel more
+constexpr std::array<std::array<int, 2>, 8> kSides{
+    {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+
+struct Pixel {
+  int u = 0, v = 0;
+};
+
+/// Appends the readings around a hole that were blended with it.
+void add_blended(const DepthImage& depth, Pixel hole, float least_share, std::vector<Pixel>& blended) {
+  for (const auto& [du, dv] : kSides) {
+    const Pixel beside{hole.u + du, hole.v + dv}, behind{hole.u + 2 * du, hole.v + 2 * dv};
+    if (!depth.contains(behind.u, behind.v)) continue;
+    const int near = depth(beside.u, beside.v), far = depth(behind.u, behind.v);
+    if (near != 0 && static_cast<float>(near) < least_share * static_cast<float>(far)) blended.push_back(beside);
+  }
+}
+
+/// Returns the blended readings beside all holes of a picture.
+std::vector<Pixel> blended_beside_holes(const DepthImage& depth, float least_share) {
+  std::vector<std::vector<Pixel>> of_row(depth.height());
+  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      const std::uint16_t* row = depth.row(v);
+      for (int u = 0; u < depth.width(); ++u) {
+        if (row[u] == 0) add_blended(depth, {u, v}, least_share, of_row[v]);
+      }
+    }
+  });
+  std::vector<Pixel> all;
+  for (const std::vector<Pixel>& pixels : of_row) all.insert(all.end(), pixels.begin(), pixels.end());
+  return all;
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, BlendOptions& o, OptionVisitor& visitor) {
+  visitor.option(
+      prefix + "least-share", o.least_share,
+      {"", 0.0, 1.0,
+       "Readings beside a hole with less than this share of the one on their other side are dropped: resizing "
+       "blended them with the hole; 0: none."});
+}
+
+std::optional<DepthImage> without_blended(const DepthImage& depth, const BlendOptions& options) {
+  std::vector<Pixel> blended = blended_beside_holes(depth, options.least_share);
+  if (blended.empty()) return std::nullopt;
+  DepthImage out = depth;
+  for (int width = 1;; ++width) {
+    for (const Pixel& pixel : blended) out(pixel.u, pixel.v) = 0;
+    if (width == kWidest) return out;
+    std::vector<Pixel> next;
+    for (const Pixel& pixel : blended) add_blended(out, pixel, options.least_share, next);
+    blended = std::move(next);
+  }
+}
+
+}  // namespace vesalius

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "vesalius/base/image.h"
+#include "vesalius/base/options.h"
+
+namespace vesalius {
+
+struct BlendOptions {
+  float least_share = 0.95F;  ///< of the reading behind it that a reading beside a hole needs; 0: all are kept
+};
+void visit_options(const std::string& prefix, BlendOptions& options, OptionVisitor& visitor);
+
+/// Removes the ramps that pictures have around holes where somebody resized them by interpolation: a hole reads 0, so
+/// readings beside it came out too near. A reading goes if it is beside a hole and has less than `least_share` of the
+/// reading on its other side; then those beside it are asked, up to three pixels from the hole. Returns nothing if all
+/// readings stay.
+std::optional<DepthImage> without_blended(const DepthImage& depth, const BlendOptions& options);
+
+}  // namespace vesalius
