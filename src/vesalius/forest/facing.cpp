@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "vesalius/base/parallel.h"
 #include "vesalius/forest/leaf_logits.h"
@@ -19,6 +20,18 @@ constexpr double kLeastShareOfPart = 0.01;
 /// Parts with less of a person's pixels than this tell nothing of the heading.
 constexpr double kLeastPart = 0.002;
 
+/// The logarithm of every share in 1/65535, at least that of kLeastShare.
+const std::vector<float>& logs_of_shares() {
+  static const std::vector<float> kLogs = [] {
+    std::vector<float> logs(65536);
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+      logs[i] = std::log(std::max(static_cast<float>(i) / 65535.F, kLeastShare));
+    }
+    return logs;
+  }();
+  return kLogs;
+}
+
 bool has_turns(const Posteriors& posteriors, int u, int v) {
   return posteriors.settled.empty() || posteriors.settled(u, v) == 0;
 }
@@ -33,20 +46,19 @@ FacingEvidence::FacingEvidence(int parts, int headings)
       of_pixel_(headings) {}
 
 void FacingEvidence::add(const std::uint16_t* posteriors, const std::uint16_t* turns) {
-  double body = 0.0;
-  for (int p = 0; p < parts_; ++p) body += posteriors[p];
-  float total = 0.F;
-  for (int i = 0; i < kSides * headings_; ++i) total += static_cast<float>(turns[i]);
-  if (body == 0.0 || total == 0.F) return;
+  const int body = std::accumulate(posteriors, posteriors + parts_, 0);
+  if (body == 0) return;
+  const std::vector<float>& logs = logs_of_shares();
   float mean = 0.F;
   for (int h = 0; h < headings_; ++h) {
-    const auto share = static_cast<float>(turns[h] + turns[headings_ + h] + turns[2 * headings_ + h]) / total;
-    of_pixel_[h] = std::log(std::max(share, kLeastShare));
+    const int share = turns[h] + turns[headings_ + h] + turns[2 * headings_ + h];
+    of_pixel_[h] = logs[std::min(share, 65535)];
     mean += of_pixel_[h] / static_cast<float>(headings_);
   }
+  const auto least = static_cast<int>(std::ceil(kLeastShareOfPart * body));
   for (int p = 0; p < parts_; ++p) {
-    const double share = posteriors[p] / body;
-    if (share < kLeastShareOfPart) continue;
+    if (posteriors[p] < least) continue;
+    const double share = static_cast<double>(posteriors[p]) / body;
     shares_[p] += share;
     for (int h = 0; h < headings_; ++h) {
       logs_[p * headings_ + h] += share * static_cast<double>(of_pixel_[h] - mean);
