@@ -98,6 +98,8 @@ Json model_facts(const std::string& path) {
           {"body", body_facts(forest.body)},
           {"background_class", forest.has_background},
           {"distributions", has_distributions(forest)},
+          {"headings", forest.headings},
+          {"judge_trees", forest.judge.trees.size()},
           {"features",
            {{"offset_unit_px_m", c.offset_unit},
             {"reference_focal_px", c.reference_focal_px},

@@ -16,8 +16,6 @@ using Features = Eigen::Matrix<double, kFeatures, 1>;
 using Weights = Eigen::Matrix<double, kFeatures + 1, 1>;  // the bias last
 using Curvature = Eigen::Matrix<double, kFeatures + 1, kFeatures + 1>;
 
-/// Cost of a false person in missed ones.
-constexpr double kCostOfFalse = 3.0;
 constexpr double kRidge = 1e-3;  // per unit of the samples' weight, on standardised features
 constexpr int kMostSteps = 100;
 constexpr double kSmallestStep = 1e-10;
@@ -74,7 +72,7 @@ std::vector<Weighted> weighted(const std::vector<std::vector<ScoreSample>>& sets
     const auto people = static_cast<double>(std::ranges::count(set, true, &ScoreSample::person));
     const double nobodies = static_cast<double>(set.size()) - people;
     for (const ScoreSample& sample : set) {
-      all.push_back({features(sample.evidence), sample.person, sample.person ? 1.0 / people : kCostOfFalse / nobodies});
+      all.push_back({features(sample.evidence), sample.person, sample.person ? 1.0 / people : 1.0 / nobodies});
     }
   }
   return all;

@@ -29,11 +29,11 @@ struct ScoreFit {
   double area_after = 0.0;
 };
 
-/// Fits weights and bias of the person score by logistic regression such that 0.5 separates people from nobodies. All
-/// other options are those of `start`. The people of every set have the same total weight, and so have its nobodies, so
-/// a long sequence does not outweigh a short one. A small ridge keeps the weights finite for sets that a line separates
-/// completely. Evidence whose weight would contradict its sign (EvidenceWeight) gets none. Throws Error if there are no
-/// people or no nobodies.
+/// Fits weights and bias of the person score by logistic regression. All other options are those of `start`. The people
+/// of every set have the same total weight, and so have its nobodies, so a long sequence does not outweigh a short one;
+/// the score is the probability of a person where both are equally common. A small ridge keeps the weights finite for
+/// sets that a line separates completely. Evidence whose weight would contradict its sign (EvidenceWeight) gets none.
+/// Throws Error if there are no people or no nobodies.
 ScoreFit fit_score(const std::vector<std::vector<ScoreSample>>& sets, const ScoreOptions& start);
 
 }  // namespace vesalius

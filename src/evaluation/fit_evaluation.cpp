@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "eval/boost_judge.h"
 #include "eval/fit_distribution.h"
 #include "eval/fit_joints.h"
 #include "vesalius/base/error.h"
@@ -84,6 +85,19 @@ FittedOptions fit_score_options(const Evaluation& evaluation) {
   score = fitted.fit.options;
   for (const EvidenceWeight& piece : kEvidenceWeights) score.*piece.weight = rounded(score.*piece.weight);
   score.bias = rounded(score.bias);
+  return fitted;
+}
+
+FittedJudge fit_judge(const Evaluation& evaluation) {
+  FittedJudge fitted;
+  std::vector<JudgeSample> samples;
+  for (const SetResult& set : evaluation.sets) {
+    for (const ScoreSample& sample : set.samples) {
+      samples.push_back({judge_features(sample.evidence), sample.person});
+      ++(sample.person ? fitted.people : fitted.nobodies);
+    }
+  }
+  fitted.judge = boost_judge(samples, judge_signs(evaluation.body));
   return fitted;
 }
 

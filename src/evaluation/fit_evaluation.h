@@ -4,6 +4,7 @@
 
 #include "eval/fit_score.h"
 #include "evaluation/evaluation.h"
+#include "vesalius/forest/person_judge.h"
 
 namespace vesalius {
 
@@ -22,5 +23,14 @@ struct FittedOptions {
 };
 /// Fits the score. Throws Error as fit_score does.
 FittedOptions fit_score_options(const Evaluation& evaluation);
+
+/// A judge fitted to the candidates of all sets, each of which counts the same.
+struct FittedJudge {
+  PersonJudge judge;
+  long people = 0;
+  long nobodies = 0;
+};
+/// Fits a judge for the evaluation's body. Throws Error as boost_judge does.
+FittedJudge fit_judge(const Evaluation& evaluation);
 
 }  // namespace vesalius

@@ -4,8 +4,10 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
+#include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/pool.h"
 #include "vesalius/forest/label_scene.h"
@@ -17,13 +19,26 @@ namespace vesalius {
 /// The data that all frames share, and memory that they reuse.
 struct Method {
   Method(std::shared_ptr<const PixelLabeller> pixels, const DetectOptions& given)
-      : labeller(pixels, {given.label, given.smooth, given.grow.plane}), options(given), body(labeller.body()) {
+      : labeller(pixels, {given.label, given.smooth, given.grow.plane}),
+        options(given),
+        body(labeller.body()),
+        judge(pixels->judge()) {
     if (!pixels->has_background()) options.score = options.score_without_background;
+    const std::size_t asked = judge_signs(body).size();
+    if (!judge.empty() && static_cast<std::size_t>(judge.features) != asked) {
+      throw Error("forest: its judge of people knows " + std::to_string(judge.features) +
+                  " kinds of evidence, expected " + std::to_string(asked));
+    }
+  }
+
+  float score(const Evidence& evidence) const {
+    return judge.empty() ? person_score(evidence, options.score) : judge.probability(judge_features(evidence));
   }
 
   SceneLabeller labeller;
   DetectOptions options;
   const BodyModel& body;
+  const PersonJudge& judge;
   mutable Pool<SceneLabels> memory;
 };
 
@@ -172,7 +187,7 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, C
   candidate.evidence =
       gather_evidence(frame, candidate.grown, person, scene.labels.posteriors(), candidate.refined, method.body);
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
-  candidate.score = person_score(candidate.evidence, method.options.score);
+  candidate.score = method.score(candidate.evidence);
   candidate.labels = std::move(person.labels);
   return candidate;
 }

@@ -25,7 +25,7 @@ struct RefineOptions {
   int max_candidates = 12;        ///< most rough skeletons refined in one frame
   float rival_likelihood = 0.2F;  ///< rough skeletons of at least this likelihood per part grow against each other
   int min_parts = 6;              ///< fewest parts of a person after the second pass
-  float min_score = 0.5F;         ///< lowest score of a person
+  float min_score = 0.75F;        ///< lowest score of a person: a false one costs three missed ones
   float max_overlap = 0.3F;       ///< share of the mask that a person may have in common with a more certain one
 };
 
@@ -38,7 +38,7 @@ struct DetectOptions {
   SearchOptions search;
   GrowOptions grow;
   RefineOptions refine;
-  ScoreOptions score;  ///< for forests that have a background class
+  ScoreOptions score;  ///< for forests that have a background class but no judge
   ScoreOptions score_without_background = vesalius::score_without_background();  ///< for other forests
 };
 void visit_options(const std::string& prefix, DetectOptions& options, OptionVisitor& visitor);

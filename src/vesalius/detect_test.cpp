@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "capsule/capsule_person.h"
@@ -41,11 +42,14 @@ class TruthLabeller : public PixelLabeller {
   const BodyModel& body() const override { return body_; }
   bool has_background() const override { return background_; }
   bool has_distributions() const override { return false; }
+  const PersonJudge& judge() const override { return judge_; }
+  void set_judge(PersonJudge judge) { judge_ = std::move(judge); }
 
  private:
   LabelImage truth_;
   BodyModel body_;
   bool background_;
+  PersonJudge judge_;
 };
 
 CapsuleScene one_person(float z_m) {
@@ -456,6 +460,42 @@ TEST(Detector, MeasuresTimesThatAddUp) {
   const double once = times.total();
   detector.detect(truth.frame, nullptr, &times);
   EXPECT_GT(times.total(), once);
+}
+
+/// A judge that calls people whatever has more than `least` of a kind of evidence.
+PersonJudge judge_by(int feature, float least) {
+  PersonJudge judge{static_cast<int>(judge_signs(paper_body()).size()), 0.F, std::vector<JudgeTree>(1)};
+  JudgeTree& tree = judge.trees.front();
+  tree.threshold.fill(std::numeric_limits<float>::infinity());
+  tree.feature[0] = static_cast<std::uint16_t>(feature);
+  tree.threshold[0] = least;
+  tree.value.fill(-9.F);
+  tree.value[JudgeTree::kLeaves / 2] = 9.F;
+  return judge;
+}
+
+TEST(Judge, DecidesWhoIsAPerson) {
+  const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
+  constexpr int kSize = 5;  // the likeness of the area, in the order of kJudgedEvidence
+  for (const float least : {0.F, 1.F}) {
+    auto labeller = std::make_shared<TruthLabeller>(truth.labels, paper_body(), true);
+    labeller->set_judge(judge_by(kSize, least));
+    const std::vector<Person> people = Detector(labeller, {}).detect(truth.frame);
+    ASSERT_EQ(people.size(), least == 0.F ? 1U : 0U);
+    if (least == 0.F) {
+      EXPECT_GT(people[0].score, 0.99F);
+    }
+  }
+}
+
+TEST(Judge, OfOtherEvidenceIsRefused) {
+  const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
+  auto labeller = std::make_shared<TruthLabeller>(truth.labels, paper_body(), true);
+  PersonJudge judge = judge_by(0, 0.F);
+  judge.features -= 1;
+  labeller->set_judge(judge);
+  EXPECT_THAT([&] { Detector(labeller, {}); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("kinds of evidence, expected")));
 }
 
 /// Returns the frame's depth with the ramps around its holes that resizing by interpolation leaves.

@@ -1,9 +1,12 @@
 #include "vesalius/score_person.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace vesalius {
@@ -63,6 +66,7 @@ struct Outline {
   long closed = 0;    ///< at the same distance
   long occluded = 0;  ///< nearer
   long border = 0;    ///< at the end of the picture
+  long sides = 0;     ///< all
 
   float share_open() const { return share(open, open + closed); }
   float share_occluded() const { return share(occluded, open + closed + occluded); }
@@ -80,9 +84,11 @@ Outline look_around(const Frame& frame, const Inside& inside) {
     for (const auto& [du, dv] : kSides) {
       if (!mask.contains(u + du, v + dv)) {
         ++outline.border;
+        ++outline.sides;
         continue;
       }
       if (mask(u + du, v + dv) != 0) continue;
+      ++outline.sides;
       int beyond = 0;
       for (int k = 1; k <= kRim && beyond == 0 && mask.contains(u + k * du, v + k * dv); ++k) {
         beyond = frame.depth(u + k * du, v + k * dv);
@@ -100,9 +106,33 @@ Outline look_around(const Frame& frame, const Inside& inside) {
   return outline;
 }
 
-/// Returns the mean over the mask of the parts' share of all classes: 1 if there is no background class, 0 without
-/// pixels.
-float share_of_body(const Inside& inside, const Posteriors& posteriors, int parts) {
+std::size_t slot_count(const std::vector<int>& slots) {
+  return static_cast<std::size_t>(*std::ranges::max_element(slots)) + 1;
+}
+
+constexpr int kShareSteps = 256;
+
+/// Returns the body share that the given share of the pixels exceed, from the number of pixels in each step of it.
+float share_exceeded(const std::array<long, kShareSteps>& of_step, long pixels, double share) {
+  if (pixels == 0) return 0.F;
+  const double most = share * static_cast<double>(pixels);
+  int step = kShareSteps - 1;
+  for (long above = of_step[step]; step > 0 && static_cast<double>(above) <= most;) above += of_step[--step];
+  return (static_cast<float>(step) + 0.5F) / kShareSteps;
+}
+
+/// What the forest says of the pixels of a mask.
+struct Belief {
+  float body = 1.F;          ///< mean body share; 1 if there is no background class, 0 without pixels
+  float surest = 0.F;        ///< body share that a tenth exceed
+  std::vector<float> parts;  ///< shares of the parts in the body, by slot
+};
+
+Belief belief_of(const Inside& inside, const Posteriors& posteriors, const BodyModel& body) {
+  const int parts = body.part_count();
+  const std::vector<int> slots = part_slots(body);
+  std::array<long, kShareSteps> of_step{};
+  std::vector<double> of_part(parts, 0.0);
   double sum = 0.0;
   long pixels = 0;
   inside.each([&](int u, int v) {
@@ -110,8 +140,66 @@ float share_of_body(const Inside& inside, const Posteriors& posteriors, int part
     if (!share) return;
     sum += *share;
     ++pixels;
+    ++of_step[std::min(kShareSteps - 1, static_cast<int>(*share * kShareSteps))];
+    const std::uint16_t* sums = posteriors.at(u, v);
+    const int of_body = std::accumulate(sums, sums + parts, 0);
+    if (of_body == 0) return;
+    const double unit = 1.0 / of_body;
+    for (int p = 0; p < parts; ++p) of_part[p] += unit * sums[p];
   });
-  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
+  Belief belief;
+  const auto count = static_cast<double>(std::max(1L, pixels));
+  belief.body = static_cast<float>(sum / count);
+  belief.parts.resize(slot_count(slots), 0.F);
+  for (int p = 0; p < parts; ++p) belief.parts[slots[p]] += static_cast<float>(of_part[p] / count);
+  belief.surest = share_exceeded(of_step, pixels, 0.1);
+  return belief;
+}
+
+/// The shape of a mask's surface.
+struct Shape {
+  float depth_m = 0.F, length_m = 0.F, slant = 0.F, bend_m = 0.F;  ///< as Evidence's
+};
+
+/// Returns Evidence::bend_m. Where the points to both sides are far off, the surface ends between them.
+float bend_of(const Frame& frame, const Inside& inside) {
+  constexpr float kFarOff_m = 0.15F;
+  const Mask& mask = inside.mask();
+  const auto holds = [&](int u, int v) { return mask.contains(u, v) && mask(u, v) != 0; };
+  double sum = 0.0;
+  long pairs = 0;
+  inside.each([&](int u, int v) {
+    const auto z_mm = static_cast<float>(std::max<int>(1, frame.depth(u, v)));
+    const int reach = std::max(1, static_cast<int>(std::lround(kBendReach_m * frame.camera.fx / (1e-3F * z_mm))));
+    for (const auto& [du, dv] : {std::array{reach, 0}, std::array{0, reach}}) {
+      if (!holds(u + du, v + dv) || !holds(u - du, v - dv)) continue;
+      const auto middle = 0.5F * static_cast<float>(frame.depth(u + du, v + dv) + frame.depth(u - du, v - dv));
+      const float off = 1e-3F * std::abs(middle - z_mm);
+      if (off > kFarOff_m) continue;
+      sum += static_cast<double>(off);
+      ++pairs;
+    }
+  });
+  return pairs > 0 ? static_cast<float>(sum / static_cast<double>(pairs)) : 0.F;
+}
+
+Shape shape_of(const Frame& frame, const Inside& inside) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  long pixels = 0;
+  inside.each([&](int u, int v) {
+    const Eigen::Vector3d point = point_at(frame.camera, frame.depth, u, v).cast<double>();
+    sum += point;
+    squares += point * point.transpose();
+    ++pixels;
+  });
+  if (pixels == 0) return {};
+  const auto count = static_cast<double>(pixels);
+  const Eigen::Matrix3d covariance = squares / count - sum * sum.transpose() / (count * count);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  const Eigen::Vector3d spread = axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  return {static_cast<float>(spread[0]), static_cast<float>(spread[2]),
+          static_cast<float>(std::abs(axes.eigenvectors().col(0).z())), bend_of(frame, inside)};
 }
 
 /// The size of a mask and its distance.
@@ -226,7 +314,7 @@ ScoreOptions score_without_background() {
   options.border_weight = 0.F;
   options.beside_weight = 0.F;
   options.resolution_weight = 0.F;
-  options.bias = -18.65F;
+  options.bias = -17.55F;
   return options;
 }
 
@@ -235,18 +323,54 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
   const Inside inside(mask);
   const Outline outline = look_around(frame, inside);
   const Extent extent = extent_of(frame, inside);
-  return {skeleton.score / static_cast<float>(body.part_count()),
-          share_explained(frame, inside, labels.labels, skeleton, body),
-          outline.share_open(),
-          share_of_core(skeleton, body),
-          share_of_body(inside, posteriors, body.part_count()),
-          likeness_of_area(extent),
-          outline.share_occluded(),
-          nearness(extent),
-          labels.certain,
-          outline.share_border(),
-          body_beside(inside, posteriors, body.part_count()),
-          resolution_of(extent)};
+  const Shape shape = shape_of(frame, inside);
+  Belief belief = belief_of(inside, posteriors, body);
+  Evidence evidence;
+  evidence.likelihood = skeleton.score / static_cast<float>(body.part_count());
+  evidence.explained = share_explained(frame, inside, labels.labels, skeleton, body);
+  evidence.open = outline.share_open();
+  evidence.core = share_of_core(skeleton, body);
+  evidence.body = belief.body;
+  evidence.size = likeness_of_area(extent);
+  evidence.occluded = outline.share_occluded();
+  evidence.near = nearness(extent);
+  evidence.certain = labels.certain;
+  evidence.border = outline.share_border();
+  evidence.beside = body_beside(inside, posteriors, body.part_count());
+  evidence.resolution = resolution_of(extent);
+  evidence.surest = belief.surest;
+  evidence.facing = labels.facing.size() > 0 ? labels.facing.maxCoeff() : 0.F;
+  evidence.depth_m = shape.depth_m;
+  evidence.length_m = shape.length_m;
+  evidence.slant = shape.slant;
+  evidence.bend_m = shape.bend_m;
+  evidence.ragged = static_cast<float>(outline.sides) / std::sqrt(static_cast<float>(std::max(1L, extent.pixels)));
+  evidence.parts = std::move(belief.parts);
+  return evidence;
+}
+
+std::vector<int> part_slots(const BodyModel& body) {
+  std::vector<int> slots;
+  int next = 0;
+  for (int p = 0; p < body.part_count(); ++p) {
+    const int mirror = body.parts[p].mirror;
+    slots.push_back(mirror >= 0 && mirror < p ? slots[mirror] : next++);
+  }
+  return slots;
+}
+
+std::vector<int> judge_signs(const BodyModel& body) {
+  std::vector<int> signs;
+  for (const JudgedEvidence& kind : kJudgedEvidence) signs.push_back(kind.sign);
+  signs.resize(signs.size() + slot_count(part_slots(body)), 0);
+  return signs;
+}
+
+std::vector<float> judge_features(const Evidence& evidence) {
+  std::vector<float> features;
+  for (const JudgedEvidence& kind : kJudgedEvidence) features.push_back(evidence.*kind.evidence);
+  features.insert(features.end(), evidence.parts.begin(), evidence.parts.end());
+  return features;
 }
 
 float person_score(const Evidence& e, const ScoreOptions& o) {

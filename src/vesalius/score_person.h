@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
@@ -26,7 +27,7 @@ struct ScoreOptions {
   float border_weight = 2.58F;       ///< of the share of the outline that the picture's border cuts off
   float beside_weight = -0.79F;      ///< of how much body the forest sees beside the mask
   float resolution_weight = 11.41F;  ///< of the number of pixels
-  float bias = -18.2F;
+  float bias = -17.1F;
 };
 void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisitor& visitor);
 
@@ -35,8 +36,9 @@ void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisit
 ScoreOptions score_without_background();
 
 inline constexpr float kUsualArea_m2 = 0.45F;  ///< of a person's mask: a standing adult's front
+inline constexpr float kBendReach_m = 0.15F;   ///< a limb's radius and more
 
-/// The evidence that a grown mask and its skeleton are a person. All numbers are 0-1.
+/// The evidence that a grown mask and its skeleton are a person. Numbers without a unit are 0-1.
 struct Evidence {
   float likelihood = 0.F;  ///< accumulated likelihood of the skeleton over the number of the body's parts
   float explained = 0.F;   ///< share of the mask whose label's part, or its mirror partner, was found nearby
@@ -50,6 +52,14 @@ struct Evidence {
   float border = 0.F;      ///< share of the outline at the picture's border
   float beside = 0.F;      ///< mean body share of pixels a few pixels beside the mask: around noise it is high as well
   float resolution = 0.F;  ///< log10 of the mask's number of pixels, over 5
+  float surest = 0.F;      ///< body share that a tenth of the mask's pixels exceed
+  float facing = 0.F;      ///< probability of the likeliest heading; 0 where the forest's leaves have none
+  float depth_m = 0.F;     ///< standard deviation of the mask's points along their shortest principal axis
+  float length_m = 0.F;    ///< the same along their longest
+  float slant = 0.F;       ///< |cosine| of the angle between the shortest axis and the viewing direction
+  float bend_m = 0.F;      ///< mean distance of a point from the middle of those kBendReach_m to both sides of it
+  float ragged = 0.F;      ///< sides of pixels along the outline over the square root of the mask's pixels
+  std::vector<float> parts = {};  ///< share of each part and its mirror partner in the mask's body (part_slots)
 };
 
 /// A kind of evidence and the option with its weight.
@@ -72,13 +82,47 @@ inline constexpr std::array<EvidenceWeight, 12> kEvidenceWeights{
      {&Evidence::beside, &ScoreOptions::beside_weight, -1},
      {&Evidence::resolution, &ScoreOptions::resolution_weight}}};
 
+/// A kind of evidence that a PersonJudge is given.
+struct JudgedEvidence {
+  float Evidence::*evidence;
+  int sign = 0;  ///< as EvidenceWeight's
+};
+inline constexpr std::array<JudgedEvidence, 19> kJudgedEvidence{{{&Evidence::likelihood, 1},
+                                                                 {&Evidence::explained, 1},
+                                                                 {&Evidence::open, 1},
+                                                                 {&Evidence::core, 1},
+                                                                 {&Evidence::body, 1},
+                                                                 {&Evidence::size, 1},
+                                                                 {&Evidence::occluded},
+                                                                 {&Evidence::near},
+                                                                 {&Evidence::certain, 1},
+                                                                 {&Evidence::border},
+                                                                 {&Evidence::beside, -1},
+                                                                 {&Evidence::resolution},
+                                                                 {&Evidence::surest, 1},
+                                                                 {&Evidence::facing, 1},
+                                                                 {&Evidence::depth_m},
+                                                                 {&Evidence::length_m},
+                                                                 {&Evidence::slant},
+                                                                 {&Evidence::bend_m},
+                                                                 {&Evidence::ragged}}};
+
+/// Returns for each part its index in Evidence::parts, which it shares with its mirror partner.
+std::vector<int> part_slots(const BodyModel& body);
+
+/// Returns the sign of each of judge_features (EvidenceWeight).
+std::vector<int> judge_signs(const BodyModel& body);
+
+/// Returns what a PersonJudge is asked: kJudgedEvidence, then the parts.
+std::vector<float> judge_features(const Evidence& evidence);
+
 /// Measures the evidence that a mask and a skeleton are a person. `labels` are those inside `mask`, `posteriors` those
 /// of the first pass; all have the frame's size.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
                          const Skeleton& skeleton, const BodyModel& body);
 
 /// Returns the score of a person, 0-1, by a logistic function whose weights were fitted to frames with and without
-/// people.
+/// people. It is for forests without a PersonJudge.
 float person_score(const Evidence& evidence, const ScoreOptions& options);
 
 }  // namespace vesalius

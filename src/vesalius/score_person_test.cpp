@@ -205,5 +205,94 @@ TEST(PersonScore, EachEvidenceSpeaksForAPerson) {
   }
 }
 
+TEST(GatherEvidence, TellsWhatATenthOfThePixelsExceed) {
+  Square s(3000);
+  int n = 0;
+  s.posteriors.classes = 26;
+  for (int v = 10; v < 20; ++v) {
+    for (int u = 15; u < 25; ++u, ++n) {
+      std::uint16_t* sums = s.posteriors.at(u, v);
+      sums[0] = static_cast<std::uint16_t>(n);  // shares from 0 to 0.99
+      sums[25] = static_cast<std::uint16_t>(100 - n);
+    }
+  }
+  EXPECT_NEAR(s.evidence().surest, 0.9F, 0.015F);
+}
+
+TEST(GatherEvidence, TellsTheLikeliestHeadingsProbability) {
+  Square s(3000);
+  EXPECT_FLOAT_EQ(s.evidence().facing, 0.F);
+  s.labels.facing = Eigen::Vector4f(0.1F, 0.2F, 0.6F, 0.1F);
+  EXPECT_FLOAT_EQ(s.evidence().facing, 0.6F);
+}
+
+TEST(GatherEvidence, SharesTheBodyAmongPartsOfBothSides) {
+  const BodyModel& body = paper_body();
+  Square s(3000);
+  const int left = body.find_part("l_hand"), right = body.find_part("r_hand"), neck = body.find_part("neck");
+  for (int v = 10; v < 20; ++v) {
+    for (int u = 15; u < 25; ++u) {
+      std::uint16_t* sums = s.posteriors.at(u, v);
+      sums[left] = 10;
+      sums[right] = 20;
+      sums[neck] = 30;
+      sums[25] = 40;
+    }
+  }
+  const std::vector<int> slots = part_slots(body);
+  const Evidence evidence = s.evidence();
+  EXPECT_EQ(slots[left], slots[right]);
+  EXPECT_NE(slots[left], slots[neck]);
+  ASSERT_EQ(evidence.parts.size(), 13U) << "12 pairs and the neck";
+  EXPECT_FLOAT_EQ(evidence.parts[slots[left]], 0.5F);
+  EXPECT_FLOAT_EQ(evidence.parts[slots[neck]], 0.5F);
+  EXPECT_EQ(judge_features(evidence).size(), judge_signs(body).size());
+}
+
+/// A wall of 200 x 150 pixels whose depth is a function of the column and row.
+template <class Depth>
+Evidence of_surface(const Depth& depth_m) {
+  Frame frame;
+  frame.camera = {200, 150, 200.F, 200.F, 99.5F, 74.5F};
+  frame.depth = DepthImage(200, 150, 0);
+  Mask mask(200, 150, 0);
+  for (int v = 40; v < 110; ++v) {
+    for (int u = 70; u < 130; ++u) {
+      mask(u, v) = 1;
+      frame.depth(u, v) = static_cast<std::uint16_t>(std::lround(1e3 * depth_m(u, v)));
+    }
+  }
+  const PersonLabels labels{LabelImage(200, 150, kBackground), {}, 0.F};
+  const Posteriors posteriors{200, 150, 26, 1, std::vector<std::uint16_t>(std::size_t{200} * 150 * 26, 0)};
+  Skeleton skeleton;
+  skeleton.parts.resize(paper_body().parts.size());
+  return gather_evidence(frame, mask, labels, posteriors, skeleton, paper_body());
+}
+
+TEST(GatherEvidence, MeasuresTheShapeOfAFlatBoard) {
+  const Evidence board = of_surface([](int, int) { return 2.0; });
+  EXPECT_NEAR(board.depth_m, 0.F, 1e-3F);
+  EXPECT_NEAR(board.length_m, 0.7F / std::sqrt(12.F), 2e-3F);  // 70 pixels of 1 cm
+  EXPECT_NEAR(board.slant, 1.F, 1e-3F);
+  EXPECT_NEAR(board.bend_m, 0.F, 1e-3F);
+  EXPECT_NEAR(board.ragged, 2.F * (60.F + 70.F) / std::sqrt(4200.F), 1e-3F);
+}
+
+TEST(GatherEvidence, MeasuresHowASurfaceBendsAndSlants) {
+  // A cylinder of 0.3 m about a vertical axis: 15 cm to the side it is 0.3 - sqrt(0.3^2 - 0.15^2) m further at its
+  // front, and more at its sides; along the axis it is straight.
+  const auto cylinder = [](int u, int) {
+    const double x = std::min(0.299, std::abs(u - 99.5) * 0.01);
+    return 2.0 - std::sqrt(0.09 - x * x);
+  };
+  const double least = 0.5 * (0.3 - std::sqrt(0.09 - 0.0225));
+  EXPECT_GT(of_surface(cylinder).bend_m, 0.8 * least);
+  EXPECT_LT(of_surface(cylinder).bend_m, 0.06);
+  // A plane that recedes steeply to the right.
+  const Evidence steep = of_surface([](int u, int) { return 2.0 / (1.0 - 1.5 * (u - 99.5) / 200.0); });
+  EXPECT_LT(steep.slant, 0.65F);
+  EXPECT_NEAR(steep.depth_m, 0.F, 2e-3F);
+}
+
 }  // namespace
 }  // namespace vesalius

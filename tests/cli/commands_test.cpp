@@ -75,6 +75,8 @@ TEST_F(Commands, InfoDescribesAModel) {
   EXPECT_EQ(facts.at("checksum"), model_checksum(bytes));
   EXPECT_EQ(facts.at("recipe"), forest.recipe);
   EXPECT_EQ(facts.at("background_class"), forest.has_background);
+  EXPECT_EQ(facts.at("headings"), forest.headings);
+  EXPECT_EQ(facts.at("judge_trees"), forest.judge.trees.size());
   EXPECT_EQ(facts.at("body").at("parts").size(), 25U);
   ASSERT_EQ(facts.at("trees").size(), forest.trees.size());
   EXPECT_EQ(facts.at("trees").at(1).at("nodes"), forest.trees[1].nodes.size());

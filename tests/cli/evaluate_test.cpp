@@ -6,6 +6,7 @@
 #include "capsule/capsule_person.h"
 #include "dataset/labelled_dataset.h"
 #include "io/files/image_file.h"
+#include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_world.h"
 
@@ -283,6 +284,24 @@ TEST_F(Evaluate, FitsTheScoreToFramesWithAndWithoutPeople) {
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_THAT(alone.err, HasSubstr("have no candidate that is known to be a person"));
   EXPECT_FALSE(fs::exists(path("none.toml")));
+}
+
+TEST_F(Evaluate, WritesTheModelWithAJudgeFittedToTheFrames) {
+  write("frames/frames.csv", "frame,people,posture\na,1,\nb,0,\nc,0,\n");
+  fs::create_directories(path("frames/mask"));
+  write_png(Image<std::uint8_t>(320, 240, 255), path("frames/mask/a.png"));
+  const Outcome run = evaluate(" --fit-judge " + path("judged.forest"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, ContainsRegex("judge fitted to [1-9][0-9]* candidates that were people and [1-9][0-9]* that "));
+  EXPECT_FALSE(load_model(path("judged.forest")).judge.empty());
+  EXPECT_THAT(run_program("info " + path("judged.forest")).out, HasSubstr("judge_trees: 400\n"));
+  EXPECT_EQ(run_program("detect " + frames() + " -m " + path("judged.forest")).exit_code, 0);
+
+  write("frames/frames.csv", "frame,people,posture\na,0,\nb,0,\nc,0,\n");
+  const Outcome alone = evaluate(" --fit-judge " + path("none.forest"));
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.err, HasSubstr("have no candidate that is known to be a person"));
+  EXPECT_FALSE(fs::exists(path("none.forest")));
 }
 
 class Compare : public Evaluate {};

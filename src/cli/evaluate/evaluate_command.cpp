@@ -53,7 +53,7 @@ struct Arguments {
   std::vector<std::string> sources, recipes;
   RenderedTruth rendered;
   std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
-      fit_score;
+      fit_score, fit_judge;
   OptionFlags<DetectOptions> detector_flags;
   int step = 1;
   double turn_deg = 0.0;
@@ -170,6 +170,17 @@ void write_fitted_score(const Evaluation& evaluation, const std::string& path, b
       fit.people, fit.nobodies, fit.area_after, fit.area_before));
 }
 
+/// Writes the model with a judge fitted to all sets, and prints how many candidates it was fitted to.
+void write_fitted_judge(const Evaluation& evaluation, const std::string& path, bool quiet) {
+  FittedJudge fitted = fit_judge(evaluation);
+  Forest forest = load_model(evaluation.model);
+  forest.judge = std::move(fitted.judge);
+  save_model(forest, path);
+  if (quiet) return;
+  print(fmt::format("judge fitted to {} candidates that were people and {} that were not\n", fitted.people,
+                    fitted.nobodies));
+}
+
 void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.json.empty()) {
     TextSink sink(arguments.json);
@@ -182,6 +193,7 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
     write_file_atomically(arguments.fit_parts, fitted_distribution_toml(evaluation));
   }
   if (!arguments.fit_score.empty()) write_fitted_score(evaluation, arguments.fit_score, prints_json(arguments));
+  if (!arguments.fit_judge.empty()) write_fitted_judge(evaluation, arguments.fit_judge, prints_json(arguments));
 }
 
 void run(const Arguments& arguments, const std::string& command) {
@@ -286,9 +298,17 @@ void add_evaluate(CLI::App& program) {
       ->type_name("FILE")
       ->excludes(labels_only);
   command
-      ->add_option("--fit-score", arguments->fit_score,
-                   "Write the detector options used, with the weights of the person score fitted to these frames")
+      ->add_option(
+          "--fit-score", arguments->fit_score,
+          "Write the detector options used, with the weights of the person score fitted to these frames; it is "
+          "for models without a judge")
       ->type_name("FILE")
+      ->excludes(labels_only);
+  command
+      ->add_option(
+          "--fit-judge", arguments->fit_judge,
+          "Write the model with a judge fitted to these frames, which tells people from what is taken for them")
+      ->type_name("FOREST")
       ->excludes(labels_only);
   command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The metrics are the same")
       ->type_name("N")
@@ -303,7 +323,8 @@ Examples:
   vesalius evaluate held_out/ -m adult.forest --report out/
   vesalius evaluate --recipe data/protocol/cluttered.toml --count 5000 -m adult.forest
   vesalius evaluate real/room real/hall -m adult.forest --json a.json
-  vesalius evaluate held_out/ empty_rooms/ -m adult.forest --fit-score detector.toml)");
+  vesalius evaluate held_out/ empty_rooms/ -m adult.forest --fit-score detector.toml
+  vesalius evaluate rendered/ empty_rooms/ -m adult.forest --fit-judge judged.forest)");
   command->callback([arguments, command] { run(*arguments, command_line(*command)); });
 }
 

@@ -24,6 +24,8 @@ constexpr std::size_t kChecksumAt = 20;
 constexpr std::size_t kHeaderBytes = 28;
 constexpr std::uint16_t kFlagBackground = 1;
 constexpr std::uint16_t kFlagLogits = 2;  ///< leaves were learned jointly and have logits
+constexpr std::uint16_t kFlagJudge = 4;   ///< has a judge of people
+constexpr std::uint16_t kAllFlags = kFlagBackground | kFlagLogits | kFlagJudge;
 
 std::uint64_t checksum(std::string_view bytes) {
   XXH64_state_t state;
@@ -85,6 +87,31 @@ void read_facing(ByteReader& in, Forest& forest) {
   for (std::uint32_t i = 0; i < count; ++i) forest.facing.weights.push_back(in.real32("weights of headings"));
 }
 
+void write_judge(ByteWriter& out, const PersonJudge& judge) {
+  out.number(static_cast<std::uint16_t>(judge.features));
+  out.real(judge.bias);
+  out.number(static_cast<std::uint32_t>(judge.trees.size()));
+  for (const JudgeTree& tree : judge.trees) {
+    for (const std::uint16_t feature : tree.feature) out.number(feature);
+    for (const float threshold : tree.threshold) out.real(threshold);
+    for (const float value : tree.value) out.real(value);
+  }
+}
+
+PersonJudge read_judge(ByteReader& in) {
+  PersonJudge judge;
+  judge.features = in.number<std::uint16_t>("evidence of the judge");
+  judge.bias = in.real32("judge");
+  const auto count = in.number<std::uint32_t>("trees of the judge");
+  for (std::uint32_t t = 0; t < count; ++t) {
+    JudgeTree& tree = judge.trees.emplace_back();
+    for (std::uint16_t& feature : tree.feature) feature = in.number<std::uint16_t>("judge");
+    for (float& threshold : tree.threshold) threshold = in.real32("judge");
+    for (float& value : tree.value) value = in.real32("judge");
+  }
+  return judge;
+}
+
 }  // namespace
 
 std::string serialise_model(const Forest& forest) {
@@ -94,7 +121,9 @@ std::string serialise_model(const Forest& forest) {
   out.bytes() += kMagic;
   out.number(static_cast<std::uint16_t>(kModelVersion));
   const bool logits = forest.logit_unit != 0.F;
-  out.number(static_cast<std::uint16_t>((forest.has_background ? kFlagBackground : 0) | (logits ? kFlagLogits : 0)));
+  const bool judge = !forest.judge.empty();
+  out.number(static_cast<std::uint16_t>((forest.has_background ? kFlagBackground : 0) | (logits ? kFlagLogits : 0) |
+                                        (judge ? kFlagJudge : 0)));
   out.number(std::uint64_t{0});  // size and checksum, filled in at the end
   out.number(std::uint64_t{0});
   out.text(forest.body.toml);
@@ -112,6 +141,7 @@ std::string serialise_model(const Forest& forest) {
     out.number(static_cast<std::uint32_t>(forest.facing.weights.size()));
     for (const float weight : forest.facing.weights) out.real(weight);
   }
+  if (judge) write_judge(out, forest.judge);
   overwrite(out.bytes(), kSizeAt, static_cast<std::uint64_t>(out.bytes().size()));
   overwrite(out.bytes(), kChecksumAt, checksum(out.bytes()));
   return std::move(out.bytes());
@@ -122,7 +152,7 @@ Forest parse_model(std::string_view bytes, const std::string& name) {
   ByteReader in(bytes, name);
   in.take(kMagic.size() + sizeof(std::uint16_t), "header");
   const auto flags = in.number<std::uint16_t>("flags");
-  if (flags > (kFlagBackground | kFlagLogits)) in.fail(fmt::format("unknown flags {}", flags));
+  if (flags > kAllFlags) in.fail(fmt::format("unknown flags {}", flags));
   in.take(kHeaderBytes - kSizeAt, "header");
   Forest forest;
   forest.has_background = (flags & kFlagBackground) != 0;
@@ -141,6 +171,7 @@ Forest parse_model(std::string_view bytes, const std::string& name) {
     read_logits(in, static_cast<std::size_t>(layout.size()), forest.trees);
     read_facing(in, forest);
   }
+  if ((flags & kFlagJudge) != 0) forest.judge = read_judge(in);
   in.expect_end();
   with_context(name, [&] { check(forest); });
   return forest;

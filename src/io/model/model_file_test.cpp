@@ -45,6 +45,17 @@ TEST(ModelFile, KeepsEverythingInARoundTrip) {
   }
 }
 
+TEST(ModelFile, KeepsTheJudge) {
+  Forest forest = random_forest(4);
+  Random random(5, 0);
+  test::add_judge(forest, 20, random);
+  const std::string bytes = serialise_model(forest);
+  EXPECT_EQ(parse_model(bytes, "m").judge, forest.judge);
+  EXPECT_TRUE(parse_model(serialise_model(random_forest(4)), "m").judge.empty());
+  forest.judge.features = 1;
+  EXPECT_THAT([&] { serialise_model(forest); }, ThrowsMessage<Error>(HasSubstr("evidence that it does not have")));
+}
+
 TEST(ModelFile, KeepsLogitsAndHeadings) {
   for (const int headings : {0, 8}) {
     Forest forest = random_forest(3);

@@ -91,6 +91,7 @@ void check(const Forest& forest) {
   }
   for (std::size_t t = 0; t < forest.trees.size(); ++t) check_tree(forest.trees[t], t, forest.class_count());
   check_logits(forest);
+  check(forest.judge);
 }
 
 int depth(const Tree& tree) {

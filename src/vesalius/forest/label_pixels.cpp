@@ -167,6 +167,7 @@ struct PackedForest {
   float logit_unit = 0.F;
   LogitLayout layout;  ///< where leaves have logits
   FacingModel facing;
+  PersonJudge judge;
   std::vector<PackedTree> trees;
 
   bool has_logits() const { return logit_unit > 0.F; }
@@ -290,6 +291,7 @@ ForestLabeller::ForestLabeller(Forest forest) {
   packed.distributions = vesalius::has_distributions(forest);
   packed.classes = forest.class_count();
   packed.facing = forest.facing;
+  packed.judge = forest.judge;
   packed.logit_unit = forest.logit_unit;
   packed.layout = LogitLayout(forest.body, forest.has_background, forest.headings);
   packed.trees.resize(forest.trees.size());
@@ -304,6 +306,7 @@ ForestLabeller::~ForestLabeller() = default;
 
 const BodyModel& ForestLabeller::body() const { return packed_->body; }
 const FacingModel& ForestLabeller::facing_model() const { return packed_->facing; }
+const PersonJudge& ForestLabeller::judge() const { return packed_->judge; }
 bool ForestLabeller::has_background() const { return packed_->background; }
 bool ForestLabeller::has_distributions() const { return packed_->distributions; }
 

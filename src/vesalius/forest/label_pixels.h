@@ -8,6 +8,7 @@
 #include "vesalius/base/options.h"
 #include "vesalius/forest/facing.h"
 #include "vesalius/forest/forest.h"
+#include "vesalius/forest/person_judge.h"
 #include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
@@ -54,6 +55,11 @@ class PixelLabeller {
     static const FacingModel kNone;
     return kNone;
   }
+  /// Returns which proposals are people, if the forest tells.
+  virtual const PersonJudge& judge() const {
+    static const PersonJudge kNone;
+    return kNone;
+  }
 };
 
 /// Labels on the processor (section 4.3, eq. 2): the posteriors of a pixel are the mean over the trees of the
@@ -70,6 +76,7 @@ class ForestLabeller : public PixelLabeller {
   bool has_background() const override;
   bool has_distributions() const override;
   const FacingModel& facing_model() const override;
+  const PersonJudge& judge() const override;
 
  private:
   struct Packed;

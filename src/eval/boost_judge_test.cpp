@@ -1,0 +1,94 @@
+#include "eval/boost_judge.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/base/random.h"
+
+namespace vesalius {
+namespace {
+
+/// Returns samples with three uniformly random kinds of evidence, which are people with the given probability.
+std::vector<JudgeSample> draw(int count, std::uint64_t seed,
+                              const std::function<double(const std::vector<float>&)>& probability) {
+  Random random(seed);
+  std::vector<JudgeSample> samples(count);
+  for (JudgeSample& sample : samples) {
+    for (int i = 0; i < 3; ++i) sample.evidence.push_back(static_cast<float>(random.uniform()));
+    sample.person = random.uniform() < probability(sample.evidence);
+  }
+  return samples;
+}
+
+/// Neither kind of evidence says anything alone.
+double either_but_not_both(const std::vector<float>& e) { return (e[0] > 0.5F) != (e[1] > 0.5F) ? 0.9 : 0.1; }
+
+double mean_error(const PersonJudge& judge, const std::vector<JudgeSample>& samples,
+                  const std::function<double(const std::vector<float>&)>& probability) {
+  double sum = 0.0;
+  for (const JudgeSample& sample : samples) {
+    sum += std::abs(static_cast<double>(judge.probability(sample.evidence)) - probability(sample.evidence));
+  }
+  return sum / static_cast<double>(samples.size());
+}
+
+TEST(BoostJudge, FindsProbabilitiesThatNoLineSeparates) {
+  const PersonJudge judge = boost_judge(draw(6000, 1, either_but_not_both), {0, 0, 0});
+  EXPECT_LT(mean_error(judge, draw(2000, 2, either_but_not_both), either_but_not_both), 0.06);
+}
+
+TEST(BoostJudge, NeverContradictsASign) {
+  const auto falling = [](const std::vector<float>& e) { return 0.9 - 0.8 * static_cast<double>(e[0]); };
+  const std::vector<JudgeSample> samples = draw(3000, 3, falling);
+  for (const int sign : {1, -1}) {
+    const PersonJudge judge = boost_judge(samples, {sign, 0, 0});
+    Random random(4);
+    int differs = 0;
+    for (int i = 0; i < 500; ++i) {
+      const auto rest = std::vector<float>{static_cast<float>(random.uniform()), static_cast<float>(random.uniform())};
+      float last = 0.F;
+      for (int step = 0; step <= 20; ++step) {
+        const float p = judge.probability({static_cast<float>(step) / 20.F, rest[0], rest[1]});
+        if (step > 0) {
+          EXPECT_GE(static_cast<float>(sign) * (p - last), 0.F);
+        }
+        differs += step > 0 && p != last ? 1 : 0;
+        last = p;
+      }
+    }
+    if (sign < 0) {
+      EXPECT_GT(differs, 1000) << "evidence that agrees with its sign is used";
+    }
+  }
+}
+
+TEST(BoostJudge, WeighsSamples) {
+  std::vector<JudgeSample> samples = draw(2000, 5, [](const std::vector<float>&) { return 0.5; });
+  for (JudgeSample& sample : samples) sample.weight = sample.person ? 9.0 : 1.0;
+  const PersonJudge judge = boost_judge(samples, {0, 0, 0});
+  EXPECT_NEAR(judge.probability({0.5F, 0.5F, 0.5F}), 0.9F, 0.06F);
+}
+
+TEST(BoostJudge, IsTheSameForAnyNumberOfThreads) {
+  const std::vector<JudgeSample> samples = draw(500, 6, either_but_not_both);
+  const PersonJudge judge = boost_judge(samples, {0, 1, -1});
+  const ThreadLimit one(1);
+  EXPECT_EQ(boost_judge(samples, {0, 1, -1}), judge);
+}
+
+TEST(BoostJudge, RefusesSamplesWithoutAnswer) {
+  const auto all = [](double p) { return draw(10, 7, [p](const std::vector<float>&) { return p; }); };
+  EXPECT_THROW(boost_judge(all(1.0), {0, 0, 0}), Error);
+  EXPECT_THROW(boost_judge(all(0.0), {0, 0, 0}), Error);
+  EXPECT_THROW(boost_judge({}, {0, 0, 0}), Error);
+  EXPECT_THROW(boost_judge(draw(10, 8, either_but_not_both), {0, 0}), Error);
+}
+
+}  // namespace
+}  // namespace vesalius
