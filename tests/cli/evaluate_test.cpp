@@ -35,6 +35,13 @@ class Evaluate : public SmallWorld {
     return run_program("evaluate " + frames() + " -q -m " + model() + more);
   }
 
+  /// Writes the truth of `frames()` for fitting. Frame b shows a person too, but the table says that it shows nobody.
+  static void say_that_only_the_first_frame_has_a_person() {
+    write("frames/frames.csv", "frame,people,posture\na,1,\nb,0,\nc,0,\n");
+    fs::create_directories(path("frames/mask"));
+    write_png(Image<std::uint8_t>(320, 240, 255), path("frames/mask/a.png"));
+  }
+
   /// Returns a dataset of one frame with a person and one without.
   static std::string dataset() {
     const std::string folder = path("dataset");
@@ -267,10 +274,7 @@ TEST_F(Evaluate, NeedsACountForARecipe) {
 }
 
 TEST_F(Evaluate, FitsTheScoreToFramesWithAndWithoutPeople) {
-  // Frame b shows a person too, but the table says that it shows nobody.
-  write("frames/frames.csv", "frame,people,posture\na,1,\nb,0,\nc,0,\n");
-  fs::create_directories(path("frames/mask"));
-  write_png(Image<std::uint8_t>(320, 240, 255), path("frames/mask/a.png"));
+  say_that_only_the_first_frame_has_a_person();
   const Outcome run = evaluate(" --search.min-parts 5 --fit-score " + path("fitted.toml"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, ContainsRegex("score fitted to [1-9][0-9]* candidates that were people and [1-9][0-9]* that "));
@@ -287,9 +291,7 @@ TEST_F(Evaluate, FitsTheScoreToFramesWithAndWithoutPeople) {
 }
 
 TEST_F(Evaluate, WritesTheModelWithAJudgeFittedToTheFrames) {
-  write("frames/frames.csv", "frame,people,posture\na,1,\nb,0,\nc,0,\n");
-  fs::create_directories(path("frames/mask"));
-  write_png(Image<std::uint8_t>(320, 240, 255), path("frames/mask/a.png"));
+  say_that_only_the_first_frame_has_a_person();
   const Outcome run = evaluate(" --fit-judge " + path("judged.forest"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, ContainsRegex("judge fitted to [1-9][0-9]* candidates that were people and [1-9][0-9]* that "));
