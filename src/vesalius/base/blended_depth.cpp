@@ -29,14 +29,29 @@ void add_blended(const DepthImage& depth, Pixel hole, float least_share, std::ve
   }
 }
 
+/// Returns for each pixel of a row 1 if it is a hole and has a reading beside it. Most holes are inside larger ones.
+std::vector<std::uint8_t> holes_beside_readings(const DepthImage& depth, int v) {
+  const int width = depth.width();
+  std::vector<std::uint16_t> any(static_cast<std::size_t>(width) + 2,
+                                 0);  // readings of the rows, one pixel to the right
+  for (int row = std::max(0, v - 1); row <= std::min(depth.height() - 1, v + 1); ++row) {
+    const std::uint16_t* values = depth.row(row);
+    for (int u = 0; u < width; ++u) any[u + 1] = static_cast<std::uint16_t>(any[u + 1] | values[u]);
+  }
+  const std::uint16_t* here = depth.row(v);
+  std::vector<std::uint8_t> holes(width);
+  for (int u = 0; u < width; ++u) holes[u] = here[u] == 0 && (any[u] | any[u + 1] | any[u + 2]) != 0 ? 1 : 0;
+  return holes;
+}
+
 /// Returns the blended readings beside all holes of a picture.
 std::vector<Pixel> blended_beside_holes(const DepthImage& depth, float least_share) {
   std::vector<std::vector<Pixel>> of_row(depth.height());
   parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
-      const std::uint16_t* row = depth.row(v);
+      const std::vector<std::uint8_t> holes = holes_beside_readings(depth, v);
       for (int u = 0; u < depth.width(); ++u) {
-        if (row[u] == 0) add_blended(depth, {u, v}, least_share, of_row[v]);
+        if (holes[u] != 0) add_blended(depth, {u, v}, least_share, of_row[v]);
       }
     }
   });

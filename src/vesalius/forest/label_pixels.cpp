@@ -1,9 +1,10 @@
 #include "vesalius/forest/label_pixels.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -173,25 +174,41 @@ struct PackedForest {
   bool has_logits() const { return logit_unit > 0.F; }
 };
 
+/// Finds the posteriors of pixels whose leaves, [tree][pixel], are known.
+void read_logits(const PackedForest& forest, const WalkPixels& pixels, const std::vector<std::uint32_t>& leaves,
+                 Posteriors& out) {
+  constexpr std::size_t kAhead = 4;  // leaves are all over the memory: they are on their way before they are read
+  const std::vector<PackedTree>& trees = forest.trees;
+  const std::size_t stride = pixels.padded_size();
+  LogitReader reader(forest.layout, forest.logit_unit, static_cast<int>(trees.size()));
+  std::vector<const std::int8_t*> of_pixel(trees.size() * (kAhead + 1));
+  for (std::size_t i = 0; i < pixels.size() + kAhead; ++i) {
+    if (i < pixels.size()) {
+      const std::int8_t** next = of_pixel.data() + i % (kAhead + 1) * trees.size();
+      for (std::size_t t = 0; t < trees.size(); ++t) {
+        next[t] = trees[t].logits_of(leaves[t * stride + i]);
+        hwy::Prefetch(next[t]);
+      }
+    }
+    if (i < kAhead) continue;
+    const std::size_t here = i - kAhead;
+    const int u = pixels.column(WalkPixels::kU)[here], v = pixels.column(WalkPixels::kV)[here];
+    reader.read(of_pixel.data() + here % (kAhead + 1) * trees.size(), out.at(u, v), out.turns_at(u, v));
+  }
+}
+
 /// Finds the posteriors of pixels, which are still zero.
 void label_rows(const PackedForest& forest, const PaddedDepth& depth, const WalkPixels& pixels, Posteriors& out) {
   const std::vector<PackedTree>& trees = forest.trees;
   const std::size_t stride = pixels.padded_size();
   std::vector<std::uint32_t> leaves(trees.size() * stride);
   for (std::size_t t = 0; t < trees.size(); ++t) walk_pixels(trees[t], depth, pixels, leaves.data() + t * stride);
-  std::optional<LogitReader> reader;
-  if (forest.has_logits()) reader.emplace(forest.layout, forest.logit_unit, static_cast<int>(trees.size()));
+  if (forest.has_logits()) {
+    read_logits(forest, pixels, leaves, out);
+    return;
+  }
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const int u = pixels.column(WalkPixels::kU)[i];
-    const int v = pixels.column(WalkPixels::kV)[i];
-    std::uint16_t* sums = out.at(u, v);
-    if (reader) {
-      for (std::size_t t = 0; t < trees.size(); ++t) {
-        reader->add(trees[t].logits.data() + leaves[t * stride + i] * trees[t].logit_stride);
-      }
-      reader->read(sums, out.turns_at(u, v));
-      continue;
-    }
+    std::uint16_t* sums = out.at(pixels.column(WalkPixels::kU)[i], pixels.column(WalkPixels::kV)[i]);
     for (std::size_t t = 0; t < trees.size(); ++t) add_leaf(trees[t].leaves[leaves[t * stride + i]], sums);
   }
 }

@@ -349,15 +349,17 @@ TEST(ForestLabeller, ReadsTheLogitsOfTheLeavesThatPixelsReach) {
         EXPECT_EQ(posteriors.at(u, v)[0], 0);
         continue;
       }
+      std::vector<std::vector<std::int8_t>> rows;
+      std::vector<const std::int8_t*> leaves;
       for (const Tree& tree : forest.trees) {
         const TreeLeaf* leaf = &walk(tree, depth, forest.convention, scaler.at(depth(u, v)), u, v);
         const auto at = static_cast<std::size_t>(leaf - tree.leaves.data());
-        std::vector<std::int8_t> row(reader.padded(), 0);
+        std::vector<std::int8_t>& row = rows.emplace_back(reader.padded(), 0);
         std::copy_n(tree.logits.data() + at * layout.size(), layout.size(), row.data());
-        reader.add(row.data());
+        leaves.push_back(row.data());
       }
       std::vector<std::uint16_t> expected(26), turns(24);
-      reader.read(expected.data(), turns.data());
+      reader.read(leaves.data(), expected.data(), turns.data());
       EXPECT_TRUE(std::equal(expected.begin(), expected.end(), posteriors.at(u, v)));
       EXPECT_TRUE(std::equal(turns.begin(), turns.end(), posteriors.turns_at(u, v)));
     }

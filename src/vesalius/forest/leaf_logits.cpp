@@ -117,25 +117,17 @@ void Softmax(const std::int32_t* group, std::size_t padded, bool has_turns, floa
   }
 }
 
-void AddLeaf(const std::int8_t* leaf, std::size_t padded, std::int16_t* sums) {
-  const Shorts ds;
-  const Bytes db;
-  const std::size_t lanes = hn::Lanes(ds);
-  for (std::size_t i = 0; i < padded; i += lanes) {
-    hn::StoreU(hn::Add(hn::LoadU(ds, sums + i), hn::PromoteTo(ds, hn::LoadU(db, leaf + i))), ds, sums + i);
-  }
-}
-
-/// Sets values to sums times `unit`, and sums to 0.
-void TakeSums(std::int16_t* sums, std::size_t padded, float unit, float* values) {
+/// Sets values to the sums over the leaves times `unit`.
+void SumLeaves(const std::int8_t* const* leaves, std::size_t count, std::size_t padded, float unit, float* values) {
   const Floats d;
   const Ints di;
   const Shorts ds;
+  const Bytes db;
   const std::size_t lanes = hn::Lanes(d);
   for (std::size_t i = 0; i < padded; i += lanes) {
-    const Int sum = hn::PromoteTo(di, hn::LoadU(ds, sums + i));
-    hn::StoreU(hn::Mul(hn::ConvertTo(d, sum), hn::Set(d, unit)), d, values + i);
-    hn::StoreU(hn::Zero(ds), ds, sums + i);
+    auto sum = hn::Zero(ds);
+    for (std::size_t t = 0; t < count; ++t) sum = hn::Add(sum, hn::PromoteTo(ds, hn::LoadU(db, leaves[t] + i)));
+    hn::StoreU(hn::Mul(hn::ConvertTo(d, hn::PromoteTo(di, sum)), hn::Set(d, unit)), d, values + i);
   }
 }
 
@@ -146,8 +138,7 @@ HWY_AFTER_NAMESPACE();
 namespace vesalius {
 
 HWY_EXPORT(Softmax);
-HWY_EXPORT(AddLeaf);
-HWY_EXPORT(TakeSums);
+HWY_EXPORT(SumLeaves);
 
 LogitLayout::LogitLayout(const BodyModel& body, bool has_background, int heading_count)
     : parts(body.part_count()), background(has_background), headings(heading_count) {
@@ -171,14 +162,12 @@ void LogitSoftmax::operator()(float* values) const {
 LogitReader::LogitReader(const LogitLayout& layout, float unit, int trees)
     : softmax_(layout),
       unit_(unit),
+      trees_(static_cast<std::size_t>(trees)),
       whole_(255.F * static_cast<float>(trees)),
-      sums_(softmax_.padded(), std::int16_t{0}),
       shares_(softmax_.padded()) {}
 
-void LogitReader::add(const std::int8_t* leaf) { HWY_DYNAMIC_DISPATCH(AddLeaf)(leaf, padded(), sums_.data()); }
-
-void LogitReader::read(std::uint16_t* posteriors, std::uint16_t* turns) {
-  HWY_DYNAMIC_DISPATCH(TakeSums)(sums_.data(), padded(), unit_, shares_.data());
+void LogitReader::read(const std::int8_t* const* leaves, std::uint16_t* posteriors, std::uint16_t* turns) {
+  HWY_DYNAMIC_DISPATCH(SumLeaves)(leaves, trees_, padded(), unit_, shares_.data());
   softmax_(shares_.data());
   const LogitLayout& layout = softmax_.layout();
   for (int c = 0; c < layout.classes(); ++c) posteriors[c] = static_cast<std::uint16_t>(shares_[c] * whole_ + 0.5F);

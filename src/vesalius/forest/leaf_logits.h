@@ -62,19 +62,17 @@ class LogitReader {
   /// `unit` is that of the logits in nats.
   LogitReader(const LogitLayout& layout, float unit, int trees);
 
-  /// Adds the logits of a leaf, of which `padded()` can be read.
-  void add(const std::int8_t* leaf);
   std::size_t padded() const { return softmax_.padded(); }
 
-  /// Writes the posteriors of the classes in 1/(255 trees), and P(side, heading | body) in 1/65535 (Posteriors), for
-  /// the leaves that were added since the last call.
-  void read(std::uint16_t* posteriors, std::uint16_t* turns);
+  /// Writes the posteriors of the classes in 1/(255 trees), and P(side, heading | body) in 1/65535 (Posteriors).
+  /// `leaves` has each tree's leaf, of which `padded()` logits can be read.
+  void read(const std::int8_t* const* leaves, std::uint16_t* posteriors, std::uint16_t* turns);
 
  private:
   LogitSoftmax softmax_;
   float unit_;
+  std::size_t trees_;
   float whole_;
-  std::vector<std::int16_t> sums_;
   std::vector<float> shares_;
 };
 

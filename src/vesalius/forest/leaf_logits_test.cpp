@@ -96,7 +96,7 @@ TEST(LogitSoftmax, BearsLogitsOfAnySize) {
   }
 }
 
-TEST(LogitReader, SumsLeavesAndStartsAnew) {
+TEST(LogitReader, SumsLeaves) {
   const LogitLayout layout(paper_body(), true, 8);
   const float unit = 0.05F;
   LogitReader reader(layout, unit, 3);
@@ -104,17 +104,18 @@ TEST(LogitReader, SumsLeavesAndStartsAnew) {
   Random random(5, 0);
   for (int round = 0; round < 20; ++round) {
     std::vector<float> sums(softmax.padded(), 0.F);
-    for (int t = 0; t < 3; ++t) {
-      std::vector<std::int8_t> leaf(reader.padded(), 0);
+    std::array<std::vector<std::int8_t>, 3> leaves;
+    for (std::vector<std::int8_t>& leaf : leaves) {
+      leaf.resize(reader.padded(), 0);
       for (int i = 0; i < layout.size(); ++i) {
         leaf[i] = static_cast<std::int8_t>(static_cast<int>(random.below(256)) - 128);
         sums[i] += static_cast<float>(leaf[i]) * unit;
       }
-      reader.add(leaf.data());
     }
     softmax(sums.data());
     std::vector<std::uint16_t> posteriors(26), turns(24);
-    reader.read(posteriors.data(), turns.data());
+    reader.read(std::array<const std::int8_t*, 3>{leaves[0].data(), leaves[1].data(), leaves[2].data()}.data(),
+                posteriors.data(), turns.data());
     double body = 0.0;
     for (int i = 0; i < 24; ++i) body += static_cast<double>(sums[26 + i]);
     for (int c = 0; c < 26; ++c) EXPECT_NEAR(posteriors[c], 765.F * sums[c], 1.F);

@@ -10,7 +10,6 @@
 namespace vesalius {
 namespace {
 
-constexpr std::size_t kLogitRow = 64;  // bytes: a cache line
 constexpr std::size_t kMaxNodes = std::size_t{1} << 26U;
 
 /// Returns the largest absolute difference of two probes in mm.
@@ -65,10 +64,14 @@ class Packer {
   void pack_logits() {
     if (tree_.logits.empty()) return;
     const std::size_t size = tree_.logits.size() / tree_.leaves.size();
-    packed_.logit_stride = (size + kLogitRow - 1) / kLogitRow * kLogitRow;
-    packed_.logits.assign(tree_.leaves.size() * packed_.logit_stride, 0);
+    constexpr std::size_t kLine = sizeof(PackedTree::LogitLine);
+    packed_.lines_per_leaf = (size + kLine - 1) / kLine;
+    packed_.logits.resize(tree_.leaves.size() * packed_.lines_per_leaf);
     for (std::size_t leaf = 0; leaf < tree_.leaves.size(); ++leaf) {
-      std::copy_n(tree_.logits.data() + leaf * size, size, packed_.logits.data() + leaf * packed_.logit_stride);
+      const std::int8_t* values = tree_.logits.data() + leaf * size;
+      for (std::size_t i = 0; i < size; ++i) {
+        packed_.logits[leaf * packed_.lines_per_leaf + i / kLine].values[i % kLine] = values[i];
+      }
     }
   }
 

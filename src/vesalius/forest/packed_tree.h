@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,11 +25,15 @@ struct PackedTree {
   std::vector<std::uint32_t> words;
   std::vector<TreeLeaf> leaves;  ///< as the tree's, unused slots with label 0: adding all four slots does no harm
 
-  /// Logits of the leaves where they were learned jointly, in rows of `logit_stride` bytes.
-  std::vector<std::int8_t> logits;
-  std::size_t logit_stride = 0;
+  /// A cache line, so that a leaf's logits are in as few of them as can be.
+  struct alignas(64) LogitLine {
+    std::array<std::int8_t, 64> values{};
+  };
+  std::vector<LogitLine> logits;  ///< of the leaves where they were learned jointly, each from a line's beginning on
+  std::size_t lines_per_leaf = 0;
 
   int words_per_node() const { return wide ? 4 : 2; }
+  const std::int8_t* logits_of(std::size_t leaf) const { return logits[leaf * lines_per_leaf].values.data(); }
 };
 
 /// Lays out a tree, which must pass check(Forest). Thresholds beyond what the convention's clipping lets a feature
