@@ -40,11 +40,13 @@ class VariantList {
     using Options = FrameScorer::Options;
     add(options_.refine.second_pass ? "no second iteration" : "second iteration",
         [](Options& o) { o.detect.refine.second_pass = !o.detect.refine.second_pass; });
-    if (options_.grow.use_colour) {
-      add("look by depth alone", [](Options& o) { o.detect.grow.use_colour = false; });
+    if (options_.grow.appearance != "none") {
+      add("look by depth alone", [](Options& o) { o.detect.grow.appearance = "none"; });
       add("look by colour alone", [](Options& o) { o.detect.grow.radius_m = kAnyStep_m; });
-    } else {
-      add("look by depth and colour", [](Options& o) { o.detect.grow.use_colour = true; });
+    }
+    for (const std::string appearance : {"hue", "texture"}) {
+      if (options_.grow.appearance == appearance) continue;
+      add("look by depth and " + appearance, [&](Options& o) { o.detect.grow.appearance = appearance; });
     }
     if (options_.smooth.window > 1) add("no smoothing", [](Options& o) { o.detect.smooth.window = 1; });
     if (labeller_->has_distributions() && options_.smooth.window > 1) {

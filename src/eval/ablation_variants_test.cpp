@@ -35,15 +35,17 @@ TEST(AblationVariants, ChangeOneThingEach) {
   forest.has_background = true;
   const DetectOptions options;
   const auto variants = ablation_variants(forest, {options});
-  EXPECT_THAT(names(variants),
-              ElementsAre("no second iteration", "look by depth alone", "look by colour alone", "no smoothing",
-                          "smoothing by mode", "no links past unseen parts", "roots of the body alone",
-                          "proposals with the labels' background", "forest asked everywhere", "every pixel",
-                          "every second pixel", "root neck alone", "root l_face_bottom alone",
-                          "root r_face_bottom alone", "votes, smoothed by mode", "1 tree", "2 trees", "4 trees"));
+  EXPECT_THAT(
+      names(variants),
+      ElementsAre("no second iteration", "look by depth alone", "look by colour alone", "look by depth and texture",
+                  "no smoothing", "smoothing by mode", "no links past unseen parts", "roots of the body alone",
+                  "proposals with the labels' background", "forest asked everywhere", "every pixel",
+                  "every second pixel", "root neck alone", "root l_face_bottom alone", "root r_face_bottom alone",
+                  "votes, smoothed by mode", "1 tree", "2 trees", "4 trees"));
   EXPECT_FALSE(find(variants, "no second iteration").options().detect.refine.second_pass);
-  EXPECT_TRUE(find(variants, "no second iteration").options().detect.grow.use_colour);
-  EXPECT_FALSE(find(variants, "look by depth alone").options().detect.grow.use_colour);
+  EXPECT_EQ(find(variants, "no second iteration").options().detect.grow.appearance, "hue");
+  EXPECT_EQ(find(variants, "look by depth alone").options().detect.grow.appearance, "none");
+  EXPECT_EQ(find(variants, "look by depth and texture").options().detect.grow.appearance, "texture");
   EXPECT_TRUE(find(variants, "smoothing by mode").options().detect.smooth.mode);
   EXPECT_FALSE(find(variants, "no links past unseen parts").options().detect.search.grandparents);
   EXPECT_FALSE(find(variants, "roots of the body alone").options().detect.search.any_root);
@@ -60,7 +62,7 @@ TEST(AblationVariants, ChangeOneThingEach) {
 TEST(AblationVariants, LeaveOutChangesWithoutEffect) {
   DetectOptions options;
   options.refine.second_pass = false;
-  options.grow.use_colour = false;
+  options.grow.appearance = "none";
   options.smooth.window = 1;
   options.search.grandparents = false;
   options.search.any_root = false;
@@ -68,8 +70,8 @@ TEST(AblationVariants, LeaveOutChangesWithoutEffect) {
   Forest votes = forest_of(2, {{3}, {255}});
   votes.body.roots.resize(1);
   EXPECT_THAT(names(ablation_variants(votes, {options})),
-              ElementsAre("second iteration", "look by depth and colour", "links past unseen parts", "any part as root",
-                          "every pixel", "1 tree"));
+              ElementsAre("second iteration", "look by depth and hue", "look by depth and texture",
+                          "links past unseen parts", "any part as root", "every pixel", "1 tree"));
 }
 
 }  // namespace

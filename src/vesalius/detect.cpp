@@ -18,9 +18,11 @@ namespace vesalius {
 
 /// The data that all frames share, and memory that they reuse.
 struct Method {
-  Method(std::shared_ptr<const PixelLabeller> pixels, const DetectOptions& given)
+  Method(std::shared_ptr<const PixelLabeller> pixels, const DetectOptions& given,
+         std::shared_ptr<const Appearance> looks)
       : labeller(pixels, {given.label, given.smooth, given.grow.plane}),
         options(given),
+        appearance(looks != nullptr ? std::move(looks) : make_appearance(given.grow.appearance)),
         body(labeller.body()),
         judge(pixels->judge()) {
     if (!pixels->has_background()) options.score = options.score_without_background;
@@ -37,6 +39,7 @@ struct Method {
 
   SceneLabeller labeller;
   DetectOptions options;
+  std::shared_ptr<const Appearance> appearance;  ///< none if looks do not matter
   const BodyModel& body;
   const PersonJudge& judge;
   mutable Pool<SceneLabels> memory;
@@ -148,11 +151,11 @@ Mask barred(const Method& method, const SceneLabels& labels) {
 std::vector<Candidate> propose(const Method& method, const Frame& frame, const Scene& scene, const Prior& prior) {
   if (scene.rough.empty() && prior.people.empty()) return {};
   const Mask nobody = barred(method, scene.labels);
-  const PersonGrower grower(frame, nobody, method.body, method.options.grow);
+  const PersonGrower grower(frame, nobody, method.body, method.options.grow, method.appearance.get());
   std::vector<Candidate> candidates = grow_rough(method, scene, grower);
   if (prior.people.empty()) return candidates;
   // The background's posterior does not hold back known people.
-  const PersonGrower of_known(frame, scene.labels.flat, method.body, method.options.grow);
+  const PersonGrower of_known(frame, scene.labels.flat, method.body, method.options.grow, method.appearance.get());
   std::ranges::move(grow_known(method, frame, scene, prior, of_known), std::back_inserter(candidates));
   return candidates;
 }
@@ -303,12 +306,14 @@ const Frame& without_blended(const Frame& frame, const BlendOptions& options, Fr
 
 }  // namespace
 
-Detector::Detector(Forest forest, DetectOptions options) : Detector(make_labeller(std::move(forest)), options) {}
+Detector::Detector(Forest forest, DetectOptions options, std::shared_ptr<const Appearance> appearance)
+    : Detector(make_labeller(std::move(forest)), std::move(options), std::move(appearance)) {}
 
-Detector::Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options) {
+Detector::Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options,
+                   std::shared_ptr<const Appearance> appearance) {
   RangeCheck check;
   visit_options("", options, check);
-  method_ = std::make_shared<const Method>(std::move(labeller), options);
+  method_ = std::make_shared<const Method>(std::move(labeller), options, std::move(appearance));
 }
 
 std::vector<Person> Detector::detect(const Frame& given, const Prior& prior, Trace* trace, StageTimes* times) const {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "vesalius/appearance.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/base/stage_times.h"
@@ -55,9 +56,11 @@ struct Method;
 /// may be called from several threads.
 class Detector {
  public:
-  /// Throws Error for an inconsistent forest, and UsageError for an option outside its range.
-  explicit Detector(Forest forest, DetectOptions options = {});
-  explicit Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options = {});
+  /// `appearance` tells what pixels look like, in place of the one that the options name. Throws Error for an
+  /// inconsistent forest, and UsageError for an option outside its range.
+  explicit Detector(Forest forest, DetectOptions options = {}, std::shared_ptr<const Appearance> appearance = nullptr);
+  explicit Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options = {},
+                    std::shared_ptr<const Appearance> appearance = nullptr);
 
   /// Returns the people in the frame, the most certain first; none if nobody is in view. `prior` says what earlier
   /// frames tell about them. Adds the time of each stage to `times`. Throws Error for a frame whose images do not fit

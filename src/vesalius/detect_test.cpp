@@ -394,8 +394,27 @@ TEST_F(DetectorWithPrior, ChangesNothingWithoutMasksOfPeople) {
   const std::vector<Person> expected = detector->detect(truth.frame);
   expect_same(detector->detect(truth.frame, Prior{}), expected);
   Prior only_looks;
-  only_looks.people.push_back({{}, learn_appearance(truth.frame, mask_of(1))});
+  only_looks.people.push_back({{}, learn_appearance(truth.frame, mask_of(1), HueAppearance())});
   expect_same(detector->detect(truth.frame, only_looks), expected);
+}
+
+TEST_F(DetectorWithPrior, AsksTheGivenAppearance) {
+  class Asked : public HueAppearance {
+   public:
+    std::vector<std::uint16_t> describe(const Frame& frame) const override {
+      ++times;
+      return HueAppearance::describe(frame);
+    }
+    mutable int times = 0;
+  };
+  const auto appearance = std::make_shared<Asked>();
+  const auto labeller = std::make_shared<DoubtfulLabeller>(truth, 1);
+  const std::vector<Person> expected = detector->detect(truth.frame);
+  options.grow.appearance = "none";
+  expect_same(Detector(labeller, options, appearance).detect(truth.frame), expected);
+  EXPECT_EQ(appearance->times, 1);
+  options.grow.appearance = "smell";
+  EXPECT_THROW(Detector(labeller, options), UsageError);
 }
 
 TEST_F(DetectorWithPrior, FindsNobodyInAnEmptyMask) {

@@ -37,9 +37,9 @@ struct Prior {
     /// Non-zero where the person is expected, such as the mask of the previous frame, perhaps moved. It has the frame's
     /// size, or is empty if the place is unknown; then this person starts no candidate.
     Mask mask;
-    /// The colours of the person in earlier frames (learn_appearance), to which those of this frame are added before
-    /// the mask grows. It has no samples if they are unknown.
-    ColourModel appearance;
+    /// What the person looked like in earlier frames (learn_appearance, with the detector's appearance), to which the
+    /// looks in this frame are added before the mask grows. It has no samples if that is unknown.
+    AppearanceHistogram appearance;
   };
   std::vector<KnownPerson> people;
 };

@@ -2,23 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace vesalius {
 namespace {
 
-/// Smallest number of pixels from which colours are learned.
-constexpr int kLeastColourSamples = 200;
-
-/// Blurs `count` values from `begin` on with a box of three bins; neighbouring hues, 5 degrees apart, look alike.
-void blur(std::array<float, ColourModel::kBins>& values, int begin, int count, bool wraps) {
-  const auto source = values;
-  const auto value = [&](int i) {
-    if (wraps) i = (i + count) % count;
-    return i >= 0 && i < count ? source[begin + i] : 0.F;
-  };
-  for (int i = 0; i < count; ++i) values[begin + i] = (value(i - 1) + value(i) + value(i + 1)) / 3.F;
-}
+/// Smallest number of pixels from which an appearance is learned.
+constexpr int kLeastSamples = 200;
 
 /// Returns the distance to which the body extends around each part. It is larger if a neighbouring part was not seen.
 std::vector<float> reach_of_parts(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
@@ -33,15 +23,15 @@ std::vector<float> reach_of_parts(const Skeleton& rough, const BodyModel& body, 
   return reach;
 }
 
-/// Returns for each part the radius within which a colour that the seeds lack may still be the person's: small around
+/// Returns for each part the radius within which a look that the seeds lack may still be the person's: small around
 /// any part, and the reach of unseen parts such as hair, hands and shoes.
-std::vector<float> any_colour_radius(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
-  std::vector<float> radius(body.parts.size(), options.own_colour_m);
+std::vector<float> any_look_radius(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
+  std::vector<float> radius(body.parts.size(), options.own_look_m);
   for (const BodyLink& link : body.links) {
     for (const auto& [from, to] : {std::pair{link.parent, link.child}, std::pair{link.child, link.parent}}) {
       if (rough.parts[to].state == State::observed) continue;
       float& r = radius[from];
-      r = std::max(r, link.length_m + options.own_colour_m);
+      r = std::max(r, link.length_m + options.own_look_m);
     }
   }
   return radius;
@@ -57,67 +47,25 @@ void visit_options(const std::string& prefix, GrowOptions& o, OptionVisitor& vis
   visitor.option(prefix + "reach", o.reach_m, {"m", 0.0, 3.0, "How far a person extends around a part's centre."});
   visitor.option(prefix + "missing-reach", o.missing_reach_m,
                  {"m", 0.0, 3.0, "Added to the reach of a part next to one that was not seen."});
-  visitor.option(
-      prefix + "colour-veto", o.colour_veto,
-      {"log ratio", 0.0, 100.0, "A colour this much likelier elsewhere than on the person stops the growth."});
-  visitor.option(prefix + "own-colour", o.own_colour_m,
-                 {"m", 0.0, 3.0, "This near to a part's centre any colour is the person's."});
+  visitor.option(prefix + "appearance", o.appearance,
+                 {"", 0, 0,
+                  "What a pixel looks like: its hue, hue and texture, or none where colour is badly registered (hue, "
+                  "texture, none)."});
+  visitor.option(prefix + "look-veto", o.look_veto,
+                 {"log ratio", 0.0, 100.0, "A look this much likelier elsewhere than on the person stops the growth."});
+  visitor.option(prefix + "own-look", o.own_look_m,
+                 {"m", 0.0, 3.0, "This near to a part's centre any look is the person's."});
   visitor.option(
       prefix + "least-body", o.least_body,
       {"", 0.0, 1.0,
        "A person does not grow over pixels that the forest takes for body with less than this probability."});
-  visitor.option(prefix + "use-colour", o.use_colour, {"", 0, 1, "Whether colour takes part where there is any."});
   visit_options(prefix + "plane-", o.plane, visitor);
 }
 
-int ColourModel::bin(Rgb c) {
-  constexpr float kMinSaturation = 0.2F;  // below it a hue means nothing
-  const int high = std::max({c.r, c.g, c.b});
-  const int low = std::min({c.r, c.g, c.b});
-  const int span = high - low;
-  if (high < 24 || static_cast<float>(span) < kMinSaturation * static_cast<float>(high)) {
-    return kHues + std::min(kGreys - 1, high * kGreys / 256);
-  }
-  float sixth = 0.F;  // position on the colour circle, in sixths
-  if (high == c.r) {
-    sixth = static_cast<float>(c.g - c.b) / static_cast<float>(span);
-  } else if (high == c.g) {
-    sixth = 2.F + static_cast<float>(c.b - c.r) / static_cast<float>(span);
-  } else {
-    sixth = 4.F + static_cast<float>(c.r - c.g) / static_cast<float>(span);
-  }
-  const int hue = static_cast<int>(std::floor(sixth * static_cast<float>(kHues) / 6.F + 0.5F));
-  return (hue + kHues) % kHues;
-}
-
-void ColourModel::finish() {
-  for (std::size_t i = 0; i < counts_.size(); ++i) probabilities_[i] = static_cast<float>(counts_[i]);
-  blur(probabilities_, 0, kHues, true);
-  blur(probabilities_, kHues, kGreys, false);
-  float total = 0.F;
-  for (const float p : probabilities_) total += p;
-  // A share for unseen colours keeps ratios finite.
-  constexpr float kUnseen = 0.05F;
-  for (float& p : probabilities_) p = (total > 0.F ? (1.F - kUnseen) * p / total : 0.F) + kUnseen / kBins;
-}
-
-long ColourModel::samples() const { return std::accumulate(counts_.begin(), counts_.end(), 0L); }
-
-ColourModel learn_appearance(const Frame& frame, const Mask& mask) {
-  ColourModel model;
-  for (std::size_t i = 0; i < frame.colour.size(); ++i) {
-    if (mask[i] != 0) model.add(ColourModel::bin(frame.colour[i]));
-  }
-  return model;
-}
-
-PersonGrower::PersonGrower(const Frame& frame, const Mask& flat, const BodyModel& body, const GrowOptions& options)
-    : frame_(frame), flat_(flat), body_(body), options_(options) {
-  if (!options.use_colour) return;
-  bins_.reserve(frame.colour.size());
-  for (const Rgb colour : frame.colour) {
-    bins_.push_back(static_cast<std::uint8_t>(ColourModel::bin(colour)));
-  }
+PersonGrower::PersonGrower(const Frame& frame, const Mask& flat, const BodyModel& body, const GrowOptions& options,
+                           const Appearance* appearance)
+    : frame_(frame), flat_(flat), body_(body), options_(options), appearance_(appearance) {
+  if (appearance != nullptr) looks_ = appearance->describe(frame);
 }
 
 Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>& reach) const {
@@ -150,37 +98,42 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
   return out;
 }
 
-Mask PersonGrower::refused_colours(const Skeleton& rough, const Mask& seeds, const Mask& reach,
-                                   ColourModel person) const {
+Mask PersonGrower::refused_looks(const Skeleton& rough, const Mask& seeds, const Mask& reach,
+                                 AppearanceHistogram person) const {
   Mask refused(seeds.width(), seeds.height(), 0);
-  if (bins_.empty()) return refused;
-  ColourModel rest;
+  if (looks_.empty()) return refused;
+  AppearanceHistogram rest;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (seeds[i] != 0) {
-      person.add(bins_[i]);
+      person.add(looks_[i]);
     } else if (reach[i] == 0 || flat_[i] != 0) {
-      rest.add(bins_[i]);
+      rest.add(looks_[i]);
     }
   }
-  if (person.samples() < kLeastColourSamples || rest.samples() < kLeastColourSamples) return refused;
-  person.finish();
-  rest.finish();
-  const Mask any_colour = around_parts(rough, any_colour_radius(rough, body_, options_));
+  if (person.samples() < kLeastSamples || rest.samples() < kLeastSamples) return refused;
+  const std::vector<float> here = person.probabilities(*appearance_);
+  const std::vector<float> elsewhere = rest.probabilities(*appearance_);
+  // Looks that are rare everywhere are as likely elsewhere as if all were equally common.
+  const float least = 1.F / static_cast<float>(appearance_->classes());
+  std::vector<std::uint8_t> refuses(here.size());
+  for (std::size_t look = 0; look < here.size(); ++look) {
+    refuses[look] = std::log(std::max(elsewhere[look], least) / here[look]) > options_.look_veto ? 1 : 0;
+  }
+  const Mask any_look = around_parts(rough, any_look_radius(rough, body_, options_));
   for (std::size_t i = 0; i < seeds.size(); ++i) {
-    if (reach[i] == 0 || seeds[i] != 0 || any_colour[i] != 0) continue;
-    const float elsewhere = std::max(rest.probability(bins_[i]), 1.F / ColourModel::kBins);
-    if (std::log(elsewhere / person.probability(bins_[i])) > options_.colour_veto) refused[i] = 1;
+    if (reach[i] == 0 || seeds[i] != 0 || any_look[i] != 0) continue;
+    refused[i] = refuses[looks_[i]];
   }
   return refused;
 }
 
 std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const Clusters& clusters,
-                                     const std::vector<ColourModel>& known) const {
+                                     const std::vector<AppearanceHistogram>& known) const {
   const int width = frame_.depth.width();
   const int height = frame_.depth.height();
   Mask nobody(width, height, 0);
   std::vector<Mask> grown(people.size(), nobody);
-  std::vector<Mask> allowed;  // within reach, not refused by colour
+  std::vector<Mask> allowed;  // within reach, not refused by their look
   std::vector<int> owner_of(clusters.items.size(), -1);
   for (std::size_t i = 0; i < people.size(); ++i) {
     for (const SkeletonPart& part : people[i].parts) {
@@ -203,7 +156,8 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
   }
   for (std::size_t i = 0; i < people.size(); ++i) {
     allowed.push_back(around_parts(people[i], reach_of_parts(people[i], body_, options_)));
-    const Mask refused = refused_colours(people[i], grown[i], allowed.back(), known.empty() ? ColourModel{} : known[i]);
+    const Mask refused =
+        refused_looks(people[i], grown[i], allowed.back(), known.empty() ? AppearanceHistogram{} : known[i]);
     for (std::size_t k = 0; k < refused.size(); ++k) {
       if (refused[k] != 0) allowed.back()[k] = 0;
     }

@@ -76,7 +76,9 @@ Overlap compare(const Mask& mask, const Image<std::uint8_t>& person, int who) {
 
 std::vector<Mask> grow_all(const Scene& scene, const GrowOptions& options = {}) {
   const Mask flat = flat_pixels(scene.truth.frame.depth, kCamera, options.plane);
-  return PersonGrower(scene.truth.frame, flat, paper_body(), options).grow(scene.rough, scene.clusters);
+  const auto appearance = make_appearance(options.appearance);
+  return PersonGrower(scene.truth.frame, flat, paper_body(), options, appearance.get())
+      .grow(scene.rough, scene.clusters);
 }
 
 TEST(GrowPerson, FillsTheWholePersonFromHalfOfTheParts) {
@@ -165,17 +167,39 @@ TEST(GrowPerson, StopsAtOtherColoursWhereDepthIsContinuous) {
   // Every part is known, so the box cannot be an unseen limb.
   const Scene scene = make_scene(person_with_box(), all_parts());
   GrowOptions blind;
-  blind.use_colour = false;
+  blind.appearance = "none";
   const long with = compare(grow_all(scene)[0], scene.truth.person, 0).leaked;
   const long without = compare(grow_all(scene, blind)[0], scene.truth.person, 0).leaked;
   EXPECT_GT(without, 200);  // depth alone lets the mask grow onto the box
   EXPECT_LT(with, without / 2);
 }
 
+TEST(GrowPerson, StopsAtOtherTexturesOfTheSameHue) {
+  CapsuleScene capsules = person_with_box();
+  // The whole room has the colour of the trousers, in stripes.
+  capsules.boxes[0].colour = capsules.floor_colour = capsules.wall_colour = capsules.people[0].build.trousers;
+  Scene scene = make_scene(capsules, all_parts());
+  ColourImage& colour = scene.truth.frame.colour;
+  for (int v = 0; v < colour.height(); ++v) {
+    for (int u = 0; u < colour.width(); u += 2) {
+      if (scene.truth.person(u, v) == 0) continue;
+      const Rgb plain = colour(u, v);
+      colour(u, v) = {static_cast<std::uint8_t>(plain.r / 2), static_cast<std::uint8_t>(plain.g / 2),
+                      static_cast<std::uint8_t>(plain.b / 2)};
+    }
+  }
+  GrowOptions texture;
+  texture.appearance = "texture";
+  const long by_hue = compare(grow_all(scene)[0], scene.truth.person, 0).leaked;
+  const long by_texture = compare(grow_all(scene, texture)[0], scene.truth.person, 0).leaked;
+  EXPECT_GT(by_hue, 200);
+  EXPECT_LT(by_texture, by_hue / 2);
+}
+
 TEST(GrowPerson, WorksWithoutColour) {
   Scene scene = make_scene(person_with_box(), kHalf);
   GrowOptions blind;
-  blind.use_colour = false;
+  blind.appearance = "none";
   const std::vector<Mask> expected = grow_all(scene, blind);
   scene.truth.frame.colour = {};
   EXPECT_EQ(grow_all(scene), expected);
@@ -187,37 +211,19 @@ TEST(GrowPerson, StopsAtKnownColoursIfTheSeedsHaveTooFew) {
   const Mask flat = flat_pixels(scene.truth.frame.depth, kCamera, {});
   GrowOptions options;
   options.reach_m = 0.5F;
-  options.own_colour_m = 0.01F;
-  const PersonGrower grower(scene.truth.frame, flat, paper_body(), options);
+  options.own_look_m = 0.01F;
+  const HueAppearance hue;
+  const PersonGrower grower(scene.truth.frame, flat, paper_body(), options, &hue);
   Mask person(kCamera.width, kCamera.height, 0);
   for (std::size_t i = 0; i < person.size(); ++i) person[i] = scene.truth.person[i] == 0 ? 1 : 0;
-  const ColourModel known = learn_appearance(scene.truth.frame, person);
+  const AppearanceHistogram known = learn_appearance(scene.truth.frame, person, hue);
   EXPECT_EQ(known.samples(), std::ranges::count(person, 1));
   const long without = compare(grower.grow(scene.rough, scene.clusters)[0], scene.truth.person, 0).leaked;
   const long with = compare(grower.grow(scene.rough, scene.clusters, {known})[0], scene.truth.person, 0).leaked;
   EXPECT_GT(without, 200);
   EXPECT_LT(with, without / 2);
-  EXPECT_EQ(grower.grow(scene.rough, scene.clusters, {ColourModel{}}), grower.grow(scene.rough, scene.clusters));
-}
-
-TEST(ColourModel, WrapsHuesAndBinsGreysByLightness) {
-  const int red = ColourModel::bin({200, 20, 20});
-  EXPECT_EQ(red, 0);
-  EXPECT_EQ(ColourModel::bin({200, 20, 36}), 71);  // 355 degrees
-  EXPECT_EQ(ColourModel::bin({20, 200, 20}), 24);  // 120 degrees
-  EXPECT_EQ(ColourModel::bin({20, 20, 200}), 48);
-  // Near-greys are binned by lightness whatever their hue.
-  EXPECT_EQ(ColourModel::bin({120, 118, 121}), ColourModel::bin({121, 120, 117}));
-  EXPECT_GE(ColourModel::bin({120, 118, 121}), ColourModel::kHues);
-  EXPECT_NE(ColourModel::bin({30, 30, 30}), ColourModel::bin({220, 220, 220}));
-
-  ColourModel model;
-  for (int i = 0; i < 100; ++i) model.add(red);
-  model.finish();
-  EXPECT_GT(model.probability(71), 10.F * model.probability(36));  // the blur crosses 0 degrees
-  float sum = 0.F;
-  for (int b = 0; b < ColourModel::kBins; ++b) sum += model.probability(b);
-  EXPECT_NEAR(sum, 1.F, 1e-4);
+  EXPECT_EQ(grower.grow(scene.rough, scene.clusters, {AppearanceHistogram{}}),
+            grower.grow(scene.rough, scene.clusters));
 }
 
 }  // namespace

@@ -66,6 +66,8 @@ def main():
         expect(" parts\n" in found, f"expected people in the sample, got: {found!r}")
         drawn = both("draw_people", model, frames, folder / "drawn").split()
         expect(len(drawn) == 8 and all(Path(each).read_bytes()[1:4] == b"PNG" for each in drawn), f"no pictures: {drawn}")
+        grown = both("own_appearance", model, frames)
+        expect(" pixels\n" in grown, f"expected people in the sample, got: {grown!r}")
         lines = [json.loads(line) for line in both("stream_people", model).splitlines()]
         expect([line["frame"] for line in lines] == [f"rendered_{i}" for i in range(6)], f"other frames: {lines}")
         trained = both("train_forest", folder / "own.forest")

@@ -1,0 +1,150 @@
+#include "vesalius/appearance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+/// Blurs `count` values from `begin` on with a box of three; neighbouring hues, 5 degrees apart, look alike.
+void blur_range(std::vector<float>& values, std::size_t begin, int count, bool wraps) {
+  const std::vector<float> source(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  values.begin() + static_cast<std::ptrdiff_t>(begin) + count);
+  const auto value = [&](int i) {
+    if (wraps) i = (i + count) % count;
+    return i >= 0 && i < count ? source[i] : 0.F;
+  };
+  for (int i = 0; i < count; ++i) values[begin + i] = (value(i - 1) + value(i) + value(i + 1)) / 3.F;
+}
+
+void blur_hues(std::vector<float>& counts, std::size_t begin) {
+  blur_range(counts, begin, HueAppearance::kHues, true);
+  blur_range(counts, begin + HueAppearance::kHues, HueAppearance::kGreys, false);
+}
+
+int lightness(Rgb colour) { return std::max({colour.r, colour.g, colour.b}); }
+
+/// Returns the sum over the pixels `kReach` to both sides along one axis of an image.
+constexpr int kReach = 2;
+Image<int> sums_along(const Image<int>& values, bool along_rows) {
+  const int width = values.width(), height = values.height();
+  const int length = along_rows ? width : height;
+  Image<int> sums(width, height, 0);
+  for (int line = 0; line < (along_rows ? height : width); ++line) {
+    const auto at = [&](const auto& image, int i) -> auto& { return along_rows ? image(i, line) : image(line, i); };
+    int sum = 0;
+    for (int i = 0; i < std::min(kReach, length); ++i) sum += at(values, i);
+    for (int i = 0; i < length; ++i) {
+      if (i + kReach < length) sum += at(values, i + kReach);
+      if (i - kReach > 0) sum -= at(values, i - kReach - 1);
+      (along_rows ? sums(i, line) : sums(line, i)) = sum;
+    }
+  }
+  return sums;
+}
+
+/// Returns for each pixel the mean step of lightness between neighbours of one surface around it.
+Image<int> mean_steps(const Frame& frame) {
+  constexpr int kSurfaceStep_mm = 50;
+  const int width = frame.colour.width(), height = frame.colour.height();
+  Image<int> steps(width, height, 0), pairs(width, height, 0);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      for (const auto& [du, dv] : {std::array{1, 0}, std::array{0, 1}}) {
+        if (u + du >= width || v + dv >= height) continue;
+        const int here = frame.depth(u, v), there = frame.depth(u + du, v + dv);
+        if (here == 0 || there == 0 || std::abs(here - there) > kSurfaceStep_mm) continue;
+        steps(u, v) += std::abs(lightness(frame.colour(u, v)) - lightness(frame.colour(u + du, v + dv)));
+        ++pairs(u, v);
+      }
+    }
+  }
+  Image<int> mean = sums_along(sums_along(steps, true), false);
+  pairs = sums_along(sums_along(pairs, true), false);
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] /= std::max(1, pairs[i]);
+  return mean;
+}
+
+}  // namespace
+
+int HueAppearance::class_of(Rgb c) {
+  constexpr float kMinSaturation = 0.2F;  // below it a hue means nothing
+  const int high = lightness(c);
+  const int low = std::min({c.r, c.g, c.b});
+  const int span = high - low;
+  if (high < 24 || static_cast<float>(span) < kMinSaturation * static_cast<float>(high)) {
+    return kHues + std::min(kGreys - 1, high * kGreys / 256);
+  }
+  float sixth = 0.F;  // position on the colour circle, in sixths
+  if (high == c.r) {
+    sixth = static_cast<float>(c.g - c.b) / static_cast<float>(span);
+  } else if (high == c.g) {
+    sixth = 2.F + static_cast<float>(c.b - c.r) / static_cast<float>(span);
+  } else {
+    sixth = 4.F + static_cast<float>(c.r - c.g) / static_cast<float>(span);
+  }
+  const int hue = static_cast<int>(std::floor(sixth * static_cast<float>(kHues) / 6.F + 0.5F));
+  return (hue + kHues) % kHues;
+}
+
+std::vector<std::uint16_t> HueAppearance::describe(const Frame& frame) const {
+  std::vector<std::uint16_t> looks;
+  looks.reserve(frame.colour.size());
+  for (const Rgb colour : frame.colour) looks.push_back(static_cast<std::uint16_t>(class_of(colour)));
+  return looks;
+}
+
+void HueAppearance::blur(std::vector<float>& counts) const { blur_hues(counts, 0); }
+
+std::vector<std::uint16_t> TextureAppearance::describe(const Frame& frame) const {
+  constexpr std::array<int, kLevels - 1> kLeast{6, 16};  // steps from which a surface is rough, and striped
+  std::vector<std::uint16_t> looks = hue_.describe(frame);
+  if (looks.empty()) return looks;
+  const Image<int> steps = mean_steps(frame);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const auto level = std::ranges::count_if(kLeast, [&](int least) { return steps[i] >= least; });
+    looks[i] = static_cast<std::uint16_t>(looks[i] + level * HueAppearance::kClasses);
+  }
+  return looks;
+}
+
+void TextureAppearance::blur(std::vector<float>& counts) const {
+  for (int level = 0; level < kLevels; ++level) {
+    blur_hues(counts, static_cast<std::size_t>(level) * HueAppearance::kClasses);
+  }
+}
+
+std::shared_ptr<const Appearance> make_appearance(const std::string& name) {
+  if (name == "hue") return std::make_shared<HueAppearance>();
+  if (name == "texture") return std::make_shared<TextureAppearance>();
+  if (name == "none") return nullptr;
+  throw UsageError("grow.appearance: expected hue, texture or none, found '" + name + "'");
+}
+
+std::vector<float> AppearanceHistogram::probabilities(const Appearance& appearance) const {
+  std::vector<float> values(counts_.begin(), counts_.end());
+  values.resize(appearance.classes(), 0.F);
+  appearance.blur(values);
+  float total = 0.F;
+  for (const float value : values) total += value;
+  // A share for unseen looks keeps ratios finite.
+  constexpr float kUnseen = 0.05F;
+  const float least = kUnseen / static_cast<float>(appearance.classes());
+  for (float& value : values) value = (total > 0.F ? (1.F - kUnseen) * value / total : 0.F) + least;
+  return values;
+}
+
+AppearanceHistogram learn_appearance(const Frame& frame, const Mask& mask, const Appearance& appearance) {
+  AppearanceHistogram histogram;
+  const std::vector<std::uint16_t> looks = appearance.describe(frame);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (mask[i] != 0) histogram.add(looks[i]);
+  }
+  return histogram;
+}
+
+}  // namespace vesalius
