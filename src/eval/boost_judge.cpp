@@ -20,10 +20,12 @@ constexpr float kNever = std::numeric_limits<float>::infinity();
 struct Slope {
   double first = 0.0;
   double second = 0.0;
+  int samples = 0;
 
   Slope& operator+=(const Slope& other) {
     first += other.first;
     second += other.second;
+    samples += other.samples;
     return *this;
   }
 };
@@ -40,9 +42,12 @@ Column column(const std::vector<JudgeSample>& samples, std::size_t feature) {
   std::ranges::sort(sorted);
   Column column;
   for (std::size_t b = 1; b < kBins; ++b) {
-    const std::size_t at = b * sorted.size() / kBins;
-    if (at == 0 || sorted[at] == sorted[at - 1]) continue;
-    column.thresholds.push_back(0.5F * (sorted[at - 1] + sorted[at]));
+    // Of many equal values, such as counts, all go into one bin, and the next one begins behind them.
+    const float last = sorted[(b * sorted.size() - 1) / kBins];
+    const auto next = std::ranges::upper_bound(sorted, last);
+    if (next == sorted.end()) break;
+    const float threshold = 0.5F * (last + *next);
+    if (column.thresholds.empty() || threshold > column.thresholds.back()) column.thresholds.push_back(threshold);
   }
   for (const JudgeSample& sample : samples) {
     const auto above = std::ranges::lower_bound(column.thresholds, sample.evidence[feature]);
@@ -72,13 +77,8 @@ class Booster {
         columns_(signs_.size()),
         slopes_(samples.size()) {
     parallel_for(static_cast<int>(columns_.size()), [&](int f) { columns_[f] = column(samples, f); });
-    double total = 0.0, people = 0.0;
-    for (const JudgeSample& sample : samples) {
-      total += sample.weight;
-      people += sample.person ? sample.weight : 0.0;
-    }
-    unit_ = static_cast<double>(samples.size()) / total;
-    bias_ = std::log(people / (total - people));
+    const auto people = static_cast<double>(std::ranges::count(samples, true, &JudgeSample::person));
+    bias_ = std::log(people / (static_cast<double>(samples.size()) - people));
     log_odds_.assign(samples.size(), bias_);
   }
 
@@ -101,8 +101,8 @@ class Booster {
   void draw() {
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const double p = 1.0 / (1.0 + std::exp(-log_odds_[i]));
-      const double weight = random_.uniform() < options_.sample_share ? samples_[i].weight * unit_ : 0.0;
-      slopes_[i] = {weight * (p - (samples_[i].person ? 1.0 : 0.0)), weight * p * (1.0 - p)};
+      const bool drawn = random_.uniform() < options_.sample_share;
+      slopes_[i] = drawn ? Slope{p - (samples_[i].person ? 1.0 : 0.0), p * (1.0 - p), 1} : Slope{};
     }
     asked_.clear();
     for (int f = 0; f < static_cast<int>(columns_.size()); ++f) {
@@ -125,8 +125,8 @@ class Booster {
       Slope left;
       for (std::size_t b = 0; b < column.thresholds.size(); ++b) {
         left += sums[n * kBins + b];
-        const Slope right{all.first - left.first, all.second - left.second};
-        if (left.second < options_.least_weight || right.second < options_.least_weight) continue;
+        const Slope right{all.first - left.first, all.second - left.second, all.samples - left.samples};
+        if (std::min(left.samples, right.samples) < options_.least_samples) continue;
         const double below = value(left, bounds[n]), above = value(right, bounds[n]);
         if (signs_[feature] * (above - below) < 0.0) continue;
         const double better = gain(left, below) + gain(right, above) - whole;
@@ -202,7 +202,6 @@ class Booster {
   std::vector<Slope> slopes_;  ///< [sample]; 0 for those that the tree does not see
   std::vector<double> log_odds_;
   std::vector<int> asked_;
-  double unit_ = 1.0;
   double bias_ = 0.0;
   Random random_{kSeed};
 };

@@ -10,16 +10,15 @@ namespace vesalius {
 struct JudgeSample {
   std::vector<float> evidence;
   bool person = false;
-  double weight = 1.0;
 };
 
 struct BoostOptions {
-  int trees = 400;
-  double rate = 0.05;           ///< share of a tree's step that is taken
+  int trees = 1600;
+  double rate = 0.03;           ///< share of a tree's step that is taken
   double sample_share = 0.7;    ///< of the samples that a tree sees
   double evidence_share = 0.6;  ///< of the kinds of evidence that a tree may ask for
-  double ridge = 10.0;          ///< on values of leaves, in units of a sample of mean weight
-  double least_weight = 5.0;    ///< smallest curvature of a leaf, in the same units
+  double ridge = 10.0;          ///< on values of leaves, in samples
+  int least_samples = 60;       ///< fewest samples of a leaf: of fewer, rooms are learned by heart
 };
 
 /// Grows trees one after the other, each by a Newton step on the logistic loss (Friedman 2001; Chen and Guestrin, 2016,

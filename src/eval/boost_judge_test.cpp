@@ -68,11 +68,33 @@ TEST(BoostJudge, NeverContradictsASign) {
   }
 }
 
-TEST(BoostJudge, WeighsSamples) {
-  std::vector<JudgeSample> samples = draw(2000, 5, [](const std::vector<float>&) { return 0.5; });
-  for (JudgeSample& sample : samples) sample.weight = sample.person ? 9.0 : 1.0;
+TEST(BoostJudge, TellsCountsApart) {
+  // Three values, none of which ends where a bin of as many samples would.
+  std::vector<JudgeSample> samples = draw(3000, 8, [](const std::vector<float>&) { return 0.0; });
+  Random random(9);
+  for (JudgeSample& sample : samples) {
+    sample.evidence[0] = static_cast<float>(random.below(3));
+    sample.person = sample.evidence[0] == 1.F;
+  }
   const PersonJudge judge = boost_judge(samples, {0, 0, 0});
-  EXPECT_NEAR(judge.probability({0.5F, 0.5F, 0.5F}), 0.9F, 0.06F);
+  EXPECT_LT(judge.probability({0.F, 0.5F, 0.5F}), 0.05F);
+  EXPECT_GT(judge.probability({1.F, 0.5F, 0.5F}), 0.95F);
+  EXPECT_LT(judge.probability({2.F, 0.5F, 0.5F}), 0.05F);
+}
+
+TEST(BoostJudge, LearnsNothingFromFewerSamplesThanALeafMayHave) {
+  // Of 2,000 samples some 40 stand out, and all of those are people.
+  std::vector<JudgeSample> samples = draw(2000, 5, [](const std::vector<float>&) { return 0.2; });
+  for (JudgeSample& sample : samples) sample.person = sample.person || sample.evidence[0] > 0.98F;
+  BoostOptions options;
+  const auto rises = [&] {
+    const PersonJudge judge = boost_judge(samples, {0, 0, 0}, options);
+    return judge.probability({0.995F, 0.5F, 0.5F}) - judge.probability({0.9F, 0.5F, 0.5F});
+  };
+  options.least_samples = 10;
+  EXPECT_GT(rises(), 0.3F);
+  options.least_samples = 400;
+  EXPECT_LT(rises(), 0.1F);
 }
 
 TEST(BoostJudge, IsTheSameForAnyNumberOfThreads) {

@@ -29,7 +29,8 @@ struct Method {
     const std::size_t asked = judge_signs(body).size();
     if (!judge.empty() && static_cast<std::size_t>(judge.features) != asked) {
       throw Error("forest: its judge of people knows " + std::to_string(judge.features) +
-                  " kinds of evidence, expected " + std::to_string(asked));
+                  " kinds of evidence, expected " + std::to_string(asked) +
+                  "; fit it a new one (vesalius evaluate --fit-judge)");
     }
   }
 
@@ -173,7 +174,8 @@ Skeleton second_pass(const Method& method, const Frame& frame, const LabelImage&
 }
 
 /// Runs the same stages on one person a second time, and keeps the better of the two skeletons.
-Candidate refine(const Method& method, const Frame& frame, const Scene& scene, Candidate candidate) {
+Candidate refine(const Method& method, const Frame& frame, const Scene& scene, const Scenery& scenery,
+                 Candidate candidate) {
   const Box box = bounding_box(candidate.grown);
   if (box.width == 0) return candidate;
   PersonLabels person;
@@ -187,12 +189,23 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, C
   if (candidate.refined.found == 0 || candidate.refined.score < candidate.rough.score) {
     candidate.refined = candidate.rough;
   }
-  candidate.evidence =
-      gather_evidence(frame, candidate.grown, person, scene.labels.posteriors(), candidate.refined, method.body);
+  candidate.evidence = gather_evidence(frame, candidate.grown, person, scene.labels.posteriors(), scenery,
+                                       candidate.refined, method.body);
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
   candidate.score = method.score(candidate.evidence);
   candidate.labels = std::move(person.labels);
   return candidate;
+}
+
+Scenery look_around(const Method& method, const Frame& frame, const Scene& scene,
+                    const std::vector<Candidate>& candidates) {
+  Mask anybody(frame.camera.width, frame.camera.height, 0);
+  for (const Candidate& candidate : candidates) {
+    for (std::size_t i = 0; i < anybody.size(); ++i) anybody[i] |= candidate.grown[i];
+  }
+  return {scene.labels.flat,
+          mean_body_outside(anybody, frame.depth, scene.labels.posteriors(), method.body.part_count()),
+          static_cast<int>(scene.rough.size())};
 }
 
 /// Returns whether most of the mask is already taken.
@@ -275,8 +288,9 @@ std::vector<Person> detect_everywhere(const Method& method, const Frame& frame, 
   Scene scene = first_pass(method, frame, clock);
   std::vector<Candidate> candidates = propose(method, frame, scene, prior);
   clock.lap(Stage::grow);
+  const Scenery scenery = look_around(method, frame, scene, candidates);
   parallel_for(static_cast<int>(candidates.size()),
-               [&](int i) { candidates[i] = refine(method, frame, scene, std::move(candidates[i])); });
+               [&](int i) { candidates[i] = refine(method, frame, scene, scenery, std::move(candidates[i])); });
   clock.lap(Stage::second_pass);
   std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   std::vector<Person> people = choose_people(method, frame, candidates);

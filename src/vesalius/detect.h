@@ -26,7 +26,7 @@ struct RefineOptions {
   int max_candidates = 12;        ///< most rough skeletons refined in one frame
   float rival_likelihood = 0.2F;  ///< rough skeletons of at least this likelihood per part grow against each other
   int min_parts = 6;              ///< fewest parts of a person after the second pass
-  float min_score = 0.75F;        ///< lowest score of a person: a false one costs three missed ones
+  float min_score = 0.8F;         ///< lowest score of a person: a false one costs four missed ones
   float max_overlap = 0.3F;       ///< share of the mask that a person may have in common with a more certain one
 };
 

@@ -202,6 +202,23 @@ Shape shape_of(const Frame& frame, const Inside& inside) {
           static_cast<float>(std::abs(axes.eigenvectors().col(0).z())), bend_of(frame, inside)};
 }
 
+/// Returns how many pixels of a mask have a flat surface close beside them, at about their depth.
+long count_on_flat(const Frame& frame, const Inside& inside, const Mask& flat) {
+  constexpr int kAside = 3;
+  constexpr int kClose_mm = 150;
+  constexpr std::array<std::array<int, 2>, 4> kSides{{{-kAside, 0}, {kAside, 0}, {0, -kAside}, {0, kAside}}};
+  long pixels = 0;
+  inside.each([&](int u, int v) {
+    const auto touches = [&](const std::array<int, 2>& side) {
+      const int su = u + side[0], sv = v + side[1];
+      return flat.contains(su, sv) && flat(su, sv) != 0 &&
+             std::abs(frame.depth(su, sv) - frame.depth(u, v)) < kClose_mm;
+    };
+    pixels += std::ranges::any_of(kSides, touches) ? 1 : 0;
+  });
+  return pixels;
+}
+
 /// The size of a mask and its distance.
 struct Extent {
   long pixels = 0;
@@ -314,12 +331,29 @@ ScoreOptions score_without_background() {
   options.border_weight = 0.F;
   options.beside_weight = 0.F;
   options.resolution_weight = 0.F;
-  options.bias = -17.55F;
+  options.bias = -17.26F;
   return options;
 }
 
+float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts) {
+  constexpr int kEvery = 2;
+  if (posteriors.classes == parts) return 0.F;
+  double sum = 0.0;
+  long pixels = 0;
+  for (int v = 0; v < depth.height(); v += kEvery) {
+    for (int u = 0; u < depth.width(); u += kEvery) {
+      if (depth(u, v) == 0 || candidates(u, v) != 0) continue;
+      const std::optional<double> share = body_share(posteriors, u, v, parts);
+      if (!share) continue;
+      sum += *share;
+      ++pixels;
+    }
+  }
+  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
+}
+
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
-                         const Skeleton& skeleton, const BodyModel& body) {
+                         const Scenery& scenery, const Skeleton& skeleton, const BodyModel& body) {
   const Inside inside(mask);
   const Outline outline = look_around(frame, inside);
   const Extent extent = extent_of(frame, inside);
@@ -344,7 +378,11 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
   evidence.length_m = shape.length_m;
   evidence.slant = shape.slant;
   evidence.bend_m = shape.bend_m;
-  evidence.ragged = static_cast<float>(outline.sides) / std::sqrt(static_cast<float>(std::max(1L, extent.pixels)));
+  const float side = std::sqrt(static_cast<float>(std::max(1L, extent.pixels)));
+  evidence.ragged = static_cast<float>(outline.sides) / side;
+  evidence.on_flat = static_cast<float>(count_on_flat(frame, inside, scenery.flat)) / side;
+  evidence.elsewhere = scenery.body_elsewhere;
+  evidence.rivals = static_cast<float>(scenery.proposals);
   evidence.parts = std::move(belief.parts);
   return evidence;
 }

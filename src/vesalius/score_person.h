@@ -27,7 +27,7 @@ struct ScoreOptions {
   float border_weight = 2.58F;       ///< of the share of the outline that the picture's border cuts off
   float beside_weight = -0.79F;      ///< of how much body the forest sees beside the mask
   float resolution_weight = 11.41F;  ///< of the number of pixels
-  float bias = -17.1F;
+  float bias = -16.81F;
 };
 void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisitor& visitor);
 
@@ -59,7 +59,17 @@ struct Evidence {
   float slant = 0.F;       ///< |cosine| of the angle between the shortest axis and the viewing direction
   float bend_m = 0.F;      ///< mean distance of a point from the middle of those kBendReach_m to both sides of it
   float ragged = 0.F;      ///< sides of pixels along the outline over the square root of the mask's pixels
+  float on_flat = 0.F;     ///< pixels close to floor, wall or table over the square root of the mask's pixels
+  float elsewhere = 0.F;   ///< Scenery::body_elsewhere: in some pictures the forest sees bodies everywhere
+  float rivals = 0.F;      ///< Scenery::proposals: clutter gives many at once
   std::vector<float> parts = {};  ///< share of each part and its mirror partner in the mask's body (part_slots)
+};
+
+/// What a picture has besides a candidate.
+struct Scenery {
+  const Mask& flat;            ///< 1 on floor, walls and other large flat surfaces
+  float body_elsewhere = 0.F;  ///< mean body share of the posterior outside of all candidates' masks
+  int proposals = 0;           ///< rough skeletons of the first pass
 };
 
 /// A kind of evidence and the option with its weight.
@@ -87,25 +97,13 @@ struct JudgedEvidence {
   float Evidence::*evidence;
   int sign = 0;  ///< as EvidenceWeight's
 };
-inline constexpr std::array<JudgedEvidence, 19> kJudgedEvidence{{{&Evidence::likelihood, 1},
-                                                                 {&Evidence::explained, 1},
-                                                                 {&Evidence::open, 1},
-                                                                 {&Evidence::core, 1},
-                                                                 {&Evidence::body, 1},
-                                                                 {&Evidence::size, 1},
-                                                                 {&Evidence::occluded},
-                                                                 {&Evidence::near},
-                                                                 {&Evidence::certain, 1},
-                                                                 {&Evidence::border},
-                                                                 {&Evidence::beside, -1},
-                                                                 {&Evidence::resolution},
-                                                                 {&Evidence::surest, 1},
-                                                                 {&Evidence::facing, 1},
-                                                                 {&Evidence::depth_m},
-                                                                 {&Evidence::length_m},
-                                                                 {&Evidence::slant},
-                                                                 {&Evidence::bend_m},
-                                                                 {&Evidence::ragged}}};
+inline constexpr std::array<JudgedEvidence, 22> kJudgedEvidence{
+    {{&Evidence::likelihood, 1}, {&Evidence::explained, 1}, {&Evidence::open, 1},    {&Evidence::core, 1},
+     {&Evidence::body, 1},       {&Evidence::size, 1},      {&Evidence::occluded},   {&Evidence::near},
+     {&Evidence::certain, 1},    {&Evidence::border},       {&Evidence::beside, -1}, {&Evidence::resolution},
+     {&Evidence::surest, 1},     {&Evidence::facing, 1},    {&Evidence::depth_m},    {&Evidence::length_m},
+     {&Evidence::slant},         {&Evidence::bend_m},       {&Evidence::ragged},     {&Evidence::on_flat},
+     {&Evidence::elsewhere},     {&Evidence::rivals}}};
 
 /// Returns for each part its index in Evidence::parts, which it shares with its mirror partner.
 std::vector<int> part_slots(const BodyModel& body);
@@ -117,9 +115,13 @@ std::vector<int> judge_signs(const BodyModel& body);
 std::vector<float> judge_features(const Evidence& evidence);
 
 /// Measures the evidence that a mask and a skeleton are a person. `labels` are those inside `mask`, `posteriors` those
-/// of the first pass; all have the frame's size.
+/// of the first pass; all have the frame's size, and so has the scenery.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
-                         const Skeleton& skeleton, const BodyModel& body);
+                         const Scenery& scenery, const Skeleton& skeleton, const BodyModel& body);
+
+/// Returns Scenery::body_elsewhere for the union of the candidates' masks, from every second pixel of every second row.
+/// It is 0 for a forest without background class.
+float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts);
 
 /// Returns the score of a person, 0-1, by a logistic function whose weights were fitted to frames with and without
 /// people. It is for forests without a PersonJudge.

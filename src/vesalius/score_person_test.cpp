@@ -22,7 +22,9 @@ struct Square {
     }
     skeleton.parts.resize(paper_body().parts.size());
   }
-  Evidence evidence() const { return gather_evidence(frame, mask, labels, posteriors, skeleton, paper_body()); }
+  Evidence evidence() const {
+    return gather_evidence(frame, mask, labels, posteriors, {flat, 0.1F, 7}, skeleton, paper_body());
+  }
   void observe(const char* part, const Eigen::Vector3f& centre) {
     SkeletonPart& p = skeleton.parts[paper_body().find_part(part)];
     p.state = State::observed;
@@ -31,6 +33,7 @@ struct Square {
 
   Frame frame;
   Mask mask{40, 30, 0};
+  Mask flat{40, 30, 0};
   PersonLabels labels{LabelImage(40, 30, kBackground), {}, 0.F};
   Posteriors posteriors{40, 30, 26, 1, std::vector<std::uint16_t>(std::size_t{40} * 30 * 26, 0)};
   Skeleton skeleton;
@@ -226,6 +229,43 @@ TEST(GatherEvidence, TellsTheLikeliestHeadingsProbability) {
   EXPECT_FLOAT_EQ(s.evidence().facing, 0.6F);
 }
 
+TEST(GatherEvidence, CountsPixelsCloseToAFlatSurface) {
+  Square s(2050);
+  EXPECT_FLOAT_EQ(s.evidence().on_flat, 0.F);
+  for (int u = 0; u < 40; ++u) {
+    for (int v = 20; v < 30; ++v) s.flat(u, v) = 1;  // below
+  }
+  EXPECT_FLOAT_EQ(s.evidence().on_flat, 3.F) << "the 30 pixels of three rows over the side of 10";
+  for (int u = 0; u < 40; ++u) {
+    for (int v = 20; v < 30; ++v) s.frame.depth(u, v) = 2200;
+  }
+  EXPECT_FLOAT_EQ(s.evidence().on_flat, 0.F) << "far behind";
+}
+
+TEST(GatherEvidence, PassesTheSceneryOn) {
+  EXPECT_FLOAT_EQ(Square(3000).evidence().elsewhere, 0.1F);
+  EXPECT_FLOAT_EQ(Square(3000).evidence().rivals, 7.F);
+}
+
+TEST(MeanBodyOutside, LeavesOutCandidatesHolesAndSureBackground) {
+  Square s(3000);
+  constexpr int kParts = 25;
+  for (int v = 0; v < 30; ++v) {
+    for (int u = 0; u < 40; ++u) {
+      s.posteriors.at(u, v)[3] = s.mask(u, v) != 0 ? 255 : v < 15 ? 51 : 0;
+      s.posteriors.at(u, v)[kParts] = s.mask(u, v) != 0 ? 0 : v < 15 ? 204 : 255;
+    }
+  }
+  const auto outside = [&] { return mean_body_outside(s.mask, s.frame.depth, s.posteriors, kParts); };
+  // Of 20 x 15 pixels 20 x 8 are in the upper half; the mask covers 5 x 3 of them and 5 x 2 of the others.
+  EXPECT_NEAR(outside(), 0.2 * 145 / 275, 1e-5);
+  for (int v = 15; v < 30; ++v) {
+    for (int u = 0; u < 40; ++u) s.frame.depth(u, v) = 0;
+  }
+  EXPECT_NEAR(outside(), 0.2, 1e-5);
+  EXPECT_EQ(mean_body_outside(s.mask, s.frame.depth, s.posteriors, 26), 0.F) << "no background class";
+}
+
 TEST(GatherEvidence, SharesTheBodyAmongPartsOfBothSides) {
   const BodyModel& body = paper_body();
   Square s(3000);
@@ -266,7 +306,8 @@ Evidence of_surface(const Depth& depth_m) {
   const Posteriors posteriors{200, 150, 26, 1, std::vector<std::uint16_t>(std::size_t{200} * 150 * 26, 0)};
   Skeleton skeleton;
   skeleton.parts.resize(paper_body().parts.size());
-  return gather_evidence(frame, mask, labels, posteriors, skeleton, paper_body());
+  const Mask flat(200, 150, 0);
+  return gather_evidence(frame, mask, labels, posteriors, {flat}, skeleton, paper_body());
 }
 
 TEST(GatherEvidence, MeasuresTheShapeOfAFlatBoard) {

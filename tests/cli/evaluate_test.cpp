@@ -296,14 +296,34 @@ TEST_F(Evaluate, WritesTheModelWithAJudgeFittedToTheFrames) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, ContainsRegex("judge fitted to [1-9][0-9]* candidates that were people and [1-9][0-9]* that "));
   EXPECT_FALSE(load_model(path("judged.forest")).judge.empty());
-  EXPECT_THAT(run_program("info " + path("judged.forest")).out, HasSubstr("judge_trees: 400\n"));
+  EXPECT_THAT(run_program("info " + path("judged.forest")).out, HasSubstr("judge_trees: 1600\n"));
   EXPECT_EQ(run_program("detect " + frames() + " -m " + path("judged.forest")).exit_code, 0);
+
+  const Outcome nowhere = evaluate(" --fit-judge " + path("missing/judged.forest"));
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_THAT(nowhere.err, HasSubstr("missing/judged.forest"));
+  EXPECT_EQ(nowhere.out, "") << "before any frame is looked at";
 
   write("frames/frames.csv", "frame,people,posture\na,0,\nb,0,\nc,0,\n");
   const Outcome alone = evaluate(" --fit-judge " + path("none.forest"));
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_THAT(alone.err, HasSubstr("have no candidate that is known to be a person"));
   EXPECT_FALSE(fs::exists(path("none.forest")));
+}
+
+TEST_F(Evaluate, FitsAJudgeToAForestWhoseOwnIsOfAnotherVersion) {
+  say_that_only_the_first_frame_has_a_person();
+  Forest other = load_model(model());
+  other.judge = {3, 0.F, std::vector<JudgeTree>(1)};
+  save_model(other, path("other.forest"));
+  const Outcome refused = run_program("detect " + frames() + " -m " + path("other.forest"));
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("evaluate --fit-judge"));
+  ASSERT_EQ(run_program("evaluate " + frames() + " -m " + path("other.forest") + " --fit-judge " + path("own.forest"))
+                .exit_code,
+            0);
+  ASSERT_EQ(evaluate(" --fit-judge " + path("fresh.forest")).exit_code, 0);
+  EXPECT_EQ(load_model(path("own.forest")).judge, load_model(path("fresh.forest")).judge);
 }
 
 class Compare : public Evaluate {};

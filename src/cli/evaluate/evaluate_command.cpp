@@ -196,13 +196,24 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.fit_judge.empty()) write_fitted_judge(evaluation, arguments.fit_judge, prints_json(arguments));
 }
 
+/// Throws Error where a file that is to be fitted could not be written: that is known after the last frame otherwise.
+void check_writable(const Arguments& arguments) {
+  for (const std::string* path :
+       {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_score, &arguments.fit_judge}) {
+    if (!path->empty() && !written_directly(*path)) const TemporaryFile probe(*path);
+  }
+}
+
 void run(const Arguments& arguments, const std::string& command) {
   const ThreadLimit limit(arguments.threads);
+  check_writable(arguments);
   const std::vector<Request> requests = set_requests(arguments);
   const std::string bytes = read_file(arguments.model);
   Forest forest = parse_model(bytes, arguments.model);
   forest.body = arguments.joints_file.empty() ? with_evaluation_joints(forest.body)
                                               : with_joints_of(forest.body, arguments.joints_file);
+  // Candidates are the same with any judge, and one of an earlier version would not be understood.
+  if (!arguments.fit_judge.empty()) forest.judge = {};
   Evaluation evaluation;
   evaluation.options = detect_options(arguments.options_file, arguments.detector_flags);
   evaluation.labels_only = arguments.labels_only;
