@@ -13,8 +13,8 @@ import sys
 SKIPPED = 77
 # Accuracy on frames of other bodies, rooms and motions that the new forest must reach; the shipped one's less what
 # another processor's rounding in the renderer may cost.
-LEAST = {"pixels.mean_recall_inside": 0.42, "pixels.person_iou": 0.64}
-MOST_BYTES = 2_500_000
+LEAST = {"pixels.mean_recall_inside": 0.45, "pixels.person_iou": 0.65}
+MOST_BYTES = 3_500_000
 
 
 def main():
