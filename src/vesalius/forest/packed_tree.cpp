@@ -68,9 +68,9 @@ class Packer {
     packed_.lines_per_leaf = (size + kLine - 1) / kLine;
     packed_.logits.resize(tree_.leaves.size() * packed_.lines_per_leaf);
     for (std::size_t leaf = 0; leaf < tree_.leaves.size(); ++leaf) {
-      const std::int8_t* values = tree_.logits.data() + leaf * size;
-      for (std::size_t i = 0; i < size; ++i) {
-        packed_.logits[leaf * packed_.lines_per_leaf + i / kLine].values[i % kLine] = values[i];
+      PackedTree::LogitLine* line = packed_.logits.data() + leaf * packed_.lines_per_leaf;
+      for (std::size_t i = 0; i < size; i += kLine, ++line) {
+        std::copy_n(tree_.logits.data() + leaf * size + i, std::min(kLine, size - i), line->values.data());
       }
     }
   }
