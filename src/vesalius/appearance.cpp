@@ -125,6 +125,10 @@ std::shared_ptr<const Appearance> make_appearance(const std::string& name) {
   throw UsageError("grow.appearance: expected hue, texture or none, found '" + name + "'");
 }
 
+Looks look_at(const Frame& frame, const Appearance* appearance) {
+  return {appearance, appearance != nullptr ? appearance->describe(frame) : std::vector<std::uint16_t>{}};
+}
+
 std::vector<float> AppearanceHistogram::probabilities(const Appearance& appearance) const {
   std::vector<float> values(counts_.begin(), counts_.end());
   values.resize(appearance.classes(), 0.F);

@@ -58,6 +58,14 @@ class TextureAppearance : public Appearance {
 /// Returns the appearance of a name: "hue" or "texture"; nothing for "none". Throws UsageError for any other.
 std::shared_ptr<const Appearance> make_appearance(const std::string& name);
 
+/// What the pixels of one frame look like, which all who grow in it share.
+struct Looks {
+  const Appearance* appearance = nullptr;  ///< none if looks do not matter
+  std::vector<std::uint16_t> classes;      ///< Appearance::describe; empty without an appearance
+};
+/// Returns the looks of a frame; `appearance` may be null, or must outlive them.
+Looks look_at(const Frame& frame, const Appearance* appearance);
+
 /// How often each class of an appearance occurs in some pixels, such as a person's.
 class AppearanceHistogram {
  public:

@@ -152,11 +152,12 @@ Mask barred(const Method& method, const SceneLabels& labels) {
 std::vector<Candidate> propose(const Method& method, const Frame& frame, const Scene& scene, const Prior& prior) {
   if (scene.rough.empty() && prior.people.empty()) return {};
   const Mask nobody = barred(method, scene.labels);
-  const PersonGrower grower(frame, nobody, method.body, method.options.grow, method.appearance.get());
+  const Looks looks = look_at(frame, method.appearance.get());
+  const PersonGrower grower(frame, nobody, method.body, method.options.grow, looks);
   std::vector<Candidate> candidates = grow_rough(method, scene, grower);
   if (prior.people.empty()) return candidates;
   // The background's posterior does not hold back known people.
-  const PersonGrower of_known(frame, scene.labels.flat, method.body, method.options.grow, method.appearance.get());
+  const PersonGrower of_known(frame, scene.labels.flat, method.body, method.options.grow, looks);
   std::ranges::move(grow_known(method, frame, scene, prior, of_known), std::back_inserter(candidates));
   return candidates;
 }

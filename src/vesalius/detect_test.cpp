@@ -413,6 +413,8 @@ TEST_F(DetectorWithPrior, AsksTheGivenAppearance) {
   options.grow.appearance = "none";
   expect_same(Detector(labeller, options, appearance).detect(truth.frame), expected);
   EXPECT_EQ(appearance->times, 1);
+  Detector(labeller, options, appearance).detect(truth.frame, {{{mask_of(1), {}}}});
+  EXPECT_EQ(appearance->times, 2) << "known people look at the same";
   options.grow.appearance = "smell";
   EXPECT_THROW(Detector(labeller, options), UsageError);
 }

@@ -63,10 +63,8 @@ void visit_options(const std::string& prefix, GrowOptions& o, OptionVisitor& vis
 }
 
 PersonGrower::PersonGrower(const Frame& frame, const Mask& flat, const BodyModel& body, const GrowOptions& options,
-                           const Appearance* appearance)
-    : frame_(frame), flat_(flat), body_(body), options_(options), appearance_(appearance) {
-  if (appearance != nullptr) looks_ = appearance->describe(frame);
-}
+                           const Looks& looks)
+    : frame_(frame), flat_(flat), body_(body), options_(options), looks_(looks) {}
 
 Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>& reach) const {
   Mask out(frame_.depth.width(), frame_.depth.height(), 0);
@@ -101,20 +99,20 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
 Mask PersonGrower::refused_looks(const Skeleton& rough, const Mask& seeds, const Mask& reach,
                                  AppearanceHistogram person) const {
   Mask refused(seeds.width(), seeds.height(), 0);
-  if (looks_.empty()) return refused;
+  if (looks_.classes.empty()) return refused;
   AppearanceHistogram rest;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (seeds[i] != 0) {
-      person.add(looks_[i]);
+      person.add(looks_.classes[i]);
     } else if (reach[i] == 0 || flat_[i] != 0) {
-      rest.add(looks_[i]);
+      rest.add(looks_.classes[i]);
     }
   }
   if (person.samples() < kLeastSamples || rest.samples() < kLeastSamples) return refused;
-  const std::vector<float> here = person.probabilities(*appearance_);
-  const std::vector<float> elsewhere = rest.probabilities(*appearance_);
+  const std::vector<float> here = person.probabilities(*looks_.appearance);
+  const std::vector<float> elsewhere = rest.probabilities(*looks_.appearance);
   // Looks that are rare everywhere are as likely elsewhere as if all were equally common.
-  const float least = 1.F / static_cast<float>(appearance_->classes());
+  const float least = 1.F / static_cast<float>(looks_.appearance->classes());
   std::vector<std::uint8_t> refuses(here.size());
   for (std::size_t look = 0; look < here.size(); ++look) {
     refuses[look] = std::log(std::max(elsewhere[look], least) / here[look]) > options_.look_veto ? 1 : 0;
@@ -122,7 +120,7 @@ Mask PersonGrower::refused_looks(const Skeleton& rough, const Mask& seeds, const
   const Mask any_look = around_parts(rough, any_look_radius(rough, body_, options_));
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     if (reach[i] == 0 || seeds[i] != 0 || any_look[i] != 0) continue;
-    refused[i] = refuses[looks_[i]];
+    refused[i] = refuses[looks_.classes[i]];
   }
   return refused;
 }

@@ -34,7 +34,7 @@ class PersonGrower {
   /// `flat` is 1 on floor, walls and other large flat surfaces. Without an appearance people grow by depth alone. Keeps
   /// references: all five must outlive it.
   PersonGrower(const Frame& frame, const Mask& flat, const BodyModel& body, const GrowOptions& options,
-               const Appearance* appearance);
+               const Looks& looks);
 
   /// Returns the people's masks, 1 inside, one for each skeleton. They grow at the same pace from their own proposals
   /// in `clusters`, so people who touch divide the pixels between them by nearness. `known` is empty, or has each
@@ -52,8 +52,7 @@ class PersonGrower {
   const Mask& flat_;
   const BodyModel& body_;
   const GrowOptions& options_;
-  const Appearance* appearance_;
-  std::vector<std::uint16_t> looks_;  ///< of every pixel; empty if they are not used
+  const Looks& looks_;
 };
 
 }  // namespace vesalius

@@ -77,8 +77,8 @@ Overlap compare(const Mask& mask, const Image<std::uint8_t>& person, int who) {
 std::vector<Mask> grow_all(const Scene& scene, const GrowOptions& options = {}) {
   const Mask flat = flat_pixels(scene.truth.frame.depth, kCamera, options.plane);
   const auto appearance = make_appearance(options.appearance);
-  return PersonGrower(scene.truth.frame, flat, paper_body(), options, appearance.get())
-      .grow(scene.rough, scene.clusters);
+  const Looks looks = look_at(scene.truth.frame, appearance.get());
+  return PersonGrower(scene.truth.frame, flat, paper_body(), options, looks).grow(scene.rough, scene.clusters);
 }
 
 TEST(GrowPerson, FillsTheWholePersonFromHalfOfTheParts) {
@@ -213,7 +213,8 @@ TEST(GrowPerson, StopsAtKnownColoursIfTheSeedsHaveTooFew) {
   options.reach_m = 0.5F;
   options.own_look_m = 0.01F;
   const HueAppearance hue;
-  const PersonGrower grower(scene.truth.frame, flat, paper_body(), options, &hue);
+  const Looks looks = look_at(scene.truth.frame, &hue);
+  const PersonGrower grower(scene.truth.frame, flat, paper_body(), options, looks);
   Mask person(kCamera.width, kCamera.height, 0);
   for (std::size_t i = 0; i < person.size(); ++i) person[i] = scene.truth.person[i] == 0 ? 1 : 0;
   const AppearanceHistogram known = learn_appearance(scene.truth.frame, person, hue);
