@@ -99,6 +99,7 @@ Json model_facts(const std::string& path) {
           {"background_class", forest.has_background},
           {"distributions", has_distributions(forest)},
           {"headings", forest.headings},
+          {"context_trees", forest.context.trees.size()},
           {"judge_trees", forest.judge.trees.size()},
           {"features",
            {{"offset_unit_px_m", c.offset_unit},

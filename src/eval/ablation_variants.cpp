@@ -69,6 +69,11 @@ class VariantList {
   }
 
   void add_forests() {
+    if (!forest_.context.empty()) {
+      Forest alone = forest_;
+      alone.context = {};
+      add("each pixel by itself", std::move(alone));
+    }
     if (forest_.body.roots.size() > 1) {
       DetectOptions options = options_;
       options.search.any_root = false;

@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 
 #include "vesalius/base/body_model.h"
+#include "vesalius/forest/body_context.h"
 
 namespace vesalius {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
+using testing::Not;
 
 Forest forest_of(int trees, TreeLeaf leaf) {
   Forest forest;
@@ -72,6 +75,14 @@ TEST(AblationVariants, LeaveOutChangesWithoutEffect) {
   EXPECT_THAT(names(ablation_variants(votes, {options})),
               ElementsAre("second iteration", "look by depth and hue", "look by depth and texture",
                           "links past unseen parts", "any part as root", "every pixel", "1 tree"));
+}
+
+TEST(AblationVariants, LeaveOutTheContext) {
+  Forest forest = forest_of(2, {{3, 4}, {200, 50}});
+  forest.has_background = true;
+  EXPECT_THAT(names(ablation_variants(forest, {})), Not(Contains("each pixel by itself")));
+  forest.context = {BodySurroundings::feature_count(forest.body), 0.F, {BoostedTree{}}};
+  EXPECT_THAT(names(ablation_variants(forest, {})), Contains("each pixel by itself"));
 }
 
 }  // namespace

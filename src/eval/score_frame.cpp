@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "eval/breakdown_metrics.h"
+#include "eval/fit_context.h"
 #include "eval/heading.h"
 #include "eval/match_people.h"
 #include "eval/side_metrics.h"
@@ -95,7 +96,7 @@ MetricTerm score_term(float score, bool person) {
 }  // namespace
 
 FrameScorer::FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options)
-    : options_(std::move(options)), detector_(std::move(labeller), options_.detect) {
+    : options_(std::move(options)), labeller_(std::move(labeller)), detector_(labeller_, options_.detect) {
   const std::vector<JointSet>& sets = body().joint_sets;
   if (options_.joint_set.empty() || std::ranges::find(sets, options_.joint_set, &JointSet::name) != sets.end()) return;
   std::string names;
@@ -109,6 +110,10 @@ FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
   put_visible_people_first(frame);
   FrameScore score;
   score.expected = expected_people(frame.truth);
+  if (options_.fit_context) {
+    score.context_samples = context_samples(frame, labeller_, options_.detect);
+    return score;
+  }
   const Mask people = labelled_people(frame.truth);
   const Mask* asked = people.empty() ? nullptr : &people;
   FrameLabels labels =

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/boost_trees.h"
 #include "eval/detection_curve.h"
 #include "eval/fit_joints.h"
 #include "eval/fit_score.h"
@@ -23,6 +24,7 @@ struct FrameScore {
   int expected = 0;  ///< true people
   std::vector<JudgedProposal> proposals;
   std::vector<ScoreSample> samples;                 ///< for fitting the score
+  std::vector<BoostSample> context_samples;         ///< for fitting the context of bodies, if asked for
   std::vector<std::vector<double>> joint_errors_m;  ///< joint_errors() of each true person
   JointPrecision joint_precision;                   ///< over all proposed people, whatever their score
   JointPrecision centre_precision;                  ///< the same of the parts' centres
@@ -43,6 +45,7 @@ class FrameScorer {
     DetectOptions detect;
     bool labels_only = false;  ///< only the pixel metrics of the first pass: much faster
     std::string joint_set{};   ///< joint set to compare joints with and to fit; empty means the truth's own choice
+    bool fit_context = false;  ///< only keeps context_samples of labelled frames and measures nothing
   };
 
   /// Throws the errors of Detector, and UsageError if the body has no such joint set.
@@ -76,6 +79,7 @@ class FrameScorer {
   void judge_labels(const TrueFrame& frame, const FrameLabels& labels, FrameScore& score) const;
 
   Options options_;
+  std::shared_ptr<const PixelLabeller> labeller_;
   Detector detector_;
 };
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/boost_trees.h"
 #include "eval/detection_curve.h"
 #include "eval/fit_joints.h"
 #include "eval/fit_score.h"
@@ -48,10 +49,11 @@ struct SetResult {
   JointPrecision joint_precision;
   JointPrecision centre_precision;
   std::optional<PixelConfusion> confusion;
-  std::vector<KnownPerson> known_people;  ///< for fitting joints
-  std::vector<ScoreSample> samples;       ///< for fitting the score
-  std::vector<WorstFrame> worst;          ///< the worst first
-  std::vector<AblationRow> ablation;      ///< the same frames with each variant
+  std::vector<KnownPerson> known_people;          ///< for fitting joints
+  std::vector<ScoreSample> samples;               ///< for fitting the score
+  std::vector<BoostSample> context_samples = {};  ///< for fitting the context of bodies
+  std::vector<WorstFrame> worst;                  ///< the worst first
+  std::vector<AblationRow> ablation;              ///< the same frames with each variant
 };
 
 /// The results of a model on some sets of frames, from which reports are made.

@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "eval/boost_judge.h"
+#include "eval/boost_trees.h"
+#include "eval/fit_context.h"
 #include "eval/fit_distribution.h"
 #include "eval/fit_joints.h"
 #include "vesalius/base/error.h"
@@ -90,14 +91,33 @@ FittedOptions fit_score_options(const Evaluation& evaluation) {
 
 FittedJudge fit_judge(const Evaluation& evaluation) {
   FittedJudge fitted;
-  std::vector<JudgeSample> samples;
+  std::vector<BoostSample> samples;
   for (const SetResult& set : evaluation.sets) {
     for (const ScoreSample& sample : set.samples) {
       samples.push_back({judge_features(sample.evidence), sample.person});
       ++(sample.person ? fitted.people : fitted.nobodies);
     }
   }
-  fitted.judge = boost_judge(samples, judge_signs(evaluation.body));
+  const std::string none = "fitting the judge: the frames have no candidate that is known to be ";
+  if (fitted.people == 0) throw Error(none + "a person");
+  if (fitted.nobodies == 0) throw Error(none + "nobody");
+  fitted.judge = boost_trees(samples, judge_signs(evaluation.body));
+  return fitted;
+}
+
+FittedContext fit_context(const Evaluation& evaluation) {
+  FittedContext fitted;
+  std::vector<BoostSample> samples;
+  for (const SetResult& set : evaluation.sets) {
+    samples.insert(samples.end(), set.context_samples.begin(), set.context_samples.end());
+  }
+  for (const BoostSample& sample : samples) ++(sample.positive ? fitted.bodies : fitted.others);
+  const std::string none = "fitting the context: the frames have no pixel that may be a body and is known to be ";
+  if (fitted.bodies == 0) throw Error(none + "one");
+  if (fitted.others == 0) throw Error(none + "none");
+  const std::vector<int> signs(samples.front().features.size(), 0);
+  fitted.context = boost_trees(samples, signs, kContextOptions);
+  fitted.context.bias += static_cast<float>(std::log(kContextOdds));
   return fitted;
 }
 

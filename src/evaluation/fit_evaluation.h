@@ -4,7 +4,7 @@
 
 #include "eval/fit_score.h"
 #include "evaluation/evaluation.h"
-#include "vesalius/forest/person_judge.h"
+#include "vesalius/forest/boosted_trees.h"
 
 namespace vesalius {
 
@@ -26,11 +26,21 @@ FittedOptions fit_score_options(const Evaluation& evaluation);
 
 /// A judge fitted to the candidates of all sets, each of which counts the same.
 struct FittedJudge {
-  PersonJudge judge;
+  BoostedTrees judge;
   long people = 0;
   long nobodies = 0;
 };
-/// Fits a judge for the evaluation's body. Throws Error as boost_judge does.
+/// Fits a judge for the evaluation's body. Throws Error unless there are people and nobodies among the candidates.
 FittedJudge fit_judge(const Evaluation& evaluation);
+
+/// A context of bodies fitted to the pixels of all labelled sets, each of which counts the same.
+struct FittedContext {
+  BoostedTrees context;
+  long bodies = 0;
+  long others = 0;
+};
+/// Fits a context for the evaluation's body to the samples that were kept (FrameScorer::Options::fit_context). Throws
+/// Error unless there are pixels of people and others.
+FittedContext fit_context(const Evaluation& evaluation);
 
 }  // namespace vesalius

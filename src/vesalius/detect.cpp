@@ -42,7 +42,7 @@ struct Method {
   DetectOptions options;
   std::shared_ptr<const Appearance> appearance;  ///< none if looks do not matter
   const BodyModel& body;
-  const PersonJudge& judge;
+  const BoostedTrees& judge;
   mutable Pool<SceneLabels> memory;
 };
 
@@ -190,8 +190,8 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
   if (candidate.refined.found == 0 || candidate.refined.score < candidate.rough.score) {
     candidate.refined = candidate.rough;
   }
-  candidate.evidence = gather_evidence(frame, candidate.grown, person, scene.labels.posteriors(), scenery,
-                                       candidate.refined, method.body);
+  candidate.evidence =
+      gather_evidence(frame, candidate.grown, person, scene.labels.alone(), scenery, candidate.refined, method.body);
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
   candidate.score = method.score(candidate.evidence);
   candidate.labels = std::move(person.labels);
@@ -204,8 +204,7 @@ Scenery look_around(const Method& method, const Frame& frame, const Scene& scene
   for (const Candidate& candidate : candidates) {
     for (std::size_t i = 0; i < anybody.size(); ++i) anybody[i] |= candidate.grown[i];
   }
-  return {scene.labels.flat,
-          mean_body_outside(anybody, frame.depth, scene.labels.posteriors(), method.body.part_count()),
+  return {scene.labels.flat, mean_body_outside(anybody, frame.depth, scene.labels.alone(), method.body.part_count()),
           static_cast<int>(scene.rough.size())};
 }
 

@@ -9,6 +9,7 @@
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/forest/body_context.h"
 
 namespace vesalius {
 namespace {
@@ -42,14 +43,14 @@ class TruthLabeller : public PixelLabeller {
   const BodyModel& body() const override { return body_; }
   bool has_background() const override { return background_; }
   bool has_distributions() const override { return false; }
-  const PersonJudge& judge() const override { return judge_; }
-  void set_judge(PersonJudge judge) { judge_ = std::move(judge); }
+  const BoostedTrees& judge() const override { return judge_; }
+  void set_judge(BoostedTrees judge) { judge_ = std::move(judge); }
 
  private:
   LabelImage truth_;
   BodyModel body_;
   bool background_;
-  PersonJudge judge_;
+  BoostedTrees judge_;
 };
 
 CapsuleScene one_person(float z_m) {
@@ -484,14 +485,14 @@ TEST(Detector, MeasuresTimesThatAddUp) {
 }
 
 /// A judge that calls people whatever has more than `least` of a kind of evidence.
-PersonJudge judge_by(int feature, float least) {
-  PersonJudge judge{static_cast<int>(judge_signs(paper_body()).size()), 0.F, std::vector<JudgeTree>(1)};
-  JudgeTree& tree = judge.trees.front();
+BoostedTrees judge_by(int feature, float least) {
+  BoostedTrees judge{static_cast<int>(judge_signs(paper_body()).size()), 0.F, std::vector<BoostedTree>(1)};
+  BoostedTree& tree = judge.trees.front();
   tree.threshold.fill(std::numeric_limits<float>::infinity());
   tree.feature[0] = static_cast<std::uint16_t>(feature);
   tree.threshold[0] = least;
   tree.value.fill(-9.F);
-  tree.value[JudgeTree::kLeaves / 2] = 9.F;
+  tree.value[BoostedTree::kLeaves / 2] = 9.F;
   return judge;
 }
 
@@ -512,11 +513,52 @@ TEST(Judge, DecidesWhoIsAPerson) {
 TEST(Judge, OfOtherEvidenceIsRefused) {
   const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
   auto labeller = std::make_shared<TruthLabeller>(truth.labels, paper_body(), true);
-  PersonJudge judge = judge_by(0, 0.F);
+  BoostedTrees judge = judge_by(0, 0.F);
   judge.features -= 1;
   labeller->set_judge(judge);
   EXPECT_THAT([&] { Detector(labeller, {}); },
               testing::ThrowsMessage<Error>(testing::HasSubstr("kinds of evidence, expected")));
+}
+
+/// A labeller that sees true parts and is 40 percent sure that they are a body.
+class Doubtful : public PixelLabeller {
+ public:
+  explicit Doubtful(LabelImage truth) : truth_(std::move(truth)) {}
+  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+    out = {depth.width(), depth.height(), 26, 1, {}};
+    out.sums.assign(depth.size() * 26, 0);
+    for (int v = 0; v < depth.height(); ++v) {
+      for (int u = 0; u < depth.width(); ++u) {
+        if (depth(u, v) == 0) continue;
+        const int part = truth_(u, v);
+        if (part != kBackground) out.at(u, v)[part] = 102;
+        out.at(u, v)[25] = part != kBackground ? 153 : 255;
+      }
+    }
+  }
+  const BodyModel& body() const override { return paper_body(); }
+  bool has_background() const override { return true; }
+  bool has_distributions() const override { return true; }
+  const BoostedTrees& context() const override { return corrected; }
+
+  BoostedTrees corrected;
+
+ private:
+  LabelImage truth_;
+};
+
+TEST(Context, LabelsFollowItAndPeopleAreJudgedByTheForestAlone) {
+  const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
+  DetectOptions options;
+  options.refine.min_score = 0.F;
+  options.label.background_weight = options.label.proposal_weight = 1.F;
+  const auto labeller = std::make_shared<Doubtful>(truth.labels);
+  EXPECT_TRUE(Detector(labeller, options).detect(truth.frame).empty()) << "everything is rather the background";
+  labeller->corrected = {BodySurroundings::feature_count(paper_body()), 2.F, {BoostedTree{}}};
+  Trace trace;
+  ASSERT_EQ(Detector(labeller, options).detect(truth.frame, &trace).size(), 1U);
+  EXPECT_NEAR(trace.candidates.front().evidence.body, 0.4F, 0.05F);
+  EXPECT_GT(trace.candidates.front().refined.found, 20);
 }
 
 /// Returns the frame's depth with the ramps around its holes that resizing by interpolation leaves.

@@ -387,16 +387,6 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
   return evidence;
 }
 
-std::vector<int> part_slots(const BodyModel& body) {
-  std::vector<int> slots;
-  int next = 0;
-  for (int p = 0; p < body.part_count(); ++p) {
-    const int mirror = body.parts[p].mirror;
-    slots.push_back(mirror >= 0 && mirror < p ? slots[mirror] : next++);
-  }
-  return slots;
-}
-
 std::vector<int> judge_signs(const BodyModel& body) {
   std::vector<int> signs;
   for (const JudgedEvidence& kind : kJudgedEvidence) signs.push_back(kind.sign);

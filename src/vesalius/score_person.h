@@ -92,7 +92,7 @@ inline constexpr std::array<EvidenceWeight, 12> kEvidenceWeights{
      {&Evidence::beside, &ScoreOptions::beside_weight, -1},
      {&Evidence::resolution, &ScoreOptions::resolution_weight}}};
 
-/// A kind of evidence that a PersonJudge is given.
+/// A kind of evidence that a BoostedTrees is given.
 struct JudgedEvidence {
   float Evidence::*evidence;
   int sign = 0;  ///< as EvidenceWeight's
@@ -105,13 +105,10 @@ inline constexpr std::array<JudgedEvidence, 22> kJudgedEvidence{
      {&Evidence::slant},         {&Evidence::bend_m},       {&Evidence::ragged},     {&Evidence::on_flat},
      {&Evidence::elsewhere},     {&Evidence::rivals}}};
 
-/// Returns for each part its index in Evidence::parts, which it shares with its mirror partner.
-std::vector<int> part_slots(const BodyModel& body);
-
 /// Returns the sign of each of judge_features (EvidenceWeight).
 std::vector<int> judge_signs(const BodyModel& body);
 
-/// Returns what a PersonJudge is asked: kJudgedEvidence, then the parts.
+/// Returns what a BoostedTrees is asked: kJudgedEvidence, then the parts.
 std::vector<float> judge_features(const Evidence& evidence);
 
 /// Measures the evidence that a mask and a skeleton are a person. `labels` are those inside `mask`, `posteriors` those
@@ -124,7 +121,7 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
 float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts);
 
 /// Returns the score of a person, 0-1, by a logistic function whose weights were fitted to frames with and without
-/// people. It is for forests without a PersonJudge.
+/// people. It is for forests without a BoostedTrees.
 float person_score(const Evidence& evidence, const ScoreOptions& options);
 
 }  // namespace vesalius

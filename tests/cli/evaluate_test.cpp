@@ -314,7 +314,7 @@ TEST_F(Evaluate, WritesTheModelWithAJudgeFittedToTheFrames) {
 TEST_F(Evaluate, FitsAJudgeToAForestWhoseOwnIsOfAnotherVersion) {
   say_that_only_the_first_frame_has_a_person();
   Forest other = load_model(model());
-  other.judge = {3, 0.F, std::vector<JudgeTree>(1)};
+  other.judge = {3, 0.F, std::vector<BoostedTree>(1)};
   save_model(other, path("other.forest"));
   const Outcome refused = run_program("detect " + frames() + " -m " + path("other.forest"));
   EXPECT_EQ(refused.exit_code, 1);
@@ -324,6 +324,33 @@ TEST_F(Evaluate, FitsAJudgeToAForestWhoseOwnIsOfAnotherVersion) {
             0);
   ASSERT_EQ(evaluate(" --fit-judge " + path("fresh.forest")).exit_code, 0);
   EXPECT_EQ(load_model(path("own.forest")).judge, load_model(path("fresh.forest")).judge);
+}
+
+/// Frames whose labels are known, of a recipe that the built-in bodies suffice for.
+TEST_F(Evaluate, WritesTheModelWithAContextFittedToTheFrames) {
+  ASSERT_EQ(run_program("synth --count 12 --seed 3 --sensor.width 160 --sensor.height 120 -q --out " + path("labelled"))
+                .exit_code,
+            0);
+  const std::string fit = "evaluate " + path("labelled") + " -m " + model() + " --fit-context ";
+  const Outcome run = run_program(fit + path("context.forest"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, ContainsRegex("context fitted to [1-9][0-9]* pixels of people and [1-9][0-9]* of other things"));
+  const Forest fitted = load_model(path("context.forest"));
+  EXPECT_EQ(fitted.context.trees.size(), 120U);
+  EXPECT_TRUE(fitted.judge.empty());
+  EXPECT_THAT(run_program("info " + path("context.forest")).out, HasSubstr("context_trees: 120\n"));
+  EXPECT_EQ(run_program("detect " + frames() + " -m " + path("context.forest")).exit_code, 0);
+  ASSERT_EQ(run_program("evaluate " + path("labelled") + " -m " + path("context.forest") +
+                        " --threads 1 --fit-context " + path("again.forest"))
+                .exit_code,
+            0);
+  EXPECT_EQ(load_model(path("again.forest")).context, fitted.context) << "fitted to what the forest alone says";
+
+  const Outcome unlabelled = evaluate(" --fit-context " + path("none.forest"));
+  EXPECT_EQ(unlabelled.exit_code, 1);
+  EXPECT_THAT(unlabelled.err, HasSubstr("no pixel that may be a body and is known to be one"));
+  EXPECT_FALSE(fs::exists(path("none.forest")));
+  EXPECT_EQ(run_program(fit + path("none.forest") + " --ablation").exit_code, 2);
 }
 
 class Compare : public Evaluate {};

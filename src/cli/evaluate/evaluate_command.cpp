@@ -53,7 +53,7 @@ struct Arguments {
   std::vector<std::string> sources, recipes;
   RenderedTruth rendered;
   std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
-      fit_score, fit_judge;
+      fit_score, fit_judge, fit_context;
   OptionFlags<DetectOptions> detector_flags;
   int step = 1;
   double turn_deg = 0.0;
@@ -181,6 +181,19 @@ void write_fitted_judge(const Evaluation& evaluation, const std::string& path, b
                     fitted.nobodies));
 }
 
+/// Writes the model with a context of bodies fitted to all sets, and prints how many pixels it was fitted to.
+void write_fitted_context(const Evaluation& evaluation, const std::string& path, bool quiet) {
+  FittedContext fitted = fit_context(evaluation);
+  Forest forest = load_model(evaluation.model);
+  forest.context = std::move(fitted.context);
+  forest.judge = {};
+  save_model(forest, path);
+  if (quiet) return;
+  print(fmt::format(
+      "context fitted to {} pixels of people and {} of other things; the judge, if there was one, is left out\n",
+      fitted.bodies, fitted.others));
+}
+
 void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.json.empty()) {
     TextSink sink(arguments.json);
@@ -194,12 +207,13 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   }
   if (!arguments.fit_score.empty()) write_fitted_score(evaluation, arguments.fit_score, prints_json(arguments));
   if (!arguments.fit_judge.empty()) write_fitted_judge(evaluation, arguments.fit_judge, prints_json(arguments));
+  if (!arguments.fit_context.empty()) write_fitted_context(evaluation, arguments.fit_context, prints_json(arguments));
 }
 
 /// Throws Error where a file that is to be fitted could not be written: that is known after the last frame otherwise.
 void check_writable(const Arguments& arguments) {
-  for (const std::string* path :
-       {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_score, &arguments.fit_judge}) {
+  for (const std::string* path : {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_score,
+                                  &arguments.fit_judge, &arguments.fit_context}) {
     if (!path->empty() && !written_directly(*path)) const TemporaryFile probe(*path);
   }
 }
@@ -214,16 +228,19 @@ void run(const Arguments& arguments, const std::string& command) {
                                               : with_joints_of(forest.body, arguments.joints_file);
   // Candidates are the same with any judge, and one of an earlier version would not be understood.
   if (!arguments.fit_judge.empty()) forest.judge = {};
+  const bool fits_context = !arguments.fit_context.empty();
+  if (fits_context) forest.context = {};
+  const bool labels_only = arguments.labels_only || fits_context;
   Evaluation evaluation;
   evaluation.options = detect_options(arguments.options_file, arguments.detector_flags);
-  evaluation.labels_only = arguments.labels_only;
+  evaluation.labels_only = labels_only;
   evaluation.has_background = forest.has_background;
   evaluation.command = command;
   evaluation.model = arguments.model;
   evaluation.model_checksum = model_checksum(bytes);
   evaluation.version = VESALIUS_VERSION;
   evaluation.machine = machine_facts();
-  const FrameScorer::Options scored{evaluation.options, arguments.labels_only, arguments.joint_set};
+  const FrameScorer::Options scored{evaluation.options, labels_only, arguments.joint_set, fits_context};
   std::vector<Variant> variants;
   if (arguments.ablation) variants = ablation_variants(forest, scored);
   const FrameScorer scorer(make_labeller(std::move(forest)), scored);
@@ -321,6 +338,13 @@ void add_evaluate(CLI::App& program) {
           "Write the model with a judge fitted to these frames, which tells people from what is taken for them")
       ->type_name("FOREST")
       ->excludes(labels_only);
+  command
+      ->add_option(
+          "--fit-context", arguments->fit_context,
+          "Write the model with a context fitted to these labelled frames, which corrects by what is around each "
+          "pixel whether it is a body; measures nothing, and leaves out the judge, which is fitted afterwards")
+      ->type_name("FOREST")
+      ->excludes("--fit-joints", "--fit-parts", "--fit-score", "--fit-judge", "--ablation");
   command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The metrics are the same")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads));

@@ -23,9 +23,10 @@ constexpr std::size_t kSizeAt = 12;
 constexpr std::size_t kChecksumAt = 20;
 constexpr std::size_t kHeaderBytes = 28;
 constexpr std::uint16_t kFlagBackground = 1;
-constexpr std::uint16_t kFlagLogits = 2;  ///< leaves were learned jointly and have logits
-constexpr std::uint16_t kFlagJudge = 4;   ///< has a judge of people
-constexpr std::uint16_t kAllFlags = kFlagBackground | kFlagLogits | kFlagJudge;
+constexpr std::uint16_t kFlagLogits = 2;   ///< leaves were learned jointly and have logits
+constexpr std::uint16_t kFlagJudge = 4;    ///< has a judge of people
+constexpr std::uint16_t kFlagContext = 8;  ///< has a context of bodies
+constexpr std::uint16_t kAllFlags = kFlagBackground | kFlagLogits | kFlagJudge | kFlagContext;
 
 std::uint64_t checksum(std::string_view bytes) {
   XXH64_state_t state;
@@ -87,29 +88,29 @@ void read_facing(ByteReader& in, Forest& forest) {
   for (std::uint32_t i = 0; i < count; ++i) forest.facing.weights.push_back(in.real32("weights of headings"));
 }
 
-void write_judge(ByteWriter& out, const PersonJudge& judge) {
-  out.number(static_cast<std::uint16_t>(judge.features));
-  out.real(judge.bias);
-  out.number(static_cast<std::uint32_t>(judge.trees.size()));
-  for (const JudgeTree& tree : judge.trees) {
+void write_boosted(ByteWriter& out, const BoostedTrees& boosted) {
+  out.number(static_cast<std::uint16_t>(boosted.features));
+  out.real(boosted.bias);
+  out.number(static_cast<std::uint32_t>(boosted.trees.size()));
+  for (const BoostedTree& tree : boosted.trees) {
     for (const std::uint16_t feature : tree.feature) out.number(feature);
     for (const float threshold : tree.threshold) out.real(threshold);
     for (const float value : tree.value) out.real(value);
   }
 }
 
-PersonJudge read_judge(ByteReader& in) {
-  PersonJudge judge;
-  judge.features = in.number<std::uint16_t>("evidence of the judge");
-  judge.bias = in.real32("judge");
-  const auto count = in.number<std::uint32_t>("trees of the judge");
+BoostedTrees read_boosted(ByteReader& in, const char* what) {
+  BoostedTrees boosted;
+  boosted.features = in.number<std::uint16_t>(what);
+  boosted.bias = in.real32(what);
+  const auto count = in.number<std::uint32_t>(what);
   for (std::uint32_t t = 0; t < count; ++t) {
-    JudgeTree& tree = judge.trees.emplace_back();
-    for (std::uint16_t& feature : tree.feature) feature = in.number<std::uint16_t>("judge");
-    for (float& threshold : tree.threshold) threshold = in.real32("judge");
-    for (float& value : tree.value) value = in.real32("judge");
+    BoostedTree& tree = boosted.trees.emplace_back();
+    for (std::uint16_t& feature : tree.feature) feature = in.number<std::uint16_t>(what);
+    for (float& threshold : tree.threshold) threshold = in.real32(what);
+    for (float& value : tree.value) value = in.real32(what);
   }
-  return judge;
+  return boosted;
 }
 
 }  // namespace
@@ -121,9 +122,9 @@ std::string serialise_model(const Forest& forest) {
   out.bytes() += kMagic;
   out.number(static_cast<std::uint16_t>(kModelVersion));
   const bool logits = forest.logit_unit != 0.F;
-  const bool judge = !forest.judge.empty();
+  const bool judge = !forest.judge.empty(), context = !forest.context.empty();
   out.number(static_cast<std::uint16_t>((forest.has_background ? kFlagBackground : 0) | (logits ? kFlagLogits : 0) |
-                                        (judge ? kFlagJudge : 0)));
+                                        (judge ? kFlagJudge : 0) | (context ? kFlagContext : 0)));
   out.number(std::uint64_t{0});  // size and checksum, filled in at the end
   out.number(std::uint64_t{0});
   out.text(forest.body.toml);
@@ -141,7 +142,8 @@ std::string serialise_model(const Forest& forest) {
     out.number(static_cast<std::uint32_t>(forest.facing.weights.size()));
     for (const float weight : forest.facing.weights) out.real(weight);
   }
-  if (judge) write_judge(out, forest.judge);
+  if (context) write_boosted(out, forest.context);
+  if (judge) write_boosted(out, forest.judge);
   overwrite(out.bytes(), kSizeAt, static_cast<std::uint64_t>(out.bytes().size()));
   overwrite(out.bytes(), kChecksumAt, checksum(out.bytes()));
   return std::move(out.bytes());
@@ -171,7 +173,8 @@ Forest parse_model(std::string_view bytes, const std::string& name) {
     read_logits(in, static_cast<std::size_t>(layout.size()), forest.trees);
     read_facing(in, forest);
   }
-  if ((flags & kFlagJudge) != 0) forest.judge = read_judge(in);
+  if ((flags & kFlagContext) != 0) forest.context = read_boosted(in, "context of bodies");
+  if ((flags & kFlagJudge) != 0) forest.judge = read_boosted(in, "judge of people");
   in.expect_end();
   with_context(name, [&] { check(forest); });
   return forest;

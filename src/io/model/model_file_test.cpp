@@ -53,7 +53,25 @@ TEST(ModelFile, KeepsTheJudge) {
   EXPECT_EQ(parse_model(bytes, "m").judge, forest.judge);
   EXPECT_TRUE(parse_model(serialise_model(random_forest(4)), "m").judge.empty());
   forest.judge.features = 1;
-  EXPECT_THAT([&] { serialise_model(forest); }, ThrowsMessage<Error>(HasSubstr("evidence that it does not have")));
+  EXPECT_THAT([&] { serialise_model(forest); }, ThrowsMessage<Error>(HasSubstr("judge of people asks for a feature")));
+}
+
+TEST(ModelFile, KeepsTheContext) {
+  Forest forest = random_forest(4);
+  forest.has_background = true;
+  Random random(6, 0);
+  test::add_judge(forest, 20, random);
+  forest.context = forest.judge;
+  forest.context.bias = -1.5F;
+  const Forest again = parse_model(serialise_model(forest), "m");
+  EXPECT_EQ(again.context, forest.context);
+  EXPECT_EQ(again.judge, forest.judge);
+  forest.judge = {};
+  EXPECT_EQ(parse_model(serialise_model(forest), "m").context, forest.context) << "without a judge";
+  Forest without = tiny_forest();
+  without.has_background = false;
+  without.context = forest.context;
+  EXPECT_THAT([&] { serialise_model(without); }, ThrowsMessage<Error>(HasSubstr("without a background class")));
 }
 
 TEST(ModelFile, KeepsLogitsAndHeadings) {

@@ -120,8 +120,8 @@ inline void add_logits(Forest& forest, int headings, Random& random) {
 /// Gives the forest a random judge of people.
 inline void add_judge(Forest& forest, int trees, Random& random) {
   constexpr int kFeatures = 30;
-  forest.judge = {kFeatures, 0.25F, std::vector<JudgeTree>(trees)};
-  for (JudgeTree& tree : forest.judge.trees) {
+  forest.judge = {kFeatures, 0.25F, std::vector<BoostedTree>(trees)};
+  for (BoostedTree& tree : forest.judge.trees) {
     for (std::uint16_t& feature : tree.feature) feature = static_cast<std::uint16_t>(random.below(kFeatures));
     for (float& threshold : tree.threshold) threshold = static_cast<float>(random.uniform());
     for (float& value : tree.value) value = static_cast<float>(random.uniform(-1.0, 1.0));

@@ -288,6 +288,16 @@ BodyModel parse_body_model(std::string_view toml, const std::string& source) {
   return body;
 }
 
+std::vector<int> part_slots(const BodyModel& body) {
+  std::vector<int> slots;
+  int next = 0;
+  for (int p = 0; p < body.part_count(); ++p) {
+    const int mirror = body.parts[p].mirror;
+    slots.push_back(mirror >= 0 && mirror < p ? slots[mirror] : next++);
+  }
+  return slots;
+}
+
 const BodyModel& paper_body() {
   static const BodyModel body = parse_body_model(kPaperBody, "paper25");
   return body;

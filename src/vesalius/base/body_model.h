@@ -96,4 +96,7 @@ BodyModel parse_body_model(std::string_view toml, const std::string& source);
 /// Returns the paper's 25 parts (section 4.1.3), in the order of its released trees.
 const BodyModel& paper_body();
 
+/// Returns for each part the index of its kind, which it shares with its mirror partner.
+std::vector<int> part_slots(const BodyModel& body);
+
 }  // namespace vesalius

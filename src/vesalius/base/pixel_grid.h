@@ -70,8 +70,14 @@ inline GridPixel nearest_on_grid(const DepthImage& depth, int step, int u, int v
   return nearest;
 }
 
+/// Returns by how much a pixel's depth may differ from that of the grid pixel which speaks for it: 5 cm and 3 mm more
+/// for every square metre of the pixel's own depth, in millimetres.
+inline int grid_within_mm(int z_mm) {
+  return 50 + static_cast<int>(static_cast<std::int64_t>(z_mm) * z_mm * 3 / 1'000'000);
+}
+
 /// Transfers results on a grid to all pixels. Each pixel takes the value of the surrounding grid pixel that is nearest
-/// in depth; the difference must be within 5 cm and 3 mm more for every square metre of the pixel's own depth.
+/// in depth, if that is near enough (grid_within_mm).
 class GridGuide {
  public:
   /// `depth` is the whole picture and must outlive the guide. Throws Error for a step below 1.
@@ -93,7 +99,7 @@ class GridGuide {
       for (int v = top + begin; v < top + end; ++v) {
         for (int u = left; u < right; ++u) {
           if (depth_(u, v) == 0) continue;
-          const GridPixel source = nearest_on_grid(depth_, step_, u, v, within(depth_(u, v)));
+          const GridPixel source = nearest_on_grid(depth_, step_, u, v, grid_within_mm(depth_(u, v)));
           if (source.found) out(u, v) = coarse(source.u / step_, source.v / step_);
         }
       }
@@ -109,9 +115,6 @@ class GridGuide {
 
  private:
   static constexpr int kRows = 16;
-
-  /// Returns by how much a pixel's depth may differ from that of the grid pixel whose value it takes.
-  static int within(int z_mm) { return 50 + static_cast<int>(static_cast<std::int64_t>(z_mm) * z_mm * 3 / 1'000'000); }
 
   const DepthImage& depth_;
   int step_;

@@ -9,9 +9,9 @@ namespace vesalius {
 
 /// The stages of a Detector in their order. `grid` is the removal of blended readings and the selection of the grid's
 /// pixels before all others, and the enlarging after them.
-enum class Stage { planes, label, smooth, choose, cluster, search, grow, second_pass, people, grid };
-inline constexpr std::array kStageNames = {"planes", "label", "smooth",      "choose", "cluster",
-                                           "search", "grow",  "second pass", "people", "grid"};
+enum class Stage { planes, label, smooth, context, choose, cluster, search, grow, second_pass, people, grid };
+inline constexpr std::array kStageNames = {"planes", "label", "smooth",      "context", "choose", "cluster",
+                                           "search", "grow",  "second pass", "people",  "grid"};
 
 /// The wall-clock time of each stage of one detection in milliseconds.
 struct StageTimes {

@@ -91,7 +91,11 @@ void check(const Forest& forest) {
   }
   for (std::size_t t = 0; t < forest.trees.size(); ++t) check_tree(forest.trees[t], t, forest.class_count());
   check_logits(forest);
-  check(forest.judge);
+  check(forest.context, "context of bodies");
+  check(forest.judge, "judge of people");
+  if (!forest.context.empty() && !forest.has_background) {
+    throw Error("forest: a context of bodies without a background class");
+  }
 }
 
 int depth(const Tree& tree) {

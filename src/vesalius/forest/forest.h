@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "vesalius/base/body_model.h"
+#include "vesalius/forest/boosted_trees.h"
 #include "vesalius/forest/facing.h"
-#include "vesalius/forest/person_judge.h"
 
 namespace vesalius {
 
@@ -62,7 +62,8 @@ struct Forest {
   float logit_unit = 0.F;  ///< of the leaves' logits in nats; 0 where leaves have distributions instead
   int headings = 0;        ///< headings that the leaves' logits tell apart
   FacingModel facing;      ///< how a person's heading follows from them; may be empty
-  PersonJudge judge;       ///< which proposals are people; may be empty
+  BoostedTrees context;    ///< which pixels are bodies, given what is around them (body_context.h); may be empty
+  BoostedTrees judge;      ///< which proposals are people; may be empty
   std::string recipe;      ///< free text on how it was made
 
   int class_count() const { return body.part_count() + (has_background ? 1 : 0); }

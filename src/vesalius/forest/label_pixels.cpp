@@ -168,7 +168,8 @@ struct PackedForest {
   float logit_unit = 0.F;
   LogitLayout layout;  ///< where leaves have logits
   FacingModel facing;
-  PersonJudge judge;
+  BoostedTrees context;
+  BoostedTrees judge;
   std::vector<PackedTree> trees;
 
   bool has_logits() const { return logit_unit > 0.F; }
@@ -308,6 +309,7 @@ ForestLabeller::ForestLabeller(Forest forest) {
   packed.distributions = vesalius::has_distributions(forest);
   packed.classes = forest.class_count();
   packed.facing = forest.facing;
+  packed.context = forest.context;
   packed.judge = forest.judge;
   packed.logit_unit = forest.logit_unit;
   packed.layout = LogitLayout(forest.body, forest.has_background, forest.headings);
@@ -323,7 +325,8 @@ ForestLabeller::~ForestLabeller() = default;
 
 const BodyModel& ForestLabeller::body() const { return packed_->body; }
 const FacingModel& ForestLabeller::facing_model() const { return packed_->facing; }
-const PersonJudge& ForestLabeller::judge() const { return packed_->judge; }
+const BoostedTrees& ForestLabeller::context() const { return packed_->context; }
+const BoostedTrees& ForestLabeller::judge() const { return packed_->judge; }
 bool ForestLabeller::has_background() const { return packed_->background; }
 bool ForestLabeller::has_distributions() const { return packed_->distributions; }
 

@@ -6,9 +6,9 @@
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
 #include "vesalius/base/options.h"
+#include "vesalius/forest/boosted_trees.h"
 #include "vesalius/forest/facing.h"
 #include "vesalius/forest/forest.h"
-#include "vesalius/forest/person_judge.h"
 #include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
@@ -55,9 +55,14 @@ class PixelLabeller {
     static const FacingModel kNone;
     return kNone;
   }
+  /// Returns how what is around a pixel tells whether it is a body (body_context.h), if the forest tells.
+  virtual const BoostedTrees& context() const {
+    static const BoostedTrees kNone;
+    return kNone;
+  }
   /// Returns which proposals are people, if the forest tells.
-  virtual const PersonJudge& judge() const {
-    static const PersonJudge kNone;
+  virtual const BoostedTrees& judge() const {
+    static const BoostedTrees kNone;
     return kNone;
   }
 };
@@ -76,7 +81,8 @@ class ForestLabeller : public PixelLabeller {
   bool has_background() const override;
   bool has_distributions() const override;
   const FacingModel& facing_model() const override;
-  const PersonJudge& judge() const override;
+  const BoostedTrees& context() const override;
+  const BoostedTrees& judge() const override;
 
  private:
   struct Packed;

@@ -19,13 +19,19 @@ struct SceneLabelOptions {
 
 /// The class probabilities of one frame's pixels. All pictures have the frame's size.
 struct SceneLabels {
-  Mask flat;              ///< 1 on floor, walls and other large flat surfaces, which are no person
-  DepthImage shown;       ///< depth that the labeller was shown; empty if it is the frame's
-  Posteriors raw;         ///< posteriors of the labeller
-  Posteriors smooth;      ///< smoothed posteriors; undefined if labels are smoothed instead
-  bool smoothed = false;  ///< whether `smooth` is defined
+  Mask flat;             ///< 1 on floor, walls and other large flat surfaces, which are no person
+  DepthImage shown;      ///< depth that the labeller was shown; empty if it is the frame's
+  Posteriors raw;        ///< posteriors of the labeller
+  Posteriors smooth;     ///< smoothed posteriors; undefined if labels are smoothed instead
+  Posteriors corrected;  ///< `smooth`, corrected by what is around each pixel; undefined if the forest knows no context
+  bool smoothed = false;    ///< whether `smooth` is defined
+  bool in_context = false;  ///< whether `corrected` is defined
 
-  const Posteriors& posteriors() const { return smoothed ? smooth : raw; }
+  /// Returns what the forest says of each pixel by itself. People are judged by it: rendered surroundings are surer
+  /// than real ones (decision 37).
+  const Posteriors& alone() const { return smoothed ? smooth : raw; }
+  /// Returns the same with the context of bodies, if there is one. Labels follow from it.
+  const Posteriors& posteriors() const { return in_context ? corrected : alone(); }
 };
 
 /// Returns the mean over the pixels of `inside` of the likeliest part's share of all parts, 0-1. Pixels without a
@@ -36,15 +42,17 @@ float mean_certainty(const Posteriors& posteriors, const Mask& inside, int parts
 /// without a background class takes walls and floor for bodies, so it is shown scenes without their flat surfaces, and
 /// a person alone. One with a background class is shown the whole scene once, while the surfaces are searched for; a
 /// person's pixels are then known not to be background. Posteriors are smoothed by their mean; if they are only one
-/// vote for each tree, labels are smoothed by their mode instead. It may be used from several threads at once.
+/// vote for each tree, labels are smoothed by their mode instead. Where the forest knows a context of bodies, the
+/// smoothed posteriors are corrected by it (body_context.h). It may be used from several threads at once.
 class SceneLabeller {
  public:
+  /// Throws Error for a labeller whose context was fitted to other features.
   SceneLabeller(std::shared_ptr<const PixelLabeller> labeller, SceneLabelOptions options);
 
   const BodyModel& body() const { return labeller_->body(); }
 
-  /// Labels a whole frame and reuses the memory of `used`. Tells `clock` when planes, posteriors and smoothing are
-  /// done.
+  /// Labels a whole frame and reuses the memory of `used`. Tells `clock` when planes, posteriors, smoothing and context
+  /// are done.
   SceneLabels label_scene(const Frame& frame, StageClock& clock, SceneLabels used = {}) const;
 
   /// Returns the likeliest label of each pixel, kBackground on flat surfaces of labellers without a background class.

@@ -2,7 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "capsule/capsule_person.h"
+#include "vesalius/base/error.h"
+#include "vesalius/forest/body_context.h"
 
 namespace vesalius {
 namespace {
@@ -102,8 +106,9 @@ class CannotTellSides : public PixelLabeller {
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
         if (depth(u, v) == 0) continue;
-        out.at(u, v)[l_hand] = 128;
-        out.at(u, v)[r_hand] = 127;
+        out.at(u, v)[l_hand] = sure ? 128 : 64;
+        out.at(u, v)[r_hand] = sure ? 127 : 64;
+        out.at(u, v)[25] = sure ? 0 : 127;
         out.turns_at(u, v)[8 + 0] = 32768;
         out.turns_at(u, v)[16 + 4] = 32767;
       }
@@ -113,13 +118,40 @@ class CannotTellSides : public PixelLabeller {
   bool has_background() const override { return true; }
   bool has_distributions() const override { return true; }
   const FacingModel& facing_model() const override { return model_; }
+  const BoostedTrees& context() const override { return corrected; }
 
+  BoostedTrees corrected;
+  bool sure = true;  ///< whether it is surely a body
   int l_hand = paper_body().find_part("l_hand");
   int r_hand = paper_body().find_part("r_hand");
 
  private:
   FacingModel model_;
 };
+
+TEST(SceneLabellerContext, CorrectsTheSmoothedPosteriors) {
+  const auto labeller = std::make_shared<CannotTellSides>();
+  Frame frame;
+  frame.camera = kCamera;
+  frame.depth = DepthImage(kCamera.width, kCamera.height, 2000);
+  StageClock clock(nullptr);
+  EXPECT_EQ(SceneLabeller(labeller, {}).label_scene(frame, clock).posteriors().at(50, 50)[25], 0);
+  constexpr float kUnlikely = -3.F;
+  labeller->sure = false;
+  labeller->corrected = {BodySurroundings::feature_count(paper_body()), kUnlikely, {BoostedTree{}}};
+  const SceneLabels labels = SceneLabeller(labeller, {}).label_scene(frame, clock);
+  EXPECT_NEAR(*body_share(labels.posteriors(), 50, 50, 25), 1.0 / (1.0 + std::exp(3.0)), 0.01);
+  EXPECT_NEAR(*body_share(labels.raw, 50, 50, 25), 0.5, 0.01) << "what the forest itself said stays known";
+
+  SceneLabelOptions by_mode;
+  by_mode.smooth.mode = true;
+  const SceneLabels uncorrected = SceneLabeller(labeller, by_mode).label_scene(frame, clock);
+  EXPECT_NEAR(*body_share(uncorrected.posteriors(), 50, 50, 25), 0.5, 0.01) << "it was fitted to smoothed posteriors";
+
+  labeller->corrected.features -= 1;
+  EXPECT_THAT([&] { SceneLabeller(labeller, {}); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("evaluate --fit-context")));
+}
 
 TEST(SceneLabellerFacing, LabelsAPersonsPixelsByTheHeadingOfTheWholePerson) {
   const auto labeller = std::make_shared<CannotTellSides>();

@@ -1,4 +1,4 @@
-#include "eval/boost_judge.h"
+#include "eval/boost_trees.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,15 +30,15 @@ struct Slope {
   }
 };
 
-/// The samples' values of one kind of evidence, in bins of about as many samples each.
+/// The samples' values of one feature, in bins of about as many samples each.
 struct Column {
   std::vector<float> thresholds;   ///< bin b holds what is above thresholds[b - 1] and not above thresholds[b]
   std::vector<std::uint8_t> bins;  ///< [sample]
 };
 
-Column column(const std::vector<JudgeSample>& samples, std::size_t feature) {
+Column column(const std::vector<BoostSample>& samples, std::size_t feature) {
   std::vector<float> sorted;
-  for (const JudgeSample& sample : samples) sorted.push_back(sample.evidence[feature]);
+  for (const BoostSample& sample : samples) sorted.push_back(sample.features[feature]);
   std::ranges::sort(sorted);
   Column column;
   for (std::size_t b = 1; b < kBins; ++b) {
@@ -49,8 +49,8 @@ Column column(const std::vector<JudgeSample>& samples, std::size_t feature) {
     const float threshold = 0.5F * (last + *next);
     if (column.thresholds.empty() || threshold > column.thresholds.back()) column.thresholds.push_back(threshold);
   }
-  for (const JudgeSample& sample : samples) {
-    const auto above = std::ranges::lower_bound(column.thresholds, sample.evidence[feature]);
+  for (const BoostSample& sample : samples) {
+    const auto above = std::ranges::lower_bound(column.thresholds, sample.features[feature]);
     column.bins.push_back(static_cast<std::uint8_t>(above - column.thresholds.begin()));
   }
   return column;
@@ -70,22 +70,22 @@ struct Split {
 
 class Booster {
  public:
-  Booster(const std::vector<JudgeSample>& samples, std::vector<int> signs, const BoostOptions& options)
+  Booster(const std::vector<BoostSample>& samples, std::vector<int> signs, const BoostOptions& options)
       : samples_(samples),
         signs_(std::move(signs)),
         options_(options),
         columns_(signs_.size()),
         slopes_(samples.size()) {
     parallel_for(static_cast<int>(columns_.size()), [&](int f) { columns_[f] = column(samples, f); });
-    const auto people = static_cast<double>(std::ranges::count(samples, true, &JudgeSample::person));
+    const auto people = static_cast<double>(std::ranges::count(samples, true, &BoostSample::positive));
     bias_ = std::log(people / (static_cast<double>(samples.size()) - people));
     log_odds_.assign(samples.size(), bias_);
   }
 
-  PersonJudge judge() {
-    PersonJudge judge{static_cast<int>(columns_.size()), static_cast<float>(bias_), {}};
-    for (int t = 0; t < options_.trees; ++t) judge.trees.push_back(tree());
-    return judge;
+  BoostedTrees grow() {
+    BoostedTrees grown{static_cast<int>(columns_.size()), static_cast<float>(bias_), {}};
+    for (int t = 0; t < options_.trees; ++t) grown.trees.push_back(tree());
+    return grown;
   }
 
  private:
@@ -99,24 +99,26 @@ class Booster {
   }
 
   void draw() {
+    drawn_.clear();
     for (std::size_t i = 0; i < samples_.size(); ++i) {
+      if (random_.uniform() >= options_.sample_share) continue;
       const double p = 1.0 / (1.0 + std::exp(-log_odds_[i]));
-      const bool drawn = random_.uniform() < options_.sample_share;
-      slopes_[i] = drawn ? Slope{p - (samples_[i].person ? 1.0 : 0.0), p * (1.0 - p), 1} : Slope{};
+      slopes_[i] = {p - (samples_[i].positive ? 1.0 : 0.0), p * (1.0 - p), 1};
+      drawn_.push_back(static_cast<std::uint32_t>(i));
     }
     asked_.clear();
     for (int f = 0; f < static_cast<int>(columns_.size()); ++f) {
-      if (random_.uniform() < options_.evidence_share) asked_.push_back(f);
+      if (random_.uniform() < options_.feature_share) asked_.push_back(f);
     }
   }
 
-  /// Returns the best split by one kind of evidence of each of the nodes of a level.
+  /// Returns the best split by one feature of each of the nodes of a level.
   std::vector<Split> splits(int feature, const std::vector<std::uint8_t>& node,
                             const std::vector<Bounds>& bounds) const {
     const Column& column = columns_[feature];
     const std::size_t nodes = bounds.size();
     std::vector<Slope> sums(nodes * kBins);
-    for (std::size_t i = 0; i < samples_.size(); ++i) sums[node[i] * kBins + column.bins[i]] += slopes_[i];
+    for (const std::uint32_t i : drawn_) sums[node[i] * kBins + column.bins[i]] += slopes_[i];
     std::vector<Split> best(nodes);
     for (std::size_t n = 0; n < nodes; ++n) {
       Slope all;
@@ -142,7 +144,7 @@ class Booster {
     std::pair<Bounds, Bounds> below{bounds, bounds};
     if (split.feature < 0 || signs_[split.feature] == 0) return below;
     Slope left, right;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
+    for (const std::uint32_t i : drawn_) {
       if (node[i] == n) (columns_[split.feature].bins[i] > split.bin ? right : left) += slopes_[i];
     }
     const double middle = 0.5 * (value(left, bounds) + value(right, bounds));
@@ -151,13 +153,13 @@ class Booster {
     return below;
   }
 
-  JudgeTree tree() {
+  BoostedTree tree() {
     draw();
-    JudgeTree tree;
+    BoostedTree tree;
     tree.threshold.fill(kNever);
     std::vector<std::uint8_t> node(samples_.size(), 0);  // within its level
     std::vector<Bounds> bounds(1);
-    for (int level = 0; level < JudgeTree::kDepth; ++level) {
+    for (int level = 0; level < BoostedTree::kDepth; ++level) {
       std::vector<std::vector<Split>> of_feature(asked_.size());
       parallel_for(static_cast<int>(asked_.size()), [&](int i) { of_feature[i] = splits(asked_[i], node, bounds); });
       std::vector<Split> best(bounds.size());
@@ -186,20 +188,21 @@ class Booster {
     return tree;
   }
 
-  void set_values(const std::vector<std::uint8_t>& leaf, const std::vector<Bounds>& bounds, JudgeTree& tree) {
-    std::vector<Slope> of_leaf(JudgeTree::kLeaves);
-    for (std::size_t i = 0; i < samples_.size(); ++i) of_leaf[leaf[i]] += slopes_[i];
-    for (int l = 0; l < JudgeTree::kLeaves; ++l) {
+  void set_values(const std::vector<std::uint8_t>& leaf, const std::vector<Bounds>& bounds, BoostedTree& tree) {
+    std::vector<Slope> of_leaf(BoostedTree::kLeaves);
+    for (const std::uint32_t i : drawn_) of_leaf[leaf[i]] += slopes_[i];
+    for (int l = 0; l < BoostedTree::kLeaves; ++l) {
       tree.value[l] = static_cast<float>(options_.rate * value(of_leaf[l], bounds[l]));
     }
     for (std::size_t i = 0; i < samples_.size(); ++i) log_odds_[i] += static_cast<double>(tree.value[leaf[i]]);
   }
 
-  const std::vector<JudgeSample>& samples_;
+  const std::vector<BoostSample>& samples_;
   std::vector<int> signs_;
   BoostOptions options_;
   std::vector<Column> columns_;
-  std::vector<Slope> slopes_;  ///< [sample]; 0 for those that the tree does not see
+  std::vector<Slope> slopes_;         ///< [sample]; of those that the tree sees
+  std::vector<std::uint32_t> drawn_;  ///< samples that the tree sees
   std::vector<double> log_odds_;
   std::vector<int> asked_;
   double bias_ = 0.0;
@@ -208,17 +211,16 @@ class Booster {
 
 }  // namespace
 
-PersonJudge boost_judge(const std::vector<JudgeSample>& samples, const std::vector<int>& signs,
-                        const BoostOptions& options) {
-  const auto people = std::ranges::count(samples, true, &JudgeSample::person);
-  if (people == 0) throw Error("fitting the judge: the frames have no candidate that is known to be a person");
-  if (people == std::ranges::ssize(samples)) {
-    throw Error("fitting the judge: the frames have no candidate that is known to be nobody");
+BoostedTrees boost_trees(const std::vector<BoostSample>& samples, const std::vector<int>& signs,
+                         const BoostOptions& options) {
+  const auto positive = std::ranges::count(samples, true, &BoostSample::positive);
+  if (positive == 0 || positive == std::ranges::ssize(samples)) {
+    throw Error("boosted trees: expected samples of both answers");
   }
-  if (std::ranges::any_of(samples, [&](const JudgeSample& s) { return s.evidence.size() != signs.size(); })) {
-    throw Error("fitting the judge: evidence of different lengths");
+  if (std::ranges::any_of(samples, [&](const BoostSample& s) { return s.features.size() != signs.size(); })) {
+    throw Error("boosted trees: samples of different lengths");
   }
-  return Booster(samples, signs, options).judge();
+  return Booster(samples, signs, options).grow();
 }
 
 }  // namespace vesalius

@@ -1,0 +1,249 @@
+#include "vesalius/forest/body_context.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+#include "vesalius/base/parallel.h"
+#include "vesalius/base/pixel_grid.h"
+#include "vesalius/forest/smooth_labels.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kRowGrain = 8;
+
+/// The first channels; then follow the kinds of parts.
+enum Channel : std::size_t { kReadings, kDepth_mm, kBody, kFirstKind };
+
+/// A square box beside a pixel, metres at the pixel's depth, in the picture's directions.
+struct Around {
+  float right_m, down_m, radius_m;
+};
+/// Boxes about the pixel itself: the neighbourhood, a limb, a torso, half a person.
+constexpr std::array kAbout{0.06F, 0.15F, 0.3F, 0.6F};
+/// Boxes around it: the next limb, then what is half a person away in eight directions, then what is above and below
+/// one.
+constexpr std::array<Around, 14> kBeside{{{0.3F, 0.F, 0.15F},
+                                          {-0.3F, 0.F, 0.15F},
+                                          {0.F, 0.3F, 0.15F},
+                                          {0.F, -0.3F, 0.15F},
+                                          {0.6F, 0.F, 0.25F},
+                                          {-0.6F, 0.F, 0.25F},
+                                          {0.F, 0.6F, 0.25F},
+                                          {0.F, -0.6F, 0.25F},
+                                          {0.45F, 0.45F, 0.25F},
+                                          {-0.45F, 0.45F, 0.25F},
+                                          {0.45F, -0.45F, 0.25F},
+                                          {-0.45F, -0.45F, 0.25F},
+                                          {0.F, 1.1F, 0.3F},
+                                          {0.F, -1.1F, 0.3F}}};
+constexpr int kOfPixel = 4;  ///< features of the pixel besides the kinds of parts
+constexpr int kOfBox = 3;
+constexpr float kMostBeyond_m = 1.5F;
+
+int kinds_of(const std::vector<int>& slots) { return *std::ranges::max_element(slots) + 1; }
+
+}  // namespace
+
+/// The corners of a box of cells in the sums.
+struct BodySurroundings::Box4 {
+  const std::uint32_t *top_left, *top_right, *bottom_left, *bottom_right;
+  float cells;  ///< within the picture, at least 1
+
+  std::uint32_t operator[](std::size_t channel) const {
+    return bottom_right[channel] - top_right[channel] - bottom_left[channel] + top_left[channel];
+  }
+};
+
+BodySurroundings::BodySurroundings(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
+                                   const BodyModel& body)
+    : posteriors_(posteriors),
+      depth_(depth),
+      camera_(camera),
+      slots_(part_slots(body)),
+      kinds_(kinds_of(slots_)),
+      step_(spaced(SmoothOptions{}, camera).spacing),
+      columns_((depth.width() + step_ - 1) / step_),
+      rows_((depth.height() + step_ - 1) / step_),
+      channels_(kFirstKind + kinds_),
+      sums_(static_cast<std::size_t>(columns_ + 1) * (rows_ + 1) * channels_) {
+  const std::size_t stride = static_cast<std::size_t>(columns_ + 1) * channels_;
+  std::vector<std::array<int, 2>> parts_of(kinds_, {-1, -1});
+  for (std::size_t p = 0; p < slots_.size(); ++p) {
+    std::array<int, 2>& parts = parts_of[slots_[p]];
+    parts[parts[0] < 0 ? 0 : 1] = static_cast<int>(p);
+  }
+  parallel_ranges(rows_, kRowGrain, [&](int begin, int end) {
+    std::vector<std::uint32_t> run(channels_);
+    for (int row = begin; row < end; ++row) {
+      std::ranges::fill(run, 0U);
+      std::uint32_t* out = sums_.data() + (static_cast<std::size_t>(row) + 1) * stride + channels_;
+      for (int column = 0; column < columns_; ++column, out += channels_) {
+        const int z_mm = depth_(column * step_, row * step_);
+        if (z_mm != 0) {
+          run[kReadings] += 1;
+          run[kDepth_mm] += static_cast<std::uint32_t>(z_mm);
+          const std::uint16_t* of = posteriors_.at(column * step_, row * step_);
+          for (int k = 0; k < kinds_; ++k) {
+            const auto [one, other] = parts_of[k];
+            const auto share = static_cast<std::uint32_t>(of[one] + (other >= 0 ? of[other] : 0));
+            run[kFirstKind + k] += share;
+            run[kBody] += share;
+          }
+        }
+        std::ranges::copy(run, out);
+      }
+    }
+  });
+  for (int row = 1; row < rows_; ++row) {
+    const std::uint32_t* above = sums_.data() + static_cast<std::size_t>(row) * stride;
+    std::uint32_t* here = sums_.data() + (static_cast<std::size_t>(row) + 1) * stride;
+    for (std::size_t i = 0; i < stride; ++i) here[i] += above[i];
+  }
+}
+
+int BodySurroundings::feature_count(const BodyModel& body) {
+  const int kinds = kinds_of(part_slots(body));
+  return kOfPixel + kinds + static_cast<int>(kAbout.size()) * (kOfBox + kinds) +
+         static_cast<int>(kBeside.size()) * kOfBox;
+}
+
+bool BodySurroundings::is_open(int column, int row) const {
+  const int u = column * step_, v = row * step_;
+  if (depth_(u, v) == 0 || (!posteriors_.settled.empty() && posteriors_.settled(u, v) != 0)) return false;
+  const auto share = body_share(posteriors_, u, v, static_cast<int>(slots_.size()));
+  return share && *share >= kLeastBody;
+}
+
+BodySurroundings::Box4 BodySurroundings::box(int column, int row, float du_m, float dv_m, float radius_m,
+                                             float cells_per_m) const {
+  const int u = column + static_cast<int>(std::lround(du_m * cells_per_m));
+  const int v = row + static_cast<int>(std::lround(dv_m * cells_per_m));
+  const int radius = std::max(1, static_cast<int>(std::lround(radius_m * cells_per_m)));
+  const int left = std::clamp(u - radius, 0, columns_), right = std::clamp(u + radius + 1, 0, columns_);
+  const int top = std::clamp(v - radius, 0, rows_), bottom = std::clamp(v + radius + 1, 0, rows_);
+  return {sums(left, top), sums(right, top), sums(left, bottom), sums(right, bottom),
+          static_cast<float>(std::max(1, (right - left) * (bottom - top)))};
+}
+
+void BodySurroundings::features(int column, int row, float* out) const {
+  const int u = column * step_, v = row * step_;
+  const auto parts = static_cast<int>(slots_.size());
+  const std::uint16_t* of = posteriors_.at(u, v);
+  const auto whole = static_cast<float>(std::accumulate(of, of + posteriors_.classes, 0));
+  const float z_m = 1e-3F * static_cast<float>(depth_(u, v));
+  float* kind = out + kOfPixel;
+  std::fill_n(kind, kinds_, 0.F);
+  int body = 0, first = 0, second = 0;
+  for (int p = 0; p < parts; ++p) {
+    body += of[p];
+    kind[slots_[p]] += static_cast<float>(of[p]);
+    second = std::max(second, std::min<int>(first, of[p]));
+    first = std::max<int>(first, of[p]);
+  }
+  for (int k = 0; k < kinds_; ++k) kind[k] /= whole;
+  out[0] = static_cast<float>(body) / whole;
+  out[1] = static_cast<float>(first) / whole;
+  out[2] = static_cast<float>(second) / whole;
+  out[3] = z_m;
+  out += kOfPixel + kinds_;
+  // What a box's sum of posteriors must be divided by besides its cells.
+  const float unit = 255.F * static_cast<float>(posteriors_.trees);
+  const float cells_per_m = camera_.fx / (z_m * static_cast<float>(step_));
+  const auto of_box = [&](const Box4& box) {
+    *out++ = static_cast<float>(box[kBody]) / (unit * box.cells);
+    const auto readings = static_cast<float>(box[kReadings]);
+    *out++ = readings / box.cells;
+    const float beyond_m = readings > 0.F ? 1e-3F * static_cast<float>(box[kDepth_mm]) / readings - z_m : 0.F;
+    *out++ = std::clamp(beyond_m, -kMostBeyond_m, kMostBeyond_m);
+  };
+  for (const float radius_m : kAbout) {
+    const Box4 about = box(column, row, 0.F, 0.F, radius_m, cells_per_m);
+    of_box(about);
+    for (int k = 0; k < kinds_; ++k) *out++ = static_cast<float>(about[kFirstKind + k]) / (unit * about.cells);
+  }
+  for (const Around& beside : kBeside) {
+    of_box(box(column, row, beside.right_m, beside.down_m, beside.radius_m, cells_per_m));
+  }
+}
+
+namespace {
+
+/// Returns by how much the log odds of a body rise at each cell; NaN where nobody asked.
+Image<float> ask(const BoostedTrees& context, const BodySurroundings& around, const Posteriors& posteriors,
+                 const BodyModel& body) {
+  Image<float> change(around.columns(), around.rows(), std::nanf(""));
+  parallel_ranges(around.rows(), kRowGrain, [&](int begin, int end) {
+    std::vector<float> features(context.features);
+    for (int row = begin; row < end; ++row) {
+      for (int column = 0; column < around.columns(); ++column) {
+        if (!around.is_open(column, row)) continue;
+        around.features(column, row, features.data());
+        const double share = *body_share(posteriors, column * around.step(), row * around.step(), body.part_count());
+        const auto odds = static_cast<float>(std::max(share, 1e-3) / std::max(1.0 - share, 1e-3));
+        change(column, row) = context.log_odds(features.data()) - std::log(odds);
+      }
+    }
+  });
+  return change;
+}
+
+/// Returns the mean change of the cells around a pixel that lie as far away as it does; 0 if there are none.
+float change_at(const Image<float>& change, const DepthImage& depth, int step, int u, int v) {
+  const int z_mm = depth(u, v);
+  const int within = grid_within_mm(z_mm);
+  float sum = 0.F;
+  int count = 0;
+  for (int row = v / step; row <= v / step + (v % step != 0 ? 1 : 0); ++row) {
+    for (int column = u / step; column <= u / step + (u % step != 0 ? 1 : 0); ++column) {
+      if (!change.contains(column, row) || std::isnan(change(column, row))) continue;
+      if (std::abs(depth(column * step, row * step) - z_mm) > within) continue;
+      sum += change(column, row);
+      ++count;
+    }
+  }
+  return count > 0 ? sum / static_cast<float>(count) : 0.F;
+}
+
+/// Makes the odds of a body so many times as large. The sum of all classes stays.
+void multiply_odds(std::uint16_t* of, int parts, int body, int all, float factor) {
+  const auto had = static_cast<float>(body);
+  const float rest = static_cast<float>(all) - had;
+  const float scale = static_cast<float>(all) * factor / (had * factor + rest);
+  int left = all;
+  for (int p = 0; p < parts; ++p) {
+    const int share = std::min(left, static_cast<int>(static_cast<float>(of[p]) * scale + 0.5F));
+    of[p] = static_cast<std::uint16_t>(share);
+    left -= share;
+  }
+  of[parts] = static_cast<std::uint16_t>(left);
+}
+
+}  // namespace
+
+void correct_bodies(const BoostedTrees& context, const DepthImage& depth, const Camera& camera, const BodyModel& body,
+                    const Posteriors& posteriors, Posteriors& out) {
+  const int parts = body.part_count();
+  const BodySurroundings around(posteriors, depth, camera, body);
+  const Image<float> change = ask(context, around, posteriors, body);
+  out.resize_like(posteriors);
+  const std::size_t row = static_cast<std::size_t>(out.width) * out.classes;
+  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      std::copy_n(posteriors.at(0, v), row, out.at(0, v));
+      for (int u = 0; u < depth.width(); ++u) {
+        if (depth(u, v) == 0 || (!posteriors.settled.empty() && posteriors.settled(u, v) != 0)) continue;
+        const float at = change_at(change, depth, around.step(), u, v);
+        if (at == 0.F) continue;
+        std::uint16_t* of = out.at(u, v);
+        const int of_body = std::accumulate(of, of + parts, 0);
+        if (of_body > 0) multiply_odds(of, parts, of_body, of_body + of[parts], std::exp(at));
+      }
+    }
+  });
+}
+
+}  // namespace vesalius
