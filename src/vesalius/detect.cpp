@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -174,7 +175,26 @@ Skeleton second_pass(const Method& method, const Frame& frame, const LabelImage&
   return found.empty() ? Skeleton{} : std::move(found.front());
 }
 
-/// Runs the same stages on one person a second time, and keeps the better of the two skeletons.
+/// Returns whether most of a skeleton's paired parts lie nearer to the other's part of the opposite side than to its
+/// part of the same side.
+bool swaps_sides(const Skeleton& skeleton, const Skeleton& other, const BodyModel& body) {
+  int swapped = 0, compared = 0;
+  for (int p = 0; p < body.part_count(); ++p) {
+    const int mirror = body.parts[p].mirror;
+    if (mirror < 0 || mirror == p || skeleton.parts[p].state != State::observed) continue;
+    const auto distance = [&](int part) {
+      const bool there = other.parts[part].state == State::observed;
+      return there ? (skeleton.parts[p].centre - other.parts[part].centre).norm() : std::numeric_limits<float>::max();
+    };
+    if (distance(p) == distance(mirror)) continue;
+    ++compared;
+    swapped += distance(mirror) < distance(p) ? 1 : 0;
+  }
+  return 2 * swapped > compared;
+}
+
+/// Runs the same stages on one person a second time, and keeps the likelier of the two skeletons. Where the person's
+/// heading is known, a first one whose sides contradict it is not kept: it was found in labels of single pixels.
 Candidate refine(const Method& method, const Frame& frame, const Scene& scene, const Scenery& scenery,
                  Candidate candidate) {
   const Box box = bounding_box(candidate.grown);
@@ -187,9 +207,10 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
     person.labels = candidate.known < 0 ? scene.proposals : std::move(candidate.labels);
     person.certain = mean_certainty(scene.labels.posteriors(), candidate.grown, method.body.part_count());
   }
-  if (candidate.refined.found == 0 || candidate.refined.score < candidate.rough.score) {
-    candidate.refined = candidate.rough;
-  }
+  const bool less_likely = candidate.refined.score < candidate.rough.score;
+  const bool contradicted = person.facing.size() > 0 && candidate.refined.found > 0 &&
+                            swaps_sides(candidate.rough, candidate.refined, method.body);
+  if (candidate.refined.found == 0 || (less_likely && !contradicted)) candidate.refined = candidate.rough;
   candidate.evidence =
       gather_evidence(frame, candidate.grown, person, scene.labels.alone(), scenery, candidate.refined, method.body);
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);

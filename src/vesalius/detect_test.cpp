@@ -4,12 +4,14 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <sstream>
 
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/test_threads.h"
 #include "vesalius/forest/body_context.h"
+#include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {
 namespace {
@@ -518,6 +520,71 @@ TEST(Judge, OfOtherEvidenceIsRefused) {
   labeller->set_judge(judge);
   EXPECT_THAT([&] { Detector(labeller, {}); },
               testing::ThrowsMessage<Error>(testing::HasSubstr("kinds of evidence, expected")));
+}
+
+/// A labeller whose pixels rather say that the person is seen from the front, while all of them together say from
+/// behind, which is true. The pixels of the left hand can only be those of a right one.
+class RatherFromTheFront : public PixelLabeller {
+ public:
+  explicit RatherFromTheFront(LabelImage truth)
+      : truth_(std::move(truth)), model_{8, 25, std::vector<float>(8 * (25 * 8 + 26), 0.F)} {
+    model_.weights[4 * model_.features() + model_.features() - 1] = 50.F;
+  }
+  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+    const LogitLayout layout(paper_body(), true, 8);
+    out = {.width = depth.width(), .height = depth.height(), .classes = 26, .trees = 1, .sums = {}};
+    out.headings = 8;
+    out.sums.assign(depth.size() * 26, 0);
+    out.turns.assign(depth.size() * out.turn_count(), 0);
+    for (int v = 0; v < depth.height(); ++v) {
+      for (int u = 0; u < depth.width(); ++u) {
+        if (depth(u, v) == 0) continue;
+        const int part = truth_(u, v);
+        if (part == kBackground) {
+          out.at(u, v)[25] = 255;
+          continue;
+        }
+        const int mirror = paper_body().parts[part].mirror;
+        const bool only = part == paper_body().find_part("l_hand");
+        out.at(u, v)[mirror] = only ? 255 : 128;
+        if (!only) out.at(u, v)[part] = static_cast<std::uint16_t>(out.at(u, v)[part] + 127);
+        out.turns_at(u, v)[layout.side[mirror] * 8 + 0] = 32768;
+        out.turns_at(u, v)[layout.side[only ? mirror : part] * 8 + 4] = 32767;
+      }
+    }
+  }
+  const BodyModel& body() const override { return paper_body(); }
+  bool has_background() const override { return true; }
+  bool has_distributions() const override { return true; }
+  const FacingModel& facing_model() const override { return model_; }
+
+ private:
+  LabelImage truth_;
+  FacingModel model_;
+};
+
+TEST(Facing, NoLikelierSkeletonWithTheSidesSwappedIsKept) {
+  CapsuleScene scene = one_person(2.F);
+  scene.people[0].pose.yaw = std::numbers::pi_v<float>;
+  const LabelledFrame truth = render(scene, kCamera, paper_body());
+  DetectOptions options;
+  options.refine.min_score = 0.F;
+  Trace trace;
+  const std::vector<Person> people =
+      Detector(std::make_shared<RatherFromTheFront>(truth.labels), options).detect(truth.frame, &trace);
+  ASSERT_EQ(people.size(), 1U);
+  const Skeleton& skeleton = people[0].skeleton;
+  ASSERT_GT(trace.rough.front().score, skeleton.score) << "the first pass alone would be preferred";
+  int own = 0, swapped = 0;
+  for (int p = 0; p < paper_body().part_count(); ++p) {
+    const int mirror = paper_body().parts[p].mirror;
+    if (mirror == p || mirror < 0 || skeleton.parts[p].state != State::observed) continue;
+    const float to_own = (skeleton.parts[p].centre - truth.parts[0][p]).norm();
+    const float to_mirror = (skeleton.parts[p].centre - truth.parts[0][mirror]).norm();
+    ++(to_own < to_mirror ? own : swapped);
+  }
+  EXPECT_GT(own, 16);
+  EXPECT_LE(swapped, 1);
 }
 
 /// A labeller that sees true parts and is 40 percent sure that they are a body.
