@@ -19,7 +19,7 @@ struct LabelOptions {
   float unsure_margin = 0.05F;     ///< difference in probability below which neighbours decide
   /// If the background's probability is at least this at every fourth pixel of every fourth row around a pixel, and
   /// depth is continuous, the forest is not asked about the pixel. Above 1 it is asked about every pixel.
-  float gate = 0.9F;
+  float gate = 0.7F;
 };
 void visit_options(const std::string& prefix, LabelOptions& options, OptionVisitor& visitor);
 
