@@ -18,14 +18,18 @@ float value_at(const BoostedTree& tree, const float* of) {
 
 }  // namespace
 
-float BoostedTrees::log_odds(const float* of) const {
-  float sum = bias;
-  for (const BoostedTree& tree : trees) sum += value_at(tree, of);
-  return sum;
+void BoostedTrees::log_odds(const float* of, std::size_t count, float* out) const {
+  std::fill_n(out, count, bias);
+  const auto length = static_cast<std::size_t>(features);
+  for (const BoostedTree& tree : trees) {
+    for (std::size_t i = 0; i < count; ++i) out[i] += value_at(tree, of + i * length);
+  }
 }
 
 float BoostedTrees::probability(const std::vector<float>& of) const {
-  return 1.F / (1.F + std::exp(-log_odds(of.data())));
+  float sum = 0.F;
+  log_odds(of.data(), 1, &sum);
+  return 1.F / (1.F + std::exp(-sum));
 }
 
 void check(const BoostedTrees& trees, const std::string& what) {

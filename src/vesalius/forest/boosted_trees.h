@@ -28,8 +28,8 @@ struct BoostedTrees {
   std::vector<BoostedTree> trees;
 
   bool empty() const { return trees.empty(); }
-  /// Returns the logarithm of the odds for a list of `features` numbers.
-  float log_odds(const float* of) const;
+  /// Writes the logarithm of the odds for each of `count` lists of `features` numbers, one list after the other.
+  void log_odds(const float* of, std::size_t count, float* out) const;
   /// Returns the probability, 0-1.
   float probability(const std::vector<float>& of) const;
   friend bool operator==(const BoostedTrees&, const BoostedTrees&) = default;
