@@ -205,6 +205,7 @@ TEST(CorrectBodies, PixelsBetweenCellsFollowTheOneOfTheirDepth) {
   }
 }
 
+// Labels: threads
 TEST(CorrectBodies, GivesTheSameForAnyNumberOfThreads) {
   const Picture picture = random_picture(7);
   BoostedTrees trees = always(-0.5F);
