@@ -1,7 +1,6 @@
 #include "eval/fit_context.h"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "vesalius/base/blended_depth.h"
@@ -24,27 +23,28 @@ std::uint64_t seed_of(const std::string& name) {
 std::vector<BoostSample> context_samples(const TrueFrame& frame, const std::shared_ptr<const PixelLabeller>& labeller,
                                          const DetectOptions& options) {
   if (frame.truth.labels.empty() || !labeller->has_background()) return {};
-  Frame seen = frame.frame;
-  if (std::optional<DepthImage> kept = without_blended(seen.depth, options.blend)) seen.depth = std::move(*kept);
-  const int step = grid_step(seen.camera, options.grid);
-  if (step > 1) seen = every_nth(seen, step);
-  const LabelImage truth = every_nth(frame.truth.labels, step);
-  StageClock clock(nullptr);
-  const SceneLabels scene =
-      SceneLabeller(labeller, {options.label, options.smooth, options.grow.plane}).label_scene(seen, clock);
-  const BodySurroundings around(scene.posteriors(), seen.depth, seen.camera, labeller->body());
-  Random random(seed_of(frame.frame.name));
-  std::vector<BoostSample> samples;
-  for (int row = 0; row < around.rows(); ++row) {
-    for (int column = 0; column < around.columns(); ++column) {
-      if (!around.is_open(column, row) || random.below(kContextEvery) != 0) continue;
-      BoostSample& sample = samples.emplace_back();
-      sample.features.resize(BodySurroundings::feature_count(labeller->body()));
-      around.features(column, row, sample.features.data());
-      sample.positive = truth(column * around.step(), row * around.step()) != kBackground;
+  const SceneLabeller scenes(labeller, {options.label, options.smooth, options.grow.plane});
+  Frame memory;
+  const Frame& seen = without_blended(frame.frame, options.blend, memory);
+  const auto sample = [&](const Frame& grid, int step) {
+    StageClock clock(nullptr);
+    const SceneLabels scene = scenes.label_scene(grid, clock);
+    const BodySurroundings around(scene.posteriors(), grid.depth, grid.camera, labeller->body());
+    const int apart = step * around.step();
+    Random random(seed_of(frame.frame.name));
+    std::vector<BoostSample> samples;
+    for (int row = 0; row < around.rows(); ++row) {
+      for (int column = 0; column < around.columns(); ++column) {
+        if (!around.is_open(column, row) || random.below(kContextEvery) != 0) continue;
+        BoostSample& cell = samples.emplace_back();
+        cell.features.resize(BodySurroundings::feature_count(labeller->body()));
+        around.features(column, row, cell.features.data());
+        cell.positive = frame.truth.labels(column * apart, row * apart) != kBackground;
+      }
     }
-  }
-  return samples;
+    return samples;
+  };
+  return on_grid(seen, options.grid, nullptr, sample, [](const GridGuide&, const std::vector<BoostSample>&) {});
 }
 
 }  // namespace vesalius

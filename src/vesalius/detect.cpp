@@ -186,9 +186,9 @@ bool swaps_sides(const Skeleton& skeleton, const Skeleton& other, const BodyMode
       const bool there = other.parts[part].state == State::observed;
       return there ? (skeleton.parts[p].centre - other.parts[part].centre).norm() : std::numeric_limits<float>::max();
     };
-    if (distance(p) == distance(mirror)) continue;
-    ++compared;
-    swapped += distance(mirror) < distance(p) ? 1 : 0;
+    const float same = distance(p), opposite = distance(mirror);
+    compared += same != opposite ? 1 : 0;
+    swapped += opposite < same ? 1 : 0;
   }
   return 2 * swapped > compared;
 }
@@ -207,10 +207,12 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
     person.labels = candidate.known < 0 ? scene.proposals : std::move(candidate.labels);
     person.certain = mean_certainty(scene.labels.posteriors(), candidate.grown, method.body.part_count());
   }
-  const bool less_likely = candidate.refined.score < candidate.rough.score;
-  const bool contradicted = person.facing.size() > 0 && candidate.refined.found > 0 &&
-                            swaps_sides(candidate.rough, candidate.refined, method.body);
-  if (candidate.refined.found == 0 || (less_likely && !contradicted)) candidate.refined = candidate.rough;
+  const auto contradicted = [&] {
+    return person.facing.size() > 0 && swaps_sides(candidate.rough, candidate.refined, method.body);
+  };
+  if (candidate.refined.found == 0 || (candidate.refined.score < candidate.rough.score && !contradicted())) {
+    candidate.refined = candidate.rough;
+  }
   candidate.evidence =
       gather_evidence(frame, candidate.grown, person, scene.labels.alone(), scenery, candidate.refined, method.body);
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
@@ -329,14 +331,6 @@ FrameLabels label_everywhere(const Method& method, const Frame& frame, const Mas
   if (person != nullptr) labels.inside = label_people(method, scene, frame, *person);
   method.memory.give_back(std::move(scene));
   return labels;
-}
-
-/// Returns the frame, or `memory` with a copy of it if some of its readings were blended with holes.
-const Frame& without_blended(const Frame& frame, const BlendOptions& options, Frame& memory) {
-  std::optional<DepthImage> depth = vesalius::without_blended(frame.depth, options);
-  if (!depth) return frame;
-  memory = {frame.name, frame.time_s, frame.camera, std::move(*depth), frame.colour};
-  return memory;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "vesalius/base/test_threads.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/forest/leaf_logits.h"
+#include "vesalius/forest/test_headings.h"
 
 namespace vesalius {
 namespace {
@@ -526,16 +527,10 @@ TEST(Judge, OfOtherEvidenceIsRefused) {
 /// behind, which is true. The pixels of the left hand can only be those of a right one.
 class RatherFromTheFront : public PixelLabeller {
  public:
-  explicit RatherFromTheFront(LabelImage truth)
-      : truth_(std::move(truth)), model_{8, 25, std::vector<float>(8 * (25 * 8 + 26), 0.F)} {
-    model_.weights[4 * model_.features() + model_.features() - 1] = 50.F;
-  }
+  explicit RatherFromTheFront(LabelImage truth) : truth_(std::move(truth)) {}
   void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
     const LogitLayout layout(paper_body(), true, 8);
-    out = {.width = depth.width(), .height = depth.height(), .classes = 26, .trees = 1, .sums = {}};
-    out.headings = 8;
-    out.sums.assign(depth.size() * 26, 0);
-    out.turns.assign(depth.size() * out.turn_count(), 0);
+    out = test::headed_posteriors(depth);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
         if (depth(u, v) == 0) continue;
@@ -560,7 +555,7 @@ class RatherFromTheFront : public PixelLabeller {
 
  private:
   LabelImage truth_;
-  FacingModel model_;
+  FacingModel model_ = test::seen_from_behind();
 };
 
 TEST(Facing, NoLikelierSkeletonWithTheSidesSwappedIsKept) {

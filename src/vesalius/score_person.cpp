@@ -106,10 +106,6 @@ Outline look_around(const Frame& frame, const Inside& inside) {
   return outline;
 }
 
-std::size_t slot_count(const std::vector<int>& slots) {
-  return static_cast<std::size_t>(*std::ranges::max_element(slots)) + 1;
-}
-
 constexpr int kShareSteps = 256;
 
 /// Returns the body share that the given share of the pixels exceed, from the number of pixels in each step of it.
@@ -150,7 +146,7 @@ Belief belief_of(const Inside& inside, const Posteriors& posteriors, const BodyM
   Belief belief;
   const auto count = static_cast<double>(std::max(1L, pixels));
   belief.body = static_cast<float>(sum / count);
-  belief.parts.resize(slot_count(slots), 0.F);
+  belief.parts.resize(kind_count(slots), 0.F);
   for (int p = 0; p < parts; ++p) belief.parts[slots[p]] += static_cast<float>(of_part[p] / count);
   belief.surest = share_exceeded(of_step, pixels, 0.1);
   return belief;
@@ -390,7 +386,7 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
 std::vector<int> judge_signs(const BodyModel& body) {
   std::vector<int> signs;
   for (const JudgedEvidence& kind : kJudgedEvidence) signs.push_back(kind.sign);
-  signs.resize(signs.size() + slot_count(part_slots(body)), 0);
+  signs.resize(signs.size() + kind_count(part_slots(body)), 0);
   return signs;
 }
 

@@ -346,6 +346,15 @@ TEST_F(Evaluate, WritesTheModelWithAContextFittedToTheFrames) {
             0);
   EXPECT_EQ(load_model(path("again.forest")).context, fitted.context) << "fitted to what the forest alone says";
 
+  Forest other = load_model(model());
+  other.judge = {3, 0.F, std::vector<BoostedTree>(1)};
+  save_model(other, path("other.forest"));
+  EXPECT_EQ(run_program("evaluate " + path("labelled") + " -m " + path("other.forest") + " --fit-context " +
+                        path("third.forest"))
+                .exit_code,
+            0)
+      << "a judge of another version does not matter";
+
   const Outcome unlabelled = evaluate(" --fit-context " + path("none.forest"));
   EXPECT_EQ(unlabelled.exit_code, 1);
   EXPECT_THAT(unlabelled.err, HasSubstr("no pixel that may be a body and is known to be one"));

@@ -227,8 +227,8 @@ void run(const Arguments& arguments, const std::string& command) {
   forest.body = arguments.joints_file.empty() ? with_evaluation_joints(forest.body)
                                               : with_joints_of(forest.body, arguments.joints_file);
   // Candidates are the same with any judge, and one of an earlier version would not be understood.
-  if (!arguments.fit_judge.empty()) forest.judge = {};
   const bool fits_context = !arguments.fit_context.empty();
+  if (!arguments.fit_judge.empty() || fits_context) forest.judge = {};
   if (fits_context) forest.context = {};
   const bool labels_only = arguments.labels_only || fits_context;
   Evaluation evaluation;

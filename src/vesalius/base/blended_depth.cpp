@@ -83,4 +83,11 @@ std::optional<DepthImage> without_blended(const DepthImage& depth, const BlendOp
   }
 }
 
+const Frame& without_blended(const Frame& frame, const BlendOptions& options, Frame& memory) {
+  std::optional<DepthImage> depth = without_blended(frame.depth, options);
+  if (!depth) return frame;
+  memory = {frame.name, frame.time_s, frame.camera, std::move(*depth), frame.colour};
+  return memory;
+}
+
 }  // namespace vesalius

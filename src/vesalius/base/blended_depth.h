@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
 #include "vesalius/base/options.h"
 
@@ -18,5 +19,7 @@ void visit_options(const std::string& prefix, BlendOptions& options, OptionVisit
 /// reading on its other side; then those beside it are asked, up to three pixels from the hole. Returns nothing if all
 /// readings stay.
 std::optional<DepthImage> without_blended(const DepthImage& depth, const BlendOptions& options);
+/// Returns the frame, or `memory` with a copy of it if some of its readings were blended with holes.
+const Frame& without_blended(const Frame& frame, const BlendOptions& options, Frame& memory);
 
 }  // namespace vesalius

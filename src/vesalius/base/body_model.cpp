@@ -298,6 +298,8 @@ std::vector<int> part_slots(const BodyModel& body) {
   return slots;
 }
 
+int kind_count(const std::vector<int>& slots) { return *std::ranges::max_element(slots) + 1; }
+
 const BodyModel& paper_body() {
   static const BodyModel body = parse_body_model(kPaperBody, "paper25");
   return body;

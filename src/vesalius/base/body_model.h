@@ -98,5 +98,7 @@ const BodyModel& paper_body();
 
 /// Returns for each part the index of its kind, which it shares with its mirror partner.
 std::vector<int> part_slots(const BodyModel& body);
+/// Returns how many kinds these are of.
+int kind_count(const std::vector<int>& slots);
 
 }  // namespace vesalius

@@ -44,8 +44,6 @@ constexpr int kOfPixel = 4;  ///< features of the pixel besides the kinds of par
 constexpr int kOfBox = 3;
 constexpr float kMostBeyond_m = 1.5F;
 
-int kinds_of(const std::vector<int>& slots) { return *std::ranges::max_element(slots) + 1; }
-
 }  // namespace
 
 /// The corners of a box of cells in the sums.
@@ -64,7 +62,7 @@ BodySurroundings::BodySurroundings(const Posteriors& posteriors, const DepthImag
       depth_(depth),
       camera_(camera),
       slots_(part_slots(body)),
-      kinds_(kinds_of(slots_)),
+      kinds_(kind_count(slots_)),
       step_(spaced(SmoothOptions{}, camera).spacing),
       columns_((depth.width() + step_ - 1) / step_),
       rows_((depth.height() + step_ - 1) / step_),
@@ -106,7 +104,7 @@ BodySurroundings::BodySurroundings(const Posteriors& posteriors, const DepthImag
 }
 
 int BodySurroundings::feature_count(const BodyModel& body) {
-  const int kinds = kinds_of(part_slots(body));
+  const int kinds = kind_count(part_slots(body));
   return kOfPixel + kinds + static_cast<int>(kAbout.size()) * (kOfBox + kinds) +
          static_cast<int>(kBeside.size()) * kOfBox;
 }

@@ -7,6 +7,7 @@
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
 #include "vesalius/forest/body_context.h"
+#include "vesalius/forest/test_headings.h"
 
 namespace vesalius {
 namespace {
@@ -95,14 +96,8 @@ TEST_F(SceneLabellerTest, LabelsNobodyInAnEmptyMask) {
 /// behind.
 class CannotTellSides : public PixelLabeller {
  public:
-  CannotTellSides() : model_{8, 25, std::vector<float>(8 * (25 * 8 + 26), 0.F)} {
-    model_.weights[4 * model_.features() + model_.features() - 1] = 50.F;
-  }
   void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
-    out = {.width = depth.width(), .height = depth.height(), .classes = 26, .trees = 1, .sums = {}};
-    out.headings = 8;
-    out.sums.assign(depth.size() * 26, 0);
-    out.turns.assign(depth.size() * out.turn_count(), 0);
+    out = test::headed_posteriors(depth);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
         if (depth(u, v) == 0) continue;
@@ -126,7 +121,7 @@ class CannotTellSides : public PixelLabeller {
   int r_hand = paper_body().find_part("r_hand");
 
  private:
-  FacingModel model_;
+  FacingModel model_ = test::seen_from_behind();
 };
 
 TEST(SceneLabellerContext, CorrectsTheSmoothedPosteriors) {
