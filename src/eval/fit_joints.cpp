@@ -18,20 +18,18 @@ namespace {
 /// Errors up to this are those of places, beyond it more and more those of labels: half of the distance at which a
 /// joint counts as right.
 constexpr double kHuber_m = 0.05;
-/// Errors beyond this tell nothing about a joint's place.
-constexpr double kLimit_m = 0.25;
 constexpr int kRounds = 12;  ///< of reweighting; the weights change by less than a thousandth after ten
 constexpr std::size_t kMostTerms = 3;
 /// Share of the loss that another part must save.
 constexpr double kLeastGain = 0.02;
 
 double loss(double error_m) {
-  const double e = std::min(error_m, kLimit_m);
+  const double e = std::min(error_m, kPlacedJoint_m);
   return e < kHuber_m ? 0.5 * e * e : kHuber_m * (e - 0.5 * kHuber_m);
 }
 
 /// Weight of a squared error that gives Huber's loss its slope.
-double slope(double error_m) { return error_m > kLimit_m ? 0.0 : error_m < kHuber_m ? 1.0 : kHuber_m / error_m; }
+double slope(double error_m) { return error_m > kPlacedJoint_m ? 0.0 : error_m < kHuber_m ? 1.0 : kHuber_m / error_m; }
 
 /// Parts that share one weight evenly.
 using Term = std::vector<int>;
@@ -207,7 +205,7 @@ double mean_loss(const JointDefinition& joint, const std::vector<Prepared>& samp
   for (const Prepared& one : samples) {
     const Joint derived = derive_joint(joint, one.skeleton, one.up);
     const bool has = derived.state != State::none;
-    sum += loss(has ? static_cast<double>((derived.position - one.truth).norm()) : kLimit_m);
+    sum += loss(has ? static_cast<double>((derived.position - one.truth).norm()) : kPlacedJoint_m);
   }
   return sum / static_cast<double>(samples.size());
 }

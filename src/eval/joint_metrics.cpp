@@ -235,7 +235,9 @@ MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::strin
     const Eigen::Vector3d off_mm = kMillimetres * (common.found.col(static_cast<Eigen::Index>(c)) - truth);
     const auto id = [&](Metric metric) { return MetricId(metric, static_cast<int>(joint), names[joint]); };
     if (axes) {
-      add_mean(terms, id(Metric::joint_up), off_mm.dot(axes->up));
+      const double up_mm = off_mm.dot(axes->up);
+      add_mean(terms, id(Metric::joint_up), up_mm);
+      if (off_mm.norm() < kMillimetres * kPlacedJoint_m) add_mean(terms, id(Metric::joint_up_placed), up_mm);
       add_mean(terms, id(Metric::joint_left), off_mm.dot(axes->left));
     }
     add_mean(terms, id(Metric::joint_behind), off_mm.dot(truth.normalized()));

@@ -13,6 +13,8 @@ namespace vesalius {
 
 /// Distance below which a joint counts as right, metres. The tables of ITOP call the share of right joints mAP.
 inline constexpr double kJointTolerance_m = 0.1;
+/// A joint that lies farther from the truth was mistaken for something else and tells nothing about its place.
+inline constexpr double kPlacedJoint_m = 0.25;
 /// Largest distance of the curve over distances, centimetres.
 inline constexpr int kJointCurve_cm = 30;
 
@@ -59,6 +61,7 @@ MetricTerms predicted_part_terms(const Skeleton& skeleton, const JointPair& cent
 /// from the middle of the hips to the neck (up), across it towards the person's own left (left), and along the viewing
 /// ray away from the camera (behind). There are no terms up and left unless the truth has hips and neck or shoulders,
 /// and none of joints nearer to their partner's truth than to their own: one swapped arm would outweigh many biases.
+/// The way up is given once more for the joints within kPlacedJoint_m alone.
 MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names);
 
 /// The numbers of joints within 1, 2, ... kJointCurve_cm centimetres of the truth.

@@ -74,6 +74,7 @@ TEST(JointBias, IsMeasuredAlongTheTrueBody) {
   pair.found[5] += Vector3f(0.F, 0.02F, 0.05F);
   const MetricTerms terms = joint_bias_terms(pair, names);
   EXPECT_NEAR(value_of(terms, "joint.neck.up_mm"), -30.0, 1e-3);
+  EXPECT_NEAR(value_of(terms, "joint.neck.placed_up_mm"), -30.0, 1e-3);
   EXPECT_NEAR(value_of(terms, "joint.neck.left_mm"), 0.0, 1e-3);
   EXPECT_NEAR(value_of(terms, "joint.l_hip.up_mm"), 0.0, 1e-3);
   EXPECT_NEAR(value_of(terms, "joint.l_hand.left_mm"), 20.0, 1e-3);
@@ -86,6 +87,18 @@ TEST(JointBias, LeavesOutSwappedJoints) {
   const MetricTerms terms = joint_bias_terms({truth, {{-0.25F, 0, 2}, {-0.25F, 0, 2}}}, names);
   EXPECT_TRUE(std::isnan(value_of(terms, "joint.l_hand.behind_mm")));
   EXPECT_FALSE(std::isnan(value_of(terms, "joint.r_hand.behind_mm")));
+}
+
+TEST(JointBias, OfPlacedJointsLeavesOutGrossMistakes) {
+  const std::vector<std::string> names{"neck", "l_shoulder", "r_shoulder", "l_hip", "r_hip", "l_hand"};
+  JointPair pair{{{0, -0.5F, 2}, {0.2F, -0.4F, 2}, {-0.2F, -0.4F, 2}, {0.1F, 0, 2}, {-0.1F, 0, 2}, {0.3F, 0, 2}}, {}};
+  pair.found = pair.truth;
+  pair.found[0].y() += 0.3F;
+  pair.found[5].y() += 0.2F;
+  const MetricTerms terms = joint_bias_terms(pair, names);
+  EXPECT_NEAR(value_of(terms, "joint.neck.up_mm"), -300.0, 1e-3);
+  EXPECT_TRUE(std::isnan(value_of(terms, "joint.neck.placed_up_mm")));
+  EXPECT_NEAR(value_of(terms, "joint.l_hand.placed_up_mm"), -200.0, 1e-3);
 }
 
 TEST(JointBias, HasNoBodyAxesWithoutHips) {

@@ -67,6 +67,7 @@ enum class Metric {
   joints_given_mirrored_heading,   ///< family
   joints_given_elsewhere_heading,  ///< family
   joint_up,                        ///< family
+  joint_up_placed,                 ///< family
   joint_left,                      ///< family
   joint_behind,                    ///< family
   centre_at_10cm,                  ///< family
@@ -162,6 +163,7 @@ inline constexpr auto kMetrics = [] {
       {M::joints_given_elsewhere_heading, "joints.given_elsewhere.*", "given-out joints elsewhere by heading", share,
        lower_is_better},
       {M::joint_up, "joint.*.up_mm", "too high", millimetres, nearer_zero_is_better},
+      {M::joint_up_placed, "joint.*.placed_up_mm", "too high where placed", millimetres, nearer_zero_is_better},
       {M::joint_left, "joint.*.left_mm", "too far left", millimetres, nearer_zero_is_better},
       {M::joint_behind, "joint.*.behind_mm", "too far behind", millimetres, nearer_zero_is_better},
       {M::centre_at_10cm, "centre.*.at_10cm", "centre within 10 cm", share, higher_is_better, trials},

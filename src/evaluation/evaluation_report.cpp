@@ -36,8 +36,8 @@ static_assert(std::ranges::is_sorted(kOverview));
 /// The families that are columns of a table whose rows are parts or joints.
 constexpr std::array kPartColumns{Metric::part_seen, Metric::pixel_recall, Metric::pixel_recall_inside,
                                   Metric::centre_at_10cm, Metric::centre_error};
-constexpr std::array kJointColumns{Metric::joint_at_10cm, Metric::joint_error, Metric::joint_up, Metric::joint_left,
-                                   Metric::joint_behind};
+constexpr std::array kJointColumns{Metric::joint_at_10cm,   Metric::joint_error, Metric::joint_up,
+                                   Metric::joint_up_placed, Metric::joint_left,  Metric::joint_behind};
 
 std::string cell(const std::vector<Estimate>& estimates, Metric metric, const std::string& parameter = "") {
   const Estimate* found = find_estimate(estimates, metric, parameter);

@@ -60,7 +60,8 @@ constexpr std::array kFamilies{Metric::posture,
                                Metric::joint_at_10cm,
                                Metric::joints_given_right_heading,
                                Metric::joints_given_mirrored_heading,
-                               Metric::joint_up};
+                               Metric::joint_up,
+                               Metric::joint_up_placed};
 static_assert(std::ranges::is_sorted(kFamilies));
 
 /// Returns e.g. "people 56 of 56, false 0".
