@@ -15,6 +15,7 @@
 #include "io/sources/folder_source.h"
 #include "io/sources/list_source.h"
 #include "io/sources/pcd_source.h"
+#include "io/sources/recording_source.h"
 #include "io/sources/tum.h"
 #include "vesalius/base/error.h"
 
@@ -45,7 +46,8 @@ constexpr const char* kFolder = "a folder with depth/*.png or depth PNG files";
 constexpr const char* kTum = "a folder with depth.txt (TUM RGB-D)";
 constexpr const char* kPcd = "an organised PCD file or a folder of them";
 constexpr const char* kPng = "a depth PNG or a folder of them";
-constexpr const char* kAnything = "a folder, a depth PNG or a PCD file";
+constexpr const char* kRecording = "an MCAP file, a ROS bag, or a folder of rosbag2";
+constexpr const char* kAnything = "a folder, a depth PNG, a PCD file or a recording";
 
 void refuse_colour_file(const std::string& path, const SourceOptions& options) {
   if (!options.colour_file.empty()) throw UsageError(path + ": a colour file goes with a single depth PNG only");
@@ -98,8 +100,17 @@ std::unique_ptr<FrameSource> open_png(const std::string& path, const SourceOptio
   return open_list(list_single_png(path, options));
 }
 
-constexpr std::array<Scheme, 4> kSchemes{
-    {{"folder", kFolder, open_folder}, {"tum", kTum, open_tum}, {"pcd", kPcd, open_clouds}, {"png", kPng, open_png}}};
+std::unique_ptr<FrameSource> open_recording_file(const std::string& path, const SourceOptions& options) {
+  is_folder(path, kRecording);
+  refuse_colour_file(path, options);
+  return open_recorded(path, options);
+}
+
+constexpr std::array<Scheme, 5> kSchemes{{{"folder", kFolder, open_folder},
+                                          {"tum", kTum, open_tum},
+                                          {"pcd", kPcd, open_clouds},
+                                          {"png", kPng, open_png},
+                                          {"recording", kRecording, open_recording_file}}};
 
 /// Returns the scheme that "pcd:cloud.pcd" begins with, or null for a plain path.
 const Scheme* scheme_of(const std::string& uri) {
@@ -111,12 +122,14 @@ std::string_view scheme_of_file(const std::string& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".png") return "png";
   if (extension == ".pcd") return "pcd";
+  if (extension == ".mcap" || extension == ".bag" || extension == ".db3") return "recording";
   throw Error(fmt::format("{}: unknown kind of file, expected {}", path, kAnything));
 }
 
 std::string_view scheme_of_folder(const std::string& path) {
   std::error_code ignored;
   if (fs::exists(fs::path(path) / "depth.txt", ignored)) return "tum";
+  if (fs::exists(fs::path(path) / "metadata.yaml", ignored)) return "recording";
   if (fs::is_directory(fs::path(path) / "depth", ignored)) return "folder";
   const bool png = !list_files(path, {".png"}).empty();
   const bool pcd = !list_files(path, {".pcd"}).empty();

@@ -1,0 +1,194 @@
+#include "io/recordings/bag_recording.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <utility>
+
+#include "io/files/byte_stream.h"
+#include "io/recordings/decompress.h"
+
+namespace vesalius {
+namespace {
+
+constexpr std::uint8_t kMessage = 0x02, kIndex = 0x04, kChunk = 0x05, kConnection = 0x07;
+/// Headers of records hold a few numbers and names.
+constexpr std::uint32_t kMaxHeaderBytes = 1U << 20U;
+
+/// The fields of a record's header: NAME=value.
+class Fields {
+ public:
+  Fields(std::string_view bytes, const std::string& name) : name_(name) {
+    ByteReader in(bytes, name);
+    while (in.left() > 0) {
+      const std::string_view field = in.text("field of a header");
+      const std::size_t equals = field.find('=');
+      if (equals == field.npos) in.fail("a field of a header without \"=\"");
+      fields_[field.substr(0, equals)] = field.substr(equals + 1);
+    }
+  }
+
+  std::string_view text(std::string_view key) const {
+    const auto found = fields_.find(key);
+    return found == fields_.end() ? std::string_view() : found->second;
+  }
+  template <class T>
+  T number(std::string_view key) const {
+    ByteReader in(text(key), name_);
+    return in.number<T>("field of a header");
+  }
+
+ private:
+  const std::string& name_;
+  std::map<std::string_view, std::string_view> fields_;
+};
+
+class BagRecording final : public Recording {
+ public:
+  explicit BagRecording(DataFile file) : file_(std::move(file)) {
+    find_topics();
+    rewind();
+  }
+
+  const std::vector<RecordedTopic>& topics() const override { return topics_; }
+
+  std::optional<RecordedMessage> next() override {
+    for (;;) {
+      while (chunk_at_ < chunk_.size()) {
+        ByteReader in(std::string_view(chunk_).substr(chunk_at_), file_.path());
+        chunk_at_ = chunk_.size();  // in case of damage
+        const Fields header(in.text("header of a record"), file_.path());
+        const std::string_view data = in.text("data of a record");
+        chunk_at_ = chunk_.size() - in.left();
+        if (header.number<std::uint8_t>("op") != kMessage) continue;
+        const auto found = topic_of_.find(header.number<std::uint32_t>("conn"));
+        if (found == topic_of_.end()) continue;
+        // Seconds, then nanoseconds.
+        const auto time = header.number<std::uint64_t>("time");
+        const auto time_ns = static_cast<std::int64_t>((time & 0xFFFFFFFFU) * 1000000000U + (time >> 32U));
+        return RecordedMessage{found->second, time_ns, data};
+      }
+      if (!next_record()) return std::nullopt;
+      if (header_->number<std::uint8_t>("op") == kChunk) load_chunk();
+    }
+  }
+
+  void rewind() override {
+    at_ = kBagMagic.size();
+    chunk_.clear();
+    chunk_at_ = 0;
+  }
+
+  std::vector<std::string> notes() const override { return notes_; }
+
+ private:
+  /// Goes to the next record and reads its header. Returns false at the end.
+  bool next_record() {
+    const std::string length_bytes = file_.read(at_, sizeof(std::uint32_t));
+    if (length_bytes.empty()) return false;
+    if (length_bytes.size() < sizeof(std::uint32_t)) return end_early();
+    const auto length = ByteReader(length_bytes, file_.path()).number<std::uint32_t>("length of a header");
+    if (length > kMaxHeaderBytes) {
+      const std::uint64_t at = at_;
+      at_ = file_.size();
+      throw Error(fmt::format("{}: damaged at byte {}: a header of {} bytes, expected at most {}", file_.path(), at,
+                              length, kMaxHeaderBytes));
+    }
+    header_bytes_ = file_.read(at_ + sizeof(std::uint32_t), length + sizeof(std::uint32_t));
+    if (header_bytes_.size() < length + sizeof(std::uint32_t)) return end_early();
+    const std::string_view after = std::string_view(header_bytes_).substr(length);
+    data_length_ = ByteReader(after, file_.path()).number<std::uint32_t>("length of data");
+    data_at_ = at_ + 2 * sizeof(std::uint32_t) + length;
+    if (data_length_ > file_.size() - data_at_) return end_early();
+    at_ = data_at_ + data_length_;
+    header_.emplace(std::string_view(header_bytes_).substr(0, length), file_.path());
+    return true;
+  }
+
+  bool end_early() {
+    if (notes_.empty()) {
+      notes_.push_back(
+          fmt::format("{}: cut short at byte {}; the whole messages before it are read", file_.path(), at_));
+    }
+    at_ = file_.size();
+    return false;
+  }
+
+  void load_chunk() {
+    chunk_.clear();
+    chunk_at_ = 0;
+    const std::string packed = file_.read(data_at_, data_length_);
+    chunk_ = decompress(packed, header_->text("compression"), header_->number<std::uint32_t>("size"), file_.path());
+  }
+
+  void add_connection(const Fields& header, std::string_view data) {
+    const auto id = header.number<std::uint32_t>("conn");
+    if (topic_of_.contains(id)) return;
+    topic_of_[id] = topics_.size();
+    const Fields connection(data, file_.path());
+    topics_.push_back(
+        {std::string(header.text("topic")), std::string(connection.text("type")), MessageLayout::ros1, 0});
+  }
+
+  /// Reads all connections and counts the messages by the index behind each chunk. Chunks are opened only where the
+  /// file ends without the connections that it would repeat there.
+  void find_topics() {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> counts;
+    bool chunk_without_index = false;
+    rewind();
+    while (next_record()) {
+      const auto op = header_->number<std::uint8_t>("op");
+      if (op == kConnection) add_connection(*header_, file_.read(data_at_, data_length_));
+      if (op == kChunk) chunk_without_index = true;
+      if (op == kIndex) {
+        chunk_without_index = false;
+        counts.emplace_back(header_->number<std::uint32_t>("conn"), header_->number<std::uint32_t>("count"));
+      }
+    }
+    const bool complete = !topics_.empty() && !chunk_without_index;
+    if (!complete) return open_all_chunks();
+    for (const auto& [connection, count] : counts) {
+      const auto found = topic_of_.find(connection);
+      if (found != topic_of_.end()) topics_[found->second].messages += count;
+    }
+  }
+
+  void open_all_chunks() {
+    rewind();
+    while (next_record()) {
+      if (header_->number<std::uint8_t>("op") != kChunk) continue;
+      try {
+        load_chunk();
+      } catch (const Error&) {
+        continue;  // `next` says so when it comes there
+      }
+      ByteReader in(chunk_, file_.path());
+      while (in.left() > 0) {
+        const Fields header(in.text("header of a record"), file_.path());
+        const std::string_view data = in.text("data of a record");
+        const auto op = header.number<std::uint8_t>("op");
+        if (op == kConnection) add_connection(header, data);
+        if (op != kMessage) continue;
+        const auto found = topic_of_.find(header.number<std::uint32_t>("conn"));
+        if (found != topic_of_.end()) ++topics_[found->second].messages;
+      }
+    }
+  }
+
+  DataFile file_;
+  std::vector<RecordedTopic> topics_;
+  std::map<std::uint32_t, std::size_t> topic_of_;
+  std::vector<std::string> notes_;
+  std::uint64_t at_ = 0, data_at_ = 0;
+  std::uint32_t data_length_ = 0;
+  std::string header_bytes_;
+  std::optional<Fields> header_;  ///< of the record found last; its texts lie in header_bytes_
+  std::string chunk_;
+  std::size_t chunk_at_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Recording> open_bag(DataFile file) { return std::make_unique<BagRecording>(std::move(file)); }
+
+}  // namespace vesalius

@@ -1,0 +1,263 @@
+#include "io/recordings/camera_messages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "io/files/image_bytes.h"
+#include "io/files/image_file.h"
+#include "io/recordings/depth_codecs.h"
+#include "io/recordings/message_fields.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr std::int64_t kNanoseconds = 1'000'000'000;
+constexpr double kMaxDepth = std::numeric_limits<std::uint16_t>::max();
+
+/// Encodings of colour and where red, green and blue stand in a pixel.
+struct ColourEncoding {
+  std::string_view name;
+  int bytes, r, g, b;
+};
+constexpr std::array<ColourEncoding, 7> kColourEncodings{{{"rgb8", 3, 0, 1, 2},
+                                                          {"bgr8", 3, 2, 1, 0},
+                                                          {"8UC3", 3, 2, 1, 0},
+                                                          {"rgba8", 4, 0, 1, 2},
+                                                          {"bgra8", 4, 2, 1, 0},
+                                                          {"mono8", 1, 0, 0, 0},
+                                                          {"8UC1", 1, 0, 0, 0}}};
+
+bool is_ros(const RecordedTopic& topic) {
+  return topic.layout == MessageLayout::ros1 || topic.layout == MessageLayout::cdr;
+}
+
+int side(std::uint64_t value, const std::string& name) {
+  if (value > static_cast<std::uint64_t>(kMaxPixels)) {
+    throw Error(fmt::format("{}: a picture {} pixels long, expected at most {}", name, value, kMaxPixels));
+  }
+  return static_cast<int>(value);
+}
+
+/// google.protobuf.Timestamp
+std::int64_t protobuf_time(std::string_view bytes, const std::string& name) {
+  const ProtobufFields time = parse_protobuf(bytes, name);
+  return static_cast<std::int64_t>(time.number(1) * kNanoseconds + time.number(2));
+}
+
+template <std::size_t N>
+std::array<double, N> exactly(const std::vector<double>& values) {
+  std::array<double, N> all{};
+  if (values.size() == N) std::ranges::copy(values, all.begin());
+  return all;
+}
+
+/// Throws Error unless all rows of the picture are there.
+void expect_rows(const PictureMessage& picture, std::size_t pixel_bytes, const std::string& name) {
+  const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
+  if (width == 0 || height == 0 || width * height > kMaxPixels) {
+    throw Error(fmt::format("{}: a picture of {}x{}, expected at most {} pixels", name, width, height, kMaxPixels));
+  }
+  if (picture.row_bytes < width * pixel_bytes || picture.data.size() / picture.row_bytes < height) {
+    throw Error(fmt::format("{}: a picture of {}x{} {} with {} bytes, {} to a row", name, width, height,
+                            picture.encoding, picture.data.size(), picture.row_bytes));
+  }
+}
+
+/// Reads a number of a raw picture.
+template <class T>
+T value_at(const PictureMessage& picture, int u, int v) {
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), picture.data.data() + static_cast<std::size_t>(v) * picture.row_bytes + u * sizeof(T),
+              sizeof(T));
+  if (picture.big_endian != (std::endian::native == std::endian::big)) std::ranges::reverse(bytes);
+  return std::bit_cast<T>(bytes);
+}
+
+std::uint16_t millimetres(double depth_mm) {
+  // A reading beyond 16 bits is none; neither is NaN.
+  return depth_mm >= 0.5 && depth_mm < kMaxDepth ? static_cast<std::uint16_t>(std::lround(depth_mm)) : std::uint16_t{0};
+}
+
+std::string image_message(std::string_view encoding, int width, int height, int pixel_bytes, std::string_view data,
+                          std::int64_t time_ns, std::string_view frame) {
+  CdrWriter out;
+  out.header(time_ns, frame);
+  out.u32(static_cast<std::uint32_t>(height));
+  out.u32(static_cast<std::uint32_t>(width));
+  out.text(encoding);
+  out.u8(0);  // little-endian
+  out.u32(static_cast<std::uint32_t>(width * pixel_bytes));
+  out.bytes(data);
+  return out.message();
+}
+
+template <class T>
+std::string_view bytes_of(const Image<T>& image) {
+  return {reinterpret_cast<const char*>(image.data()), image.size() * sizeof(T)};
+}
+
+}  // namespace
+
+bool Calibration::is_distorted() const {
+  return std::ranges::any_of(distortion, [](double d) { return d != 0.0; });
+}
+
+bool is_picture(const RecordedTopic& topic) {
+  if (is_ros(topic)) return topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage";
+  return topic.layout == MessageLayout::protobuf &&
+         (topic.type == "foxglove.RawImage" || topic.type == "foxglove.CompressedImage");
+}
+
+bool is_calibration(const RecordedTopic& topic) {
+  if (is_ros(topic)) return topic.type == "sensor_msgs/CameraInfo";
+  return topic.layout == MessageLayout::protobuf && topic.type == "foxglove.CameraCalibration";
+}
+
+PictureMessage parse_picture(const RecordedTopic& topic, std::string_view message, const std::string& name) {
+  PictureMessage picture;
+  picture.compressed = topic.type.ends_with("CompressedImage");
+  if (topic.layout == MessageLayout::protobuf) {
+    const ProtobufFields fields = parse_protobuf(message, name);
+    picture.time_ns = protobuf_time(fields.text(1), name);
+    if (picture.compressed) {
+      picture.frame = fields.text(4);
+      picture.encoding = fields.text(3);
+      picture.data = fields.text(2);
+    } else {
+      picture.frame = fields.text(7);
+      picture.width = side(fields.number(2), name);
+      picture.height = side(fields.number(3), name);
+      picture.encoding = fields.text(4);
+      picture.row_bytes = static_cast<std::uint32_t>(fields.number(5));
+      picture.data = fields.text(6);
+    }
+    return picture;
+  }
+  MessageFields fields(message, topic.layout, name);
+  picture.time_ns = fields.header(picture.frame);
+  if (picture.compressed) {
+    picture.encoding = fields.text("the format");
+  } else {
+    picture.height = side(fields.u32("the height"), name);
+    picture.width = side(fields.u32("the width"), name);
+    picture.encoding = fields.text("the encoding");
+    picture.big_endian = fields.u8("the byte order") != 0;
+    picture.row_bytes = fields.u32("the length of a row");
+  }
+  picture.data = fields.bytes("the picture");
+  return picture;
+}
+
+Calibration parse_calibration(const RecordedTopic& topic, std::string_view message, const std::string& name) {
+  Calibration calibration;
+  if (topic.layout == MessageLayout::protobuf) {
+    const ProtobufFields fields = parse_protobuf(message, name);
+    calibration.frame = fields.text(9);
+    calibration.width = side(fields.number(2), name);
+    calibration.height = side(fields.number(3), name);
+    calibration.distortion = fields.list64(5);
+    calibration.matrix = exactly<9>(fields.list64(6));
+    calibration.projection = exactly<12>(fields.list64(8));
+    return calibration;
+  }
+  MessageFields fields(message, topic.layout, name);
+  fields.header(calibration.frame);
+  calibration.height = side(fields.u32("the height"), name);
+  calibration.width = side(fields.u32("the width"), name);
+  fields.text("the distortion model");
+  calibration.distortion = fields.list64("the distortion");
+  calibration.matrix = exactly<9>(fields.reals64(9, "the camera matrix"));
+  fields.reals64(9, "the rotation");
+  calibration.projection = exactly<12>(fields.reals64(12, "the projection"));
+  return calibration;
+}
+
+bool is_depth(const PictureMessage& picture) {
+  if (picture.compressed) return picture.encoding.find("compressedDepth") != std::string::npos;
+  return picture.encoding == "16UC1" || picture.encoding == "mono16" || picture.encoding == "32FC1";
+}
+
+DepthImage depth_of(const PictureMessage& picture, float units_per_m, const std::string& name) {
+  const double to_mm = 1e3 / static_cast<double>(units_per_m);
+  const bool is_float = picture.encoding.starts_with("32FC1");
+  if (picture.compressed) {
+    Image<std::uint16_t> stored = unpack_compressed_depth(picture.data, picture.encoding, name);
+    if (!is_float && to_mm != 1.0) {
+      for (std::uint16_t& value : stored) value = millimetres(value * to_mm);
+    }
+    return stored;
+  }
+  expect_rows(picture, is_float ? sizeof(float) : sizeof(std::uint16_t), name);
+  DepthImage depth(picture.width, picture.height);
+  for (int v = 0; v < picture.height; ++v) {
+    for (int u = 0; u < picture.width; ++u) {
+      if (is_float) {
+        depth(u, v) = millimetres(1e3 * static_cast<double>(value_at<float>(picture, u, v)));
+      } else {
+        const auto stored = value_at<std::uint16_t>(picture, u, v);
+        depth(u, v) = to_mm == 1.0 ? stored : millimetres(stored * to_mm);
+      }
+    }
+  }
+  return depth;
+}
+
+ColourImage colour_of(const PictureMessage& picture, const std::string& name) {
+  if (picture.compressed) return decode_colour(picture.data, name);
+  const auto found = std::ranges::find(kColourEncodings, picture.encoding, &ColourEncoding::name);
+  if (found == kColourEncodings.end()) {
+    throw Error(fmt::format("{}: colour encoded as \"{}\", expected rgb8, bgr8, rgba8, bgra8 or mono8", name,
+                            picture.encoding));
+  }
+  expect_rows(picture, static_cast<std::size_t>(found->bytes), name);
+  ColourImage colour(picture.width, picture.height);
+  for (int v = 0; v < picture.height; ++v) {
+    const auto* of =
+        reinterpret_cast<const std::uint8_t*>(picture.data.data()) + static_cast<std::size_t>(v) * picture.row_bytes;
+    for (int u = 0; u < picture.width; ++u, of += found->bytes) {
+      colour(u, v) = {of[found->r], of[found->g], of[found->b]};
+    }
+  }
+  return colour;
+}
+
+std::string depth_message(const DepthImage& depth, std::int64_t time_ns, std::string_view frame) {
+  static_assert(std::endian::native == std::endian::little);
+  return image_message("16UC1", depth.width(), depth.height(), 2, bytes_of(depth), time_ns, frame);
+}
+
+std::string colour_message(const ColourImage& colour, std::int64_t time_ns, std::string_view frame) {
+  return image_message("rgb8", colour.width(), colour.height(), 3, bytes_of(colour), time_ns, frame);
+}
+
+std::string grey_message(const Image<std::uint8_t>& grey, std::int64_t time_ns, std::string_view frame) {
+  return image_message("mono8", grey.width(), grey.height(), 1, bytes_of(grey), time_ns, frame);
+}
+
+std::string calibration_message(const Camera& camera, std::int64_t time_ns, std::string_view frame) {
+  CdrWriter out;
+  out.header(time_ns, frame);
+  out.u32(static_cast<std::uint32_t>(camera.height));
+  out.u32(static_cast<std::uint32_t>(camera.width));
+  out.text("plumb_bob");
+  constexpr std::uint32_t kCoefficients = 5;
+  out.u32(kCoefficients);
+  for (std::uint32_t i = 0; i < kCoefficients; ++i) out.real64(0.0);
+  const double fx = camera.fx, fy = camera.fy, cx = camera.cx, cy = camera.cy;
+  for (const double k : {fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0}) out.real64(k);
+  for (const double r : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) out.real64(r);
+  for (const double p : {fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0}) out.real64(p);
+  out.u32(0);  // no binning
+  out.u32(0);
+  for (int i = 0; i < 4; ++i) out.u32(0);  // the whole picture
+  out.u8(0);
+  return out.message();
+}
+
+}  // namespace vesalius

@@ -1,0 +1,32 @@
+#include "io/recordings/data_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+
+DataFile::DataFile(const std::string& path) : path_(path), file_(open_regular_file(path)) {}
+
+std::string DataFile::read(std::uint64_t at, std::uint64_t count) const {
+  if (at >= size()) return {};
+  std::string bytes(std::min(count, size() - at), '\0');
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t n =
+        ::pread(file_.descriptor.get(), bytes.data() + done, bytes.size() - done, static_cast<off_t>(at + done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw Error(fmt::format("{}: cannot be read: {}", path_, std::generic_category().message(errno)));
+    if (n == 0) break;
+    done += n;
+  }
+  bytes.resize(done);
+  return bytes;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "io/files/descriptor.h"
+
+namespace vesalius {
+
+/// A regular file of any size, read wherever it is asked.
+class DataFile {
+ public:
+  /// Throws Error naming `path` if it cannot be opened or is not a regular file.
+  explicit DataFile(const std::string& path);
+
+  const std::string& path() const { return path_; }
+  std::uint64_t size() const { return file_.size; }
+  /// Returns the `count` bytes from `at` on, or those up to the end where there are fewer. Throws Error if the system
+  /// cannot read them.
+  std::string read(std::uint64_t at, std::uint64_t count) const;
+
+ private:
+  std::string path_;
+  OpenFile file_;
+};
+
+}  // namespace vesalius

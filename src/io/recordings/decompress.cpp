@@ -1,0 +1,112 @@
+#include "io/recordings/decompress.h"
+
+#include <bzlib.h>
+#include <fmt/format.h>
+#include <lz4frame.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr std::size_t kStep = std::size_t{1} << 20;
+
+[[noreturn]] void fail(const std::string& name, std::string_view method) {
+  throw Error(fmt::format("{}: damaged: its {} data cannot be decompressed", name, method));
+}
+
+/// Asks `more` for the next bytes until it has none. It gets room and returns how many bytes it wrote, 0 at the end.
+template <class More>
+std::string collect(std::size_t size, const std::string& name, std::string_view method, const More& more) {
+  std::string out;
+  for (;;) {
+    const std::size_t had = out.size();
+    // One byte more than stated shows that there is more than stated.
+    out.resize(std::min(had + kStep, size + 1));
+    const std::size_t got = more(out.data() + had, out.size() - had);
+    out.resize(had + got);
+    if (got == 0) break;
+    if (out.size() > size) fail(name, method);
+  }
+  if (out.size() != size) fail(name, method);
+  return out;
+}
+
+std::string of_zstd(std::string_view packed, std::size_t size, const std::string& name) {
+  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(), ZSTD_freeDStream);
+  ZSTD_inBuffer in{packed.data(), packed.size(), 0};
+  return collect(size, name, "zstd", [&](char* to, std::size_t room) -> std::size_t {
+    ZSTD_outBuffer out{to, room, 0};
+    while (out.pos == 0) {
+      const std::size_t before = in.pos;
+      const std::size_t status = ZSTD_decompressStream(stream.get(), &out, &in);
+      if (ZSTD_isError(status) != 0) fail(name, "zstd");
+      if (out.pos == 0 && in.pos == before) return 0;
+    }
+    return out.pos;
+  });
+}
+
+std::string of_lz4(std::string_view packed, std::size_t size, const std::string& name) {
+  LZ4F_dctx* made = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&made, LZ4F_VERSION)) != 0) fail(name, "lz4");
+  const std::unique_ptr<LZ4F_dctx, std::size_t (*)(LZ4F_dctx*)> context(made, LZ4F_freeDecompressionContext);
+  std::size_t at = 0;
+  return collect(size, name, "lz4", [&](char* to, std::size_t room) -> std::size_t {
+    for (;;) {
+      std::size_t written = room;
+      std::size_t taken = packed.size() - at;
+      const std::size_t status = LZ4F_decompress(context.get(), to, &written, packed.data() + at, &taken, nullptr);
+      if (LZ4F_isError(status) != 0) fail(name, "lz4");
+      at += taken;
+      if (written > 0 || taken == 0) return written;
+    }
+  });
+}
+
+std::string of_bzip2(std::string_view packed, std::size_t size, const std::string& name) {
+  bz_stream stream{};
+  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) fail(name, "bzip2");
+  const std::unique_ptr<bz_stream, int (*)(bz_stream*)> end(&stream, BZ2_bzDecompressEnd);
+  stream.next_in = const_cast<char*>(packed.data());  // bzlib reads only
+  stream.avail_in = static_cast<unsigned>(packed.size());
+  bool ended = false;
+  return collect(size, name, "bzip2", [&](char* to, std::size_t room) -> std::size_t {
+    if (ended) return 0;
+    stream.next_out = to;
+    stream.avail_out = static_cast<unsigned>(room);
+    const int status = BZ2_bzDecompress(&stream);
+    if (status != BZ_OK && status != BZ_STREAM_END) fail(name, "bzip2");
+    ended = status == BZ_STREAM_END;
+    return room - stream.avail_out;
+  });
+}
+
+}  // namespace
+
+std::string decompress(std::string_view packed, std::string_view method, std::size_t size, const std::string& name) {
+  if (size > kMaxPieceBytes || packed.size() > kMaxPieceBytes) {
+    throw Error(fmt::format("{}: a piece of {} bytes, expected at most {}", name, std::max(size, packed.size()),
+                            kMaxPieceBytes));
+  }
+  if (method.empty() || method == "none") {
+    if (packed.size() != size) fail(name, "stored");
+    return std::string(packed);
+  }
+  if (method == "zstd") return of_zstd(packed, size, name);
+  if (method == "lz4") return of_lz4(packed, size, name);
+  if (method == "bz2") return of_bzip2(packed, size, name);
+  throw Error(fmt::format("{}: compressed with \"{}\", expected zstd, lz4 or bz2", name, method));
+}
+
+std::size_t stated_zstd_size(std::string_view packed, const std::string& name) {
+  const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
+  if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR) fail(name, "zstd");
+  return size;
+}
+
+}  // namespace vesalius

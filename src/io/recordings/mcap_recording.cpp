@@ -1,0 +1,258 @@
+#include "io/recordings/mcap_recording.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <utility>
+
+#include "io/files/byte_stream.h"
+#include "io/recordings/decompress.h"
+#include "io/recordings/mcap_records.h"
+
+namespace vesalius {
+namespace {
+
+MessageLayout layout_of(std::string_view encoding) {
+  if (encoding == "cdr") return MessageLayout::cdr;
+  if (encoding == "ros1") return MessageLayout::ros1;
+  if (encoding == "protobuf") return MessageLayout::protobuf;
+  return MessageLayout::other;
+}
+
+/// A record in the file: where its content begins and how long it is.
+struct Place {
+  McapRecord kind{};
+  std::uint64_t at = 0, length = 0;
+};
+
+class McapRecording final : public Recording {
+ public:
+  explicit McapRecording(DataFile file) : file_(std::move(file)) {
+    find_topics();
+    rewind();
+  }
+
+  const std::vector<RecordedTopic>& topics() const override { return topics_; }
+
+  std::optional<RecordedMessage> next() override {
+    for (;;) {
+      while (chunk_at_ < chunk_.size()) {
+        ByteReader in(std::string_view(chunk_).substr(chunk_at_), file_.path());
+        const auto kind = static_cast<McapRecord>(in.number<std::uint8_t>("record"));
+        const auto length = in.number<std::uint64_t>("length of a record");
+        if (length > in.left()) {
+          chunk_at_ = chunk_.size();
+          in.fail("a chunk ends within a record");
+        }
+        const std::string_view content = in.take(length, "record");
+        chunk_at_ += kMcapRecordHead + length;
+        if (kind == McapRecord::message) {
+          if (const auto message = as_message(content)) return message;
+        }
+      }
+      const std::optional<Place> place = next_place();
+      if (!place) return std::nullopt;
+      if (place->kind == McapRecord::chunk) {
+        load_chunk(*place);
+      } else if (place->kind == McapRecord::message) {
+        loose_ = file_.read(place->at, place->length);
+        if (const auto message = as_message(loose_)) return message;
+      }
+    }
+  }
+
+  void rewind() override {
+    at_ = kMcapMagic.size();
+    chunk_.clear();
+    chunk_at_ = 0;
+  }
+
+  std::vector<std::string> notes() const override { return notes_; }
+
+ private:
+  /// Returns the next record of the data section that is in the file as a whole; nothing after it.
+  std::optional<Place> next_place() {
+    const std::string head = file_.read(at_, kMcapRecordHead);
+    if (head.size() < kMcapRecordHead) return end_early(!head.empty() || !ended_);
+    ByteReader in(head, file_.path());
+    Place place;
+    place.kind = static_cast<McapRecord>(in.number<std::uint8_t>("record"));
+    place.length = in.number<std::uint64_t>("length of a record");
+    place.at = at_ + kMcapRecordHead;
+    if (place.kind == McapRecord::data_end || place.kind == McapRecord::footer) {
+      ended_ = true;
+      return std::nullopt;
+    }
+    if (place.length > file_.size() - place.at) return end_early(true);
+    at_ = place.at + place.length;
+    return place;
+  }
+
+  std::optional<Place> end_early(bool is_early) {
+    if (is_early && notes_.empty()) {
+      notes_.push_back(
+          fmt::format("{}: cut short at byte {}; the whole messages before it are read", file_.path(), at_));
+    }
+    at_ = file_.size();
+    return std::nullopt;
+  }
+
+  void load_chunk(const Place& place) {
+    const std::string bytes = file_.read(place.at, place.length);
+    chunk_.clear();
+    chunk_at_ = 0;
+    ByteReader in(bytes, file_.path());
+    in.number<std::uint64_t>("first time of a chunk");
+    in.number<std::uint64_t>("last time of a chunk");
+    const auto size = in.number<std::uint64_t>("size of a chunk");
+    in.number<std::uint32_t>("checksum of a chunk");
+    const std::string_view method = in.text("compression of a chunk");
+    const auto packed = in.number<std::uint64_t>("compressed size of a chunk");
+    if (packed > in.left()) in.fail("a chunk is shorter than it says");
+    chunk_ = decompress(in.take(packed, "chunk"), method, size, file_.path());
+  }
+
+  /// Returns nothing for a message of a channel that nobody described.
+  std::optional<RecordedMessage> as_message(std::string_view content) const {
+    ByteReader in(content, file_.path());
+    const auto channel = in.number<std::uint16_t>("channel of a message");
+    in.number<std::uint32_t>("number of a message");
+    RecordedMessage message;
+    message.time_ns = static_cast<std::int64_t>(in.number<std::uint64_t>("time of a message"));
+    in.number<std::uint64_t>("time of a message");
+    message.bytes = in.take(in.left(), "message");
+    const auto found = topic_of_.find(channel);
+    if (found == topic_of_.end()) return std::nullopt;
+    message.topic = found->second;
+    return message;
+  }
+
+  void add_schema(std::string_view content) {
+    ByteReader in(content, file_.path());
+    const auto id = in.number<std::uint16_t>("number of a schema");
+    schemas_[id] = in.text("name of a schema");
+  }
+
+  void add_channel(std::string_view content) {
+    ByteReader in(content, file_.path());
+    const auto id = in.number<std::uint16_t>("number of a channel");
+    const auto schema = in.number<std::uint16_t>("schema of a channel");
+    const std::string name(in.text("topic of a channel"));
+    const std::string_view encoding = in.text("encoding of a channel");
+    if (topic_of_.contains(id)) return;
+    topic_of_[id] = topics_.size();
+    topics_.push_back({name, short_type(schemas_[schema]), layout_of(encoding), 0});
+  }
+
+  /// Learns topics and numbers of messages from the summary at the end; where there is none, from all that is there.
+  void find_topics() {
+    if (read_summary()) return;
+    topics_.clear();
+    topic_of_.clear();
+    at_ = kMcapMagic.size();
+    while (const std::optional<Place> place = next_place()) {
+      switch (place->kind) {
+        case McapRecord::schema:
+          add_schema(file_.read(place->at, place->length));
+          break;
+        case McapRecord::channel:
+          add_channel(file_.read(place->at, place->length));
+          break;
+        case McapRecord::message:
+          count(file_.read(place->at, sizeof(std::uint16_t)));
+          break;
+        case McapRecord::chunk:
+          if (!try_chunk(*place)) break;
+          for_records(chunk_, [&](McapRecord kind, std::string_view content) {
+            if (kind == McapRecord::schema) add_schema(content);
+            if (kind == McapRecord::channel) add_channel(content);
+            if (kind == McapRecord::message) count(content);
+          });
+          break;
+        default:
+          break;
+      }
+    }
+  }
+
+  bool try_chunk(const Place& place) {
+    try {
+      load_chunk(place);
+    } catch (const Error&) {
+      chunk_.clear();
+      return false;  // `next` says so when it comes there
+    }
+    return true;
+  }
+
+  template <class Each>
+  void for_records(std::string_view bytes, const Each& each) const {
+    ByteReader in(bytes, file_.path());
+    while (in.left() >= kMcapRecordHead) {
+      const auto kind = static_cast<McapRecord>(in.number<std::uint8_t>("record"));
+      const auto length = in.number<std::uint64_t>("length of a record");
+      if (length > in.left()) return;
+      each(kind, in.take(length, "record"));
+    }
+  }
+
+  void count(std::string_view message) {
+    ByteReader in(message, file_.path());
+    const auto found = topic_of_.find(in.number<std::uint16_t>("channel of a message"));
+    if (found != topic_of_.end()) ++topics_[found->second].messages;
+  }
+
+  /// Takes schemas, channels and numbers of messages from the summary. Returns whether it has channels.
+  bool read_summary() {
+    constexpr std::uint64_t kFooter = 20;
+    const std::uint64_t tail = kMcapRecordHead + kFooter + kMcapMagic.size();
+    if (file_.size() < kMcapMagic.size() + tail) return false;
+    const std::string end = file_.read(file_.size() - tail, tail);
+    if (!end.ends_with(kMcapMagic) || static_cast<McapRecord>(end[0]) != McapRecord::footer) return false;
+    ByteReader in(std::string_view(end).substr(kMcapRecordHead), file_.path());
+    const auto start = in.number<std::uint64_t>("place of the summary");
+    if (start == 0 || start > file_.size() - tail || file_.size() - tail - start > kMaxPieceBytes) return false;
+    const std::string summary = file_.read(start, file_.size() - tail - start);
+    std::string statistics;
+    for_records(summary, [&](McapRecord kind, std::string_view content) {
+      if (kind == McapRecord::schema) add_schema(content);
+      if (kind == McapRecord::channel) add_channel(content);
+      if (kind == McapRecord::statistics) statistics = content;
+    });
+    if (statistics.empty()) {
+      for (RecordedTopic& topic : topics_) topic.messages = -1;
+    } else {
+      count_all(statistics);
+    }
+    return !topics_.empty();
+  }
+
+  void count_all(const std::string& statistics) {
+    constexpr std::size_t kBeforeCounts = 42;  // bytes of numbers of messages, schemas, channels and so on, and times
+    constexpr std::size_t kEntry = 10;
+    ByteReader in(statistics, file_.path());
+    in.take(kBeforeCounts, "statistics");
+    ByteReader counts(in.text("numbers of messages"), file_.path());
+    while (counts.left() >= kEntry) {
+      const auto found = topic_of_.find(counts.number<std::uint16_t>("channel"));
+      const auto messages = counts.number<std::uint64_t>("number of messages");
+      if (found != topic_of_.end()) topics_[found->second].messages = static_cast<std::int64_t>(messages);
+    }
+  }
+
+  DataFile file_;
+  std::vector<RecordedTopic> topics_;
+  std::map<std::uint16_t, std::string> schemas_;
+  std::map<std::uint16_t, std::size_t> topic_of_;
+  std::vector<std::string> notes_;
+  std::uint64_t at_ = 0;
+  bool ended_ = false;
+  std::string chunk_, loose_;
+  std::size_t chunk_at_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Recording> open_mcap(DataFile file) { return std::make_unique<McapRecording>(std::move(file)); }
+
+}  // namespace vesalius

@@ -1,0 +1,25 @@
+#include "io/recordings/open_recording.h"
+
+#include <fmt/format.h>
+
+#include "io/recordings/bag_recording.h"
+#include "io/recordings/data_file.h"
+#include "io/recordings/mcap_recording.h"
+#include "io/recordings/mcap_records.h"
+#include "io/recordings/sqlite_recording.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+
+std::unique_ptr<Recording> open_recording(const std::string& path) {
+  constexpr std::string_view kSqlite = "SQLite format 3";
+  DataFile file(path);
+  const std::string first = file.read(0, 16);
+  if (first.starts_with(kMcapMagic)) return open_mcap(std::move(file));
+  if (first.starts_with(kBagMagic)) return open_bag(std::move(file));
+  if (first.starts_with(kSqlite)) return open_sqlite(path);
+  throw Error(fmt::format("{}: {}, expected MCAP, a ROS 1 bag of version 2.0, or a ROS 2 bag in SQLite", path,
+                          file.size() == 0 ? "empty" : "no recording that is known"));
+}
+
+}  // namespace vesalius

@@ -1,0 +1,14 @@
+#include "io/recordings/recording.h"
+
+#include <fmt/format.h>
+
+namespace vesalius {
+
+std::string short_type(std::string_view type) {
+  constexpr std::string_view kMiddle = "/msg/";
+  const std::size_t middle = type.find(kMiddle);
+  if (middle == type.npos) return std::string(type);
+  return fmt::format("{}/{}", type.substr(0, middle), type.substr(middle + kMiddle.size()));
+}
+
+}  // namespace vesalius

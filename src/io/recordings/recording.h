@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vesalius {
+
+/// How the fields of messages are laid out.
+enum class MessageLayout {
+  ros1,      ///< little-endian, without gaps
+  cdr,       ///< ROS 2: aligned, in either byte order, after four bytes that say which
+  protobuf,  ///< Protocol Buffers
+  other      ///< none that is read here, such as JSON
+};
+
+/// A stream of messages of one type in a recording.
+struct RecordedTopic {
+  std::string name;  ///< e.g. "/camera/depth/image_raw"
+  std::string type;  ///< without the folder that ROS 2 puts in the middle, e.g. "sensor_msgs/Image"
+  MessageLayout layout = MessageLayout::other;
+  /// Number of messages; -1 where it is known only after they were read.
+  std::int64_t messages = -1;
+};
+
+struct RecordedMessage {
+  std::size_t topic = 0;     ///< index in Recording::topics()
+  std::int64_t time_ns = 0;  ///< when it was recorded
+  std::string_view bytes;    ///< valid up to the next call of `next`
+};
+
+/// A file of messages, in the order in which they were recorded.
+class Recording {
+ public:
+  virtual ~Recording() = default;
+  virtual const std::vector<RecordedTopic>& topics() const = 0;
+  /// Returns the next message, nothing at the end. Throws Error naming the file where it is damaged; the call after
+  /// that returns nothing.
+  virtual std::optional<RecordedMessage> next() = 0;
+  /// Starts again with the first message.
+  virtual void rewind() = 0;
+  /// Returns what is not as it should be, a line each: a file cut short, of which the whole messages are read.
+  virtual std::vector<std::string> notes() const { return {}; }
+};
+
+/// Removes the middle of a type's name in ROS 2: "sensor_msgs/msg/Image" becomes "sensor_msgs/Image".
+std::string short_type(std::string_view type);
+
+}  // namespace vesalius

@@ -1,0 +1,380 @@
+#!/usr/bin/env python3
+"""Recordings between vesalius and other programs, both ways.
+
+Writes the frames of FOLDER (depth/*.png, rgb/*, meta.json) into recordings with rosbags and mcap, in every layout, compression
+and encoding of depth, and has vesalius turn each back into a folder: its depth must be the same, pixel by pixel, and its
+colour, where nothing was lost. Then has vesalius record FOLDER, and rosbags, mcap and rerun read that.
+
+Needs a Python with: rosbags mcap mcap-ros2-support numpy opencv-python-headless; optionally rerun-sdk, foxglove-schemas-protobuf.
+
+usage: other_side.py VESALIUS FOLDER
+       other_side.py --fixtures DIR     writes the small recordings that the tests of io and the fuzzer start from
+"""
+import json
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import cv2
+import numpy as np
+from rosbags.rosbag1 import Reader as Reader1
+from rosbags.rosbag1 import Writer as Writer1
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
+from rosbags.rosbag2 import Writer as Writer2
+from rosbags.typesys import Stores, get_typestore
+
+STEP_NS = 33_000_000
+FIRST_NS = 1_700_000_000_000_000_000
+DEPTH, COLOUR, INFO = "/camera/depth/image_raw", "/camera/color/image_raw", "/camera/depth/camera_info"
+
+
+def frames(folder):
+    for i, path in enumerate(sorted((folder / "depth").glob("*.png"))):
+        colours = list((folder / "rgb").glob(path.stem + ".*"))
+        colour = cv2.imread(str(colours[0])) if colours else None
+        yield FIRST_NS + i * STEP_NS, cv2.imread(str(path), cv2.IMREAD_UNCHANGED), colour
+
+
+class Messages:
+    """Messages of ROS 1 or 2 by the same names."""
+
+    def __init__(self, store, is_ros1):
+        self.store, self.is_ros1, self.types = store, is_ros1, store.types
+
+    def header(self, time_ns):
+        stamp = self.types["builtin_interfaces/msg/Time"](sec=time_ns // 10**9, nanosec=time_ns % 10**9)
+        more = {"seq": 7} if self.is_ros1 else {}
+        return self.types["std_msgs/msg/Header"](stamp=stamp, frame_id="camera_color_optical_frame", **more)
+
+    def image(self, time_ns, picture, encoding):
+        rows = np.ascontiguousarray(picture)
+        big = 1 if rows.dtype.byteorder == ">" else 0
+        step = rows.strides[0]
+        return "sensor_msgs/msg/Image", self.types["sensor_msgs/msg/Image"](
+            header=self.header(time_ns), height=rows.shape[0], width=rows.shape[1], encoding=encoding, is_bigendian=big,
+            step=step, data=np.frombuffer(rows.tobytes(), np.uint8))
+
+    def compressed(self, time_ns, data, encoding):
+        return "sensor_msgs/msg/CompressedImage", self.types["sensor_msgs/msg/CompressedImage"](
+            header=self.header(time_ns), format=encoding, data=np.frombuffer(data, np.uint8))
+
+    def info(self, time_ns, meta):
+        k = np.array([meta["fx"], 0, meta["cx"], 0, meta["fy"], meta["cy"], 0, 0, 1], float)
+        p = np.array([meta["fx"], 0, meta["cx"], 0, 0, meta["fy"], meta["cy"], 0, 0, 0, 1, 0], float)
+        roi = self.types["sensor_msgs/msg/RegionOfInterest"](x_offset=0, y_offset=0, height=0, width=0, do_rectify=False)
+        values = {"d": np.zeros(5), "k": k, "r": np.eye(3).reshape(-1), "p": p}
+        if self.is_ros1:
+            values = {name.upper(): value for name, value in values.items()}
+        return "sensor_msgs/msg/CameraInfo", self.types["sensor_msgs/msg/CameraInfo"](
+            header=self.header(time_ns), height=meta["height"], width=meta["width"], distortion_model="plumb_bob",
+            binning_x=0, binning_y=0, roi=roi, **values)
+
+    def bytes(self, kind, message):
+        write = self.store.serialize_ros1 if self.is_ros1 else self.store.serialize_cdr
+        return write(message, kind)
+
+
+def rvl(depth):
+    """Depth packed as by Wilson (2017), written down anew from the paper's description."""
+    nibbles = []
+
+    def number(value):
+        while True:
+            low, value = value & 7, value >> 3
+            nibbles.append(low | (8 if value else 0))
+            if not value:
+                return
+
+    values, at, previous = depth.reshape(-1).tolist(), 0, 0
+    while at < len(values):
+        start = at
+        while at < len(values) and values[at] == 0:
+            at += 1
+        number(at - start)
+        start = at
+        while at < len(values) and values[at] != 0:
+            at += 1
+        number(at - start)
+        for value in values[start:at]:
+            difference, previous = value - previous, value
+            number(difference << 1 if difference >= 0 else (-difference << 1) - 1)
+    nibbles += [0] * (-len(nibbles) % 8)
+    words = [int("".join(f"{n:x}" for n in nibbles[i:i + 8]), 16) for i in range(0, len(nibbles), 8)]
+    return struct.pack(f"<{len(words)}I", *words)
+
+
+def depth_variants(messages):
+    head = struct.pack("<iff", 0, 0.0, 0.0)
+
+    def png(depth):
+        return cv2.imencode(".png", depth)[1].tobytes()
+
+    return {
+        "16UC1": lambda t, d: messages.image(t, d, "16UC1"),
+        "mono16": lambda t, d: messages.image(t, d, "mono16"),
+        "16UC1 big-endian": lambda t, d: messages.image(t, d.astype(">u2"), "16UC1"),
+        "32FC1": lambda t, d: messages.image(t, np.where(d == 0, np.nan, d / 1000).astype("f4"), "32FC1"),
+        "compressedDepth": lambda t, d: messages.compressed(t, head + png(d), "16UC1; compressedDepth"),
+        "compressedDepth png": lambda t, d: messages.compressed(t, head + png(d), "16UC1; compressedDepth png"),
+        "compressedDepth rvl": lambda t, d: messages.compressed(
+            t, head + struct.pack("<II", d.shape[1], d.shape[0]) + rvl(d), "16UC1; compressedDepth rvl"),
+    }
+
+
+def colour_variants(messages):
+    def alpha(c):
+        return np.dstack([c, np.full(c.shape[:2], 255, np.uint8)])
+
+    return {
+        "rgb8": lambda t, c: messages.image(t, c[:, :, ::-1], "rgb8"),
+        "bgr8": lambda t, c: messages.image(t, c, "bgr8"),
+        "bgra8": lambda t, c: messages.image(t, alpha(c), "bgra8"),
+        "png": lambda t, c: messages.compressed(t, cv2.imencode(".png", c)[1].tobytes(), "rgb8; png compressed bgr8"),
+    }
+
+
+def write_all(connect, messages, folder, depth_of, colour_of):
+    """Colour first on even frames and after depth on odd ones, as two streams overtake each other."""
+    meta = json.loads((folder / "meta.json").read_text())
+    channels = {}
+
+    def put(topic, time_ns, kind_and_message):
+        kind, message = kind_and_message
+        if topic not in channels:
+            channels[topic] = connect(topic, kind)
+        channels[topic](time_ns, messages.bytes(kind, message))
+
+    for i, (time_ns, depth, colour) in enumerate(frames(folder)):
+        put(INFO, time_ns, messages.info(time_ns, meta))
+        order = [(DEPTH, lambda: depth_of(time_ns, depth))]
+        if colour is not None:
+            order.append((COLOUR, lambda: colour_of(time_ns + 2_000_000, colour)))
+        for topic, make in order if i % 2 else reversed(order):
+            put(topic, time_ns, make())
+
+
+def write_bag(path, folder, compression, depth, colour):
+    store = get_typestore(Stores.ROS1_NOETIC)
+    messages = Messages(store, True)
+    writer = Writer1(path)
+    if compression:
+        writer.set_compression(compression)
+    with writer:
+        def connect(topic, kind):
+            connection = writer.add_connection(topic, kind, typestore=store)
+            return lambda time_ns, data: writer.write(connection, time_ns, data)
+
+        write_all(connect, messages, folder, depth_variants(messages)[depth], colour_variants(messages)[colour])
+
+
+def write_ros2(path, folder, plugin, compression, depth, colour):
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    messages = Messages(store, False)
+    writer = Writer2(path, version=9, storage_plugin=plugin)
+    if compression:
+        writer.set_compression(CompressionMode.MESSAGE, CompressionFormat.ZSTD)
+    with writer:
+        def connect(topic, kind):
+            connection = writer.add_connection(topic, kind, typestore=store)
+            return lambda time_ns, data: writer.write(connection, time_ns, data)
+
+        write_all(connect, messages, folder, depth_variants(messages)[depth], colour_variants(messages)[colour])
+
+
+def write_mcap(path, folder, compression, chunked, depth, colour):
+    from mcap.writer import CompressionType, Writer
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    messages = Messages(store, False)
+    with open(path, "wb") as out:
+        writer = Writer(out, compression=CompressionType[compression], use_chunking=chunked, chunk_size=300_000)
+        writer.start(profile="ros2", library="other side")
+
+        def connect(topic, kind):
+            schema = writer.register_schema(kind, "ros2msg", store.generate_msgdef(kind, ros_version=2)[0].encode())
+            channel = writer.register_channel(topic, "cdr", schema)
+            return lambda time_ns, data: writer.add_message(channel, time_ns, bytes(data), time_ns)
+
+        write_all(connect, messages, folder, depth_variants(messages)[depth], colour_variants(messages)[colour])
+        writer.finish()
+
+
+def write_foxglove(path, folder):
+    from foxglove_schemas_protobuf import CameraCalibration_pb2, RawImage_pb2
+    from google.protobuf.descriptor_pb2 import FileDescriptorSet
+    from mcap.writer import Writer
+
+    def schema_of(message):
+        files, seen = FileDescriptorSet(), set()
+
+        def add(file):
+            if file.name not in seen:
+                seen.add(file.name)
+                for needed in file.dependencies:
+                    add(needed)
+                file.CopyToProto(files.file.add())
+
+        add(message.DESCRIPTOR.file)
+        return files.SerializeToString()
+
+    meta = json.loads((folder / "meta.json").read_text())
+    with open(path, "wb") as out:
+        writer = Writer(out)
+        writer.start(profile="", library="other side")
+        channels = {}
+
+        def put(topic, time_ns, message):
+            message.timestamp.seconds, message.timestamp.nanos = time_ns // 10**9, time_ns % 10**9
+            message.frame_id = "camera"
+            if topic not in channels:
+                schema = writer.register_schema(message.DESCRIPTOR.full_name, "protobuf", schema_of(message))
+                channels[topic] = writer.register_channel(topic, "protobuf", schema)
+            writer.add_message(channels[topic], time_ns, message.SerializeToString(), time_ns)
+
+        for time_ns, depth, colour in frames(folder):
+            info = CameraCalibration_pb2.CameraCalibration(width=meta["width"], height=meta["height"])
+            info.K.extend([meta["fx"], 0, meta["cx"], 0, meta["fy"], meta["cy"], 0, 0, 1])
+            put(INFO, time_ns, info)
+            for topic, picture, encoding in ((DEPTH, depth, "16UC1"), (COLOUR, colour, "bgr8")):
+                if picture is None:
+                    continue
+                put(topic, time_ns, RawImage_pb2.RawImage(
+                    width=picture.shape[1], height=picture.shape[0], encoding=encoding, step=picture.strides[0],
+                    data=picture.tobytes()))
+        writer.finish()
+
+
+def expect_same(vesalius, recording, folder, name):
+    with tempfile.TemporaryDirectory() as back:
+        back = Path(back) / "back"
+        subprocess.run([vesalius, "convert", recording, back, "--to", "folder", "-q"], check=True)
+        found = list(frames(back))
+        wanted = list(frames(folder))
+        assert len(found) == len(wanted), f"{name}: {len(found)} frames, expected {len(wanted)}"
+        for (_, depth, colour), (time_ns, true_depth, true_colour) in zip(found, wanted):
+            assert np.array_equal(depth, true_depth), f"{name}: depth differs at {time_ns}"
+            assert (colour is None) == (true_colour is None), f"{name}: colour missing at {time_ns}"
+            assert colour is None or np.array_equal(colour, true_colour), f"{name}: colour differs at {time_ns}"
+        times = [path.stem for path in sorted((back / "depth").glob("*.png"))]
+        assert times == [f"{t // 10**9}.{t % 10**9:09}" for t, _, _ in wanted], f"{name}: times {times}"
+        camera = json.loads((back / "meta.json").read_text())
+        meta = json.loads((folder / "meta.json").read_text())
+        for key in ("fx", "fy", "cx", "cy"):
+            assert abs(camera[key] - meta[key]) < 1e-3, f"{name}: {key} {camera[key]}, expected {meta[key]}"
+    print("same:", name, flush=True)
+
+
+def read_theirs(vesalius, folder, work):
+    depths = list(depth_variants(Messages(get_typestore(Stores.ROS2_HUMBLE), False)))
+    colours = list(colour_variants(Messages(get_typestore(Stores.ROS2_HUMBLE), False)))
+    for i, depth in enumerate(depths):
+        colour = colours[i % len(colours)]
+        compression = [None, Writer1.CompressionFormat.BZ2, Writer1.CompressionFormat.LZ4][i % 3]
+        write_bag(work / f"{i}.bag", folder, compression, depth, colour)
+        expect_same(vesalius, work / f"{i}.bag", folder, f"ROS 1 bag, {compression}, {depth}, {colour}")
+        plugin = [StoragePlugin.SQLITE3, StoragePlugin.MCAP][i % 2]
+        packed = plugin == StoragePlugin.SQLITE3 and i % 4 == 2
+        write_ros2(work / f"{i}_ros2", folder, plugin, packed, depth, colour)
+        expect_same(vesalius, work / f"{i}_ros2", folder, f"ROS 2 bag, {plugin}, messages packed {packed}, {depth}, {colour}")
+        kind = ["NONE", "LZ4", "ZSTD"][i % 3]
+        write_mcap(work / f"{i}.mcap", folder, kind, i != 4, depth, colour)
+        expect_same(vesalius, work / f"{i}.mcap", folder, f"MCAP, {kind}, chunks {i != 4}, {depth}, {colour}")
+    try:
+        write_foxglove(work / "foxglove.mcap", folder)
+        expect_same(vesalius, work / "foxglove.mcap", folder, "MCAP of foxglove schemas")
+    except ImportError as missing:
+        print("left out: foxglove schemas:", missing)
+
+
+def cut_short(vesalius, folder, work):
+    """A recording that ends anywhere gives the frames before that."""
+    whole = len(list(frames(folder)))
+    for name in ("0.bag", "1.bag", "2.mcap", "4.mcap"):
+        data = (work / name).read_bytes()
+        counts = []
+        for share in (0.4, 0.7, 0.95):
+            part = work / ("cut" + Path(name).suffix)
+            part.write_bytes(data[: int(share * len(data))])
+            shutil.rmtree(work / "back", ignore_errors=True)
+            done = subprocess.run([vesalius, "convert", part, work / "back", "--to", "folder"], capture_output=True, text=True)
+            assert done.returncode == 0, f"{name}: {done.stderr}"
+            assert "cut short" in done.stderr or share == 0.95, f"{name}: not a word that it is cut short: {done.stderr}"
+            counts.append(len(list((work / "back" / "depth").glob("*.png"))))
+        assert counts == sorted(counts) and 0 < counts[0] < whole, f"{name}: {counts} of {whole} frames"
+        print("cut short:", name, counts, "of", whole, flush=True)
+
+
+def give_ours(vesalius, folder, work):
+    ours = work / "ours.mcap"
+    subprocess.run([vesalius, "record", folder, "--out", ours, "--people", "-q"], check=True)
+    from mcap.reader import make_reader
+    from mcap_ros2.decoder import DecoderFactory
+    wanted = list(frames(folder))
+    depths, people, texts = [], 0, 0
+    with open(ours, "rb") as file:
+        for _, channel, message, decoded in make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
+            if channel.topic == "/camera/depth/image":
+                depths.append(np.frombuffer(decoded.data, np.uint16).reshape(decoded.height, decoded.width))
+            if channel.topic == "/people/markers":
+                assert decoded.markers[0].action == 3 and len(decoded.markers) % 3 == 1
+                people += len(decoded.markers) // 3
+            if channel.topic == "/people/json":
+                texts += len(json.loads(decoded.data)["people"])
+    assert len(depths) == len(wanted) and all(np.array_equal(a, b[1]) for a, b in zip(depths, wanted)), "mcap: depth differs"
+    assert people == texts and people > 0, f"mcap: {people} people in markers, {texts} in JSON"
+    print("mcap reads ours:", len(depths), "frames,", people, "people")
+    from rosbags.highlevel import AnyReader
+    (work / "ours_bag").mkdir()
+    with AnyReader([ours], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
+        count = sum(1 for c, _, raw in reader.messages() if reader.deserialize(raw, c.msgtype) is not None)
+    print("rosbags reads ours:", count, "messages")
+    rerun = shutil.which("rerun", path=str(Path(sys.executable).parent))
+    if rerun:
+        subprocess.run([rerun, "mcap", "check", ours], check=True)
+        print("rerun checks ours")
+    else:
+        print("left out: rerun")
+
+
+def write_fixtures(out):
+    """Three pictures of 16x12 whose every pixel follows from its place (recording_source_test.cpp)."""
+    out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as work:
+        folder = Path(work) / "small"
+        (folder / "depth").mkdir(parents=True)
+        (folder / "rgb").mkdir()
+        v, u = np.mgrid[:12, :16]
+        for i in range(3):
+            depth = np.where(u == v, 0, 1000 + 100 * i + 10 * v + u).astype(np.uint16)
+            colour = np.dstack([np.full(u.shape, 7), 20 * v, 10 * u]).astype(np.uint8)
+            cv2.imwrite(str(folder / "depth" / f"{i}.png"), depth)
+            cv2.imwrite(str(folder / "rgb" / f"{i}.png"), colour)
+        meta = {"width": 16, "height": 12, "fx": 14.5, "fy": 15.0, "cx": 7.5, "cy": 5.5}
+        (folder / "meta.json").write_text(json.dumps(meta))
+        bags = {"plain": (None, "16UC1", "rgb8"), "bz2": (Writer1.CompressionFormat.BZ2, "32FC1", "bgra8"),
+                "lz4": (Writer1.CompressionFormat.LZ4, "16UC1 big-endian", "bgr8")}
+        for name, how in bags.items():
+            (out / f"{name}.bag").unlink(missing_ok=True)
+            write_bag(out / f"{name}.bag", folder, *how)
+        for name, packed, depth in (("plain", False, "compressedDepth rvl"), ("zstd", True, "compressedDepth png")):
+            write_ros2(Path(work) / name, folder, StoragePlugin.SQLITE3, packed, depth, "png")
+            shutil.copy(next((Path(work) / name).glob("*.db3*")), out / f"{name}.db3")
+        for name, kind, chunked in (("zstd", "ZSTD", True), ("lz4", "LZ4", True), ("loose", "NONE", False)):
+            write_mcap(out / f"{name}.mcap", folder, kind, chunked, "16UC1", "rgb8")
+        write_foxglove(out / "foxglove.mcap", folder)
+
+
+def main():
+    if sys.argv[1] == "--fixtures":
+        return write_fixtures(Path(sys.argv[2]))
+    vesalius, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    with tempfile.TemporaryDirectory() as work:
+        read_theirs(vesalius, folder, Path(work))
+        cut_short(vesalius, folder, Path(work))
+        give_ours(vesalius, folder, Path(work))
+
+
+if __name__ == "__main__":
+    main()
