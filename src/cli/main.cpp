@@ -55,6 +55,7 @@ Exit codes: 0 done, 1 failed, 2 wrong usage.)");
   add_detect(program);
   add_info(program);
   add_convert(program);
+  add_record(program);
   add_bench(program);
   for (const Satellite& satellite : satellites()) {
     for (const auto add : satellite.commands) add(program);

@@ -8,13 +8,14 @@ class App;
 
 namespace vesalius::cli {
 
-/// Adds the flags for what the files of SOURCE may not state: --fx --fy --cx --cy --depth-scale --camera --colour.
+/// Adds the flags for what the files of SOURCE may not state: --fx --fy --cx --cy --depth-scale --camera --colour
+/// --depth-topic --colour-topic.
 void add_camera_flags(CLI::App& command, SourceOptions& options);
 
 /// The text of --help on what SOURCE may be.
 inline constexpr const char* kSourceHelp =
     "Frames: a folder (depth/*.png with meta.json or camera_info.yaml, TUM RGB-D, PNG or PCD files), a 16-bit depth "
-    "PNG "
-    "or an organised PCD file; tum:FOLDER:SCALE and similar prefixes state the kind";
+    "PNG, an organised PCD file, or a recording (MCAP, ROS 1 .bag, ROS 2 .db3); tum:FOLDER:SCALE and similar prefixes "
+    "state the kind";
 
 }  // namespace vesalius::cli

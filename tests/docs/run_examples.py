@@ -78,13 +78,20 @@ class Wrapper:
             found.append(word)
         return found
 
+    def stand_in_of_source(self, name):
+        if name.startswith("tum:"):
+            return "walking"
+        if name.endswith((".mcap", ".bag", ".db3")):
+            return "session.mcap"
+        return "depth.png" if name.endswith(".png") else "frames"
+
     def provide(self, words):
         command = words[0]
         for name in self.values(words, "-m", "--model"):
             self.place(name, "rendered.forest" if "--recipe" in words else "some.forest")
-        if command in ("detect", "bench"):
+        if command in ("detect", "record", "bench"):
             for name in self.positional(words):
-                self.place(name, "walking" if name.startswith("tum:") else "depth.png" if name.endswith(".png") else "frames")
+                self.place(name, self.stand_in_of_source(name))
         if command == "evaluate":
             for name in self.positional(words):
                 self.place(name, "nobody" if "empty" in name else "frames")
@@ -96,7 +103,7 @@ class Wrapper:
                 if name.endswith(".forest"):
                     self.place(name, "some.forest")
                 else:
-                    self.place(name, "walking" if name.startswith("tum:") else "frames" if "--to" in words else "tree.txt")
+                    self.place(name, self.stand_in_of_source(name) if "--to" in words else "tree.txt")
         if command == "info":
             for name in self.positional(words):
                 self.place(name, "some.forest")
@@ -167,6 +174,7 @@ def make_stand_ins(program, source, folder):
     vesalius("synth", "-q", "--count", 4, "--seed", 6, "--out", folder / "nobody", *nobody)
     vesalius("synth", "-q", "--count", 3, "--seed", 6, "--format", "folder", "--out", folder / "rooms", *nobody)
     vesalius("convert", source / "data/sample", folder / "walking", "--to", "tum", "--rate", 30, "-q")
+    vesalius("record", source / "data/sample", "--out", folder / "session.mcap", "-q")
     (folder / "frames").symlink_to(source / "data/sample")
     (folder / "some.forest").symlink_to(source / "data/models/capsule.forest")
     (folder / "rendered.forest").symlink_to(source / "data/models/small.forest")

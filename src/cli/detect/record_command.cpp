@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/detector_flags.h"
+#include "cli/interrupts.h"
+#include "cli/progress.h"
+#include "cli/source_flags.h"
+#include "cli/text_sink.h"
+#include "io/recordings/frame_recorder.h"
+#include "stream/detect_stream.h"
+#include "stream/person_json.h"
+#include "vesalius/base/keep_memory.h"
+
+namespace vesalius::cli {
+namespace {
+
+struct Arguments {
+  explicit Arguments(CLI::App& command) : detector(command) {}
+
+  std::string source, out;
+  SourceOptions camera;
+  DetectorFlags detector;
+  double rate = 30.0;
+  bool people = false;
+  bool quiet = false;
+};
+
+void record_frames(FrameSource& source, FrameRecorder& recorder, Progress& progress) {
+  while (!interrupted()) {
+    const std::optional<Frame> frame = source.next();
+    if (!frame) return;
+    recorder.write(*frame);
+    progress.step();
+  }
+}
+
+void record_people(FrameSource& source, const Detector& detector, FrameRecorder& recorder, Progress& progress) {
+  StreamOptions options;
+  options.stop = interrupted;
+  stream_frames(source, detector, options, [&](const FoundFrame& found) {
+    if (found.error) std::rethrow_exception(found.error);
+    recorder.write(*found.frame);
+    recorder.write_people(*found.frame, found.people, detector.body(),
+                          frame_json(*found.frame, found.people, detector.body()));
+    progress.step();
+    return true;
+  });
+}
+
+void run(const Arguments& arguments) {
+  keep_freed_memory();
+  std::optional<Detector> detector;
+  if (arguments.people) detector.emplace(arguments.detector.make());
+  const auto source = open_source(arguments.source, arguments.camera);
+  if (!arguments.quiet) {
+    for (const std::string& note : source->notes()) say("note: " + note);
+  }
+  FrameRecorder recorder(arguments.out, arguments.rate);
+  watch_interrupts();
+  Progress progress(source->size(), !arguments.quiet);
+  try {
+    if (detector) {
+      record_people(*source, *detector, recorder, progress);
+    } else {
+      record_frames(*source, recorder, progress);
+    }
+  } catch (const Error&) {
+    progress.clear();
+    recorder.close();  // what was recorded is kept
+    throw;
+  }
+  recorder.close();
+  progress.clear();
+  if (interrupted()) {
+    throw Error(fmt::format("interrupted; the {} frames before it are in {}", progress.done(), arguments.out));
+  }
+  if (!arguments.quiet) say(fmt::format("{}: {} frames", arguments.out, progress.done()));
+}
+
+}  // namespace
+
+void add_record(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("record", "Record frames, and people if wanted, into an MCAP file");
+  const auto arguments = std::make_shared<Arguments>(*command);
+  command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
+  command->add_option("--out", arguments->out, "MCAP file to write; must not exist")->type_name("FILE")->required();
+  command->add_flag("--people", arguments->people, "Find people and record them too: body index, parts, markers, JSON");
+  command->add_option("--rate", arguments->rate, "Frames per second of a source that does not know its frames' times")
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  add_camera_flags(*command, arguments->camera);
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command->footer(R"(
+The file holds depth without loss and opens in Foxglove, Rerun and rosbag2 (docs/recordings.md). One whose recording was
+killed lacks the last second at most.
+
+Examples:
+  vesalius record frames/ --out session.mcap
+  vesalius record session.bag --out found.mcap --people
+  vesalius detect found.mcap)");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,67 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "run_program.h"
+#include "small_world.h"
+
+namespace vesalius {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Record : public SmallWorld {
+ protected:
+  /// Returns the lines of `vesalius detect --json`, without what differs between a folder and its recording.
+  static std::vector<json> found_in(const std::string& source) {
+    const Outcome run = run_program("detect " + source + " -q --json - -m " + model());
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    std::vector<json> lines;
+    std::istringstream in(run.out);
+    for (std::string line; std::getline(in, line);) {
+      lines.push_back(json::parse(line));
+      lines.back().erase("frame");
+      lines.back().erase("time_s");
+    }
+    return lines;
+  }
+};
+
+TEST_F(Record, HoldsFramesInWhichTheSamePeopleAreFound) {
+  const std::string file = path("session.mcap");
+  const Outcome run = run_program("record " + frames() + " --out " + file + " --people -m " + model());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("session.mcap: 3 frames"));
+  const std::vector<json> found = found_in(file);
+  ASSERT_EQ(found.size(), 4U);
+  EXPECT_FALSE(found.front().at("people").empty());
+  EXPECT_EQ(found, found_in(frames()));
+}
+
+TEST_F(Record, GoesThroughAFolderWithoutLoss) {
+  const std::string file = path("again.mcap"), folder = path("again");
+  ASSERT_EQ(run_program("record " + frames() + " --out " + file).exit_code, 0);
+  ASSERT_EQ(run_program("convert " + file + " " + folder + " --to folder").exit_code, 0);
+  EXPECT_EQ(found_in(folder), found_in(frames()));
+}
+
+TEST_F(Record, RefusesWhatItCannotDo) {
+  const std::string file = path("mine.mcap");
+  ASSERT_EQ(run_program("record " + frames() + " --out " + file).exit_code, 0);
+  const std::string before = bytes_of(file);
+  const Outcome again = run_program("record " + frames() + " --out " + file);
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, HasSubstr("mine.mcap: cannot be created: File exists"));
+  EXPECT_EQ(bytes_of(file), before);
+  const Outcome nothing = run_program("record missing/ --out " + path("none.mcap"));
+  EXPECT_EQ(nothing.exit_code, 1);
+  EXPECT_THAT(nothing.err, HasSubstr("missing/: "));
+  EXPECT_FALSE(std::filesystem::exists(path("none.mcap")));
+  EXPECT_EQ(run_program("record " + frames()).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace vesalius
