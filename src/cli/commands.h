@@ -13,6 +13,7 @@ void add_info(CLI::App& program);
 void add_convert(CLI::App& program);
 void add_bench(CLI::App& program);
 void add_record(CLI::App& program);
+void add_cameras(CLI::App& program);
 void add_options(CLI::App& program);
 void add_completion(CLI::App& program);
 

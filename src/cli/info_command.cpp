@@ -10,6 +10,7 @@
 #include "cli/text_sink.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
+#include "io/sensors/sensor_drivers.h"
 #include "vesalius/base/parallel.h"
 
 namespace vesalius::cli {
@@ -41,7 +42,10 @@ Json part_facts() {
     Json& more = facts[satellite.name] = Json::object();
     for (const auto& [name, value] : satellite.facts()) more[name] = value;
   }
-  for (const char* name : {"openni2", "realsense", "k4a", "cuda", "viewer"}) facts[name] = "absent";
+  for (const SensorDriver& driver : sensor_drivers()) {
+    facts[std::string(driver.scheme)] = driver.built ? "present" : "absent";
+  }
+  for (const char* name : {"realsense", "k4a", "cuda", "viewer"}) facts[name] = "absent";
   return facts;
 }
 

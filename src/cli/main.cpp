@@ -56,6 +56,7 @@ Exit codes: 0 done, 1 failed, 2 wrong usage.)");
   add_info(program);
   add_convert(program);
   add_record(program);
+  add_cameras(program);
   add_bench(program);
   for (const Satellite& satellite : satellites()) {
     for (const auto add : satellite.commands) add(program);

@@ -86,10 +86,11 @@ class Stream {
       : source_(source),
         detector_(detector),
         options_(options),
-        work_(options.realtime ? 1 : kFramesAhead),
+        realtime_(options.realtime || source.is_live()),
+        work_(realtime_ ? 1 : kFramesAhead),
         written_(kFramesAhead) {
-    helpers_.push_back(helper([this] { options_.realtime ? read_in_real_time() : read_ahead(); }));
-    const int detectors = options.realtime ? 1 : kDetectors;
+    helpers_.push_back(helper([this] { realtime_ ? read_in_real_time() : read_ahead(); }));
+    const int detectors = realtime_ ? 1 : kDetectors;
     working_ = detectors;
     for (int i = 0; i < detectors; ++i) helpers_.push_back(helper([this] { work(); }));
   }
@@ -127,7 +128,10 @@ class Stream {
   void read_in_real_time() {
     Pace pace(options_.rate);
     for (auto job = std::make_shared<Job>(); read_next(source_, job->found); job = std::make_shared<Job>()) {
-      if (job->found.frame && work_.closed_by(pace.due(*job->found.frame))) break;
+      // A camera keeps its own pace, by a clock that may run a little faster or slower than ours.
+      const bool waits = job->found.frame && !source_.is_live();
+      if (waits && work_.closed_by(pace.due(*job->found.frame))) break;
+      if (stopping_) break;
       dropped_ += work_.push_newest(std::move(job));
     }
     work_.close();
@@ -139,7 +143,7 @@ class Stream {
       if (!job) continue;
       detect(detector_, (*job)->found);
       (*job)->done.set_value();
-      if (options_.realtime && !written_.push(*job)) break;
+      if (realtime_ && !written_.push(*job)) break;
     }
     if (--working_ == 0) written_.close();
   }
@@ -147,6 +151,7 @@ class Stream {
   FrameSource& source_;
   const Detector& detector_;
   const StreamOptions& options_;
+  const bool realtime_;
   FrameQueue<JobPointer> work_;     ///< frames to be processed
   FrameQueue<JobPointer> written_;  ///< the same frames in the order of writing
   std::atomic<int> dropped_ = 0;
@@ -159,7 +164,7 @@ class Stream {
 
 int stream_frames(FrameSource& source, const Detector& detector, const StreamOptions& options,
                   const std::function<bool(FoundFrame)>& take) {
-  if (options.realtime || thread_count() > 1) {
+  if (options.realtime || source.is_live() || thread_count() > 1) {
     Stream stream(source, detector, options);
     stream.run(take);
     return stream.dropped();

@@ -29,6 +29,7 @@ struct Arguments {
   DetectorFlags detector;
   StreamOptions stream;
   int threads = 0;
+  int frames = 0;  ///< 0 = all
   bool timing = false;
   bool keep_going = false;
 };
@@ -68,17 +69,19 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
       ++totals.failed;
     }
     progress.step();
-    return true;
+    return arguments.frames == 0 || progress.done() < arguments.frames;
   });
+  totals.dropped += source.missed();
   progress.clear();
-  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+  // Whoever watches a camera ends it so.
+  if (interrupted() && !source.is_live()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
   if (totals.failed > 0) throw Error(fmt::format("{} of {} frames failed", totals.failed, progress.done()));
 }
 
 void say_totals(const Arguments& arguments, const Totals& totals, const Progress& progress) {
   say(fmt::format("{} frames, people in {} of them ({} in all), {:.1f} s, {:.1f} frames/s{}", progress.done(),
                   totals.frames_with_people, totals.people, progress.seconds(), progress.done() / progress.seconds(),
-                  arguments.stream.realtime ? fmt::format(", {} dropped", totals.dropped) : ""));
+                  arguments.stream.realtime || totals.dropped > 0 ? fmt::format(", {} dropped", totals.dropped) : ""));
 }
 
 void say_times(const FrameTimes& times) {
@@ -97,7 +100,9 @@ void run(const Arguments& arguments) {
   }
   watch_interrupts();
   DetectOutputs outputs(arguments.outputs, detector.body());
-  Progress progress(source->size(), !arguments.outputs.quiet);
+  const int all = source->size();
+  const int wanted = arguments.frames == 0 || (all >= 0 && all < arguments.frames) ? all : arguments.frames;
+  Progress progress(wanted, !arguments.outputs.quiet);
   Totals totals;
   const auto say_end = [&] {
     if (!arguments.outputs.quiet) say_totals(arguments, totals, progress);
@@ -172,6 +177,9 @@ void add_detect(CLI::App& program) {
       ->check(CLI::Range(0, kMaxThreads))
       ->group(kDetectorGroup);
   add_time_flags(*command, *arguments);
+  command->add_option("--frames", arguments->frames, "End after so many frames; 0 = all")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--keep-going", arguments->keep_going, "Skip frames that fail; the exit code is then 1");
   command->add_flag("-q,--quiet", arguments->outputs.quiet, "Print errors only");
   command->footer(R"(

@@ -25,12 +25,18 @@ struct Arguments {
   SourceOptions camera;
   DetectorFlags detector;
   double rate = 30.0;
+  int frames = 0;  ///< 0 = all
   bool people = false;
   bool quiet = false;
 };
 
-void record_frames(FrameSource& source, FrameRecorder& recorder, Progress& progress) {
-  while (!interrupted()) {
+/// Returns whether all frames that are wanted were recorded.
+bool is_enough(const Arguments& arguments, const Progress& progress) {
+  return arguments.frames > 0 && progress.done() >= arguments.frames;
+}
+
+void record_frames(const Arguments& arguments, FrameSource& source, FrameRecorder& recorder, Progress& progress) {
+  while (!interrupted() && !is_enough(arguments, progress)) {
     const std::optional<Frame> frame = source.next();
     if (!frame) return;
     recorder.write(*frame);
@@ -38,16 +44,18 @@ void record_frames(FrameSource& source, FrameRecorder& recorder, Progress& progr
   }
 }
 
-void record_people(FrameSource& source, const Detector& detector, FrameRecorder& recorder, Progress& progress) {
+/// Returns the number of frames that were dropped.
+int record_people(const Arguments& arguments, FrameSource& source, const Detector& detector, FrameRecorder& recorder,
+                  Progress& progress) {
   StreamOptions options;
   options.stop = interrupted;
-  stream_frames(source, detector, options, [&](const FoundFrame& found) {
+  return stream_frames(source, detector, options, [&](const FoundFrame& found) {
     if (found.error) std::rethrow_exception(found.error);
     recorder.write(*found.frame);
     recorder.write_people(*found.frame, found.people, detector.body(),
                           frame_json(*found.frame, found.people, detector.body()));
     progress.step();
-    return true;
+    return !is_enough(arguments, progress);
   });
 }
 
@@ -61,12 +69,13 @@ void run(const Arguments& arguments) {
   }
   FrameRecorder recorder(arguments.out, arguments.rate);
   watch_interrupts();
-  Progress progress(source->size(), !arguments.quiet);
+  Progress progress(arguments.frames > 0 ? arguments.frames : source->size(), !arguments.quiet);
+  int missed = 0;
   try {
     if (detector) {
-      record_people(*source, *detector, recorder, progress);
+      missed = record_people(arguments, *source, *detector, recorder, progress);
     } else {
-      record_frames(*source, recorder, progress);
+      record_frames(arguments, *source, recorder, progress);
     }
   } catch (const Error&) {
     progress.clear();
@@ -75,10 +84,14 @@ void run(const Arguments& arguments) {
   }
   recorder.close();
   progress.clear();
-  if (interrupted()) {
+  missed += source->missed();
+  if (interrupted() && !source->is_live()) {
     throw Error(fmt::format("interrupted; the {} frames before it are in {}", progress.done(), arguments.out));
   }
-  if (!arguments.quiet) say(fmt::format("{}: {} frames", arguments.out, progress.done()));
+  if (!arguments.quiet) {
+    say(fmt::format("{}: {} frames{}", arguments.out, progress.done(),
+                    missed > 0 ? fmt::format(", {} missed", missed) : ""));
+  }
 }
 
 }  // namespace
@@ -93,6 +106,9 @@ void add_record(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
+  command->add_option("--frames", arguments->frames, "End after so many frames; 0 = all")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
   add_camera_flags(*command, arguments->camera);
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(

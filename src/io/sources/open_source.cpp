@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "io/files/image_bytes.h"
+#include "io/sensors/sensor_drivers.h"
 #include "io/sources/folder_source.h"
 #include "io/sources/list_source.h"
 #include "io/sources/pcd_source.h"
@@ -24,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One kind of source. A new sensor would be another row of the table.
+/// One kind of source. A new camera is another row here and in sensor_drivers.
 struct Scheme {
   std::string_view name;
   const char* what;  ///< what `open` expects
@@ -106,11 +107,17 @@ std::unique_ptr<FrameSource> open_recording_file(const std::string& path, const 
   return open_recorded(path, options);
 }
 
-constexpr std::array<Scheme, 5> kSchemes{{{"folder", kFolder, open_folder},
+std::unique_ptr<FrameSource> open_openni2_camera(const std::string& id, const SourceOptions& options) {
+  refuse_colour_file("openni2:" + id, options);
+  return open_sensor("openni2", id);
+}
+
+constexpr std::array<Scheme, 6> kSchemes{{{"folder", kFolder, open_folder},
                                           {"tum", kTum, open_tum},
                                           {"pcd", kPcd, open_clouds},
                                           {"png", kPng, open_png},
-                                          {"recording", kRecording, open_recording_file}}};
+                                          {"recording", kRecording, open_recording_file},
+                                          {"openni2", "a camera", open_openni2_camera}}};
 
 /// Returns the scheme that "pcd:cloud.pcd" begins with, or null for a plain path.
 const Scheme* scheme_of(const std::string& uri) {

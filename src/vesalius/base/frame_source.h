@@ -19,6 +19,11 @@ class FrameSource {
   virtual int size() const = 0;
   /// Returns remarks for the user, one line each, such as guessed intrinsics or depth pictures without colour.
   virtual std::vector<std::string> notes() const { return {}; }
+  /// Returns whether the frames come from a camera as they are taken: whoever is late misses some, and the stream ends
+  /// only when it is told to.
+  virtual bool is_live() const { return false; }
+  /// Returns the number of frames of a live source that were missed, since nobody asked for them in time.
+  virtual int missed() const { return 0; }
 };
 
 }  // namespace vesalius

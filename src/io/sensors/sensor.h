@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vesalius/base/frame_source.h"
+
+namespace vesalius {
+
+/// A camera that is plugged in.
+struct SensorInfo {
+  std::string id;    ///< what `open` takes: its serial number, or where it is plugged in
+  std::string name;  ///< e.g. "PrimeSense PS1080"
+};
+
+/// A way to cameras of one kind.
+struct SensorDriver {
+  std::string_view scheme;  ///< what a source begins with, e.g. "openni2"
+  const char* what;         ///< cameras that it opens
+  const char* package;      ///< Debian package that a build needs for it
+  bool built;               ///< whether this build has it
+  /// Returns the cameras that are plugged in. Throws Error where the driver does not start.
+  std::vector<SensorInfo> (*list)();
+  /// Opens the camera with this id, or the only one where it is empty. Throws Error saying what is missing.
+  std::unique_ptr<FrameSource> (*open)(const std::string& id);
+};
+
+/// Time without a frame after which a camera counts as lost.
+inline constexpr int kSensorPatience_ms = 3000;
+
+}  // namespace vesalius

@@ -1,0 +1,30 @@
+#include "io/sensors/sensor_drivers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "io/sensors/openni2_source.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr std::array<SensorDriver, 1> kDrivers{{{"openni2", "Xtion, Carmine, Structure and other PrimeSense cameras",
+                                                 "libopenni2-dev", kHasOpenni2, list_openni2, open_openni2}}};
+
+}  // namespace
+
+std::span<const SensorDriver> sensor_drivers() { return kDrivers; }
+
+std::unique_ptr<FrameSource> open_sensor(std::string_view scheme, const std::string& id) {
+  const auto driver = std::ranges::find(kDrivers, scheme, &SensorDriver::scheme);
+  if (driver == kDrivers.end()) throw Error(fmt::format("{}: no driver of that name", scheme));
+  if (!driver->built) {
+    throw Error(fmt::format("{}: this build cannot open it; install {} and build again", scheme, driver->package));
+  }
+  return driver->open(id);
+}
+
+}  // namespace vesalius
