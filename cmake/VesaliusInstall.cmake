@@ -21,14 +21,14 @@ foreach(component IN LISTS VESALIUS_COMPONENTS)
   endforeach()
 endforeach()
 
-get_property(VESALIUS_OPENNI2 GLOBAL PROPERTY VESALIUS_OPENNI2)
+get_property(VESALIUS_SENSOR_PACKAGES GLOBAL PROPERTY VESALIUS_SENSOR_PACKAGES)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vesaliusConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake INSTALL_DESTINATION ${VESALIUS_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vesaliusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/vesaliusConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZF.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindHDF5C.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZ4.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/FindOpenNI2.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindOpenNI2.cmake ${PROJECT_SOURCE_DIR}/cmake/FindFreenect.cmake
         DESTINATION ${VESALIUS_CMAKE_DIR})
 
 # What the program finds without being told where (src/cli/default_model.h), and what bash asks for commands and flags.

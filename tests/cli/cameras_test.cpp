@@ -1,10 +1,13 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "io/sensors/sensor_drivers.h"
+#include "io/sources/open_source.h"
 #include "run_program.h"
 #include "small_world.h"
 
@@ -15,13 +18,13 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-bool has_openni2() { return sensor_drivers().front().built; }
+bool has(std::string_view scheme) { return std::ranges::find(sensor_drivers(), scheme, &SensorDriver::scheme)->built; }
 
 /// OpenNI2 comes with a camera that is none: 320x240 at 30 frames a second.
 class Cameras : public SmallWorld {
  protected:
   void SetUp() override {
-    if (!has_openni2()) GTEST_SKIP() << "this build has no OpenNI2";
+    if (!has("openni2")) GTEST_SKIP() << "this build has no OpenNI2";
   }
 };
 
@@ -29,11 +32,11 @@ TEST(CameraList, NamesEveryDriver) {
   const Outcome run = run_program("cameras");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, StartsWith("openni2:"));
-  if (!has_openni2()) {
+  if (!has("openni2")) {
     EXPECT_THAT(run.out, HasSubstr("not in this build; install libopenni2-dev and build again"));
   }
   const json facts = json::parse(run_program("info --json").out);
-  EXPECT_EQ(facts.at("parts_of_this_build").at("openni2"), has_openni2() ? "present" : "absent");
+  EXPECT_EQ(facts.at("parts_of_this_build").at("openni2"), has("openni2") ? "present" : "absent");
 }
 
 TEST_F(Cameras, GiveFramesUntilThereAreEnough) {
@@ -72,6 +75,45 @@ TEST_F(Cameras, ThatAreNotThereGiveOneLine) {
   EXPECT_THAT(none.err, HasSubstr("openni2:no-such-number cannot be opened: "));
   EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
 }
+
+#ifdef VESALIUS_FAKENECT
+/// fakenect plays frames from files in the place of a Kinect.
+TEST_F(Cameras, OfKinectGiveDepthAndColourOfOneMoment) {
+  if (!has("freenect")) GTEST_SKIP() << "this build has no libfreenect";
+  constexpr int kWidth = 640, kHeight = 480, kFrames = 12;
+  std::filesystem::create_directories(path("kinect"));
+  std::string index;
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string time = fmt::format("{:.6f}-{}", 1000.0 + i / 30.0, 1000000 + i * 2000000);
+    std::string depth = "P5 640 480 65535\n", colour = "P6 640 480 255\n";
+    for (int p = 0; p < kWidth * kHeight; ++p) {
+      const int z = 1000 + 10 * i + p % kWidth;
+      depth += static_cast<char>(z & 0xFF);  // as the camera's memory, not as PGM would have it
+      depth += static_cast<char>(z >> 8);
+      colour += {static_cast<char>(i), 2, 3};
+    }
+    write("kinect/d-" + time + ".pgm", depth);
+    write("kinect/r-" + time + ".ppm", colour);
+    index += "d-" + time + ".pgm\nr-" + time + ".ppm\n";
+  }
+  write("kinect/INDEX.txt", index);
+  const Outcome run = run_program("record freenect: --frames 6 --out " + path("kinect.mcap"),
+                                  "FAKENECT_PATH=" + path("kinect") + " LD_PRELOAD='" VESALIUS_FAKENECT "'");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto source = open_source(path("kinect.mcap"));
+  ASSERT_EQ(source->size(), 6);
+  double before_s = -1.0;
+  while (const auto frame = source->next()) {
+    const int i = (frame->depth(0, 0) - 1000) / 10;
+    ASSERT_EQ(frame->depth.width(), kWidth);
+    EXPECT_EQ(frame->depth(600, 470), 1000 + 10 * i + 600);
+    ASSERT_FALSE(frame->colour.empty());
+    EXPECT_EQ(frame->colour(5, 5), (Rgb{static_cast<std::uint8_t>(i), 2, 3}));
+    EXPECT_GT(*frame->time_s, before_s);
+    before_s = *frame->time_s;
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace vesalius

@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <array>
 
+#include "io/sensors/freenect_source.h"
 #include "io/sensors/openni2_source.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
 
-constexpr std::array<SensorDriver, 1> kDrivers{{{"openni2", "Xtion, Carmine, Structure and other PrimeSense cameras",
-                                                 "libopenni2-dev", kHasOpenni2, list_openni2, open_openni2}}};
+constexpr std::array<SensorDriver, 2> kDrivers{
+    {{"openni2", "Xtion, Carmine, Structure and other PrimeSense cameras", "libopenni2-dev", kHasOpenni2, list_openni2,
+      open_openni2},
+     {"freenect", "Kinect v1", "libfreenect-dev", kHasFreenect, list_freenect, open_freenect}}};
 
 }  // namespace
 

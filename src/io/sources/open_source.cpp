@@ -13,6 +13,7 @@
 
 #include "io/files/image_bytes.h"
 #include "io/sensors/sensor_drivers.h"
+#include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
 #include "io/sources/list_source.h"
 #include "io/sources/pcd_source.h"
@@ -107,17 +108,54 @@ std::unique_ptr<FrameSource> open_recording_file(const std::string& path, const 
   return open_recorded(path, options);
 }
 
-std::unique_ptr<FrameSource> open_openni2_camera(const std::string& id, const SourceOptions& options) {
-  refuse_colour_file("openni2:" + id, options);
-  return open_sensor("openni2", id);
+/// A camera whose lens the user knows better than its driver.
+class Calibrated final : public FrameSource {
+ public:
+  Calibrated(std::unique_ptr<FrameSource> source, CameraFacts facts, std::string place)
+      : source_(std::move(source)), facts_(std::move(facts)), place_(std::move(place)) {}
+  std::optional<Frame> next() override {
+    std::optional<Frame> frame = source_->next();
+    if (!frame) return frame;
+    std::vector<std::string> ignored;
+    frame->camera = resolve_camera(facts_, frame->depth.width(), frame->depth.height(), true, place_, ignored);
+    return frame;
+  }
+  int size() const override { return source_->size(); }
+  std::vector<std::string> notes() const override { return source_->notes(); }
+  bool is_live() const override { return source_->is_live(); }
+  int missed() const override { return source_->missed(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  CameraFacts facts_;
+  std::string place_;
+};
+
+std::unique_ptr<FrameSource> open_camera(const char* scheme, const std::string& id, const SourceOptions& options) {
+  const std::string place = fmt::format("{}:{}", scheme, id);
+  refuse_colour_file(place, options);
+  if (options.depth_scale) throw UsageError(place + ": a camera says itself what a unit of depth is");
+  const CameraFacts facts = find_camera_facts(options, {});
+  std::unique_ptr<FrameSource> source = open_sensor(scheme, id);
+  if (!facts.fx) return source;
+  return std::make_unique<Calibrated>(std::move(source), facts, place);
 }
 
-constexpr std::array<Scheme, 6> kSchemes{{{"folder", kFolder, open_folder},
+std::unique_ptr<FrameSource> open_openni2_camera(const std::string& id, const SourceOptions& options) {
+  return open_camera("openni2", id, options);
+}
+
+std::unique_ptr<FrameSource> open_freenect_camera(const std::string& id, const SourceOptions& options) {
+  return open_camera("freenect", id, options);
+}
+
+constexpr std::array<Scheme, 7> kSchemes{{{"folder", kFolder, open_folder},
                                           {"tum", kTum, open_tum},
                                           {"pcd", kPcd, open_clouds},
                                           {"png", kPng, open_png},
                                           {"recording", kRecording, open_recording_file},
-                                          {"openni2", "a camera", open_openni2_camera}}};
+                                          {"openni2", "a camera", open_openni2_camera},
+                                          {"freenect", "a camera", open_freenect_camera}}};
 
 /// Returns the scheme that "pcd:cloud.pcd" begins with, or null for a plain path.
 const Scheme* scheme_of(const std::string& uri) {

@@ -1,0 +1,10 @@
+// In place of freenect_source.cpp where libfreenect was not found.
+#include "io/sensors/freenect_source.h"
+
+namespace vesalius {
+
+std::vector<SensorInfo> list_freenect() { return {}; }
+
+std::unique_ptr<FrameSource> open_freenect(const std::string& /*id*/) { return nullptr; }
+
+}  // namespace vesalius

@@ -1,0 +1,211 @@
+#include "io/sensors/freenect_source.h"
+
+#include <fmt/format.h>
+#include <libfreenect.h>
+#include <sys/time.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 480;
+/// Of the colour camera, on whose grid registered depth lies; cameras differ by a few pixels.
+constexpr float kFocal_px = 525.F;
+constexpr double kTicks_s = 60e6;
+/// How far a colour picture's time may lie from depth's: half the time between two frames.
+constexpr std::int64_t kMostApart = static_cast<std::int64_t>(kTicks_s / 60.0);
+constexpr std::int64_t kBetweenFrames = static_cast<std::int64_t>(kTicks_s / 30.0);
+constexpr std::chrono::milliseconds kColourPatience(20);
+
+struct CloseDevice {
+  void operator()(freenect_device* device) const { freenect_close_device(device); }
+};
+struct Shutdown {
+  void operator()(freenect_context* context) const { freenect_shutdown(context); }
+};
+using Context = std::unique_ptr<freenect_context, Shutdown>;
+
+Context make_context() {
+  freenect_context* made = nullptr;
+  if (freenect_init(&made, nullptr) < 0) throw Error("freenect: the library does not start");
+  Context context(made);
+  freenect_set_log_level(made, FREENECT_LOG_FATAL);
+  freenect_select_subdevices(made, FREENECT_DEVICE_CAMERA);
+  return context;
+}
+
+std::vector<SensorInfo> all_plugged_in(freenect_context* context) {
+  std::vector<SensorInfo> infos;
+  if (freenect_num_devices(context) <= 0) return infos;
+  freenect_device_attributes* first = nullptr;
+  freenect_list_device_attributes(context, &first);
+  for (const freenect_device_attributes* one = first; one != nullptr; one = one->next) {
+    infos.push_back({one->camera_serial, "Kinect v1"});
+  }
+  freenect_free_device_attributes(first);
+  return infos;
+}
+
+/// The newest picture of a stream, and when it was taken, in ticks since the first.
+template <class Picture>
+struct Newest {
+  Picture picture;
+  std::int64_t time = 0;
+  int count = 0;  ///< of pictures that came
+};
+
+class FreenectSource final : public FrameSource {
+ public:
+  explicit FreenectSource(const std::string& id)
+      : place_(id.empty() ? "freenect" : "freenect:" + id), context_(make_context()) {
+    open(id);
+    freenect_set_user(device_.get(), this);
+    freenect_set_depth_callback(device_.get(), [](freenect_device* device, void* depth, std::uint32_t time) {
+      static_cast<FreenectSource*>(freenect_get_user(device))->take_depth(depth, time);
+    });
+    freenect_set_video_callback(device_.get(), [](freenect_device* device, void* video, std::uint32_t time) {
+      static_cast<FreenectSource*>(freenect_get_user(device))->take_colour(video, time);
+    });
+    expect(freenect_set_depth_mode(device_.get(),
+                                   freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM, FREENECT_DEPTH_REGISTERED)),
+           "has no registered depth");
+    expect(freenect_set_video_mode(device_.get(),
+                                   freenect_find_video_mode(FREENECT_RESOLUTION_MEDIUM, FREENECT_VIDEO_RGB)),
+           "has no colour");
+    expect(freenect_start_depth(device_.get()), "gives no depth");
+    expect(freenect_start_video(device_.get()), "gives no colour");
+    events_ = std::jthread([this](const std::stop_token& stop) { run_events(stop); });
+  }
+
+  ~FreenectSource() override {
+    events_.request_stop();
+    events_.join();
+    freenect_stop_depth(device_.get());
+    freenect_stop_video(device_.get());
+  }
+
+  std::optional<Frame> next() override {
+    std::unique_lock lock(mutex_);
+    const auto has_new = [&] { return depth_.count > taken_ || failed_; };
+    if (!came_.wait_for(lock, std::chrono::milliseconds(kSensorPatience_ms), has_new) || depth_.count == taken_) {
+      throw Error(fmt::format("{}: no frame for {} s; unplugged, or used by another program", place_,
+                              kSensorPatience_ms / 1000));
+    }
+    missed_ += taken_ > 0 ? depth_.count - taken_ - 1 : 0;
+    taken_ = depth_.count;
+    Frame frame;
+    frame.time_s = static_cast<double>(depth_.time) / kTicks_s;
+    frame.name = fmt::format("{:.6f}", *frame.time_s);
+    frame.camera = {kWidth, kHeight, kFocal_px, kFocal_px, (kWidth - 1) / 2.F, (kHeight - 1) / 2.F};
+    frame.depth = depth_.picture;
+    const std::int64_t time = depth_.time;
+    came_.wait_for(lock, kColourPatience, [&] { return colour_.time >= time - kMostApart && colour_.count > 0; });
+    if (colour_.count > 0 && std::abs(colour_.time - time) <= kMostApart) frame.colour = colour_.picture;
+    return frame;
+  }
+
+  int size() const override { return -1; }
+  bool is_live() const override { return true; }
+  int missed() const override { return missed_; }
+  std::vector<std::string> notes() const override {
+    return {fmt::format("{}: a focal length of {:.4g} pixels assumed, usual for a Kinect v1", place_, kFocal_px)};
+  }
+
+ private:
+  void expect(int status, const char* what) const {
+    if (status < 0) throw Error(fmt::format("{} {}", place_, what));
+  }
+
+  void open(const std::string& id) {
+    const int count = freenect_num_devices(context_.get());
+    if (count <= 0) throw Error("freenect: no Kinect is plugged in, expected one that `vesalius cameras` lists");
+    freenect_device* opened = nullptr;
+    if (!id.empty()) {
+      expect(freenect_open_device_by_camera_serial(context_.get(), &opened, id.c_str()),
+             "cannot be opened: no Kinect of this number, no right to use it, or used by another program");
+    } else if (count > 1) {
+      std::string ids;
+      for (const SensorInfo& one : all_plugged_in(context_.get()))
+        ids += (ids.empty() ? "freenect:" : ", freenect:") + one.id;
+      throw Error(fmt::format("freenect: {} Kinects, expected one of {}", count, ids));
+    } else {
+      expect(freenect_open_device(context_.get(), &opened, 0),
+             "cannot be opened: no right to use it, or used by another program");
+    }
+    device_.reset(opened);
+  }
+
+  void run_events(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      constexpr int kWait_us = 100'000;
+      timeval wait{0, kWait_us};
+      if (freenect_process_events_timeout(context_.get(), &wait) >= 0) continue;
+      const std::scoped_lock lock(mutex_);
+      failed_ = true;
+      came_.notify_all();
+      return;
+    }
+  }
+
+  /// Ticks of 32 bits start anew after 71 s.
+  std::int64_t since_first(std::uint32_t time) {
+    if (!first_) first_ = last_ = time;
+    since_first_ += static_cast<std::int32_t>(time - last_);
+    last_ = time;
+    return since_first_;
+  }
+
+  void take_depth(const void* data, std::uint32_t time) {
+    const std::scoped_lock lock(mutex_);
+    depth_.picture = DepthImage(kWidth, kHeight);
+    std::memcpy(depth_.picture.data(), data, depth_.picture.size() * sizeof(std::uint16_t));
+    const std::int64_t before = depth_.time;
+    depth_.time = since_first(time);
+    // Packets that were lost on the way are frames too.
+    const std::int64_t periods = depth_.count == 0 ? 1 : (depth_.time - before + kBetweenFrames / 2) / kBetweenFrames;
+    depth_.count += static_cast<int>(std::max<std::int64_t>(1, periods));
+    came_.notify_all();
+  }
+
+  void take_colour(const void* data, std::uint32_t time) {
+    const std::scoped_lock lock(mutex_);
+    colour_.picture = ColourImage(kWidth, kHeight);
+    std::memcpy(static_cast<void*>(colour_.picture.data()), data, colour_.picture.size() * sizeof(Rgb));
+    colour_.time = since_first(time);
+    ++colour_.count;
+    came_.notify_all();
+  }
+
+  std::string place_;
+  Context context_;
+  std::unique_ptr<freenect_device, CloseDevice> device_;
+  std::mutex mutex_;  ///< of all that follows
+  std::condition_variable came_;
+  Newest<DepthImage> depth_;
+  Newest<ColourImage> colour_;
+  std::optional<std::uint32_t> first_;
+  std::uint32_t last_ = 0;
+  std::int64_t since_first_ = 0;
+  int taken_ = 0, missed_ = 0;
+  bool failed_ = false;
+  std::jthread events_;
+};
+
+}  // namespace
+
+std::vector<SensorInfo> list_freenect() { return all_plugged_in(make_context().get()); }
+
+std::unique_ptr<FrameSource> open_freenect(const std::string& id) { return std::make_unique<FreenectSource>(id); }
+
+}  // namespace vesalius

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/sensors/sensor.h"
+
+namespace vesalius {
+
+#ifdef VESALIUS_FREENECT
+inline constexpr bool kHasFreenect = true;
+#else
+inline constexpr bool kHasFreenect = false;
+#endif
+
+/// Kinects of the first version.
+std::vector<SensorInfo> list_freenect();
+
+/// Returns frames of 640x480 at 30 a second with depth in millimetres that the driver registered to colour. `id`: a
+/// serial number; empty = the only camera. Throws Error saying what is missing.
+std::unique_ptr<FrameSource> open_freenect(const std::string& id);
+
+}  // namespace vesalius
