@@ -45,7 +45,7 @@ Json part_facts() {
   for (const SensorDriver& driver : sensor_drivers()) {
     facts[std::string(driver.scheme)] = driver.built ? "present" : "absent";
   }
-  for (const char* name : {"realsense", "k4a", "cuda", "viewer"}) facts[name] = "absent";
+  for (const char* name : {"k4a", "cuda", "viewer"}) facts[name] = "absent";
   return facts;
 }
 

@@ -5,17 +5,22 @@ Writes the frames of FOLDER (depth/*.png, rgb/*, meta.json) into recordings with
 and encoding of depth, and has vesalius turn each back into a folder: its depth must be the same, pixel by pixel, and its
 colour, where nothing was lost. Then has vesalius record FOLDER, and rosbags, mcap and rerun read that.
 
-Needs a Python with: rosbags mcap mcap-ros2-support numpy opencv-python-headless; optionally rerun-sdk, foxglove-schemas-protobuf.
+Needs a Python with: rosbags mcap mcap-ros2-support numpy opencv-python-headless; optionally rerun-sdk,
+foxglove-schemas-protobuf, pyrealsense2 (2.55 records .bag, later ones .db3).
 
 usage: other_side.py VESALIUS FOLDER
        other_side.py --fixtures DIR     writes the small recordings that the tests of io and the fuzzer start from
 """
 import json
+import os
 import shutil
 import struct
 import subprocess
 import sys
+import sysconfig
 import tempfile
+import time
+from importlib import metadata
 from pathlib import Path
 
 import cv2
@@ -338,6 +343,69 @@ def give_ours(vesalius, folder, work):
         print("left out: rerun")
 
 
+def realsense(vesalius, work):
+    """A camera made of software, recorded by librealsense: read by us, and played by that library into us."""
+    try:
+        import pyrealsense2 as rs
+    except ImportError as missing:
+        print("left out: RealSense:", missing)
+        return
+    width, height, count = 640, 480, 20
+    lens = rs.intrinsics()
+    lens.width, lens.height, lens.fx, lens.fy, lens.ppx, lens.ppy = width, height, 600, 600, 320, 240
+    lens.model, lens.coeffs = rs.distortion.none, [0] * 5
+    device = rs.software_device()
+    device.register_info(rs.camera_info.name, "of software")
+    device.register_info(rs.camera_info.serial_number, "1")
+    sensor = device.add_sensor("Depth")
+    stream = rs.video_stream()
+    stream.type, stream.index, stream.uid, stream.fps, stream.bpp, stream.fmt = rs.stream.depth, 0, 0, 30, 2, rs.format.z16
+    stream.width, stream.height, stream.intrinsics = width, height, lens
+    profile = sensor.add_video_stream(stream)
+    sensor.add_read_only_option(rs.option.depth_units, 0.0005)
+    version = metadata.version("pyrealsense2")
+    path = work / ("realsense.bag" if [int(part) for part in version.split(".")[:2]] < [2, 56] else "realsense.db3")
+    recorder = rs.recorder(str(path), device)
+    recorded = recorder.query_sensors()[0]
+    queue = rs.frame_queue(100)
+    recorded.open(recorded.get_stream_profiles()[0])
+    recorded.start(queue)
+    pictures = []
+    for k in range(count):
+        depth = np.full((height, width), 2000 + 2 * k, np.uint16)
+        depth[k, :] = 0
+        pictures.append(depth)
+        frame = rs.software_video_frame()
+        frame.stride, frame.bpp, frame.timestamp, frame.frame_number = width * 2, 2, 1000.0 + 33 * k, k + 1
+        frame.domain, frame.profile, frame.pixels = rs.timestamp_domain.hardware_clock, profile.as_video_stream_profile(), depth
+        sensor.on_video_frame(frame)
+        time.sleep(0.033)
+    time.sleep(0.5)
+    recorded.stop()
+    recorded.close()
+    del recorded, recorder
+    time.sleep(0.5)
+
+    def expect(folder, least):
+        found = [cv2.imread(str(p), cv2.IMREAD_UNCHANGED) for p in sorted((folder / "depth").glob("*.png"))]
+        wanted = {bytes((p // 2).astype(np.uint16).tobytes()) for p in pictures}
+        assert len(found) >= least, f"{len(found)} frames, expected {least}"
+        assert all(p.tobytes() in wanted for p in found), "RealSense: depth differs"
+        assert abs(json.loads((folder / "meta.json").read_text())["fx"] - 600) < 1e-3
+
+    subprocess.run([vesalius, "convert", path, work / "read", "--to", "folder", "-q"], check=True)
+    expect(work / "read", count)
+    print("same:", path.name, "of librealsense", version)
+    python = Path(sysconfig.get_config_var("LIBDIR")) / sysconfig.get_config_var("INSTSONAME")
+    module = next(Path(rs.__file__).parent.glob("pyrealsense2*.so"))
+    environment = {**os.environ, "VESALIUS_REALSENSE": str(module), "LD_PRELOAD": str(python)}
+    subprocess.run([vesalius, "record", f"realsense:{path}", "--frames", "10", "--out", work / "played.mcap", "-q"],
+                   check=True, env=environment)
+    subprocess.run([vesalius, "convert", work / "played.mcap", work / "played", "--to", "folder", "-q"], check=True)
+    expect(work / "played", 10)
+    print("same: played by librealsense", version)
+
+
 def write_fixtures(out):
     """Three pictures of 16x12 whose every pixel follows from its place (recording_source_test.cpp)."""
     out.mkdir(parents=True, exist_ok=True)
@@ -374,6 +442,7 @@ def main():
         read_theirs(vesalius, folder, Path(work))
         cut_short(vesalius, folder, Path(work))
         give_ours(vesalius, folder, Path(work))
+        realsense(vesalius, Path(work))
 
 
 if __name__ == "__main__":

@@ -7,15 +7,17 @@
 
 #include "io/sensors/freenect_source.h"
 #include "io/sensors/openni2_source.h"
+#include "io/sensors/realsense_source.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
 
-constexpr std::array<SensorDriver, 2> kDrivers{
+constexpr std::array<SensorDriver, 3> kDrivers{
     {{"openni2", "Xtion, Carmine, Structure and other PrimeSense cameras", "libopenni2-dev", kHasOpenni2, list_openni2,
       open_openni2},
-     {"freenect", "Kinect v1", "libfreenect-dev", kHasFreenect, list_freenect, open_freenect}}};
+     {"freenect", "Kinect v1", "libfreenect-dev", kHasFreenect, list_freenect, open_freenect},
+     {"realsense", "RealSense", "librealsense2", true, list_realsense, open_realsense}}};
 
 }  // namespace
 

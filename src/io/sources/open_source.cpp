@@ -149,13 +149,18 @@ std::unique_ptr<FrameSource> open_freenect_camera(const std::string& id, const S
   return open_camera("freenect", id, options);
 }
 
-constexpr std::array<Scheme, 7> kSchemes{{{"folder", kFolder, open_folder},
+std::unique_ptr<FrameSource> open_realsense_camera(const std::string& id, const SourceOptions& options) {
+  return open_camera("realsense", id, options);
+}
+
+constexpr std::array<Scheme, 8> kSchemes{{{"folder", kFolder, open_folder},
                                           {"tum", kTum, open_tum},
                                           {"pcd", kPcd, open_clouds},
                                           {"png", kPng, open_png},
                                           {"recording", kRecording, open_recording_file},
                                           {"openni2", "a camera", open_openni2_camera},
-                                          {"freenect", "a camera", open_freenect_camera}}};
+                                          {"freenect", "a camera", open_freenect_camera},
+                                          {"realsense", "a camera", open_realsense_camera}}};
 
 /// Returns the scheme that "pcd:cloud.pcd" begins with, or null for a plain path.
 const Scheme* scheme_of(const std::string& uri) {

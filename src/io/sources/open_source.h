@@ -16,8 +16,8 @@ namespace vesalius {
 ///   tum:FOLDER        the layout of the TUM RGB-D benchmark (depth.txt); "tum:walking:1000" gives a depth scale too
 ///   pcd:PATH          an organised PCD file or a folder of them
 ///   png:PATH          a 16-bit depth PNG or a folder of them
-///   openni2:ID, freenect:ID  a camera that is plugged in, by its serial number; "openni2:" if there is one alone
-///   recording:PATH    an MCAP file, a ROS 1 or ROS 2 bag, or a folder of rosbag2
+///   openni2:ID, freenect:ID, realsense:ID  a camera that is plugged in, by its serial number; "openni2:" if there is
+///   one alone recording:PATH    an MCAP file, a ROS 1 or ROS 2 bag, or a folder of rosbag2
 /// Throws Error with the path and what was expected, UsageError for options that do not go with the source.
 std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& options = {});
 

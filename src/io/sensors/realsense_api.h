@@ -1,0 +1,83 @@
+#pragma once
+
+#include <string>
+
+// What is used of librealsense2's C interface, which has stayed the same since version 2.0. Its headers are in no
+// package of Debian, and a library that is loaded while the program runs needs none.
+namespace vesalius::rs2 {
+
+struct Failure;  // rs2_error
+struct Context;
+struct DeviceList;
+struct Device;
+struct Pipeline;
+struct Config;
+struct PipelineProfile;
+struct Frame;
+struct StreamProfile;
+struct Block;  // rs2_processing_block
+struct Queue;  // rs2_frame_queue
+
+/// rs2_intrinsics
+struct Intrinsics {
+  int width, height;
+  float ppx, ppy, fx, fy;  ///< pixels
+  int model;
+  float coefficients[5];
+};
+
+constexpr int kDepth = 1, kColour = 2;  // rs2_stream
+constexpr int kZ16 = 1, kRgb8 = 5;      // rs2_format
+constexpr int kName = 0, kSerial = 1;   // rs2_camera_info
+
+/// The functions, by their names without "rs2_".
+struct Api {
+  int (*get_api_version)(Failure**);
+  const char* (*get_error_message)(const Failure*);
+  void (*free_error)(Failure*);
+  Context* (*create_context)(int version, Failure**);
+  void (*delete_context)(Context*);
+  DeviceList* (*query_devices)(const Context*, Failure**);
+  int (*get_device_count)(const DeviceList*, Failure**);
+  void (*delete_device_list)(DeviceList*);
+  Device* (*create_device)(const DeviceList*, int index, Failure**);
+  const char* (*get_device_info)(const Device*, int info, Failure**);
+  void (*delete_device)(Device*);
+  Pipeline* (*create_pipeline)(Context*, Failure**);
+  void (*delete_pipeline)(Pipeline*);
+  Config* (*create_config)(Failure**);
+  void (*delete_config)(Config*);
+  void (*config_enable_stream)(Config*, int stream, int index, int width, int height, int format, int rate, Failure**);
+  void (*config_enable_device)(Config*, const char* serial, Failure**);
+  void (*config_enable_device_from_file)(Config*, const char* file, Failure**);
+  PipelineProfile* (*pipeline_start_with_config)(Pipeline*, Config*, Failure**);
+  void (*delete_pipeline_profile)(PipelineProfile*);
+  void (*pipeline_stop)(Pipeline*, Failure**);
+  Frame* (*pipeline_wait_for_frames)(Pipeline*, unsigned patience_ms, Failure**);
+  Block* (*create_align)(int to_stream, Failure**);
+  void (*delete_processing_block)(Block*);
+  Queue* (*create_frame_queue)(int capacity, Failure**);
+  void (*delete_frame_queue)(Queue*);
+  void (*start_processing_queue)(Block*, Queue*, Failure**);
+  void (*process_frame)(Block*, Frame*, Failure**);
+  Frame* (*wait_for_frame)(Queue*, unsigned patience_ms, Failure**);
+  int (*embedded_frames_count)(Frame*, Failure**);
+  Frame* (*extract_frame)(Frame*, int index, Failure**);
+  void (*release_frame)(Frame*);
+  const StreamProfile* (*get_frame_stream_profile)(const Frame*, Failure**);
+  void (*get_stream_profile_data)(const StreamProfile*, int* stream, int* format, int* index, int* id, int* rate,
+                                  Failure**);
+  void (*get_video_stream_intrinsics)(const StreamProfile*, Intrinsics*, Failure**);
+  const void* (*get_frame_data)(const Frame*, Failure**);
+  int (*get_frame_width)(const Frame*, Failure**);
+  int (*get_frame_height)(const Frame*, Failure**);
+  int (*get_frame_stride_in_bytes)(const Frame*, Failure**);
+  double (*get_frame_timestamp)(const Frame*, Failure**);
+  unsigned long long (*get_frame_number)(const Frame*, Failure**);
+  float (*depth_frame_get_units)(const Frame*, Failure**);
+};
+
+/// Returns the functions of the library. Throws Error saying how to get it where it is not installed or lacks one.
+const Api& api();
+
+}  // namespace vesalius::rs2
