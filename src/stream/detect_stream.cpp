@@ -36,6 +36,10 @@ void detect(const Detector& detector, FoundFrame& in) {
   if (!in.frame || in.error) return;
   try {
     in.people = detector.detect(*in.frame, nullptr, &in.times);
+    if (in.frame->arrived_s) {
+      const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+      in.latency_ms = 1e3 * (now.count() - *in.frame->arrived_s);
+    }
   } catch (...) {
     in.error = std::current_exception();
   }

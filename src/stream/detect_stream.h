@@ -17,6 +17,8 @@ struct FoundFrame {
   std::vector<Person> people;
   StageTimes times;
   double read_ms = 0.0;
+  /// From the frame's arrival (Frame::arrived_s) to its people; none where it has no arrival.
+  std::optional<double> latency_ms;
   std::exception_ptr error;  ///< exception of reading or detecting; null if there was none
 };
 

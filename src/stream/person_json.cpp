@@ -78,7 +78,8 @@ std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::erro
 
 }  // namespace
 
-std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body) {
+std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
+                       std::optional<double> latency_ms) {
   Json list = Json::array();
   for (std::size_t i = 0; i < people.size(); ++i) {
     const Person& person = people[i];
@@ -89,10 +90,12 @@ std::string frame_json(const Frame& frame, const std::vector<Person>& people, co
                     {"parts", parts_json(person.skeleton, body, frame.camera)},
                     {"joints", joints_json(person, body, frame.camera)}});
   }
-  return line({{"frame", frame.name},
-               {"time_s", frame.time_s ? Json(rounded(*frame.time_s, 1e6)) : Json()},
-               {"camera", camera_json(frame.camera)},
-               {"people", std::move(list)}});
+  Json json = {{"frame", frame.name}, {"time_s", frame.time_s ? Json(rounded(*frame.time_s, 1e6)) : Json()}};
+  if (frame.arrived_s) json["arrived_s"] = rounded(*frame.arrived_s, 1e6);
+  if (latency_ms) json["latency_ms"] = rounded(*latency_ms, 1e3);
+  json["camera"] = camera_json(frame.camera);
+  json["people"] = std::move(list);
+  return line(json);
 }
 
 std::string closing_json(int lines, bool complete, const std::string& why) {

@@ -76,6 +76,11 @@ TEST(PersonJson, AnUnknownTimeIsNull) {
   Frame frame = named("f");
   frame.time_s.reset();
   EXPECT_TRUE(json::parse(frame_json(frame, {}, paper_body())).at("time_s").is_null());
+  EXPECT_FALSE(json::parse(frame_json(frame, {}, paper_body())).contains("arrived_s"));
+  frame.arrived_s = 1.7e9;
+  const json live = json::parse(frame_json(frame, {}, paper_body(), 12.5));
+  EXPECT_EQ(live.at("arrived_s"), 1.7e9);
+  EXPECT_EQ(live.at("latency_ms"), 12.5);
 }
 
 TEST(PersonJson, APointBehindTheCameraHasNoPixel) {

@@ -48,6 +48,8 @@ TEST_F(Cameras, GiveFramesUntilThereAreEnough) {
   ASSERT_EQ(lines.size(), 4U);
   EXPECT_EQ(lines[0].at("camera").at("width"), 320);
   EXPECT_LT(lines[0].at("time_s"), lines[1].at("time_s"));
+  EXPECT_LT(lines[0].at("arrived_s"), lines[1].at("arrived_s"));
+  EXPECT_GT(lines[0].at("latency_ms"), 0.0);
 }
 
 TEST_F(Cameras, AreRecordedAndReadBack) {

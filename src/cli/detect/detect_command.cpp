@@ -45,8 +45,9 @@ struct Totals {
 /// Writes the people found in one frame. Rethrows what reading or detecting threw.
 void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals) {
   if (found.error) std::rethrow_exception(found.error);
-  const double write_ms = elapsed_ms([&] { outputs.write(*found.frame, found.people); });
+  const double write_ms = elapsed_ms([&] { outputs.write(*found.frame, found.people, found.latency_ms); });
   totals.times.add(found.times, found.read_ms, write_ms);
+  if (found.latency_ms) totals.times.add_latency(*found.latency_ms);
   totals.people += static_cast<int>(found.people.size());
   totals.frames_with_people += found.people.empty() ? 0 : 1;
 }

@@ -60,9 +60,9 @@ std::string DetectOutputs::path(const char* kind, const Frame& frame, const char
   return (fs::path(request_.folder) / kind / (frame.name + extension)).string();
 }
 
-void DetectOutputs::write(const Frame& frame, const std::vector<Person>& people) {
+void DetectOutputs::write(const Frame& frame, const std::vector<Person>& people, std::optional<double> latency_ms) {
   write_pictures(frame, people);
-  if (json_) json_->line(frame_json(frame, people, body_));
+  if (json_) json_->line(frame_json(frame, people, body_, latency_ms));
   if (request_.lines()) print(one_line(describe(frame, people)) + "\n");
   ++frames_;
 }

@@ -35,7 +35,8 @@ class DetectOutputs {
  public:
   /// Creates the folders. Throws Error if it cannot create them or cannot open a file.
   DetectOutputs(OutputRequest request, const BodyModel& body);
-  void write(const Frame& frame, const std::vector<Person>& people);
+  /// `latency_ms`: as frame_json.
+  void write(const Frame& frame, const std::vector<Person>& people, std::optional<double> latency_ms = {});
   /// Completes JSON and video. `why_not_all` says why frames are missing and is repeated in the JSON; it is empty if
   /// none are.
   void finish(const std::string& why_not_all);

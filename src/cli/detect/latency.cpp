@@ -44,6 +44,7 @@ std::vector<FrameTimes::Row> FrameTimes::rows() const {
   }
   rows.push_back({"detect", detect()});
   if (!write_.empty()) rows.push_back({"write", summarise(write_)});
+  if (!latency_.empty()) rows.push_back({"latency", summarise(latency_)});
   return rows;
 }
 

@@ -53,7 +53,7 @@ int record_people(const Arguments& arguments, FrameSource& source, const Detecto
     if (found.error) std::rethrow_exception(found.error);
     recorder.write(*found.frame);
     recorder.write_people(*found.frame, found.people, detector.body(),
-                          frame_json(*found.frame, found.people, detector.body()));
+                          frame_json(*found.frame, found.people, detector.body(), found.latency_ms));
     progress.step();
     return !is_enough(arguments, progress);
   });

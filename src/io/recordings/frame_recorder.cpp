@@ -28,29 +28,30 @@ std::uint16_t FrameRecorder::topic(std::optional<std::uint16_t>& known, const ch
 void FrameRecorder::write(const Frame& frame) {
   check(frame);
   time_ns_ = std::llround(kNanoseconds * frame.time_s.value_or(static_cast<double>(frames_) / rate_));
+  log_ns_ = frame.arrived_s ? std::llround(kNanoseconds * *frame.arrived_s) : time_ns_;
   ++frames_;
-  out_.write(topic(camera_, "/camera/depth/camera_info", "sensor_msgs/CameraInfo"), time_ns_,
+  out_.write(topic(camera_, "/camera/depth/camera_info", "sensor_msgs/CameraInfo"), log_ns_,
              calibration_message(frame.camera, time_ns_, kFrame));
   if (!frame.colour.empty()) {
-    out_.write(topic(colour_, "/camera/color/image", "sensor_msgs/Image"), time_ns_,
+    out_.write(topic(colour_, "/camera/color/image", "sensor_msgs/Image"), log_ns_,
                colour_message(frame.colour, time_ns_, kFrame));
   }
-  out_.write(topic(depth_, "/camera/depth/image", "sensor_msgs/Image"), time_ns_,
+  out_.write(topic(depth_, "/camera/depth/image", "sensor_msgs/Image"), log_ns_,
              depth_message(frame.depth, time_ns_, kFrame));
 }
 
 void FrameRecorder::write_people(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
                                  const std::string& json) {
   const int width = frame.depth.width(), height = frame.depth.height();
-  out_.write(topic(index_, "/people/body_index", "sensor_msgs/Image"), time_ns_,
+  out_.write(topic(index_, "/people/body_index", "sensor_msgs/Image"), log_ns_,
              grey_message(body_index_map(people, width, height), time_ns_, kFrame));
-  out_.write(topic(parts_, "/people/parts", "sensor_msgs/Image"), time_ns_,
+  out_.write(topic(parts_, "/people/parts", "sensor_msgs/Image"), log_ns_,
              grey_message(part_label_map(people, width, height), time_ns_, kFrame));
-  out_.write(topic(markers_, "/people/markers", "visualization_msgs/MarkerArray"), time_ns_,
+  out_.write(topic(markers_, "/people/markers", "visualization_msgs/MarkerArray"), log_ns_,
              markers_message(people, body, time_ns_, kFrame));
   CdrWriter text;
   text.text(json);
-  out_.write(topic(json_, "/people/json", "std_msgs/String"), time_ns_, text.message());
+  out_.write(topic(json_, "/people/json", "std_msgs/String"), log_ns_, text.message());
 }
 
 }  // namespace vesalius

@@ -63,6 +63,7 @@ struct Newest {
   Picture picture;
   std::int64_t time = 0;
   int count = 0;  ///< of pictures that came
+  double arrived_s = 0.0;
 };
 
 class FreenectSource final : public FrameSource {
@@ -105,6 +106,7 @@ class FreenectSource final : public FrameSource {
     missed_ += taken_ > 0 ? depth_.count - taken_ - 1 : 0;
     taken_ = depth_.count;
     Frame frame;
+    frame.arrived_s = depth_.arrived_s;
     frame.time_s = static_cast<double>(depth_.time) / kTicks_s;
     frame.name = fmt::format("{:.6f}", *frame.time_s);
     frame.camera = {kWidth, kHeight, kFocal_px, kFocal_px, (kWidth - 1) / 2.F, (kHeight - 1) / 2.F};
@@ -168,6 +170,7 @@ class FreenectSource final : public FrameSource {
 
   void take_depth(const void* data, std::uint32_t time) {
     const std::scoped_lock lock(mutex_);
+    depth_.arrived_s = now_s();
     depth_.picture = DepthImage(kWidth, kHeight);
     std::memcpy(depth_.picture.data(), data, depth_.picture.size() * sizeof(std::uint16_t));
     const std::int64_t before = depth_.time;

@@ -136,6 +136,7 @@ class Openni2Source final : public FrameSource {
     if (last_index_ > 0 && read.getFrameIndex() > last_index_ + 1) missed_ += read.getFrameIndex() - last_index_ - 1;
     last_index_ = read.getFrameIndex();
     Frame frame;
+    frame.arrived_s = now_s();
     frame.time_s = static_cast<double>(read.getTimestamp()) / kMicroseconds;
     frame.name = fmt::format("{:.6f}", *frame.time_s);
     frame.camera = camera_;

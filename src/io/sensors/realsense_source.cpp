@@ -103,7 +103,9 @@ class RealsenseSource final : public FrameSource {
 
   std::optional<Frame> next() override {
     for (;;) {
-      const Owned<rs2::Frame> all = wait();
+      Owned<rs2::Frame> all = wait();
+      const double arrived_s = now_s();
+      if (has_colour_) all = align(std::move(all));
       const Owned<rs2::Frame> depth = stream_of(all.get(), rs2::kDepth);
       if (!depth) continue;
       const rs2::Frame* of = depth.get();
@@ -113,6 +115,7 @@ class RealsenseSource final : public FrameSource {
       if (last_number_ >= 0 && number > last_number_ + 1) missed_ += static_cast<int>(number - last_number_ - 1);
       last_number_ = number;
       Frame frame;
+      frame.arrived_s = arrived_s;
       frame.time_s = 1e-3 * call(place_, api().get_frame_timestamp, of);
       frame.name = fmt::format("{:.6f}", *frame.time_s);
       frame.camera = camera_of(of);
@@ -132,7 +135,7 @@ class RealsenseSource final : public FrameSource {
  private:
   static Owned<rs2::Frame> none() { return {nullptr, api().release_frame}; }
 
-  /// Returns the next frames of all streams, depth on the grid of colour.
+  /// Returns the next frames of all streams.
   Owned<rs2::Frame> wait() {
     Outcome outcome(place_);
     Owned<rs2::Frame> all(api().pipeline_wait_for_frames(pipeline_.get(), kSensorPatience_ms, outcome.out()),
@@ -141,7 +144,7 @@ class RealsenseSource final : public FrameSource {
       throw Error(fmt::format("{}: no frame for {} s; unplugged, or used by another program", place_,
                               kSensorPatience_ms / 1000));
     }
-    return has_colour_ ? align(std::move(all)) : std::move(all);
+    return all;
   }
 
   void expect_plugged_in(const std::string& id) const {

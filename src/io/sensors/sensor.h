@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -26,6 +27,11 @@ struct SensorDriver {
   /// Opens the camera with this id, or the only one where it is empty. Throws Error saying what is missing.
   std::unique_ptr<FrameSource> (*open)(const std::string& id);
 };
+
+/// Returns the time now for Frame::arrived_s.
+inline double now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 /// Time without a frame after which a camera counts as lost.
 inline constexpr int kSensorPatience_ms = 3000;

@@ -17,6 +17,8 @@ struct Frame {
   Camera camera;
   DepthImage depth;
   ColourImage colour;  ///< empty, or the size of `depth`
+  /// When a live source got it, seconds since 1970 by this machine's clock; none otherwise. `time_s` is the camera's.
+  std::optional<double> arrived_s = std::nullopt;
 };
 
 /// Returns the point that pixel (u, v) of a depth image sees; its z is 0 where there is no reading.
