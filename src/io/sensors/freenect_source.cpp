@@ -57,7 +57,7 @@ std::vector<SensorInfo> all_plugged_in(freenect_context* context) {
   return infos;
 }
 
-/// The newest picture of a stream, and when it was taken, in ticks since the first.
+/// The newest picture of a stream, and when it was taken, in ticks of the camera's clock.
 template <class Picture>
 struct Newest {
   Picture picture;
@@ -160,12 +160,13 @@ class FreenectSource final : public FrameSource {
     }
   }
 
-  /// Ticks of 32 bits start anew after 71 s.
-  std::int64_t since_first(std::uint32_t time) {
-    if (!first_) first_ = last_ = time;
-    since_first_ += static_cast<std::int32_t>(time - last_);
+  /// Returns the camera's time without the jump of its 32 bits after 71 s.
+  std::int64_t whole(std::uint32_t time) {
+    if (!started_) whole_ = last_ = time;
+    started_ = true;
+    whole_ += static_cast<std::int32_t>(time - last_);
     last_ = time;
-    return since_first_;
+    return whole_;
   }
 
   void take_depth(const void* data, std::uint32_t time) {
@@ -174,7 +175,7 @@ class FreenectSource final : public FrameSource {
     depth_.picture = DepthImage(kWidth, kHeight);
     std::memcpy(depth_.picture.data(), data, depth_.picture.size() * sizeof(std::uint16_t));
     const std::int64_t before = depth_.time;
-    depth_.time = since_first(time);
+    depth_.time = whole(time);
     // Packets that were lost on the way are frames too.
     const std::int64_t periods = depth_.count == 0 ? 1 : (depth_.time - before + kBetweenFrames / 2) / kBetweenFrames;
     depth_.count += static_cast<int>(std::max<std::int64_t>(1, periods));
@@ -185,7 +186,7 @@ class FreenectSource final : public FrameSource {
     const std::scoped_lock lock(mutex_);
     colour_.picture = ColourImage(kWidth, kHeight);
     std::memcpy(static_cast<void*>(colour_.picture.data()), data, colour_.picture.size() * sizeof(Rgb));
-    colour_.time = since_first(time);
+    colour_.time = whole(time);
     ++colour_.count;
     came_.notify_all();
   }
@@ -197,9 +198,9 @@ class FreenectSource final : public FrameSource {
   std::condition_variable came_;
   Newest<DepthImage> depth_;
   Newest<ColourImage> colour_;
-  std::optional<std::uint32_t> first_;
+  bool started_ = false;
   std::uint32_t last_ = 0;
-  std::int64_t since_first_ = 0;
+  std::int64_t whole_ = 0;
   int taken_ = 0, missed_ = 0;
   bool failed_ = false;
   std::jthread events_;
