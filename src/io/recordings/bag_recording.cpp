@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/files/byte_stream.h"
+#include "io/recordings/chunked_recording.h"
 #include "io/recordings/decompress.h"
 
 namespace vesalius {
@@ -43,14 +44,12 @@ class Fields {
   std::map<std::string_view, std::string_view> fields_;
 };
 
-class BagRecording final : public Recording {
+class BagRecording final : public ChunkedRecording {
  public:
-  explicit BagRecording(DataFile file) : file_(std::move(file)) {
+  explicit BagRecording(DataFile file) : ChunkedRecording(std::move(file), kBagMagic.size()) {
     find_topics();
     rewind();
   }
-
-  const std::vector<RecordedTopic>& topics() const override { return topics_; }
 
   std::optional<RecordedMessage> next() override {
     for (;;) {
@@ -73,20 +72,12 @@ class BagRecording final : public Recording {
     }
   }
 
-  void rewind() override {
-    at_ = kBagMagic.size();
-    chunk_.clear();
-    chunk_at_ = 0;
-  }
-
-  std::vector<std::string> notes() const override { return notes_; }
-
  private:
   /// Goes to the next record and reads its header. Returns false at the end.
   bool next_record() {
     const std::string length_bytes = file_.read(at_, sizeof(std::uint32_t));
     if (length_bytes.empty()) return false;
-    if (length_bytes.size() < sizeof(std::uint32_t)) return end_early();
+    if (length_bytes.size() < sizeof(std::uint32_t)) return stop_early();
     const auto length = ByteReader(length_bytes, file_.path()).number<std::uint32_t>("length of a header");
     if (length > kMaxHeaderBytes) {
       const std::uint64_t at = at_;
@@ -95,22 +86,18 @@ class BagRecording final : public Recording {
                               length, kMaxHeaderBytes));
     }
     header_bytes_ = file_.read(at_ + sizeof(std::uint32_t), length + sizeof(std::uint32_t));
-    if (header_bytes_.size() < length + sizeof(std::uint32_t)) return end_early();
+    if (header_bytes_.size() < length + sizeof(std::uint32_t)) return stop_early();
     const std::string_view after = std::string_view(header_bytes_).substr(length);
     data_length_ = ByteReader(after, file_.path()).number<std::uint32_t>("length of data");
     data_at_ = at_ + 2 * sizeof(std::uint32_t) + length;
-    if (data_length_ > file_.size() - data_at_) return end_early();
+    if (data_length_ > file_.size() - data_at_) return stop_early();
     at_ = data_at_ + data_length_;
     header_.emplace(std::string_view(header_bytes_).substr(0, length), file_.path());
     return true;
   }
 
-  bool end_early() {
-    if (notes_.empty()) {
-      notes_.push_back(
-          fmt::format("{}: cut short at byte {}; the whole messages before it are read", file_.path(), at_));
-    }
-    at_ = file_.size();
+  bool stop_early() {
+    end_early();
     return false;
   }
 
@@ -175,16 +162,11 @@ class BagRecording final : public Recording {
     }
   }
 
-  DataFile file_;
-  std::vector<RecordedTopic> topics_;
   std::map<std::uint32_t, std::size_t> topic_of_;
-  std::vector<std::string> notes_;
-  std::uint64_t at_ = 0, data_at_ = 0;
+  std::uint64_t data_at_ = 0;
   std::uint32_t data_length_ = 0;
   std::string header_bytes_;
   std::optional<Fields> header_;  ///< of the record found last; its texts lie in header_bytes_
-  std::string chunk_;
-  std::size_t chunk_at_ = 0;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/files/byte_stream.h"
+#include "io/recordings/chunked_recording.h"
 #include "io/recordings/decompress.h"
 #include "io/recordings/mcap_records.h"
 
@@ -25,14 +26,12 @@ struct Place {
   std::uint64_t at = 0, length = 0;
 };
 
-class McapRecording final : public Recording {
+class McapRecording final : public ChunkedRecording {
  public:
-  explicit McapRecording(DataFile file) : file_(std::move(file)) {
+  explicit McapRecording(DataFile file) : ChunkedRecording(std::move(file), kMcapMagic.size()) {
     find_topics();
     rewind();
   }
-
-  const std::vector<RecordedTopic>& topics() const override { return topics_; }
 
   std::optional<RecordedMessage> next() override {
     for (;;) {
@@ -61,19 +60,11 @@ class McapRecording final : public Recording {
     }
   }
 
-  void rewind() override {
-    at_ = kMcapMagic.size();
-    chunk_.clear();
-    chunk_at_ = 0;
-  }
-
-  std::vector<std::string> notes() const override { return notes_; }
-
  private:
   /// Returns the next record of the data section that is in the file as a whole; nothing after it.
   std::optional<Place> next_place() {
     const std::string head = file_.read(at_, kMcapRecordHead);
-    if (head.size() < kMcapRecordHead) return end_early(!head.empty() || !ended_);
+    if (head.size() < kMcapRecordHead) return stop_early(!head.empty() || !ended_);
     ByteReader in(head, file_.path());
     Place place;
     place.kind = static_cast<McapRecord>(in.number<std::uint8_t>("record"));
@@ -83,16 +74,13 @@ class McapRecording final : public Recording {
       ended_ = true;
       return std::nullopt;
     }
-    if (place.length > file_.size() - place.at) return end_early(true);
+    if (place.length > file_.size() - place.at) return stop_early(true);
     at_ = place.at + place.length;
     return place;
   }
 
-  std::optional<Place> end_early(bool is_early) {
-    if (is_early && notes_.empty()) {
-      notes_.push_back(
-          fmt::format("{}: cut short at byte {}; the whole messages before it are read", file_.path(), at_));
-    }
+  std::optional<Place> stop_early(bool is_early) {
+    if (is_early) end_early();
     at_ = file_.size();
     return std::nullopt;
   }
@@ -149,7 +137,7 @@ class McapRecording final : public Recording {
     if (read_summary()) return;
     topics_.clear();
     topic_of_.clear();
-    at_ = kMcapMagic.size();
+    rewind();
     while (const std::optional<Place> place = next_place()) {
       switch (place->kind) {
         case McapRecord::schema:
@@ -240,15 +228,10 @@ class McapRecording final : public Recording {
     }
   }
 
-  DataFile file_;
-  std::vector<RecordedTopic> topics_;
   std::map<std::uint16_t, std::string> schemas_;
   std::map<std::uint16_t, std::size_t> topic_of_;
-  std::vector<std::string> notes_;
-  std::uint64_t at_ = 0;
   bool ended_ = false;
-  std::string chunk_, loose_;
-  std::size_t chunk_at_ = 0;
+  std::string loose_;  ///< a message outside of chunks
 };
 
 }  // namespace

@@ -66,11 +66,12 @@ struct Newest {
   double arrived_s = 0.0;
 };
 
-class FreenectSource final : public FrameSource {
+class FreenectSource final : public LiveSource {
  public:
-  explicit FreenectSource(const std::string& id)
-      : place_(id.empty() ? "freenect" : "freenect:" + id), context_(make_context()) {
+  explicit FreenectSource(const std::string& id) : LiveSource("freenect", id), context_(make_context()) {
     open(id);
+    notes_.push_back(
+        fmt::format("{}: a focal length of {:.4g} pixels assumed, usual for a Kinect v1", place_, kFocal_px));
     freenect_set_user(device_.get(), this);
     freenect_set_depth_callback(device_.get(), [](freenect_device* device, void* depth, std::uint32_t time) {
       static_cast<FreenectSource*>(freenect_get_user(device))->take_depth(depth, time);
@@ -99,10 +100,8 @@ class FreenectSource final : public FrameSource {
   std::optional<Frame> next() override {
     std::unique_lock lock(mutex_);
     const auto has_new = [&] { return depth_.count > taken_ || failed_; };
-    if (!came_.wait_for(lock, std::chrono::milliseconds(kSensorPatience_ms), has_new) || depth_.count == taken_) {
-      throw Error(fmt::format("{}: no frame for {} s; unplugged, or used by another program", place_,
-                              kSensorPatience_ms / 1000));
-    }
+    if (!came_.wait_for(lock, std::chrono::milliseconds(kSensorPatience_ms), has_new) || depth_.count == taken_)
+      fail_without_frame();
     missed_ += taken_ > 0 ? depth_.count - taken_ - 1 : 0;
     taken_ = depth_.count;
     Frame frame;
@@ -115,13 +114,6 @@ class FreenectSource final : public FrameSource {
     came_.wait_for(lock, kColourPatience, [&] { return colour_.time >= time - kMostApart && colour_.count > 0; });
     if (colour_.count > 0 && std::abs(colour_.time - time) <= kMostApart) frame.colour = colour_.picture;
     return frame;
-  }
-
-  int size() const override { return -1; }
-  bool is_live() const override { return true; }
-  int missed() const override { return missed_; }
-  std::vector<std::string> notes() const override {
-    return {fmt::format("{}: a focal length of {:.4g} pixels assumed, usual for a Kinect v1", place_, kFocal_px)};
   }
 
  private:
@@ -191,7 +183,6 @@ class FreenectSource final : public FrameSource {
     came_.notify_all();
   }
 
-  std::string place_;
   Context context_;
   std::unique_ptr<freenect_device, CloseDevice> device_;
   std::mutex mutex_;  ///< of all that follows
@@ -201,7 +192,7 @@ class FreenectSource final : public FrameSource {
   bool started_ = false;
   std::uint32_t last_ = 0;
   std::int64_t whole_ = 0;
-  int taken_ = 0, missed_ = 0;
+  int taken_ = 0;
   bool failed_ = false;
   std::jthread events_;
 };

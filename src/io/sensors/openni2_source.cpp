@@ -99,9 +99,9 @@ void choose_mode(openni::VideoStream& stream, openni::PixelFormat format, int wi
   }
 }
 
-class Openni2Source final : public FrameSource {
+class Openni2Source final : public LiveSource {
  public:
-  explicit Openni2Source(const std::string& id) : place_(id.empty() ? "openni2" : "openni2:" + id) {
+  explicit Openni2Source(const std::string& id) : LiveSource("openni2", id) {
     const std::string address = address_of(id);
     expect(device_.open(address.c_str()), place_ + " cannot be opened");
     expect(depth_.create(device_, openni::SENSOR_DEPTH), place_ + " has no depth");
@@ -129,10 +129,7 @@ class Openni2Source final : public FrameSource {
 
   std::optional<Frame> next() override {
     openni::VideoFrameRef read = wait_for(depth_, kSensorPatience_ms);
-    if (!read.isValid()) {
-      throw Error(fmt::format("{}: no frame for {} s; unplugged, or used by another program", place_,
-                              kSensorPatience_ms / 1000));
-    }
+    if (!read.isValid()) fail_without_frame();
     if (last_index_ > 0 && read.getFrameIndex() > last_index_ + 1) missed_ += read.getFrameIndex() - last_index_ - 1;
     last_index_ = read.getFrameIndex();
     Frame frame;
@@ -144,11 +141,6 @@ class Openni2Source final : public FrameSource {
     if (colour_.isValid()) frame.colour = colour_near(static_cast<std::int64_t>(read.getTimestamp()));
     return frame;
   }
-
-  int size() const override { return -1; }
-  bool is_live() const override { return true; }
-  int missed() const override { return missed_; }
-  std::vector<std::string> notes() const override { return notes_; }
 
  private:
   static openni::VideoFrameRef wait_for(openni::VideoStream& stream, int patience_ms) {
@@ -237,14 +229,12 @@ class Openni2Source final : public FrameSource {
     return colour;
   }
 
-  std::string place_;
   openni::Device device_;
   openni::VideoStream depth_, colour_;
   openni::VideoFrameRef last_colour_;
   Camera camera_;
   int per_mm_ = 1;
-  int last_index_ = 0, missed_ = 0;
-  std::vector<std::string> notes_;
+  int last_index_ = 0;
 };
 
 }  // namespace

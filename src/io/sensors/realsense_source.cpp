@@ -82,10 +82,10 @@ std::vector<SensorInfo> all_plugged_in(rs2::Context* context) {
   return infos;
 }
 
-class RealsenseSource final : public FrameSource {
+class RealsenseSource final : public LiveSource {
  public:
   explicit RealsenseSource(const std::string& id)
-      : place_(id.empty() ? "realsense" : "realsense:" + id),
+      : LiveSource("realsense", id),
         context_(make_context()),
         pipeline_(call(place_, api().create_pipeline, context_.get()), api().delete_pipeline),
         align_(call(place_, api().create_align, rs2::kColour), api().delete_processing_block),
@@ -127,11 +127,6 @@ class RealsenseSource final : public FrameSource {
     }
   }
 
-  int size() const override { return -1; }
-  bool is_live() const override { return true; }
-  int missed() const override { return missed_; }
-  std::vector<std::string> notes() const override { return notes_; }
-
  private:
   static Owned<rs2::Frame> none() { return {nullptr, api().release_frame}; }
 
@@ -140,10 +135,7 @@ class RealsenseSource final : public FrameSource {
     Outcome outcome(place_);
     Owned<rs2::Frame> all(api().pipeline_wait_for_frames(pipeline_.get(), kSensorPatience_ms, outcome.out()),
                           api().release_frame);
-    if (outcome.failed() || !all) {
-      throw Error(fmt::format("{}: no frame for {} s; unplugged, or used by another program", place_,
-                              kSensorPatience_ms / 1000));
-    }
+    if (outcome.failed() || !all) fail_without_frame();
     return all;
   }
 
@@ -243,7 +235,6 @@ class RealsenseSource final : public FrameSource {
     return colour;
   }
 
-  std::string place_;
   Owned<rs2::Context> context_;
   Owned<rs2::Pipeline> pipeline_;
   Owned<rs2::Block> align_;
@@ -251,8 +242,6 @@ class RealsenseSource final : public FrameSource {
   Owned<rs2::PipelineProfile> profile_{nullptr, nullptr};
   bool has_colour_ = false;
   std::int64_t last_number_ = -1;
-  int missed_ = 0;
-  std::vector<std::string> notes_;
 };
 
 }  // namespace

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "vesalius/base/error.h"
 #include "vesalius/base/frame_source.h"
 
 namespace vesalius {
@@ -35,5 +38,27 @@ inline double now_s() {
 
 /// Time without a frame after which a camera counts as lost.
 inline constexpr int kSensorPatience_ms = 3000;
+
+/// What all cameras have in common as sources.
+class LiveSource : public FrameSource {
+ public:
+  int size() const override { return -1; }
+  bool is_live() const override { return true; }
+  int missed() const override { return missed_; }
+  std::vector<std::string> notes() const override { return notes_; }
+
+ protected:
+  LiveSource(std::string_view scheme, const std::string& id)
+      : place_(id.empty() ? std::string(scheme) : fmt::format("{}:{}", scheme, id)) {}
+
+  [[noreturn]] void fail_without_frame() const {
+    throw Error(
+        fmt::format("{}: no frame for {} s; unplugged, or used by another program", place_, kSensorPatience_ms / 1000));
+  }
+
+  std::string place_;  ///< for messages
+  std::vector<std::string> notes_;
+  int missed_ = 0;
+};
 
 }  // namespace vesalius
