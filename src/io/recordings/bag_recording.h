@@ -3,7 +3,7 @@
 #include <memory>
 #include <string_view>
 
-#include "io/recordings/data_file.h"
+#include "io/files/data_file.h"
 #include "io/recordings/recording.h"
 
 namespace vesalius {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/recordings/data_file.h"
+#include "io/files/data_file.h"
 #include "io/recordings/recording.h"
 
 namespace vesalius {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "io/recordings/data_file.h"
+#include "io/files/data_file.h"
 #include "io/recordings/recording.h"
 
 namespace vesalius {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "io/files/data_file.h"
 #include "io/recordings/bag_recording.h"
-#include "io/recordings/data_file.h"
 #include "io/recordings/mcap_recording.h"
 #include "io/recordings/mcap_records.h"
 #include "io/recordings/sqlite_recording.h"

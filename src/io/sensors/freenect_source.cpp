@@ -129,10 +129,8 @@ class FreenectSource final : public LiveSource {
       expect(freenect_open_device_by_camera_serial(context_.get(), &opened, id.c_str()),
              "cannot be opened: no Kinect of this number, no right to use it, or used by another program");
     } else if (count > 1) {
-      std::string ids;
-      for (const SensorInfo& one : all_plugged_in(context_.get()))
-        ids += (ids.empty() ? "freenect:" : ", freenect:") + one.id;
-      throw Error(fmt::format("freenect: {} Kinects, expected one of {}", count, ids));
+      throw Error(fmt::format("freenect: {} Kinects, expected one of {}", count,
+                              sources_of("freenect", all_plugged_in(context_.get()))));
     } else {
       expect(freenect_open_device(context_.get(), &opened, 0),
              "cannot be opened: no right to use it, or used by another program");

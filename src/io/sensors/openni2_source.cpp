@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/files/copy_rows.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -76,9 +77,8 @@ std::string address_of(const std::string& id) {
   if (id.empty()) {
     if (found.empty()) throw Error("openni2: no camera is plugged in, expected one that `vesalius cameras` lists");
     if (found.size() > 1) {
-      std::string ids;
-      for (const Found& one : found) ids += (ids.empty() ? "openni2:" : ", openni2:") + one.info.id;
-      throw Error(fmt::format("openni2: {} cameras, expected one of {}", found.size(), ids));
+      throw Error(
+          fmt::format("openni2: {} cameras, expected one of {}", found.size(), sources_of("openni2", list_openni2())));
     }
     return found.front().address;
   }
@@ -201,10 +201,7 @@ class Openni2Source final : public LiveSource {
                               camera_.width, camera_.height));
     }
     DepthImage depth(camera_.width, camera_.height);
-    const auto* row = static_cast<const char*>(read.getData());
-    for (int v = 0; v < camera_.height; ++v, row += read.getStrideInBytes()) {
-      std::memcpy(depth.row(v), row, static_cast<std::size_t>(camera_.width) * sizeof(std::uint16_t));
-    }
+    copy_rows(read.getData(), read.getStrideInBytes(), depth);
     if (per_mm_ > 1) {
       for (std::uint16_t& z : depth) z = static_cast<std::uint16_t>((z + per_mm_ / 2) / per_mm_);
     }
@@ -222,10 +219,7 @@ class Openni2Source final : public LiveSource {
     if (static_cast<std::int64_t>(last_colour_.getTimestamp()) > time_us + kMostApart_us) return {};
     ColourImage colour(camera_.width, camera_.height);
     if (last_colour_.getWidth() != camera_.width || last_colour_.getHeight() != camera_.height) return {};
-    const auto* row = static_cast<const char*>(last_colour_.getData());
-    for (int v = 0; v < camera_.height; ++v, row += last_colour_.getStrideInBytes()) {
-      std::memcpy(static_cast<void*>(colour.row(v)), row, static_cast<std::size_t>(camera_.width) * sizeof(Rgb));
-    }
+    copy_rows(last_colour_.getData(), last_colour_.getStrideInBytes(), colour);
     return colour;
   }
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/files/copy_rows.h"
 #include "io/sensors/realsense_api.h"
 #include "vesalius/base/error.h"
 
@@ -143,8 +144,7 @@ class RealsenseSource final : public LiveSource {
     const std::vector<SensorInfo> cameras = all_plugged_in(context_.get());
     const bool known = std::ranges::find(cameras, id, &SensorInfo::id) != cameras.end();
     if (known || (id.empty() && cameras.size() == 1)) return;
-    std::string ids;
-    for (const SensorInfo& one : cameras) ids += (ids.empty() ? "realsense:" : ", realsense:") + one.id;
+    const std::string ids = sources_of("realsense", cameras);
     throw Error(fmt::format("{}: {}", place_,
                             ids.empty() ? "no camera is plugged in, expected one that `vesalius cameras` lists"
                                         : "expected one of " + ids));
@@ -204,11 +204,8 @@ class RealsenseSource final : public LiveSource {
   DepthImage depth_of(const rs2::Frame* frame) const {
     DepthImage depth(call(place_, api().get_frame_width, frame), call(place_, api().get_frame_height, frame));
     const auto stride = static_cast<std::size_t>(call(place_, api().get_frame_stride_in_bytes, frame));
-    const auto* data = static_cast<const char*>(call(place_, api().get_frame_data, frame));
-    for (int v = 0; v < depth.height(); ++v) {
-      std::memcpy(depth.row(v), data + static_cast<std::size_t>(v) * stride,
-                  static_cast<std::size_t>(depth.width()) * 2);
-    }
+    const auto* data = call(place_, api().get_frame_data, frame);
+    copy_rows(data, stride, depth);
     const double to_mm = 1e3 * static_cast<double>(call(place_, api().depth_frame_get_units, frame));
     constexpr double kSame = 1e-6;
     if (std::abs(to_mm - 1.0) < kSame) return depth;
@@ -227,11 +224,8 @@ class RealsenseSource final : public LiveSource {
     }
     ColourImage colour(camera.width, camera.height);
     const auto stride = static_cast<std::size_t>(call(place_, api().get_frame_stride_in_bytes, frame));
-    const auto* data = static_cast<const char*>(call(place_, api().get_frame_data, frame));
-    for (int v = 0; v < camera.height; ++v) {
-      std::memcpy(static_cast<void*>(colour.row(v)), data + static_cast<std::size_t>(v) * stride,
-                  static_cast<std::size_t>(camera.width) * sizeof(Rgb));
-    }
+    const auto* data = call(place_, api().get_frame_data, frame);
+    copy_rows(data, stride, colour);
     return colour;
   }
 

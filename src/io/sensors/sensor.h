@@ -31,6 +31,13 @@ struct SensorDriver {
   std::unique_ptr<FrameSource> (*open)(const std::string& id);
 };
 
+/// Returns the sources that name these cameras, e.g. "openni2:1, openni2:2".
+inline std::string sources_of(std::string_view scheme, const std::vector<SensorInfo>& cameras) {
+  std::string text;
+  for (const SensorInfo& one : cameras) text += fmt::format("{}{}:{}", text.empty() ? "" : ", ", scheme, one.id);
+  return text;
+}
+
 /// Returns the time now for Frame::arrived_s.
 inline double now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();

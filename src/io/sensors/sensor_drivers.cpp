@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 #include "io/sensors/freenect_source.h"
@@ -23,13 +22,12 @@ constexpr std::array<SensorDriver, 3> kDrivers{
 
 std::span<const SensorDriver> sensor_drivers() { return kDrivers; }
 
-std::unique_ptr<FrameSource> open_sensor(std::string_view scheme, const std::string& id) {
-  const auto driver = std::ranges::find(kDrivers, scheme, &SensorDriver::scheme);
-  if (driver == kDrivers.end()) throw Error(fmt::format("{}: no driver of that name", scheme));
-  if (!driver->built) {
-    throw Error(fmt::format("{}: this build cannot open it; install {} and build again", scheme, driver->package));
+std::unique_ptr<FrameSource> open_sensor(const SensorDriver& driver, const std::string& id) {
+  if (!driver.built) {
+    throw Error(
+        fmt::format("{}: this build cannot open it; install {} and build again", driver.scheme, driver.package));
   }
-  return driver->open(id);
+  return driver.open(id);
 }
 
 }  // namespace vesalius

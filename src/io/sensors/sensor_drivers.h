@@ -10,6 +10,6 @@ namespace vesalius {
 std::span<const SensorDriver> sensor_drivers();
 
 /// Opens a camera by its driver. Throws Error naming the driver, and the package where this build lacks it.
-std::unique_ptr<FrameSource> open_sensor(std::string_view scheme, const std::string& id);
+std::unique_ptr<FrameSource> open_sensor(const SensorDriver& driver, const std::string& id);
 
 }  // namespace vesalius

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <system_error>
 
+#include "io/files/copy_rows.h"
 #include "io/files/image_bytes.h"
 #include "io/sensors/sensor_drivers.h"
 #include "io/sources/camera_file.h"
@@ -26,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One kind of source. A new camera is another row here and in sensor_drivers.
+/// One kind of files. Cameras have a table of their own (sensor_drivers).
 struct Scheme {
   std::string_view name;
   const char* what;  ///< what `open` expects
@@ -131,42 +132,32 @@ class Calibrated final : public FrameSource {
   std::string place_;
 };
 
-std::unique_ptr<FrameSource> open_camera(const char* scheme, const std::string& id, const SourceOptions& options) {
-  const std::string place = fmt::format("{}:{}", scheme, id);
+std::unique_ptr<FrameSource> open_camera(const SensorDriver& driver, const std::string& id,
+                                         const SourceOptions& options) {
+  const std::string place = fmt::format("{}:{}", driver.scheme, id);
   refuse_colour_file(place, options);
   if (options.depth_scale) throw UsageError(place + ": a camera says itself what a unit of depth is");
   const CameraFacts facts = find_camera_facts(options, {});
-  std::unique_ptr<FrameSource> source = open_sensor(scheme, id);
+  std::unique_ptr<FrameSource> source = open_sensor(driver, id);
   if (!facts.fx) return source;
   return std::make_unique<Calibrated>(std::move(source), facts, place);
 }
 
-std::unique_ptr<FrameSource> open_openni2_camera(const std::string& id, const SourceOptions& options) {
-  return open_camera("openni2", id, options);
-}
-
-std::unique_ptr<FrameSource> open_freenect_camera(const std::string& id, const SourceOptions& options) {
-  return open_camera("freenect", id, options);
-}
-
-std::unique_ptr<FrameSource> open_realsense_camera(const std::string& id, const SourceOptions& options) {
-  return open_camera("realsense", id, options);
-}
-
-constexpr std::array<Scheme, 8> kSchemes{{{"folder", kFolder, open_folder},
+constexpr std::array<Scheme, 5> kSchemes{{{"folder", kFolder, open_folder},
                                           {"tum", kTum, open_tum},
                                           {"pcd", kPcd, open_clouds},
                                           {"png", kPng, open_png},
-                                          {"recording", kRecording, open_recording_file},
-                                          {"openni2", "a camera", open_openni2_camera},
-                                          {"freenect", "a camera", open_freenect_camera},
-                                          {"realsense", "a camera", open_realsense_camera}}};
+                                          {"recording", kRecording, open_recording_file}}};
 
-/// Returns the scheme that "pcd:cloud.pcd" begins with, or null for a plain path.
-const Scheme* scheme_of(const std::string& uri) {
-  const auto found = std::ranges::find(kSchemes, std::string_view(uri).substr(0, uri.find(':')), &Scheme::name);
-  return found == kSchemes.end() || found->name.size() == uri.size() ? nullptr : &*found;
+/// Returns the row of `table` whose scheme "pcd:cloud.pcd" begins with, or null for a plain path.
+template <class Table, class Name>
+const auto* row_of(const Table& table, const std::string& uri, Name name) {
+  const auto found = std::ranges::find(table, std::string_view(uri).substr(0, uri.find(':')), name);
+  return found == table.end() || std::invoke(name, *found).size() == uri.size() ? nullptr : &*found;
 }
+
+const Scheme* scheme_of(const std::string& uri) { return row_of(kSchemes, uri, &Scheme::name); }
+const SensorDriver* camera_of(const std::string& uri) { return row_of(sensor_drivers(), uri, &SensorDriver::scheme); }
 
 std::string_view scheme_of_file(const std::string& path) {
   const std::string extension = lower_extension(path);
@@ -192,12 +183,16 @@ std::string_view scheme_of_folder(const std::string& path) {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& options) {
+  if (const SensorDriver* driver = camera_of(uri)) {
+    return open_camera(*driver, uri.substr(driver->scheme.size() + 1), options);
+  }
   if (const Scheme* scheme = scheme_of(uri)) return scheme->open(uri.substr(scheme->name.size() + 1), options);
   const std::string_view name = is_folder(uri, kAnything) ? scheme_of_folder(uri) : scheme_of_file(uri);
   return std::ranges::find(kSchemes, name, &Scheme::name)->open(uri, options);
 }
 
 std::string path_of_source(const std::string& uri) {
+  if (const SensorDriver* driver = camera_of(uri)) return uri.substr(driver->scheme.size() + 1);
   const Scheme* scheme = scheme_of(uri);
   std::string path = scheme == nullptr ? uri : uri.substr(scheme->name.size() + 1);
   if (scheme != nullptr && scheme->open == open_tum) split_scale(path);
@@ -222,12 +217,9 @@ Frame make_frame(const Camera& camera, const std::uint16_t* depth_mm, std::size_
   frame.camera = camera;
   frame.depth = DepthImage(camera.width, camera.height);
   if (rgb != nullptr) frame.colour = ColourImage(camera.width, camera.height);
-  const auto* depth_rows = reinterpret_cast<const char*>(depth_mm);
   static_assert(sizeof(Rgb) == 3);
-  for (int v = 0; v < camera.height; ++v) {
-    std::memcpy(frame.depth.row(v), depth_rows + v * depth_stride, depth_bytes);
-    if (rgb != nullptr) std::memcpy(static_cast<void*>(frame.colour.row(v)), rgb + v * rgb_stride, rgb_bytes);
-  }
+  copy_rows(depth_mm, depth_stride, frame.depth);
+  if (rgb != nullptr) copy_rows(rgb, rgb_stride, frame.colour);
   return frame;
 }
 

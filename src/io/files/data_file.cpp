@@ -1,4 +1,4 @@
-#include "io/recordings/data_file.h"
+#include "io/files/data_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
