@@ -26,7 +26,7 @@ struct StreamOptions {
   /// In real time, frames come at the pace at which they were taken and are dropped while the detector is busy. A live
   /// source always does that.
   bool realtime = false;
-  double rate = 30.0;  ///< frames per second in real time, for a source without times
+  double rate = kUsualRate;  ///< frames per second in real time, for a source without times
   /// This function is asked at least every 50 ms, in the caller's thread, whether to end; empty means never.
   std::function<bool()> stop;
 };

@@ -24,7 +24,7 @@ struct Arguments {
   std::string source, out;
   SourceOptions camera;
   DetectorFlags detector;
-  double rate = 30.0;
+  double rate = kUsualRate;
   int frames = 0;  ///< 0 = all
   bool people = false;
   bool quiet = false;

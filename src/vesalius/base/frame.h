@@ -19,6 +19,8 @@ struct Frame {
   ColourImage colour;  ///< empty, or the size of `depth`
   /// When a live source got it, seconds since 1970 by this machine's clock; none otherwise. `time_s` is the camera's.
   std::optional<double> arrived_s = std::nullopt;
+  /// Unit vector away from the ground in the optical frame, as a sensor of acceleration measured it; none without one.
+  std::optional<Eigen::Vector3f> up = std::nullopt;
 };
 
 /// Returns the point that pixel (u, v) of a depth image sees; its z is 0 where there is no reading.

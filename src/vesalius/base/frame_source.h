@@ -8,6 +8,16 @@
 
 namespace vesalius {
 
+/// Frames a second of a source whose frames have no times, where nobody says otherwise.
+inline constexpr double kUsualRate = 30.0;
+
+/// Times of the first and of the last frame of a source, in seconds as Frame::time_s counts them. Frame number i of a
+/// source without times counts as taken at i / kUsualRate.
+struct TimeSpan {
+  double first_s = 0.0;
+  double last_s = 0.0;
+};
+
 /// A stream of frames: a folder, a file, a sensor.
 class FrameSource {
  public:
@@ -17,6 +27,11 @@ class FrameSource {
   virtual std::optional<Frame> next() = 0;
   /// Returns the total number of frames, or -1 if it is not known.
   virtual int size() const = 0;
+  /// Returns where the frames lie if `seek` can go to any of them; nothing where it cannot.
+  virtual std::optional<TimeSpan> span() const { return std::nullopt; }
+  /// Goes to the first frame that is not before `time_s`, which `next` then returns; to the end where there is none. May
+  /// be called only where there is a span.
+  virtual void seek(double /*time_s*/) {}
   /// Returns remarks for the user, one line each, such as guessed intrinsics or depth pictures without colour.
   virtual std::vector<std::string> notes() const { return {}; }
   /// Returns whether the frames come from a camera as they are taken: whoever is late misses some, and the stream ends
