@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -12,7 +13,7 @@
 namespace vesalius {
 namespace {
 
-constexpr std::uint8_t kMessage = 0x02, kIndex = 0x04, kChunk = 0x05, kConnection = 0x07;
+constexpr std::uint8_t kMessage = 0x02, kIndex = 0x04, kChunk = 0x05, kChunkInfo = 0x06, kConnection = 0x07;
 /// Headers of records hold a few numbers and names.
 constexpr std::uint32_t kMaxHeaderBytes = 1U << 20U;
 
@@ -62,10 +63,7 @@ class BagRecording final : public ChunkedRecording {
         if (header.number<std::uint8_t>("op") != kMessage) continue;
         const auto found = topic_of_.find(header.number<std::uint32_t>("conn"));
         if (found == topic_of_.end()) continue;
-        // Seconds, then nanoseconds.
-        const auto time = header.number<std::uint64_t>("time");
-        const auto time_ns = static_cast<std::int64_t>((time & 0xFFFFFFFFU) * 1000000000U + (time >> 32U));
-        return RecordedMessage{found->second, time_ns, data};
+        return RecordedMessage{found->second, time_of(header, "time"), data};
       }
       if (!next_record()) return std::nullopt;
       if (header_->number<std::uint8_t>("op") == kChunk) load_chunk();
@@ -73,6 +71,12 @@ class BagRecording final : public ChunkedRecording {
   }
 
  private:
+  /// Seconds, then nanoseconds.
+  static std::int64_t time_of(const Fields& header, std::string_view key) {
+    const auto time = header.number<std::uint64_t>(key);
+    return static_cast<std::int64_t>((time & 0xFFFFFFFFU) * 1000000000U + (time >> 32U));
+  }
+
   /// Goes to the next record and reads its header. Returns false at the end.
   bool next_record() {
     const std::string length_bytes = file_.read(at_, sizeof(std::uint32_t));
@@ -118,22 +122,29 @@ class BagRecording final : public ChunkedRecording {
   }
 
   /// Reads all connections and counts the messages by the index behind each chunk. Chunks are opened only where the
-  /// file ends without the connections that it would repeat there.
+  /// file ends without the connections and the times of chunks that it would have there.
   void find_topics() {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> counts;
+    std::map<std::uint64_t, std::int64_t> last_of;  // by the places of chunks
     bool chunk_without_index = false;
     rewind();
-    while (next_record()) {
+    for (std::uint64_t at = at_; next_record(); at = at_) {
       const auto op = header_->number<std::uint8_t>("op");
       if (op == kConnection) add_connection(*header_, file_.read(data_at_, data_length_));
-      if (op == kChunk) chunk_without_index = true;
+      if (op == kChunk) {
+        chunk_without_index = true;
+        stretches_.push_back({at, 0});
+      }
+      if (op == kChunkInfo) last_of[header_->number<std::uint64_t>("chunk_pos")] = time_of(*header_, "end_time");
       if (op == kIndex) {
         chunk_without_index = false;
         counts.emplace_back(header_->number<std::uint32_t>("conn"), header_->number<std::uint32_t>("count"));
       }
     }
-    const bool complete = !topics_.empty() && !chunk_without_index;
+    const bool timed = std::ranges::all_of(stretches_, [&](const Stretch& one) { return last_of.contains(one.at); });
+    const bool complete = !topics_.empty() && !chunk_without_index && timed;
     if (!complete) return open_all_chunks();
+    for (Stretch& stretch : stretches_) stretch.last_ns = last_of[stretch.at];
     for (const auto& [connection, count] : counts) {
       const auto found = topic_of_.find(connection);
       if (found != topic_of_.end()) topics_[found->second].messages += count;
@@ -141,9 +152,11 @@ class BagRecording final : public ChunkedRecording {
   }
 
   void open_all_chunks() {
+    stretches_.clear();
     rewind();
-    while (next_record()) {
+    for (std::uint64_t at = at_; next_record(); at = at_) {
       if (header_->number<std::uint8_t>("op") != kChunk) continue;
+      stretches_.push_back({at, 0});
       try {
         load_chunk();
       } catch (const Error&) {
@@ -156,6 +169,7 @@ class BagRecording final : public ChunkedRecording {
         const auto op = header.number<std::uint8_t>("op");
         if (op == kConnection) add_connection(header, data);
         if (op != kMessage) continue;
+        stretches_.back().last_ns = std::max(stretches_.back().last_ns, time_of(header, "time"));
         const auto found = topic_of_.find(header.number<std::uint32_t>("conn"));
         if (found != topic_of_.end()) ++topics_[found->second].messages;
       }

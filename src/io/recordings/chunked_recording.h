@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,9 +23,28 @@ class ChunkedRecording : public Recording {
     chunk_.clear();
     chunk_at_ = 0;
   }
+  std::optional<std::int64_t> last_ns() const override {
+    if (stretches_.empty()) return std::nullopt;
+    return std::ranges::max_element(stretches_, {}, &Stretch::last_ns)->last_ns;
+  }
+  bool seek(std::int64_t time_ns) override {
+    rewind();
+    const auto is_late = [time_ns](const Stretch& stretch) { return stretch.last_ns >= time_ns; };
+    auto found = std::ranges::find_if(stretches_, is_late);
+    if (found == stretches_.end() && found != stretches_.begin()) --found;
+    if (found == stretches_.begin()) return false;
+    at_ = found->at;
+    return true;
+  }
   std::vector<std::string> notes() const override { return notes_; }
 
  protected:
+  /// A part of the file, from a record on: a chunk, or messages outside of chunks.
+  struct Stretch {
+    std::uint64_t at = 0;
+    std::int64_t last_ns = 0;  ///< when its latest message was recorded
+  };
+
   /// The first record stands at byte `first`.
   ChunkedRecording(DataFile file, std::uint64_t first) : file_(std::move(file)), at_(first), first_(first) {}
 
@@ -40,7 +61,8 @@ class ChunkedRecording : public Recording {
   std::vector<RecordedTopic> topics_;
   std::uint64_t at_;  ///< of the next record in the file
   std::string chunk_;
-  std::size_t chunk_at_ = 0;  ///< of the next record in the chunk
+  std::size_t chunk_at_ = 0;        ///< of the next record in the chunk
+  std::vector<Stretch> stretches_;  ///< all with messages, in the order of the file
 
  private:
   std::uint64_t first_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -132,13 +133,15 @@ class McapRecording final : public ChunkedRecording {
     topics_.push_back({name, short_type(schemas_[schema]), layout_of(encoding), 0});
   }
 
-  /// Learns topics and numbers of messages from the summary at the end; where there is none, from all that is there.
+  /// Learns topics, numbers of messages and what lies where from the summary at the end; where there is none, from all
+  /// that is there.
   void find_topics() {
-    if (read_summary()) return;
+    if (read_summary()) return find_stretches();
     topics_.clear();
     topic_of_.clear();
     rewind();
     while (const std::optional<Place> place = next_place()) {
+      add_stretch(*place);
       switch (place->kind) {
         case McapRecord::schema:
           add_schema(file_.read(place->at, place->length));
@@ -161,6 +164,58 @@ class McapRecording final : public ChunkedRecording {
           break;
       }
     }
+  }
+
+  /// Finds chunks by the index in the summary, and what that does not list by the heads of records.
+  void find_stretches() {
+    rewind();
+    for (;;) {
+      if (const auto listed = listed_.find(at_); listed != listed_.end()) {
+        stretches_.push_back({at_, listed->second.last_ns});
+        at_ = listed->second.end;
+        loose_since_ = 0;
+        continue;
+      }
+      const std::optional<Place> place = next_place();
+      if (!place) return;
+      add_stretch(*place);
+    }
+  }
+
+  /// Adds a chunk, or a message outside of chunks, by the time at its beginning.
+  void add_stretch(const Place& place) {
+    constexpr std::uint64_t kBeforeLast = 8;     // first time of a chunk
+    constexpr std::uint64_t kBeforeMessage = 6;  // channel and number of a message
+    constexpr std::uint64_t kStretchBytes = std::uint64_t{1} << 20U;
+    const bool is_chunk = place.kind == McapRecord::chunk;
+    if (!is_chunk && place.kind != McapRecord::message) return;
+    const std::uint64_t before = is_chunk ? kBeforeLast : kBeforeMessage;
+    if (place.length < before + sizeof(std::uint64_t)) return;  // `next` says so when it comes there
+    const std::string bytes = file_.read(place.at + before, sizeof(std::uint64_t));
+    const auto last_ns = static_cast<std::int64_t>(ByteReader(bytes, file_.path()).number<std::uint64_t>("time"));
+    const std::uint64_t at = place.at - kMcapRecordHead;
+    if (!is_chunk && loose_since_ != 0 && at - loose_since_ < kStretchBytes) {
+      stretches_.back().last_ns = std::max(stretches_.back().last_ns, last_ns);
+      return;
+    }
+    stretches_.push_back({at, last_ns});
+    loose_since_ = is_chunk ? 0 : at;
+  }
+
+  void add_chunk_index(std::string_view content) {
+    ByteReader in(content, file_.path());
+    in.number<std::uint64_t>("first time of a chunk");
+    ListedChunk chunk;
+    chunk.last_ns = static_cast<std::int64_t>(in.number<std::uint64_t>("last time of a chunk"));
+    const auto at = in.number<std::uint64_t>("place of a chunk");
+    const auto length = in.number<std::uint64_t>("length of a chunk");
+    in.text("places of the indices of a chunk");
+    const auto indices = in.number<std::uint64_t>("length of the indices of a chunk");
+    if (at >= file_.size() || length == 0 || length > file_.size() - at) return;
+    chunk.end = at + length;
+    if (indices > file_.size() - chunk.end) return;
+    chunk.end += indices;
+    listed_[at] = chunk;
   }
 
   bool try_chunk(const Place& place) {
@@ -206,6 +261,7 @@ class McapRecording final : public ChunkedRecording {
       if (kind == McapRecord::schema) add_schema(content);
       if (kind == McapRecord::channel) add_channel(content);
       if (kind == McapRecord::statistics) statistics = content;
+      if (kind == McapRecord::chunk_index) add_chunk_index(content);
     });
     if (statistics.empty()) {
       for (RecordedTopic& topic : topics_) topic.messages = -1;
@@ -230,8 +286,15 @@ class McapRecording final : public ChunkedRecording {
 
   std::map<std::uint16_t, std::string> schemas_;
   std::map<std::uint16_t, std::size_t> topic_of_;
+  /// A chunk that the summary lists.
+  struct ListedChunk {
+    std::int64_t last_ns = 0;
+    std::uint64_t end = 0;  ///< behind it and its indices
+  };
+  std::map<std::uint64_t, ListedChunk> listed_;  ///< by their places
   bool ended_ = false;
-  std::string loose_;  ///< a message outside of chunks
+  std::string loose_;              ///< a message outside of chunks
+  std::uint64_t loose_since_ = 0;  ///< where the last stretch begins if that is of messages outside of chunks, else 0
 };
 
 }  // namespace

@@ -92,6 +92,55 @@ TEST(Recording, McapCutAnywhereGivesTheMessagesBefore) {
   EXPECT_EQ(most, written.size());
 }
 
+/// Everything recorded at a time or later comes after a seek, in the same order; earlier things come only before it.
+void expect_seeks(Recording& recording) {
+  recording.rewind();
+  const std::vector<Seen> all = all_of(recording);
+  ASSERT_FALSE(all.empty());
+  EXPECT_EQ(recording.last_ns(), std::ranges::max_element(all, {}, &Seen::time_ns)->time_ns);
+  for (const Seen& to : all) {
+    for (const std::int64_t time_ns : {to.time_ns, to.time_ns + 1}) {
+      const bool left_out = recording.seek(time_ns);
+      const std::vector<Seen> rest = all_of(recording);
+      ASSERT_LE(rest.size(), all.size());
+      EXPECT_EQ(left_out, rest.size() < all.size()) << time_ns;
+      const auto missing = all.end() - std::ssize(rest);
+      ASSERT_TRUE(std::equal(missing, all.end(), rest.begin())) << time_ns;
+      for (auto one = all.begin(); one != missing; ++one) ASSERT_LT(one->time_ns, time_ns);
+    }
+  }
+}
+
+TEST(Recording, McapSeeksByItsIndexAndWithoutOne) {
+  const test::TemporaryFolder folder;
+  write_some(folder / "a.mcap", true);
+  const std::string bytes = test::get(folder / "a.mcap");
+  test::put(folder / "cut.mcap", bytes.substr(0, bytes.size() - 20));
+  for (const char* name : {"a.mcap", "cut.mcap"}) {
+    const auto recording = open_recording(folder / name);
+    expect_seeks(*recording);
+    const std::int64_t last_ns = *recording->last_ns();
+    EXPECT_TRUE(recording->seek(last_ns)) << name;
+    EXPECT_GT(recording->next()->time_ns, 0) << name;
+    EXPECT_FALSE(recording->seek(0)) << name;
+    EXPECT_EQ(recording->next()->time_ns, 0) << name;
+  }
+}
+
+TEST(Recording, SeekDoesNotReadTheChunksBefore) {
+  const test::TemporaryFolder folder;
+  write_some(folder / "a.mcap", true);
+  std::string bytes = test::get(folder / "a.mcap");
+  const std::size_t packed = bytes.find("\x28\xB5\x2F\xFD");
+  ASSERT_NE(packed, bytes.npos);
+  bytes[packed + 8] ^= 0x55;
+  test::put(folder / "damaged.mcap", bytes);
+  const auto recording = open_recording(folder / "damaged.mcap");
+  EXPECT_THAT(error_of([&] { all_of(*recording); }), HasSubstr("damaged"));
+  recording->seek(1'500'000'000);
+  EXPECT_GE(all_of(*recording).size(), 10U);
+}
+
 TEST(Recording, RefusesWhatIsNone) {
   const test::TemporaryFolder folder;
   test::put(folder / "empty.bag", "");
@@ -112,6 +161,17 @@ TEST(Recording, IsNotWrittenOverAnotherFile) {
               AllOf(HasSubstr("a.mcap"), HasSubstr("cannot be created"), HasSubstr("exists")));
   EXPECT_EQ(test::get(folder / "a.mcap"), "mine");
 }
+
+/// Written by the tools of others (tests/recordings/other_side.py --fixtures).
+class RecordingsOfOthers : public testing::TestWithParam<const char*> {};
+
+TEST_P(RecordingsOfOthers, Seek) {
+  expect_seeks(*open_recording(std::string(VESALIUS_FUZZ_SEEDS) + "/fuzz_recording/" + GetParam()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Fixtures, RecordingsOfOthers,
+                         testing::Values("plain.bag", "bz2.bag", "lz4.bag", "plain.db3", "zstd.db3", "zstd.mcap",
+                                         "lz4.mcap", "loose.mcap", "foxglove.mcap"));
 
 }  // namespace
 }  // namespace vesalius

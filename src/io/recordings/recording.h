@@ -41,6 +41,11 @@ class Recording {
   virtual std::optional<RecordedMessage> next() = 0;
   /// Starts again with the first message.
   virtual void rewind() = 0;
+  /// Returns when the latest message was recorded; nothing where there are none.
+  virtual std::optional<std::int64_t> last_ns() const = 0;
+  /// Goes on with a message from which on all come that were recorded at `time_ns` or later; earlier ones may come
+  /// among them. Parts of the file that end before are not read. Returns whether it left out any.
+  virtual bool seek(std::int64_t time_ns) = 0;
   /// Returns what is not as it should be, a line each: a file cut short, of which the whole messages are read.
   virtual std::vector<std::string> notes() const { return {}; }
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <limits>
 #include <map>
 
 #include "io/recordings/decompress.h"
@@ -44,7 +45,7 @@ class SqliteRecording final : public Recording {
   const std::vector<RecordedTopic>& topics() const override { return topics_; }
 
   std::optional<RecordedMessage> next() override {
-    while (rows_ && step(rows_)) {
+    while (next_row()) {
       const auto found = topic_of_.find(sqlite3_column_int64(rows_.get(), 0));
       if (found == topic_of_.end()) continue;
       RecordedMessage message{found->second, sqlite3_column_int64(rows_.get(), 1), {}};
@@ -59,13 +60,37 @@ class SqliteRecording final : public Recording {
       }
       return message;
     }
-    rows_.reset();
     return std::nullopt;
   }
 
-  void rewind() override { rows_ = prepare("SELECT topic_id, timestamp, data FROM messages ORDER BY timestamp, id"); }
+  void rewind() override { seek(std::numeric_limits<std::int64_t>::min()); }
+
+  std::optional<std::int64_t> last_ns() const override { return limit_of("MAX"); }
+
+  bool seek(std::int64_t time_ns) override {
+    rows_ = prepare("SELECT topic_id, timestamp, data FROM messages WHERE timestamp >= ?1 ORDER BY timestamp, id");
+    if (sqlite3_bind_int64(rows_.get(), 1, time_ns) != SQLITE_OK) fail();
+    return time_ns > limit_of("MIN").value_or(time_ns);
+  }
 
  private:
+  /// Returns the least or greatest time, which the database knows by its index.
+  std::optional<std::int64_t> limit_of(const char* function) const {
+    const Statement found = prepare(fmt::format("SELECT {}(timestamp) FROM messages", function).c_str());
+    if (!step(found) || sqlite3_column_type(found.get(), 0) == SQLITE_NULL) return std::nullopt;
+    return sqlite3_column_int64(found.get(), 0);
+  }
+  /// Goes to the next message; at the end, and where the file is damaged, there is none after it.
+  bool next_row() {
+    try {
+      if (rows_ && step(rows_)) return true;
+    } catch (const Error&) {
+      rows_.reset();
+      throw;
+    }
+    rows_.reset();
+    return false;
+  }
   static std::string uri_of(const std::string& path) {
     std::string uri = "file:";
     for (const char c : path)

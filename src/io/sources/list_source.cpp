@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "io/files/image_file.h"
+#include "io/sources/frame_times.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -28,9 +29,15 @@ class ListSource final : public FrameSource {
     return reader_.read(next_++);
   }
   int size() const override { return static_cast<int>(reader_.size()); }
+  std::optional<TimeSpan> span() const override { return TimeSpan{time_of(0), time_of(reader_.size() - 1)}; }
+  void seek(double time_s) override {
+    next_ = first_not_before(time_s, reader_.size(), [this](std::size_t i) { return time_of(i); });
+  }
   std::vector<std::string> notes() const override { return reader_.list().notes; }
 
  private:
+  double time_of(std::size_t index) const { return reader_.list().frames[index].time_s.value_or(usual_time_s(index)); }
+
   FrameListReader reader_;
   std::size_t next_ = 0;
 };

@@ -20,7 +20,8 @@ struct FrameFiles {
   std::string colour;            ///< path of a PNG or JPEG of the same size; empty = none
 };
 
-/// Frames whose depth and colour pictures are files of their own, in order.
+/// Frames whose depth and colour pictures are files of their own, in order. Either all have times, and they rise, or
+/// none.
 struct FrameList {
   std::string place;  ///< for messages
   std::vector<FrameFiles> frames;

@@ -8,6 +8,7 @@
 #include "io/files/read_file.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
+#include "io/sources/frame_times.h"
 #include "io/sources/pcd.h"
 #include "vesalius/base/error.h"
 
@@ -32,6 +33,8 @@ class PcdSource final : public FrameSource {
   }
 
   int size() const override { return static_cast<int>(files_.size()); }
+  std::optional<TimeSpan> span() const override { return TimeSpan{0.0, usual_time_s(files_.size() - 1)}; }
+  void seek(double time_s) override { next_ = first_not_before(time_s, files_.size(), usual_time_s); }
   std::vector<std::string> notes() const override { return notes_; }
 
  private:

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <deque>
+#include <exception>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -31,6 +33,10 @@ constexpr std::size_t kMostWaiting = 15;
 /// Messages in which every topic must have shown itself.
 constexpr int kMostProbed = 5000;
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
+/// How long before the time of a seek reading begins: what two streams may lie apart in the file.
+constexpr double kLead_s = 0.5;
+/// By how much more, where that was not early enough.
+constexpr double kFurther = 4.0;
 
 bool has_word(const std::string& text, std::string_view word) {
   const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == b; };
@@ -43,7 +49,24 @@ struct PictureTopic {
   std::string encoding, frame;
   bool compressed = false, depth = false;
   int width = 0, height = 0;  ///< 0 = could not be decoded
+  double time_s = 0.0;        ///< of the picture
+  double recorded_s = 0.0;    ///< when it was recorded
 };
+
+double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) / static_cast<double>(kNanoseconds); }
+
+/// Returns the nearest time that there is.
+std::int64_t nanoseconds(double time_s) {
+  constexpr double kMost_s = 9.2e9;
+  if (time_s < -kMost_s) return std::numeric_limits<std::int64_t>::min();
+  if (time_s > kMost_s) return std::numeric_limits<std::int64_t>::max();
+  return static_cast<std::int64_t>(time_s * static_cast<double>(kNanoseconds));
+}
+
+/// Returns when a picture was taken by its header, or recorded where that does not say.
+std::int64_t time_of(const PictureMessage& picture, const RecordedMessage& message) {
+  return picture.time_ns != 0 ? picture.time_ns : message.time_ns;
+}
 
 /// What a recording has for a camera.
 struct Contents {
@@ -54,8 +77,15 @@ struct Contents {
 
 PictureTopic look_at(const RecordedTopic& topic, const RecordedMessage& message, const std::string& place) {
   const PictureMessage picture = parse_picture(topic, message.bytes, place);
-  PictureTopic seen{topic,         picture.encoding, picture.frame, picture.compressed, is_depth(picture),
-                    picture.width, picture.height};
+  PictureTopic seen{topic,
+                    picture.encoding,
+                    picture.frame,
+                    picture.compressed,
+                    is_depth(picture),
+                    picture.width,
+                    picture.height,
+                    seconds(time_of(picture, message)),
+                    seconds(message.time_ns)};
   // Infrared pictures are of 16 bits too.
   if (picture.encoding == "mono16" && !has_word(topic.name, "depth")) seen.depth = false;
   try {
@@ -250,16 +280,39 @@ class RecordingSource final : public FrameSource {
     for (const auto& recording : recordings_) {
       for (std::string& note : recording->notes()) notes_.push_back(std::move(note));
     }
+    recorded_later_s_ = depth.recorded_s - depth.time_s;
+    span_ = {depth.time_s, std::max(depth.time_s, last_time_s().value_or(depth.time_s))};
+    go_to(-std::numeric_limits<double>::infinity());
   }
 
   std::optional<Frame> next() override {
     while (!is_ready()) {
-      std::optional<RecordedMessage> message;
-      while (at_ < recordings_.size() && !(message = recordings_[at_]->next())) ++at_;
-      if (message) take(*message);
+      try {
+        if (const auto message = next_message()) take(*message);
+      } catch (const Error&) {
+        if (!wanted_from_s_) throw;
+        failed_ = std::current_exception();
+      }
+      if (failed_ && !wanted_from_s_) std::rethrow_exception(std::exchange(failed_, nullptr));
     }
+    if (failed_) std::rethrow_exception(std::exchange(failed_, nullptr));
     if (waiting_.empty()) return std::nullopt;
     return with_colour();
+  }
+
+  std::optional<TimeSpan> span() const override { return span_; }
+
+  void seek(double time_s) override {
+    const double aim_s = std::clamp(std::isnan(time_s) ? span_.first_s : time_s, span_.first_s, span_.last_s + kLead_s);
+    // Messages are found by when they were recorded, which may drift from when they were taken: depth must be found
+    // that is old enough.
+    for (double back_s = 2.0 * kLead_s; go_to(aim_s - back_s); back_s *= kFurther) {
+      const std::optional<double> first_s = next_depth_time_s();
+      if (!first_s || *first_s > aim_s - kLead_s) continue;
+      go_to(aim_s - back_s);
+      break;
+    }
+    wanted_from_s_ = time_s;
   }
 
   int size() const override {
@@ -286,6 +339,59 @@ class RecordingSource final : public FrameSource {
     Frame frame;
   };
 
+  /// Goes to the messages recorded when those of `time_s` were. Returns whether any before were left out.
+  bool go_to(double time_s) {
+    const std::int64_t time_ns = nanoseconds(time_s + recorded_later_s_);
+    bool left_out = false;
+    for (at_ = 0; at_ + 1 < recordings_.size(); ++at_) {
+      const std::optional<std::int64_t> last_ns = recordings_[at_]->last_ns();
+      if (last_ns >= time_ns) break;
+      left_out = left_out || last_ns.has_value();
+    }
+    if (recordings_[at_]->seek(time_ns)) left_out = true;
+    for (std::size_t later = at_ + 1; later < recordings_.size(); ++later) recordings_[later]->rewind();
+    waiting_.clear();
+    colours_.clear();
+    last_name_.clear();
+    failed_ = nullptr;
+    wanted_from_s_.reset();
+    return left_out;
+  }
+
+  std::optional<RecordedMessage> next_message() {
+    for (; at_ < recordings_.size(); ++at_) {
+      if (auto message = recordings_[at_]->next()) return message;
+    }
+    return std::nullopt;
+  }
+
+  /// Returns the time of the next depth that is not damaged.
+  std::optional<double> next_depth_time_s() {
+    while (at_ < recordings_.size()) {
+      try {
+        const auto message = next_message();
+        if (!message) continue;
+        const RecordedTopic& topic = recordings_[at_]->topics()[message->topic];
+        if (topic.name != depth_topic_) continue;
+        return seconds(time_of(parse_picture(topic, message->bytes, files_[at_]), *message));
+      } catch (const Error&) {  // whoever asks for the frame hears of it
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<double> last_time_s() {
+    std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
+    for (const auto& recording : recordings_) last_ns = std::max(last_ns, recording->last_ns().value_or(last_ns));
+    const double end_s = seconds(last_ns) - recorded_later_s_;
+    std::optional<double> last_s;
+    for (double back_s = 0.0;; back_s = std::max(kLead_s, back_s * kFurther)) {
+      const bool left_out = go_to(end_s - back_s);
+      while (const auto time_s = next_depth_time_s()) last_s = time_s;
+      if (last_s || !left_out) return last_s;
+    }
+  }
+
   /// Returns whether nothing is left to read, or the first frame's colour has come if it ever will.
   bool is_ready() const {
     if (at_ == recordings_.size()) return true;
@@ -300,17 +406,23 @@ class RecordingSource final : public FrameSource {
     const bool is_depth = topic.name == depth_topic_;
     if (!is_depth && (colour_topic_.empty() || topic.name != colour_topic_)) return;
     const PictureMessage picture = parse_picture(topic, message.bytes, place);
-    const std::int64_t time_ns = picture.time_ns != 0 ? picture.time_ns : message.time_ns;
+    const std::int64_t time_ns = time_of(picture, message);
     if (!is_depth) {
       colours_.push_back({time_ns, topic, std::string(message.bytes)});
       if (colours_.size() > 2 * kMostWaiting) colours_.pop_front();
       return;
     }
     Frame frame;
+    frame.time_s = seconds(time_ns);
+    if (wanted_from_s_ && *frame.time_s < *wanted_from_s_) {
+      failed_ = nullptr;
+      return;
+    }
+    wanted_from_s_.reset();
     frame.name = name_of(time_ns);
-    if (frame.name == last_name_) frame.name += "_again";
+    // Another frame of the same time, and yet another.
+    while (last_name_.starts_with(frame.name)) frame.name += "_again";
     last_name_ = frame.name;
-    frame.time_s = static_cast<double>(time_ns) / static_cast<double>(kNanoseconds);
     frame.camera = camera_;
     frame.depth = depth_of(picture, units_per_m_, fmt::format("{}: {}", place, frame.name));
     if (frame.depth.width() != camera_.width || frame.depth.height() != camera_.height) {
@@ -344,6 +456,11 @@ class RecordingSource final : public FrameSource {
   std::deque<Waiting> waiting_;
   std::deque<Colour> colours_;
   std::string last_name_;
+  TimeSpan span_;
+  double recorded_later_s_ = 0.0;  ///< by how much messages were recorded after they were taken, about
+  /// After a seek, until a frame has come that is not earlier.
+  std::optional<double> wanted_from_s_;
+  std::exception_ptr failed_;  ///< what could not be read since the last frame that was too early
 };
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "io/files/image_file.h"
 #include "io/files/test_files.h"
 #include "io/recordings/camera_messages.h"
@@ -186,6 +189,151 @@ TEST(RecordingSource, GoesOnAfterAFrameThatIsDamaged) {
   EXPECT_FALSE(source->next());
 }
 
+/// Expects `source` to give `frames` from number `first` on, at most `most` of them.
+void expect_rest(FrameSource& source, const std::vector<Frame>& frames, std::size_t first, std::size_t most) {
+  for (std::size_t i = first; i < std::min(frames.size(), first + most); ++i) {
+    const auto frame = source.next();
+    ASSERT_TRUE(frame) << i;
+    ASSERT_EQ(frame->name, frames[i].name);
+    ASSERT_EQ(frame->time_s, frames[i].time_s);
+    ASSERT_EQ(frame->depth, frames[i].depth) << i;
+    ASSERT_EQ(frame->colour, frames[i].colour) << i;
+  }
+  if (first + most >= frames.size()) {
+    ASSERT_FALSE(source.next());
+  }
+}
+
+/// Expects every frame, and moments beside it, to be found, in an order that goes back and forth.
+void expect_seeks(const std::string& path) {
+  const std::vector<Frame> frames = all_of(*open_source(path));
+  ASSERT_FALSE(frames.empty());
+  const auto source = open_source(path);
+  ASSERT_TRUE(source->span());
+  EXPECT_EQ(source->span()->first_s, *frames.front().time_s);
+  EXPECT_EQ(source->span()->last_s, *frames.back().time_s);
+  const auto not_before = [&](double time_s) {
+    const auto found = std::ranges::find_if(frames, [&](const Frame& f) { return *f.time_s >= time_s; });
+    return static_cast<std::size_t>(found - frames.begin());
+  };
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const double time_s = *frames[k * 7 % frames.size()].time_s;
+    for (const double to_s : {time_s, time_s + 1e-3, time_s - 1e-3}) {
+      source->seek(to_s);
+      expect_rest(*source, frames, not_before(to_s), 4);
+    }
+  }
+  for (const double to_s : {-1e300, 0.0, std::nan("")}) {
+    source->seek(to_s);
+    expect_rest(*source, frames, 0, frames.size());
+  }
+  source->seek(*frames[frames.size() / 3].time_s);
+  expect_rest(*source, frames, not_before(*frames[frames.size() / 3].time_s), frames.size());
+  for (const double to_s : {*frames.back().time_s + 1e-3, 1e300}) {
+    source->seek(to_s);
+    EXPECT_FALSE(source->next());
+  }
+}
+
+/// Depth 30 times and colour 23 times a second, each written late by a share of its own, half an hour after it was
+/// taken by a clock that runs `drift` faster.
+void record_two_rates(const std::string& path, int first, int last, double drift) {
+  Messages out(path);
+  const Frame any = random_frame("a", 1);
+  const auto recorded = [drift](std::int64_t taken_ns) {
+    return static_cast<std::int64_t>(1.8e12) + static_cast<std::int64_t>(static_cast<double>(taken_ns) * drift);
+  };
+  struct Picture {
+    std::int64_t recorded_ns, taken_ns;
+    bool is_depth;
+  };
+  std::vector<Picture> pictures;
+  Random rng(7);
+  for (std::int64_t taken_ns = first * 1000 * kMs; taken_ns < last * 1000 * kMs; taken_ns += 1000 * kMs / 30)
+    pictures.push_back({recorded(taken_ns) + rng.below(20) * kMs, taken_ns, true});
+  for (std::int64_t taken_ns = first * 1000 * kMs + 5 * kMs; taken_ns < last * 1000 * kMs; taken_ns += 1000 * kMs / 23)
+    pictures.push_back({recorded(taken_ns) + (30 + rng.below(40)) * kMs, taken_ns, false});
+  std::ranges::sort(pictures, {}, &Picture::recorded_ns);
+  out.put("/depth/camera_info", "sensor_msgs/msg/CameraInfo", pictures.front().recorded_ns,
+          calibration_message(any.camera, 0, "depth_frame"));
+  for (const auto& [recorded_ns, taken_ns, is_depth] : pictures) {
+    const Frame frame = random_frame("f", static_cast<std::uint64_t>(taken_ns));
+    out.put(is_depth ? "/depth/image" : "/rgb/image", "sensor_msgs/msg/Image", recorded_ns,
+            is_depth ? depth_message(frame.depth, taken_ns, "depth_frame")
+                     : colour_message(frame.colour, taken_ns, "depth_frame"));
+  }
+  out.close();
+}
+
+TEST(RecordingSource, SeeksToEveryFrame) {
+  const test::TemporaryFolder folder;
+  record_two_rates(folder / "a.mcap", 10, 15, 1.0);
+  const std::vector<Frame> frames = all_of(*open_source(folder / "a.mcap"));
+  EXPECT_EQ(frames.size(), 151U);
+  EXPECT_GT(std::ranges::count_if(frames, [](const Frame& f) { return !f.colour.empty(); }), 140);
+  expect_seeks(folder / "a.mcap");
+}
+
+TEST(RecordingSource, SeeksInARecordingCutShort) {
+  const test::TemporaryFolder folder;
+  record_two_rates(folder / "a.mcap", 10, 14, 1.0);
+  const std::string bytes = test::get(folder / "a.mcap");
+  test::put(folder / "cut.mcap", bytes.substr(0, bytes.size() * 4 / 5));
+  expect_seeks(folder / "cut.mcap");
+}
+
+TEST(RecordingSource, SeeksWhereTheClocksDrift) {
+  const test::TemporaryFolder folder;
+  for (const double drift : {0.5, 1.5}) {
+    const std::string path = folder / (std::to_string(drift) + ".mcap");
+    record_two_rates(path, 100, 104, drift);
+    expect_seeks(path);
+  }
+}
+
+TEST(RecordingSource, SeeksInAFolderOfSeveralFiles) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "bag");
+  test::put(folder / "bag/metadata.yaml", "");
+  for (int i = 0; i < 3; ++i)
+    record_two_rates(folder / ("bag/" + std::to_string(i) + ".mcap"), 10 + 2 * i, 12 + 2 * i, 1.0);
+  expect_seeks(folder / "bag");
+}
+
+TEST(RecordingSource, NamesFramesOfOneTimeAlikeAfterASeek) {
+  const test::TemporaryFolder folder;
+  const Frame a = random_frame("a", 1);
+  Messages out(folder / "a.mcap");
+  out.camera("/depth/camera_info", a.camera);
+  for (const std::int64_t time_ns : {kMs, 2 * kMs, 2 * kMs, 2 * kMs, 3 * kMs}) out.depth("/depth/image", time_ns, a);
+  out.close();
+  const auto source = open_source(folder / "a.mcap");
+  source->seek(0.002);
+  std::vector<std::string> names;
+  for (const Frame& frame : all_of(*source)) names.push_back(frame.name);
+  EXPECT_THAT(names, ElementsAre("0.002000000", "0.002000000_again", "0.002000000_again_again", "0.003000000"));
+}
+
+TEST(RecordingSource, SeekPassesOverDamageBeforeItAlone) {
+  const test::TemporaryFolder folder;
+  const Frame a = random_frame("a", 1);
+  Messages out(folder / "a.mcap");
+  out.camera("/depth/camera_info", a.camera);
+  for (int i = 0; i < 6; ++i) {
+    const std::string message = depth_message(a.depth, i * kMs, "depth_frame");
+    out.put("/depth/image", "sensor_msgs/msg/Image", i * kMs, i % 3 == 1 ? message.substr(0, 200) : message);
+  }
+  out.close();
+  const auto source = open_source(folder / "a.mcap");
+  source->seek(0.003);
+  EXPECT_EQ(source->next()->name, "0.003000000");
+  EXPECT_THAT(error_of([&] { source->next(); }), HasSubstr("a message ends within the picture"));
+  EXPECT_EQ(source->next()->name, "0.005000000");
+  source->seek(0.004);
+  EXPECT_THAT(error_of([&] { source->next(); }), HasSubstr("a message ends within the picture"));
+  EXPECT_EQ(source->next()->name, "0.005000000");
+}
+
 /// Written by the tools of others from pictures worked out below (tests/recordings/other_side.py --fixtures).
 class Fixtures : public testing::TestWithParam<const char*> {};
 
@@ -209,6 +357,8 @@ TEST_P(Fixtures, AreReadAsTheyWereMade) {
   }
   EXPECT_EQ(frames[1].name, "1700000000.033000000");
 }
+
+TEST_P(Fixtures, AreSeekable) { expect_seeks(std::string(VESALIUS_FUZZ_SEEDS) + "/fuzz_recording/" + GetParam()); }
 
 INSTANTIATE_TEST_SUITE_P(OfOthers, Fixtures,
                          testing::Values("plain.bag", "bz2.bag", "lz4.bag", "plain.db3", "zstd.db3", "zstd.mcap",
