@@ -89,6 +89,7 @@ void add_convert(CLI::App& program) {
       ->check(CLI::Range(0.1, 1000.0));
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   add_camera_flags(*command, arguments->camera);
+  add_start_flag(*command, arguments->camera);
   command->footer(R"(
 Examples:
   vesalius convert tree_1.txt.bz2 tree_2.txt.bz2 released.forest

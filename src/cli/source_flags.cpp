@@ -30,4 +30,10 @@ void add_camera_flags(CLI::App& command, SourceOptions& options) {
       ->group(group);
 }
 
+void add_start_flag(CLI::App& command, SourceOptions& options) {
+  command.add_option("--start", options.start_s, "Begin so many seconds after the first frame; not with a camera")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber);
+}
+
 }  // namespace vesalius::cli

@@ -12,6 +12,9 @@ namespace vesalius::cli {
 /// --depth-topic --colour-topic.
 void add_camera_flags(CLI::App& command, SourceOptions& options);
 
+/// Adds --start, the first frame of SOURCE to take.
+void add_start_flag(CLI::App& command, SourceOptions& options);
+
 /// The text of --help on what SOURCE may be.
 inline constexpr const char* kSourceHelp =
     "Frames: a folder (depth/*.png with meta.json or camera_info.yaml, TUM RGB-D, PNG or PCD files), a 16-bit depth "

@@ -39,6 +39,12 @@ TEST_F(Record, HoldsFramesInWhichTheSamePeopleAreFound) {
   ASSERT_EQ(found.size(), 4U);
   EXPECT_FALSE(found.front().at("people").empty());
   EXPECT_EQ(found, found_in(frames()));
+  for (const std::string& source : {file, frames()}) {
+    const std::vector<json> late = found_in(source + " --start 0.03");
+    ASSERT_EQ(late.size(), 3U) << source;
+    EXPECT_EQ(late[0], found[1]);
+    EXPECT_EQ(late[1], found[2]);
+  }
 }
 
 TEST_F(Record, GoesThroughAFolderWithoutLoss) {
@@ -61,6 +67,10 @@ TEST_F(Record, RefusesWhatItCannotDo) {
   EXPECT_THAT(nothing.err, HasSubstr("missing/: "));
   EXPECT_FALSE(std::filesystem::exists(path("none.mcap")));
   EXPECT_EQ(run_program("record " + frames()).exit_code, 2);
+  const Outcome late = run_program("record " + frames() + " --start 9 --out " + path("late.mcap"));
+  EXPECT_EQ(late.exit_code, 2);
+  EXPECT_THAT(late.err, HasSubstr("a start of 9 s, expected 0 to 0.067 s"));
+  EXPECT_FALSE(std::filesystem::exists(path("late.mcap")));
 }
 
 }  // namespace

@@ -172,6 +172,7 @@ void add_bench(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>(*command);
   command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
   add_camera_flags(*command, arguments->camera);
+  add_start_flag(*command, arguments->camera);
   command
       ->add_option("--frames", arguments->frames,
                    "Frames to measure, repeating the source if needed; 0 = the whole source once")

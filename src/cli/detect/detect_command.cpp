@@ -173,6 +173,7 @@ void add_detect(CLI::App& program) {
   command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
   add_output_flags(*command, arguments->outputs);
   add_camera_flags(*command, arguments->camera);
+  add_start_flag(*command, arguments->camera);
   command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The result is the same")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads))

@@ -110,6 +110,7 @@ void add_record(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);
   add_camera_flags(*command, arguments->camera);
+  add_start_flag(*command, arguments->camera);
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
 The file holds depth without loss and opens in Foxglove, Rerun and rosbag2 (docs/recordings.md). One whose recording was

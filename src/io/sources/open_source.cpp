@@ -109,6 +109,31 @@ std::unique_ptr<FrameSource> open_recording_file(const std::string& path, const 
   return open_recorded(path, options);
 }
 
+/// The frames of a source from a time on.
+class Started final : public FrameSource {
+ public:
+  /// Throws UsageError unless `start_s` lies between the first and the last frame.
+  Started(std::unique_ptr<FrameSource> source, double start_s, const std::string& uri) : source_(std::move(source)) {
+    constexpr double kRounding_s = 1e-3;  // of the length in the message
+    const std::optional<TimeSpan> span = source_->span();
+    if (!span) throw UsageError(uri + ": a start goes with recordings and files only");
+    const double length_s = span->last_s - span->first_s;
+    if (!(start_s >= 0.0 && start_s <= length_s + kRounding_s)) {
+      throw UsageError(
+          fmt::format("{}: a start of {} s, expected 0 to {:.3f} s, where its last frame is", uri, start_s, length_s));
+    }
+    source_->seek(std::min(span->first_s + start_s, span->last_s));
+  }
+  std::optional<Frame> next() override { return source_->next(); }
+  int size() const override { return -1; }
+  std::optional<TimeSpan> span() const override { return source_->span(); }
+  void seek(double time_s) override { source_->seek(time_s); }
+  std::vector<std::string> notes() const override { return source_->notes(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+};
+
 /// A camera whose lens the user knows better than its driver.
 class Calibrated final : public FrameSource {
  public:
@@ -136,6 +161,7 @@ std::unique_ptr<FrameSource> open_camera(const SensorDriver& driver, const std::
                                          const SourceOptions& options) {
   const std::string place = fmt::format("{}:{}", driver.scheme, id);
   refuse_colour_file(place, options);
+  if (options.start_s) throw UsageError(place + ": a camera begins now; a start goes with recordings and files only");
   if (options.depth_scale) throw UsageError(place + ": a camera says itself what a unit of depth is");
   const CameraFacts facts = find_camera_facts(options, {});
   std::unique_ptr<FrameSource> source = open_sensor(driver, id);
@@ -180,15 +206,21 @@ std::string_view scheme_of_folder(const std::string& path) {
   throw Error(path + ": no frames, expected depth/*.png, depth.txt, *.png or *.pcd");
 }
 
+std::unique_ptr<FrameSource> open_files(const std::string& uri, const SourceOptions& options) {
+  if (const Scheme* scheme = scheme_of(uri)) return scheme->open(uri.substr(scheme->name.size() + 1), options);
+  const std::string_view name = is_folder(uri, kAnything) ? scheme_of_folder(uri) : scheme_of_file(uri);
+  return std::ranges::find(kSchemes, name, &Scheme::name)->open(uri, options);
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& options) {
   if (const SensorDriver* driver = camera_of(uri)) {
     return open_camera(*driver, uri.substr(driver->scheme.size() + 1), options);
   }
-  if (const Scheme* scheme = scheme_of(uri)) return scheme->open(uri.substr(scheme->name.size() + 1), options);
-  const std::string_view name = is_folder(uri, kAnything) ? scheme_of_folder(uri) : scheme_of_file(uri);
-  return std::ranges::find(kSchemes, name, &Scheme::name)->open(uri, options);
+  std::unique_ptr<FrameSource> source = open_files(uri, options);
+  if (!options.start_s) return source;
+  return std::make_unique<Started>(std::move(source), *options.start_s, uri);
 }
 
 std::string path_of_source(const std::string& uri) {

@@ -16,9 +16,12 @@ namespace vesalius {
 ///   tum:FOLDER        the layout of the TUM RGB-D benchmark (depth.txt); "tum:walking:1000" gives a depth scale too
 ///   pcd:PATH          an organised PCD file or a folder of them
 ///   png:PATH          a 16-bit depth PNG or a folder of them
-///   openni2:ID, freenect:ID, realsense:ID  a camera that is plugged in, by its serial number; "openni2:" if there is
-///   one alone recording:PATH    an MCAP file, a ROS 1 or ROS 2 bag, or a folder of rosbag2
-/// Throws Error with the path and what was expected, UsageError for options that do not go with the source.
+///   recording:PATH    an MCAP file, a ROS 1 or ROS 2 bag, or a folder of rosbag2
+///   openni2:ID, freenect:ID, realsense:ID
+///                     a camera that is plugged in, by its serial number; "openni2:" if there is one alone
+/// With `start_s` the frames begin so many seconds after the source's first, and their number is not known. Throws
+/// Error with the path and what was expected, UsageError for options that do not go with the source, and for a start
+/// behind the last frame.
 std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& options = {});
 
 /// Returns the path in `uri` without the scheme and the depth scale.

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -26,6 +27,7 @@ using test::TemporaryFolder;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 constexpr const char* kMeta = R"({"fx": 41.3, "fy": 40.7, "cx": 17.2, "cy": 12.9, "units": "mm"})";
 
@@ -244,6 +246,64 @@ TEST(PcdSource, ReadsAFileAndAFolder) {
   const auto single = open_source("pcd:" + folder / "a10.pcd");
   EXPECT_EQ(single->next()->camera, second.camera);
   EXPECT_THAT(single->notes(), IsEmpty());
+}
+
+std::vector<std::string> names_from(FrameSource& source, double time_s) {
+  source.seek(time_s);
+  return names(all_frames(source));
+}
+
+TEST(OpenSource, SeeksInFramesWithoutTimesAsAtThirtyASecond) {
+  const TemporaryFolder folder;
+  put(folder / "a/meta.json", kMeta);
+  for (const char* name : {"0", "1", "2", "3"}) {
+    const Frame frame = random_frame(name, 1);
+    put_depth(folder / "a/depth/" + name + ".png", frame.depth);
+    put(folder / "b/" + name + ".pcd", serialise_pcd(frame, PcdEncoding::binary));
+  }
+  for (const char* kind : {"a", "b"}) {
+    const auto source = open_source(folder / kind);
+    ASSERT_TRUE(source->span());
+    EXPECT_EQ(source->span()->first_s, 0.0);
+    EXPECT_EQ(source->span()->last_s, 0.1);
+    EXPECT_THAT(names_from(*source, 2 / kUsualRate), ElementsAre("2", "3"));
+    EXPECT_THAT(names_from(*source, 0.034), ElementsAre("2", "3"));
+    EXPECT_THAT(names_from(*source, -5.0), ElementsAre("0", "1", "2", "3"));
+    EXPECT_THAT(names_from(*source, 0.101), IsEmpty());
+    EXPECT_THAT(names_from(*source, 0.1), ElementsAre("3"));
+  }
+}
+
+TEST(OpenSource, BeginsWhereItIsTold) {
+  const TemporaryFolder folder;
+  put_tum(folder, DepthImage(640, 480, 10000), ColourImage(640, 480));
+  const auto whole = open_source(folder.path());
+  EXPECT_EQ(whole->span()->first_s, 1.0);
+  EXPECT_EQ(whole->span()->last_s, 1.5);
+  EXPECT_THAT(names_from(*whole, 1.2), ElementsAre("1.5"));
+  SourceOptions options;
+  options.start_s = 0.1;
+  const auto late = open_source(folder.path(), options);
+  EXPECT_EQ(late->size(), -1);
+  EXPECT_THAT(late->notes(), SizeIs(2));
+  EXPECT_THAT(names(all_frames(*late)), ElementsAre("1.5"));
+  EXPECT_THAT(names_from(*late, 0.0), ElementsAre("1.0", "1.5"));
+  options.start_s = 0.0;
+  EXPECT_THAT(names(all_frames(*open_source(folder.path(), options))), ElementsAre("1.0", "1.5"));
+  options.start_s = 0.5;
+  EXPECT_THAT(names(all_frames(*open_source(folder.path(), options))), ElementsAre("1.5"));
+}
+
+TEST(OpenSource, RefusesAStartThatIsNone) {
+  const TemporaryFolder folder;
+  put_tum(folder, DepthImage(640, 480, 10000), ColourImage(640, 480));
+  SourceOptions options;
+  for (const double start_s : {0.6, -1.0, std::nan("")}) {
+    options.start_s = start_s;
+    EXPECT_THAT(open_error(folder.path(), options), HasSubstr("expected 0 to 0.500 s"));
+    EXPECT_THROW(open_source(folder.path(), options), UsageError);
+  }
+  EXPECT_THAT(open_error("realsense:", options), HasSubstr("realsense:: a camera begins now"));
 }
 
 TEST(OpenSource, NamesWhatIsNotASource) {

@@ -13,6 +13,7 @@ struct SourceOptions {
   std::string colour_file;              ///< path of the colour picture for a single depth PNG
   std::string depth_topic;              ///< of a recording; empty = chosen
   std::string colour_topic;             ///< of a recording; empty = one registered to depth, or none
+  std::optional<double> start_s;        ///< first frame to give, in seconds from the source's first; not of a camera
 };
 
 }  // namespace vesalius
