@@ -20,12 +20,12 @@ void add_camera_flags(CLI::App& command, SourceOptions& options) {
   command.add_option("--colour,--color", options.colour_file, "Colour picture of a single depth PNG")
       ->type_name("FILE")
       ->group(group);
-  command.add_option("--depth-topic", options.depth_topic, "Topic of a recording that depth comes from")
+  command.add_option("--depth-topic", options.depth_topic, "Topic or stream of a recording that depth comes from")
       ->type_name("TOPIC")
       ->group(group);
   command
       .add_option("--colour-topic,--color-topic", options.colour_topic,
-                  "Topic of a recording with colour registered to depth")
+                  "Topic or stream of a recording with colour registered to depth")
       ->type_name("TOPIC")
       ->group(group);
 }

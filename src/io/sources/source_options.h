@@ -11,8 +11,8 @@ struct SourceOptions {
   std::optional<float> depth_scale;     ///< stored units per metre (1000 = millimetres, 5000 = TUM)
   std::string camera_file;              ///< path of a meta.json or ROS camera_info YAML
   std::string colour_file;              ///< path of the colour picture for a single depth PNG
-  std::string depth_topic;              ///< of a recording; empty = chosen
-  std::string colour_topic;             ///< of a recording; empty = one registered to depth, or none
+  std::string depth_topic;              ///< or stream, of a recording; empty = chosen
+  std::string colour_topic;             ///< or stream, of a recording; empty = one registered to depth, or none
   std::optional<double> start_s;        ///< first frame to give, in seconds from the source's first; not of a camera
 };
 
