@@ -2,14 +2,15 @@
 """Recordings between vesalius and other programs, both ways.
 
 Writes the frames of FOLDER (depth/*.png, rgb/*, meta.json) into recordings with rosbags and mcap, in every layout, compression
-and encoding of depth, and has vesalius turn each back into a folder: its depth must be the same, pixel by pixel, and its
-colour, where nothing was lost. Then has vesalius record FOLDER, and rosbags, mcap and rerun read that.
+and encoding of depth, with OpenNI2's recorder, and as a log of Kintinuous, and has vesalius turn each back into a folder: its
+depth must be the same, pixel by pixel, and its colour, where nothing was lost. Recordings begun in the middle must give the
+same frames. Then has vesalius record FOLDER, and rosbags, mcap and rerun read that.
 
 Needs a Python with: rosbags mcap mcap-ros2-support numpy opencv-python-headless; optionally rerun-sdk,
-foxglove-schemas-protobuf, pyrealsense2 (2.55 records .bag, later ones .db3).
+foxglove-schemas-protobuf, pyrealsense2 (2.55 records .bag, later ones .db3); for OpenNI2 a C++ compiler and libopenni2-dev.
 
 usage: other_side.py VESALIUS FOLDER
-       other_side.py --fixtures DIR     writes the small recordings that the tests of io and the fuzzer start from
+       other_side.py --fixtures SEEDS   writes, into folders of fuzz/seeds, the small recordings that the tests of io and the fuzzer start from
 """
 import json
 import os
@@ -20,6 +21,7 @@ import sys
 import sysconfig
 import tempfile
 import time
+import zlib
 from importlib import metadata
 from pathlib import Path
 
@@ -271,6 +273,152 @@ def expect_same(vesalius, recording, folder, name):
     print("same:", name, flush=True)
 
 
+def read_back(vesalius, recording, back, *flags):
+    shutil.rmtree(back, ignore_errors=True)
+    subprocess.run([vesalius, "convert", recording, back, "--to", "folder", "-q", *flags], check=True)
+    return [(depth, colour) for _, depth, colour in frames(back)]
+
+
+def expect_late_frames(vesalius, recording, folder, work, name, is_cut=False):
+    """A recording that is begun in the middle gives the frames from there on, with their colour."""
+    wanted = list(frames(folder))
+    if is_cut:
+        wanted = wanted[: len(read_back(vesalius, recording, work / "late"))]
+        assert len(wanted) > 10, f"{name}: {len(wanted)} frames"
+    for first in (1, len(wanted) // 2, len(wanted) - 1):
+        found = read_back(vesalius, recording, work / "late", "--start", str((first * STEP_NS - 10**6) / 1e9))
+        assert len(found) == len(wanted) - first, f"{name}: {len(found)} frames from {first} of {len(wanted)} on"
+        for (depth, colour), (_, true_depth, true_colour) in zip(found, wanted[first:]):
+            assert np.array_equal(depth, true_depth), f"{name}: depth differs after a seek to {first}"
+            assert np.array_equal(colour, true_colour), f"{name}: colour differs after a seek to {first}"
+    print("sought:", name, flush=True)
+
+
+def seek_in_theirs(vesalius, folder, work):
+    """In copies of the frames that are long enough for several chunks."""
+    many = work / "many"
+    (many / "depth").mkdir(parents=True)
+    (many / "rgb").mkdir()
+    shutil.copy(folder / "meta.json", many / "meta.json")
+    kept = list(frames(folder))
+    for i in range(60):
+        _, depth, colour = kept[i % len(kept)]
+        depth = depth.copy()
+        depth[0, : i + 1] = 1234
+        cv2.imwrite(str(many / "depth" / f"{i:03}.png"), depth)
+        cv2.imwrite(str(many / "rgb" / f"{i:03}.png"), np.roll(colour, i, axis=1))
+    write_bag(work / "many.bag", many, None, "16UC1", "rgb8")
+    expect_late_frames(vesalius, work / "many.bag", many, work, "ROS 1 bag")
+    data = (work / "many.bag").read_bytes()
+    (work / "cut_many.bag").write_bytes(data[: int(0.8 * len(data))])
+    expect_late_frames(vesalius, work / "cut_many.bag", many, work, "ROS 1 bag cut short", is_cut=True)
+    write_ros2(work / "many_ros2", many, StoragePlugin.SQLITE3, False, "compressedDepth png", "png")
+    expect_late_frames(vesalius, work / "many_ros2", many, work, "ROS 2 bag in SQLite")
+    for chunked in (True, False):
+        write_mcap(work / f"many{chunked}.mcap", many, "NONE", chunked, "16UC1", "bgr8")
+        expect_late_frames(vesalius, work / f"many{chunked}.mcap", many, work, f"MCAP, chunks {chunked}")
+
+
+def raw_pictures(folder):
+    """The file that the driver of OpenNI2 plays (openni_driver.cpp)."""
+    meta = json.loads((folder / "meta.json").read_text())
+    pictures = [(depth, colour[:, :, ::-1]) for _, depth, colour in frames(folder)]
+    height, width = pictures[0][0].shape
+    head = struct.pack("<iiiff", width, height, len(pictures), meta["fx"], meta["fy"])
+    return head + b"".join(depth.astype("<u2").tobytes() + np.ascontiguousarray(colour).tobytes() for depth, colour in pictures)
+
+
+def openni_recorder(work):
+    """Builds OpenNI2's recorder with a camera that plays files. Drivers lie beside the library, so that is copied."""
+    here = Path(__file__).resolve().parent
+    library = next(Path("/usr/lib").glob("*/libOpenNI2.so.0"), None)
+    if library is None or not Path("/usr/include/openni2").exists() or not shutil.which("g++"):
+        print("left out: OpenNI2")
+        return None
+    place = work / "openni2"
+    (place / "OpenNI2" / "Drivers").mkdir(parents=True)
+    shutil.copy(library, place)
+    compile_with = ["g++", "-std=c++20", "-O1", "-w", "-I/usr/include/openni2"]
+    subprocess.run([*compile_with, "-fPIC", "-shared", here / "openni_driver.cpp", "-o",
+                    place / "OpenNI2" / "Drivers" / "libFileCamera.so.0"], check=True)
+    subprocess.run([*compile_with, here / "openni_record.cpp", place / library.name, "-o", place / "record"], check=True)
+
+    def record(folder, path, lossy):
+        (place / "pictures").write_bytes(raw_pictures(folder))
+        count = len(list(frames(folder)))
+        subprocess.run([place / "record", place / "pictures", path, str(1 + 0.03 * count), str(int(lossy))], check=True,
+                       env={**os.environ, "LD_LIBRARY_PATH": str(place)}, cwd=place)
+
+    return record
+
+
+def write_klg(path, folder, packed, colour_of, first_us=0):
+    pictures = list(frames(folder))
+    with open(path, "wb") as out:
+        out.write(struct.pack("<i", len(pictures)))
+        for time_ns, depth, colour in pictures:
+            data = depth.astype("<u2").tobytes()
+            data = zlib.compress(data) if packed else data
+            picture = colour_of(colour)
+            out.write(struct.pack("<qii", first_us + (time_ns - FIRST_NS) // 1000, len(data), len(picture)) + data + picture)
+
+
+def people(vesalius, source, camera):
+    done = subprocess.run([vesalius, "detect", source, "--json", "-", "-q", "--camera", camera,
+                           *(("--colour-topic", "Image") if str(source).endswith(".oni") else ())],
+                          check=True, capture_output=True, text=True)
+    return [frame["people"] for frame in map(json.loads, done.stdout.splitlines()) if "people" in frame]
+
+
+def read_openni_and_logs(vesalius, folder, work):
+    wanted = [(depth, colour) for _, depth, colour in frames(folder)]
+    camera = folder / "meta.json"
+
+    def expect(path, same_colour, *flags):
+        found = read_back(vesalius, path, work / "back", *flags)
+        assert len(found) == len(wanted), f"{path.name}: {len(found)} frames, expected {len(wanted)}"
+        for (depth, colour), (true_depth, true_colour) in zip(found, wanted):
+            assert np.array_equal(depth, true_depth), f"{path.name}: depth differs"
+            if same_colour:
+                assert np.array_equal(colour, true_colour), f"{path.name}: colour differs"
+                continue
+            difference = np.abs(colour.astype(int) - true_colour)
+            assert difference.mean() < 6, f"{path.name}: colour is {difference.mean()} away"
+        print("same:", path.name, flush=True)
+
+    truth = people(vesalius, folder, camera)
+    assert sum(map(len, truth)) > 0
+    record = openni_recorder(work)
+    if record:
+        for name, lossy in (("lossless.oni", False), ("jpeg.oni", True)):
+            record(folder, work / name, lossy)
+            expect(work / name, not lossy, "--colour-topic", "Image")
+        own = json.loads((work / "back" / "meta.json").read_text())
+        meta = json.loads(camera.read_text())
+        assert abs(own["fx"] - meta["fx"]) < 0.01 and abs(own["fy"] - meta["fy"]) < 0.01, f"jpeg.oni: {own}"
+        assert people(vesalius, work / "lossless.oni", camera) == truth, "lossless.oni: other people"
+        cut_oni(vesalius, work, len(wanted))
+    write_klg(work / "raw.klg", folder, False, lambda c: np.ascontiguousarray(c[:, :, ::-1]).tobytes())
+    write_klg(work / "jpeg.klg", folder, True, lambda c: cv2.imencode(".jpg", c)[1].tobytes())
+    expect(work / "raw.klg", True)
+    expect(work / "jpeg.klg", False)
+    assert people(vesalius, work / "raw.klg", camera) == truth, "raw.klg: other people"
+    print("same people in all", flush=True)
+
+
+def cut_oni(vesalius, work, whole):
+    data = (work / "lossless.oni").read_bytes()
+    data = data[: data.rindex(b"NIR\0")]  # the recorder leaves zeros behind its last record
+    for share in (0.4, 0.8):
+        (work / "cut.oni").write_bytes(data[: int(share * len(data))])
+        done = subprocess.run([vesalius, "convert", work / "cut.oni", work / "cut_oni", "--to", "folder"], capture_output=True, text=True)
+        assert done.returncode == 0 and "cut short" in done.stderr, f"cut.oni: {done.stderr}"
+        count = len(list((work / "cut_oni" / "depth").glob("*.png")))
+        assert 0 < count < whole, f"cut.oni: {count} of {whole} frames"
+        shutil.rmtree(work / "cut_oni")
+    print("cut short: lossless.oni", flush=True)
+
+
 def read_theirs(vesalius, folder, work):
     depths = list(depth_variants(Messages(get_typestore(Stores.ROS2_HUMBLE), False)))
     colours = list(colour_variants(Messages(get_typestore(Stores.ROS2_HUMBLE), False)))
@@ -407,8 +555,10 @@ def realsense(vesalius, work):
 
 
 def write_fixtures(out):
-    """Three pictures of 16x12 whose every pixel follows from its place (recording_source_test.cpp)."""
-    out.mkdir(parents=True, exist_ok=True)
+    """Three pictures of 16x12 whose every pixel follows from its place (recording_source_test.cpp); out is fuzz/seeds."""
+    oni, klg, out = out / "fuzz_oni", out / "fuzz_klg", out / "fuzz_recording"
+    for place in (oni, klg, out):
+        place.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as work:
         folder = Path(work) / "small"
         (folder / "depth").mkdir(parents=True)
@@ -432,6 +582,15 @@ def write_fixtures(out):
         for name, kind, chunked in (("zstd", "ZSTD", True), ("lz4", "LZ4", True), ("loose", "NONE", False)):
             write_mcap(out / f"{name}.mcap", folder, kind, chunked, "16UC1", "rgb8")
         write_foxglove(out / "foxglove.mcap", folder)
+        record = openni_recorder(Path(work))
+        if record:
+            record(folder, oni / "raw.oni", False)
+            record(folder, oni / "jpeg.oni", True)
+        write_klg(klg / "packed.klg", folder, True, lambda c: cv2.imencode(".jpg", c)[1].tobytes(), 10**15)
+        write_klg(klg / "raw.klg", folder, False, lambda c: cv2.imencode(".jpg", c)[1].tobytes(), 10**15)
+        for path in (folder / "depth").glob("*.png"):
+            cv2.imwrite(str(path), cv2.resize(cv2.imread(str(path), cv2.IMREAD_UNCHANGED), (160, 120), interpolation=cv2.INTER_NEAREST))
+        write_klg(klg / "without_colour.klg", folder, True, lambda c: b"")
 
 
 def main():
@@ -443,6 +602,8 @@ def main():
         cut_short(vesalius, folder, Path(work))
         give_ours(vesalius, folder, Path(work))
         realsense(vesalius, Path(work))
+        read_openni_and_logs(vesalius, folder, Path(work))
+        seek_in_theirs(vesalius, folder, Path(work))
 
 
 if __name__ == "__main__":
