@@ -1,0 +1,126 @@
+#include "io/lens/lens.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+namespace vesalius {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Rays beyond 84 degrees from the axis are in nobody's pinhole picture.
+constexpr double kLongestRay = 10.0;
+constexpr double kRayStep = 1.0 / 512;
+
+Vector2d bend(LensModel model, const std::array<double, 8>& k, Vector2d ray) {
+  if (model == LensModel::kannala_brandt) {
+    bend_kannala_brandt(k, ray.x(), ray.y());
+  } else if (model != LensModel::pinhole) {
+    bend_brown_conrady(k, ray.x(), ray.y());
+  }
+  return ray;
+}
+
+/// Returns the length of the longest ray up to which longer rays are bent further out, and to where it is bent.
+std::pair<double, double> one_to_one(LensModel model, std::array<double, 8> k) {
+  if (model != LensModel::kannala_brandt) k[2] = k[3] = 0.0;  // the radial terms decide
+  double last = 0.0;
+  double length = 0.0;
+  while (length < kLongestRay) {
+    const double bent = bend(model, k, {length + kRayStep, 0.0}).x();
+    if (!(bent > last)) break;
+    last = bent;
+    length += kRayStep;
+  }
+  return {length, last};
+}
+
+/// Returns the point that `bend` takes to `target`, by Newton's method; nothing where it does not come to one.
+std::optional<Vector2d> unbend(const Lens& lens, const Vector2d& target) {
+  constexpr int kMostSteps = 30;
+  constexpr double kExact = 1e-12, kClose = 1e-7, kDifference = 1e-6;
+  Vector2d at = target;
+  // The bend of a fisheye squeezes; starting within it keeps the first step short.
+  if (lens.model == LensModel::kannala_brandt)
+    at *= std::tan(std::min(target.norm(), 1.5)) / std::max(target.norm(), kExact);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Vector2d off = bend(lens.model, lens.k, at) - target;
+    if (!off.allFinite()) return std::nullopt;
+    if (off.norm() < kExact) return at;
+    Eigen::Matrix2d slope;
+    for (int i = 0; i < 2; ++i) {
+      const Vector2d d = kDifference * Vector2d::Unit(i);
+      slope.col(i) = (bend(lens.model, lens.k, at + d) - bend(lens.model, lens.k, at - d)) / (2 * kDifference);
+    }
+    if (std::abs(slope.determinant()) < kExact) return std::nullopt;
+    at -= slope.inverse() * off;
+  }
+  if ((bend(lens.model, lens.k, at) - target).norm() < kClose) return at;
+  return std::nullopt;
+}
+
+struct ModelName {
+  std::string_view name;
+  LensModel model;
+  std::size_t most;  ///< coefficients
+};
+
+constexpr std::array<ModelName, 11> kModels{{{"plumbbob", LensModel::brown_conrady, 5},
+                                             {"radtan", LensModel::brown_conrady, 5},
+                                             {"brownconrady", LensModel::brown_conrady, 5},
+                                             {"rationalpolynomial", LensModel::brown_conrady, 8},
+                                             {"", LensModel::brown_conrady, 8},
+                                             {"inversebrownconrady", LensModel::inverse_brown_conrady, 5},
+                                             {"equidistant", LensModel::kannala_brandt, 4},
+                                             {"fisheye", LensModel::kannala_brandt, 4},
+                                             {"kannalabrandt", LensModel::kannala_brandt, 4},
+                                             {"kannalabrandt4", LensModel::kannala_brandt, 4},
+                                             {"pinhole", LensModel::pinhole, 0}}};
+
+/// Returns the letters and digits of a name in lower case.
+std::string plain(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    const auto u = static_cast<unsigned char>(c);
+    if (std::isalnum(u) != 0) text += static_cast<char>(std::tolower(u));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<Lens> make_lens(std::string_view model, const std::vector<double>& coefficients) {
+  const auto is_zero = [](double c) { return c == 0.0; };
+  if (std::ranges::all_of(coefficients, is_zero)) return Lens{};
+  const auto named = std::ranges::find(kModels, plain(model), &ModelName::name);
+  if (named == kModels.end()) return std::nullopt;
+  const std::size_t count = std::min(coefficients.size(), named->most);
+  if (!std::all_of(coefficients.begin() + static_cast<std::ptrdiff_t>(count), coefficients.end(), is_zero)) {
+    return std::nullopt;
+  }
+  Lens lens;
+  lens.model = named->model;
+  std::copy_n(coefficients.begin(), count, lens.k.begin());
+  if (!std::ranges::all_of(lens.k, [](double c) { return std::isfinite(c); })) return std::nullopt;
+  const auto [length, bent] = one_to_one(lens.model, lens.k);
+  lens.reach = lens.model == LensModel::inverse_brown_conrady ? bent : length;
+  return lens;
+}
+
+std::optional<Vector2d> distort(const Lens& lens, const Vector2d& ray) {
+  if (!(ray.norm() <= lens.reach)) return std::nullopt;
+  if (lens.model == LensModel::inverse_brown_conrady) return unbend(lens, ray);
+  return bend(lens.model, lens.k, ray);
+}
+
+std::optional<Vector2d> undistort(const Lens& lens, const Vector2d& distorted) {
+  const std::optional<Vector2d> ray = lens.model == LensModel::inverse_brown_conrady
+                                          ? std::optional(bend(lens.model, lens.k, distorted))
+                                          : unbend(lens, distorted);
+  if (!ray || !(ray->norm() <= lens.reach)) return std::nullopt;
+  return ray;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "vesalius/base/camera.h"
+
+namespace vesalius {
+
+/// How a lens bends the rays that a pinhole camera sees. A ray is where it crosses the plane z = 1: (x, y).
+enum class LensModel {
+  pinhole,                ///< not at all
+  brown_conrady,          ///< radial and tangential terms move the ray: k1 k2 p1 p2 k3 k4 k5 k6, in OpenCV's order
+  inverse_brown_conrady,  ///< the same terms lead from the bent ray back to the true one: k1 k2 p1 p2 k3
+  kannala_brandt          ///< a fisheye: a polynomial of the angle, k1 k2 k3 k4
+};
+
+struct Lens {
+  LensModel model = LensModel::pinhole;
+  std::array<double, 8> k{};  ///< coefficients in the order of the model
+  /// Length of the longest ray that the model bends one to one. Beyond it polynomials fold back, and nothing is seen.
+  double reach = std::numeric_limits<double>::infinity();
+
+  friend bool operator==(const Lens&, const Lens&) = default;
+};
+
+/// A camera as it is: a pinhole camera behind a lens.
+struct LensCamera {
+  Camera camera;
+  Lens lens;
+};
+
+/// Returns the lens of a model as ROS (plumb_bob, rational_polynomial, equidistant), Foxglove (kannala_brandt) and
+/// RealSense ("Inverse Brown Conrady") name it; case and separators do not count. A model without a name is that of
+/// plumb_bob or rational_polynomial, by the number of coefficients. All coefficients 0 are a pinhole. Returns nothing
+/// for another model, or coefficients that it does not have.
+std::optional<Lens> make_lens(std::string_view model, const std::vector<double>& coefficients);
+
+/// Returns where a lens puts a ray; nothing beyond its reach.
+std::optional<Eigen::Vector2d> distort(const Lens& lens, const Eigen::Vector2d& ray);
+
+/// Returns the ray that `distort` puts there; nothing where there is none.
+std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted);
+
+/// Moves a ray by the terms of Brown and Conrady. OpenCV's documentation of calib3d has the formula.
+template <class Real>
+inline void bend_brown_conrady(const std::array<Real, 8>& k, Real& x, Real& y) {
+  const Real xx = x * x, yy = y * y, xy = Real(2) * x * y, r2 = xx + yy;
+  const Real radial =
+      (Real(1) + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (Real(1) + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
+  x = x * radial + k[2] * xy + k[3] * (r2 + Real(2) * xx);
+  y = y * radial + k[3] * xy + k[2] * (r2 + Real(2) * yy);
+}
+
+/// Moves a ray to the radius that the polynomial of Kannala and Brandt (2006) gives its angle.
+template <class Real>
+inline void bend_kannala_brandt(const std::array<Real, 8>& k, Real& x, Real& y) {
+  const Real radius = std::sqrt(x * x + y * y);
+  if (radius < Real(1e-8)) return;
+  const Real angle = std::atan(radius), a2 = angle * angle;
+  const Real scale = angle * (Real(1) + a2 * (k[0] + a2 * (k[1] + a2 * (k[2] + a2 * k[3])))) / radius;
+  x *= scale;
+  y *= scale;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,72 @@
+#include "io/lens/lens.h"
+
+#include <gmock/gmock.h>
+
+namespace vesalius {
+namespace {
+
+using Eigen::Vector2d;
+
+Lens lens(const char* model, const std::vector<double>& k) { return make_lens(model, k).value(); }
+
+TEST(Lens, BendsRaysAsItsModelSays) {
+  const Vector2d radial = distort(lens("plumb_bob", {0.1, 0.02, 0, 0, 0.003}), {0.5, 0.0}).value();
+  EXPECT_NEAR(radial.x(), 0.5 * (1 + 0.1 / 4 + 0.02 / 16 + 0.003 / 64), 1e-15);
+  const Vector2d tangential = distort(lens("plumb_bob", {0, 0, 0.01, 0.002, 0}), {0.5, 0.25}).value();
+  EXPECT_NEAR(tangential.x(), 0.5 + 2 * 0.01 * 0.125 + 0.002 * (0.3125 + 0.5), 1e-15);
+  EXPECT_NEAR(tangential.y(), 0.25 + 0.01 * (0.3125 + 0.125) + 2 * 0.002 * 0.125, 1e-15);
+  const Vector2d rational = distort(lens("rational_polynomial", {0.1, 0, 0, 0, 0, 0.3, 0, 0}), {0.0, 1.0}).value();
+  EXPECT_NEAR(rational.y(), 1.1 / 1.3, 1e-15);
+  const double eighth = std::atan(1.0);  // of a turn: a ray at 45 degrees
+  const Vector2d fisheye = distort(lens("equidistant", {0.05, 0, 0, 0}), {0.6, 0.8}).value();
+  EXPECT_NEAR(fisheye.norm(), eighth * (1 + 0.05 * eighth * eighth), 1e-15);
+  EXPECT_NEAR(fisheye.y() / fisheye.x(), 0.8 / 0.6, 1e-12);
+}
+
+TEST(Lens, InverseTermsLeadBack) {
+  const std::vector<double> k{0.1, 0.02, 0.003, -0.002, 0.01};
+  const Lens inverse = lens("Inverse Brown Conrady", k);
+  const Vector2d bent(0.4, -0.3);
+  const Vector2d ray = undistort(inverse, bent).value();
+  EXPECT_LT((ray - distort(lens("plumb_bob", k), bent).value()).norm(), 1e-15);
+  EXPECT_LT((distort(inverse, ray).value() - bent).norm(), 1e-9);
+}
+
+TEST(Lens, GivesBackTheRay) {
+  for (const Lens& one : {lens("plumb_bob", {-0.28, 0.09, 1e-3, -5e-4, 0}),
+                          lens("rational_polynomial", {0.5, -2.7, 6e-4, 2e-4, 1.6, 0.38, -2.5, 1.5}),
+                          lens("kannala_brandt", {0.02, -0.01, 0.003, 0}),
+                          lens("inverse_brown_conrady", {0.05, -0.04, 1e-3, 1e-3, 0}), Lens{}}) {
+    const double most = std::min(0.9, 0.9 * one.reach);
+    for (double angle = 0.1; angle < 6.3; angle += 0.4) {
+      for (double length = 0.0; length < most; length += 0.05) {
+        const Vector2d ray = length * Vector2d(std::cos(angle), std::sin(angle));
+        const Vector2d back = undistort(one, distort(one, ray).value()).value();
+        ASSERT_LT((back - ray).norm(), 1e-7) << ray.transpose();
+      }
+    }
+  }
+}
+
+TEST(Lens, SeesNothingWhereItsPolynomialFoldsBack) {
+  const Lens barrel = lens("plumb_bob", {-0.5, 0, 0, 0, 0});
+  EXPECT_NEAR(barrel.reach, std::sqrt(1 / 1.5), 0.01);  // where r - r^3 / 2 is largest
+  EXPECT_TRUE(distort(barrel, {0.5, 0.5}));
+  EXPECT_FALSE(distort(barrel, {0.7, 0.7}));
+  EXPECT_FALSE(distort(barrel, {std::nan(""), 0.0}));
+}
+
+TEST(MakeLens, KnowsTheNamesOfModels) {
+  EXPECT_EQ(lens("plumb_bob", {0.1, 0, 0, 0, 0}).model, LensModel::brown_conrady);
+  EXPECT_EQ(lens("", {0.1, 0, 0, 0, 0}), lens("Brown Conrady", {0.1}));
+  EXPECT_EQ(lens("Kannala Brandt4", {0.1, 0, 0, 0, 0}).model, LensModel::kannala_brandt);
+  EXPECT_EQ(lens("plumb_bob", {0, 0, 0, 0, 0}), Lens{});
+  EXPECT_EQ(lens("none of these", {}), Lens{});
+  EXPECT_FALSE(make_lens("none of these", {0.1}));
+  EXPECT_FALSE(make_lens("plumb_bob", {0.1, 0, 0, 0, 0, 0.2})) << "plumb_bob has five coefficients";
+  EXPECT_FALSE(make_lens("rational_polynomial", {0.1, 0, 0, 0, 0, 0, 0, 0, 0.2})) << "a thin prism";
+  EXPECT_FALSE(make_lens("plumb_bob", {std::nan(""), 0, 0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace vesalius
