@@ -14,7 +14,7 @@ void add_camera_flags(CLI::App& command, SourceOptions& options) {
   add("--cx", options.cx, "PX", "Principal point, column (default: centre)");
   add("--cy", options.cy, "PX", "Principal point, row (default: centre)");
   add("--depth-scale", options.depth_scale, "N", "Stored depth units per metre: 1000 = millimetres, 5000 = TUM");
-  command.add_option("--camera", options.camera_file, "meta.json or ROS camera_info YAML")
+  command.add_option("--camera", options.camera_file, "meta.json or ROS camera_info YAML, whose distortion is undone")
       ->type_name("FILE")
       ->group(group);
   command.add_option("--colour,--color", options.colour_file, "Colour picture of a single depth PNG")

@@ -107,6 +107,8 @@ LabelledFolder::LabelledFolder(const std::string& folder)
     : folder_(folder),
       body_(parse_body_model(read_file(body_path(folder)), body_path(folder))),
       frames_(list_folder(folder, {})) {
+  if (frames_.is_rectified())
+    throw Error(folder + ": a distorted lens, expected labels of a pinhole camera (meta.json)");
   for (std::uint64_t i = 0; i < size() && joint_names_.empty(); ++i)
     joint_names_ = joint_names_in(file("truth", i, ".json"));
 }

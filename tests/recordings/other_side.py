@@ -499,40 +499,113 @@ def realsense(vesalius, work):
         print("left out: RealSense:", missing)
         return
     width, height, count = 640, 480, 20
-    lens = rs.intrinsics()
-    lens.width, lens.height, lens.fx, lens.fy, lens.ppx, lens.ppy = width, height, 600, 600, 320, 240
-    lens.model, lens.coeffs = rs.distortion.none, [0] * 5
-    device = rs.software_device()
-    device.register_info(rs.camera_info.name, "of software")
-    device.register_info(rs.camera_info.serial_number, "1")
-    sensor = device.add_sensor("Depth")
-    stream = rs.video_stream()
-    stream.type, stream.index, stream.uid, stream.fps, stream.bpp, stream.fmt = rs.stream.depth, 0, 0, 30, 2, rs.format.z16
-    stream.width, stream.height, stream.intrinsics = width, height, lens
-    profile = sensor.add_video_stream(stream)
-    sensor.add_read_only_option(rs.option.depth_units, 0.0005)
+
+    def intrinsics(size, focal, model, coefficients):
+        lens = rs.intrinsics()
+        (lens.width, lens.height), lens.fx, lens.fy, lens.ppx, lens.ppy = size, focal, focal, size[0] / 2, size[1] / 2
+        lens.model, lens.coeffs = model, coefficients
+        return lens
+
+    def video(sensor, kind, uid, pixel_bytes, pixel_format, lens):
+        stream = rs.video_stream()
+        stream.type, stream.index, stream.uid, stream.fps, stream.bpp, stream.fmt = kind, 0, uid, 30, pixel_bytes, pixel_format
+        stream.width, stream.height, stream.intrinsics = lens.width, lens.height, lens
+        return sensor.add_video_stream(stream)
+
+    depth_lens = intrinsics((width, height), 600, rs.distortion.none, [0] * 5)
+    colour_lens = intrinsics((424, 240), 300, rs.distortion.brown_conrady, [0.1, -0.05, 0.003, -0.002, 0.01])
+    extrinsics = rs.extrinsics()
+    turn = cv2.Rodrigues(np.array([0.02, -0.05, 0.04]))[0]
+    extrinsics.rotation, extrinsics.translation = turn.T.reshape(-1).tolist(), [0.015, 0.001, 0.002]  # column by column
     version = metadata.version("pyrealsense2")
-    path = work / ("realsense.bag" if [int(part) for part in version.split(".")[:2]] < [2, 56] else "realsense.db3")
-    recorder = rs.recorder(str(path), device)
-    recorded = recorder.query_sensors()[0]
-    queue = rs.frame_queue(100)
-    recorded.open(recorded.get_stream_profiles()[0])
-    recorded.start(queue)
+    suffix = ".bag" if [int(part) for part in version.split(".")[:2]] < [2, 56] else ".db3"
+    rows, columns = np.mgrid[:colour_lens.height, :colour_lens.width]
+    colour = np.dstack([columns * 255 // colour_lens.width, rows, np.full(rows.shape, 9)]).astype(np.uint8)
     pictures = []
     for k in range(count):
         depth = np.full((height, width), 2000 + 2 * k, np.uint16)
         depth[k, :] = 0
         pictures.append(depth)
-        frame = rs.software_video_frame()
-        frame.stride, frame.bpp, frame.timestamp, frame.frame_number = width * 2, 2, 1000.0 + 33 * k, k + 1
-        frame.domain, frame.profile, frame.pixels = rs.timestamp_domain.hardware_clock, profile.as_video_stream_profile(), depth
-        sensor.on_video_frame(frame)
-        time.sleep(0.033)
-    time.sleep(0.5)
-    recorded.stop()
-    recorded.close()
-    del recorded, recorder
-    time.sleep(0.5)
+
+    def film(path, alone):
+        """Records depth, alone or with colour and accelerations."""
+        device = rs.software_device()
+        device.register_info(rs.camera_info.name, "of software")
+        device.register_info(rs.camera_info.serial_number, "1")
+        sensor = device.add_sensor("Depth")
+        profile = video(sensor, rs.stream.depth, 0, 2, rs.format.z16, depth_lens)
+        sensor.add_read_only_option(rs.option.depth_units, 0.0005)
+        if not alone:
+            colour_sensor, motion_sensor = device.add_sensor("RGB"), device.add_sensor("Motion")
+            colour_profile = video(colour_sensor, rs.stream.color, 1, 3, rs.format.rgb8, colour_lens)
+            profile.register_extrinsics_to(colour_profile, extrinsics)
+            motion = rs.motion_stream()
+            motion.type, motion.index, motion.uid, motion.fps, motion.fmt = rs.stream.accel, 0, 2, 200, rs.format.motion_xyz32f
+            motion.intrinsics = rs.motion_device_intrinsic()
+            motion_profile = motion_sensor.add_motion_stream(motion)
+        recorder = rs.recorder(str(path), device)
+        recorded = recorder.query_sensors()
+        queue = rs.frame_queue(1000)
+        for one in recorded:
+            one.open(one.get_stream_profiles()[0])
+            one.start(queue)
+
+        def show(to, of, picture, k):
+            frame = rs.software_video_frame()
+            frame.stride, frame.bpp, frame.timestamp, frame.frame_number = picture.strides[0], picture.strides[1], 1000.0 + 33 * k, k + 1
+            frame.domain, frame.profile, frame.pixels = rs.timestamp_domain.hardware_clock, of.as_video_stream_profile(), picture
+            to.on_video_frame(frame)
+
+        for k, depth in enumerate(pictures):
+            if not alone:
+                gravity = rs.software_motion_frame()
+                gravity.timestamp, gravity.frame_number = 995.0 + 33 * k, k + 1
+                gravity.domain, gravity.profile = rs.timestamp_domain.hardware_clock, motion_profile.as_motion_stream_profile()
+                acceleration = rs.vector()
+                acceleration.x, acceleration.y, acceleration.z = 0.0, -7.84, 5.88
+                gravity.data = acceleration
+                motion_sensor.on_motion_frame(gravity)
+                show(colour_sensor, colour_profile, colour, k)
+            show(sensor, profile, depth, k)
+            time.sleep(0.033)
+        time.sleep(0.5)
+        for one in recorded:
+            one.stop()
+            one.close()
+        del recorded, recorder, one
+        time.sleep(0.5)
+
+    path, alone = work / ("realsense" + suffix), work / ("depth_alone" + suffix)
+    film(path, False)
+    film(alone, True)
+
+    def expect_colour(folder):
+        """Where librealsense's own functions find the colour of a point of depth."""
+        seen = cv2.imread(str(sorted((folder / "rgb").glob("*.png"))[-1]))[:, :, ::-1].astype(int)
+        z = pictures[-1][100, 100] * 0.0005
+        compared = 0
+        for v in range(20, height, 37):
+            for u in range(5, width, 41):
+                point = rs.rs2_deproject_pixel_to_point(depth_lens, [u, v], float(z))
+                at = rs.rs2_project_point_to_pixel(colour_lens, rs.rs2_transform_point_to_point(extrinsics, point))
+                if 1 < at[0] < colour_lens.width - 2 and 1 < at[1] < colour_lens.height - 2:
+                    wanted = [at[0] * 255 / colour_lens.width, at[1], 9]
+                    assert np.abs(seen[v, u] - wanted).max() < 2, f"RealSense: colour {seen[v, u]} at {u}, {v}, expected {wanted}"
+                    compared += 1
+                elif not (-1 < at[0] < colour_lens.width and -1 < at[1] < colour_lens.height):
+                    assert not seen[v, u].any(), f"RealSense: colour {seen[v, u]} at {u}, {v}, which colour does not see"
+        assert compared > 50, f"RealSense: {compared} colours compared"
+
+    def expect_up(recording):
+        from mcap.reader import make_reader
+        from mcap_ros2.decoder import DecoderFactory
+        with open(recording, "rb") as file:
+            reader = make_reader(file, decoder_factories=[DecoderFactory()])
+            ups = [m[3].linear_acceleration for m in reader.iter_decoded_messages(topics=["/camera/imu"])]
+        assert len(ups) >= count - 2, f"RealSense: up of {len(ups)} frames"
+        for up in ups:
+            off = np.abs(np.array([up.x, up.y, up.z]) / 9.80665 - [0, -0.8, 0.6]).max()
+            assert off < 1e-5, f"RealSense: up {up}"
 
     def expect(folder, least):
         found = [cv2.imread(str(p), cv2.IMREAD_UNCHANGED) for p in sorted((folder / "depth").glob("*.png"))]
@@ -543,11 +616,14 @@ def realsense(vesalius, work):
 
     subprocess.run([vesalius, "convert", path, work / "read", "--to", "folder", "-q"], check=True)
     expect(work / "read", count)
+    expect_colour(work / "read")
+    subprocess.run([vesalius, "record", path, "--out", work / "read.mcap", "-q"], check=True)
+    expect_up(work / "read.mcap")
     print("same:", path.name, "of librealsense", version)
     python = Path(sysconfig.get_config_var("LIBDIR")) / sysconfig.get_config_var("INSTSONAME")
     module = next(Path(rs.__file__).parent.glob("pyrealsense2*.so"))
     environment = {**os.environ, "VESALIUS_REALSENSE": str(module), "LD_PRELOAD": str(python)}
-    subprocess.run([vesalius, "record", f"realsense:{path}", "--frames", "10", "--out", work / "played.mcap", "-q"],
+    subprocess.run([vesalius, "record", f"realsense:{alone}", "--frames", "10", "--out", work / "played.mcap", "-q"],
                    check=True, env=environment)
     subprocess.run([vesalius, "convert", work / "played.mcap", work / "played", "--to", "folder", "-q"], check=True)
     expect(work / "played", 10)

@@ -20,6 +20,10 @@ class ColourRegistration {
   /// Error if a camera has no size.
   ColourRegistration(const Camera& depth, const LensCamera& colour, const Eigen::Isometry3d& colour_from_depth);
 
+  /// Returns whether a picture has the size of the colour camera's.
+  bool fits(const ColourImage& colour) const {
+    return colour.width() == colour_.camera.width && colour.height() == colour_.camera.height;
+  }
   /// Returns a picture of the size of `depth` (millimetres). Both must have the size of their cameras; throws Error
   /// otherwise.
   ColourImage operator()(const DepthImage& depth, const ColourImage& colour) const;

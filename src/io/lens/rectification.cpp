@@ -63,4 +63,11 @@ ColourImage Rectification::colour(const ColourImage& picture) const {
   return colour;
 }
 
+std::optional<Rectification> make_rectification(std::optional<LensCamera> distorted, const Camera& to) {
+  if (!distorted) return std::nullopt;
+  if (distorted->camera.width == 0) distorted->camera.width = to.width;
+  if (distorted->camera.height == 0) distorted->camera.height = to.height;
+  return Rectification(*distorted, to);
+}
+
 }  // namespace vesalius

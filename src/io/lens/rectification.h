@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "io/lens/lens.h"
@@ -29,5 +30,9 @@ class Rectification {
   Camera to_;
   std::vector<Place> places_;  ///< of each pixel that comes out; outside of the picture where the lens does not see
 };
+
+/// Returns what turns pictures of a camera that distorts into those of `to`; nothing if there is none. A camera without
+/// a size has that of `to`.
+std::optional<Rectification> make_rectification(std::optional<LensCamera> distorted, const Camera& to);
 
 }  // namespace vesalius

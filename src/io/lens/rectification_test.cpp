@@ -33,7 +33,8 @@ TEST(Rectification, GivesTheDepthThatAPinholeCameraSees) {
       for (int u = 0; u < kCamera.width; ++u) {
         if (depth(u, v) == 0) continue;
         ++seen;
-        // A reading comes from half a pixel aside in u and in v at most, which the lens squeezed by a third at the border.
+        // A reading comes from half a pixel aside in u and in v at most, which the lens squeezed by a third at the
+        // border.
         const double z = truth(u, v), slope_mm = z * z / 2000 * (0.4 / 140 + 0.3 / 142);
         ASSERT_NEAR(depth(u, v), z, 0.5 * 1.5 * slope_mm + 1) << u << " " << v;
       }

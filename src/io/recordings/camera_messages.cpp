@@ -12,6 +12,7 @@
 #include "io/files/image_file.h"
 #include "io/recordings/depth_codecs.h"
 #include "io/recordings/message_fields.h"
+#include "io/recordings/realsense_topics.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -84,6 +85,30 @@ std::uint16_t millimetres(double depth_mm) {
   return depth_mm >= 0.5 && depth_mm < kMaxDepth ? static_cast<std::uint16_t>(std::lround(depth_mm)) : std::uint16_t{0};
 }
 
+/// From librealsense 2.56 on, what the library itself states: its messages of sensor_msgs call every model plumb_bob.
+bool is_realsense_text(const RecordedTopic& topic) {
+  return topic.type == "std_msgs/String" && topic.layout == MessageLayout::cdr &&
+         topic.name == realsense_stream(topic.name) + "/camera_info";
+}
+
+Calibration parse_realsense_text(std::string_view text, const std::string& name) {
+  const auto number = [&](const char* key) {
+    const std::vector<double> numbers = realsense_numbers(realsense_value(text, key));
+    return numbers.empty() ? 0.0 : numbers.front();
+  };
+  const auto whole = [&](const char* key) {
+    const double value = number(key);
+    return value >= 0.0 && value <= static_cast<double>(kMaxPixels) ? side(static_cast<std::uint64_t>(value), name) : 0;
+  };
+  Calibration calibration;
+  calibration.width = whole("width");
+  calibration.height = whole("height");
+  calibration.model = realsense_value(text, "model");
+  calibration.distortion = realsense_numbers(realsense_value(text, "coeffs"));
+  calibration.matrix = {number("fx"), 0, number("ppx"), 0, number("fy"), number("ppy"), 0, 0, 1};
+  return calibration;
+}
+
 std::string image_message(std::string_view encoding, int width, int height, int pixel_bytes, std::string_view data,
                           std::int64_t time_ns, std::string_view frame) {
   CdrWriter out;
@@ -104,10 +129,6 @@ std::string_view bytes_of(const Image<T>& image) {
 
 }  // namespace
 
-bool Calibration::is_distorted() const {
-  return std::ranges::any_of(distortion, [](double d) { return d != 0.0; });
-}
-
 bool is_picture(const RecordedTopic& topic) {
   if (is_ros(topic)) return topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage";
   return topic.layout == MessageLayout::protobuf &&
@@ -115,6 +136,7 @@ bool is_picture(const RecordedTopic& topic) {
 }
 
 bool is_calibration(const RecordedTopic& topic) {
+  if (is_realsense_text(topic)) return true;
   if (is_ros(topic)) return topic.type == "sensor_msgs/CameraInfo";
   return topic.layout == MessageLayout::protobuf && topic.type == "foxglove.CameraCalibration";
 }
@@ -141,6 +163,7 @@ PictureMessage parse_picture(const RecordedTopic& topic, std::string_view messag
   }
   MessageFields fields(message, topic.layout, name);
   picture.time_ns = fields.header(picture.frame);
+  if (std::string stream = realsense_stream(topic.name); !stream.empty()) picture.frame = std::move(stream);
   if (picture.compressed) {
     picture.encoding = fields.text("the format");
   } else {
@@ -161,19 +184,27 @@ Calibration parse_calibration(const RecordedTopic& topic, std::string_view messa
     calibration.frame = fields.text(9);
     calibration.width = side(fields.number(2), name);
     calibration.height = side(fields.number(3), name);
+    calibration.model = fields.text(4);
     calibration.distortion = fields.list64(5);
     calibration.matrix = exactly<9>(fields.list64(6));
+    calibration.rotation = exactly<9>(fields.list64(7));
     calibration.projection = exactly<12>(fields.list64(8));
     return calibration;
   }
   MessageFields fields(message, topic.layout, name);
+  if (is_realsense_text(topic)) {
+    calibration = parse_realsense_text(fields.text("the calibration"), name);
+    calibration.frame = realsense_stream(topic.name);
+    return calibration;
+  }
   fields.header(calibration.frame);
+  if (std::string stream = realsense_stream(topic.name); !stream.empty()) calibration.frame = std::move(stream);
   calibration.height = side(fields.u32("the height"), name);
   calibration.width = side(fields.u32("the width"), name);
-  fields.text("the distortion model");
+  calibration.model = fields.text("the distortion model");
   calibration.distortion = fields.list64("the distortion");
   calibration.matrix = exactly<9>(fields.reals64(9, "the camera matrix"));
-  fields.reals64(9, "the rotation");
+  calibration.rotation = exactly<9>(fields.reals64(9, "the rotation"));
   calibration.projection = exactly<12>(fields.reals64(12, "the projection"));
   return calibration;
 }

@@ -25,15 +25,15 @@ struct PictureMessage {
   std::string_view data;  ///< into the message
 };
 
-/// A camera's calibration: sensor_msgs/CameraInfo, foxglove.CameraCalibration.
+/// A camera's calibration: sensor_msgs/CameraInfo, foxglove.CameraCalibration, that of a RealSense stream.
 struct Calibration {
   std::string frame;
   int width = 0, height = 0;
+  std::string model;                    ///< of distortion, e.g. "plumb_bob"
   std::vector<double> distortion;       ///< all 0 or none = not distorted
   std::array<double, 9> matrix{};       ///< K, of the pictures as they are
+  std::array<double, 9> rotation{};     ///< R, from these to the rectified ones; all 0 = not given
   std::array<double, 12> projection{};  ///< P, of the rectified ones
-
-  bool is_distorted() const;
 };
 
 bool is_picture(const RecordedTopic& topic);

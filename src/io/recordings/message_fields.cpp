@@ -84,7 +84,12 @@ std::uint64_t ProtobufFields::number(std::uint32_t field) const {
 
 std::string_view ProtobufFields::text(std::uint32_t field) const {
   const auto found = texts.find(field);
-  return found == texts.end() ? std::string_view() : found->second;
+  return found == texts.end() ? std::string_view() : found->second.back();
+}
+
+std::vector<std::string_view> ProtobufFields::all_texts(std::uint32_t field) const {
+  const auto found = texts.find(field);
+  return found == texts.end() ? std::vector<std::string_view>() : found->second;
 }
 
 std::vector<double> ProtobufFields::list64(std::uint32_t field) const {
@@ -130,7 +135,7 @@ ProtobufFields parse_protobuf(std::string_view bytes, const std::string& name) {
         break;
       }
       case 2:
-        fields.texts[field] = take(varint());
+        fields.texts[field].push_back(take(varint()));
         break;
       case 5:
         fields.numbers[field] = little_endian(take(4));

@@ -43,12 +43,14 @@ class MessageFields {
 
 /// The fields of one Protocol Buffers message, by their numbers. Views into the message.
 struct ProtobufFields {
-  std::map<std::uint32_t, std::uint64_t> numbers;      ///< the last of each: varints and fixed 32 and 64 bits
-  std::map<std::uint32_t, std::string_view> texts;     ///< the last of each: bytes, texts, messages, packed lists
-  std::map<std::uint32_t, std::vector<double>> reals;  ///< all of each that are fixed 64 bits, not packed
+  std::map<std::uint32_t, std::uint64_t> numbers;                ///< the last of each: varints and fixed 32 and 64 bits
+  std::map<std::uint32_t, std::vector<std::string_view>> texts;  ///< all of each: bytes, texts, messages, packed lists
+  std::map<std::uint32_t, std::vector<double>> reals;            ///< all of each that are fixed 64 bits, not packed
 
   std::uint64_t number(std::uint32_t field) const;
   std::string_view text(std::uint32_t field) const;
+  /// Returns a repeated message or text.
+  std::vector<std::string_view> all_texts(std::uint32_t field) const;
   /// Returns a repeated double, packed or not.
   std::vector<double> list64(std::uint32_t field) const;
 };

@@ -88,23 +88,37 @@ YAML::Node either(const YAML::Node& root, const char* a, const char* b) {
   return first.IsDefined() ? first : root[b];
 }
 
+/// Returns the camera behind its lens, nothing if that does not distort. `odd_model` receives a model that is not
+/// known.
+std::optional<LensCamera> distorted_camera(const YAML::Node& root, const std::vector<double>& matrix,
+                                           const std::string& name, std::string& odd_model) {
+  const YAML::Node d = either(root, "distortion_coefficients", "D");
+  if (!d.IsDefined()) return std::nullopt;
+  const std::vector<double> coefficients = numbers(d, 0, name, "distortion_coefficients");
+  const YAML::Node model = root["distortion_model"];
+  const std::string model_name = model.IsDefined() ? model.as<std::string>() : "";
+  const std::optional<Lens> lens = make_lens(model_name, coefficients);
+  if (!lens) odd_model = model_name.empty() ? "without a name" : model_name;
+  if (!lens || *lens == Lens{}) return std::nullopt;
+  return LensCamera{
+      {0, 0, checked_focal(matrix[0], name, "camera_matrix"), checked_focal(matrix[4], name, "camera_matrix"),
+       checked_centre(matrix[2], name, "camera_matrix"), checked_centre(matrix[5], name, "camera_matrix")},
+      *lens};
+}
+
 CameraFacts camera_info_facts(const YAML::Node& root, const std::string& name) {
   CameraFacts facts;
   facts.origin = name;
   if (!root.IsMap()) throw Error(name + ": expected a map with camera_matrix (or K), image_width, image_height");
   const YAML::Node k = either(root, "camera_matrix", "K");
-  const YAML::Node d = either(root, "distortion_coefficients", "D");
   const YAML::Node p = either(root, "projection_matrix", "P");
   if (!k.IsDefined()) fail(name, "camera_matrix", "3x3 numbers (or K)");
   std::vector<double> matrix = numbers(k, 9, name, "camera_matrix");
-  if (d.IsDefined()) {
-    const std::vector<double> coefficients = numbers(d, 0, name, "distortion_coefficients");
-    facts.distorted = std::any_of(coefficients.begin(), coefficients.end(), [](double c) { return c != 0.0; });
-  }
+  facts.distorted = distorted_camera(root, matrix, name, facts.odd_lens);
   std::size_t stride = 3;
   if (facts.distorted && p.IsDefined()) {
     const std::vector<double> projection = numbers(p, 12, name, "projection_matrix");
-    if (projection[0] != 0.0) {
+    if (projection[0] != 0.0 && projection[5] != 0.0) {
       matrix = projection;
       stride = 4;
     }
@@ -117,6 +131,10 @@ CameraFacts camera_info_facts(const YAML::Node& root, const std::string& name) {
   const YAML::Node height = either(root, "image_height", "height");
   if (width.IsDefined()) facts.width = width.as<int>();
   if (height.IsDefined()) facts.height = height.as<int>();
+  if (facts.distorted) {
+    facts.distorted->camera.width = facts.width.value_or(0);
+    facts.distorted->camera.height = facts.height.value_or(0);
+  }
   return facts;
 }
 
@@ -205,6 +223,7 @@ void CameraFacts::fill_from(const CameraFacts& other) {
     width = other.width;
     height = other.height;
     distorted = other.distorted;
+    odd_lens = other.odd_lens;
     origin = other.origin;
   }
   if (sensor.empty()) sensor = other.sensor;
@@ -289,7 +308,10 @@ Camera resolve_camera(const CameraFacts& facts, int width, int height, bool regi
     notes.push_back(fmt::format("{}: no focal length given; {:.4g} pixels assumed, usual for \"{}\"", place, camera.fx,
                                 facts.sensor));
   }
-  if (facts.distorted) notes.push_back(facts.origin + ": lens distortion not removed: pictures are taken as rectified");
+  if (!facts.odd_lens.empty()) {
+    notes.push_back(fmt::format("{}: lens distortion not removed, since its model \"{}\" is not known", facts.origin,
+                                facts.odd_lens));
+  }
   camera.fy = facts.fy.value_or(camera.fx);
   camera.cx = facts.cx.value_or(static_cast<float>(width - 1) / 2.F);
   camera.cy = facts.cy.value_or(static_cast<float>(height - 1) / 2.F);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/lens/lens.h"
 #include "io/sources/source_options.h"
 #include "vesalius/base/camera.h"
 
@@ -16,8 +17,11 @@ struct CameraFacts {
   std::optional<int> width, height;     ///< size of the pictures that fx ... cy are for
   std::optional<float> depth_scale;     ///< stored units per metre
   std::string sensor;                   ///< e.g. "Kinect v1"; empty = not named
-  bool distorted = false;               ///< the lens has distortion coefficients other than 0
-  std::string origin;                   ///< the file, for messages
+  /// The camera behind its lens, where that distorts: what pictures are turned from. Those that they are turned into
+  /// have fx ... cy. Its size is 0 where none is given.
+  std::optional<LensCamera> distorted;
+  std::string odd_lens;  ///< model of a distortion that is not known and stays; empty = none
+  std::string origin;    ///< the file, for messages
 
   /// Fills in from `other` what is missing here.
   void fill_from(const CameraFacts& other);
@@ -29,7 +33,8 @@ struct CameraFacts {
 CameraFacts parse_meta(std::string_view json, const std::string& name);
 
 /// Reads a ROS camera_info YAML as saved by camera_calibration or printed by rostopic echo. If the lens is distorted,
-/// the camera is the rectified one (projection matrix). Throws Error naming `name`, the key and what was expected.
+/// fx ... cy are those of the rectified pictures (projection matrix), where there are any. Throws Error naming `name`,
+/// the key and what was expected.
 CameraFacts parse_camera_info(std::string_view yaml, const std::string& name);
 
 /// Returns the text of a meta.json that `parse_meta` reads back exactly. `depth_scale` is in stored units per metre.

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "io/files/image_file.h"
 #include "io/files/test_files.h"
+#include "io/lens/rectification.h"
 #include "io/sources/open_source.h"
 
 namespace vesalius {
@@ -96,18 +98,51 @@ TEST(ParseCameraInfo, ReadsCalibrationFiles) {
   EXPECT_EQ(facts.width, 640);
   EXPECT_EQ(facts.height, 480);
   EXPECT_FALSE(facts.distorted);
+  EXPECT_TRUE(facts.odd_lens.empty());
 }
 
 TEST(ParseCameraInfo, TakesTheRectifiedCameraOfADistortedLens) {
   const CameraFacts facts = parse_camera_info(calibration("-0.2"), "camera_info.yaml");
-  EXPECT_TRUE(facts.distorted);
   EXPECT_EQ(facts.fx, 560.F);
   EXPECT_EQ(facts.fy, 561.F);
   EXPECT_EQ(facts.cx, 310.F);
   EXPECT_EQ(facts.cy, 230.F);
+  ASSERT_TRUE(facts.distorted);
+  EXPECT_EQ(facts.distorted->camera, (Camera{640, 480, 570.5F, 571.5F, 314.5F, 235.5F}));
+  EXPECT_EQ(facts.distorted->lens, make_lens("plumb_bob", {-0.2}));
+}
+
+TEST(ParseCameraInfo, SaysWhichDistortionItDoesNotKnow) {
+  std::string text = calibration("-0.2");
+  text.replace(text.find("plumb_bob"), 9, "ftheta");
+  const CameraFacts facts = parse_camera_info(text, "camera_info.yaml");
+  EXPECT_FALSE(facts.distorted);
+  EXPECT_EQ(facts.fx, 570.5F);
   std::vector<std::string> notes;
   resolve_camera(facts, 640, 480, true, "here", notes);
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("taken as rectified")));
+  EXPECT_THAT(notes,
+              ElementsAre(HasSubstr("camera_info.yaml: lens distortion not removed, since its model \"ftheta\"")));
+}
+
+TEST(CameraFile, UndoesTheLensOfAFolderOfPictures) {
+  const TemporaryFolder folder;
+  const Frame frame = test::random_frame("a", 1, 64, 48);
+  std::filesystem::create_directories(folder / "depth");
+  std::filesystem::create_directories(folder / "rgb");
+  write_png(frame.depth, folder / "depth/a.png");
+  write_png(frame.colour, folder / "rgb/a.png");
+  put(folder / "camera_info.yaml",
+      "K: [60, 0, 31, 0, 61, 24, 0, 0, 1]\nD: [-0.3, 0.1, 0, 0, 0]\ndistortion_model: plumb_bob\n"
+      "P: [55, 0, 32, 0, 0, 56, 23, 0, 0, 0, 1, 0]\n");
+  const Camera to{64, 48, 55.F, 56.F, 32.F, 23.F};
+  const Rectification rectification(
+      {Camera{64, 48, 60.F, 61.F, 31.F, 24.F}, make_lens("plumb_bob", {-0.3, 0.1}).value()}, to);
+  const auto source = open_source(folder.path());
+  EXPECT_THAT(source->notes(), IsEmpty());
+  const Frame read = *source->next();
+  EXPECT_EQ(read.camera, to);
+  EXPECT_EQ(read.depth, rectification.depth(frame.depth));
+  EXPECT_EQ(read.colour, rectification.colour(frame.colour));
 }
 
 TEST(ParseCameraInfo, ReadsPrintedMessages) {

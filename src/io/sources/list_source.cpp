@@ -56,6 +56,7 @@ FrameListReader::FrameListReader(FrameList list) : list_(std::move(list)) {
   const bool registered = std::any_of(list_.frames.begin(), list_.frames.end(),
                                       [](const FrameFiles& files) { return !files.colour.empty(); });
   camera_ = resolve_camera(facts, first.width(), first.height(), registered, list_.place, list_.notes);
+  rectification_ = make_rectification(facts.distorted, camera_);
   units_per_m_ = facts.depth_scale.value_or(list_.default_scale);
 }
 
@@ -67,7 +68,9 @@ Frame FrameListReader::read(std::size_t index, bool with_colour) const {
   if (with_colour && !files.colour.empty()) {
     frame.colour = read_colour(files.colour);
     check_size(frame.colour, camera_, files.colour, "the size of the depth");
+    if (rectification_) frame.colour = rectification_->colour(frame.colour);
   }
+  if (rectification_) frame.depth = rectification_->depth(frame.depth);
   return frame;
 }
 

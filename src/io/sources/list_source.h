@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/lens/rectification.h"
 #include "io/sources/camera_file.h"
 #include "vesalius/base/frame_source.h"
 
@@ -40,6 +41,8 @@ class FrameListReader {
   std::size_t size() const { return list_.frames.size(); }
   const FrameList& list() const { return list_; }
   const Camera& camera() const { return camera_; }
+  /// Returns whether frames differ from the pictures in the files, since the lens distorts those.
+  bool is_rectified() const { return rectification_.has_value(); }
 
   /// Returns frame `index`, which must be below size(). Throws Error naming a picture that cannot be read or differs in
   /// size from the first.
@@ -48,6 +51,7 @@ class FrameListReader {
  private:
   FrameList list_;
   Camera camera_;
+  std::optional<Rectification> rectification_;
   float units_per_m_ = 1000.F;
 };
 

@@ -13,6 +13,7 @@
 
 #include "io/files/copy_rows.h"
 #include "io/files/image_bytes.h"
+#include "io/lens/rectification.h"
 #include "io/sensors/sensor_drivers.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
@@ -151,6 +152,10 @@ class Calibrated final : public FrameSource {
     if (!frame) return frame;
     std::vector<std::string> ignored;
     frame->camera = resolve_camera(facts_, frame->depth.width(), frame->depth.height(), true, place_, ignored);
+    if (!facts_.distorted) return frame;
+    if (!rectification_) rectification_ = make_rectification(facts_.distorted, frame->camera);
+    frame->depth = rectification_->depth(frame->depth);
+    if (!frame->colour.empty()) frame->colour = rectification_->colour(frame->colour);
     return frame;
   }
   int size() const override { return source_->size(); }
@@ -162,6 +167,7 @@ class Calibrated final : public FrameSource {
   std::unique_ptr<FrameSource> source_;
   CameraFacts facts_;
   std::string place_;
+  std::optional<Rectification> rectification_;
 };
 
 std::unique_ptr<FrameSource> open_camera(const SensorDriver& driver, const std::string& id,

@@ -46,6 +46,9 @@ class PcdSource final : public FrameSource {
     std::vector<std::string> notes;
     const Camera camera =
         resolve_camera(facts, grid.points_m.width(), grid.points_m.height(), !grid.colour.empty(), path, notes);
+    if (facts.distorted) {
+      notes.push_back(facts.origin + ": lens distortion not removed: the grid of a cloud is taken as rectified");
+    }
     if (next_ == 0) notes_ = std::move(notes);
     return {file.stem().string(), {}, camera, depth_of(grid), std::move(grid.colour)};
   }

@@ -1,0 +1,52 @@
+#include "io/recordings/imu_messages.h"
+
+#include "io/recordings/message_fields.h"
+#include "io/recordings/realsense_topics.h"
+
+namespace vesalius {
+namespace {
+
+constexpr double kGravity_m_s2 = 9.80665;
+constexpr std::size_t kCovariance = 9;
+/// The first number of a covariance whose quantity is not known.
+constexpr double kNotKnown = -1.0;
+
+void write_covariance(CdrWriter& out, double first) {
+  for (std::size_t i = 0; i < kCovariance; ++i) out.real64(i == 0 ? first : 0.0);
+}
+
+}  // namespace
+
+bool is_acceleration(const RecordedTopic& topic) {
+  if (topic.type != "sensor_msgs/Imu") return false;
+  if (topic.layout != MessageLayout::ros1 && topic.layout != MessageLayout::cdr) return false;
+  const std::string stream = realsense_stream(topic.name);
+  return stream.empty() || stream.find("/Accel_") != stream.npos;
+}
+
+Acceleration parse_acceleration(const RecordedTopic& topic, std::string_view message, const std::string& name) {
+  Acceleration acceleration;
+  MessageFields fields(message, topic.layout, name);
+  acceleration.time_ns = fields.header(acceleration.frame);
+  if (std::string stream = realsense_stream(topic.name); !stream.empty()) acceleration.frame = std::move(stream);
+  fields.reals64(4 + kCovariance, "the orientation");
+  fields.reals64(3 + kCovariance, "the angular velocity");
+  for (double& axis : acceleration.m_s2) axis = fields.real64("the acceleration");
+  if (fields.real64("the acceleration's covariance") == kNotKnown) acceleration.m_s2.setZero();
+  return acceleration;
+}
+
+std::string imu_message(const std::optional<Eigen::Vector3f>& up, std::int64_t time_ns, std::string_view frame) {
+  CdrWriter out;
+  out.header(time_ns, frame);
+  for (const double q : {0.0, 0.0, 0.0, 1.0}) out.real64(q);
+  write_covariance(out, kNotKnown);
+  for (int axis = 0; axis < 3; ++axis) out.real64(0.0);
+  write_covariance(out, kNotKnown);
+  const Eigen::Vector3f direction = up.value_or(Eigen::Vector3f::Zero());
+  for (const float axis : direction) out.real64(kGravity_m_s2 * static_cast<double>(axis));
+  write_covariance(out, up ? 0.0 : kNotKnown);
+  return out.message();
+}
+
+}  // namespace vesalius

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "io/recordings/recording.h"
+
+namespace vesalius {
+
+/// What an accelerometer measured: sensor_msgs/Imu. At rest that is 9.8 m/s² away from the ground.
+struct Acceleration {
+  std::int64_t time_ns = 0;                        ///< of the header; 0 = not given
+  std::string frame;                               ///< name of the coordinate frame
+  Eigen::Vector3d m_s2 = Eigen::Vector3d::Zero();  ///< 0 where the message says that it is not known
+};
+
+/// Returns whether a topic has accelerations. RealSense cameras have gyroscopes on topics of the same type.
+bool is_acceleration(const RecordedTopic& topic);
+
+/// Reads a message of a topic that is_acceleration. Throws Error naming `name`.
+Acceleration parse_acceleration(const RecordedTopic& topic, std::string_view message, const std::string& name);
+
+/// Returns a sensor_msgs/Imu as CDR, of a sensor at rest that feels gravity, or knows nothing where there is no `up`.
+/// How it turns and its orientation are not known.
+std::string imu_message(const std::optional<Eigen::Vector3f>& up, std::int64_t time_ns, std::string_view frame);
+
+}  // namespace vesalius

@@ -1,0 +1,135 @@
+#include "io/recordings/transform_messages.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/recordings/message_fields.h"
+#include "io/recordings/realsense_topics.h"
+
+namespace vesalius {
+namespace {
+
+/// More frames above each other than any robot has.
+constexpr std::size_t kMostAncestors = 1000;
+
+bool is_ros(const RecordedTopic& topic) {
+  return topic.layout == MessageLayout::ros1 || topic.layout == MessageLayout::cdr;
+}
+
+bool is_realsense(const RecordedTopic& topic) {
+  const std::string stream = realsense_stream(topic.name);
+  return !stream.empty() && topic.name.starts_with(stream + "/tf/") &&
+         (topic.type == "geometry_msgs/Transform" || topic.type == "std_msgs/String");
+}
+
+/// ROS 1 had names with a slash before them.
+std::string plain(std::string_view frame) {
+  return std::string(frame.starts_with('/') && !frame.starts_with("/device_") ? frame.substr(1) : frame);
+}
+
+/// Returns nothing unless the numbers are a translation and a rotation.
+std::optional<Eigen::Isometry3d> isometry(const Eigen::Vector3d& translation, const Eigen::Quaterniond& rotation) {
+  constexpr double kOff = 0.05;
+  if (!translation.allFinite() || !(std::abs(rotation.norm() - 1.0) < kOff)) return std::nullopt;
+  return Eigen::Translation3d(translation) * rotation.normalized();
+}
+
+/// geometry_msgs/Transform
+std::optional<Eigen::Isometry3d> read_transform(MessageFields& fields) {
+  const std::vector<double> t = fields.reals64(3, "the translation");
+  const std::vector<double> q = fields.reals64(4, "the rotation");
+  return isometry({t[0], t[1], t[2]}, {q[3], q[0], q[1], q[2]});
+}
+
+/// librealsense 2.56 and later: "rotation=...;translation=...", the matrix column by column.
+std::optional<Eigen::Isometry3d> read_realsense_text(std::string_view text) {
+  const std::vector<double> r = realsense_numbers(realsense_value(text, "rotation"));
+  const std::vector<double> t = realsense_numbers(realsense_value(text, "translation"));
+  if (r.size() != 9 || t.size() != 3) return std::nullopt;
+  const Eigen::Map<const Eigen::Matrix3d> matrix(r.data());
+  if (!matrix.allFinite() || !matrix.isUnitary(1e-2) || matrix.determinant() < 0.0) return std::nullopt;
+  return isometry({t[0], t[1], t[2]}, Eigen::Quaterniond(matrix));
+}
+
+/// A stream of a RealSense camera, in the frame of the stream that its group refers to. What is recorded takes points
+/// of that one to this.
+std::vector<FrameTransform> parse_realsense(const RecordedTopic& topic, std::string_view message,
+                                            const std::string& name) {
+  const std::string stream = realsense_stream(topic.name);
+  MessageFields fields(message, topic.layout, name);
+  const std::optional<Eigen::Isometry3d> stream_from_reference =
+      topic.type == "std_msgs/String" ? read_realsense_text(fields.text("the extrinsics")) : read_transform(fields);
+  if (!stream_from_reference) return {};
+  const std::string device = stream.substr(0, stream.find('/', 1));
+  return {{device + topic.name.substr(stream.size()), stream, stream_from_reference->inverse()}};
+}
+
+double field(const ProtobufFields& fields, std::uint32_t number, double otherwise = 0.0) {
+  const std::vector<double> values = fields.list64(number);
+  return values.empty() ? otherwise : values.back();
+}
+
+/// foxglove.FrameTransform
+void parse_foxglove(std::string_view message, const std::string& name, std::vector<FrameTransform>& into) {
+  const ProtobufFields fields = parse_protobuf(message, name);
+  const ProtobufFields t = parse_protobuf(fields.text(4), name), q = parse_protobuf(fields.text(5), name);
+  if (const auto found =
+          isometry({field(t, 1), field(t, 2), field(t, 3)}, {field(q, 4), field(q, 1), field(q, 2), field(q, 3)})) {
+    into.push_back({plain(fields.text(2)), plain(fields.text(3)), *found});
+  }
+}
+
+}  // namespace
+
+bool is_transform(const RecordedTopic& topic) {
+  if (topic.layout == MessageLayout::protobuf) {
+    return topic.type == "foxglove.FrameTransform" || topic.type == "foxglove.FrameTransforms";
+  }
+  if (!is_ros(topic)) return false;
+  const bool is_static = topic.type == "tf2_msgs/TFMessage" && topic.name.ends_with("tf_static");
+  return is_static || is_realsense(topic);
+}
+
+std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::string_view message,
+                                             const std::string& name) {
+  std::vector<FrameTransform> transforms;
+  if (topic.type == "foxglove.FrameTransform") {
+    parse_foxglove(message, name, transforms);
+  } else if (topic.layout == MessageLayout::protobuf) {
+    for (const std::string_view one : parse_protobuf(message, name).all_texts(1)) parse_foxglove(one, name, transforms);
+  } else if (is_realsense(topic)) {
+    transforms = parse_realsense(topic, message, name);
+  } else {
+    MessageFields fields(message, topic.layout, name);
+    const std::uint32_t count = fields.u32("the number of transforms");
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::string parent;
+      fields.header(parent);
+      const std::string child = plain(fields.text("the child's frame"));
+      if (const auto found = read_transform(fields)) transforms.push_back({plain(parent), child, *found});
+    }
+  }
+  return transforms;
+}
+
+std::vector<std::pair<std::string, Eigen::Isometry3d>> TransformTree::chain(const std::string& frame) const {
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> up{{plain(frame), Eigen::Isometry3d::Identity()}};
+  while (up.size() < kMostAncestors) {
+    const auto found = parents_.find(up.back().first);
+    if (found == parents_.end()) break;
+    up.emplace_back(found->second.parent, found->second.parent_from_child * up.back().second);
+  }
+  return up;
+}
+
+std::optional<Eigen::Isometry3d> TransformTree::find(const std::string& to, const std::string& from) const {
+  if (to.empty() || from.empty()) return std::nullopt;
+  const auto above_to = chain(to), above_from = chain(from);
+  for (const auto& [frame, frame_from] : above_from) {
+    const auto common = std::ranges::find_if(above_to, [&](const auto& one) { return one.first == frame; });
+    if (common != above_to.end()) return common->second.inverse() * frame_from;
+  }
+  return std::nullopt;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/recordings/recording.h"
+
+namespace vesalius {
+
+/// Where one coordinate frame stands in another.
+struct FrameTransform {
+  std::string parent, child;
+  Eigen::Isometry3d parent_from_child = Eigen::Isometry3d::Identity();  ///< metres
+};
+
+/// Returns whether a topic says where coordinate frames stand for good: tf2_msgs/TFMessage of tf_static,
+/// foxglove.FrameTransform and FrameTransforms, and the extrinsics of RealSense streams.
+bool is_transform(const RecordedTopic& topic);
+
+/// Reads a message of a topic that is_transform; transforms that are none (not finite, no rotation) are left out.
+/// Throws Error naming `name`.
+std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::string_view message,
+                                             const std::string& name);
+
+/// Coordinate frames and where they stand in each other.
+class TransformTree {
+ public:
+  /// The first transform of a child counts.
+  void add(const FrameTransform& transform) { parents_.try_emplace(transform.child, transform); }
+  /// Returns what takes points in the frame `from` to the frame `to`; nothing if nothing connects them.
+  std::optional<Eigen::Isometry3d> find(const std::string& to, const std::string& from) const;
+
+ private:
+  /// Returns the frames from `frame` up, each with what takes points of `frame` to it.
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> chain(const std::string& frame) const;
+
+  std::map<std::string, FrameTransform> parents_;  ///< by the child
+};
+
+}  // namespace vesalius
