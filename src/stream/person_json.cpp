@@ -93,6 +93,7 @@ std::string frame_json(const Frame& frame, const std::vector<Person>& people, co
   Json json = {{"frame", frame.name}, {"time_s", frame.time_s ? Json(rounded(*frame.time_s, 1e6)) : Json()}};
   if (frame.arrived_s) json["arrived_s"] = rounded(*frame.arrived_s, 1e6);
   if (latency_ms) json["latency_ms"] = rounded(*latency_ms, 1e3);
+  if (frame.up) json["up"] = {rounded(frame.up->x()), rounded(frame.up->y()), rounded(frame.up->z())};
   json["camera"] = camera_json(frame.camera);
   json["people"] = std::move(list);
   return line(json);

@@ -13,8 +13,8 @@ namespace vesalius {
 /// Returns one line of JSON, without its end, about a frame (docs/formats.md): its name, its time, its camera and the
 /// people with their box (pixels), parts and joints. Points are given in metres in the optical frame (xyz_m) and in
 /// pixels of the depth picture (px). A frame that a live source got also has the time of its arrival and, if
-/// `latency_ms` is given, how long its people took from then on. Every part and joint is listed; where the state is
-/// "none" xyz_m and px are null.
+/// `latency_ms` is given, how long its people took from then on; one that knows up has that. Every part and joint is
+/// listed; where the state is "none" xyz_m and px are null.
 std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
                        std::optional<double> latency_ms = {});
 

@@ -44,6 +44,13 @@ TEST(PersonJson, NobodyIsAnEmptyList) {
       R"({"frame":"0172","time_s":1.5,"camera":{"width":320,"height":240,"fx":250.0,"fy":262.1,"cx":160.0,"cy":120.0},"people":[]})");
 }
 
+TEST(PersonJson, SaysWhereUpIsIfTheFrameKnows) {
+  Frame frame = named("a");
+  EXPECT_FALSE(json::parse(frame_json(frame, {}, paper_body())).contains("up"));
+  frame.up = {0.F, -0.8F, 0.6F};
+  EXPECT_EQ(json::parse(frame_json(frame, {}, paper_body())).at("up"), json({0.0, -0.8, 0.6}));
+}
+
 TEST(PersonJson, ListsEveryPartAndJoint) {
   const BodyModel& body = paper_body();
   const std::string line = frame_json(named("f"), {half_seen(body)}, body);

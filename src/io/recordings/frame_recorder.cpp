@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "io/recordings/camera_messages.h"
+#include "io/recordings/imu_messages.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/people_messages.h"
 
@@ -32,6 +33,10 @@ void FrameRecorder::write(const Frame& frame) {
   ++frames_;
   out_.write(topic(camera_, "/camera/depth/camera_info", "sensor_msgs/CameraInfo"), log_ns_,
              calibration_message(frame.camera, time_ns_, kFrame));
+  // Once one frame knew up, readers must be told of those that do not.
+  if (frame.up || imu_) {
+    out_.write(topic(imu_, "/camera/imu", "sensor_msgs/Imu"), log_ns_, imu_message(frame.up, time_ns_, kFrame));
+  }
   if (!frame.colour.empty()) {
     out_.write(topic(colour_, "/camera/color/image", "sensor_msgs/Image"), log_ns_,
                colour_message(frame.colour, time_ns_, kFrame));

@@ -15,10 +15,11 @@ namespace vesalius {
 /// Records frames, and the people found in them, into an MCAP file of standard ROS 2 messages:
 ///   /camera/depth/image, /camera/depth/camera_info     16UC1, millimetres, without loss; the camera
 ///   /camera/color/image                                rgb8, registered to depth; only of frames with colour
+///   /camera/imu                                        Imu: gravity; from the first frame on that knows up
 ///   /people/body_index, /people/parts                  mono8: person and part of each pixel, 255 = neither
 ///   /people/markers                                    MarkerArray: links, parts and scores in 3-D
 ///   /people/json                                       String: the line of `vesalius detect --json`
-/// All are in one coordinate frame, "camera_optical_frame". open_source reads depth and colour back as they were.
+/// All are in one coordinate frame, "camera_optical_frame". open_source reads depth, colour and up back as they were.
 class FrameRecorder {
  public:
   /// Creates `path`. Frames without times get those of `rate` frames a second. Throws Error as McapWriter does.
@@ -40,7 +41,7 @@ class FrameRecorder {
   int frames_ = 0;
   std::int64_t time_ns_ = 0;  ///< of the frame that was added last
   std::int64_t log_ns_ = 0;   ///< when it arrived, or the same
-  std::optional<std::uint16_t> depth_, camera_, colour_, index_, parts_, markers_, json_;
+  std::optional<std::uint16_t> depth_, camera_, colour_, imu_, index_, parts_, markers_, json_;
 };
 
 }  // namespace vesalius

@@ -52,6 +52,11 @@ const std::vector<Definition>& definitions() {
        "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\nfloat64[] d\nfloat64[9] k\n"
        "float64[9] r\nfloat64[12] p\nuint32 binning_x\nuint32 binning_y\nsensor_msgs/RegionOfInterest roi\n",
        {"std_msgs/Header", "sensor_msgs/RegionOfInterest"}},
+      {"sensor_msgs/Imu",
+       "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
+       "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
+       "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n",
+       {"std_msgs/Header", "geometry_msgs/Quaternion", "geometry_msgs/Vector3"}},
       {"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n", {}},
       {"visualization_msgs/MeshFile", "string filename\nuint8[] data\n", {}},
       {"visualization_msgs/Marker",

@@ -9,13 +9,14 @@
 #include "io/files/test_files.h"
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/frame_recorder.h"
-#include "io/recordings/people_messages.h"
 #include "io/sources/open_source.h"
+#include "io/sources/test_messages.h"
 
 namespace vesalius {
 namespace {
 
 using test::error_of;
+using test::Messages;
 using test::random_frame;
 using testing::AllOf;
 using testing::Each;
@@ -36,34 +37,6 @@ std::string record(const std::string& path, const std::vector<Frame>& frames) {
   return path;
 }
 
-/// Writes single messages of a camera.
-class Messages {
- public:
-  explicit Messages(const std::string& path) : out_(path) {}
-  void put(const std::string& topic, const std::string& type, std::int64_t time_ns, const std::string& message) {
-    const auto [found, is_new] = topics_.try_emplace(topic, std::uint16_t{0});
-    if (is_new)
-      found->second = out_.add_topic(topic, type, message_definition(std::string(type).erase(type.find("/msg"), 4)));
-    out_.write(found->second, time_ns, message);
-  }
-  void depth(const std::string& topic, std::int64_t time_ns, const Frame& frame,
-             const std::string& place = "depth_frame") {
-    put(topic, "sensor_msgs/msg/Image", time_ns, depth_message(frame.depth, time_ns, place));
-  }
-  void colour(const std::string& topic, std::int64_t time_ns, const Frame& frame,
-              const std::string& place = "depth_frame") {
-    put(topic, "sensor_msgs/msg/Image", time_ns, colour_message(frame.colour, time_ns, place));
-  }
-  void camera(const std::string& topic, const Camera& camera, const std::string& place = "depth_frame") {
-    put(topic, "sensor_msgs/msg/CameraInfo", 0, calibration_message(camera, 0, place));
-  }
-  void close() { out_.close(); }
-
- private:
-  McapWriter out_;
-  std::map<std::string, std::uint16_t> topics_;
-};
-
 constexpr std::int64_t kMs = 1'000'000;
 
 TEST(RecordingSource, GivesBackFramesAsTheyWereRecorded) {
@@ -72,6 +45,7 @@ TEST(RecordingSource, GivesBackFramesAsTheyWereRecorded) {
   for (int i = 0; i < 50; ++i) {
     frames.push_back(random_frame("f", static_cast<std::uint64_t>(i)));
     frames.back().time_s = 3.0 + 0.25 * i;
+    if (i % 3 != 0) frames.back().up = Eigen::Vector3f(0.1F, -1.F, 0.02F * static_cast<float>(i)).normalized();
   }
   const auto source = open_source(record(folder / "a.mcap", frames));
   EXPECT_EQ(source->size(), 50);
@@ -83,6 +57,9 @@ TEST(RecordingSource, GivesBackFramesAsTheyWereRecorded) {
     EXPECT_EQ(back[i].colour, frames[i].colour);
     EXPECT_EQ(back[i].camera, frames[i].camera);
     EXPECT_EQ(back[i].time_s, frames[i].time_s);
+    ASSERT_EQ(back[i].up.has_value(), frames[i].up.has_value()) << i;
+    const Eigen::Vector3f none(0.F, 0.F, 0.F);
+    EXPECT_LT((back[i].up.value_or(none) - frames[i].up.value_or(none)).norm(), 2e-7F) << i;
   }
   EXPECT_EQ(back[1].name, "3.250000000");
 }
