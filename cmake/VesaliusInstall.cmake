@@ -21,7 +21,7 @@ foreach(component IN LISTS VESALIUS_COMPONENTS)
   endforeach()
 endforeach()
 
-get_property(VESALIUS_SENSOR_PACKAGES GLOBAL PROPERTY VESALIUS_SENSOR_PACKAGES)
+get_property(VESALIUS_OPTIONAL_PACKAGES GLOBAL PROPERTY VESALIUS_OPTIONAL_PACKAGES)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vesaliusConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake INSTALL_DESTINATION ${VESALIUS_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vesaliusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
@@ -29,6 +29,7 @@ install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/v
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZF.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindHDF5C.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZ4.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenNI2.cmake ${PROJECT_SOURCE_DIR}/cmake/FindFreenect.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindAvformat.cmake
         DESTINATION ${VESALIUS_CMAKE_DIR})
 
 # What the program finds without being told where (src/cli/default_model.h), and what bash asks for commands and flags.

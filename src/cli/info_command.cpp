@@ -10,6 +10,7 @@
 #include "cli/text_sink.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
+#include "io/recordings/mkv_recording.h"
 #include "io/sensors/sensor_drivers.h"
 #include "vesalius/base/parallel.h"
 
@@ -45,6 +46,7 @@ Json part_facts() {
   for (const SensorDriver& driver : sensor_drivers()) {
     facts[std::string(driver.scheme)] = driver.built ? "present" : "absent";
   }
+  facts["mkv"] = has_mkv() ? "present" : "absent";
   for (const char* name : {"k4a", "cuda", "viewer"}) facts[name] = "absent";
   return facts;
 }

@@ -18,7 +18,7 @@ void add_start_flag(CLI::App& command, SourceOptions& options);
 /// The text of --help on what SOURCE may be.
 inline constexpr const char* kSourceHelp =
     "Frames: a folder (depth/*.png with meta.json or camera_info.yaml, TUM RGB-D, PNG or PCD files), a 16-bit depth "
-    "PNG, an organised PCD file, or a recording (MCAP, ROS 1 .bag, ROS 2 .db3, .oni, .klg); tum:FOLDER:SCALE and "
+    "PNG, an organised PCD file, or a recording (MCAP, ROS 1 .bag, ROS 2 .db3, .oni, .klg, .mkv); tum:FOLDER:SCALE and "
     "similar prefixes "
     "state the kind";
 

@@ -31,7 +31,7 @@ from rosbags.rosbag1 import Reader as Reader1
 from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 STEP_NS = 33_000_000
 FIRST_NS = 1_700_000_000_000_000_000
@@ -630,6 +630,144 @@ def realsense(vesalius, work):
     print("same: played by librealsense", version)
 
 
+def write_rig(path, folder):
+    """A ROS 1 bag of two cameras with lenses, an accelerometer and the transforms between them."""
+    store = get_typestore(Stores.ROS1_NOETIC)
+    if "tf2_msgs/msg/TFMessage" not in store.types:
+        store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", "tf2_msgs/msg/TFMessage"))
+    types, messages = store.types, Messages(store, True)
+    with Writer1(path) as writer:
+        connections = {}
+
+        def put(topic, kind, time_ns, message):
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, kind, typestore=store)
+            writer.write(connections[topic], time_ns, messages.bytes(kind, message))
+
+        def vector(x, y, z):
+            return types["geometry_msgs/msg/Vector3"](x=x, y=y, z=z)
+
+        def header(time_ns, frame):
+            made = messages.header(time_ns)
+            made.frame_id = frame
+            return made
+
+        turn = types["geometry_msgs/msg/Quaternion"]
+        transforms = [types["geometry_msgs/msg/TransformStamped"](
+            header=header(FIRST_NS, "rig"), child_frame_id=child,
+            transform=types["geometry_msgs/msg/Transform"](translation=vector(x, 0.0, 0.0), rotation=rotation))
+            for child, x, rotation in (("depth", 0.0, turn(x=0.0, y=0.0, z=0.0, w=1.0)), ("colour", 0.05, turn(x=0.0, y=0.0, z=0.0, w=1.0)),
+                                       ("imu", 0.01, turn(x=0.0, y=0.0, z=0.5**0.5, w=0.5**0.5)))]
+        put("/tf_static", "tf2_msgs/msg/TFMessage", FIRST_NS, types["tf2_msgs/msg/TFMessage"](transforms=transforms))
+        meta = json.loads((folder / "meta.json").read_text())
+        for time_ns, depth, colour in frames(folder):
+            for name, model, d in (("depth", "plumb_bob", [-0.1, 0.01, 0, 0, 0]), ("colour", "rational_polynomial", [0.1] + [0] * 7)):
+                kind, info = messages.info(time_ns, meta)
+                info.header, info.distortion_model, info.D = header(time_ns, name), model, np.array(d, float)
+                put(f"/{name}/camera_info", kind, time_ns, info)
+            unknown = np.array([-1.0] + [0.0] * 8)
+            put("/imu", "sensor_msgs/msg/Imu", time_ns, types["sensor_msgs/msg/Imu"](
+                header=header(time_ns, "imu"), orientation=turn(x=0.0, y=0.0, z=0.0, w=1.0), orientation_covariance=unknown,
+                angular_velocity=vector(0.0, 0.0, 0.0), angular_velocity_covariance=unknown,
+                linear_acceleration=vector(-9.8, 0.0, 0.0), linear_acceleration_covariance=np.zeros(9)))
+            for name, picture, encoding in (("colour", colour, "bgr8"), ("depth", depth, "16UC1")):
+                kind, image = messages.image(time_ns, picture, encoding)
+                image.header = header(time_ns, name)
+                put(f"/{name}/image", kind, time_ns, image)
+
+
+def k4a_camera(purpose, side, intrinsics, turn=np.eye(3), shift=(0, 0, 0)):
+    cx, cy, fx, fy = intrinsics
+    return {"Intrinsics": {"ModelParameterCount": 14, "ModelType": "CALIBRATION_LensDistortionModelBrownConrady",
+                           "ModelParameters": [cx, cy, fx, fy] + [0] * 10},
+            "Purpose": f"CALIBRATION_CameraPurpose{purpose}", "MetricRadius": 1.7,
+            "Rt": {"Rotation": np.asarray(turn, float).reshape(-1).tolist(), "Translation": list(shift)},
+            "SensorWidth": side[0], "SensorHeight": side[1]}
+
+
+def k4a_calibration():
+    """Cameras without distortion in one place: the depth camera's, of narrow mode, and the colour camera's, of 1280x720."""
+    return {"CalibrationInformation": {"Cameras": [
+        k4a_camera("Depth", (1024, 1024), (0.5, 0.5, 0.49, 0.49)),
+        k4a_camera("PhotoVideo", (4096, 3072), (0.5, 0.5, 0.45, 0.6))], "InertialSensors": []}}
+
+
+def write_mkv(path, pictures, colour_codec, start_ns=5_000_000_000):
+    """Has ffmpeg write (depth, colour) as the recorder of Azure Kinects lays it out. ffmpeg states raw codecs in another way, which is
+    put right afterwards."""
+    with tempfile.TemporaryDirectory() as work:
+        work = Path(work)
+        (work / "calibration.json").write_text(json.dumps(k4a_calibration()))
+        (height, width), (colour_height, colour_width) = pictures[0][0].shape, pictures[0][1].shape[:2]
+        (work / "depth").write_bytes(b"".join(depth.astype(">u2").tobytes() for depth, _ in pictures))
+        (work / "colour").write_bytes(b"".join(np.ascontiguousarray(colour).tobytes() for _, colour in pictures))
+        codec = {"mjpeg": ["-c:v:0", "mjpeg", "-pix_fmt:v:0", "yuvj444p", "-q:v:0", "1"],
+                 "yuy2": ["-c:v:0", "rawvideo", "-pix_fmt:v:0", "yuyv422", "-tag:v:0", "YUY2"],
+                 "nv12": ["-c:v:0", "rawvideo", "-pix_fmt:v:0", "nv12", "-tag:v:0", "NV12"],
+                 "bgra": ["-c:v:0", "rawvideo", "-pix_fmt:v:0", "bgra", "-tag:v:0", "BGRA"]}[colour_codec]
+        subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "bgr24", "-s", f"{colour_width}x{colour_height}", "-r",
+                        "25", "-i", work / "colour", "-f", "rawvideo", "-pix_fmt", "gray16be", "-s", f"{width}x{height}", "-r", "25",
+                        "-i", work / "depth", "-map", "0", "-map", "1", *codec, "-c:v:1", "rawvideo", "-allow_raw_vfw", "1",
+                        "-attach", work / "calibration.json", "-metadata:s:t:0", "mimetype=application/octet-stream",
+                        "-metadata:s:t:0", "filename=calibration.json", "-metadata:s:v:0", "title=COLOR",
+                        "-metadata:s:v:1", "title=DEPTH", "-metadata", f"K4A_START_OFFSET_NS={start_ns}",
+                        "-f", "matroska", path], check=True)
+    data = path.read_bytes()
+    raw = [(width, height, 16, b"b16g")] + ([(colour_width, colour_height, 32, b"BGRA")] if colour_codec == "bgra" else [])
+    for columns, rows, bits, name in raw:
+        theirs = struct.pack("<IiiHHI", 40, columns, -rows, 1, bits, 0)
+        assert data.count(theirs) == 1, f"ffmpeg states {name} in yet another way"
+        data = data.replace(theirs, struct.pack("<IiiHH4s", 40, columns, rows, 1, bits, name))
+    path.write_bytes(data)
+
+
+def matroska(vesalius, folder, work):
+    """Frames of FOLDER as an Azure Kinect would record them: the same depth and the same people as of pictures."""
+    if not shutil.which("ffmpeg"):
+        print("left out: Matroska: no ffmpeg")
+        return
+    pictures, plain = [], work / "k4a"
+    (plain / "depth").mkdir(parents=True)
+    for i, (_, depth, colour) in enumerate(frames(folder)):
+        wide = np.zeros((576, 640), np.uint16)
+        wide[48:528] = cv2.resize(depth, (640, 480), interpolation=cv2.INTER_NEAREST)
+        cv2.imwrite(str(plain / "depth" / f"{i}.png"), wide)
+        pictures.append((wide, cv2.resize(colour, (1280, 720))))
+    focal = 0.49 * 1024
+    meta = {"width": 640, "height": 576, "fx": focal, "fy": focal, "cx": 512 - 192 - 0.5, "cy": 512 - 180 - 0.5}
+    (plain / "meta.json").write_text(json.dumps(meta))
+    for codec in ("mjpeg", "yuy2", "nv12", "bgra"):
+        recording, back = work / f"{codec}.mkv", work / f"{codec}_back"
+        write_mkv(recording, pictures, codec)
+        subprocess.run([vesalius, "convert", recording, back, "--to", "folder", "-q"], check=True)
+        found = sorted((back / "depth").glob("*.png"))
+        assert [p.stem for p in found] == [f"{5 + i * 40 // 1000}.{i * 40 % 1000:03}000000" for i in range(len(pictures))], codec
+        v, u = np.mgrid[:576, :640].astype(np.float32)
+        x, y = (u - meta["cx"]) / focal * 0.45 * 1280 + 639.5, (v - meta["cy"]) / focal * 0.6 * 960 + 359.5
+        for path, (depth, colour) in zip(found, pictures):
+            assert np.array_equal(cv2.imread(str(path), cv2.IMREAD_UNCHANGED), depth), f"{codec}: depth differs"
+            wanted = cv2.remap(colour, x, y, cv2.INTER_LINEAR).astype(int)
+            wanted[depth == 0] = 0
+            seen = cv2.imread(str(back / "rgb" / path.name)).astype(int)
+            # Chrominance is halved, and MJPEG loses some of all.
+            assert np.abs(seen - wanted).mean() < 3, f"{codec}: colour differs by {np.abs(seen - wanted).mean()}"
+        camera = json.loads((back / "meta.json").read_text())
+        assert all(abs(camera[key] - meta[key]) < 1e-3 for key in ("fx", "fy", "cx", "cy")), camera
+    found = []
+    for source in (back, work / "bgra.mkv"):
+        text = subprocess.run([vesalius, "detect", source, "--json", "-", "-q"], check=True, capture_output=True, text=True).stdout
+        found.append([json.loads(line)["people"] for line in text.splitlines() if "\"people\"" in line])
+    assert len(found[0]) == len(pictures) and found[0] == found[1] and any(found[0]), "Matroska: other people"
+    print("same: Matroska,", sum(len(people) for people in found[0]), "people")
+    whole = (work / "mjpeg.mkv").read_bytes()
+    (work / "cut.mkv").write_bytes(whole[: len(whole) * 6 // 10])
+    done = subprocess.run([vesalius, "convert", work / "cut.mkv", work / "cut_back", "--to", "folder"], capture_output=True, text=True)
+    count = len(list((work / "cut_back" / "depth").glob("*.png")))
+    assert done.returncode == 0 and 0 < count < len(pictures), f"{count} frames: {done.stderr}"
+    assert done.stderr.count("cut short") == 1, done.stderr
+    print("cut short: Matroska,", count, "of", len(pictures))
+
+
 def write_fixtures(out):
     """Three pictures of 16x12 whose every pixel follows from its place (recording_source_test.cpp); out is fuzz/seeds."""
     oni, klg, out = out / "fuzz_oni", out / "fuzz_klg", out / "fuzz_recording"
@@ -658,6 +796,8 @@ def write_fixtures(out):
         for name, kind, chunked in (("zstd", "ZSTD", True), ("lz4", "LZ4", True), ("loose", "NONE", False)):
             write_mcap(out / f"{name}.mcap", folder, kind, chunked, "16UC1", "rgb8")
         write_foxglove(out / "foxglove.mcap", folder)
+        (out / "rig.bag").unlink(missing_ok=True)
+        write_rig(out / "rig.bag", folder)
         record = openni_recorder(Path(work))
         if record:
             record(folder, oni / "raw.oni", False)
@@ -680,6 +820,7 @@ def main():
         realsense(vesalius, Path(work))
         read_openni_and_logs(vesalius, folder, Path(work))
         seek_in_theirs(vesalius, folder, Path(work))
+        matroska(vesalius, folder, Path(work))
 
 
 if __name__ == "__main__":

@@ -111,15 +111,62 @@ Calibration parse_realsense_text(std::string_view text, const std::string& name)
 
 std::string image_message(std::string_view encoding, int width, int height, int pixel_bytes, std::string_view data,
                           std::int64_t time_ns, std::string_view frame) {
-  CdrWriter out;
-  out.header(time_ns, frame);
-  out.u32(static_cast<std::uint32_t>(height));
-  out.u32(static_cast<std::uint32_t>(width));
-  out.text(encoding);
-  out.u8(0);  // little-endian
-  out.u32(static_cast<std::uint32_t>(width * pixel_bytes));
-  out.bytes(data);
-  return out.message();
+  PictureMessage picture;
+  picture.time_ns = time_ns;
+  picture.frame = frame;
+  picture.width = width;
+  picture.height = height;
+  picture.encoding = encoding;
+  picture.row_bytes = static_cast<std::uint32_t>(width * pixel_bytes);
+  picture.data = data;
+  return picture_message(picture);
+}
+
+/// Returns the colour of luminance and chrominance as television has them (BT.601, 16 to 235), in 256ths.
+Rgb from_yuv(int y, int u, int v) {
+  constexpr int kScale = 298, kRound = 128, kShift = 8;
+  const int c = kScale * (y - 16) + kRound, d = u - 128, e = v - 128;
+  const auto byte = [](int value) { return static_cast<std::uint8_t>(std::clamp(value >> kShift, 0, 255)); };
+  return {byte(c + 409 * e), byte(c - 100 * d - 208 * e), byte(c + 516 * d)};
+}
+
+/// Two pixels share their chrominance: Y U Y V.
+ColourImage from_yuy2(const PictureMessage& picture, const std::string& name) {
+  constexpr std::size_t kPixelBytes = 2;
+  expect_rows(picture, kPixelBytes, name);
+  if (picture.width % 2 != 0) {
+    throw Error(fmt::format("{}: yuv422_yuy2 of {} columns, expected an even number", name, picture.width));
+  }
+  ColourImage colour(picture.width, picture.height);
+  for (int v = 0; v < picture.height; ++v) {
+    const auto* row =
+        reinterpret_cast<const std::uint8_t*>(picture.data.data()) + static_cast<std::size_t>(v) * picture.row_bytes;
+    for (int u = 0; u < picture.width; ++u) {
+      const std::uint8_t* pair = row + 4 * (u / 2);
+      colour(u, v) = from_yuv(row[2 * u], pair[1], pair[3]);
+    }
+  }
+  return colour;
+}
+
+/// Luminance of all pixels, then chrominance of each four, U V.
+ColourImage from_nv12(const PictureMessage& picture, const std::string& name) {
+  expect_rows(picture, 1, name);
+  const auto row_bytes = static_cast<std::size_t>(picture.row_bytes);
+  const auto height = static_cast<std::size_t>(picture.height);
+  if (picture.width % 2 != 0 || picture.height % 2 != 0 || picture.data.size() < row_bytes * (height + height / 2)) {
+    throw Error(fmt::format("{}: nv12 of {}x{} with {} bytes, expected even sides and {} bytes", name, picture.width,
+                            picture.height, picture.data.size(), row_bytes * (height + height / 2)));
+  }
+  ColourImage colour(picture.width, picture.height);
+  const auto* luminance = reinterpret_cast<const std::uint8_t*>(picture.data.data());
+  const std::uint8_t* chrominance = luminance + row_bytes * height;
+  for (int v = 0; v < picture.height; ++v) {
+    const std::uint8_t* y = luminance + row_bytes * static_cast<std::size_t>(v);
+    const std::uint8_t* uv = chrominance + row_bytes * static_cast<std::size_t>(v / 2);
+    for (int u = 0; u < picture.width; ++u) colour(u, v) = from_yuv(y[u], uv[u / 2 * 2], uv[u / 2 * 2 + 1]);
+  }
+  return colour;
 }
 
 template <class T>
@@ -241,10 +288,13 @@ DepthImage depth_of(const PictureMessage& picture, float units_per_m, const std:
 
 ColourImage colour_of(const PictureMessage& picture, const std::string& name) {
   if (picture.compressed) return decode_colour(picture.data, name);
+  if (picture.encoding == "yuv422_yuy2") return from_yuy2(picture, name);
+  if (picture.encoding == "nv12") return from_nv12(picture, name);
   const auto found = std::ranges::find(kColourEncodings, picture.encoding, &ColourEncoding::name);
   if (found == kColourEncodings.end()) {
-    throw Error(fmt::format("{}: colour encoded as \"{}\", expected rgb8, bgr8, rgba8, bgra8 or mono8", name,
-                            picture.encoding));
+    throw Error(
+        fmt::format("{}: colour encoded as \"{}\", expected rgb8, bgr8, rgba8, bgra8, mono8, yuv422_yuy2 or nv12", name,
+                    picture.encoding));
   }
   expect_rows(picture, static_cast<std::size_t>(found->bytes), name);
   ColourImage colour(picture.width, picture.height);
@@ -271,24 +321,53 @@ std::string grey_message(const Image<std::uint8_t>& grey, std::int64_t time_ns, 
   return image_message("mono8", grey.width(), grey.height(), 1, bytes_of(grey), time_ns, frame);
 }
 
-std::string calibration_message(const Camera& camera, std::int64_t time_ns, std::string_view frame) {
+std::string picture_message(const PictureMessage& picture) {
   CdrWriter out;
-  out.header(time_ns, frame);
-  out.u32(static_cast<std::uint32_t>(camera.height));
-  out.u32(static_cast<std::uint32_t>(camera.width));
-  out.text("plumb_bob");
-  constexpr std::uint32_t kCoefficients = 5;
-  out.u32(kCoefficients);
-  for (std::uint32_t i = 0; i < kCoefficients; ++i) out.real64(0.0);
-  const double fx = camera.fx, fy = camera.fy, cx = camera.cx, cy = camera.cy;
-  for (const double k : {fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0}) out.real64(k);
-  for (const double r : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) out.real64(r);
-  for (const double p : {fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0}) out.real64(p);
+  out.header(picture.time_ns, picture.frame);
+  if (picture.compressed) {
+    out.text(picture.encoding);
+  } else {
+    out.u32(static_cast<std::uint32_t>(picture.height));
+    out.u32(static_cast<std::uint32_t>(picture.width));
+    out.text(picture.encoding);
+    out.u8(picture.big_endian ? 1 : 0);
+    out.u32(picture.row_bytes);
+  }
+  out.bytes(picture.data);
+  return out.message();
+}
+
+std::string calibration_message(const Calibration& calibration, std::int64_t time_ns) {
+  CdrWriter out;
+  out.header(time_ns, calibration.frame);
+  out.u32(static_cast<std::uint32_t>(calibration.height));
+  out.u32(static_cast<std::uint32_t>(calibration.width));
+  out.text(calibration.model);
+  out.u32(static_cast<std::uint32_t>(calibration.distortion.size()));
+  for (const double k : calibration.distortion) out.real64(k);
+  for (const double k : calibration.matrix) out.real64(k);
+  for (const double r : calibration.rotation) out.real64(r);
+  for (const double p : calibration.projection) out.real64(p);
   out.u32(0);  // no binning
   out.u32(0);
   for (int i = 0; i < 4; ++i) out.u32(0);  // the whole picture
   out.u8(0);
   return out.message();
+}
+
+std::string calibration_message(const Camera& camera, std::int64_t time_ns, std::string_view frame) {
+  constexpr std::size_t kCoefficients = 5;
+  const double fx = camera.fx, fy = camera.fy, cx = camera.cx, cy = camera.cy;
+  Calibration calibration;
+  calibration.frame = frame;
+  calibration.width = camera.width;
+  calibration.height = camera.height;
+  calibration.model = "plumb_bob";
+  calibration.distortion.assign(kCoefficients, 0.0);
+  calibration.matrix = {fx, 0, cx, 0, fy, cy, 0, 0, 1};
+  calibration.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  calibration.projection = {fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0};
+  return calibration_message(calibration, time_ns);
 }
 
 }  // namespace vesalius

@@ -51,7 +51,8 @@ bool is_depth(const PictureMessage& picture);
 /// are metres. Throws Error naming `name` if the picture is not what it says.
 DepthImage depth_of(const PictureMessage& picture, float units_per_m, const std::string& name);
 
-/// Returns the colours of a picture: rgb8, bgr8, rgba8, bgra8, mono8, PNG or JPEG. Throws Error naming `name`.
+/// Returns the colours of a picture: rgb8, bgr8, rgba8, bgra8, mono8, yuv422_yuy2, nv12, PNG or JPEG. Throws Error
+/// naming `name`.
 ColourImage colour_of(const PictureMessage& picture, const std::string& name);
 
 /// Returns a sensor_msgs/Image of 16UC1, millimetres, as CDR.
@@ -60,6 +61,10 @@ std::string depth_message(const DepthImage& depth, std::int64_t time_ns, std::st
 std::string colour_message(const ColourImage& colour, std::int64_t time_ns, std::string_view frame);
 /// Returns a sensor_msgs/Image of mono8 as CDR.
 std::string grey_message(const Image<std::uint8_t>& grey, std::int64_t time_ns, std::string_view frame);
+/// Returns a sensor_msgs/Image or CompressedImage as CDR.
+std::string picture_message(const PictureMessage& picture);
+/// Returns a sensor_msgs/CameraInfo as CDR.
+std::string calibration_message(const Calibration& calibration, std::int64_t time_ns);
 /// Returns a sensor_msgs/CameraInfo without distortion as CDR.
 std::string calibration_message(const Camera& camera, std::int64_t time_ns, std::string_view frame);
 

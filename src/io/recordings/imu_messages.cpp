@@ -36,17 +36,21 @@ Acceleration parse_acceleration(const RecordedTopic& topic, std::string_view mes
   return acceleration;
 }
 
-std::string imu_message(const std::optional<Eigen::Vector3f>& up, std::int64_t time_ns, std::string_view frame) {
+std::string acceleration_message(const Acceleration& acceleration) {
   CdrWriter out;
-  out.header(time_ns, frame);
+  out.header(acceleration.time_ns, acceleration.frame);
   for (const double q : {0.0, 0.0, 0.0, 1.0}) out.real64(q);
   write_covariance(out, kNotKnown);
   for (int axis = 0; axis < 3; ++axis) out.real64(0.0);
   write_covariance(out, kNotKnown);
-  const Eigen::Vector3f direction = up.value_or(Eigen::Vector3f::Zero());
-  for (const float axis : direction) out.real64(kGravity_m_s2 * static_cast<double>(axis));
-  write_covariance(out, up ? 0.0 : kNotKnown);
+  for (const double axis : acceleration.m_s2) out.real64(axis);
+  write_covariance(out, acceleration.m_s2.isZero(0.0) ? kNotKnown : 0.0);
   return out.message();
+}
+
+std::string imu_message(const std::optional<Eigen::Vector3f>& up, std::int64_t time_ns, std::string_view frame) {
+  const Eigen::Vector3d direction = up.value_or(Eigen::Vector3f::Zero()).cast<double>();
+  return acceleration_message({time_ns, std::string(frame), kGravity_m_s2 * direction});
 }
 
 }  // namespace vesalius

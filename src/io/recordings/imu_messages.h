@@ -23,8 +23,10 @@ bool is_acceleration(const RecordedTopic& topic);
 /// Reads a message of a topic that is_acceleration. Throws Error naming `name`.
 Acceleration parse_acceleration(const RecordedTopic& topic, std::string_view message, const std::string& name);
 
-/// Returns a sensor_msgs/Imu as CDR, of a sensor at rest that feels gravity, or knows nothing where there is no `up`.
-/// How it turns and its orientation are not known.
+/// Returns a sensor_msgs/Imu as CDR. An acceleration of 0 is not known; how the sensor turns and its orientation are
+/// not either.
+std::string acceleration_message(const Acceleration& acceleration);
+/// Returns that of a sensor at rest, which feels gravity; without `up` its acceleration is not known.
 std::string imu_message(const std::optional<Eigen::Vector3f>& up, std::int64_t time_ns, std::string_view frame);
 
 }  // namespace vesalius

@@ -6,6 +6,7 @@
 #include "io/recordings/bag_recording.h"
 #include "io/recordings/mcap_recording.h"
 #include "io/recordings/mcap_records.h"
+#include "io/recordings/mkv_recording.h"
 #include "io/recordings/sqlite_recording.h"
 #include "vesalius/base/error.h"
 
@@ -13,12 +14,14 @@ namespace vesalius {
 
 std::unique_ptr<Recording> open_recording(const std::string& path) {
   constexpr std::string_view kSqlite = "SQLite format 3";
+  constexpr std::string_view kMatroska = "\x1A\x45\xDF\xA3";
   DataFile file(path);
   const std::string first = file.read(0, 16);
   if (first.starts_with(kMcapMagic)) return open_mcap(std::move(file));
   if (first.starts_with(kBagMagic)) return open_bag(std::move(file));
   if (first.starts_with(kSqlite)) return open_sqlite(path);
-  throw Error(fmt::format("{}: {}, expected MCAP, a ROS 1 bag of version 2.0, or a ROS 2 bag in SQLite", path,
+  if (first.starts_with(kMatroska)) return open_mkv(path);
+  throw Error(fmt::format("{}: {}, expected MCAP, a ROS 1 bag of version 2.0, a ROS 2 bag in SQLite, or Matroska", path,
                           file.size() == 0 ? "empty" : "no recording that is known"));
 }
 

@@ -112,6 +112,19 @@ std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::st
   return transforms;
 }
 
+std::string transforms_message(const std::vector<FrameTransform>& transforms, std::int64_t time_ns) {
+  CdrWriter out;
+  out.u32(static_cast<std::uint32_t>(transforms.size()));
+  for (const FrameTransform& one : transforms) {
+    out.header(time_ns, one.parent);
+    out.text(one.child);
+    for (const double t : one.parent_from_child.translation()) out.real64(t);
+    const Eigen::Quaterniond q(one.parent_from_child.linear());
+    for (const double k : {q.x(), q.y(), q.z(), q.w()}) out.real64(k);
+  }
+  return out.message();
+}
+
 std::vector<std::pair<std::string, Eigen::Isometry3d>> TransformTree::chain(const std::string& frame) const {
   std::vector<std::pair<std::string, Eigen::Isometry3d>> up{{plain(frame), Eigen::Isometry3d::Identity()}};
   while (up.size() < kMostAncestors) {
@@ -125,9 +138,9 @@ std::vector<std::pair<std::string, Eigen::Isometry3d>> TransformTree::chain(cons
 std::optional<Eigen::Isometry3d> TransformTree::find(const std::string& to, const std::string& from) const {
   if (to.empty() || from.empty()) return std::nullopt;
   const auto above_to = chain(to), above_from = chain(from);
-  for (const auto& [frame, frame_from] : above_from) {
-    const auto common = std::ranges::find_if(above_to, [&](const auto& one) { return one.first == frame; });
-    if (common != above_to.end()) return common->second.inverse() * frame_from;
+  for (const auto& ancestor : above_from) {
+    const auto common = std::ranges::find(above_to, ancestor.first, &std::pair<std::string, Eigen::Isometry3d>::first);
+    if (common != above_to.end()) return common->second.inverse() * ancestor.second;
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,6 +26,9 @@ bool is_transform(const RecordedTopic& topic);
 /// Throws Error naming `name`.
 std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::string_view message,
                                              const std::string& name);
+
+/// Returns a tf2_msgs/TFMessage as CDR.
+std::string transforms_message(const std::vector<FrameTransform>& transforms, std::int64_t time_ns);
 
 /// Coordinate frames and where they stand in each other.
 class TransformTree {

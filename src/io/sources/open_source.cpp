@@ -52,7 +52,7 @@ constexpr const char* kFolder = "a folder with depth/*.png or depth PNG files";
 constexpr const char* kTum = "a folder with depth.txt (TUM RGB-D)";
 constexpr const char* kPcd = "an organised PCD file or a folder of them";
 constexpr const char* kPng = "a depth PNG or a folder of them";
-constexpr const char* kRecording = "an MCAP file, a ROS bag, a folder of rosbag2, an .oni or a .klg";
+constexpr const char* kRecording = "an MCAP file, a ROS bag, a folder of rosbag2, an .oni, a .klg or an .mkv";
 constexpr const char* kAnything = "a folder, a depth PNG, a PCD file or a recording";
 
 void refuse_colour_file(const std::string& path, const SourceOptions& options) {
@@ -202,7 +202,7 @@ std::string_view scheme_of_file(const std::string& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".png") return "png";
   if (extension == ".pcd") return "pcd";
-  for (const char* recorded : {".mcap", ".bag", ".db3", ".oni", ".klg"}) {
+  for (const char* recorded : {".mcap", ".bag", ".db3", ".oni", ".klg", ".mkv"}) {
     if (extension == recorded) return "recording";
   }
   throw Error(fmt::format("{}: unknown kind of file, expected {}", path, kAnything));

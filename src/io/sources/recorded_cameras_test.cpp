@@ -156,6 +156,48 @@ TEST(RecordedCameras, UpIsTheMeanAccelerationInTheOpticalFrame) {
   EXPECT_FALSE(source->next()->up);
 }
 
+/// Written by rosbags (tests/recordings/other_side.py --fixtures): colour 5 cm to the right, the imu a quarter turn
+/// about z.
+TEST(RecordedCameras, OfABagOfOthersGoTogether) {
+  const auto source = open_source(std::string(VESALIUS_FUZZ_SEEDS) + "/fuzz_recording/rig.bag");
+  EXPECT_THAT(source->notes(), IsEmpty());
+  const Camera camera{16, 12, 14.5F, 15.F, 7.5F, 5.5F};
+  DepthImage depth(16, 12);
+  ColourImage colour(16, 12);
+  for (int v = 0; v < 12; ++v) {
+    for (int u = 0; u < 16; ++u) {
+      depth(u, v) = static_cast<std::uint16_t>(u == v ? 0 : 1000 + 10 * v + u);
+      colour(u, v) = {static_cast<std::uint8_t>(10 * u), static_cast<std::uint8_t>(20 * v), 7};
+    }
+  }
+  depth = Rectification({camera, make_lens("plumb_bob", {-0.1, 0.01}).value()}, camera).depth(depth);
+  const LensCamera seen{camera, make_lens("rational_polynomial", {0.1}).value()};
+  const Frame read = *source->next();
+  EXPECT_EQ(read.depth, depth);
+  EXPECT_EQ(read.colour, ColourRegistration(camera, seen, Isometry3d(Translation3d(-0.05, 0, 0)))(depth, colour));
+  EXPECT_LT((read.up.value() - Eigen::Vector3f(0, -1, 0)).norm(), 1e-6F);
+}
+
+TEST(RecordedCameras, UpIsTheSameAfterASeek) {
+  const test::TemporaryFolder folder;
+  const Frame a = random_frame("a", 1);
+  Messages out(folder / "a.mcap");
+  out.camera("/depth/camera_info", a.camera);
+  for (int i = 0; i < 300; ++i) {
+    out.acceleration("/imu", (10 * i + 1) * kMs, {0.3 * std::sin(i), -9.8, 0.001 * i}, "depth_frame");
+    if (i % 10 == 0) out.depth("/depth/image", (10 * i + 2) * kMs, a);
+  }
+  out.close();
+  const auto source = open_source(folder / "a.mcap");
+  std::vector<Frame> frames;
+  while (auto frame = source->next()) frames.push_back(std::move(*frame));
+  ASSERT_EQ(frames.size(), 30U);
+  for (const std::size_t i : {29U, 12U, 0U}) {
+    source->seek(*frames[i].time_s);
+    EXPECT_EQ(source->next()->up, frames[i].up) << i;
+  }
+}
+
 TEST(RecordedCameras, UpOfASensorThatNothingConnectsIsNotTaken) {
   const test::TemporaryFolder folder;
   const Frame a = random_frame("a", 1);

@@ -9,7 +9,7 @@
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/imu_messages.h"
 #include "io/recordings/mcap_writer.h"
-#include "io/recordings/message_fields.h"
+#include "io/recordings/transform_messages.h"
 #include "vesalius/base/frame.h"
 
 namespace vesalius::test {
@@ -33,36 +33,24 @@ class Messages {
   }
   void lens(const std::string& topic, const LensCamera& camera, const std::string& model, const std::vector<double>& d,
             const std::string& place) {
-    CdrWriter out;
-    out.header(0, place);
-    out.u32(static_cast<std::uint32_t>(camera.camera.height));
-    out.u32(static_cast<std::uint32_t>(camera.camera.width));
-    out.text(model);
-    out.u32(static_cast<std::uint32_t>(d.size()));
-    for (const double k : d) out.real64(k);
     const double fx = camera.camera.fx, fy = camera.camera.fy, cx = camera.camera.cx, cy = camera.camera.cy;
-    for (const double k : {fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0}) out.real64(k);
-    for (const double r : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) out.real64(r);
-    for (const double p : {fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0}) out.real64(p);
-    for (int i = 0; i < 6; ++i) out.u32(0);
-    out.u8(0);
-    put(topic, "sensor_msgs/msg/CameraInfo", 0, out.message());
+    Calibration c;
+    c.frame = place;
+    c.width = camera.camera.width;
+    c.height = camera.camera.height;
+    c.model = model;
+    c.distortion = d;
+    c.matrix = {fx, 0, cx, 0, fy, cy, 0, 0, 1};
+    c.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    c.projection = {fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0};
+    put(topic, "sensor_msgs/msg/CameraInfo", 0, calibration_message(c, 0));
   }
   void transform(const std::string& parent, const std::string& child, const Eigen::Isometry3d& parent_from_child) {
-    CdrWriter out;
-    out.u32(1);
-    out.header(0, parent);
-    out.text(child);
-    for (const double t : parent_from_child.translation()) out.real64(t);
-    const Eigen::Quaterniond q(parent_from_child.linear());
-    for (const double k : {q.x(), q.y(), q.z(), q.w()}) out.real64(k);
-    put("/tf_static", "tf2_msgs/msg/TFMessage", 0, out.message());
+    put("/tf_static", "tf2_msgs/msg/TFMessage", 0, transforms_message({{parent, child, parent_from_child}}, 0));
   }
-  /// An accelerometer's, of any length.
   void acceleration(const std::string& topic, std::int64_t time_ns, const Eigen::Vector3d& m_s2,
                     const std::string& place) {
-    constexpr double kGravity = 9.80665;
-    put(topic, "sensor_msgs/msg/Imu", time_ns, imu_message((m_s2 / kGravity).cast<float>(), time_ns, place));
+    put(topic, "sensor_msgs/msg/Imu", time_ns, acceleration_message({time_ns, place, m_s2}));
   }
   void camera(const std::string& topic, const Camera& camera, const std::string& place = "depth_frame") {
     put(topic, "sensor_msgs/msg/CameraInfo", 0, calibration_message(camera, 0, place));

@@ -1,0 +1,13 @@
+// In place of mkv_recording.cpp where libavformat was not found.
+#include "io/recordings/mkv_recording.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+
+bool has_mkv() { return false; }
+
+std::unique_ptr<Recording> open_mkv(const std::string& path) {
+  throw Error(path + ": this build cannot open Matroska; install libavformat-dev and build again");
+}
+
+}  // namespace vesalius
