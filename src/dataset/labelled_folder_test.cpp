@@ -110,6 +110,11 @@ TEST(LabelledFolder, NamesTheFileThatIsWrong) {
               HasSubstr("labels/frame_1.png"));
   EXPECT_THAT(complaint([](const std::string& path) { std::filesystem::remove(path + "/meta.json"); }),
               HasSubstr("no intrinsics"));
+  EXPECT_THAT(complaint([](const std::string& path) {
+                std::filesystem::remove(path + "/meta.json");
+                test::put(path + "/camera_info.yaml", "K: [50, 0, 9, 0, 50, 7, 0, 0, 1]\nD: [0.1, 0, 0, 0, 0]\n");
+              }),
+              HasSubstr("a distorted lens, expected labels of a pinhole camera"));
   EXPECT_THAT(complaint(put("/body.toml", "name = ")), HasSubstr("body.toml"));
   EXPECT_THAT(complaint(put("/truth/frame_1.json", "{")), HasSubstr("truth/frame_1.json: no \"people\""));
   EXPECT_THAT(complaint(put("/truth/frame_1.json", R"({"people": [7]})")), HasSubstr("no \"parts_m\""));

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
-#include <deque>
 #include <map>
 #include <utility>
 #include <vector>
@@ -31,6 +31,8 @@ namespace {
 constexpr AVRational kNanosecond{1, 1'000'000'000};
 /// Packets of tracks that belong together lie so much apart in the file at most.
 constexpr std::int64_t kLead_ns = 1'000'000'000;
+/// Later times are damage; these can be added without overflow.
+constexpr std::int64_t kMostTime_ns = std::int64_t{1} << 61;
 
 struct CloseInput {
   void operator()(AVFormatContext* context) const { avformat_close_input(&context); }
@@ -68,7 +70,7 @@ constexpr std::array<ColourFormat, 3> kColourFormats{
 class MkvRecording final : public Recording {
  public:
   explicit MkvRecording(std::string path) : path_(std::move(path)), packet_(av_packet_alloc()) {
-    av_log_set_level(AV_LOG_QUIET);
+    av_log_set_level(AV_LOG_QUIET);  // what is wrong is told by errors and notes
     note_end();
     open();
     describe();
@@ -87,7 +89,9 @@ class MkvRecording final : public Recording {
       const std::int64_t pts = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
       if (topic == topic_of_.end() || pts == AV_NOPTS_VALUE || packet_->size <= 0) continue;
       const AVStream& stream = *context_->streams[packet_->stream_index];
-      const std::int64_t time_ns = offset_ns_ + av_rescale_q(pts, stream.time_base, kNanosecond);
+      const std::int64_t since_start_ns = av_rescale_q(pts, stream.time_base, kNanosecond);
+      if (since_start_ns < -kMostTime_ns || since_start_ns > kMostTime_ns) continue;
+      const std::int64_t time_ns = offset_ns_ + since_start_ns;
       message_ = message_of(packet_->stream_index, time_ns);
       return RecordedMessage{topic->second, time_ns, message_};
     }
@@ -157,10 +161,11 @@ class MkvRecording final : public Recording {
   void describe() {
     const std::string offset = tag_of(context_->metadata, "K4A_START_OFFSET_NS");
     std::from_chars(offset.data(), offset.data() + offset.size(), offset_ns_);
-    constexpr std::int64_t kMost_ns = std::int64_t{1} << 61;
-    if (offset_ns_ < -kMost_ns || offset_ns_ > kMost_ns) offset_ns_ = 0;
+    if (offset_ns_ < -kMostTime_ns || offset_ns_ > kMostTime_ns) offset_ns_ = 0;
     first_ns_ = offset_ns_;
-    if (context_->duration > 0) duration_ns_ = av_rescale_q(context_->duration, {1, AV_TIME_BASE}, kNanosecond);
+    if (context_->duration > 0) {
+      duration_ns_ = std::min(kMostTime_ns, av_rescale_q(context_->duration, {1, AV_TIME_BASE}, kNanosecond));
+    }
     for (unsigned i = 0; i < context_->nb_streams; ++i) look_at(static_cast<int>(i));
     if (depth_ < 0) throw Error(path_ + ": no depth, expected a track of the codec b16g that is named DEPTH");
     add_topic(depth_, "/depth/image", "sensor_msgs/Image");

@@ -22,6 +22,8 @@ namespace {
 constexpr int kMostProbed = 5000;
 /// After that, so long transforms may still come.
 constexpr std::int64_t kForTransforms_ns = 1'000'000'000;
+/// So long topics are waited for that may have no message at all.
+constexpr std::int64_t kForOthers_ns = 20'000'000'000;
 constexpr double kNanoseconds = 1e9;
 
 bool has_word(const std::string& text, std::string_view word) {
@@ -96,6 +98,11 @@ float depth_unit(const RecordedTopic& topic, const RecordedMessage& message, con
   return unit_m;
 }
 
+/// Returns whether a time is more than `by_ns` after another. Times of damaged files may be any number.
+bool is_later(std::int64_t time_ns, std::int64_t than_ns, std::int64_t by_ns) {
+  return static_cast<double>(time_ns) - static_cast<double>(than_ns) > static_cast<double>(by_ns);
+}
+
 /// Reads until every topic that matters has shown itself, and transforms had their time.
 Contents look_into(Recording& recording, const std::string& place) {
   Contents contents;
@@ -108,10 +115,14 @@ Contents look_into(Recording& recording, const std::string& place) {
     if (matters) wanted[t] = true;
     if (is_transform(topic)) has_transforms = true;
   }
-  std::optional<std::int64_t> complete_ns;
+  const auto may_be_empty = [&](const auto& one) { return recording.topics()[one.first].messages < 0; };
+  std::optional<std::int64_t> first_ns, complete_ns;
   for (int i = 0; i < kMostProbed && (!wanted.empty() || has_transforms); ++i) {
     const std::optional<RecordedMessage> message = recording.next();
-    if (!message || (complete_ns && message->time_ns > *complete_ns + kForTransforms_ns)) break;
+    if (!message || (complete_ns && is_later(message->time_ns, *complete_ns, kForTransforms_ns))) break;
+    if (!first_ns) first_ns = message->time_ns;
+    const bool is_late = is_later(message->time_ns, *first_ns, kForOthers_ns);
+    if (is_late && !complete_ns && std::ranges::all_of(wanted, may_be_empty)) break;
     const RecordedTopic& topic = recording.topics()[message->topic];
     if (is_transform(topic)) {
       for (const FrameTransform& one : parse_transforms(topic, message->bytes, place)) contents.transforms.add(one);
