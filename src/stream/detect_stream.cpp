@@ -115,6 +115,7 @@ class Stream {
  private:
   void stop() {
     stopping_ = true;
+    source_.stop();
     work_.close();
     written_.close();
     helpers_.clear();  // joins the threads
@@ -164,7 +165,55 @@ class Stream {
   std::vector<std::jthread> helpers_;
 };
 
+/// Reads frames while those before are taken.
+class Passing {
+ public:
+  Passing(FrameSource& source, std::size_t ahead)
+      : source_(source), ahead_(ahead), reader_(helper([this] { read(); })) {}
+  ~Passing() {
+    stopping_ = true;
+    source_.stop();
+    ahead_.close();
+  }
+  Passing(const Passing&) = delete;
+  Passing& operator=(const Passing&) = delete;
+
+  void run(const StreamOptions& options, const std::function<bool(FoundFrame)>& take) {
+    while (!stopped(options) && !ahead_.finished()) {
+      std::optional<FoundFrame> found = ahead_.pop(kPatience);
+      if (found && !take(std::move(*found))) return;
+    }
+  }
+  int dropped() const { return dropped_; }
+
+ private:
+  void read() {
+    for (FoundFrame found; !stopping_ && read_next(source_, found); found = {}) {
+      // Errors wait for their turn: they are no frames that may be missed.
+      if (source_.is_live() && !found.error) {
+        if (!ahead_.try_push(std::move(found))) ++dropped_;
+      } else if (!ahead_.push(std::move(found))) {
+        break;
+      }
+    }
+    ahead_.close();
+  }
+
+  FrameSource& source_;
+  FrameQueue<FoundFrame> ahead_;
+  std::atomic<int> dropped_ = 0;
+  std::atomic<bool> stopping_ = false;
+  std::jthread reader_;
+};
+
 }  // namespace
+
+int stream_frames(FrameSource& source, const StreamOptions& options, std::size_t ahead,
+                  const std::function<bool(FoundFrame)>& take) {
+  Passing passing(source, ahead);
+  passing.run(options, take);
+  return passing.dropped();
+}
 
 int stream_frames(FrameSource& source, const Detector& detector, const StreamOptions& options,
                   const std::function<bool(FoundFrame)>& take) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -34,7 +35,8 @@ struct StreamOptions {
 /// Reads frames, finds people and passes both to `take`, in the caller's thread and in the source's order, until the
 /// source ends, `take` returns false or `stop` returns true. If more than one thread is allowed (ThreadLimit), frames
 /// are read ahead and two are processed at a time (in real time one). The people are the same for any number of
-/// threads. Exceptions of `take` are passed on. Returns the number of dropped frames.
+/// threads. Exceptions of `take` are passed on. A live source is stopped at the end. Returns the number of dropped
+/// frames.
 ///
 ///   Detector detector(load_model("default.forest"));
 ///   const auto source = open_source("frames/");
@@ -44,6 +46,12 @@ struct StreamOptions {
 ///     return true;
 ///   });
 int stream_frames(FrameSource& source, const Detector& detector, const StreamOptions& options,
+                  const std::function<bool(FoundFrame)>& take);
+
+/// As above, without looking for people: for whoever passes frames on, such as to a disk. Frames are read in a thread
+/// of their own, and up to `ahead` of them wait for `take`. Those of a live source that find no room are dropped; other
+/// sources wait. Of StreamOptions only `stop` counts.
+int stream_frames(FrameSource& source, const StreamOptions& options, std::size_t ahead,
                   const std::function<bool(FoundFrame)>& take);
 
 }  // namespace vesalius

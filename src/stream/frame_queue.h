@@ -26,6 +26,15 @@ class FrameQueue {
     return true;
   }
 
+  /// Adds the item if there is room, without waiting. Returns whether it did; otherwise the item is lost.
+  bool try_push(T item) {
+    const std::scoped_lock lock(mutex_);
+    if (closed_ || items_.size() >= capacity_) return false;
+    items_.push_back(std::move(item));
+    changed_.notify_all();
+    return true;
+  }
+
   /// Adds the item without waiting. If there is no room, the oldest item is dropped. Returns the number of dropped
   /// items, 0 or 1.
   int push_newest(T item) {

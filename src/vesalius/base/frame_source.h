@@ -29,8 +29,8 @@ class FrameSource {
   virtual int size() const = 0;
   /// Returns where the frames lie if `seek` can go to any of them; nothing where it cannot.
   virtual std::optional<TimeSpan> span() const { return std::nullopt; }
-  /// Goes to the first frame that is not before `time_s`, which `next` then returns; to the end where there is none. May
-  /// be called only where there is a span.
+  /// Goes to the first frame that is not before `time_s`, which `next` then returns; to the end where there is none.
+  /// May be called only where there is a span.
   virtual void seek(double /*time_s*/) {}
   /// Returns remarks for the user, one line each, such as guessed intrinsics or depth pictures without colour.
   virtual std::vector<std::string> notes() const { return {}; }
@@ -39,6 +39,9 @@ class FrameSource {
   virtual bool is_live() const { return false; }
   /// Returns the number of frames of a live source that were missed, since nobody asked for them in time.
   virtual int missed() const { return 0; }
+  /// Makes a call of `next` that waits for a camera end soon, and every later one at once: they return nothing. May be
+  /// called from any thread, and cannot be taken back. Other sources than live ones do not wait, and ignore it.
+  virtual void stop() {}
 };
 
 }  // namespace vesalius

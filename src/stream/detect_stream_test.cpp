@@ -1,0 +1,108 @@
+#include "stream/detect_stream.h"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+enum class Kind { files, camera, stalling_camera };
+
+/// Gives numbered frames as fast as it can. One that stalls then waits until it is told to stop.
+class Counter final : public FrameSource {
+ public:
+  Counter(int frames, Kind kind) : frames_(frames), kind_(kind) {}
+  std::optional<Frame> next() override {
+    std::unique_lock lock(mutex_);
+    if (given_ == frames_) {
+      asked_for_more_ = true;
+      changed_.notify_all();
+      if (kind_ == Kind::stalling_camera) changed_.wait(lock, [&] { return stopped_; });
+      return std::nullopt;
+    }
+    Frame frame;
+    frame.name = std::to_string(given_++);
+    return frame;
+  }
+  int size() const override { return is_live() ? -1 : frames_; }
+  bool is_live() const override { return kind_ != Kind::files; }
+  void stop() override {
+    const std::scoped_lock lock(mutex_);
+    stopped_ = true;
+    changed_.notify_all();
+  }
+  /// Waits until all frames were given and whoever got the last one asks for more.
+  void wait_until_all_are_given() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return asked_for_more_; });
+  }
+
+ private:
+  const int frames_;
+  const Kind kind_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int given_ = 0;
+  bool asked_for_more_ = false;
+  bool stopped_ = false;
+};
+
+constexpr int kFrames = 50;
+constexpr std::size_t kAhead = 5;
+
+// Labels: threads
+TEST(PassedFramesThreads, OfALiveSourceAreDroppedAndCountedWhereTheDiskPauses) {
+  Counter camera(kFrames, Kind::camera);
+  int written = 0;
+  const int dropped = stream_frames(camera, {}, kAhead, [&](const FoundFrame& found) {
+    if (written == 0) {
+      EXPECT_EQ(found.frame->name, "0");
+      camera.wait_until_all_are_given();  // the pause
+    }
+    ++written;
+    return true;
+  });
+  // One was being written while the others waited, unless all were given before it left the queue.
+  EXPECT_GE(written, static_cast<int>(kAhead));
+  EXPECT_LE(written, 1 + static_cast<int>(kAhead));
+  EXPECT_EQ(dropped, kFrames - written);
+}
+
+// Labels: threads
+TEST(PassedFramesThreads, OfFilesAreNeverDropped) {
+  Counter files(kFrames, Kind::files);
+  int written = 0;
+  const int dropped = stream_frames(files, {}, kAhead, [&](const FoundFrame& found) {
+    if (written == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));  // the pause
+    EXPECT_EQ(found.frame->name, std::to_string(written++));
+    return true;
+  });
+  EXPECT_EQ(written, kFrames);
+  EXPECT_EQ(dropped, 0);
+}
+
+// Labels: threads
+TEST(PassedFramesThreads, EndWhenEnoughAreTakenAndTheCameraGivesNoMore) {
+  Counter camera(3, Kind::stalling_camera);
+  int written = 0;
+  stream_frames(camera, {}, kAhead, [&](const FoundFrame&) { return ++written < 3; });
+  EXPECT_EQ(written, 3);
+  EXPECT_FALSE(camera.next()) << "it was stopped";
+}
+
+// Labels: threads
+TEST(PassedFramesThreads, PassOnWhatTheWriterThrows) {
+  Counter files(kFrames, Kind::files);
+  EXPECT_THROW(stream_frames(files, {}, kAhead, [](const FoundFrame&) -> bool { throw Error("the disk is full"); }),
+               Error);
+}
+
+}  // namespace
+}  // namespace vesalius
