@@ -92,17 +92,19 @@ void measure(const Detector& detector, const Frame& frame, double read_ms, Run& 
 /// alike.
 void measure_all(const Arguments& arguments, const Detector& detector, Bench& bench) {
   auto source = open_source(arguments.source, arguments.camera);
+  const bool live = source->is_live();
   const int wanted = arguments.frames > 0 ? arguments.frames : source->size();
   Progress progress(wanted, !arguments.quiet);
   while ((wanted < 0 || progress.done() < wanted) && !interrupted()) {
     const auto start = Clock::now();
     std::optional<Frame> frame = source->next();
-    if (!frame && (progress.done() == 0 || arguments.frames == 0)) break;
+    if (!frame && (progress.done() == 0 || arguments.frames == 0 || live)) break;
     if (!frame) {
       source = open_source(arguments.source, arguments.camera);
       continue;
     }
-    const double read_ms = seconds_since(start) * 1e3;
+    // Of a camera that would be the time until it has the next frame.
+    const double read_ms = live ? -1.0 : seconds_since(start) * 1e3;
     bench.width = frame->depth.width();
     bench.height = frame->depth.height();
     if (progress.done() == 0) detector.detect(*frame);  // fills pages and caches
@@ -110,7 +112,9 @@ void measure_all(const Arguments& arguments, const Detector& detector, Bench& be
     progress.step();
   }
   progress.clear();
-  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+  // What was measured of a camera until then is as good as more of it.
+  if (interrupted() && !(live && progress.done() > 0))
+    throw Error(fmt::format("interrupted after {} frames", progress.done()));
   if (progress.done() == 0) throw Error(arguments.source + ": no frames to measure");
 }
 
@@ -154,6 +158,9 @@ void report(const Arguments& arguments, const Bench& bench) {
 }
 
 void run(const Arguments& arguments) {
+  if (is_camera(arguments.source) && arguments.frames == 0) {
+    throw UsageError(arguments.source + ": expected --frames N, since a camera has no last frame");
+  }
   keep_freed_memory();
   Bench bench;
   bench.runs = runs_for(arguments.threads);
@@ -175,7 +182,7 @@ void add_bench(CLI::App& program) {
   add_start_flag(*command, arguments->camera);
   command
       ->add_option("--frames", arguments->frames,
-                   "Frames to measure, repeating the source if needed; 0 = the whole source once")
+                   "Frames to measure, repeating the source if needed; 0 = the whole source once, and no camera")
       ->type_name("N")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
@@ -186,7 +193,7 @@ void add_bench(CLI::App& program) {
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
 Times are wall-clock times from a frame in memory to its people; "read" is the time to load it. Frames/s count one
-detection after the other. Every detector option is a flag too; `vesalius options` lists them.
+detection after the other. Ctrl-C ends the measurement of a camera with the figures so far. Every detector option is a flag too; `vesalius options` lists them.
 
 Example:
   vesalius bench frames/ --frames 300 --json bench.json)");

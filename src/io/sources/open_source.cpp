@@ -238,6 +238,8 @@ std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOpt
   return std::make_unique<Started>(std::move(source), *options.start_s, uri);
 }
 
+bool is_camera(const std::string& uri) { return camera_of(uri) != nullptr; }
+
 std::string path_of_source(const std::string& uri) {
   if (const SensorDriver* driver = camera_of(uri)) return uri.substr(driver->scheme.size() + 1);
   const Scheme* scheme = scheme_of(uri);

@@ -25,6 +25,9 @@ namespace vesalius {
 /// behind the last frame.
 std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& options = {});
 
+/// Returns whether `uri` names a camera that is plugged in, which makes a live source, without opening it.
+bool is_camera(const std::string& uri);
+
 /// Returns the path in `uri` without the scheme and the depth scale.
 std::string path_of_source(const std::string& uri);
 
