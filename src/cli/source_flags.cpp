@@ -36,4 +36,11 @@ void add_start_flag(CLI::App& command, SourceOptions& options) {
       ->check(CLI::NonNegativeNumber);
 }
 
+void add_reconnect_flag(CLI::App& command, SourceOptions& options) {
+  command
+      .add_flag("--reconnect", options.reconnect,
+                "Wait for a camera that is unplugged or gives nothing, and go on when it is back")
+      ->group("Camera that is plugged in");
+}
+
 }  // namespace vesalius::cli

@@ -9,6 +9,7 @@
 #include "cli/detect/latency.h"
 #include "cli/detector_flags.h"
 #include "cli/interrupts.h"
+#include "cli/late_lines.h"
 #include "cli/progress.h"
 #include "cli/source_flags.h"
 #include "cli/text_sink.h"
@@ -53,9 +54,12 @@ void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals
 }
 
 void detect_all(const Arguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,
-                Progress& progress, Totals& totals) {
+                LateLines& late, Progress& progress, Totals& totals) {
   StreamOptions options = arguments.stream;
-  options.stop = interrupted;
+  options.stop = [&] {
+    late.print(progress);
+    return interrupted();
+  };
   totals.dropped = stream_frames(source, detector, options, [&](const FoundFrame& found) {
     // On a terminal both appear, and a printed line must not follow the changing one in the same row.
     if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
@@ -72,6 +76,7 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
     progress.step();
     return arguments.frames == 0 || progress.done() < arguments.frames;
   });
+  late.print(progress);
   totals.dropped += source.missed();
   progress.clear();
   // Whoever watches a camera ends it so.
@@ -95,7 +100,10 @@ void run(const Arguments& arguments) {
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
   const Detector detector = arguments.detector.make();
-  const auto source = open_source(arguments.source, arguments.camera);
+  LateLines late;
+  SourceOptions camera = arguments.camera;
+  camera.say = [&late](const std::string& line) { late.add(line); };
+  const auto source = open_source(arguments.source, camera);
   if (!arguments.outputs.quiet) {
     for (const std::string& note : source->notes()) say("note: " + note);
   }
@@ -110,7 +118,7 @@ void run(const Arguments& arguments) {
     if (arguments.timing) say_times(totals.times);
   };
   try {
-    detect_all(arguments, *source, detector, outputs, progress, totals);
+    detect_all(arguments, *source, detector, outputs, late, progress, totals);
   } catch (const BrokenPipe&) {
     throw;
   } catch (const Error& e) {
@@ -174,6 +182,7 @@ void add_detect(CLI::App& program) {
   add_output_flags(*command, arguments->outputs);
   add_camera_flags(*command, arguments->camera);
   add_start_flag(*command, arguments->camera);
+  add_reconnect_flag(*command, arguments->camera);
   command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The result is the same")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads))

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/detector_flags.h"
 #include "cli/interrupts.h"
+#include "cli/late_lines.h"
 #include "cli/progress.h"
 #include "cli/source_flags.h"
 #include "cli/text_sink.h"
@@ -35,20 +36,21 @@ bool is_enough(const Arguments& arguments, const Progress& progress) {
   return arguments.frames > 0 && progress.done() >= arguments.frames;
 }
 
-void record_frames(const Arguments& arguments, FrameSource& source, FrameRecorder& recorder, Progress& progress) {
-  while (!interrupted() && !is_enough(arguments, progress)) {
-    const std::optional<Frame> frame = source.next();
-    if (!frame) return;
-    recorder.write(*frame);
+/// Returns the number of frames that were dropped.
+int record_frames(const Arguments& arguments, FrameSource& source, FrameRecorder& recorder,
+                  const StreamOptions& options, Progress& progress) {
+  constexpr std::size_t kAhead = 30;  // a second: discs pause for less, and 640x480 takes 46 MB
+  return stream_frames(source, options, kAhead, [&](const FoundFrame& found) {
+    if (found.error) std::rethrow_exception(found.error);
+    recorder.write(*found.frame);
     progress.step();
-  }
+    return !is_enough(arguments, progress);
+  });
 }
 
 /// Returns the number of frames that were dropped.
 int record_people(const Arguments& arguments, FrameSource& source, const Detector& detector, FrameRecorder& recorder,
-                  Progress& progress) {
-  StreamOptions options;
-  options.stop = interrupted;
+                  const StreamOptions& options, Progress& progress) {
   return stream_frames(source, detector, options, [&](const FoundFrame& found) {
     if (found.error) std::rethrow_exception(found.error);
     recorder.write(*found.frame);
@@ -63,20 +65,25 @@ void run(const Arguments& arguments) {
   keep_freed_memory();
   std::optional<Detector> detector;
   if (arguments.people) detector.emplace(arguments.detector.make());
-  const auto source = open_source(arguments.source, arguments.camera);
+  LateLines late;
+  SourceOptions camera = arguments.camera;
+  camera.say = [&late](const std::string& line) { late.add(line); };
+  const auto source = open_source(arguments.source, camera);
   if (!arguments.quiet) {
     for (const std::string& note : source->notes()) say("note: " + note);
   }
   FrameRecorder recorder(arguments.out, arguments.rate);
   watch_interrupts();
   Progress progress(arguments.frames > 0 ? arguments.frames : source->size(), !arguments.quiet);
+  StreamOptions options;
+  options.stop = [&] {
+    late.print(progress);
+    return interrupted();
+  };
   int missed = 0;
   try {
-    if (detector) {
-      missed = record_people(arguments, *source, *detector, recorder, progress);
-    } else {
-      record_frames(arguments, *source, recorder, progress);
-    }
+    missed = detector ? record_people(arguments, *source, *detector, recorder, options, progress)
+                      : record_frames(arguments, *source, recorder, options, progress);
   } catch (const Error&) {
     progress.clear();
     recorder.close();  // what was recorded is kept
@@ -84,6 +91,7 @@ void run(const Arguments& arguments) {
   }
   recorder.close();
   progress.clear();
+  late.print(progress);
   missed += source->missed();
   if (interrupted() && !source->is_live()) {
     throw Error(fmt::format("interrupted; the {} frames before it are in {}", progress.done(), arguments.out));
@@ -111,6 +119,7 @@ void add_record(CLI::App& program) {
       ->check(CLI::NonNegativeNumber);
   add_camera_flags(*command, arguments->camera);
   add_start_flag(*command, arguments->camera);
+  add_reconnect_flag(*command, arguments->camera);
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
 The file holds depth without loss and opens in Foxglove, Rerun and rosbag2 (docs/recordings.md). One whose recording was

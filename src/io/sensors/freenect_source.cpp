@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "io/sensors/live_source.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -27,6 +28,7 @@ constexpr double kTicks_s = 60e6;
 constexpr std::int64_t kMostApart = static_cast<std::int64_t>(kTicks_s / 60.0);
 constexpr std::int64_t kBetweenFrames = static_cast<std::int64_t>(kTicks_s / 30.0);
 constexpr std::chrono::milliseconds kColourPatience(20);
+constexpr std::chrono::milliseconds kBetweenTilts(200);
 
 struct CloseDevice {
   void operator()(freenect_device* device) const { freenect_close_device(device); }
@@ -41,7 +43,6 @@ Context make_context() {
   if (freenect_init(&made, nullptr) < 0) throw Error("freenect: the library does not start");
   Context context(made);
   freenect_set_log_level(made, FREENECT_LOG_FATAL);
-  freenect_select_subdevices(made, FREENECT_DEVICE_CAMERA);
   return context;
 }
 
@@ -56,6 +57,42 @@ std::vector<SensorInfo> all_plugged_in(freenect_context* context) {
   freenect_free_device_attributes(first);
   return infos;
 }
+
+/// Asks the base of a Kinect, where its sensor of acceleration is, for the direction away from the ground. That has a
+/// thread of its own: a question takes as long as the base likes.
+class TiltWatch {
+ public:
+  explicit TiltWatch(freenect_device* device)
+      : thread_([this, device](const std::stop_token& stop) { watch(device, stop); }) {}
+
+  std::optional<Eigen::Vector3f> up() const {
+    const std::scoped_lock lock(mutex_);
+    return up_;
+  }
+
+ private:
+  void watch(freenect_device* device, const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      std::optional<Eigen::Vector3f> up;
+      if (freenect_update_tilt_state(device) >= 0) up = measured(freenect_get_tilt_state(device));
+      std::unique_lock lock(mutex_);
+      up_ = up;
+      asked_.wait_for(lock, stop, kBetweenTilts, [] { return false; });
+    }
+  }
+
+  static std::optional<Eigen::Vector3f> measured(freenect_raw_tilt_state* state) {
+    std::array<double, 3> a{};
+    freenect_get_mks_accel(state, &a[0], &a[1], &a[2]);
+    // Its axes point to the camera's left, up and forward (docs/cameras.md).
+    return up_of(Eigen::Vector3d(-a[0], -a[1], a[2]).cast<float>());
+  }
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any asked_;
+  std::optional<Eigen::Vector3f> up_;
+  std::jthread thread_;
+};
 
 /// The newest picture of a stream, and when it was taken, in ticks of the camera's clock.
 template <class Picture>
@@ -88,9 +125,11 @@ class FreenectSource final : public LiveSource {
     expect(freenect_start_depth(device_.get()), "gives no depth");
     expect(freenect_start_video(device_.get()), "gives no colour");
     events_ = std::jthread([this](const std::stop_token& stop) { run_events(stop); });
+    if (has_base_) tilt_.emplace(device_.get());
   }
 
   ~FreenectSource() override {
+    tilt_.reset();
     events_.request_stop();
     events_.join();
     freenect_stop_depth(device_.get());
@@ -99,15 +138,17 @@ class FreenectSource final : public LiveSource {
 
   std::optional<Frame> next() override {
     std::unique_lock lock(mutex_);
-    const auto has_new = [&] { return depth_.count > taken_ || failed_; };
-    if (!came_.wait_for(lock, std::chrono::milliseconds(kSensorPatience_ms), has_new) || depth_.count == taken_)
-      fail_without_frame();
+    const auto has_frame = [&](std::chrono::milliseconds patience) {
+      came_.wait_for(lock, patience, [&] { return depth_.count > taken_ || failed_; });
+      if (depth_.count == taken_ && failed_) throw Error(place_ + ": it stopped; unplugged, or its driver failed");
+      return depth_.count > taken_;
+    };
+    if (!wait_for_frame(has_frame)) return std::nullopt;
     missed_ += taken_ > 0 ? depth_.count - taken_ - 1 : 0;
     taken_ = depth_.count;
-    Frame frame;
+    Frame frame = arrived(static_cast<double>(depth_.time) / kTicks_s);
     frame.arrived_s = depth_.arrived_s;
-    frame.time_s = static_cast<double>(depth_.time) / kTicks_s;
-    frame.name = fmt::format("{:.6f}", *frame.time_s);
+    if (tilt_) frame.up = tilt_->up();
     frame.camera = {kWidth, kHeight, kFocal_px, kFocal_px, (kWidth - 1) / 2.F, (kHeight - 1) / 2.F};
     frame.depth = depth_.picture;
     const std::int64_t time = depth_.time;
@@ -122,20 +163,22 @@ class FreenectSource final : public LiveSource {
   }
 
   void open(const std::string& id) {
+    // Serial numbers cost questions to every Kinect, and one that another program uses gives none.
     const int count = freenect_num_devices(context_.get());
-    if (count <= 0) throw Error("freenect: no Kinect is plugged in, expected one that `vesalius cameras` lists");
-    freenect_device* opened = nullptr;
-    if (!id.empty()) {
-      expect(freenect_open_device_by_camera_serial(context_.get(), &opened, id.c_str()),
-             "cannot be opened: no Kinect of this number, no right to use it, or used by another program");
-    } else if (count > 1) {
-      throw Error(fmt::format("freenect: {} Kinects, expected one of {}", count,
-                              sources_of("freenect", all_plugged_in(context_.get()))));
-    } else {
-      expect(freenect_open_device(context_.get(), &opened, 0),
-             "cannot be opened: no right to use it, or used by another program");
+    if (id.empty() ? count != 1 : count <= 0) expect_plugged_in("freenect", all_plugged_in(context_.get()), id);
+    // Some have no base of their own, and no camera is worth less for that.
+    for (const bool base : {true, false}) {
+      const int parts = base ? FREENECT_DEVICE_CAMERA | FREENECT_DEVICE_MOTOR : FREENECT_DEVICE_CAMERA;
+      freenect_select_subdevices(context_.get(), static_cast<freenect_device_flags>(parts));
+      freenect_device* opened = nullptr;
+      const int status = id.empty() ? freenect_open_device(context_.get(), &opened, 0)
+                                    : freenect_open_device_by_camera_serial(context_.get(), &opened, id.c_str());
+      if (status < 0) continue;
+      device_.reset(opened);
+      has_base_ = base;
+      return;
     }
-    device_.reset(opened);
+    fail_to_open(place_, id.empty() ? "" : "not there, or in use");
   }
 
   void run_events(const std::stop_token& stop) {
@@ -193,6 +236,8 @@ class FreenectSource final : public LiveSource {
   int taken_ = 0;
   bool failed_ = false;
   std::jthread events_;
+  bool has_base_ = false;
+  std::optional<TiltWatch> tilt_;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/files/copy_rows.h"
+#include "io/sensors/live_source.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -32,13 +33,13 @@ std::string reason() {
 }
 
 void expect(openni::Status status, const std::string& what) {
-  if (status != openni::STATUS_OK) throw Error(fmt::format("openni2: {}: {}", what, reason()));
+  if (status != openni::STATUS_OK) throw Error(fmt::format("{}: {}", what, reason()));
 }
 
 /// Starts the library once. It is never shut down: some of its drivers crash then, and the process ends anyway.
 void start_library() {
   static const openni::Status status = openni::OpenNI::initialize();
-  expect(status, "the library does not start");
+  expect(status, "openni2: the library does not start");
 }
 
 std::string serial_of(const openni::Device& device) {
@@ -71,19 +72,20 @@ std::vector<Found> all_plugged_in() {
   return found;
 }
 
-/// Returns the address of the camera with this id. An id that is none of those plugged in may be an address itself.
-std::string address_of(const std::string& id) {
+std::vector<SensorInfo> infos_of(const std::vector<Found>& found) {
+  std::vector<SensorInfo> infos;
+  for (const Found& one : found) infos.push_back(one.info);
+  return infos;
+}
+
+/// Opens the camera with this id. An id that is none of those plugged in may be an address that is not listed.
+void open_device(openni::Device& device, const std::string& id, const std::string& place) {
   const std::vector<Found> found = all_plugged_in();
-  if (id.empty()) {
-    if (found.empty()) throw Error("openni2: no camera is plugged in, expected one that `vesalius cameras` lists");
-    if (found.size() > 1) {
-      throw Error(
-          fmt::format("openni2: {} cameras, expected one of {}", found.size(), sources_of("openni2", list_openni2())));
-    }
-    return found.front().address;
-  }
-  const auto one = std::ranges::find(found, id, [](const Found& f) { return f.info.id; });
-  return one == found.end() ? id : one->address;
+  const auto known = std::ranges::find(found, id, [](const Found& f) { return f.info.id; });
+  if (known == found.end() && !id.empty() && device.open(id.c_str()) == openni::STATUS_OK) return;
+  expect_plugged_in("openni2", infos_of(found), id);
+  const std::string& address = id.empty() ? found.front().address : known->address;
+  if (device.open(address.c_str()) != openni::STATUS_OK) fail_to_open(place, reason());
 }
 
 /// Sets the mode that is wanted where the camera has it.
@@ -102,8 +104,7 @@ void choose_mode(openni::VideoStream& stream, openni::PixelFormat format, int wi
 class Openni2Source final : public LiveSource {
  public:
   explicit Openni2Source(const std::string& id) : LiveSource("openni2", id) {
-    const std::string address = address_of(id);
-    expect(device_.open(address.c_str()), place_ + " cannot be opened");
+    open_device(device_, id, place_);
     expect(depth_.create(device_, openni::SENSOR_DEPTH), place_ + " has no depth");
     choose_mode(depth_, openni::PIXEL_FORMAT_DEPTH_1_MM, kWidth, kHeight);
     const openni::VideoMode mode = depth_.getVideoMode();
@@ -128,14 +129,15 @@ class Openni2Source final : public LiveSource {
   }
 
   std::optional<Frame> next() override {
-    openni::VideoFrameRef read = wait_for(depth_, kSensorPatience_ms);
-    if (!read.isValid()) fail_without_frame();
+    openni::VideoFrameRef read;
+    const auto has_frame = [&](std::chrono::milliseconds patience) {
+      read = wait_for(depth_, static_cast<int>(patience.count()));
+      return read.isValid();
+    };
+    if (!wait_for_frame(has_frame)) return std::nullopt;
     if (last_index_ > 0 && read.getFrameIndex() > last_index_ + 1) missed_ += read.getFrameIndex() - last_index_ - 1;
     last_index_ = read.getFrameIndex();
-    Frame frame;
-    frame.arrived_s = now_s();
-    frame.time_s = static_cast<double>(read.getTimestamp()) / kMicroseconds;
-    frame.name = fmt::format("{:.6f}", *frame.time_s);
+    Frame frame = arrived(static_cast<double>(read.getTimestamp()) / kMicroseconds);
     frame.camera = camera_;
     frame.depth = copy_depth(read);
     if (colour_.isValid()) frame.colour = colour_near(static_cast<std::int64_t>(read.getTimestamp()));
@@ -233,11 +235,7 @@ class Openni2Source final : public LiveSource {
 
 }  // namespace
 
-std::vector<SensorInfo> list_openni2() {
-  std::vector<SensorInfo> infos;
-  for (Found& one : all_plugged_in()) infos.push_back(std::move(one.info));
-  return infos;
-}
+std::vector<SensorInfo> list_openni2() { return infos_of(all_plugged_in()); }
 
 std::unique_ptr<FrameSource> open_openni2(const std::string& id) { return std::make_unique<Openni2Source>(id); }
 

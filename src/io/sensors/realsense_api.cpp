@@ -1,41 +1,31 @@
 #include "io/sensors/realsense_api.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <vector>
 
-#include "vesalius/base/error.h"
+#include "io/sensors/run_time_library.h"
 
 namespace vesalius::rs2 {
 namespace {
 
 /// Names of the library: with its developer's package, and without.
 std::vector<std::string> names() {
-  if (const char* given = std::getenv("VESALIUS_REALSENSE")) return {given};
   std::vector<std::string> all{"librealsense2.so"};
   constexpr int kNewest = 99, kOldest = 20;
   for (int minor = kNewest; minor >= kOldest; --minor) all.push_back(fmt::format("librealsense2.so.2.{}", minor));
   return all;
 }
 
-void* open_library() {
-  for (const std::string& name : names()) {
-    if (void* opened = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) return opened;
-  }
-  throw Error("realsense: librealsense2 is not installed, expected Intel's package librealsense2 (docs/cameras.md)");
-}
-
 template <class Function>
 void find(void* library, const char* name, Function& function) {
-  void* found = ::dlsym(library, name);
-  if (found == nullptr) throw Error(fmt::format("realsense: the library has no {}", name));
-  function = reinterpret_cast<Function>(found);
+  function = reinterpret_cast<Function>(find_function(library, "realsense: librealsense2", name));
 }
 
 Api load() {
-  void* library = open_library();  // stays open: others of its threads may run until the end
+  void* library = load_library(
+      "VESALIUS_REALSENSE", names(),
+      "realsense: librealsense2 is not installed, expected Intel's package librealsense2 (docs/cameras.md)");
   Api api{};
 #define VESALIUS_FIND(name) find(library, "rs2_" #name, api.name)
   VESALIUS_FIND(get_api_version);
@@ -59,7 +49,23 @@ Api load() {
   VESALIUS_FIND(pipeline_start_with_config);
   VESALIUS_FIND(delete_pipeline_profile);
   VESALIUS_FIND(pipeline_stop);
-  VESALIUS_FIND(pipeline_wait_for_frames);
+  VESALIUS_FIND(pipeline_try_wait_for_frames);
+  VESALIUS_FIND(pipeline_profile_get_device);
+  VESALIUS_FIND(query_sensors);
+  VESALIUS_FIND(get_sensors_count);
+  VESALIUS_FIND(delete_sensor_list);
+  VESALIUS_FIND(create_sensor);
+  VESALIUS_FIND(delete_sensor);
+  VESALIUS_FIND(get_stream_profiles);
+  VESALIUS_FIND(get_stream_profiles_count);
+  VESALIUS_FIND(get_stream_profile);
+  VESALIUS_FIND(delete_stream_profiles_list);
+  VESALIUS_FIND(open);
+  VESALIUS_FIND(close);
+  VESALIUS_FIND(start_queue);
+  VESALIUS_FIND(stop);
+  VESALIUS_FIND(poll_for_frame);
+  VESALIUS_FIND(get_extrinsics);
   VESALIUS_FIND(create_align);
   VESALIUS_FIND(delete_processing_block);
   VESALIUS_FIND(create_frame_queue);
@@ -90,5 +96,9 @@ const Api& api() {
   static const Api loaded = load();
   return loaded;
 }
+
+const char* text_of(const Failure* failure) { return api().get_error_message(failure); }
+
+void free(Failure* failure) { api().free_error(failure); }
 
 }  // namespace vesalius::rs2

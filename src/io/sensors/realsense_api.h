@@ -17,6 +17,9 @@ struct Frame;
 struct StreamProfile;
 struct Block;  // rs2_processing_block
 struct Queue;  // rs2_frame_queue
+struct SensorList;
+struct Sensor;
+struct StreamProfileList;
 
 /// rs2_intrinsics
 struct Intrinsics {
@@ -26,9 +29,15 @@ struct Intrinsics {
   float coefficients[5];
 };
 
-constexpr int kDepth = 1, kColour = 2;  // rs2_stream
-constexpr int kZ16 = 1, kRgb8 = 5;      // rs2_format
-constexpr int kName = 0, kSerial = 1;   // rs2_camera_info
+/// rs2_extrinsics
+struct Extrinsics {
+  float rotation[9];     ///< column by column
+  float translation[3];  ///< metres
+};
+
+constexpr int kDepth = 1, kColour = 2, kAcceleration = 6;  // rs2_stream
+constexpr int kZ16 = 1, kRgb8 = 5, kXyz32f = 16;           // rs2_format
+constexpr int kName = 0, kSerial = 1;                      // rs2_camera_info
 
 /// The functions, by their names without "rs2_".
 struct Api {
@@ -53,7 +62,23 @@ struct Api {
   PipelineProfile* (*pipeline_start_with_config)(Pipeline*, Config*, Failure**);
   void (*delete_pipeline_profile)(PipelineProfile*);
   void (*pipeline_stop)(Pipeline*, Failure**);
-  Frame* (*pipeline_wait_for_frames)(Pipeline*, unsigned patience_ms, Failure**);
+  int (*pipeline_try_wait_for_frames)(Pipeline*, Frame**, unsigned patience_ms, Failure**);
+  Device* (*pipeline_profile_get_device)(PipelineProfile*, Failure**);
+  SensorList* (*query_sensors)(const Device*, Failure**);
+  int (*get_sensors_count)(const SensorList*, Failure**);
+  void (*delete_sensor_list)(SensorList*);
+  Sensor* (*create_sensor)(const SensorList*, int index, Failure**);
+  void (*delete_sensor)(Sensor*);
+  StreamProfileList* (*get_stream_profiles)(Sensor*, Failure**);
+  int (*get_stream_profiles_count)(const StreamProfileList*, Failure**);
+  const StreamProfile* (*get_stream_profile)(const StreamProfileList*, int index, Failure**);
+  void (*delete_stream_profiles_list)(StreamProfileList*);
+  void (*open)(Sensor*, const StreamProfile*, Failure**);
+  void (*close)(const Sensor*, Failure**);
+  void (*start_queue)(const Sensor*, Queue*, Failure**);
+  void (*stop)(const Sensor*, Failure**);
+  int (*poll_for_frame)(Queue*, Frame**, Failure**);
+  void (*get_extrinsics)(const StreamProfile* from, const StreamProfile* to, Extrinsics*, Failure**);
   Block* (*create_align)(int to_stream, Failure**);
   void (*delete_processing_block)(Block*);
   Queue* (*create_frame_queue)(int capacity, Failure**);
@@ -79,5 +104,9 @@ struct Api {
 
 /// Returns the functions of the library. Throws Error saying how to get it where it is not installed or lacks one.
 const Api& api();
+
+// For Outcome.
+const char* text_of(const Failure* failure);
+void free(Failure* failure);
 
 }  // namespace vesalius::rs2

@@ -12,7 +12,9 @@
 #include <utility>
 
 #include "io/files/copy_rows.h"
+#include "io/sensors/live_source.h"
 #include "io/sensors/realsense_api.h"
+#include "io/sensors/run_time_library.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -22,46 +24,6 @@ using rs2::api;
 
 constexpr int kWidth = 640, kHeight = 480, kRate = 30;
 constexpr unsigned kAlignPatience_ms = 1000;
-
-/// Receives what a call says and throws it as Error.
-class Outcome {
- public:
-  explicit Outcome(std::string what) : what_(std::move(what)) {}
-  ~Outcome() {
-    if (failure_ != nullptr) api().free_error(failure_);
-  }
-  Outcome(const Outcome&) = delete;
-  Outcome& operator=(const Outcome&) = delete;
-  rs2::Failure** out() { return &failure_; }
-  bool failed() const { return failure_ != nullptr; }
-  void expect() const {
-    if (!failed()) return;
-    std::string reason = api().get_error_message(failure_);
-    std::ranges::replace(reason, '\n', ' ');
-    throw Error(fmt::format("{}: {}", what_, reason));
-  }
-
- private:
-  std::string what_;
-  rs2::Failure* failure_ = nullptr;
-};
-
-/// Calls a function of the library; its last argument is where it puts an error.
-template <class Function, class... Given>
-auto call(const std::string& what, Function function, Given... given) {
-  Outcome outcome(what);
-  if constexpr (std::is_void_v<decltype(function(given..., outcome.out()))>) {
-    function(given..., outcome.out());
-    outcome.expect();
-  } else {
-    auto result = function(given..., outcome.out());
-    outcome.expect();
-    return result;
-  }
-}
-
-template <class T>
-using Owned = std::unique_ptr<T, void (*)(T*)>;
 
 Owned<rs2::Context> make_context() {
   const int version = call("realsense", api().get_api_version);
@@ -83,6 +45,77 @@ std::vector<SensorInfo> all_plugged_in(rs2::Context* context) {
   return infos;
 }
 
+/// The sensor of acceleration of a camera, apart from the pictures, which must not wait for it. A camera without one,
+/// or whose one does not start, has no `up`.
+class Accelerometer {
+ public:
+  Accelerometer(const rs2::Device* device, std::string place)
+      : place_(std::move(place)), queue_(call(place_, api().create_frame_queue, 1), api().delete_frame_queue) {
+    const Owned<rs2::SensorList> all(call(place_, api().query_sensors, device), api().delete_sensor_list);
+    const auto* const list = static_cast<const rs2::SensorList*>(all.get());
+    const int count = call(place_, api().get_sensors_count, list);
+    for (int i = 0; i < count && profile_ == nullptr; ++i) {
+      sensor_ = {call(place_, api().create_sensor, list, i), api().delete_sensor};
+      profiles_ = {call(place_, api().get_stream_profiles, sensor_.get()), api().delete_stream_profiles_list};
+      profile_ = find_profile();
+    }
+    if (profile_ != nullptr) start();
+  }
+  ~Accelerometer() {
+    Outcome<rs2::Failure> stopping(place_), closing(place_);  // what fails now is of no interest
+    if (started_) api().stop(sensor_.get(), stopping.out());
+    if (started_) api().close(sensor_.get(), closing.out());
+  }
+  Accelerometer(const Accelerometer&) = delete;
+  Accelerometer& operator=(const Accelerometer&) = delete;
+
+  /// Returns the direction away from the ground in the optical frame of a stream, by the newest measurement.
+  std::optional<Eigen::Vector3f> up(const rs2::StreamProfile* in) {
+    if (!started_) return std::nullopt;
+    rs2::Frame* polled = nullptr;
+    while (call(place_, api().poll_for_frame, queue_.get(), &polled) != 0) {
+      const Owned<rs2::Frame> frame(polled, api().release_frame);
+      const auto* data = call(place_, api().get_frame_data, static_cast<const rs2::Frame*>(frame.get()));
+      if (data != nullptr) std::memcpy(measured_.data(), data, sizeof measured_);
+    }
+    rs2::Extrinsics to{};
+    Outcome<rs2::Failure> unknown(place_);
+    api().get_extrinsics(profile_, in, &to, unknown.out());
+    if (unknown.failed()) return std::nullopt;
+    return up_of(Eigen::Map<const Eigen::Matrix3f>(to.rotation) * measured_);
+  }
+
+ private:
+  const rs2::StreamProfile* find_profile() const {
+    const auto* const list = static_cast<const rs2::StreamProfileList*>(profiles_.get());
+    const int count = call(place_, api().get_stream_profiles_count, list);
+    for (int i = 0; i < count; ++i) {
+      const rs2::StreamProfile* one = call(place_, api().get_stream_profile, list, i);
+      int stream = 0, format = 0, index = 0, id = 0, rate = 0;
+      call(place_, api().get_stream_profile_data, one, &stream, &format, &index, &id, &rate);
+      if (stream == rs2::kAcceleration && format == rs2::kXyz32f) return one;
+    }
+    return nullptr;
+  }
+
+  void start() {
+    Outcome<rs2::Failure> opening(place_), starting(place_), closing(place_);
+    api().open(sensor_.get(), profile_, opening.out());
+    if (opening.failed()) return;
+    api().start_queue(sensor_.get(), queue_.get(), starting.out());
+    started_ = !starting.failed();
+    if (!started_) api().close(sensor_.get(), closing.out());
+  }
+
+  std::string place_;
+  Owned<rs2::Queue> queue_;
+  Owned<rs2::Sensor> sensor_{nullptr, nullptr};
+  Owned<rs2::StreamProfileList> profiles_{nullptr, nullptr};
+  const rs2::StreamProfile* profile_ = nullptr;
+  bool started_ = false;
+  Eigen::Vector3f measured_ = Eigen::Vector3f::Zero();  ///< m/s2
+};
+
 class RealsenseSource final : public LiveSource {
  public:
   explicit RealsenseSource(const std::string& id)
@@ -92,19 +125,22 @@ class RealsenseSource final : public LiveSource {
         align_(call(place_, api().create_align, rs2::kColour), api().delete_processing_block),
         aligned_(call(place_, api().create_frame_queue, 1), api().delete_frame_queue) {
     const bool is_file = std::filesystem::is_regular_file(id);
-    if (!is_file) expect_plugged_in(id);
+    if (!is_file) expect_plugged_in("realsense", all_plugged_in(context_.get()), id);
     start(id, is_file);
     call(place_, api().start_processing_queue, align_.get(), aligned_.get());
+    start_acceleration();
   }
 
   ~RealsenseSource() override {
-    Outcome ignored(place_);
+    acceleration_.reset();
+    Outcome<rs2::Failure> ignored(place_);
     if (profile_) api().pipeline_stop(pipeline_.get(), ignored.out());
   }
 
   std::optional<Frame> next() override {
     for (;;) {
       Owned<rs2::Frame> all = wait();
+      if (!all) return std::nullopt;
       const double arrived_s = now_s();
       if (has_colour_) all = align(std::move(all));
       const Owned<rs2::Frame> depth = stream_of(all.get(), rs2::kDepth);
@@ -115,10 +151,9 @@ class RealsenseSource final : public LiveSource {
       if (number == last_number_) continue;
       if (last_number_ >= 0 && number > last_number_ + 1) missed_ += static_cast<int>(number - last_number_ - 1);
       last_number_ = number;
-      Frame frame;
+      Frame frame = arrived(1e-3 * call(place_, api().get_frame_timestamp, of));
       frame.arrived_s = arrived_s;
-      frame.time_s = 1e-3 * call(place_, api().get_frame_timestamp, of);
-      frame.name = fmt::format("{:.6f}", *frame.time_s);
+      if (acceleration_) frame.up = acceleration_->up(call(place_, api().get_frame_stream_profile, of));
       frame.camera = camera_of(of);
       frame.depth = depth_of(of);
       if (const Owned<rs2::Frame> colour = has_colour_ ? stream_of(all.get(), rs2::kColour) : none()) {
@@ -131,23 +166,17 @@ class RealsenseSource final : public LiveSource {
  private:
   static Owned<rs2::Frame> none() { return {nullptr, api().release_frame}; }
 
-  /// Returns the next frames of all streams.
+  /// Returns the next frames of all streams; null after `stop`.
   Owned<rs2::Frame> wait() {
-    Outcome outcome(place_);
-    Owned<rs2::Frame> all(api().pipeline_wait_for_frames(pipeline_.get(), kSensorPatience_ms, outcome.out()),
-                          api().release_frame);
-    if (outcome.failed() || !all) fail_without_frame();
+    Owned<rs2::Frame> all = none();
+    wait_for_frame([&](std::chrono::milliseconds patience) {
+      rs2::Frame* came = nullptr;
+      const auto patience_ms = static_cast<unsigned>(patience.count());
+      if (call(place_, api().pipeline_try_wait_for_frames, pipeline_.get(), &came, patience_ms) == 0) return false;
+      all.reset(came);
+      return true;
+    });
     return all;
-  }
-
-  void expect_plugged_in(const std::string& id) const {
-    const std::vector<SensorInfo> cameras = all_plugged_in(context_.get());
-    const bool known = std::ranges::find(cameras, id, &SensorInfo::id) != cameras.end();
-    if (known || (id.empty() && cameras.size() == 1)) return;
-    const std::string ids = sources_of("realsense", cameras);
-    throw Error(fmt::format("{}: {}", place_,
-                            ids.empty() ? "no camera is plugged in, expected one that `vesalius cameras` lists"
-                                        : "expected one of " + ids));
   }
 
   /// Starts depth and colour; depth alone where there is no colour. Of a file what it has.
@@ -163,14 +192,24 @@ class RealsenseSource final : public LiveSource {
       call(place_, api().config_enable_stream, config.get(), rs2::kDepth, -1, width, height, rs2::kZ16, rate);
       if (colour)
         call(place_, api().config_enable_stream, config.get(), rs2::kColour, -1, width, height, rs2::kRgb8, rate);
-      Outcome outcome(place_ + " cannot be started");
+      Outcome<rs2::Failure> outcome(place_);
       profile_ = {api().pipeline_start_with_config(pipeline_.get(), config.get(), outcome.out()),
                   api().delete_pipeline_profile};
       has_colour_ = colour;
       if (profile_) break;
-      if (!colour) outcome.expect();
+      if (!colour) fail_to_open(place_, outcome.reason());
     }
     if (!has_colour_) notes_.push_back(place_ + ": depth alone, since it has no colour");
+  }
+
+  void start_acceleration() {
+    const Owned<rs2::Device> device(call(place_, api().pipeline_profile_get_device, profile_.get()),
+                                    api().delete_device);
+    try {
+      acceleration_.emplace(device.get(), place_);
+    } catch (const Error& e) {
+      notes_.push_back(fmt::format("{}; its frames have no direction of gravity", e.what()));
+    }
   }
 
   /// Puts depth onto the grid of colour.
@@ -234,6 +273,7 @@ class RealsenseSource final : public LiveSource {
   Owned<rs2::Block> align_;
   Owned<rs2::Queue> aligned_;
   Owned<rs2::PipelineProfile> profile_{nullptr, nullptr};
+  std::optional<Accelerometer> acceleration_;
   bool has_colour_ = false;
   std::int64_t last_number_ = -1;
 };

@@ -1,14 +1,10 @@
 #pragma once
 
-#include <fmt/format.h>
-
-#include <chrono>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/frame_source.h"
 
 namespace vesalius {
@@ -23,7 +19,7 @@ struct SensorInfo {
 struct SensorDriver {
   std::string_view scheme;  ///< what a source begins with, e.g. "openni2"
   const char* what;         ///< cameras that it opens
-  const char* package;      ///< Debian package that a build needs for it
+  const char* package;      ///< package that a build, or the program, needs for it
   bool built;               ///< whether this build has it
   /// Returns the cameras that are plugged in. Throws Error where the driver does not start.
   std::vector<SensorInfo> (*list)();
@@ -31,41 +27,15 @@ struct SensorDriver {
   std::unique_ptr<FrameSource> (*open)(const std::string& id);
 };
 
-/// Returns the sources that name these cameras, e.g. "openni2:1, openni2:2".
-inline std::string sources_of(std::string_view scheme, const std::vector<SensorInfo>& cameras) {
-  std::string text;
-  for (const SensorInfo& one : cameras) text += fmt::format("{}{}:{}", text.empty() ? "" : ", ", scheme, one.id);
-  return text;
-}
+/// Returns the source that names a camera, e.g. "openni2:1", or "openni2" for the only one.
+std::string source_of(std::string_view scheme, const std::string& id);
 
-/// Returns the time now for Frame::arrived_s.
-inline double now_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
+/// Throws Error unless one of `cameras` has this id, or there is one camera and the id is empty. The error names those
+/// that there are.
+void expect_plugged_in(std::string_view scheme, const std::vector<SensorInfo>& cameras, const std::string& id);
 
-/// Time without a frame after which a camera counts as lost.
-inline constexpr int kSensorPatience_ms = 3000;
-
-/// What all cameras have in common as sources.
-class LiveSource : public FrameSource {
- public:
-  int size() const override { return -1; }
-  bool is_live() const override { return true; }
-  int missed() const override { return missed_; }
-  std::vector<std::string> notes() const override { return notes_; }
-
- protected:
-  LiveSource(std::string_view scheme, const std::string& id)
-      : place_(id.empty() ? std::string(scheme) : fmt::format("{}:{}", scheme, id)) {}
-
-  [[noreturn]] void fail_without_frame() const {
-    throw Error(
-        fmt::format("{}: no frame for {} s; unplugged, or used by another program", place_, kSensorPatience_ms / 1000));
-  }
-
-  std::string place_;  ///< for messages
-  std::vector<std::string> notes_;
-  int missed_ = 0;
-};
+/// Throws Error saying that a camera that is plugged in cannot be opened, why, and what to do: another program may use
+/// it, or the user may lack the right.
+[[noreturn]] void fail_to_open(const std::string& source, const std::string& reason);
 
 }  // namespace vesalius

@@ -14,6 +14,7 @@
 #include "io/files/copy_rows.h"
 #include "io/files/image_bytes.h"
 #include "io/lens/rectification.h"
+#include "io/sensors/reconnecting_source.h"
 #include "io/sensors/sensor_drivers.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
@@ -162,6 +163,7 @@ class Calibrated final : public FrameSource {
   std::vector<std::string> notes() const override { return source_->notes(); }
   bool is_live() const override { return source_->is_live(); }
   int missed() const override { return source_->missed(); }
+  void stop() override { source_->stop(); }
 
  private:
   std::unique_ptr<FrameSource> source_;
@@ -177,7 +179,9 @@ std::unique_ptr<FrameSource> open_camera(const SensorDriver& driver, const std::
   if (options.start_s) throw UsageError(place + ": a camera begins now; a start goes with recordings and files only");
   if (options.depth_scale) throw UsageError(place + ": a camera says itself what a unit of depth is");
   const CameraFacts facts = find_camera_facts(options, {});
-  std::unique_ptr<FrameSource> source = open_sensor(driver, id);
+  const auto open = [&driver, id] { return open_sensor(driver, id); };
+  std::unique_ptr<FrameSource> source =
+      options.reconnect ? keep_open(open, {source_of(driver.scheme, id), options.say}) : open();
   if (!facts.fx) return source;
   return std::make_unique<Calibrated>(std::move(source), facts, place);
 }
@@ -233,6 +237,7 @@ std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOpt
   if (const SensorDriver* driver = camera_of(uri)) {
     return open_camera(*driver, uri.substr(driver->scheme.size() + 1), options);
   }
+  if (options.reconnect) throw UsageError(uri + ": only a camera can be waited for (--reconnect)");
   std::unique_ptr<FrameSource> source = open_files(uri, options);
   if (!options.start_s) return source;
   return std::make_unique<Started>(std::move(source), *options.start_s, uri);
