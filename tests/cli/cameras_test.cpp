@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -87,6 +88,81 @@ TEST_F(Cameras, ThatAreNotThereGiveOneLine) {
   EXPECT_EQ(none.exit_code, 1);
   EXPECT_THAT(none.err, HasSubstr("openni2:no-such-number: no camera is plugged in, expected one that"));
   EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
+}
+
+class OrbbecCameras : public SmallWorld {
+ protected:
+  /// Runs the program with a library and a camera that are none (fake_orbbec.cpp).
+  static Outcome run(const std::string& arguments, const std::string& words = "-") {
+    return run_program(arguments, "VESALIUS_ORBBEC='" VESALIUS_FAKE_ORBBEC "' FAKE_ORBBEC=" + words);
+  }
+};
+
+TEST_F(OrbbecCameras, AreListedAndGiveRegisteredMillimetres) {
+  EXPECT_THAT(run("cameras").out, HasSubstr("orbbec:F1  Fake Femto"));
+  ASSERT_EQ(run("record orbbec:F1 --frames 4 --out " + path("orbbec.mcap")).exit_code, 0);
+  const auto source = open_source(path("orbbec.mcap"));
+  for (int i = 0; i < 4; ++i) {
+    const auto frame = source->next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->camera, (Camera{640, 480, 600.F, 601.F, 321.F, 242.F})) << "not the colour camera's";
+    EXPECT_EQ(frame->depth(5, 5), 1001 + i);
+    EXPECT_EQ(frame->colour(5, 5), (Rgb{static_cast<std::uint8_t>(i), 2, 3}));
+    EXPECT_NEAR(*frame->time_s, 1.0 + 0.033333 * i, 1e-6);
+  }
+}
+
+TEST_F(OrbbecCameras, WithoutColourGiveDepthOnItsOwnGrid) {
+  const Outcome recorded = run("record orbbec: --frames 1 --out " + path("grey.mcap"), "grey");
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  EXPECT_THAT(recorded.err, HasSubstr("orbbec: depth alone, since it gives no RGB"));
+  EXPECT_THAT(recorded.err, HasSubstr("its lens distorts the picture"));
+  const auto frame = open_source(path("grey.mcap"))->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->camera.fx, 500.F);
+  EXPECT_EQ(frame->depth(5, 5), 1000);
+  EXPECT_TRUE(frame->colour.empty());
+}
+
+TEST_F(OrbbecCameras, KnowWhichWayIsUp) {
+  ::setenv("VESALIUS_ORBBEC", VESALIUS_FAKE_ORBBEC, 1);
+  const auto frame = open_source("orbbec:F1")->next();
+  ASSERT_TRUE(frame && frame->up);
+  EXPECT_EQ(*frame->up, Eigen::Vector3f(0.F, -1.F, 0.F)) << "its sensor's x axis points up";
+}
+
+TEST_F(OrbbecCameras, AreWaitedForWhenTheyAreLost) {
+  const std::string file = path("waited.mcap");
+  const Outcome gone = run("record orbbec: --frames 9 --out " + path("gone.mcap"), "lost");
+  EXPECT_EQ(gone.exit_code, 1);
+  EXPECT_EQ(gone.err, "vesalius: orbbec: the device was disconnected\n");
+  const Outcome waited = run("record orbbec: --frames 9 --reconnect --out " + file, "lost");
+  ASSERT_EQ(waited.exit_code, 0) << waited.err;
+  EXPECT_THAT(waited.err, HasSubstr("orbbec: the device was disconnected; waiting until it is back\n"));
+  EXPECT_THAT(waited.err, HasSubstr("vesalius: orbbec: back after "));
+  EXPECT_THAT(waited.err, HasSubstr("waited.mcap: 9 frames\n"));
+  EXPECT_EQ(std::count(waited.err.begin(), waited.err.end(), '\n'), 3) << waited.err;
+  const auto source = open_source(file);
+  double before_s = 0.0, longest_s = 0.0;
+  while (const auto frame = source->next()) {
+    if (before_s > 0.0) longest_s = std::max(longest_s, *frame->time_s - before_s);
+    EXPECT_GT(*frame->time_s, before_s);
+    before_s = *frame->time_s;
+  }
+  EXPECT_GT(longest_s, 1.0) << "the time in which the camera was away is missing";
+}
+
+TEST_F(OrbbecCameras, ThatAreNotThereOrInUseGiveOneLine) {
+  EXPECT_EQ(run("detect orbbec: -m " + model(), "none").err,
+            "vesalius: orbbec: no camera is plugged in, expected one that `vesalius cameras` lists\n");
+  EXPECT_EQ(run("detect orbbec:F2 -m " + model()).err,
+            "vesalius: orbbec:F2: no such camera, expected one of orbbec:F1\n");
+  const Outcome busy = run("detect orbbec:F1 -m " + model(), "busy");
+  EXPECT_EQ(busy.exit_code, 1);
+  EXPECT_THAT(busy.err, HasSubstr("orbbec:F1 cannot be opened: uvc device: resource busy; end any other program"));
+  const Outcome other = run_program("detect orbbec: -m " + model(), "VESALIUS_ORBBEC=/dev/null");
+  EXPECT_THAT(other.err, HasSubstr("libOrbbecSDK is not installed, expected version 2"));
+  EXPECT_EQ(std::count(other.err.begin(), other.err.end(), '\n'), 1) << other.err;
 }
 
 #ifdef VESALIUS_FAKENECT

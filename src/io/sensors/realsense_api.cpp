@@ -50,6 +50,7 @@ Api load() {
   VESALIUS_FIND(delete_pipeline_profile);
   VESALIUS_FIND(pipeline_stop);
   VESALIUS_FIND(pipeline_try_wait_for_frames);
+  VESALIUS_FIND(pipeline_profile_get_streams);
   VESALIUS_FIND(pipeline_profile_get_device);
   VESALIUS_FIND(query_sensors);
   VESALIUS_FIND(get_sensors_count);

@@ -63,6 +63,7 @@ struct Api {
   void (*delete_pipeline_profile)(PipelineProfile*);
   void (*pipeline_stop)(Pipeline*, Failure**);
   int (*pipeline_try_wait_for_frames)(Pipeline*, Frame**, unsigned patience_ms, Failure**);
+  StreamProfileList* (*pipeline_profile_get_streams)(PipelineProfile*, Failure**);
   Device* (*pipeline_profile_get_device)(PipelineProfile*, Failure**);
   SensorList* (*query_sensors)(const Device*, Failure**);
   int (*get_sensors_count)(const SensorList*, Failure**);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/files/copy_rows.h"
+#include "io/sensors/depth_units.h"
 #include "io/sensors/live_source.h"
 #include "io/sensors/realsense_api.h"
 #include "io/sensors/run_time_library.h"
@@ -45,6 +46,18 @@ std::vector<SensorInfo> all_plugged_in(rs2::Context* context) {
   return infos;
 }
 
+/// Returns the first of a list that is of this kind of stream, null if none is. The list owns it.
+const rs2::StreamProfile* find_stream(const rs2::StreamProfileList* list, int stream, const std::string& place) {
+  const int count = call(place, api().get_stream_profiles_count, list);
+  for (int i = 0; i < count; ++i) {
+    const rs2::StreamProfile* one = call(place, api().get_stream_profile, list, i);
+    int of = 0, format = 0, index = 0, id = 0, rate = 0;
+    call(place, api().get_stream_profile_data, one, &of, &format, &index, &id, &rate);
+    if (of == stream && (stream != rs2::kAcceleration || format == rs2::kXyz32f)) return one;
+  }
+  return nullptr;
+}
+
 /// The sensor of acceleration of a camera, apart from the pictures, which must not wait for it. A camera without one,
 /// or whose one does not start, has no `up`.
 class Accelerometer {
@@ -57,7 +70,7 @@ class Accelerometer {
     for (int i = 0; i < count && profile_ == nullptr; ++i) {
       sensor_ = {call(place_, api().create_sensor, list, i), api().delete_sensor};
       profiles_ = {call(place_, api().get_stream_profiles, sensor_.get()), api().delete_stream_profiles_list};
-      profile_ = find_profile();
+      profile_ = find_stream(profiles_.get(), rs2::kAcceleration, place_);
     }
     if (profile_ != nullptr) start();
   }
@@ -86,18 +99,6 @@ class Accelerometer {
   }
 
  private:
-  const rs2::StreamProfile* find_profile() const {
-    const auto* const list = static_cast<const rs2::StreamProfileList*>(profiles_.get());
-    const int count = call(place_, api().get_stream_profiles_count, list);
-    for (int i = 0; i < count; ++i) {
-      const rs2::StreamProfile* one = call(place_, api().get_stream_profile, list, i);
-      int stream = 0, format = 0, index = 0, id = 0, rate = 0;
-      call(place_, api().get_stream_profile_data, one, &stream, &format, &index, &id, &rate);
-      if (stream == rs2::kAcceleration && format == rs2::kXyz32f) return one;
-    }
-    return nullptr;
-  }
-
   void start() {
     Outcome<rs2::Failure> opening(place_), starting(place_), closing(place_);
     api().open(sensor_.get(), profile_, opening.out());
@@ -200,6 +201,20 @@ class RealsenseSource final : public LiveSource {
       if (!colour) fail_to_open(place_, outcome.reason());
     }
     if (!has_colour_) notes_.push_back(place_ + ": depth alone, since it has no colour");
+    note_distortion();
+  }
+
+  /// Frames have the grid of colour, or of depth alone.
+  void note_distortion() {
+    const Owned<rs2::StreamProfileList> list(call(place_, api().pipeline_profile_get_streams, profile_.get()),
+                                             api().delete_stream_profiles_list);
+    const rs2::StreamProfile* grid = find_stream(list.get(), has_colour_ ? rs2::kColour : rs2::kDepth, place_);
+    if (grid == nullptr) return;
+    rs2::Intrinsics lens{};
+    call(place_, api().get_video_stream_intrinsics, grid, &lens);
+    if (std::ranges::any_of(lens.coefficients, [](float k) { return k != 0.F; })) {
+      notes_.push_back(place_ + ": its lens distorts the picture, which is not undone");
+    }
   }
 
   void start_acceleration() {
@@ -245,14 +260,7 @@ class RealsenseSource final : public LiveSource {
     const auto stride = static_cast<std::size_t>(call(place_, api().get_frame_stride_in_bytes, frame));
     const auto* data = call(place_, api().get_frame_data, frame);
     copy_rows(data, stride, depth);
-    const double to_mm = 1e3 * static_cast<double>(call(place_, api().depth_frame_get_units, frame));
-    constexpr double kSame = 1e-6;
-    if (std::abs(to_mm - 1.0) < kSame) return depth;
-    for (std::uint16_t& z : depth) {
-      const double z_mm = to_mm * z;
-      z = z_mm < std::numeric_limits<std::uint16_t>::max() ? static_cast<std::uint16_t>(std::lround(z_mm))
-                                                           : std::uint16_t{0};
-    }
+    to_millimetres(depth, 1e3 * static_cast<double>(call(place_, api().depth_frame_get_units, frame)));
     return depth;
   }
 

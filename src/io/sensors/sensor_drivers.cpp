@@ -6,17 +6,19 @@
 
 #include "io/sensors/freenect_source.h"
 #include "io/sensors/openni2_source.h"
+#include "io/sensors/orbbec_source.h"
 #include "io/sensors/realsense_source.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
 
-constexpr std::array<SensorDriver, 3> kDrivers{
+constexpr std::array<SensorDriver, 4> kDrivers{
     {{"openni2", "Xtion, Carmine, Structure and other PrimeSense cameras", "libopenni2-dev", kHasOpenni2, list_openni2,
       open_openni2},
      {"freenect", "Kinect v1", "libfreenect-dev", kHasFreenect, list_freenect, open_freenect},
-     {"realsense", "RealSense", "librealsense2", true, list_realsense, open_realsense}}};
+     {"realsense", "RealSense", "librealsense2", true, list_realsense, open_realsense},
+     {"orbbec", "Femto, Gemini, Astra 2", "libOrbbecSDK", true, list_orbbec, open_orbbec}}};
 
 }  // namespace
 

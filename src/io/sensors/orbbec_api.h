@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstdint>
+
+// What is used of the C interface of Orbbec's SDK, version 2. Its headers are in no package of Debian, and a library
+// that is loaded while the program runs needs none.
+namespace vesalius::ob {
+
+struct Failure;  // ob_error
+struct Context;
+struct DeviceList;
+struct Device;
+struct Sensor;
+struct SensorList;
+struct Pipeline;
+struct Config;
+struct StreamProfile;
+struct StreamProfileList;
+struct Filter;
+struct Frame;
+
+#pragma pack(push, 1)  // as the SDK has them
+
+/// ob_camera_intrinsic
+struct Intrinsics {
+  float fx, fy, cx, cy;  ///< pixels
+  std::int16_t width, height;
+};
+
+/// ob_camera_distortion
+struct Distortion {
+  float coefficients[8];
+  std::int32_t model;
+};
+
+/// ob_extrinsic
+struct Extrinsics {
+  float rotation[9];     ///< row by row
+  float translation[3];  ///< millimetres
+};
+
+/// ob_accel_value
+struct Acceleration {
+  float x, y, z;  ///< m/s2
+};
+
+#pragma pack(pop)
+
+/// ob_frame_callback; whoever is called deletes the frame.
+using FrameCallback = void (*)(Frame*, void* user);
+
+constexpr int kSilent = 5;                          // ob_log_severity
+constexpr int kColour = 2, kDepth = 3, kAccel = 4;  // ob_sensor_type and ob_stream_type
+constexpr int kY16 = 8, kRgb = 22, kZ16 = 28;       // ob_format
+constexpr int kAllStreams = 0;                      // ob_frame_aggregate_output_mode
+
+/// The functions, by their names without "ob_".
+struct Api {
+  const char* (*error_get_message)(const Failure*);
+  void (*delete_error)(Failure*);
+  void (*set_logger_severity)(int severity, Failure**);
+  Context* (*create_context)(Failure**);
+  void (*delete_context)(Context*, Failure**);
+  DeviceList* (*query_device_list)(Context*, Failure**);
+  void (*delete_device_list)(DeviceList*, Failure**);
+  std::uint32_t (*device_list_get_count)(const DeviceList*, Failure**);
+  const char* (*device_list_get_device_name)(const DeviceList*, std::uint32_t index, Failure**);
+  const char* (*device_list_get_device_serial_number)(const DeviceList*, std::uint32_t index, Failure**);
+  Device* (*device_list_get_device)(const DeviceList*, std::uint32_t index, Failure**);
+  void (*delete_device)(Device*, Failure**);
+  SensorList* (*device_get_sensor_list)(const Device*, Failure**);
+  std::uint32_t (*sensor_list_get_count)(const SensorList*, Failure**);
+  int (*sensor_list_get_sensor_type)(const SensorList*, std::uint32_t index, Failure**);
+  void (*delete_sensor_list)(SensorList*, Failure**);
+  Sensor* (*device_get_sensor)(Device*, int type, Failure**);
+  void (*delete_sensor)(Sensor*, Failure**);
+  StreamProfileList* (*sensor_get_stream_profile_list)(const Sensor*, Failure**);
+  void (*sensor_start)(Sensor*, const StreamProfile*, FrameCallback, void* user, Failure**);
+  void (*sensor_stop)(Sensor*, Failure**);
+  Pipeline* (*create_pipeline_with_device)(const Device*, Failure**);
+  void (*delete_pipeline)(Pipeline*, Failure**);
+  StreamProfileList* (*pipeline_get_stream_profile_list)(const Pipeline*, int sensor, Failure**);
+  void (*pipeline_enable_frame_sync)(Pipeline*, Failure**);
+  void (*pipeline_start_with_config)(Pipeline*, const Config*, Failure**);
+  void (*pipeline_stop)(Pipeline*, Failure**);
+  Frame* (*pipeline_wait_for_frameset)(Pipeline*, std::uint32_t patience_ms, Failure**);
+  Config* (*create_config)(Failure**);
+  void (*delete_config)(Config*, Failure**);
+  void (*config_enable_stream_with_stream_profile)(Config*, const StreamProfile*, Failure**);
+  void (*config_set_frame_aggregate_output_mode)(Config*, int mode, Failure**);
+  std::uint32_t (*stream_profile_list_get_count)(const StreamProfileList*, Failure**);
+  StreamProfile* (*stream_profile_list_get_profile)(const StreamProfileList*, int index, Failure**);
+  void (*delete_stream_profile_list)(StreamProfileList*, Failure**);
+  void (*delete_stream_profile)(StreamProfile*, Failure**);
+  int (*stream_profile_get_format)(const StreamProfile*, Failure**);
+  std::uint32_t (*video_stream_profile_get_width)(const StreamProfile*, Failure**);
+  std::uint32_t (*video_stream_profile_get_height)(const StreamProfile*, Failure**);
+  std::uint32_t (*video_stream_profile_get_fps)(const StreamProfile*, Failure**);
+  Intrinsics (*video_stream_profile_get_intrinsic)(const StreamProfile*, Failure**);
+  Distortion (*video_stream_profile_get_distortion)(const StreamProfile*, Failure**);
+  Extrinsics (*stream_profile_get_extrinsic_to)(const StreamProfile* from, StreamProfile* to, Failure**);
+  Filter* (*create_filter)(const char* name, Failure**);
+  void (*delete_filter)(Filter*, Failure**);
+  void (*filter_set_config_value)(Filter*, const char* name, double value, Failure**);
+  Frame* (*filter_process)(Filter*, const Frame*, Failure**);
+  Frame* (*frameset_get_depth_frame)(const Frame*, Failure**);
+  Frame* (*frameset_get_color_frame)(const Frame*, Failure**);
+  void (*delete_frame)(Frame*, Failure**);
+  std::uint8_t* (*frame_get_data)(const Frame*, Failure**);
+  std::uint32_t (*frame_get_data_size)(const Frame*, Failure**);
+  std::uint64_t (*frame_get_index)(const Frame*, Failure**);
+  std::uint64_t (*frame_get_timestamp_us)(const Frame*, Failure**);
+  std::uint32_t (*video_frame_get_width)(const Frame*, Failure**);
+  std::uint32_t (*video_frame_get_height)(const Frame*, Failure**);
+  float (*depth_frame_get_value_scale)(const Frame*, Failure**);
+  Acceleration (*accel_frame_get_value)(const Frame*, Failure**);
+};
+
+/// Returns the functions of the library. Throws Error saying how to get it where it is not installed or lacks one.
+const Api& api();
+
+// For Outcome.
+const char* text_of(const Failure* failure);
+void free(Failure* failure);
+
+}  // namespace vesalius::ob
