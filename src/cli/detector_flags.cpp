@@ -50,11 +50,17 @@ DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
 
 std::string DetectorFlags::model() const { return model_.empty() ? default_model() : model_; }
 
-Detector DetectorFlags::make() const {
-  const DetectOptions options = detect_options(options_file_, options_);
+DetectOptions DetectorFlags::options() const { return detect_options(options_file_, options_); }
+
+Forest DetectorFlags::forest() const {
   Forest forest = load_model(model());
   if (!body_.empty()) replace_body(forest, body_);
-  return Detector(std::move(forest), options);
+  return forest;
+}
+
+Detector DetectorFlags::make() const {
+  const DetectOptions detect = options();
+  return Detector(forest(), detect);
 }
 
 }  // namespace vesalius::cli

@@ -28,6 +28,9 @@ class DetectorFlags {
 
   /// Makes the detector. Throws Error for files that cannot be used and UsageError for options outside their range.
   Detector make() const;
+  /// The parts of which `make` makes it.
+  DetectOptions options() const;
+  Forest forest() const;
   /// Returns the path of the model. Throws Error if none is given and there is no default model.
   std::string model() const;
 

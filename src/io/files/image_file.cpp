@@ -41,14 +41,26 @@ Image<T> decode_grey_png(std::string_view bytes, const std::string& name, const 
   return image;
 }
 
-std::string encode(const cv::Mat& mat) {
+std::string encode(const cv::Mat& mat, const char* extension = ".png", const std::vector<int>& parameters = {}) {
   std::vector<unsigned char> bytes;
   try {
-    if (mat.empty() || !cv::imencode(".png", mat, bytes)) throw Error("picture cannot be encoded as PNG");
+    if (mat.empty() || !cv::imencode(extension, mat, bytes, parameters)) {
+      throw Error(fmt::format("picture cannot be encoded as {}", extension));
+    }
   } catch (const cv::Exception& e) {
-    throw Error("picture cannot be encoded as PNG: " + e.err);
+    throw Error(fmt::format("picture cannot be encoded as {}: {}", extension, e.err));
   }
   return {bytes.begin(), bytes.end()};
+}
+
+cv::Mat bgr_mat(const ColourImage& image) {
+  cv::Mat mat(image.height(), image.width(), CV_8UC3);
+  for (int v = 0; v < image.height(); ++v) {
+    auto* bgr = mat.ptr<cv::Vec3b>(v);
+    const Rgb* rgb = image.row(v);
+    for (int u = 0; u < image.width(); ++u) bgr[u] = {rgb[u].b, rgb[u].g, rgb[u].r};
+  }
+  return mat;
 }
 
 template <class T>
@@ -99,14 +111,10 @@ std::string encode_png(const Image<std::uint16_t>& image) { return encode_grey(i
 
 std::string encode_png(const Image<std::uint8_t>& image) { return encode_grey(image, CV_8UC1); }
 
-std::string encode_png(const ColourImage& image) {
-  cv::Mat mat(image.height(), image.width(), CV_8UC3);
-  for (int v = 0; v < image.height(); ++v) {
-    auto* bgr = mat.ptr<cv::Vec3b>(v);
-    const Rgb* rgb = image.row(v);
-    for (int u = 0; u < image.width(); ++u) bgr[u] = {rgb[u].b, rgb[u].g, rgb[u].r};
-  }
-  return encode(mat);
+std::string encode_png(const ColourImage& image) { return encode(bgr_mat(image)); }
+
+std::string encode_jpeg(const ColourImage& image, int quality) {
+  return encode(bgr_mat(image), ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality});
 }
 
 void write_png(const Image<std::uint16_t>& image, const std::string& path) { write(image, path); }

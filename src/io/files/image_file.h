@@ -28,6 +28,9 @@ std::string encode_png(const Image<std::uint16_t>& image);  ///< 16-bit grey
 std::string encode_png(const Image<std::uint8_t>& image);   ///< 8-bit grey
 std::string encode_png(const ColourImage& image);           ///< 8-bit RGB
 
+/// Returns a JPEG of this quality, 1-100, for pictures to look at.
+std::string encode_jpeg(const ColourImage& image, int quality);
+
 void write_png(const Image<std::uint16_t>& image, const std::string& path);
 void write_png(const Image<std::uint8_t>& image, const std::string& path);
 void write_png(const ColourImage& image, const std::string& path);
