@@ -18,6 +18,7 @@ void add_options(CLI::App& program);
 void add_completion(CLI::App& program);
 
 // The following commands belong to satellites (satellites.h); a build that leaves out a satellite lacks its commands.
+void add_view(CLI::App& program);
 void add_synth(CLI::App& program);
 void add_train(CLI::App& program);
 void add_evaluate(CLI::App& program);

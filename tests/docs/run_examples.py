@@ -11,8 +11,10 @@ with all flags of the example. Other programs (./dev, cmake, ctest) are not run.
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import urllib.request
 from pathlib import Path
 
 SMALL_FRAMES = {"--sensor.width": "96", "--sensor.height": "54", "--body.kind": "builtin", "--body.count": "2",
@@ -23,6 +25,7 @@ NOBODY = {**EASY_FRAMES, "--people.none": "1", "--people.one": "0"}
 SMALL_FOREST = {"--trees": "1", "--hard-trees": "1", "--depth": "5", "--candidates": "8", "--pixels": "100",
                 "--held-out-share": "0.25"}
 MOST = {"--count": 12, "--preview": 3, "--trees": 2}
+CAMERA = r"(openni2|freenect|realsense|orbbec):\w*"
 NOT_RUN = ("assets",)  # needs a network
 
 
@@ -85,11 +88,15 @@ class Wrapper:
             return "session.mcap"
         return "depth.png" if name.endswith(".png") else "frames"
 
+    def without_camera(self, words):
+        """Cameras are the reader's to plug in."""
+        return [str(self.stand_ins / "frames") if re.fullmatch(CAMERA, word) else word for word in words]
+
     def provide(self, words):
         command = words[0]
         for name in self.values(words, "-m", "--model"):
             self.place(name, "rendered.forest" if "--recipe" in words else "some.forest")
-        if command in ("detect", "record", "bench"):
+        if command in ("detect", "record", "bench", "view"):
             for name in self.positional(words):
                 self.place(name, self.stand_in_of_source(name))
         if command == "evaluate":
@@ -149,17 +156,28 @@ class Wrapper:
         if any(w.startswith("real/") for w in words) and not (Path("real").is_dir() and any(Path("real").iterdir())):
             print("example not run, no real frames: vesalius", *words, file=sys.stderr)
             return 0
-        words = self.without_motions(words)
+        words = self.without_camera(self.without_motions(words))
         self.provide(words)
         # A recipe of the reader's own, or one of the project's, at the size of a test.
         for i, word in enumerate(words):
             if word == "--recipe" and words[0] in ("train", "evaluate"):
                 words[i + 1] = self.small_recipe(words[i + 1])
         words = self.shrink(words)
-        done = subprocess.run([self.program, *words], check=False)
+        code = self.look(words) if words[0] == "view" else subprocess.run([self.program, *words], check=False).returncode
         with open(os.environ["EXAMPLE_LOG"], "a", encoding="utf-8") as log:
-            log.write(f"{done.returncode} {' '.join(words)}\n")
-        return done.returncode
+            log.write(f"{code} {' '.join(words)}\n")
+        return code
+
+    def look(self, words):
+        """Runs the viewer until its page was there, at a port that is free."""
+        words = self.replace(words, {"--port": "0"}) + ["--no-browser"]
+        with subprocess.Popen([self.program, *words], stdout=subprocess.PIPE, text=True) as viewer:
+            address = viewer.stdout.readline().strip()
+            if address:
+                with urllib.request.urlopen(address, timeout=20) as page:
+                    assert page.status == 200, address
+                viewer.send_signal(signal.SIGINT)
+            return viewer.wait(timeout=30)
 
 
 def make_stand_ins(program, source, folder):

@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <atomic>
+#include <filesystem>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/detector_flags.h"
+#include "cli/interrupts.h"
+#include "cli/source_flags.h"
+#include "cli/text_sink.h"
+#include "cli/view/open_browser.h"
+#include "vesalius/base/keep_memory.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/forest/make_labeller.h"
+#include "view/viewer.h"
+
+namespace vesalius::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  explicit Arguments(CLI::App& command) : detector(command) {}
+
+  std::string source;
+  SourceOptions camera;
+  DetectorFlags detector;
+  std::string host = "127.0.0.1";
+  int port = 8080;
+  std::string folder = ".";
+  double rate = kUsualRate;
+  int threads = 0;
+  bool paused = false;
+  bool no_browser = false;
+  bool quiet = false;
+};
+
+/// Returns the name of the server in the address that is printed: where it listens at all addresses, this machine's.
+std::string name_of(const std::string& host) {
+  if (host != "0.0.0.0" && host != "::") return host.find(':') == host.npos ? host : "[" + host + "]";
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "localhost";
+}
+
+void check_folder(const std::string& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) throw Error(folder + ": no such folder, expected one for recordings");
+}
+
+ViewerOptions viewer_options(const Arguments& arguments) {
+  ViewerOptions options;
+  options.web.host = arguments.host;
+  options.web.port = static_cast<std::uint16_t>(arguments.port);
+  options.web.access = web_access(arguments.host, is_loopback(arguments.host) ? "" : random_token());
+  options.rate = arguments.rate;
+  options.start_s = arguments.camera.start_s.value_or(0.0);
+  options.paused = arguments.paused;
+  options.folder = arguments.folder;
+  options.source = arguments.source;
+  options.model = fs::path(arguments.detector.model()).filename().string();
+  return options;
+}
+
+void run(const Arguments& arguments) {
+  check_folder(arguments.folder);
+  keep_freed_memory();
+  const ThreadLimit limit(arguments.threads);
+  const DetectOptions detect = arguments.detector.options();
+  const auto labeller = make_labeller(arguments.detector.forest());
+  SourceOptions camera = arguments.camera;
+  std::atomic<Viewer*> page = nullptr;  // cameras speak in the player's thread
+  camera.say = [&page](const std::string& line) {
+    say(line);
+    if (Viewer* const shown = page) shown->say(line);
+  };
+  const auto source = open_source(arguments.source, camera);
+  if (!arguments.quiet) {
+    for (const std::string& note : source->notes()) say("note: " + note);
+  }
+  const ViewerOptions options = viewer_options(arguments);
+  Viewer viewer(*source, labeller, detect, options);
+  page = &viewer;
+  watch_interrupts();
+  std::string address = fmt::format("http://{}:{}/", name_of(arguments.host), viewer.port());
+  if (!options.web.access.token.empty()) address += "?token=" + options.web.access.token;
+  print(address + "\n");
+  finish_stdout();
+  if (!arguments.quiet) say("Open this address in a browser; Ctrl-C ends.");
+  if (!arguments.no_browser) open_browser(address);
+  viewer.run(interrupted);
+}
+
+void add_page_flags(CLI::App& command, Arguments& arguments) {
+  const std::string group = "Page";
+  command
+      .add_option("--host", arguments.host,
+                  "Address to listen at. Any but this machine's own lets others in who have the printed address with "
+                  "its token; 0.0.0.0 is all")
+      ->type_name("ADDRESS")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--port", arguments.port, "Port to listen at; 0 = any that is free")
+      ->type_name("N")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--folder", arguments.folder, "Folder for what the page records")
+      ->type_name("DIR")
+      ->capture_default_str()
+      ->group(group);
+  command.add_flag("--paused", arguments.paused, "Begin with the first frame and wait")->group(group);
+  command.add_flag("--no-browser", arguments.no_browser, "Do not open a browser")->group(group);
+}
+
+}  // namespace
+
+void add_view(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("view", "Show the people in a source, live, on a page in a browser");
+  const auto arguments = std::make_shared<Arguments>(*command);
+  command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
+  add_page_flags(*command, *arguments);
+  add_camera_flags(*command, arguments->camera);
+  add_start_flag(*command, arguments->camera);
+  add_reconnect_flag(*command, arguments->camera);
+  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxThreads))
+      ->group(kDetectorGroup);
+  command->add_option("--rate", arguments->rate, "Frames per second of a source without times")
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command->add_flag("-q,--quiet", arguments->quiet, "Print the address and errors only");
+  command->footer(R"(
+The page shows the point cloud with skeletons, the people and their numbers, the stages of the method and every detector
+option. Nothing leaves this machine, and no file of it is served.
+
+Examples:
+  vesalius view frames/
+  vesalius view realsense: --port 8081
+  vesalius view session.mcap --host 0.0.0.0)");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,119 @@
+#include "view/frame_message.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "capsule/capsule_person.h"
+#include "io/files/image_file.h"
+#include "io/recordings/depth_codecs.h"
+#include "stream/person_json.h"
+#include "view/run_lengths.h"
+
+namespace vesalius {
+namespace {
+
+using nlohmann::json;
+
+/// A message taken apart as the page does it.
+class Parts {
+ public:
+  explicit Parts(std::string message) : message_(std::move(message)) {
+    for (int i = 3; i >= 0; --i) head_bytes_ = head_bytes_ << 8U | static_cast<unsigned char>(message_[i]);
+    head = json::parse(message_.substr(4, head_bytes_));
+  }
+  std::string bytes(const std::string& name) const {
+    for (const json& picture : head.at("pictures")) {
+      if (picture.at("name") == name)
+        return message_.substr(4 + head_bytes_ + picture.at("at").get<std::size_t>(), picture.at("bytes"));
+    }
+    return "none";
+  }
+  LabelImage labels(const std::string& name) const { return unpack_runs(bytes(name), 160, 120); }
+
+  json head;
+
+ private:
+  std::string message_;
+  std::size_t head_bytes_ = 0;
+};
+
+ViewedFrame viewed_person() {
+  CapsuleScene scene;
+  scene.people.emplace_back();
+  scene.floor_y_m = 1.F;
+  ViewedFrame viewed;
+  viewed.frame = render(scene, {160, 120, 131.F, 131.F, 79.5F, 59.5F}, paper_body()).frame;
+  viewed.frame.name = "one";
+  viewed.number = 7;
+  Person person;
+  person.skeleton.parts.resize(25);
+  person.skeleton.parts[3].state = State::observed;
+  person.skeleton.parts[3].centre = {0.1F, 0.2F, 2.F};
+  for (const JointSet& set : paper_body().joint_sets) person.joints.emplace_back(set.joints.size());
+  person.mask = Mask(160, 120, 0);
+  person.labels = LabelImage(160, 120, kBackground);
+  for (int i = 5000; i < 5100; ++i) person.mask[i] = 1, person.labels[i] = 3;
+  person.score = 0.9F;
+  viewed.people.push_back(person);
+  return viewed;
+}
+
+TEST(FrameMessage, HoldsTheFrameAndItsPeople) {
+  const ViewedFrame viewed = viewed_person();
+  const Parts parts(frame_message(viewed, paper_body()));
+  EXPECT_EQ(parts.head.at("number"), 7);
+  EXPECT_EQ(parts.head.at("found"), json::parse(frame_json(viewed.frame, viewed.people, paper_body())));
+  EXPECT_EQ(unpack_rvl(parts.bytes("depth"), 160, 120, "depth"), viewed.frame.depth);
+  EXPECT_EQ(parts.labels("people"), body_index_map(viewed.people, 160, 120));
+  EXPECT_EQ(parts.labels("parts"), part_label_map(viewed.people, 160, 120));
+  const ColourImage colour = decode_colour(parts.bytes("colour"), "colour");
+  double difference = 0.0;
+  for (std::size_t i = 0; i < colour.size(); ++i) difference += std::abs(colour[i].g - viewed.frame.colour[i].g);
+  EXPECT_LT(difference / static_cast<double>(colour.size()), 4.0);
+  EXPECT_FALSE(parts.head.contains("stages"));
+  EXPECT_NEAR(parts.head.at("floor").at("offset_m"), 1.0, 0.02);
+  EXPECT_NEAR(parts.head.at("floor").at("normal").at(1), 1.0, 0.01);
+}
+
+TEST(FrameMessage, HoldsTheStagesOfATrace) {
+  ViewedFrame viewed = viewed_person();
+  viewed.frame.colour = {};
+  Trace& trace = viewed.trace.emplace();
+  trace.raw_labels = trace.labels = viewed.people[0].labels;
+  trace.flat = Mask(160, 120, 1);
+  trace.clusters.items.resize(1);
+  trace.clusters.items[0].label = 3;
+  trace.clusters.items[0].pixels = 100;
+  trace.clusters.index = Image<std::int32_t>(160, 120, -1);
+  for (int i = 5000; i < 5100; ++i) trace.clusters.index[i] = 0;
+  trace.rough.push_back(viewed.people[0].skeleton);
+  // Two candidates claim the same pixels: the first is the surer one.
+  Trace::Candidate candidate;
+  candidate.rough = candidate.refined = viewed.people[0].skeleton;
+  candidate.grown = viewed.people[0].mask;
+  candidate.labels = viewed.people[0].labels;
+  candidate.accepted = true;
+  trace.candidates = {candidate, candidate};
+  trace.candidates[1].accepted = false;
+  trace.candidates[1].grown[0] = 1;
+  const Parts parts(frame_message(viewed, paper_body()));
+  EXPECT_EQ(parts.bytes("colour"), "none");
+  for (const char* name : {"raw_labels", "labels", "proposals", "second_pass"}) {
+    EXPECT_EQ(parts.labels(name), trace.labels) << name;
+  }
+  EXPECT_EQ(parts.labels("flat"), trace.flat);
+  const LabelImage grown = parts.labels("grown");
+  EXPECT_EQ(grown[0], 1);
+  EXPECT_EQ(grown[5000], 0);
+  EXPECT_EQ(grown[4999], kBackground);
+  const json& stages = parts.head.at("stages");
+  EXPECT_EQ(stages.at("proposals").at(0).at("pixels"), 100);
+  EXPECT_EQ(stages.at("rough").at(0).at("parts").at(3), (json{0.1, 0.2, 2.0}));
+  EXPECT_EQ(stages.at("rough").at(0).at("parts").at(4), nullptr);
+  EXPECT_EQ(stages.at("candidates").at(0).at("accepted"), true);
+  EXPECT_EQ(stages.at("candidates").at(1).at("accepted"), false);
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,42 @@
+#include "view/run_lengths.h"
+
+#include <gmock/gmock.h>
+
+#include "vesalius/base/error.h"
+#include "vesalius/base/random.h"
+
+namespace vesalius {
+namespace {
+
+TEST(RunLengths, ArePairsOfValueAndLength) {
+  Image<std::uint8_t> image(100, 3, 255);
+  image(0, 0) = 7;
+  // 1 pixel of 7; 299 = 2 * 128 + 43 of 255
+  EXPECT_EQ(pack_runs(image), "\x07\x01\xff\xab\x02");
+  EXPECT_EQ(pack_runs({}), "");
+}
+
+TEST(RunLengths, ComeBackAsTheyWere) {
+  Random random(1);
+  for (int i = 0; i < 50; ++i) {
+    Image<std::uint8_t> image(1 + static_cast<int>(random.below(300)), 1 + static_cast<int>(random.below(200)));
+    const std::uint32_t change = 1 + random.below(400);
+    std::uint8_t value = 0;
+    for (std::uint8_t& pixel : image) {
+      if (random.below(change) == 0) value = static_cast<std::uint8_t>(random.below(256));
+      pixel = value;
+    }
+    EXPECT_EQ(unpack_runs(pack_runs(image), image.width(), image.height()), image);
+  }
+}
+
+TEST(RunLengths, RefuseWhatDoesNotFillThePicture) {
+  using std::string_view_literals::operator""sv;
+  EXPECT_EQ(unpack_runs("\x05\x04"sv, 2, 2), Image<std::uint8_t>(2, 2, 5));
+  for (const auto packed : {"\x05\x03"sv, "\x05\x05"sv, "\x05"sv, "\x05\x84"sv, "\x05\xff\xff\xff\xff\xff\x01"sv}) {
+    EXPECT_THROW(unpack_runs(packed, 2, 2), Error);
+  }
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "vesalius/base/frame_source.h"
+#include "vesalius/detect.h"
+#include "vesalius/forest/label_pixels.h"
+#include "view/web_server.h"
+
+namespace vesalius {
+
+struct ViewerOptions {
+  WebServerOptions web;
+  double rate = kUsualRate;  ///< frames a second of a source without times
+  double start_s = 0.0;      ///< where the source stands, in seconds from its first frame
+  bool paused = false;       ///< whether to begin with the first frame and wait
+  std::string folder = ".";  ///< where recordings are written
+  std::string source;        ///< its name, for the page
+  std::string model;         ///< its name, for the page
+};
+
+/// Finds the people in a source and shows them on a page. Four threads: one plays the source, one detects, the
+/// caller's packs the results, one serves them. Each takes the newest that the one before it has, so that the page
+/// shows what is now, and a busy machine drops frames, which are counted.
+class Viewer {
+ public:
+  /// Listens and begins to play. Throws Error if it cannot listen, UsageError for an option outside its range.
+  Viewer(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const DetectOptions& options,
+         const ViewerOptions& viewer);
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  std::uint16_t port() const;
+
+  /// Shows a line on all pages. May be called from any thread.
+  void say(const std::string& line);
+
+  /// Serves until `stop`, which is asked every 50 ms, returns true.
+  void run(const std::function<bool()>& stop);
+
+ private:
+  class Session;
+  std::unique_ptr<Session> session_;
+};
+
+}  // namespace vesalius

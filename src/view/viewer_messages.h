@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "vesalius/base/body_model.h"
+#include "vesalius/detect.h"
+#include "view/player.h"
+
+namespace vesalius {
+
+/// How things stand, besides the player.
+struct ViewerState {
+  double frames_per_s = 0.0;        ///< of the detector, over the last second
+  int frames = 0;                   ///< that were detected
+  int dropped = 0;                  ///< that were not, since newer ones had come or the camera was not asked in time
+  std::optional<double> result_ms;  ///< from a frame's arrival to its people, median of the last ones
+  std::optional<double> page_ms;    ///< to a page having shown it
+  int clients = 0;
+  bool stages = false;    ///< whether pages get the stages too
+  std::string recording;  ///< path of the file that is being recorded; empty = none
+  int recorded = 0;       ///< frames in it
+};
+
+/// What never changes while a viewer runs.
+struct ViewerFacts {
+  std::string source, model, folder;
+};
+
+// Messages to a page, as JSON texts with a "type" (docs/formats.md).
+std::string hello_message(const ViewerFacts& facts, const BodyModel& body);
+std::string state_message(const ViewerState& state, const PlayerState& player);
+std::string options_message(const DetectOptions& options);
+std::string notice_message(const std::string& text);
+
+/// Sets the option `name` to a value given as JSON. Throws Error for one that does not exist or a value that does not
+/// fit.
+void set_option(DetectOptions& options, const std::string& name, const std::string& value_json);
+
+}  // namespace vesalius

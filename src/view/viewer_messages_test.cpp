@@ -1,0 +1,90 @@
+#include "view/viewer_messages.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+json option_named(const DetectOptions& options, const std::string& name) {
+  const json message = json::parse(options_message(options));
+  for (const json& option : message.at("options")) {
+    if (option.at("name") == name) return option;
+  }
+  return {};
+}
+
+std::string refusal(const std::string& name, const std::string& value) {
+  DetectOptions options;
+  try {
+    set_option(options, name, value);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "taken";
+}
+
+TEST(ViewerMessages, DescribeEveryOption) {
+  DetectOptions options;
+  options.search.min_parts = 9;
+  const json changed = option_named(options, "search.min-parts");
+  EXPECT_EQ(changed.at("value"), 9);
+  EXPECT_EQ(changed.at("default"), DetectOptions().search.min_parts);
+  EXPECT_EQ(changed.at("type"), "integer");
+  EXPECT_LT(changed.at("low"), changed.at("high"));
+  EXPECT_NE(changed.at("help"), "");
+  EXPECT_EQ(option_named(options, "refine.min-score").at("value"), 0.8) << "not 0.800000011920929";
+  EXPECT_EQ(option_named(options, "refine.second-pass").at("value"), true);
+}
+
+TEST(ViewerMessages, OptionsAreSetAsTheyAreGiven) {
+  DetectOptions options;
+  set_option(options, "refine.min-score", "0.25");
+  set_option(options, "refine.area-scale", "1");  // a whole number is a number too
+  set_option(options, "search.min-parts", "7");
+  set_option(options, "refine.second-pass", "false");
+  set_option(options, "grow.appearance", "\"texture\"");
+  EXPECT_FLOAT_EQ(options.refine.min_score, 0.25F);
+  EXPECT_FLOAT_EQ(options.refine.area_scale, 1.F);
+  EXPECT_EQ(options.search.min_parts, 7);
+  EXPECT_FALSE(options.refine.second_pass);
+  EXPECT_EQ(options.grow.appearance, "texture");
+}
+
+TEST(ViewerMessages, UnfitOptionsAreRefusedAndChangeNothing) {
+  EXPECT_THAT(refusal("refine.min-score", "2"), HasSubstr("expected 0 to 1"));
+  EXPECT_THAT(refusal("refine.min-scor", "0.5"), HasSubstr("refine.min-score"));
+  EXPECT_THAT(refusal("search.min-parts", "1.5"), HasSubstr("search.min-parts"));
+  EXPECT_THAT(refusal("search.min-parts", "\"x\""), HasSubstr("search.min-parts"));
+  EXPECT_THAT(refusal("refine.second-pass", "[]"), HasSubstr("expected a number, a text, true or false"));
+  EXPECT_THAT(refusal("refine.min-score = 0.1\nsearch.min-parts", "7"), HasSubstr("no such option"));
+}
+
+TEST(ViewerMessages, StateTellsWhatIsKnown) {
+  PlayerState player;
+  player.span = TimeSpan{1.0, 3.5};
+  ViewerState state;
+  state.page_ms = 12.345;
+  state.recording = "bad\xff.mcap";
+  const json with = json::parse(state_message(state, player));
+  EXPECT_EQ(with.at("span_s"), (json{1.0, 3.5}));
+  EXPECT_EQ(with.at("page_ms"), 12.35);
+  EXPECT_EQ(with.at("result_ms"), nullptr);
+  EXPECT_EQ(json::parse(state_message({}, {})).at("span_s"), nullptr);
+}
+
+TEST(ViewerMessages, HelloDescribesTheBody) {
+  const json hello = json::parse(hello_message({"frames/", "default.forest", "."}, paper_body()));
+  EXPECT_EQ(hello.at("body").at("parts").size(), 25U);
+  EXPECT_EQ(hello.at("body").at("links").size(), 24U);
+  EXPECT_EQ(hello.at("source"), "frames/");
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,228 @@
+#include "view/viewer.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "capsule/capsule_person.h"
+#include "io/files/test_files.h"
+#include "io/sources/open_source.h"
+#include "view/test_page.h"
+
+namespace vesalius {
+namespace {
+
+using nlohmann::json;
+using test::Page;
+using testing::HasSubstr;
+
+constexpr int kFrames = 200;
+
+/// A labeller that finds nobody.
+class Background : public PixelLabeller {
+ public:
+  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+    out = {depth.width(), depth.height(), 26, 1, {}};
+    out.sums.assign(depth.size() * 26, 0);
+    for (std::size_t i = 25; i < out.sums.size(); i += 26) out.sums[i] = 255;
+  }
+  const BodyModel& body() const override { return paper_body(); }
+  bool has_background() const override { return true; }
+  bool has_distributions() const override { return false; }
+};
+
+/// A room, 100 frames a second, each with its number in the first pixel.
+class Room : public FrameSource {
+ public:
+  std::optional<Frame> next() override {
+    if (at_ == kFrames) return std::nullopt;
+    Frame frame;
+    frame.name = std::to_string(at_);
+    frame.time_s = at_ * 0.01;
+    frame.camera = {80, 60, 65.F, 65.F, 39.5F, 29.5F};
+    frame.depth = DepthImage(80, 60, 3000);
+    frame.depth[0] = static_cast<std::uint16_t>(++at_);
+    return frame;
+  }
+  int size() const override { return kFrames; }
+  std::optional<TimeSpan> span() const override { return TimeSpan{0.0, 0.01 * (kFrames - 1)}; }
+  void seek(double time_s) override { at_ = std::clamp(static_cast<int>(std::ceil(100 * time_s - 1e-6)), 0, kFrames); }
+
+ private:
+  int at_ = 0;
+};
+
+/// A viewer that runs.
+class Running {
+ public:
+  explicit Running(bool paused, const std::string& folder = ".")
+      : viewer_(source_, std::make_shared<Background>(), {}, options(paused, folder)),
+        thread_([this] { viewer_.run([this] { return stop_.load(); }); }) {}
+  ~Running() {
+    stop_ = true;
+    thread_.join();
+  }
+  std::uint16_t port() const { return viewer_.port(); }
+
+ private:
+  static ViewerOptions options(bool paused, const std::string& folder) {
+    ViewerOptions options;
+    options.web.port = 0;
+    options.web.access = web_access("127.0.0.1", "");
+    options.paused = paused;
+    options.folder = folder;
+    options.source = "room";
+    return options;
+  }
+
+  Room source_;
+  std::atomic<bool> stop_ = false;
+  Viewer viewer_;
+  std::jthread thread_;
+};
+
+json head_of(const Page::Message& message) {
+  std::size_t bytes = 0;
+  for (int i = 3; i >= 0; --i) bytes = bytes << 8U | static_cast<unsigned char>(message.bytes[i]);
+  return json::parse(message.bytes.substr(4, bytes));
+}
+
+/// Returns what is in the next frame; null if none comes.
+json next_frame(Page& page) {
+  const auto message = page.receive_frame();
+  page.send("next");
+  return message ? head_of(*message) : json();
+}
+
+std::string name_of(const json& frame) { return frame.is_null() ? "none" : frame.at("found").at("frame"); }
+
+/// Returns the first frame of that name, which may have been on its way behind others; null if none comes.
+json frame_named(Page& page, const std::string& name) {
+  for (;;) {
+    json frame = next_frame(page);
+    if (frame.is_null() || name_of(frame) == name) return frame;
+  }
+}
+
+// Labels: threads
+TEST(Viewer, PlaysFramesInOrder) {
+  const Running viewer(false);
+  Page page(viewer.port());
+  EXPECT_THAT(page.receive()->bytes, HasSubstr("\"hello\""));
+  int last = -1;
+  for (int i = 0; i < 20; ++i) {
+    const int name = std::stoi(name_of(next_frame(page)));
+    EXPECT_GT(name, last);
+    last = name;
+  }
+  const auto state = page.receive_text("\"state\"");
+  ASSERT_TRUE(state);
+  const json parsed = json::parse(state->bytes);
+  EXPECT_TRUE(parsed.at("playing"));
+  EXPECT_GE(parsed.at("frames").get<int>(), 20);
+  EXPECT_EQ(parsed.at("span_s"), (json{0.0, 1.99}));
+}
+
+// Labels: threads
+TEST(Viewer, PausedDoesWhatItIsTold) {
+  const Running viewer(true);
+  Page page(viewer.port());
+  EXPECT_EQ(name_of(next_frame(page)), "0");
+  for (const auto& [command, name] :
+       std::vector<std::pair<std::string, std::string>>{{R"({"do":"step","by":1})", "1"},
+                                                        {R"({"do":"seek","to_s":1.5})", "150"},
+                                                        {R"({"do":"step","by":-1})", "149"}}) {
+    page.send(command);
+    EXPECT_FALSE(frame_named(page, name).is_null()) << command;
+  }
+  page.send(R"({"do":"stages","on":true})");
+  const json again = frame_named(page, "149");
+  ASSERT_FALSE(again.is_null()) << "the same once more";
+  EXPECT_TRUE(again.contains("stages"));
+  Page second(viewer.port());
+  EXPECT_EQ(name_of(next_frame(second)), "149") << "whoever comes later sees it too";
+}
+
+// Labels: threads
+TEST(Viewer, ChangesOptionsAndSaysWhatIsWrong) {
+  const Running viewer(true);
+  Page page(viewer.port());
+  next_frame(page);
+  page.send(R"({"do":"set","option":"search.min-parts","value":9})");
+  // The new options and the same frame, detected anew, come in either order.
+  bool told = false, shown = false;
+  while (!told || !shown) {
+    const auto message = page.receive();
+    ASSERT_TRUE(message) << told << shown;
+    if (message->binary) page.send("next");
+    shown |= message->binary;
+    told |= message->bytes.find(R"("search.min-parts","type":"integer","value":9)") != std::string::npos;
+  }
+  EXPECT_THAT(test::request(viewer.port(), "/options.toml").body, HasSubstr("\nsearch.min-parts = 9\n"));
+  for (const auto& [command, why] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"do":"set","option":"search.min-parts","value":0})", "search.min-parts is 0, expected 1 to 200"},
+           {R"({"do":"set","option":"grow.appearance","value":"smell"})", "smell"},
+           {R"({"do":"fly"})", "unknown command"},
+           {R"({"do":)", "not a command"},
+           {"[]", "not a command"},
+           {R"({"do":"seek"})", "not a command"},
+           {R"({"do":"step","by":"x"})", "not a command"}}) {
+    page.send(command);
+    const auto notice = page.receive_text("\"notice\"");
+    ASSERT_TRUE(notice) << command;
+    EXPECT_THAT(notice->bytes, HasSubstr(why)) << command;
+  }
+  page.send(R"({"do":"reset"})");
+  EXPECT_TRUE(page.receive_text("\"search.min-parts\",\"type\":\"integer\",\"value\":4"));
+}
+
+// Labels: threads
+TEST(Viewer, RecordsWhatIsShown) {
+  const test::TemporaryFolder folder;
+  {
+    const Running viewer(false, folder.path());
+    Page page(viewer.port());
+    page.send(R"({"do":"record","on":true})");
+    ASSERT_TRUE(page.receive_text("\"recording\":\"" + folder.path()));
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(next_frame(page).is_null());
+    page.send(R"({"do":"record","on":false})");
+    ASSERT_TRUE(page.receive_text("\"recording\":\"\""));
+  }
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) files.push_back(entry.path().string());
+  ASSERT_EQ(files.size(), 1U);
+  const auto source = open_source(files[0]);
+  std::optional<Frame> frame = source->next();
+  ASSERT_TRUE(frame);
+  const int first = frame->depth[0];
+  frame = source->next();
+  ASSERT_TRUE(frame);
+  EXPECT_GT(frame->depth[0], first);
+  EXPECT_EQ(frame->depth(5, 5), 3000);
+}
+
+TEST(Viewer, SaysWhenItCannotRecord) {
+  const Running viewer(true, "/no/such/folder");
+  Page page(viewer.port());
+  page.send(R"({"do":"record","on":true})");
+  const auto notice = page.receive_text("\"notice\"");
+  ASSERT_TRUE(notice);
+  EXPECT_THAT(notice->bytes, HasSubstr("/no/such/folder/vesalius-"));
+}
+
+// Labels: threads
+TEST(Viewer, ManyPagesOneOfThemStalledHarmNobody) {
+  const Running viewer(false);
+  Page stalled(viewer.port());
+  std::vector<std::unique_ptr<Page>> pages;
+  for (int i = 0; i < 9; ++i) pages.push_back(std::make_unique<Page>(viewer.port()));
+  for (int i = 0; i < 10; ++i) {
+    for (const auto& page : pages) EXPECT_FALSE(next_frame(*page).is_null());
+  }
+}
+
+}  // namespace
+}  // namespace vesalius

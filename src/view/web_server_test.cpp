@@ -1,0 +1,202 @@
+#include "view/web_server.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include "vesalius/base/error.h"
+#include "view/test_page.h"
+
+namespace vesalius {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Page;
+using test::request;
+using testing::HasSubstr;
+
+/// A server with a page, a secret file and clients that say hello.
+class Server {
+ public:
+  explicit Server(const std::string& token = "", WebServerOptions options = {})
+      : server(with_access(std::move(options), token),
+               {[](const std::string& path) -> std::optional<WebResponse> {
+                  if (path == "/") return WebResponse{"text/html", "page", false, {}};
+                  if (path == "/view.js") return WebResponse{"text/javascript", "script", false, {}};
+                  if (path == "/options.toml") return WebResponse{"application/toml", "a = 1", false, "options.toml"};
+                  return std::nullopt;
+                },
+                [](const std::string& path) { return path == "/view.js"; },
+                [] { return std::vector<std::string>{"hello"}; },
+                [this](const std::string& text) -> std::optional<std::string> {
+                  const std::scoped_lock lock(mutex);
+                  received.push_back(text);
+                  if (text == "ask") return "answer";
+                  return std::nullopt;
+                },
+                [this](std::chrono::duration<double>) { ++shown; }}) {}
+
+  std::uint16_t port() const { return server.port(); }
+  void frame(const std::string& bytes) { server.publish_frame(bytes, std::chrono::steady_clock::now()); }
+  /// Waits until the server's thread has done all that it was told before.
+  void settle() const { std::this_thread::sleep_for(50ms); }
+
+  std::mutex mutex;
+  std::vector<std::string> received;
+  std::atomic<int> shown = 0;
+  WebServer server;
+
+ private:
+  static WebServerOptions with_access(WebServerOptions options, const std::string& token) {
+    options.port = 0;
+    options.access = web_access("127.0.0.1", token);
+    return options;
+  }
+};
+
+TEST(WebServer, GivesFilesAndNothingElse) {
+  Server server;
+  const auto page = request(server.port(), "/");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_EQ(page.body, "page");
+  EXPECT_THAT(std::string(page.response["Content-Security-Policy"]), HasSubstr("default-src 'none'"));
+  EXPECT_EQ(page.response["X-Content-Type-Options"], "nosniff");
+  EXPECT_THAT(std::string(request(server.port(), "/options.toml").response["Content-Disposition"]),
+              HasSubstr("options.toml"));
+  for (const char* path : {"/etc/passwd", "/../etc/passwd", "//etc/passwd", "/%2e%2e/etc/passwd", "/view.js/.."}) {
+    EXPECT_EQ(request(server.port(), path).status, 404) << path;
+  }
+  EXPECT_EQ(request(server.port(), "/", "127.0.0.1", "", test::http::verb::post).status, 405);
+  EXPECT_EQ(request(server.port(), "/", "127.0.0.1", "", test::http::verb::delete_).status, 405);
+  EXPECT_EQ(request(server.port(), "/stream").status, 426) << "not as a WebSocket";
+}
+
+TEST(WebServer, RefusesForeignHostsAndPages) {
+  Server server;
+  const std::string own = "http://127.0.0.1:" + std::to_string(server.port());
+  const std::string host = "127.0.0.1:" + std::to_string(server.port());
+  EXPECT_EQ(request(server.port(), "/", "evil.example").status, 403);
+  EXPECT_EQ(request(server.port(), "/", host, "http://evil.example").status, 403);
+  EXPECT_EQ(Page(server.port(), "/stream", "evil.example").status, 403);
+  EXPECT_EQ(Page(server.port(), "/stream", host, "http://evil.example").status, 403);
+  EXPECT_EQ(Page(server.port(), "/stream", host, "null").status, 403);
+  EXPECT_EQ(Page(server.port(), "/stream", host, own).status, 101);
+}
+
+TEST(WebServer, WantsTheTokenForAllButTheScripts) {
+  Server server("secret");
+  EXPECT_EQ(request(server.port(), "/").status, 403);
+  EXPECT_EQ(request(server.port(), "/?token=wrong").status, 403);
+  EXPECT_EQ(request(server.port(), "/?token=secret").status, 200);
+  EXPECT_EQ(request(server.port(), "/options.toml?a=1&token=secret").status, 200);
+  EXPECT_EQ(request(server.port(), "/view.js").status, 200);
+  EXPECT_EQ(Page(server.port(), "/stream").status, 403);
+  EXPECT_EQ(Page(server.port(), "/stream?token=secret").status, 101);
+}
+
+TEST(WebServer, TalksWithItsPages) {
+  Server server;
+  Page page(server.port());
+  EXPECT_EQ(page.receive()->bytes, "hello");
+  page.send("ask");
+  EXPECT_EQ(page.receive()->bytes, "answer");
+  EXPECT_EQ(server.server.clients(), 1);
+  server.server.publish_text("state", "one");
+  EXPECT_EQ(page.receive()->bytes, "one");
+  const std::scoped_lock lock(server.mutex);
+  EXPECT_THAT(server.received, testing::ElementsAre("ask"));
+}
+
+TEST(WebServer, SendsTheNewestFrameToWhoAsks) {
+  Server server;
+  Page page(server.port());
+  page.receive();
+  for (const char* frame : {"1", "2", "3", "4", "5"}) {
+    server.frame(frame);
+    server.settle();
+  }
+  EXPECT_EQ(page.receive()->bytes, "1");
+  EXPECT_EQ(page.receive()->bytes, "2") << "two are on their way at most";
+  EXPECT_EQ(page.receive(100ms), std::nullopt);
+  page.send("next");
+  const auto newest = page.receive();
+  EXPECT_EQ(newest->bytes, "5");
+  EXPECT_TRUE(newest->binary);
+  page.send("next");
+  page.send("next");
+  EXPECT_EQ(page.receive(100ms), std::nullopt) << "there is no newer one";
+  EXPECT_EQ(server.shown, 3);
+  page.send("next");  // one too many is nothing
+  server.frame("6");
+  EXPECT_EQ(page.receive()->bytes, "6");
+}
+
+TEST(WebServer, IsNotHeldUpByAStalledPage) {
+  Server server;
+  Page stalled(server.port());
+  Page page(server.port());
+  page.receive();
+  const std::string large(4 << 20, 'x');  // more than sockets keep
+  for (int i = 0; i < 20; ++i) {
+    server.frame(large);
+    ASSERT_EQ(page.receive()->bytes.size(), large.size()) << i;
+    page.send("next");
+  }
+}
+
+TEST(WebServer, HangsUpOnTooLongAndTooManyMessages) {
+  Server server;
+  Page loud(server.port());
+  loud.send(std::string(100000, 'x'));
+  EXPECT_TRUE(loud.is_closed());
+  WebServerOptions options;
+  options.max_rate = 20;
+  Server strict("", options);
+  Page fast(strict.port());
+  for (int i = 0; i < 50; ++i) fast.send("next");
+  EXPECT_TRUE(fast.is_closed());
+  strict.settle();
+  EXPECT_EQ(strict.server.clients(), 0);
+}
+
+TEST(WebServer, TakesOnlySoManyPages) {
+  WebServerOptions options;
+  options.max_clients = 2;
+  Server server("", options);
+  auto first = std::make_unique<Page>(server.port());
+  const Page second(server.port());
+  EXPECT_EQ(Page(server.port()).status, 503);
+  EXPECT_EQ(request(server.port(), "/").status, 200);
+  first.reset();
+  server.settle();
+  EXPECT_EQ(Page(server.port()).status, 101) << "one has left";
+}
+
+TEST(WebServer, RefusesHugeRequests) {
+  Server server;
+  EXPECT_NE(request(server.port(), "/" + std::string(20000, 'x')).status, 200);
+  EXPECT_EQ(request(server.port(), "/").status, 200) << "and lives on";
+}
+
+TEST(WebServer, SaysWhyItCannotListen) {
+  const Server server;
+  const auto message = [](const std::string& host, std::uint16_t port) {
+    WebServerOptions options;
+    options.host = host;
+    options.port = port;
+    try {
+      const WebServer second(options, {});
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("it listens");
+  };
+  EXPECT_THAT(message("127.0.0.1", server.port()), HasSubstr("another program has this port"));
+  EXPECT_THAT(message("192.0.2.1", 0), HasSubstr("192.0.2.1:0: "));
+  EXPECT_THAT(message("no such host", 0), HasSubstr("expected an address of this machine"));
+}
+
+}  // namespace
+}  // namespace vesalius

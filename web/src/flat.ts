@@ -1,0 +1,198 @@
+import type { Colouring } from './cloud';
+import { Rgb, css, depthColour, depthRange, personColour } from './palette';
+import { BACKGROUND, Body, Frame } from './protocol';
+
+const SHADES = 256;
+
+/** Colours of all depths from near to far, for tables. */
+export const DEPTH_COLOURS: Rgb[] = Array.from({ length: SHADES }, (_, i) => depthColour(i / (SHADES - 1)));
+
+/** Pixels that are put together before they are drawn. */
+export class Pixels {
+  readonly image: ImageData;
+  private readonly words: Uint32Array;
+
+  constructor(width: number, height: number) {
+    this.image = new ImageData(width, height);
+    this.words = new Uint32Array(this.image.data.buffer);
+  }
+
+  /** `opacity` 0-255. Browsers are little-endian. */
+  static word([r, g, b]: Rgb, opacity = 255): number {
+    return ((opacity << 24) | (b << 16) | (g << 8) | r) >>> 0;
+  }
+  set(pixel: number, word: number): void {
+    this.words[pixel] = word;
+  }
+
+  depth(depth: Uint16Array, [near, far]: [number, number]): this {
+    const words = DEPTH_COLOURS.map((colour) => Pixels.word(colour));
+    const scale = (SHADES - 1) / (far - near);
+    for (let i = 0; i < depth.length; ++i) {
+      const shade = Math.min(Math.max((depth[i] - near) * scale, 0), SHADES - 1) | 0;
+      this.words[i] = depth[i] === 0 ? 0xff000000 : words[shade];
+    }
+    return this;
+  }
+
+  labels(labels: Uint8Array, colours: Rgb[], opacity = 255): this {
+    const words = Uint32Array.from({ length: 256 }, (_, i) => (colours[i] ? Pixels.word(colours[i], opacity) : 0));
+    words[BACKGROUND] = 0;
+    for (let i = 0; i < labels.length; ++i) if (labels[i] !== BACKGROUND) this.words[i] = words[labels[i]];
+    return this;
+  }
+
+  /** Marks where labels change, on the side of the smaller one. */
+  borders(labels: Uint8Array, width: number, colour: (label: number) => number): this {
+    for (let i = 0; i + width + 1 < labels.length; ++i) {
+      const label = labels[i];
+      if (label !== labels[i + 1] || label !== labels[i + width]) {
+        const other = label !== labels[i + 1] ? labels[i + 1] : labels[i + width];
+        this.words[i] = colour(Math.min(label, other));
+      }
+    }
+    return this;
+  }
+}
+
+/** Draws pixels over what is on a canvas. */
+export function drawOver(context: CanvasRenderingContext2D, pixels: Pixels): void {
+  const { image } = pixels;
+  const layer = new OffscreenCanvas(image.width, image.height);
+  layer.getContext('2d')?.putImageData(image, 0, 0);
+  context.drawImage(layer, 0, 0);
+}
+
+/** The links between points of a skeleton. */
+export function drawLinks(
+  context: CanvasRenderingContext2D,
+  body: Body,
+  place: (part: number) => [number, number] | null,
+  colour: Rgb,
+  isDashed: (a: number, b: number) => boolean,
+  width = 2.5,
+): void {
+  for (const [a, b] of body.links) {
+    const from = place(a);
+    const to = place(b);
+    if (!from || !to) continue;
+    for (const [stroke, extra] of [['rgb(0 0 0 / 0.7)', 2], [css(colour), 0]] as const) {
+      context.strokeStyle = stroke;
+      context.lineWidth = width + extra;
+      context.setLineDash(isDashed(a, b) ? [4, 4] : []);
+      context.beginPath();
+      context.moveTo(...from);
+      context.lineTo(...to);
+      context.stroke();
+    }
+  }
+  context.setLineDash([]);
+}
+
+/** The camera's picture with the people over it. */
+export class Flat {
+  private readonly context: CanvasRenderingContext2D;
+  private frame: Frame | null = null;
+  private body: Body | null = null;
+  private partColours: Rgb[] = [];
+  private colouring: Colouring = 'person';
+  private showsSkeletons = true;
+  private showsBoxes = false;
+  selected = -1;
+
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly readout: HTMLElement) {
+    this.context = canvas.getContext('2d') as CanvasRenderingContext2D;
+    canvas.addEventListener('pointermove', (event) => this.read(event));
+    canvas.addEventListener('pointerdown', (event) => this.read(event));
+  }
+
+  setBody(body: Body, colours: Rgb[]): void {
+    this.body = body;
+    this.partColours = colours;
+    this.draw();
+  }
+  setColouring(colouring: Colouring): void {
+    this.colouring = colouring;
+    this.draw();
+  }
+  setShown(skeletons: boolean, boxes: boolean): void {
+    this.showsSkeletons = skeletons;
+    this.showsBoxes = boxes;
+    this.draw();
+  }
+  select(person: number): void {
+    this.selected = person;
+    this.draw();
+  }
+  show(frame: Frame): void {
+    this.frame = frame;
+    this.draw();
+  }
+
+  private draw(): void {
+    const { frame, body, context } = this;
+    if (!frame || !body) return;
+    const { width, height } = frame.found.camera;
+    if (this.canvas.width !== width || this.canvas.height !== height) {
+      this.canvas.width = width;
+      this.canvas.height = height;
+      this.canvas.style.aspectRatio = `${width} / ${height}`;
+    }
+    if (frame.colour && this.colouring !== 'depth') {
+      context.drawImage(frame.colour, 0, 0);
+    } else {
+      context.putImageData(new Pixels(width, height).depth(frame.depth, depthRange(frame.depth)).image, 0, 0);
+    }
+    const people = frame.found.people.map((person) => personColour(person.index));
+    const over = new Pixels(width, height);
+    if (this.colouring === 'person') over.labels(frame.labels.people, people, 120);
+    if (this.colouring === 'part') over.labels(frame.labels.parts, this.partColours, 190);
+    over.borders(frame.labels.people, width, (label) => Pixels.word(people[label] ?? [255, 255, 255]));
+    drawOver(context, over);
+    for (const person of frame.found.people) {
+      const tint = personColour(person.index);
+      const parts = body.parts.map((part) => person.parts[part.name]);
+      if (this.showsSkeletons) {
+        const dashed = (a: number, b: number): boolean => parts[a].state !== 'observed' || parts[b].state !== 'observed';
+        drawLinks(context, body, (p) => parts[p]?.px ?? null, tint, dashed, person.index === this.selected ? 4 : 2.5);
+      }
+      if (this.showsBoxes || person.index === this.selected) {
+        context.strokeStyle = css(tint);
+        context.lineWidth = 2;
+        context.strokeRect(...person.box_px);
+      }
+      this.tag(person.index, person.box_px);
+    }
+  }
+
+  private tag(index: number, [u, v]: [number, number, number, number]): void {
+    const { context } = this;
+    const text = String(index);
+    context.font = 'bold 16px system-ui, sans-serif';
+    const width = context.measureText(text).width + 10;
+    const top = Math.max(v - 20, 0);
+    context.fillStyle = css(personColour(index));
+    context.fillRect(u, top, width, 20);
+    context.fillStyle = '#000';
+    context.fillText(text, u + 5, top + 16);
+  }
+
+  /** Tells what is under the pointer. */
+  private read(event: PointerEvent): void {
+    const { frame, body } = this;
+    if (!frame || !body) return;
+    const area = this.canvas.getBoundingClientRect();
+    const { width, height } = frame.found.camera;
+    const u = Math.floor(((event.clientX - area.left) / area.width) * width);
+    const v = Math.floor(((event.clientY - area.top) / area.height) * height);
+    if (u < 0 || v < 0 || u >= width || v >= height) return;
+    const pixel = v * width + u;
+    const mm = frame.depth[pixel];
+    const person = frame.labels.people[pixel];
+    const part = frame.labels.parts[pixel];
+    const words = [`(${u}, ${v})`, mm === 0 ? 'no reading' : `${(mm / 1000).toFixed(2)} m`];
+    if (person !== BACKGROUND) words.push(`person ${person}`);
+    if (part !== BACKGROUND) words.push(body.parts[part].name);
+    this.readout.textContent = words.join(' · ');
+  }
+}

@@ -1,0 +1,317 @@
+import { Cloud, Colouring } from './cloud';
+import { Connection } from './connection';
+import { DEPTH_COLOURS, Flat } from './flat';
+import { OptionFields } from './options';
+import { partColours } from './palette';
+import { PeopleList } from './people';
+import { Body, Frame, TextMessage, ViewState } from './protocol';
+import { StagePictures } from './stages';
+
+function get<T extends HTMLElement>(id: string): T {
+  return document.getElementById(id) as T;
+}
+
+const NOTICE_MS = 8000;
+const SEEK_PAUSE_MS = 60;  // while the slider moves
+const THEMES = ['auto', 'light', 'dark'];
+
+let body: Body | null = null;
+let frame: Frame | null = null;
+let state: ViewState | null = null;
+let selected = -1;
+let seekTo: number | null = null;  // where the slider was moved to, until that is sent
+let holdsSlider = false;
+
+const colouring = get<HTMLSelectElement>('colouring');
+const partColouring = get<HTMLSelectElement>('part-colours');
+const seek = get<HTMLInputElement>('seek');
+
+function notice(text: string): void {
+  const line = document.createElement('p');
+  line.textContent = text;
+  get('notices').append(line);
+  setTimeout(() => line.remove(), NOTICE_MS);
+}
+
+/** The 3-D view; none where the browser has no WebGL 2. */
+function makeCloud(): Cloud | null {
+  try {
+    return new Cloud(get<HTMLCanvasElement>('cloud'), get('names'));
+  } catch {
+    get('no-cloud').textContent = 'This browser has no WebGL 2, so there is no 3-D view: the flat picture shows the people.';
+    get('no-cloud').hidden = false;
+    document.body.classList.add('flat-only');
+    return null;
+  }
+}
+
+const cloud = makeCloud();
+const flat = new Flat(get<HTMLCanvasElement>('picture'), get('readout'));
+const people = new PeopleList(get('list'), get('nobody'), get('details'), choose);
+const stages = new StagePictures(get('stages'));
+const options = new OptionFields(get('option-list'), get<HTMLInputElement>('filter'), (option, value) =>
+  connection.send({ do: 'set', option, value }),
+);
+cloud?.setDepthColours(DEPTH_COLOURS);
+
+const connection = new Connection({
+  async frame(shown) {
+    const before = frame;
+    frame = shown;
+    flat.show(shown);
+    if (body) {
+      people.show(shown, body);
+      if (!get('stages').hidden) stages.show(shown, body, currentPartColours());
+    }
+    // A hidden tab draws nothing and need not be sent anything either.
+    await (cloud ? cloud.show(shown) : new Promise(requestAnimationFrame));
+    before?.colour?.close();
+  },
+  text: receive,
+  connected(is) {
+    document.body.classList.toggle('away', !is);
+    if (!is) get('status').textContent = 'vesalius does not answer; trying again';
+    else if (!get('stages').hidden) connection.send({ do: 'stages', on: true });
+  },
+});
+
+function receive(message: TextMessage): void {
+  switch (message.type) {
+    case 'hello':
+      body = message.body;
+      get('source').textContent = `${message.source} · ${message.model}`;
+      get('record').title = `Record frames and people into an MCAP file in ${message.folder} (m)`;
+      document.title = `${message.source} – vesalius`;
+      showPartColours();
+      break;
+    case 'state':
+      state = message;
+      showState(message);
+      break;
+    case 'options':
+      options.show(message.options);
+      break;
+    case 'notice':
+      notice(message.text);
+      break;
+  }
+}
+
+function clock(seconds: number): string {
+  const minutes = Math.floor(seconds / 60);
+  return `${minutes}:${(seconds - 60 * minutes).toFixed(2).padStart(5, '0')}`;
+}
+
+function showState(now: ViewState): void {
+  const ms = (value: number | null): string => (value === null ? '–' : `${Math.round(value)} ms`);
+  const words = [
+    now.live ? 'live' : now.playing ? 'playing' : now.at_end ? 'at the end' : 'paused',
+    `${now.frames_per_s.toFixed(0)} frames/s`,
+    `people after ${ms(now.result_ms)}`,
+    `shown after ${ms(now.page_ms)}`,
+    `${now.dropped} dropped`,
+  ];
+  if (now.recording) words.push(`recording ${now.recording}: ${now.recorded} frames`);
+  get('status').textContent = words.join(' · ');
+  get('play').textContent = now.playing ? 'Pause' : 'Play';
+  get('record').setAttribute('aria-pressed', String(now.recording !== ''));
+  get('record').textContent = now.recording ? 'Stop recording' : 'Record';
+  for (const id of ['back', 'seek', 'repeat']) get<HTMLInputElement>(id).disabled = !now.span_s;
+  get('transport').classList.toggle('live', now.live);
+  get<HTMLInputElement>('repeat').checked = now.repeat;
+  get<HTMLSelectElement>('speed').value = String(now.speed);
+  if (now.span_s) {
+    const [first, last] = now.span_s;
+    seek.min = String(first);
+    seek.max = String(Math.max(last, first + 1e-3));
+    if (seekTo === null && !holdsSlider) seek.value = String(now.at_s);
+    seek.setAttribute('aria-valuetext', `${clock(now.at_s - first)} of ${clock(last - first)}`);
+    get('time').textContent = `${clock(now.at_s - first)} / ${clock(last - first)} · ${frame?.found.frame ?? ''}`;
+  } else {
+    get('time').textContent = now.live ? '' : clock(now.at_s);
+  }
+}
+
+function currentPartColours(): ReturnType<typeof partColours> {
+  return body ? partColours(body, partColouring.value === 'sides') : [];
+}
+
+function showPartColours(): void {
+  if (!body) return;
+  cloud?.setBody(body, currentPartColours());
+  flat.setBody(body, currentPartColours());
+  if (frame && !get('stages').hidden) stages.show(frame, body, currentPartColours());
+}
+
+function choose(index: number): void {
+  selected = index;
+  cloud?.select(index);
+  flat.select(index);
+  people.select(index, frame, body);
+}
+
+function setColouring(): void {
+  cloud?.setColouring(colouring.value as Colouring);
+  flat.setColouring(colouring.value as Colouring);
+}
+
+function showTab(name: string): void {
+  for (const tab of document.querySelectorAll<HTMLElement>('[role=tab]')) {
+    const is = tab.id === `tab-${name}`;
+    tab.setAttribute('aria-selected', String(is));
+    tab.tabIndex = is ? 0 : -1;
+    get(tab.getAttribute('aria-controls') ?? '').hidden = !is;
+  }
+  get('side').classList.toggle('wide', name === 'stages');
+  connection.send({ do: 'stages', on: name === 'stages' });
+}
+
+function isChecked(id: string): boolean {
+  return get<HTMLInputElement>(id).checked;
+}
+
+function showParts(): void {
+  cloud?.setShown('skeletons', isChecked('show-skeletons'));
+  cloud?.setShown('boxes', isChecked('show-boxes'));
+  cloud?.setShown('floor', isChecked('show-floor'));
+  flat.setShown(isChecked('show-skeletons'), isChecked('show-boxes'));
+}
+
+function setTheme(theme: string): void {
+  document.documentElement.dataset.theme = theme;
+  localStorage.setItem('theme', theme);
+  get('theme').textContent = `Theme: ${theme}`;
+  showBackground();
+}
+
+function showBackground(): void {
+  cloud?.setBackground(getComputedStyle(document.body).getPropertyValue('--space').trim());
+}
+
+function save(name: string, content: Blob): void {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(content);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+/** Saves both pictures side by side, and the people as the line that `vesalius detect --json` writes. */
+function snapshot(): void {
+  if (!frame) return;
+  const name = `vesalius-${frame.found.frame.replace(/[^\w.-]/g, '_')}`;
+  const picture = get<HTMLCanvasElement>('picture');
+  const space = get<HTMLCanvasElement>('cloud');
+  cloud?.drawNow();
+  const height = Math.max(picture.height, cloud ? space.height : 0);
+  const wide = cloud ? Math.round((space.width * height) / space.height) : 0;
+  const flatWide = Math.round((picture.width * height) / picture.height);
+  const both = document.createElement('canvas');
+  both.width = wide + flatWide;
+  both.height = height;
+  const context = both.getContext('2d');
+  if (cloud) context?.drawImage(space, 0, 0, wide, height);
+  context?.drawImage(picture, wide, 0, flatWide, height);
+  both.toBlob((png) => png && save(`${name}.png`, png), 'image/png');
+  save(`${name}.json`, new Blob([JSON.stringify(frame.found)], { type: 'application/json' }));
+}
+
+function playOrPause(): void {
+  connection.send({ do: state?.playing ? 'pause' : 'play' });
+}
+
+const KEYS: Record<string, () => void> = {
+  ' ': playOrPause,
+  ArrowLeft: () => connection.send({ do: 'step', by: -1 }),
+  ArrowRight: () => connection.send({ do: 'step', by: 1 }),
+  Home: () => state?.span_s && connection.send({ do: 'seek', to_s: state.span_s[0] }),
+  End: () => state?.span_s && connection.send({ do: 'seek', to_s: state.span_s[1] }),
+  c: () => {
+    colouring.selectedIndex = (colouring.selectedIndex + 1) % colouring.options.length;
+    setColouring();
+  },
+  r: () => cloud?.resetView(),
+  v: () => cloud?.viewOfCamera(),
+  s: snapshot,
+  m: () => connection.send({ do: 'record', on: !state?.recording }),
+  '?': () => get<HTMLDialogElement>('help').showModal(),
+};
+
+function onKey(event: KeyboardEvent): void {
+  const target = event.target as HTMLElement;
+  if (event.ctrlKey || event.altKey || event.metaKey || target.closest('input, select, dialog')) return;
+  if (target.closest('[role=tablist]') && event.key.startsWith('Arrow')) return;
+  if (target.closest('button, a, summary') && event.key === ' ') return;
+  if (/^[1-9]$/.test(event.key)) {
+    const index = frame?.found.people[Number(event.key) - 1]?.index ?? -1;
+    choose(index === selected ? -1 : index);
+    return;
+  }
+  const action = KEYS[event.key];
+  if (!action) return;
+  event.preventDefault();
+  action();
+}
+
+function listen(): void {
+  document.addEventListener('keydown', onKey);
+  colouring.addEventListener('change', setColouring);
+  partColouring.addEventListener('change', showPartColours);
+  for (const id of ['show-skeletons', 'show-boxes', 'show-floor']) get(id).addEventListener('change', showParts);
+  get('view-reset').addEventListener('click', () => cloud?.resetView());
+  get('view-camera').addEventListener('click', () => cloud?.viewOfCamera());
+  get('play').addEventListener('click', playOrPause);
+  get('back').addEventListener('click', () => connection.send({ do: 'step', by: -1 }));
+  get('forward').addEventListener('click', () => connection.send({ do: 'step', by: 1 }));
+  get('repeat').addEventListener('change', () => connection.send({ do: 'repeat', on: isChecked('repeat') }));
+  get('speed').addEventListener('change', () =>
+    connection.send({ do: 'speed', times: Number(get<HTMLSelectElement>('speed').value) }),
+  );
+  seek.addEventListener('input', () => {
+    const waits = seekTo !== null;
+    seekTo = Number(seek.value);
+    if (waits) return;
+    setTimeout(() => {
+      connection.send({ do: 'seek', to_s: seekTo ?? 0 });
+      seekTo = null;
+    }, SEEK_PAUSE_MS);
+  });
+  seek.addEventListener('pointerdown', () => (holdsSlider = true));
+  for (const end of ['pointerup', 'pointercancel']) document.addEventListener(end, () => (holdsSlider = false));
+  get('record').addEventListener('click', () => connection.send({ do: 'record', on: !state?.recording }));
+  get('snapshot').addEventListener('click', snapshot);
+  get('keys').addEventListener('click', KEYS['?']);
+  get('theme').addEventListener('click', () => {
+    const at = THEMES.indexOf(document.documentElement.dataset.theme ?? 'auto');
+    setTheme(THEMES[(at + 1) % THEMES.length]);
+  });
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', showBackground);
+  get('reset-options').addEventListener('click', () => connection.send({ do: 'reset' }));
+  get<HTMLAnchorElement>('save-options').href = `options.toml${location.search}`;
+  const tabs = [...document.querySelectorAll<HTMLElement>('[role=tab]')];
+  tabs.forEach((tab, i) => {
+    tab.addEventListener('click', () => showTab(tab.id.slice('tab-'.length)));
+    tab.addEventListener('keydown', (event) => {
+      const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+      if (!by) return;
+      const next = tabs[(i + by + tabs.length) % tabs.length];
+      next.focus();
+      next.click();
+    });
+  });
+}
+
+listen();
+setColouring();
+showParts();
+setTheme(localStorage.getItem('theme') ?? 'auto');
+
+// For tests, and for scripts in the console: what is shown now.
+Object.assign(window, {
+  vesalius: {
+    frame: () => frame,
+    state: () => state,
+    counts: () => cloud?.counts() ?? null,
+    draw: () => cloud?.drawNow(),
+  },
+});

@@ -1,0 +1,164 @@
+// Messages of the program (docs/formats.md).
+import { unpackRuns, unpackRvl } from './codecs';
+
+export const BACKGROUND = 255;
+
+export type Xyz = [number, number, number];
+export type Px = [number, number];
+export type State = 'none' | 'predicted' | 'observed';
+
+export interface FoundPoint {
+  xyz_m: Xyz | null;
+  px: Px | null;
+  confidence: number;
+  state: State;
+}
+
+export interface Person {
+  index: number;
+  score: number;
+  yaw: { degrees: number; confidence: number } | null;
+  box_px: [number, number, number, number];
+  parts: Record<string, FoundPoint>;
+  joints: Record<string, Record<string, FoundPoint>>;
+}
+
+export interface CameraFacts {
+  width: number;
+  height: number;
+  fx: number;
+  fy: number;
+  cx: number;
+  cy: number;
+}
+
+export interface Found {
+  frame: string;
+  time_s: number | null;
+  camera: CameraFacts;
+  people: Person[];
+}
+
+export interface RoughSkeleton {
+  score: number;
+  found: number;
+  parts: (Xyz | null)[];
+}
+
+export interface Stages {
+  proposals: { label: number; xyz_m: Xyz; pixels: number }[];
+  rough: RoughSkeleton[];
+  candidates: { score: number; accepted: boolean; rough: RoughSkeleton; refined: RoughSkeleton }[];
+}
+
+interface PictureEntry {
+  name: string;
+  codec: 'rvl' | 'jpeg' | 'runs';
+  width: number;
+  height: number;
+  at: number;
+  bytes: number;
+}
+
+interface FrameHead {
+  number: number;
+  at_s: number;
+  times_ms: Record<string, number>;
+  detect_ms: number;
+  floor: { normal: Xyz; offset_m: number } | null;
+  stages?: Stages;
+  pictures: PictureEntry[];
+  found: Found;
+}
+
+/** A frame with its pictures unpacked: depth in millimetres, labels a byte a pixel. */
+export interface Frame extends Omit<FrameHead, 'pictures'> {
+  depth: Uint16Array;
+  colour: ImageBitmap | null;
+  labels: Record<string, Uint8Array>;
+}
+
+export interface BodyPart {
+  name: string;
+  colour: [number, number, number];
+  mirror: number;
+}
+
+export interface Body {
+  name: string;
+  parts: BodyPart[];
+  links: [number, number][];
+}
+
+export interface Hello {
+  type: 'hello';
+  source: string;
+  model: string;
+  folder: string;
+  body: Body;
+}
+
+export interface ViewState {
+  type: 'state';
+  live: boolean;
+  playing: boolean;
+  at_end: boolean;
+  repeat: boolean;
+  speed: number;
+  at_s: number;
+  span_s: [number, number] | null;
+  frames_per_s: number;
+  frames: number;
+  dropped: number;
+  result_ms: number | null;
+  page_ms: number | null;
+  pages: number;
+  stages: boolean;
+  recording: string;
+  recorded: number;
+}
+
+export interface OptionFacts {
+  name: string;
+  type: 'number' | 'integer' | 'boolean' | 'text';
+  value: number | boolean | string;
+  default: number | boolean | string;
+  low: number;
+  high: number;
+  unit: string;
+  help: string;
+}
+
+export type TextMessage =
+  | Hello
+  | ViewState
+  | { type: 'options'; options: OptionFacts[] }
+  | { type: 'notice'; text: string };
+
+export type Command =
+  | { do: 'play' | 'pause' | 'reset' }
+  | { do: 'step'; by: number }
+  | { do: 'seek'; to_s: number }
+  | { do: 'speed'; times: number }
+  | { do: 'repeat' | 'stages' | 'record'; on: boolean }
+  | { do: 'set'; option: string; value: number | boolean | string };
+
+/** Unpacks the binary message of a frame. */
+export async function unpackFrame(message: ArrayBuffer): Promise<Frame> {
+  const headBytes = new DataView(message).getUint32(0, true);
+  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(message, 4, headBytes))) as FrameHead;
+  const { pictures, ...rest } = head;
+  const frame: Frame = { ...rest, depth: new Uint16Array(), colour: null, labels: {} };
+  for (const picture of pictures) {
+    const bytes = new Uint8Array(message, 4 + headBytes + picture.at, picture.bytes);
+    const pixels = picture.width * picture.height;
+    if (picture.codec === 'rvl') {
+      frame.depth = unpackRvl(new DataView(message, bytes.byteOffset, bytes.byteLength), pixels);
+    } else if (picture.codec === 'runs') {
+      frame.labels[picture.name] = unpackRuns(bytes, pixels);
+    } else {
+      frame.colour = await createImageBitmap(new Blob([bytes], { type: 'image/jpeg' }));
+    }
+  }
+  return frame;
+}

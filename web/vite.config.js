@@ -1,0 +1,36 @@
+import { mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { gzipSync } from 'node:zlib';
+import { defineConfig } from 'vite';
+
+// The program holds the files compressed, as it sends them. A gzip header has no time in it, so that the same sources
+// give the same files.
+function compress(from, to) {
+  return {
+    name: 'compress',
+    closeBundle() {
+      mkdirSync(to, { recursive: true });
+      for (const file of readdirSync(from)) {
+        writeFileSync(join(to, `${file}.gz`), gzipSync(readFileSync(join(from, file)), { level: 9 }));
+      }
+      rmSync(from, { recursive: true });
+    },
+  };
+}
+
+const to = process.env.VESALIUS_BUNDLE ?? '../src/view/bundle';
+
+export default defineConfig({
+  base: './',
+  publicDir: false,
+  build: {
+    outDir: 'dist',
+    target: 'es2022',
+    modulePreload: false,
+    chunkSizeWarningLimit: 1000,
+    rollupOptions: {
+      output: { entryFileNames: 'view.js', assetFileNames: 'view[extname]', inlineDynamicImports: true },
+    },
+  },
+  plugins: [compress('dist', to)],
+});
