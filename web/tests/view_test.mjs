@@ -1,0 +1,339 @@
+// The viewer in a real browser. Run by `./dev web`, or: node --test web/tests/
+import assert from 'node:assert/strict';
+import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
+import http from 'node:http';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { NO_3D, View, demo, launch, newFolder, open, request, root, run, shown, until } from './program.mjs';
+
+const pictures = join(root, 'out/web');
+mkdirSync(pictures, { recursive: true });
+
+let browser;
+before(async () => (browser = await launch()));
+after(async () => browser?.close());
+
+/** Runs `work` with a viewer and a page on it; the page must not have complained. */
+async function withPage(work, words = [], options = {}, useBrowser = null) {
+  const view = await View.start(demo, '--paused', '--port', '0', ...words);
+  const page = await open(useBrowser ?? browser, view.address, options);
+  try {
+    await until(page, () => window.vesalius?.frame());
+    await work(page, view);
+    assert.deepEqual(page.complaints, []);
+  } finally {
+    await page.context().close();
+    assert.equal(await view.stop(), 0, view.errors);
+  }
+}
+
+function detected() {
+  const lines = run('detect', demo, '-q', '--json', '-').trim().split('\n');
+  return lines.map((line) => JSON.parse(line)).filter((line) => line.people);
+}
+
+/** The label pictures of the shown frame beside those that `vesalius detect` saves. */
+async function differingPixels(page, png, labels) {
+  return page.evaluate(
+    async ([base64, name]) => {
+      const picture = new Image();
+      picture.src = `data:image/png;base64,${base64}`;
+      await picture.decode();
+      const context = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
+      context.drawImage(picture, 0, 0);
+      const saved = context.getImageData(0, 0, picture.width, picture.height).data;
+      const mine = window.vesalius.frame().labels[name];
+      return mine.reduce((sum, label, i) => sum + (label !== saved[4 * i] ? 1 : 0), 0);
+    },
+    [readFileSync(png).toString('base64'), labels],
+  );
+}
+
+/** A number for what a canvas shows. */
+async function look(page, id) {
+  return page.evaluate((canvasId) => {
+    const canvas = document.getElementById(canvasId);
+    const copy = new OffscreenCanvas(200, 120);
+    const context = copy.getContext('2d');
+    window.vesalius.draw();
+    context.drawImage(canvas, 0, 0, 200, 120);
+    const bytes = context.getImageData(0, 0, 200, 120).data;
+    return bytes.reduce((hash, byte) => (Math.imul(hash, 31) + byte) | 0, 7);
+  }, id);
+}
+
+test('shows the people that detect finds, to the pixel', async () => {
+  const expected = detected();
+  const { folder, remove } = newFolder();
+  run('detect', demo, '-q', '--out', folder, '--save', 'labels,mask');
+  await withPage(async (page) => {
+    for (const [i, line] of expected.entries()) {
+      if (i > 0) await page.keyboard.press('ArrowRight');
+      await until(page, (name) => window.vesalius.frame().found.frame === name, line.frame);
+      assert.deepEqual((await shown(page)).people, line.people, line.frame);
+      assert.equal(await page.locator('#list > li').count(), line.people.length);
+      assert.equal(await differingPixels(page, join(folder, 'mask', `${line.frame}.png`), 'people'), 0);
+      assert.equal(await differingPixels(page, join(folder, 'labels', `${line.frame}.png`), 'parts'), 0);
+    }
+    const counts = await page.evaluate(() => window.vesalius.counts());
+    const parts = expected.at(-1).people.flatMap((person) => Object.values(person.parts)).filter((part) => part.xyz_m);
+    assert.equal(counts.balls, parts.length);
+    assert.ok(counts.rods >= parts.length - expected.at(-1).people.length, 'limbs between them');
+    assert.ok(counts.points > 100000, `${counts.points} points`);
+  });
+  remove();
+});
+
+test('colours by picture, depth, people and parts', async () => {
+  await withPage(async (page) => {
+    const looks = new Map();
+    for (const colouring of ['picture', 'depth', 'person', 'part']) {
+      await page.selectOption('#colouring', colouring);
+      for (const canvas of ['cloud', 'picture']) looks.set(`${canvas} ${colouring}`, await look(page, canvas));
+      await page.screenshot({ path: join(pictures, `${colouring}.png`) });
+    }
+    await page.selectOption('#part-colours', 'body');
+    looks.set('parts of the body model', await look(page, 'cloud'));
+    await page.uncheck('#show-skeletons');
+    looks.set('no skeletons', await look(page, 'cloud'));
+    await page.check('#show-boxes');
+    looks.set('boxes', await look(page, 'cloud'));
+    await page.uncheck('#show-floor');
+    looks.set('no floor', await look(page, 'cloud'));
+    await page.click('#view-camera');
+    looks.set('camera', await look(page, 'cloud'));
+    await page.screenshot({ path: join(pictures, 'camera.png') });
+    assert.equal(new Set(looks.values()).size, looks.size, 'every one looks different');
+  });
+});
+
+test('plays, pauses, steps and seeks', async () => {
+  const names = detected().map((line) => line.frame);
+  await withPage(async (page) => {
+    const reaches = (name) => until(page, (wanted) => window.vesalius.frame().found.frame === wanted, name);
+    await page.click('#forward');
+    await reaches(names[1]);
+    await page.click('#back');
+    await reaches(names[0]);
+    await page.keyboard.press('End');
+    await reaches(names.at(-1));
+    await page.keyboard.press('Home');
+    await reaches(names[0]);
+    const [first, last] = await page.evaluate(() => window.vesalius.state().span_s);
+    await page.evaluate((to) => {
+      const seek = document.getElementById('seek');
+      seek.value = to;
+      seek.dispatchEvent(new Event('input'));
+    }, String(first + (3 / (names.length - 1)) * (last - first)));
+    await reaches(names[3]);
+    await page.selectOption('#speed', '0.1');
+    await until(page, () => window.vesalius.state().speed === 0.1);
+    await page.keyboard.press('Escape');
+    await page.locator('#picture').click();
+    await page.keyboard.press(' ');
+    await until(page, () => window.vesalius.state().playing);
+    await until(page, (name) => window.vesalius.frame().found.frame !== name, names[3]);
+    await page.click('#play');
+    await until(page, () => !window.vesalius.state().playing);
+  });
+});
+
+test('an option gives another result at once, and the file has it', async () => {
+  await withPage(async (page, view) => {
+    const before = (await shown(page)).people.length;
+    assert.ok(before > 0);
+    await page.click('#tab-options');
+    await page.fill('#filter', 'min-parts');
+    const field = page.locator('[data-name="refine.min-parts"] input');
+    await field.fill('100');
+    await field.press('Enter');
+    await until(page, () => window.vesalius.frame().found.people.length === 0);
+    const saved = page.waitForEvent('download');
+    await page.click('#save-options');
+    const file = await (await saved).path();
+    assert.match(readFileSync(file, 'utf8'), /\nrefine\.min-parts = 100\n/);
+    assert.match(run('detect', demo, '--options', file), /: nobody/);
+    await page.screenshot({ path: join(pictures, 'options.png') });
+    await field.fill('-5');
+    await field.press('Enter');
+    assert.match((await request(view.port, '/options.toml')).text, /\nrefine\.min-parts = 100\n/, 'out of range');
+    await page.click('#reset-options');
+    await until(page, (count) => window.vesalius.frame().found.people.length === count, before);
+  });
+});
+
+test('shows the stages', async () => {
+  await withPage(async (page) => {
+    await page.click('#tab-stages');
+    await until(page, () => window.vesalius.frame().stages);
+    assert.equal(await page.locator('#stages canvas').count(), 8);
+    const looks = await page.evaluate(() =>
+      [...document.querySelectorAll('#stages canvas')].map((canvas) => {
+        const bytes = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+        return bytes.reduce((hash, byte) => (Math.imul(hash, 31) + byte) | 0, 7);
+      }),
+    );
+    assert.equal(new Set(looks).size, 8, 'eight different pictures');
+    await page.locator('#stages figure button').nth(3).click();
+    await page.screenshot({ path: join(pictures, 'stages.png') });
+  });
+});
+
+test('saves snapshots and recordings', async () => {
+  const { folder, remove } = newFolder();
+  await withPage(
+    async (page) => {
+      const downloads = [];
+      page.on('download', (download) => downloads.push(download));
+      await page.keyboard.press('s');
+      while (downloads.length < 2) await page.waitForTimeout(50);
+      const files = Object.fromEntries(
+        await Promise.all(downloads.map(async (d) => [d.suggestedFilename().split('.').pop(), await d.path()])),
+      );
+      assert.deepEqual(readFileSync(files.png).subarray(1, 4).toString(), 'PNG');
+      assert.deepEqual(JSON.parse(readFileSync(files.json, 'utf8')).people, (await shown(page)).people);
+      await page.click('#record');
+      await until(page, () => window.vesalius.state().recording);
+      for (let i = 0; i < 3; ++i) {
+        const { number } = await shown(page);
+        await page.keyboard.press('ArrowRight');
+        await until(page, (last) => window.vesalius.frame().number > last, number);
+      }
+      await until(page, () => window.vesalius.state().recorded === 3);
+      await page.click('#record');
+      await until(page, () => !window.vesalius.state().recording);
+      const [file] = readdirSync(folder);
+      assert.match(run('detect', join(folder, file)), /person|people/);
+    },
+    ['--folder', folder],
+  );
+  remove();
+});
+
+test('survives a restarted program', async () => {
+  const first = await View.start(demo, '--paused', '--port', '0');
+  const page = await open(browser, first.address);
+  await until(page, () => window.vesalius?.frame());
+  await page.keyboard.press('ArrowRight');
+  await until(page, () => window.vesalius.frame().number > 1);
+  assert.equal(await first.stop(), 0);
+  await page.locator('text=does not answer').waitFor();
+  const second = await View.start(demo, '--paused', '--port', String(first.port));
+  await until(page, () => !document.body.classList.contains('away') && window.vesalius.frame().number === 1);
+  await page.context().close();
+  assert.equal(await second.stop(), 0);
+});
+
+test('works with the keyboard alone', async () => {
+  await withPage(async (page) => {
+    const visited = new Set();
+    for (let i = 0; i < 40; ++i) {
+      await page.keyboard.press('Tab');
+      visited.add(await page.evaluate(() => document.activeElement?.id || document.activeElement?.textContent));
+    }
+    for (const id of ['record', 'snapshot', 'theme', 'cloud', 'colouring', 'show-boxes', 'tab-people', 'play', 'speed']) {
+      assert.ok(visited.has(id), `${id} is reached by tab`);
+    }
+    await page.focus('#cloud');
+    const before = await look(page, 'cloud');
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('+');
+    await page.keyboard.press('Shift+ArrowUp');
+    assert.notEqual(await look(page, 'cloud'), before, 'the view turned');
+    await page.locator('#list button').first().focus();
+    await page.keyboard.press('Enter');
+    assert.ok(await page.locator('#details table').isVisible());
+    assert.equal(await page.locator('#details tbody tr').count(), 25);
+    await page.screenshot({ path: join(pictures, 'details.png') });
+    await page.selectOption('#details select', { index: 1 });
+    assert.ok((await page.locator('#details tbody tr').count()) > 10, 'joints of a set');
+    await page.focus('#tab-people');
+    await page.keyboard.press('ArrowRight');
+    assert.ok(await page.locator('#stages').isVisible());
+    await page.keyboard.press('?');
+    assert.ok(await page.locator('#help').isVisible());
+    await page.keyboard.press('Escape');
+    assert.ok(!(await page.locator('#help').isVisible()));
+  });
+});
+
+test('fits a phone, light and dark', async () => {
+  for (const colorScheme of ['light', 'dark']) {
+    await withPage(
+      async (page) => {
+        const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+        assert.ok(wide <= 390, `${wide} pixels wide`);
+        await page.screenshot({ path: join(pictures, `phone-${colorScheme}.png`), fullPage: true });
+      },
+      [],
+      { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, colorScheme },
+    );
+  }
+});
+
+test('shows the flat picture where there is no WebGL 2', async () => {
+  const old = await launch(NO_3D);
+  await withPage(
+    async (page) => {
+      assert.match(await page.locator('#no-cloud').innerText(), /no WebGL 2/);
+      assert.equal(await page.locator('#list > li').count(), (await shown(page)).people.length);
+      await page.keyboard.press('ArrowRight');
+      await until(page, () => window.vesalius.frame().number > 1);
+      await page.screenshot({ path: join(pictures, 'flat.png') });
+    },
+    [],
+    {},
+    old,
+  );
+  await old.close();
+});
+
+test('refuses foreign hosts, pages and tokens', async () => {
+  const renamed = await launch(['--host-resolver-rules=MAP evil.example 127.0.0.1']);
+  const view = await View.start(demo, '--paused', '--port', '0');
+  // A page whose name was made to mean this machine.
+  const page = await (await renamed.newContext()).newPage();
+  const response = await page.goto(`http://evil.example:${view.port}/`);
+  assert.equal(response.status(), 403);
+  assert.match(await page.locator('body').innerText(), /not called evil\.example/);
+  // A page of another server.
+  const foreign = http.createServer((_, answer) => answer.end('<!doctype html><title>foreign</title>'));
+  await new Promise((resolve) => foreign.listen(0, '127.0.0.1', resolve));
+  await page.goto(`http://127.0.0.1:${foreign.address().port}/`);
+  const outcome = await page.evaluate(async (port) => {
+    const socket = new WebSocket(`ws://127.0.0.1:${port}/stream`);
+    const stream = await new Promise((resolve) => {
+      socket.onopen = () => resolve('open');
+      socket.onerror = () => resolve('refused');
+    });
+    const read = await fetch(`http://127.0.0.1:${port}/options.toml`).then(() => 'read', () => 'refused');
+    return { stream, read };
+  }, view.port);
+  assert.deepEqual(outcome, { stream: 'refused', read: 'refused' });
+  foreign.close();
+  await renamed.close();
+  assert.equal(await view.stop(), 0);
+
+  const shared = await View.start(demo, '--paused', '--port', '0', '--host', '0.0.0.0');
+  const token = new URL(shared.address).searchParams.get('token');
+  assert.match(token, /^[0-9a-f]{32}$/);
+  assert.equal((await request(shared.port, '/')).status, 403);
+  assert.equal((await request(shared.port, `/?token=${token.replace(/./, 'g')}`)).status, 403);
+  assert.equal((await request(shared.port, '/stream', { Connection: 'Upgrade', Upgrade: 'websocket' })).status, 403);
+  const allowed = await open(browser, `http://127.0.0.1:${shared.port}/?token=${token}`);
+  await until(allowed, () => window.vesalius?.frame());
+  const link = await allowed.locator('#save-options').getAttribute('href');
+  assert.equal((await request(shared.port, `/${link}`)).status, 200);
+  await allowed.context().close();
+  assert.equal(await shared.stop(), 0);
+});
+
+test('says in a line why it cannot start', async () => {
+  const view = await View.start(demo, '--paused', '--port', '0');
+  const refusal = (...words) => View.start(...words).then(() => 'started', (error) => error.message);
+  assert.match(await refusal(demo, '--port', String(view.port)), /^vesalius: 127\.0\.0\.1:\d+: another program has this port.*\n$/);
+  assert.match(await refusal(demo, '--port', '0', '--host', '192.0.2.1'), /^vesalius: 192\.0\.2\.1:0: .*\n$/);
+  assert.match(await refusal(demo, '--port', '0', '--folder', '/no/such'), /^vesalius: \/no\/such: no such folder.*\n$/);
+  assert.match(await refusal('/no/such'), /^vesalius: \/no\/such: .*\n$/);
+  assert.equal(await view.stop(), 0);
+});
