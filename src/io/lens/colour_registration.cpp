@@ -51,10 +51,6 @@ ColourRegistration::ColourRegistration(const Camera& depth, const LensCamera& co
     : depth_(depth), colour_(colour), colour_from_depth_(colour_from_depth.cast<float>()) {
   check(depth);
   check(colour.camera);
-  if (colour.lens.model == LensModel::inverse_brown_conrady) {
-    first_.emplace(colour, colour.camera);
-    colour_.lens = {};
-  }
   std::ranges::transform(colour_.lens.k, k_.begin(), [](double k) { return static_cast<float>(k); });
   // At any distance, one pixel of depth covers so many of colour.
   while (static_cast<float>(1 << cell_bits_) < colour.camera.fx / depth.fx && cell_bits_ < kMostCellBits) ++cell_bits_;
@@ -63,11 +59,6 @@ ColourRegistration::ColourRegistration(const Camera& depth, const LensCamera& co
 ColourImage ColourRegistration::operator()(const DepthImage& depth, const ColourImage& colour) const {
   expect_size(depth_, depth, "depth");
   expect_size(colour_.camera, colour, "colour");
-  if (first_) {
-    ColourRegistration pinhole = *this;
-    pinhole.first_.reset();
-    return pinhole(depth, first_->colour(colour));
-  }
   const Camera& to = colour_.camera;
   const auto reach = static_cast<float>(colour_.lens.reach);
   const float reach2 = reach * reach;
@@ -87,6 +78,7 @@ ColourImage ColourRegistration::operator()(const DepthImage& depth, const Colour
         float x = point_mm.x() / point_mm.z(), y = point_mm.y() / point_mm.z();
         if (!(x * x + y * y <= reach2)) continue;
         if (colour_.lens.model == LensModel::brown_conrady) bend_brown_conrady(k_, x, y);
+        if (colour_.lens.model == LensModel::modified_brown_conrady) bend_modified_brown_conrady(k_, x, y);
         if (colour_.lens.model == LensModel::kannala_brandt) bend_kannala_brandt(k_, x, y);
         const Landing landing{to_place(x * to.fx + to.cx), to_place(y * to.fy + to.cy),
                               static_cast<std::uint16_t>(point_mm.z())};

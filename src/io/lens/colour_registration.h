@@ -1,10 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <optional>
+#include <array>
 
 #include "io/lens/lens.h"
-#include "io/lens/rectification.h"
 #include "vesalius/base/image.h"
 
 namespace vesalius {
@@ -33,8 +32,6 @@ class ColourRegistration {
   LensCamera colour_;
   Eigen::Isometry3f colour_from_depth_;
   std::array<float, 8> k_{};
-  /// Undoes a lens that has no formula for where it puts a ray.
-  std::optional<Rectification> first_;
   int cell_bits_ = 0;  ///< squares of 2^bits pixels of colour count as one in telling what hides what
 };
 

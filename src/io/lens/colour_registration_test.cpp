@@ -88,7 +88,7 @@ Rig rig_of(int i) {
     case 3:
       return rig("equidistant", {0.02, -0.01, 0.003, 0});
     default:
-      return rig("inverse_brown_conrady", {0.08, -0.05, 1e-3, 1e-3, 0});
+      return rig("modified_brown_conrady", {0.08, -0.05, 1e-3, 1e-3, 0});
   }
 }
 

@@ -17,14 +17,16 @@ constexpr double kRayStep = 1.0 / 512;
 Vector2d bend(LensModel model, const std::array<double, 8>& k, Vector2d ray) {
   if (model == LensModel::kannala_brandt) {
     bend_kannala_brandt(k, ray.x(), ray.y());
+  } else if (model == LensModel::modified_brown_conrady) {
+    bend_modified_brown_conrady(k, ray.x(), ray.y());
   } else if (model != LensModel::pinhole) {
     bend_brown_conrady(k, ray.x(), ray.y());
   }
   return ray;
 }
 
-/// Returns the length of the longest ray up to which longer rays are bent further out, and to where it is bent.
-std::pair<double, double> one_to_one(LensModel model, std::array<double, 8> k) {
+/// Returns the length of the longest ray up to which longer rays are bent further out.
+double one_to_one(LensModel model, std::array<double, 8> k) {
   if (model != LensModel::kannala_brandt) k[2] = k[3] = 0.0;  // the radial terms decide
   double last = 0.0;
   double length = 0.0;
@@ -34,7 +36,7 @@ std::pair<double, double> one_to_one(LensModel model, std::array<double, 8> k) {
     last = bent;
     length += kRayStep;
   }
-  return {length, last};
+  return length;
 }
 
 /// Returns the point that `bend` takes to `target`, by Newton's method; nothing where it does not come to one.
@@ -67,12 +69,13 @@ struct ModelName {
   std::size_t most;  ///< coefficients
 };
 
-constexpr std::array<ModelName, 11> kModels{{{"plumbbob", LensModel::brown_conrady, 5},
+constexpr std::array<ModelName, 12> kModels{{{"plumbbob", LensModel::brown_conrady, 5},
                                              {"radtan", LensModel::brown_conrady, 5},
                                              {"brownconrady", LensModel::brown_conrady, 5},
                                              {"rationalpolynomial", LensModel::brown_conrady, 8},
                                              {"", LensModel::brown_conrady, 8},
-                                             {"inversebrownconrady", LensModel::inverse_brown_conrady, 5},
+                                             {"modifiedbrownconrady", LensModel::modified_brown_conrady, 5},
+                                             {"inversebrownconrady", LensModel::modified_brown_conrady, 5},
                                              {"equidistant", LensModel::kannala_brandt, 4},
                                              {"fisheye", LensModel::kannala_brandt, 4},
                                              {"kannalabrandt", LensModel::kannala_brandt, 4},
@@ -104,21 +107,17 @@ std::optional<Lens> make_lens(std::string_view model, const std::vector<double>&
   lens.model = named->model;
   std::copy_n(coefficients.begin(), count, lens.k.begin());
   if (!std::ranges::all_of(lens.k, [](double c) { return std::isfinite(c); })) return std::nullopt;
-  const auto [length, bent] = one_to_one(lens.model, lens.k);
-  lens.reach = lens.model == LensModel::inverse_brown_conrady ? bent : length;
+  lens.reach = one_to_one(lens.model, lens.k);
   return lens;
 }
 
 std::optional<Vector2d> distort(const Lens& lens, const Vector2d& ray) {
   if (!(ray.norm() <= lens.reach)) return std::nullopt;
-  if (lens.model == LensModel::inverse_brown_conrady) return unbend(lens, ray);
   return bend(lens.model, lens.k, ray);
 }
 
 std::optional<Vector2d> undistort(const Lens& lens, const Vector2d& distorted) {
-  const std::optional<Vector2d> ray = lens.model == LensModel::inverse_brown_conrady
-                                          ? std::optional(bend(lens.model, lens.k, distorted))
-                                          : unbend(lens, distorted);
+  std::optional<Vector2d> ray = unbend(lens, distorted);
   if (!ray || !(ray->norm() <= lens.reach)) return std::nullopt;
   return ray;
 }

@@ -14,10 +14,10 @@ namespace vesalius {
 
 /// How a lens bends the rays that a pinhole camera sees. A ray is where it crosses the plane z = 1: (x, y).
 enum class LensModel {
-  pinhole,                ///< not at all
-  brown_conrady,          ///< radial and tangential terms move the ray: k1 k2 p1 p2 k3 k4 k5 k6, in OpenCV's order
-  inverse_brown_conrady,  ///< the same terms lead from the bent ray back to the true one: k1 k2 p1 p2 k3
-  kannala_brandt          ///< a fisheye: a polynomial of the angle, k1 k2 k3 k4
+  pinhole,                 ///< not at all
+  brown_conrady,           ///< radial and tangential terms move the ray: k1 k2 p1 p2 k3 k4 k5 k6, in OpenCV's order
+  modified_brown_conrady,  ///< the tangential terms act on what the radial ones moved: k1 k2 p1 p2 k3
+  kannala_brandt           ///< a fisheye: a polynomial of the angle, k1 k2 k3 k4
 };
 
 struct Lens {
@@ -36,9 +36,10 @@ struct LensCamera {
 };
 
 /// Returns the lens of a model as ROS (plumb_bob, rational_polynomial, equidistant), Foxglove (kannala_brandt) and
-/// RealSense ("Inverse Brown Conrady") name it; case and separators do not count. A model without a name is that of
-/// plumb_bob or rational_polynomial, by the number of coefficients. All coefficients 0 are a pinhole. Returns nothing
-/// for another model, or coefficients that it does not have.
+/// the makers of cameras ("Modified Brown Conrady") name it; case and separators do not count. A model without a name
+/// is that of plumb_bob or rational_polynomial, by the number of coefficients. "Inverse Brown Conrady" is the modified
+/// model: librealsense describes it as one that undoes a lens, but its functions project by it as by the other one. All
+/// coefficients 0 are a pinhole. Returns nothing for another model, or coefficients that it does not have.
 std::optional<Lens> make_lens(std::string_view model, const std::vector<double>& coefficients);
 
 /// Returns where a lens puts a ray; nothing beyond its reach.
@@ -55,6 +56,18 @@ inline void bend_brown_conrady(const std::array<Real, 8>& k, Real& x, Real& y) {
       (Real(1) + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (Real(1) + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
   x = x * radial + k[2] * xy + k[3] * (r2 + Real(2) * xx);
   y = y * radial + k[3] * xy + k[2] * (r2 + Real(2) * yy);
+}
+
+/// Moves a ray by the same terms, the tangential ones after the radial ones, as librealsense's
+/// rs2_project_point_to_pixel does.
+template <class Real>
+inline void bend_modified_brown_conrady(const std::array<Real, 8>& k, Real& x, Real& y) {
+  const Real r2 = x * x + y * y, radial = Real(1) + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  x *= radial;
+  y *= radial;
+  const Real xx = x * x, yy = y * y, xy = Real(2) * x * y;
+  x += k[2] * xy + k[3] * (r2 + Real(2) * xx);
+  y += k[3] * xy + k[2] * (r2 + Real(2) * yy);
 }
 
 /// Moves a ray to the radius that the polynomial of Kannala and Brandt (2006) gives its angle.

@@ -17,7 +17,7 @@ std::vector<LensCamera> cameras() {
   return {{kCamera, make_lens("plumb_bob", {-0.25, 0.08, 2e-3, -1e-3, 0}).value()},
           {kCamera, make_lens("rational_polynomial", {0.5, -2.7, 6e-4, 2e-4, 1.6, 0.38, -2.5, 1.5}).value()},
           {kCamera, make_lens("equidistant", {0.02, -0.01, 0.003, 0}).value()},
-          {kCamera, make_lens("inverse_brown_conrady", {0.1, -0.05, 1e-3, 1e-3, 0}).value()}};
+          {kCamera, make_lens("modified_brown_conrady", {0.1, -0.05, 1e-3, 1e-3, 0}).value()}};
 }
 
 std::uint16_t on_a_slope(const Eigen::Vector2d& ray) {
