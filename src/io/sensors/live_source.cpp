@@ -31,6 +31,14 @@ void LiveSource::fail_without_frame() const {
                           kSensorPatience.count() / 1000));
 }
 
+LensCamera LiveSource::with_lens(const Camera& camera, std::string_view model,
+                                 const std::vector<double>& coefficients) {
+  check(camera);
+  const std::optional<Lens> lens = make_lens(model, coefficients);
+  if (!lens) notes_.push_back(fmt::format("{}: a lens distorts by the model {}, which is not undone", place_, model));
+  return {camera, lens.value_or(Lens{})};
+}
+
 Frame LiveSource::arrived(double time_s) {
   Frame frame;
   set_time(frame, time_s);

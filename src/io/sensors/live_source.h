@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/lens/lens.h"
 #include "vesalius/base/frame_source.h"
 
 namespace vesalius {
@@ -52,6 +53,10 @@ class LiveSource : public FrameSource {
     return false;
   }
   [[noreturn]] void fail_without_frame() const;
+
+  /// Returns a camera with the lens that its driver states, as `make_lens` knows it. A lens that distorts by another
+  /// model stays undone, and a note says so.
+  LensCamera with_lens(const Camera& camera, std::string_view model, const std::vector<double>& coefficients);
 
   /// Returns an empty frame that arrives now and was taken at `time_s` of the camera's clock.
   static Frame arrived(double time_s);

@@ -67,13 +67,8 @@ Api load() {
   VESALIUS_FIND(stop);
   VESALIUS_FIND(poll_for_frame);
   VESALIUS_FIND(get_extrinsics);
-  VESALIUS_FIND(create_align);
-  VESALIUS_FIND(delete_processing_block);
   VESALIUS_FIND(create_frame_queue);
   VESALIUS_FIND(delete_frame_queue);
-  VESALIUS_FIND(start_processing_queue);
-  VESALIUS_FIND(process_frame);
-  VESALIUS_FIND(wait_for_frame);
   VESALIUS_FIND(embedded_frames_count);
   VESALIUS_FIND(extract_frame);
   VESALIUS_FIND(release_frame);

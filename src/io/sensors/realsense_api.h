@@ -15,7 +15,6 @@ struct Config;
 struct PipelineProfile;
 struct Frame;
 struct StreamProfile;
-struct Block;  // rs2_processing_block
 struct Queue;  // rs2_frame_queue
 struct SensorList;
 struct Sensor;
@@ -38,6 +37,7 @@ struct Extrinsics {
 constexpr int kDepth = 1, kColour = 2, kAcceleration = 6;  // rs2_stream
 constexpr int kZ16 = 1, kRgb8 = 5, kXyz32f = 16;           // rs2_format
 constexpr int kName = 0, kSerial = 1;                      // rs2_camera_info
+constexpr int kNoDistortion = 0, kKannalaBrandt = 5;       // rs2_distortion
 
 /// The functions, by their names without "rs2_".
 struct Api {
@@ -80,13 +80,8 @@ struct Api {
   void (*stop)(const Sensor*, Failure**);
   int (*poll_for_frame)(Queue*, Frame**, Failure**);
   void (*get_extrinsics)(const StreamProfile* from, const StreamProfile* to, Extrinsics*, Failure**);
-  Block* (*create_align)(int to_stream, Failure**);
-  void (*delete_processing_block)(Block*);
   Queue* (*create_frame_queue)(int capacity, Failure**);
   void (*delete_frame_queue)(Queue*);
-  void (*start_processing_queue)(Block*, Queue*, Failure**);
-  void (*process_frame)(Block*, Frame*, Failure**);
-  Frame* (*wait_for_frame)(Queue*, unsigned patience_ms, Failure**);
   int (*embedded_frames_count)(Frame*, Failure**);
   Frame* (*extract_frame)(Frame*, int index, Failure**);
   void (*release_frame)(Frame*);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,9 +10,13 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "io/files/copy_rows.h"
+#include "io/lens/colour_registration.h"
+#include "io/lens/rectification.h"
 #include "io/sensors/depth_units.h"
 #include "io/sensors/live_source.h"
 #include "io/sensors/realsense_api.h"
@@ -24,7 +29,9 @@ namespace {
 using rs2::api;
 
 constexpr int kWidth = 640, kHeight = 480, kRate = 30;
-constexpr unsigned kAlignPatience_ms = 1000;
+/// Of rs2_distortion, in its order.
+constexpr std::array<std::string_view, 6> kLensModels{"none",    "modified Brown-Conrady", "inverse Brown-Conrady",
+                                                      "F-theta", "Brown-Conrady",          "Kannala-Brandt4"};
 
 Owned<rs2::Context> make_context() {
   const int version = call("realsense", api().get_api_version);
@@ -122,13 +129,11 @@ class RealsenseSource final : public LiveSource {
   explicit RealsenseSource(const std::string& id)
       : LiveSource("realsense", id),
         context_(make_context()),
-        pipeline_(call(place_, api().create_pipeline, context_.get()), api().delete_pipeline),
-        align_(call(place_, api().create_align, rs2::kColour), api().delete_processing_block),
-        aligned_(call(place_, api().create_frame_queue, 1), api().delete_frame_queue) {
+        pipeline_(call(place_, api().create_pipeline, context_.get()), api().delete_pipeline) {
     const bool is_file = std::filesystem::is_regular_file(id);
     if (!is_file) expect_plugged_in("realsense", all_plugged_in(context_.get()), id);
     start(id, is_file);
-    call(place_, api().start_processing_queue, align_.get(), aligned_.get());
+    use_lenses();
     start_acceleration();
   }
 
@@ -143,7 +148,6 @@ class RealsenseSource final : public LiveSource {
       Owned<rs2::Frame> all = wait();
       if (!all) return std::nullopt;
       const double arrived_s = now_s();
-      if (has_colour_) all = align(std::move(all));
       const Owned<rs2::Frame> depth = stream_of(all.get(), rs2::kDepth);
       if (!depth) continue;
       const rs2::Frame* of = depth.get();
@@ -155,10 +159,11 @@ class RealsenseSource final : public LiveSource {
       Frame frame = arrived(1e-3 * call(place_, api().get_frame_timestamp, of));
       frame.arrived_s = arrived_s;
       if (acceleration_) frame.up = acceleration_->up(call(place_, api().get_frame_stream_profile, of));
-      frame.camera = camera_of(of);
+      frame.camera = camera_;
       frame.depth = depth_of(of);
-      if (const Owned<rs2::Frame> colour = has_colour_ ? stream_of(all.get(), rs2::kColour) : none()) {
-        frame.colour = colour_of(colour.get(), frame.camera);
+      if (const Owned<rs2::Frame> colour = registration_ ? stream_of(all.get(), rs2::kColour) : none()) {
+        const ColourImage picture = picture_of<Rgb>(colour.get());
+        if (registration_->fits(picture)) frame.colour = (*registration_)(frame.depth, picture);
       }
       return frame;
     }
@@ -196,25 +201,47 @@ class RealsenseSource final : public LiveSource {
       Outcome<rs2::Failure> outcome(place_);
       profile_ = {api().pipeline_start_with_config(pipeline_.get(), config.get(), outcome.out()),
                   api().delete_pipeline_profile};
-      has_colour_ = colour;
-      if (profile_) break;
+      if (profile_ && !colour) notes_.push_back(place_ + ": depth alone, since it has no colour");
+      if (profile_) return;
       if (!colour) fail_to_open(place_, outcome.reason());
     }
-    if (!has_colour_) notes_.push_back(place_ + ": depth alone, since it has no colour");
-    note_distortion();
   }
 
-  /// Frames have the grid of colour, or of depth alone.
-  void note_distortion() {
+  /// Frames have the grid of depth, and colour is put onto it as that of recordings is. The library's own way, which
+  /// puts depth onto the grid of colour, forgets the lens of colour where it uses SSE.
+  void use_lenses() {
     const Owned<rs2::StreamProfileList> list(call(place_, api().pipeline_profile_get_streams, profile_.get()),
                                              api().delete_stream_profiles_list);
-    const rs2::StreamProfile* grid = find_stream(list.get(), has_colour_ ? rs2::kColour : rs2::kDepth, place_);
-    if (grid == nullptr) return;
-    rs2::Intrinsics lens{};
-    call(place_, api().get_video_stream_intrinsics, grid, &lens);
-    if (std::ranges::any_of(lens.coefficients, [](float k) { return k != 0.F; })) {
-      notes_.push_back(place_ + ": its lens distorts the picture, which is not undone");
+    const rs2::StreamProfile* depth = find_stream(list.get(), rs2::kDepth, place_);
+    const rs2::StreamProfile* colour = find_stream(list.get(), rs2::kColour, place_);
+    if (depth == nullptr) throw Error(place_ + ": it has no depth, expected a depth camera");
+    const LensCamera lens = lens_of(depth);
+    camera_ = lens.camera;
+    if (lens.lens != Lens{}) rectification_.emplace(lens, camera_);
+    if (colour == nullptr) return;
+    rs2::Extrinsics to{};
+    Outcome<rs2::Failure> unknown(place_);
+    api().get_extrinsics(depth, colour, &to, unknown.out());
+    if (unknown.failed()) {
+      notes_.push_back(place_ + ": depth alone, since nothing says where its colour camera is");
+      return;
     }
+    Eigen::Isometry3d colour_from_depth = Eigen::Isometry3d::Identity();
+    colour_from_depth.linear() = Eigen::Map<const Eigen::Matrix3f>(to.rotation).cast<double>();
+    colour_from_depth.translation() = Eigen::Map<const Eigen::Vector3f>(to.translation).cast<double>();
+    registration_.emplace(camera_, lens_of(colour), colour_from_depth);
+  }
+
+  LensCamera lens_of(const rs2::StreamProfile* stream) {
+    constexpr int kMostOfFisheye = 4;
+    rs2::Intrinsics lens{};
+    call(place_, api().get_video_stream_intrinsics, stream, &lens);
+    const bool known = lens.model >= 0 && lens.model < static_cast<int>(kLensModels.size());
+    const std::string_view model = known ? kLensModels[static_cast<std::size_t>(lens.model)] : "of a later version";
+    std::vector<double> coefficients(std::begin(lens.coefficients), std::end(lens.coefficients));
+    if (lens.model == rs2::kNoDistortion) coefficients.clear();
+    if (lens.model == rs2::kKannalaBrandt) coefficients.resize(kMostOfFisheye);
+    return with_lens({lens.width, lens.height, lens.fx, lens.fy, lens.ppx, lens.ppy}, model, coefficients);
   }
 
   void start_acceleration() {
@@ -225,12 +252,6 @@ class RealsenseSource final : public LiveSource {
     } catch (const Error& e) {
       notes_.push_back(fmt::format("{}; its frames have no direction of gravity", e.what()));
     }
-  }
-
-  /// Puts depth onto the grid of colour.
-  Owned<rs2::Frame> align(Owned<rs2::Frame> frames) {
-    call(place_, api().process_frame, align_.get(), frames.release());  // which takes it over
-    return {call(place_, api().wait_for_frame, aligned_.get(), kAlignPatience_ms), api().release_frame};
   }
 
   /// Returns the frame of one stream out of several; null if there is none.
@@ -247,42 +268,32 @@ class RealsenseSource final : public LiveSource {
     return none();
   }
 
-  Camera camera_of(const rs2::Frame* frame) const {
-    rs2::Intrinsics lens{};
-    call(place_, api().get_video_stream_intrinsics, call(place_, api().get_frame_stream_profile, frame), &lens);
-    Camera camera{lens.width, lens.height, lens.fx, lens.fy, lens.ppx, lens.ppy};
-    check(camera);
-    return camera;
+  template <class T>
+  Image<T> picture_of(const rs2::Frame* frame) const {
+    Image<T> picture(call(place_, api().get_frame_width, frame), call(place_, api().get_frame_height, frame));
+    const auto stride = static_cast<std::size_t>(call(place_, api().get_frame_stride_in_bytes, frame));
+    const auto* data = call(place_, api().get_frame_data, frame);
+    copy_rows(data, stride, picture);
+    return picture;
   }
 
   DepthImage depth_of(const rs2::Frame* frame) const {
-    DepthImage depth(call(place_, api().get_frame_width, frame), call(place_, api().get_frame_height, frame));
-    const auto stride = static_cast<std::size_t>(call(place_, api().get_frame_stride_in_bytes, frame));
-    const auto* data = call(place_, api().get_frame_data, frame);
-    copy_rows(data, stride, depth);
-    to_millimetres(depth, 1e3 * static_cast<double>(call(place_, api().depth_frame_get_units, frame)));
-    return depth;
-  }
-
-  ColourImage colour_of(const rs2::Frame* frame, const Camera& camera) const {
-    if (call(place_, api().get_frame_width, frame) != camera.width ||
-        call(place_, api().get_frame_height, frame) != camera.height) {
-      return {};
+    auto depth = picture_of<std::uint16_t>(frame);
+    if (depth.width() != camera_.width || depth.height() != camera_.height) {
+      throw Error(fmt::format("{}: depth of {}x{}, expected {}x{} of its calibration", place_, depth.width(),
+                              depth.height(), camera_.width, camera_.height));
     }
-    ColourImage colour(camera.width, camera.height);
-    const auto stride = static_cast<std::size_t>(call(place_, api().get_frame_stride_in_bytes, frame));
-    const auto* data = call(place_, api().get_frame_data, frame);
-    copy_rows(data, stride, colour);
-    return colour;
+    to_millimetres(depth, 1e3 * static_cast<double>(call(place_, api().depth_frame_get_units, frame)));
+    return rectification_ ? rectification_->depth(depth) : std::move(depth);
   }
 
   Owned<rs2::Context> context_;
   Owned<rs2::Pipeline> pipeline_;
-  Owned<rs2::Block> align_;
-  Owned<rs2::Queue> aligned_;
   Owned<rs2::PipelineProfile> profile_{nullptr, nullptr};
   std::optional<Accelerometer> acceleration_;
-  bool has_colour_ = false;
+  Camera camera_;  ///< of frames: the depth camera without its lens
+  std::optional<Rectification> rectification_;
+  std::optional<ColourRegistration> registration_;
   std::int64_t last_number_ = -1;
 };
 
