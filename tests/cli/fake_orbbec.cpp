@@ -1,7 +1,8 @@
 // A library with the functions of Orbbec's SDK that vesalius uses, and one camera behind them, which is none. Depth is
-// 0.5 mm a unit; frame i has the depth 1000 + i mm and the colour (i, 2, 3); "registered" depth is 1 mm farther.
-// FAKE_ORBBEC is a list of words: "none" no camera, "grey" no colour, "busy" it cannot be started, "lost" it is
-// unplugged after 5 frames and back when it was looked for twice.
+// 0.5 mm a unit; frame i has in column u and row v the depth 1000 + i + u mm and the colour (i, u / 4, v / 4);
+// "registered" depth is 1 mm farther. FAKE_ORBBEC is a list of words: "none" no camera, "grey" no colour, "old" the SDK
+// knows no TargetDistortion, "busy" it cannot be started, "lost" it is unplugged after 5 frames and back when it was
+// looked for twice.
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -35,7 +36,7 @@ struct Extrinsics {
   float rotation[9], translation[3];
 };
 struct Distortion {
-  float coefficients[8];
+  float k1, k2, k3, k4, k5, k6, p1, p2;
   std::int32_t model;
 };
 struct Acceleration {
@@ -73,13 +74,14 @@ const Mode* modes(int stream) {
 
 std::shared_ptr<Frame> picture(const Mode& mode) {
   auto frame = std::make_shared<Frame>(Frame{mode, given, {}, nullptr, nullptr});
-  const std::size_t pixels = std::size_t{mode.width} * mode.height;
-  if (mode.stream == kColour) {
-    for (std::size_t i = 0; i < pixels; ++i) frame->data.insert(frame->data.end(), {std::uint8_t(given), 2, 3});
-  } else {
-    const auto depth = static_cast<std::uint16_t>(2 * (1000 + given));
-    for (std::size_t i = 0; i < pixels; ++i) {
-      frame->data.insert(frame->data.end(), {std::uint8_t(depth), std::uint8_t(depth >> 8)});
+  for (std::uint32_t v = 0; v < mode.height; ++v) {
+    for (std::uint32_t u = 0; u < mode.width; ++u) {
+      const auto depth = static_cast<std::uint16_t>(2 * (1000 + given + u));
+      if (mode.stream == kColour) {
+        frame->data.insert(frame->data.end(), {std::uint8_t(given), std::uint8_t(u / 4), std::uint8_t(v / 4)});
+      } else {
+        frame->data.insert(frame->data.end(), {std::uint8_t(depth), std::uint8_t(depth >> 8)});
+      }
     }
   }
   return frame;
@@ -155,7 +157,10 @@ std::uint32_t ob_video_stream_profile_get_fps(const Mode* mode, Failure**) { ret
 Intrinsics ob_video_stream_profile_get_intrinsic(const Mode* mode, Failure**) {
   return {mode->stream == kColour ? 600.F : 500.F, 601.F, 321.F, 242.F, 640, 480};
 }
-Distortion ob_video_stream_profile_get_distortion(const Mode*, Failure**) { return {{0.1F}, 4}; }
+Distortion ob_video_stream_profile_get_distortion(const Mode*, Failure**) {
+  constexpr int kRational = 4;
+  return {-0.1F, 0.02F, 0.F, 0.05F, 0.F, 0.F, 0.002F, 0.004F, kRational};
+}
 Extrinsics ob_stream_profile_get_extrinsic_to(const Mode*, Mode*, Failure**) {
   return {{0, 1, 0, -1, 0, 0, 0, 0, 1}, {0, 0, 0}};
 }
@@ -165,17 +170,21 @@ void ob_filter_set_config_value(char*, const char* name, double value, Failure**
   const std::string of = name;
   if (of == "AlignType") {
     align_type = value;
-  } else if (of == "TargetDistortion") {
+  } else if (of == "TargetDistortion" && !said("old")) {
     distorted = value;
   } else {
     fail<void>(failure, "an older version knows no such value");
   }
 }
 Frame* ob_filter_process(char*, const Frame* all, Failure** failure) {
-  if (align_type != kColour || distorted != 0.0) return fail<Frame>(failure, "not what was expected");
+  if (align_type != kColour || (distorted != 0.0) != said("old")) return fail<Frame>(failure, "not what was expected");
   auto* aligned = new Frame(*all);
   aligned->depth = std::make_shared<Frame>(*all->depth);
-  for (std::size_t i = 0; i < aligned->depth->data.size(); i += 2) aligned->depth->data[i] += 2;
+  std::vector<std::uint8_t>& data = aligned->depth->data;
+  for (std::size_t i = 0; i < data.size(); i += 2) {
+    data[i] += 2;
+    if (data[i] == 0) ++data[i + 1];
+  }
   return aligned;
 }
 Frame* ob_frameset_get_depth_frame(const Frame* all, Failure**) { return new Frame(*all->depth); }

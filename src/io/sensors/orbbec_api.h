@@ -29,7 +29,7 @@ struct Intrinsics {
 
 /// ob_camera_distortion
 struct Distortion {
-  float coefficients[8];
+  float k1, k2, k3, k4, k5, k6, p1, p2;
   std::int32_t model;
 };
 
@@ -49,10 +49,11 @@ struct Acceleration {
 /// ob_frame_callback; whoever is called deletes the frame.
 using FrameCallback = void (*)(Frame*, void* user);
 
-constexpr int kSilent = 5;                          // ob_log_severity
-constexpr int kColour = 2, kDepth = 3, kAccel = 4;  // ob_sensor_type and ob_stream_type
-constexpr int kY16 = 8, kRgb = 22, kZ16 = 28;       // ob_format
-constexpr int kAllStreams = 0;                      // ob_frame_aggregate_output_mode
+constexpr int kSilent = 5;                                           // ob_log_severity
+constexpr int kColour = 2, kDepth = 3, kAccel = 4;                   // ob_sensor_type and ob_stream_type
+constexpr int kY16 = 8, kRgb = 22, kZ16 = 28;                        // ob_format
+constexpr int kAllStreams = 0;                                       // ob_frame_aggregate_output_mode
+constexpr int kNoDistortion = 0, kRational = 4, kKannalaBrandt = 5;  // ob_camera_distortion_model
 
 /// The functions, by their names without "ob_".
 struct Api {

@@ -4,13 +4,16 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "io/files/copy_rows.h"
+#include "io/lens/rectification.h"
 #include "io/sensors/depth_units.h"
 #include "io/sensors/live_source.h"
 #include "io/sensors/orbbec_api.h"
@@ -24,6 +27,10 @@ using ob::api;
 
 constexpr std::uint32_t kWidth = 640, kHeight = 480, kRate = 30;
 constexpr double kMicroseconds = 1e6;
+/// Of ob_camera_distortion_model, in its order.
+constexpr std::array<std::string_view, 6> kLensModels{
+    "none",          "modified Brown-Conrady", "inverse Brown-Conrady",
+    "Brown-Conrady", "rational polynomial",    "Kannala-Brandt4"};
 
 /// Deletes an object of the library; that it cannot is of no interest.
 template <class T>
@@ -121,6 +128,14 @@ Mode* choose_colour(std::vector<Mode>& modes, const Mode& depth) {
   return best;
 }
 
+/// Returns the coefficients of a lens in the order of `make_lens`, without those that its model does not have.
+std::vector<double> coefficients_of(const ob::Distortion& lens) {
+  if (lens.model == ob::kNoDistortion) return {};
+  if (lens.model == ob::kKannalaBrandt) return {lens.k1, lens.k2, lens.k3, lens.k4};
+  if (lens.model != ob::kRational) return {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+  return {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, lens.k4, lens.k5, lens.k6};
+}
+
 /// The sensor of acceleration of a camera, apart from the pictures, which must not wait for it. A camera without one,
 /// or whose one does not start, has no `up`.
 class Accelerometer {
@@ -208,9 +223,11 @@ class OrbbecSource final : public LiveSource {
     copy(pictures.depth.get(), frame.depth, "depth");
     to_millimetres(frame.depth,
                    static_cast<double>(call(place_, api().depth_frame_get_value_scale, pictures.measured())));
+    if (rectification_ && !is_registered_without_lens_) frame.depth = rectification_->depth(frame.depth);
     if (pictures.colour) {
       frame.colour = ColourImage(camera_.width, camera_.height);
       copy(pictures.colour.get(), frame.colour, "colour");
+      if (rectification_) frame.colour = rectification_->colour(frame.colour);
     }
     if (acceleration_) frame.up = acceleration_->up(grid_.get());
     return frame;
@@ -265,20 +282,19 @@ class OrbbecSource final : public LiveSource {
     has_colour_ = colour != nullptr;
     if (has_colour_) grid_ = std::move(colour->profile);
     (has_colour_ ? depth_mode_ : grid_) = std::move(depth->profile);
-    const ob::Intrinsics lens =
-        call(place_, api().video_stream_profile_get_intrinsic, static_cast<const ob::StreamProfile*>(grid_.get()));
-    camera_ = {lens.width, lens.height, lens.fx, lens.fy, lens.cx, lens.cy};
-    check(camera_);
-    if (!has_colour_) note_depth_alone();
+    if (!has_colour_) notes_.push_back(place_ + ": depth alone, since it gives no RGB");
+    const LensCamera lens = lens_of(grid_.get());
+    camera_ = lens.camera;
+    if (lens.lens != Lens{}) rectification_.emplace(lens, camera_);
   }
 
-  void note_depth_alone() {
-    notes_.push_back(place_ + ": depth alone, since it gives no RGB");
-    const ob::Distortion lens =
-        call(place_, api().video_stream_profile_get_distortion, static_cast<const ob::StreamProfile*>(grid_.get()));
-    if (std::ranges::any_of(lens.coefficients, [](float k) { return k != 0.F; })) {
-      notes_.push_back(place_ + ": its lens distorts the picture, which is not undone");
-    }
+  LensCamera lens_of(const ob::StreamProfile* stream) {
+    const ob::Intrinsics pinhole = call(place_, api().video_stream_profile_get_intrinsic, stream);
+    const ob::Distortion lens = call(place_, api().video_stream_profile_get_distortion, stream);
+    const bool known = lens.model >= 0 && lens.model < static_cast<int>(kLensModels.size());
+    const std::string_view model = known ? kLensModels[static_cast<std::size_t>(lens.model)] : "of a later version";
+    return with_lens({pinhole.width, pinhole.height, pinhole.fx, pinhole.fy, pinhole.cx, pinhole.cy}, model,
+                     coefficients_of(lens));
   }
 
   void start() {
@@ -294,8 +310,8 @@ class OrbbecSource final : public LiveSource {
       api().pipeline_enable_frame_sync(pipeline_.get(), unable.out());
       align_ = hold(call(place_, api().create_filter, "Align"), api().delete_filter);
       set("AlignType", ob::kColour);
-      // So that depth lies on a grid without distortion, which `camera_` describes.
-      set("TargetDistortion", 0);
+      // So that depth lies on a grid without distortion, which `camera_` describes, and is resampled once only.
+      is_registered_without_lens_ = set("TargetDistortion", 0);
       set("MatchTargetRes", 1);
       set("GapFillCopy", 1);  // where the grid is finer than depth
     }
@@ -304,10 +320,12 @@ class OrbbecSource final : public LiveSource {
     if (outcome.failed()) fail_to_open(place_, outcome.reason());
   }
 
-  /// What a version of the SDK does not know it cannot be told, and its own choice stays.
-  void set(const char* name, double value) {
+  /// Returns whether the SDK knows of such a value. What a version does not know it cannot be told, and its own choice
+  /// stays.
+  bool set(const char* name, double value) {
     Outcome<ob::Failure> unknown(place_);
     api().filter_set_config_value(align_.get(), name, value, unknown.out());
+    return !unknown.failed();
   }
 
   void start_acceleration() {
@@ -363,6 +381,8 @@ class OrbbecSource final : public LiveSource {
   Held<ob::Filter> align_;
   std::optional<Accelerometer> acceleration_;
   Camera camera_;
+  std::optional<Rectification> rectification_;  ///< of the stream on whose grid frames lie, where its lens distorts
+  bool is_registered_without_lens_ = false;     ///< whether depth lies on that grid with the lens undone already
   bool has_colour_ = false;
   std::int64_t last_index_ = -1;
 };
