@@ -11,13 +11,14 @@
 
 #include "io/files/byte_stream.h"
 #include "io/recordings/mcap_records.h"
+#include "io/recordings/time_difference.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20U;
-constexpr std::int64_t kChunkTime_ns = 1'000'000'000;
+constexpr std::uint64_t kChunkTime_ns = 1'000'000'000;
 /// Level 1 packs depth nearly as well as higher ones, at several hundred MB a second.
 constexpr int kLevel = 1;
 
@@ -94,7 +95,7 @@ void McapWriter::write(std::uint16_t topic, std::int64_t time_ns, std::string_vi
   chunk_ += record(McapRecord::message, content.bytes());
   ++channel.messages;
   ++messages_;
-  if (chunk_.size() >= kChunkBytes || chunk_last_ns_ - chunk_first_ns_ >= kChunkTime_ns) finish_chunk();
+  if (chunk_.size() >= kChunkBytes || apart_ns(chunk_last_ns_, chunk_first_ns_) >= kChunkTime_ns) finish_chunk();
 }
 
 void McapWriter::finish_chunk() {

@@ -17,6 +17,7 @@
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/imu_messages.h"
 #include "io/recordings/open_recording.h"
+#include "io/recordings/time_difference.h"
 #include "io/recordings/up_history.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
@@ -28,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kMostApart_ns = 50'000'000;
+constexpr std::uint64_t kMostApart_ns = 50'000'000;
 /// Frames that wait for their colour: half a second at 30 a second.
 constexpr std::size_t kMostWaiting = 15;
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
@@ -254,7 +255,7 @@ class RecordingSource final : public FrameSource {
   Frame with_colour() {
     Waiting one = std::move(waiting_.front());
     waiting_.pop_front();
-    const auto apart = [&](const Colour& colour) { return std::abs(colour.time_ns - one.time_ns); };
+    const auto apart = [&](const Colour& colour) { return apart_ns(colour.time_ns, one.time_ns); };
     const auto nearest = std::ranges::min_element(colours_, {}, apart);
     if (nearest != colours_.end() && apart(*nearest) <= kMostApart_ns) {
       const std::string name = fmt::format("{}: {}", files_[std::min(at_, files_.size() - 1)], one.frame.name);
@@ -262,7 +263,10 @@ class RecordingSource final : public FrameSource {
           registered(colour_of(parse_picture(nearest->topic, nearest->message, name), name), one.frame.depth);
     }
     one.frame.up = ups_.up_at(one.time_ns);
-    while (!colours_.empty() && colours_.front().time_ns < one.time_ns - kMostApart_ns) colours_.pop_front();
+    const auto is_past = [&](const Colour& colour) {
+      return colour.time_ns < one.time_ns && apart(colour) > kMostApart_ns;
+    };
+    while (!colours_.empty() && is_past(colours_.front())) colours_.pop_front();
     return std::move(one.frame);
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "io/files/image_file.h"
 #include "io/files/test_files.h"
@@ -88,6 +89,25 @@ TEST(RecordingSource, TakesTheColourNearestInTime) {
   EXPECT_EQ(frames[0].colour, a.colour);
   EXPECT_EQ(frames[1].colour, b.colour);
   EXPECT_TRUE(frames[2].colour.empty());
+}
+
+TEST(RecordingSource, BearsColourAnyTimeAway) {
+  constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  const Frame a = random_frame("a", 1);
+  for (const auto& [depth_ns, colour_ns] : {std::pair(kLast, kFirst), {kFirst, kLast}, {kFirst, kFirst + 1}}) {
+    const test::TemporaryFolder folder;
+    Messages out(folder / "a.mcap");
+    out.camera("/depth/camera_info", a.camera);
+    // Headers without a time: that of the recording counts.
+    out.put("/rgb/image", "sensor_msgs/msg/Image", colour_ns, colour_message(a.colour, 0, "depth_frame"));
+    out.put("/depth/image", "sensor_msgs/msg/Image", depth_ns, depth_message(a.depth, 0, "depth_frame"));
+    out.close();
+    const std::vector<Frame> frames = all_of(*open_source(folder / "a.mcap"));
+    ASSERT_EQ(frames.size(), 1U);
+    EXPECT_EQ(frames[0].depth, a.depth);
+    EXPECT_EQ(frames[0].colour.empty(), colour_ns != kFirst + 1);
+  }
 }
 
 TEST(RecordingSource, LeavesOutColourOfAnotherPlaceAndSaysSo) {
