@@ -176,6 +176,13 @@ TEST_F(OrbbecCameras, AreWaitedForWhenTheyAreLost) {
   EXPECT_GT(longest_s, 1.0) << "the time in which the camera was away is missing";
 }
 
+TEST_F(OrbbecCameras, ThatAreLostEndEvenWhatKeepsGoing) {
+  const Outcome gone =
+      run("detect orbbec: -q --keep-going --frames 9 --json " + path("gone.json") + " -m " + model(), "lost");
+  EXPECT_EQ(gone.exit_code, 1);
+  EXPECT_EQ(gone.err, "vesalius: orbbec: the device was disconnected\n");
+}
+
 TEST_F(OrbbecCameras, ThatAreNotThereOrInUseGiveOneLine) {
   EXPECT_EQ(run("detect orbbec: -m " + model(), "none").err,
             "vesalius: orbbec: no camera is plugged in, expected one that `vesalius cameras` lists\n");

@@ -68,7 +68,8 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
     } catch (const BrokenPipe&) {
       throw;
     } catch (const Error& e) {
-      if (!arguments.keep_going) throw;
+      const bool is_lost = source.is_live() && !found.frame;  // asked again, a camera says the same every few seconds
+      if (!arguments.keep_going || is_lost) throw;
       progress.clear();
       say(std::string("vesalius: ") + e.what());
       ++totals.failed;
