@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -198,13 +200,17 @@ TEST_F(OrbbecCameras, ThatAreNotThereOrInUseGiveOneLine) {
 
 #ifdef VESALIUS_FAKENECT
 /// fakenect plays frames from files in the place of a Kinect.
-TEST_F(Cameras, OfKinectGiveDepthAndColourOfOneMoment) {
+TEST_F(Cameras, OfKinectGiveDepthAndColourOfOneMomentAndUp) {
   if (!has("freenect")) GTEST_SKIP() << "this build has no libfreenect";
   constexpr int kWidth = 640, kHeight = 480, kFrames = 12;
   std::filesystem::create_directories(path("kinect"));
-  std::string index;
+  // What the base of a level Kinect measures, as a freenect_raw_tilt_state: x, y, z, of which 819 are gravity, the
+  // tilt's angle and status. Pictures begin after it has been asked for that, which it is five times a second.
+  constexpr std::array<std::int16_t, 6> kLevel{0, 819, 0, 0, 0, 0};
+  write("kinect/a-1000.000000-0.dump", std::string(reinterpret_cast<const char*>(kLevel.data()), sizeof kLevel));
+  std::string index = "a-1000.000000-0.dump\n";
   for (int i = 0; i < kFrames; ++i) {
-    const std::string time = fmt::format("{:.6f}-{}", 1000.0 + i / 30.0, 1000000 + i * 2000000);
+    const std::string time = fmt::format("{:.6f}-{}", 1000.3 + i / 30.0, 1000000 + i * 2000000);
     std::string depth = "P5 640 480 65535\n", colour = "P6 640 480 255\n";
     for (int p = 0; p < kWidth * kHeight; ++p) {
       const int z = 1000 + 10 * i + p % kWidth;
@@ -223,6 +229,7 @@ TEST_F(Cameras, OfKinectGiveDepthAndColourOfOneMoment) {
   const auto source = open_source(path("kinect.mcap"));
   ASSERT_EQ(source->size(), 6);
   double before_s = -1.0;
+  std::optional<Eigen::Vector3f> up;
   while (const auto frame = source->next()) {
     const int i = (frame->depth(0, 0) - 1000) / 10;
     ASSERT_EQ(frame->depth.width(), kWidth);
@@ -231,7 +238,10 @@ TEST_F(Cameras, OfKinectGiveDepthAndColourOfOneMoment) {
     EXPECT_EQ(frame->colour(5, 5), (Rgb{static_cast<std::uint8_t>(i), 2, 3}));
     EXPECT_GT(*frame->time_s, before_s);
     before_s = *frame->time_s;
+    up = frame->up;
   }
+  ASSERT_TRUE(up);
+  EXPECT_LT((*up - Eigen::Vector3f(0.F, -1.F, 0.F)).norm(), 1e-5F) << up->transpose();
 }
 #endif
 
