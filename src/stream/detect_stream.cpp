@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <future>
 #include <memory>
 #include <thread>
@@ -10,6 +9,7 @@
 
 #include "stream/frame_queue.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/base/quiet_thread.h"
 
 namespace vesalius {
 namespace {
@@ -71,17 +71,6 @@ struct Job {
 };
 using JobPointer = std::shared_ptr<Job>;
 
-/// Starts a thread that leaves all signals to the calling thread.
-template <class Work>
-std::jthread helper(Work work) {
-  return std::jthread([work = std::move(work)] {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, nullptr);
-    work();
-  });
-}
-
 bool stopped(const StreamOptions& options) { return options.stop && options.stop(); }
 
 class Stream {
@@ -93,10 +82,10 @@ class Stream {
         realtime_(options.realtime || source.is_live()),
         work_(realtime_ ? 1 : kFramesAhead),
         written_(kFramesAhead) {
-    helpers_.push_back(helper([this] { realtime_ ? read_in_real_time() : read_ahead(); }));
+    helpers_.push_back(quiet_thread([this] { realtime_ ? read_in_real_time() : read_ahead(); }));
     const int detectors = realtime_ ? 1 : kDetectors;
     working_ = detectors;
-    for (int i = 0; i < detectors; ++i) helpers_.push_back(helper([this] { work(); }));
+    for (int i = 0; i < detectors; ++i) helpers_.push_back(quiet_thread([this] { work(); }));
   }
   ~Stream() { stop(); }
   Stream(const Stream&) = delete;
@@ -169,7 +158,7 @@ class Stream {
 class Passing {
  public:
   Passing(FrameSource& source, std::size_t ahead)
-      : source_(source), ahead_(ahead), reader_(helper([this] { read(); })) {}
+      : source_(source), ahead_(ahead), reader_(quiet_thread([this] { read(); })) {}
   ~Passing() {
     stopping_ = true;
     source_.stop();

@@ -1,19 +1,14 @@
 #include "stream/person_json.h"
 
-#include <fmt/format.h>
-
-#include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+
+#include "stream/json_numbers.h"
 
 namespace vesalius {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Shortest text at a tenth of a millimetre: no sensor knows more.
-double rounded(double value, double steps = 1e4) { return std::round(value * steps) / steps; }
 
 Json point_json(State state, const Eigen::Vector3f& point, float confidence, const Camera& camera) {
   Json xyz, px;  // null
@@ -28,14 +23,6 @@ Json point_json(State state, const Eigen::Vector3f& point, float confidence, con
           {"px", px},
           {"confidence", state == State::none ? 0.0 : rounded(confidence)},
           {"state", to_string(state)}};
-}
-
-/// The shortest text of the float, not of the double nearest to it.
-double shortest(float value) {
-  double exact = 0.0;
-  const std::string text = fmt::format("{}", value);
-  std::from_chars(text.data(), text.data() + text.size(), exact);
-  return exact;
 }
 
 Json camera_json(const Camera& camera) {
