@@ -1,12 +1,13 @@
 #include "view/frame_message.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "io/files/image_file.h"
 #include "io/recordings/depth_codecs.h"
+#include "stream/json_numbers.h"
 #include "stream/person_json.h"
 #include "vesalius/planes/find_floor.h"
 #include "view/run_lengths.h"
@@ -17,8 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kJpegQuality = 85;
-
-double rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
 Json point_json(const Eigen::Vector3f& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
 
@@ -116,8 +115,8 @@ Json stages_json(const Trace& trace, int width, int height, Pictures& pictures) 
 
 }  // namespace
 
-std::string frame_message(const ViewedFrame& viewed, const BodyModel& body) {
-  const Frame& frame = viewed.frame;
+std::string frame_message(const ViewedFrame& viewed, const BodyModel& body, bool with_stages) {
+  const Frame& frame = *viewed.frame;
   const int width = frame.depth.width(), height = frame.depth.height();
   Pictures pictures;
   pictures.add("depth", "rvl", width, height, pack_rvl(frame.depth));
@@ -129,7 +128,7 @@ std::string frame_message(const ViewedFrame& viewed, const BodyModel& body) {
                {"times_ms", times_json(viewed.times)},
                {"detect_ms", rounded(viewed.times.total())},
                {"floor", floor_json(frame)}};
-  if (viewed.trace) head["stages"] = stages_json(*viewed.trace, width, height, pictures);
+  if (with_stages && viewed.trace) head["stages"] = stages_json(*viewed.trace, width, height, pictures);
   head["pictures"] = pictures.take_list();
   std::string text = head.dump();
   text.pop_back();  // its brace: the frame's own line follows as it is

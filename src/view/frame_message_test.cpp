@@ -8,7 +8,7 @@
 #include "io/files/image_file.h"
 #include "io/recordings/depth_codecs.h"
 #include "stream/person_json.h"
-#include "view/run_lengths.h"
+#include "view/test_runs.h"
 
 namespace vesalius {
 namespace {
@@ -29,7 +29,7 @@ class Parts {
     }
     return "none";
   }
-  LabelImage labels(const std::string& name) const { return unpack_runs(bytes(name), 160, 120); }
+  LabelImage labels(const std::string& name) const { return test::unpack_runs(bytes(name), 160, 120); }
 
   json head;
 
@@ -38,13 +38,15 @@ class Parts {
   std::size_t head_bytes_ = 0;
 };
 
-ViewedFrame viewed_person() {
+ViewedFrame viewed_person(bool with_colour) {
   CapsuleScene scene;
   scene.people.emplace_back();
   scene.floor_y_m = 1.F;
   ViewedFrame viewed;
-  viewed.frame = render(scene, {160, 120, 131.F, 131.F, 79.5F, 59.5F}, paper_body()).frame;
-  viewed.frame.name = "one";
+  Frame frame = render(scene, {160, 120, 131.F, 131.F, 79.5F, 59.5F}, paper_body()).frame;
+  frame.name = "one";
+  if (!with_colour) frame.colour = {};
+  viewed.frame = std::make_shared<const Frame>(std::move(frame));
   viewed.number = 7;
   Person person;
   person.skeleton.parts.resize(25);
@@ -60,16 +62,16 @@ ViewedFrame viewed_person() {
 }
 
 TEST(FrameMessage, HoldsTheFrameAndItsPeople) {
-  const ViewedFrame viewed = viewed_person();
-  const Parts parts(frame_message(viewed, paper_body()));
+  const ViewedFrame viewed = viewed_person(true);
+  const Parts parts(frame_message(viewed, paper_body(), true));
   EXPECT_EQ(parts.head.at("number"), 7);
-  EXPECT_EQ(parts.head.at("found"), json::parse(frame_json(viewed.frame, viewed.people, paper_body())));
-  EXPECT_EQ(unpack_rvl(parts.bytes("depth"), 160, 120, "depth"), viewed.frame.depth);
+  EXPECT_EQ(parts.head.at("found"), json::parse(frame_json(*viewed.frame, viewed.people, paper_body())));
+  EXPECT_EQ(unpack_rvl(parts.bytes("depth"), 160, 120, "depth"), viewed.frame->depth);
   EXPECT_EQ(parts.labels("people"), body_index_map(viewed.people, 160, 120));
   EXPECT_EQ(parts.labels("parts"), part_label_map(viewed.people, 160, 120));
   const ColourImage colour = decode_colour(parts.bytes("colour"), "colour");
   double difference = 0.0;
-  for (std::size_t i = 0; i < colour.size(); ++i) difference += std::abs(colour[i].g - viewed.frame.colour[i].g);
+  for (std::size_t i = 0; i < colour.size(); ++i) difference += std::abs(colour[i].g - viewed.frame->colour[i].g);
   EXPECT_LT(difference / static_cast<double>(colour.size()), 4.0);
   EXPECT_FALSE(parts.head.contains("stages"));
   EXPECT_NEAR(parts.head.at("floor").at("offset_m"), 1.0, 0.02);
@@ -77,8 +79,7 @@ TEST(FrameMessage, HoldsTheFrameAndItsPeople) {
 }
 
 TEST(FrameMessage, HoldsTheStagesOfATrace) {
-  ViewedFrame viewed = viewed_person();
-  viewed.frame.colour = {};
+  ViewedFrame viewed = viewed_person(false);
   Trace& trace = viewed.trace.emplace();
   trace.raw_labels = trace.labels = viewed.people[0].labels;
   trace.flat = Mask(160, 120, 1);
@@ -97,7 +98,8 @@ TEST(FrameMessage, HoldsTheStagesOfATrace) {
   trace.candidates = {candidate, candidate};
   trace.candidates[1].accepted = false;
   trace.candidates[1].grown[0] = 1;
-  const Parts parts(frame_message(viewed, paper_body()));
+  EXPECT_FALSE(Parts(frame_message(viewed, paper_body(), false)).head.contains("stages"));
+  const Parts parts(frame_message(viewed, paper_body(), true));
   EXPECT_EQ(parts.bytes("colour"), "none");
   for (const char* name : {"raw_labels", "labels", "proposals", "second_pass"}) {
     EXPECT_EQ(parts.labels(name), trace.labels) << name;

@@ -3,42 +3,43 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <csignal>
+#include <limits>
 #include <utility>
 
 #include "vesalius/base/error.h"
+#include "vesalius/base/quiet_thread.h"
 
 namespace vesalius {
 namespace {
 
 /// How far back the frame before this one is looked for, in seconds, at first and when it was not there.
-constexpr std::array kBack_s = {0.2, 2.0, 60.0};
-constexpr int kMostFailures = 100;               // one after the other; then nothing is left to be hoped for
-constexpr std::chrono::seconds kLongestWait(2);  // for a frame that was taken long after the last
+constexpr std::array kBack_s = {0.2, 2.0, 60.0, std::numeric_limits<double>::infinity()};
+constexpr int kMostFailures = 100;     // frames one after the other that cannot be read; then nothing more is hoped for
+constexpr int kMostMoves = 4;          // that wait: a held key sends more than are done
+constexpr double kLongestGap_s = 2.0;  // between two frames; where nothing was taken for longer, nobody waits that long
 /// Later than that by the clock, the pace starts anew: the machine slept, or the disk did.
 constexpr std::chrono::milliseconds kMostBehind(500);
 
+/// Returns the number of the first frame not before a time, in a source whose frames have none.
+std::int64_t frame_number(double time_s) {
+  constexpr double kMost = 1e15;
+  return static_cast<std::int64_t>(std::clamp(std::ceil(time_s * kUsualRate - 1e-6), -kMost, kMost));
+}
+
 }  // namespace
 
-int frame_number(double time_s) { return static_cast<int>(std::ceil(time_s * kUsualRate - 1e-6)); }
-
-Player::Player(FrameSource& source, double rate, bool playing, Outputs outputs, int index)
-    : source_(source), rate_(rate), outputs_(std::move(outputs)), index_(index) {
+Player::Player(FrameSource& source, const PlayerOptions& options, Outputs outputs)
+    : source_(source), rate_(options.rate), outputs_(std::move(outputs)), index_(frame_number(options.start_s)) {
   state_.live = source.is_live();
   state_.span = source.span();
-  state_.playing = playing || state_.live;
-  state_.repeat = state_.span.has_value();
+  state_.playing = options.playing || state_.live;
+  state_.repeat = options.repeat && state_.span;
   if (state_.span) state_.at_s = state_.span->first_s;
-  if (!state_.playing) commands_.emplace_back([this] { play_one(); });  // something to look at
+  if (!state_.playing) commands_.push_back({false, [this] { play_one(); }});  // something to look at
 }
 
 void Player::start() {
-  thread_ = std::jthread([this] {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, nullptr);
-    run();
-  });
+  thread_ = quiet_thread([this] { run(); });
 }
 
 Player::~Player() { stop(); }
@@ -49,7 +50,7 @@ void Player::stop() {
     stopping_ = true;
   }
   changed_.notify_all();
-  if (state().live) source_.stop();  // it may be waiting for a camera
+  source_.stop();  // it may be waiting for a camera
   if (thread_.joinable()) thread_.join();
 }
 
@@ -75,44 +76,53 @@ void Player::post(Command command) {
   changed_.notify_all();
 }
 
+void Player::forget_moves() {
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(commands_, [](const Command& command) { return command.moves; });
+}
+
 void Player::play() {
-  post([this] {
-    if (state().at_end && state().span) move_to(state().span->first_s);
-    restart_pace();
-    change([](PlayerState& s) { s.playing = true; });
-  });
+  post({false, [this] {
+          const PlayerState now = state();
+          if (now.at_end && now.span) move_to(now.span->first_s);
+          planned_.reset();
+          change([](PlayerState& s) { s.playing = true; });
+        }});
 }
 
 void Player::pause() {
-  post([this] { change([](PlayerState& s) { s.playing = false; }); });
+  forget_moves();
+  post({false, [this] { change([](PlayerState& s) { s.playing = false; }); }});
 }
 
 void Player::step(int by) {
-  post([this, by] {
-    change([](PlayerState& s) { s.playing = false; });
-    if (by > 0) play_one();
-    if (by < 0 && state().span) step_back();
-  });
+  {
+    const std::scoped_lock lock(mutex_);
+    if (std::ranges::count(commands_, true, &Command::moves) >= kMostMoves) return;
+  }
+  post({true, [this, by] {
+          change([](PlayerState& s) { s.playing = false; });
+          if (by > 0) play_one();
+          if (by < 0 && state().span) step_back();
+        }});
 }
 
 void Player::seek(double time_s) {
-  post([this, time_s] {
-    const PlayerState now = state();
-    if (!now.span) return;
-    move_to(std::clamp(time_s, now.span->first_s, now.span->last_s));
-    if (std::optional<TimedFrame> next = read()) show(std::move(*next));
-  });
+  forget_moves();
+  post({true, [this, time_s] {
+          const PlayerState now = state();
+          if (!now.span) return;
+          move_to(std::clamp(time_s, now.span->first_s, now.span->last_s));
+          if (std::optional<TimedFrame> next = read()) show(std::move(*next));
+        }});
 }
 
 void Player::set_speed(double times) {
-  post([this, times] {
-    restart_pace();
-    change([&](PlayerState& s) { s.speed = std::clamp(times, 0.1, 10.0); });
-  });
+  post({false, [this, times] { change([&](PlayerState& s) { s.speed = std::clamp(times, 0.1, 10.0); }); }});
 }
 
 void Player::set_repeat(bool repeat) {
-  post([this, repeat] { change([&](PlayerState& s) { s.repeat = repeat && s.span; }); });
+  post({false, [this, repeat] { change([&](PlayerState& s) { s.repeat = repeat && s.span; }); }});
 }
 
 std::optional<Player::Command> Player::next_command(std::optional<Clock::time_point> until) {
@@ -134,19 +144,22 @@ bool Player::stopping() const {
   return stopping_;
 }
 
-/// Returns when a frame is to be shown at the source's pace, which must have begun.
-Player::Clock::time_point Player::planned(const TimedFrame& next, const PlayerState& now) const {
+/// Returns how long after the frame that is shown another is due.
+Player::Clock::duration Player::period(const TimedFrame& next, const PlayerState& now) const {
   const double rate = next.frame.time_s ? 1.0 : rate_ / kUsualRate;
-  const std::chrono::duration<double> after((next.at_s - pace_from_s_) / (now.speed * rate));
-  return *pace_start_ + std::chrono::duration_cast<Clock::duration>(after);
+  double gap_s = next.at_s - now.at_s;
+  // Back to the beginning, or times that fall: a frame is shown as long as usual.
+  if (!(gap_s > 0.0)) gap_s = 1.0 / kUsualRate;
+  return std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(std::min(gap_s, kLongestGap_s) / (now.speed * rate)));
 }
 
 /// Returns until when there is nothing to do but to obey; nothing if that is for ever.
 std::optional<Player::Clock::time_point> Player::due(const PlayerState& now) const {
   // A camera is read while nobody looks, or its frames would wait and be old.
   if (!now.playing && !now.live) return std::nullopt;
-  if (!waiting_ || !pace_start_ || now.live) return Clock::now();
-  return std::min(planned(*waiting_, now), last_shown_ + kLongestWait);
+  if (!waiting_ || !planned_ || now.live) return Clock::now();
+  return *planned_ + period(*waiting_, now);
 }
 
 void Player::run() {
@@ -154,16 +167,28 @@ void Player::run() {
     const PlayerState now = state();
     const std::optional<Command> command = next_command(due(now));
     if (stopping()) return;
-    if (command) {
-      (*command)();
-    } else if (!waiting_) {
-      waiting_ = read();
-      if (!waiting_) end_of_source();
-    } else if (now.playing) {
-      show(*std::exchange(waiting_, std::nullopt));
-    } else {
-      waiting_.reset();
-    }
+    guarded([&] {
+      if (command) {
+        command->act();
+      } else if (!waiting_) {
+        waiting_ = read();
+        if (!waiting_) end_of_source();
+      } else if (now.playing) {
+        show(*std::exchange(waiting_, std::nullopt));
+      } else {
+        waiting_.reset();
+      }
+    });
+  }
+}
+
+/// A source that cannot be moved in, or memory that is short, ends the playing and not the program.
+void Player::guarded(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const std::exception& e) {
+    outputs_.failed(e.what());
+    change([](PlayerState& s) { s.playing = false; });
   }
 }
 
@@ -171,13 +196,17 @@ void Player::run() {
 std::optional<Player::TimedFrame> Player::read() {
   if (waiting_) return std::exchange(waiting_, std::nullopt);
   for (int failures = 0; failures < kMostFailures && !stopping(); ++failures) {
-    const int index = index_++;
+    const std::int64_t index = index_++;
     try {
       std::optional<Frame> frame = source_.next();
       if (!frame) return std::nullopt;
-      const double at_s = frame->time_s.value_or(index / kUsualRate);
+      const double at_s = frame->time_s.value_or(static_cast<double>(index) / kUsualRate);
       return TimedFrame{std::move(*frame), at_s};
     } catch (const Error& e) {
+      if (state().live) {
+        outputs_.lost(std::current_exception());
+        return std::nullopt;
+      }
       outputs_.failed(e.what());
     }
   }
@@ -194,10 +223,12 @@ void Player::play_one() {
 
 void Player::end_of_source() {
   const PlayerState now = state();
-  // Where nothing was shown since the beginning, nothing will be.
-  const bool again = now.playing && now.repeat && now.span && shown_since_start_;
-  if (again) {
+  // A single frame has been shown; where nothing was shown since the beginning, nothing will be.
+  const bool has_more = now.span && now.span->last_s > now.span->first_s && shown_since_start_;
+  if (now.playing && now.repeat && has_more) {
+    const std::optional<Clock::time_point> planned = planned_;
     move_to(now.span->first_s);
+    planned_ = planned;  // the last frame is shown as long as the others
     shown_since_start_ = false;
     return;
   }
@@ -210,9 +241,9 @@ void Player::end_of_source() {
 
 void Player::move_to(double time_s) {
   waiting_.reset();
+  planned_.reset();
   source_.seek(time_s);
   index_ = frame_number(time_s);
-  restart_pace();
 }
 
 void Player::step_back() {
@@ -222,7 +253,7 @@ void Player::step_back() {
     move_to(from_s);
     std::optional<TimedFrame> before;
     std::optional<TimedFrame> next = read();
-    while (next && next->at_s < now.at_s) {
+    while (next && next->at_s <= now.at_s && next->frame.name != shown_) {
       before = std::move(next);
       next = read();
     }
@@ -235,12 +266,10 @@ void Player::step_back() {
 
 void Player::show(TimedFrame next) {
   const Clock::time_point now = Clock::now();
-  if (!pace_start_ || now > planned(next, state()) + kMostBehind) {
-    pace_start_ = now;
-    pace_from_s_ = next.at_s;
-  }
-  last_shown_ = now;
+  const Clock::time_point planned = planned_ ? *planned_ + period(next, state()) : now;
+  planned_ = now > planned + kMostBehind || now < planned ? now : planned;
   shown_since_start_ = true;
+  shown_ = next.frame.name;
   {
     const std::scoped_lock lock(mutex_);
     state_.at_s = next.at_s;

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <exception>
 #include <functional>
@@ -32,8 +33,12 @@ struct PlayerState {
   std::optional<TimeSpan> span;  ///< none where one cannot move
 };
 
-/// Returns the number of the first frame not before a time, in a source whose frames have none.
-int frame_number(double time_s);
+struct PlayerOptions {
+  double rate = kUsualRate;  ///< frames a second of a source without times
+  bool playing = true;       ///< otherwise it shows the first frame and waits
+  bool repeat = true;        ///< of a source in which one can move
+  double start_s = 0.0;      ///< where the source stands, in seconds from its first frame
+};
 
 /// Plays a source on a thread of its own: at the pace at which the frames were taken, or at that of a camera.
 class Player {
@@ -41,25 +46,25 @@ class Player {
   struct Outputs {
     std::function<void(PlayedFrame)> show;               ///< receives each frame when it is due; must not take long
     std::function<void(const std::string& why)> failed;  ///< a frame could not be read; playing goes on
+    std::function<void(std::exception_ptr why)> lost;    ///< a camera gives nothing more: it has ended
     std::function<void()> changed;                       ///< the state has changed otherwise than by a frame
   };
 
-  /// `rate` is the frames a second of a source without times, and `index` the number of the frame that it gives next.
   /// The source must outlive the player.
-  Player(FrameSource& source, double rate, bool playing, Outputs outputs, int index = 0);
+  Player(FrameSource& source, const PlayerOptions& options, Outputs outputs);
+  ~Player();
+  Player(const Player&) = delete;
+  Player& operator=(const Player&) = delete;
 
   void start();
   /// Ends the thread. `outputs` are not called from then on.
   void stop();
 
-  ~Player();
-  Player(const Player&) = delete;
-  Player& operator=(const Player&) = delete;
-
-  // What follows returns at once and is done in its order. What a source cannot do is left out.
+  // What follows returns at once and is done in its order. What a source cannot do is left out. Nobody waits for moves
+  // that are outdated: a seek replaces those before it that are not done yet, a pause too, and only so many steps wait.
   void play();  ///< from the beginning, if the source has ended
   void pause();
-  void step(int by);             ///< 1 shows the next frame, -1 the one before; both pause
+  void step(int by);             ///< above 0 shows the next frame, below 0 the one before; both pause
   void seek(double time_s);      ///< shows the first frame not before this time, and goes on as before
   void set_speed(double times);  ///< 0.1 to 10
   void set_repeat(bool repeat);
@@ -68,16 +73,21 @@ class Player {
 
  private:
   using Clock = std::chrono::steady_clock;
-  using Command = std::function<void()>;
+  struct Command {
+    bool moves = false;  ///< whether it only goes to another frame
+    std::function<void()> act;
+  };
   struct TimedFrame {
     Frame frame;
     double at_s;
   };
 
   void post(Command command);
+  void forget_moves();
   void run();
+  void guarded(const std::function<void()>& act);
   bool stopping() const;
-  Clock::time_point planned(const TimedFrame& next, const PlayerState& now) const;
+  Clock::duration period(const TimedFrame& next, const PlayerState& now) const;
   std::optional<Clock::time_point> due(const PlayerState& now) const;
   std::optional<Command> next_command(std::optional<Clock::time_point> until);
   std::optional<TimedFrame> read();
@@ -86,7 +96,6 @@ class Player {
   void move_to(double time_s);
   void step_back();
   void show(TimedFrame next);
-  void restart_pace() { pace_start_.reset(); }
   template <class Change>
   void change(Change change);
 
@@ -94,12 +103,11 @@ class Player {
   const double rate_;
   const Outputs outputs_;
   // Of the player's thread alone:
-  int index_;                                    ///< of the next frame that is read, where frames have no times
-  std::optional<TimedFrame> waiting_;            ///< read, not due yet
-  std::optional<Clock::time_point> pace_start_;  ///< when the frame at pace_from_s_ was shown
-  double pace_from_s_ = 0.0;
-  Clock::time_point last_shown_;
-  bool shown_since_start_ = false;  ///< whether the source has given a frame since it began
+  std::int64_t index_;                        ///< of the next frame that is read, where frames have no times
+  std::optional<TimedFrame> waiting_;         ///< read, not due yet
+  std::optional<Clock::time_point> planned_;  ///< when the frame that is shown was due; none after a move
+  std::string shown_;                         ///< its name
+  bool shown_since_start_ = false;            ///< whether the source has given a frame since it began
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -24,7 +24,7 @@ class Numbers : public FrameSource {
     if (number == bad) throw Error("bad frame");
     Frame frame;
     frame.name = std::to_string(number);
-    if (timed_) frame.time_s = 100.0 + number * period_s_;
+    if (timed_) frame.time_s = time_of(number);
     return frame;
   }
   int size() const override { return count_; }
@@ -33,6 +33,7 @@ class Numbers : public FrameSource {
     return TimeSpan{time_of(0), time_of(count_ - 1)};
   }
   void seek(double time_s) override {
+    if (cannot_move) throw Error("no moving here");
     at_ = 0;
     while (at_ < count_ && time_of(at_) < time_s - 1e-9) ++at_;
   }
@@ -40,10 +41,15 @@ class Numbers : public FrameSource {
 
   int bad = -1;
   bool can_seek = true;
+  bool cannot_move = false;
   bool live = false;
+  int gap_after = 1 << 30;  ///< frame after which nothing was taken for an hour
+  double first_s = 100.0;
 
  private:
-  double time_of(int i) const { return timed_ ? 100.0 + i * period_s_ : i / kUsualRate; }
+  double time_of(int i) const {
+    return timed_ ? first_s + i * period_s_ + (i > gap_after ? 3600.0 : 0.0) : i / kUsualRate;
+  }
 
   int at_ = 0;
   int count_;
@@ -54,8 +60,8 @@ class Numbers : public FrameSource {
 /// A player and what it showed.
 class Shown {
  public:
-  Shown(FrameSource& source, bool playing, double rate = 30.0)
-      : player(source, rate, playing,
+  Shown(FrameSource& source, const PlayerOptions& options)
+      : player(source, options,
                {[this](PlayedFrame played) {
                   const std::scoped_lock lock(mutex_);
                   names_.push_back(played.frame.name);
@@ -64,8 +70,9 @@ class Shown {
                 [this](const std::string& why) {
                   const std::scoped_lock lock(mutex_);
                   names_.push_back(why);
+                  times_.push_back(Clock::now());
                 },
-                [] {}}) {
+                [this](std::exception_ptr) { ++lost; }, [] {}}) {
     player.start();
   }
   ~Shown() { player.stop(); }
@@ -93,6 +100,17 @@ class Shown {
     return false;
   }
 
+  /// Waits until the frame of that name was shown; returns the frames so far.
+  std::vector<std::string> names_up_to(const std::string& name) {
+    for (std::size_t count = 1;; ++count) {
+      std::vector<std::string> all = names(count);
+      if (all.size() < count || all[count - 1] == name)
+        return {all.begin(), all.begin() + static_cast<long>(std::min(count, all.size()))};
+    }
+  }
+
+  std::atomic<int> lost = 0;
+
  private:
   std::mutex mutex_;
   std::vector<std::string> names_;
@@ -102,10 +120,12 @@ class Shown {
   Player player;
 };
 
+constexpr PlayerOptions kOnce{.repeat = false};
+constexpr PlayerOptions kPaused{.playing = false};
+
 TEST(Player, PlaysAtThePaceOfTheFrames) {
   Numbers source(6, 0.02);
-  Shown shown(source, true);
-  shown.player.set_repeat(false);
+  Shown shown(source, kOnce);
   EXPECT_THAT(shown.names(6), ElementsAre("0", "1", "2", "3", "4", "5"));
   EXPECT_GE(shown.between(0, 5), 99ms);
   EXPECT_TRUE(shown.reaches([](const PlayerState& s) { return s.at_end && !s.playing; }));
@@ -114,19 +134,41 @@ TEST(Player, PlaysAtThePaceOfTheFrames) {
 
 TEST(Player, PlaysFramesWithoutTimesAtTheGivenRate) {
   Numbers source(4, 0.0, false);
-  Shown shown(source, true, 100.0);
+  Shown shown(source, {.rate = 300.0, .repeat = false});
   shown.names(4);
-  EXPECT_GE(shown.between(0, 3), 29ms);
+  EXPECT_GE(shown.between(0, 3), 9ms);
   EXPECT_LT(shown.between(0, 3), 95ms) << "which would be 30 a second";
+}
+
+TEST(Player, SpeedCountsHoweverSlowTheSourceIs) {
+  Numbers source(100, 0.0, false);
+  Shown shown(source, {.rate = 0.2});
+  shown.player.set_speed(0.1);
+  shown.names(1);
+  std::this_thread::sleep_for(100ms);
+  EXPECT_EQ(shown.names(0).size(), 1U) << "50 s a frame";
+  shown.player.set_speed(10);
+  EXPECT_GE(shown.names(2).size(), 2U) << "half a second a frame";
+}
+
+TEST(Player, BearsTimesSinceTheEpoch) {
+  Numbers source(5, 0.01);
+  source.first_s = 1.7e9;
+  Shown shown(source, kPaused);
+  shown.player.seek(1.7e9 + 0.03);
+  shown.player.step(-1);
+  EXPECT_THAT(shown.names(3), ElementsAre("0", "3", "2"));
 }
 
 TEST(Player, PausedShowsTheFirstFrameAndSteps) {
   Numbers source(5, 10.0);
-  Shown shown(source, false);
-  shown.player.step(1);
-  shown.player.step(1);
-  shown.player.step(-1);
-  shown.player.step(-1);
+  Shown shown(source, kPaused);
+  std::size_t count = 1;
+  EXPECT_EQ(shown.names(1).size(), count);
+  for (const int by : {1, 1, -1, -1}) {
+    shown.player.step(by);
+    shown.names(++count);
+  }
   shown.player.step(-1);  // there is none before the first
   shown.player.step(1);
   EXPECT_THAT(shown.names(6), ElementsAre("0", "1", "2", "1", "0", "1"));
@@ -135,45 +177,91 @@ TEST(Player, PausedShowsTheFirstFrameAndSteps) {
 
 TEST(Player, StepsBackThroughFramesWithoutTimes) {
   Numbers source(50, 0.0, false);
-  Shown shown(source, false);
+  Shown shown(source, kPaused);
   shown.player.seek(40 / kUsualRate);
-  shown.player.step(-1);
-  shown.player.step(-1);
-  shown.player.step(1);
-  shown.player.step(1);
+  std::size_t count = 2;
+  shown.names(count);
+  for (const int by : {-1, -1, 1, 1}) {
+    shown.player.step(by);
+    shown.names(++count);
+  }
   EXPECT_THAT(shown.names(6), ElementsAre("0", "40", "39", "38", "39", "40"));
+}
+
+TEST(Player, StepsBackAcrossAnHourWithoutFrames) {
+  Numbers source(6, 0.1);
+  source.gap_after = 2;
+  Shown shown(source, kPaused);
+  shown.player.seek(100.3 + 3600.0);
+  shown.names(2);
+  shown.player.step(-1);
+  EXPECT_THAT(shown.names(3), ElementsAre("0", "3", "2"));
 }
 
 TEST(Player, SeeksAndGoesOnAsBefore) {
   Numbers source(1000, 0.01);
-  Shown shown(source, false);
-  shown.player.seek(105.0);
-  shown.player.seek(1e9);
-  shown.player.seek(-5.0);
+  Shown shown(source, kPaused);
+  std::size_t count = 1;
+  shown.names(count);
+  for (const double to_s : {105.0, 1e9, -5.0}) {
+    shown.player.seek(to_s);
+    shown.names(++count);
+  }
   EXPECT_THAT(shown.names(4), ElementsAre("0", "500", "999", "0"));
   EXPECT_FALSE(shown.player.state().playing);
   shown.player.play();
-  EXPECT_TRUE(shown.reaches([](const PlayerState& s) { return s.playing; }));
-  shown.player.seek(109.99);
+  shown.player.seek(109.98);
+  EXPECT_TRUE(shown.reaches([](const PlayerState& s) { return s.at_s >= 109.98; }));
+  EXPECT_EQ(shown.names_up_to("999").back(), "999");
   EXPECT_TRUE(shown.reaches([](const PlayerState& s) { return s.playing && s.at_s < 109.0; })) << "it repeats";
 }
 
-TEST(Player, RepeatsOrPlaysAgainFromTheBeginning) {
+TEST(Player, RepeatsWithTheLastFrameShownAsLongAsTheOthers) {
+  Numbers source(2, 0.05);
+  Shown shown(source, {});
+  const std::vector<std::string> names = shown.names(5);
+  EXPECT_EQ(std::vector(names.begin(), names.begin() + 5), (std::vector<std::string>{"0", "1", "0", "1", "0"}));
+  EXPECT_GE(shown.between(1, 2), 30ms);
+}
+
+TEST(Player, PlaysAgainFromTheBeginning) {
   Numbers source(2, 0.001);
-  Shown shown(source, true);
-  const std::vector<std::string> names = shown.names(6);
-  EXPECT_EQ(std::vector(names.begin(), names.begin() + 6), (std::vector<std::string>{"0", "1", "0", "1", "0", "1"}));
-  shown.player.set_repeat(false);
+  Shown shown(source, kOnce);
   ASSERT_TRUE(shown.reaches([](const PlayerState& s) { return s.at_end; }));
-  const std::size_t before = shown.names(0).size();
   shown.player.play();
-  EXPECT_EQ(shown.names(before + 1).at(before), "0");
+  EXPECT_THAT(shown.names(4), ElementsAre("0", "1", "0", "1"));
+}
+
+TEST(Player, ShowsASingleFrameOnce) {
+  Numbers source(1, 0.001);
+  Shown shown(source, {});
+  EXPECT_TRUE(shown.reaches([](const PlayerState& s) { return s.at_end; }));
+  EXPECT_THAT(shown.names(1), ElementsAre("0"));
+}
+
+TEST(Player, HeldKeysDoNotPileUp) {
+  Numbers source(100000, 0.01);
+  Shown shown(source, kPaused);
+  for (int i = 0; i < 10000; ++i) shown.player.step(1);
+  shown.player.pause();
+  shown.player.seek(100.0 + 99999 * 0.01);
+  EXPECT_LT(shown.names_up_to("99999").size(), 5000U);
+}
+
+TEST(Player, EndsPlayingWhereTheSourceCannotMove) {
+  Numbers source(5, 0.01);
+  source.cannot_move = true;
+  Shown shown(source, kPaused);
+  shown.player.seek(100.02);
+  EXPECT_THAT(shown.names(2), ElementsAre("0", "no moving here"));
+  shown.player.step(1);
+  EXPECT_THAT(shown.names(3), ElementsAre("0", "no moving here", "1"));
 }
 
 TEST(Player, WithoutSeekingPlaysOnce) {
   Numbers source(2, 0.001);
   source.can_seek = false;
-  Shown shown(source, true);
+  Shown shown(source, {});
   EXPECT_TRUE(shown.reaches([](const PlayerState& s) { return s.at_end; }));
   shown.player.seek(100.0);
   shown.player.step(-1);
@@ -185,24 +273,37 @@ TEST(Player, WithoutSeekingPlaysOnce) {
 TEST(Player, TellsOfFramesThatCannotBeReadAndGoesOn) {
   Numbers source(3, 0.001);
   source.bad = 1;
-  Shown shown(source, true);
-  shown.player.set_repeat(false);
+  Shown shown(source, kOnce);
   EXPECT_TRUE(shown.reaches([](const PlayerState& s) { return s.at_end; }));
   EXPECT_THAT(shown.names(3), ElementsAre("0", "bad frame", "2"));
 }
 
-TEST(Player, DoesNotWaitForALongGap) {
-  Numbers source(2, 3600.0);
-  Shown shown(source, true);
-  EXPECT_GE(shown.names(2).size(), 2U);
-  EXPECT_LT(shown.between(0, 1), 5s);
+TEST(Player, WaitsNoHourForAGapAndGoesOnAtThePace) {
+  Numbers source(5, 0.01);
+  source.gap_after = 1;
+  Shown shown(source, {.repeat = false});
+  shown.player.set_speed(10);
+  EXPECT_THAT(shown.names(5), ElementsAre("0", "1", "2", "3", "4"));
+  EXPECT_LT(shown.between(1, 2), 2s) << "two seconds at ten times the speed";
+  EXPECT_LT(shown.between(2, 4), 150ms);
+}
+
+TEST(Player, ACameraThatFailsIsLost) {
+  Numbers source(10, 0.01);
+  source.live = true;
+  source.can_seek = false;
+  source.bad = 3;
+  Shown shown(source, {});
+  EXPECT_TRUE(shown.reaches([](const PlayerState& s) { return s.at_end && !s.live; }));
+  EXPECT_THAT(shown.names(3), ElementsAre("0", "1", "2"));
+  EXPECT_EQ(shown.lost, 1);
 }
 
 TEST(Player, TakesACamerasFramesAsTheyComeAndDropsThemWhilePaused) {
   Numbers source(1 << 20, 3600.0);
   source.live = true;
   source.can_seek = false;
-  Shown shown(source, true);
+  Shown shown(source, {});
   shown.names(100);
   shown.player.pause();
   ASSERT_TRUE(shown.reaches([](const PlayerState& s) { return !s.playing; }));

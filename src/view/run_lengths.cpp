@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "vesalius/base/error.h"
-
 namespace vesalius {
 namespace {
 
@@ -25,31 +23,6 @@ std::string pack_runs(const Image<std::uint8_t>& image) {
     at = next;
   }
   return packed;
-}
-
-Image<std::uint8_t> unpack_runs(std::string_view packed, int width, int height) {
-  Image<std::uint8_t> image(width, height);
-  std::size_t at = 0;
-  std::size_t filled = 0;
-  const auto byte = [&] {
-    if (at == packed.size()) throw Error("runs of labels: cut short");
-    return static_cast<unsigned char>(packed[at++]);
-  };
-  while (at < packed.size()) {
-    const std::uint8_t value = byte();
-    std::size_t length = 0;
-    unsigned digit = kMore;
-    for (int shift = 0; digit >= kMore; shift += kDigitBits) {
-      if (shift > 28) throw Error("runs of labels: a run longer than any picture");
-      digit = byte();
-      length |= static_cast<std::size_t>(digit % kMore) << shift;
-    }
-    if (length > image.size() - filled) throw Error("runs of labels: more pixels than the picture has");
-    std::fill_n(image.data() + filled, length, value);
-    filled += length;
-  }
-  if (filled != image.size()) throw Error("runs of labels: fewer pixels than the picture has");
-  return image;
 }
 
 }  // namespace vesalius

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 #include "vesalius/base/image.h"
 
@@ -12,8 +11,5 @@ namespace vesalius {
 /// in base 128, low digits first, the highest bit set in all bytes but the last. Label pictures get a hundred times
 /// smaller.
 std::string pack_runs(const Image<std::uint8_t>& image);
-
-/// Unpacks such a picture. Throws Error unless the runs fill `width` x `height` pixels exactly.
-Image<std::uint8_t> unpack_runs(std::string_view packed, int width, int height);
 
 }  // namespace vesalius

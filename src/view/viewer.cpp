@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <ctime>
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -23,9 +23,9 @@
 #include "stream/frame_queue.h"
 #include "stream/person_json.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/quiet_thread.h"
 #include "view/bundle_files.h"
 #include "view/frame_message.h"
-#include "view/player.h"
 #include "view/viewer_messages.h"
 
 namespace vesalius {
@@ -36,6 +36,7 @@ using Json = nlohmann::json;
 
 constexpr std::chrono::milliseconds kPatience(50);     // time between questions whether to stop
 constexpr std::chrono::milliseconds kStatePause(200);  // between states while no frame comes
+constexpr std::chrono::milliseconds kSoon(200);        // a frame that plays is followed by another
 constexpr std::size_t kMedianOf = 30;
 constexpr const char* kOptionsPath = "/options.toml";
 
@@ -62,13 +63,20 @@ class RecentTimes {
 /// Counts what happened in the last second.
 class RecentRate {
  public:
-  void add(Clock::time_point when) { times_.push_back(when); }
+  void add(Clock::time_point when) {
+    times_.push_back(when);
+    forget(when);
+  }
   double per_s(Clock::time_point now) {
-    while (!times_.empty() && times_.front() < now - std::chrono::seconds(1)) times_.pop_front();
+    forget(now);
     return static_cast<double>(times_.size());
   }
 
  private:
+  void forget(Clock::time_point now) {
+    while (!times_.empty() && times_.front() < now - std::chrono::seconds(1)) times_.pop_front();
+  }
+
   std::deque<Clock::time_point> times_;
 };
 
@@ -91,15 +99,18 @@ class Viewer::Session {
           const ViewerOptions& viewer)
       : source_(source),
         labeller_(std::move(labeller)),
+        first_options_(options),
         facts_{viewer.source, viewer.model, viewer.folder},
-        rate_(viewer.rate),
+        rate_(viewer.player.rate),
+        say_(viewer.say),
         options_(options),
         detector_(labeller_, options),
         played_(1),
         found_(1),
-        player_(source, viewer.rate, !viewer.paused, outputs(), frame_number(viewer.start_s)),
-        server_(viewer.web, handlers()),
-        worker_([this] { detect_all(); }) {
+        player_(source, viewer.player, outputs()),
+        server_(viewer.web, handlers()) {
+    worker_ = quiet_thread([this] { detect_all(); });
+    server_.start();
     player_.start();
   }
 
@@ -111,12 +122,12 @@ class Viewer::Session {
   }
 
   std::uint16_t port() const { return server_.port(); }
-  void say(const std::string& line) { server_.publish_text("notice", notice_message(line)); }
+  void say(const std::string& line) { server_.publish_text("", notice_message(line)); }
 
   void run(const std::function<bool()>& stop) {
     Clock::time_point last_state;
-    while (!stop()) {
-      if (std::optional<Found> found = found_.pop(kPatience)) {
+    while (!stop() && !has_ended()) {
+      if (const std::optional<Found> found = found_.pop(kPatience)) {
         deliver(*found);
       } else if (Clock::now() < last_state + kStatePause) {
         continue;
@@ -126,27 +137,47 @@ class Viewer::Session {
       last_state = Clock::now();
     }
     stop_recording();
+    if (ended_by_) std::rethrow_exception(ended_by_);
+    if (!failed_recording_.empty()) throw Error("not all was recorded: " + failed_recording_);
   }
 
  private:
+  using Wish = std::function<void(ClientWishes)>;
+
+  /// A frame to be looked at, once more if `again` is true.
+  struct Job {
+    std::shared_ptr<const PlayedFrame> played;
+    Clock::time_point arrived;
+    bool again = false;
+  };
   struct Found {
     ViewedFrame viewed;
     Clock::time_point arrived;
+    bool again = false;
   };
 
   Player::Outputs outputs() {
     return {[this](PlayedFrame played) { take(std::move(played)); }, [this](const std::string& why) { say(why); },
+            [this](std::exception_ptr why) {
+              const std::scoped_lock lock(mutex_);
+              ended_by_ = std::move(why);
+            },
             [this] { server_.publish_text("state", state()); }};
   }
 
   WebHandlers handlers() {
     return {[this](const std::string& path) { return get(path); },
             [](const std::string& path) { return path == "/view.css" || path == "/view.js"; },
-            [this] { return greet(); }, [this](const std::string& text) { return obey(text); },
+            [this] { return greet(); }, [this](const std::string& text, const Wish& wish) { return obey(text, wish); },
             [this](std::chrono::duration<double> since) {
               const std::scoped_lock lock(mutex_);
               page_times_.add(1e3 * since.count());
             }};
+  }
+
+  bool has_ended() const {
+    const std::scoped_lock lock(mutex_);
+    return ended_by_ != nullptr;
   }
 
   std::optional<WebResponse> get(const std::string& path) const {
@@ -169,23 +200,28 @@ class Viewer::Session {
 
   std::vector<std::string> greet() {
     look_again();
-    return {hello_message(facts_, labeller_->body()), options_message(current_options()), state()};
+    return {hello_message(facts_, labeller_->body()), options_message(current_options(), first_options_), state()};
   }
 
   /// Does what a page asks for.
-  std::optional<std::string> obey(const std::string& text) {
+  std::optional<std::string> obey(const std::string& text, const Wish& wish) {
     using Action = std::function<void(const Json&)>;
     const std::map<std::string, Action> actions{
         {"play", [this](const Json&) { player_.play(); }},
         {"pause", [this](const Json&) { player_.pause(); }},
-        {"step", [this](const Json& c) { player_.step(c.at("by").get<int>()); }},
+        {"step", [this](const Json& c) { player_.step(c.at("by").get<double>() < 0.0 ? -1 : 1); }},
         {"seek", [this](const Json& c) { player_.seek(c.at("to_s").get<double>()); }},
         {"speed", [this](const Json& c) { player_.set_speed(c.at("times").get<double>()); }},
         {"repeat", [this](const Json& c) { player_.set_repeat(c.at("on").get<bool>()); }},
-        {"stages", [this](const Json& c) { show_stages(c.at("on").get<bool>()); }},
+        {"stages",
+         [&](const Json& c) {
+           const bool on = c.at("on").get<bool>();
+           wish({on});
+           if (on) look_again(true);
+         }},
         {"record", [this](const Json& c) { want_recording(c.at("on").get<bool>()); }},
         {"set", [this](const Json& c) { change_option(c.at("option").get<std::string>(), c.at("value").dump()); }},
-        {"reset", [this](const Json&) { change_options({}); }}};
+        {"reset", [this](const Json&) { change_options(first_options_); }}};
     try {
       const Json command = Json::parse(text);
       const auto action = actions.find(command.at("do").get<std::string>());
@@ -201,8 +237,13 @@ class Viewer::Session {
 
   void change_option(const std::string& name, const std::string& value) {
     DetectOptions options = current_options();
-    set_option(options, name, value);
-    change_options(options);
+    try {
+      set_option(options, name, value);
+      change_options(options);
+    } catch (const Error&) {
+      tell_options();  // the page shows the refused value
+      throw;
+    }
   }
 
   void change_options(const DetectOptions& options) {
@@ -212,17 +253,11 @@ class Viewer::Session {
       options_ = options;
       changed_detector_ = std::move(changed);
     }
-    server_.publish_text("options", options_message(options));
+    tell_options();
     look_again();
   }
 
-  void show_stages(bool on) {
-    {
-      const std::scoped_lock lock(mutex_);
-      state_.stages = on;
-    }
-    look_again();
-  }
+  void tell_options() { server_.publish_text("options", options_message(current_options(), first_options_)); }
 
   void want_recording(bool on) {
     const std::scoped_lock lock(mutex_);
@@ -242,6 +277,7 @@ class Viewer::Session {
     guard_recorder([this] {
       const std::string path = new_recording(facts_.folder);
       recorder_.emplace(path, rate_);
+      recorded_up_to_s_ = -std::numeric_limits<double>::infinity();
       const std::scoped_lock lock(mutex_);
       state_.recording = path;
       state_.recorded = 0;
@@ -267,69 +303,75 @@ class Viewer::Session {
     try {
       work();
     } catch (const Error& e) {
-      say(e.what());
+      failed_recording_ = e.what();
+      say(failed_recording_);
+      if (say_) say_(failed_recording_);
       forget_recorder();
     }
   }
 
-  /// Detects the last frame once more, where no other will come soon.
-  void look_again() {
-    if (player_.state().playing) return;
-    std::optional<PlayedFrame> again;
-    {
+  /// Frames whose time is recorded already are left out: a recording shows a source once, however it was moved in.
+  void record(const Found& found) {
+    const ViewedFrame& viewed = found.viewed;
+    if (!recorder_ || found.again || viewed.at_s <= recorded_up_to_s_) return;
+    guard_recorder([&] {
+      Frame frame = *viewed.frame;
+      if (!frame.time_s) frame.time_s = viewed.at_s * kUsualRate / rate_;
+      recorder_->write(frame);
+      recorder_->write_people(frame, viewed.people, labeller_->body(),
+                              frame_json(frame, viewed.people, labeller_->body(), viewed.latency_ms));
+      recorded_up_to_s_ = viewed.at_s;
       const std::scoped_lock lock(mutex_);
-      again = last_;
-    }
-    if (again) {
-      again->arrived = Clock::now();
-      played_.push_newest(std::move(*again));
-    }
+      ++state_.recorded;
+    });
+  }
+
+  /// Detects the last frame once more, where no other will come soon or somebody wants more of it.
+  void look_again(bool surely = false) {
+    const bool playing = player_.state().playing;
+    const std::scoped_lock lock(mutex_);
+    if (!last_) return;
+    if (playing && !surely && Clock::now() < last_->arrived + kSoon) return;
+    played_.push_newest({last_, Clock::now(), true});
   }
 
   void take(PlayedFrame played) {
-    {
-      const std::scoped_lock lock(mutex_);
-      last_ = played;
-      missed_ = source_.missed();
-      // Nobody would see the people.
-      if (server_.clients() == 0 && !recording_wanted_) return;
-    }
-    const int dropped = played_.push_newest(std::move(played));
+    auto shared = std::make_shared<const PlayedFrame>(std::move(played));
     const std::scoped_lock lock(mutex_);
-    state_.dropped += dropped;
+    last_ = shared;
+    missed_ = source_.missed();
+    // Nobody would see the people.
+    if (server_.clients() == 0 && !recording_wanted_) return;
+    const Clock::time_point arrived = shared->arrived;
+    state_.dropped += played_.push_newest({std::move(shared), arrived, false});
   }
 
   void detect_all() {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, nullptr);
     while (!played_.finished()) {
-      std::optional<PlayedFrame> played = played_.pop(kPatience);
-      if (!played) continue;
+      const std::optional<Job> job = played_.pop(kPatience);
+      if (!job) continue;
       try {
-        if (!found_.push(detect(std::move(*played)))) return;
-      } catch (const Error& e) {
+        if (!found_.push(detect(*job))) return;
+      } catch (const std::exception& e) {  // no frame may end the program
         say(e.what());
       }
     }
   }
 
-  Found detect(PlayedFrame played) {
-    bool stages = false;
+  Found detect(const Job& job) {
     {
       const std::scoped_lock lock(mutex_);
-      stages = state_.stages;
       if (changed_detector_) detector_ = *std::exchange(changed_detector_, std::nullopt);
     }
-    Found found{{}, played.arrived};
+    Found found{{}, job.arrived, job.again};
     ViewedFrame& viewed = found.viewed;
-    if (stages) viewed.trace.emplace();
-    viewed.people = detector_.detect(played.frame, viewed.trace ? &*viewed.trace : nullptr, &viewed.times);
-    viewed.frame = std::move(played.frame);
-    viewed.at_s = played.at_s;
+    viewed.frame = {job.played, &job.played->frame};
+    viewed.at_s = job.played->at_s;
+    if (server_.clients_for_details() > 0) viewed.trace.emplace();
+    viewed.people = detector_.detect(*viewed.frame, viewed.trace ? &*viewed.trace : nullptr, &viewed.times);
     const Clock::time_point now = Clock::now();
     const double result_ms = milliseconds(now - found.arrived);
-    if (viewed.frame.arrived_s) viewed.latency_ms = result_ms;
+    if (viewed.frame->arrived_s) viewed.latency_ms = result_ms;
     const std::scoped_lock lock(mutex_);
     viewed.number = ++state_.frames;
     result_times_.add(result_ms);
@@ -339,17 +381,12 @@ class Viewer::Session {
 
   void deliver(const Found& found) {
     const ViewedFrame& viewed = found.viewed;
+    const BodyModel& body = labeller_->body();
     if (server_.clients() > 0) {
-      server_.publish_frame(frame_message(viewed, labeller_->body()), found.arrived);
+      server_.publish_frame(frame_message(viewed, body, false),
+                            viewed.trace ? frame_message(viewed, body, true) : std::string(), found.arrived);
     }
-    if (!recorder_) return;
-    guard_recorder([&] {
-      recorder_->write(viewed.frame);
-      recorder_->write_people(viewed.frame, viewed.people, labeller_->body(),
-                              frame_json(viewed.frame, viewed.people, labeller_->body(), viewed.latency_ms));
-      const std::scoped_lock lock(mutex_);
-      ++state_.recorded;
-    });
+    record(found);
   }
 
   std::string state() {
@@ -366,8 +403,10 @@ class Viewer::Session {
 
   FrameSource& source_;
   const std::shared_ptr<const PixelLabeller> labeller_;
+  const DetectOptions first_options_;
   const ViewerFacts facts_;
   const double rate_;
+  const std::function<void(const std::string&)> say_;
 
   mutable std::mutex mutex_;  ///< of what follows
   DetectOptions options_;
@@ -377,11 +416,16 @@ class Viewer::Session {
   RecentRate rate_now_;
   bool recording_wanted_ = false;
   int missed_ = 0;  ///< frames of a camera that nobody took
-  std::optional<PlayedFrame> last_;
+  std::shared_ptr<const PlayedFrame> last_;
+  std::exception_ptr ended_by_;  ///< why a camera gives nothing more
 
-  std::optional<FrameRecorder> recorder_;  ///< of the caller's thread alone
-  Detector detector_;                      ///< of the worker's thread alone
-  FrameQueue<PlayedFrame> played_;
+  // Of the caller's thread alone:
+  std::optional<FrameRecorder> recorder_;
+  double recorded_up_to_s_ = 0.0;
+  std::string failed_recording_;
+
+  Detector detector_;  ///< of the worker's thread alone
+  FrameQueue<Job> played_;
   FrameQueue<Found> found_;
   Player player_;
   WebServer server_;

@@ -7,18 +7,19 @@
 #include "vesalius/base/frame_source.h"
 #include "vesalius/detect.h"
 #include "vesalius/forest/label_pixels.h"
+#include "view/player.h"
 #include "view/web_server.h"
 
 namespace vesalius {
 
 struct ViewerOptions {
   WebServerOptions web;
-  double rate = kUsualRate;  ///< frames a second of a source without times
-  double start_s = 0.0;      ///< where the source stands, in seconds from its first frame
-  bool paused = false;       ///< whether to begin with the first frame and wait
+  PlayerOptions player;
   std::string folder = ".";  ///< where recordings are written
   std::string source;        ///< its name, for the page
   std::string model;         ///< its name, for the page
+  /// Gets a line where a recording fails; may be empty. Called in the thread that calls `run`.
+  std::function<void(const std::string&)> say = {};
 };
 
 /// Finds the people in a source and shows them on a page. Four threads: one plays the source, one detects, the
@@ -38,7 +39,8 @@ class Viewer {
   /// Shows a line on all pages. May be called from any thread.
   void say(const std::string& line);
 
-  /// Serves until `stop`, which is asked every 50 ms, returns true.
+  /// Serves until `stop`, which is asked every 50 ms, returns true. Throws what ended a camera, and Error at the end if
+  /// a recording failed.
   void run(const std::function<bool()>& stop);
 
  private:

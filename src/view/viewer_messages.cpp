@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "io/files/options_file.h"
+#include "stream/json_numbers.h"
+#include "stream/person_json.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/options.h"
 
@@ -17,12 +18,9 @@ using Json = nlohmann::ordered_json;
 /// Paths need not be UTF-8; JSON must.
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-double rounded(double value, double steps = 100) { return std::round(value * steps) / steps; }
+double hundredths(double value) { return rounded(value, 100.0); }
 
-Json optional_json(const std::optional<double>& value) { return value ? Json(rounded(*value)) : Json(); }
-
-/// A float as its shortest text says it: 0.3, not 0.30000001192092896.
-double shortest(float value) { return std::stod(fmt::format("{}", value)); }
+Json optional_json(const std::optional<double>& value) { return value ? Json(hundredths(*value)) : Json(); }
 
 /// Describes every option with its value and its default.
 class Describer : public OptionVisitor {
@@ -63,18 +61,15 @@ Json described(DetectOptions options) {
 }  // namespace
 
 std::string hello_message(const ViewerFacts& facts, const BodyModel& body) {
-  Json parts = Json::array();
-  for (const BodyPart& part : body.parts) {
-    parts.push_back(
-        {{"name", part.name}, {"colour", {part.colour.r, part.colour.g, part.colour.b}}, {"mirror", part.mirror}});
-  }
+  Json known = Json::parse(part_table_json(body));
   Json links = Json::array();
   for (const BodyLink& link : body.links) links.push_back({link.parent, link.child});
+  known["links"] = std::move(links);
   return text_of({{"type", "hello"},
                   {"source", facts.source},
                   {"model", facts.model},
                   {"folder", facts.folder},
-                  {"body", {{"name", body.name}, {"parts", std::move(parts)}, {"links", std::move(links)}}}});
+                  {"body", std::move(known)}});
 }
 
 std::string state_message(const ViewerState& state, const PlayerState& player) {
@@ -88,20 +83,19 @@ std::string state_message(const ViewerState& state, const PlayerState& player) {
                   {"speed", player.speed},
                   {"at_s", player.at_s},
                   {"span_s", std::move(span)},
-                  {"frames_per_s", rounded(state.frames_per_s)},
+                  {"frames_per_s", hundredths(state.frames_per_s)},
                   {"frames", state.frames},
                   {"dropped", state.dropped},
                   {"result_ms", optional_json(state.result_ms)},
                   {"page_ms", optional_json(state.page_ms)},
                   {"pages", state.clients},
-                  {"stages", state.stages},
                   {"recording", state.recording},
                   {"recorded", state.recorded}});
 }
 
-std::string options_message(const DetectOptions& options) {
+std::string options_message(const DetectOptions& options, const DetectOptions& first) {
   Json list = described(options);
-  const Json defaults = described({});
+  const Json defaults = described(first);
   for (std::size_t i = 0; i < list.size(); ++i) list[i]["default"] = defaults[i]["value"];
   return text_of({{"type", "options"}, {"options", std::move(list)}});
 }

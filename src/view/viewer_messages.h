@@ -17,7 +17,6 @@ struct ViewerState {
   std::optional<double> result_ms;  ///< from a frame's arrival to its people, median of the last ones
   std::optional<double> page_ms;    ///< to a page having shown it
   int clients = 0;
-  bool stages = false;    ///< whether pages get the stages too
   std::string recording;  ///< path of the file that is being recorded; empty = none
   int recorded = 0;       ///< frames in it
 };
@@ -30,7 +29,8 @@ struct ViewerFacts {
 // Messages to a page, as JSON texts with a "type" (docs/formats.md).
 std::string hello_message(const ViewerFacts& facts, const BodyModel& body);
 std::string state_message(const ViewerState& state, const PlayerState& player);
-std::string options_message(const DetectOptions& options);
+/// `first` are the options with which the viewer began, to which a page can go back.
+std::string options_message(const DetectOptions& options, const DetectOptions& first);
 std::string notice_message(const std::string& text);
 
 /// Sets the option `name` to a value given as JSON. Throws Error for one that does not exist or a value that does not

@@ -13,7 +13,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 json option_named(const DetectOptions& options, const std::string& name) {
-  const json message = json::parse(options_message(options));
+  const json message = json::parse(options_message(options, {}));
   for (const json& option : message.at("options")) {
     if (option.at("name") == name) return option;
   }
@@ -82,6 +82,7 @@ TEST(ViewerMessages, StateTellsWhatIsKnown) {
 TEST(ViewerMessages, HelloDescribesTheBody) {
   const json hello = json::parse(hello_message({"frames/", "default.forest", "."}, paper_body()));
   EXPECT_EQ(hello.at("body").at("parts").size(), 25U);
+  EXPECT_EQ(hello.at("body").at("parts").at(3).at("name"), paper_body().parts[3].name);
   EXPECT_EQ(hello.at("body").at("links").size(), 24U);
   EXPECT_EQ(hello.at("source"), "frames/");
 }

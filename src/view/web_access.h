@@ -17,7 +17,7 @@ struct WebAccess {
 };
 
 /// Returns the rules for a server that listens at `host`: on the loopback interface its names alone, elsewhere also
-/// this machine's names, every address, and the token.
+/// this machine's name in any domain, every address, and the token.
 WebAccess web_access(const std::string& host, const std::string& token);
 
 /// Returns whether `host`, an address or a name, is this machine talking to itself.

@@ -1,6 +1,9 @@
 #include "view/web_access.h"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <array>
 
 namespace vesalius {
 namespace {
@@ -35,6 +38,9 @@ TEST(WebAccess, ElsewhereTakesAddressesAndNeedsTheToken) {
   const std::string token = random_token();
   const WebAccess access = web_access("0.0.0.0", token);
   EXPECT_EQ(why_refused(access, "192.168.0.7:8080", "http://192.168.0.7:8080", token), std::nullopt);
+  std::array<char, 256> machine{};
+  ASSERT_EQ(::gethostname(machine.data(), machine.size() - 1), 0);
+  EXPECT_EQ(why_refused(access, std::string(machine.data()) + ".lan:8080", kNoOrigin, token), std::nullopt);
   EXPECT_NE(why_refused(access, "evil.example:8080", "http://evil.example:8080", token), std::nullopt);
   EXPECT_THAT(why_refused(access, "192.168.0.7:8080", kNoOrigin, ""), Optional(HasSubstr("token")));
   EXPECT_THAT(why_refused(access, "192.168.0.7:8080", kNoOrigin, token + "0"), Optional(HasSubstr("token")));

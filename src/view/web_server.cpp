@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -10,14 +11,13 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
-#include <csignal>
 #include <deque>
 #include <set>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "vesalius/base/error.h"
+#include "vesalius/base/quiet_thread.h"
 
 namespace vesalius {
 namespace {
@@ -32,6 +32,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kRequestPatience(10);  // for a request, and for its answer to be taken
 constexpr std::size_t kMaxHeader = 8192;              // bytes
 constexpr std::uint64_t kMaxBody = 1024;              // of a request: none is expected
+constexpr std::size_t kMostTexts = 50;                // that wait for one client
 constexpr int kMostOnTheirWay = 2;                    // frames: one is drawn while the next is sent
 constexpr std::string_view kNext = "next";
 constexpr std::string_view kStream = "/stream";
@@ -85,12 +86,13 @@ std::pair<std::string, std::string> split_target(std::string_view target) {
 
 class Client;
 
-/// What connections share. All but `clients_count` belongs to the server's thread.
+/// What connections share. All but the two counts belongs to the server's thread.
 struct Hub {
   WebServerOptions options;
   WebHandlers handlers;
   std::set<Client*> clients;
   std::atomic<int> client_count = 0;
+  std::atomic<int> detail_count = 0;
   int connections = 0;
 };
 
@@ -104,6 +106,7 @@ class Client : public std::enable_shared_from_this<Client> {
   }
   ~Client() {
     hub_.clients.erase(this);
+    wish({});
     --hub_.client_count;
     --hub_.connections;
   }
@@ -116,28 +119,26 @@ class Client : public std::enable_shared_from_this<Client> {
     stream_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
       if (error) return;
       for (std::string& text : self->hub_.handlers.greet()) {
-        self->texts_.push_back({"", std::make_shared<Message>(Message{std::move(text), false, {}})});
+        self->texts_.emplace_back("", std::make_shared<const Message>(Message{std::move(text), false, {}}));
       }
       self->write_next();
       self->read();
     });
   }
 
-  void offer_frame(const MessagePointer& message) {
-    frame_ = message;
+  void offer_frame(const MessagePointer& plain, const MessagePointer& with_details) {
+    frame_ = wishes_.details && with_details ? with_details : plain;
     write_next();
   }
 
   void offer_text(const std::string& kind, const MessagePointer& message) {
-    std::erase_if(texts_, [&](const auto& waiting) { return waiting.first == kind; });
+    if (!kind.empty()) std::erase_if(texts_, [&](const auto& waiting) { return waiting.first == kind; });
+    if (texts_.size() == kMostTexts) texts_.pop_front();
     texts_.emplace_back(kind, message);
     write_next();
   }
 
-  void close() {
-    beast::error_code ignored;
-    beast::get_lowest_layer(stream_).close();
-  }
+  void close() { beast::get_lowest_layer(stream_).close(); }
 
  private:
   void read() {
@@ -149,15 +150,20 @@ class Client : public std::enable_shared_from_this<Client> {
       if (text == kNext) {
         self->frame_was_shown();
       } else {
-        self->answer(self->hub_.handlers.receive(text));
+        self->obey(text);
       }
       self->read();
     });
   }
 
-  void answer(std::optional<std::string> text) {
-    if (!text) return;
-    offer_text("answer", std::make_shared<const Message>(Message{std::move(*text), false, {}}));
+  void obey(const std::string& text) {
+    const auto answer = hub_.handlers.receive(text, [this](const ClientWishes& wishes) { wish(wishes); });
+    if (answer) offer_text("", std::make_shared<const Message>(Message{*answer, false, {}}));
+  }
+
+  void wish(const ClientWishes& wishes) {
+    hub_.detail_count += (wishes.details ? 1 : 0) - (wishes_.details ? 1 : 0);
+    wishes_ = wishes;
   }
 
   void frame_was_shown() {
@@ -192,6 +198,7 @@ class Client : public std::enable_shared_from_this<Client> {
   websocket::stream<beast::tcp_stream> stream_;
   Hub& hub_;
   RateLimit rate_;
+  ClientWishes wishes_;
   beast::flat_buffer buffer_;
   std::deque<std::pair<std::string, MessagePointer>> texts_;  ///< with their kinds
   MessagePointer frame_;                                      ///< newest that is not sent yet
@@ -290,20 +297,18 @@ class Connection : public std::enable_shared_from_this<Connection> {
 }  // namespace
 
 struct WebServer::Server {
-  Server(WebServerOptions options, WebHandlers handlers) : hub{std::move(options), std::move(handlers), {}, 0, 0} {
+  Server(WebServerOptions options, WebHandlers handlers) : hub{std::move(options), std::move(handlers), {}, 0, 0, 0} {
     listen();
-    accept();
-    thread = std::jthread([this] {
-      sigset_t all;
-      sigfillset(&all);
-      pthread_sigmask(SIG_BLOCK, &all, nullptr);
-      io.run();
-    });
   }
 
   ~Server() {
     io.stop();
-    thread.join();
+    if (thread.joinable()) thread.join();
+  }
+
+  void start() {
+    accept();
+    thread = quiet_thread([this] { io.run(); });
   }
 
   void listen() {
@@ -346,12 +351,13 @@ struct WebServer::Server {
     });
   }
 
+  /// Calls `offer` for every client, in the server's thread.
   template <class Offer>
-  void to_all(Message message, Offer offer) {
-    net::post(io, [this, offer, shared = std::make_shared<const Message>(std::move(message))] {
+  void to_all(Offer offer) {
+    net::post(io, [this, offer = std::move(offer)] {
       // A client whose connection breaks leaves the set.
       const std::vector<Client*> all(hub.clients.begin(), hub.clients.end());
-      for (Client* client : all) offer(*client, shared);
+      for (Client* client : all) offer(*client);
     });
   }
 
@@ -368,18 +374,25 @@ WebServer::WebServer(WebServerOptions options, WebHandlers handlers)
 
 WebServer::~WebServer() = default;
 
+void WebServer::start() { server_->start(); }
+
 std::uint16_t WebServer::port() const { return server_->port; }
 
 int WebServer::clients() const { return server_->hub.client_count; }
 
-void WebServer::publish_frame(std::string bytes, Clock::time_point arrived) {
-  server_->to_all({std::move(bytes), true, arrived},
-                  [](Client& client, const MessagePointer& message) { client.offer_frame(message); });
+int WebServer::clients_for_details() const { return server_->hub.detail_count; }
+
+void WebServer::publish_frame(std::string bytes, std::string with_details, Clock::time_point arrived) {
+  const auto plain = std::make_shared<const Message>(Message{std::move(bytes), true, arrived});
+  MessagePointer detailed;
+  if (!with_details.empty())
+    detailed = std::make_shared<const Message>(Message{std::move(with_details), true, arrived});
+  server_->to_all([plain, detailed](Client& client) { client.offer_frame(plain, detailed); });
 }
 
 void WebServer::publish_text(const std::string& kind, std::string text) {
-  server_->to_all({std::move(text), false, {}},
-                  [kind](Client& client, const MessagePointer& message) { client.offer_text(kind, message); });
+  const auto message = std::make_shared<const Message>(Message{std::move(text), false, {}});
+  server_->to_all([kind, message](Client& client) { client.offer_text(kind, message); });
 }
 
 }  // namespace vesalius

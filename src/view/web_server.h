@@ -31,6 +31,11 @@ struct WebResponse {
   std::string file_name = {};  ///< name under which a browser saves it; empty = it shows it
 };
 
+/// What one client wants.
+struct ClientWishes {
+  bool details = false;  ///< the frames with all that there is of them
+};
+
 /// What the server asks its owner. All are called in the server's thread and must not take long.
 struct WebHandlers {
   /// Returns what lies at a path; nothing if nothing does. Files that are the same for everybody need no token.
@@ -38,8 +43,9 @@ struct WebHandlers {
   std::function<bool(const std::string& path)> is_public;
   /// Returns the first messages of a new client.
   std::function<std::vector<std::string>()> greet;
-  /// Receives a client's message and returns what to answer, if anything.
-  std::function<std::optional<std::string>(const std::string& text)> receive;
+  /// Receives a client's message and returns what to answer, if anything. `wish` changes the client's wishes.
+  std::function<std::optional<std::string>(const std::string& text, const std::function<void(ClientWishes)>& wish)>
+      receive;
   /// Tells how long it took from a frame's arrival until a client had shown it.
   std::function<void(std::chrono::duration<double>)> shown;
 };
@@ -49,19 +55,23 @@ struct WebHandlers {
 /// one that it has not asked for yet, so that a slow client sees fewer frames, not older ones, and holds up nobody.
 class WebServer {
  public:
-  /// Listens. Throws Error with host and port if it cannot.
+  /// Listens, but answers nobody before `start`. Throws Error with host and port if it cannot.
   WebServer(WebServerOptions options, WebHandlers handlers);
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
+  void start();
   std::uint16_t port() const;
-  /// Returns the number of WebSockets.
+  /// Returns the number of WebSockets, and of those that wish for details.
   int clients() const;
+  int clients_for_details() const;
 
-  /// Sends a frame to all clients. `arrived` says when it was there.
-  void publish_frame(std::string bytes, std::chrono::steady_clock::time_point arrived);
-  /// Sends a text to all clients. One of the same `kind` that a client has not got yet is replaced.
+  /// Sends a frame to all clients; `with_details` to those that wish for them, unless it is empty. `arrived` says when
+  /// the frame was there.
+  void publish_frame(std::string bytes, std::string with_details, std::chrono::steady_clock::time_point arrived);
+  /// Sends a text to all clients. One of the same `kind` that a client has not got yet is replaced; of those without a
+  /// kind only so many wait.
   void publish_text(const std::string& kind, std::string text);
 
  private:

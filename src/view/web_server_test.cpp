@@ -30,18 +30,26 @@ class Server {
                 },
                 [](const std::string& path) { return path == "/view.js"; },
                 [] { return std::vector<std::string>{"hello"}; },
-                [this](const std::string& text) -> std::optional<std::string> {
+                [this](const std::string& text, const auto& wish) -> std::optional<std::string> {
                   const std::scoped_lock lock(mutex);
                   received.push_back(text);
+                  wish({text == "details"});
                   if (text == "ask") return "answer";
                   return std::nullopt;
                 },
-                [this](std::chrono::duration<double>) { ++shown; }}) {}
+                [this](std::chrono::duration<double>) { ++shown; }}) {
+    server.start();
+  }
 
   std::uint16_t port() const { return server.port(); }
-  void frame(const std::string& bytes) { server.publish_frame(bytes, std::chrono::steady_clock::now()); }
-  /// Waits until the server's thread has done all that it was told before.
-  void settle() const { std::this_thread::sleep_for(50ms); }
+  void frame(const std::string& bytes, const std::string& with_details = "") {
+    server.publish_frame(bytes, with_details, std::chrono::steady_clock::now());
+  }
+  /// Waits until `holds`, which must come.
+  void until(const std::function<bool()>& holds) const {
+    for (int i = 0; i < 10000 && !holds(); ++i) std::this_thread::sleep_for(1ms);
+    ASSERT_TRUE(holds());
+  }
 
   std::mutex mutex;
   std::vector<std::string> received;
@@ -113,24 +121,46 @@ TEST(WebServer, SendsTheNewestFrameToWhoAsks) {
   Server server;
   Page page(server.port());
   page.receive();
-  for (const char* frame : {"1", "2", "3", "4", "5"}) {
-    server.frame(frame);
-    server.settle();
-  }
+  server.frame("1");
   EXPECT_EQ(page.receive()->bytes, "1");
-  EXPECT_EQ(page.receive()->bytes, "2") << "two are on their way at most";
-  EXPECT_EQ(page.receive(100ms), std::nullopt);
+  server.frame("2");
+  EXPECT_EQ(page.receive()->bytes, "2");
+  for (const char* frame : {"3", "4", "5"}) server.frame(frame);
+  server.server.publish_text("state", "all offered");
+  EXPECT_EQ(page.receive()->bytes, "all offered") << "two are on their way at most";
   page.send("next");
   const auto newest = page.receive();
   EXPECT_EQ(newest->bytes, "5");
   EXPECT_TRUE(newest->binary);
   page.send("next");
   page.send("next");
-  EXPECT_EQ(page.receive(100ms), std::nullopt) << "there is no newer one";
-  EXPECT_EQ(server.shown, 3);
-  page.send("next");  // one too many is nothing
+  server.until([&] { return server.shown == 3; });
   server.frame("6");
   EXPECT_EQ(page.receive()->bytes, "6");
+}
+
+TEST(WebServer, SendsDetailsToThoseWhoWishForThem) {
+  Server server;
+  Page plain(server.port());
+  {
+    Page curious(server.port());
+    curious.receive();
+    curious.send("details");
+    server.until([&] { return server.server.clients_for_details() == 1; });
+    server.frame("frame", "frame and more");
+    EXPECT_EQ(curious.receive()->bytes, "frame and more");
+    EXPECT_EQ(plain.receive_frame()->bytes, "frame");
+  }
+  server.until([&] { return server.server.clients_for_details() == 0; });
+}
+
+TEST(WebServer, KeepsEveryTextWithoutAKind) {
+  Server server;
+  Page page(server.port());
+  for (const char* text : {"one", "two", "three"}) server.server.publish_text("", text);
+  EXPECT_EQ(page.receive_text("one")->bytes, "one");
+  EXPECT_EQ(page.receive()->bytes, "two");
+  EXPECT_EQ(page.receive()->bytes, "three");
 }
 
 TEST(WebServer, IsNotHeldUpByAStalledPage) {
@@ -157,8 +187,7 @@ TEST(WebServer, HangsUpOnTooLongAndTooManyMessages) {
   Page fast(strict.port());
   for (int i = 0; i < 50; ++i) fast.send("next");
   EXPECT_TRUE(fast.is_closed());
-  strict.settle();
-  EXPECT_EQ(strict.server.clients(), 0);
+  strict.until([&] { return strict.server.clients() == 0; });
 }
 
 TEST(WebServer, TakesOnlySoManyPages) {
@@ -170,7 +199,7 @@ TEST(WebServer, TakesOnlySoManyPages) {
   EXPECT_EQ(Page(server.port()).status, 503);
   EXPECT_EQ(request(server.port(), "/").status, 200);
   first.reset();
-  server.settle();
+  server.until([&] { return server.server.clients() == 1; });
   EXPECT_EQ(Page(server.port()).status, 101) << "one has left";
 }
 

@@ -250,7 +250,10 @@ export class Cloud {
 
   setShown(what: 'skeletons' | 'boxes' | 'floor', is: boolean): void {
     if (what === 'skeletons') this.rods.group.visible = this.balls.group.visible = is;
-    if (what === 'boxes') this.boxes.visible = is;
+    if (what === 'boxes') {
+      this.boxes.visible = is;
+      this.showPeople();
+    }
     if (what === 'floor') this.floor.userData.wanted = is;
     this.showFloor();
     this.draw();
@@ -332,7 +335,7 @@ export class Cloud {
     if (this.frame && this.body) {
       for (const person of this.frame.found.people) {
         this.addSkeleton(person, this.body);
-        this.addBox(person, this.frame, corners, tints);
+        if (this.boxes.visible) this.addBox(person, this.frame, corners, tints);
       }
     }
     this.rods.end();

@@ -5,6 +5,7 @@ interface Listeners {
   frame(frame: Frame): Promise<void>;
   text(message: TextMessage): void;
   connected(is: boolean): void;
+  failed(why: string): void;
 }
 
 const FIRST_PAUSE_MS = 300;
@@ -49,6 +50,7 @@ export class Connection {
       }
     };
     socket.onclose = () => {
+      this.newest = null;  // the program that comes next may have another body
       this.listeners.connected(false);
       setTimeout(() => this.open(), this.pauseMs);
       this.pauseMs = Math.min(2 * this.pauseMs, LONGEST_PAUSE_MS);
@@ -64,9 +66,10 @@ export class Connection {
       this.newest = null;
       try {
         await this.listeners.frame(await unpackFrame(message));
-      } finally {
-        this.sendText('next');
+      } catch (error) {
+        this.listeners.failed(`This frame cannot be shown: ${error instanceof Error ? error.message : error}`);
       }
+      this.sendText('next');
     }
     this.isShowing = false;
   }

@@ -76,7 +76,7 @@ export function drawLinks(
     const from = place(a);
     const to = place(b);
     if (!from || !to) continue;
-    for (const [stroke, extra] of [['rgb(0 0 0 / 0.7)', 2], [css(colour), 0]] as const) {
+    for (const [stroke, extra] of [['rgb(0 0 0 / 0.7)', 0.8 * width], [css(colour), 0]] as const) {
       context.strokeStyle = stroke;
       context.lineWidth = width + extra;
       context.setLineDash(isDashed(a, b) ? [4, 4] : []);
@@ -154,27 +154,33 @@ export class Flat {
       const parts = body.parts.map((part) => person.parts[part.name]);
       if (this.showsSkeletons) {
         const dashed = (a: number, b: number): boolean => parts[a].state !== 'observed' || parts[b].state !== 'observed';
-        drawLinks(context, body, (p) => parts[p]?.px ?? null, tint, dashed, person.index === this.selected ? 4 : 2.5);
+        drawLinks(context, body, (p) => parts[p]?.px ?? null, tint, dashed, (person.index === this.selected ? 2.6 : 1.6) * this.scale());
       }
       if (this.showsBoxes || person.index === this.selected) {
         context.strokeStyle = css(tint);
-        context.lineWidth = 2;
+        context.lineWidth = 1.4 * this.scale();
         context.strokeRect(...person.box_px);
       }
       this.tag(person.index, person.box_px);
     }
   }
 
+  /** How many pixels of the picture one on the screen is: what is drawn on it should be as large for every camera. */
+  private scale(): number {
+    return Math.max(1, this.canvas.width / (this.canvas.clientWidth || this.canvas.width));
+  }
+
   private tag(index: number, [u, v]: [number, number, number, number]): void {
     const { context } = this;
     const text = String(index);
-    context.font = 'bold 16px system-ui, sans-serif';
-    const width = context.measureText(text).width + 10;
-    const top = Math.max(v - 20, 0);
+    const size = 12 * this.scale();
+    context.font = `bold ${size}px system-ui, sans-serif`;
+    const width = context.measureText(text).width + 0.6 * size;
+    const top = Math.max(v - 1.25 * size, 0);
     context.fillStyle = css(personColour(index));
-    context.fillRect(u, top, width, 20);
+    context.fillRect(u, top, width, 1.25 * size);
     context.fillStyle = '#000';
-    context.fillText(text, u + 5, top + 16);
+    context.fillText(text, u + 0.3 * size, top + size);
   }
 
   /** Tells what is under the pointer. */

@@ -11,7 +11,9 @@ function get<T extends HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
 }
 
+const AWAY = 'vesalius does not answer; trying again';
 const NOTICE_MS = 8000;
+const MOST_NOTICES = 5;
 const SEEK_PAUSE_MS = 60;  // while the slider moves
 const THEMES = ['auto', 'light', 'dark'];
 
@@ -26,11 +28,25 @@ const colouring = get<HTMLSelectElement>('colouring');
 const partColouring = get<HTMLSelectElement>('part-colours');
 const seek = get<HTMLInputElement>('seek');
 
+/** Shows a line for a while; the same line again counts, and older ones give way. */
 function notice(text: string): void {
-  const line = document.createElement('p');
-  line.textContent = text;
-  get('notices').append(line);
+  const place = get('notices');
+  const same = [...place.children].find((line) => (line as HTMLElement).dataset.text === text) as HTMLElement | undefined;
+  const line = same ?? document.createElement('p');
+  const count = Number(line.dataset.count ?? 0) + 1;
+  line.dataset.text = text;
+  line.dataset.count = String(count);
+  line.textContent = count > 1 ? `${text} (${count} times)` : text;
+  if (same) return;
+  line.addEventListener('click', () => line.remove());
+  place.append(line);
+  while (place.children.length > MOST_NOTICES) place.firstElementChild?.remove();
   setTimeout(() => line.remove(), NOTICE_MS);
+}
+
+/** Tells those who listen to the page what has changed, and nothing else: frames come 30 times a second. */
+function announce(text: string): void {
+  if (get('announced').textContent !== text) get('announced').textContent = text;
 }
 
 /** The 3-D view; none where the browser has no WebGL 2. */
@@ -68,9 +84,11 @@ const connection = new Connection({
     before?.colour?.close();
   },
   text: receive,
+  failed: notice,
   connected(is) {
     document.body.classList.toggle('away', !is);
-    if (!is) get('status').textContent = 'vesalius does not answer; trying again';
+    announce(is ? 'connected' : AWAY);
+    if (!is) get('status').textContent = AWAY;
     else if (!get('stages').hidden) connection.send({ do: 'stages', on: true });
   },
 });
@@ -79,6 +97,8 @@ function receive(message: TextMessage): void {
   switch (message.type) {
     case 'hello':
       body = message.body;
+      frame = null;
+      choose(-1);
       get('source').textContent = `${message.source} · ${message.model}`;
       get('record').title = `Record frames and people into an MCAP file in ${message.folder} (m)`;
       document.title = `${message.source} – vesalius`;
@@ -104,8 +124,10 @@ function clock(seconds: number): string {
 
 function showState(now: ViewState): void {
   const ms = (value: number | null): string => (value === null ? '–' : `${Math.round(value)} ms`);
+  const doing = !now.playing ? (now.at_end ? 'at the end' : 'paused') : now.live ? 'live' : 'playing';
+  announce(now.recording ? `${doing}, recording` : doing);
   const words = [
-    now.live ? 'live' : now.playing ? 'playing' : now.at_end ? 'at the end' : 'paused',
+    doing,
     `${now.frames_per_s.toFixed(0)} frames/s`,
     `people after ${ms(now.result_ms)}`,
     `shown after ${ms(now.page_ms)}`,
@@ -177,14 +199,13 @@ function showParts(): void {
   flat.setShown(isChecked('show-skeletons'), isChecked('show-boxes'));
 }
 
-function setTheme(theme: string): void {
-  document.documentElement.dataset.theme = theme;
-  localStorage.setItem('theme', theme);
-  get('theme').textContent = `Theme: ${theme}`;
-  showBackground();
-}
+const systemIsDark = matchMedia('(prefers-color-scheme: dark)');
+let theme = localStorage.getItem('theme') ?? 'auto';
 
-function showBackground(): void {
+function showTheme(): void {
+  const isDark = theme === 'dark' || (theme === 'auto' && systemIsDark.matches);
+  document.documentElement.dataset.theme = isDark ? 'dark' : 'light';
+  get('theme').textContent = `Theme: ${theme}`;
   cloud?.setBackground(getComputedStyle(document.body).getPropertyValue('--space').trim());
 }
 
@@ -237,14 +258,22 @@ const KEYS: Record<string, () => void> = {
   '?': () => get<HTMLDialogElement>('help').showModal(),
 };
 
+/** Whether the element with the focus uses this key itself. */
+function isTakenBy(target: HTMLElement, key: string): boolean {
+  const isArrow = /^(Arrow|Home|End)/.test(key);
+  if (target.closest('dialog, select, input:not([type=checkbox], [type=range])')) return true;
+  if (target.closest('input[type=range], [role=tablist]')) return isArrow;
+  return target.closest('button, a, summary, input') !== null && key === ' ';
+}
+
 function onKey(event: KeyboardEvent): void {
-  const target = event.target as HTMLElement;
-  if (event.ctrlKey || event.altKey || event.metaKey || target.closest('input, select, dialog')) return;
-  if (target.closest('[role=tablist]') && event.key.startsWith('Arrow')) return;
-  if (target.closest('button, a, summary') && event.key === ' ') return;
-  if (/^[1-9]$/.test(event.key)) {
-    const index = frame?.found.people[Number(event.key) - 1]?.index ?? -1;
-    choose(index === selected ? -1 : index);
+  if (event.ctrlKey || event.altKey || event.metaKey || isTakenBy(event.target as HTMLElement, event.key)) return;
+  // A held key steps through frames, and does nothing else more than once.
+  if (event.repeat && !event.key.startsWith('Arrow')) return;
+  if (/^[0-9]$/.test(event.key)) {
+    const index = Number(event.key);
+    const isThere = frame?.found.people.some((person) => person.index === index);
+    choose(isThere && index !== selected ? index : -1);
     return;
   }
   const action = KEYS[event.key];
@@ -282,10 +311,11 @@ function listen(): void {
   get('snapshot').addEventListener('click', snapshot);
   get('keys').addEventListener('click', KEYS['?']);
   get('theme').addEventListener('click', () => {
-    const at = THEMES.indexOf(document.documentElement.dataset.theme ?? 'auto');
-    setTheme(THEMES[(at + 1) % THEMES.length]);
+    theme = THEMES[(THEMES.indexOf(theme) + 1) % THEMES.length];
+    localStorage.setItem('theme', theme);
+    showTheme();
   });
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', showBackground);
+  systemIsDark.addEventListener('change', showTheme);
   get('reset-options').addEventListener('click', () => connection.send({ do: 'reset' }));
   get<HTMLAnchorElement>('save-options').href = `options.toml${location.search}`;
   const tabs = [...document.querySelectorAll<HTMLElement>('[role=tab]')];
@@ -304,7 +334,7 @@ function listen(): void {
 listen();
 setColouring();
 showParts();
-setTheme(localStorage.getItem('theme') ?? 'auto');
+showTheme();
 
 // For tests, and for scripts in the console: what is shown now.
 Object.assign(window, {

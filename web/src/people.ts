@@ -39,7 +39,6 @@ function confidenceBar(point: FoundPoint): HTMLElement {
 /** The list of people, and the numbers of the one that is chosen. */
 export class PeopleList {
   private person: Person | null = null;
-  private joints = '';
 
   constructor(
     private readonly list: HTMLElement,
@@ -94,15 +93,14 @@ export class PeopleList {
     const { person, details } = this;
     details.hidden = !person;
     if (!person) return;
-    const sets = Object.keys(person.joints);
-    if (!sets.includes(this.joints)) this.joints = sets[0] ?? '';
-    const choice = details.querySelector('select') ?? this.makeDetails(sets);
-    if (choice.options.length !== sets.length + 1) {
-      choice.replaceChildren(...['parts', ...sets].map((name) => element('option', [name])));
+    const names = ['parts', ...Object.keys(person.joints)];
+    const choice = details.querySelector('select') ?? this.makeDetails();
+    if ([...choice.options].map((option) => option.value).join() !== names.join()) {
+      choice.replaceChildren(...names.map((name) => element('option', [name])));
     }
     const title = details.querySelector('h2') as HTMLElement;
     title.textContent = `Person ${person.index}`;
-    const points = choice.value === 'parts' ? person.parts : person.joints[choice.value];
+    const points = person.joints[choice.value] ?? person.parts;
     const rows = Object.entries(points).map(([name, point]) => {
       const xyz = point.xyz_m?.map((metres) => metres.toFixed(2)).join(', ') ?? '';
       const row = element('tr', [element('th', [name]), element('td', [point.state]), element('td', [confidenceBar(point)]), element('td', [xyz])]);
@@ -112,8 +110,8 @@ export class PeopleList {
     details.querySelector('tbody')?.replaceChildren(...rows);
   }
 
-  private makeDetails(sets: string[]): HTMLSelectElement {
-    const choice = element('select', ['parts', ...sets].map((name) => element('option', [name])));
+  private makeDetails(): HTMLSelectElement {
+    const choice = element('select');
     choice.setAttribute('aria-label', 'Points to list');
     choice.addEventListener('change', () => this.showDetails());
     const head = element('tr', ['point', 'state', 'reliability', 'x, y, z in m'].map((text) => element('th', [text])));

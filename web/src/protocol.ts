@@ -113,7 +113,6 @@ export interface ViewState {
   result_ms: number | null;
   page_ms: number | null;
   pages: number;
-  stages: boolean;
   recording: string;
   recorded: number;
 }

@@ -16,15 +16,14 @@ class Painter {
     readonly stages: Stages,
     readonly body: Body,
     readonly partColours: Rgb[],
+    readonly depth: ImageData,
   ) {}
 
   /** Depth in the background, darker than what is drawn on it. */
   base(): void {
-    const { width, height } = this.frame.found.camera;
-    const pixels = new Pixels(width, height).depth(this.frame.depth, depthRange(this.frame.depth));
-    this.context.putImageData(pixels.image, 0, 0);
+    this.context.putImageData(this.depth, 0, 0);
     this.context.fillStyle = 'rgb(0 0 0 / 0.55)';
-    this.context.fillRect(0, 0, width, height);
+    this.context.fillRect(0, 0, this.depth.width, this.depth.height);
   }
   labels(name: string, colours: Rgb[]): void {
     const { width, height } = this.frame.found.camera;
@@ -49,7 +48,7 @@ const STAGES: Stage[] = [
     help: 'What the camera measured; large flat surfaces, which are nobody, in white.',
     draw(p) {
       const { width, height } = p.frame.found.camera;
-      p.context.putImageData(new Pixels(width, height).depth(p.frame.depth, depthRange(p.frame.depth)).image, 0, 0);
+      p.context.putImageData(p.depth, 0, 0);
       const flat = p.frame.labels.flat?.map((is) => (is ? 0 : BACKGROUND));
       if (flat) drawOver(p.context, new Pixels(width, height).labels(flat, [[255, 255, 255]], 110));
     },
@@ -149,6 +148,7 @@ export class StagePictures {
     const { stages } = frame;
     if (!stages) return;
     const { width, height } = frame.found.camera;
+    const depth = new Pixels(width, height).depth(frame.depth, depthRange(frame.depth)).image;
     STAGES.forEach((stage, i) => {
       const canvas = this.canvases[i];
       if (canvas.width !== width || canvas.height !== height) {
@@ -156,7 +156,7 @@ export class StagePictures {
         canvas.height = height;
       }
       const context = canvas.getContext('2d');
-      if (context) stage.draw(new Painter(context, frame, stages, body, partColours));
+      if (context) stage.draw(new Painter(context, frame, stages, body, partColours, depth));
       this.captions[i].textContent = StagePictures.numbers(stage.title, stages);
     });
   }

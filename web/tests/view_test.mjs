@@ -128,8 +128,7 @@ test('plays, pauses, steps and seeks', async () => {
     await reaches(names[3]);
     await page.selectOption('#speed', '0.1');
     await until(page, () => window.vesalius.state().speed === 0.1);
-    await page.keyboard.press('Escape');
-    await page.locator('#picture').click();
+    await page.focus('#seek');
     await page.keyboard.press(' ');
     await until(page, () => window.vesalius.state().playing);
     await until(page, (name) => window.vesalius.frame().found.frame !== name, names[3]);
@@ -210,6 +209,24 @@ test('saves snapshots and recordings', async () => {
   remove();
 });
 
+test('pages do not take the stages from each other', async () => {
+  await withPage(async (page, view) => {
+    await page.click('#tab-stages');
+    await until(page, () => window.vesalius.frame().stages);
+    const other = await open(browser, view.address);
+    await until(other, () => window.vesalius?.frame());
+    await other.click('#tab-options');
+    await other.click('#tab-people');
+    const { number } = await shown(page);
+    await other.keyboard.press('Home');
+    await page.focus('#play');
+    await page.keyboard.press('ArrowRight');
+    await until(page, (last) => window.vesalius.frame().number > last && window.vesalius.frame().stages, number);
+    await until(other, () => window.vesalius.frame().stages === undefined);
+    await other.context().close();
+  });
+});
+
 test('survives a restarted program', async () => {
   const first = await View.start(demo, '--paused', '--port', '0');
   const page = await open(browser, first.address);
@@ -217,9 +234,9 @@ test('survives a restarted program', async () => {
   await page.keyboard.press('ArrowRight');
   await until(page, () => window.vesalius.frame().number > 1);
   assert.equal(await first.stop(), 0);
-  await page.locator('text=does not answer').waitFor();
+  await page.locator('#status', { hasText: 'does not answer' }).waitFor();
   const second = await View.start(demo, '--paused', '--port', String(first.port));
-  await until(page, () => !document.body.classList.contains('away') && window.vesalius.frame().number === 1);
+  await until(page, () => !document.body.classList.contains('away') && window.vesalius.frame()?.number === 1);
   await page.context().close();
   assert.equal(await second.stop(), 0);
 });
@@ -250,6 +267,9 @@ test('works with the keyboard alone', async () => {
     await page.focus('#tab-people');
     await page.keyboard.press('ArrowRight');
     assert.ok(await page.locator('#stages').isVisible());
+    await page.focus('#show-floor');
+    await page.keyboard.press('0');
+    assert.ok(!(await page.locator('#details').isVisible()), 'chosen once more, no longer');
     await page.keyboard.press('?');
     assert.ok(await page.locator('#help').isVisible());
     await page.keyboard.press('Escape');

@@ -1,11 +1,15 @@
+#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <unistd.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
 #include <atomic>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/detector_flags.h"
@@ -39,11 +43,28 @@ struct Arguments {
   bool quiet = false;
 };
 
-/// Returns the name of the server in the address that is printed: where it listens at all addresses, this machine's.
-std::string name_of(const std::string& host) {
-  if (host != "0.0.0.0" && host != "::") return host.find(':') == host.npos ? host : "[" + host + "]";
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "localhost";
+/// Returns the numeric IPv4 addresses of this machine on its networks.
+std::vector<std::string> network_addresses() {
+  std::vector<std::string> found;
+  ifaddrs* all = nullptr;
+  if (::getifaddrs(&all) != 0) return found;
+  for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    if ((one->ifa_flags & IFF_LOOPBACK) != 0 || (one->ifa_flags & IFF_UP) == 0) continue;
+    std::array<char, INET_ADDRSTRLEN> text{};
+    const auto* address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
+    if (::inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) != nullptr) found.emplace_back(text.data());
+  }
+  ::freeifaddrs(all);
+  return found;
+}
+
+/// Returns the names by which browsers can ask for the page: where it listens at all addresses, those of the networks.
+std::vector<std::string> names_of(const std::string& host) {
+  if (host != "0.0.0.0" && host != "::") return {host.find(':') == host.npos ? host : "[" + host + "]"};
+  std::vector<std::string> names = network_addresses();
+  if (names.empty()) names.emplace_back("127.0.0.1");
+  return names;
 }
 
 void check_folder(const std::string& folder) {
@@ -56,9 +77,10 @@ ViewerOptions viewer_options(const Arguments& arguments) {
   options.web.host = arguments.host;
   options.web.port = static_cast<std::uint16_t>(arguments.port);
   options.web.access = web_access(arguments.host, is_loopback(arguments.host) ? "" : random_token());
-  options.rate = arguments.rate;
-  options.start_s = arguments.camera.start_s.value_or(0.0);
-  options.paused = arguments.paused;
+  options.player.rate = arguments.rate;
+  options.player.start_s = arguments.camera.start_s.value_or(0.0);
+  options.player.playing = !arguments.paused;
+  options.say = [](const std::string& line) { say("vesalius: " + line); };
   options.folder = arguments.folder;
   options.source = arguments.source;
   options.model = fs::path(arguments.detector.model()).filename().string();
@@ -85,12 +107,16 @@ void run(const Arguments& arguments) {
   Viewer viewer(*source, labeller, detect, options);
   page = &viewer;
   watch_interrupts();
-  std::string address = fmt::format("http://{}:{}/", name_of(arguments.host), viewer.port());
-  if (!options.web.access.token.empty()) address += "?token=" + options.web.access.token;
-  print(address + "\n");
+  const std::string& token = options.web.access.token;
+  std::string address;
+  for (const std::string& name : names_of(arguments.host)) {
+    address = fmt::format("http://{}:{}/{}", name, viewer.port(), token.empty() ? "" : "?token=" + token);
+    print(address + "\n");
+  }
   finish_stdout();
   if (!arguments.quiet) say("Open this address in a browser; Ctrl-C ends.");
-  if (!arguments.no_browser) open_browser(address);
+  // A token would stand in the list of processes, which every user of this machine sees.
+  if (!arguments.no_browser && token.empty()) open_browser(address);
   viewer.run(interrupted);
 }
 
