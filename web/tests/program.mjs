@@ -14,6 +14,7 @@ const browserPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
 const FLAGS = [
   '--no-sandbox',
+  '--disable-dev-shm-usage',  // small in containers
   '--no-first-run',
   '--disable-quic',
   '--disable-background-networking',
