@@ -126,7 +126,9 @@ class Stream {
       const bool waits = job->found.frame && !source_.is_live();
       if (waits && work_.closed_by(pace.due(*job->found.frame))) break;
       if (stopping_) break;
+      const bool lost = source_.is_live() && job->found.error;
       dropped_ += work_.push_newest(std::move(job));
+      if (lost) break;  // a camera has ended: no newer frame may take the place of its error
     }
     work_.close();
   }
