@@ -2,11 +2,15 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "vesalius/base/error.h"
 
@@ -102,6 +106,47 @@ TEST(PassedFramesThreads, PassOnWhatTheWriterThrows) {
   Counter files(kFrames, Kind::files);
   EXPECT_THROW(stream_frames(files, {}, kAhead, [](const FoundFrame&) -> bool { throw Error("the disk is full"); }),
                Error);
+}
+
+/// A labeller that finds nobody, and takes its time for it.
+class Slow : public PixelLabeller {
+ public:
+  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    out = {depth.width(), depth.height(), 26, 1, {}};
+    out.sums.assign(depth.size() * 26, 0);
+    for (std::size_t i = 25; i < out.sums.size(); i += 26) out.sums[i] = 255;
+  }
+  const BodyModel& body() const override { return paper_body(); }
+  bool has_background() const override { return true; }
+  bool has_distributions() const override { return false; }
+};
+
+/// A camera that is lost after its first frame and at once back.
+class Unsteady : public FrameSource {
+ public:
+  std::optional<Frame> next() override {
+    if (++asked_ == 2) throw Error("unplugged");
+    if (asked_ > 50) return std::nullopt;
+    return Frame{"", {}, {80, 60, 65.F, 65.F, 39.5F, 29.5F}, DepthImage(80, 60, 3000), {}};
+  }
+  int size() const override { return -1; }
+  bool is_live() const override { return true; }
+
+ private:
+  int asked_ = 0;
+};
+
+TEST(DetectedFrames, EndWithTheErrorOfACameraHoweverSlowTheDetectorIs) {
+  Unsteady camera;
+  std::vector<bool> failed;
+  stream_frames(camera, Detector(std::make_shared<Slow>()), {}, [&](const FoundFrame& found) {
+    failed.push_back(found.error != nullptr);
+    return true;
+  });
+  ASSERT_FALSE(failed.empty());
+  EXPECT_TRUE(failed.back());
+  EXPECT_EQ(std::count(failed.begin(), failed.end(), true), 1);
 }
 
 }  // namespace
