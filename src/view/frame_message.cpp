@@ -36,7 +36,7 @@ class Pictures {
   void add_labels(const char* name, const Image<std::uint8_t>& labels) {
     if (!labels.empty()) add(name, "runs", labels.width(), labels.height(), pack_runs(labels));
   }
-  Json take_list() { return std::move(list_); }
+  const Json& list() const { return list_; }
   const std::string& bytes() const { return bytes_; }
 
  private:
@@ -113,9 +113,21 @@ Json stages_json(const Trace& trace, int width, int height, Pictures& pictures) 
   return {{"proposals", std::move(proposals)}, {"rough", std::move(rough)}, {"candidates", std::move(candidates)}};
 }
 
+/// `found` is the frame's line of JSON, which stands in the text as it is.
+std::string message_of(Json head, const std::string& found, const Pictures& pictures) {
+  head["pictures"] = pictures.list();
+  std::string text = head.dump();
+  text.pop_back();  // its brace
+  text += ",\"found\":" + found + "}";
+  std::string message;
+  message.reserve(4 + text.size() + pictures.bytes().size());
+  for (int shift = 0; shift < 32; shift += 8) message += static_cast<char>(text.size() >> shift & 0xFF);
+  return message + text + pictures.bytes();
+}
+
 }  // namespace
 
-std::string frame_message(const ViewedFrame& viewed, const BodyModel& body, bool with_stages) {
+FrameMessages frame_messages(const ViewedFrame& viewed, const BodyModel& body) {
   const Frame& frame = *viewed.frame;
   const int width = frame.depth.width(), height = frame.depth.height();
   Pictures pictures;
@@ -128,15 +140,13 @@ std::string frame_message(const ViewedFrame& viewed, const BodyModel& body, bool
                {"times_ms", times_json(viewed.times)},
                {"detect_ms", rounded(viewed.times.total())},
                {"floor", floor_json(frame)}};
-  if (with_stages && viewed.trace) head["stages"] = stages_json(*viewed.trace, width, height, pictures);
-  head["pictures"] = pictures.take_list();
-  std::string text = head.dump();
-  text.pop_back();  // its brace: the frame's own line follows as it is
-  text += ",\"found\":" + frame_json(frame, viewed.people, body, viewed.latency_ms) + "}";
-  std::string message;
-  message.reserve(4 + text.size() + pictures.bytes().size());
-  for (int shift = 0; shift < 32; shift += 8) message += static_cast<char>(text.size() >> shift & 0xFF);
-  return message + text + pictures.bytes();
+  const std::string found = frame_json(frame, viewed.people, body, viewed.latency_ms);
+  FrameMessages messages{message_of(head, found, pictures), {}};
+  if (viewed.trace) {
+    head["stages"] = stages_json(*viewed.trace, width, height, pictures);
+    messages.with_stages = message_of(head, found, pictures);
+  }
+  return messages;
 }
 
 }  // namespace vesalius

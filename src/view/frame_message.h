@@ -23,9 +23,14 @@ struct ViewedFrame {
   std::optional<double> latency_ms;  ///< from its arrival to its people
 };
 
-/// Returns the binary message of a frame (docs/formats.md): the length of a JSON text in four bytes, low ones first,
+/// The messages of a frame, as pages want more or less of it.
+struct FrameMessages {
+  std::string plain;
+  std::string with_stages;  ///< empty where there is no trace
+};
+
+/// Returns the binary messages of a frame (docs/formats.md): the length of a JSON text in four bytes, low ones first,
 /// the text, and the pictures that the text lists, each packed: depth by RVL, colour as JPEG, labels as runs.
-/// The stages are in it if `with_stages` is true and there is a trace.
-std::string frame_message(const ViewedFrame& viewed, const BodyModel& body, bool with_stages);
+FrameMessages frame_messages(const ViewedFrame& viewed, const BodyModel& body);
 
 }  // namespace vesalius

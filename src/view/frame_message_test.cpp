@@ -63,7 +63,9 @@ ViewedFrame viewed_person(bool with_colour) {
 
 TEST(FrameMessage, HoldsTheFrameAndItsPeople) {
   const ViewedFrame viewed = viewed_person(true);
-  const Parts parts(frame_message(viewed, paper_body(), true));
+  const FrameMessages messages = frame_messages(viewed, paper_body());
+  EXPECT_EQ(messages.with_stages, "");
+  const Parts parts(messages.plain);
   EXPECT_EQ(parts.head.at("number"), 7);
   EXPECT_EQ(parts.head.at("found"), json::parse(frame_json(*viewed.frame, viewed.people, paper_body())));
   EXPECT_EQ(unpack_rvl(parts.bytes("depth"), 160, 120, "depth"), viewed.frame->depth);
@@ -98,8 +100,9 @@ TEST(FrameMessage, HoldsTheStagesOfATrace) {
   trace.candidates = {candidate, candidate};
   trace.candidates[1].accepted = false;
   trace.candidates[1].grown[0] = 1;
-  EXPECT_FALSE(Parts(frame_message(viewed, paper_body(), false)).head.contains("stages"));
-  const Parts parts(frame_message(viewed, paper_body(), true));
+  const FrameMessages messages = frame_messages(viewed, paper_body());
+  EXPECT_FALSE(Parts(messages.plain).head.contains("stages"));
+  const Parts parts(messages.with_stages);
   EXPECT_EQ(parts.bytes("colour"), "none");
   for (const char* name : {"raw_labels", "labels", "proposals", "second_pass"}) {
     EXPECT_EQ(parts.labels(name), trace.labels) << name;

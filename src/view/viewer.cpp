@@ -380,11 +380,9 @@ class Viewer::Session {
   }
 
   void deliver(const Found& found) {
-    const ViewedFrame& viewed = found.viewed;
-    const BodyModel& body = labeller_->body();
     if (server_.clients() > 0) {
-      server_.publish_frame(frame_message(viewed, body, false),
-                            viewed.trace ? frame_message(viewed, body, true) : std::string(), found.arrived);
+      FrameMessages messages = frame_messages(found.viewed, labeller_->body());
+      server_.publish_frame(std::move(messages.plain), std::move(messages.with_stages), found.arrived);
     }
     record(found);
   }
