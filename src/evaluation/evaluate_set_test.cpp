@@ -11,6 +11,7 @@
 #include "evaluation/evaluation_summary.h"
 #include "io/files/test_files.h"
 #include "vesalius/base/error.h"
+#include "vesalius/forest/test_blind_labeller.h"
 
 namespace vesalius {
 namespace {
@@ -22,22 +23,7 @@ using testing::ThrowsMessage;
 
 const Camera kCamera{80, 60, 65.F, 65.F, 39.5F, 29.5F};
 
-/// A labeller that calls every pixel background, so nobody is ever found.
-class BlindLabeller : public PixelLabeller {
- public:
-  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
-    out = {depth.width(), depth.height(), paper_body().part_count() + 1, 1, {}};
-    out.sums.assign(depth.size() * out.classes, 0);
-    for (int v = 0; v < depth.height(); ++v) {
-      for (int u = 0; u < depth.width(); ++u) out.at(u, v)[out.classes - 1] = 255;
-    }
-  }
-  const BodyModel& body() const override { return paper_body(); }
-  bool has_background() const override { return true; }
-  bool has_distributions() const override { return true; }
-};
-
-FrameScorer blind_scorer() { return FrameScorer(std::make_shared<BlindLabeller>(), {}); }
+FrameScorer blind_scorer() { return FrameScorer(std::make_shared<test::BlindLabeller>(), {}); }
 
 /// Frames of one person each. Those whose index is in `damaged` cannot be read.
 class Frames : public TruthSource {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "vesalius/base/error.h"
+#include "vesalius/forest/test_blind_labeller.h"
 
 namespace vesalius {
 namespace {
@@ -109,17 +110,12 @@ TEST(PassedFramesThreads, PassOnWhatTheWriterThrows) {
 }
 
 /// A labeller that finds nobody, and takes its time for it.
-class Slow : public PixelLabeller {
+class Slow : public test::BlindLabeller {
  public:
-  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    out = {depth.width(), depth.height(), 26, 1, {}};
-    out.sums.assign(depth.size() * 26, 0);
-    for (std::size_t i = 25; i < out.sums.size(); i += 26) out.sums[i] = 255;
+    test::BlindLabeller::label_into(depth, camera, gate, out);
   }
-  const BodyModel& body() const override { return paper_body(); }
-  bool has_background() const override { return true; }
-  bool has_distributions() const override { return false; }
 };
 
 /// A camera that is lost after its first frame and at once back.

@@ -11,6 +11,7 @@
 #include "io/files/test_files.h"
 #include "io/sources/open_source.h"
 #include "vesalius/base/error.h"
+#include "vesalius/forest/test_blind_labeller.h"
 #include "view/test_page.h"
 
 namespace vesalius {
@@ -21,19 +22,6 @@ using test::Page;
 using testing::HasSubstr;
 
 constexpr int kFrames = 100000;
-
-/// A labeller that finds nobody.
-class Background : public PixelLabeller {
- public:
-  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
-    out = {depth.width(), depth.height(), 26, 1, {}};
-    out.sums.assign(depth.size() * 26, 0);
-    for (std::size_t i = 25; i < out.sums.size(); i += 26) out.sums[i] = 255;
-  }
-  const BodyModel& body() const override { return paper_body(); }
-  bool has_background() const override { return true; }
-  bool has_distributions() const override { return false; }
-};
 
 /// A room, 100 frames a second, each with its number in the first pixel.
 class Room : public FrameSource {
@@ -62,7 +50,9 @@ class Room : public FrameSource {
 class Running {
  public:
   explicit Running(bool paused, const std::string& folder = ".", int width = 80)
-      : source_(width), viewer_(source_, std::make_shared<Background>(), {}, options(paused, folder)), thread_([this] {
+      : source_(width),
+        viewer_(source_, std::make_shared<test::BlindLabeller>(), {}, options(paused, folder)),
+        thread_([this] {
           try {
             viewer_.run([this] { return stop_.load(); });
           } catch (const Error& e) {
@@ -264,7 +254,7 @@ TEST(Viewer, ACameraThatIsLostEndsIt) {
   Lost source;
   ViewerOptions options;
   options.web.port = 0;
-  Viewer viewer(source, std::make_shared<Background>(), {}, options);
+  Viewer viewer(source, std::make_shared<test::BlindLabeller>(), {}, options);
   EXPECT_THROW(viewer.run([] { return false; }), Error);
 }
 
