@@ -5,17 +5,12 @@
 namespace vesalius::ob {
 namespace {
 
-template <class Function>
-void find(void* library, const char* name, Function& function) {
-  function = reinterpret_cast<Function>(find_function(library, "orbbec: libOrbbecSDK", name));
-}
-
 Api load() {
   void* library =
       load_library("VESALIUS_ORBBEC", {"libOrbbecSDK.so.2", "libOrbbecSDK.so"},
                    "orbbec: libOrbbecSDK is not installed, expected version 2 of Orbbec's SDK (docs/cameras.md)");
   Api api{};
-#define VESALIUS_FIND(name) find(library, "ob_" #name, api.name)
+#define VESALIUS_FIND(name) find_function(library, "orbbec: libOrbbecSDK", "ob_" #name, api.name)
   VESALIUS_FIND(error_get_message);
   VESALIUS_FIND(delete_error);
   VESALIUS_FIND(set_logger_severity);

@@ -17,17 +17,12 @@ std::vector<std::string> names() {
   return all;
 }
 
-template <class Function>
-void find(void* library, const char* name, Function& function) {
-  function = reinterpret_cast<Function>(find_function(library, "realsense: librealsense2", name));
-}
-
 Api load() {
   void* library = load_library(
       "VESALIUS_REALSENSE", names(),
       "realsense: librealsense2 is not installed, expected Intel's package librealsense2 (docs/cameras.md)");
   Api api{};
-#define VESALIUS_FIND(name) find(library, "rs2_" #name, api.name)
+#define VESALIUS_FIND(name) find_function(library, "realsense: librealsense2", "rs2_" #name, api.name)
   VESALIUS_FIND(get_api_version);
   VESALIUS_FIND(get_error_message);
   VESALIUS_FIND(free_error);

@@ -18,7 +18,7 @@ void* load_library(const char* variable, const std::vector<std::string>& names, 
   throw Error(missing);
 }
 
-void* find_function(void* handle, const char* library, const std::string& name) {
+void* find_address(void* handle, const char* library, const std::string& name) {
   void* found = ::dlsym(handle, name.c_str());
   if (found == nullptr) throw Error(fmt::format("{} has no {}, expected another version of it", library, name));
   return found;

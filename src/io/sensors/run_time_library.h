@@ -18,7 +18,13 @@ namespace vesalius {
 void* load_library(const char* variable, const std::vector<std::string>& names, const std::string& missing);
 
 /// Returns the address of a function. Throws Error naming `library` where it has none of this name.
-void* find_function(void* handle, const char* library, const std::string& name);
+void* find_address(void* handle, const char* library, const std::string& name);
+
+/// Sets `function` to the library's function of this name. Throws Error as `find_address` does.
+template <class Function>
+void find_function(void* handle, const char* library, const std::string& name, Function& function) {
+  function = reinterpret_cast<Function>(find_address(handle, library, name));
+}
 
 /// Receives what a C function of a library that is loaded while the program runs says, and throws it as Error. For the
 /// library's type of errors there are two functions: `const char* text_of(const Failure*)` and `void free(Failure*)`.
