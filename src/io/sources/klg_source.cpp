@@ -40,7 +40,7 @@ struct Place {
   std::uint32_t depth_bytes = 0, colour_bytes = 0;
 };
 
-class KlgSource final : public FrameSource {
+class KlgSource final : public TimedSource {
  public:
   KlgSource(const std::string& path, const SourceOptions& options) : file_(path) {
     find_frames();
@@ -63,19 +63,11 @@ class KlgSource final : public FrameSource {
     const std::size_t index = next_++;
     const Place& place = places_[index];
     const std::string name = fmt::format("{}: {}", file_.path(), frames_.name(index));
-    Frame frame;
-    frame.name = frames_.name(index);
-    frame.time_s = frames_.time_s(index);
-    frame.camera = camera_;
+    Frame frame = frame_at(index);
     frame.depth = depth_of(depth_bytes(place, name), name);
     if (place.colour_bytes > 0) frame.colour = colour_of(colour_bytes(place), name);
     return frame;
   }
-
-  int size() const override { return static_cast<int>(frames_.size()); }
-  std::optional<TimeSpan> span() const override { return frames_.span(); }
-  void seek(double time_s) override { next_ = frames_.first_from(time_s); }
-  std::vector<std::string> notes() const override { return notes_; }
 
  private:
   /// Reads the heads of all frames.
@@ -180,12 +172,8 @@ class KlgSource final : public FrameSource {
 
   DataFile file_;
   std::vector<Place> places_;
-  TimedFrames frames_;
   Size size_;  ///< of all pictures
-  Camera camera_;
   float units_per_m_ = 1000.F;
-  std::vector<std::string> notes_;
-  std::size_t next_ = 0;
 };
 
 }  // namespace

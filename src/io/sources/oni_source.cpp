@@ -112,7 +112,7 @@ std::string names_of(const std::vector<const OniStream*>& streams) {
   return text;
 }
 
-class OniSource final : public FrameSource {
+class OniSource final : public TimedSource {
  public:
   OniSource(const std::string& path, const SourceOptions& options) : path_(path), recording_(DataFile(path)) {
     notes_ = recording_.notes();
@@ -129,20 +129,12 @@ class OniSource final : public FrameSource {
     const std::size_t index = next_++;
     const OniPicture& picture = depth_->pictures[index];
     const std::string place = fmt::format("{}: {}", path_, frames_.name(index));
-    Frame frame;
-    frame.name = frames_.name(index);
-    frame.time_s = frames_.time_s(index);
-    frame.camera = camera_;
+    Frame frame = frame_at(index);
     frame.depth = to_millimetres(depth_at(picture, place), units_per_m_);
     if (picture.mirrored) turn_back(frame.depth);
     if (colour_ != nullptr) frame.colour = colour_near(picture.time_us, place);
     return frame;
   }
-
-  int size() const override { return static_cast<int>(frames_.size()); }
-  std::optional<TimeSpan> span() const override { return frames_.span(); }
-  void seek(double time_s) override { next_ = frames_.first_from(time_s); }
-  std::vector<std::string> notes() const override { return notes_; }
 
  private:
   std::vector<const OniStream*> streams_of(OniKind kind) const {
@@ -312,10 +304,6 @@ class OniSource final : public FrameSource {
   Grid grid_;
   std::vector<std::uint16_t> shifts_;  ///< millimetres by shift; empty = depth is stored
   float units_per_m_ = 1000.F;
-  Camera camera_;
-  TimedFrames frames_;
-  std::vector<std::string> notes_;
-  std::size_t next_ = 0;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,30 @@ class TimedFrames {
  private:
   std::vector<double> times_s_;
   std::vector<std::string> names_;
+};
+
+/// A source of such frames: what all have in common. `next` gives frame number `next_`.
+class TimedSource : public FrameSource {
+ public:
+  int size() const override { return static_cast<int>(frames_.size()); }
+  std::optional<TimeSpan> span() const override { return frames_.span(); }
+  void seek(double time_s) override { next_ = frames_.first_from(time_s); }
+  std::vector<std::string> notes() const override { return notes_; }
+
+ protected:
+  /// Returns frame `index` without its pictures.
+  Frame frame_at(std::size_t index) const {
+    Frame frame;
+    frame.name = frames_.name(index);
+    frame.time_s = frames_.time_s(index);
+    frame.camera = camera_;
+    return frame;
+  }
+
+  TimedFrames frames_;
+  Camera camera_;
+  std::vector<std::string> notes_;
+  std::size_t next_ = 0;
 };
 
 }  // namespace vesalius
