@@ -32,7 +32,12 @@ struct FrameTruth {
   std::vector<std::string> postures;                 ///< [person]: one word
   std::vector<float> statures_m;                     ///< [person]: height of the body standing upright; NaN = not known
   std::optional<Eigen::Vector3f> up;                 ///< unit vector away from the ground, optical frame
+  std::optional<float> camera_height_m;              ///< above the ground on which people stand
   CameraMotion camera_motion = CameraMotion::unknown;
+  /// Number of the recording in its set that the frame belongs to; frames of one recording come after each other in
+  /// time. -1: the frame stands alone.
+  int sequence = -1;
+  std::vector<int> ids;  ///< [person]: one number for one person over a recording; empty = not known
 };
 
 /// A frame with its truth.

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "vesalius/base/frame.h"
+
+namespace vesalius {
+
+/// A bone of a body that was fitted to a person, in the order of the flesh model's bones.
+struct FittedBone {
+  State state = State::none;                             ///< of its head; observed where the camera sees flesh about it
+  Eigen::Vector3f head = Eigen::Vector3f::Zero();        ///< joint about which it turns, metres, optical frame
+  Eigen::Vector3f tail = Eigen::Vector3f::Zero();        ///< its other end
+  Eigen::Quaternionf global{1.F, 0.F, 0.F, 0.F};         ///< optical frame from the bone's
+  Eigen::Quaternionf local{1.F, 0.F, 0.F, 0.F};          ///< parent's frame from the bone's; of the root as `global`
+  float length_m = 0.F;                                  ///< from head to tail
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();  ///< of the head, square metres
+  float confidence = 0.F;  ///< probability that the head lies within 10 cm of the truth, 0-1
+};
+
+/// A body fitted to one person.
+struct FittedBody {
+  std::vector<FittedBone> bones;
+  std::vector<float> shape;  ///< coefficients of the flesh model's shapes, in standard deviations of the population
+  float stature_m = 0.F;     ///< height of the body standing upright
+  float cost = 0.F;          ///< of the fit, lower is better; comparable within one frame
+};
+
+}  // namespace vesalius

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "vesalius/detection.h"
+#include "vesalius/fit/fitted_body.h"
+
+namespace vesalius {
+
+/// What is known about somebody who is followed over frames.
+enum class TrackState {
+  fresh,    ///< found, but not yet for long enough to be sure of
+  tracked,  ///< found in this frame
+  hidden,   ///< not found in this frame; the place is a prediction
+  lost      ///< given up in this frame; the id is kept for somebody who looks the same and comes back
+};
+const char* to_string(TrackState state);
+
+/// How somebody holds the body over the floor.
+enum class Stance { unknown, standing, sitting, lying, fallen };
+const char* to_string(Stance stance);
+
+/// Somebody who is followed over frames.
+struct TrackedPerson {
+  int id = 0;  ///< from 1; the same for one person over a run, never used for two
+  TrackState state = TrackState::fresh;
+  /// As found in this frame; its joints are those of the fitted body where there is one. Of hidden people the mask and
+  /// the labels are empty, and parts and joints are predicted.
+  Person person;
+  std::optional<FittedBody> body;
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< of the trunk, metres, optical frame
+  Eigen::Vector3f velocity = Eigen::Vector3f::Zero();  ///< of the trunk, metres a second
+  Stance stance = Stance::unknown;
+  double since_s = 0.0;  ///< time of the first frame in which the person was found
+  double seen_s = 0.0;   ///< time of the last frame in which the person was found
+  /// [joint set][joint]: joints smoothed over time, if that was asked for; otherwise empty.
+  std::vector<std::vector<Joint>> smoothed;
+};
+
+/// The floor and how the camera stands over it.
+struct FloorView {
+  Eigen::Vector3f up{0.F, -1.F, 0.F};  ///< unit vector away from the ground, optical frame
+  float height_m = 0.F;                ///< of the camera above the floor
+  float tilt_rad = 0.F;                ///< of the viewing direction below the horizon; negative looks up
+  float roll_rad = 0.F;                ///< about the viewing direction, clockwise as seen from the camera
+};
+
+/// Somebody's stance has changed.
+struct StanceEvent {
+  int id = 0;
+  double time_s = 0.0;  ///< when the new stance began; earlier than the frame that reports it
+  Stance stance = Stance::unknown;
+};
+
+/// The people of a frame of a sequence.
+struct TrackedFrame {
+  double time_s = 0.0;                ///< the frame's time, or its number over the rate where it has none
+  std::vector<TrackedPerson> people;  ///< by id; of lost ones those that were lost in this frame
+  std::optional<FloorView> floor;
+  std::vector<StanceEvent> events;
+};
+
+}  // namespace vesalius
