@@ -175,6 +175,10 @@ BuiltScene Generator::scene(std::uint64_t index) const {
                      random_for(s.seed, Purpose::scene, index));
 }
 
+const Poser& Generator::body(std::size_t k) const { return state_->person(k).poser; }
+
+SampledPose Generator::draw_pose(Random& random) const { return state_->draw_pose(random); }
+
 LabelledFrame Generator::frame(std::uint64_t index) const {
   const State& s = *state_;
   const BuiltScene built = scene(index);

@@ -32,6 +32,11 @@ class Generator {
   /// Returns the scene of that frame.
   BuiltScene scene(std::uint64_t index) const;
 
+  /// Returns body k of the recipe, below its body.count, with its clothes.
+  const Poser& body(std::size_t k) const;
+  /// Draws a pose as frames do.
+  SampledPose draw_pose(Random& random) const;
+
  private:
   struct State;
   std::unique_ptr<State> state_;

@@ -218,6 +218,7 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
   candidate.score = method.score(candidate.evidence);
   candidate.labels = std::move(person.labels);
+  candidate.points = std::move(person.points);
   return candidate;
 }
 
@@ -251,6 +252,7 @@ Person make_person(const BodyModel& body, const Candidate& candidate, const Mask
   person.yaw = candidate.yaw;
   person.mask = candidate.grown;
   person.labels = candidate.labels;
+  person.points = candidate.points;
   for (std::size_t i = 0; i < taken.size(); ++i) {
     if (taken[i] != 0) person.mask[i] = 0;
     if (person.mask[i] == 0) person.labels[i] = kBackground;

@@ -11,6 +11,7 @@
 #include "vesalius/derive_joints.h"
 #include "vesalius/find_clusters.h"
 #include "vesalius/forest/facing.h"
+#include "vesalius/forest/person_points.h"
 #include "vesalius/grow_person.h"
 #include "vesalius/score_person.h"
 #include "vesalius/search_skeletons.h"
@@ -26,6 +27,7 @@ struct Person {
   Box box;                                 ///< smallest box around the mask
   float score = 0.F;                       ///< 0-1, higher is more certain
   std::optional<YawEstimate> yaw;          ///< which way the person faces, if the forest's leaves have headings
+  std::vector<PersonPoint> points;         ///< some of the person's pixels with the likeliest parts of each
 };
 
 /// What earlier frames tell about the people of a frame; a tracker provides it. Each mask starts a candidate of its
@@ -70,6 +72,7 @@ struct Trace {
     int known = -1;  ///< index in Prior::people of the person in whose mask it was found, or -1
     Mask grown;
     LabelImage labels;  ///< pass 2, smoothed
+    std::vector<PersonPoint> points;
     Skeleton refined;   ///< pass 2, or the rough one if that is likelier
     Evidence evidence;
     float score = 0.F;

@@ -14,11 +14,14 @@
 #include "dataset/labelled_export.h"
 #include "dataset/labelled_frame_codec.h"
 #include "draw/contact_sheet.h"
+#include "io/files/atomic_file.h"
 #include "io/files/image_file.h"
 #include "io/files/read_file.h"
+#include "synth/fit_flesh.h"
 #include "synth/skeleton_joints.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/parallel_in_order.h"
+#include "vesalius/fit/flesh_model.h"
 
 namespace vesalius::cli {
 namespace {
@@ -30,7 +33,7 @@ constexpr int kPreviewColumns = 3;
 struct Arguments {
   explicit Arguments(CLI::App& command) : recipe_flags(command) {}
 
-  std::string recipe, sensor, camera, body, assets, motions, out, format = "shards";
+  std::string recipe, sensor, camera, body, assets, motions, out, fit_flesh, format = "shards";
   std::vector<std::string> models;
   OptionFlags<synth::Recipe> recipe_flags;
   int count = 0, preview = 0, first = 0, shard = 256, threads = 0;
@@ -107,8 +110,23 @@ void write_preview(const Arguments& arguments, const synth::Generator& generator
   if (!arguments.quiet) say(fmt::format("{}: {} frames", path, frames.size()));
 }
 
+/// Writes the bodies and poses of the recipe as a flesh model. Joints are trusted as those of the built-in one.
+void write_flesh(const Arguments& arguments, const synth::Recipe& recipe, const synth::Generator& generator) {
+  synth::FleshFitOptions options;
+  options.bodies = std::min(options.bodies, recipe.body.count);
+  options.seed = arguments.seed;
+  const auto trust = [](const JointTrust& t) { return fmt::format("[{:.3f}, {:.3f}]", t.bias, t.slope); };
+  const FleshModel& flesh = builtin_flesh();
+  write_file_atomically(arguments.fit_flesh,
+                        synth::fitted_flesh_toml(generator, options,
+                                                 fmt::format("observed = {}\npredicted = {}\n", trust(flesh.observed),
+                                                             trust(flesh.predicted))));
+}
+
 void check(const Arguments& arguments) {
-  if ((arguments.count > 0) == (arguments.preview > 0)) throw UsageError("expected --count or --preview, and not both");
+  if ((arguments.count > 0) + (arguments.preview > 0) + !arguments.fit_flesh.empty() != 1) {
+    throw UsageError("expected one of --count, --preview and --fit-flesh");
+  }
   if (arguments.count > 0 && arguments.out.empty()) throw UsageError("--count expects --out, the folder to write");
   if (arguments.first > 0 && arguments.count > 0 && arguments.format == "shards") {
     throw UsageError("a dataset begins with frame 0: --first expects --preview or --format folder");
@@ -130,6 +148,7 @@ void run(const Arguments& arguments) {
   }
   const synth::Generator generator(recipe, loaded.assets, body, arguments.seed);
   watch_interrupts();
+  if (!arguments.fit_flesh.empty()) return write_flesh(arguments, recipe, generator);
   if (arguments.preview > 0) return write_preview(arguments, generator, body);
   if (arguments.format == "folder") return write_folder(arguments, generator, body);
   DatasetInfo info;
@@ -157,6 +176,11 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
                   "Folder for the frames, created if missing; an interrupted run continues. With --preview the "
                   "picture (default: preview.png)")
       ->type_name("PATH")
+      ->group(group);
+  command
+      .add_option("--fit-flesh", arguments.fit_flesh,
+                  "Instead of frames, the bodies and poses of the recipe as the model that people are fitted with")
+      ->type_name("FILE")
       ->group(group);
   command.add_option("--format", arguments.format, "shards: compact, for training; folder: PNG and JSON")
       ->check(CLI::IsMember({"shards", "folder"}))

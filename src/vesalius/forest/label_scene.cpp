@@ -133,9 +133,13 @@ PersonLabels SceneLabeller::label_person(const SceneLabels& scene, const Frame& 
   if (box.width == 0) return {LabelImage(frame.camera.width, frame.camera.height, kBackground), {}, 0.F};
   if (!labeller_->has_background()) return label_alone(frame, person, box);
   if (!labeller_->facing_model().empty() && scene.smoothed) return label_turned(scene, frame, person, box);
-  return {choose(scene.posteriors(), frame.depth, options_.label.background_weight, &person, &box),
-          {},
-          mean_certainty(scene.posteriors(), person, body().part_count())};
+  const Posteriors& posteriors = scene.posteriors();
+  PersonLabels result{choose(posteriors, frame.depth, options_.label.background_weight, &person, &box),
+                      {},
+                      mean_certainty(posteriors, person, body().part_count())};
+  result.points = sample_points(frame.depth, frame.camera, result.labels, box, posteriors,
+                                {0, 0, frame.camera.width, frame.camera.height}, body().part_count());
+  return result;
 }
 
 PersonLabels SceneLabeller::label_turned(const SceneLabels& scene, const Frame& frame, const Mask& person,
@@ -153,6 +157,8 @@ PersonLabels SceneLabeller::label_turned(const SceneLabels& scene, const Frame& 
   result.labels =
       uncropped(choose(smooth, depth, options_.label.background_weight, &inside, &within), around, frame.camera);
   result.certain = mean_certainty(smooth, inside, body().part_count());
+  result.points =
+      sample_points(frame.depth, frame.camera, result.labels, box, smooth, around, body().part_count());
   return result;
 }
 
@@ -162,9 +168,11 @@ PersonLabels SceneLabeller::label_alone(const Frame& frame, const Mask& person, 
   Posteriors posteriors;
   labeller_->label_into(alone, camera, options_.label.gate, posteriors);
   if (!by_mode_) posteriors = mean_filter(posteriors, alone, camera, options_.smooth);
-  return {uncropped(choose(posteriors, alone, options_.label.background_weight), box, frame.camera),
-          {},
-          mean_certainty(posteriors, crop(person, box), body().part_count())};
+  PersonLabels result{uncropped(choose(posteriors, alone, options_.label.background_weight), box, frame.camera),
+                      {},
+                      mean_certainty(posteriors, crop(person, box), body().part_count())};
+  result.points = sample_points(frame.depth, frame.camera, result.labels, box, posteriors, box, body().part_count());
+  return result;
 }
 
 }  // namespace vesalius

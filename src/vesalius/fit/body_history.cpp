@@ -1,0 +1,83 @@
+#include "vesalius/fit/body_history.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace vesalius {
+namespace {
+
+constexpr double kLongest_s = 0.5;   // after this nobody knows the pose any more
+constexpr double kFrame_s = 1.0 / 30.0;
+constexpr double kFastest_m_s = 3.0;
+constexpr double kFastest_rad_s = 12.0;
+constexpr double kTurnShare = 0.5, kTurnKept = 0.8;  // the same of turns, and what of them goes on
+constexpr double kVelocityShare = 0.3;  // of a new measurement of the velocity, in a frame
+constexpr double kNews = 0.2;    // share of a frame that is new: neighbouring frames err alike
+constexpr double kKept = 0.998;  // share of what was learned that a frame keeps: clothes move
+constexpr int kTryEvery = 3;     // frames between fits from the kinematic skeleton
+
+/// Returns the matrix without negative eigenvalues, which rounding and local minima leave.
+Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (matrix + matrix.transpose()));
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s) const {
+  const int shapes = fitter.flesh().shapes;
+  ExpectedBody expected;
+  expected.shape = shape_.size() == shapes ? shape_ : Eigen::VectorXd::Zero(shapes);
+  expected.shape_information =
+      shape_.size() == shapes ? information_ : Eigen::MatrixXd::Identity(shapes, shapes);
+  if (!last_) return expected;
+  const double passed_s = time_s - last_->time_s;
+  if (!(passed_s >= 0.0) || passed_s > kLongest_s) return expected;
+  expected.pose = last_->state;
+  expected.pose->root += passed_s * last_->velocity;
+  for (std::size_t b = 0; b < expected.pose->local.size(); ++b) {
+    expected.pose->local[b] = (expected.pose->local[b] * exp_rotation(passed_s * last_->turning[b])).normalized();
+  }
+  expected.loosened = std::sqrt(std::max(passed_s / kFrame_s, 1.0));
+  expected.start = frames_ % kTryEvery == 0 ? frames_ / kTryEvery % kStarts : -1;
+  return expected;
+}
+
+void BodyHistory::learn(const BodyFit& fit, const ExpectedBody& expected) {
+  const Eigen::MatrixXd& before = expected.shape_information;
+  const Eigen::MatrixXd news = positive(fit.shape_information);
+  // The frame's own estimate is what its information adds to what was known: news * own.
+  const Eigen::VectorXd own = (before + news) * fit.state.shape - before * expected.shape;
+  const Eigen::MatrixXd information = before + kNews * news;
+  shape_ = information.llt().solve(before * expected.shape + kNews * own);
+  const Eigen::MatrixXd usual = Eigen::MatrixXd::Identity(information.rows(), information.cols());
+  information_ = usual + kKept * (information - usual);
+}
+
+std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame& frame, const Person& person,
+                                           double time_s) {
+  const ExpectedBody expected = expect(fitter, time_s);
+  std::optional<BodyFit> found = fitter.fit(frame, person, expected);
+  if (!found) return std::nullopt;
+  learn(*found, expected);
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> turning(found->state.local.size(), Eigen::Vector3d::Zero());
+  if (expected.pose && last_ && time_s > last_->time_s) {
+    const Eigen::Vector3d now = (found->state.root - last_->state.root) / (time_s - last_->time_s);
+    velocity = (1.0 - kVelocityShare) * last_->velocity + kVelocityShare * now;
+    velocity *= std::min(1.0, kFastest_m_s / std::max(velocity.norm(), 1e-9));
+    for (std::size_t b = 0; b < turning.size(); ++b) {
+      const Eigen::Vector3d turn = log_rotation(last_->state.local[b].conjugate() * found->state.local[b]) / (time_s - last_->time_s);
+      turning[b] = kTurnKept * ((1.0 - kTurnShare) * last_->turning[b] + kTurnShare * turn);
+      turning[b] *= std::min(1.0, kFastest_rad_s / std::max(turning[b].norm(), 1e-9));
+    }
+  }
+  last_ = Last{found->state, velocity, turning, time_s};
+  stature_m_ = found->body.stature_m;
+  ++frames_;
+  return std::move(found->body);
+}
+
+}  // namespace vesalius

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "vesalius/detection.h"
+#include "vesalius/fit/fit_body.h"
+
+namespace vesalius {
+
+/// What is learned of one person's body over frames: the last pose and, with growing certainty, the person's own shape
+/// (section 9: matching the model to a person).
+class BodyHistory {
+ public:
+  /// Fits the person's body in the next frame, at `time_s` seconds, and learns from it. Returns nothing if too little of
+  /// the person is known; then nothing is learned either.
+  std::optional<FittedBody> fit(const BodyFitter& fitter, const Frame& frame, const Person& person, double time_s);
+
+  /// Forgets the pose and keeps the shape, as for somebody who comes back.
+  void forget_pose() { last_.reset(); }
+  /// Returns the height of the person standing upright, metres, if anything was learned yet.
+  std::optional<float> stature_m() const { return stature_m_; }
+  int frames() const { return frames_; }
+
+ private:
+  ExpectedBody expect(const BodyFitter& fitter, double time_s) const;
+  void learn(const BodyFit& fit, const ExpectedBody& expected);
+
+  struct Last {
+    BodyState state;
+    Eigen::Vector3d velocity;  ///< of the root, metres a second
+    std::vector<Eigen::Vector3d> turning;  ///< of each bone about its own axes, radians a second
+    double time_s;
+  };
+  std::optional<Last> last_;
+  Eigen::VectorXd shape_;        ///< mean; empty before the first frame
+  Eigen::MatrixXd information_;  ///< inverse covariance of the shape
+  std::optional<float> stature_m_;
+  int frames_ = 0;
+};
+
+}  // namespace vesalius

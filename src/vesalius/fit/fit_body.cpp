@@ -1,0 +1,207 @@
+#include "vesalius/fit/fit_body.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "vesalius/predict_parts.h"
+
+namespace vesalius {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+constexpr int kLeastCentres = 4;     // parts that a start needs
+constexpr std::size_t kLeastPoints = 30;
+constexpr int kLeastSupport = 4;     // points on a bone that make its joint observed
+
+double logistic(double logit) { return 1.0 / (1.0 + std::exp(-logit)); }
+
+}  // namespace
+
+/// The end of a descent.
+struct BodyFitter::Solution {
+  BodyState state;
+  std::vector<PlacedBone> placed;
+  std::shared_ptr<NormalEquations> equations;
+  bool mirrored = false;
+  double cost = std::numeric_limits<double>::max();
+};
+
+BodyFitter::BodyFitter(BodyModel body, FitOptions options, const FleshModel& flesh)
+    : body_(std::move(body)), options_(options), flesh_(flesh), terms_(flesh_, body_, options_), can_fit_(false) {
+  RangeCheck check;
+  visit_options("fit.", options_, check);
+  can_fit_ = std::ranges::any_of(terms_.surface().of_part, [](const auto& stretches) { return !stretches.empty(); });
+}
+
+BodyFitter::Solution BodyFitter::solve(const FitData& data, BodyState start, FitStage stage, bool mirrored,
+                                       int steps) const {
+  constexpr double kEnough = 1e-3;  // share of the cost that a further step must gain
+  constexpr int kTries = 4;
+  Solution best;
+  best.mirrored = mirrored;
+  best.equations = std::make_shared<NormalEquations>(flesh_);
+  best.state = std::move(start);
+  terms_.evaluate(data, best.state, stage, mirrored, best.placed, *best.equations);
+  best.cost = best.equations->cost();
+  auto equations = std::make_shared<NormalEquations>(flesh_);
+  std::vector<PlacedBone> placed;
+  double damping = 1e-2;
+  for (int step = 0, tries = 0; step < steps && tries < kTries; ++step) {
+    Eigen::MatrixXd matrix = best.equations->matrix();
+    matrix.diagonal().array() += damping * (matrix.diagonal().array() + 1.0);
+    const Eigen::VectorXd change = -matrix.llt().solve(best.equations->gradient());
+    BodyState next = moved(best.state, change);
+    terms_.evaluate(data, next, stage, mirrored, placed, *equations);
+    const double gain = best.cost - equations->cost();
+    if (!(gain > 0.0)) {
+      damping *= 8.0;
+      ++tries;
+      continue;
+    }
+    const bool done = gain < kEnough * std::abs(best.cost);
+    best.cost = equations->cost();
+    best.state = std::move(next);
+    std::swap(best.placed, placed);
+    std::swap(best.equations, equations);
+    damping = std::max(1e-4, 0.3 * damping);
+    tries = 0;
+    if (done) break;
+  }
+  return best;
+}
+
+std::optional<BodyState> BodyFitter::first_state(const FitData& data, bool mirrored, std::size_t pose) const {
+  BodyState state;
+  state.shape = data.expected.shape;
+  state.local.assign(flesh_.bones.size(), Eigen::Quaterniond::Identity());
+  for (const LimbPrior& limb : flesh_.limbs) {
+    const LimbPrior::Component& usual = limb.components[std::min(pose, limb.components.size() - 1)];
+    for (std::size_t i = 0; i < limb.bones.size(); ++i) {
+      state.local[limb.bones[i]] = exp_rotation(usual.mean.segment<3>(static_cast<Index>(3 * i)));
+    }
+  }
+  // The parts of trunk and head, whose places hardly depend on the pose, tell how the body is turned.
+  const std::vector<PlacedBone> rest = place_bones(flesh_, state);
+  std::vector<Vector3d> model, seen;
+  std::vector<double> weights;
+  for (std::size_t p = 0; p < data.centres.size(); ++p) {
+    if (!data.centres[p]) continue;
+    const int part = mirrored ? body_.parts[p].mirror : static_cast<int>(p);
+    if (part < 0 || terms_.surface().of_part[part].empty()) continue;
+    const PartSurface::Stretch& stretch = terms_.surface().of_part[part].front();
+    const FleshBone& bone = flesh_.bones[stretch.bone];
+    const PlacedBone& placed = rest[stretch.bone];
+    const double along = 0.5 * (std::max(stretch.from, 0.0) + std::min(stretch.to, 1.0));
+    Vector3d point = placed.head + along * (placed.tail - placed.head);
+    if (bone.axis != 0) point += 0.5 * stretch.side * placed.numbers[8 + 4] * placed.global.col(0);
+    model.push_back(point);
+    seen.push_back(*data.centres[p] + 0.08 * data.centres[p]->normalized());
+    const bool is_trunk = bone.mirror == stretch.bone || bone.parent == 0;
+    weights.push_back(is_trunk ? 1.0 : 0.1);
+  }
+  if (static_cast<int>(model.size()) < kLeastCentres) return std::nullopt;
+  Eigen::Matrix3Xd from(3, model.size()), onto(3, model.size());
+  Eigen::VectorXd weight(model.size());
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    from.col(static_cast<Index>(i)) = model[i];
+    onto.col(static_cast<Index>(i)) = seen[i];
+    weight[static_cast<Index>(i)] = weights[i];
+  }
+  const Eigen::Matrix3d turn = best_rotation(from, onto, weight);
+  const Vector3d mean_from = from * weight / weight.sum(), mean_onto = onto * weight / weight.sum();
+  state.local[0] = Eigen::Quaterniond(turn) * state.local[0];
+  state.root = mean_onto + turn * (state.root - mean_from);
+  return state;
+}
+
+std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person, const ExpectedBody& expected) const {
+  if (!can_fit_) return std::nullopt;
+  FitData data;
+  data.points = person.points;
+  if (data.points.size() < kLeastPoints) return std::nullopt;
+  data.silhouette.emplace(frame, person.mask, person.box);
+  data.expected = expected;
+  if (data.expected.shape.size() == 0) {
+    data.expected.shape = Eigen::VectorXd::Zero(flesh_.shapes);
+    data.expected.shape_information = Eigen::MatrixXd::Identity(flesh_.shapes, flesh_.shapes);
+  }
+  data.centres.resize(body_.parts.size());
+  for (std::size_t p = 0; p < body_.parts.size(); ++p) {
+    if (person.skeleton.parts[p].state == State::observed) {
+      data.centres[p] = person.skeleton.parts[p].centre.cast<double>();
+    }
+  }
+  std::optional<Solution> best;
+  const auto offer = [&](Solution solution) {
+    if (!best || solution.cost < best->cost) best = std::move(solution);
+  };
+  if (data.expected.pose) {
+    BodyState start = *data.expected.pose;
+    start.shape = data.expected.shape;
+    offer(solve(data, std::move(start), FitStage::points, false, options_.iterations));
+  }
+  const int count = data.expected.pose ? 1 : kStarts;
+  for (int i = 0; i < count; ++i) {
+    const int start = data.expected.pose ? data.expected.start : i;
+    if (start < 0) break;
+    // The labels count as they are, whatever a start takes them for.
+    const bool mirrored = start % 2 == 1;
+    const std::optional<BodyState> first = first_state(data, mirrored, static_cast<std::size_t>(start) / 2);
+    if (!first) break;
+    FitData alone = data;
+    alone.expected.pose.reset();
+    const Solution rough = solve(alone, *first, FitStage::centres, mirrored, options_.iterations);
+    offer(solve(data, rough.state, FitStage::points, false, options_.iterations));
+  }
+  if (!best) return std::nullopt;
+  return report(data, *best);
+}
+
+BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const {
+  const StateLayout layout(flesh_);
+  BodyFit fit;
+  fit.state = solution.state;
+  const std::vector<int> support = terms_.support(data, solution.placed, solution.mirrored);
+  Eigen::MatrixXd matrix = solution.equations->matrix();
+  matrix.diagonal().array() += 1e-6;
+  const Eigen::LLT<Eigen::MatrixXd> solver(matrix);
+  // What the points tell of the shape where the pose is not known: the rest of the unknowns is integrated out.
+  Eigen::MatrixXd shape_columns = Eigen::MatrixXd::Zero(layout.size(), layout.shapes);
+  shape_columns.bottomRows(layout.shapes).setIdentity();
+  const Eigen::MatrixXd shape_covariance = solver.solve(shape_columns).bottomRows(layout.shapes);
+  fit.shape_information = shape_covariance.inverse() - data.expected.shape_information;
+  FittedBody& body = fit.body;
+  body.cost = static_cast<float>(solution.cost);
+  for (Index k = 0; k < solution.state.shape.size(); ++k) body.shape.push_back(static_cast<float>(solution.state.shape[k]));
+  for (int b = 0; b < flesh_.bone_count(); ++b) {
+    const PlacedBone& placed = solution.placed[b];
+    FittedBone& bone = body.bones.emplace_back();
+    bone.head = placed.head.cast<float>();
+    bone.tail = placed.tail.cast<float>();
+    bone.global = Eigen::Quaternionf(Eigen::Quaterniond(placed.global).cast<float>());
+    bone.local = solution.state.local[b].cast<float>();
+    bone.length_m = static_cast<float>((placed.tail - placed.head).norm());
+    const Eigen::Matrix3Xd derivative = solution.equations->head_by_state(b, solution.placed);
+    const Eigen::MatrixXd spread = solver.solve(derivative.transpose());
+    const Eigen::Matrix3d covariance = derivative * spread;
+    bone.covariance = covariance.cast<float>();
+    bone.support = support[b];
+    const int parent = flesh_.bones[b].parent;
+    const int about = support[b] + (parent >= 0 ? support[parent] : 0);
+    bone.state = support[b] >= kLeastSupport && about >= 2 * kLeastSupport ? State::observed : State::predicted;
+    const JointTrust& trust = bone.state == State::observed ? flesh_.observed : flesh_.predicted;
+    const double sigma = std::sqrt(std::max(covariance.trace() / 3.0, 1e-8));
+    bone.confidence = static_cast<float>(
+        logistic(static_cast<double>(trust.bias) + static_cast<double>(trust.slope) * std::log(sigma)));
+  }
+  body.stature_m = static_cast<float>(stature(flesh_, solution.state.shape));
+  return fit;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "vesalius/base/body_model.h"
+#include "vesalius/detection.h"
+#include "vesalius/fit/body_state.h"
+#include "vesalius/fit/fit_terms.h"
+#include "vesalius/fit/fitted_body.h"
+#include "vesalius/fit/flesh_model.h"
+
+namespace vesalius {
+
+/// Ways to begin a fit from the kinematic skeleton: as it is and mirrored, with the two most usual poses of each limb.
+inline constexpr int kStarts = 4;
+
+/// A fitted body as the fit knows it, from which the next frame's fit starts.
+struct BodyFit {
+  FittedBody body;
+  BodyState state;
+  Eigen::MatrixXd shape_information;  ///< what this frame's points tell of the shape, without what was known before
+};
+
+/// Fits bodies to people: an articulated body of flesh whose parts lie on the points with their labels, which has no
+/// flesh where the camera sees free space, in a usual pose and of a usual shape. Levenberg-Marquardt from several
+/// starts: the kinematic skeleton, its mirror image, and the body of the last frame; the best fit wins, so that facing
+/// and crossed limbs are decided by the whole body. It may be used from several threads.
+class BodyFitter {
+ public:
+  /// Throws UsageError for an option outside its range. `flesh` must outlive it.
+  explicit BodyFitter(BodyModel body, FitOptions options = {}, const FleshModel& flesh = builtin_flesh());
+
+  /// Returns whether the body model has surface rules of the flesh's bones, without which nothing is fitted.
+  bool can_fit() const { return can_fit_; }
+
+  /// Returns the body of a person, or nothing if too little of the person is known. `expected` is what earlier frames
+  /// tell (its shape may be empty). The frame's size is the mask's.
+  std::optional<BodyFit> fit(const Frame& frame, const Person& person, const ExpectedBody& expected = {}) const;
+
+  const FleshModel& flesh() const { return flesh_; }
+  const BodyModel& body() const { return body_; }
+
+ private:
+  struct Solution;
+  Solution solve(const FitData& data, BodyState start, FitStage stage, bool mirrored, int steps) const;
+  std::optional<BodyState> first_state(const FitData& data, bool mirrored, std::size_t pose) const;
+  BodyFit report(const FitData& data, const Solution& solution) const;
+
+  BodyModel body_;
+  FitOptions options_;
+  const FleshModel& flesh_;
+  FitTerms terms_;
+  bool can_fit_;
+};
+
+}  // namespace vesalius

@@ -1,0 +1,406 @@
+#include "vesalius/fit/fit_terms.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vesalius {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+constexpr double kLeastRadius = 0.1;  // of a point in units of the flesh's half width: its direction is not defined at 0
+constexpr double kLeastHalf_m = 0.008;
+
+/// The flesh of a bone at a place along it.
+struct CrossSection {
+  std::array<double, 2> centre, half;
+  std::array<double, FleshBone::kStations> share;  ///< of each station
+};
+
+CrossSection section_at(const PlacedBone& placed, const FleshBone& bone, double along) {
+  constexpr int kLast = FleshBone::kStations - 1;
+  CrossSection section{};
+  int below = 0;
+  while (below < kLast - 1 && along > static_cast<double>(bone.stations[below + 1])) ++below;
+  const double from = static_cast<double>(bone.stations[below]), to = static_cast<double>(bone.stations[below + 1]);
+  const double above = std::clamp((along - from) / (to - from), 0.0, 1.0);
+  section.share[below] = 1.0 - above;
+  section.share[below + 1] = above;
+  for (int i = 0; i < 2; ++i) {
+    for (int s = 0; s < FleshBone::kStations; ++s) {
+      section.centre[i] += section.share[s] * placed.numbers[6 + 4 * s + i];
+      section.half[i] += section.share[s] * placed.numbers[6 + 4 * s + 2 + i];
+    }
+    section.half[i] = std::max(section.half[i], kLeastHalf_m);
+  }
+  return section;
+}
+
+/// Returns the point in the middle of the flesh at a place along the bone, in the bone's frame.
+Vector3d middle_at(const PlacedBone& placed, const FleshBone& bone, const CrossSection& section, double along) {
+  const std::array<int, 2> across = axes_across(bone.axis);
+  Vector3d point;
+  point[bone.axis] = along * placed.numbers[3 + bone.axis];
+  for (int i = 0; i < 2; ++i) point[across[i]] = section.centre[i];
+  return point;
+}
+
+double geman_mcclure(double squared, double limit) { return squared / (1.0 + squared / (limit * limit)); }
+double geman_mcclure_weight(double squared, double limit) {
+  const double share = 1.0 / (1.0 + squared / (limit * limit));
+  return share * share;
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, FitOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "iterations", o.iterations, {"", 1, 200, "Most steps from each start."});
+  visitor.option(prefix + "point-weight", o.point_weight, {"", 0.0, 100.0, "Weight of a point."});
+  visitor.option(prefix + "surface", o.surface_m, {"m", 0.001, 1.0, "Standard deviation of points about the flesh."});
+  visitor.option(prefix + "along", o.along_m, {"m", 0.001, 1.0, "Standard deviation of a part's ends on its bone."});
+  visitor.option(prefix + "side", o.side_m, {"m", 0.001, 1.0, "Standard deviation of the border of left and right."});
+  visitor.option(prefix + "outlier", o.outlier, {"", 0.1, 100.0, "Deviations beyond which points count less and less."});
+  visitor.option(prefix + "mirror-cost", o.mirror_cost,
+                 {"", 0.0, 1000.0, "Squared deviations that a label of the wrong side costs."});
+  visitor.option(prefix + "label-weight", o.label_weight, {"", 0.0, 100.0, "Weight of the labels' log probabilities."});
+  visitor.option(prefix + "outline", o.outline_m, {"m", 0.001, 1.0, "Standard deviation of flesh off the outline."});
+  visitor.option(prefix + "free", o.free_m, {"m", 0.001, 1.0, "Standard deviation of flesh in free space."});
+  visitor.option(prefix + "outline-weight", o.outline_weight, {"", 0.0, 100.0, "Weight of outline and free space."});
+  visitor.option(prefix + "pose-weight", o.pose_weight, {"", 0.0, 100.0, "Weight of how usual the pose is."});
+  visitor.option(prefix + "limit", o.limit_rad, {"rad", 0.001, 10.0, "Standard deviation beyond a joint's range."});
+  visitor.option(prefix + "shape-weight", o.shape_weight, {"", 0.0, 100.0, "Weight of how usual the shape is."});
+  visitor.option(prefix + "centre", o.centre_m, {"m", 0.001, 1.0, "Standard deviation of parts' centres at the start."});
+  visitor.option(prefix + "follow", o.follow_m,
+                 {"m", 0.001, 10.0, "Standard deviation of a person's place from the expected one in 1/30 s."});
+  visitor.option(prefix + "follow-turn", o.follow_rad,
+                 {"rad", 0.001, 10.0, "Standard deviation of a bone's turn from the expected one in 1/30 s."});
+}
+
+PartSurface::PartSurface(const BodyModel& body, const FleshModel& flesh) : of_part(body.parts.size()) {
+  constexpr double kBeyond = 10.0;
+  for (const SurfaceRule& rule : body.surface) {
+    const int bone = flesh.find_bone(rule.bone);
+    if (bone < 0) continue;
+    Stretch stretch;
+    stretch.bone = bone;
+    stretch.from = rule.from <= 0.F ? -kBeyond : static_cast<double>(rule.from);
+    stretch.to = rule.to >= 1.F ? kBeyond : static_cast<double>(rule.to);
+    stretch.side = rule.side == SurfaceRule::Side::left ? 1 : rule.side == SurfaceRule::Side::right ? -1 : 0;
+    of_part[rule.part].push_back(stretch);
+  }
+}
+
+/// How a point lies to the flesh of a stretch of a bone.
+struct FitTerms::Hit {
+  PartSurface::Stretch stretch;
+  double distance = 0.0;  ///< outside of the surface, metres
+  Vector3d normal;        ///< of the surface, optical frame
+  double along = 0.0;     ///< beyond the stretch's nearer end, metres, away from the bone's head positive
+  double end = 0.0;       ///< which end: place along the bone
+  double side = 0.0;      ///< on the wrong side of the middle, metres, not below 0
+  double behind = 0.0;    ///< beyond the flesh's middle as the camera sees it, metres, not below 0
+  Vector3d ray;
+  CrossSection section;
+  std::array<double, 2> across_normal, unit;  ///< normal and place in units of half widths, across the bone
+  double cost = std::numeric_limits<double>::max();  ///< squared deviations with what the label costs
+  double squared = 0.0;
+};
+
+FitTerms::FitTerms(const FleshModel& flesh, const BodyModel& body, const FitOptions& options)
+    : flesh_(flesh), body_(body), options_(options), surface_(body, flesh), layout_(flesh) {}
+
+FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurface::Stretch& stretch,
+                            const Vector3d& at) const {
+  const FleshBone& bone = flesh_.bones[index];
+  Hit hit;
+  hit.stretch = stretch;
+  const Vector3d q = placed.global.transpose() * (at - placed.head);
+  const double length = placed.numbers[3 + bone.axis];
+  const double along = q[bone.axis] / length;
+  const double first = static_cast<double>(bone.stations.front()), last = static_cast<double>(bone.stations.back());
+  const double inside = std::clamp(along, first, last);
+  hit.section = section_at(placed, bone, inside);
+  const std::array<int, 2> across = axes_across(bone.axis);
+  Vector3d gradient = Vector3d::Zero();
+  double radius = 0.0;
+  for (int i = 0; i < 2; ++i) {
+    hit.unit[i] = (q[across[i]] - hit.section.centre[i]) / hit.section.half[i];
+    gradient[across[i]] = hit.unit[i] / hit.section.half[i];
+    radius += hit.unit[i] * hit.unit[i];
+  }
+  const double cap = std::min(hit.section.half[0], hit.section.half[1]);
+  const double over = (along - inside) * length / cap;
+  gradient[bone.axis] = over / cap;
+  radius = std::sqrt(radius + over * over);
+  const double steep = gradient.norm();
+  if (radius < kLeastRadius || steep < 1e-9) {  // in the middle: the surface towards the camera is meant
+    hit.ray = at.normalized();
+    hit.distance = -cap;
+    hit.normal = -hit.ray;
+    hit.across_normal = {0.0, 0.0};
+  } else {
+    hit.distance = (radius - 1.0) * radius / steep;
+    const Vector3d normal = gradient / steep;
+    hit.across_normal = {normal[across[0]], normal[across[1]]};
+    hit.normal = placed.global * normal;
+    hit.ray = at.normalized();
+  }
+  const Vector3d middle = placed.head + placed.global * middle_at(placed, bone, hit.section, inside);
+  hit.behind = std::max(0.0, hit.ray.dot(at - middle));
+  if (along < stretch.from) {
+    hit.end = stretch.from;
+  } else if (along > stretch.to) {
+    hit.end = stretch.to;
+  } else {
+    hit.end = along;
+  }
+  hit.along = (along - hit.end) * length;
+  if (stretch.side != 0) hit.side = std::max(0.0, -stretch.side * q.x());
+  const auto square = [](double value, float sigma) {
+    const double deviations = value / static_cast<double>(sigma);
+    return deviations * deviations;
+  };
+  hit.squared = square(hit.distance, options_.surface_m) + square(hit.along, options_.along_m) +
+                square(hit.side, options_.side_m) + square(hit.behind, options_.surface_m);
+  hit.cost = geman_mcclure(hit.squared, static_cast<double>(options_.outlier));
+  return hit;
+}
+
+FitTerms::Hit FitTerms::best_hit(const std::vector<PlacedBone>& placed, const PersonPoint& point,
+                                 bool mirrored) const {
+  Hit best;
+  const Vector3d at = point.at.cast<double>();
+  const auto offer = [&](int part, double cost) {
+    for (const PartSurface::Stretch& stretch : surface_.of_part[part]) {
+      Hit one = hit(placed[stretch.bone], stretch.bone, stretch, at);
+      one.cost += cost;
+      if (one.cost < best.cost) best = one;
+    }
+  };
+  for (int i = 0; i < PersonPoint::kParts && point.part[i] != kBackground && point.share[i] > 0.F; ++i) {
+    const int part = point.part[i], mirror = body_.parts[part].mirror;
+    const double cost = -2.0 * static_cast<double>(options_.label_weight) * std::log(static_cast<double>(point.share[i]));
+    if (cost >= best.cost) break;
+    offer(mirrored && mirror >= 0 ? mirror : part, cost);
+    const double swapped = cost + static_cast<double>(options_.mirror_cost);
+    if (mirror >= 0 && mirror != part && swapped < best.cost) offer(mirrored ? part : mirror, swapped);
+  }
+  return best;
+}
+
+void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
+                          NormalEquations& equations) const {
+  const auto point_weight = static_cast<double>(options_.point_weight);
+  const auto inverse_square = [](float sigma) { return 1.0 / (static_cast<double>(sigma) * static_cast<double>(sigma)); };
+  const double surface = inverse_square(options_.surface_m), along = inverse_square(options_.along_m),
+               side = inverse_square(options_.side_m);
+  Eigen::VectorXd by_shape(flesh_.shapes);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
+  for (const PersonPoint& point : data.points) {
+    const Hit hit = best_hit(placed, point, mirrored);
+    const int b = hit.stretch.bone;
+    if (b < 0) continue;
+    const Vector3d at = point.at.cast<double>();
+    const FleshBone& bone = flesh_.bones[b];
+    const double weight = point_weight * geman_mcclure_weight(hit.squared, static_cast<double>(options_.outlier));
+    // The rows' squares sum to weight * squared; what the robust cost and the label add is constant.
+    equations.add_cost(point_weight * hit.cost - weight * hit.squared);
+    for (Index k = 0; k < by_shape.size(); ++k) {
+      const FleshBone::Numbers& by = bone.shapes[k];
+      double change = 0.0;
+      for (int s = 0; s < FleshBone::kStations; ++s) {
+        for (int i = 0; i < 2; ++i) {
+          change -= hit.section.share[s] * hit.across_normal[i] *
+                    (static_cast<double>(by[6 + 4 * s + i]) + hit.unit[i] * static_cast<double>(by[6 + 4 * s + 2 + i]));
+        }
+      }
+      by_shape[k] = change;
+    }
+    equations.add_point(b, at, -hit.normal, by_shape, hit.distance, weight * surface);
+    if (hit.along != 0.0) {
+      const Vector3d axis = placed[b].global.col(bone.axis) * (placed[b].numbers[3 + bone.axis] > 0.0 ? 1.0 : -1.0);
+      const double sign = placed[b].numbers[3 + bone.axis] > 0.0 ? 1.0 : -1.0;
+      for (Index k = 0; k < by_shape.size(); ++k) {
+        by_shape[k] = -hit.end * sign * static_cast<double>(bone.shapes[k][3 + bone.axis]);
+      }
+      equations.add_point(b, at, -axis, by_shape, sign * hit.along, weight * along);
+    }
+    if (hit.side > 0.0) {
+      const Vector3d towards = hit.stretch.side * placed[b].global.col(0);
+      equations.add_point(b, at, towards, none, hit.side, weight * side);
+    }
+    if (hit.behind > 0.0) equations.add_point(b, at, -hit.ray, none, hit.behind, weight * surface);
+  }
+}
+
+void FitTerms::add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
+                           NormalEquations& equations) const {
+  constexpr double kAside = 0.5;  // a half's visible middle, in half widths from the middle line
+  const double sigma = static_cast<double>(options_.centre_m);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
+  for (std::size_t p = 0; p < data.centres.size(); ++p) {
+    if (!data.centres[p]) continue;
+    const int part = mirrored ? body_.parts[p].mirror : static_cast<int>(p);
+    if (part < 0 || surface_.of_part[part].empty()) continue;
+    // The longest of its stretches stands for the part.
+    const auto length = [&](const PartSurface::Stretch& s) {
+      return (std::min(s.to, 1.0) - std::max(s.from, 0.0)) * placed[s.bone].numbers[3 + flesh_.bones[s.bone].axis];
+    };
+    const auto& stretches = surface_.of_part[part];
+    const PartSurface::Stretch& stretch = *std::ranges::max_element(
+        stretches, {}, [&](const PartSurface::Stretch& s) { return std::abs(length(s)); });
+    const FleshBone& bone = flesh_.bones[stretch.bone];
+    const PlacedBone& at = placed[stretch.bone];
+    const double along = 0.5 * (std::max(stretch.from, 0.0) + std::min(stretch.to, 1.0));
+    const CrossSection section = section_at(at, bone, along);
+    Vector3d point = middle_at(at, bone, section, along);
+    if (bone.axis != 0) point.x() += kAside * stretch.side * section.half[0];
+    const Vector3d surface = at.head + at.global * point -
+                             0.7 * std::min(section.half[0], section.half[1]) * data.centres[p]->normalized();
+    const Vector3d off = surface - *data.centres[p];
+    const double squared = off.squaredNorm() / (sigma * sigma);
+    const double weight = geman_mcclure_weight(squared, 3.0);
+    equations.add_cost(geman_mcclure(squared, 3.0) - weight * squared);
+    for (int axis = 0; axis < 3; ++axis) {
+      equations.add_point(stretch.bone, surface, Vector3d::Unit(axis), none, off[axis], weight / (sigma * sigma));
+    }
+  }
+}
+
+void FitTerms::add_outline(const FitData& data, const std::vector<PlacedBone>& placed,
+                           NormalEquations& equations) const {
+  constexpr std::array kPlaces{0.15, 0.5, 0.85};
+  constexpr double kLimit = 3.0;
+  if (!data.silhouette) return;
+  const double weight = static_cast<double>(options_.outline_weight);
+  const double outline = static_cast<double>(options_.outline_m), free = static_cast<double>(options_.free_m);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
+  for (int b = 0; b < flesh_.bone_count(); ++b) {
+    const FleshBone& bone = flesh_.bones[b];
+    for (const double share : kPlaces) {
+      const double along = static_cast<double>(bone.stations.front()) +
+                           share * static_cast<double>(bone.stations.back() - bone.stations.front());
+      const CrossSection section = section_at(placed[b], bone, along);
+      const Vector3d point = placed[b].head + placed[b].global * middle_at(placed[b], bone, section, along);
+      const double half = std::min(section.half[0], section.half[1]);
+      const Silhouette::Sight sight = data.silhouette->look(point, half);
+      if (sight.kind == Silhouette::Sight::Kind::on) {
+        const double violation = sight.depth_m - (point.z() - 0.7 * half);
+        if (violation <= 0.0) continue;
+        const double squared = violation * violation / (free * free);
+        const double robust = weight * geman_mcclure_weight(squared, kLimit);
+        equations.add_cost(weight * geman_mcclure(squared, kLimit) - robust * squared);
+        equations.add_point(b, point, -Vector3d::UnitZ(), none, violation, robust / (free * free));
+      } else if (sight.kind == Silhouette::Sight::Kind::behind) {
+        const double scale = point.z() / static_cast<double>(data.silhouette->focal_px());
+        const Eigen::Vector2d aside = scale * sight.aside;
+        const double squared = aside.squaredNorm() / (outline * outline);
+        const double robust = weight * geman_mcclure_weight(squared, kLimit);
+        equations.add_cost(weight * geman_mcclure(squared, kLimit) - robust * squared);
+        for (int axis = 0; axis < 2; ++axis) {
+          equations.add_point(b, point, -Vector3d::Unit(axis), none, aside[axis], robust / (outline * outline));
+        }
+      }
+    }
+  }
+}
+
+void FitTerms::add_poses(const BodyState& state, NormalEquations& equations) const {
+  for (const LimbPrior& limb : flesh_.limbs) {
+    const auto size = static_cast<Index>(3 * limb.bones.size());
+    Eigen::VectorXd turns(size);
+    for (std::size_t i = 0; i < limb.bones.size(); ++i) {
+      turns.segment<3>(static_cast<Index>(3 * i)) = log_rotation(state.local[limb.bones[i]]);
+    }
+    const LimbPrior::Component* best = nullptr;
+    double least = std::numeric_limits<double>::max();
+    Eigen::VectorXd whitened(size), of_best(size);
+    for (const LimbPrior::Component& component : limb.components) {
+      whitened = component.whitening.triangularView<Eigen::Lower>() * (turns - component.mean);
+      const double cost = whitened.squaredNorm() - 2.0 * component.log_density;
+      if (cost >= least) continue;
+      least = cost;
+      best = &component;
+      of_best = whitened;
+    }
+    Eigen::MatrixXd derivative = best->whitening;
+    for (std::size_t i = 0; i < limb.bones.size(); ++i) {
+      const auto at = static_cast<Index>(3 * i);
+      derivative.middleCols<3>(at) = (derivative.middleCols<3>(at) * log_by_turn(turns.segment<3>(at))).eval();
+    }
+    const auto weight = static_cast<double>(options_.pose_weight);
+    equations.add_turns(limb.bones, derivative, of_best, weight);
+    equations.add_cost(-2.0 * weight * best->log_density);
+  }
+}
+
+void FitTerms::add_limits(const BodyState& state, NormalEquations& equations) const {
+  const double sigma = static_cast<double>(options_.limit_rad);
+  for (int b = 0; b < flesh_.bone_count(); ++b) {
+    const FleshBone& bone = flesh_.bones[b];
+    if (bone.parent < 0) continue;
+    const Vector3d turn = log_rotation(state.local[b]);
+    Vector3d beyond = Vector3d::Zero();
+    for (int i = 0; i < 3; ++i) {
+      beyond[i] = turn[i] - std::clamp(turn[i], static_cast<double>(bone.low[i]), static_cast<double>(bone.high[i]));
+    }
+    if (beyond.isZero()) continue;
+    Eigen::Matrix3d derivative = log_by_turn(turn);
+    for (int i = 0; i < 3; ++i) {
+      if (beyond[i] == 0.0) derivative.row(i).setZero();
+    }
+    equations.add_turns({b}, derivative, beyond, 1.0 / (sigma * sigma));
+  }
+}
+
+void FitTerms::add_expected(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const {
+  const auto weight = static_cast<double>(options_.shape_weight);
+  const Eigen::VectorXd off = state.shape - expected.shape;
+  equations.add_shape(weight * expected.shape_information, off);
+  if (!expected.pose) return;
+  const double metres = static_cast<double>(options_.follow_m) * expected.loosened;
+  const double radians = static_cast<double>(options_.follow_rad) * expected.loosened;
+  for (int axis = 0; axis < 3; ++axis) {
+    equations.add_single(StateLayout::root() + axis, 1.0, state.root[axis] - expected.pose->root[axis],
+                         1.0 / (metres * metres));
+  }
+  for (int b = 0; b < flesh_.bone_count(); ++b) {
+    const Vector3d turn = log_rotation(expected.pose->local[b].conjugate() * state.local[b]);
+    constexpr double kLimit = 3.0;  // limbs also move fast
+    const double squared = turn.squaredNorm() / (radians * radians);
+    const double robust = geman_mcclure_weight(squared, kLimit);
+    equations.add_cost(geman_mcclure(squared, kLimit) - robust * squared);
+    equations.add_turns({b}, log_by_turn(turn), turn, robust / (radians * radians));
+  }
+}
+
+void FitTerms::evaluate(const FitData& data, const BodyState& state, FitStage stage, bool mirrored,
+                        std::vector<PlacedBone>& placed, NormalEquations& equations) const {
+  placed = place_bones(flesh_, state);
+  equations.clear(placed);
+  if (stage == FitStage::centres) {
+    add_centres(data, placed, mirrored, equations);
+  } else {
+    add_points(data, placed, mirrored, equations);
+    add_outline(data, placed, equations);
+  }
+  add_poses(state, equations);
+  add_limits(state, equations);
+  add_expected(data.expected, state, equations);
+  equations.finish();
+}
+
+std::vector<int> FitTerms::support(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored) const {
+  std::vector<int> support(flesh_.bones.size(), 0);
+  const double most = static_cast<double>(options_.outlier) * static_cast<double>(options_.outlier);
+  for (const PersonPoint& point : data.points) {
+    const Hit hit = best_hit(placed, point, mirrored);
+    if (hit.stretch.bone >= 0 && hit.squared < most) ++support[hit.stretch.bone];
+  }
+  return support;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/options.h"
+#include "vesalius/fit/body_state.h"
+#include "vesalius/fit/normal_equations.h"
+#include "vesalius/fit/silhouette.h"
+#include "vesalius/forest/person_points.h"
+
+namespace vesalius {
+
+struct FitOptions {
+  int iterations = 12;           ///< most steps from a start
+  float point_weight = 0.2F;     ///< of a point, since neighbours err alike
+  float surface_m = 0.025F;      ///< standard deviation of points about the flesh's surface
+  float along_m = 0.05F;         ///< of a part's ends along its bone
+  float side_m = 0.05F;          ///< of a part's border on the middle line
+  float outlier = 3.F;           ///< deviations beyond which a point counts less and less
+  float mirror_cost = 3.F;       ///< squared deviations that a label on the wrong side costs
+  float label_weight = 1.F;      ///< of the logarithms of the labels' probabilities
+  float outline_m = 0.06F;       ///< standard deviation of flesh beyond the outline
+  float free_m = 0.06F;          ///< of flesh in space that the camera sees is free
+  float outline_weight = 0.3F;   ///< of those two, for each of three places of a bone
+  float pose_weight = 0.5F;      ///< of the poses' distribution
+  float limit_rad = 0.1F;        ///< standard deviation beyond a joint's range
+  float shape_weight = 1.F;      ///< of the bodies' distribution
+  float centre_m = 0.08F;        ///< of the parts' centres, from which a fit starts
+  float follow_m = 0.02F;        ///< standard deviation of the root from its expected place after a thirtieth second
+  float follow_rad = 0.1F;      ///< of a bone's turn from its expected one
+};
+void visit_options(const std::string& prefix, FitOptions& options, OptionVisitor& visitor);
+
+/// The bones whose surface belongs to each part.
+struct PartSurface {
+  struct Stretch {
+    int bone = -1;
+    double from = 0.0, to = 1.0;  ///< along the bone; beyond its ends where `to` or `from` are those
+    int side = 0;                 ///< 1: the left half of the bone, -1: the right one, 0: both
+  };
+  std::vector<std::vector<Stretch>> of_part;
+
+  /// Returns nothing for parts without surface rules, and for rules of bones that the flesh lacks.
+  PartSurface(const BodyModel& body, const FleshModel& flesh);
+};
+
+/// What is known of a body before its points are looked at.
+struct ExpectedBody {
+  std::optional<BodyState> pose;       ///< where the person is expected in this frame
+  int start = 0;                       ///< which of kStarts is tried besides the pose; -1: none
+  double loosened = 1.0;               ///< multiplies the standard deviations of following; grows with the time gone by
+  Eigen::VectorXd shape;               ///< mean of the shape
+  Eigen::MatrixXd shape_information;   ///< inverse of its covariance
+};
+
+/// Everything that a body is fitted to in one frame.
+struct FitData {
+  std::vector<PersonPoint> points;
+  std::optional<Silhouette> silhouette;
+  std::vector<std::optional<Eigen::Vector3d>> centres;  ///< [part] mean of its visible surface
+  ExpectedBody expected;
+};
+
+/// Which of the terms count.
+enum class FitStage {
+  centres,  ///< parts' centres and the priors: for a start
+  points    ///< points, outline and the priors
+};
+
+/// The sums of squares that a body's fit minimises.
+class FitTerms {
+ public:
+  FitTerms(const FleshModel& flesh, const BodyModel& body, const FitOptions& options);
+
+  /// Fills `equations` with the terms of a state. Labels are taken for their mirror partners' if `mirrored`.
+  void evaluate(const FitData& data, const BodyState& state, FitStage stage, bool mirrored,
+                std::vector<PlacedBone>& placed, NormalEquations& equations) const;
+
+  /// Returns for each bone how many points lie on it, by the labels and places.
+  std::vector<int> support(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored) const;
+
+  const PartSurface& surface() const { return surface_; }
+
+ private:
+  struct Hit;
+  Hit hit(const PlacedBone& bone, int index, const PartSurface::Stretch& stretch, const Eigen::Vector3d& at) const;
+  Hit best_hit(const std::vector<PlacedBone>& placed, const PersonPoint& point, bool mirrored) const;
+  void add_points(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
+                  NormalEquations& equations) const;
+  void add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
+                   NormalEquations& equations) const;
+  void add_outline(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
+  void add_poses(const BodyState& state, NormalEquations& equations) const;
+  void add_limits(const BodyState& state, NormalEquations& equations) const;
+  void add_expected(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const;
+
+  const FleshModel& flesh_;
+  const BodyModel& body_;
+  const FitOptions& options_;
+  PartSurface surface_;
+  StateLayout layout_;
+};
+
+}  // namespace vesalius
