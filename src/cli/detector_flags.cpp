@@ -13,6 +13,23 @@
 #include "vesalius/base/error.h"
 
 namespace vesalius::cli {
+namespace {
+
+PeopleOptions read_people_options(const std::string& options_file) {
+  PeopleOptions options;
+  if (!options_file.empty()) {
+    read_options(options_file, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
+  }
+  return options;
+}
+
+}  // namespace
+
+void visit_options(const std::string& prefix, PeopleOptions& options, OptionVisitor& visitor) {
+  visit_options(prefix, options.detect, visitor);
+  visit_options(prefix + "track.", options.track, visitor);
+}
+
 void replace_body(Forest& forest, const std::string& path) {
   BodyModel body = parse_body_model(read_file(path), path);
   const auto& trained = forest.body.parts;
@@ -27,10 +44,7 @@ void replace_body(Forest& forest, const std::string& path) {
 }
 
 DetectOptions detect_options(const std::string& options_file, const OptionFlags<DetectOptions>& flags) {
-  DetectOptions options;
-  if (!options_file.empty()) {
-    read_options(options_file, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
-  }
+  DetectOptions options = read_people_options(options_file).detect;
   flags.apply(options);
   RangeCheck check;
   visit_options("", options, check);
@@ -50,7 +64,17 @@ DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
 
 std::string DetectorFlags::model() const { return model_.empty() ? default_model() : model_; }
 
-DetectOptions DetectorFlags::options() const { return detect_options(options_file_, options_); }
+PeopleOptions DetectorFlags::all_options() const {
+  PeopleOptions options = read_people_options(options_file_);
+  options_.apply(options);
+  RangeCheck check;
+  visit_options("", options, check);
+  return options;
+}
+
+DetectOptions DetectorFlags::options() const { return all_options().detect; }
+
+TrackOptions DetectorFlags::track_options() const { return all_options().track; }
 
 Forest DetectorFlags::forest() const {
   Forest forest = load_model(model());

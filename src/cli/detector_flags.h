@@ -5,6 +5,7 @@
 #include "cli/option_flags.h"
 #include "vesalius/detect.h"
 #include "vesalius/forest/forest.h"
+#include "vesalius/track/track_people.h"
 
 namespace CLI {
 class App;
@@ -12,15 +13,23 @@ class App;
 
 namespace vesalius::cli {
 
+/// The options of all that is done to find people and to follow them.
+struct PeopleOptions {
+  DetectOptions detect;
+  TrackOptions track;
+};
+void visit_options(const std::string& prefix, PeopleOptions& options, OptionVisitor& visitor);
+
 /// Returns the default options, changed first by the TOML file (if the path is not empty) and then by the flags. Throws
-/// Error for a file that cannot be used and UsageError for options outside their range.
+/// Error for a file that cannot be used and UsageError for options outside their range. The file may have options of
+/// tracking too.
 DetectOptions detect_options(const std::string& options_file, const OptionFlags<DetectOptions>& flags);
 
 /// Replaces the forest's body by that of a file with the same parts but another kinematic tree or other joints. Throws
 /// Error for a file that cannot be used or has other parts.
 void replace_body(Forest& forest, const std::string& path);
 
-/// The flags that define a detector: --model, --body, --options and one for every detector option.
+/// The flags that define a detector: --model, --body, --options and one for every option of detector and tracking.
 class DetectorFlags {
  public:
   /// This object must live as long as the command.
@@ -30,13 +39,16 @@ class DetectorFlags {
   Detector make() const;
   /// The parts of which `make` makes it.
   DetectOptions options() const;
+  TrackOptions track_options() const;
   Forest forest() const;
   /// Returns the path of the model. Throws Error if none is given and there is no default model.
   std::string model() const;
 
  private:
+  PeopleOptions all_options() const;
+
   std::string model_, body_, options_file_;
-  OptionFlags<DetectOptions> options_;
+  OptionFlags<PeopleOptions> options_;
 };
 
 inline constexpr const char* kDetectorGroup = "Detector";

@@ -3,16 +3,16 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/detector_flags.h"
 #include "cli/satellites.h"
 #include "cli/text_sink.h"
 #include "io/files/options_file.h"
-#include "vesalius/detect.h"
 
 namespace vesalius::cli {
 namespace {
 
 std::string detector_defaults() {
-  DetectOptions options;
+  PeopleOptions options;
   return options_toml([&](OptionVisitor& visitor) { visit_options("", options, visitor); });
 }
 

@@ -2,8 +2,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -32,16 +34,70 @@ bool read_next(FrameSource& source, FoundFrame& to) {
   return to.frame || to.error;
 }
 
-void detect(const Detector& detector, FoundFrame& in) {
-  if (!in.frame || in.error) return;
-  try {
-    in.people = detector.detect(*in.frame, nullptr, &in.times);
-    if (in.frame->arrived_s) {
-      const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-      in.latency_ms = 1e3 * (now.count() - *in.frame->arrived_s);
+/// Lets frames that are worked at together use the tracker one after the other, in their order.
+class Turns {
+ public:
+  /// Waits until all frames before this one have ended their turn.
+  void wait(long number) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return next_ == number; });
+  }
+  /// Ends the turn of a frame, whether it has begun or not. Every frame must end its own.
+  void end(long number) {
+    wait(number);
+    const std::scoped_lock lock(mutex_);
+    ++next_;
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  long next_ = 0;
+};
+
+/// Finds people, and follows them if there is a tracker.
+class Finder {
+ public:
+  Finder(const Detector& detector, PeopleTracker* tracker) : detector_(detector), tracker_(tracker) {}
+
+  /// `number` counts the frames that are passed to this function, from 0, in the source's order.
+  void find(FoundFrame& in, long number) {
+    if (in.frame && !in.error) {
+      try {
+        tracker_ != nullptr ? follow(in, number) : detect(in);
+      } catch (...) {
+        in.error = std::current_exception();
+      }
     }
-  } catch (...) {
-    in.error = std::current_exception();
+    if (tracker_ != nullptr) turns_.end(number);
+  }
+
+ private:
+  void detect(FoundFrame& in) { in.people = detector_.detect(*in.frame, nullptr, &in.times); }
+
+  void follow(FoundFrame& in, long number) {
+    const AskPrior ask = [&](const Frame& frame) {
+      turns_.wait(number);
+      Prior prior;
+      in.track_ms += elapsed_ms([&] { prior = tracker_->expect(frame); });
+      return prior;
+    };
+    Detection found = detector_.detect(*in.frame, ask, nullptr, &in.times);
+    in.people = found.people;
+    in.track_ms += elapsed_ms([&] { in.tracked = tracker_->update(*in.frame, std::move(found.people), found.planes); });
+  }
+
+  const Detector& detector_;
+  PeopleTracker* tracker_;  ///< null: people are not followed
+  Turns turns_;
+};
+
+void find_people(Finder& finder, FoundFrame& in, long number) {
+  finder.find(in, number);
+  if (in.frame && !in.error && in.frame->arrived_s) {
+    const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+    in.latency_ms = 1e3 * (now.count() - *in.frame->arrived_s);
   }
 }
 
@@ -67,6 +123,7 @@ class Pace {
 /// A frame in the queues. Whoever takes it out of the writing queue waits until it is processed.
 struct Job {
   FoundFrame found;
+  long number = 0;  ///< among the frames that are worked at
   std::promise<void> done;
 };
 using JobPointer = std::shared_ptr<Job>;
@@ -75,9 +132,9 @@ bool stopped(const StreamOptions& options) { return options.stop && options.stop
 
 class Stream {
  public:
-  Stream(FrameSource& source, const Detector& detector, const StreamOptions& options)
+  Stream(FrameSource& source, const Detector& detector, PeopleTracker* tracker, const StreamOptions& options)
       : source_(source),
-        detector_(detector),
+        finder_(detector, tracker),
         options_(options),
         realtime_(options.realtime || source.is_live()),
         work_(realtime_ ? 1 : kFramesAhead),
@@ -111,7 +168,9 @@ class Stream {
   }
 
   void read_ahead() {
+    long number = 0;
     for (auto job = std::make_shared<Job>(); read_next(source_, job->found); job = std::make_shared<Job>()) {
+      job->number = number++;
       // The job enters the writing queue first: that one keeps the order of reading and bounds both queues.
       if (!written_.push(job) || !work_.push(job)) break;
     }
@@ -133,11 +192,14 @@ class Stream {
     work_.close();
   }
 
+  // Jobs are taken in the order of their numbers and each ends its turn, so that whoever waits for one gets it.
   void work() {
+    long worked = 0;
     while (!stopping_ && !work_.finished()) {
       const std::optional<JobPointer> job = work_.pop(kPatience);
       if (!job) continue;
-      detect(detector_, (*job)->found);
+      if (realtime_) (*job)->number = worked++;  // some were dropped; there is one thread here
+      find_people(finder_, (*job)->found, (*job)->number);
       (*job)->done.set_value();
       if (realtime_ && !written_.push(*job)) break;
     }
@@ -145,7 +207,7 @@ class Stream {
   }
 
   FrameSource& source_;
-  const Detector& detector_;
+  Finder finder_;
   const StreamOptions& options_;
   const bool realtime_;
   FrameQueue<JobPointer> work_;     ///< frames to be processed
@@ -197,6 +259,23 @@ class Passing {
   std::jthread reader_;
 };
 
+int stream_people(FrameSource& source, const Detector& detector, PeopleTracker* tracker, const StreamOptions& options,
+                  const std::function<bool(FoundFrame)>& take) {
+  if (options.realtime || source.is_live() || thread_count() > 1) {
+    Stream stream(source, detector, tracker, options);
+    stream.run(take);
+    return stream.dropped();
+  }
+  Finder finder(detector, tracker);
+  for (long number = 0; !stopped(options); ++number) {
+    FoundFrame found;
+    if (!read_next(source, found)) break;
+    find_people(finder, found, number);
+    if (!take(std::move(found))) break;
+  }
+  return 0;
+}
+
 }  // namespace
 
 int stream_frames(FrameSource& source, const StreamOptions& options, std::size_t ahead,
@@ -208,18 +287,12 @@ int stream_frames(FrameSource& source, const StreamOptions& options, std::size_t
 
 int stream_frames(FrameSource& source, const Detector& detector, const StreamOptions& options,
                   const std::function<bool(FoundFrame)>& take) {
-  if (options.realtime || source.is_live() || thread_count() > 1) {
-    Stream stream(source, detector, options);
-    stream.run(take);
-    return stream.dropped();
-  }
-  while (!stopped(options)) {
-    FoundFrame found;
-    if (!read_next(source, found)) break;
-    detect(detector, found);
-    if (!take(std::move(found))) break;
-  }
-  return 0;
+  return stream_people(source, detector, nullptr, options, take);
+}
+
+int stream_frames(FrameSource& source, const Detector& detector, PeopleTracker& tracker, const StreamOptions& options,
+                  const std::function<bool(FoundFrame)>& take) {
+  return stream_people(source, detector, &tracker, options, take);
 }
 
 }  // namespace vesalius

@@ -9,6 +9,7 @@
 #include "vesalius/base/frame_source.h"
 #include "vesalius/base/stage_times.h"
 #include "vesalius/detect.h"
+#include "vesalius/track/track_people.h"
 
 namespace vesalius {
 
@@ -16,8 +17,10 @@ namespace vesalius {
 struct FoundFrame {
   std::optional<Frame> frame;  ///< empty if it could not be read
   std::vector<Person> people;
+  std::optional<TrackedFrame> tracked;  ///< the same people followed over frames, where that was asked for
   StageTimes times;
   double read_ms = 0.0;
+  double track_ms = 0.0;  ///< time to follow people, beside the detector's stages and without waiting for other frames
   /// From the frame's arrival (Frame::arrived_s) to its people; none where it has no arrival.
   std::optional<double> latency_ms;
   std::exception_ptr error;  ///< exception of reading or detecting; null if there was none
@@ -46,6 +49,14 @@ struct StreamOptions {
 ///     return true;
 ///   });
 int stream_frames(FrameSource& source, const Detector& detector, const StreamOptions& options,
+                  const std::function<bool(FoundFrame)>& take);
+
+/// As above, and follows the people over the frames: what `tracker` knows of them helps to find them, and
+/// FoundFrame::tracked has them with their ids. While people are looked for in one frame, the pixels of the next are
+/// labelled; the tracker is asked and told frame by frame in the source's order. A frame that fails leaves it as it is.
+/// Ids are the same for any number of threads and any speed, but in real time, where frames are dropped. `tracker` must
+/// follow people of the detector's body and is used until this function returns.
+int stream_frames(FrameSource& source, const Detector& detector, PeopleTracker& tracker, const StreamOptions& options,
                   const std::function<bool(FoundFrame)>& take);
 
 /// As above, without looking for people: for whoever passes frames on, such as to a disk. Frames are read in a thread

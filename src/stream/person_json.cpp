@@ -63,25 +63,57 @@ Json yaw_json(const std::optional<YawEstimate>& yaw) {
 /// File names need not be UTF-8; JSON must.
 std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+Json xyz_json(const Eigen::Vector3f& point) { return {rounded(point.x()), rounded(point.y()), rounded(point.z())}; }
+
+Json person_json(const Person& person, std::size_t index, const BodyModel& body, const Camera& camera) {
+  return {{"index", index},
+          {"score", rounded(person.score)},
+          {"yaw", yaw_json(person.yaw)},
+          {"box_px", {person.box.u, person.box.v, person.box.width, person.box.height}},
+          {"parts", parts_json(person.skeleton, body, camera)},
+          {"joints", joints_json(person, body, camera)}};
+}
+
+/// Takes the camera's own time; `latency_ms` as frame_json.
+Json frame_facts(const Frame& frame, std::optional<double> latency_ms) {
+  Json json = {{"frame", frame.name}, {"time_s", frame.time_s ? Json(rounded(*frame.time_s, 1e6)) : Json()}};
+  if (frame.arrived_s) json["arrived_s"] = rounded(*frame.arrived_s, 1e6);
+  if (latency_ms) json["latency_ms"] = rounded(*latency_ms, 1e3);
+  if (frame.up) json["up"] = xyz_json(*frame.up);
+  json["camera"] = camera_json(frame.camera);
+  return json;
+}
+
+Json tracked_json(const TrackedPerson& tracked, std::size_t index, const BodyModel& body, const Camera& camera) {
+  Json json = {{"id", tracked.id},
+               {"state", to_string(tracked.state)},
+               {"position_m", xyz_json(tracked.position)},
+               {"velocity_m_s", xyz_json(tracked.velocity)},
+               {"since_s", rounded(tracked.since_s, 1e6)},
+               {"seen_s", rounded(tracked.seen_s, 1e6)}};
+  json.update(person_json(tracked.person, index, body, camera));
+  return json;
+}
+
 }  // namespace
 
 std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
                        std::optional<double> latency_ms) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    const Person& person = people[i];
-    list.push_back({{"index", i},
-                    {"score", rounded(person.score)},
-                    {"yaw", yaw_json(person.yaw)},
-                    {"box_px", {person.box.u, person.box.v, person.box.width, person.box.height}},
-                    {"parts", parts_json(person.skeleton, body, frame.camera)},
-                    {"joints", joints_json(person, body, frame.camera)}});
+  for (std::size_t i = 0; i < people.size(); ++i) list.push_back(person_json(people[i], i, body, frame.camera));
+  Json json = frame_facts(frame, latency_ms);
+  json["people"] = std::move(list);
+  return line(json);
+}
+
+std::string tracked_frame_json(const Frame& frame, const TrackedFrame& tracked, const BodyModel& body,
+                               std::optional<double> latency_ms) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < tracked.people.size(); ++i) {
+    list.push_back(tracked_json(tracked.people[i], i, body, frame.camera));
   }
-  Json json = {{"frame", frame.name}, {"time_s", frame.time_s ? Json(rounded(*frame.time_s, 1e6)) : Json()}};
-  if (frame.arrived_s) json["arrived_s"] = rounded(*frame.arrived_s, 1e6);
-  if (latency_ms) json["latency_ms"] = rounded(*latency_ms, 1e3);
-  if (frame.up) json["up"] = {rounded(frame.up->x()), rounded(frame.up->y()), rounded(frame.up->z())};
-  json["camera"] = camera_json(frame.camera);
+  Json json = frame_facts(frame, latency_ms);
+  json["track_time_s"] = rounded(tracked.time_s, 1e6);
   json["people"] = std::move(list);
   return line(json);
 }

@@ -7,6 +7,7 @@
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/detect.h"
+#include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
 
@@ -16,6 +17,11 @@ namespace vesalius {
 /// `latency_ms` is given, how long its people took from then on; one that knows up has that. Every part and joint is
 /// listed; where the state is "none" xyz_m and px are null.
 std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
+                       std::optional<double> latency_ms = {});
+
+/// Returns the same line about people who are followed (docs/tracking.md). Each has its id, state, trunk with velocity,
+/// and the times since when it is known and when it was last found; the frame has the floor and what happened.
+std::string tracked_frame_json(const Frame& frame, const TrackedFrame& tracked, const BodyModel& body,
                        std::optional<double> latency_ms = {});
 
 /// Returns the line that closes a file of such lines: whether all frames of the source are in it, how many lines there

@@ -129,6 +129,20 @@ Looks look_at(const Frame& frame, const Appearance* appearance) {
   return {appearance, appearance != nullptr ? appearance->describe(frame) : std::vector<std::uint16_t>{}};
 }
 
+void AppearanceHistogram::add(const AppearanceHistogram& other) {
+  if (other.counts_.size() > counts_.size()) counts_.resize(other.counts_.size(), 0);
+  for (std::size_t i = 0; i < other.counts_.size(); ++i) counts_[i] += other.counts_[i];
+  samples_ += other.samples_;
+}
+
+void AppearanceHistogram::scale(float factor) {
+  samples_ = 0;
+  for (std::uint32_t& count : counts_) {
+    count = static_cast<std::uint32_t>(static_cast<double>(count) * static_cast<double>(factor));
+    samples_ += count;
+  }
+}
+
 std::vector<float> AppearanceHistogram::probabilities(const Appearance& appearance) const {
   std::vector<float> values(counts_.begin(), counts_.end());
   values.resize(appearance.classes(), 0.F);

@@ -74,6 +74,10 @@ class AppearanceHistogram {
     ++counts_[look];
     ++samples_;
   }
+  /// Adds the pixels of another histogram of the same appearance.
+  void add(const AppearanceHistogram& other);
+  /// Lets the pixels added so far count as `factor` of them, 0-1, each class rounded down.
+  void scale(float factor);
   /// Returns the number of added pixels.
   long samples() const { return samples_; }
   /// Returns the probability of each class: blurred, with a share for classes that were never seen. Without samples all

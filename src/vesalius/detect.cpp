@@ -1,6 +1,7 @@
 #include "vesalius/detect.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -222,6 +223,32 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
   return candidate;
 }
 
+/// Returns the pixels in both masks over those in either, 0-1; 0 if both are empty.
+float shared_pixels(const Mask& a, const Mask& b) {
+  long both = 0, either = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    both += a[i] != 0 && b[i] != 0 ? 1 : 0;
+    either += a[i] != 0 || b[i] != 0 ? 1 : 0;
+  }
+  return either > 0 ? static_cast<float>(both) / static_cast<float>(either) : 0.F;
+}
+
+/// Returns the probability that a candidate is a person, given its score and who is known. Of several known people
+/// whom it covers, the likeliest counts.
+float certainty_of(const Candidate& candidate, const Prior& prior) {
+  std::optional<float> odds;
+  for (std::size_t i = 0; i < prior.people.size(); ++i) {
+    const Prior::KnownPerson& known = prior.people[i];
+    if (known.mask.empty()) continue;
+    const bool own = candidate.known == static_cast<int>(i);
+    if (own || shared_pixels(candidate.grown, known.mask) >= kKnownOverlap) {
+      odds = std::max(odds.value_or(known.odds), known.odds);
+    }
+  }
+  if (!odds || *odds == 1.F) return candidate.score;
+  return *odds * candidate.score / (1.F - candidate.score + *odds * candidate.score);
+}
+
 Scenery look_around(const Method& method, const Frame& frame, const Scene& scene,
                     const std::vector<Candidate>& candidates) {
   Mask anybody(frame.camera.width, frame.camera.height, 0);
@@ -268,7 +295,7 @@ std::vector<Person> choose_people(const Method& method, const Frame& frame, std:
   std::vector<Person> people;
   Mask taken(frame.camera.width, frame.camera.height, 0);
   for (Candidate& candidate : candidates) {
-    if (candidate.score < options.min_score || candidate.refined.found < options.min_parts) continue;
+    if (candidate.certainty < options.min_score || candidate.refined.found < options.min_parts) continue;
     if (repeats(candidate.grown, taken, options.max_overlap)) continue;
     candidate.accepted = true;
     people.push_back(make_person(method.body, candidate, taken));
@@ -307,22 +334,27 @@ void fill(Trace& trace, const Method& method, const Frame& frame, Scene& scene, 
 }
 
 /// Runs the method on one frame of any size.
-std::vector<Person> detect_everywhere(const Method& method, const Frame& frame, const Prior& prior, Trace* trace,
-                                      const Mask& person, StageTimes* times) {
+Detection detect_everywhere(const Method& method, const Frame& frame, const std::function<Prior()>& ask, Trace* trace,
+                            const Mask& person, StageTimes* times) {
   StageClock clock(times);
   Scene scene = first_pass(method, frame, clock);
+  const Prior prior = ask();
+  clock.skip();  // the time that others took
   std::vector<Candidate> candidates = propose(method, frame, scene, prior);
   clock.lap(Stage::grow);
   const Scenery scenery = look_around(method, frame, scene, candidates);
-  parallel_for(static_cast<int>(candidates.size()),
-               [&](int i) { candidates[i] = refine(method, frame, scene, scenery, std::move(candidates[i])); });
+  parallel_for(static_cast<int>(candidates.size()), [&](int i) {
+    candidates[i] = refine(method, frame, scene, scenery, std::move(candidates[i]));
+    candidates[i].certainty = certainty_of(candidates[i], prior);
+  });
   clock.lap(Stage::second_pass);
-  std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  std::vector<Person> people = choose_people(method, frame, candidates);
+  std::ranges::stable_sort(candidates,
+                           [](const Candidate& a, const Candidate& b) { return a.certainty > b.certainty; });
+  Detection found{choose_people(method, frame, candidates), scene.labels.planes};
   clock.lap(Stage::people);
   if (trace != nullptr) fill(*trace, method, frame, scene, std::move(candidates), person);
   method.memory.give_back(std::move(scene.labels));
-  return people;
+  return found;
 }
 
 FrameLabels label_everywhere(const Method& method, const Frame& frame, const Mask* person) {
@@ -347,9 +379,8 @@ Detector::Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions 
   method_ = std::make_shared<const Method>(std::move(labeller), options, std::move(appearance));
 }
 
-std::vector<Person> Detector::detect(const Frame& given, const Prior& prior, Trace* trace, StageTimes* times) const {
+Detection Detector::detect(const Frame& given, const AskPrior& ask, Trace* trace, StageTimes* times) const {
   check(given);
-  check(prior, given);
   StageClock clock(times);
   Frame memory;
   const Frame& frame = without_blended(given, method_->options.blend, memory);
@@ -359,12 +390,25 @@ std::vector<Person> Detector::detect(const Frame& given, const Prior& prior, Tra
       [&](const Frame& grid, int step) {
         const bool has_person = trace != nullptr && trace->person != nullptr;
         const Mask person = has_person ? every_nth(*trace->person, step) : Mask{};
-        return detect_everywhere(*method_, grid, every_nth(prior, step), trace, person, times);
+        const auto ask_on_grid = [&] {
+          const Prior prior = ask(given);
+          check(prior, given);
+          return every_nth(prior, step);
+        };
+        return detect_everywhere(*method_, grid, ask_on_grid, trace, person, times);
       },
-      [&](const GridGuide& guide, std::vector<Person>& people) {
-        for (Person& person : people) enlarge(guide, person);
+      [&](const GridGuide& guide, Detection& found) {
+        for (Person& person : found.people) enlarge(guide, person);
         if (trace != nullptr) enlarge(guide, *trace);
       });
+}
+
+std::vector<Person> Detector::detect(const Frame& frame, const Prior& prior, Trace* trace, StageTimes* times) const {
+  check(frame);
+  check(prior, frame);
+  return detect(
+             frame, [&](const Frame&) { return prior; }, trace, times)
+      .people;
 }
 
 std::vector<Person> Detector::detect(const Frame& frame, Trace* trace, StageTimes* times) const {
@@ -388,5 +432,7 @@ FrameLabels Detector::label(const Frame& given, const Mask* person) const {
 }
 
 const BodyModel& Detector::body() const { return method_->body; }
+
+std::shared_ptr<const Appearance> Detector::appearance() const { return method_->appearance; }
 
 }  // namespace vesalius

@@ -1,5 +1,6 @@
 #include "vesalius/detection.h"
 
+#include <cmath>
 #include <string>
 
 #include "vesalius/base/error.h"
@@ -8,6 +9,11 @@ namespace vesalius {
 
 void check(const Prior& prior, const Frame& frame) {
   for (std::size_t i = 0; i < prior.people.size(); ++i) {
+    const float odds = prior.people[i].odds;
+    if (!std::isfinite(odds) || odds <= 0.F) {
+      throw Error("prior: the odds of person " + std::to_string(i) + " are " + std::to_string(odds) +
+                  ", expected a number above 0");
+    }
     const Mask& mask = prior.people[i].mask;
     if (mask.empty() || mask.same_size(frame.depth)) continue;
     throw Error("prior: the mask of person " + std::to_string(i) + " has " + std::to_string(mask.width()) + "x" +

@@ -13,6 +13,7 @@
 #include "vesalius/forest/facing.h"
 #include "vesalius/forest/person_points.h"
 #include "vesalius/grow_person.h"
+#include "vesalius/planes/find_planes.h"
 #include "vesalius/score_person.h"
 #include "vesalius/search_skeletons.h"
 
@@ -25,7 +26,7 @@ struct Person {
   Mask mask;                               ///< 1 on the person's pixels
   LabelImage labels;                       ///< part of each of the person's pixels, kBackground elsewhere
   Box box;                                 ///< smallest box around the mask
-  float score = 0.F;                       ///< 0-1, higher is more certain
+  float score = 0.F;                       ///< 0-1, higher is more certain; what this frame alone tells
   std::optional<YawEstimate> yaw;          ///< which way the person faces, if the forest's leaves have headings
   std::vector<PersonPoint> points;         ///< some of the person's pixels with the likeliest parts of each
 };
@@ -33,7 +34,8 @@ struct Person {
 /// What earlier frames tell about the people of a frame; a tracker provides it. Each mask starts a candidate of its
 /// own: its pixels are taken as that person's whatever the background's posterior is, and the candidate is labelled,
 /// searched for a skeleton, grown, refined and scored like any other. So a person whom labels alone would lose can be
-/// found again, but only with a sufficient score in this frame. A Prior without people changes nothing.
+/// found again, but only with a sufficient score in this frame; how high it must be follows from `odds`. A Prior
+/// without people changes nothing.
 struct Prior {
   struct KnownPerson {
     /// Non-zero where the person is expected, such as the mask of the previous frame, perhaps moved. It has the frame's
@@ -42,15 +44,29 @@ struct Prior {
     /// What the person looked like in earlier frames (learn_appearance, with the detector's appearance), to which the
     /// looks in this frame are added before the mask grows. It has no samples if that is unknown.
     AppearanceHistogram appearance;
+    /// How much likelier than in a frame without prior a candidate at this place is a person: it multiplies the odds
+    /// that the score stands for, in those candidates whose masks are at least kKnownOverlap the expected one (the
+    /// pixels in both over those in either) and in the one that started from it. 1 changes nothing, more lets a lower
+    /// score suffice, less asks for a higher one. Above 0 and finite.
+    float odds = 1.F;
   };
   std::vector<KnownPerson> people;
 };
 
-/// Throws Error if a mask and the frame differ in size.
+/// Least overlap of a candidate with the mask of a known person that lets it profit of that person's odds.
+inline constexpr float kKnownOverlap = 0.3F;
+
+/// Throws Error if a mask and the frame differ in size, or odds are not above 0 and finite.
 void check(const Prior& prior, const Frame& frame);
 
 /// Returns the prior on every `step`-th pixel of every `step`-th row.
 Prior every_nth(const Prior& prior, int step);
+
+/// The people of a frame and the large flat surfaces about them.
+struct Detection {
+  std::vector<Person> people;  ///< the most certain first
+  std::vector<Plane> planes;   ///< floor, walls and others, largest first (find_planes)
+};
 
 /// Every intermediate result of one detection, for pictures and evaluation. All pictures have the frame's size;
 /// clusters count pixels of the grid (GridOptions).
@@ -76,6 +92,7 @@ struct Trace {
     Skeleton refined;   ///< pass 2, or the rough one if that is likelier
     Evidence evidence;
     float score = 0.F;
+    float certainty = 0.F;  ///< `score` with the odds of the known person whom it covers; the same without one
     std::optional<YawEstimate> yaw;
     bool accepted = false;
   };

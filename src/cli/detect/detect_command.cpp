@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <set>
 #include <sstream>
 
 #include "cli/commands.h"
@@ -31,6 +32,7 @@ struct Arguments {
   StreamOptions stream;
   int threads = 0;
   int frames = 0;  ///< 0 = all
+  bool track = false;
   bool timing = false;
   bool keep_going = false;
 };
@@ -40,15 +42,22 @@ struct Totals {
   int frames_with_people = 0;
   int failed = 0;
   int dropped = 0;
+  std::set<int> ids;  ///< of people who were followed, without those of whom one frame's guess was all
   FrameTimes times;
 };
 
 /// Writes the people found in one frame. Rethrows what reading or detecting threw.
 void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals) {
   if (found.error) std::rethrow_exception(found.error);
-  const double write_ms = elapsed_ms([&] { outputs.write(*found.frame, found.people, found.latency_ms); });
+  const double write_ms = elapsed_ms([&] { outputs.write(found); });
   totals.times.add(found.times, found.read_ms, write_ms);
+  if (found.tracked) totals.times.add_tracking(found.track_ms);
   if (found.latency_ms) totals.times.add_latency(*found.latency_ms);
+  if (found.tracked) {
+    for (const TrackedPerson& person : found.tracked->people) {
+      if (person.state == TrackState::tracked) totals.ids.insert(person.id);
+    }
+  }
   totals.people += static_cast<int>(found.people.size());
   totals.frames_with_people += found.people.empty() ? 0 : 1;
 }
@@ -60,7 +69,7 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
     late.print(progress);
     return interrupted();
   };
-  totals.dropped = stream_frames(source, detector, options, [&](const FoundFrame& found) {
+  const auto take = [&](const FoundFrame& found) {
     // On a terminal both appear, and a printed line must not follow the changing one in the same row.
     if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
     try {
@@ -76,7 +85,13 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
     }
     progress.step();
     return arguments.frames == 0 || progress.done() < arguments.frames;
-  });
+  };
+  if (arguments.track) {
+    PeopleTracker tracker(detector.body(), arguments.detector.track_options(), detector.appearance());
+    totals.dropped = stream_frames(source, detector, tracker, options, take);
+  } else {
+    totals.dropped = stream_frames(source, detector, options, take);
+  }
   late.print(progress);
   totals.dropped += source.missed();
   progress.clear();
@@ -86,8 +101,10 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
 }
 
 void say_totals(const Arguments& arguments, const Totals& totals, const Progress& progress) {
-  say(fmt::format("{} frames, people in {} of them ({} in all), {:.1f} s, {:.1f} frames/s{}", progress.done(),
-                  totals.frames_with_people, totals.people, progress.seconds(), progress.done() / progress.seconds(),
+  const std::string in_all =
+      arguments.track ? fmt::format("{} followed", totals.ids.size()) : fmt::format("{} in all", totals.people);
+  say(fmt::format("{} frames, people in {} of them ({}), {:.1f} s, {:.1f} frames/s{}", progress.done(),
+                  totals.frames_with_people, in_all, progress.seconds(), progress.done() / progress.seconds(),
                   arguments.stream.realtime || totals.dropped > 0 ? fmt::format(", {} dropped", totals.dropped) : ""));
 }
 
@@ -189,17 +206,19 @@ void add_detect(CLI::App& program) {
       ->check(CLI::Range(0, kMaxThreads))
       ->group(kDetectorGroup);
   add_time_flags(*command, *arguments);
+  command->add_flag("--track", arguments->track, "Follow people over the frames: ids, states, velocities");
   command->add_option("--frames", arguments->frames, "End after so many frames; 0 = all")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--keep-going", arguments->keep_going, "Skip frames that fail; the exit code is then 1");
   command->add_flag("-q,--quiet", arguments->outputs.quiet, "Print errors only");
   command->footer(R"(
-Every detector option is a flag too, e.g. --search.min-parts 6; `vesalius options` lists them.
+Every option of detector and tracking is a flag too, e.g. --search.min-parts 6; `vesalius options` lists them.
 
 Examples:
   vesalius detect frames/
   vesalius detect tum:walking -m capsule.forest --json - | jq .people
+  vesalius detect session.mcap --track --json people.jsonl
   vesalius detect depth.png --fx 525 --out found/ --save overlay,mask)");
   command->callback([arguments] { run(*arguments); });
 }

@@ -60,10 +60,16 @@ std::string DetectOutputs::path(const char* kind, const Frame& frame, const char
   return (fs::path(request_.folder) / kind / (frame.name + extension)).string();
 }
 
-void DetectOutputs::write(const Frame& frame, const std::vector<Person>& people, std::optional<double> latency_ms) {
-  write_pictures(frame, people);
-  if (json_) json_->line(frame_json(frame, people, body_, latency_ms));
-  if (request_.lines()) print(one_line(describe(frame, people)) + "\n");
+void DetectOutputs::write(const FoundFrame& found) {
+  const Frame& frame = *found.frame;
+  write_pictures(frame, found.people);
+  if (json_) {
+    json_->line(found.tracked ? tracked_frame_json(frame, *found.tracked, body_, found.latency_ms)
+                              : frame_json(frame, found.people, body_, found.latency_ms));
+  }
+  if (request_.lines()) {
+    print(one_line(found.tracked ? describe(frame, *found.tracked) : describe(frame, found.people)) + "\n");
+  }
   ++frames_;
 }
 
@@ -109,6 +115,18 @@ std::string describe(const Frame& frame, const std::vector<Person>& people) {
                         distance_m(person.skeleton), person.score);
   }
   return text;
+}
+
+std::string describe(const Frame& frame, const TrackedFrame& tracked) {
+  std::string text;
+  for (const TrackedPerson& person : tracked.people) {
+    const bool here = person.state == TrackState::fresh || person.state == TrackState::tracked;
+    text += fmt::format("{}{} {} at {:.2f} m{}", text.empty() ? "" : ", ", person.id, to_string(person.state),
+                        person.position.z(), here ? fmt::format(" (score {:.2f})", person.person.score) : "");
+  }
+  const std::size_t count = tracked.people.size();
+  if (count == 0) return frame.name + ": nobody";
+  return fmt::format("{}: {} {}: {}", frame.name, count, count == 1 ? "person" : "people", text);
 }
 
 }  // namespace vesalius::cli

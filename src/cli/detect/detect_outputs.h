@@ -7,6 +7,7 @@
 
 #include "cli/text_sink.h"
 #include "io/files/video.h"
+#include "stream/detect_stream.h"
 #include "vesalius/detect.h"
 
 namespace vesalius::cli {
@@ -35,8 +36,8 @@ class DetectOutputs {
  public:
   /// Creates the folders. Throws Error if it cannot create them or cannot open a file.
   DetectOutputs(OutputRequest request, const BodyModel& body);
-  /// `latency_ms`: as frame_json.
-  void write(const Frame& frame, const std::vector<Person>& people, std::optional<double> latency_ms = {});
+  /// Takes a frame without error, followed or not.
+  void write(const FoundFrame& found);
   /// Completes JSON and video. `why_not_all` says why frames are missing and is repeated in the JSON; it is empty if
   /// none are.
   void finish(const std::string& why_not_all);
@@ -57,5 +58,9 @@ class DetectOutputs {
 
 /// Returns a line such as "0172: 2 people: 23 parts at 2.31 m (score 0.87), ...".
 std::string describe(const Frame& frame, const std::vector<Person>& people);
+
+/// Returns the same of people who are followed, such as "0172: 2 people: 1 tracked at 2.31 m (score 0.87), 2 hidden at
+/// 3.02 m"; the number before the state is the id.
+std::string describe(const Frame& frame, const TrackedFrame& tracked);
 
 }  // namespace vesalius::cli

@@ -43,6 +43,7 @@ std::vector<FrameTimes::Row> FrameTimes::rows() const {
     rows.push_back({kStageNames[s], summarise(std::move(ms))});
   }
   rows.push_back({"detect", detect()});
+  if (!track_.empty()) rows.push_back({"track", summarise(track_)});
   if (!write_.empty()) rows.push_back({"write", summarise(write_)});
   if (!latency_.empty()) rows.push_back({"latency", summarise(latency_)});
   return rows;

@@ -23,6 +23,8 @@ class FrameTimes {
   /// `read_ms` is the time to read the frame and `write_ms` that to write the people; both are negative if that was not
   /// done.
   void add(const StageTimes& stages, double read_ms, double write_ms);
+  /// Adds the time to follow a frame's people.
+  void add_tracking(double ms) { track_.push_back(ms); }
   /// Adds the time from a frame's arrival to its people.
   void add_latency(double ms) { latency_.push_back(ms); }
 
@@ -34,13 +36,13 @@ class FrameTimes {
     std::string name;
     Latency latency;
   };
-  /// Returns the rows "read", the detector's stages, "detect" (the sum of these stages), "write" and
+  /// Returns the rows "read", the detector's stages, "detect" (the sum of these stages), "track", "write" and
   /// "latency"; those without times are left out.
   std::vector<Row> rows() const;
 
  private:
   std::vector<StageTimes> stages_;
-  std::vector<double> detect_, read_, write_, latency_;
+  std::vector<double> detect_, track_, read_, write_, latency_;
 };
 
 /// Returns a table for the terminal. Each row has the median, 95 %, 99 % and longest time in milliseconds.

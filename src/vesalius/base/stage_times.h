@@ -36,6 +36,9 @@ class StageClock {
 
   void lap(Stage stage) { add_to(stage, since_last()); }
 
+  /// Forgets the time since the last `lap`: it belongs to no stage.
+  void skip() { since_last(); }
+
   /// Adds the time to two stages that ran in parallel, in proportion to the time that each took.
   void lap(const std::array<Stage, 2>& stages, const std::array<double, 2>& took_ms) {
     const double passed = since_last();

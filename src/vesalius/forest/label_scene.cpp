@@ -80,7 +80,11 @@ SceneLabeller::SceneLabeller(std::shared_ptr<const PixelLabeller> labeller, Scen
 
 SceneLabels SceneLabeller::label_scene(const Frame& frame, StageClock& clock, SceneLabels used) const {
   SceneLabels scene = std::move(used);
-  const auto find_planes = [&] { scene.flat = flat_pixels(frame.depth, frame.camera, options_.plane); };
+  const auto find_planes = [&] {
+    FlatSurfaces surfaces = find_flat_surfaces(frame.depth, frame.camera, options_.plane);
+    scene.planes = std::move(surfaces.planes);
+    scene.flat = std::move(surfaces.pixels);
+  };
   const auto label = [&](const DepthImage& depth) {
     labeller_->label_into(depth, frame.camera, options_.label.gate, scene.raw);
   };

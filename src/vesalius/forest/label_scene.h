@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "vesalius/base/frame.h"
 #include "vesalius/base/stage_times.h"
@@ -19,10 +20,11 @@ struct SceneLabelOptions {
 
 /// The class probabilities of one frame's pixels. All pictures have the frame's size.
 struct SceneLabels {
-  Mask flat;             ///< 1 on floor, walls and other large flat surfaces, which are no person
-  DepthImage shown;      ///< depth that the labeller was shown; empty if it is the frame's
-  Posteriors raw;        ///< posteriors of the labeller
-  Posteriors smooth;     ///< smoothed posteriors; undefined if labels are smoothed instead
+  std::vector<Plane> planes;  ///< floor, walls and other large flat surfaces, largest first
+  Mask flat;                  ///< 1 on floor, walls and other large flat surfaces, which are no person
+  DepthImage shown;           ///< depth that the labeller was shown; empty if it is the frame's
+  Posteriors raw;             ///< posteriors of the labeller
+  Posteriors smooth;          ///< smoothed posteriors; undefined if labels are smoothed instead
   Posteriors corrected;  ///< `smooth`, corrected by what is around each pixel; undefined if the forest knows no context
   bool smoothed = false;    ///< whether `smooth` is defined
   bool in_context = false;  ///< whether `corrected` is defined

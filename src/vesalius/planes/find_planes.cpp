@@ -212,16 +212,10 @@ Image<std::uint64_t> cells_near(const std::vector<Sample>& samples, const std::v
   return cells;
 }
 
-}  // namespace
-
-std::vector<Plane> find_planes(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
-  return planes_of(take_samples(depth, camera), depth, camera, options);
-}
-
-Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
+/// As flat_pixels; `planes` were found in the samples.
+Mask pixels_on(const std::vector<Plane>& planes, const std::vector<Sample>& samples, const DepthImage& depth,
+               const Camera& camera, const PlaneOptions& options) {
   Mask out(depth.width(), depth.height(), 0);
-  const std::vector<Sample> samples = take_samples(depth, camera);
-  const std::vector<Plane> planes = planes_of(samples, depth, camera, options);
   if (planes.empty()) return out;
   Image<std::uint8_t> plane_of(depth.width(), depth.height(), 0);
   const Image<std::uint64_t> cells = cells_near(samples, planes, depth, options);
@@ -253,6 +247,23 @@ Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptio
   const double surely_large_mm2 = 1e6 * static_cast<double>(kMinPiece_m2 * camera.fx * camera.fy);
   return without_body_pieces(depth, out, surely_large_mm2,
                              [&](const std::vector<int>& pixels) { return area_m2(pixels) >= kMinPiece_m2; });
+}
+
+}  // namespace
+
+std::vector<Plane> find_planes(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
+  return planes_of(take_samples(depth, camera), depth, camera, options);
+}
+
+FlatSurfaces find_flat_surfaces(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
+  const std::vector<Sample> samples = take_samples(depth, camera);
+  FlatSurfaces flat{planes_of(samples, depth, camera, options), {}};
+  flat.pixels = pixels_on(flat.planes, samples, depth, camera, options);
+  return flat;
+}
+
+Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
+  return find_flat_surfaces(depth, camera, options).pixels;
 }
 
 }  // namespace vesalius

@@ -32,6 +32,14 @@ struct Plane {
 /// what a growing person leaks into. Sampling is seeded, so that the same picture has the same planes.
 std::vector<Plane> find_planes(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);
 
+/// The large flat surfaces of one picture, and where they are seen.
+struct FlatSurfaces {
+  std::vector<Plane> planes;  ///< find_planes
+  Mask pixels;                ///< flat_pixels
+};
+/// Searches once for both.
+FlatSurfaces find_flat_surfaces(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);
+
 /// Returns 1 on the pixels of those surfaces. A pixel is on one if it lies in it and the surface about it is turned the
 /// same way. Where a plane runs on through a person, the person is not on it.
 Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);

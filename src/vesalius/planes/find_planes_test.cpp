@@ -40,6 +40,21 @@ TEST(FindPlanes, NoneOnAPersonAloneOrInAnEmptyPicture) {
   EXPECT_TRUE(find_planes(DepthImage(320, 240, 0), kCamera, {}).empty());
 }
 
+TEST(FindPlanes, OneSearchGivesPlanesAndTheirPixels) {
+  CapsuleScene scene;
+  scene.people.emplace_back();
+  const LabelledFrame room = render(scene, kCamera, paper_body());
+  const FlatSurfaces both = find_flat_surfaces(room.frame.depth, kCamera, {});
+  const std::vector<Plane> planes = find_planes(room.frame.depth, kCamera, {});
+  EXPECT_EQ(both.pixels, flat_pixels(room.frame.depth, kCamera, {}));
+  ASSERT_EQ(both.planes.size(), planes.size());
+  ASSERT_FALSE(planes.empty());
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    EXPECT_EQ(both.planes[i].normal, planes[i].normal);
+    EXPECT_EQ(both.planes[i].offset, planes[i].offset);
+  }
+}
+
 TEST(FlatPixels, CoverTheRoomAndSpareThePerson) {
   CapsuleScene scene;
   scene.people.emplace_back();

@@ -1,0 +1,24 @@
+#include "vesalius/track/track.h"
+
+namespace vesalius {
+
+Track::Track(int number, const Sighting& sighting, double time_s)
+    : id(number), motion(sighting.trunk.position, sighting.trunk.sigma_m), since_s(time_s) {
+  take(sighting, time_s);
+}
+
+void Track::take(const Sighting& sighting, double time_s) {
+  motion.update(sighting.trunk.position, sighting.trunk.sigma_m);
+  ++found;
+  seen_s = time_s;
+  look.add(sighting.look);
+  if (sighting.scale) size.add(*sighting.scale);
+  place = sighting.place;
+  place_position = motion.position();
+  person = sighting.person;
+  person.mask = {};
+  person.labels = {};
+  expected = {};
+}
+
+}  // namespace vesalius

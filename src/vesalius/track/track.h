@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+
+#include "vesalius/detection.h"
+#include "vesalius/track/track_look.h"
+#include "vesalius/track/track_motion.h"
+#include "vesalius/track/track_place.h"
+#include "vesalius/track/track_size.h"
+#include "vesalius/track/tracked_frame.h"
+#include "vesalius/track/trunk_place.h"
+
+namespace vesalius {
+
+/// Somebody found in a frame, with all by which people are matched.
+struct Sighting {
+  Person person;
+  TrunkPlace trunk;
+  AppearanceHistogram look;
+  std::optional<float> scale;  ///< body_scale
+  TrackPlace place;            ///< empty if the mask has another size than the frame
+};
+
+/// Somebody who is followed.
+struct Track {
+  int id = 0;
+  TrackState state = TrackState::fresh;
+  TrackMotion motion;
+  TrackLook look;
+  TrackSize size;
+  TrackPlace place;                ///< in the frame in which the person was found last
+  Eigen::Vector3f place_position;  ///< of the trunk in that frame, as filtered
+  Person person;                   ///< as found last, without mask and labels
+  std::optional<FittedBody> body;
+  Mask expected;         ///< where the person is expected in the frame that comes next; empty if that is unknown
+  float log_odds = 0.F;  ///< of being a person, by all frames so far
+  int found = 0;         ///< frames in which the person was found
+  float evidence = 0.F;  ///< sum of what their scores tell, as long as the track is fresh
+  double since_s = 0.0;  ///< time of the first one
+  double seen_s = 0.0;   ///< time of the last one
+
+  Track(int number, const Sighting& sighting, double time_s);
+
+  /// Forgets what speaks for somebody fresh.
+  void doubt() {
+    found = 0;
+    evidence = 0.F;
+  }
+  /// Takes the person found at a time.
+  void take(const Sighting& sighting, double time_s);
+};
+
+}  // namespace vesalius

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace vesalius {
+
+/// Where the trunk of somebody who is followed is, and how it moves: a Kalman filter (1960) of position and velocity,
+/// metres and seconds, in the optical frame. The velocity is constant but for random pushes, and fades where nobody is
+/// seen, as people stop and turn; a camera that moves evenly is part of it. All axes have the same variances.
+class TrackMotion {
+ public:
+  /// `sigma_m` is the standard deviation of the measured position along each axis.
+  TrackMotion(const Eigen::Vector3f& position, float sigma_m);
+
+  /// Goes on by `step_s` seconds, 0 or more.
+  void predict(double step_s);
+  /// Takes a measured position.
+  void update(const Eigen::Vector3f& position, float sigma_m);
+
+  const Eigen::Vector3f& position() const { return position_; }
+  const Eigen::Vector3f& velocity() const { return velocity_; }
+  /// Returns the standard deviation of the position along each axis, metres.
+  float sigma_m() const;
+  /// Returns the squared distance of a measurement in standard deviations of its prediction (Mahalanobis).
+  float distance2(const Eigen::Vector3f& position, float sigma_m) const;
+
+ private:
+  Eigen::Vector3f position_;
+  Eigen::Vector3f velocity_ = Eigen::Vector3f::Zero();
+  Eigen::Matrix2d covariance_;  ///< of position and velocity along an axis
+};
+
+}  // namespace vesalius

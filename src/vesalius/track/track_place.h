@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "vesalius/base/frame.h"
+#include "vesalius/base/image.h"
+
+namespace vesalius {
+
+/// The pixels of somebody in one frame with their depth, from which follows where the person is to be expected in
+/// another.
+class TrackPlace {
+ public:
+  TrackPlace() = default;
+  /// `mask` has the frame's size, and `box` is the smallest box around it.
+  TrackPlace(const Frame& frame, const Mask& mask, const Box& box);
+
+  bool empty() const { return mask_.empty(); }
+  /// Returns whether the person reached to the border of the view, where people leave it.
+  bool at_border() const { return at_border_; }
+
+  /// Returns the pixels, moved as somebody who goes from `from` to `to` (metres, optical frame) moves in the picture,
+  /// that are where the moved person would be: not those where something nearer hides them, nor those through which
+  /// one sees what is behind. Empty if the frame has another size, too few pixels are left, or `to` is behind the
+  /// camera.
+  Mask expected(const Frame& frame, const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
+
+ private:
+  int width_ = 0, height_ = 0;  ///< of the whole picture
+  Box box_;
+  Mask mask_;         ///< of the box
+  DepthImage depth_;  ///< of the box
+  long pixels_ = 0;
+  bool at_border_ = false;
+};
+
+}  // namespace vesalius
