@@ -111,25 +111,20 @@ std::vector<Candidate> grow_rough(const Method& method, const Scene& scene, cons
   return candidates;
 }
 
-/// Searches for each known person's skeleton where the person is expected, and grows it with the known appearance.
-std::vector<Candidate> grow_known(const Method& method, const Frame& frame, const Scene& scene, const Prior& prior,
-                                  const PersonGrower& grower) {
-  std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < prior.people.size(); ++i) {
-    const Prior::KnownPerson& known = prior.people[i];
-    if (known.mask.empty()) continue;
-    Candidate candidate;
-    candidate.known = static_cast<int>(i);
-    candidate.labels = method.labeller.label_person(scene.labels, frame, known.mask, bounding_box(known.mask)).labels;
-    const Clusters clusters =
-        find_clusters(candidate.labels, frame.depth, frame.camera, method.body, method.options.cluster);
-    std::vector<Skeleton> rough = search_skeletons(clusters.items, method.body, method.options.search);
-    if (rough.empty()) continue;
-    candidate.rough = std::move(rough.front());
-    candidate.grown = std::move(grower.grow({candidate.rough}, clusters, {known.appearance})[0]);
-    candidates.push_back(std::move(candidate));
-  }
-  return candidates;
+/// Searches for a known person's skeleton where the person is expected, and grows it with the known appearance.
+std::optional<Candidate> grow_known(const Method& method, const Frame& frame, const Scene& scene, const Prior& prior,
+                                    int index, const PersonGrower& grower) {
+  const Prior::KnownPerson& known = prior.people[static_cast<std::size_t>(index)];
+  Candidate candidate;
+  candidate.known = index;
+  candidate.labels = method.labeller.label_person(scene.labels, frame, known.mask, bounding_box(known.mask)).labels;
+  const Clusters clusters =
+      find_clusters(candidate.labels, frame.depth, frame.camera, method.body, method.options.cluster);
+  std::vector<Skeleton> rough = search_skeletons(clusters.items, method.body, method.options.search);
+  if (rough.empty()) return std::nullopt;
+  candidate.rough = std::move(rough.front());
+  candidate.grown = std::move(grower.grow({candidate.rough}, clusters, {known.appearance})[0]);
+  return candidate;
 }
 
 /// Returns where nobody grows: on flat surfaces and where the forest is sure enough of the background.
@@ -151,17 +146,10 @@ Mask barred(const Method& method, const SceneLabels& labels) {
   return barred;
 }
 
-std::vector<Candidate> propose(const Method& method, const Frame& frame, const Scene& scene, const Prior& prior) {
-  if (scene.rough.empty() && prior.people.empty()) return {};
+std::vector<Candidate> propose(const Method& method, const Frame& frame, const Scene& scene, const Looks& looks) {
+  if (scene.rough.empty()) return {};
   const Mask nobody = barred(method, scene.labels);
-  const Looks looks = look_at(frame, method.appearance.get());
-  const PersonGrower grower(frame, nobody, method.body, method.options.grow, looks);
-  std::vector<Candidate> candidates = grow_rough(method, scene, grower);
-  if (prior.people.empty()) return candidates;
-  // The background's posterior does not hold back known people.
-  const PersonGrower of_known(frame, scene.labels.flat, method.body, method.options.grow, looks);
-  std::ranges::move(grow_known(method, frame, scene, prior, of_known), std::back_inserter(candidates));
-  return candidates;
+  return grow_rough(method, scene, PersonGrower(frame, nobody, method.body, method.options.grow, looks));
 }
 
 /// Returns the best skeleton of a candidate's labels, which are within `box`, or one without parts if there is none.
@@ -233,6 +221,8 @@ float shared_pixels(const Mask& a, const Mask& b) {
   return either > 0 ? static_cast<float>(both) / static_cast<float>(either) : 0.F;
 }
 
+constexpr float kSurelyKnown = 0.5F;  // overlap of masks from which they are surely of the same person
+
 /// Returns the probability that a candidate is a person, given its score and who is known. Of several known people
 /// whom it covers, the likeliest counts.
 float certainty_of(const Candidate& candidate, const Prior& prior) {
@@ -257,6 +247,50 @@ Scenery look_around(const Method& method, const Frame& frame, const Scene& scene
   }
   return {scene.labels.flat, mean_body_outside(anybody, frame.depth, scene.labels.alone(), method.body.part_count()),
           static_cast<int>(scene.rough.size())};
+}
+
+/// Refines candidates, among all others whose masks are known so far.
+void refine_all(const Method& method, const Frame& frame, const Scene& scene, const Scenery& scenery,
+                const Prior& prior, std::vector<Candidate>& candidates) {
+  parallel_for(static_cast<int>(candidates.size()), [&](int i) {
+    candidates[i] = refine(method, frame, scene, scenery, std::move(candidates[i]));
+    candidates[i].certainty = certainty_of(candidates[i], prior);
+  });
+}
+
+/// Returns the known people whom no candidate that would pass anyway covers.
+std::vector<int> missed_people(const Method& method, const Prior& prior, const std::vector<Candidate>& candidates) {
+  const RefineOptions& options = method.options.refine;
+  std::vector<int> missed;
+  for (std::size_t i = 0; i < prior.people.size(); ++i) {
+    const Mask& mask = prior.people[i].mask;
+    const bool found = std::ranges::any_of(candidates, [&](const Candidate& candidate) {
+      return candidate.score >= options.min_score && candidate.refined.found >= options.min_parts &&
+             shared_pixels(candidate.grown, mask) >= kSurelyKnown;
+    });
+    if (!mask.empty() && !found) missed.push_back(static_cast<int>(i));
+  }
+  return missed;
+}
+
+/// Adds a refined candidate for each of the known people whom the others miss.
+void add_known(const Method& method, const Frame& frame, const Scene& scene, const Looks& looks, const Prior& prior,
+               std::vector<Candidate>& candidates) {
+  const std::vector<int> missed = missed_people(method, prior, candidates);
+  if (missed.empty()) return;
+  // The background's posterior does not hold back known people.
+  const PersonGrower grower(frame, scene.labels.flat, method.body, method.options.grow, looks);
+  std::vector<std::optional<Candidate>> grown(missed.size());
+  parallel_for(static_cast<int>(missed.size()),
+               [&](int i) { grown[i] = grow_known(method, frame, scene, prior, missed[i], grower); });
+  std::vector<Candidate> known;
+  for (std::optional<Candidate>& candidate : grown) {
+    if (candidate) known.push_back(std::move(*candidate));
+  }
+  std::vector<Candidate> all = candidates;
+  std::ranges::copy(known, std::back_inserter(all));
+  refine_all(method, frame, scene, look_around(method, frame, scene, all), prior, known);
+  std::ranges::move(known, std::back_inserter(candidates));
 }
 
 /// Returns whether most of the mask is already taken.
@@ -340,13 +374,12 @@ Detection detect_everywhere(const Method& method, const Frame& frame, const std:
   Scene scene = first_pass(method, frame, clock);
   const Prior prior = ask();
   clock.skip();  // the time that others took
-  std::vector<Candidate> candidates = propose(method, frame, scene, prior);
+  Looks looks;
+  if (!scene.rough.empty() || !prior.people.empty()) looks = look_at(frame, method.appearance.get());
+  std::vector<Candidate> candidates = propose(method, frame, scene, looks);
   clock.lap(Stage::grow);
-  const Scenery scenery = look_around(method, frame, scene, candidates);
-  parallel_for(static_cast<int>(candidates.size()), [&](int i) {
-    candidates[i] = refine(method, frame, scene, scenery, std::move(candidates[i]));
-    candidates[i].certainty = certainty_of(candidates[i], prior);
-  });
+  refine_all(method, frame, scene, look_around(method, frame, scene, candidates), prior, candidates);
+  add_known(method, frame, scene, looks, prior, candidates);
   clock.lap(Stage::second_pass);
   std::ranges::stable_sort(candidates,
                            [](const Candidate& a, const Candidate& b) { return a.certainty > b.certainty; });

@@ -387,11 +387,75 @@ TEST_F(DetectorWithPrior, FindsAPersonWhomTheLabelsLose) {
 }
 
 TEST_F(DetectorWithPrior, FindsPeopleOfAForestWithoutBackgroundToo) {
-  const Detector without(std::make_shared<TruthLabeller>(truth.labels, paper_body(), false));
+  options.refine.min_score = 1.F;  // nobody is sure enough without the prior
+  const Detector without(std::make_shared<TruthLabeller>(truth.labels, paper_body(), false), options);
   Trace trace;
-  const std::vector<Person> people = without.detect(truth.frame, {{{mask_of(0), {}}}}, &trace);
-  EXPECT_EQ(people.size(), 2U);
+  EXPECT_TRUE(without.detect(truth.frame, {{{mask_of(0), {}}}}, &trace).empty());
   EXPECT_TRUE(std::ranges::any_of(trace.candidates, [](const auto& c) { return c.known == 0 && c.score > 0.5F; }));
+}
+
+TEST_F(DetectorWithPrior, LooksAgainOnlyForWhomItWouldMiss) {
+  Trace trace;
+  detector->detect(truth.frame, {{{mask_of(0), {}}, {mask_of(1), {}}}}, &trace);
+  EXPECT_TRUE(std::ranges::any_of(trace.candidates, [](const auto& c) { return c.known == 1; }));
+  EXPECT_FALSE(std::ranges::any_of(trace.candidates, [](const auto& c) { return c.known == 0; }));
+}
+
+TEST_F(DetectorWithPrior, OddsLetALowerScoreSufficeForTheKnownPersonAlone) {
+  Trace trace;
+  ASSERT_EQ(detector->detect(truth.frame, {{{mask_of(1), {}}}}, &trace).size(), 2U);
+  const float sure = trace.candidates[0].score, doubted = trace.candidates[1].score;
+  ASSERT_LT(doubted, sure);
+  options.refine.min_score = 0.5F * (doubted + sure);
+  const Detector strict(std::make_shared<DoubtfulLabeller>(truth, 1), options);
+  const auto odds = [](float p) { return p / (1.F - p); };
+  const float needed = odds(options.refine.min_score) / odds(doubted);
+  EXPECT_EQ(strict.detect(truth.frame, {{{mask_of(1), {}, 0.99F * needed}}}).size(), 1U);
+  const std::vector<Person> people = strict.detect(truth.frame, {{{mask_of(1), {}, 1.01F * needed}}});
+  ASSERT_EQ(people.size(), 2U);
+  EXPECT_NEAR(std::min(people[0].score, people[1].score), doubted, 1e-6F) << "the score is the frame's own";
+  EXPECT_EQ(strict.detect(truth.frame, {{{mask_of(0), {}, 2.F * needed}}}).size(), 1U) << "somebody else's odds";
+}
+
+TEST_F(DetectorWithPrior, LowOddsAskForMore) {
+  Trace trace;
+  detector->detect(truth.frame, &trace);
+  const float score = trace.candidates[0].score;
+  ASSERT_LT(score, 1.F);
+  const float least = options.refine.min_score / (1.F - options.refine.min_score) * (1.F - score) / score;
+  EXPECT_EQ(detector->detect(truth.frame, {{{mask_of(0), {}, 1.01F * least}}}).size(), 1U);
+  EXPECT_TRUE(detector->detect(truth.frame, {{{mask_of(0), {}, 0.99F * least}}}).empty());
+}
+
+TEST_F(DetectorWithPrior, RefusesOddsThatAreNone) {
+  for (const float odds : {0.F, -1.F, std::numeric_limits<float>::infinity(), std::nanf("")}) {
+    EXPECT_THAT(
+        [&] {
+          detector->detect(truth.frame, {{{mask_of(1), {}, odds}}});
+        },
+        testing::ThrowsMessage<Error>(testing::HasSubstr("odds of person 0")));
+  }
+}
+
+TEST_F(DetectorWithPrior, AsksOnceWhenTheFrameIsLabelled) {
+  int asked = 0;
+  StageTimes times;
+  const Detection found = detector->detect(
+      truth.frame,
+      [&](const Frame& frame) {
+        ++asked;
+        EXPECT_EQ(&frame, &truth.frame);
+        EXPECT_GT(times[Stage::label], 0.0);
+        EXPECT_EQ(times[Stage::grow], 0.0);
+        return Prior{{{mask_of(1), {}}}};
+      },
+      nullptr, &times);
+  EXPECT_EQ(asked, 1);
+  expect_same(found.people, detector->detect(truth.frame, {{{mask_of(1), {}}}}));
+  EXPECT_EQ(found.planes.size(), find_planes(truth.frame.depth, kCamera, {}).size());
+  EXPECT_FALSE(found.planes.empty());
+  const AskPrior fails = [](const Frame&) -> Prior { throw Error("nobody knows"); };
+  EXPECT_THROW(detector->detect(truth.frame, fails), Error);
 }
 
 TEST_F(DetectorWithPrior, ChangesNothingWithoutMasksOfPeople) {

@@ -31,11 +31,11 @@ struct Person {
   std::vector<PersonPoint> points;         ///< some of the person's pixels with the likeliest parts of each
 };
 
-/// What earlier frames tell about the people of a frame; a tracker provides it. Each mask starts a candidate of its
-/// own: its pixels are taken as that person's whatever the background's posterior is, and the candidate is labelled,
-/// searched for a skeleton, grown, refined and scored like any other. So a person whom labels alone would lose can be
-/// found again, but only with a sufficient score in this frame; how high it must be follows from `odds`. A Prior
-/// without people changes nothing.
+/// What earlier frames tell about the people of a frame; a tracker provides it. Each mask that no
+/// candidate with a sufficient score covers starts a candidate of its own: its pixels are taken as that person's
+/// whatever the background's posterior is, and the candidate is labelled, searched for a skeleton, grown, refined and
+/// scored like any other. So a person whom labels alone would lose can be found again, but only with a sufficient score
+/// in this frame; how high it must be follows from `odds`. A Prior without people changes nothing.
 struct Prior {
   struct KnownPerson {
     /// Non-zero where the person is expected, such as the mask of the previous frame, perhaps moved. It has the frame's

@@ -5,8 +5,9 @@
 namespace vesalius {
 
 /// Where the trunk of somebody who is followed is, and how it moves: a Kalman filter (1960) of position and velocity,
-/// metres and seconds, in the optical frame. The velocity is constant but for random pushes, and fades where nobody is
-/// seen, as people stop and turn; a camera that moves evenly is part of it. All axes have the same variances.
+/// metres and seconds, in the optical frame. The velocity is constant but for random pushes, and fades while nobody is
+/// seen for longer, as people stop and turn; a camera that moves evenly is part of it. All axes have the same
+/// variances.
 class TrackMotion {
  public:
   /// `sigma_m` is the standard deviation of the measured position along each axis.
@@ -25,9 +26,13 @@ class TrackMotion {
   float distance2(const Eigen::Vector3f& position, float sigma_m) const;
 
  private:
+  void go_on(double step_s);
+  void fade(double step_s);
+
   Eigen::Vector3f position_;
   Eigen::Vector3f velocity_ = Eigen::Vector3f::Zero();
   Eigen::Matrix2d covariance_;  ///< of position and velocity along an axis
+  double unseen_s_ = 0.0;       ///< since the last measurement
 };
 
 }  // namespace vesalius
