@@ -10,6 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
 Json point_json(State state, const Eigen::Vector3f& point, float confidence, const Camera& camera) {
   Json xyz, px;  // null
   if (state != State::none) {
@@ -39,13 +41,13 @@ Json parts_json(const Skeleton& skeleton, const BodyModel& body, const Camera& c
   return parts;
 }
 
-Json joints_json(const Person& person, const BodyModel& body, const Camera& camera) {
+Json joints_json(const std::vector<std::vector<Joint>>& all, const BodyModel& body, const Camera& camera) {
   Json sets = Json::object();
   for (std::size_t s = 0; s < body.joint_sets.size(); ++s) {
     const JointSet& set = body.joint_sets[s];
     Json joints = Json::object();
     for (std::size_t j = 0; j < set.joints.size(); ++j) {
-      const Joint& joint = person.joints.at(s).at(j);
+      const Joint& joint = all.at(s).at(j);
       joints[set.joints[j].name] = point_json(joint.state, joint.position, joint.confidence, camera);
     }
     sets[set.name] = std::move(joints);
@@ -55,7 +57,6 @@ Json joints_json(const Person& person, const BodyModel& body, const Camera& came
 
 Json yaw_json(const std::optional<YawEstimate>& yaw) {
   if (!yaw) return {};
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   return {{"degrees", rounded(kDegrees * static_cast<double>(yaw->yaw_rad), 10)},
           {"confidence", rounded(yaw->confidence)}};
 }
@@ -71,7 +72,7 @@ Json person_json(const Person& person, std::size_t index, const BodyModel& body,
           {"yaw", yaw_json(person.yaw)},
           {"box_px", {person.box.u, person.box.v, person.box.width, person.box.height}},
           {"parts", parts_json(person.skeleton, body, camera)},
-          {"joints", joints_json(person, body, camera)}};
+          {"joints", joints_json(person.joints, body, camera)}};
 }
 
 /// Takes the camera's own time; `latency_ms` as frame_json.
@@ -89,10 +90,29 @@ Json tracked_json(const TrackedPerson& tracked, std::size_t index, const BodyMod
                {"state", to_string(tracked.state)},
                {"position_m", xyz_json(tracked.position)},
                {"velocity_m_s", xyz_json(tracked.velocity)},
+               {"stance", to_string(tracked.stance)},
+               {"leaving", tracked.leaving},
                {"since_s", rounded(tracked.since_s, 1e6)},
                {"seen_s", rounded(tracked.seen_s, 1e6)}};
   json.update(person_json(tracked.person, index, body, camera));
+  if (!tracked.smoothed.empty()) json["smoothed"] = joints_json(tracked.smoothed, body, camera);
   return json;
+}
+
+Json floor_json(const std::optional<FloorView>& floor) {
+  if (!floor) return {};
+  return {{"up", xyz_json(floor->up)},
+          {"height_m", rounded(floor->height_m)},
+          {"tilt_degrees", rounded(kDegrees * static_cast<double>(floor->tilt_rad), 10)},
+          {"roll_degrees", rounded(kDegrees * static_cast<double>(floor->roll_rad), 10)}};
+}
+
+Json events_json(const std::vector<StanceEvent>& events) {
+  Json list = Json::array();
+  for (const StanceEvent& event : events) {
+    list.push_back({{"id", event.id}, {"time_s", rounded(event.time_s, 1e6)}, {"stance", to_string(event.stance)}});
+  }
+  return list;
 }
 
 }  // namespace
@@ -114,6 +134,8 @@ std::string tracked_frame_json(const Frame& frame, const TrackedFrame& tracked, 
   }
   Json json = frame_facts(frame, latency_ms);
   json["track_time_s"] = rounded(tracked.time_s, 1e6);
+  json["floor"] = floor_json(tracked.floor);
+  json["events"] = events_json(tracked.events);
   json["people"] = std::move(list);
   return line(json);
 }

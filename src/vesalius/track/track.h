@@ -3,10 +3,12 @@
 #include <optional>
 
 #include "vesalius/detection.h"
+#include "vesalius/track/smooth_joints.h"
 #include "vesalius/track/track_look.h"
 #include "vesalius/track/track_motion.h"
 #include "vesalius/track/track_place.h"
 #include "vesalius/track/track_size.h"
+#include "vesalius/track/track_stance.h"
 #include "vesalius/track/tracked_frame.h"
 #include "vesalius/track/trunk_place.h"
 
@@ -36,8 +38,11 @@ struct Track {
   float log_odds = 0.F;  ///< of being a person, by all frames so far
   int found = 0;         ///< frames in which the person was found
   float evidence = 0.F;  ///< sum of what their scores tell, as long as the track is fresh
-  double since_s = 0.0;  ///< time of the first one
-  double seen_s = 0.0;   ///< time of the last one
+  TrackStance stance;
+  JointSmoother smoother;
+  double smoothed_s = 0.0;  ///< time of the joints that were smoothed last
+  double since_s = 0.0;     ///< time of the first one
+  double seen_s = 0.0;      ///< time of the last one
 
   Track(int number, const Sighting& sighting, double time_s);
 

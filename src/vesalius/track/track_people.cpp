@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <tuple>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include "vesalius/track/match_cost.h"
 #include "vesalius/track/match_tracks.h"
 #include "vesalius/track/track.h"
+#include "vesalius/track/track_clock.h"
+#include "vesalius/track/track_floor.h"
 
 namespace vesalius {
 namespace {
@@ -20,47 +23,18 @@ constexpr double kExpect_s = 1.0;          // after being seen; later nobody kno
 constexpr float kClearlyBetter = 0.1F;     // by which another lost person must look more different
 constexpr float kFadePerS = 1.F;           // of the confidence of what is predicted of hidden people, per second
 
-// The score of each frame counts as evidence; as much alike frames of one second as kFramesASecond independent ones.
+// The score of each frame counts as evidence; frames of one second are as much alike as kFramesASecond independent
+// ones.
 constexpr float kFramesASecond = 5.F;
 constexpr double kMostEvidence_s = 0.2;  // time for which one frame speaks
 constexpr float kMostLogit = 4.F;
 constexpr float kClearScore = 0.8F;  // that the frames in which somebody new is found have on average, at least
 
-float logit(float p) { return std::clamp(std::log(p / (1.F - p)), -kMostLogit, kMostLogit); }
-
-/// What there is to say of a step in time.
-struct Step {
-  double time_s = 0.0;
-  double passed_s = 0.0;
-  bool jump = false;  ///< the frame does not go on from the one before
-};
-
-/// Tells times of frames, of which some may have none, or nonsense.
-class Times {
- public:
-  Step next(const Frame& frame, const TrackOptions& options) const {
-    const double period_s = 1.0 / static_cast<double>(options.rate);
-    const bool known = frame.time_s && std::isfinite(*frame.time_s);
-    if (frames_ == 0) return {known ? *frame.time_s : 0.0, 0.0, false};
-    const double time_s = known ? *frame.time_s : first_s_ + static_cast<double>(frames_) * period_s;
-    const double unknown_s = known_ ? last_s_ + period_s : time_s;  // where frames with and without times are mixed
-    const double now_s = known ? time_s : unknown_s;
-    const double passed_s = now_s - last_s_;
-    const bool jump = !(passed_s >= 0.0) || passed_s > static_cast<double>(options.gap_s);
-    return {now_s, jump ? 0.0 : passed_s, jump};
-  }
-  void take(const Frame& frame, const Step& step) {
-    if (frames_ == 0) first_s_ = step.time_s;
-    known_ = known_ || (frame.time_s && std::isfinite(*frame.time_s));
-    last_s_ = step.time_s;
-    ++frames_;
-  }
-
- private:
-  long frames_ = 0;
-  bool known_ = false;  ///< whether a frame had a time
-  double first_s_ = 0.0, last_s_ = 0.0;
-};
+/// Scores are probabilities; one of 0 or 1 is no more than very sure.
+float logit(float score) {
+  const float odds = score / (1.F - score);
+  return odds > 0.F ? std::clamp(std::log(odds), -kMostLogit, kMostLogit) : -kMostLogit;
+}
 
 /// People are taken in an order of their own, so that ids do not depend on the list's.
 bool comes_before(const Sighting& a, const Sighting& b) {
@@ -72,12 +46,10 @@ bool comes_before(const Sighting& a, const Sighting& b) {
 }
 
 void check(const Person& person, const BodyModel& body) {
-  const bool fits = person.skeleton.parts.size() == body.parts.size() && person.joints.size() == body.joint_sets.size();
-  if (!fits) {
-    throw Error("track: a person has " + std::to_string(person.skeleton.parts.size()) + " parts and " +
-                std::to_string(person.joints.size()) + " joint sets, expected the body's " +
-                std::to_string(body.parts.size()) + " and " + std::to_string(body.joint_sets.size()));
-  }
+  if (person.skeleton.parts.size() == body.parts.size() && person.joints.size() == body.joint_sets.size()) return;
+  throw Error("track: a person has " + std::to_string(person.skeleton.parts.size()) + " parts and " +
+              std::to_string(person.joints.size()) + " joint sets, expected the body's " +
+              std::to_string(body.parts.size()) + " and " + std::to_string(body.joint_sets.size()));
 }
 
 /// Moves what was found of somebody as the prediction moved.
@@ -112,171 +84,299 @@ void move(FittedBody& body, const Eigen::Vector3f& by, float faded, float sigma_
   }
 }
 
+TrackedPerson describe(const Track& track) {
+  TrackedPerson out;
+  out.id = track.id;
+  out.state = track.state;
+  out.position = track.motion.position();
+  out.velocity = track.motion.velocity();
+  out.since_s = track.since_s;
+  out.seen_s = track.seen_s;
+  out.stance = track.stance.stance();
+  out.leaving = track.place.at_border();
+  out.body = track.body;
+  return out;
+}
+
+TrackedPerson describe_unseen(const Track& track, double time_s) {
+  TrackedPerson out = describe(track);
+  const Eigen::Vector3f by = track.motion.position() - track.place_position;
+  const auto unseen_s = static_cast<float>(std::clamp(time_s - track.seen_s, 0.0, 1e6));
+  const float faded = std::exp(-kFadePerS * unseen_s);
+  out.person = track.person;
+  move(out.person, by, faded);
+  if (out.body) move(*out.body, by, faded, track.motion.sigma_m());
+  return out;
+}
+
+bool is_sure(const Track& track) { return track.state != TrackState::fresh; }
+
 }  // namespace
 
 void visit_options(const std::string& prefix, TrackOptions& o, OptionVisitor& visitor) {
   visitor.option(prefix + "rate", o.rate, {"1/s", 0.01, 10000.0, "Frames a second of a source without times."});
-  visitor.option(prefix + "confirm", o.confirm, {"", 1, 1000, "Frames in which somebody is found before being sure."});
+  visitor.option(prefix + "confirm", o.confirm,
+                 {"", 1, 1000, "Frames in which somebody must be found to be more than a guess."});
   visitor.option(prefix + "confirm-within", o.confirm_s,
-                 {"s", 0.0, 60.0, "Time from one of these to the next at most."});
+                 {"s", 0.0, 60.0, "Longest time from one of these to the next."});
   visitor.option(prefix + "hidden", o.hidden_s, {"s", 0.0, 3600.0, "Time after which somebody not found is lost."});
   visitor.option(prefix + "gap", o.gap_s, {"s", 0.0, 3600.0, "A longer step in time loses everybody."});
   visitor.option(prefix + "remembered", o.remembered, {"", 0, 10000, "Most lost people who are known again."});
-  visitor.option(prefix + "same-look", o.same_look, {"", 0.0, 10.0, "Most difference of looks of one who comes back."});
-  visitor.option(prefix + "odds", o.odds, {"", 1.0, 1000.0, "Most by which known people's odds are multiplied."});
+  visitor.option(prefix + "same-look", o.same_look,
+                 {"", 0.0, 10.0, "Greatest difference of looks of somebody who comes back."});
+  visitor.option(prefix + "odds", o.odds,
+                 {"", 1.0, 1000.0, "Most by which having been found multiplies the odds of being found again."});
+  visitor.option(prefix + "smooth", o.smooth, {"", 0, 1, "Whether joints are smoothed over time as well."});
+  visitor.option(prefix + "smooth-cutoff", o.smoothing.cutoff_hz,
+                 {"Hz", 0.01, 1000.0, "Cutoff of the smoothing of joints at rest."});
+  visitor.option(prefix + "smooth-speed", o.smoothing.cutoff_per_m_s,
+                 {"Hz per m/s", 0.0, 1000.0, "Added to the cutoff times a joint's speed."});
 }
 
 struct PeopleTracker::State {
-  const BodyModel* body;
-  TrackOptions options;
-  std::shared_ptr<const Appearance> appearance;
-  FitBody fit_body;
-  Times times;
+  State(const BodyModel& model, const TrackOptions& given, std::shared_ptr<const Appearance> looks, FitBody fit)
+      : body(model),
+        options(given),
+        appearance(std::move(looks)),
+        fit_body(std::move(fit)),
+        clock(static_cast<double>(given.rate), static_cast<double>(given.gap_s)) {}
+
+  std::optional<Sighting> look_at(const Frame& frame, Person person) const;
+  std::vector<Sighting> look_at_all(const Frame& frame, std::vector<Person> people) const;
+  std::vector<int> match(const std::vector<Sighting>& sightings, double time_s) const;
+  int who_came_back(const Sighting& sighting, double time_s) const;
+  Track begin(const Sighting& sighting, double time_s);
+  void take(Track& track, const Sighting& sighting, double time_s) const;
+  void count(Track& track, float score, double passed_s) const;
+  void confirm(Track& track, float score) const;
+  void lose(Track track, double time_s, TrackedFrame& out);
+  void lose_all(double time_s, TrackedFrame& out);
+  void predict(const Frame& frame, double passed_s);
+  std::vector<int> follow(const std::vector<Sighting>& sightings, double time_s, TrackedFrame& out);
+  void fit_bodies(const Frame& frame, const std::vector<int>& sighting_of, std::vector<Sighting>& sightings);
+  void tell(const Frame& frame, const std::vector<int>& sighting_of, std::vector<Sighting> sightings,
+            TrackedFrame& out);
+  void take_stance(const Frame& frame, Track& track, const Person& person, TrackedFrame& out) const;
+  void smooth(Track& track, TrackedPerson& person, double time_s) const;
+
+  const BodyModel& body;
+  const TrackOptions options;
+  const std::shared_ptr<const Appearance> appearance;
+  const FitBody fit_body;
+  TrackClock clock;
+  TrackFloor floor;
   int last_id = 0;
   std::vector<Track> tracks;  ///< by id
   std::deque<Track> lost;     ///< the last one lost comes last
-
-  Sighting look_at(const Frame& frame, Person person, const TrunkPlace& trunk) const {
-    Sighting sighting{std::move(person), trunk, {}, body_scale(sighting.person.skeleton, *body), {}};
-    const Person& found = sighting.person;
-    if (!found.mask.same_size(frame.depth) || found.box.width <= 0) return sighting;
-    sighting.look = look_of(frame, found.mask, found.box, appearance.get());
-    sighting.place = TrackPlace(frame, found.mask, found.box);
-    return sighting;
-  }
-
-  std::vector<Sighting> look_at_all(const Frame& frame, std::vector<Person> people) const {
-    std::vector<std::optional<Sighting>> seen(people.size());
-    parallel_for(static_cast<int>(people.size()), [&](int i) {
-      Person& person = people[i];
-      check(person, *body);
-      if (!person.mask.same_size(frame.depth)) person.mask = {}, person.labels = {};
-      person.box = bounding_box(person.mask);
-      const std::optional<TrunkPlace> trunk = trunk_place(person, frame, *body);
-      if (trunk) seen[i] = look_at(frame, std::move(person), *trunk);
-    });
-    std::vector<Sighting> sightings;
-    for (std::optional<Sighting>& sighting : seen) {
-      if (sighting) sightings.push_back(std::move(*sighting));
-    }
-    std::ranges::stable_sort(sightings, comes_before);
-    return sightings;
-  }
-
-  /// Returns for each sighting the index of its track, or -1.
-  std::vector<int> match(const std::vector<Sighting>& sightings, double time_s) const {
-    Eigen::MatrixXf costs(static_cast<Eigen::Index>(tracks.size()), static_cast<Eigen::Index>(sightings.size()));
-    for (std::size_t t = 0; t < tracks.size(); ++t) {
-      for (std::size_t s = 0; s < sightings.size(); ++s) {
-        costs(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(s)) =
-            match_cost(tracks[t], sightings[s], appearance.get(), time_s, options.same_look);
-      }
-    }
-    std::vector<int> track_of(sightings.size(), -1);
-    const std::vector<int> matched = match_tracks(costs, kMostMatchCost);
-    for (std::size_t t = 0; t < matched.size(); ++t) {
-      if (matched[t] >= 0) track_of[static_cast<std::size_t>(matched[t])] = static_cast<int>(t);
-    }
-    return track_of;
-  }
-
-  /// Returns the index of the lost person who is clearly this one, or -1.
-  int who_came_back(const Sighting& sighting, double time_s) const {
-    int best = -1;
-    float least = 0.F, second = 0.F;
-    bool rival = false;
-    for (std::size_t i = 0; i < lost.size(); ++i) {
-      // Others are rivals even where they look a little too different themselves.
-      const std::optional<float> cost =
-          return_cost(lost[i], sighting, appearance.get(), time_s, options.same_look + kClearlyBetter);
-      if (!cost) continue;
-      if (best < 0 || *cost < least) {
-        if (best >= 0) second = least, rival = true;
-        best = static_cast<int>(i);
-        least = *cost;
-      } else if (!rival || *cost < second) {
-        second = *cost;
-        rival = true;
-      }
-    }
-    const bool clear = best >= 0 && least <= options.same_look && (!rival || second - least >= kClearlyBetter);
-    return clear ? best : -1;
-  }
-
-  /// Begins a track, under the old id if somebody clearly came back.
-  Track& begin(const Sighting& sighting, double time_s) {
-    const int back = who_came_back(sighting, time_s);
-    if (back < 0) {
-      tracks.emplace_back(++last_id, sighting, time_s);
-    } else {
-      Track track(lost[static_cast<std::size_t>(back)].id, sighting, time_s);
-      Track& known = lost[static_cast<std::size_t>(back)];
-      track.look = known.look;
-      track.look.add(sighting.look);
-      track.size = known.size;
-      track.since_s = known.since_s;
-      track.body = std::move(known.body);
-      lost.erase(lost.begin() + back);
-      tracks.push_back(std::move(track));
-    }
-    Track& track = tracks.back();
-    track.log_odds = std::clamp(logit(sighting.person.score), 0.F, std::log(options.odds));
-    return track;
-  }
-
-  void forget(Track track) {
-    lost.push_back(std::move(track));
-    lost.back().place = {};
-    lost.back().expected = {};
-    while (lost.size() > static_cast<std::size_t>(options.remembered)) lost.pop_front();
-  }
-
-  void count(Track& track, float score, double passed_s) {
-    const auto evidence = static_cast<float>(std::min(passed_s, kMostEvidence_s)) * kFramesASecond;
-    track.log_odds = std::clamp(track.log_odds + evidence * logit(score), 0.F, std::log(options.odds));
-  }
-
-  /// Lets somebody fresh be sure who was found often and clearly enough.
-  void confirm(Track& track, float score) const {
-    if (track.state == TrackState::fresh) {
-      track.evidence += logit(score);
-      const float enough = static_cast<float>(options.confirm) * logit(kClearScore);
-      if (track.found < options.confirm || track.evidence < enough) return;
-    }
-    track.state = TrackState::tracked;
-  }
-
-  bool is_sure(const Track& track) const { return track.state != TrackState::fresh; }
-
-  TrackedPerson describe(const Track& track) const {
-    TrackedPerson out;
-    out.id = track.id;
-    out.state = track.state;
-    out.position = track.motion.position();
-    out.velocity = track.motion.velocity();
-    out.since_s = track.since_s;
-    out.seen_s = track.seen_s;
-    out.body = track.body;
-    return out;
-  }
-
-  TrackedPerson describe_unseen(const Track& track, double time_s) const {
-    TrackedPerson out = describe(track);
-    const Eigen::Vector3f by = track.motion.position() - track.place_position;
-    const auto unseen_s = static_cast<float>(std::clamp(time_s - track.seen_s, 0.0, 1e6));
-    const float faded = std::exp(-kFadePerS * unseen_s);
-    out.person = track.person;
-    move(out.person, by, faded);
-    if (out.body) move(*out.body, by, faded, track.motion.sigma_m());
-    return out;
-  }
 };
+
+std::optional<Sighting> PeopleTracker::State::look_at(const Frame& frame, Person person) const {
+  check(person, body);
+  if (!person.mask.same_size(frame.depth)) {
+    person.mask = {};
+    person.labels = {};
+  }
+  person.box = bounding_box(person.mask);
+  const std::optional<TrunkPlace> trunk = trunk_place(person, frame, body);
+  if (!trunk) return std::nullopt;
+  Sighting sighting{std::move(person), *trunk, {}, {}, {}};
+  const Person& found = sighting.person;
+  sighting.scale = body_scale(found.skeleton, body);
+  sighting.look = look_of(frame, found.mask, found.box, appearance.get());
+  if (found.box.width > 0) sighting.place = TrackPlace(frame, found.mask, found.box);
+  return sighting;
+}
+
+std::vector<Sighting> PeopleTracker::State::look_at_all(const Frame& frame, std::vector<Person> people) const {
+  std::vector<std::optional<Sighting>> seen(people.size());
+  parallel_for(static_cast<int>(people.size()), [&](int i) { seen[i] = look_at(frame, std::move(people[i])); });
+  std::vector<Sighting> sightings;
+  for (std::optional<Sighting>& sighting : seen) {
+    if (sighting) sightings.push_back(std::move(*sighting));
+  }
+  std::ranges::stable_sort(sightings, comes_before);
+  return sightings;
+}
+
+/// Returns for each track the index of its sighting, or -1.
+std::vector<int> PeopleTracker::State::match(const std::vector<Sighting>& sightings, double time_s) const {
+  Eigen::MatrixXf costs(static_cast<Eigen::Index>(tracks.size()), static_cast<Eigen::Index>(sightings.size()));
+  parallel_for(static_cast<int>(tracks.size()), [&](int t) {
+    for (std::size_t s = 0; s < sightings.size(); ++s) {
+      costs(t, static_cast<Eigen::Index>(s)) =
+          match_cost(tracks[t], sightings[s], appearance.get(), time_s, options.same_look);
+    }
+  });
+  return match_tracks(costs, kMostMatchCost);
+}
+
+/// Returns the index of the lost person who is clearly this one, or -1.
+int PeopleTracker::State::who_came_back(const Sighting& sighting, double time_s) const {
+  std::vector<std::pair<float, int>> alike;
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    // Others are rivals even where they look a little too different themselves.
+    const std::optional<float> cost =
+        return_cost(lost[i], sighting, appearance.get(), time_s, options.same_look + kClearlyBetter);
+    if (cost) alike.emplace_back(*cost, static_cast<int>(i));
+  }
+  std::ranges::sort(alike);
+  if (alike.empty() || alike[0].first > options.same_look) return -1;
+  return alike.size() == 1 || alike[1].first - alike[0].first >= kClearlyBetter ? alike[0].second : -1;
+}
+
+/// Begins a track, under the old id if somebody clearly came back.
+Track PeopleTracker::State::begin(const Sighting& sighting, double time_s) {
+  const int back = who_came_back(sighting, time_s);
+  Track track(back < 0 ? ++last_id : lost[static_cast<std::size_t>(back)].id, sighting, time_s);
+  if (back >= 0) {
+    Track& known = lost[static_cast<std::size_t>(back)];
+    track.look = known.look;
+    track.look.add(sighting.look);
+    track.size = known.size;
+    track.since_s = known.since_s;
+    track.body = std::move(known.body);
+    lost.erase(lost.begin() + back);
+  }
+  track.log_odds = std::clamp(logit(sighting.person.score), 0.F, std::log(options.odds));
+  confirm(track, sighting.person.score);
+  return track;
+}
+
+void PeopleTracker::State::count(Track& track, float score, double passed_s) const {
+  const auto evidence = static_cast<float>(std::min(passed_s, kMostEvidence_s)) * kFramesASecond;
+  track.log_odds = std::clamp(track.log_odds + evidence * logit(score), 0.F, std::log(options.odds));
+}
+
+/// Lets somebody fresh be sure who was found often and clearly enough.
+void PeopleTracker::State::confirm(Track& track, float score) const {
+  if (!is_sure(track)) {
+    track.evidence += logit(score);
+    const float enough = static_cast<float>(options.confirm) * logit(kClearScore);
+    if (track.found < options.confirm || track.evidence < enough) return;
+  }
+  track.state = TrackState::tracked;
+}
+
+void PeopleTracker::State::take(Track& track, const Sighting& sighting, double time_s) const {
+  const double passed_s = time_s - track.seen_s;
+  if (!is_sure(track) && passed_s > static_cast<double>(options.confirm_s)) track.doubt();
+  track.take(sighting, time_s);
+  count(track, sighting.person.score, passed_s);
+  confirm(track, sighting.person.score);
+}
+
+/// Gives a track up. Nobody is told of a guess.
+void PeopleTracker::State::lose(Track track, double time_s, TrackedFrame& out) {
+  if (!is_sure(track)) return;
+  track.state = TrackState::lost;
+  out.people.push_back(describe_unseen(track, time_s));
+  track.place = {};
+  track.expected = {};
+  lost.push_back(std::move(track));
+  while (lost.size() > static_cast<std::size_t>(options.remembered)) lost.pop_front();
+}
+
+void PeopleTracker::State::lose_all(double time_s, TrackedFrame& out) {
+  for (Track& track : tracks) lose(std::move(track), time_s, out);
+  tracks.clear();
+}
+
+void PeopleTracker::State::predict(const Frame& frame, double passed_s) {
+  parallel_for(static_cast<int>(tracks.size()), [&](int t) {
+    Track& track = tracks[t];
+    track.motion.predict(passed_s);
+    track.expected = track.place.expected(frame, track.place_position, track.motion.position());
+  });
+}
+
+/// Gives each sighting to its track, or begins one for it. Whoever is not found is hidden, or lost after some time.
+/// Returns for each track the index of its sighting, or -1.
+std::vector<int> PeopleTracker::State::follow(const std::vector<Sighting>& sightings, double time_s,
+                                              TrackedFrame& out) {
+  const std::vector<int> matched = match(sightings, time_s);
+  std::vector<Track> staying;
+  std::vector<int> sighting_of;
+  std::vector<bool> taken(sightings.size(), false);
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    Track& track = tracks[t];
+    if (matched[t] >= 0) {
+      take(track, sightings[static_cast<std::size_t>(matched[t])], time_s);
+      taken[static_cast<std::size_t>(matched[t])] = true;
+    } else if (time_s - track.seen_s > static_cast<double>(is_sure(track) ? options.hidden_s : options.confirm_s)) {
+      lose(std::move(track), time_s, out);
+      continue;
+    } else if (is_sure(track)) {
+      track.state = TrackState::hidden;
+    }
+    staying.push_back(std::move(track));
+    sighting_of.push_back(matched[t]);
+  }
+  tracks = std::move(staying);
+  for (std::size_t s = 0; s < sightings.size() && tracks.size() < kMostTracks; ++s) {
+    if (taken[s]) continue;
+    tracks.push_back(begin(sightings[s], time_s));
+    sighting_of.push_back(static_cast<int>(s));
+  }
+  return sighting_of;
+}
+
+void PeopleTracker::State::fit_bodies(const Frame& frame, const std::vector<int>& sighting_of,
+                                      std::vector<Sighting>& sightings) {
+  if (!fit_body) return;
+  parallel_for(static_cast<int>(tracks.size()), [&](int t) {
+    if (sighting_of[t] < 0) return;
+    Person& person = sightings[static_cast<std::size_t>(sighting_of[t])].person;
+    tracks[t].body = fit_body(frame, person, tracks[t].body);
+    tracks[t].person.joints = person.joints;
+  });
+}
+
+void PeopleTracker::State::take_stance(const Frame& frame, Track& track, const Person& person,
+                                       TrackedFrame& out) const {
+  std::optional<Eigen::Vector3f> up = frame.up;
+  std::optional<float> height_m;
+  if (out.floor) {
+    up = out.floor->up;
+    height_m = out.floor->height_m;
+  }
+  const auto changed = track.stance.update(posture_of(person.skeleton, body, up, height_m), out.time_s);
+  if (changed && is_sure(track)) out.events.push_back({track.id, changed->second, changed->first});
+}
+
+void PeopleTracker::State::smooth(Track& track, TrackedPerson& person, double time_s) const {
+  if (!options.smooth) return;
+  person.smoothed = track.smoother.smooth(person.person.joints, time_s - track.smoothed_s, options.smoothing);
+  track.smoothed_s = time_s;
+}
+
+/// Adds all who are followed to `out`.
+void PeopleTracker::State::tell(const Frame& frame, const std::vector<int>& sighting_of,
+                                std::vector<Sighting> sightings, TrackedFrame& out) {
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    Track& track = tracks[t];
+    if (sighting_of[t] < 0 && !is_sure(track)) continue;
+    TrackedPerson& told = out.people.emplace_back();
+    if (sighting_of[t] >= 0) {
+      Sighting& sighting = sightings[static_cast<std::size_t>(sighting_of[t])];
+      take_stance(frame, track, sighting.person, out);
+      told = describe(track);
+      told.person = std::move(sighting.person);
+    } else {
+      take_stance(frame, track, {}, out);
+      told = describe_unseen(track, out.time_s);
+    }
+    smooth(track, told, out.time_s);
+  }
+  std::ranges::sort(out.people, {}, &TrackedPerson::id);
+  std::ranges::stable_sort(out.events, {}, &StanceEvent::id);
+  std::ranges::sort(tracks, {}, &Track::id);
+}
 
 PeopleTracker::PeopleTracker(const BodyModel& body, TrackOptions options, std::shared_ptr<const Appearance> appearance,
                              FitBody fit_body) {
   RangeCheck check;
   visit_options("track.", options, check);
-  state_ = std::make_unique<State>(State{&body, options, std::move(appearance), std::move(fit_body), {}, 0, {}, {}});
+  state_ = std::make_unique<State>(body, options, std::move(appearance), std::move(fit_body));
 }
 
 PeopleTracker::~PeopleTracker() = default;
@@ -285,7 +385,7 @@ PeopleTracker& PeopleTracker::operator=(PeopleTracker&&) noexcept = default;
 
 Prior PeopleTracker::expect(const Frame& frame) const {
   Prior prior;
-  const Step step = state_->times.next(frame, state_->options);
+  const TrackStep step = state_->clock.step_to(frame);
   if (step.jump) return prior;
   std::vector<const Track*> known;
   for (const Track& track : state_->tracks) {
@@ -298,90 +398,30 @@ Prior PeopleTracker::expect(const Frame& frame) const {
     motion.predict(step.passed_s);
     Mask mask = track->place.expected(frame, track->place_position, motion.position());
     if (mask.empty()) continue;
-    const bool is_sure = track->state != TrackState::fresh;  // a guess must not confirm itself
-    prior.people.push_back({std::move(mask), track->look.histogram(), is_sure ? std::exp(track->log_odds) : 1.F});
+    const float odds = is_sure(*track) ? std::exp(track->log_odds) : 1.F;  // a guess must not confirm itself
+    prior.people.push_back({std::move(mask), track->look.histogram(), odds});
   }
   return prior;
 }
 
 TrackedFrame PeopleTracker::update(const Frame& frame, std::vector<Person> people, const std::vector<Plane>& planes) {
   State& s = *state_;
-  static_cast<void>(planes);
+  check(frame);
   std::vector<Sighting> sightings = s.look_at_all(frame, std::move(people));
-  const Step step = s.times.next(frame, s.options);
-  s.times.take(frame, step);
+  const TrackStep step = s.clock.step_to(frame);
+  s.clock.go(frame);
   TrackedFrame out;
   out.time_s = step.time_s;
-  const auto lose = [&](Track& track) {
-    if (!s.is_sure(track)) return;
-    track.state = TrackState::lost;
-    out.people.push_back(s.describe_unseen(track, step.time_s));
-    s.forget(std::move(track));
-  };
   if (step.jump) {
-    for (Track& track : s.tracks) lose(track);
-    s.tracks.clear();
+    s.lose_all(step.time_s, out);
+    s.floor.reset();
   }
-  for (Track& track : s.tracks) {
-    track.motion.predict(step.passed_s);
-    track.expected = track.place.expected(frame, track.place_position, track.motion.position());
-  }
-  std::vector<int> track_of = s.match(sightings, step.time_s);
-  std::vector<bool> seen(s.tracks.size(), false);
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    if (track_of[i] < 0) continue;
-    Track& track = s.tracks[static_cast<std::size_t>(track_of[i])];
-    const double passed_s = step.time_s - track.seen_s;
-    if (track.state == TrackState::fresh && passed_s > static_cast<double>(s.options.confirm_s)) track.doubt();
-    track.take(sightings[i], step.time_s);
-    s.count(track, sightings[i].person.score, passed_s);
-    s.confirm(track, sightings[i].person.score);
-    seen[static_cast<std::size_t>(track_of[i])] = true;
-  }
-  // Those not found: the sure ones are hidden, and all are given up in time.
-  std::vector<Track> staying;
-  std::vector<int> place_of(s.tracks.size(), -1);
-  for (std::size_t t = 0; t < s.tracks.size(); ++t) {
-    Track& track = s.tracks[t];
-    const double unseen_s = step.time_s - track.seen_s;
-    const double most_s = static_cast<double>(s.is_sure(track) ? s.options.hidden_s : s.options.confirm_s);
-    if (!seen[t] && unseen_s > most_s) {
-      lose(track);
-      continue;
-    }
-    if (!seen[t] && s.is_sure(track)) track.state = TrackState::hidden;
-    place_of[t] = static_cast<int>(staying.size());
-    staying.push_back(std::move(track));
-  }
-  s.tracks = std::move(staying);
-  std::vector<int> sighting_of(s.tracks.size(), -1);
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    if (track_of[i] >= 0)
-      sighting_of[static_cast<std::size_t>(place_of[static_cast<std::size_t>(track_of[i])])] = static_cast<int>(i);
-  }
-  for (std::size_t i = 0; i < sightings.size() && s.tracks.size() < kMostTracks; ++i) {
-    if (track_of[i] >= 0) continue;
-    Track& track = s.begin(sightings[i], step.time_s);
-    s.confirm(track, sightings[i].person.score);
-    sighting_of.push_back(static_cast<int>(i));
-  }
-  if (s.fit_body) {
-    parallel_for(static_cast<int>(s.tracks.size()), [&](int t) {
-      if (sighting_of[t] >= 0) s.tracks[t].body = s.fit_body(frame, sightings[sighting_of[t]].person, s.tracks[t].body);
-    });
-  }
-  for (std::size_t t = 0; t < s.tracks.size(); ++t) {
-    const Track& track = s.tracks[t];
-    if (sighting_of[t] >= 0) {
-      TrackedPerson person = s.describe(track);
-      person.person = std::move(sightings[static_cast<std::size_t>(sighting_of[t])].person);
-      out.people.push_back(std::move(person));
-    } else if (s.is_sure(track)) {
-      out.people.push_back(s.describe_unseen(track, step.time_s));
-    }
-  }
-  std::ranges::sort(out.people, {}, &TrackedPerson::id);
-  std::ranges::sort(s.tracks, {}, &Track::id);
+  s.floor.update(planes, frame.up, step.passed_s);
+  out.floor = s.floor.view();
+  s.predict(frame, step.passed_s);
+  const std::vector<int> sighting_of = s.follow(sightings, step.time_s, out);
+  s.fit_bodies(frame, sighting_of, sightings);
+  s.tell(frame, sighting_of, std::move(sightings), out);
   return out;
 }
 

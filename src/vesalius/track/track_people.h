@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "vesalius/base/options.h"
 #include "vesalius/detection.h"
 #include "vesalius/planes/find_planes.h"
+#include "vesalius/track/smooth_joints.h"
 #include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
@@ -26,6 +26,8 @@ struct TrackOptions {
   int remembered = 32;     ///< most lost people who are known again
   float same_look = 0.1F;  ///< most difference of looks (look_distance) of one person who comes back
   float odds = 20.F;       ///< most by which having been found before multiplies the odds of being found again
+  bool smooth = false;     ///< whether TrackedPerson::smoothed is filled
+  JointSmoothing smoothing;
 };
 void visit_options(const std::string& prefix, TrackOptions& options, OptionVisitor& visitor);
 
@@ -34,9 +36,10 @@ void visit_options(const std::string& prefix, TrackOptions& options, OptionVisit
 /// matter, only their times.
 class PeopleTracker {
  public:
-  /// Returns the body of a person found in a frame, given the body and the shape of the frame before, if it had one.
+  /// Returns the body of a person found in a frame, given the last one that the same person had, if any. What the
+  /// joints of TrackedPerson::person are then is up to it too.
   /// It is called for several people at once.
-  using FitBody = std::function<std::optional<FittedBody>(const Frame& frame, const Person& person,
+  using FitBody = std::function<std::optional<FittedBody>(const Frame& frame, Person& person,
                                                           const std::optional<FittedBody>& last)>;
 
   /// `body` is that of the people, such as Detector::body, and must outlive this object. `appearance` is the

@@ -33,6 +33,7 @@ struct TrackedPerson {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< of the trunk, metres, optical frame
   Eigen::Vector3f velocity = Eigen::Vector3f::Zero();  ///< of the trunk, metres a second
   Stance stance = Stance::unknown;
+  bool leaving = false;  ///< seen last at the border of the view, where people leave it
   double since_s = 0.0;  ///< time of the first frame in which the person was found
   double seen_s = 0.0;   ///< time of the last frame in which the person was found
   /// [joint set][joint]: joints smoothed over time, if that was asked for; otherwise empty.

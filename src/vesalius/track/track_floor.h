@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "vesalius/planes/find_planes.h"
+#include "vesalius/track/tracked_frame.h"
+
+namespace vesalius {
+
+/// The floor over time, from the planes of each frame. A level plane becomes the floor when it was seen for a while, so
+/// that a table that is seen for a moment does not; one above the floor takes longer. Small differences are averaged
+/// over seconds, as of a camera that stands still; larger ones that last are followed, as of one that moves.
+class TrackFloor {
+ public:
+  /// Takes the planes of a frame (find_planes), `passed_s` seconds after the one before, and up in the optical frame as
+  /// a sensor measured it, if one did. Without, up is that of the floor so far, or about that of the picture.
+  void update(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up, double passed_s);
+  /// Forgets all: the camera may be anywhere.
+  void reset() { *this = {}; }
+
+  /// Returns nothing before a floor was seen for long enough, and after none was seen for long.
+  std::optional<FloorView> view() const;
+
+ private:
+  void follow(const Plane& seen, double passed_s);
+  void doubt(const Plane& seen, double passed_s);
+
+  std::optional<Plane> floor_;
+  std::optional<Plane> rival_;  ///< a plane that may become the floor
+  double rival_s_ = 0.0;        ///< for how long it has been seen
+  int rival_frames_ = 0;
+  double unseen_s_ = 0.0;  ///< since the floor was seen
+};
+
+/// Returns how the camera stands over a floor. The plane's normal points away from the camera.
+FloorView view_of_floor(const Plane& floor);
+
+/// Returns the transformation from the optical frame to one with z up whose origin is on the floor below the camera; x
+/// points where the camera looks and y to its left (ROS REP 103). Metres.
+Eigen::Isometry3f gravity_from_optical(const FloorView& view);
+
+}  // namespace vesalius
