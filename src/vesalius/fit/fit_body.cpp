@@ -19,7 +19,13 @@ constexpr int kLeastCentres = 4;     // parts that a start needs
 constexpr std::size_t kLeastPoints = 30;
 constexpr int kLeastSupport = 4;     // points on a bone that make its joint observed
 
-double logistic(double logit) { return 1.0 / (1.0 + std::exp(-logit)); }
+/// Returns the probability that a joint of this covariance lies within 10 cm of the truth.
+float confidence(const JointTrust& trust, const Eigen::Matrix3d& covariance, float misfit) {
+  const double sigma = std::sqrt(std::max(covariance.trace() / 3.0, 1e-8));
+  const double logit = static_cast<double>(trust.bias) + static_cast<double>(trust.slope) * std::log(sigma) +
+                       static_cast<double>(trust.misfit * misfit);
+  return static_cast<float>(1.0 / (1.0 + std::exp(-logit)));
+}
 
 }  // namespace
 
@@ -177,7 +183,7 @@ BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const 
   const Eigen::MatrixXd shape_covariance = solver.solve(shape_columns).bottomRows(layout.shapes);
   fit.shape_information = shape_covariance.inverse() - data.expected.shape_information;
   FittedBody& body = fit.body;
-  body.cost = static_cast<float>(solution.cost);
+  body.misfit = static_cast<float>(solution.cost / static_cast<double>(data.points.size()));
   for (Index k = 0; k < solution.state.shape.size(); ++k) body.shape.push_back(static_cast<float>(solution.state.shape[k]));
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const PlacedBone& placed = solution.placed[b];
@@ -187,7 +193,7 @@ BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const 
     bone.global = Eigen::Quaternionf(Eigen::Quaterniond(placed.global).cast<float>());
     bone.local = solution.state.local[b].cast<float>();
     bone.length_m = static_cast<float>((placed.tail - placed.head).norm());
-    const Eigen::Matrix3Xd derivative = solution.equations->head_by_state(b, solution.placed);
+    const Eigen::Matrix3Xd derivative = solution.equations->point_by_state(b, placed.head, solution.placed);
     const Eigen::MatrixXd spread = solver.solve(derivative.transpose());
     const Eigen::Matrix3d covariance = derivative * spread;
     bone.covariance = covariance.cast<float>();
@@ -196,9 +202,9 @@ BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const 
     const int about = support[b] + (parent >= 0 ? support[parent] : 0);
     bone.state = support[b] >= kLeastSupport && about >= 2 * kLeastSupport ? State::observed : State::predicted;
     const JointTrust& trust = bone.state == State::observed ? flesh_.observed : flesh_.predicted;
-    const double sigma = std::sqrt(std::max(covariance.trace() / 3.0, 1e-8));
-    bone.confidence = static_cast<float>(
-        logistic(static_cast<double>(trust.bias) + static_cast<double>(trust.slope) * std::log(sigma)));
+    bone.confidence = confidence(trust, covariance, body.misfit);
+    const Eigen::Matrix3Xd of_tail = solution.equations->point_by_state(b, placed.tail, solution.placed);
+    bone.tail_confidence = confidence(trust, of_tail * solver.solve(of_tail.transpose()), body.misfit);
   }
   body.stature_m = static_cast<float>(stature(flesh_, solution.state.shape));
   return fit;

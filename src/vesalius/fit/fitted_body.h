@@ -18,7 +18,8 @@ struct FittedBone {
   float length_m = 0.F;                                  ///< from head to tail
   Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();  ///< of the head, square metres
   int support = 0;         ///< points of the person on the bone
-  float confidence = 0.F;  ///< probability that the head lies within 10 cm of the truth, 0-1
+  float confidence = 0.F;       ///< probability that the head lies within 10 cm of the truth, 0-1
+  float tail_confidence = 0.F;  ///< the same of the tail
 };
 
 /// A body fitted to one person.
@@ -26,7 +27,7 @@ struct FittedBody {
   std::vector<FittedBone> bones;
   std::vector<float> shape;  ///< coefficients of the flesh model's shapes, in standard deviations of the population
   float stature_m = 0.F;     ///< height of the body standing upright
-  float cost = 0.F;          ///< of the fit, lower is better; comparable within one frame
+  float misfit = 0.F;        ///< mean cost of a point, lower is better
 };
 
 }  // namespace vesalius

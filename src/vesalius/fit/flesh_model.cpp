@@ -171,8 +171,8 @@ void read_limb(const TomlReader& reader, const toml::table& table, FleshModel& m
 }
 
 JointTrust read_trust(const TomlReader& reader, const toml::table& root, std::string_view key) {
-  const std::array<float, 2> numbers = read_array<2>(reader, root, key, 100.0);
-  return {numbers[0], numbers[1]};
+  const std::array<float, 3> numbers = read_array<3>(reader, root, key, 100.0);
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
 }  // namespace

@@ -40,11 +40,12 @@ struct LimbPrior {
   std::vector<Component> components;  ///< the most usual first
 };
 
-/// Logistic regressions by which a joint's standard deviation tells how probably it lies within 10 cm of the truth:
-/// logit = bias + slope * log(sigma in m).
+/// A logistic regression for the probability that a joint lies within 10 cm of the truth, by its standard deviation and
+/// by how badly the body fits: logit = bias + slope * log(sigma in m) + misfit * FittedBody::misfit.
 struct JointTrust {
   float bias = 0.F;
   float slope = 0.F;
+  float misfit = 0.F;
 };
 
 /// A population of bodies and their poses, to which fit_body fits people. It comes from rendered people

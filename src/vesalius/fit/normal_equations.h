@@ -34,8 +34,8 @@ class NormalEquations {
   const Eigen::MatrixXd& matrix() const { return matrix_; }      ///< half of the Hessian, complete
   const Eigen::VectorXd& gradient() const { return gradient_; }  ///< half of it
 
-  /// Returns the derivative of a bone's head by the state.
-  Eigen::Matrix3Xd head_by_state(int bone, const std::vector<PlacedBone>& placed) const;
+  /// Returns the derivative by the state of a point that moves with a bone, its own shape left out.
+  Eigen::Matrix3Xd point_by_state(int bone, const Eigen::Vector3d& at, const std::vector<PlacedBone>& placed) const;
 
  private:
   struct Block {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "vesalius/detection.h"
+#include "vesalius/fit/body_history.h"
 #include "vesalius/track/smooth_joints.h"
 #include "vesalius/track/track_look.h"
 #include "vesalius/track/track_motion.h"
@@ -34,6 +35,7 @@ struct Track {
   Eigen::Vector3f place_position;  ///< of the trunk in that frame, as filtered
   Person person;                   ///< as found last, without mask and labels
   std::optional<FittedBody> body;
+  BodyHistory history;   ///< what is learned of the person's body
   Mask expected;         ///< where the person is expected in the frame that comes next; empty if that is unknown
   float log_odds = 0.F;  ///< of being a person, by all frames so far
   int found = 0;         ///< frames in which the person was found

@@ -8,6 +8,7 @@
 
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/fit/flesh_joints.h"
 #include "vesalius/track/match_cost.h"
 #include "vesalius/track/match_tracks.h"
 #include "vesalius/track/track.h"
@@ -134,11 +135,12 @@ void visit_options(const std::string& prefix, TrackOptions& o, OptionVisitor& vi
 }
 
 struct PeopleTracker::State {
-  State(const BodyModel& model, const TrackOptions& given, std::shared_ptr<const Appearance> looks, FitBody fit)
+  State(const BodyModel& model, const TrackOptions& given, std::shared_ptr<const Appearance> looks,
+        std::shared_ptr<const BodyFitter> bodies)
       : body(model),
         options(given),
         appearance(std::move(looks)),
-        fit_body(std::move(fit)),
+        fitter(std::move(bodies)),
         clock(static_cast<double>(given.rate), static_cast<double>(given.gap_s)) {}
 
   std::optional<Sighting> look_at(const Frame& frame, Person person) const;
@@ -153,7 +155,8 @@ struct PeopleTracker::State {
   void lose_all(double time_s, TrackedFrame& out);
   void predict(const Frame& frame, double passed_s);
   std::vector<int> follow(const std::vector<Sighting>& sightings, double time_s, TrackedFrame& out);
-  void fit_bodies(const Frame& frame, const std::vector<int>& sighting_of, std::vector<Sighting>& sightings);
+  void fit_bodies(const Frame& frame, const std::vector<int>& sighting_of, double time_s,
+                  std::vector<Sighting>& sightings);
   void tell(const Frame& frame, const std::vector<int>& sighting_of, std::vector<Sighting> sightings,
             TrackedFrame& out);
   void take_stance(const Frame& frame, Track& track, const Person& person, TrackedFrame& out) const;
@@ -162,7 +165,7 @@ struct PeopleTracker::State {
   const BodyModel& body;
   const TrackOptions options;
   const std::shared_ptr<const Appearance> appearance;
-  const FitBody fit_body;
+  const std::shared_ptr<const BodyFitter> fitter;
   TrackClock clock;
   TrackFloor floor;
   int last_id = 0;
@@ -235,6 +238,8 @@ Track PeopleTracker::State::begin(const Sighting& sighting, double time_s) {
     track.size = known.size;
     track.since_s = known.since_s;
     track.body = std::move(known.body);
+    track.history = std::move(known.history);
+    track.history.forget_pose();
     lost.erase(lost.begin() + back);
   }
   track.log_odds = std::clamp(logit(sighting.person.score), 0.F, std::log(options.odds));
@@ -320,14 +325,17 @@ std::vector<int> PeopleTracker::State::follow(const std::vector<Sighting>& sight
   return sighting_of;
 }
 
-void PeopleTracker::State::fit_bodies(const Frame& frame, const std::vector<int>& sighting_of,
+void PeopleTracker::State::fit_bodies(const Frame& frame, const std::vector<int>& sighting_of, double time_s,
                                       std::vector<Sighting>& sightings) {
-  if (!fit_body) return;
+  if (!fitter || !fitter->can_fit()) return;
   parallel_for(static_cast<int>(tracks.size()), [&](int t) {
     if (sighting_of[t] < 0) return;
+    Track& track = tracks[t];
     Person& person = sightings[static_cast<std::size_t>(sighting_of[t])].person;
-    tracks[t].body = fit_body(frame, person, tracks[t].body);
-    tracks[t].person.joints = person.joints;
+    if (!person.mask.same_size(frame.depth)) return;
+    track.body = track.history.fit(*fitter, frame, person, time_s);
+    if (track.body) place_joints(*track.body, builtin_flesh_joints(), body, person.joints);
+    track.person.joints = person.joints;
   });
 }
 
@@ -373,10 +381,10 @@ void PeopleTracker::State::tell(const Frame& frame, const std::vector<int>& sigh
 }
 
 PeopleTracker::PeopleTracker(const BodyModel& body, TrackOptions options, std::shared_ptr<const Appearance> appearance,
-                             FitBody fit_body) {
+                             std::shared_ptr<const BodyFitter> fitter) {
   RangeCheck check;
   visit_options("track.", options, check);
-  state_ = std::make_unique<State>(body, options, std::move(appearance), std::move(fit_body));
+  state_ = std::make_unique<State>(body, options, std::move(appearance), std::move(fitter));
 }
 
 PeopleTracker::~PeopleTracker() = default;
@@ -420,7 +428,7 @@ TrackedFrame PeopleTracker::update(const Frame& frame, std::vector<Person> peopl
   out.floor = s.floor.view();
   s.predict(frame, step.passed_s);
   const std::vector<int> sighting_of = s.follow(sightings, step.time_s, out);
-  s.fit_bodies(frame, sighting_of, sightings);
+  s.fit_bodies(frame, sighting_of, step.time_s, sightings);
   s.tell(frame, sighting_of, std::move(sightings), out);
   return out;
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include "vesalius/base/frame.h"
 #include "vesalius/base/options.h"
 #include "vesalius/detection.h"
+#include "vesalius/fit/fit_body.h"
 #include "vesalius/planes/find_planes.h"
 #include "vesalius/track/smooth_joints.h"
 #include "vesalius/track/tracked_frame.h"
@@ -36,17 +36,11 @@ void visit_options(const std::string& prefix, TrackOptions& options, OptionVisit
 /// matter, only their times.
 class PeopleTracker {
  public:
-  /// Returns the body of a person found in a frame, given the last one that the same person had, if any. What the
-  /// joints of TrackedPerson::person are then is up to it too.
-  /// It is called for several people at once.
-  using FitBody = std::function<std::optional<FittedBody>(const Frame& frame, Person& person,
-                                                          const std::optional<FittedBody>& last)>;
-
   /// `body` is that of the people, such as Detector::body, and must outlive this object. `appearance` is the
-  /// detector's; without one looks do not matter. Without `fit_body` nobody has a body. Throws UsageError for an option
+  /// detector's; without one looks do not matter. Without `fitter` nobody has a fitted body. Throws UsageError for an option
   /// outside its range.
   explicit PeopleTracker(const BodyModel& body, TrackOptions options = {},
-                         std::shared_ptr<const Appearance> appearance = nullptr, FitBody fit_body = nullptr);
+                         std::shared_ptr<const Appearance> appearance = nullptr, std::shared_ptr<const BodyFitter> fitter = nullptr);
   ~PeopleTracker();
   PeopleTracker(PeopleTracker&&) noexcept;
   PeopleTracker& operator=(PeopleTracker&&) noexcept;
