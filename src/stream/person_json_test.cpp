@@ -99,6 +99,45 @@ TEST(PersonJson, APointBehindTheCameraHasNoPixel) {
   EXPECT_FALSE(neck.at("xyz_m").is_null());
 }
 
+TEST(PersonJson, PeopleWhoAreFollowedHaveIdsStatesAndVelocities) {
+  const BodyModel& body = paper_body();
+  TrackedPerson tracked;
+  tracked.id = 7;
+  tracked.state = TrackState::hidden;
+  tracked.person = half_seen(body);
+  tracked.position = {0.1F, 0.2F, 2.5F};
+  tracked.velocity = {-0.5F, 0.F, 1.F};
+  tracked.stance = Stance::sitting;
+  tracked.leaving = true;
+  tracked.since_s = 1.25;
+  tracked.seen_s = 2.0;
+  TrackedFrame frame{
+      2.5, {tracked}, FloorView{{0.F, -0.8F, -0.6F}, 1.5F, 0.643501F, 0.F}, {{7, 2.25, Stance::sitting}}};
+  const json line = json::parse(tracked_frame_json(named("f"), frame, body));
+  EXPECT_EQ(line.at("time_s"), 1.5) << "the frame's own";
+  EXPECT_EQ(line.at("track_time_s"), 2.5);
+  EXPECT_EQ(line.at("floor"), json::parse(R"({"up":[0.0,-0.8,-0.6],"height_m":1.5,"tilt_degrees":36.9,
+                                              "roll_degrees":0.0})"));
+  EXPECT_EQ(line.at("events"), json::parse(R"([{"id":7,"time_s":2.25,"stance":"sitting"}])"));
+  const json person = line.at("people").at(0);
+  EXPECT_EQ(person.at("id"), 7);
+  EXPECT_EQ(person.at("state"), "hidden");
+  EXPECT_EQ(person.at("position_m"), json({0.1, 0.2, 2.5}));
+  EXPECT_EQ(person.at("velocity_m_s"), json({-0.5, 0.0, 1.0}));
+  EXPECT_EQ(person.at("stance"), "sitting");
+  EXPECT_EQ(person.at("leaving"), true);
+  EXPECT_EQ(person.at("since_s"), 1.25);
+  EXPECT_EQ(person.at("seen_s"), 2.0);
+  const json alone = json::parse(frame_json(named("f"), {half_seen(body)}, body)).at("people").at(0);
+  for (const auto& [key, value] : alone.items()) EXPECT_EQ(person.at(key), value) << key;
+  EXPECT_FALSE(person.contains("smoothed"));
+  frame.people[0].smoothed = tracked.person.joints;
+  frame.floor.reset();
+  const json smoothed = json::parse(tracked_frame_json(named("f"), frame, body));
+  EXPECT_EQ(smoothed.at("people").at(0).at("smoothed"), person.at("joints"));
+  EXPECT_TRUE(smoothed.at("floor").is_null());
+}
+
 TEST(PersonJson, TheLastLineSaysWhetherAllIsThere) {
   EXPECT_EQ(closing_json(3, true), R"({"complete":true,"frames":3})");
   EXPECT_EQ(closing_json(2, false, "interrupted"), R"({"complete":false,"frames":2,"why":"interrupted"})");

@@ -20,7 +20,7 @@ Joints at(const Vector3f& position) { return {{{State::observed, position, 0.75F
 /// Seconds by which a joint lags that has moved evenly for a while.
 float lag_s(float speed_m_s) {
   JointSmoother smoother;
-  Vector3f raw, smoothed;
+  Vector3f raw = Vector3f::Zero(), smoothed = Vector3f::Zero();
   for (int i = 0; i < 300; ++i) {
     raw = {speed_m_s * static_cast<float>(i * kFrame_s), 0.F, 2.F};
     smoothed = smoother.smooth(at(raw), kFrame_s, {})[0][0].position;
@@ -67,7 +67,7 @@ TEST(SmoothJoints, KeepWhatTheyAreAndBeginAnewAfterAGap) {
 
 TEST(SmoothJoints, DependLittleOnTheFrameRate) {
   JointSmoother fast, slow;
-  Vector3f at_60, at_15;
+  Vector3f at_60 = Vector3f::Zero(), at_15 = Vector3f::Zero();
   for (int i = 0; i <= 120; ++i) {
     const float t = static_cast<float>(i) / 60.F;
     const Vector3f position(std::sin(2.F * t), 0.F, 2.F);

@@ -17,6 +17,7 @@ constexpr double kMoving_s = 0.1;
 constexpr double kLasting_s = 0.3;  // for which a plane must be seen to become the floor ...
 constexpr int kLastingFrames = 5;
 constexpr double kTable_s = 5.0;       // ... or above the floor so far, which may only be hidden
+constexpr double kMoved_s = 0.5;       // without floor and with other planes than before
 constexpr double kForgotten_s = 20.0;  // without any floor
 
 bool same(const Plane& a, const Plane& b, float cosine, float height_m) {
@@ -39,10 +40,23 @@ void TrackFloor::update(const std::vector<Plane>& planes, const std::optional<Ei
   unseen_s_ += passed_s;
   if (seen && floor_ && same(*seen, *floor_, kSameCosine, kSameHeight_m)) {
     follow(*seen, passed_s);
+    around_ = planes;
   } else if (seen) {
     doubt(*seen, passed_s);
   }
+  forget_if_moved(planes, passed_s);
   if (unseen_s_ > kForgotten_s) floor_.reset();
+}
+
+/// A camera that is turned away from the floor no longer sees the walls that it saw with it either.
+void TrackFloor::forget_if_moved(const std::vector<Plane>& planes, double passed_s) {
+  const bool known = std::ranges::any_of(planes, [&](const Plane& plane) {
+    return std::ranges::any_of(around_,
+                               [&](const Plane& other) { return same(plane, other, kSameCosine, kSameHeight_m); });
+  });
+  if (known) elsewhere_s_ = 0.0;
+  if (!known && !planes.empty()) elsewhere_s_ += passed_s;
+  if (elsewhere_s_ > kMoved_s && unseen_s_ > kMoved_s) floor_.reset();
 }
 
 void TrackFloor::follow(const Plane& seen, double passed_s) {
@@ -62,6 +76,8 @@ void TrackFloor::doubt(const Plane& seen, double passed_s) {
   floor_ = rival_;
   rival_.reset();
   unseen_s_ = 0.0;
+  around_.clear();
+  elsewhere_s_ = 0.0;
 }
 
 std::optional<FloorView> TrackFloor::view() const {

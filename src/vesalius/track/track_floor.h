@@ -21,10 +21,12 @@ class TrackFloor {
   /// Forgets all: the camera may be anywhere.
   void reset() { *this = {}; }
 
-  /// Returns nothing before a floor was seen for long enough, and after none was seen for long.
+  /// Returns nothing before a floor was seen for long enough, and after none was seen for long, or for a moment in
+  /// which all other planes have changed, too.
   std::optional<FloorView> view() const;
 
  private:
+  void forget_if_moved(const std::vector<Plane>& planes, double passed_s);
   void follow(const Plane& seen, double passed_s);
   void doubt(const Plane& seen, double passed_s);
 
@@ -32,7 +34,9 @@ class TrackFloor {
   std::optional<Plane> rival_;  ///< a plane that may become the floor
   double rival_s_ = 0.0;        ///< for how long it has been seen
   int rival_frames_ = 0;
-  double unseen_s_ = 0.0;  ///< since the floor was seen
+  double unseen_s_ = 0.0;      ///< since the floor was seen
+  std::vector<Plane> around_;  ///< planes that were seen with the floor
+  double elsewhere_s_ = 0.0;   ///< for how long planes are seen of which none is among these
 };
 
 /// Returns how the camera stands over a floor. The plane's normal points away from the camera.

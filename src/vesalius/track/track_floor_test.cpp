@@ -19,7 +19,7 @@ constexpr float kDegree = std::numbers::pi_v<float> / 180.F;
 /// The floor under a camera that is tilted down and rolled clockwise.
 Plane floor_under(float height_m, float tilt = 0.F, float roll = 0.F, float area_m2 = 4.F) {
   const Eigen::Matrix3f turn =
-      (Eigen::AngleAxisf(-roll, Vector3f::UnitZ()) * Eigen::AngleAxisf(-tilt, Vector3f::UnitX())).toRotationMatrix();
+      (Eigen::AngleAxisf(-roll, Vector3f::UnitZ()) * Eigen::AngleAxisf(tilt, Vector3f::UnitX())).toRotationMatrix();
   return {turn * Vector3f::UnitY(), height_m, area_m2};
 }
 
@@ -111,6 +111,16 @@ TEST(TrackFloor, IsForgottenWhenItIsLongGone) {
   show(floor, {}, 30 * 19);
   EXPECT_TRUE(floor.view());
   show(floor, {}, 60);
+  EXPECT_FALSE(floor.view());
+}
+
+TEST(TrackFloor, IsForgottenSoonByACameraThatIsTurnedAway) {
+  const Plane wall{Vector3f::UnitZ(), 3.F, 6.F}, ceiling{-Vector3f::UnitY(), 1.4F, 5.F};
+  TrackFloor floor;
+  show(floor, {floor_under(1.2F), wall}, 15);
+  show(floor, {wall}, 60);
+  EXPECT_TRUE(floor.view()) << "something hides it";
+  show(floor, {ceiling}, 20);
   EXPECT_FALSE(floor.view());
 }
 

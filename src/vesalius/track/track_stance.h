@@ -15,6 +15,7 @@ struct Posture {
   std::optional<float> pelvis_m;  ///< height of the hips above the floor, if that is known
   std::optional<float> head_m;    ///< of the head, or of the neck or chest where the head is not seen
   bool head_seen = false;         ///< whether it is the head's
+  std::optional<float> knee_m;    ///< height of the knees, if they are seen
 };
 
 /// Returns the posture of a person; nothing where `up` is not known, or the skeleton lacks seen hips, or a seen part of

@@ -1,0 +1,572 @@
+#include "vesalius/track/track_people.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "vesalius/base/error.h"
+#include "vesalius/base/random.h"
+
+namespace vesalius {
+namespace {
+
+using Eigen::Vector3f;
+
+const Camera kCamera{160, 120, 131.F, 131.F, 79.5F, 59.5F};
+constexpr float kWall_m = 5.F;
+constexpr double kFrame_s = 1.0 / 30.0;
+
+/// Somebody in a fake scene: an upright board of one colour.
+struct Actor {
+  Vector3f trunk{0.F, 0.F, 2.5F};
+  Rgb colour{200, 30, 30};
+  float score = 0.95F;
+  float size = 1.F;
+  bool found = true;
+};
+
+/// A frame with boards before a wall, the nearer ones in front.
+class Stage {
+ public:
+  explicit Stage(const std::vector<Actor>& actors, const Camera& camera = kCamera)
+      : owner_(camera.width, camera.height, kBackground) {
+    frame.camera = camera;
+    frame.depth = DepthImage(camera.width, camera.height, static_cast<std::uint16_t>(kWall_m * 1e3F));
+    frame.colour = ColourImage(camera.width, camera.height, {120, 120, 120});
+    for (std::size_t i = 0; i < actors.size(); ++i) draw(actors[i], static_cast<std::uint8_t>(i));
+    for (std::size_t i = 0; i < actors.size(); ++i) {
+      if (actors[i].found) find(actors[i], static_cast<std::uint8_t>(i));
+    }
+  }
+
+  Frame frame;
+  std::vector<Person> people;
+  std::vector<std::size_t> actor_of;  ///< index of the actor of each of `people`
+
+ private:
+  void draw(const Actor& actor, std::uint8_t index) {
+    const auto z_mm = static_cast<std::uint16_t>(actor.trunk.z() * 1e3F);
+    const Eigen::Vector2f at = frame.camera.pixel(actor.trunk);
+    const float half_u = 0.22F / actor.trunk.z() * frame.camera.fx, half_v = 0.7F / actor.trunk.z() * frame.camera.fy;
+    for (int v = 0; v < frame.depth.height(); ++v) {
+      for (int u = 0; u < frame.depth.width(); ++u) {
+        const bool inside =
+            std::abs(static_cast<float>(u) - at.x()) <= half_u && std::abs(static_cast<float>(v) - at.y()) <= half_v;
+        if (!inside || frame.depth(u, v) <= z_mm) continue;
+        frame.depth(u, v) = z_mm;
+        frame.colour(u, v) = actor.colour;
+        owner_(u, v) = index;
+      }
+    }
+  }
+
+  void find(const Actor& actor, std::uint8_t index) {
+    Person person;
+    person.score = actor.score;
+    person.mask = Mask(frame.depth.width(), frame.depth.height(), 0);
+    person.labels = LabelImage(frame.depth.width(), frame.depth.height(), kBackground);
+    int pixels = 0;
+    for (std::size_t i = 0; i < owner_.size(); ++i) {
+      if (owner_[i] != index) continue;
+      person.mask[i] = 1;
+      person.labels[i] = 0;
+      ++pixels;
+    }
+    if (pixels == 0) return;
+    const BodyModel& body = paper_body();
+    person.skeleton.parts.resize(body.parts.size());
+    const auto part = [&](const char* name, float x, float y) {
+      SkeletonPart& p = person.skeleton.parts[static_cast<std::size_t>(body.find_part(name))];
+      p.state = State::observed;
+      p.centre = actor.trunk + actor.size * Vector3f(x, y, 0.F);
+      p.confidence = 0.8F;
+      ++person.skeleton.found;
+    };
+    part("l_chest", 0.1F, -0.2F), part("r_chest", -0.1F, -0.2F);
+    part("l_hips", 0.1F, 0.2F), part("r_hips", -0.1F, 0.2F);
+    part("neck", 0.F, -0.4F), part("l_face_bottom", 0.03F, -0.55F), part("r_face_bottom", -0.03F, -0.55F);
+    person.joints = derive_joints(body, person.skeleton);
+    people.push_back(std::move(person));
+    actor_of.push_back(index);
+  }
+
+  Image<std::uint8_t> owner_;
+};
+
+std::shared_ptr<const Appearance> hue() { return std::make_shared<HueAppearance>(); }
+
+/// Follows actors and remembers which id each of them had.
+class Follower {
+ public:
+  explicit Follower(TrackOptions options = {}) : tracker(paper_body(), options, hue()) {}
+
+  TrackedFrame show(const std::vector<Actor>& actors) {
+    Stage stage(actors);
+    stage.frame.time_s = static_cast<double>(frames_++) * kFrame_s;
+    const std::vector<Person> people = stage.people;
+    TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+    for (const TrackedPerson& person : tracked.people) {
+      if (person.state != TrackState::tracked && person.state != TrackState::fresh) continue;
+      for (std::size_t i = 0; i < people.size(); ++i) {
+        if (people[i].mask == person.person.mask) ids[stage.actor_of[i]].insert(person.id);
+      }
+    }
+    return tracked;
+  }
+  void show(const std::vector<Actor>& actors, int frames) {
+    for (int i = 0; i < frames; ++i) show(actors);
+  }
+
+  PeopleTracker tracker;
+  std::map<std::size_t, std::set<int>> ids;  ///< of each actor
+
+ private:
+  int frames_ = 0;
+};
+
+TEST(TrackPeople, SomebodyIsNewAtFirstThenTracked) {
+  Follower follower;
+  const std::vector<Actor> one{{}};
+  std::vector<TrackState> states;
+  for (int i = 0; i < 4; ++i) states.push_back(follower.show(one).people.at(0).state);
+  EXPECT_THAT(states,
+              testing::ElementsAre(TrackState::fresh, TrackState::fresh, TrackState::tracked, TrackState::tracked));
+  const TrackedFrame last = follower.show(one);
+  EXPECT_EQ(last.people[0].id, 1);
+  EXPECT_EQ(last.people[0].since_s, 0.0);
+  EXPECT_EQ(last.people[0].seen_s, last.time_s);
+  EXPECT_NEAR((last.people[0].position - one[0].trunk).norm(), 0.F, 0.02F);
+}
+
+TEST(TrackPeople, AGuessThatStaysWeakIsNeverSure) {
+  Follower follower;
+  Actor weak;
+  weak.score = 0.6F;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(follower.show({weak}).people.at(0).state, TrackState::fresh);
+  follower.show(std::vector<Actor>{}, 60);
+  for (const TrackedPerson& person : follower.show(std::vector<Actor>{}).people) ADD_FAILURE() << person.id;
+}
+
+TEST(TrackPeople, WhoIsHiddenIsPredictedComesBackOrIsLost) {
+  Follower follower;
+  Actor walker;
+  for (int i = 0; i < 30; ++i) {
+    walker.trunk.x() = -0.8F + 0.8F * static_cast<float>(i * kFrame_s);
+    follower.show({walker});
+  }
+  walker.found = false;
+  for (int i = 0; i < 10; ++i) {
+    walker.trunk.x() += 0.8F * static_cast<float>(kFrame_s);
+    const TrackedFrame hidden = follower.show({walker});
+    ASSERT_EQ(hidden.people.size(), 1U);
+    EXPECT_EQ(hidden.people[0].state, TrackState::hidden);
+    EXPECT_NEAR((hidden.people[0].position - walker.trunk).norm(), 0.F, 0.1F);
+    const auto neck = static_cast<std::size_t>(paper_body().find_part("neck"));
+    EXPECT_EQ(hidden.people[0].person.skeleton.parts[neck].state, State::predicted);
+    EXPECT_LT(hidden.people[0].person.skeleton.parts[neck].confidence, 0.8F);
+    EXPECT_TRUE(hidden.people[0].person.mask.empty());
+  }
+  walker.found = true;
+  EXPECT_EQ(follower.show({walker}).people.at(0).state, TrackState::tracked);
+  EXPECT_THAT(follower.ids[0], testing::ElementsAre(1));
+  int lost = 0;
+  for (int i = 0; i < 120; ++i) {
+    for (const TrackedPerson& person : follower.show(std::vector<Actor>{}).people)
+      lost += person.state == TrackState::lost ? 1 : 0;
+  }
+  EXPECT_EQ(lost, 1) << "told once";
+  EXPECT_TRUE(follower.show(std::vector<Actor>{}).people.empty());
+}
+
+TEST(TrackPeople, WhoComesBackAndLooksTheSameHasTheOldId) {
+  Follower follower;
+  Actor red, blue;
+  blue.colour = {30, 30, 200};
+  blue.trunk.x() = 0.8F;
+  follower.show({red, blue}, 30);
+  follower.show(std::vector<Actor>{}, 200);
+  Actor green;
+  green.colour = {30, 200, 30};
+  follower.show({green}, 10);
+  follower.show(std::vector<Actor>{}, 200);
+  blue.trunk.x() = -0.5F;
+  const TrackedFrame back = follower.show({blue});
+  ASSERT_EQ(back.people.size(), 1U);
+  EXPECT_EQ(back.people[0].id, 2) << "at once, since ids never change";
+  EXPECT_EQ(follower.show({blue, red}).people.at(0).id, 1);
+  EXPECT_EQ(follower.ids[0].count(3), 1U) << "green was somebody else";
+}
+
+TEST(TrackPeople, TwoWhoLookAlikeAreNotTakenForEachOtherOnceBothAreGone) {
+  Follower follower;
+  Actor left, right;
+  left.trunk.x() = -0.6F;
+  right.trunk.x() = 0.6F;
+  follower.show({left, right}, 30);
+  follower.show(std::vector<Actor>{}, 200);
+  EXPECT_EQ(follower.show({left}).people.at(0).id, 3) << "nobody can say which of the two";
+}
+
+TEST(TrackPeople, IdsHoldWherePeopleCross) {
+  for (const bool alike : {false, true}) {
+    Follower follower;
+    Actor front, behind;
+    front.trunk.z() = 2.F;
+    behind.trunk.z() = 3.F;
+    if (!alike) behind.colour = {30, 30, 200};
+    for (int i = 0; i < 90; ++i) {
+      front.trunk.x() = -0.9F + 0.6F * static_cast<float>(i * kFrame_s);
+      behind.trunk.x() = 1.2F - 0.8F * static_cast<float>(i * kFrame_s);
+      follower.show({front, behind});
+    }
+    EXPECT_THAT(follower.ids[0], testing::SizeIs(1)) << alike;
+    EXPECT_THAT(follower.ids[1], testing::SizeIs(1)) << alike;
+    EXPECT_NE(*follower.ids[0].begin(), *follower.ids[1].begin());
+  }
+}
+
+TEST(TrackPeople, LookDecidesWherePlaceCannot) {
+  // Both vanish, and are back after a second on each other's side.
+  Follower follower;
+  Actor red, blue;
+  blue.colour = {30, 30, 200};
+  red.trunk.x() = -0.5F;
+  blue.trunk.x() = 0.5F;
+  follower.show({red, blue}, 30);
+  follower.show(std::vector<Actor>{}, 30);
+  std::swap(red.trunk, blue.trunk);
+  follower.show({red, blue}, 5);
+  EXPECT_THAT(follower.ids[0], testing::ElementsAre(1));
+  EXPECT_THAT(follower.ids[1], testing::ElementsAre(2));
+}
+
+TEST(TrackPeople, IdsHoldForWhoWalksAboutWithMissingFrames) {
+  Random random(5);
+  Follower follower;
+  const std::vector<Rgb> colours{{200, 30, 30}, {30, 200, 30}, {30, 30, 200}, {200, 200, 30}};
+  std::vector<Actor> actors(4);
+  std::vector<float> phase(4), depth{2.F, 2.6F, 3.2F, 3.8F};
+  for (std::size_t i = 0; i < 4; ++i) {
+    actors[i].colour = colours[i];
+    phase[i] = static_cast<float>(random.uniform(0.0, 6.28));
+  }
+  for (int frame = 0; frame < 450; ++frame) {
+    const auto t = static_cast<float>(frame * kFrame_s);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const float noise = static_cast<float>(random.normal(0.0, 0.02));
+      actors[i].trunk = {0.7F * std::sin(t * (0.7F + 0.15F * static_cast<float>(i)) + phase[i]) + noise, 0.F, depth[i]};
+      actors[i].found = random.uniform() > 0.25;
+    }
+    follower.show(actors);
+  }
+  std::set<int> all;
+  for (const auto& [actor, ids] : follower.ids) {
+    EXPECT_THAT(ids, testing::SizeIs(1)) << "actor " << actor;
+    all.insert(ids.begin(), ids.end());
+  }
+  EXPECT_EQ(all.size(), 4U);
+}
+
+TEST(TrackPeople, TheOrderOfTheListDoesNotMatter) {
+  Random random(6);
+  PeopleTracker sorted(paper_body(), {}, hue()), shuffled(paper_body(), {}, hue());
+  for (int frame = 0; frame < 40; ++frame) {
+    std::vector<Actor> actors(5);
+    for (Actor& actor : actors) {
+      actor.trunk = {static_cast<float>(random.uniform(-1.0, 1.0)), 0.F, static_cast<float>(random.uniform(2.0, 4.0))};
+      actor.score = static_cast<float>(random.uniform(0.5, 1.0));
+    }
+    Stage stage(actors);
+    std::vector<Person> other = stage.people;
+    for (std::size_t i = other.size(); i > 1; --i) {
+      std::swap(other[i - 1], other[random.below(static_cast<std::uint32_t>(i))]);
+    }
+    const TrackedFrame a = sorted.update(stage.frame, stage.people), b = shuffled.update(stage.frame, other);
+    ASSERT_EQ(a.people.size(), b.people.size());
+    for (std::size_t i = 0; i < a.people.size(); ++i) {
+      EXPECT_EQ(a.people[i].id, b.people[i].id);
+      EXPECT_EQ(a.people[i].state, b.people[i].state);
+      EXPECT_EQ(a.people[i].position, b.people[i].position);
+      EXPECT_EQ(a.people[i].person.mask, b.people[i].person.mask);
+    }
+  }
+}
+
+TEST(Expect, MovesTheMaskWithThePerson) {
+  Follower follower;
+  Actor walker;
+  for (int i = 0; i < 30; ++i) {
+    walker.trunk.x() = -0.8F + 1.2F * static_cast<float>(i * kFrame_s);
+    follower.show({walker});
+  }
+  walker.trunk.x() += 1.2F * 0.1F;  // three frames later
+  Stage stage({walker});
+  stage.frame.time_s = 29 * kFrame_s + 0.1;
+  const Prior prior = follower.tracker.expect(stage.frame);
+  ASSERT_EQ(prior.people.size(), 1U);
+  const Mask &expected = prior.people[0].mask, &is = stage.people[0].mask;
+  long both = 0, either = 0;
+  for (std::size_t i = 0; i < is.size(); ++i) {
+    both += expected[i] != 0 && is[i] != 0 ? 1 : 0;
+    either += expected[i] != 0 || is[i] != 0 ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(both), 0.85 * static_cast<double>(either));
+  EXPECT_GT(prior.people[0].odds, 10.F);
+  EXPECT_GT(prior.people[0].appearance.samples(), 100);
+  EXPECT_EQ(follower.tracker.expect(stage.frame).people[0].mask, expected) << "asking changes nothing";
+}
+
+TEST(Expect, NobodyInAPlaceThatIsEmptyOrHidden) {
+  Follower follower;
+  follower.show({Actor{}}, 10);
+  EXPECT_TRUE(follower.tracker.expect(Stage({}).frame).people.empty()) << "one sees the wall";
+  Actor before;
+  before.trunk.z() = 1.5F;
+  EXPECT_TRUE(follower.tracker.expect(Stage({before}).frame).people.empty()) << "somebody else is in front";
+  Frame later = Stage({Actor{}}).frame;
+  later.time_s = 2.0;
+  EXPECT_TRUE(follower.tracker.expect(later).people.empty()) << "too long ago";
+}
+
+TEST(Expect, AGuessHasNoOdds) {
+  Follower follower;
+  follower.show({Actor{}});
+  const Prior prior = follower.tracker.expect(Stage({Actor{}}).frame);
+  ASSERT_EQ(prior.people.size(), 1U);
+  EXPECT_EQ(prior.people[0].odds, 1.F);
+}
+
+TEST(Expect, WeakEvidenceDoesNotKeepSomebodyForEver) {
+  Follower follower;
+  Actor coat;
+  follower.show({coat}, 60);
+  const auto odds = [&] {
+    Frame next = Stage({coat}).frame;
+    return follower.tracker.expect(next).people.at(0).odds;
+  };
+  const float before = odds();
+  coat.score = 0.3F;
+  follower.show({coat}, 15);
+  EXPECT_LT(odds(), before);
+  follower.show({coat}, 60);
+  EXPECT_EQ(odds(), 1.F) << "then a score must be as high as anybody's";
+}
+
+TEST(Expect, AGhostIsGivenUpSoon) {
+  // A detector that accepts whatever reaches 0.8 with the tracker's odds sees a coat that looks a little like a person.
+  for (const float score : {0.3F, 0.4F}) {
+    Follower follower;
+    Actor coat;
+    follower.show({coat}, 60);
+    coat.score = score;
+    int accepted = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Prior prior = follower.tracker.expect(Stage({coat}).frame);
+      const float odds = prior.people.empty() ? 1.F : prior.people[0].odds;
+      coat.found = odds * score / (1.F - score) >= 4.F;
+      accepted += coat.found ? 1 : 0;
+      follower.show({coat});
+    }
+    EXPECT_LE(accepted, 45) << score;
+  }
+}
+
+TEST(TrackedTime, OfSourcesWithoutTimesFollowsFromTheRate) {
+  TrackOptions options;
+  options.rate = 10.F;
+  PeopleTracker tracker(paper_body(), options);
+  const Stage stage({Actor{}});
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(tracker.update(stage.frame, stage.people).time_s, 0.1 * i, 1e-9);
+}
+
+TEST(TrackedTime, ThatJumpsLosesAllButRemembersLooks) {
+  for (const double jump : {-1.0, 3600.0, 1e300, -1e300}) {
+    PeopleTracker tracker(paper_body(), {}, hue());
+    Stage stage({Actor{}});
+    for (int i = 0; i < 10; ++i) {
+      stage.frame.time_s = 100.0 + i * kFrame_s;
+      tracker.update(stage.frame, stage.people);
+    }
+    stage.frame.time_s = 100.0 + jump;
+    EXPECT_TRUE(tracker.expect(stage.frame).people.empty());
+    const TrackedFrame after = tracker.update(stage.frame, {});
+    ASSERT_EQ(after.people.size(), 1U) << jump;
+    EXPECT_EQ(after.people[0].state, TrackState::lost);
+    *stage.frame.time_s += kFrame_s;
+    EXPECT_EQ(tracker.update(stage.frame, stage.people).people.at(0).id, 1);
+  }
+}
+
+TEST(TrackedTime, ThatStandsStillOrIsNonsenseIsBorne) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+  PeopleTracker tracker(paper_body(), {}, hue());
+  Stage stage({Actor{}});
+  const std::vector<std::optional<double>> times{1.0, 1.0, 1.0, kNaN, kInfinity, -kInfinity, std::nullopt, 1.2, 1.2};
+  for (const std::optional<double>& time : times) {
+    stage.frame.time_s = time;
+    tracker.expect(stage.frame);
+    const TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+    EXPECT_TRUE(std::isfinite(tracked.time_s));
+    ASSERT_EQ(tracked.people.size(), 1U);
+    EXPECT_EQ(tracked.people[0].id, 1);
+    EXPECT_TRUE(tracked.people[0].position.allFinite());
+    EXPECT_TRUE(tracked.people[0].velocity.allFinite());
+  }
+}
+
+TEST(TrackPeople, FramesOfAnotherSizeGoOn) {
+  PeopleTracker tracker(paper_body(), {}, hue());
+  const Camera half{80, 60, 65.5F, 65.5F, 39.5F, 29.5F};
+  for (int i = 0; i < 12; ++i) {
+    const Stage stage({Actor{}}, i / 4 == 1 ? half : kCamera);
+    for (const Prior::KnownPerson& known : tracker.expect(stage.frame).people) {
+      EXPECT_TRUE(known.mask.same_size(stage.frame.depth));
+    }
+    const TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+    ASSERT_EQ(tracked.people.size(), 1U);
+    EXPECT_EQ(tracked.people[0].id, 1);
+  }
+  const Stage small({Actor{}}, half);
+  const TrackedFrame tracked = tracker.update(Stage({Actor{}}).frame, small.people);
+  ASSERT_EQ(tracked.people.size(), 1U) << "by the parts";
+  EXPECT_TRUE(tracked.people[0].person.mask.empty());
+}
+
+TEST(TrackPeople, APersonOfTwoPixelsOrOfNothing) {
+  PeopleTracker tracker(paper_body(), {}, hue());
+  Stage stage({Actor{}});
+  Person two = stage.people[0];
+  two.skeleton = {};
+  two.skeleton.parts.resize(paper_body().parts.size());
+  two.joints = derive_joints(paper_body(), two.skeleton);
+  two.mask.fill(0);
+  two.mask(80, 60) = two.mask(81, 60) = 1;
+  Person nothing = two;
+  nothing.mask.fill(0);
+  Person nan = stage.people[0];
+  for (SkeletonPart& part : nan.skeleton.parts) part.centre.setConstant(std::numeric_limits<float>::quiet_NaN());
+  nan.score = std::numeric_limits<float>::quiet_NaN();
+  for (int i = 0; i < 20; ++i) {
+    tracker.expect(stage.frame);
+    const TrackedFrame tracked = tracker.update(stage.frame, {two, nothing, nan});
+    EXPECT_LE(tracked.people.size(), 2U);
+    for (const TrackedPerson& person : tracked.people) EXPECT_TRUE(person.position.allFinite());
+  }
+}
+
+TEST(TrackPeople, RefusesPeopleOfAnotherBodyAndOptionsOutOfRange) {
+  PeopleTracker tracker(paper_body());
+  Stage stage({Actor{}});
+  stage.people[0].skeleton.parts.pop_back();
+  EXPECT_THAT([&] { tracker.update(stage.frame, stage.people); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("24 parts")));
+  TrackOptions options;
+  options.rate = 0.F;
+  EXPECT_THROW(PeopleTracker(paper_body(), options), UsageError);
+}
+
+TEST(TrackPeople, AHundredFalseOnesAFrameAreBorne) {
+  const Camera tiny{8, 6, 6.5F, 6.5F, 3.5F, 2.5F};
+  const Stage stage({Actor{}}, tiny);
+  Random random(7);
+  PeopleTracker tracker(paper_body(), {}, hue());
+  for (int frame = 0; frame < 60; ++frame) {
+    std::vector<Person> people(100, stage.people[0]);
+    for (Person& person : people) {
+      const auto far = [&] { return static_cast<float>(random.uniform(-30.0, 30.0)); };
+      const float x = far(), y = far(), z = 35.F + far();
+      for (SkeletonPart& part : person.skeleton.parts) part.centre += Vector3f(x, y, z);
+      person.score = static_cast<float>(random.uniform());
+    }
+    EXPECT_LE(tracker.expect(stage.frame).people.size(), 16U);
+    const TrackedFrame tracked = tracker.update(stage.frame, std::move(people));
+    EXPECT_LE(tracked.people.size(), 2U * 128U);
+  }
+}
+
+TEST(TrackPeople, HoursOfPassersByAreForgotten) {
+  // Whoever is lost is kept up to a number; ids go on.
+  TrackOptions options;
+  options.remembered = 4;
+  options.hidden_s = 0.1F;
+  PeopleTracker tracker(paper_body(), options);
+  const Camera tiny{8, 6, 6.5F, 6.5F, 3.5F, 2.5F};
+  Stage there({Actor{}}, tiny), empty({}, tiny);
+  std::set<int> ids;
+  std::size_t most = 0;
+  long frames = 0;
+  for (int passer = 0; passer < 5000; ++passer) {
+    for (int i = 0; i < 20; ++i) {
+      Stage& stage = i < 5 ? there : empty;
+      stage.frame.time_s = static_cast<double>(frames++) * kFrame_s;
+      const TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+      most = std::max(most, tracked.people.size());
+      for (const TrackedPerson& person : tracked.people) ids.insert(person.id);
+    }
+  }
+  EXPECT_EQ(most, 1U);
+  EXPECT_EQ(ids.size(), 5000U) << "without looks nobody is known again, and no id is used twice";
+}
+
+TEST(TrackPeople, BodiesAreFittedOnceAFrameWithTheLastOneAtHand) {
+  int fits = 0;
+  const PeopleTracker::FitBody fit = [&](const Frame&, Person&, const std::optional<FittedBody>& last) {
+    ++fits;
+    FittedBody body = last.value_or(FittedBody{});
+    body.stature_m += 0.01F;
+    body.bones.resize(1);
+    body.bones[0] = {};
+    body.bones[0].state = State::observed;
+    body.bones[0].confidence = 0.9F;
+    return std::optional(body);
+  };
+  PeopleTracker tracker(paper_body(), {}, nullptr, fit);
+  const Stage stage({Actor{}});
+  TrackedFrame tracked;
+  for (int i = 0; i < 5; ++i) tracked = tracker.update(stage.frame, stage.people);
+  EXPECT_EQ(fits, 5);
+  ASSERT_TRUE(tracked.people.at(0).body);
+  EXPECT_NEAR(tracked.people[0].body->stature_m, 0.05F, 1e-6F);
+  tracked = tracker.update(stage.frame, {});
+  EXPECT_EQ(fits, 5);
+  ASSERT_EQ(tracked.people.at(0).state, TrackState::hidden);
+  EXPECT_EQ(tracked.people[0].body->bones[0].state, State::predicted);
+  EXPECT_LT(tracked.people[0].body->bones[0].confidence, 0.9F);
+}
+
+TEST(TrackPeople, SmoothsOnlyWhenAsked) {
+  Follower plain;
+  EXPECT_TRUE(plain.show({Actor{}}).people.at(0).smoothed.empty());
+  TrackOptions options;
+  options.smooth = true;
+  Follower follower(options);
+  follower.show({Actor{}}, 5);
+  const TrackedPerson person = follower.show({Actor{}}).people.at(0);
+  ASSERT_EQ(person.smoothed.size(), person.person.joints.size());
+}
+
+TEST(TrackPeople, TellsTheFloorAndWhoStandsOnIt) {
+  PeopleTracker tracker(paper_body());
+  Stage stage({Actor{}});
+  std::vector<StanceEvent> events;
+  for (int i = 0; i < 60; ++i) {
+    // The hips are 0.2 m below the camera, the head's parts 0.55 m above it.
+    const TrackedFrame tracked = tracker.update(stage.frame, stage.people, {{Vector3f::UnitY(), 1.1F, 4.F}});
+    events.insert(events.end(), tracked.events.begin(), tracked.events.end());
+    if (i == 59) {
+      ASSERT_TRUE(tracked.floor);
+      EXPECT_NEAR(tracked.floor->height_m, 1.1F, 1e-4F);
+      EXPECT_EQ(tracked.people.at(0).stance, Stance::standing);
+    }
+  }
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].id, 1);
+  EXPECT_EQ(events[0].stance, Stance::standing);
+}
+
+}  // namespace
+}  // namespace vesalius
