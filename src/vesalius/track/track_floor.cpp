@@ -17,7 +17,7 @@ constexpr double kMoving_s = 0.1;
 constexpr double kLasting_s = 0.3;  // for which a plane must be seen to become the floor ...
 constexpr int kLastingFrames = 5;
 constexpr double kTable_s = 5.0;       // ... or above the floor so far, which may only be hidden
-constexpr double kMoved_s = 0.5;       // without floor and with other planes than before
+constexpr double kMoved_s = 1.0;       // without the floor and with no plane that was seen with it
 constexpr double kForgotten_s = 20.0;  // without any floor
 
 bool same(const Plane& a, const Plane& b, float cosine, float height_m) {
@@ -54,8 +54,7 @@ void TrackFloor::forget_if_moved(const std::vector<Plane>& planes, double passed
     return std::ranges::any_of(around_,
                                [&](const Plane& other) { return same(plane, other, kSameCosine, kSameHeight_m); });
   });
-  if (known) elsewhere_s_ = 0.0;
-  if (!known && !planes.empty()) elsewhere_s_ += passed_s;
+  elsewhere_s_ = known ? 0.0 : elsewhere_s_ + passed_s;
   if (elsewhere_s_ > kMoved_s && unseen_s_ > kMoved_s) floor_.reset();
 }
 

@@ -36,7 +36,7 @@ class TrackFloor {
   int rival_frames_ = 0;
   double unseen_s_ = 0.0;      ///< since the floor was seen
   std::vector<Plane> around_;  ///< planes that were seen with the floor
-  double elsewhere_s_ = 0.0;   ///< for how long planes are seen of which none is among these
+  double elsewhere_s_ = 0.0;   ///< for how long none of them has been seen
 };
 
 /// Returns how the camera stands over a floor. The plane's normal points away from the camera.

@@ -107,10 +107,11 @@ TEST(TrackFloor, UpThatASensorMeasuredTellsFloorFromWall) {
 
 TEST(TrackFloor, IsForgottenWhenItIsLongGone) {
   TrackFloor floor;
-  show(floor, {floor_under(1.2F)}, 15);
-  show(floor, {}, 30 * 19);
+  const Plane wall{Vector3f::UnitZ(), 3.F, 6.F};
+  show(floor, {floor_under(1.2F), wall}, 15);
+  show(floor, {wall}, 30 * 19);
   EXPECT_TRUE(floor.view());
-  show(floor, {}, 60);
+  show(floor, {wall}, 60);
   EXPECT_FALSE(floor.view());
 }
 
@@ -120,7 +121,7 @@ TEST(TrackFloor, IsForgottenSoonByACameraThatIsTurnedAway) {
   show(floor, {floor_under(1.2F), wall}, 15);
   show(floor, {wall}, 60);
   EXPECT_TRUE(floor.view()) << "something hides it";
-  show(floor, {ceiling}, 20);
+  show(floor, {ceiling}, 40);
   EXPECT_FALSE(floor.view());
 }
 
