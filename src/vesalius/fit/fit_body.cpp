@@ -33,8 +33,8 @@ float confidence(const JointTrust& trust, const Eigen::Matrix3d& covariance, flo
 struct BodyFitter::Solution {
   BodyState state;
   std::vector<PlacedBone> placed;
-  std::shared_ptr<NormalEquations> equations;
-  bool mirrored = false;
+  std::unique_ptr<NormalEquations> equations;
+  std::vector<FitTerms::Assigned> assigned;
   double cost = std::numeric_limits<double>::max();
 };
 
@@ -45,17 +45,14 @@ BodyFitter::BodyFitter(BodyModel body, FitOptions options, const FleshModel& fle
   can_fit_ = std::ranges::any_of(terms_.surface().of_part, [](const auto& stretches) { return !stretches.empty(); });
 }
 
-BodyFitter::Solution BodyFitter::solve(const FitData& data, BodyState start, FitStage stage, bool mirrored,
-                                       int steps) const {
+BodyFitter::Solution BodyFitter::descend(BodyState start, int steps, const Evaluate& evaluate) const {
   constexpr double kEnough = 1e-3;  // share of the cost that a further step must gain
   constexpr int kTries = 4;
   Solution best;
-  best.mirrored = mirrored;
-  best.equations = std::make_shared<NormalEquations>(flesh_);
+  best.equations = std::make_unique<NormalEquations>(flesh_);
   best.state = std::move(start);
-  terms_.evaluate(data, best.state, stage, mirrored, best.placed, *best.equations);
-  best.cost = best.equations->cost();
-  auto equations = std::make_shared<NormalEquations>(flesh_);
+  evaluate(best.state, best.placed, *best.equations);
+  auto equations = std::make_unique<NormalEquations>(flesh_);
   std::vector<PlacedBone> placed;
   double damping = 1e-2;
   for (int step = 0, tries = 0; step < steps && tries < kTries; ++step) {
@@ -63,21 +60,40 @@ BodyFitter::Solution BodyFitter::solve(const FitData& data, BodyState start, Fit
     matrix.diagonal().array() += damping * (matrix.diagonal().array() + 1.0);
     const Eigen::VectorXd change = -matrix.llt().solve(best.equations->gradient());
     BodyState next = moved(best.state, change);
-    terms_.evaluate(data, next, stage, mirrored, placed, *equations);
-    const double gain = best.cost - equations->cost();
+    evaluate(next, placed, *equations);
+    const double gain = best.equations->cost() - equations->cost();
     if (!(gain > 0.0)) {
       damping *= 8.0;
       ++tries;
       continue;
     }
-    const bool done = gain < kEnough * std::abs(best.cost);
-    best.cost = equations->cost();
+    const bool done = gain < kEnough * std::abs(best.equations->cost());
     best.state = std::move(next);
     std::swap(best.placed, placed);
     std::swap(best.equations, equations);
     damping = std::max(1e-4, 0.3 * damping);
     tries = 0;
     if (done) break;
+  }
+  best.cost = best.equations->cost();
+  return best;
+}
+
+BodyFitter::Solution BodyFitter::fit_points(const FitData& data, BodyState start, int rounds) const {
+  constexpr int kSteps = 3;  // between assignments
+  Solution best;
+  std::vector<PlacedBone> placed = place_bones(flesh_, start);
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<FitTerms::Assigned> assigned = terms_.assign(data, placed);
+    const double before = best.cost;
+    best = descend(std::move(start), kSteps, [&](const BodyState& state, std::vector<PlacedBone>& at, NormalEquations& to) {
+      terms_.evaluate_points(data, state, assigned, at, to);
+    });
+    best.assigned = std::move(assigned);
+    constexpr double kEnough = 5e-3;  // share of the cost that a further assignment must gain
+    if (before - best.cost < kEnough * std::abs(best.cost)) break;
+    start = best.state;
+    placed = best.placed;
   }
   return best;
 }
@@ -150,7 +166,7 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
   if (data.expected.pose) {
     BodyState start = *data.expected.pose;
     start.shape = data.expected.shape;
-    offer(solve(data, std::move(start), FitStage::points, false, options_.iterations));
+    offer(fit_points(data, std::move(start), options_.rounds));
   }
   const int count = data.expected.pose ? 1 : kStarts;
   for (int i = 0; i < count; ++i) {
@@ -162,8 +178,11 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
     if (!first) break;
     FitData alone = data;
     alone.expected.pose.reset();
-    const Solution rough = solve(alone, *first, FitStage::centres, mirrored, options_.iterations);
-    offer(solve(data, rough.state, FitStage::points, false, options_.iterations));
+    const Solution rough = descend(*first, options_.iterations,
+                                   [&](const BodyState& state, std::vector<PlacedBone>& at, NormalEquations& to) {
+                                     terms_.evaluate_centres(alone, state, mirrored, at, to);
+                                   });
+    offer(fit_points(data, rough.state, options_.rounds));
   }
   if (!best) return std::nullopt;
   return report(data, *best);
@@ -173,7 +192,7 @@ BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const 
   const StateLayout layout(flesh_);
   BodyFit fit;
   fit.state = solution.state;
-  const std::vector<int> support = terms_.support(data, solution.placed, solution.mirrored);
+  const std::vector<int> support = terms_.support(data, solution.placed, solution.assigned);
   Eigen::MatrixXd matrix = solution.equations->matrix();
   matrix.diagonal().array() += 1e-6;
   const Eigen::LLT<Eigen::MatrixXd> solver(matrix);

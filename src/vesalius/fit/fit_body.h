@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -45,7 +46,9 @@ class BodyFitter {
 
  private:
   struct Solution;
-  Solution solve(const FitData& data, BodyState start, FitStage stage, bool mirrored, int steps) const;
+  using Evaluate = std::function<void(const BodyState&, std::vector<PlacedBone>&, NormalEquations&)>;
+  Solution descend(BodyState start, int steps, const Evaluate& evaluate) const;
+  Solution fit_points(const FitData& data, BodyState start, int rounds) const;
   std::optional<BodyState> first_state(const FitData& data, bool mirrored, std::size_t pose) const;
   BodyFit report(const FitData& data, const Solution& solution) const;
 

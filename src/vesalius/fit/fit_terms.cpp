@@ -57,7 +57,8 @@ double geman_mcclure_weight(double squared, double limit) {
 }  // namespace
 
 void visit_options(const std::string& prefix, FitOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "iterations", o.iterations, {"", 1, 200, "Most steps from each start."});
+  visitor.option(prefix + "iterations", o.iterations, {"", 1, 200, "Most steps to the parts' centres."});
+  visitor.option(prefix + "rounds", o.rounds, {"", 1, 200, "Most assignments of points to bones."});
   visitor.option(prefix + "point-weight", o.point_weight, {"", 0.0, 100.0, "Weight of a point."});
   visitor.option(prefix + "surface", o.surface_m, {"m", 0.001, 1.0, "Standard deviation of points about the flesh."});
   visitor.option(prefix + "along", o.along_m, {"m", 0.001, 1.0, "Standard deviation of a part's ends on its bone."});
@@ -95,7 +96,6 @@ PartSurface::PartSurface(const BodyModel& body, const FleshModel& flesh) : of_pa
 
 /// How a point lies to the flesh of a stretch of a bone.
 struct FitTerms::Hit {
-  PartSurface::Stretch stretch;
   double distance = 0.0;  ///< outside of the surface, metres
   Vector3d normal;        ///< of the surface, optical frame
   double along = 0.0;     ///< beyond the stretch's nearer end, metres, away from the bone's head positive
@@ -116,7 +116,6 @@ FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurfa
                             const Vector3d& at) const {
   const FleshBone& bone = flesh_.bones[index];
   Hit hit;
-  hit.stretch = stretch;
   const Vector3d q = placed.global.transpose() * (at - placed.head);
   const double length = placed.numbers[3 + bone.axis];
   const double along = q[bone.axis] / length;
@@ -169,52 +168,56 @@ FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurfa
   return hit;
 }
 
-FitTerms::Hit FitTerms::best_hit(const std::vector<PlacedBone>& placed, const PersonPoint& point,
-                                 bool mirrored) const {
-  Hit best;
-  const Vector3d at = point.at.cast<double>();
-  const auto offer = [&](int part, double cost) {
-    for (const PartSurface::Stretch& stretch : surface_.of_part[part]) {
-      Hit one = hit(placed[stretch.bone], stretch.bone, stretch, at);
-      one.cost += cost;
-      if (one.cost < best.cost) best = one;
+std::vector<FitTerms::Assigned> FitTerms::assign(const FitData& data, const std::vector<PlacedBone>& placed) const {
+  std::vector<Assigned> assigned(data.points.size());
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const PersonPoint& point = data.points[i];
+    const Vector3d at = point.at.cast<double>();
+    double least = std::numeric_limits<double>::max();
+    const auto offer = [&](int part, double label_cost) {
+      if (label_cost >= least) return;
+      for (const PartSurface::Stretch& stretch : surface_.of_part[part]) {
+        const double cost = hit(placed[stretch.bone], stretch.bone, stretch, at).cost + label_cost;
+        if (cost >= least) continue;
+        least = cost;
+        assigned[i] = {stretch, label_cost};
+      }
+    };
+    for (int k = 0; k < PersonPoint::kParts && point.part[k] != kBackground && point.share[k] > 0.F; ++k) {
+      const int part = point.part[k], mirror = body_.parts[part].mirror;
+      const double cost =
+          -2.0 * static_cast<double>(options_.label_weight) * std::log(static_cast<double>(point.share[k]));
+      offer(part, cost);
+      if (mirror >= 0 && mirror != part) offer(mirror, cost + static_cast<double>(options_.mirror_cost));
     }
-  };
-  for (int i = 0; i < PersonPoint::kParts && point.part[i] != kBackground && point.share[i] > 0.F; ++i) {
-    const int part = point.part[i], mirror = body_.parts[part].mirror;
-    const double cost = -2.0 * static_cast<double>(options_.label_weight) * std::log(static_cast<double>(point.share[i]));
-    if (cost >= best.cost) break;
-    offer(mirrored && mirror >= 0 ? mirror : part, cost);
-    const double swapped = cost + static_cast<double>(options_.mirror_cost);
-    if (mirror >= 0 && mirror != part && swapped < best.cost) offer(mirrored ? part : mirror, swapped);
   }
-  return best;
+  return assigned;
 }
 
-void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
-                          NormalEquations& equations) const {
+void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& placed,
+                          const std::vector<Assigned>& assigned, NormalEquations& equations) const {
   const auto point_weight = static_cast<double>(options_.point_weight);
   const auto inverse_square = [](float sigma) { return 1.0 / (static_cast<double>(sigma) * static_cast<double>(sigma)); };
   const double surface = inverse_square(options_.surface_m), along = inverse_square(options_.along_m),
                side = inverse_square(options_.side_m);
   Eigen::VectorXd by_shape(flesh_.shapes);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
-  for (const PersonPoint& point : data.points) {
-    const Hit hit = best_hit(placed, point, mirrored);
-    const int b = hit.stretch.bone;
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const int b = assigned[i].stretch.bone;
     if (b < 0) continue;
-    const Vector3d at = point.at.cast<double>();
+    const Vector3d at = data.points[i].at.cast<double>();
+    const Hit hit = this->hit(placed[b], b, assigned[i].stretch, at);
     const FleshBone& bone = flesh_.bones[b];
     const double weight = point_weight * geman_mcclure_weight(hit.squared, static_cast<double>(options_.outlier));
     // The rows' squares sum to weight * squared; what the robust cost and the label add is constant.
-    equations.add_cost(point_weight * hit.cost - weight * hit.squared);
+    equations.add_cost(point_weight * (hit.cost + assigned[i].label_cost) - weight * hit.squared);
     for (Index k = 0; k < by_shape.size(); ++k) {
       const FleshBone::Numbers& by = bone.shapes[k];
       double change = 0.0;
       for (int s = 0; s < FleshBone::kStations; ++s) {
-        for (int i = 0; i < 2; ++i) {
-          change -= hit.section.share[s] * hit.across_normal[i] *
-                    (static_cast<double>(by[6 + 4 * s + i]) + hit.unit[i] * static_cast<double>(by[6 + 4 * s + 2 + i]));
+        for (int c = 0; c < 2; ++c) {
+          change -= hit.section.share[s] * hit.across_normal[c] *
+                    (static_cast<double>(by[6 + 4 * s + c]) + hit.unit[c] * static_cast<double>(by[6 + 4 * s + 2 + c]));
         }
       }
       by_shape[k] = change;
@@ -229,7 +232,7 @@ void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& pl
       equations.add_point(b, at, -axis, by_shape, sign * hit.along, weight * along);
     }
     if (hit.side > 0.0) {
-      const Vector3d towards = hit.stretch.side * placed[b].global.col(0);
+      const Vector3d towards = assigned[i].stretch.side * placed[b].global.col(0);
       equations.add_point(b, at, towards, none, hit.side, weight * side);
     }
     if (hit.behind > 0.0) equations.add_point(b, at, -hit.ray, none, hit.behind, weight * surface);
@@ -377,28 +380,40 @@ void FitTerms::add_expected(const ExpectedBody& expected, const BodyState& state
   }
 }
 
-void FitTerms::evaluate(const FitData& data, const BodyState& state, FitStage stage, bool mirrored,
-                        std::vector<PlacedBone>& placed, NormalEquations& equations) const {
-  placed = place_bones(flesh_, state);
-  equations.clear(placed);
-  if (stage == FitStage::centres) {
-    add_centres(data, placed, mirrored, equations);
-  } else {
-    add_points(data, placed, mirrored, equations);
-    add_outline(data, placed, equations);
-  }
+void FitTerms::add_priors(const FitData& data, const BodyState& state, NormalEquations& equations) const {
   add_poses(state, equations);
   add_limits(state, equations);
   add_expected(data.expected, state, equations);
+}
+
+void FitTerms::evaluate_points(const FitData& data, const BodyState& state, const std::vector<Assigned>& assigned,
+                               std::vector<PlacedBone>& placed, NormalEquations& equations) const {
+  placed = place_bones(flesh_, state);
+  equations.clear(placed);
+  add_points(data, placed, assigned, equations);
+  add_outline(data, placed, equations);
+  add_priors(data, state, equations);
   equations.finish();
 }
 
-std::vector<int> FitTerms::support(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored) const {
+void FitTerms::evaluate_centres(const FitData& data, const BodyState& state, bool mirrored,
+                                std::vector<PlacedBone>& placed, NormalEquations& equations) const {
+  placed = place_bones(flesh_, state);
+  equations.clear(placed);
+  add_centres(data, placed, mirrored, equations);
+  add_priors(data, state, equations);
+  equations.finish();
+}
+
+std::vector<int> FitTerms::support(const FitData& data, const std::vector<PlacedBone>& placed,
+                                   const std::vector<Assigned>& assigned) const {
   std::vector<int> support(flesh_.bones.size(), 0);
   const double most = static_cast<double>(options_.outlier) * static_cast<double>(options_.outlier);
-  for (const PersonPoint& point : data.points) {
-    const Hit hit = best_hit(placed, point, mirrored);
-    if (hit.stretch.bone >= 0 && hit.squared < most) ++support[hit.stretch.bone];
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const int b = assigned[i].stretch.bone;
+    if (b < 0) continue;
+    const Hit hit = this->hit(placed[b], b, assigned[i].stretch, data.points[i].at.cast<double>());
+    if (hit.squared < most) ++support[b];
   }
   return support;
 }

@@ -15,7 +15,8 @@
 namespace vesalius {
 
 struct FitOptions {
-  int iterations = 12;           ///< most steps from a start
+  int iterations = 8;            ///< most steps to the parts' centres, from which a fit starts
+  int rounds = 3;                ///< most times that points are assigned to bones, with three steps after each
   float point_weight = 0.2F;     ///< of a point, since neighbours err alike
   float surface_m = 0.025F;      ///< standard deviation of points about the flesh's surface
   float along_m = 0.05F;         ///< of a part's ends along its bone
@@ -65,32 +66,40 @@ struct FitData {
   ExpectedBody expected;
 };
 
-/// Which of the terms count.
-enum class FitStage {
-  centres,  ///< parts' centres and the priors: for a start
-  points    ///< points, outline and the priors
-};
-
 /// The sums of squares that a body's fit minimises.
 class FitTerms {
  public:
+  /// The stretch of a bone to which a point is taken to belong, and what its labels cost then.
+  struct Assigned {
+    PartSurface::Stretch stretch;
+    double label_cost = 0.0;
+  };
+
   FitTerms(const FleshModel& flesh, const BodyModel& body, const FitOptions& options);
 
-  /// Fills `equations` with the terms of a state. Labels are taken for their mirror partners' if `mirrored`.
-  void evaluate(const FitData& data, const BodyState& state, FitStage stage, bool mirrored,
-                std::vector<PlacedBone>& placed, NormalEquations& equations) const;
+  /// Returns for each point the stretch to which it most probably belongs, by its labels and its place.
+  std::vector<Assigned> assign(const FitData& data, const std::vector<PlacedBone>& placed) const;
 
-  /// Returns for each bone how many points lie on it, by the labels and places.
-  std::vector<int> support(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored) const;
+  /// Fills `equations` with the terms of a state for points that are assigned so.
+  void evaluate_points(const FitData& data, const BodyState& state, const std::vector<Assigned>& assigned,
+                       std::vector<PlacedBone>& placed, NormalEquations& equations) const;
+  /// Fills `equations` with the terms of a state that count for a start: the parts' centres and the priors. Parts are
+  /// taken for their mirror partners if `mirrored`.
+  void evaluate_centres(const FitData& data, const BodyState& state, bool mirrored, std::vector<PlacedBone>& placed,
+                        NormalEquations& equations) const;
+
+  /// Returns for each bone how many points lie on it.
+  std::vector<int> support(const FitData& data, const std::vector<PlacedBone>& placed,
+                           const std::vector<Assigned>& assigned) const;
 
   const PartSurface& surface() const { return surface_; }
 
  private:
   struct Hit;
   Hit hit(const PlacedBone& bone, int index, const PartSurface::Stretch& stretch, const Eigen::Vector3d& at) const;
-  Hit best_hit(const std::vector<PlacedBone>& placed, const PersonPoint& point, bool mirrored) const;
-  void add_points(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
+  void add_points(const FitData& data, const std::vector<PlacedBone>& placed, const std::vector<Assigned>& assigned,
                   NormalEquations& equations) const;
+  void add_priors(const FitData& data, const BodyState& state, NormalEquations& equations) const;
   void add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                    NormalEquations& equations) const;
   void add_outline(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
