@@ -140,6 +140,14 @@ std::optional<BodyAxes> body_axes(const std::vector<Eigen::Vector3f>& truth, con
   return BodyAxes{up.normalized(), level.normalized()};
 }
 
+/// Returns a joint of those in the order of `set`; null if it was not found. Throws Error if the set has none so named.
+const Joint* joint_of(const std::string& name, const JointSet& set, const std::vector<Joint>& joints) {
+  const auto found = std::ranges::find(set.joints, name, &JointDefinition::name);
+  if (found == set.joints.end()) throw Error(fmt::format("joint set {}: no joint {}", set.name, name));
+  const auto index = found - set.joints.begin();
+  return index < std::ssize(joints) && joints[index].state != State::none ? &joints[index] : nullptr;
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3f> joints_by_name(const std::vector<std::string>& names, const JointSet& set,
@@ -147,13 +155,20 @@ std::vector<Eigen::Vector3f> joints_by_name(const std::vector<std::string>& name
   constexpr float kNotFound = std::numeric_limits<float>::quiet_NaN();
   std::vector<Eigen::Vector3f> positions;
   for (const std::string& name : names) {
-    const auto found = std::ranges::find(set.joints, name, &JointDefinition::name);
-    if (found == set.joints.end()) throw Error(fmt::format("joint set {}: no joint {}", set.name, name));
-    const auto index = found - set.joints.begin();
-    const bool has = index < std::ssize(joints) && joints[index].state != State::none;
-    positions.push_back(has ? joints[index].position : Eigen::Vector3f::Constant(kNotFound));
+    const Joint* joint = joint_of(name, set, joints);
+    positions.push_back(joint != nullptr ? joint->position : Eigen::Vector3f::Constant(kNotFound));
   }
   return positions;
+}
+
+std::vector<float> confidences_by_name(const std::vector<std::string>& names, const JointSet& set,
+                                       const std::vector<Joint>& joints) {
+  std::vector<float> confidences;
+  for (const std::string& name : names) {
+    const Joint* joint = joint_of(name, set, joints);
+    confidences.push_back(joint != nullptr ? joint->confidence : 0.F);
+  }
+  return confidences;
 }
 
 const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names, std::string_view wanted) {
@@ -166,6 +181,19 @@ const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::str
     if (first == nullptr && std::ranges::all_of(names, has)) first = &set;
   }
   return first;
+}
+
+std::optional<KnownPoints> known_joints(const FrameTruth& truth, const BodyModel& body, const std::string& joint_set) {
+  if (truth.joint_names.empty()) return std::nullopt;
+  const JointSet* set = find_joint_set(body, truth.joint_names, joint_set.empty() ? truth.joint_set : joint_set);
+  if (set == nullptr) return std::nullopt;
+  KnownPoints known{set, {}, std::vector<std::vector<Eigen::Vector3f>>(truth.joints.size())};
+  for (std::size_t j = 0; j < truth.joint_names.size(); ++j) {
+    if (std::ranges::find(set->joints, truth.joint_names[j], &JointDefinition::name) == set->joints.end()) continue;
+    known.names.push_back(truth.joint_names[j]);
+    for (std::size_t who = 0; who < truth.joints.size(); ++who) known.of_person[who].push_back(truth.joints[who][j]);
+  }
+  return known;
 }
 
 std::vector<double> joint_errors(const JointPair& pair) {
@@ -253,6 +281,11 @@ void JointCurve::add(const std::vector<double>& errors_m) {
       if (error_m < cm * 0.01) ++within[cm - 1];
     }
   }
+}
+
+void JointCurve::merge(const JointCurve& other) {
+  joints += other.joints;
+  for (std::size_t cm = 0; cm < within.size(); ++cm) within[cm] += other.within[cm];
 }
 
 double JointCurve::share(int cm) const {

@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "eval/metric_table.h"
+#include "vesalius/base/frame_truth.h"
 #include "vesalius/derive_joints.h"
 
 namespace vesalius {
@@ -30,10 +32,24 @@ struct JointPair {
 std::vector<Eigen::Vector3f> joints_by_name(const std::vector<std::string>& names, const JointSet& set,
                                             const std::vector<Joint>& joints);
 
+/// Returns the confidences of the same joints; 0 of those that were not found.
+std::vector<float> confidences_by_name(const std::vector<std::string>& names, const JointSet& set,
+                                       const std::vector<Joint>& joints);
+
 /// Returns the joint set called `wanted` if the body has it and it has any of these joints, otherwise the first one
 /// that has all of them, or null.
 const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names,
                                std::string_view wanted = "");
+
+/// Points of the true people that a joint set of the body predicts.
+struct KnownPoints {
+  const JointSet* set = nullptr;
+  std::vector<std::string> names;  ///< those that the set has
+  std::vector<std::vector<Eigen::Vector3f>> of_person;
+};
+/// Returns the true joints in a set of the body: the one called `joint_set`, or where that is empty the truth's own
+/// choice. Returns nothing if no joints are known or no set has them. The result is valid while `body` is.
+std::optional<KnownPoints> known_joints(const FrameTruth& truth, const BodyModel& body, const std::string& joint_set);
 
 /// Returns the distance of each joint in metres: NaN if the truth is not known, infinity if the joint was not found.
 std::vector<double> joint_errors(const JointPair& pair);
@@ -70,6 +86,7 @@ struct JointCurve {
   long joints = 0;
 
   void add(const std::vector<double>& errors_m);
+  void merge(const JointCurve& other);
   /// Returns the share within `cm`, 1 to kJointCurve_cm; NaN without joints.
   double share(int cm) const;
 };

@@ -101,6 +101,7 @@ void put_visible_people_first(TrueFrame& frame) {
   reorder(truth.joints, order);
   reorder(truth.postures, order);
   reorder(truth.statures_m, order);
+  reorder(truth.ids, order);
   for (std::uint8_t& who : truth.person) who = who < new_index.size() ? new_index[who] : kBackground;
 }
 

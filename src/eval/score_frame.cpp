@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "eval/breakdown_metrics.h"
 #include "eval/fit_context.h"
 #include "eval/heading.h"
+#include "eval/joint_sight.h"
 #include "eval/match_people.h"
 #include "eval/side_metrics.h"
 #include "vesalius/base/error.h"
@@ -49,6 +51,19 @@ void append(MetricTerms& terms, MetricTerms more) {
   terms.insert(terms.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+/// Throws Error unless each true person, if ids are known, has one of its own.
+void check_ids(const TrueFrame& frame) {
+  const FrameTruth& truth = frame.truth;
+  if (truth.ids.empty()) return;
+  const std::size_t people = std::max(truth.parts.size(), truth.joints.size());
+  if (people > 0 && truth.ids.size() != people) {
+    throw Error(fmt::format("truth of frame {}: {} ids, expected one for each of {} people", frame.frame.name,
+                            truth.ids.size(), people));
+  }
+  if (std::set(truth.ids.begin(), truth.ids.end()).size() == truth.ids.size()) return;
+  throw Error(fmt::format("truth of frame {}: two people of one id", frame.frame.name));
+}
+
 /// Throws Error unless the truth fits the frame and itself.
 void check_truth(const TrueFrame& frame, const BodyModel& body) {
   const FrameTruth& truth = frame.truth;
@@ -72,6 +87,7 @@ void check_truth(const TrueFrame& frame, const BodyModel& body) {
     throw Error(fmt::format("truth of frame {}: centres of {} parts, expected {}", frame.frame.name, parts.size(),
                             body.parts.size()));
   }
+  check_ids(frame);
   if (truth.parts.empty() || truth.joints.empty() || truth.parts.size() == truth.joints.size()) return;
   throw Error(fmt::format("truth of frame {}: parts of {} people and joints of {}", frame.frame.name,
                           truth.parts.size(), truth.joints.size()));
@@ -104,9 +120,13 @@ FrameScorer::FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options 
   throw UsageError(fmt::format("joint set \"{}\", expected one of {}", options_.joint_set, names));
 }
 
-FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
-  check(frame.frame);
+void FrameScorer::check(const TrueFrame& frame) const {
+  vesalius::check(frame.frame);
   check_truth(frame, body());
+}
+
+FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
+  check(frame);
   put_visible_people_first(frame);
   FrameScore score;
   score.expected = expected_people(frame.truth);
@@ -131,15 +151,8 @@ FrameLabels FrameScorer::find_people(const TrueFrame& frame, const Mask* asked, 
   const auto start = std::chrono::steady_clock::now();
   score.people = detector_.detect(frame.frame, &trace);
   score.detect_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const std::vector<Match> matches = match_people(accepted_proposals(score.people), frame.truth, frame.frame.depth);
-  append(score.terms, people_terms(frame, score.people, matches, body()));
-  const std::vector<const Person*> of_person = found_of_each(score.people, matches, score.expected);
-  append(score.terms, visible_part_terms(frame, of_person, body()));
-  append(score.terms, breakdown_terms(frame, of_person, body()));
+  const std::vector<const Person*> of_person = judge_people(frame, score);
   log_proposals(frame, trace, fit_joints, score);
-  append(score.terms, given_part_terms(frame, of_person, body()));
-  append(score.terms, side_order_terms(frame, of_person, body()));
-  append(score.terms, yaw_terms(frame, of_person, body()));
   if (fit_joints) {
     keep_known_people(frame, of_person, score);
   } else {
@@ -148,11 +161,41 @@ FrameLabels FrameScorer::find_people(const TrueFrame& frame, const Mask* asked, 
   return {std::move(trace.labels), std::move(trace.inside)};
 }
 
+std::vector<const Person*> FrameScorer::judge_people(const TrueFrame& frame, FrameScore& score) const {
+  const std::vector<Match> matches = match_people(accepted_proposals(score.people), frame.truth, frame.frame.depth);
+  append(score.terms, people_terms(frame, score.people, matches, body()));
+  std::vector<const Person*> of_person = found_of_each(score.people, matches, score.expected);
+  append(score.terms, visible_part_terms(frame, of_person, body()));
+  append(score.terms, breakdown_terms(frame, of_person, body()));
+  append(score.terms, given_part_terms(frame, of_person, body()));
+  append(score.terms, side_order_terms(frame, of_person, body()));
+  append(score.terms, yaw_terms(frame, of_person, body()));
+  return of_person;
+}
+
+FrameScore FrameScorer::score_found(TrueFrame frame, std::vector<Person> people,
+                                    const std::vector<const Person*>& unseen) const {
+  check(frame);
+  put_visible_people_first(frame);
+  FrameScore score;
+  score.expected = expected_people(frame.truth);
+  std::ranges::stable_sort(people, std::ranges::greater{}, &Person::score);
+  score.people = std::move(people);
+  std::vector<const Person*> of_person = judge_people(frame, score);
+  of_person.resize(std::max(of_person.size(), unseen.size()), nullptr);
+  for (std::size_t who = 0; who < unseen.size(); ++who) {
+    if (of_person[who] == nullptr) of_person[who] = unseen[who];
+  }
+  judge_points(frame, of_person, score);
+  say_what_went_wrong(score, false);
+  return score;
+}
+
 void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const {
   score.samples = score_samples(trace, frame.truth, frame.frame.depth);
   const auto proposals = distinct_proposals(trace, options_.detect.refine.max_overlap);
   if (!fit_joints) {
-    const auto joints = known_joints(frame.truth), centres = known_centres(frame.truth);
+    const auto joints = known_joints(frame.truth, body(), options_.joint_set), centres = known_centres(frame.truth);
     if (joints) judge_proposed_points(*joints, proposals, score.expected, score.joint_precision);
     if (centres) judge_proposed_points(*centres, proposals, score.expected, score.centre_precision);
   }
@@ -172,21 +215,7 @@ void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool
   }
 }
 
-std::optional<FrameScorer::KnownPoints> FrameScorer::known_joints(const FrameTruth& truth) const {
-  if (truth.joint_names.empty()) return std::nullopt;
-  const std::string& wanted = options_.joint_set.empty() ? truth.joint_set : options_.joint_set;
-  const JointSet* set = find_joint_set(body(), truth.joint_names, wanted);
-  if (set == nullptr) return std::nullopt;
-  KnownPoints known{set, {}, std::vector<std::vector<Eigen::Vector3f>>(truth.joints.size())};
-  for (std::size_t j = 0; j < truth.joint_names.size(); ++j) {
-    if (std::ranges::find(set->joints, truth.joint_names[j], &JointDefinition::name) == set->joints.end()) continue;
-    known.names.push_back(truth.joint_names[j]);
-    for (std::size_t who = 0; who < truth.joints.size(); ++who) known.of_person[who].push_back(truth.joints[who][j]);
-  }
-  return known;
-}
-
-std::optional<FrameScorer::KnownPoints> FrameScorer::known_centres(const FrameTruth& truth) const {
+std::optional<KnownPoints> FrameScorer::known_centres(const FrameTruth& truth) const {
   if (truth.parts.empty()) return std::nullopt;
   KnownPoints known{nullptr, sided(body()).names, truth.parts};
   known.set = find_joint_set(body(), known.names);
@@ -214,26 +243,33 @@ void FrameScorer::judge_points(const TrueFrame& frame, const std::vector<const P
     for (std::size_t who = 0; known && who < of_person.size() && who < known->of_person.size(); ++who) {
       std::vector<Joint> joints;
       if (of_person[who] != nullptr) joints = of_person[who]->joints[known->set - body().joint_sets.data()];
-      judge(who, *known, JointPair{known->of_person[who], joints_by_name(known->names, *known->set, joints)});
+      const JointPair pair{known->of_person[who], joints_by_name(known->names, *known->set, joints)};
+      judge(who, *known, pair, joints);
     }
   };
-  each(known_joints(frame.truth), [&](std::size_t who, const KnownPoints& known, const JointPair& pair) {
+  const auto judge_joints = [&](std::size_t who, const KnownPoints& known, const JointPair& pair,
+                                const std::vector<Joint>& joints) {
     append(score.terms, joint_terms(pair, known.names));
     append(score.terms, joint_bias_terms(pair, known.names));
+    append(score.terms, sight_terms(pair, confidences_by_name(known.names, *known.set, joints),
+                                    joint_sight(frame, who, pair.truth)));
     const GivenPoints given = count_given(sided(known.names), pair.found, pair.truth, kJointTolerance_m);
     append(score.terms,
            given_terms(given, GivenKind::joints, heading_of(frame.truth, who, body()), frame.truth.parts.empty()));
     score.joint_errors_m.push_back(joint_errors(pair));
-  });
-  each(known_centres(frame.truth), [&](std::size_t who, const KnownPoints& known, const JointPair& pair) {
+  };
+  const auto judge_centres = [&](std::size_t who, const KnownPoints& known, const JointPair& pair,
+                                 const std::vector<Joint>&) {
     append(score.terms, centre_terms(pair, known.names));
     if (of_person[who] != nullptr) append(score.terms, predicted_part_terms(of_person[who]->skeleton, pair));
-  });
+  };
+  each(known_joints(frame.truth, body(), options_.joint_set), judge_joints);
+  each(known_centres(frame.truth), judge_centres);
 }
 
 void FrameScorer::keep_known_people(const TrueFrame& frame, const std::vector<const Person*>& of_person,
                                     FrameScore& score) const {
-  const auto joints = known_joints(frame.truth);
+  const auto joints = known_joints(frame.truth, body(), options_.joint_set);
   // The joints of rendered skeletons are those of every tracker, others only those of one.
   const bool any_set = options_.joint_set.empty() && !frame.truth.parts.empty();
   for (std::size_t who = 0; who < of_person.size(); ++who) {

@@ -55,6 +55,16 @@ class FrameScorer {
   /// Throws Error if truth and frame do not fit together.
   FrameScore score(TrueFrame frame, bool fit_joints) const;
 
+  /// Judges the people that something else found in a frame, such as a tracker, by the same metrics but those of the
+  /// labels and of proposals. Each needs a mask of the frame's size. `unseen` has for each true person, in the order of
+  /// put_visible_people_first, somebody who is known to be there without being seen, or null: if it is not empty, the
+  /// joints of all true people are judged. Throws Error if truth and frame do not fit together.
+  FrameScore score_found(TrueFrame frame, std::vector<Person> people,
+                         const std::vector<const Person*>& unseen = {}) const;
+
+  /// Throws Error if truth and frame do not fit together.
+  void check(const TrueFrame& frame) const;
+
   const BodyModel& body() const { return detector_.body(); }
   const Options& options() const { return options_; }
 
@@ -62,13 +72,8 @@ class FrameScorer {
   /// Returns the labels that the detector gave; `asked`: Trace::person.
   FrameLabels find_people(const TrueFrame& frame, const Mask* asked, bool fit_joints, FrameScore& score) const;
   void log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const;
-  /// Points of the true people that a joint set of the body predicts.
-  struct KnownPoints {
-    const JointSet* set = nullptr;
-    std::vector<std::string> names;  ///< those that the set has
-    std::vector<std::vector<Eigen::Vector3f>> of_person;
-  };
-  std::optional<KnownPoints> known_joints(const FrameTruth& truth) const;
+  /// Judges score.people and returns the found person for each of the expected ones, or null.
+  std::vector<const Person*> judge_people(const TrueFrame& frame, FrameScore& score) const;
   /// Returns the centres of the parts, for which a set must have a joint under each part's name.
   std::optional<KnownPoints> known_centres(const FrameTruth& truth) const;
   std::vector<Eigen::Vector3f> points_of(const Skeleton& skeleton, const KnownPoints& known) const;

@@ -102,10 +102,10 @@ MetricTerms given_terms(const GivenPoints& points, GivenKind kind, std::optional
     add(parts ? M::given_elsewhere : M::joints_given_elsewhere,
         parts ? M::given_elsewhere_heading : M::joints_given_elsewhere_heading, points.elsewhere);
   }
-  if (with_swapped && points.paired > 0) {
-    const int swapped = 2 * points.swapped > points.paired ? 1 : 0;
-    add_by_heading(M::sides_swapped, M::sides_swapped_heading, heading, swapped, 1, terms);
-  }
+  if (points.paired == 0) return terms;
+  const int swapped = 2 * points.swapped > points.paired ? 1 : 0;
+  if (with_swapped) add_by_heading(M::sides_swapped, M::sides_swapped_heading, heading, swapped, 1, terms);
+  if (!parts) terms.push_back({M::joints_swapped, 1.0 * swapped, 1.0});
   return terms;
 }
 

@@ -28,7 +28,8 @@ GivenPoints count_given(const SidedNames& names, const std::vector<Eigen::Vector
 
 /// The metrics that GivenPoints make, each with its family by heading.
 enum class GivenKind { parts, joints };
-/// Returns where a person's points lie, and, if `with_swapped` is true, whether most of the paired ones are swapped.
+/// Returns where a person's points lie, and, if `with_swapped` is true, whether most of the paired ones are swapped; of
+/// joints that is said in any case, by a metric of its own.
 MetricTerms given_terms(const GivenPoints& points, GivenKind kind, std::optional<Heading> heading, bool with_swapped);
 
 /// Returns where the observed parts of the found people lie, within kPartTolerance_m, and whether left and right are

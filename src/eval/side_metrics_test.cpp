@@ -85,6 +85,7 @@ TEST(GivenPoints, AreCountedByHand) {
   const MetricTerms terms = given_terms(points, GivenKind::joints, Heading::side, true);
   EXPECT_DOUBLE_EQ(value_of(terms, "joints.given_mirrored.side"), 1.0 / 3.0);
   EXPECT_EQ(value_of(terms, "sides.swapped.side"), 1.0);
+  EXPECT_EQ(value_of(terms, "joints.swapped"), 1.0);
 }
 
 TEST(GivenPoints, AreNotSwappedWhereHalfOfThemAre) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace vesalius {
 namespace {
@@ -35,8 +36,23 @@ constexpr std::array kLine{Metric::mask_iou,
                            Metric::joints_given_right,
                            Metric::joints_given_mirrored,
                            Metric::joints_given_elsewhere,
+                           Metric::joints_swapped,
+                           Metric::joints_seen_at_10cm,
+                           Metric::joints_seen_error,
+                           Metric::joints_hidden_at_10cm,
+                           Metric::joints_hidden_error,
                            Metric::centres_at_10cm};
 static_assert(std::ranges::is_sorted(kLine));
+
+/// The metrics in a second line, of people who were followed over time.
+constexpr std::array kTrackLine{Metric::track_mota,    Metric::track_motp,         Metric::track_missed,
+                                Metric::track_false,   Metric::track_switches,     Metric::track_fragmentations,
+                                Metric::track_ids,     Metric::track_longest_gap,  Metric::track_idf1,
+                                Metric::track_idp,     Metric::track_idr,          Metric::track_hota,
+                                Metric::track_det_a,   Metric::track_ass_a,        Metric::track_loc_a,
+                                Metric::joints_jitter, Metric::joints_true_jitter, Metric::joints_delay,
+                                Metric::bones_error,   Metric::bones_spread,       Metric::stance_right};
+static_assert(std::ranges::is_sorted(kTrackLine));
 
 /// The families that have a line of their own.
 constexpr std::array kFamilies{Metric::posture,
@@ -60,8 +76,12 @@ constexpr std::array kFamilies{Metric::posture,
                                Metric::joint_at_10cm,
                                Metric::joints_given_right_heading,
                                Metric::joints_given_mirrored_heading,
+                               Metric::joints_right_confidence,
+                               Metric::joints_hidden_right_confidence,
                                Metric::joint_up,
-                               Metric::joint_up_placed};
+                               Metric::joint_up_placed,
+                               Metric::bone_error,
+                               Metric::stance_given};
 static_assert(std::ranges::is_sorted(kFamilies));
 
 /// Returns e.g. "people 56 of 56, false 0".
@@ -93,6 +113,17 @@ std::string family_line(const std::vector<Estimate>& estimates, Metric family) {
   return text.empty() ? "" : fmt::format("  {}, {}: {}\n", info(family).title, is_share ? "%" : "mm", text);
 }
 
+/// Returns e.g. ", MOTA 71.20 %" for each of the metrics that there is.
+std::string metrics_text(const std::vector<Estimate>& estimates, std::span<const Metric> metrics) {
+  std::string text;
+  for (const Metric metric : metrics) {
+    if (const Estimate* estimate = find_estimate(estimates, metric)) {
+      text += fmt::format(", {} {}", info(metric).title, metric_text(metric, estimate->value));
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string speed_text(const SetResult& set) {
@@ -103,12 +134,11 @@ std::string speed_text(const SetResult& set) {
 std::string summary_lines(const SetResult& set) {
   const std::vector<Estimate> estimates = set.metrics.estimates();
   std::string text = fmt::format("{}: {} frames{}", set.name, set.frames, people_text(set, estimates));
-  for (const Metric metric : kLine) {
-    if (const Estimate* estimate = find_estimate(estimates, metric)) {
-      text += fmt::format(", {} {}", info(metric).title, metric_text(metric, estimate->value));
-    }
-  }
+  text += metrics_text(estimates, kLine);
   text += ", " + speed_text(set) + "\n";
+  if (const std::string tracks = metrics_text(estimates, kTrackLine); !tracks.empty()) {
+    text += "  over time: " + tracks.substr(2) + "\n";
+  }
   for (const Metric family : kFamilies) text += family_line(estimates, family);
   return text;
 }

@@ -9,8 +9,8 @@ namespace vesalius {
 /// Returns "12.3 frames/s", or "41.0 ms a frame" if frames were timed one by one.
 std::string speed_text(const SetResult& set);
 
-/// Returns a summary of a set for a terminal: one line, and one more for each family of shares (parts, postures,
-/// joints).
+/// Returns a summary of a set for a terminal: one line, one more for people followed over time, and one for each family
+/// of shares (parts, postures, joints).
 std::string summary_lines(const SetResult& set);
 
 }  // namespace vesalius
