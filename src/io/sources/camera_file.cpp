@@ -20,6 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxCameraFileBytes = 1 << 20;
 constexpr int kMaxSide = 1 << 16;
+constexpr double kLowestRate_hz = 0.001;
+constexpr double kHighestRate_hz = 10000.0;
 
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -219,6 +221,7 @@ void CameraFacts::fill_from(const CameraFacts& other) {
   take(cx, other.cx);
   take(cy, other.cy);
   take(depth_scale, other.depth_scale);
+  take(rate_hz, other.rate_hz);
   if (needs_focal && other.fx) {
     width = other.width;
     height = other.height;
@@ -249,6 +252,12 @@ CameraFacts parse_meta(std::string_view text, const std::string& name) {
     facts.depth_scale = checked_scale(*v, name, "depth_scale");
   } else if (const auto units = root.find("units"); units != root.end()) {
     facts.depth_scale = scale_of_units(*units, name);
+  }
+  if (const auto v = number(root, "rate_hz", name)) {
+    if (!(*v >= kLowestRate_hz && *v <= kHighestRate_hz)) {
+      fail(name, "rate_hz", fmt::format("frames a second, {} to {}", kLowestRate_hz, kHighestRate_hz));
+    }
+    facts.rate_hz = *v;
   }
   if (const auto sensor = root.find("sensor"); sensor != root.end() && sensor->is_string()) facts.sensor = *sensor;
   return facts;
@@ -284,7 +293,7 @@ CameraFacts find_camera_facts(const SourceOptions& options, const std::vector<st
   }
   for (const std::string& folder : folders) {
     const CameraFacts found = facts_in_folder(folder);
-    if (found.origin.empty() && found.sensor.empty() && !found.depth_scale) continue;
+    if (found.origin.empty() && found.sensor.empty() && !found.depth_scale && !found.rate_hz) continue;
     facts.fill_from(found);
     break;
   }

@@ -16,6 +16,7 @@ struct CameraFacts {
   std::optional<float> fx, fy, cx, cy;  ///< pixels
   std::optional<int> width, height;     ///< size of the pictures that fx ... cy are for
   std::optional<float> depth_scale;     ///< stored units per metre
+  std::optional<double> rate_hz;        ///< frames a second
   std::string sensor;                   ///< e.g. "Kinect v1"; empty = not named
   /// The camera behind its lens, where that distorts: what pictures are turned from. Those that they are turned into
   /// have fx ... cy. Its size is 0 where none is given.
@@ -28,8 +29,8 @@ struct CameraFacts {
 };
 
 /// Reads a meta.json: fx fy cx cy (pixels), width height, units ("mm", "cm" or "m"; words after it are ignored) or
-/// depth_scale (stored units per metre), and sensor. Every key may be missing; other keys are ignored. Throws Error
-/// naming `name`, the key and what was expected.
+/// depth_scale (stored units per metre), rate_hz (frames a second) and sensor. Every key may be missing; other keys are
+/// ignored. Throws Error naming `name`, the key and what was expected.
 CameraFacts parse_meta(std::string_view json, const std::string& name);
 
 /// Reads a ROS camera_info YAML as saved by camera_calibration or printed by rostopic echo. If the lens is distorted,

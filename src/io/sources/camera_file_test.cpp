@@ -55,6 +55,12 @@ TEST(ParseMeta, NamesTheFileAndTheKeyOfErrors) {
   EXPECT_THAT(message(R"({"units": "feet"})"), HasSubstr("\"units\": expected \"mm\""));
   EXPECT_THAT(message(R"({"units": 7})"), HasSubstr("\"units\""));
   EXPECT_THAT(message(R"({"depth_scale": 0})"), HasSubstr("\"depth_scale\""));
+  EXPECT_THAT(message(R"({"rate_hz": 0})"), HasSubstr("\"rate_hz\": expected frames a second"));
+}
+
+TEST(ParseMeta, ReadsTheRate) {
+  EXPECT_EQ(parse_meta(R"({"rate_hz": 29.97})", "m").rate_hz, 29.97);
+  EXPECT_FALSE(parse_meta("{}", "m").rate_hz);
 }
 
 TEST(SerialiseMeta, IsReadBackExactly) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <optional>
+#include <string>
 #include <system_error>
 
 #include "vesalius/base/error.h"
@@ -53,6 +55,28 @@ void note_missing_colours(FrameList& list, std::size_t colours) {
   if (with != colours) {
     list.notes.push_back(
         fmt::format("{}: {} colour pictures have no depth picture of their name", list.place, colours - with));
+  }
+}
+
+/// Returns the number that a whole name is; nothing for other names and for numbers that a double does not hold.
+std::optional<double> whole_number(const std::string& name) {
+  constexpr std::size_t kMostDigits = 15;
+  if (name.empty() || name.size() > kMostDigits || !std::all_of(name.begin(), name.end(), is_digit))
+    return std::nullopt;
+  return std::stod(name);
+}
+
+/// Gives the frames the times that follow from their rate.
+void add_times(FrameList& list, double rate_hz) {
+  std::vector<double> numbers;
+  for (const FrameFiles& files : list.frames) {
+    const auto number = whole_number(files.name);
+    if (!number || (!numbers.empty() && *number <= numbers.back())) break;
+    numbers.push_back(*number);
+  }
+  const bool named = numbers.size() == list.frames.size();
+  for (std::size_t i = 0; i < list.frames.size(); ++i) {
+    list.frames[i].time_s = (named ? numbers[i] : static_cast<double>(i)) / rate_hz;
   }
 }
 
@@ -122,6 +146,7 @@ FrameList list_folder(const std::string& folder, const SourceOptions& options) {
   if (list.frames.empty()) throw Error(depth_folder + ": no frames, expected 16-bit depth PNG files");
   note_missing_colours(list, colours.size());
   list.facts = find_camera_facts(options, has_depth_folder ? std::vector<std::string>{folder} : camera_folders(folder));
+  if (list.facts.rate_hz) add_times(list, *list.facts.rate_hz);
   return list;
 }
 

@@ -21,7 +21,9 @@ std::string lower_extension(const std::filesystem::path& path);
 std::vector<std::filesystem::path> list_files(const std::string& folder, const std::vector<std::string>& extensions);
 
 /// Lists the depth PNG files in `folder`/depth, with colour files of the same stem in rgb, color or colour; if there is
-/// no folder depth, lists the PNG files in `folder` itself.
+/// no folder depth, lists the PNG files in `folder` itself. Where meta.json has a rate, frames have times: their names
+/// over the rate if all are whole numbers that rise, so that missing pictures are gaps, otherwise their places in
+/// order.
 FrameList list_folder(const std::string& folder, const SourceOptions& options);
 
 /// Lists one depth PNG. Its colour file is that of `options`; if none is given and the PNG lies in a folder named

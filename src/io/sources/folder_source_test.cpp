@@ -38,5 +38,23 @@ TEST(ListFiles, ListsOnlyTheWantedKinds) {
               HasSubstr("none: folder cannot be read: No such"));
 }
 
+/// Returns the times of the frames that are called so, with this meta.json.
+std::vector<double> times_of(const std::vector<std::string>& names, const std::string& meta) {
+  const TemporaryFolder folder;
+  for (const std::string& name : names) put(folder / "depth/" + name + ".png", "");
+  put(folder / "meta.json", meta);
+  std::vector<double> times_s;
+  for (const FrameFiles& files : list_folder(folder.path(), {}).frames) times_s.push_back(files.time_s.value_or(-1.0));
+  return times_s;
+}
+
+TEST(ListFolder, TakesTimesFromTheRateAndTheNumbersOfFrames) {
+  const std::string meta = R"({"rate_hz": 4})";
+  EXPECT_THAT(times_of({"002", "003", "010"}, meta), testing::ElementsAre(0.5, 0.75, 2.5));
+  EXPECT_THAT(times_of({"a2", "a3", "a10"}, meta), testing::ElementsAre(0.0, 0.25, 0.5));
+  EXPECT_THAT(times_of({"1", "01"}, meta), testing::ElementsAre(0.0, 0.25));  // the numbers do not rise
+  EXPECT_THAT(times_of({"1", "2"}, "{}"), testing::ElementsAre(-1.0, -1.0));
+}
+
 }  // namespace
 }  // namespace vesalius
