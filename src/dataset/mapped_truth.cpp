@@ -14,6 +14,7 @@ class MappedTruth final : public TruthSource {
     std::optional<TrueFrame> frame = frames_->next();
     return frame ? std::optional(change_(std::move(*frame))) : std::nullopt;
   }
+  void leave_sequence() override { frames_->leave_sequence(); }
   int size() const override { return frames_->size(); }
   std::vector<std::string> notes() const override { return frames_->notes(); }
   std::vector<std::string> part_names() const override { return frames_->part_names(); }

@@ -21,15 +21,19 @@ class FolderTruth final : public TruthSource {
       : source_(open_source(uri, options), step), truth_(path_of_source(uri)) {}
 
   std::optional<TrueFrame> next() override {
+    if (left_) return std::nullopt;
     auto step = source_.next();
     if (!step) return std::nullopt;
     FrameTruth truth = truth_.truth_of(step->frame);
+    step->frame.time_s = truth_.time_of(step->frame);
     return TrueFrame{std::move(step->frame), std::move(truth)};
   }
+  void leave_sequence() override { left_ = true; }
   int size() const override { return source_.size(); }
   std::vector<std::string> notes() const override { return source_.notes(); }
 
  private:
+  bool left_ = false;
   SteppedSource source_;
   TruthFolder truth_;
 };

@@ -47,13 +47,11 @@ std::string frame_name(const std::string& text) {
   return text.ends_with(".png") ? text.substr(0, text.size() - 4) : text;
 }
 
-/// Returns when a frame was taken. Pictures that were copied out of a TUM recording have the time as their name.
-std::optional<double> time_of(const Frame& frame) {
-  if (frame.time_s) return frame.time_s;
-  double time_s = 0.0;
-  const char* end = frame.name.data() + frame.name.size();
-  const auto [stop, error] = std::from_chars(frame.name.data(), end, time_s);
-  return error == std::errc() && stop == end && std::isfinite(time_s) ? std::optional(time_s) : std::nullopt;
+std::optional<double> number_in(const std::string& name) {
+  double number = 0.0;
+  const char* end = name.data() + name.size();
+  const auto [stop, error] = std::from_chars(name.data(), end, number);
+  return error == std::errc() && stop == end && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
 Mask read_mask(const std::string& path, const Frame& frame) {
@@ -83,6 +81,15 @@ TruthFolder::TruthFolder(const std::string& folder) : folder_(folder) {
     throw Error(
         fmt::format("{}: no truth, expected frames.csv (in it, or beside it naming it), joints.csv or mask/", folder));
   }
+  const auto any = [&](auto&& is) {
+    return std::ranges::any_of(facts_, is, [](const auto& f) { return f.second.people; });
+  };
+  const bool somebody = !joints_.empty() || any([](int people) { return people == 1; });
+  one_person_ = somebody && !any([](int people) { return people > 1; });
+}
+
+std::optional<double> TruthFolder::time_of(const Frame& frame) const {
+  return frame.time_s || !camera_ ? frame.time_s : number_in(frame.name);
 }
 
 /// Reads the rows of `set`; if it is empty, the table has one set only.
@@ -165,6 +172,8 @@ FrameTruth TruthFolder::truth_of(const Frame& frame) const {
   // If there are people but the mask has no pixel of them, it was not made for this frame.
   const bool blank = std::ranges::all_of(truth.mask, [](std::uint8_t pixel) { return pixel == 0; });
   if (blank && truth.people != 0) truth.mask = {};
+  truth.sequence = 0;
+  if (one_person_ && truth.people != 0) truth.ids = {0};
   return truth;
 }
 

@@ -20,8 +20,12 @@ class TruthFolder {
   explicit TruthFolder(const std::string& folder);
 
   /// Returns the truth of a frame and reads its mask. Throws Error if the mask differs in size from the frame, and if
-  /// nothing is known about the frame.
+  /// nothing is known about the frame. The frames of a folder are one recording, and if they never show more than one
+  /// person, the truth says that it is the same one.
   FrameTruth truth_of(const Frame& frame) const;
+  /// Returns when a frame was taken: its own time or, in a folder with poses of the camera, its name if that is a
+  /// number, since pictures copied out of a TUM recording are named so.
+  std::optional<double> time_of(const Frame& frame) const;
 
  private:
   void read_people(const std::string& path, const std::string& set);
@@ -34,6 +38,7 @@ class TruthFolder {
   };
   std::string folder_;
   bool has_masks_ = false;
+  bool one_person_ = false;             ///< there is somebody, and never two
   std::map<std::string, Facts> facts_;  ///< by frame name
   std::optional<Trajectory> camera_;
   std::vector<std::string> joint_names_;

@@ -103,6 +103,26 @@ TEST(TruthFolder, TellsWhetherTheCameraMoves) {
   EXPECT_EQ(motion_at({}), CameraMotion::unknown);
 }
 
+TEST(TruthFolder, IsOneRecordingInWhichTheOnlyPersonHasAnId) {
+  const test::TemporaryFolder folder;
+  test::put(folder / "frames.csv", "frame,people\na,1\nb,0\nc,-1\n");
+  const auto ids = [&](const char* name) {
+    const FrameTruth truth = TruthFolder(folder.path()).truth_of(frame(name));
+    EXPECT_EQ(truth.sequence, 0);
+    return truth.ids;
+  };
+  EXPECT_THAT(ids("a"), ElementsAre(0));
+  EXPECT_THAT(ids("b"), IsEmpty());
+  EXPECT_THAT(ids("c"), ElementsAre(0));
+  test::put(folder / "frames.csv", "frame,people\na,1\nb,2\n");  // who of the two is the one?
+  EXPECT_THAT(ids("a"), IsEmpty());
+  test::put(folder / "frames.csv", "frame,people\na,-1\nb,-1\n");  // there may always be more
+  EXPECT_THAT(ids("a"), IsEmpty());
+  std::filesystem::remove(folder / "frames.csv");
+  test::put(folder / "joints.csv", "frame,joint,x_m,y_m,z_m\na,head,0,0,2\n");
+  EXPECT_THAT(ids("a"), ElementsAre(0));
+}
+
 TEST(TruthFolder, NamesMissingAndWrongFiles) {
   const test::TemporaryFolder folder;
   const auto error = [&](const std::string& file, const std::string& text) {

@@ -137,11 +137,13 @@ class BvhTruth final : public TruthSource {
   }
 
   std::optional<TrueFrame> next() override {
+    if (left_) return std::nullopt;
     auto step = source_.next();
     if (!step) return std::nullopt;
     FrameTruth truth = truth_of(step->frame, step->index);
     return TrueFrame{std::move(step->frame), std::move(truth)};
   }
+  void leave_sequence() override { left_ = true; }
   int size() const override { return source_.size(); }
   std::vector<std::string> notes() const override { return source_.notes(); }
 
@@ -161,6 +163,8 @@ class BvhTruth final : public TruthSource {
   FrameTruth truth_of(const Frame& frame, int index) const {
     FrameTruth truth;
     truth.people = 1;
+    truth.sequence = 0;
+    truth.ids = {0};
     truth.joint_set = options_.joint_set;
     for (const NamedJoint& joint : joints_) truth.joint_names.push_back(joint.name);
     std::optional<Eigen::Isometry3d> camera_from_world = camera_from_world_;
@@ -180,6 +184,7 @@ class BvhTruth final : public TruthSource {
     return truth;
   }
 
+  bool left_ = false;
   std::string path_;
   BvhTruthOptions options_;
   SteppedSource source_;

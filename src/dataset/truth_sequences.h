@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dataset/truth_source.h"
+
+namespace vesalius {
+
+/// Returns the folders in `folder` that have frames with truth, in the order of their names: those that its own
+/// frames.csv names (sets_in), or else those with depth/ and frames.csv, joints.csv, mask/ or truth_bvh.toml in them
+/// and labelled datasets. If `folder` itself holds frames or is none or has no such folders, it is the only one.
+std::vector<std::string> sequences_in(const std::string& folder);
+
+/// Returns the frames of several sources as one, those of one after those of the other. Each source is opened by `open`
+/// when it is its turn. What is a recording in a source (FrameTruth::sequence) is one here, with another number; names
+/// of frames begin with that of their folder. Throws Error as the sources do, of which the first is opened now.
+std::unique_ptr<TruthSource> joined_truth(std::vector<std::string> folders,
+                                          std::function<std::unique_ptr<TruthSource>(const std::string&)> open);
+
+}  // namespace vesalius
