@@ -46,7 +46,7 @@ class SetEvaluation {
     result_.name = options.name;
     result_.source = options.source;
     result_.notes = source.notes();
-    check_parts();
+    check_parts(source.part_names(), scorer.body(), options.source);
   }
 
   SetResult run() {
@@ -69,18 +69,6 @@ class SetEvaluation {
   }
 
  private:
-  void check_parts() const {
-    const std::vector<std::string> names = source_.part_names();
-    const std::vector<BodyPart>& parts = scorer_.body().parts;
-    for (std::size_t p = 0; p < names.size(); ++p) {
-      const std::string ours = p < parts.size() ? parts[p].name : "missing";
-      if (ours == names[p]) continue;
-      throw Error(fmt::format("{}: part {} is {}, in the model {}", options_.source, p, names[p], ours));
-    }
-    if (names.empty() || names.size() == parts.size()) return;
-    throw Error(fmt::format("{}: {} parts, the model has {}", options_.source, names.size(), parts.size()));
-  }
-
   /// Returns the next frames, fewer at the end. Frames that cannot be read are reported.
   std::vector<Item> read(std::size_t count) {
     std::vector<Item> items;
@@ -154,16 +142,7 @@ class SetEvaluation {
       if (!result_.confusion) result_.confusion.emplace(score.confusion->parts());
       result_.confusion->add(*score.confusion);
     }
-    keep_if_worst(std::move(item));
-  }
-
-  void keep_if_worst(Item item) {
-    if (item.score.what_went_wrong.empty()) return;
-    std::vector<WorstFrame>& worst = result_.worst;
-    const auto place =
-        std::ranges::find_if(worst, [&](const WorstFrame& other) { return other.score.badness < item.score.badness; });
-    worst.insert(place, WorstFrame{std::move(item.frame.frame), std::move(item.score)});
-    if (worst.size() > options_.worst) worst.pop_back();
+    keep_if_worst({std::move(item.frame.frame), std::move(item.score)}, options_.worst, result_.worst);
   }
 
   TruthSource& source_;
@@ -179,6 +158,25 @@ class SetEvaluation {
 };
 
 }  // namespace
+
+void check_parts(const std::vector<std::string>& names, const BodyModel& body, const std::string& source) {
+  const std::vector<BodyPart>& parts = body.parts;
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    const std::string ours = p < parts.size() ? parts[p].name : "missing";
+    if (ours == names[p]) continue;
+    throw Error(fmt::format("{}: part {} is {}, in the model {}", source, p, names[p], ours));
+  }
+  if (names.empty() || names.size() == parts.size()) return;
+  throw Error(fmt::format("{}: {} parts, the model has {}", source, names.size(), parts.size()));
+}
+
+void keep_if_worst(WorstFrame frame, std::size_t most, std::vector<WorstFrame>& worst) {
+  if (frame.score.what_went_wrong.empty()) return;
+  const auto place =
+      std::ranges::find_if(worst, [&](const WorstFrame& other) { return other.score.badness < frame.score.badness; });
+  worst.insert(place, std::move(frame));
+  if (worst.size() > most) worst.pop_back();
+}
 
 SetResult evaluate_set(TruthSource& frames, const SetOptions& options, const FrameScorer& scorer,
                        const std::vector<Variant>& variants, const EvaluationHooks& hooks) {

@@ -30,6 +30,13 @@ struct EvaluationHooks {
   std::function<bool()> stop;                           ///< returning true ends the evaluation with an Error
 };
 
+/// Throws Error naming the source unless its parts, if it has any, are the body's.
+void check_parts(const std::vector<std::string>& names, const BodyModel& body, const std::string& source);
+
+/// Adds a frame to the worst ones, of which the worst is first, if something went wrong in it and it is among the
+/// `most` worst.
+void keep_if_worst(WorstFrame frame, std::size_t most, std::vector<WorstFrame>& worst);
+
 /// Scores all frames of a source on all allowed threads. Its memory grows by 28 bytes for each proposal, 8 for each
 /// joint of one and 20 for each sample, for fitting joints by 4 kB for each person found, but not with the frames
 /// themselves. With `variants`, frames are processed one after the other, each by `scorer` and by all variants in turn,

@@ -66,6 +66,7 @@ struct Evaluation {
   DetectOptions options;
   BodyModel body;
   bool labels_only = false;
+  bool tracked = false;         ///< people were followed over recordings (evaluate_sequences)
   bool has_background = false;  ///< the model has a background class
   std::vector<SetResult> sets;
 };

@@ -96,7 +96,7 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
                {"frames_key", fmt::format("{:016x}", set.metrics.frames_key())},
                {"seconds", set.seconds},
                {"figures", std::move(metrics)}};
-  if (!evaluation.labels_only) {
+  if (!evaluation.labels_only && !evaluation.tracked) {
     const RefineOptions& refine = evaluation.options.refine;
     json["curve_over_parts"] =
         curve_json(sweep_parts(set.log, evaluation.body.part_count(), static_cast<double>(refine.min_score)));
@@ -151,6 +151,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
       {"options", options_toml([&](OptionVisitor& visitor) { visit_options("", options, visitor); })},
       {"machine", evaluation.machine},
       {"labels_only", evaluation.labels_only},
+      {"tracked", evaluation.tracked},
       {"sets", std::move(sets)}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
 }

@@ -31,6 +31,9 @@ constexpr std::array kOverview{
     Metric::mask_iou_where_found, Metric::given_right,       Metric::sides_swapped,
     Metric::pixel_person_iou,     Metric::pixel_mean_recall, Metric::pixel_mean_recall_inside,
     Metric::body_on_empty,        Metric::joints_at_10cm};
+/// Those that follow where people were followed over time.
+constexpr std::array kTrackOverview{Metric::track_mota,    Metric::track_idf1,         Metric::track_hota,
+                                    Metric::joints_jitter, Metric::joints_true_jitter, Metric::joints_delay};
 static_assert(std::ranges::is_sorted(kOverview));
 
 /// The families that are columns of a table whose rows are parts or joints.
@@ -45,14 +48,16 @@ std::string cell(const std::vector<Estimate>& estimates, Metric metric, const st
 }
 
 void add_overview(const Evaluation& evaluation, Document& document) {
+  std::vector<Metric> columns(kOverview.begin(), kOverview.end());
+  if (evaluation.tracked) columns.insert(columns.end(), kTrackOverview.begin(), kTrackOverview.end());
   std::vector<std::string> header{"set", "frames"};
-  for (const Metric metric : kOverview) header.emplace_back(info(metric).title);
+  for (const Metric metric : columns) header.emplace_back(info(metric).title);
   std::vector<std::vector<std::string>> rows;
   for (const SetResult& set : evaluation.sets) {
     const std::vector<Estimate> estimates = set.metrics.estimates();
     std::vector<std::string>& row = rows.emplace_back();
     row = {set.name, std::to_string(set.frames)};
-    for (const Metric metric : kOverview) row.push_back(cell(estimates, metric));
+    for (const Metric metric : columns) row.push_back(cell(estimates, metric));
   }
   document.heading(2, "All sets");
   document.table(header, rows);
@@ -112,7 +117,7 @@ void add_plot(const LinePlot& plot, const std::string& name, const std::string& 
 }
 
 void add_detection_curves(const SetResult& set, const Evaluation& evaluation, Document& document) {
-  if (set.log.expected == 0 || evaluation.labels_only) return;
+  if (set.log.expected == 0 || evaluation.labels_only || evaluation.tracked) return;
   const RefineOptions& refine = evaluation.options.refine;
   using P = DetectionPoint;
   const int parts = evaluation.body.part_count();
@@ -193,9 +198,11 @@ void add_confusion(const PixelConfusion& confusion, const BodyModel& body, Docum
   document.table({"class", "pixels", "right", "taken for"}, rows);
 }
 
-/// Returns a picture of the people found beside the labels of the first pass, which explain the result.
+/// Returns a picture of the people found beside the labels of the first pass, if there are any, which explain the
+/// result.
 ColourImage picture_of(const WorstFrame& worst, const BodyModel& body) {
-  const ColourImage people = draw_people(worst.frame, worst.score.people, body);
+  ColourImage people = draw_people(worst.frame, worst.score.people, body);
+  if (worst.score.labels.empty()) return people;
   const ColourImage labels = draw_labels(worst.score.labels, worst.frame.depth, body, false);
   ColourImage both(people.width() + labels.width(), std::max(people.height(), labels.height()));
   for (int v = 0; v < people.height(); ++v) std::copy_n(people.row(v), people.width(), both.row(v));
@@ -217,9 +224,10 @@ void add_set(const SetResult& set, const Evaluation& evaluation, Document& docum
   add_ablation(set, document);
   if (set.confusion) add_confusion(*set.confusion, evaluation.body, document);
   for (const WorstFrame& worst : set.worst) {
-    document.picture(set.name + "_" + worst.frame.name, encode_png(picture_of(worst, evaluation.body)),
-                     fmt::format("{}: {}. Left: what was found; right: labels of the first pass.", worst.frame.name,
-                                 worst.score.what_went_wrong));
+    document.picture(
+        set.name + "_" + worst.frame.name, encode_png(picture_of(worst, evaluation.body)),
+        fmt::format("{}: {}.{}", worst.frame.name, worst.score.what_went_wrong,
+                    worst.score.labels.empty() ? "" : " Left: what was found; right: labels of the first pass."));
   }
 }
 
@@ -230,8 +238,9 @@ Document make_document(const Evaluation& evaluation) {
   document.preformatted(evaluation.command);
   document.paragraph(evaluation.machine + ".");
   document.paragraph(
-      "What each metric means: docs/metrics.md. Intervals are of 95 %: Wilson's for counts, the bootstrap over frames "
-      "for all else.");
+      std::string("What each metric means: docs/metrics.md. Intervals are of 95 %: Wilson's for counts, the bootstrap "
+                  "over ") +
+      (evaluation.tracked ? "stretches of consecutive frames" : "frames") + " for all else.");
   add_overview(evaluation, document);
   for (const SetResult& set : evaluation.sets) add_set(set, evaluation, document);
   return document;

@@ -115,6 +115,25 @@ TEST_F(Evaluate, WritesTheContributionOfEachPartOfTheMethod) {
   EXPECT_EQ(evaluate(" --ablation --labels-only").exit_code, 2);
 }
 
+TEST_F(Evaluate, FollowsThePeopleOfARecording) {
+  write("frames/frames.csv", "frame,people\na,1\nb,1\nc,0\n");
+  const Outcome run = evaluate(" --track --hidden --json " + path("track.json"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, StartsWith("frames: 3 frames, people 2 of 2, false 0, somebody in 0 of 1 empty, "));
+  EXPECT_THAT(run.out, ContainsRegex("\n  over time: MOTA [0-9.]+ %, .*ids [12].00 a person, longest gap 0.0 frames"));
+  const json report = json::parse(bytes_of(path("track.json")));
+  EXPECT_TRUE(report.at("tracked").get<bool>());
+  EXPECT_EQ(report.at("sets").at(0).at("figures").at("track.missed").at("value"), 0.0);
+}
+
+TEST_F(Evaluate, FollowsPeopleOnlyWhereFramesAreRecordings) {
+  const Outcome run = run_program("evaluate " + dataset() + " -q --track -m " + model());
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("stands alone, expected recordings"));
+  EXPECT_EQ(evaluate(" --hidden").exit_code, 2);
+  EXPECT_EQ(evaluate(" --track --labels-only").exit_code, 2);
+}
+
 // Labels: threads
 TEST_F(Evaluate, GivesTheSameMetricsForAnyNumberOfThreads) {
   std::vector<json> sets;

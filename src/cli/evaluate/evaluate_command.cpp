@@ -11,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/detector_flags.h"
+#include "cli/evaluate/sequence_trackers.h"
 #include "cli/evaluate/truth_bvh.h"
 #include "cli/evaluate/truth_recipe.h"
 #include "cli/evaluate_machine.h"
@@ -20,8 +21,10 @@
 #include "cli/text_sink.h"
 #include "dataset/truth_folder.h"
 #include "dataset/truth_headings.h"
+#include "dataset/truth_sequences.h"
 #include "dataset/turned_truth.h"
 #include "evaluation/ablation_report.h"
+#include "evaluation/evaluate_sequences.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
 #include "evaluation/evaluation_json.h"
@@ -59,6 +62,8 @@ struct Arguments {
   double turn_deg = 0.0;
   int threads = 0;
   bool labels_only = false;
+  bool track = false;
+  bool hidden = false;
   bool ablation = false;
   bool keep_going = false;
   bool quiet = false;
@@ -88,7 +93,7 @@ std::vector<Request> set_requests(const Arguments& arguments) {
          is_recipe});
   };
   for (const std::string& source : arguments.sources) {
-    for (const std::string& set : sets_in(source)) {
+    for (const std::string& set : arguments.track ? std::vector{source} : sets_in(source)) {
       const std::filesystem::path path = whole_path(set);
       add(set, path, clean(path.filename().string()), false);
     }
@@ -134,16 +139,32 @@ std::string command_line(const CLI::App& command) {
   return one_line(line);
 }
 
-SetResult evaluate_shown(const Request& request, const Arguments& arguments, const FrameScorer& scorer,
-                         const std::vector<Variant>& variants) {
-  auto frames = request.is_recipe
-                    ? open_recipe_truth(request.set.source, arguments.rendered, arguments.step, scorer.body())
-                    : open_evaluation_truth(request.set.source, arguments.step);
+/// Opens the frames of a source with what the command line adds to them.
+std::unique_ptr<TruthSource> open_frames(const std::string& source, const Arguments& arguments) {
+  auto frames = open_evaluation_truth(source, arguments.step);
   if (!arguments.headings_file.empty()) {
-    const std::string set = whole_path(request.set.source).filename().string();
+    const std::string set = whole_path(source).filename().string();
     frames = with_headings(std::move(frames), HeadingTable::read(arguments.headings_file), set);
   }
-  if (arguments.turn_deg != 0.0) frames = with_turn(std::move(frames), arguments.turn_deg);
+  return arguments.turn_deg != 0.0 ? with_turn(std::move(frames), arguments.turn_deg) : std::move(frames);
+}
+
+/// Opens the frames of a set. Where people are followed, the folders of a source are recordings of one set.
+std::unique_ptr<TruthSource> open_set(const Request& request, const Arguments& arguments, const BodyModel& body) {
+  const std::string& source = request.set.source;
+  if (request.is_recipe) {
+    auto frames = open_recipe_truth(source, arguments.rendered, arguments.step, body);
+    return arguments.turn_deg != 0.0 ? with_turn(std::move(frames), arguments.turn_deg) : std::move(frames);
+  }
+  const std::vector<std::string> folders = arguments.track ? sequences_in(source) : std::vector{source};
+  if (folders.size() == 1) return open_frames(folders.front(), arguments);
+  return joined_truth(folders, [&arguments](const std::string& folder) { return open_frames(folder, arguments); });
+}
+
+SetResult evaluate_shown(const Request& request, const Arguments& arguments, const FrameScorer& scorer,
+                         const std::vector<Variant>& variants, const SequenceTrackerFactory& trackers) {
+  const OpenTruth open = [&] { return open_set(request, arguments, scorer.body()); };
+  const auto frames = open();
   for (const std::string& note : frames->notes()) say(fmt::format("note: {}: {}", request.set.name, note));
   Progress progress(-1, !arguments.quiet);
   EvaluationHooks hooks;
@@ -153,7 +174,8 @@ SetResult evaluate_shown(const Request& request, const Arguments& arguments, con
     say("vesalius: " + why);
   };
   hooks.stop = interrupted;
-  return evaluate_set(*frames, request.set, scorer, variants, hooks);
+  if (!arguments.track) return evaluate_set(*frames, request.set, scorer, variants, hooks);
+  return evaluate_sequences(open, request.set, scorer, trackers, {arguments.hidden}, hooks);
 }
 
 /// Returns whether nothing but the JSON may go to standard output.
@@ -243,13 +265,17 @@ void run(const Arguments& arguments, const std::string& command) {
   const FrameScorer::Options scored{evaluation.options, labels_only, arguments.joint_set, fits_context};
   std::vector<Variant> variants;
   if (arguments.ablation) variants = ablation_variants(forest, scored);
-  const FrameScorer scorer(make_labeller(std::move(forest)), scored);
+  const std::shared_ptr<const PixelLabeller> labeller = make_labeller(std::move(forest));
+  const FrameScorer scorer(labeller, scored);
+  SequenceTrackerFactory trackers;
+  if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options);
+  evaluation.tracked = arguments.track;
   evaluation.body = scorer.body();
   if (!arguments.report.empty()) prepare_report(arguments.report);
   watch_interrupts();
   int failed = 0;
   for (const Request& request : requests) {
-    evaluation.sets.push_back(evaluate_shown(request, arguments, scorer, variants));
+    evaluation.sets.push_back(evaluate_shown(request, arguments, scorer, variants, trackers));
     failed += evaluation.sets.back().failed;
     if (!prints_json(arguments)) print(summary_lines(evaluation.sets.back()) + ablation_lines(evaluation.sets.back()));
     std::fflush(stdout);  // a set can take minutes
@@ -345,6 +371,19 @@ void add_evaluate(CLI::App& program) {
           "pixel whether it is a body; measures nothing, and leaves out the judge, which is fitted afterwards")
       ->type_name("FOREST")
       ->excludes("--fit-joints", "--fit-parts", "--fit-score", "--fit-judge", "--ablation");
+  CLI::Option* track =
+      command
+          ->add_flag(
+              "--track", arguments->track,
+              "Follow the people over each recording, frame after frame, and measure ids and motion too; a folder "
+              "of recordings is one set")
+          ->excludes("--labels-only", "--ablation", "--fit-joints", "--fit-parts", "--fit-score", "--fit-judge",
+                     "--fit-context");
+  command
+      ->add_flag(
+          "--hidden", arguments->hidden,
+          "With --track: people who are hidden take part, true and tracked ones, instead of only those with pixels")
+      ->needs(track);
   command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The metrics are the same")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads));
@@ -358,6 +397,7 @@ Examples:
   vesalius evaluate held_out/ -m adult.forest --report out/
   vesalius evaluate --recipe data/protocol/cluttered.toml --count 5000 -m adult.forest
   vesalius evaluate real/room real/hall -m adult.forest --json a.json
+  vesalius evaluate recordings/ -m adult.forest --track
   vesalius evaluate held_out/ empty_rooms/ -m adult.forest --fit-score detector.toml
   vesalius evaluate rendered/ empty_rooms/ -m adult.forest --fit-judge judged.forest)");
   command->callback([arguments, command] { run(*arguments, command_line(*command)); });
