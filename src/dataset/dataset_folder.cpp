@@ -45,6 +45,12 @@ std::vector<std::string> joints_of(const Json& json, const std::string& name) {
   return joints;
 }
 
+double rate_of(const Json& json, const std::string& name) {
+  const auto found = json.find("rate_hz");
+  if (found == json.end() || !found->is_number()) throw Error(name + ": rate_hz: expected a number");
+  return found->get<double>();
+}
+
 std::string hash_text(const DatasetInfo& info) { return fmt::format("{:016x}", dataset_hash(info)); }
 
 }  // namespace
@@ -56,6 +62,8 @@ std::uint64_t dataset_hash(const DatasetInfo& info) {
   hashed.text(info.recipe);
   hashed.number(info.seed);
   hashed.number(info.frames_per_shard);
+  hashed.number(info.clips.frames_per_clip);
+  hashed.real(info.clips.rate_hz);
   return checksum_of(hashed.bytes());
 }
 
@@ -89,6 +97,7 @@ void check(const DatasetInfo& info) {
   if (info.joints.size() > kMostJoints) {
     throw UsageError(fmt::format("{} joints, expected at most {}", info.joints.size(), kMostJoints));
   }
+  check(info.clips);
   parse_body_model(info.body_toml, "body of the dataset");
 }
 
@@ -101,10 +110,16 @@ void check_joint_count(const LabelledFrame& labelled, const DatasetInfo& info) {
 }
 
 std::string serialise_description(const DatasetInfo& info) {
-  const Json json = {
-      {"format", kDatasetVersion}, {"frames", info.frames},   {"frames_per_shard", info.frames_per_shard},
-      {"seed", info.seed},         {"hash", hash_text(info)}, {"joints", info.joints},
-      {"body", info.body_toml},    {"recipe", info.recipe}};
+  const Json json = {{"format", kDatasetVersion},
+                     {"frames", info.frames},
+                     {"frames_per_shard", info.frames_per_shard},
+                     {"seed", info.seed},
+                     {"hash", hash_text(info)},
+                     {"frames_per_clip", info.clips.frames_per_clip},
+                     {"rate_hz", info.clips.rate_hz},
+                     {"joints", info.joints},
+                     {"body", info.body_toml},
+                     {"recipe", info.recipe}};
   try {
     return json.dump(1) + "\n";
   } catch (const Json::exception&) {
@@ -122,6 +137,10 @@ DatasetInfo parse_description(std::string_view text, const std::string& name) {
   const std::uint64_t per_shard = number_of(json, "frames_per_shard", name);
   if (per_shard > kMostFramesPerShard) throw Error(fmt::format("{}: {} frames per shard", name, per_shard));
   info.frames_per_shard = static_cast<std::uint32_t>(per_shard);
+  const std::uint64_t per_clip = number_of(json, "frames_per_clip", name);
+  if (per_clip >= kMostFrames) throw Error(fmt::format("{}: {} frames per clip", name, per_clip));
+  info.clips.frames_per_clip = static_cast<std::uint32_t>(per_clip);
+  info.clips.rate_hz = rate_of(json, name);
   info.body_toml = text_of(json, "body", name);
   info.recipe = text_of(json, "recipe", name);
   info.joints = joints_of(json, name);

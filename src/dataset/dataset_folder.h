@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dataset/clip_layout.h"
 #include "dataset/dataset_shard.h"
 #include "vesalius/base/frame.h"
 
@@ -20,9 +21,11 @@ struct DatasetInfo {
   std::uint64_t frames = 0;              ///< number of frames in the whole dataset
   std::uint32_t frames_per_shard = 256;  ///< 1 to 4096
   std::vector<std::string> joints = {};  ///< names of each person's joints, if there are any; at most 255
+  ClipLayout clips = {};                 ///< how frames form clips, if they do
 };
 
-/// Returns a hash of everything that frames depend on: XXH64 over version, body, recipe, seed and shard size. The
+/// Returns a hash of everything that frames depend on: XXH64 over version, body, recipe, seed, shard size and
+/// clips. The
 /// number of frames is left out, so that a dataset can grow.
 std::uint64_t dataset_hash(const DatasetInfo& info);
 

@@ -10,7 +10,7 @@
 namespace vesalius {
 
 /// Version of the datasets that this program writes and reads.
-inline constexpr int kDatasetVersion = 2;
+inline constexpr int kDatasetVersion = 3;
 
 /// Throws Error naming `name` for files of another version.
 void check_dataset_version(std::uint64_t version, const std::string& name);

@@ -31,6 +31,16 @@ Json parts_json(const std::vector<Eigen::Vector3f>& parts, const BodyModel& body
   return json;
 }
 
+/// Returns the rows of [turn | place], in full precision: distances grow with errors of the turn.
+Json pose_json(const Eigen::Isometry3f& pose) {
+  Json rows = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    const Eigen::Vector4f r = pose.matrix().row(row);
+    rows.push_back({r[0], r[1], r[2], r[3]});
+  }
+  return rows;
+}
+
 std::string truth_json(const LabelledFrame& labelled, const BodyModel& body, const std::vector<std::string>& joints) {
   Json people = Json::array();
   for (std::size_t i = 0; i < labelled.parts.size(); ++i) {
@@ -42,13 +52,17 @@ std::string truth_json(const LabelledFrame& labelled, const BodyModel& body, con
     people.push_back(std::move(person));
   }
   Json json = {{"frame", labelled.frame.name}, {"people", std::move(people)}};
+  if (labelled.frame.time_s) json["time_s"] = *labelled.frame.time_s;
+  if (labelled.camera_height_m) json["camera_height_m"] = *labelled.camera_height_m;
+  if (labelled.world_from_camera) json["world_from_camera"] = pose_json(*labelled.world_from_camera);
   if (labelled.up) json["up"] = {labelled.up->x(), labelled.up->y(), labelled.up->z()};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
 
-LabelledExporter::LabelledExporter(const std::string& folder, const BodyModel& body, std::vector<std::string> joints)
+LabelledExporter::LabelledExporter(const std::string& folder, const BodyModel& body, std::vector<std::string> joints,
+                                   const ClipLayout& clips)
     : folder_(folder),
       body_(body),
       joints_(std::move(joints)),
@@ -60,6 +74,9 @@ LabelledExporter::LabelledExporter(const std::string& folder, const BodyModel& b
       throw Error(fmt::format("{}: folder cannot be made: {}", (fs::path(folder) / kind).string(), error.message()));
   }
   write_file_atomically((fs::path(folder) / "body.toml").string(), body.toml);
+  if (clips.frames_per_clip == 0) return;
+  const Json json = {{"frames_per_clip", clips.frames_per_clip}, {"rate_hz", clips.rate_hz}};
+  write_file_atomically((fs::path(folder) / "clips.json").string(), json.dump(1) + "\n");
 }
 
 void LabelledExporter::write(const LabelledFrame& labelled) {

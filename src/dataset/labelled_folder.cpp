@@ -58,13 +58,64 @@ Points parts_of(const Json& person, const BodyModel& body) {
   return points;
 }
 
+double number_of(const Json& json, const std::string& what) {
+  if (!json.is_number()) throw Error(what + ": expected a number");
+  return json.get<double>();
+}
+
+Eigen::Isometry3f pose_of(const Json& json) {
+  constexpr const char* kExpected = "world_from_camera: expected three rows of four numbers";
+  Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
+  if (!json.is_array() || json.size() != 3) throw Error(kExpected);
+  for (int row = 0; row < 3; ++row) {
+    if (!json[row].is_array() || json[row].size() != 4) throw Error(kExpected);
+    for (int column = 0; column < 4; ++column) {
+      if (!json[row][column].is_number()) throw Error(kExpected);
+      pose.matrix()(row, column) = json[row][column].get<float>();
+    }
+  }
+  return pose;
+}
+
+/// Reads what is known about time and camera.
+void read_circumstances(const Json& json, LabelledFrame& labelled) {
+  const auto with = [&](const char* key, const auto& use) {
+    const auto found = json.find(key);
+    if (found != json.end()) use(*found);
+  };
+  with("up", [&](const Json& up) { labelled.up = point_of(up, false, "up"); });
+  with("time_s", [&](const Json& time) { labelled.frame.time_s = number_of(time, "time_s"); });
+  with("camera_height_m", [&](const Json& height) {
+    labelled.camera_height_m = static_cast<float>(number_of(height, "camera_height_m"));
+  });
+  with("world_from_camera", [&](const Json& pose) { labelled.world_from_camera = pose_of(pose); });
+}
+
+/// Reads clips.json, if it is there.
+ClipLayout read_clips(const std::string& folder) {
+  const std::string path = (fs::path(folder) / "clips.json").string();
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return {};
+  const Json json = Json::parse(read_file(path, kMaxTruthBytes), nullptr, false);
+  ClipLayout clips;
+  with_context(path, [&] {
+    const double frames = number_of(member(json, "frames_per_clip", "a number of frames"), "frames_per_clip");
+    clips.rate_hz = number_of(member(json, "rate_hz", "frames a second"), "rate_hz");
+    if (!(frames >= 1.0 && frames <= 1e9)) throw Error("frames_per_clip: expected 1 to 1000000000");
+    if (!(clips.rate_hz > 0.0 && clips.rate_hz <= kHighestRate_hz)) {
+      throw Error(fmt::format("rate_hz: expected more than 0 and at most {}", kHighestRate_hz));
+    }
+    clips.frames_per_clip = static_cast<std::uint32_t>(frames);
+  });
+  return clips;
+}
+
 void read_people(const std::string& path, const BodyModel& body, LabelledFrame& labelled) {
   const Json json = Json::parse(read_file(path, kMaxTruthBytes), nullptr, false);
   with_context(path, [&] {
     const Json& people = member(json, "people", "a JSON object with a list of people");
     if (!people.is_array()) throw Error("people: expected a list");
-    const auto up = json.find("up");
-    if (up != json.end()) labelled.up = point_of(*up, false, "up");
+    read_circumstances(json, labelled);
     for (const Json& person : people) {
       labelled.parts.push_back(parts_of(person, body));
       const auto posture = person.find("posture");
@@ -106,6 +157,7 @@ bool is_labelled_folder(const std::string& path) {
 LabelledFolder::LabelledFolder(const std::string& folder)
     : folder_(folder),
       body_(parse_body_model(read_file(body_path(folder)), body_path(folder))),
+      clips_(read_clips(folder)),
       frames_(list_folder(folder, {})) {
   if (frames_.is_rectified())
     throw Error(folder + ": a distorted lens, expected labels of a pinhole camera (meta.json)");

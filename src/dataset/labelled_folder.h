@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dataset/clip_layout.h"
 #include "io/sources/list_source.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
@@ -13,11 +14,14 @@ namespace vesalius {
 /// Reads a folder that LabelledExporter wrote, its frames in any order. It may be used from several threads.
 class LabelledFolder {
  public:
-  /// Throws Error if the folder has no frames, no camera (meta.json) or no body (body.toml).
+  /// Throws Error if the folder has no frames, no camera (meta.json) or no body (body.toml), or clips.json cannot
+  /// be used.
   explicit LabelledFolder(const std::string& folder);
 
   std::uint64_t size() const { return frames_.size(); }
   const BodyModel& body() const { return body_; }
+  /// Returns how frames form clips (clips.json).
+  const ClipLayout& clips() const { return clips_; }
   /// Returns the names of the people's joints, as the first frame that has any gives them.
   const std::vector<std::string>& joint_names() const { return joint_names_; }
 
@@ -35,6 +39,7 @@ class LabelledFolder {
 
   std::string folder_;
   BodyModel body_;
+  ClipLayout clips_;
   FrameListReader frames_;
   std::vector<std::string> joint_names_;
 };

@@ -15,7 +15,9 @@ constexpr std::uint8_t kHasColour = 1;
 constexpr std::uint8_t kHasTime = 2;
 constexpr std::uint8_t kHasUp = 4;
 constexpr std::uint8_t kHasPostures = 8;
-constexpr int kAllFlags = kHasColour | kHasTime | kHasUp | kHasPostures;
+constexpr std::uint8_t kHasHeight = 16;
+constexpr std::uint8_t kHasPose = 32;
+constexpr int kAllFlags = kHasColour | kHasTime | kHasUp | kHasPostures | kHasHeight | kHasPose;
 constexpr std::size_t kMaxName = 255;
 
 void write_camera(ByteWriter& out, const Camera& camera) {
@@ -72,18 +74,34 @@ void read_people(ByteReader& in, int part_count, LabelledFrame& labelled) {
 int flags_of(const LabelledFrame& labelled) {
   const Frame& picture = labelled.frame;
   return (picture.colour.empty() ? 0 : kHasColour) | (picture.time_s ? kHasTime : 0) | (labelled.up ? kHasUp : 0) |
-         (labelled.postures.empty() ? 0 : kHasPostures);
+         (labelled.postures.empty() ? 0 : kHasPostures) | (labelled.camera_height_m ? kHasHeight : 0) |
+         (labelled.world_from_camera ? kHasPose : 0);
 }
 
 void write_circumstances(ByteWriter& out, const LabelledFrame& labelled) {
   if (labelled.up) write_points(out, {*labelled.up});
   for (const std::string& posture : labelled.postures) out.text(posture);
+  if (labelled.camera_height_m) out.real(*labelled.camera_height_m);
+  if (!labelled.world_from_camera) return;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) out.real(labelled.world_from_camera->matrix()(row, column));
+  }
+}
+
+Eigen::Isometry3f read_pose(ByteReader& in) {
+  Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) pose.matrix()(row, column) = in.real32("camera's pose");
+  }
+  return pose;
 }
 
 void read_circumstances(ByteReader& in, int flags, LabelledFrame& labelled) {
   if ((flags & kHasUp) != 0) labelled.up = read_points(in, 1, "upward direction").front();
-  if ((flags & kHasPostures) == 0) return;
-  for (std::size_t i = 0; i < labelled.parts.size(); ++i) labelled.postures.emplace_back(in.text("posture"));
+  const std::size_t postures = (flags & kHasPostures) != 0 ? labelled.parts.size() : 0;
+  for (std::size_t i = 0; i < postures; ++i) labelled.postures.emplace_back(in.text("posture"));
+  if ((flags & kHasHeight) != 0) labelled.camera_height_m = in.real32("camera's height");
+  if ((flags & kHasPose) != 0) labelled.world_from_camera = read_pose(in);
 }
 
 /// Returns the first value that is neither background nor below `count`. The loop does not stop early, so that the
@@ -112,10 +130,20 @@ void check_joints(const LabelledFrame& labelled) {
   }
 }
 
+void check_pose(const Eigen::Isometry3f& pose) {
+  const Eigen::Matrix3f turn = pose.linear();
+  const bool rigid = (turn * turn.transpose()).isApprox(Eigen::Matrix3f::Identity(), 1e-3F) && turn.determinant() > 0.F;
+  if (!rigid || !pose.translation().allFinite()) throw Error("camera's pose is no turn and finite place");
+}
+
 void check_circumstances(const LabelledFrame& labelled) {
   if (labelled.up && !(std::abs(labelled.up->norm() - 1.F) <= 1e-3F)) {
     throw Error("upward direction is not of unit length");
   }
+  if (labelled.camera_height_m && !std::isfinite(*labelled.camera_height_m)) {
+    throw Error("camera's height is not finite");
+  }
+  if (labelled.world_from_camera) check_pose(*labelled.world_from_camera);
   const std::vector<std::string>& postures = labelled.postures;
   if (!postures.empty() && postures.size() != labelled.parts.size()) {
     throw Error(fmt::format("postures of {} people, expected {} or none", postures.size(), labelled.parts.size()));

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMostJoints = 255;
 /// picture has no parts, or a person has another number of parts; a part centre is infinite (NaN is allowed and means
 /// that the body has no such part); people differ in their number of joints, or have more than 255; a joint is not
 /// finite; there are postures, but not one of at most 255 bytes for each person; the upward direction is not of unit
-/// length; the name is longer than 255 bytes.
+/// length; the camera's height or pose is not finite, or the pose no rigid motion; the name is longer than 255 bytes.
 void check_truth(const LabelledFrame& labelled, int part_count);
 
 /// Encodes one frame without loss (docs/formats.md). It may be called from several threads. Throws Error as

@@ -1,6 +1,8 @@
 #include "dataset/open_truth.h"
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "dataset/labelled_dataset.h"
@@ -41,6 +43,16 @@ class FolderTruth final : public TruthSource {
 const std::vector<std::string>& joints_of(const DatasetReader& reader) { return reader.info().joints; }
 const std::vector<std::string>& joints_of(const LabelledFolder& folder) { return folder.joint_names(); }
 
+int clip_in(const DatasetReader& reader, std::uint64_t index) { return reader.info().clips.clip_of(index); }
+int clip_in(const LabelledFolder& folder, std::uint64_t index) { return folder.clips().clip_of(index); }
+
+/// Returns how many of the people are in the picture.
+int people_seen(const Image<std::uint8_t>& person, std::size_t people) {
+  std::vector<bool> seen(kBackground + 1, false);
+  for (const std::uint8_t who : person) seen[who] = true;
+  return static_cast<int>(std::count(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(people), true));
+}
+
 /// Gives the frames of a DatasetReader or LabelledFolder as truth.
 template <class Reader>
 class LabelledTruth final : public TruthSource {
@@ -52,7 +64,7 @@ class LabelledTruth final : public TruthSource {
   std::optional<TrueFrame> next() override {
     if (next_ >= reader_.size()) return std::nullopt;
     const std::uint64_t index = std::exchange(next_, next_ + step_);
-    return as_true_frame(reader_.read(index), joints_of(reader_));
+    return as_true_frame(reader_.read(index), joints_of(reader_), clip_in(reader_, index));
   }
   int size() const override { return static_cast<int>((reader_.size() + step_ - 1) / step_); }
   std::vector<std::string> part_names() const override { return part_names_of(reader_.body()); }
@@ -65,16 +77,23 @@ class LabelledTruth final : public TruthSource {
 
 }  // namespace
 
-TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& joint_names) {
+TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& joint_names, int clip) {
   TrueFrame result;
   FrameTruth& truth = result.truth;
   truth.people = static_cast<int>(labelled.parts.size());
+  truth.sequence = clip;
+  if (clip >= 0) {
+    truth.ids.resize(labelled.parts.size());
+    std::iota(truth.ids.begin(), truth.ids.end(), 0);
+    truth.people = people_seen(labelled.person, labelled.parts.size());
+  }
   truth.mask = Mask(labelled.person.width(), labelled.person.height(), 0);
   for (std::size_t i = 0; i < truth.mask.size(); ++i) truth.mask[i] = labelled.person[i] == kBackground ? 0 : 1;
   add_skeleton_truth(joint_names, labelled.joints, truth);
   truth.parts = std::move(labelled.parts);
   truth.postures = std::move(labelled.postures);
   truth.up = labelled.up;
+  truth.camera_height_m = labelled.camera_height_m;
   truth.person = std::move(labelled.person);
   truth.labels = std::move(labelled.labels);
   result.frame = std::move(labelled.frame);

@@ -2,20 +2,14 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
-#include "synth/body/makehuman.h"
+#include "synth/assets.h"
 #include "synth/recipe.h"
+#include "synth/scene/build_scene.h"
+#include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
 
 namespace vesalius::synth {
-
-/// Data from files. All of it is optional.
-struct Assets {
-  std::shared_ptr<const MakeHumanModel> makehuman;
-  std::vector<SampledPose> captured;  ///< poses from motion capture
-  std::vector<SceneMesh> models;      ///< the user's own furniture
-};
 
 /// Makes labelled frames of people in rooms as a sensor sees them. Frame i depends only on (recipe, assets, seed, i),
 /// so any frame can be made again, in any order and on any number of threads. It may be used from several threads.
@@ -27,7 +21,8 @@ class Generator {
   Generator(const Generator&) = delete;
   Generator& operator=(const Generator&) = delete;
 
-  /// Returns a frame with its parts, the joints of joint_names(), postures and the upward direction.
+  /// Returns a frame with its parts, the joints of joint_names(), postures, the upward direction and the
+  /// camera's pose in the scene.
   LabelledFrame frame(std::uint64_t index) const;
   /// Returns the scene of that frame.
   BuiltScene scene(std::uint64_t index) const;

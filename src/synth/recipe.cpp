@@ -86,6 +86,7 @@ void visit_options(const std::string& prefix, Recipe& recipe, OptionVisitor& vis
   visit(prefix + "pose.", recipe.pose, visitor);
   visit_options(prefix + "camera.", recipe.camera, visitor);
   visit_options(prefix + "scene.", recipe.scene, visitor);
+  visit_options(prefix + "clip.", recipe.clip, visitor);
 }
 
 void check(const Recipe& recipe) {
@@ -104,6 +105,11 @@ void check(const Recipe& recipe) {
     throw UsageError("options people.none to people.four are all 0, expected a weight above 0");
   }
   vesalius::check(sensor_of(recipe.sensor).camera);
+}
+
+Recipe checked(const Recipe& recipe) {
+  check(recipe);
+  return recipe;
 }
 
 std::string PoseOptions::default_exclusions() { return fmt::format("{}", fmt::join(MotionChoice{}.exclude, ", ")); }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "synth/body/population.h"
+#include "synth/clip/clip_options.h"
 #include "synth/dress/outfit.h"
 #include "synth/mocap/motion_list.h"
 #include "synth/mocap/pose_library.h"
@@ -59,12 +60,15 @@ struct Recipe {
   PoseOptions pose;
   CameraPlacement camera;
   SceneOptions scene;
+  ClipOptions clip;
 };
 
 void visit_options(const std::string& prefix, Recipe& recipe, OptionVisitor& visitor);
 
 /// Throws UsageError naming the first option that is out of range or has an unknown word.
 void check(const Recipe& recipe);
+/// Returns the recipe after that check.
+Recipe checked(const Recipe& recipe);
 
 /// Returns whether a recipe requires captured poses. It does if it states a share of them other than the default or
 /// chooses motions; its frames cannot be made without motions. The default recipe uses captured poses if there are any.

@@ -85,7 +85,7 @@ class Loader {
             "the recipe asks for motions (pose.captured, pose.include, pose.exclude), but the package mocap is not "
             "there; `vesalius assets mocap` fetches it, pose.captured = 0 does without");
       }
-      return missing(package, "sampled poses", loaded);
+      return missing(package, places_.movements ? "sampled poses and movements" : "sampled poses", loaded);
     }
     take_motions(paths_of(package), reader(package), recipe, loaded);
   }
@@ -109,8 +109,8 @@ class Loader {
   }
 
   /// Loads motions. A list of descriptions among the files is used as such.
-  static void take_motions(const std::vector<std::string>& paths, const synth::ReadText& read,
-                           const synth::Recipe& recipe, LoadedAssets& loaded) {
+  void take_motions(const std::vector<std::string>& paths, const synth::ReadText& read, const synth::Recipe& recipe,
+                    LoadedAssets& loaded) const {
     std::vector<synth::MotionFile> motions = synth::list_motions(paths);
     for (const std::string& path : paths) {
       if (path == kMotionList || path.ends_with(std::string("/") + kMotionList)) {
@@ -123,6 +123,12 @@ class Loader {
     synth::PoseLibrary library = synth::load_pose_library(motions, read, recipe.pose.library);
     for (const std::string& line : library.skipped) loaded.notes.push_back(line);
     loaded.assets.captured = std::move(library.poses);
+    if (!places_.movements) return;
+    loaded.assets.movements = synth::load_movements(motions, read);
+    const synth::MovementLibrary& movements = loaded.assets.movements;
+    loaded.notes.push_back(
+        fmt::format("movements from motion capture: {} walks, {} of people at one place, {} of lying down",
+                    movements.gaits.size(), movements.stays.size(), movements.lie_downs.size()));
   }
 
   static void missing(const AssetPackage& package, const char* instead, LoadedAssets& loaded) {

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/interrupts.h"
@@ -17,7 +20,9 @@
 #include "io/files/atomic_file.h"
 #include "io/files/image_file.h"
 #include "io/files/read_file.h"
+#include "synth/clip_generator.h"
 #include "synth/fit_flesh.h"
+#include "synth/generate.h"
 #include "synth/skeleton_joints.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/parallel_in_order.h"
@@ -29,6 +34,7 @@ namespace {
 constexpr int kMaxFrames = 1'000'000'000;
 constexpr int kMaxPreview = 200;
 constexpr int kPreviewColumns = 3;
+constexpr double kUsualRate_hz = 30.0;  // of every preset
 
 struct Arguments {
   explicit Arguments(CLI::App& command) : recipe_flags(command) {}
@@ -36,6 +42,8 @@ struct Arguments {
   std::string recipe, sensor, camera, body, assets, motions, out, fit_flesh, format = "shards";
   std::vector<std::string> models;
   OptionFlags<synth::Recipe> recipe_flags;
+  std::optional<float> clip_s;
+  std::optional<double> rate_hz;
   int count = 0, preview = 0, first = 0, shard = 256, threads = 0;
   std::uint64_t seed = 1;
   bool quiet = false;
@@ -45,15 +53,26 @@ BodyModel body_of(const Arguments& arguments) {
   return arguments.body.empty() ? paper_body() : parse_body_model(read_file(arguments.body), arguments.body);
 }
 
+/// The frames of a recipe by their numbers; those of clips come one clip after the other.
+struct FrameMaker {
+  std::function<LabelledFrame(std::uint64_t index)> frame;  ///< any thread may call it
+  ClipLayout clips;
+
+  /// Returns how many frames there are in so many frames or clips.
+  std::uint64_t frames_in(std::uint64_t count) const {
+    return clips.frames_per_clip == 0 ? count : count * clips.frames_per_clip;
+  }
+};
+
 /// Makes the frames of a range in order. `prepare` runs on all threads, `take` in the calling one.
 template <class Prepare, class Take>
-void make_frames(const synth::Generator& generator, std::uint64_t first, int count, Progress& progress,
-                 const Prepare& prepare, const Take& take) {
+void make_frames(const FrameMaker& maker, std::uint64_t first, int count, Progress& progress, const Prepare& prepare,
+                 const Take& take) {
   parallel_in_order(
       count,
       [&](int i) {
         const std::uint64_t index = first + i;
-        return prepare(index, generator.frame(index));
+        return prepare(index, maker.frame(index));
       },
       [&](int i, auto item) {
         if (interrupted()) return false;
@@ -66,8 +85,7 @@ void make_frames(const synth::Generator& generator, std::uint64_t first, int cou
 
 LabelledFrame as_it_is(std::uint64_t /*index*/, LabelledFrame frame) { return frame; }
 
-void write_shards(const Arguments& arguments, const synth::Generator& generator, const DatasetInfo& info,
-                  int part_count) {
+void write_shards(const Arguments& arguments, const FrameMaker& maker, const DatasetInfo& info, int part_count) {
   DatasetWriter writer(arguments.out, info);
   std::uint64_t missing = 0;
   for (const FrameRange& range : writer.missing()) missing += range.count;
@@ -80,7 +98,7 @@ void write_shards(const Arguments& arguments, const synth::Generator& generator,
   };
   const std::vector<FrameRange> ranges = writer.missing();
   for (const FrameRange& range : ranges) {
-    make_frames(generator, range.first, static_cast<int>(range.count), progress, encode,
+    make_frames(maker, range.first, static_cast<int>(range.count), progress, encode,
                 [&](std::uint64_t index, std::string bytes) { writer.write_encoded(index, std::move(bytes)); });
   }
   progress.clear();
@@ -90,19 +108,35 @@ void write_shards(const Arguments& arguments, const synth::Generator& generator,
   }
 }
 
-void write_folder(const Arguments& arguments, const synth::Generator& generator, const BodyModel& body) {
-  LabelledExporter exporter(arguments.out, body, synth::joint_names());
-  Progress progress(arguments.count, !arguments.quiet);
-  make_frames(generator, arguments.first, arguments.count, progress, as_it_is,
+void write_folder(const Arguments& arguments, const FrameMaker& maker, const BodyModel& body) {
+  LabelledExporter exporter(arguments.out, body, synth::joint_names(), maker.clips);
+  const auto count = static_cast<int>(maker.frames_in(arguments.count));
+  Progress progress(count, !arguments.quiet);
+  make_frames(maker, maker.frames_in(arguments.first), count, progress, as_it_is,
               [&](std::uint64_t /*index*/, const LabelledFrame& frame) { exporter.write(frame); });
   progress.clear();
   if (!arguments.quiet) say(fmt::format("{}: {} frames", arguments.out, progress.done()));
 }
 
-void write_preview(const Arguments& arguments, const synth::Generator& generator, const BodyModel& body) {
+/// Returns the numbers of a preview's frames: those from `first` on, or frames spread evenly over that clip.
+std::vector<std::uint64_t> preview_frames(const Arguments& arguments, const FrameMaker& maker) {
+  const std::uint64_t first = maker.frames_in(arguments.first), per_clip = maker.clips.frames_per_clip;
+  std::vector<std::uint64_t> numbers;
+  for (int i = 0; i < arguments.preview; ++i) {
+    const auto step = static_cast<std::uint64_t>(i);
+    if (per_clip == 0) numbers.push_back(first + step);
+    if (per_clip > step)
+      numbers.push_back(first + step * per_clip / std::min<std::uint64_t>(per_clip, arguments.preview));
+  }
+  return numbers;
+}
+
+void write_preview(const Arguments& arguments, const FrameMaker& maker, const BodyModel& body) {
+  const std::vector<std::uint64_t> numbers = preview_frames(arguments, maker);
+  const FrameMaker shown{[&](std::uint64_t i) { return maker.frame(numbers[i]); }, {}};
   std::vector<LabelledFrame> frames;
-  Progress progress(arguments.preview, !arguments.quiet);
-  make_frames(generator, arguments.first, arguments.preview, progress, as_it_is,
+  Progress progress(static_cast<int>(numbers.size()), !arguments.quiet);
+  make_frames(shown, 0, static_cast<int>(numbers.size()), progress, as_it_is,
               [&](std::uint64_t /*index*/, LabelledFrame frame) { frames.push_back(std::move(frame)); });
   progress.clear();
   const std::string path = arguments.out.empty() ? "preview.png" : arguments.out;
@@ -123,6 +157,25 @@ void write_flesh(const Arguments& arguments, const synth::Recipe& recipe, const 
                                                              trust(flesh.predicted))));
 }
 
+synth::ClipTiming timing_of(const Arguments& arguments) {
+  const synth::ClipTiming timing{*arguments.clip_s, arguments.rate_hz.value_or(kUsualRate_hz)};
+  check(timing);
+  return timing;
+}
+
+FrameMaker make_frame_maker(const Arguments& arguments, const synth::Recipe& recipe, synth::Assets assets,
+                            const BodyModel& body) {
+  if (!arguments.clip_s) {
+    const auto generator = std::make_shared<const synth::Generator>(recipe, std::move(assets), body, arguments.seed);
+    return {[generator](std::uint64_t index) { return generator->frame(index); }, {}};
+  }
+  const synth::ClipTiming timing = timing_of(arguments);
+  const auto generator =
+      std::make_shared<const synth::ClipGenerator>(recipe, std::move(assets), body, arguments.seed, timing);
+  return {[generator](std::uint64_t index) { return generator->frame(index); },
+          {static_cast<std::uint32_t>(timing.frames()), timing.rate_hz}};
+}
+
 void check(const Arguments& arguments) {
   if ((arguments.count > 0) + (arguments.preview > 0) + !arguments.fit_flesh.empty() != 1) {
     throw UsageError("expected one of --count, --preview and --fit-flesh");
@@ -130,6 +183,13 @@ void check(const Arguments& arguments) {
   if (arguments.count > 0 && arguments.out.empty()) throw UsageError("--count expects --out, the folder to write");
   if (arguments.first > 0 && arguments.count > 0 && arguments.format == "shards") {
     throw UsageError("a dataset begins with frame 0: --first expects --preview or --format folder");
+  }
+  if (arguments.rate_hz && !arguments.clip_s) throw UsageError("--rate expects --clip, the seconds of each clip");
+  if (!arguments.clip_s) return;
+  const auto clips = static_cast<std::int64_t>(arguments.first) + std::max(1, arguments.count);
+  if (clips * timing_of(arguments).frames() > kMaxFrames) {
+    throw UsageError(fmt::format("{} clips of {} frames, expected at most {} frames in all", clips,
+                                 timing_of(arguments).frames(), kMaxFrames));
   }
 }
 
@@ -141,33 +201,40 @@ void run(const Arguments& arguments) {
                                             .camera = arguments.camera,
                                             .flags = &arguments.recipe_flags});
   const BodyModel body = body_of(arguments);
-  const LoadedAssets loaded =
-      load_assets(recipe, {.folder = arguments.assets, .motions = arguments.motions, .models = arguments.models});
+  const LoadedAssets loaded = load_assets(recipe, {.folder = arguments.assets,
+                                                   .motions = arguments.motions,
+                                                   .models = arguments.models,
+                                                   .movements = arguments.clip_s.has_value()});
   if (!arguments.quiet) {
     for (const std::string& note : loaded.notes) say("note: " + note);
   }
-  const synth::Generator generator(recipe, loaded.assets, body, arguments.seed);
+  const FrameMaker maker = make_frame_maker(arguments, recipe, loaded.assets, body);
   watch_interrupts();
-  if (!arguments.fit_flesh.empty()) return write_flesh(arguments, recipe, generator);
-  if (arguments.preview > 0) return write_preview(arguments, generator, body);
-  if (arguments.format == "folder") return write_folder(arguments, generator, body);
+  if (!arguments.fit_flesh.empty()) {
+    return write_flesh(arguments, recipe, synth::Generator(recipe, loaded.assets, body, arguments.seed));
+  }
+  if (arguments.preview > 0) return write_preview(arguments, maker, body);
+  if (arguments.format == "folder") return write_folder(arguments, maker, body);
   DatasetInfo info;
   info.body_toml = body.toml;
   info.recipe = full_recipe(recipe, loaded);
   info.seed = arguments.seed;
-  info.frames = arguments.count;
+  info.frames = maker.frames_in(arguments.count);
+  info.clips = maker.clips;
   info.joints = synth::joint_names();
   info.frames_per_shard = arguments.shard;
-  write_shards(arguments, generator, info, body.part_count());
+  write_shards(arguments, maker, info, body.part_count());
 }
 
 void add_output_flags(CLI::App& command, Arguments& arguments) {
   const std::string group = "Output";
-  command.add_option("--count", arguments.count, "Frames to make")
+  command.add_option("--count", arguments.count, "Frames to make; with --clip clips")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxFrames))
       ->group(group);
-  command.add_option("--preview", arguments.preview, "Instead of a dataset, a picture of this many frames")
+  command
+      .add_option("--preview", arguments.preview,
+                  "Instead of a dataset, a picture of this many frames; with --clip spread over the first clip")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxPreview))
       ->group(group);
@@ -190,7 +257,16 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
       ->type_name("N")
       ->capture_default_str()
       ->group(group);
-  command.add_option("--first", arguments.first, "Number of the first frame, for --preview and --format folder")
+  command
+      .add_option("--clip", arguments.clip_s,
+                  "Clips of so many seconds instead of single frames: people who move before a camera")
+      ->type_name("SECONDS")
+      ->group(group);
+  command.add_option("--rate", arguments.rate_hz, fmt::format("Frames a second of clips (default: {})", kUsualRate_hz))
+      ->type_name("HZ")
+      ->group(group);
+  command
+      .add_option("--first", arguments.first, "Number of the first frame, or clip, for --preview and --format folder")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxFrames))
       ->group(group);
@@ -246,6 +322,7 @@ Every option of a recipe is a flag too, e.g. --people.two 1; `vesalius options s
 Examples:
   vesalius synth --preview 24 --out look.png
   vesalius synth --preset kinect-v1 --count 10000 --seed 1 --out train/
+  vesalius synth --clip 5 --preview 9 --out clip.png
   vesalius synth --preset d435 --mounting ceiling --recipe mine.toml --count 500 --out ceiling/)");
   command->callback([arguments] { run(*arguments); });
 }

@@ -2,14 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <map>
-
-#include "synth/mocap/amc.h"
-#include "synth/mocap/bvh.h"
+#include "synth/mocap/motion_reader.h"
 #include "synth/mocap/retarget.h"
 #include "synth/mocap/thin_poses.h"
-#include "synth/pose/joint_angles.h"
 #include "synth/pose/posture.h"
 #include "synth/pose/self_contact.h"
 #include "vesalius/base/error.h"
@@ -18,49 +13,6 @@ namespace vesalius::synth {
 namespace {
 
 constexpr float kDegree = 3.14159265F / 180.F;
-constexpr float kUsualFps = 30.F;  // frame rate to which faster recordings are reduced
-
-/// Returns whether a hand is turned impossibly far. Forearm and wrist together turn a hand by about 90 degrees to
-/// either side, but solvers of marker data sometimes lose the hand's turn and give any angle.
-bool hands_twisted(const Pose& pose) {
-  constexpr float kMost = 110.F;
-  const auto twisted = [&](bool left) { return std::abs(arm_angles(pose, left).pronation) > kMost; };
-  return twisted(true) || twisted(false);
-}
-
-/// Loads motions. A skeleton that several motions share is read once.
-class MotionLoader {
- public:
-  explicit MotionLoader(const ReadText& read) : read_(read) {}
-
-  struct Recording {
-    std::vector<Pose> poses;
-    float fps = 0.F;
-  };
-
-  Recording load(const MotionFile& file) {
-    const Motion motion = read(file);
-    return {retarget(motion, find_convention(motion, builtin_conventions())), motion.fps};
-  }
-
- private:
-  Motion read(const MotionFile& file) {
-    if (!file.path.ends_with(".amc") && !file.path.ends_with(".AMC")) return parse_bvh(read_(file.path), file.path);
-    if (file.skeleton.empty()) {
-      throw Error(fmt::format("{}: no skeleton: expected an .asf beside it with the beginning of its name", file.path));
-    }
-    return parse_amc(read_(file.path), file.path, skeleton(file.skeleton), file.fps);
-  }
-
-  const AsfSkeleton& skeleton(const std::string& path) {
-    const auto found = skeletons_.find(path);
-    if (found != skeletons_.end()) return found->second;
-    return skeletons_.emplace(path, parse_asf(read_(path), path)).first->second;
-  }
-
-  const ReadText& read_;
-  std::map<std::string, AsfSkeleton> skeletons_;
-};
 
 }  // namespace
 
@@ -71,7 +23,8 @@ void visit_options(const std::string& prefix, PoseLibraryOptions& options, Optio
 }
 
 std::vector<Pose> load_motion(const MotionFile& file, const ReadText& read) {
-  return MotionLoader(read).load(file).poses;
+  const Motion motion = MotionReader(read).read(file);
+  return retarget(motion, find_convention(motion, builtin_conventions()));
 }
 
 PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText& read,
@@ -81,13 +34,14 @@ PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText&
   visit_options("", checked, range);
 
   PoseLibrary library;
-  MotionLoader loader(read);
+  MotionReader reader(read);
   std::vector<Pose> poses;
   std::vector<int> motion;
   for (std::size_t f = 0; f < files.size(); ++f) {
     try {
-      const auto [all, fps] = loader.load(files[f]);
-      const std::size_t step = options.every * std::max(1L, std::lround(fps / kUsualFps));
+      const Motion recorded = reader.read(files[f]);
+      const std::vector<Pose> all = retarget(recorded, find_convention(recorded, builtin_conventions()));
+      const auto step = static_cast<std::size_t>(options.every) * usual_step(recorded.fps);
       for (std::size_t i = 0; i < all.size(); i += step) {
         ++library.frames;
         const bool twisted = hands_twisted(all[i]), intersects = !twisted && intersects_itself(all[i]);

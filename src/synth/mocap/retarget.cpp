@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "synth/text/text_scanner.h"
 #include "vesalius/base/error.h"
@@ -55,9 +57,25 @@ Pose pose_of(const Motion& motion, const Sources& sources, int frame) {
     if (source.second >= 0) q = q.slerp(0.5F, motion.rotation(frame, source.second));
     world[b] = q * source.source_from_t;
   }
-  Pose pose = from_world_rotations(world);
-  pose[Bone::pelvis] = without_yaw(pose[Bone::pelvis]);
-  return pose;
+  return from_world_rotations(world);
+}
+
+/// Returns the length of the leg at rest, from the hip to the ankle, in the motion's unit.
+float leg_length(const Motion& motion, const Sources& sources) {
+  const int hip = sources[index(Bone::l_thigh)].first;
+  float length = 0.F;
+  for (int j = sources[index(Bone::l_foot)].first; j >= 0 && j != hip; j = motion.joints[j].parent) {
+    length += motion.joints[j].offset.norm();
+  }
+  if (!(length > 0.F) || !std::isfinite(length)) throw Error(motion.name + ": its legs have no length");
+  return length;
+}
+
+/// Takes the heading out of a pelvis and returns it.
+float take_heading(Eigen::Quaternionf& pelvis) {
+  const float heading = 2.F * std::atan2(pelvis.y(), pelvis.w());
+  pelvis = without_yaw(pelvis);
+  return heading;
 }
 
 }  // namespace
@@ -91,8 +109,35 @@ std::vector<Pose> retarget(const Motion& motion, const MotionConvention& convent
   check_fit(motion, convention);
   const Sources sources = find_sources(motion, convention);
   std::vector<Pose> poses;
-  for (int f = convention.skip_frames; f < motion.frame_count(); ++f) poses.push_back(pose_of(motion, sources, f));
+  for (int f = convention.skip_frames; f < motion.frame_count(); ++f) {
+    poses.push_back(pose_of(motion, sources, f));
+    poses.back()[Bone::pelvis] = without_yaw(poses.back()[Bone::pelvis]);
+  }
   return poses;
+}
+
+Movement retarget_movement(const Motion& motion, const MotionConvention& convention) {
+  constexpr float kTurn = 2.F * std::numbers::pi_v<float>;
+  check_fit(motion, convention);
+  const Sources sources = find_sources(motion, convention);
+  const float leg = leg_length(motion, sources);
+  Movement movement;
+  movement.name = motion.name;
+  movement.fps = motion.fps;
+  for (int f = convention.skip_frames; f < motion.frame_count(); ++f) {
+    BodyState state;
+    state.pose = pose_of(motion, sources, f);
+    state.heading_rad = take_heading(state.pose[Bone::pelvis]);
+    if (!movement.states.empty()) {
+      const float before = movement.states.back().heading_rad;
+      state.heading_rad = before + std::remainder(state.heading_rad - before, kTurn);
+    }
+    state.root = Eigen::Vector2f(motion.root[f].x(), motion.root[f].z()) / leg;
+    state.height = motion.root[f].y() / leg;
+    movement.states.push_back(std::move(state));
+  }
+  if (movement.states.empty()) throw Error(motion.name + ": no frame of a person in it");
+  return movement;
 }
 
 }  // namespace vesalius::synth

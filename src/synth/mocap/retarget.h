@@ -4,6 +4,7 @@
 
 #include "synth/mocap/motion.h"
 #include "synth/mocap/motion_convention.h"
+#include "synth/pose/movement.h"
 #include "synth/pose/pose.h"
 
 namespace vesalius::synth {
@@ -17,5 +18,10 @@ const MotionConvention& find_convention(const Motion& motion, const std::vector<
 /// Returns the pose of every frame except the first `skip_frames`. The heading of the pelvis is removed. Throws Error
 /// if motion and convention do not fit.
 std::vector<Pose> retarget(const Motion& motion, const MotionConvention& convention);
+
+/// Returns the same poses with the headings of the pelvis, continuous from frame to frame, and the ways of the root
+/// over the floor in lengths of the motion's own legs. Throws Error if motion and convention do not fit, the legs have
+/// no length, or no frame is left.
+Movement retarget_movement(const Motion& motion, const MotionConvention& convention);
 
 }  // namespace vesalius::synth

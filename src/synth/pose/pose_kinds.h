@@ -25,6 +25,18 @@ Pose squatting(Random& random);
 /// Returns an upright pose with every angle uniform in its range.
 Pose any(Random& random);
 
+/// How somebody walks; walking() draws it together with a moment of it.
+struct WalkStyle {
+  float length = 1.F;                ///< of the strides, 1 at natural cadence
+  BodyAngles angles;                 ///< what is the same at all times
+  std::array<float, 2> swing_deg{};  ///< of the arms to front and back
+  std::array<float, 2> side_deg{};   ///< of the arms to their side
+  std::array<float, 2> elbow_deg{};  ///< least bend
+};
+WalkStyle draw_walk(Random& random);
+/// Returns the pose at a phase of the stride, 0 to 1; at 0 the left heel strikes.
+Pose walking_at(const WalkStyle& style, float phase);
+
 /// Returns a number uniform over [low, high).
 float between(Random& random, float low, float high);
 bool chance(Random& random, float probability);

@@ -39,14 +39,19 @@ LegAngles stride(float phase, float length) {
   return leg;
 }
 
+/// Swings an arm by so many degrees to the front and to the side.
+void raise(ArmAngles& arm, float front, float side) {
+  arm.elevation = std::hypot(front, side);
+  arm.plane = std::atan2(front, side) / kDegree;
+}
+
 }  // namespace
 
 float level_ankle(const LegAngles& leg, float pitch) { return leg.knee - leg.flexion + pitch; }
 
 ArmAngles hanging_arm(Random& random, float front, float side) {
   ArmAngles arm;
-  arm.elevation = std::hypot(front, side);
-  arm.plane = std::atan2(front, side) / kDegree;
+  raise(arm, front, side);
   arm.external = between(random, -35.F, 10.F);
   arm.elbow = between(random, 3.F, 30.F);
   arm.pronation = between(random, -10.F, 45.F);
@@ -84,25 +89,47 @@ Pose idle(Random& random) {
   return pose;
 }
 
-Pose walking(Random& random) {
-  const float phase = between(random, 0.F, 1.F), length = between(random, 0.5F, 1.3F);
-  BodyAngles angles = standing_angles(random);
+WalkStyle draw_walk(Random& random) {
+  WalkStyle style;
+  style.length = between(random, 0.5F, 1.3F);
+  BodyAngles& angles = style.angles;
+  angles = standing_angles(random);
   angles.pitch = between(random, 0.F, 8.F);
   angles.roll = between(random, -3.F, 3.F);
-  angles.trunk = {between(random, -3.F, 6.F), -angles.roll, length * 8.F * std::cos(2.F * kPi * phase)};
+  angles.trunk = {between(random, -3.F, 6.F), -angles.roll, 0.F};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const float outwards = angles.legs[side].external;
+    angles.legs[side] = {};
+    angles.legs[side].abduction = between(random, 0.F, 5.F);
+    angles.legs[side].external = 0.5F * outwards;
+    style.swing_deg[side] = between(random, 10.F, 25.F);
+    style.side_deg[side] = between(random, 4.F, 14.F);
+    angles.arms[side] = hanging_arm(random, 0.F, 0.F);
+    style.elbow_deg[side] = between(random, 10.F, 25.F);
+  }
+  return style;
+}
+
+Pose walking_at(const WalkStyle& style, float phase) {
+  BodyAngles angles = style.angles;
+  angles.trunk.turn = style.length * 8.F * std::cos(2.F * kPi * phase);
   for (std::size_t side = 0; side < 2; ++side) {
     const float own = std::fmod(phase + 0.5F * static_cast<float>(side), 1.F);
     LegAngles& leg = angles.legs[side];
-    const float outwards = leg.external;
-    leg = stride(own, length);
-    leg.flexion += angles.pitch;
-    leg.abduction = between(random, 0.F, 5.F);
-    leg.external = 0.5F * outwards;
-    const float front = -length * between(random, 10.F, 25.F) * std::cos(2.F * kPi * own);
-    angles.arms[side] = hanging_arm(random, front + 5.F, between(random, 4.F, 14.F));
-    angles.arms[side].elbow = between(random, 10.F, 25.F) + std::max(front, 0.F);
+    const LegAngles swung = stride(own, style.length);
+    leg.flexion = swung.flexion + angles.pitch;
+    leg.knee = swung.knee;
+    leg.ankle = swung.ankle;
+    const float front = -style.length * style.swing_deg[side] * std::cos(2.F * kPi * own);
+    raise(angles.arms[side], front + 5.F, style.side_deg[side]);
+    angles.arms[side].elbow = style.elbow_deg[side] + std::max(front, 0.F);
   }
   return pose_of(within_range(angles));
+}
+
+Pose walking(Random& random) {
+  const float phase = between(random, 0.F, 1.F);
+  return walking_at(draw_walk(random), phase);
 }
 
 Pose reaching(Random& random) {

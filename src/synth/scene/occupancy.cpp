@@ -47,11 +47,10 @@ float distance(const Capsule& a, const Capsule& b) {
 
 }  // namespace
 
-BodyOutline outline_of(const PosedBody& body, float stature_m) {
-  constexpr std::size_t kStride = 3;
+BodyOutline outline_of(const PosedBody& body, float stature_m, std::size_t stride) {
   BodyOutline outline;
-  outline.points.reserve(body.vertices.size() / kStride + 1);
-  for (std::size_t i = 0; i < body.vertices.size(); i += kStride) outline.points.push_back(body.vertices[i]);
+  outline.points.reserve(body.vertices.size() / stride + 1);
+  for (std::size_t i = 0; i < body.vertices.size(); i += stride) outline.points.push_back(body.vertices[i]);
   for (const Vector3f& p : body.vertices) outline.bounds.extend(p);
   for (std::size_t b = 0; b < kBoneCount; ++b) {
     outline.bones[b] = {body.joints[b], body.ends[b], kFlesh[b] * stature_m};
@@ -84,11 +83,19 @@ bool sinks_in(const BodyOutline& a, const BodyOutline& b) {
   return false;
 }
 
+bool Occupancy::near_an_eye(const BodyOutline& body) const {
+  return std::ranges::any_of(eyes_, [&](const Vector3f& eye) {
+    if (body.bounds.squaredExteriorDistance(eye) > kEyeClear_m * kEyeClear_m) return false;
+    return std::ranges::any_of(body.points, [&](const Vector3f& p) { return (p - eye).norm() <= kEyeClear_m; });
+  });
+}
+
 bool Occupancy::free_for(const BodyOutline& body) const {
   if (sinks_in(body, solids_)) return false;
-  if (std::ranges::any_of(bodies_, [&](const BodyOutline& other) { return sinks_in(body, other); })) return false;
-  if (body.bounds.squaredExteriorDistance(eye_) > kEyeClear_m * kEyeClear_m) return true;
-  return std::ranges::all_of(body.points, [&](const Vector3f& p) { return (p - eye_).norm() > kEyeClear_m; });
+  for (const std::vector<BodyOutline>& person : bodies_) {
+    if (std::ranges::any_of(person, [&](const BodyOutline& other) { return sinks_in(body, other); })) return false;
+  }
+  return !near_an_eye(body);
 }
 
 bool Occupancy::free_for(const std::vector<OrientedBox>& solids) const {
@@ -96,7 +103,7 @@ bool Occupancy::free_for(const std::vector<OrientedBox>& solids) const {
   for (const OrientedBox& box : solids) {
     OrientedBox wide = box;
     wide.half.array() += kEyeClear_m;
-    if (depth_inside(wide, eye_) > 0.F) return false;
+    if (std::ranges::any_of(eyes_, [&](const Vector3f& eye) { return depth_inside(wide, eye) > 0.F; })) return false;
     for (const Vector3f& corner : corners(box)) {
       if (clearance(room_, corner) < -1e-3F) return false;
     }
@@ -106,18 +113,23 @@ bool Occupancy::free_for(const std::vector<OrientedBox>& solids) const {
       if (overlap(box, other, kTouching_m)) return false;
     }
   }
-  return std::ranges::none_of(bodies_, [&](const BodyOutline& body) { return sinks_in(body, solids); });
+  return std::ranges::none_of(bodies_, [&](const std::vector<BodyOutline>& person) {
+    return std::ranges::any_of(person, [&](const BodyOutline& body) { return sinks_in(body, solids); });
+  });
 }
 
 float Occupancy::hidden_share(const std::vector<OrientedBox>& solids) const {
+  const Vector3f& eye = eyes_.front();
   float largest = 0.F;
-  for (const BodyOutline& body : bodies_) {
+  for (const std::vector<BodyOutline>& person : bodies_) {
     int hidden = 0;
-    for (const Capsule& bone : body.bones) {
-      const Vector3f middle = 0.5F * (bone.from + bone.to);
-      hidden += std::ranges::any_of(solids, [&](const OrientedBox& box) { return blocks(box, eye_, middle); }) ? 1 : 0;
+    for (const BodyOutline& body : person) {
+      for (const Capsule& bone : body.bones) {
+        const Vector3f middle = 0.5F * (bone.from + bone.to);
+        hidden += std::ranges::any_of(solids, [&](const OrientedBox& box) { return blocks(box, eye, middle); }) ? 1 : 0;
+      }
     }
-    largest = std::max(largest, static_cast<float>(hidden) / static_cast<float>(kBoneCount));
+    largest = std::max(largest, static_cast<float>(hidden) / static_cast<float>(kBoneCount * person.size()));
   }
   return largest;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "synth/body/poser.h"
@@ -27,8 +28,8 @@ struct BodyOutline {
   Eigen::AlignedBox3f bounds;
 };
 
-/// Returns the outline of a body in its own frame. It has every third vertex.
-BodyOutline outline_of(const PosedBody& body, float stature_m);
+/// Returns the outline of a body in its own frame. It has every `stride`th vertex.
+BodyOutline outline_of(const PosedBody& body, float stature_m, std::size_t stride = 3);
 BodyOutline moved(BodyOutline outline, const Eigen::Isometry3f& motion);
 
 /// Returns whether a body sinks too far into any of the solids. The allowed depth is smaller for thin solids, so that
@@ -40,9 +41,13 @@ bool sinks_in(const BodyOutline& a, const BodyOutline& b);
 /// The people and furniture placed so far, in world coordinates.
 class Occupancy {
  public:
-  void set_eye(const Eigen::Vector3f& eye) { eye_ = eye; }
+  void set_eye(const Eigen::Vector3f& eye) { eyes_ = {eye}; }
+  /// Sets the places at which the camera is over time; there must be one.
+  void set_eyes(std::vector<Eigen::Vector3f> eyes) { eyes_ = std::move(eyes); }
   void set_room(const RoomShape& room) { room_ = room; }
-  void add(const BodyOutline& body) { bodies_.push_back(body); }
+  void add(const BodyOutline& body) { bodies_.push_back({body}); }
+  /// Adds a person who moves, by outlines at several times.
+  void add(std::vector<BodyOutline> over_time) { bodies_.push_back(std::move(over_time)); }
   void add(const std::vector<OrientedBox>& solids) { solids_.insert(solids_.end(), solids.begin(), solids.end()); }
 
   /// Returns whether a body or a piece of furniture can be placed, apart from everything else, the camera and the
@@ -52,13 +57,16 @@ class Occupancy {
 
   const std::vector<OrientedBox>& solids() const { return solids_; }
 
-  /// Returns the largest share of any person's bones that these solids would hide from the camera.
+  /// Returns the largest share of any person's bones that these solids would hide from the camera's first place; of a
+  /// person who moves, the mean over time.
   float hidden_share(const std::vector<OrientedBox>& solids) const;
 
  private:
-  Eigen::Vector3f eye_ = Eigen::Vector3f::Zero();
+  bool near_an_eye(const BodyOutline& body) const;
+
+  std::vector<Eigen::Vector3f> eyes_ = {Eigen::Vector3f::Zero()};
   RoomShape room_{.open = true};
-  std::vector<BodyOutline> bodies_;
+  std::vector<std::vector<BodyOutline>> bodies_;  ///< [person][time]
   std::vector<OrientedBox> solids_;
 };
 

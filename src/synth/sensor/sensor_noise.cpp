@@ -126,6 +126,10 @@ std::optional<Eigen::Vector3f> projector_of(const Sensor& sensor) {
   return Eigen::Vector3f(sensor.baseline_m, 0.F, 0.F);
 }
 
+void settle_border(Sensor& sensor, Random random) {
+  sensor.border_low = sensor.border_high = draw_border(sensor, random);
+}
+
 DepthImage sense(const Rendering& rendering, const Sensor& sensor, Random random, Image<std::uint32_t>* source) {
   check_sizes(rendering, sensor);
   const auto& depth_m = rendering.depth_m;

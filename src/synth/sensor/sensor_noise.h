@@ -12,6 +12,9 @@ namespace vesalius::synth {
 /// Returns the position of the sensor's projector or second eye in the camera frame, or nothing if it has none.
 std::optional<Eigen::Vector3f> projector_of(const Sensor& sensor);
 
+/// Draws the border of one camera, so that it is the same in all frames of a recording.
+void settle_border(Sensor& sensor, Random random);
+
 /// Returns depth as the sensor reports it: uint16 millimetres, 0 = no reading. The same (rendering, sensor, random)
 /// gives the same bytes. Silhouettes wobble and grow, and the truth must follow: `source`, if not null, receives for
 /// each pixel the pixel (row-major index) of the rendering whose surface was read, to be used with `as_read`; it is the

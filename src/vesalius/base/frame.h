@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,8 +45,12 @@ struct LabelledFrame {
   /// [person][joint]: where joints of the skeleton are, metres, optical frame; empty where nobody knows. Whoever makes
   /// the frames names them, the same ones in all (synth/skeleton_joints.h; DatasetInfo::joints).
   std::vector<std::vector<Eigen::Vector3f>> joints;
-  std::vector<std::string> postures;  ///< [person]: one word, e.g. "sitting"; empty where nobody knows
-  std::optional<Eigen::Vector3f> up;  ///< unit vector away from the ground, optical frame
+  std::vector<std::string> postures;     ///< [person]: one word, e.g. "sitting"; empty where nobody knows
+  std::optional<Eigen::Vector3f> up;     ///< unit vector away from the ground, optical frame
+  std::optional<float> camera_height_m;  ///< of the camera above the ground on which people stand
+  /// Pose of the camera in a world that stays the same over a recording: metres, y away from the ground, which is y =
+  /// 0.
+  std::optional<Eigen::Isometry3f> world_from_camera;
 };
 
 }  // namespace vesalius

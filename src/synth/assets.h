@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "synth/body/makehuman.h"
+#include "synth/mocap/movement_library.h"
+#include "synth/pose/pose_sampler.h"
+#include "synth/scene/scene.h"
+
+namespace vesalius::synth {
+
+/// Data from files. All of it is optional.
+struct Assets {
+  std::shared_ptr<const MakeHumanModel> makehuman;
+  std::vector<SampledPose> captured;  ///< poses from motion capture
+  MovementLibrary movements;          ///< movements from motion capture, which only clips use
+  std::vector<SceneMesh> models;      ///< the user's own furniture
+};
+
+}  // namespace vesalius::synth

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "synth/clip/camera_motion.h"
+#include "synth/clip/clip_options.h"
+#include "synth/clip/stroll.h"
+#include "synth/scene/build_scene.h"
+
+namespace vesalius::synth {
+
+/// A person of a clip before they have a place.
+struct ClipPersonPlan {
+  PersonPlan person;       ///< of people who sit, lie or kneel the pose that they keep
+  bool stays_put = false;  ///< on a seat, bed or the floor, where only arms and head move
+  Movement fidget;         ///< of people who stay put; its first state has the person's pose
+  Repertoire can;          ///< of the others
+  bool walks = true;       ///< of the others; false stands at one place
+  /// Of the others, in place of walking: lies down on the floor and remains there.
+  std::optional<Movement> lies_down;
+};
+
+struct ClipPerson {
+  PersonPlan person;
+  PersonTrack track;
+};
+
+/// A clip: what stands still, and who moves how.
+struct ClipScene {
+  Scene surroundings;  ///< room, furniture, light; no people
+  RoomShape room;
+  std::vector<OrientedBox> solids;  ///< furniture as boxes that were kept apart from people
+  std::vector<ClipPerson> people;   ///< as far as there was room, in the order of the plans
+  CameraTrack camera;
+};
+
+/// Makes a room in which people move before a camera for so many seconds. Nobody goes through furniture, walls, the
+/// camera or each other: that is looked at several times a second. People who find no place or way after a bounded
+/// number of tries are left out. The same arguments give the same clip. Throws UsageError for invalid options.
+ClipScene build_clip(const ClipOptions& options, const SceneOptions& scene, const CameraPlacement& placement,
+                     const Camera& intrinsics, const std::vector<ClipPersonPlan>& plans,
+                     const std::vector<SceneMesh>& models, float seconds, Random random);
+
+/// Returns the scene of a clip at a time, as build_scene() gives those of single frames. The posture of each person is
+/// that of the pose (classify_posture).
+BuiltScene scene_at(const ClipScene& clip, const Camera& intrinsics, float detail_px, float time_s);
+
+}  // namespace vesalius::synth

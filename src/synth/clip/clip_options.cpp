@@ -1,0 +1,17 @@
+#include "synth/clip/clip_options.h"
+
+namespace vesalius::synth {
+
+void visit_options(const std::string& prefix, ClipOptions& o, OptionVisitor& visitor) {
+  visitor.option(prefix + "walking-share", o.walking_share, {"", 0, 1, "Share of people in clips who walk about."});
+  visitor.option(prefix + "pause-share", o.pause_share, {"", 0, 1, "Share of their ways that end with a stay."});
+  visitor.option(prefix + "leaving-share", o.leaving_share,
+                 {"", 0, 1, "Share of their ways that lead out of the picture."});
+  visitor.option(prefix + "crossing-share", o.crossing_share,
+                 {"", 0, 1, "Share of clips of several people in which those who walk pass before or behind others."});
+  visitor.option(prefix + "moving-share", o.moving_share, {"", 0, 1, "Share of clips whose camera moves."});
+  visitor.option(prefix + "speed-max", o.speed_max_m_s, {"m/s", 0, 2, "Greatest speed of such a camera."});
+  visitor.option(prefix + "turn-max", o.turn_max_deg_s, {"deg/s", 0, 90, "Greatest turn of such a camera."});
+}
+
+}  // namespace vesalius::synth

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "vesalius/base/options.h"
+
+namespace vesalius::synth {
+
+/// What people and camera do in clips. Single frames do not depend on it.
+struct ClipOptions {
+  float walking_share = 0.75F;  ///< share of people who walk about; the others stay where they are
+  float pause_share = 0.35F;    ///< share of ways that end with a stay
+  float leaving_share = 0.1F;   ///< share of ways that lead out of the picture
+  float crossing_share = 0.9F;  ///< share of clips with walking people and others in which they pass before each other
+  float moving_share = 0.5F;    ///< share of clips whose camera moves
+  float speed_max_m_s = 0.3F;   ///< of the camera
+  float turn_max_deg_s = 20.F;  ///< of the camera
+};
+
+void visit_options(const std::string& prefix, ClipOptions& options, OptionVisitor& visitor);
+
+}  // namespace vesalius::synth

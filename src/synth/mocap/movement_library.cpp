@@ -1,0 +1,114 @@
+#include "synth/mocap/movement_library.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "synth/mocap/motion_reader.h"
+#include "synth/mocap/retarget.h"
+#include "synth/pose/posture.h"
+#include "synth/pose/self_contact.h"
+#include "synth/pose/stick_figure.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::synth {
+namespace {
+
+constexpr float kDegree = 3.14159265F / 180.F;
+
+/// Returns every nth state, so that about 30 a second are left.
+Movement thinned(Movement movement) {
+  const std::size_t step = usual_step(movement.fps);
+  if (step == 1) return movement;
+  std::vector<BodyState> kept;
+  for (std::size_t i = 0; i < movement.states.size(); i += step) kept.push_back(movement.states[i]);
+  movement.states = std::move(kept);
+  movement.fps /= static_cast<float>(step);
+  return movement;
+}
+
+/// Returns whether no joint turns faster than people can and no hand is back to front: marker data has such errors.
+bool is_sound(const Movement& movement) {
+  constexpr float kFastest = 1300.F * kDegree, kFastestTurn = 500.F * kDegree, kFastestRoot = 6.F;
+  const auto& states = movement.states;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (hands_twisted(states[i].pose)) return false;
+    if (i == 0) continue;
+    if (largest_angle(states[i - 1].pose, states[i].pose) * movement.fps > kFastest) return false;
+    if (std::abs(states[i].heading_rad - states[i - 1].heading_rad) * movement.fps > kFastestTurn) return false;
+    if ((states[i].root - states[i - 1].root).norm() * movement.fps > kFastestRoot) return false;
+  }
+  return true;
+}
+
+/// Returns whether both feet leave the floor, as in runs and jumps. Bodies are put on the floor in every frame, which
+/// would look wrong there.
+bool leaves_floor(const Movement& movement) {
+  constexpr float kHighest_m = 0.15F;
+  const float leg_m = bone_length_m(Bone::l_thigh) + bone_length_m(Bone::l_shin);
+  float lowest = std::numeric_limits<float>::max(), highest = -lowest;
+  for (const BodyState& state : movement.states) {
+    if (classify_posture(state.pose) != Posture::standing) continue;  // the figure lacks the flesh below its bones
+    const StickFigure figure = stick_figure(state.pose);
+    float foot_m = std::numeric_limits<float>::max();
+    for (std::size_t b = 0; b < kBoneCount; ++b) foot_m = std::min({foot_m, figure.head[b].y(), figure.tail[b].y()});
+    const float clear_m = state.height * leg_m + foot_m;
+    lowest = std::min(lowest, clear_m);
+    highest = std::max(highest, clear_m);
+  }
+  return highest > lowest + kHighest_m;
+}
+
+/// Returns the share of states, of every few, in which the body intersects itself.
+float intersecting_share(const Movement& movement) {
+  constexpr std::size_t kEvery = 6;
+  int looked = 0, intersecting = 0;
+  for (std::size_t i = 0; i < movement.states.size(); i += kEvery) {
+    ++looked;
+    intersecting += intersects_itself(movement.states[i].pose) ? 1 : 0;
+  }
+  return static_cast<float>(intersecting) / static_cast<float>(looked);
+}
+
+bool stands_throughout(const Movement& movement) {
+  return std::ranges::all_of(movement.states,
+                             [](const BodyState& s) { return classify_posture(s.pose) == Posture::standing; });
+}
+
+bool stays_at_one_place(const Movement& movement) {
+  constexpr float kFarthest = 0.45F, kMostTurn = 60.F * kDegree;
+  const BodyState& first = movement.states.front();
+  return std::ranges::all_of(movement.states, [&](const BodyState& s) {
+    return (s.root - first.root).norm() < kFarthest && std::abs(s.heading_rad - first.heading_rad) < kMostTurn;
+  });
+}
+
+}  // namespace
+
+void sort_in(Movement movement, MovementLibrary& library) {
+  constexpr float kShortest_s = 0.8F, kMostIntersecting = 0.2F;
+  if (movement.states.size() < 2 || movement.seconds() < kShortest_s || !is_sound(movement)) return;
+  if (leaves_floor(movement) || intersecting_share(movement) > kMostIntersecting) return;
+  const Posture begins = classify_posture(movement.states.front().pose);
+  const Posture ends = classify_posture(movement.states.back().pose);
+  if (begins == Posture::standing && ends == Posture::lying) return library.lie_downs.push_back(std::move(movement));
+  if (!stands_throughout(movement)) return;
+  if (std::optional<Gait> gait = find_gait(movement)) return library.gaits.push_back(std::move(*gait));
+  if (stays_at_one_place(movement)) library.stays.push_back(std::move(movement));
+}
+
+MovementLibrary load_movements(std::span<const MotionFile> files, const ReadText& read) {
+  MovementLibrary library;
+  MotionReader reader(read);
+  for (const MotionFile& file : files) {
+    try {
+      const Motion motion = reader.read(file);
+      sort_in(thinned(retarget_movement(motion, find_convention(motion, builtin_conventions()))), library);
+    } catch (const Error& e) {
+      library.skipped.emplace_back(e.what());
+    }
+  }
+  return library;
+}
+
+}  // namespace vesalius::synth
