@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "cli/commands.h"
@@ -55,6 +56,8 @@ struct Arguments {
 
   std::vector<std::string> sources, recipes;
   RenderedTruth rendered;
+  std::optional<float> clip_s;
+  std::optional<double> rate_hz;
   std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
       fit_score, fit_judge, fit_context;
   OptionFlags<DetectOptions> detector_flags;
@@ -79,6 +82,17 @@ std::filesystem::path whole_path(const std::string& path) {
   std::error_code ignored;
   const std::filesystem::path whole = std::filesystem::absolute(path, ignored).lexically_normal();
   return whole.has_filename() ? whole : whole.parent_path();
+}
+
+/// Returns what is rendered of recipes, with the length of clips.
+RenderedTruth rendered_truth(const Arguments& arguments) {
+  RenderedTruth rendered = arguments.rendered;
+  if (arguments.rate_hz && !arguments.clip_s) throw UsageError("--rate expects --clip, the seconds of each clip");
+  if (!arguments.clip_s) return rendered;
+  if (arguments.recipes.empty()) throw UsageError("--clip expects --recipe, of which clips are rendered");
+  rendered.clip = synth::ClipTiming{*arguments.clip_s, arguments.rate_hz.value_or(synth::ClipTiming{}.rate_hz)};
+  check(*rendered.clip);
+  return rendered;
 }
 
 /// Gives each source a distinct name: its last folder or, if these are not distinct, its path.
@@ -153,7 +167,7 @@ std::unique_ptr<TruthSource> open_frames(const std::string& source, const Argume
 std::unique_ptr<TruthSource> open_set(const Request& request, const Arguments& arguments, const BodyModel& body) {
   const std::string& source = request.set.source;
   if (request.is_recipe) {
-    auto frames = open_recipe_truth(source, arguments.rendered, arguments.step, body);
+    auto frames = open_recipe_truth(source, rendered_truth(arguments), arguments.step, body);
     return arguments.turn_deg != 0.0 ? with_turn(std::move(frames), arguments.turn_deg) : std::move(frames);
   }
   const std::vector<std::string> folders = arguments.track ? sequences_in(source) : std::vector{source};
@@ -244,6 +258,7 @@ void run(const Arguments& arguments, const std::string& command) {
   const ThreadLimit limit(arguments.threads);
   check_writable(arguments);
   const std::vector<Request> requests = set_requests(arguments);
+  (void)rendered_truth(arguments);  // before anything is read
   const std::string bytes = read_file(arguments.model);
   Forest forest = parse_model(bytes, arguments.model);
   forest.body = arguments.joints_file.empty() ? with_evaluation_joints(forest.body)
@@ -296,9 +311,14 @@ void add_evaluate(CLI::App& program) {
       ->add_option("--recipe", arguments->recipes,
                    "Frames rendered from this recipe and not kept, as `vesalius synth --recipe` makes them")
       ->type_name("FILE");
-  command->add_option("--count", arguments->rendered.count, "Frames of each recipe")
+  command->add_option("--count", arguments->rendered.count, "Frames of each recipe; with --clip clips")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxCount));
+  command
+      ->add_option("--clip", arguments->clip_s,
+                   "Clips of so many seconds of each recipe instead of single frames, as `vesalius synth --clip`")
+      ->type_name("SECONDS");
+  command->add_option("--rate", arguments->rate_hz, "Frames a second of clips (default: 30)")->type_name("HZ");
   command->add_option("--render-seed", arguments->rendered.seed, "Seed of the recipes' frames")->type_name("N");
   command->add_option("--assets", arguments->rendered.assets.folder, "Folder in which `vesalius assets` put its files")
       ->type_name("DIR");

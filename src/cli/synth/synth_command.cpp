@@ -34,7 +34,6 @@ namespace {
 constexpr int kMaxFrames = 1'000'000'000;
 constexpr int kMaxPreview = 200;
 constexpr int kPreviewColumns = 3;
-constexpr double kUsualRate_hz = 30.0;  // of every preset
 
 struct Arguments {
   explicit Arguments(CLI::App& command) : recipe_flags(command) {}
@@ -158,7 +157,7 @@ void write_flesh(const Arguments& arguments, const synth::Recipe& recipe, const 
 }
 
 synth::ClipTiming timing_of(const Arguments& arguments) {
-  const synth::ClipTiming timing{*arguments.clip_s, arguments.rate_hz.value_or(kUsualRate_hz)};
+  const synth::ClipTiming timing{*arguments.clip_s, arguments.rate_hz.value_or(synth::ClipTiming{}.rate_hz)};
   check(timing);
   return timing;
 }
@@ -262,7 +261,7 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
                   "Clips of so many seconds instead of single frames: people who move before a camera")
       ->type_name("SECONDS")
       ->group(group);
-  command.add_option("--rate", arguments.rate_hz, fmt::format("Frames a second of clips (default: {})", kUsualRate_hz))
+  command.add_option("--rate", arguments.rate_hz, fmt::format("Frames a second of clips (default: {})", synth::ClipTiming{}.rate_hz))
       ->type_name("HZ")
       ->group(group);
   command

@@ -85,11 +85,39 @@ class Builder {
     }
     groups_ = make_groups(scene_, sitters_, random_);
     stage_ = place_people(scene_, placement_, ground_.view.camera, sitters_, groups_, random_);
+    if (stage_.groups.empty()) hold_camera();
     for (const PlacedGroup& placed : stage_.groups) {
       for (const GroupMember& member : groups_[placed.group].members) {
         settle(plan_of_[member.plan], member.body, placed.world_from_group * member.group_from_body);
       }
     }
+  }
+
+  /// Aims the camera at where people will walk, so that it sees most of a person at a usual distance.
+  void hold_camera() {
+    constexpr int kTries = 12;
+    for (int i = 0; i < kTries; ++i) {
+      const float far = std::max(sample_distance(placement_, random_), placement_.usual_min_m);
+      stage_.camera = sample_camera(placement_, between(0.7, 1.1, random_), far, random_);
+      if (sees_person(stage_.camera)) break;
+    }
+    stage_.occupancy.set_eye({0.F, stage_.camera.height_m, 0.F});
+  }
+
+  /// Returns whether knees and head of somebody in the middle of the usual distances are in the picture.
+  bool sees_person(const CameraPose& pose) const {
+    const Camera& camera = ground_.view.camera;
+    const float far = 0.5F * (placement_.usual_min_m + placement_.usual_max_m), rise = pose.height_m - 0.95F;
+    const float along = std::sqrt(std::max(0.F, far * far - rise * rise));
+    const Isometry3f camera_from_world = pose.world_from_camera().inverse();
+    for (const float y : {0.5F, 1.65F}) {
+      const Vector3f p = camera_from_world * Vector3f(0.F, y, -along);
+      if (p.z() < 0.1F) return false;
+      const Vector2f pixel = camera.pixel(p);
+      if (pixel.x() < 0.F || pixel.x() > static_cast<float>(camera.width)) return false;
+      if (pixel.y() < 0.F || pixel.y() > static_cast<float>(camera.height)) return false;
+    }
+    return true;
   }
 
   /// Gives somebody who stays put a track, and stills the arms where they would touch something.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "synth/clip/plant_feet.h"
 #include "synth/scene/palette.h"
 
 namespace vesalius::synth {
@@ -205,6 +206,7 @@ class Planner {
     PersonTrack track;
     track.states.reserve(states_.size());
     for (const StrollState& state : states_) track.states.push_back(shown(can_, state));
+    plant_feet(can_.leg_m, track);
     return track;
   }
 

@@ -48,7 +48,6 @@ bool leaves_floor(const Movement& movement) {
   const float leg_m = bone_length_m(Bone::l_thigh) + bone_length_m(Bone::l_shin);
   float lowest = std::numeric_limits<float>::max(), highest = -lowest;
   for (const BodyState& state : movement.states) {
-    if (classify_posture(state.pose) != Posture::standing) continue;  // the figure lacks the flesh below its bones
     const StickFigure figure = stick_figure(state.pose);
     float foot_m = std::numeric_limits<float>::max();
     for (std::size_t b = 0; b < kBoneCount; ++b) foot_m = std::min({foot_m, figure.head[b].y(), figure.tail[b].y()});
@@ -88,11 +87,11 @@ bool stays_at_one_place(const Movement& movement) {
 void sort_in(Movement movement, MovementLibrary& library) {
   constexpr float kShortest_s = 0.8F, kMostIntersecting = 0.2F;
   if (movement.states.size() < 2 || movement.seconds() < kShortest_s || !is_sound(movement)) return;
-  if (leaves_floor(movement) || intersecting_share(movement) > kMostIntersecting) return;
+  if (intersecting_share(movement) > kMostIntersecting) return;
   const Posture begins = classify_posture(movement.states.front().pose);
   const Posture ends = classify_posture(movement.states.back().pose);
   if (begins == Posture::standing && ends == Posture::lying) return library.lie_downs.push_back(std::move(movement));
-  if (!stands_throughout(movement)) return;
+  if (!stands_throughout(movement) || leaves_floor(movement)) return;
   if (std::optional<Gait> gait = find_gait(movement)) return library.gaits.push_back(std::move(*gait));
   if (stays_at_one_place(movement)) library.stays.push_back(std::move(movement));
 }
