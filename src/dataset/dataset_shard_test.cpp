@@ -58,8 +58,8 @@ TEST(Shard, NamesTheReasonOfErrors) {
   EXPECT_THAT(error_of([] { table_of("hello there, this is some text of no meaning at all"); }),
               HasSubstr("no shard of a labelled dataset"));
   std::string newer = bytes;
-  newer[8] = 3;
-  EXPECT_THAT(error_of([&] { table_of(newer); }), HasSubstr("newer version: format 3"));
+  newer[8] = 4;
+  EXPECT_THAT(error_of([&] { table_of(newer); }), HasSubstr("newer version: format 4"));
   EXPECT_THAT(error_of([&] { table_of(bytes + "x"); }), HasSubstr("damaged header"));
   test::TemporaryFolder folder;
   EXPECT_THAT(error_of([&] { ShardFile(folder / "none.shard"); }),

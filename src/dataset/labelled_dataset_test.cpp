@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "dataset/open_truth.h"
 #include "dataset/test_dataset.h"
 
 namespace vesalius {
@@ -99,6 +100,28 @@ TEST(Dataset, ReplacesDamagedTruncatedAndForeignShards) {
   write_missing(writer);
   const DatasetReader reader(whole.path());
   for (std::uint64_t i = 0; i < 10; ++i) test::expect_same(reader.read(i), random_labelled(i));
+}
+
+TEST(Dataset, KnowsItsClips) {
+  const test::TemporaryFolder folder;
+  DatasetInfo info = test::small_info();
+  info.clips = {5, 29.97};
+  {
+    DatasetWriter writer(folder / "set", info);
+    for (std::uint64_t i = 0; i < 10; ++i) writer.write(i, random_labelled(i));
+  }
+  const DatasetReader reader(folder / "set");
+  EXPECT_EQ(reader.info().clips, info.clips);
+  const auto source = open_truth(folder / "set");
+  for (int i = 0; i < 10; ++i) {
+    const FrameTruth truth = source->next()->truth;
+    EXPECT_EQ(truth.sequence, i / 5);
+    EXPECT_THAT(truth.ids, testing::ElementsAre(0, 1));
+  }
+  info.clips.rate_hz = 30.0;
+  EXPECT_THAT(error_of([&] { DatasetWriter(folder / "set", info); }), HasSubstr("another recipe"));
+  info.clips = {5, 0.0};
+  EXPECT_THROW(DatasetWriter(folder / "other", info), UsageError);
 }
 
 TEST(Dataset, CanGrow) {
@@ -195,10 +218,10 @@ TEST(DatasetReader, ChecksItsDescription) {
     test::put(path, changed);
     return error_of([&] { DatasetReader reader(whole.path()); });
   };
-  EXPECT_THAT(complaint("\"format\": 2", "\"format\": 3"), HasSubstr("newer version: format 3"));
-  EXPECT_THAT(complaint("\"format\": 2", "\"format\": 0"),
-              HasSubstr("another version: format 0, this program reads 2"));
-  EXPECT_THAT(complaint("\"format\": 2", "\"format\": 1"), HasSubstr("another version: format 1"));
+  EXPECT_THAT(complaint("\"format\": 3", "\"format\": 4"), HasSubstr("newer version: format 4"));
+  EXPECT_THAT(complaint("\"format\": 3", "\"format\": 0"),
+              HasSubstr("another version: format 0, this program reads 3"));
+  EXPECT_THAT(complaint("\"format\": 3", "\"format\": 1"), HasSubstr("another version: format 1"));
   EXPECT_THAT(complaint("\"joints\"", "\"joint\""), HasSubstr("joints: expected a list of names"));
   EXPECT_THAT(complaint("\"hip\"", "7"), HasSubstr("joints: expected a list of names"));
   EXPECT_THAT(complaint("\"frames\": 10", "\"frames\": -1"), HasSubstr("frames: expected a whole number"));

@@ -127,5 +127,48 @@ TEST(LabelledFolder, RefusesOtherFolders) {
   EXPECT_FALSE(is_labelled_folder(folder / "nothing"));
 }
 
+TEST(LabelledFolder, KnowsItsClipsAndWhereTheCameraIs) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "out";
+  LabelledFrame labelled = random_labelled(1);
+  labelled.camera_height_m = 1.375F;
+  labelled.world_from_camera = test::camera_pose();
+  {
+    LabelledExporter exporter(path, paper_body(), test::kJoints, {2, 25.0});
+    for (int i = 0; i < 4; ++i) {
+      labelled.frame.name = "000" + std::to_string(i / 2) + "_00000" + std::to_string(i % 2);
+      labelled.frame.time_s = 0.04 * (i % 2);
+      exporter.write(labelled);
+    }
+  }
+  const LabelledFolder read(path);
+  EXPECT_EQ(read.clips(), (ClipLayout{2, 25.0}));
+  const LabelledFrame last = read.read(3);
+  EXPECT_EQ(last.frame.time_s, 0.04);
+  EXPECT_EQ(last.camera_height_m, 1.375F);
+  EXPECT_TRUE(last.world_from_camera->isApprox(*labelled.world_from_camera, 1e-6F));
+  const auto source = open_truth(path);
+  for (const int clip : {0, 0, 1, 1}) {
+    const FrameTruth truth = source->next()->truth;
+    EXPECT_EQ(truth.sequence, clip);
+    EXPECT_EQ(truth.ids.size(), 2U);
+    EXPECT_EQ(truth.camera_height_m, 1.375F);
+  }
+  for (const auto& [text, complaint] : {std::pair{"[]", "frames_per_clip"},
+                                        {R"({"frames_per_clip": 0, "rate_hz": 30})", "expected 1 to"},
+                                        {R"({"frames_per_clip": 2, "rate_hz": -1})", "rate_hz"}}) {
+    test::put(path + "/clips.json", text);
+    EXPECT_THAT(error_of([&] { LabelledFolder(path).size(); }), HasSubstr(complaint));
+  }
+}
+
+TEST(LabelledFolder, HasFramesThatStandAlone) {
+  const Exported exported;
+  const auto source = open_truth(exported.path());
+  const FrameTruth truth = source->next()->truth;
+  EXPECT_EQ(truth.sequence, -1);
+  EXPECT_TRUE(truth.ids.empty());
+}
+
 }  // namespace
 }  // namespace vesalius

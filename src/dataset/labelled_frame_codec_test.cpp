@@ -42,6 +42,19 @@ TEST(FrameCodec, RefusesPosturesAndDirectionsThatDoNotFit) {
   EXPECT_THAT(error_of([&] { encode_frame({1, 2, labelled}, kParts); }), HasSubstr("not of unit length"));
 }
 
+TEST(FrameCodec, KeepsWhereTheCameraIs) {
+  LabelledFrame labelled = random_labelled(3);
+  labelled.camera_height_m = 1.4F;
+  test::expect_same(decode_frame(encode_frame({1, 2, labelled}, kParts), kParts, "test").labelled, labelled);
+  labelled.world_from_camera = test::camera_pose();
+  test::expect_same(decode_frame(encode_frame({1, 2, labelled}, kParts), kParts, "test").labelled, labelled);
+  labelled.world_from_camera->linear() *= 2.F;
+  EXPECT_THAT(error_of([&] { encode_frame({1, 2, labelled}, kParts); }), HasSubstr("camera's pose"));
+  labelled.world_from_camera.reset();
+  labelled.camera_height_m = std::numeric_limits<float>::infinity();
+  EXPECT_THAT(error_of([&] { encode_frame({1, 2, labelled}, kParts); }), HasSubstr("height is not finite"));
+}
+
 TEST(FrameCodec, TellsNoTimeFromTheTimeZero) {
   LabelledFrame labelled = random_labelled(3);
   for (const std::optional<double> time_s : {std::optional<double>{}, std::optional<double>{0.0}}) {

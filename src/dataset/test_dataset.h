@@ -48,6 +48,11 @@ inline void expect_same(const LabelledFrame& a, const LabelledFrame& b) {
   EXPECT_EQ(a.joints, b.joints);
   EXPECT_EQ(a.postures, b.postures);
   EXPECT_EQ(a.up, b.up);
+  EXPECT_EQ(a.camera_height_m, b.camera_height_m);
+  ASSERT_EQ(a.world_from_camera.has_value(), b.world_from_camera.has_value());
+  if (a.world_from_camera) {
+    EXPECT_EQ(a.world_from_camera->matrix(), b.world_from_camera->matrix());
+  }
   ASSERT_EQ(a.parts.size(), b.parts.size());
   for (std::size_t i = 0; i < a.parts.size(); ++i) {
     ASSERT_EQ(a.parts[i].size(), b.parts[i].size());
@@ -55,6 +60,11 @@ inline void expect_same(const LabelledFrame& a, const LabelledFrame& b) {
       EXPECT_TRUE(a.parts[i][p] == b.parts[i][p] || (a.parts[i][p].hasNaN() && b.parts[i][p].hasNaN()));
     }
   }
+}
+
+/// Returns a pose of a camera in the world.
+inline Eigen::Isometry3f camera_pose() {
+  return Eigen::Translation3f(0.1F, 1.4F, -2.F) * Eigen::AngleAxisf(0.3F, Eigen::Vector3f(0.6F, 0.F, 0.8F));
 }
 
 inline DatasetInfo small_info(std::uint64_t frames = 10, std::uint32_t per_shard = 4) {

@@ -103,6 +103,25 @@ TEST_F(SynthProgram, MakesASingleFrameAgain) {
   EXPECT_EQ(read_png8(path("alone/labels/00000011.png")), in_a_row.labels);
 }
 
+TEST_F(SynthProgram, MakesClips) {
+  const std::string clips = "--clip 0.5 --rate 8 --count 2 --no-sensor.colour ";
+  expect_done(run_program(synth(clips + "--threads 1 --out " + path("one"))));
+  expect_done(run_program(synth(clips + "--threads 4 --out " + path("four"))));
+  EXPECT_EQ(contents(path("one")), contents(path("four")));
+  const DatasetReader reader(path("one"));
+  ASSERT_EQ(reader.size(), 8);
+  EXPECT_EQ(reader.info().clips, (ClipLayout{4, 8.0}));
+  const LabelledFrame frame = reader.read(5);
+  EXPECT_EQ(frame.frame.name, "0001_000001");
+  EXPECT_EQ(frame.frame.time_s, 0.125);
+
+  expect_done(run_program(
+      synth("--clip 0.5 --rate 8 --first 1 --count 1 --no-sensor.colour --format folder --out " + path("alone"))));
+  EXPECT_EQ(read_png8(path("alone/labels/0001_000001.png")), frame.labels);
+  expect_done(run_program(synth("--clip 0.5 --preview 3 --out " + path("clip.png"))));
+  EXPECT_GT(read_colour(path("clip.png")).width(), 300);
+}
+
 TEST_F(SynthProgram, WritesAPreviewPicture) {
   expect_done(run_program(synth("--preview 6 --out " + path("sheet.png"))));
   const ColourImage sheet = read_colour(path("sheet.png"));
@@ -135,6 +154,14 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
   refused(synth("--count 3 --preset kinekt --out " + path("x")), 2, "kinect-v1");
   refused(synth("--count 3 --mounting roof --out " + path("x")), 2, "ceiling");
   refused(synth("--count 0 --out " + path("x")), 2, "--count");
+  refused(synth("--clip 0 --count 1 --out " + path("x")), 2, "clips of 0 seconds");
+  refused(synth("--clip -3 --count 1 --out " + path("x")), 2, "clips of -3 seconds");
+  refused(synth("--clip 1 --rate -5 --count 1 --out " + path("x")), 2, "-5 frames a second");
+  refused(synth("--rate 30 --count 1 --out " + path("x")), 2, "--rate expects --clip");
+  refused(synth("--clip 1 --first 2 --count 1 --out " + path("x")), 2, "--first expects");
+  refused(synth("--clip 600 --count 100000000 --out " + path("x")), 2, "frames in all");
+  refused(synth("--clip 1 --clip.moving-share 2 --count 1 --out " + path("x")), 2, "clip.moving-share");
+  refused("evaluate -m none.forest --clip 1 " + path("d"), 2, "--clip expects --recipe");
   refused(synth("--count 3 --people.one -1 --out " + path("x")), 2, "people.one");
   refused(synth("--count 3 --recipe " + path("none.toml") + " --out " + path("x")), 1, "none.toml");
   std::string deep = "a";  // so many nested tables that freeing them would exhaust the stack

@@ -24,7 +24,7 @@ EASY_FRAMES = {"--people.none": "0", "--people.one": "1", "--people.two": "0", "
 NOBODY = {**EASY_FRAMES, "--people.none": "1", "--people.one": "0"}
 SMALL_FOREST = {"--trees": "1", "--hard-trees": "1", "--depth": "5", "--candidates": "8", "--pixels": "100",
                 "--held-out-share": "0.25"}
-MOST = {"--count": 12, "--preview": 3, "--trees": 2}
+MOST = {"--count": 12, "--preview": 3, "--trees": 2, "--clip": 0.5}
 CAMERA = r"(openni2|freenect|realsense|orbbec):\w*"
 NOT_RUN = ("assets",)  # needs a network
 
@@ -52,7 +52,7 @@ class Wrapper:
         for flag, most in MOST.items():
             if flag in words:
                 at = words.index(flag) + 1
-                words[at] = str(min(int(words[at]), most))
+                words[at] = words[at] if float(words[at]) <= most else str(most)
         return words
 
     def place(self, name, stand_in):

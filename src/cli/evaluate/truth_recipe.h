@@ -21,9 +21,9 @@ struct RenderedTruth {
 };
 
 /// Opens the frames that `vesalius synth --recipe FILE --count N --seed S` would write (with --clip and --rate those of
-/// clips), with the labels of `body`, and gives the first of every `step`. Several frames are rendered at a time on all allowed threads. The notes name the
-/// assets from which frames are made, so that one can tell whether two evaluations saw the same frames. Throws as
-/// make_recipe and load_assets do.
+/// clips), with the labels of `body`, and gives the first of every `step`. Several frames are rendered at a time on all
+/// allowed threads. The notes name the assets from which frames are made, so that one can tell whether two evaluations
+/// saw the same frames. Throws as make_recipe and load_assets do.
 std::unique_ptr<TruthSource> open_recipe_truth(const std::string& recipe_file, const RenderedTruth& rendered, int step,
                                                const BodyModel& body);
 

@@ -261,7 +261,9 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
                   "Clips of so many seconds instead of single frames: people who move before a camera")
       ->type_name("SECONDS")
       ->group(group);
-  command.add_option("--rate", arguments.rate_hz, fmt::format("Frames a second of clips (default: {})", synth::ClipTiming{}.rate_hz))
+  command
+      .add_option("--rate", arguments.rate_hz,
+                  fmt::format("Frames a second of clips (default: {})", synth::ClipTiming{}.rate_hz))
       ->type_name("HZ")
       ->group(group);
   command

@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 
+#include "synth/mocap/movement_library.h"
 #include "synth/mocap/thin_poses.h"
 #include "synth/pose/mix_poses.h"
 #include "synth/pose/posture.h"
@@ -217,6 +218,15 @@ TEST(PoseLibrary, IsPlausibleForRealMotions) {
   for (const SampledPose& p : library.poses) ++postures[p.posture];
   EXPECT_GT(postures[Posture::lying], 50) << "HDM05 lies down";
   EXPECT_GT(postures[Posture::standing], static_cast<int>(library.poses.size()) / 2);
+
+  const MovementLibrary movements = load_movements(chosen, slurp);
+  EXPECT_GT(movements.gaits.size(), 50U) << "CMU walks";
+  EXPECT_GT(movements.stays.size(), 40U);
+  EXPECT_GE(movements.lie_downs.size(), 5U);
+  for (const Gait& gait : movements.gaits) {
+    EXPECT_GT(gait.period_s, 0.6F);
+    EXPECT_LT(gait.speed(), 2.4F);
+  }
   fs::remove_all(folder);
 }
 

@@ -125,5 +125,28 @@ TEST(Convention, NamesLineAndReasonOfErrors) {
   EXPECT_THAT(parsing(std::string(20000, '#')), ThrowsMessage<Error>(HasSubstr("expected at most 16384 bytes")));
 }
 
+TEST(Retarget, KeepsHeadingsAndWaysOfMovements) {
+  Motion motion = still_motion(4);
+  for (const Bone bone : {Bone::l_shin, Bone::l_foot}) motion.joints[index(bone)].offset = {0.F, -2.F, 0.F};
+  for (int f = 1; f < 4; ++f) {
+    const Eigen::Quaternionf heading = turn(170.F * static_cast<float>(f), Eigen::Vector3f::UnitY());
+    for (int b = 0; b < kBoneCount; ++b) motion.world[static_cast<std::size_t>(f * kBoneCount + b)] = heading;
+    motion.root[static_cast<std::size_t>(f)] = {static_cast<float>(f), 3.F, 2.F};
+  }
+  const Movement movement = retarget_movement(motion, parse_convention(toml(), "c.toml"));
+  ASSERT_EQ(movement.states.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const BodyState& state = movement.states[i];
+    EXPECT_LT(state.pose[Bone::pelvis].angularDistance(Eigen::Quaternionf::Identity()), 1e-3F);
+    EXPECT_TRUE(state.root.isApprox(Eigen::Vector2f(static_cast<float>(i + 1), 2.F) / 4.F)) << "in lengths of the leg";
+    EXPECT_FLOAT_EQ(state.height, 0.75F);
+    if (i > 0) {
+      EXPECT_NEAR(state.heading_rad - movement.states[i - 1].heading_rad, 170.F * kPi / 180.F, 1e-3F);
+    }
+  }
+  EXPECT_THAT([] { retarget_movement(still_motion(3), parse_convention(toml(), "c.toml")); },
+              ThrowsMessage<Error>(HasSubstr("its legs have no length")));
+}
+
 }  // namespace
 }  // namespace vesalius::synth

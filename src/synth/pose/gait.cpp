@@ -15,6 +15,7 @@ using Eigen::Vector2f;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kDegree = kPi / 180.F;
+constexpr float kHeel_m = 0.15F;  ///< twice the height of the ankle over toes that stand
 
 float wrapped(float angle) { return std::remainder(angle, 2.F * kPi); }
 
@@ -88,18 +89,18 @@ Gait gait_of(const Movement& movement, const Stretch& stretch) {
   return gait;
 }
 
-/// Returns how far the foot that carries the weight goes back under the hips from one pose to the next.
+/// Returns how far the foot that carries the weight goes back under the hips from one pose to the next: that of the two
+/// which goes back more, since the other one swings to the front.
 float step_back_m(const StickFigure& a, const StickFigure& b) {
-  float lowest = std::numeric_limits<float>::max(), back = 0.F;
+  float back_m = std::numeric_limits<float>::lowest();
   for (const Bone foot : {Bone::l_foot, Bone::r_foot}) {
-    for (const auto& [from, to] : {std::pair{a.head_of(foot), b.head_of(foot)}, {a.tail_of(foot), b.tail_of(foot)}}) {
-      const float height = from.y() + to.y();
-      if (height >= lowest) continue;
-      lowest = height;
-      back = from.z() - to.z();
-    }
+    const bool on_toes =
+        a.tail_of(foot).y() + b.tail_of(foot).y() < a.head_of(foot).y() + b.head_of(foot).y() - kHeel_m;
+    const float from = on_toes ? a.tail_of(foot).z() : a.head_of(foot).z();
+    const float to = on_toes ? b.tail_of(foot).z() : b.head_of(foot).z();
+    back_m = std::max(back_m, from - to);
   }
-  return back;
+  return back_m;
 }
 
 /// A time in a gait: states next to each other, how far it is between them, and the whole periods before.

@@ -1,0 +1,253 @@
+#include "synth/clip_generator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "synth/clip/plan_stroll.h"
+#include "synth/skeleton_joints.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
+
+namespace vesalius::synth {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr ClipTiming kShort{3.F, 20.0};
+
+/// Returns a recipe of three people in small pictures without noise.
+Recipe small_recipe() {
+  Recipe recipe;
+  recipe.sensor.width = 96;
+  recipe.sensor.height = 72;
+  recipe.sensor.noise = false;
+  recipe.sensor.colour = false;
+  recipe.body.kind = "builtin";
+  recipe.body.count = 3;
+  recipe.people = {.none = 0.F, .one = 0.F, .two = 0.F, .three = 1.F, .four = 0.F};
+  recipe.clip.moving_share = 1.F;
+  recipe.clip.walking_share = 1.F;
+  return recipe;
+}
+
+ClipGenerator small_clips(const Recipe& recipe, const ClipTiming& timing = kShort) {
+  return {recipe, {}, paper_body(), 4, timing};
+}
+
+/// Returns the joints in the world: [frame][person][joint].
+std::vector<std::vector<std::vector<Eigen::Vector3f>>> world_joints(const std::vector<LabelledFrame>& frames) {
+  std::vector<std::vector<std::vector<Eigen::Vector3f>>> all;
+  for (const LabelledFrame& frame : frames) {
+    all.push_back(frame.joints);
+    for (auto& person : all.back()) {
+      for (Eigen::Vector3f& p : person) p = *frame.world_from_camera * p;
+    }
+  }
+  return all;
+}
+
+std::vector<LabelledFrame> frames_of(const ClipGenerator& clips, std::uint64_t clip) {
+  std::vector<LabelledFrame> frames(static_cast<std::size_t>(clips.frames_per_clip()));
+  parallel_for(clips.frames_per_clip(), [&](int k) { frames[k] = clips.frame(clip, k); });
+  return frames;
+}
+
+TEST(ClipGenerator, MakesAnyFrameAgainInAnyOrder) {
+  Recipe recipe = small_recipe();
+  recipe.sensor.noise = true;
+  recipe.sensor.colour = true;
+  recipe.sensor.filter.share = 0.5F;
+  const ClipGenerator one = small_clips(recipe), other = small_clips(recipe);
+  std::vector<LabelledFrame> forwards;
+  {
+    const ThreadLimit limit(1);
+    for (std::uint64_t i = 55; i < 65; ++i) forwards.push_back(one.frame(i));  // the end of clip 0 and some of clip 1
+  }
+  const ThreadLimit limit(2);
+  std::vector<LabelledFrame> backwards(forwards.size());
+  parallel_for(static_cast<int>(backwards.size()), [&](int i) {
+    const std::size_t at = backwards.size() - 1 - static_cast<std::size_t>(i);
+    backwards[at] = other.frame(55 + at);
+  });
+  for (std::size_t i = 0; i < forwards.size(); ++i) {
+    EXPECT_EQ(forwards[i].frame.name, backwards[i].frame.name);
+    EXPECT_EQ(forwards[i].frame.depth, backwards[i].frame.depth);
+    EXPECT_EQ(forwards[i].frame.colour, backwards[i].frame.colour);
+    EXPECT_EQ(forwards[i].labels, backwards[i].labels);
+    EXPECT_EQ(forwards[i].person, backwards[i].person);
+    EXPECT_EQ(forwards[i].joints, backwards[i].joints);
+    EXPECT_EQ(forwards[i].world_from_camera->matrix(), backwards[i].world_from_camera->matrix());
+  }
+  EXPECT_EQ(forwards[4].frame.name, "0000_000059");
+  EXPECT_EQ(forwards[5].frame.name, "0001_000000");
+  EXPECT_EQ(forwards[5].frame.time_s, 0.0);
+  EXPECT_EQ(forwards[4].frame.time_s, 59 / 20.0);
+}
+
+TEST(ClipGenerator, MovesTheSameBodiesContinuously) {
+  const ClipGenerator clips = small_clips(small_recipe());
+  const std::vector<LabelledFrame> frames = frames_of(clips, 0);
+  const auto joints = world_joints(frames);
+  ASSERT_EQ(joints[0].size(), 3U);
+  float farthest_m = 0.F;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    ASSERT_EQ(joints[k].size(), 3U) << "out of view or not, all are listed";
+    ASSERT_EQ(frames[k].postures.size(), 3U);
+    ASSERT_EQ(frames[k].parts.size(), 3U);
+    for (std::size_t who = 0; who < 3; ++who) {
+      const auto& now = joints[k][who];
+      for (const auto& [from, to] : {std::pair{Bone::l_thigh, Bone::l_shin}, {Bone::r_upper_arm, Bone::r_forearm}}) {
+        EXPECT_NEAR((now[index(from)] - now[index(to)]).norm(),
+                    (joints[0][who][index(from)] - joints[0][who][index(to)]).norm(), 1e-3F);
+      }
+      for (std::size_t other = 0; other < who; ++other) {
+        Eigen::Vector3f apart = now[0] - joints[k][other][0];
+        apart.y() = 0.F;
+        EXPECT_GT(apart.norm(), 0.45F) << "frame " << k;
+      }
+      if (k == 0) continue;
+      for (std::size_t j = 0; j < now.size(); ++j) {
+        EXPECT_LT((now[j] - joints[k - 1][who][j]).norm() * 20.F, 10.F) << joint_names()[j] << " of frame " << k;
+      }
+      farthest_m = std::max(farthest_m, (now[0] - joints[0][who][0]).norm());
+    }
+  }
+  EXPECT_GT(farthest_m, 0.5F) << "somebody goes somewhere";
+}
+
+TEST(ClipGenerator, KnowsWhereTheCameraIs) {
+  const ClipGenerator clips = small_clips(small_recipe());
+  Eigen::Vector3f before = Eigen::Vector3f::Zero();
+  float moved_m = 0.F;
+  for (int k = 0; k < clips.frames_per_clip(); k += 12) {
+    const LabelledFrame f = clips.frame(1, k);
+    const Eigen::Isometry3f& pose = *f.world_from_camera;
+    EXPECT_TRUE(f.up->isApprox(pose.linear().transpose() * Eigen::Vector3f::UnitY(), 1e-5F));
+    EXPECT_NEAR(*f.camera_height_m, pose.translation().y(), 1e-6F);
+    int below = 0, floor = 0;
+    for (int v = 0; v < f.frame.depth.height(); ++v) {
+      for (int u = 0; u < f.frame.depth.width(); ++u) {
+        if (f.frame.depth(u, v) == 0) continue;
+        const float y = (pose * point_at(f.frame.camera, f.frame.depth, u, v)).y();
+        below += y < -0.01F ? 1 : 0;
+        floor += std::abs(y) < 0.005F && f.labels(u, v) == kBackground ? 1 : 0;
+        // The floor's plane by what is known without the world: along `up`, the camera's height below it.
+        if (std::abs(y) < 0.005F) {
+          const float level = point_at(f.frame.camera, f.frame.depth, u, v).dot(*f.up) + *f.camera_height_m;
+          EXPECT_NEAR(level, 0.F, 0.006F);
+        }
+      }
+    }
+    EXPECT_EQ(below, 0) << "frame " << k;
+    EXPECT_GT(floor, 60) << "frame " << k;
+    if (k > 0) moved_m += (pose.translation() - before).norm();
+    before = pose.translation();
+  }
+  EXPECT_GT(moved_m, 0.005F);
+}
+
+TEST(ClipGenerator, LeavesTheRoomAsItIs) {
+  Recipe recipe = small_recipe();
+  recipe.people = {.none = 1.F, .one = 0.F, .two = 0.F, .three = 0.F, .four = 0.F};
+  const ClipGenerator clips = small_clips(recipe);
+  const LabelledFrame a = clips.frame(0, 0), b = clips.frame(0, 59);
+  const Eigen::Isometry3f b_from_a = b.world_from_camera->inverse() * *a.world_from_camera;
+  int met = 0, agree = 0;
+  for (int v = 0; v < a.frame.depth.height(); ++v) {
+    for (int u = 0; u < a.frame.depth.width(); ++u) {
+      if (a.frame.depth(u, v) == 0) continue;
+      const Eigen::Vector3f p = b_from_a * point_at(a.frame.camera, a.frame.depth, u, v);
+      if (p.z() < 0.2F) continue;
+      const Eigen::Vector2f pixel = b.frame.camera.pixel(p);
+      const int x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
+      if (!b.frame.depth.contains(x, y) || b.frame.depth(x, y) == 0) continue;
+      ++met;
+      agree += std::abs(1e-3F * static_cast<float>(b.frame.depth(x, y)) - p.z()) < 0.05F * p.z() ? 1 : 0;
+    }
+  }
+  EXPECT_GT(met, 2000);
+  EXPECT_GT(agree, met * 9 / 10);
+}
+
+TEST(ClipGenerator, LetsPeopleCross) {
+  Recipe recipe = small_recipe();
+  recipe.clip.moving_share = 0.F;
+  recipe.clip.crossing_share = 1.F;
+  recipe.clip.walking_share = 1.F;
+  const ClipTiming timing{6.F, 30.0};
+  const ClipGenerator clips = small_clips(recipe, timing);
+  const Camera camera = clips.frame(0, 0).frame.camera;
+  int with_crossing = 0;
+  for (std::uint64_t c = 0; c < 4; ++c) {
+    const auto clip = clips.clip(c);
+    const View view{camera, clip->camera.at(0.F).inverse()};
+    bool crossed = false;
+    for (std::size_t i = 0; i < clip->people.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        crossed = crossed || cross(view, clip->people[i].track, clip->people[j].track, 0.F, timing.seconds);
+      }
+    }
+    with_crossing += crossed ? 1 : 0;
+  }
+  EXPECT_GE(with_crossing, 3) << "of 4";
+}
+
+TEST(ClipGenerator, DrawsNoiseForEachFrameAndTheCameraForEachClip) {
+  Recipe recipe = small_recipe();
+  recipe.people = {.none = 1.F, .one = 0.F, .two = 0.F, .three = 0.F, .four = 0.F};
+  recipe.clip.moving_share = 0.F;
+  recipe.sensor.noise = true;
+  recipe.sensor.colour = true;
+  const ClipGenerator clips = small_clips(recipe);
+  const auto empty_columns = [](const DepthImage& depth) {
+    int columns = 0;
+    while (columns < depth.width()) {
+      for (int v = 0; v < depth.height(); ++v) {
+        if (depth(columns, v) != 0) return columns;
+      }
+      ++columns;
+    }
+    return columns;
+  };
+  const auto brightness = [](const ColourImage& colour) {
+    double sum = 0.0;
+    for (const Rgb& pixel : colour) sum += pixel.g;
+    return sum / static_cast<double>(colour.size());
+  };
+  for (std::uint64_t c = 0; c < 3; ++c) {
+    const LabelledFrame a = clips.frame(c, 0), b = clips.frame(c, 30);
+    EXPECT_NE(a.frame.depth, b.frame.depth);
+    EXPECT_NE(a.frame.colour, b.frame.colour);
+    EXPECT_NEAR(empty_columns(a.frame.depth), empty_columns(b.frame.depth), 1);
+    EXPECT_NEAR(brightness(a.frame.colour), brightness(b.frame.colour), 1.0);
+  }
+}
+
+TEST(ClipGenerator, GivesTheSameMotionAtAnyRate) {
+  const Recipe recipe = small_recipe();
+  const ClipGenerator slow = small_clips(recipe, {2.F, 10.0}), fast = small_clips(recipe, {2.F, 30.0});
+  EXPECT_EQ(slow.frames_per_clip(), 20);
+  EXPECT_EQ(fast.frames_per_clip(), 60);
+  EXPECT_EQ(slow.frame(0, 7).joints, fast.frame(0, 21).joints);
+}
+
+TEST(ClipGenerator, RefusesTimesThatAreNone) {
+  const auto make = [](float seconds, double rate_hz) {
+    return [=] { small_clips(small_recipe(), {seconds, rate_hz}); };
+  };
+  EXPECT_THAT(make(0.F, 30.0), ThrowsMessage<UsageError>(HasSubstr("clips of 0 seconds")));
+  EXPECT_THAT(make(std::nanf(""), 30.0), ThrowsMessage<UsageError>(HasSubstr("seconds")));
+  EXPECT_THAT(make(3.F, -1.0), ThrowsMessage<UsageError>(HasSubstr("-1 frames a second")));
+  EXPECT_THAT(make(1e6F, 30.0), ThrowsMessage<UsageError>(HasSubstr("at most 600")));
+  const ClipGenerator clips = small_clips(small_recipe());
+  EXPECT_THAT([&] { clips.frame(0, 60); },
+              ThrowsMessage<Error>(HasSubstr("frame 60 of a clip, expected one below 60")));
+  EXPECT_THAT([&] { clips.frame(0, -1); }, ThrowsMessage<Error>(HasSubstr("frame -1")));
+}
+
+}  // namespace
+}  // namespace vesalius::synth
