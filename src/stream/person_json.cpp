@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "stream/json_numbers.h"
+#include "vesalius/fit/flesh_model.h"
 
 namespace vesalius {
 namespace {
@@ -85,6 +86,33 @@ Json frame_facts(const Frame& frame, std::optional<double> latency_ms) {
   return json;
 }
 
+/// Bones by name. Rotations are xyzw, `global` into the optical frame, `local` into the parent's.
+Json body_json(const FittedBody& fitted) {
+  const auto rotation = [](const Eigen::Quaternionf& q) {
+    return Json{rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w())};
+  };
+  Json bones = Json::object();
+  const std::vector<FleshBone>& names = builtin_flesh().bones;
+  for (std::size_t b = 0; b < fitted.bones.size() && b < names.size(); ++b) {
+    const FittedBone& bone = fitted.bones[b];
+    const Eigen::Matrix3f& c = bone.covariance;
+    constexpr double kSquareMillimetres = 1e6;
+    Json covariance = Json::array();
+    for (const float number : {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}) {
+      covariance.push_back(rounded(static_cast<double>(number) * kSquareMillimetres, 10));
+    }
+    bones[names[b].name] = {{"head_m", xyz_json(bone.head)},
+                            {"tail_m", xyz_json(bone.tail)},
+                            {"length_m", rounded(bone.length_m)},
+                            {"global_xyzw", rotation(bone.global)},
+                            {"local_xyzw", rotation(bone.local)},
+                            {"covariance_mm2", covariance},
+                            {"confidence", rounded(bone.confidence)},
+                            {"state", to_string(bone.state)}};
+  }
+  return {{"stature_m", rounded(fitted.stature_m)}, {"misfit", rounded(fitted.misfit)}, {"bones", bones}};
+}
+
 Json tracked_json(const TrackedPerson& tracked, std::size_t index, const BodyModel& body, const Camera& camera) {
   Json json = {{"id", tracked.id},
                {"state", to_string(tracked.state)},
@@ -95,6 +123,7 @@ Json tracked_json(const TrackedPerson& tracked, std::size_t index, const BodyMod
                {"since_s", rounded(tracked.since_s, 1e6)},
                {"seen_s", rounded(tracked.seen_s, 1e6)}};
   json.update(person_json(tracked.person, index, body, camera));
+  if (tracked.body) json["body"] = body_json(*tracked.body);
   if (!tracked.smoothed.empty()) json["smoothed"] = joints_json(tracked.smoothed, body, camera);
   return json;
 }

@@ -87,7 +87,8 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
     return arguments.frames == 0 || progress.done() < arguments.frames;
   };
   if (arguments.track) {
-    PeopleTracker tracker(detector.body(), arguments.detector.track_options(), detector.appearance());
+    PeopleTracker tracker(detector.body(), arguments.detector.track_options(), detector.appearance(),
+                          std::make_shared<const BodyFitter>(detector.body()));
     totals.dropped = stream_frames(source, detector, tracker, options, take);
   } else {
     totals.dropped = stream_frames(source, detector, options, take);

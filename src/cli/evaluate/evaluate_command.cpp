@@ -283,7 +283,7 @@ void run(const Arguments& arguments, const std::string& command) {
   const std::shared_ptr<const PixelLabeller> labeller = make_labeller(std::move(forest));
   const FrameScorer scorer(labeller, scored);
   SequenceTrackerFactory trackers;
-  if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options);
+  if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options, {});
   evaluation.tracked = arguments.track;
   evaluation.body = scorer.body();
   if (!arguments.report.empty()) prepare_report(arguments.report);

@@ -512,32 +512,6 @@ TEST(TrackPeople, HoursOfPassersByAreForgotten) {
   EXPECT_EQ(ids.size(), 5000U) << "without looks nobody is known again, and no id is used twice";
 }
 
-TEST(TrackPeople, BodiesAreFittedOnceAFrameWithTheLastOneAtHand) {
-  int fits = 0;
-  const PeopleTracker::FitBody fit = [&](const Frame&, Person&, const std::optional<FittedBody>& last) {
-    ++fits;
-    FittedBody body = last.value_or(FittedBody{});
-    body.stature_m += 0.01F;
-    body.bones.resize(1);
-    body.bones[0] = {};
-    body.bones[0].state = State::observed;
-    body.bones[0].confidence = 0.9F;
-    return std::optional(body);
-  };
-  PeopleTracker tracker(paper_body(), {}, nullptr, fit);
-  const Stage stage({Actor{}});
-  TrackedFrame tracked;
-  for (int i = 0; i < 5; ++i) tracked = tracker.update(stage.frame, stage.people);
-  EXPECT_EQ(fits, 5);
-  ASSERT_TRUE(tracked.people.at(0).body);
-  EXPECT_NEAR(tracked.people[0].body->stature_m, 0.05F, 1e-6F);
-  tracked = tracker.update(stage.frame, {});
-  EXPECT_EQ(fits, 5);
-  ASSERT_EQ(tracked.people.at(0).state, TrackState::hidden);
-  EXPECT_EQ(tracked.people[0].body->bones[0].state, State::predicted);
-  EXPECT_LT(tracked.people[0].body->bones[0].confidence, 0.9F);
-}
-
 TEST(TrackPeople, SmoothsOnlyWhenAsked) {
   Follower plain;
   EXPECT_TRUE(plain.show({Actor{}}).people.at(0).smoothed.empty());
