@@ -101,14 +101,10 @@ Json body_json(const FittedBody& fitted) {
     for (const float number : {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}) {
       covariance.push_back(rounded(static_cast<double>(number) * kSquareMillimetres, 10));
     }
-    bones[names[b].name] = {{"head_m", xyz_json(bone.head)},
-                            {"tail_m", xyz_json(bone.tail)},
-                            {"length_m", rounded(bone.length_m)},
-                            {"global_xyzw", rotation(bone.global)},
-                            {"local_xyzw", rotation(bone.local)},
-                            {"covariance_mm2", covariance},
-                            {"confidence", rounded(bone.confidence)},
-                            {"state", to_string(bone.state)}};
+    bones[names[b].name] = {{"head_m", xyz_json(bone.head)},          {"tail_m", xyz_json(bone.tail)},
+                            {"length_m", rounded(bone.length_m)},     {"global_xyzw", rotation(bone.global)},
+                            {"local_xyzw", rotation(bone.local)},     {"covariance_mm2", covariance},
+                            {"confidence", rounded(bone.confidence)}, {"state", to_string(bone.state)}};
   }
   return {{"stature_m", rounded(fitted.stature_m)}, {"misfit", rounded(fitted.misfit)}, {"bones", bones}};
 }

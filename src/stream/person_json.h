@@ -22,7 +22,7 @@ std::string frame_json(const Frame& frame, const std::vector<Person>& people, co
 /// Returns the same line about people who are followed (docs/tracking.md). Each has its id, state, trunk with velocity,
 /// and the times since when it is known and when it was last found; the frame has the floor and what happened.
 std::string tracked_frame_json(const Frame& frame, const TrackedFrame& tracked, const BodyModel& body,
-                       std::optional<double> latency_ms = {});
+                               std::optional<double> latency_ms = {});
 
 /// Returns the line that closes a file of such lines: whether all frames of the source are in it, how many lines there
 /// are, and where some are missing why. A file without it was cut.

@@ -52,8 +52,9 @@ RestBody rest_body(const Poser& poser) {
     const auto up = index(parent(static_cast<Bone>(b)));
     // The root is midway between the hips, where the pelvis of any rig can be told.
     const auto head = [&](int bone) {
-      return bone == 0 ? Eigen::Vector3f(0.5F * (posed.joints[index(Bone::l_thigh)] + posed.joints[index(Bone::r_thigh)]))
-                       : posed.joints[bone];
+      return bone == 0
+                 ? Eigen::Vector3f(0.5F * (posed.joints[index(Bone::l_thigh)] + posed.joints[index(Bone::r_thigh)]))
+                 : posed.joints[bone];
     };
     body.offset[b] = b == 0 ? Eigen::Vector3f::Zero().eval() : (head(b) - head(up)).eval();
     body.tail[b] = posed.ends[b] - head(b);
@@ -68,9 +69,9 @@ RestBody rest_body(const Poser& poser) {
     const Eigen::Vector3f a = posed.vertices[triangle[0]], b = posed.vertices[triangle[1]],
                           c = posed.vertices[triangle[2]];
     const int bone = index(bones[t]);
-    const Eigen::Vector3f head = bone == 0 ? Eigen::Vector3f(0.5F * (posed.joints[index(Bone::l_thigh)] +
-                                                                     posed.joints[index(Bone::r_thigh)]))
-                                           : posed.joints[bone];
+    const Eigen::Vector3f head =
+        bone == 0 ? Eigen::Vector3f(0.5F * (posed.joints[index(Bone::l_thigh)] + posed.joints[index(Bone::r_thigh)]))
+                  : posed.joints[bone];
     body.surface.push_back({bones[t], (a + b + c) / 3.F - head, 0.5F * (b - a).cross(c - a).norm()});
   }
   return body;
@@ -175,7 +176,8 @@ FleshPopulation population_of(const std::vector<RestBody>& bodies, int factors) 
   parallel_for(static_cast<int>(bodies.size()), [&](int i) {
     for (std::size_t b = 0; b < bones.size(); ++b) {
       const FleshBone::Numbers of_bone = symmetric(bodies[i], bones[b], population.stations[b]);
-      for (int k = 0; k < kNumbers; ++k) numbers(static_cast<Index>(b * kNumbers + k), i) = static_cast<double>(of_bone[k]);
+      for (int k = 0; k < kNumbers; ++k)
+        numbers(static_cast<Index>(b * kNumbers + k), i) = static_cast<double>(of_bone[k]);
     }
   });
   VectorXd weights(numbers.rows());
@@ -351,9 +353,10 @@ std::string fitted_flesh_toml(const Generator& generator, const FleshFitOptions&
   std::vector<Pose> poses;
   Random random(options.seed);
   for (int i = 0; i < options.poses; ++i) poses.push_back(generator.draw_pose(random).pose);
-  return fmt::format("# Bones, flesh and poses of a population (docs/tracking.md), by `vesalius synth --fit-flesh`.\n"
-                     "# Metres and radians; the right side mirrors the left one.\nshapes = {}\n",
-                     options.shapes) +
+  return fmt::format(
+             "# Bones, flesh and poses of a population (docs/tracking.md), by `vesalius synth --fit-flesh`.\n"
+             "# Metres and radians; the right side mirrors the left one.\nshapes = {}\n",
+             options.shapes) +
          trust + bones_toml(population_of(bodies, options.shapes), poses) + limbs_toml(poses, options);
 }
 

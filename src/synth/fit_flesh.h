@@ -8,10 +8,10 @@
 namespace vesalius::synth {
 
 struct FleshFitOptions {
-  int bodies = 200;      ///< of the generator's recipe
-  int poses = 30000;     ///< drawn as the generator does
-  int shapes = 8;        ///< factors of the bodies' shapes
-  int components = 5;    ///< Gaussians for each limb
+  int bodies = 200;    ///< of the generator's recipe
+  int poses = 30000;   ///< drawn as the generator does
+  int shapes = 8;      ///< factors of the bodies' shapes
+  int components = 5;  ///< Gaussians for each limb
   std::uint64_t seed = 1;
 };
 

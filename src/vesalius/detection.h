@@ -89,7 +89,7 @@ struct Trace {
     Mask grown;
     LabelImage labels;  ///< pass 2, smoothed
     std::vector<PersonPoint> points;
-    Skeleton refined;   ///< pass 2, or the rough one if that is likelier
+    Skeleton refined;  ///< pass 2, or the rough one if that is likelier
     Evidence evidence;
     float score = 0.F;
     float certainty = 0.F;  ///< `score` with the odds of the known person whom it covers; the same without one

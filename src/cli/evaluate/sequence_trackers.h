@@ -8,7 +8,8 @@
 
 namespace vesalius::cli {
 
-/// Returns what makes the trackers that `evaluate --track` measures, each for one sequence, as `detect --track` does it.
+/// Returns what makes the trackers that `evaluate --track` measures, each for one sequence, as `detect --track` does
+/// it.
 SequenceTrackerFactory sequence_trackers(std::shared_ptr<const PixelLabeller> labeller, const DetectOptions& options,
                                          const TrackOptions& track);
 

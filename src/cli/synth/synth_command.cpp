@@ -148,7 +148,9 @@ void write_flesh(const Arguments& arguments, const synth::Recipe& recipe, const 
   synth::FleshFitOptions options;
   options.bodies = std::min(options.bodies, recipe.body.count);
   options.seed = arguments.seed;
-  const auto trust = [](const JointTrust& t) { return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", t.bias, t.slope, t.misfit); };
+  const auto trust = [](const JointTrust& t) {
+    return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", t.bias, t.slope, t.misfit);
+  };
   const FleshModel& flesh = builtin_flesh();
   write_file_atomically(arguments.fit_flesh,
                         synth::fitted_flesh_toml(generator, options,

@@ -8,15 +8,15 @@
 namespace vesalius {
 namespace {
 
-constexpr double kLongest_s = 0.5;   // after this nobody knows the pose any more
+constexpr double kLongest_s = 0.5;  // after this nobody knows the pose any more
 constexpr double kFrame_s = 1.0 / 30.0;
 constexpr double kFastest_m_s = 3.0;
 constexpr double kFastest_rad_s = 12.0;
 constexpr double kTurnShare = 0.5, kTurnKept = 0.8;  // the same of turns, and what of them goes on
-constexpr double kVelocityShare = 0.3;  // of a new measurement of the velocity, in a frame
-constexpr double kNews = 0.2;    // share of a frame that is new: neighbouring frames err alike
-constexpr double kKept = 0.998;  // share of what was learned that a frame keeps: clothes move
-constexpr int kTryEvery = 3;     // frames between fits from the kinematic skeleton
+constexpr double kVelocityShare = 0.3;               // of a new measurement of the velocity, in a frame
+constexpr double kNews = 0.2;                        // share of a frame that is new: neighbouring frames err alike
+constexpr double kKept = 0.998;                      // share of what was learned that a frame keeps: clothes move
+constexpr int kTryEvery = 3;                         // frames between fits from the kinematic skeleton
 
 /// Returns the matrix without negative eigenvalues, which rounding and local minima leave.
 Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
@@ -30,8 +30,7 @@ ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s) const 
   const int shapes = fitter.flesh().shapes;
   ExpectedBody expected;
   expected.shape = shape_.size() == shapes ? shape_ : Eigen::VectorXd::Zero(shapes);
-  expected.shape_information =
-      shape_.size() == shapes ? information_ : Eigen::MatrixXd::Identity(shapes, shapes);
+  expected.shape_information = shape_.size() == shapes ? information_ : Eigen::MatrixXd::Identity(shapes, shapes);
   if (!last_) return expected;
   const double passed_s = time_s - last_->time_s;
   if (!(passed_s >= 0.0) || passed_s > kLongest_s) return expected;
@@ -69,7 +68,8 @@ std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame
     velocity = (1.0 - kVelocityShare) * last_->velocity + kVelocityShare * now;
     velocity *= std::min(1.0, kFastest_m_s / std::max(velocity.norm(), 1e-9));
     for (std::size_t b = 0; b < turning.size(); ++b) {
-      const Eigen::Vector3d turn = log_rotation(last_->state.local[b].conjugate() * found->state.local[b]) / (time_s - last_->time_s);
+      const Eigen::Vector3d turn =
+          log_rotation(last_->state.local[b].conjugate() * found->state.local[b]) / (time_s - last_->time_s);
       turning[b] = kTurnKept * ((1.0 - kTurnShare) * last_->turning[b] + kTurnShare * turn);
       turning[b] *= std::min(1.0, kFastest_rad_s / std::max(turning[b].norm(), 1e-9));
     }

@@ -12,8 +12,8 @@ namespace vesalius {
 /// (section 9: matching the model to a person).
 class BodyHistory {
  public:
-  /// Fits the person's body in the next frame, at `time_s` seconds, and learns from it. Returns nothing if too little of
-  /// the person is known; then nothing is learned either.
+  /// Fits the person's body in the next frame, at `time_s` seconds, and learns from it. Returns nothing if too little
+  /// of the person is known; then nothing is learned either.
   std::optional<FittedBody> fit(const BodyFitter& fitter, const Frame& frame, const Person& person, double time_s);
 
   /// Forgets the pose and keeps the shape, as for somebody who comes back.
@@ -28,7 +28,7 @@ class BodyHistory {
 
   struct Last {
     BodyState state;
-    Eigen::Vector3d velocity;  ///< of the root, metres a second
+    Eigen::Vector3d velocity;              ///< of the root, metres a second
     std::vector<Eigen::Vector3d> turning;  ///< of each bone about its own axes, radians a second
     double time_s;
   };

@@ -25,7 +25,8 @@ Eigen::Vector3d log_rotation(const Eigen::Quaterniond& rotation) {
 
 Eigen::Quaterniond exp_rotation(const Eigen::Vector3d& vector) {
   const double angle = vector.norm();
-  if (angle < kTinyAngle) return Eigen::Quaterniond(1.0, 0.5 * vector.x(), 0.5 * vector.y(), 0.5 * vector.z()).normalized();
+  if (angle < kTinyAngle)
+    return Eigen::Quaterniond(1.0, 0.5 * vector.x(), 0.5 * vector.y(), 0.5 * vector.z()).normalized();
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, vector / angle));
 }
 

@@ -15,9 +15,9 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr int kLeastCentres = 4;     // parts that a start needs
+constexpr int kLeastCentres = 4;  // parts that a start needs
 constexpr std::size_t kLeastPoints = 30;
-constexpr int kLeastSupport = 4;     // points on a bone that make its joint observed
+constexpr int kLeastSupport = 4;  // points on a bone that make its joint observed
 
 /// Returns the probability that a joint of this covariance lies within 10 cm of the truth.
 float confidence(const JointTrust& trust, const Eigen::Matrix3d& covariance, float misfit) {
@@ -86,9 +86,10 @@ BodyFitter::Solution BodyFitter::fit_points(const FitData& data, BodyState start
   for (int round = 0; round < rounds; ++round) {
     std::vector<FitTerms::Assigned> assigned = terms_.assign(data, placed);
     const double before = best.cost;
-    best = descend(std::move(start), kSteps, [&](const BodyState& state, std::vector<PlacedBone>& at, NormalEquations& to) {
-      terms_.evaluate_points(data, state, assigned, at, to);
-    });
+    best = descend(std::move(start), kSteps,
+                   [&](const BodyState& state, std::vector<PlacedBone>& at, NormalEquations& to) {
+                     terms_.evaluate_points(data, state, assigned, at, to);
+                   });
     best.assigned = std::move(assigned);
     constexpr double kEnough = 5e-3;  // share of the cost that a further assignment must gain
     if (before - best.cost < kEnough * std::abs(best.cost)) break;
@@ -203,7 +204,8 @@ BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const 
   fit.shape_information = shape_covariance.inverse() - data.expected.shape_information;
   FittedBody& body = fit.body;
   body.misfit = static_cast<float>(solution.cost / static_cast<double>(data.points.size()));
-  for (Index k = 0; k < solution.state.shape.size(); ++k) body.shape.push_back(static_cast<float>(solution.state.shape[k]));
+  for (Index k = 0; k < solution.state.shape.size(); ++k)
+    body.shape.push_back(static_cast<float>(solution.state.shape[k]));
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const PlacedBone& placed = solution.placed[b];
     FittedBone& bone = body.bones.emplace_back();

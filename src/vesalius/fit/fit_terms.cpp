@@ -11,7 +11,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double kLeastRadius = 0.1;  // of a point in units of the flesh's half width: its direction is not defined at 0
+constexpr double kLeastRadius =
+    0.1;  // of a point in units of the flesh's half width: its direction is not defined at 0
 constexpr double kLeastHalf_m = 0.008;
 
 /// The flesh of a bone at a place along it.
@@ -63,7 +64,8 @@ void visit_options(const std::string& prefix, FitOptions& o, OptionVisitor& visi
   visitor.option(prefix + "surface", o.surface_m, {"m", 0.001, 1.0, "Standard deviation of points about the flesh."});
   visitor.option(prefix + "along", o.along_m, {"m", 0.001, 1.0, "Standard deviation of a part's ends on its bone."});
   visitor.option(prefix + "side", o.side_m, {"m", 0.001, 1.0, "Standard deviation of the border of left and right."});
-  visitor.option(prefix + "outlier", o.outlier, {"", 0.1, 100.0, "Deviations beyond which points count less and less."});
+  visitor.option(prefix + "outlier", o.outlier,
+                 {"", 0.1, 100.0, "Deviations beyond which points count less and less."});
   visitor.option(prefix + "mirror-cost", o.mirror_cost,
                  {"", 0.0, 1000.0, "Squared deviations that a label of the wrong side costs."});
   visitor.option(prefix + "label-weight", o.label_weight, {"", 0.0, 100.0, "Weight of the labels' log probabilities."});
@@ -73,7 +75,8 @@ void visit_options(const std::string& prefix, FitOptions& o, OptionVisitor& visi
   visitor.option(prefix + "pose-weight", o.pose_weight, {"", 0.0, 100.0, "Weight of how usual the pose is."});
   visitor.option(prefix + "limit", o.limit_rad, {"rad", 0.001, 10.0, "Standard deviation beyond a joint's range."});
   visitor.option(prefix + "shape-weight", o.shape_weight, {"", 0.0, 100.0, "Weight of how usual the shape is."});
-  visitor.option(prefix + "centre", o.centre_m, {"m", 0.001, 1.0, "Standard deviation of parts' centres at the start."});
+  visitor.option(prefix + "centre", o.centre_m,
+                 {"m", 0.001, 1.0, "Standard deviation of parts' centres at the start."});
   visitor.option(prefix + "follow", o.follow_m,
                  {"m", 0.001, 10.0, "Standard deviation of a person's place from the expected one in 1/30 s."});
   visitor.option(prefix + "follow-turn", o.follow_rad,
@@ -104,7 +107,7 @@ struct FitTerms::Hit {
   double behind = 0.0;    ///< beyond the flesh's middle as the camera sees it, metres, not below 0
   Vector3d ray;
   CrossSection section;
-  std::array<double, 2> across_normal, unit;  ///< normal and place in units of half widths, across the bone
+  std::array<double, 2> across_normal, unit;         ///< normal and place in units of half widths, across the bone
   double cost = std::numeric_limits<double>::max();  ///< squared deviations with what the label costs
   double squared = 0.0;
 };
@@ -197,7 +200,9 @@ std::vector<FitTerms::Assigned> FitTerms::assign(const FitData& data, const std:
 void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& placed,
                           const std::vector<Assigned>& assigned, NormalEquations& equations) const {
   const auto point_weight = static_cast<double>(options_.point_weight);
-  const auto inverse_square = [](float sigma) { return 1.0 / (static_cast<double>(sigma) * static_cast<double>(sigma)); };
+  const auto inverse_square = [](float sigma) {
+    return 1.0 / (static_cast<double>(sigma) * static_cast<double>(sigma));
+  };
   const double surface = inverse_square(options_.surface_m), along = inverse_square(options_.along_m),
                side = inverse_square(options_.side_m);
   Eigen::VectorXd by_shape(flesh_.shapes);
@@ -253,16 +258,16 @@ void FitTerms::add_centres(const FitData& data, const std::vector<PlacedBone>& p
       return (std::min(s.to, 1.0) - std::max(s.from, 0.0)) * placed[s.bone].numbers[3 + flesh_.bones[s.bone].axis];
     };
     const auto& stretches = surface_.of_part[part];
-    const PartSurface::Stretch& stretch = *std::ranges::max_element(
-        stretches, {}, [&](const PartSurface::Stretch& s) { return std::abs(length(s)); });
+    const PartSurface::Stretch& stretch =
+        *std::ranges::max_element(stretches, {}, [&](const PartSurface::Stretch& s) { return std::abs(length(s)); });
     const FleshBone& bone = flesh_.bones[stretch.bone];
     const PlacedBone& at = placed[stretch.bone];
     const double along = 0.5 * (std::max(stretch.from, 0.0) + std::min(stretch.to, 1.0));
     const CrossSection section = section_at(at, bone, along);
     Vector3d point = middle_at(at, bone, section, along);
     if (bone.axis != 0) point.x() += kAside * stretch.side * section.half[0];
-    const Vector3d surface = at.head + at.global * point -
-                             0.7 * std::min(section.half[0], section.half[1]) * data.centres[p]->normalized();
+    const Vector3d surface =
+        at.head + at.global * point - 0.7 * std::min(section.half[0], section.half[1]) * data.centres[p]->normalized();
     const Vector3d off = surface - *data.centres[p];
     const double squared = off.squaredNorm() / (sigma * sigma);
     const double weight = geman_mcclure_weight(squared, 3.0);

@@ -17,7 +17,7 @@ struct FittedBone {
   Eigen::Quaternionf local{1.F, 0.F, 0.F, 0.F};          ///< parent's frame from the bone's; of the root as `global`
   float length_m = 0.F;                                  ///< from head to tail
   Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();  ///< of the head, square metres
-  int support = 0;         ///< points of the person on the bone
+  int support = 0;                                       ///< points of the person on the bone
   float confidence = 0.F;       ///< probability that the head lies within 10 cm of the truth, 0-1
   float tail_confidence = 0.F;  ///< the same of the tail
 };

@@ -16,7 +16,7 @@ namespace vesalius {
 struct FleshJoint {
   std::string set, name;
   int bone = -1;
-  float along = 0.F;                                  ///< 0 is the bone's head, 1 its tail
+  float along = 0.F;                                   ///< 0 is the bone's head, 1 its tail
   Eigen::Vector3f offset_m = Eigen::Vector3f::Zero();  ///< from there, in the bone's frame
 };
 

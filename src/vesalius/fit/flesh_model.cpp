@@ -131,8 +131,7 @@ LimbPrior::Component read_component(const TomlReader& reader, const toml::table&
   if (covariance.info() != Eigen::Success) reader.fail(table, "covariance: expected a positive definite matrix");
   const Eigen::MatrixXd lower = covariance.matrixL();
   // covariance = L L^T, so that L^-1 (x - mean) has length 1 at one standard deviation.
-  component.whitening =
-      lower.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(size, size)).eval();
+  component.whitening = lower.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(size, size)).eval();
   component.log_density = std::log(static_cast<double>(component.weight)) - lower.diagonal().array().log().sum();
   return component;
 }
@@ -233,7 +232,8 @@ double stature(const FleshModel& flesh, const Eigen::VectorXd& shape) {
       for (const double side : {-1.0, 1.0}) {
         double at = head + (bone.axis == 1 ? along : 0.0);
         for (int i = 0; i < 2; ++i) {
-          if (across[i] == 1) at += static_cast<double>(numbers[6 + 4 * s + i]) + side * static_cast<double>(numbers[8 + 4 * s + i]);
+          if (across[i] == 1)
+            at += static_cast<double>(numbers[6 + 4 * s + i]) + side * static_cast<double>(numbers[8 + 4 * s + i]);
         }
         low = std::min(low, at);
         high = std::max(high, at);

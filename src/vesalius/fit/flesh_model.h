@@ -31,10 +31,10 @@ struct FleshBone {
 /// How the bones of a limb are turned in a population of poses: a mixture of Gaussians over their rotation vectors.
 struct LimbPrior {
   struct Component {
-    float weight = 0.F;           ///< they sum to 1
-    Eigen::VectorXd mean;         ///< radians, three numbers for each bone
-    Eigen::MatrixXd whitening;    ///< upper triangular; |whitening (x - mean)| is Mahalanobis' distance
-    double log_density = 0.0;     ///< logarithm of weight and density at the mean
+    float weight = 0.F;         ///< they sum to 1
+    Eigen::VectorXd mean;       ///< radians, three numbers for each bone
+    Eigen::MatrixXd whitening;  ///< upper triangular; |whitening (x - mean)| is Mahalanobis' distance
+    double log_density = 0.0;   ///< logarithm of weight and density at the mean
   };
   std::vector<int> bones;
   std::vector<Component> components;  ///< the most usual first

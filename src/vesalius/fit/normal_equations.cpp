@@ -102,7 +102,7 @@ void NormalEquations::finish() {
 }
 
 Eigen::Matrix3Xd NormalEquations::point_by_state(int bone, const Eigen::Vector3d& at,
-                                                  const std::vector<PlacedBone>& placed) const {
+                                                 const std::vector<PlacedBone>& placed) const {
   Eigen::Matrix3Xd derivative = Eigen::Matrix3Xd::Zero(3, layout_.size());
   derivative.leftCols<3>().setIdentity();
   for (const int b : blocks_[bone].chain) {

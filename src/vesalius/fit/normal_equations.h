@@ -15,7 +15,8 @@ class NormalEquations {
 
   void clear(const std::vector<PlacedBone>& placed);
   /// Adds a residual that grows by direction . x as the point `at` of a bone moves by x, and by `by_shape` with the
-  /// shape besides (a point's own move with the shape included, the bone's head left out). `weight` multiplies its square.
+  /// shape besides (a point's own move with the shape included, the bone's head left out). `weight` multiplies its
+  /// square.
   void add_point(int bone, const Eigen::Vector3d& at, const Eigen::Vector3d& direction,
                  const Eigen::Ref<const Eigen::VectorXd>& by_shape, double residual, double weight);
   /// Adds residuals of some turns: `derivative` is by the turns of `bones`, three columns each.
@@ -39,9 +40,9 @@ class NormalEquations {
 
  private:
   struct Block {
-    std::vector<int> chain;       ///< the bone and those above it, to the root
-    Eigen::MatrixXd rows;         ///< unknowns of one row are a column
-    Eigen::VectorXd residuals;    ///< times the root of the weight
+    std::vector<int> chain;     ///< the bone and those above it, to the root
+    Eigen::MatrixXd rows;       ///< unknowns of one row are a column
+    Eigen::VectorXd residuals;  ///< times the root of the weight
     Eigen::Index count = 0;
   };
 

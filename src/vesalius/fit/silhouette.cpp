@@ -7,8 +7,8 @@
 namespace vesalius {
 namespace {
 
-constexpr int kGrid = 64;            // places along the longer side of a person's outline
-constexpr double kBeyond = 0.35;     // how far around the box the grid reaches, as a share of its longer side
+constexpr int kGrid = 64;         // places along the longer side of a person's outline
+constexpr double kBeyond = 0.35;  // how far around the box the grid reaches, as a share of its longer side
 
 }  // namespace
 
@@ -42,13 +42,14 @@ Silhouette::Silhouette(const Frame& frame, const Mask& mask, const Box& box) : f
   // Two passes carry the nearest place along (Danielsson 1980): right to a fraction of a step.
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      for (const auto &[dr, dc] : {std::pair{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}}) offer(row, column, row + dr, column + dc);
+      for (const auto& [dr, dc] : {std::pair{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}})
+        offer(row, column, row + dr, column + dc);
     }
     for (int column = columns_ - 1; column >= 0; --column) offer(row, column, row, column + 1);
   }
   for (int row = rows_ - 1; row >= 0; --row) {
     for (int column = columns_ - 1; column >= 0; --column) {
-      for (const auto &[dr, dc] : {std::pair{1, 1}, {1, 0}, {1, -1}, {0, 1}}) offer(row, column, row + dr, column + dc);
+      for (const auto& [dr, dc] : {std::pair{1, 1}, {1, 0}, {1, -1}, {0, 1}}) offer(row, column, row + dr, column + dc);
     }
     for (int column = 0; column < columns_; ++column) offer(row, column, row, column - 1);
   }

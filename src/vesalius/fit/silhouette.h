@@ -25,8 +25,8 @@ class Silhouette {
       covered   ///< something nearer than the point
     };
     Kind kind = Kind::unknown;
-    double depth_m = 0.0;                              ///< of the person at that place, for `on`
-    Eigen::Vector2d aside = Eigen::Vector2d::Zero();   ///< pixels to the nearest place of the person, for `behind`
+    double depth_m = 0.0;                             ///< of the person at that place, for `on`
+    Eigen::Vector2d aside = Eigen::Vector2d::Zero();  ///< pixels to the nearest place of the person, for `behind`
   };
   /// `margin_m` is how much nearer than the point something else must be to cover it.
   float focal_px() const { return frame_.camera.fx; }
@@ -35,8 +35,8 @@ class Silhouette {
  private:
   const Frame& frame_;
   const Mask& mask_;
-  Box box_;         ///< the grid's part of the picture
-  int step_ = 1;    ///< pixels between places of the grid
+  Box box_;       ///< the grid's part of the picture
+  int step_ = 1;  ///< pixels between places of the grid
   int columns_ = 0, rows_ = 0;
   std::vector<std::int32_t> nearest_;  ///< [row * columns + column]: index of the nearest place of the person
 };

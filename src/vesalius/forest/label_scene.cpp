@@ -161,8 +161,7 @@ PersonLabels SceneLabeller::label_turned(const SceneLabels& scene, const Frame& 
   result.labels =
       uncropped(choose(smooth, depth, options_.label.background_weight, &inside, &within), around, frame.camera);
   result.certain = mean_certainty(smooth, inside, body().part_count());
-  result.points =
-      sample_points(frame.depth, frame.camera, result.labels, box, smooth, around, body().part_count());
+  result.points = sample_points(frame.depth, frame.camera, result.labels, box, smooth, around, body().part_count());
   return result;
 }
 

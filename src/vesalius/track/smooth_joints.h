@@ -8,13 +8,13 @@
 namespace vesalius {
 
 struct JointSmoothing {
-  float cutoff_hz = 1.5F;      ///< of what a joint at rest does, only slower changes pass
-  float cutoff_per_m_s = 4.F;  ///< by which that rises with the joint's speed, in hertz for a metre a second
+  float cutoff_hz = 2.F;       ///< of what a joint at rest does, only slower changes pass
+  float cutoff_per_m_s = 6.F;  ///< by which that rises with the joint's speed, in hertz for a metre a second
 };
 
 /// Smooths the joints of one person over time by the One-Euro filter (Casiez, Roussel and Vogel 2012): a low pass whose
 /// cutoff rises with the speed, so that joints at rest do not tremble and fast ones are not late. A joint that moves
-/// evenly lags behind by 1 / (2 pi cutoff) seconds: 106 ms of its way as it begins to move, 29 ms at a metre a second.
+/// evenly lags behind by 1 / (2 pi cutoff) seconds: 80 ms of its way as it begins to move, 20 ms at a metre a second.
 class JointSmoother {
  public:
   /// Takes the joints of a frame, [set][joint], `passed_s` seconds after those before, and returns them smoothed. A

@@ -26,7 +26,7 @@ struct TrackOptions {
   int remembered = 32;     ///< most lost people who are known again
   float same_look = 0.1F;  ///< most difference of looks (look_distance) of one person who comes back
   float odds = 20.F;       ///< most by which having been found before multiplies the odds of being found again
-  bool smooth = false;     ///< whether TrackedPerson::smoothed is filled
+  bool smooth = true;      ///< whether TrackedPerson::smoothed is filled
   JointSmoothing smoothing;
 };
 void visit_options(const std::string& prefix, TrackOptions& options, OptionVisitor& visitor);
@@ -37,10 +37,11 @@ void visit_options(const std::string& prefix, TrackOptions& options, OptionVisit
 class PeopleTracker {
  public:
   /// `body` is that of the people, such as Detector::body, and must outlive this object. `appearance` is the
-  /// detector's; without one looks do not matter. Without `fitter` nobody has a fitted body. Throws UsageError for an option
-  /// outside its range.
+  /// detector's; without one looks do not matter. Without `fitter` nobody has a fitted body. Throws UsageError for an
+  /// option outside its range.
   explicit PeopleTracker(const BodyModel& body, TrackOptions options = {},
-                         std::shared_ptr<const Appearance> appearance = nullptr, std::shared_ptr<const BodyFitter> fitter = nullptr);
+                         std::shared_ptr<const Appearance> appearance = nullptr,
+                         std::shared_ptr<const BodyFitter> fitter = nullptr);
   ~PeopleTracker();
   PeopleTracker(PeopleTracker&&) noexcept;
   PeopleTracker& operator=(PeopleTracker&&) noexcept;
