@@ -264,11 +264,12 @@ std::vector<int> missed_people(const Method& method, const Prior& prior, const s
   std::vector<int> missed;
   for (std::size_t i = 0; i < prior.people.size(); ++i) {
     const Mask& mask = prior.people[i].mask;
+    if (mask.empty()) continue;
     const bool found = std::ranges::any_of(candidates, [&](const Candidate& candidate) {
       return candidate.score >= options.min_score && candidate.refined.found >= options.min_parts &&
              shared_pixels(candidate.grown, mask) >= kSurelyKnown;
     });
-    if (!mask.empty() && !found) missed.push_back(static_cast<int>(i));
+    if (!found) missed.push_back(static_cast<int>(i));
   }
   return missed;
 }

@@ -18,6 +18,7 @@
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/stage_times.h"
+#include "vesalius/fit/fit_body.h"
 
 namespace vesalius::cli {
 namespace {

@@ -18,6 +18,7 @@ void Track::take(const Sighting& sighting, double time_s) {
   person = sighting.person;
   person.mask = {};
   person.labels = {};
+  person.points = {};
   expected = {};
 }
 

@@ -33,7 +33,7 @@ struct Track {
   TrackSize size;
   TrackPlace place;                ///< in the frame in which the person was found last
   Eigen::Vector3f place_position;  ///< of the trunk in that frame, as filtered
-  Person person;                   ///< as found last, without mask and labels
+  Person person;                   ///< as found last, without mask, labels and points
   std::optional<FittedBody> body;
   BodyHistory history;   ///< what is learned of the person's body
   Mask expected;         ///< where the person is expected in the frame that comes next; empty if that is unknown

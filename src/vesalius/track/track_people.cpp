@@ -8,6 +8,7 @@
 
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/fit/fit_body.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/track/match_cost.h"
 #include "vesalius/track/match_tracks.h"
@@ -81,6 +82,7 @@ void move(FittedBody& body, const Eigen::Vector3f& by, float faded, float sigma_
     bone.head += by;
     bone.tail += by;
     bone.confidence *= faded;
+    bone.tail_confidence *= faded;
     bone.covariance += sigma_m * sigma_m * Eigen::Matrix3f::Identity();
   }
 }

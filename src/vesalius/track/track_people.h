@@ -10,12 +10,13 @@
 #include "vesalius/base/frame.h"
 #include "vesalius/base/options.h"
 #include "vesalius/detection.h"
-#include "vesalius/fit/fit_body.h"
 #include "vesalius/planes/find_planes.h"
 #include "vesalius/track/smooth_joints.h"
 #include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
+
+class BodyFitter;
 
 struct TrackOptions {
   float rate = 30.F;       ///< frames a second of sources without times

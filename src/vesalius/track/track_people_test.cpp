@@ -8,8 +8,10 @@
 #include <map>
 #include <set>
 
+#include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/fit/fit_body.h"
 
 namespace vesalius {
 namespace {
@@ -510,6 +512,59 @@ TEST(TrackPeople, HoursOfPassersByAreForgotten) {
   }
   EXPECT_EQ(most, 1U);
   EXPECT_EQ(ids.size(), 5000U) << "without looks nobody is known again, and no id is used twice";
+}
+
+/// A person of capsules with true labels and places of the parts.
+std::pair<Frame, Person> rendered_person() {
+  CapsuleScene scene;
+  scene.people.emplace_back();
+  const LabelledFrame truth = render(scene, kCamera, paper_body());
+  Person person;
+  person.score = 0.95F;
+  person.labels = truth.labels;
+  person.mask = Mask(kCamera.width, kCamera.height, 0);
+  for (std::size_t i = 0; i < person.mask.size(); ++i) person.mask[i] = truth.person[i] == 0 ? 1 : 0;
+  for (int v = 0; v < kCamera.height; v += 2) {
+    for (int u = 0; u < kCamera.width; u += 2) {
+      if (person.mask(u, v) == 0) continue;
+      const Vector3f at = point_at(kCamera, truth.frame.depth, u, v);
+      person.points.push_back({at, {truth.labels(u, v), kBackground, kBackground}, {1.F, 0.F, 0.F}});
+    }
+  }
+  for (const Vector3f& centre : truth.parts[0]) {
+    SkeletonPart& part = person.skeleton.parts.emplace_back();
+    part.state = State::observed;
+    part.centre = centre;
+    part.confidence = 0.8F;
+    ++person.skeleton.found;
+  }
+  person.joints = derive_joints(paper_body(), person.skeleton);
+  return {truth.frame, person};
+}
+
+TEST(TrackPeople, HaveABodyThatFadesWhileTheyAreHidden) {
+  const auto [frame, person] = rendered_person();
+  PeopleTracker tracker(paper_body(), {}, nullptr, std::make_shared<BodyFitter>(paper_body()));
+  TrackedFrame tracked;
+  for (int i = 0; i < 4; ++i) tracked = tracker.update(frame, {person});
+  ASSERT_EQ(tracked.people.size(), 1U);
+  ASSERT_TRUE(tracked.people[0].body);
+  const FittedBody seen = *tracked.people[0].body;
+  EXPECT_NEAR(seen.stature_m, CapsuleBuild().stature_m, 0.25F);
+  tracked = tracker.update(frame, {});
+  ASSERT_EQ(tracked.people.at(0).state, TrackState::hidden);
+  ASSERT_TRUE(tracked.people[0].body);
+  EXPECT_TRUE(tracked.people[0].person.points.empty());
+  const FittedBody& hidden = *tracked.people[0].body;
+  ASSERT_EQ(hidden.bones.size(), seen.bones.size());
+  EXPECT_EQ(hidden.stature_m, seen.stature_m);
+  for (std::size_t i = 0; i < seen.bones.size(); ++i) {
+    if (seen.bones[i].state == State::none) continue;
+    EXPECT_EQ(hidden.bones[i].state, State::predicted);
+    EXPECT_LT(hidden.bones[i].confidence, seen.bones[i].confidence);
+    EXPECT_LT(hidden.bones[i].tail_confidence, seen.bones[i].tail_confidence);
+    EXPECT_GT(hidden.bones[i].covariance.trace(), seen.bones[i].covariance.trace());
+  }
 }
 
 TEST(TrackPeople, SmoothsOnlyWhenAsked) {
