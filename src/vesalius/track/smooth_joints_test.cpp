@@ -29,11 +29,11 @@ float lag_s(float speed_m_s) {
 }
 
 TEST(SmoothJoints, LagByWhatTheirCutoffSays) {
-  // 1 / (2 pi (1.5 + 4 v)), as docs/tracking.md gives it.
-  EXPECT_NEAR(lag_s(0.01F), 0.103F, 0.003F);
-  EXPECT_NEAR(lag_s(0.5F), 0.0455F, 0.002F);
-  EXPECT_NEAR(lag_s(1.F), 0.0289F, 0.002F);
-  EXPECT_NEAR(lag_s(3.F), 0.0118F, 0.002F);
+  // 1 / (2 pi (2 + 6 v)), as docs/tracking.md gives it.
+  EXPECT_NEAR(lag_s(0.01F), 0.0773F, 0.003F);
+  EXPECT_NEAR(lag_s(0.5F), 0.0318F, 0.002F);
+  EXPECT_NEAR(lag_s(1.F), 0.0199F, 0.002F);
+  EXPECT_NEAR(lag_s(3.F), 0.0080F, 0.002F);
 }
 
 TEST(SmoothJoints, AtRestTrembleLess) {
@@ -49,7 +49,7 @@ TEST(SmoothJoints, AtRestTrembleLess) {
     raw += static_cast<double>((position - Vector3f(0.F, 0.F, 2.F)).squaredNorm());
     smoothed += static_cast<double>((out - Vector3f(0.F, 0.F, 2.F)).squaredNorm());
   }
-  EXPECT_LT(std::sqrt(smoothed / raw), 0.45);
+  EXPECT_LT(std::sqrt(smoothed / raw), 0.55);
 }
 
 TEST(SmoothJoints, KeepWhatTheyAreAndBeginAnewAfterAGap) {

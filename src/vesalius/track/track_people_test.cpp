@@ -567,12 +567,12 @@ TEST(TrackPeople, HaveABodyThatFadesWhileTheyAreHidden) {
   }
 }
 
-TEST(TrackPeople, SmoothsOnlyWhenAsked) {
-  Follower plain;
-  EXPECT_TRUE(plain.show({Actor{}}).people.at(0).smoothed.empty());
+TEST(TrackPeople, SmoothsUnlessItShallNot) {
   TrackOptions options;
-  options.smooth = true;
-  Follower follower(options);
+  options.smooth = false;
+  Follower plain(options);
+  EXPECT_TRUE(plain.show({Actor{}}).people.at(0).smoothed.empty());
+  Follower follower;
   follower.show({Actor{}}, 5);
   const TrackedPerson person = follower.show({Actor{}}).people.at(0);
   ASSERT_EQ(person.smoothed.size(), person.person.joints.size());
