@@ -72,6 +72,9 @@ void read_bone(const TomlReader& reader, const toml::table& table, FleshModel& m
   bone.name = reader.string(reader.need(table, "name"), "name");
   if (bone.name.starts_with("r_")) reader.fail(table, "name: expected no right side, which mirrors the left");
   if (model.find_bone(bone.name) >= 0) reader.fail(table, "name " + in_quotes(bone.name) + ": given twice");
+  if (model.bones.empty() && !other_side(bone.name).empty()) {
+    reader.fail(table, "name: expected the first bone, the root, on the middle line");
+  }
   if (!model.bones.empty()) bone.parent = read_bone_name(reader, model, reader.need(table, "parent"), "parent");
   const std::string axis = reader.string(reader.need(table, "axis"), "axis");
   constexpr std::string_view kAxes = "xyz";

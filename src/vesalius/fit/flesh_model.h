@@ -33,7 +33,7 @@ struct LimbPrior {
   struct Component {
     float weight = 0.F;         ///< they sum to 1
     Eigen::VectorXd mean;       ///< radians, three numbers for each bone
-    Eigen::MatrixXd whitening;  ///< upper triangular; |whitening (x - mean)| is Mahalanobis' distance
+    Eigen::MatrixXd whitening;  ///< lower triangular; |whitening (x - mean)| is Mahalanobis' distance
     double log_density = 0.0;   ///< logarithm of weight and density at the mean
   };
   std::vector<int> bones;
