@@ -1,0 +1,164 @@
+#include "vesalius/fit/fit_terms.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "vesalius/base/error.h"
+#include "vesalius/fit/test_flesh.h"
+
+namespace vesalius {
+namespace {
+
+using Eigen::VectorXd;
+
+/// What is known of a seen body, without its outline.
+FitData data_of(const test::SeenBody& seen) {
+  FitData data;
+  data.points = seen.person.points;
+  data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
+  data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  return data;
+}
+
+struct Costs {
+  double cost;
+  VectorXd gradient;  // half of it
+};
+
+Costs costs_at(const FitTerms& terms, const FitData& data, const BodyState& state) {
+  std::vector<PlacedBone> placed;
+  NormalEquations equations(builtin_flesh());
+  terms.evaluate_points(data, state, {}, placed, equations);
+  return {equations.cost(), equations.gradient()};
+}
+
+void expect_true_gradient(const FitTerms& terms, const FitData& data, const BodyState& state) {
+  constexpr double kStep = 1e-6;
+  const Costs here = costs_at(terms, data, state);
+  const auto size = static_cast<Eigen::Index>(here.gradient.size());
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const auto cost_after = [&](double by) {
+      return costs_at(terms, data, moved(state, by * VectorXd::Unit(size, i))).cost;
+    };
+    const double numeric = 0.5 * (cost_after(kStep) - cost_after(-kStep)) / (2.0 * kStep);
+    EXPECT_NEAR(here.gradient[i], numeric, 1e-4 * (1.0 + std::abs(numeric))) << "unknown " << i;
+  }
+}
+
+TEST(FitTerms, PriorsAndLimitsHaveTheGradientOfTheirCost) {
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  FitData data;
+  data.expected.shape = VectorXd::LinSpaced(builtin_flesh().shapes, -1.0, 1.0);
+  const Eigen::MatrixXd root = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes).array() + 0.3;
+  data.expected.shape_information = root.transpose() * root;
+  // The first lies within the joints' ranges, mostly; the second far beyond them.
+  for (const double spread : {0.1, 0.9}) {
+    SCOPED_TRACE(spread);
+    expect_true_gradient(terms, data, test::random_state(7, spread));
+  }
+}
+
+TEST(FitTerms, TheExpectedPoseHasTheGradientOfItsCost) {
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  FitData data;
+  data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
+  data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  data.expected.pose = test::usual_state(0.7);
+  data.expected.loosened = 1.5;
+  BodyState state = test::random_state(8, 0.2);
+  state.root += Eigen::Vector3d(0.01, -0.03, 0.05);
+  expect_true_gradient(terms, data, state);
+}
+
+TEST(FitTerms, BeyondAJointsRangeAndOffTheExpectedPlaceCosts) {
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  FitData data;
+  data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
+  data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  const BodyState usual = test::usual_state(0.0);
+  const double cost = costs_at(terms, data, usual).cost;
+  BodyState bent = usual;
+  bent.local[builtin_flesh().find_bone("l_shin")] = exp_rotation({-1.5, 0.0, 0.0});  // a knee bent forward
+  EXPECT_GT(costs_at(terms, data, bent).cost, cost + 50.0);
+  // A shape one deviation off costs 1, a root one deviation off as well.
+  BodyState other = usual;
+  other.shape[2] = 1.0;
+  EXPECT_NEAR(costs_at(terms, data, other).cost, cost + 1.0, 1e-6);
+  data.expected.pose = usual;
+  BodyState beside = usual;
+  beside.root.x() += static_cast<double>(options.follow_m);
+  EXPECT_NEAR(costs_at(terms, data, beside).cost, cost + 1.0, 1e-6);
+}
+
+TEST(FitTerms, PointsBelongToTheStretchOfTheirLabel) {
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  const test::SeenBody seen = test::see(test::usual_state(0.3));
+  const FitData data = data_of(seen);
+  ASSERT_GT(data.points.size(), 150U);
+  const std::vector<FitTerms::Assigned> assigned = terms.assign(data, seen.truth);
+  ASSERT_EQ(assigned.size(), data.points.size());
+  for (std::size_t i = 0; i < assigned.size(); ++i) {
+    const auto& own = terms.surface().of_part[data.points[i].part.front()];
+    EXPECT_TRUE(std::ranges::any_of(own, [&](const PartSurface::Stretch& stretch) {
+      const PartSurface::Stretch& of = assigned[i].stretch;
+      return stretch.bone == of.bone && stretch.from == of.from && stretch.to == of.to && stretch.side == of.side;
+    })) << paper_body().parts[data.points[i].part.front()].name;
+    EXPECT_EQ(assigned[i].label_cost, 0.0);
+  }
+  // Nearly all points lie on the flesh of the bones that they were drawn from.
+  int supported = 0;
+  for (const int count : terms.support(data, seen.truth, assigned)) supported += count;
+  EXPECT_GT(supported, static_cast<int>(0.95 * static_cast<double>(assigned.size())));
+}
+
+TEST(FitTerms, ALabelOfTheWrongSideCosts) {
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  const BodyState state = test::usual_state(0.0);
+  const test::SeenBody seen = test::see(state);
+  FitData data = data_of(seen);
+  const auto cost_of = [&] {
+    std::vector<PlacedBone> placed;
+    NormalEquations equations(builtin_flesh());
+    terms.evaluate_points(data, state, terms.assign(data, seen.truth), placed, equations);
+    return equations.cost();
+  };
+  const double right = cost_of();
+  int swapped = 0;
+  for (PersonPoint& point : data.points) {
+    const BodyPart& part = paper_body().parts[point.part.front()];
+    if (!part.name.ends_with("_hand") && !part.name.ends_with("_leg")) continue;
+    point.part.front() = static_cast<std::uint8_t>(part.mirror);
+    ++swapped;
+  }
+  ASSERT_GT(swapped, 20);
+  EXPECT_NEAR(cost_of(), right + swapped * static_cast<double>(options.point_weight * options.mirror_cost), 1e-3);
+  for (const FitTerms::Assigned& assigned : terms.assign(data, seen.truth)) {
+    EXPECT_TRUE(assigned.label_cost == 0.0 || assigned.label_cost == static_cast<double>(options.mirror_cost));
+  }
+}
+
+TEST(FitTerms, ALessProbableLabelCostsByItsLogarithm) {
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  const test::SeenBody seen = test::see(test::usual_state(0.0));
+  FitData data = data_of(seen);
+  const auto hand = static_cast<std::uint8_t>(paper_body().find_part("l_hand"));
+  const auto foot = static_cast<std::uint8_t>(paper_body().find_part("r_foot"));
+  const auto point = std::ranges::find_if(data.points, [&](const PersonPoint& p) { return p.part.front() == hand; });
+  ASSERT_NE(point, data.points.end());
+  data.points = {*point};
+  data.points.front().part = {foot, hand, kBackground};
+  data.points.front().share = {0.6F, 0.4F, 0.F};
+  const FitTerms::Assigned assigned = terms.assign(data, seen.truth).front();
+  EXPECT_EQ(assigned.stretch.bone, builtin_flesh().find_bone("l_hand")) << "the place outweighs the label";
+  EXPECT_NEAR(assigned.label_cost, -2.0 * std::log(0.4), 1e-6);
+}
+
+}  // namespace
+}  // namespace vesalius
