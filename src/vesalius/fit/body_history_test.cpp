@@ -1,0 +1,120 @@
+#include "vesalius/fit/body_history.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "vesalius/fit/test_flesh.h"
+
+namespace vesalius {
+namespace {
+
+/// A person two standard deviations off the usual shape, with arms and legs that swing.
+std::vector<test::SeenBody> frames_of_tall_person() {
+  std::vector<test::SeenBody> frames;
+  for (int i = 0; i < 5; ++i) {
+    BodyState state = test::usual_state(0.2 * i - 0.4);
+    state.shape[0] = 2.0;
+    state.root.z() = 2.9;
+    test::turn(state, "l_thigh", {0.1 * i - 0.2, 0.0, 0.0});
+    test::turn(state, "r_thigh", {0.2 - 0.1 * i, 0.0, 0.0});
+    frames.push_back(test::see(state));
+  }
+  return frames;
+}
+
+/// Returns the person with points that are off by a camera's noise.
+Person noisy(const Person& person, Random& random) {
+  Person out = person;
+  for (PersonPoint& point : out.points) {
+    point.at *= 1.F + static_cast<float>(random.normal(0.0, 0.01)) / point.at.norm();
+  }
+  return out;
+}
+
+double length_m(const FleshModel& flesh, const std::vector<PlacedBone>& placed, const char* bone) {
+  const PlacedBone& at = placed[flesh.find_bone(bone)];
+  return (at.tail - at.head).norm();
+}
+
+TEST(BodyHistory, LearnsThePersonsOwnLengths) {
+  const FleshModel& flesh = builtin_flesh();
+  const BodyFitter fitter(paper_body());
+  const std::vector<test::SeenBody> frames = frames_of_tall_person();
+  BodyHistory history;
+  EXPECT_FALSE(history.stature_m());
+  Random random(11);
+  std::optional<FittedBody> body;
+  for (int i = 0; i < 30; ++i) {
+    const int at = i % 8;  // there and back
+    const test::SeenBody& seen = frames[at < 5 ? at : 8 - at];
+    body = history.fit(fitter, seen.frame, noisy(seen.person, random), i / 30.0);
+    ASSERT_TRUE(body) << i;
+  }
+  EXPECT_EQ(history.frames(), 30);
+  ASSERT_TRUE(history.stature_m());
+  EXPECT_EQ(*history.stature_m(), body->stature_m);
+  for (const char* bone : {"l_upper_arm", "r_upper_arm", "l_forearm", "l_thigh", "r_thigh", "l_shin", "r_shin"}) {
+    const double truth = length_m(flesh, frames[0].truth, bone);
+    EXPECT_NEAR(body->bones[flesh.find_bone(bone)].length_m, truth, 0.05 * truth) << bone;
+  }
+  Eigen::VectorXd shape = Eigen::VectorXd::Zero(flesh.shapes);
+  const double usual = stature(flesh, shape);
+  shape[0] = 2.0;
+  const double truth = stature(flesh, shape);
+  ASSERT_GT(truth, 1.05 * usual) << "the test asks for something";
+  EXPECT_NEAR(*history.stature_m(), truth, 0.03 * truth);
+}
+
+TEST(BodyHistory, BadTimesForgetThePoseAndNeverFail) {
+  const BodyFitter fitter(paper_body());
+  const BodyState state = test::usual_state(0.0);
+  BodyState elsewhere = test::usual_state(0.5);
+  elsewhere.root += Eigen::Vector3d(0.3, 0.0, 0.6);
+  const test::SeenBody here = test::see(state), there = test::see(elsewhere);
+  for (const double time_s : {-5.0, 9.9, 11.0, 3.6e4, 1e300, std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::quiet_NaN()}) {
+    SCOPED_TRACE(time_s);
+    BodyHistory history;
+    ASSERT_TRUE(history.fit(fitter, here.frame, here.person, 10.0 - 1.0 / 30.0));
+    ASSERT_TRUE(history.fit(fitter, here.frame, here.person, 10.0));
+    BodyHistory forgetful = history;
+    forgetful.forget_pose();
+    // Somebody who is elsewhere at such a time is fitted as if there had been no pose.
+    const std::optional<FittedBody> body = history.fit(fitter, there.frame, there.person, time_s);
+    const std::optional<FittedBody> expected = forgetful.fit(fitter, there.frame, there.person, 10.0);
+    ASSERT_TRUE(body && expected);
+    for (std::size_t b = 0; b < body->bones.size(); ++b) EXPECT_EQ(body->bones[b].head, expected->bones[b].head);
+    // The next frame in time follows again.
+    const double next_s = std::isfinite(time_s) ? time_s + 1.0 / 30.0 : 10.1;
+    const std::optional<FittedBody> after = history.fit(fitter, there.frame, there.person, next_s);
+    ASSERT_TRUE(after);
+    for (const FittedBone& bone : after->bones) EXPECT_TRUE(bone.head.allFinite());
+  }
+}
+
+TEST(BodyHistory, TimeThatStandsStillIsBorne) {
+  const BodyFitter fitter(paper_body());
+  const test::SeenBody seen = test::see(test::usual_state(0.0));
+  BodyHistory history;
+  for (int i = 0; i < 6; ++i) {
+    const std::optional<FittedBody> body = history.fit(fitter, seen.frame, seen.person, 2.0);
+    ASSERT_TRUE(body);
+    for (std::size_t b = 0; b < body->bones.size(); ++b) {
+      EXPECT_LT((body->bones[b].head.cast<double>() - seen.truth[b].head).norm(), 0.1);
+    }
+  }
+}
+
+TEST(BodyHistory, LearnsNothingFromTooFewPoints) {
+  const BodyFitter fitter(paper_body());
+  test::SeenBody seen = test::see(test::usual_state(0.0));
+  seen.person.points.resize(10);
+  BodyHistory history;
+  EXPECT_FALSE(history.fit(fitter, seen.frame, seen.person, 0.0));
+  EXPECT_FALSE(history.stature_m());
+  EXPECT_EQ(history.frames(), 0);
+}
+
+}  // namespace
+}  // namespace vesalius

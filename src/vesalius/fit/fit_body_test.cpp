@@ -1,0 +1,204 @@
+#include "vesalius/fit/fit_body.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <numbers>
+
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/base/test_threads.h"
+#include "vesalius/fit/test_flesh.h"
+
+namespace vesalius {
+namespace {
+
+using std::numbers::pi;
+
+/// People who stand, walk, reach out and sit, from the front, the side and behind.
+std::vector<BodyState> poses() {
+  std::vector<BodyState> states;
+  for (const double yaw : {0.0, 0.6, pi, pi - 0.5}) states.push_back(test::usual_state(yaw));
+  BodyState walking = test::usual_state(0.3);
+  test::turn(walking, "l_thigh", {-0.5, 0.0, 0.0});
+  test::turn(walking, "r_thigh", {0.3, 0.0, 0.0});
+  test::turn(walking, "r_shin", {0.5, 0.0, 0.0});
+  states.push_back(walking);
+  for (const double yaw : {0.0, pi}) {
+    BodyState wide = test::usual_state(yaw);
+    for (const char* bone : {"l_upper_arm", "r_upper_arm", "l_forearm", "r_forearm"}) {
+      wide.local[builtin_flesh().find_bone(bone)].setIdentity();
+    }
+    states.push_back(wide);
+  }
+  return states;
+}
+
+/// Mean distance of the bones' heads from the truth, metres.
+double mean_error_m(const FittedBody& body, const std::vector<PlacedBone>& truth) {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < truth.size(); ++b) sum += (body.bones[b].head.cast<double>() - truth[b].head).norm();
+  return sum / static_cast<double>(truth.size());
+}
+
+/// Expects each bone of a pair of limbs nearer to its own truth than to the other side's.
+void expect_sides(const FittedBody& body, const std::vector<PlacedBone>& truth) {
+  const FleshModel& flesh = builtin_flesh();
+  for (const char* name : {"l_upper_arm", "l_forearm", "l_thigh", "l_shin", "l_foot"}) {
+    const int left = flesh.find_bone(name), right = flesh.bones[left].mirror;
+    const auto far = [&](int bone, int from) {
+      return (body.bones[bone].head.cast<double>() - truth[from].head).norm();
+    };
+    EXPECT_LT(far(left, left) + far(right, right), far(left, right) + far(right, left)) << name;
+  }
+}
+
+bool same_bytes(const FittedBody& a, const FittedBody& b) {
+  if (a.bones.size() != b.bones.size() || a.shape != b.shape || a.stature_m != b.stature_m || a.misfit != b.misfit) {
+    return false;
+  }
+  for (std::size_t i = 0; i < a.bones.size(); ++i) {
+    const FittedBone &p = a.bones[i], &q = b.bones[i];
+    if (p.head != q.head || p.tail != q.tail || p.global.coeffs() != q.global.coeffs() ||
+        p.local.coeffs() != q.local.coeffs() || p.covariance != q.covariance || p.confidence != q.confidence ||
+        p.tail_confidence != q.tail_confidence || p.support != q.support || p.state != q.state) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(FitBody, FindsTheBodyThatWasSeen) {
+  const BodyFitter fitter(paper_body());
+  ASSERT_TRUE(fitter.can_fit());
+  const std::vector<BodyState> states = poses();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    SCOPED_TRACE(i);
+    const test::SeenBody seen = test::see(states[i]);
+    const std::optional<BodyFit> fit = fitter.fit(seen.frame, seen.person);
+    ASSERT_TRUE(fit);
+    EXPECT_LT(mean_error_m(fit->body, seen.truth), 0.03);
+    expect_sides(fit->body, seen.truth);
+    EXPECT_NEAR(fit->body.stature_m, stature(builtin_flesh(), states[i].shape), 0.1);
+    EXPECT_EQ(fit->body.shape.size(), static_cast<std::size_t>(builtin_flesh().shapes));
+  }
+}
+
+TEST(FitBody, OutputsAgreeWithEachOther) {
+  const FleshModel& flesh = builtin_flesh();
+  const test::SeenBody seen = test::see(poses()[4]);
+  const std::optional<BodyFit> fit = BodyFitter(paper_body()).fit(seen.frame, seen.person);
+  ASSERT_TRUE(fit);
+  const std::vector<PlacedBone> placed = place_bones(flesh, fit->state);
+  for (int b = 0; b < flesh.bone_count(); ++b) {
+    const FittedBone& bone = fit->body.bones[b];
+    SCOPED_TRACE(flesh.bones[b].name);
+    EXPECT_LT((bone.head.cast<double>() - placed[b].head).norm(), 1e-5);
+    EXPECT_LT((bone.tail.cast<double>() - placed[b].tail).norm(), 1e-5);
+    EXPECT_NEAR(bone.length_m, (bone.tail - bone.head).norm(), 1e-5F);
+    const Eigen::Quaternionf up =
+        flesh.bones[b].parent < 0 ? Eigen::Quaternionf::Identity() : fit->body.bones[flesh.bones[b].parent].global;
+    EXPECT_LT((up * bone.local).angularDistance(bone.global), 1e-3F);
+    EXPECT_TRUE(bone.covariance.isApprox(bone.covariance.transpose(), 1e-4F));
+    EXPECT_GT(bone.covariance.trace(), 0.F);
+    for (const float probability : {bone.confidence, bone.tail_confidence}) {
+      EXPECT_GT(probability, 0.F);
+      EXPECT_LT(probability, 1.F);
+    }
+  }
+}
+
+TEST(FitBody, HiddenLimbsArePredictedAndLessCertain) {
+  const FleshModel& flesh = builtin_flesh();
+  test::SeenBody seen = test::see(test::usual_state(0.0));
+  // A box before the lower body hides everything from the thighs downwards.
+  const int top = static_cast<int>(seen.frame.camera.pixel(seen.truth[0].head.cast<float>()).y()) + 8;
+  for (int v = top; v < seen.frame.depth.height(); ++v) {
+    for (int u = 0; u < seen.frame.depth.width(); ++u) {
+      seen.frame.depth(u, v) = 1200;
+      seen.person.labels(u, v) = kBackground;
+    }
+  }
+  test::describe(paper_body(), seen.frame, seen.person);
+  const std::optional<BodyFit> fit = BodyFitter(paper_body()).fit(seen.frame, seen.person);
+  ASSERT_TRUE(fit);
+  const FittedBone& foot = fit->body.bones[flesh.find_bone("l_foot")];
+  const FittedBone& hand = fit->body.bones[flesh.find_bone("l_upper_arm")];
+  EXPECT_EQ(foot.state, State::predicted);
+  EXPECT_EQ(foot.support, 0);
+  EXPECT_EQ(hand.state, State::observed);
+  EXPECT_GT(foot.covariance.trace(), 4.F * hand.covariance.trace());
+  EXPECT_LT(foot.confidence, hand.confidence);
+}
+
+TEST(FitBody, BearsWrongSides) {
+  const BodyFitter fitter(paper_body());
+  const std::vector<BodyState> states = poses();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    SCOPED_TRACE(i);
+    test::SeenBody seen = test::see(states[i]);
+    Random random(10 + i);
+    for (PersonPoint& point : seen.person.points) {
+      if (random.below(10) == 0) {
+        point.part.front() = static_cast<std::uint8_t>(paper_body().parts[point.part.front()].mirror);
+      }
+    }
+    const std::optional<BodyFit> fit = fitter.fit(seen.frame, seen.person);
+    ASSERT_TRUE(fit);
+    EXPECT_LT(mean_error_m(fit->body, seen.truth), 0.03);
+    expect_sides(fit->body, seen.truth);
+  }
+}
+
+TEST(FitBody, NeedsPointsAndParts) {
+  const BodyFitter fitter(paper_body());
+  const test::SeenBody seen = test::see(test::usual_state(0.0));
+  Person few = seen.person;
+  few.points.resize(29);
+  EXPECT_FALSE(fitter.fit(seen.frame, few));
+  few.points.clear();
+  EXPECT_FALSE(fitter.fit(seen.frame, few));
+  Person shapeless = seen.person;
+  for (SkeletonPart& part : shapeless.skeleton.parts) part.state = State::none;
+  EXPECT_FALSE(fitter.fit(seen.frame, shapeless)) << "nothing to start from";
+  // The last pose is enough of a start.
+  ExpectedBody expected;
+  expected.pose = test::usual_state(0.1);
+  expected.start = -1;
+  const std::optional<BodyFit> fit = fitter.fit(seen.frame, shapeless, expected);
+  ASSERT_TRUE(fit);
+  EXPECT_LT(mean_error_m(fit->body, seen.truth), 0.03);
+}
+
+TEST(FitBody, NeedsSurfaceRules) {
+  BodyModel body = paper_body();
+  body.surface.clear();
+  const BodyFitter fitter(body);
+  EXPECT_FALSE(fitter.can_fit());
+  const test::SeenBody seen = test::see(test::usual_state(0.0));
+  EXPECT_FALSE(fitter.fit(seen.frame, seen.person));
+}
+
+TEST(FitBody, RefusesOptionsOutsideTheirRanges) {
+  FitOptions options;
+  options.surface_m = 0.F;
+  EXPECT_THROW(BodyFitter(paper_body(), options), UsageError);
+}
+
+TEST(FitBody, HasTheSameBytesForAnyNumberOfThreads) {
+  const BodyFitter fitter(paper_body());
+  std::vector<test::SeenBody> seen;
+  for (const BodyState& state : poses()) seen.push_back(test::see(state));
+  std::vector<FittedBody> first;
+  for_threads({1, 4}, [&] {
+    std::vector<FittedBody> bodies(seen.size());
+    parallel_for(static_cast<int>(seen.size()), [&](int i) {
+      if (const auto fit = fitter.fit(seen[i].frame, seen[i].person)) bodies[i] = fit->body;
+    });
+    if (first.empty()) first = bodies;
+    for (std::size_t i = 0; i < bodies.size(); ++i) EXPECT_TRUE(same_bytes(bodies[i], first[i])) << i;
+  });
+}
+
+}  // namespace
+}  // namespace vesalius
