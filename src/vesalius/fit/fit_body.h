@@ -33,6 +33,9 @@ class BodyFitter {
  public:
   /// Throws UsageError for an option outside its range. `flesh` must outlive it.
   explicit BodyFitter(BodyModel body, FitOptions options = {}, const FleshModel& flesh = builtin_flesh());
+  // Its terms refer to its body model and options.
+  BodyFitter(const BodyFitter&) = delete;
+  BodyFitter& operator=(const BodyFitter&) = delete;
 
   /// Returns whether the body model has surface rules of the flesh's bones, without which nothing is fitted.
   bool can_fit() const { return can_fit_; }
