@@ -65,7 +65,8 @@ std::vector<JointSet> program_joint_sets() {
 TEST(FleshJoints, OfTheProgramAreJointsOfItsBodies) {
   const std::vector<JointSet> sets = program_joint_sets();
   for (const FleshJoint& joint : builtin_flesh_joints()) {
-    if (std::ranges::find(sets, joint.set, &JointSet::name) == sets.end()) continue;  // of evaluation (data/joints/evaluation.toml)
+    if (std::ranges::find(sets, joint.set, &JointSet::name) == sets.end())
+      continue;  // of evaluation (data/joints/evaluation.toml)
     EXPECT_TRUE(std::ranges::any_of(sets,
                                     [&](const JointSet& set) {
                                       return set.name == joint.set &&
