@@ -84,7 +84,7 @@ void add_convert(CLI::App& program) {
       ->excludes("--body");
   command
       ->add_option("--rate", arguments->write.frame_rate,
-                   "Frames per second, for --to tum of a source that does not know its frames' times")
+                   "Frames per second, for --to tum and --to folder of a source that does not know its frames' times")
       ->type_name("N")
       ->check(CLI::Range(0.1, 1000.0));
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");

@@ -59,6 +59,13 @@ std::string truth_json(const LabelledFrame& labelled, const BodyModel& body, con
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+/// Of clips the rate is written, which gives times to whoever reads the folder as mere pictures.
+WriteOptions options_for(const ClipLayout& clips) {
+  WriteOptions options;
+  if (clips.rate_hz > 0.0) options.frame_rate = static_cast<float>(clips.rate_hz);
+  return options;
+}
+
 }  // namespace
 
 LabelledExporter::LabelledExporter(const std::string& folder, const BodyModel& body, std::vector<std::string> joints,
@@ -66,7 +73,7 @@ LabelledExporter::LabelledExporter(const std::string& folder, const BodyModel& b
     : folder_(folder),
       body_(body),
       joints_(std::move(joints)),
-      frames_(make_frame_writer(FrameFormat::folder, folder)) {
+      frames_(make_frame_writer(FrameFormat::folder, folder, options_for(clips))) {
   for (const char* kind : {"labels", "person", "truth"}) {
     std::error_code error;
     fs::create_directories(fs::path(folder) / kind, error);

@@ -68,9 +68,8 @@ void check(const ClipTiming& timing) {
     throw UsageError(
         fmt::format("clips of {} seconds, expected more than 0 and at most {}", timing.seconds, kMaxClip_s));
   }
-  if (!(timing.rate_hz > 0.0 && timing.rate_hz <= kMaxRate_hz)) {
-    throw UsageError(
-        fmt::format("{} frames a second, expected more than 0 and at most {}", timing.rate_hz, kMaxRate_hz));
+  if (!(timing.rate_hz >= kMinRate_hz && timing.rate_hz <= kMaxRate_hz)) {
+    throw UsageError(fmt::format("{} frames a second, expected {} to {}", timing.rate_hz, kMinRate_hz, kMaxRate_hz));
   }
 }
 

@@ -19,7 +19,7 @@ struct ClipTiming {
   int frames() const;
 };
 inline constexpr float kMaxClip_s = 600.F;
-inline constexpr double kMaxRate_hz = 240.0;
+inline constexpr double kMinRate_hz = 0.01, kMaxRate_hz = 240.0;
 
 /// Throws UsageError if a number is out of its range.
 void check(const ClipTiming& timing);

@@ -118,6 +118,9 @@ TEST_F(SynthProgram, MakesClips) {
   expect_done(run_program(
       synth("--clip 0.5 --rate 8 --first 1 --count 1 --no-sensor.colour --format folder --out " + path("alone"))));
   EXPECT_EQ(read_png8(path("alone/labels/0001_000001.png")), frame.labels);
+  const auto pictures = open_source(path("alone"));
+  pictures->next();
+  EXPECT_EQ(pictures->next()->time_s, 0.125) << "of mere pictures";
   expect_done(run_program(synth("--clip 0.5 --preview 3 --out " + path("clip.png"))));
   EXPECT_GT(read_colour(path("clip.png")).width(), 300);
 }
@@ -149,8 +152,7 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
     EXPECT_THAT(run.err, HasSubstr(reason));
   };
-  refused("synth", 2, "one of --count, --preview and --fit-flesh");
-  refused("synth --count 3 --fit-flesh " + path("x"), 2, "one of --count, --preview and --fit-flesh");
+  refused("synth", 2, "expected one of --count, --preview");
   refused(synth("--count 3"), 2, "--out");
   refused(synth("--count 3 --preset kinekt --out " + path("x")), 2, "kinect-v1");
   refused(synth("--count 3 --mounting roof --out " + path("x")), 2, "ceiling");
@@ -160,6 +162,7 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
   refused(synth("--clip 1 --rate -5 --count 1 --out " + path("x")), 2, "-5 frames a second");
   refused(synth("--rate 30 --count 1 --out " + path("x")), 2, "--rate expects --clip");
   refused(synth("--clip 1 --first 2 --count 1 --out " + path("x")), 2, "--first expects");
+  refused(synth("--clip 1 --fit-flesh " + path("x")), 2, "--clip expects --count or --preview");
   refused(synth("--clip 600 --count 100000000 --out " + path("x")), 2, "frames in all");
   refused(synth("--clip 1 --clip.moving-share 2 --count 1 --out " + path("x")), 2, "clip.moving-share");
   refused("evaluate -m none.forest --clip 1 " + path("d"), 2, "--clip expects --recipe");

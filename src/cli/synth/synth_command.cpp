@@ -187,6 +187,7 @@ void check(const Arguments& arguments) {
   }
   if (arguments.rate_hz && !arguments.clip_s) throw UsageError("--rate expects --clip, the seconds of each clip");
   if (!arguments.clip_s) return;
+  if (!arguments.fit_flesh.empty()) throw UsageError("--clip expects --count or --preview");
   const auto clips = static_cast<std::int64_t>(arguments.first) + std::max(1, arguments.count);
   if (clips * timing_of(arguments).frames() > kMaxFrames) {
     throw UsageError(fmt::format("{} clips of {} frames, expected at most {} frames in all", clips,

@@ -271,7 +271,7 @@ CameraFacts parse_camera_info(std::string_view yaml, const std::string& name) {
   }
 }
 
-std::string serialise_meta(const Camera& camera, float depth_scale) {
+std::string serialise_meta(const Camera& camera, float depth_scale, std::optional<float> rate_hz) {
   // JSON should show the shortest text of the float, not that of the double nearest to it.
   const auto shortest = [](float value) { return std::stod(fmt::format("{}", value)); };
   nlohmann::ordered_json root;
@@ -282,6 +282,7 @@ std::string serialise_meta(const Camera& camera, float depth_scale) {
   root["cx"] = shortest(camera.cx);
   root["cy"] = shortest(camera.cy);
   root["depth_scale"] = shortest(depth_scale);
+  if (rate_hz) root["rate_hz"] = shortest(*rate_hz);
   return root.dump(1) + "\n";
 }
 

@@ -38,8 +38,9 @@ CameraFacts parse_meta(std::string_view json, const std::string& name);
 /// the key and what was expected.
 CameraFacts parse_camera_info(std::string_view yaml, const std::string& name);
 
-/// Returns the text of a meta.json that `parse_meta` reads back exactly. `depth_scale` is in stored units per metre.
-std::string serialise_meta(const Camera& camera, float depth_scale = 1000.F);
+/// Returns the text of a meta.json that `parse_meta` reads back exactly. `depth_scale` is in stored units per metre,
+/// `rate_hz` in frames a second.
+std::string serialise_meta(const Camera& camera, float depth_scale = 1000.F, std::optional<float> rate_hz = {});
 
 /// Returns the facts that `options` state. Missing ones come from the camera file that `options` name; without such a
 /// file they come from meta.json, camera_info.yaml or camera_info.yml in the first of `folders` that has one. Throws

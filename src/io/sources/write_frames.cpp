@@ -37,7 +37,8 @@ void make_empty_folder(const fs::path& folder) {
 /// The part that all formats share: it checks names and writes the camera's file with the first frame.
 class FolderWriter : public FrameWriter {
  public:
-  FolderWriter(fs::path root, float units_per_m) : root_(std::move(root)), units_per_m_(units_per_m) {
+  FolderWriter(fs::path root, float units_per_m, std::optional<float> rate_hz = {})
+      : root_(std::move(root)), units_per_m_(units_per_m), rate_hz_(rate_hz) {
     make_empty_folder(root_);
   }
 
@@ -50,7 +51,7 @@ class FolderWriter : public FrameWriter {
     if (!names_.insert(name).second) throw Error(fmt::format("{}: two frames named {}", root_.string(), name));
     if (!camera_) {
       camera_ = frame.camera;
-      write_file_atomically((root_ / "meta.json").string(), serialise_meta(*camera_, units_per_m_));
+      write_file_atomically((root_ / "meta.json").string(), serialise_meta(*camera_, units_per_m_, rate_hz_));
     }
     if (frame.camera != *camera_) {
       throw Error(fmt::format("{}: frame {} has another camera than the first", root_.string(), name));
@@ -77,13 +78,14 @@ class FolderWriter : public FrameWriter {
  private:
   fs::path root_;
   float units_per_m_;
+  std::optional<float> rate_hz_;
   std::optional<Camera> camera_;
   std::set<std::string> names_;
 };
 
 class PngWriter final : public FolderWriter {
  public:
-  explicit PngWriter(const fs::path& root) : FolderWriter(root, 1000.F) {}
+  PngWriter(const fs::path& root, std::optional<float> rate_hz) : FolderWriter(root, 1000.F, rate_hz) {}
 
  private:
   void write_pictures(const Frame& frame, const std::string& name) override {
@@ -176,7 +178,7 @@ std::unique_ptr<FrameWriter> make_frame_writer(FrameFormat format, const std::st
     case FrameFormat::pcd:
       return std::make_unique<PcdWriter>(folder, options.pcd_encoding);
     default:
-      return std::make_unique<PngWriter>(folder);
+      return std::make_unique<PngWriter>(folder, options.frame_rate);
   }
 }
 

@@ -22,8 +22,9 @@ FrameFormat parse_frame_format(std::string_view word);
 
 struct WriteOptions {
   PcdEncoding pcd_encoding = PcdEncoding::binary_compressed;
-  float tum_units_per_m = 5000.F;   ///< at the benchmark's 5000, 16 bits reach 13.1 m
-  std::optional<float> frame_rate;  ///< frames per second; gives times to frames without, which `tum` needs
+  float tum_units_per_m = 5000.F;  ///< at the benchmark's 5000, 16 bits reach 13.1 m
+  /// Frames per second; gives times to frames without, which `tum` needs. `folder` has it in meta.json.
+  std::optional<float> frame_rate;
 };
 
 /// Writes frames into a folder without loss. All frames of one folder share one camera.
