@@ -104,7 +104,7 @@ void add_bones(const PersonMotion& person, std::vector<MetricTerms>& frames) {
   };
   std::map<int, Settled> of_track;
   for (const MotionStep& step : person) {
-    if (step.id == 0 || step.track_age < kSettled) continue;
+    if (step.id == 0 || step.track_age < kSettledFrames) continue;
     Settled& settled = of_track[step.id];
     settled.last_frame = step.frame;
     for (std::size_t b = 0; b < truth_m.size(); ++b) {
@@ -118,7 +118,7 @@ void add_bones(const PersonMotion& person, std::vector<MetricTerms>& frames) {
   }
   for (const auto& [id, settled] : of_track) {
     for (std::size_t b = 0; b < truth_m.size(); ++b) {
-      if (settled.lengths_m[b].size() < kSettled) continue;
+      if (settled.lengths_m[b].size() < kSettledFrames) continue;
       const double spread = standard_deviation(settled.lengths_m[b]) / truth_m[b];
       frames[settled.last_frame].push_back({Metric::bones_spread, spread, 1.0});
     }

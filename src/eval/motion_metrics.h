@@ -45,7 +45,7 @@ struct MotionStep {
 using PersonMotion = std::vector<MotionStep>;
 
 /// Frames of a track after which its bones should have their lengths.
-inline constexpr int kSettled = 30;
+inline constexpr int kSettledFrames = 30;
 /// Largest lag at which a delay is looked for, frames.
 inline constexpr int kMostLag = 10;
 
@@ -54,9 +54,10 @@ inline constexpr int kMostLag = 10;
 /// - joints.jitter: the mean length of the second difference of a joint's places in three consecutive frames over the
 ///   square of the time between two, mm/s^2, where it was found in all three under one id; joints.true_jitter: the same
 ///   of the truth, of the same joints in the same frames.
-/// - bones.error, bone.NAME.error: |length found - true| / true, of the frames after the kSettled-th of a track, the
+/// - bones.error, bone.NAME.error: |length found - true| / true, of the frames after the kSettledFrames-th of a track,
+/// the
 ///   true length being the median over the sequence; bones.spread: the standard deviation of a bone's length over these
-///   frames of a track (at least kSettled of them), over its true length.
+///   frames of a track (at least kSettledFrames of them), over its true length.
 /// - joints.delay: the lag, in ms and refined by a parabola, at which the velocities of found joints agree best with
 /// the
 ///   true ones; positive is late. A sequence counts by how much its joints move. Without a best lag within kMostLag

@@ -94,7 +94,7 @@ TEST(Bones, HaveErrorsAndSpreadAfterTheThirtiethFrame) {
   for (MotionStep& step : person) {
     step.true_bones_m[3] = 0.4;  // left shin
     // Wrong by half at first, then by 10 % and 20 % in turn.
-    step.found_bones_m[3] = step.track_age < kSettled ? 0.6 : step.track_age % 2 == 0 ? 0.44 : 0.48;
+    step.found_bones_m[3] = step.track_age < kSettledFrames ? 0.6 : step.track_age % 2 == 0 ? 0.44 : 0.48;
   }
   const MetricTerms terms = terms_of(person);
   EXPECT_NEAR(value_of(terms, "bones.error"), 0.15, 1e-9);

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <numbers>
 
 #include "vesalius/base/error.h"
@@ -15,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// People who stand, walk, reach out and sit, from the front, the side and behind.
+/// People who stand, walk, sit and stretch their arms, seen from the front, obliquely and from behind.
 std::vector<BodyState> poses() {
   std::vector<BodyState> states;
   for (const double yaw : {0.0, 0.6, pi, pi - 0.5}) states.push_back(test::usual_state(yaw));
@@ -24,6 +23,10 @@ std::vector<BodyState> poses() {
   test::turn(walking, "r_thigh", {0.3, 0.0, 0.0});
   test::turn(walking, "r_shin", {0.5, 0.0, 0.0});
   states.push_back(walking);
+  BodyState sitting = test::usual_state(0.4);
+  for (const char* bone : {"l_thigh", "r_thigh"}) test::turn(sitting, bone, {-1.4, 0.0, 0.0});
+  for (const char* bone : {"l_shin", "r_shin"}) test::turn(sitting, bone, {1.4, 0.0, 0.0});
+  states.push_back(sitting);
   for (const double yaw : {0.0, pi}) {
     BodyState wide = test::usual_state(yaw);
     for (const char* bone : {"l_upper_arm", "r_upper_arm", "l_forearm", "r_forearm"}) {
