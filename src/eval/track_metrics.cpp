@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "eval/assign_pairs.h"
+#include "vesalius/base/assign_pairs.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {

@@ -1,4 +1,4 @@
-#include "eval/assign_pairs.h"
+#include "vesalius/base/assign_pairs.h"
 
 #include <gmock/gmock.h>
 
