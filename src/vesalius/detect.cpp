@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -251,7 +251,7 @@ Scenery look_around(const Method& method, const Frame& frame, const Scene& scene
 
 /// Refines candidates, among all others whose masks are known so far.
 void refine_all(const Method& method, const Frame& frame, const Scene& scene, const Scenery& scenery,
-                const Prior& prior, std::vector<Candidate>& candidates) {
+                const Prior& prior, std::span<Candidate> candidates) {
   parallel_for(static_cast<int>(candidates.size()), [&](int i) {
     candidates[i] = refine(method, frame, scene, scenery, std::move(candidates[i]));
     candidates[i].certainty = certainty_of(candidates[i], prior);
@@ -284,14 +284,12 @@ void add_known(const Method& method, const Frame& frame, const Scene& scene, con
   std::vector<std::optional<Candidate>> grown(missed.size());
   parallel_for(static_cast<int>(missed.size()),
                [&](int i) { grown[i] = grow_known(method, frame, scene, prior, missed[i], grower); });
-  std::vector<Candidate> known;
+  const std::size_t others = candidates.size();
   for (std::optional<Candidate>& candidate : grown) {
-    if (candidate) known.push_back(std::move(*candidate));
+    if (candidate) candidates.push_back(std::move(*candidate));
   }
-  std::vector<Candidate> all = candidates;
-  std::ranges::copy(known, std::back_inserter(all));
-  refine_all(method, frame, scene, look_around(method, frame, scene, all), prior, known);
-  std::ranges::move(known, std::back_inserter(candidates));
+  refine_all(method, frame, scene, look_around(method, frame, scene, candidates), prior,
+             std::span(candidates).subspan(others));
 }
 
 /// Returns whether most of the mask is already taken.

@@ -177,11 +177,9 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
     const bool mirrored = start % 2 == 1;
     const std::optional<BodyState> first = first_state(data, mirrored, static_cast<std::size_t>(start) / 2);
     if (!first) break;
-    FitData alone = data;
-    alone.expected.pose.reset();
     const Solution rough = descend(*first, options_.iterations,
                                    [&](const BodyState& state, std::vector<PlacedBone>& at, NormalEquations& to) {
-                                     terms_.evaluate_centres(alone, state, mirrored, at, to);
+                                     terms_.evaluate_centres(data, state, mirrored, at, to);
                                    });
     offer(fit_points(data, rough.state, options_.rounds));
   }

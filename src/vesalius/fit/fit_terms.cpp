@@ -11,9 +11,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double kLeastRadius =
-    0.1;  // of a point in units of the flesh's half width: its direction is not defined at 0
+// Of a point, in units of the flesh's half width: its direction is not defined at 0.
+constexpr double kLeastRadius = 0.1;
 constexpr double kLeastHalf_m = 0.008;
+constexpr double kLimit = 3.0;  // deviations beyond which centres, outline and fast limbs count less and less
 
 /// The flesh of a bone at a place along it.
 struct CrossSection {
@@ -53,6 +54,14 @@ double geman_mcclure(double squared, double limit) { return squared / (1.0 + squ
 double geman_mcclure_weight(double squared, double limit) {
   const double share = 1.0 / (1.0 + squared / (limit * limit));
   return share * share;
+}
+
+/// Returns the weight of rows whose squared deviations sum to `squared`, such that they pull as weight times the robust
+/// cost does, and adds to the cost what their own squares leave out of that.
+double robust_weight(double squared, double limit, double weight, NormalEquations& equations) {
+  const double of_rows = weight * geman_mcclure_weight(squared, limit);
+  equations.add_cost(weight * geman_mcclure(squared, limit) - of_rows * squared);
+  return of_rows;
 }
 
 }  // namespace
@@ -113,7 +122,7 @@ struct FitTerms::Hit {
 };
 
 FitTerms::FitTerms(const FleshModel& flesh, const BodyModel& body, const FitOptions& options)
-    : flesh_(flesh), body_(body), options_(options), surface_(body, flesh), layout_(flesh) {}
+    : flesh_(flesh), body_(body), options_(options), surface_(body, flesh) {}
 
 FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurface::Stretch& stretch,
                             const Vector3d& at) const {
@@ -270,8 +279,7 @@ void FitTerms::add_centres(const FitData& data, const std::vector<PlacedBone>& p
         at.head + at.global * point - 0.7 * std::min(section.half[0], section.half[1]) * data.centres[p]->normalized();
     const Vector3d off = surface - *data.centres[p];
     const double squared = off.squaredNorm() / (sigma * sigma);
-    const double weight = geman_mcclure_weight(squared, 3.0);
-    equations.add_cost(geman_mcclure(squared, 3.0) - weight * squared);
+    const double weight = robust_weight(squared, kLimit, 1.0, equations);
     for (int axis = 0; axis < 3; ++axis) {
       equations.add_point(stretch.bone, surface, Vector3d::Unit(axis), none, off[axis], weight / (sigma * sigma));
     }
@@ -281,7 +289,6 @@ void FitTerms::add_centres(const FitData& data, const std::vector<PlacedBone>& p
 void FitTerms::add_outline(const FitData& data, const std::vector<PlacedBone>& placed,
                            NormalEquations& equations) const {
   constexpr std::array kPlaces{0.15, 0.5, 0.85};
-  constexpr double kLimit = 3.0;
   if (!data.silhouette) return;
   const double weight = static_cast<double>(options_.outline_weight);
   const double outline = static_cast<double>(options_.outline_m), free = static_cast<double>(options_.free_m);
@@ -299,15 +306,13 @@ void FitTerms::add_outline(const FitData& data, const std::vector<PlacedBone>& p
         const double violation = sight.depth_m - (point.z() - 0.7 * half);
         if (violation <= 0.0) continue;
         const double squared = violation * violation / (free * free);
-        const double robust = weight * geman_mcclure_weight(squared, kLimit);
-        equations.add_cost(weight * geman_mcclure(squared, kLimit) - robust * squared);
+        const double robust = robust_weight(squared, kLimit, weight, equations);
         equations.add_point(b, point, -Vector3d::UnitZ(), none, violation, robust / (free * free));
       } else if (sight.kind == Silhouette::Sight::Kind::behind) {
         const double scale = point.z() / static_cast<double>(data.silhouette->focal_px());
         const Eigen::Vector2d aside = scale * sight.aside;
         const double squared = aside.squaredNorm() / (outline * outline);
-        const double robust = weight * geman_mcclure_weight(squared, kLimit);
-        equations.add_cost(weight * geman_mcclure(squared, kLimit) - robust * squared);
+        const double robust = robust_weight(squared, kLimit, weight, equations);
         for (int axis = 0; axis < 2; ++axis) {
           equations.add_point(b, point, -Vector3d::Unit(axis), none, aside[axis], robust / (outline * outline));
         }
@@ -364,10 +369,7 @@ void FitTerms::add_limits(const BodyState& state, NormalEquations& equations) co
   }
 }
 
-void FitTerms::add_expected(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const {
-  const auto weight = static_cast<double>(options_.shape_weight);
-  const Eigen::VectorXd off = state.shape - expected.shape;
-  equations.add_shape(weight * expected.shape_information, off);
+void FitTerms::add_followed(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const {
   if (!expected.pose) return;
   const double metres = static_cast<double>(options_.follow_m) * expected.loosened;
   const double radians = static_cast<double>(options_.follow_rad) * expected.loosened;
@@ -377,18 +379,17 @@ void FitTerms::add_expected(const ExpectedBody& expected, const BodyState& state
   }
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const Vector3d turn = log_rotation(expected.pose->local[b].conjugate() * state.local[b]);
-    constexpr double kLimit = 3.0;  // limbs also move fast
     const double squared = turn.squaredNorm() / (radians * radians);
-    const double robust = geman_mcclure_weight(squared, kLimit);
-    equations.add_cost(geman_mcclure(squared, kLimit) - robust * squared);
+    const double robust = robust_weight(squared, kLimit, 1.0, equations);
     equations.add_turns({b}, log_by_turn(turn), turn, robust / (radians * radians));
   }
 }
 
-void FitTerms::add_priors(const FitData& data, const BodyState& state, NormalEquations& equations) const {
+void FitTerms::add_priors(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const {
   add_poses(state, equations);
   add_limits(state, equations);
-  add_expected(data.expected, state, equations);
+  equations.add_shape(static_cast<double>(options_.shape_weight) * expected.shape_information,
+                      state.shape - expected.shape);
 }
 
 void FitTerms::evaluate_points(const FitData& data, const BodyState& state, const std::vector<Assigned>& assigned,
@@ -397,7 +398,8 @@ void FitTerms::evaluate_points(const FitData& data, const BodyState& state, cons
   equations.clear(placed);
   add_points(data, placed, assigned, equations);
   add_outline(data, placed, equations);
-  add_priors(data, state, equations);
+  add_priors(data.expected, state, equations);
+  add_followed(data.expected, state, equations);
   equations.finish();
 }
 
@@ -406,7 +408,7 @@ void FitTerms::evaluate_centres(const FitData& data, const BodyState& state, boo
   placed = place_bones(flesh_, state);
   equations.clear(placed);
   add_centres(data, placed, mirrored, equations);
-  add_priors(data, state, equations);
+  add_priors(data.expected, state, equations);
   equations.finish();
 }
 

@@ -83,8 +83,8 @@ class FitTerms {
   /// Fills `equations` with the terms of a state for points that are assigned so.
   void evaluate_points(const FitData& data, const BodyState& state, const std::vector<Assigned>& assigned,
                        std::vector<PlacedBone>& placed, NormalEquations& equations) const;
-  /// Fills `equations` with the terms of a state that count for a start: the parts' centres and the priors. Parts are
-  /// taken for their mirror partners if `mirrored`.
+  /// Fills `equations` with the terms of a state that count for a start: the parts' centres and the priors, without the
+  /// expected pose. Parts are taken for their mirror partners if `mirrored`.
   void evaluate_centres(const FitData& data, const BodyState& state, bool mirrored, std::vector<PlacedBone>& placed,
                         NormalEquations& equations) const;
 
@@ -99,19 +99,18 @@ class FitTerms {
   Hit hit(const PlacedBone& bone, int index, const PartSurface::Stretch& stretch, const Eigen::Vector3d& at) const;
   void add_points(const FitData& data, const std::vector<PlacedBone>& placed, const std::vector<Assigned>& assigned,
                   NormalEquations& equations) const;
-  void add_priors(const FitData& data, const BodyState& state, NormalEquations& equations) const;
+  void add_priors(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const;
   void add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                    NormalEquations& equations) const;
   void add_outline(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
   void add_poses(const BodyState& state, NormalEquations& equations) const;
   void add_limits(const BodyState& state, NormalEquations& equations) const;
-  void add_expected(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const;
+  void add_followed(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const;
 
   const FleshModel& flesh_;
   const BodyModel& body_;
   const FitOptions& options_;
   PartSurface surface_;
-  StateLayout layout_;
 };
 
 }  // namespace vesalius

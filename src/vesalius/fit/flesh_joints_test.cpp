@@ -9,14 +9,11 @@
 #include <sstream>
 
 #include "vesalius/base/error.h"
+#include "vesalius/fit/test_bad_toml.h"
 
 namespace vesalius {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
-using testing::ThrowsMessage;
 
 // The tests depend on its line numbers.
 constexpr const char* kSmall = R"([[joint_set]]
@@ -31,13 +28,6 @@ bone = "l_hand"
 along = 0.25
 offset = [0.01, 0.02, 0.03]
 )";
-
-std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = kSmall;
-  const std::size_t at = text.find(old_text);
-  EXPECT_NE(at, std::string::npos) << old_text;
-  return text.replace(at, old_text.size(), new_text);
-}
 
 TEST(FleshJoints, AreReadWithTheirMirrorImages) {
   const FleshModel& flesh = builtin_flesh();
@@ -127,27 +117,19 @@ TEST(FleshJoints, LieWhereTheirBonesAre) {
 }
 
 TEST(FleshJoints, ErrorsNameFileLineAndExpectation) {
-  struct Case {
-    const char* old_text;
-    const char* new_text;
-    int line;
-    const char* what;
-  };
-  for (const Case& c : {
-           Case{"bone = \"head\"", "bone = \"tail\"", 3, "\"tail\": expected a bone of the flesh"},
-           Case{"along = 0.5", "along = 11", 6, "along"},
-           Case{"along = 0.5", "along = nan", 6, "along"},
-           Case{"along = 0.5", "", 3, "missing key \"along\""},
-           Case{"offset = [0.01, 0.02, 0.03]", "offset = [0.01, 0.02]", 11, "expected 3 numbers"},
-           Case{"offset = [0.01, 0.02, 0.03]", "offset = [0.01, 0.02, \"a\"]", 11, "offset"},
-           Case{"offset", "offsets", 11, "unknown key"},
-           Case{"name = \"head\"", "name = 1", 4, "expected a string"},
-       }) {
-    SCOPED_TRACE(c.new_text);
-    EXPECT_THAT(
-        [&] { parse_flesh_joints(with(c.old_text, c.new_text), "some.toml", builtin_flesh()); },
-        ThrowsMessage<Error>(AllOf(StartsWith("some.toml:" + std::to_string(c.line) + ":"), HasSubstr(c.what))));
-  }
+  test::expect_refused(
+      kSmall,
+      {
+          test::BadToml{"bone = \"head\"", "bone = \"tail\"", 3, "\"tail\": expected a bone of the flesh"},
+          test::BadToml{"along = 0.5", "along = 11", 6, "along"},
+          test::BadToml{"along = 0.5", "along = nan", 6, "along"},
+          test::BadToml{"along = 0.5", "", 3, "missing key \"along\""},
+          test::BadToml{"offset = [0.01, 0.02, 0.03]", "offset = [0.01, 0.02]", 11, "expected 3 numbers"},
+          test::BadToml{"offset = [0.01, 0.02, 0.03]", "offset = [0.01, 0.02, \"a\"]", 11, "offset"},
+          test::BadToml{"offset", "offsets", 11, "unknown key"},
+          test::BadToml{"name = \"head\"", "name = 1", 4, "expected a string"},
+      },
+      [](const std::string& text, const char* name) { parse_flesh_joints(text, name, builtin_flesh()); });
 }
 
 }  // namespace

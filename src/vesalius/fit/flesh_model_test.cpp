@@ -6,12 +6,11 @@
 #include <cmath>
 
 #include "vesalius/base/error.h"
+#include "vesalius/fit/test_bad_toml.h"
 
 namespace vesalius {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
@@ -47,13 +46,6 @@ weight = 0.75
 mean = [0.5, 0, 0]
 covariance = [0.04, 0, 0.09, 0, 0, 0.16]
 )";
-
-std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = kSmall;
-  const std::size_t at = text.find(old_text);
-  EXPECT_NE(at, std::string::npos) << old_text;
-  return text.replace(at, old_text.size(), new_text);
-}
 
 Eigen::VectorXd shape_of(const FleshModel& model, double first) {
   Eigen::VectorXd shape = Eigen::VectorXd::Zero(model.shapes);
@@ -156,41 +148,33 @@ TEST(FleshModel, PriorsMeasureMahalanobisDistance) {
 }
 
 TEST(FleshModel, ErrorsNameFileLineAndExpectation) {
-  struct Case {
-    const char* old_text;
-    const char* new_text;
-    int line;
-    const char* what;
-  };
-  for (const Case& c : {
-           Case{"shapes = 1", "shapes = 0", 1, "shapes"},
-           Case{"observed = [-6, -2, -3]", "observed = [-6, -2]", 2, "expected 3 numbers, found 2"},
-           Case{"name = \"trunk\"", "name = \"l_trunk\"", 4, "middle line"},
-           Case{"axis = \"y\"", "axis = \"w\"", 4, "expected x, y or z"},
-           Case{"stations = [0.0, 0.5, 1.0]", "stations = [0.0, 0.5, 0.5]", 4, "expected rising numbers"},
-           Case{"0.5, 0, 0, 0, 0.15", "0, 0, 0, 0, 0.15", 4, "tail away from the head"},
-           Case{"0.05, 0.05]", "0.05]", 17, "mean: expected 18 numbers, found 17"},
-           Case{"0.05, 0.05]", "0.05, nan]", 17, "mean"},
-           Case{"[0, 0, 0, 0, -0.1, 0, ", "[0, 0, 0, -0.1, 0, ", 18, "expected lists of 18 numbers"},
-           Case{"shapes = [[0, 0, 0, 0, -0.1", "shapes = [[0], [0, 0, 0, 0, -0.1", 18, "expected 1 lists"},
-           Case{"low = [-1", "low = [3", 12, "low: expected at most \"high\""},
-           Case{"name = \"l_leg\"", "name = \"r_leg\"", 12, "expected no right side"},
-           Case{"name = \"l_leg\"", "name = \"trunk\"", 12, "given twice"},
-           Case{"parent = \"trunk\"", "parent = \"tail\"", 14, "\"tail\": expected a bone above"},
-           Case{"bones = [\"l_leg\"]", "bones = [\"l_arm\"]", 22, "\"l_arm\": expected a bone above"},
-           Case{"bones = [\"l_leg\"]", "bones = []", 21, "expected at least one"},
-           Case{"weight = 0.25", "weight = 0", 24, "weight"},
-           Case{"mean = [0.1, 0.2, 0.3]", "mean = [0.1, 0.2]", 25, "expected 3 numbers, found 2"},
-           Case{"[0.04, 0.01, 0.09", "[0.04, 0.01", 26, "expected 6 numbers, found 5"},
-           Case{"[0.04, 0.01, 0.09", "[0.04, 0.07, 0.09", 23, "expected a positive definite matrix"},
-           Case{"[0.04, 0.01, 0.09", "[-0.04, 0.01, 0.09", 23, "expected a positive definite matrix"},
-           Case{"low = [0, 0, 0]", "lower = [0, 0, 0]", 10, "lower"},
-       }) {
-    SCOPED_TRACE(c.new_text);
-    EXPECT_THAT(
-        [&] { parse_flesh_model(with(c.old_text, c.new_text), "some.toml"); },
-        ThrowsMessage<Error>(AllOf(StartsWith("some.toml:" + std::to_string(c.line) + ":"), HasSubstr(c.what))));
-  }
+  test::expect_refused(
+      kSmall,
+      {
+          test::BadToml{"shapes = 1", "shapes = 0", 1, "shapes"},
+          test::BadToml{"observed = [-6, -2, -3]", "observed = [-6, -2]", 2, "expected 3 numbers, found 2"},
+          test::BadToml{"name = \"trunk\"", "name = \"l_trunk\"", 4, "middle line"},
+          test::BadToml{"axis = \"y\"", "axis = \"w\"", 4, "expected x, y or z"},
+          test::BadToml{"stations = [0.0, 0.5, 1.0]", "stations = [0.0, 0.5, 0.5]", 4, "expected rising numbers"},
+          test::BadToml{"0.5, 0, 0, 0, 0.15", "0, 0, 0, 0, 0.15", 4, "tail away from the head"},
+          test::BadToml{"0.05, 0.05]", "0.05]", 17, "mean: expected 18 numbers, found 17"},
+          test::BadToml{"0.05, 0.05]", "0.05, nan]", 17, "mean"},
+          test::BadToml{"[0, 0, 0, 0, -0.1, 0, ", "[0, 0, 0, -0.1, 0, ", 18, "expected lists of 18 numbers"},
+          test::BadToml{"shapes = [[0, 0, 0, 0, -0.1", "shapes = [[0], [0, 0, 0, 0, -0.1", 18, "expected 1 lists"},
+          test::BadToml{"low = [-1", "low = [3", 12, "low: expected at most \"high\""},
+          test::BadToml{"name = \"l_leg\"", "name = \"r_leg\"", 12, "expected no right side"},
+          test::BadToml{"name = \"l_leg\"", "name = \"trunk\"", 12, "given twice"},
+          test::BadToml{"parent = \"trunk\"", "parent = \"tail\"", 14, "\"tail\": expected a bone above"},
+          test::BadToml{"bones = [\"l_leg\"]", "bones = [\"l_arm\"]", 22, "\"l_arm\": expected a bone above"},
+          test::BadToml{"bones = [\"l_leg\"]", "bones = []", 21, "expected at least one"},
+          test::BadToml{"weight = 0.25", "weight = 0", 24, "weight"},
+          test::BadToml{"mean = [0.1, 0.2, 0.3]", "mean = [0.1, 0.2]", 25, "expected 3 numbers, found 2"},
+          test::BadToml{"[0.04, 0.01, 0.09", "[0.04, 0.01", 26, "expected 6 numbers, found 5"},
+          test::BadToml{"[0.04, 0.01, 0.09", "[0.04, 0.07, 0.09", 23, "expected a positive definite matrix"},
+          test::BadToml{"[0.04, 0.01, 0.09", "[-0.04, 0.01, 0.09", 23, "expected a positive definite matrix"},
+          test::BadToml{"low = [0, 0, 0]", "lower = [0, 0, 0]", 10, "lower"},
+      },
+      [](const std::string& text, const char* name) { parse_flesh_model(text, name); });
   EXPECT_THAT([] { parse_flesh_model("shapes = [", "some.toml"); }, ThrowsMessage<Error>(StartsWith("some.toml:1:")));
   EXPECT_THROW(parse_flesh_model("", "some.toml"), Error);
 }
