@@ -14,7 +14,6 @@
 namespace vesalius {
 namespace {
 
-
 // The tests depend on its line numbers.
 constexpr const char* kSmall = R"([[joint_set]]
 name = "nite15"
