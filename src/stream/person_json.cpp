@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "stream/json_numbers.h"
+#include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"
 
 namespace vesalius {
@@ -86,11 +87,22 @@ Json frame_facts(const Frame& frame, std::optional<double> latency_ms) {
   return json;
 }
 
+Json xyzw_json(const Eigen::Quaternionf& q) { return {rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w())}; }
+
+/// Returns the joints' rotations of the joint sets that have some, in the sets' own conventions.
+Json rotations_json(const FittedBody& fitted, const BodyModel& body) {
+  Json sets = Json::object();
+  for (const JointSet& set : body.joint_sets) {
+    const auto rotations = joint_rotations(fitted, builtin_flesh_joints(), set);
+    for (std::size_t j = 0; j < rotations.size(); ++j) {
+      if (rotations[j]) sets[set.name][set.joints[j].name] = xyzw_json(*rotations[j]);
+    }
+  }
+  return sets;
+}
+
 /// Bones by name. Rotations are xyzw, `global` into the optical frame, `local` into the parent's.
-Json body_json(const FittedBody& fitted) {
-  const auto rotation = [](const Eigen::Quaternionf& q) {
-    return Json{rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w())};
-  };
+Json body_json(const FittedBody& fitted, const BodyModel& body) {
   Json bones = Json::object();
   const std::vector<FleshBone>& names = builtin_flesh().bones;
   for (std::size_t b = 0; b < fitted.bones.size() && b < names.size(); ++b) {
@@ -102,11 +114,14 @@ Json body_json(const FittedBody& fitted) {
       covariance.push_back(rounded(static_cast<double>(number) * kSquareMillimetres, 10));
     }
     bones[names[b].name] = {{"head_m", xyz_json(bone.head)},          {"tail_m", xyz_json(bone.tail)},
-                            {"length_m", rounded(bone.length_m)},     {"global_xyzw", rotation(bone.global)},
-                            {"local_xyzw", rotation(bone.local)},     {"covariance_mm2", covariance},
+                            {"length_m", rounded(bone.length_m)},     {"global_xyzw", xyzw_json(bone.global)},
+                            {"local_xyzw", xyzw_json(bone.local)},    {"covariance_mm2", covariance},
                             {"confidence", rounded(bone.confidence)}, {"state", to_string(bone.state)}};
   }
-  return {{"stature_m", rounded(fitted.stature_m)}, {"misfit", rounded(fitted.misfit)}, {"bones", bones}};
+  return {{"stature_m", rounded(fitted.stature_m)},
+          {"misfit", rounded(fitted.misfit)},
+          {"bones", bones},
+          {"joint_rotations_xyzw", rotations_json(fitted, body)}};
 }
 
 Json tracked_json(const TrackedPerson& tracked, std::size_t index, const BodyModel& body, const Camera& camera) {
@@ -119,7 +134,7 @@ Json tracked_json(const TrackedPerson& tracked, std::size_t index, const BodyMod
                {"since_s", rounded(tracked.since_s, 1e6)},
                {"seen_s", rounded(tracked.seen_s, 1e6)}};
   json.update(person_json(tracked.person, index, body, camera));
-  if (tracked.body) json["body"] = body_json(*tracked.body);
+  if (tracked.body) json["body"] = body_json(*tracked.body, body);
   if (!tracked.smoothed.empty()) json["smoothed"] = joints_json(tracked.smoothed, body, camera);
   return json;
 }

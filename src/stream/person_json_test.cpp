@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "vesalius/fit/flesh_model.h"
+
 namespace vesalius {
 namespace {
 
@@ -136,6 +138,28 @@ TEST(PersonJson, PeopleWhoAreFollowedHaveIdsStatesAndVelocities) {
   const json smoothed = json::parse(tracked_frame_json(named("f"), frame, body));
   EXPECT_EQ(smoothed.at("people").at(0).at("smoothed"), person.at("joints"));
   EXPECT_TRUE(smoothed.at("floor").is_null());
+}
+
+TEST(PersonJson, FittedBodiesHaveTheRotationsOfTheJointsThatTheyKnow) {
+  const BodyModel& body = paper_body();
+  TrackedPerson tracked;
+  tracked.person = half_seen(body);
+  FittedBody& fitted = tracked.body.emplace();
+  for (std::size_t b = 0; b < builtin_flesh().bones.size(); ++b) {
+    FittedBone& bone = fitted.bones.emplace_back();
+    bone.state = State::predicted;
+    bone.tail = {0.F, 1.F, 0.F};
+  }
+  const json person = json::parse(tracked_frame_json(named("f"), {0.0, {tracked}, {}, {}}, body)).at("people").at(0);
+  const json& sets = person.at("body").at("joint_rotations_xyzw");
+  ASSERT_EQ(sets.size(), 1U) << "other sets have none";
+  EXPECT_EQ(sets.at("k4abt32").size(), 30U);
+  EXPECT_FALSE(sets.at("k4abt32").contains("l_thumb"));
+  // The bone's frame is the optical one: x along y, y along z, z along x.
+  EXPECT_EQ(sets.at("k4abt32").at("pelvis"), json({0.5, 0.5, 0.5, 0.5}));
+  fitted.bones.assign(fitted.bones.size(), {});
+  const json nothing = json::parse(tracked_frame_json(named("f"), {0.0, {tracked}, {}, {}}, body)).at("people").at(0);
+  EXPECT_TRUE(nothing.at("body").at("joint_rotations_xyzw").empty());
 }
 
 TEST(PersonJson, TheLastLineSaysWhetherAllIsThere) {

@@ -1,6 +1,7 @@
 #include "vesalius/fit/flesh_joints.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "vesalius/base/toml_reader.h"
 
@@ -11,9 +12,40 @@ constexpr const char* kFleshJoints =
 #include "flesh_joints.inc"
     ;
 
-FleshJoint read_joint(const TomlReader& reader, const toml::table& table, const std::string& set,
-                      const FleshModel& flesh) {
-  reader.expect_keys(table, {"name", "bone", "along", "offset"});
+FleshJoint mirrored(FleshJoint joint, const FleshModel& flesh) {
+  joint.name.front() = 'r';
+  joint.bone = flesh.bones[joint.bone].mirror;
+  joint.offset_m.x() = -joint.offset_m.x();
+  // The mirror image of a right-handed frame with all axes reversed is the frame turned by half a turn about x.
+  if (joint.axes) joint.axes = Eigen::Quaternionf(0.F, 1.F, 0.F, 0.F) * *joint.axes;
+  return joint;
+}
+
+/// Returns the axis that "+x" to "-z" names, or zero.
+Eigen::Vector3f named_axis(const std::string& name) {
+  Eigen::Vector3f axis = Eigen::Vector3f::Zero();
+  if (name.size() != 2 || (name[0] != '+' && name[0] != '-') || name[1] < 'x' || name[1] > 'z') return axis;
+  axis[name[1] - 'x'] = name[0] == '+' ? 1.F : -1.F;
+  return axis;
+}
+
+Eigen::Quaternionf read_axes(const TomlReader& reader, const toml::table& table, const char* key) {
+  const toml::array& names = reader.array(table, key);
+  Eigen::Matrix3f axes = Eigen::Matrix3f::Zero();
+  for (std::size_t i = 0; i < names.size() && i < 3; ++i) {
+    axes.col(static_cast<Eigen::Index>(i)) = named_axis(reader.string(*names.get(i), key));
+  }
+  if (names.size() != 3 || axes.determinant() != 1.F) {
+    reader.fail(names,
+                std::string(key) + ": expected three axes of a right-handed frame, such as \"+x\", \"+z\", \"-y\"");
+  }
+  return Eigen::Quaternionf(axes);
+}
+
+/// Reads a joint, and its mirror image if it has one.
+std::vector<FleshJoint> read_joint(const TomlReader& reader, const toml::table& table, const std::string& set,
+                                   const FleshModel& flesh) {
+  reader.expect_keys(table, {"name", "bone", "along", "offset", "axes", "right_axes", "x_on_bone"});
   FleshJoint joint;
   joint.set = set;
   joint.name = reader.string(reader.need(table, "name"), "name");
@@ -21,18 +53,24 @@ FleshJoint read_joint(const TomlReader& reader, const toml::table& table, const 
   joint.bone = flesh.find_bone(bone);
   if (joint.bone < 0) reader.fail(table, "bone " + in_quotes(bone) + ": expected a bone of the flesh");
   joint.along = reader.number(table, "along", -10.0, 10.0);
-  if (!table.contains("offset")) return joint;
-  const toml::array& offset = reader.array(table, "offset");
-  if (offset.size() != 3) reader.fail(offset, "offset: expected 3 numbers");
-  for (int i = 0; i < 3; ++i) joint.offset_m[i] = reader.number(*offset.get(i), "offset", -2.0, 2.0);
-  return joint;
+  if (table.contains("offset")) {
+    const toml::array& offset = reader.array(table, "offset");
+    if (offset.size() != 3) reader.fail(offset, "offset: expected 3 numbers");
+    for (int i = 0; i < 3; ++i) joint.offset_m[i] = reader.number(*offset.get(i), "offset", -2.0, 2.0);
+  }
+  if (table.contains("axes")) joint.axes = read_axes(reader, table, "axes");
+  joint.x_on_bone = table.contains("x_on_bone") && reader.boolean(table, "x_on_bone");
+  if (!joint.name.starts_with("l_")) return {joint};
+  FleshJoint right = mirrored(joint, flesh);
+  if (table.contains("right_axes")) right.axes = read_axes(reader, table, "right_axes");
+  return {joint, right};
 }
 
-FleshJoint mirrored(FleshJoint joint, const FleshModel& flesh) {
-  joint.name.front() = 'r';
-  joint.bone = flesh.bones[joint.bone].mirror;
-  joint.offset_m.x() = -joint.offset_m.x();
-  return joint;
+/// Returns the place of joint `j` of a set, or null.
+const FleshJoint* find_place(const std::vector<FleshJoint>& places, const JointSet& set, std::size_t j) {
+  const auto place = std::ranges::find_if(
+      places, [&](const FleshJoint& p) { return p.set == set.name && p.name == set.joints[j].name; });
+  return place == places.end() ? nullptr : &*place;
 }
 
 }  // namespace
@@ -47,8 +85,7 @@ std::vector<FleshJoint> parse_flesh_joints(std::string_view toml, const std::str
     reader.expect_keys(table, {"name", "joint"});
     const std::string set = reader.string(reader.need(table, "name"), "name");
     for (const toml::node& joint : reader.array(table, "joint")) {
-      joints.push_back(read_joint(reader, reader.table(joint, "joint"), set, flesh));
-      if (joints.back().name.starts_with("l_")) joints.push_back(mirrored(joints.back(), flesh));
+      std::ranges::move(read_joint(reader, reader.table(joint, "joint"), set, flesh), std::back_inserter(joints));
     }
   }
   return joints;
@@ -64,9 +101,8 @@ void place_joints(const FittedBody& fitted, const std::vector<FleshJoint>& place
   for (std::size_t s = 0; s < body.joint_sets.size(); ++s) {
     const JointSet& set = body.joint_sets[s];
     for (std::size_t j = 0; j < set.joints.size(); ++j) {
-      const auto place = std::ranges::find_if(
-          places, [&](const FleshJoint& p) { return p.set == set.name && p.name == set.joints[j].name; });
-      if (place == places.end()) continue;
+      const FleshJoint* place = find_place(places, set, j);
+      if (place == nullptr) continue;
       const FittedBone& bone = fitted.bones[place->bone];
       const float along = std::clamp(place->along, 0.F, 1.F);
       Joint& joint = joints[s][j];
@@ -75,6 +111,25 @@ void place_joints(const FittedBody& fitted, const std::vector<FleshJoint>& place
       joint.confidence = (1.F - along) * bone.confidence + along * bone.tail_confidence;
     }
   }
+}
+
+std::vector<std::optional<Eigen::Quaternionf>> joint_rotations(const FittedBody& fitted,
+                                                               const std::vector<FleshJoint>& places,
+                                                               const JointSet& set) {
+  std::vector<std::optional<Eigen::Quaternionf>> rotations(set.joints.size());
+  for (std::size_t j = 0; j < set.joints.size(); ++j) {
+    const FleshJoint* place = find_place(places, set, j);
+    if (place == nullptr || !place->axes) continue;
+    const FittedBone& bone = fitted.bones[place->bone];
+    if (bone.state == State::none) continue;
+    Eigen::Quaternionf rotation = bone.global * *place->axes;
+    if (place->x_on_bone) {
+      const Eigen::Vector3f x = rotation * Eigen::Vector3f::UnitX(), line = bone.tail - bone.head;
+      rotation = Eigen::Quaternionf::FromTwoVectors(x, x.dot(line) < 0.F ? -line : line) * rotation;
+    }
+    rotations[j] = rotation.normalized();
+  }
+  return rotations;
 }
 
 }  // namespace vesalius

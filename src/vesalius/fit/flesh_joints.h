@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +20,8 @@ struct FleshJoint {
   int bone = -1;
   float along = 0.F;                                   ///< 0 is the bone's head, 1 its tail
   Eigen::Vector3f offset_m = Eigen::Vector3f::Zero();  ///< from there, in the bone's frame
+  std::optional<Eigen::Quaternionf> axes;              ///< bone's frame from the joint's, if the tracker turns joints
+  bool x_on_bone = false;                              ///< whether the joint's x axis follows the bone's line exactly
 };
 
 /// Parses joint sets. Throws Error naming `source`, line and expectation.
@@ -30,5 +34,11 @@ const std::vector<FleshJoint>& builtin_flesh_joints();
 /// place stay as they are.
 void place_joints(const FittedBody& fitted, const std::vector<FleshJoint>& places, const BodyModel& body,
                   std::vector<std::vector<Joint>>& joints);
+
+/// Returns for each joint of a set the rotation that the tracker which names it would give: optical frame from the
+/// joint's. Nothing for joints without axes, and where nothing is known of the bone.
+std::vector<std::optional<Eigen::Quaternionf>> joint_rotations(const FittedBody& fitted,
+                                                               const std::vector<FleshJoint>& places,
+                                                               const JointSet& set);
 
 }  // namespace vesalius
