@@ -1,9 +1,12 @@
 #include "vesalius/track/track_people.h"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <set>
@@ -595,6 +598,108 @@ TEST(TrackPeople, TellsTheFloorAndWhoStandsOnIt) {
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].id, 1);
   EXPECT_EQ(events[0].stance, Stance::standing);
+}
+
+/// Returns the memory that this process has in use, if the system tells.
+std::optional<double> resident_mib() {
+  long pages = 0;
+  std::ifstream statm("/proc/self/statm");
+  if (!(statm >> pages >> pages)) return std::nullopt;
+  return static_cast<double>(pages) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
+}
+
+/// What a camera may see over hours: people who come and go, false ones, times and sizes that are wrong.
+class BadDay {
+ public:
+  BadDay() {
+    const Camera wide{8, 6, 6.5F, 6.5F, 3.5F, 2.5F}, narrow{6, 8, 6.5F, 6.5F, 2.5F, 3.5F};
+    Actor left, right;
+    left.trunk.x() = -0.5F;
+    right.trunk.x() = 0.6F;
+    right.colour = {30, 30, 200};
+    for (const std::vector<Actor>& actors : {std::vector<Actor>{}, {left}, {left, right}, {right}}) {
+      stages_.emplace_back(actors, wide);
+    }
+    other_size_.emplace_back(std::vector<Actor>{left}, narrow);
+  }
+
+  /// Returns the next frame. Somebody comes, goes or changes the looks every second or two.
+  const Frame& next(std::vector<Person>& people) {
+    ++count_;
+    if (count_ % 15 == 0) {
+      scene_ = random_.below(4);
+      shade_ = static_cast<std::uint8_t>(random_.below(256));
+    }
+    Stage& stage = count_ % 401 == 0 ? other_size_.front() : stages_[scene_];
+    people = stage.people;
+    if (count_ % 997 == 0) people = false_people(stages_[1].people.front());
+    if (count_ % 211 == 0 && !people.empty()) people.front().mask.fill(0), people.front().mask[0] = 1;
+    if (count_ % 30011 == 0) offset_s_ -= 7200.0;
+    if (count_ % 40009 == 0) offset_s_ += 10800.0;
+    if (count_ % 13 != 0) time_s_ = static_cast<double>(count_) * kFrame_s + offset_s_;  // otherwise twice the same
+    stage.frame.time_s = count_ % 503 == 0 ? std::numeric_limits<double>::quiet_NaN() : time_s_;
+    stage.frame.colour.fill({shade_, 90, static_cast<std::uint8_t>(255 - shade_)});
+    return stage.frame;
+  }
+
+ private:
+  std::vector<Person> false_people(const Person& like) {
+    std::vector<Person> people(100, like);
+    for (Person& person : people) {
+      const float x = far(), y = far(), z = 35.F + far();
+      for (SkeletonPart& part : person.skeleton.parts) part.centre += Vector3f(x, y, z);
+      person.score = static_cast<float>(random_.uniform());
+    }
+    return people;
+  }
+  float far() { return static_cast<float>(random_.uniform(-30.0, 30.0)); }
+
+  Random random_{9};
+  std::vector<Stage> stages_, other_size_;
+  std::uint32_t scene_ = 0;
+  std::uint8_t shade_ = 0;
+  long count_ = 0;
+  double offset_s_ = 0.0, time_s_ = 0.0;
+};
+
+// Twelve minutes; VESALIUS_TRACK_HOURS=10 makes it ten hours, as every night.
+TEST(TrackPeople, HoursOfBadInputNeedNoMoreMemory) {
+  const char* asked = std::getenv("VESALIUS_TRACK_HOURS");
+  const long updates = std::lround((asked != nullptr ? std::atof(asked) : 0.2) * 3600.0 / kFrame_s);
+  ASSERT_GT(updates, 1000);
+  PeopleTracker tracker(paper_body(), {}, hue());
+  PeopleTracker fitting(paper_body(), {}, hue(), std::make_shared<BodyFitter>(paper_body()));
+  const auto [room, somebody] = rendered_person();
+  const Frame empty = Stage({}).frame;
+  BadDay day;
+  std::vector<Person> people;
+  std::optional<double> warm_mib;
+  std::size_t most = 0;
+  int last_id = 0;
+  for (long i = 0; i < updates; ++i) {
+    const Frame& frame = day.next(people);
+    ASSERT_LE(tracker.expect(frame).people.size(), 16U);
+    const TrackedFrame tracked = tracker.update(frame, std::move(people));
+    ASSERT_TRUE(std::isfinite(tracked.time_s));
+    for (const TrackedPerson& person : tracked.people) {
+      ASSERT_TRUE(person.position.allFinite());
+      last_id = std::max(last_id, person.id);
+    }
+    most = std::max(most, tracked.people.size());
+    if (i % 300 == 0) {  // fits take a thousand times as long
+      fitting.update(i / 300 % 8 < 5 ? room : empty, i / 300 % 8 < 5 ? std::vector{somebody} : std::vector<Person>());
+    }
+    if (i == updates / 4) warm_mib = resident_mib();
+  }
+  EXPECT_GT(last_id, 100);
+  EXPECT_LE(most, 2U * 128U);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  if (!warm_mib) GTEST_SKIP() << "the system does not tell memory";
+  const double grown_mib = *resident_mib() - *warm_mib;
+  RecordProperty("warm_mib", std::to_string(*warm_mib));
+  RecordProperty("grown_mib", std::to_string(grown_mib));
+  EXPECT_LT(grown_mib, 0.5) << "from " << *warm_mib << " MiB";
+#endif
 }
 
 }  // namespace
