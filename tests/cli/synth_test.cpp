@@ -172,6 +172,7 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
   for (int i = 0; i < 200000; ++i) deep += ".a";
   write_file_atomically(path("deep.toml"), deep + " = 1\n");
   refused(synth("--count 3 --recipe " + path("deep.toml") + " --out " + path("x")), 1, "deep.toml");
+  refused(synth("--fit-flesh " + path("none/flesh.toml")), 1, path("none/flesh.toml") + ": cannot be written");
   refused(synth("--count 3 --models " + path("none.obj") + " --out " + path("x")), 1, "none.obj");
   refused("synth -q --body.kind makehuman --count 1 --assets " + path("nowhere") + " --out " + path("x"), 1,
           "vesalius assets makehuman");

@@ -197,6 +197,7 @@ void check(const Arguments& arguments) {
 
 void run(const Arguments& arguments) {
   check(arguments);
+  if (!arguments.fit_flesh.empty()) check_writable(arguments.fit_flesh);
   const ThreadLimit limit(arguments.threads);
   const synth::Recipe recipe = make_recipe({.file = arguments.recipe,
                                             .sensor = arguments.sensor,

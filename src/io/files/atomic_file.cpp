@@ -128,4 +128,15 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
   file.commit();
 }
 
+void check_writable(const std::string& path) {
+  if (!written_directly(path)) {
+    const TemporaryFile probe(path);
+    return;
+  }
+  // A pipe is not opened: whoever reads from it would see it closed again.
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) fail(path, EISDIR);
+  if (::access(path.c_str(), W_OK) != 0) fail(path, errno);
+}
+
 }  // namespace vesalius

@@ -41,4 +41,8 @@ class TemporaryFile {
 /// directly. Throws Error with the path and the system's reason; no temporary file is left behind.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
+/// Throws the Error of write_file_atomically if the file cannot be written, and leaves nothing behind: for work that
+/// takes long before there is something to write.
+void check_writable(const std::string& path);
+
 }  // namespace vesalius

@@ -76,6 +76,28 @@ TEST(WriteFileAtomically, RefusesAFolder) {
   EXPECT_THAT(error_of([&] { write_file_atomically(folder.path(), "x"); }), HasSubstr(folder.path() + ": cannot be"));
 }
 
+TEST(CheckWritable, SaysWhatWritingWouldAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const std::string there = put(folder / "a.txt", "old");
+  check_writable(there);
+  check_writable(folder / "b.txt");
+  check_writable("/dev/null");
+  EXPECT_EQ(get(there), "old");
+  EXPECT_EQ(folder.file_count(), 1U);
+  for (const std::string& path : {folder / "none/a.txt", folder.path(), folder / "a.txt/b.txt"}) {
+    const std::string expected = error_of([&] { write_file_atomically(path, "x"); });
+    EXPECT_THAT(expected, HasSubstr(path + ": cannot be written: "));
+    EXPECT_EQ(error_of([&] { check_writable(path); }), expected);
+  }
+}
+
+TEST(CheckWritable, DoesNotWaitForTheReaderOfAPipe) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  check_writable(pipe);
+}
+
 TEST(TemporaryFile, IsRemovedUnlessCommitted) {
   const TemporaryFolder folder;
   {
