@@ -349,7 +349,9 @@ void PeopleTracker::State::take_stance(const Frame& frame, Track& track, const P
     up = out.floor->up;
     height_m = out.floor->height_m;
   }
-  const auto changed = track.stance.update(posture_of(person.skeleton, body, up, height_m), out.time_s);
+  std::optional<Eigen::Vector3f> hips;
+  if (track.body && fitter) hips = trusted_hips(*track.body, fitter->flesh());
+  const auto changed = track.stance.update(posture_of(person.skeleton, body, up, height_m, hips), out.time_s);
   if (changed && is_sure(track)) out.events.push_back({track.id, changed->second, changed->first});
 }
 

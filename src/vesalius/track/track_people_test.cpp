@@ -600,6 +600,25 @@ TEST(TrackPeople, TellsTheFloorAndWhoStandsOnIt) {
   EXPECT_EQ(events[0].stance, Stance::standing);
 }
 
+TEST(TrackPeople, TellWhoStandsByTheFittedBodyWhereNoHipsAreSeen) {
+  auto [frame, person] = rendered_person();
+  const BodyModel& body = paper_body();
+  float lowest_m = 0.F;  // the y axis points down
+  for (std::size_t p = 0; p < body.parts.size(); ++p) {
+    SkeletonPart& part = person.skeleton.parts[p];
+    lowest_m = std::max(lowest_m, part.centre.y());
+    if (body.parts[p].name.ends_with("hips")) part.state = State::predicted;
+  }
+  const Plane floor{Vector3f::UnitY(), lowest_m + 0.05F, 4.F};
+  for (const bool fits : {false, true}) {
+    PeopleTracker tracker(body, {}, nullptr, fits ? std::make_shared<BodyFitter>(body) : nullptr);
+    TrackedFrame tracked;
+    for (int i = 0; i < 40; ++i) tracked = tracker.update(frame, {person}, {floor});
+    ASSERT_EQ(tracked.people.size(), 1U);
+    EXPECT_EQ(tracked.people[0].stance, fits ? Stance::standing : Stance::unknown);
+  }
+}
+
 /// Returns the memory that this process has in use, if the system tells.
 std::optional<double> resident_mib() {
   long pages = 0;

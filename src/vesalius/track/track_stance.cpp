@@ -70,6 +70,7 @@ Shape upright_shape(const Posture& posture) {
 
 Shape shape_of(const Posture& posture) {
   if (posture.trunk_rad >= kLying_rad) {
+    if (!posture.hips_seen) return Shape::unknown;
     if (!posture.pelvis_m) return Shape::lying;
     if (*posture.pelvis_m > kBent_m) return Shape::standing;
     return std::max(*posture.pelvis_m, *posture.head_m) <= kOnFloor_m ? Shape::on_floor : Shape::lying;
@@ -82,8 +83,11 @@ Shape shape_of(const Posture& posture) {
 }  // namespace
 
 std::optional<Posture> posture_of(const Skeleton& skeleton, const BodyModel& body,
-                                  const std::optional<Eigen::Vector3f>& up, std::optional<float> height_m) {
-  const SeenPart hips = seen_part(skeleton, body, "hips");
+                                  const std::optional<Eigen::Vector3f>& up, std::optional<float> height_m,
+                                  const std::optional<Eigen::Vector3f>& fitted_hips) {
+  SeenPart hips = seen_part(skeleton, body, "hips");
+  const bool hips_seen = hips.count > 0;
+  if (!hips_seen && fitted_hips) hips = {*fitted_hips, 1};
   if (!up || hips.count == 0) return std::nullopt;
   SeenPart head = seen_part(skeleton, body, "face_top");
   if (head.count == 0) head = seen_part(skeleton, body, "face_bottom");
@@ -99,6 +103,7 @@ std::optional<Posture> posture_of(const Skeleton& skeleton, const BodyModel& bod
   if (axis.norm() < 0.05F) return std::nullopt;  // seen along the body
   Posture posture;
   posture.trunk_rad = std::acos(std::clamp(axis.normalized().dot(*up), -1.F, 1.F));
+  posture.hips_seen = hips_seen;
   posture.head_seen = head.count > 0;
   if (!height_m) return posture;
   const SeenPart& top = head.count > 0 ? head : neck.count > 0 ? neck : chest;
@@ -107,6 +112,16 @@ std::optional<Posture> posture_of(const Skeleton& skeleton, const BodyModel& bod
   const SeenPart knees = seen_part(skeleton, body, "knee");
   if (knees.count > 0) posture.knee_m = *height_m + up->dot(knees.centre);
   return posture;
+}
+
+std::optional<Eigen::Vector3f> trusted_hips(const FittedBody& fitted, const FleshModel& flesh) {
+  constexpr float kTrusted = 0.5F;
+  const int index = flesh.find_bone("pelvis");
+  if (index < 0) return std::nullopt;
+  // The centres of the parts that are called hips lie 5 to 10 cm above the joints of the legs, where this bone ends.
+  const FittedBone& pelvis = fitted.bones[static_cast<std::size_t>(index)];
+  if (pelvis.state == State::none || pelvis.tail_confidence < kTrusted) return std::nullopt;
+  return pelvis.tail;
 }
 
 std::optional<std::pair<Stance, double>> TrackStance::change(Stance stance, double since_s) {

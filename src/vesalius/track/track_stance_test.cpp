@@ -188,6 +188,49 @@ TEST(PostureOf, MeasuresHeightsOverTheFloor) {
   EXPECT_FALSE(without->pelvis_m);
 }
 
+TEST_F(StanceOverTime, HipsThatAreOnlyFittedTellWhoSitsButNeverAlarm) {
+  Posture sitting = kSitting, in_bed = kInBed, on_floor = kOnFloor;
+  sitting.hips_seen = in_bed.hips_seen = on_floor.hips_seen = false;
+  show(kStanding, 2.0);
+  show(sitting, 2.0);
+  EXPECT_EQ(stances(), (std::vector{Stance::standing, Stance::sitting}));
+  show(on_floor, 12.0);
+  show(in_bed, 2.0);
+  EXPECT_EQ(stances(), (std::vector{Stance::standing, Stance::sitting, Stance::unknown}));
+}
+
+TEST(PostureOf, TakesHipsFromTheFittedBodyWhereNoneAreSeen) {
+  const Vector3f up = -Vector3f::UnitY(), fitted(0.F, 0.2F, 2.F);
+  const Skeleton trunk = skeleton_with({{"l_chest", {0.F, -0.2F, 2.F}}, {"l_face_top", {0.F, -0.5F, 2.F}}});
+  EXPECT_FALSE(posture_of(trunk, paper_body(), up, 0.6F));
+  const std::optional<Posture> found = posture_of(trunk, paper_body(), up, 0.6F, fitted);
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->hips_seen);
+  EXPECT_NEAR(*found->pelvis_m, 0.4F, 1e-5F);
+  EXPECT_NEAR(*found->head_m, 1.1F, 1e-5F);
+  const Skeleton with_hips = skeleton_with({{"l_hips", {0.F, 0.1F, 2.F}}, {"l_face_top", {0.F, -0.5F, 2.F}}});
+  const std::optional<Posture> seen = posture_of(with_hips, paper_body(), up, 0.6F, fitted);
+  ASSERT_TRUE(seen);
+  EXPECT_TRUE(seen->hips_seen);
+  EXPECT_NEAR(*seen->pelvis_m, 0.5F, 1e-5F) << "what is seen counts";
+  EXPECT_FALSE(posture_of({}, paper_body(), up, 0.6F, fitted)) << "a body without anything seen is no evidence";
+}
+
+TEST(TrustedHips, AreTheUpperEndOfThePelvisIfThatIsTrusted) {
+  const FleshModel& flesh = builtin_flesh();
+  FittedBody fitted;
+  fitted.bones.resize(flesh.bones.size());
+  FittedBone& pelvis = fitted.bones[flesh.find_bone("pelvis")];
+  EXPECT_FALSE(trusted_hips(fitted, flesh));
+  pelvis.state = State::predicted;
+  pelvis.tail_confidence = 0.6F;
+  pelvis.tail = {0.1F, 0.3F, 2.F};
+  ASSERT_TRUE(trusted_hips(fitted, flesh));
+  EXPECT_EQ(*trusted_hips(fitted, flesh), pelvis.tail);
+  pelvis.tail_confidence = 0.4F;
+  EXPECT_FALSE(trusted_hips(fitted, flesh));
+}
+
 TEST(PostureOf, NeedsUpAndSeenPartsOfTheTrunk) {
   const Vector3f up = -Vector3f::UnitY();
   const Skeleton whole = skeleton_with({{"l_hips", {0.F, 0.F, 2.F}}, {"neck", {0.F, -0.5F, 2.F}}});
