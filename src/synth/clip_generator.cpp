@@ -9,7 +9,9 @@
 
 #include "synth/cast.h"
 #include "synth/photographer.h"
+#include "synth/pose/change_posture.h"
 #include "synth/pose/fidget.h"
+#include "synth/scene/palette.h"
 #include "synth/streams.h"
 #include "vesalius/base/error.h"
 
@@ -108,6 +110,28 @@ struct ClipGenerator::State {
     return mirrors(random) ? mirrored(std::move(gait)) : gait;
   }
 
+  /// Draws a pose of one kind alone, whatever the recipe's weights are.
+  static Pose draw_kind(float PoseSamplerOptions::*kind, Random& random) {
+    PoseSamplerOptions only{.idle = 0,
+                            .walking = 0,
+                            .reaching = 0,
+                            .waving = 0,
+                            .bending = 0,
+                            .arms_crossed = 0,
+                            .arms_behind = 0,
+                            .hands_on_hips = 0,
+                            .carrying = 0,
+                            .phone = 0,
+                            .sitting = 0,
+                            .floor_sitting = 0,
+                            .lying = 0,
+                            .kneeling = 0,
+                            .squatting = 0,
+                            .any = 0};
+    only.*kind = 1.F;
+    return sample_pose(only, random).pose;
+  }
+
   /// Draws poses of a posture without files.
   std::vector<Pose> draw_poses(Posture posture, int count, Random& random) const {
     constexpr int kTries = 40;
@@ -122,23 +146,8 @@ struct ClipGenerator::State {
   Movement draw_stay(Random& random) const {
     if (captured(random) && !assets.movements.stays.empty()) return drawn_from(assets.movements.stays, random);
     const std::vector<Pose> others = draw_poses(Posture::standing, 4, random);
-    const PoseSamplerOptions idle{.idle = 1.F,
-                                  .walking = 0,
-                                  .reaching = 0,
-                                  .waving = 0,
-                                  .bending = 0,
-                                  .arms_crossed = 0,
-                                  .arms_behind = 0,
-                                  .hands_on_hips = 0,
-                                  .carrying = 0,
-                                  .phone = 0,
-                                  .sitting = 0,
-                                  .floor_sitting = 0,
-                                  .lying = 0,
-                                  .kneeling = 0,
-                                  .squatting = 0,
-                                  .any = 0};
-    return fidget(sample_pose(idle, random).pose, others, static_cast<float>(random.uniform(3.0, 7.0)), random);
+    const auto seconds = static_cast<float>(random.uniform(3.0, 7.0));
+    return fidget(draw_kind(&PoseSamplerOptions::idle, random), others, seconds, random);
   }
 
   ClipPersonPlan draw_person(Random& random) const {
@@ -148,6 +157,11 @@ struct ClipGenerator::State {
     plan.can.leg_m = leg_length_m(plan.person.poser->mesh());
     plan.can.gait = draw_gait(random);
     for (int i = 0; i < kStays; ++i) plan.can.stays.push_back(draw_stay(random));
+    if (asked(recipe.clip.falling_share, random)) {
+      const Pose standing = draw_kind(&PoseSamplerOptions::idle, random);
+      plan.lies_down = fall_down(standing, draw_kind(&PoseSamplerOptions::lying, random), random);
+      return plan;
+    }
     plan.walks = random.uniform() < recipe.clip.walking_share;
     if (plan.walks || plan.person.posture == Posture::standing) return plan;
     if (plan.person.posture == Posture::lying && captured(random) && !assets.movements.lie_downs.empty()) {
@@ -157,6 +171,10 @@ struct ClipGenerator::State {
     plan.stays_put = true;
     const std::vector<Pose> others = draw_poses(plan.person.posture, 4, random);
     plan.fidget = fidget(plan.person.pose, others, timing.seconds, random);
+    if (plan.person.posture == Posture::sitting && asked(recipe.clip.seating_share, random)) {
+      const Pose standing = draw_kind(&PoseSamplerOptions::idle, random);
+      plan.sits_down = sit_down(standing, plan.person.pose, random);
+    }
     return plan;
   }
 

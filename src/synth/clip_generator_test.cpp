@@ -235,6 +235,66 @@ TEST(ClipGenerator, GivesTheSameMotionAtAnyRate) {
   EXPECT_EQ(slow.frame(0, 7).joints, fast.frame(0, 21).joints);
 }
 
+/// Returns the recipe of one person alone before a camera that stands.
+Recipe recipe_of_one() {
+  Recipe recipe = small_recipe();
+  recipe.people = {.none = 0.F, .one = 1.F, .two = 0.F, .three = 0.F, .four = 0.F};
+  recipe.clip.moving_share = 0.F;
+  return recipe;
+}
+
+/// Returns the greatest way of a joint from one frame to the next, metres.
+float longest_step(const std::vector<LabelledFrame>& frames) {
+  const auto joints = world_joints(frames);
+  float longest = 0.F;
+  for (std::size_t k = 1; k < joints.size(); ++k) {
+    for (std::size_t j = 0; j < joints[k][0].size(); ++j) {
+      longest = std::max(longest, (joints[k][0][j] - joints[k - 1][0][j]).norm());
+    }
+  }
+  return longest;
+}
+
+TEST(ClipGenerator, LetsPeopleFallWithinASecondOrSo) {
+  Recipe recipe = recipe_of_one();
+  recipe.clip.falling_share = 1.F;
+  const ClipGenerator clips(recipe, {}, paper_body(), 4, {4.F, 20.0});
+  for (std::uint64_t clip = 0; clip < 3; ++clip) {
+    const std::vector<LabelledFrame> frames = frames_of(clips, clip);
+    ASSERT_EQ(frames.front().joints.size(), 1U);
+    std::size_t first_down = 0, last_up = 0;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      if (frames[k].postures.at(0) == "lying" && first_down == 0) first_down = k;
+      if (frames[k].postures.at(0) == "standing") last_up = k;
+    }
+    EXPECT_GT(first_down, 0U);
+    EXPECT_LT(last_up, first_down) << "nobody gets up";
+    EXPECT_LE(first_down - last_up, 24U);
+    EXPECT_LT(longest_step(frames), 0.4F) << "8 m/s";
+  }
+}
+
+TEST(ClipGenerator, LetsPeopleSitDownAndGetUp) {
+  Recipe recipe = recipe_of_one();
+  recipe.clip.walking_share = 0.F;
+  recipe.clip.seating_share = 1.F;
+  recipe.pose.sampler = {};
+  recipe.pose.sampler.sitting = 1000.F;
+  const ClipGenerator clips(recipe, {}, paper_body(), 4, {5.F, 20.0});
+  int down = 0, up = 0;
+  for (std::uint64_t clip = 0; clip < 8; ++clip) {
+    const std::vector<LabelledFrame> frames = frames_of(clips, clip);
+    ASSERT_EQ(frames.front().joints.size(), 1U);
+    EXPECT_LT(longest_step(frames), 0.25F) << "5 m/s";
+    const std::string first = frames.front().postures.at(0), last = frames.back().postures.at(0);
+    down += first == "standing" && last == "sitting" ? 1 : 0;
+    up += first == "sitting" && last == "standing" ? 1 : 0;
+  }
+  EXPECT_GE(down, 1);
+  EXPECT_GE(up, 1);
+  EXPECT_GE(down + up, 5) << "there is not always room before a seat";
+}
+
 TEST(ClipGenerator, RefusesTimesThatAreNone) {
   const auto make = [](float seconds, double rate_hz) {
     return [=] { small_clips(small_recipe(), {seconds, rate_hz}); };

@@ -128,15 +128,56 @@ class Builder {
     PersonTrack track = track_of(plans_[plan].fidget, 1.F, {at.x(), at.z()}, heading, 0.F, seconds_);
     track.pelvis_m = (world_from_body * body.joints[index(Bone::pelvis)]).y();
     const Poser& poser = *plans_[plan].person.poser;
-    std::vector<BodyOutline> outlines = outlines_of(poser, track, seconds_);
     const auto touches = [&](const BodyOutline& o) { return sinks_in(o, stage_.occupancy.solids()); };
+    std::vector<BodyOutline> outlines;
+    if (plans_[plan].sits_down) {
+      PersonTrack moving = with_seating(plans_[plan], track);
+      outlines = outlines_of(poser, moving, seconds_);
+      if (is_free(outlines)) {
+        add_footprint(outlines.back());
+        return settle(plan, std::move(moving), std::move(outlines));
+      }
+    }
+    outlines = outlines_of(poser, track, seconds_);
     if (std::ranges::any_of(outlines, touches)) {
       for (TrackState& state : track.states) state.pose = plans_[plan].person.pose;
       outlines = outlines_of(poser, track, seconds_);
     }
-    std::vector<Vector2f>& footprint = ground_.footprints.emplace_back();
-    for (const Capsule& bone : outlines.front().bones) footprint.emplace_back(bone.from.x(), bone.from.z());
+    settle(plan, std::move(track), std::move(outlines));
+  }
+
+  void settle(std::size_t plan, PersonTrack track, std::vector<BodyOutline> outlines) {
+    add_footprint(outlines.front());
     take(plan, std::move(track), std::move(outlines));
+  }
+
+  /// Keeps others from the floor below a body.
+  void add_footprint(const BodyOutline& outline) {
+    std::vector<Vector2f>& footprint = ground_.footprints.emplace_back();
+    for (const Capsule& bone : outline.bones) footprint.emplace_back(bone.from.x(), bone.from.z());
+  }
+
+  /// Returns the track of somebody who comes to a seat, or leaves it, in the middle of the clip. `seated` is the track
+  /// of the same person who remains there.
+  PersonTrack with_seating(const ClipPersonPlan& plan, const PersonTrack& seated) {
+    const Movement& movement = *plan.sits_down;
+    const bool rises = chance(0.5, random_);
+    const float begins_s = between(0.2, 0.6, random_) * std::max(0.F, seconds_ - movement.seconds());
+    const Vector2f way = movement.states.back().root;
+    PersonTrack track = seated;
+    for (std::size_t i = 0; i < track.states.size(); ++i) {
+      const float since_s = static_cast<float>(i) / kTrackRate_hz - begins_s;
+      const float time_s = rises ? movement.seconds() - since_s : since_s;
+      if (time_s >= movement.seconds()) continue;  // on the seat
+      const BodyState state = state_at(movement, std::max(0.F, time_s));
+      const Vector2f off = plan.can.leg_m * (state.root - way);
+      TrackState& now = track.states[i];
+      now.pose = state.pose;
+      now.at += off.x() * left_of(now.heading_rad) + off.y() * front_of(now.heading_rad);
+      const float share = std::max(0.F, time_s) / movement.seconds();
+      now.seated = share * share * (3.F - 2.F * share);
+    }
+    return track;
   }
 
   void take(std::size_t plan, PersonTrack track, std::vector<BodyOutline> outlines) {

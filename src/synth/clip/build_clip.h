@@ -17,8 +17,10 @@ struct ClipPersonPlan {
   Movement fidget;         ///< of people who stay put; its first state has the person's pose
   Repertoire can;          ///< of the others
   bool walks = true;       ///< of the others; false stands at one place
-  /// Of the others, in place of walking: lies down on the floor and remains there.
+  /// Of the others, in place of walking: lies down on the floor, or falls, and remains there.
   std::optional<Movement> lies_down;
+  /// Of people on seats: how they sit down, from standing to the person's pose.
+  std::optional<Movement> sits_down;
 };
 
 struct ClipPerson {

@@ -9,6 +9,9 @@ void visit_options(const std::string& prefix, ClipOptions& o, OptionVisitor& vis
                  {"", 0, 1, "Share of their ways that lead out of the picture."});
   visitor.option(prefix + "crossing-share", o.crossing_share,
                  {"", 0, 1, "Share of clips of several people in which those who walk pass before or behind others."});
+  visitor.option(prefix + "falling-share", o.falling_share, {"", 0, 1, "Share of people who fall and remain lying."});
+  visitor.option(prefix + "seating-share", o.seating_share,
+                 {"", 0, 1, "Share of people on seats who sit down or get up meanwhile."});
   visitor.option(prefix + "moving-share", o.moving_share, {"", 0, 1, "Share of clips whose camera moves."});
   visitor.option(prefix + "speed-max", o.speed_max_m_s, {"m/s", 0, 2, "Greatest speed of such a camera."});
   visitor.option(prefix + "turn-max", o.turn_max_deg_s, {"deg/s", 0, 90, "Greatest turn of such a camera."});

@@ -12,6 +12,8 @@ struct ClipOptions {
   float pause_share = 0.35F;    ///< share of ways that end with a stay
   float leaving_share = 0.1F;   ///< share of ways that lead out of the picture
   float crossing_share = 0.9F;  ///< share of clips with walking people and others in which they pass before each other
+  float falling_share = 0.F;    ///< share of people who stand, fall and remain lying, whatever else they would do
+  float seating_share = 0.F;    ///< share of people on seats who sit down or get up in the clip
   float moving_share = 0.5F;    ///< share of clips whose camera moves
   float speed_max_m_s = 0.3F;   ///< of the camera
   float turn_max_deg_s = 20.F;  ///< of the camera

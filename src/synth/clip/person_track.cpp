@@ -15,7 +15,7 @@ TrackState PersonTrack::at(float time_s) const {
   if (share == 0.F) return a;
   const TrackState& b = states[first + 1];
   return {interpolated(a.pose, b.pose, share), a.at + share * (b.at - a.at),
-          a.heading_rad + share * (b.heading_rad - a.heading_rad)};
+          a.heading_rad + share * (b.heading_rad - a.heading_rad), a.seated + share * (b.seated - a.seated)};
 }
 
 int track_length(float seconds) { return static_cast<int>(std::ceil(seconds * kTrackRate_hz)) + 1; }
@@ -23,7 +23,7 @@ int track_length(float seconds) { return static_cast<int>(std::ceil(seconds * kT
 PosedBody body_at(const Poser& poser, const PersonTrack& track, float time_s) {
   const TrackState state = track.at(time_s);
   PosedBody body = poser.pose(state.pose);
-  const float lift = track.pelvis_m ? *track.pelvis_m - body.joints[index(Bone::pelvis)].y() : 0.F;
+  const float lift = track.pelvis_m ? state.seated * (*track.pelvis_m - body.joints[index(Bone::pelvis)].y()) : 0.F;
   const Eigen::Isometry3f world_from_body(Eigen::Translation3f(state.at.x(), lift, state.at.y()) *
                                           Eigen::AngleAxisf(state.heading_rad, Eigen::Vector3f::UnitY()));
   return moved(std::move(body), world_from_body);

@@ -1,0 +1,94 @@
+#include "synth/pose/change_posture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "synth/pose/joint_angles.h"
+#include "synth/pose/mix_poses.h"
+#include "synth/pose/stick_figure.h"
+
+namespace vesalius::synth {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+constexpr float kFps = 30.F;
+
+float between(float low, float high, Random& random) { return static_cast<float>(random.uniform(low, high)); }
+
+/// Returns where the middle of the ankles is from that of the hips, in lengths of the leg: x and z.
+Vector2f ankles_of(const Pose& pose) {
+  const StickFigure figure = stick_figure(pose);
+  const Vector3f middle = 0.5F * (figure.head_of(Bone::l_foot) + figure.head_of(Bone::r_foot));
+  return Vector2f(middle.x(), middle.z()) / (bone_length_m(Bone::l_thigh) + bone_length_m(Bone::l_shin));
+}
+
+float eased(float share, bool falling) { return falling ? share * share : share * share * (3.F - 2.F * share); }
+
+/// Returns a pose with the trunk bent forwards by an angle more.
+Pose bent_forwards(Pose pose, float by_rad) {
+  const Eigen::Quaternionf turn(Eigen::AngleAxisf(0.5F * by_rad, Vector3f::UnitX()));
+  for (const Bone bone : {Bone::spine, Bone::chest}) pose[bone] = pose[bone] * turn;
+  return pose;
+}
+
+}  // namespace
+
+Movement move_through(std::span<const KeyPose> keys) {
+  Movement movement;
+  movement.name = "change of posture";
+  movement.fps = kFps;
+  const float seconds = keys.back().at_s - keys.front().at_s;
+  const int last = static_cast<int>(std::ceil(seconds * kFps));
+  std::size_t next = 1;
+  Vector2f root = Vector2f::Zero();  // at the pose before
+  const auto root_on_the_way = [&](const Pose& pose) -> Vector2f {
+    if (!keys[next].feet_stay) return root;
+    return root + ankles_of(keys[next - 1].pose) - ankles_of(pose);
+  };
+  for (int i = 0; i <= last; ++i) {
+    const float time_s = keys.front().at_s + std::min(seconds, static_cast<float>(i) / kFps);
+    while (next + 1 < keys.size() && time_s >= keys[next].at_s) {
+      root = root_on_the_way(keys[next].pose);
+      ++next;
+    }
+    const KeyPose &from = keys[next - 1], &to = keys[next];
+    const float share = std::clamp((time_s - from.at_s) / (to.at_s - from.at_s), 0.F, 1.F);
+    BodyState& state = movement.states.emplace_back();
+    state.pose = interpolated(from.pose, to.pose, eased(share, to.falling));
+    state.root = root_on_the_way(state.pose);
+  }
+  return movement;
+}
+
+Movement fall_down(const Pose& standing, const Pose& lying, Random& random) {
+  // Legs half folded, as of somebody who squats.
+  BodyAngles folded;
+  for (LegAngles& leg : folded.legs) leg = {.flexion = 60.F, .knee = 80.F, .ankle = 20.F};
+  const Pose squat = mix_limbs(standing, pose_of(folded), {.legs = true});
+  const float seconds = between(0.7F, 1.2F, random);
+  const std::array keys{KeyPose{standing, 0.F},
+                        KeyPose{interpolated(squat, lying, between(0.1F, 0.25F, random)), 0.5F * seconds, true},
+                        KeyPose{lying, seconds, false}};
+  return move_through(keys);
+}
+
+Movement sit_down(const Pose& standing, const Pose& sitting, Random& random) {
+  const float seconds = between(1.F, 2.F, random);
+  // Feet a little before the knees, so that who rises stands clear of the seat.
+  BodyAngles on_edge;
+  for (LegAngles& leg : on_edge.legs) leg = {.flexion = 88.F, .abduction = 6.F, .knee = 72.F};
+  const Pose perched = mix_limbs(sitting, pose_of(on_edge), {.legs = true});
+  const Pose half = bent_forwards(interpolated(standing, perched, 0.5F), between(0.3F, 0.6F, random));
+  return move_through(std::array{KeyPose{standing, 0.F}, KeyPose{half, 0.4F * seconds},
+                                 KeyPose{perched, 0.8F * seconds}, KeyPose{sitting, seconds, false, false}});
+}
+
+Movement reversed(Movement movement) {
+  std::ranges::reverse(movement.states);
+  return movement;
+}
+
+}  // namespace vesalius::synth
