@@ -50,6 +50,7 @@ void enlarge(const GridGuide& guide, Trace& trace) {
 Image<std::uint8_t> body_index_map(const std::vector<Person>& people, int width, int height) {
   Image<std::uint8_t> map(width, height, kBackground);
   for (std::size_t p = 0; p < people.size() && p < kBackground; ++p) {
+    if (people[p].mask.empty()) continue;
     for (std::size_t i = 0; i < map.size(); ++i) {
       if (people[p].mask[i] != 0) map[i] = static_cast<std::uint8_t>(p);
     }
@@ -60,6 +61,7 @@ Image<std::uint8_t> body_index_map(const std::vector<Person>& people, int width,
 LabelImage part_label_map(const std::vector<Person>& people, int width, int height) {
   LabelImage map(width, height, kBackground);
   for (const Person& person : people) {
+    if (person.mask.empty()) continue;
     for (std::size_t i = 0; i < map.size(); ++i) {
       if (person.mask[i] != 0) map[i] = person.labels[i];
     }

@@ -103,10 +103,11 @@ struct Trace {
 void enlarge(const GridGuide& guide, Person& person);
 void enlarge(const GridGuide& guide, Trace& trace);
 
-/// Returns a map of the people of the frame's size: index in `people`, kBackground elsewhere.
+/// Returns a map of the people of the frame's size: index in `people`, kBackground elsewhere. People whose masks are
+/// empty have no pixels.
 Image<std::uint8_t> body_index_map(const std::vector<Person>& people, int width, int height);
 
-/// Returns the part labels of all people in one picture, kBackground elsewhere.
+/// Returns the part labels of all people in one picture, kBackground elsewhere. People whose masks are empty have none.
 LabelImage part_label_map(const std::vector<Person>& people, int width, int height);
 
 }  // namespace vesalius

@@ -392,8 +392,16 @@ PeopleTracker::PeopleTracker(const BodyModel& body, TrackOptions options, std::s
 }
 
 PeopleTracker::~PeopleTracker() = default;
+PeopleTracker::PeopleTracker(const PeopleTracker& other) : state_(std::make_unique<State>(*other.state_)) {}
+PeopleTracker& PeopleTracker::operator=(const PeopleTracker& other) { return *this = PeopleTracker(other); }
 PeopleTracker::PeopleTracker(PeopleTracker&&) noexcept = default;
 PeopleTracker& PeopleTracker::operator=(PeopleTracker&&) noexcept = default;
+
+PeopleTracker PeopleTracker::restarted(TrackOptions options, std::shared_ptr<const Appearance> appearance) const {
+  PeopleTracker tracker(state_->body, options, std::move(appearance), state_->fitter);
+  tracker.state_->last_id = state_->last_id;
+  return tracker;
+}
 
 Prior PeopleTracker::expect(const Frame& frame) const {
   Prior prior;

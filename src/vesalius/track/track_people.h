@@ -44,8 +44,15 @@ class PeopleTracker {
                          std::shared_ptr<const Appearance> appearance = nullptr,
                          std::shared_ptr<const BodyFitter> fitter = nullptr);
   ~PeopleTracker();
+  /// A copy goes on by itself from what is known now.
+  PeopleTracker(const PeopleTracker&);
+  PeopleTracker& operator=(const PeopleTracker&);
   PeopleTracker(PeopleTracker&&) noexcept;
   PeopleTracker& operator=(PeopleTracker&&) noexcept;
+
+  /// Returns a tracker with other options and looks that knows nobody. Its ids go on counting, so that none is used
+  /// again. Throws UsageError for an option outside its range.
+  PeopleTracker restarted(TrackOptions options, std::shared_ptr<const Appearance> appearance) const;
 
   /// Returns what the frames before tell about the people of this one, which comes next.
   Prior expect(const Frame& frame) const;

@@ -30,4 +30,11 @@ const char* to_string(Stance stance) {
   }
 }
 
+std::vector<Person> people_of(const TrackedFrame& tracked) {
+  std::vector<Person> people;
+  people.reserve(tracked.people.size());
+  for (const TrackedPerson& person : tracked.people) people.push_back(person.person);
+  return people;
+}
+
 }  // namespace vesalius

@@ -63,4 +63,8 @@ struct TrackedFrame {
   std::vector<StanceEvent> events;
 };
 
+/// Returns the people as they were found, in their order, so that each has the same index in both lists. Hidden and
+/// lost ones have empty masks.
+std::vector<Person> people_of(const TrackedFrame& tracked);
+
 }  // namespace vesalius
