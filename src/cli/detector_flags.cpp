@@ -25,11 +25,6 @@ PeopleOptions read_people_options(const std::string& options_file) {
 
 }  // namespace
 
-void visit_options(const std::string& prefix, PeopleOptions& options, OptionVisitor& visitor) {
-  visit_options(prefix, options.detect, visitor);
-  visit_options(prefix + "track.", options.track, visitor);
-}
-
 void replace_body(Forest& forest, const std::string& path) {
   BodyModel body = parse_body_model(read_file(path), path);
   const auto& trained = forest.body.parts;
@@ -64,7 +59,7 @@ DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
 
 std::string DetectorFlags::model() const { return model_.empty() ? default_model() : model_; }
 
-PeopleOptions DetectorFlags::all_options() const {
+PeopleOptions DetectorFlags::people_options() const {
   PeopleOptions options = read_people_options(options_file_);
   options_.apply(options);
   RangeCheck check;
@@ -72,9 +67,9 @@ PeopleOptions DetectorFlags::all_options() const {
   return options;
 }
 
-DetectOptions DetectorFlags::options() const { return all_options().detect; }
+DetectOptions DetectorFlags::options() const { return people_options().detect; }
 
-TrackOptions DetectorFlags::track_options() const { return all_options().track; }
+TrackOptions DetectorFlags::track_options() const { return people_options().track; }
 
 Forest DetectorFlags::forest() const {
   Forest forest = load_model(model());

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cli/option_flags.h"
+#include "stream/people_options.h"
 #include "vesalius/detect.h"
 #include "vesalius/forest/forest.h"
 #include "vesalius/track/track_people.h"
@@ -12,13 +13,6 @@ class App;
 }
 
 namespace vesalius::cli {
-
-/// The options of all that is done to find people and to follow them.
-struct PeopleOptions {
-  DetectOptions detect;
-  TrackOptions track;
-};
-void visit_options(const std::string& prefix, PeopleOptions& options, OptionVisitor& visitor);
 
 /// Returns the default options, changed first by the TOML file (if the path is not empty) and then by the flags. Throws
 /// Error for a file that cannot be used and UsageError for options outside their range. The file may have options of
@@ -40,13 +34,12 @@ class DetectorFlags {
   /// The parts of which `make` makes it.
   DetectOptions options() const;
   TrackOptions track_options() const;
+  PeopleOptions people_options() const;
   Forest forest() const;
   /// Returns the path of the model. Throws Error if none is given and there is no default model.
   std::string model() const;
 
  private:
-  PeopleOptions all_options() const;
-
   std::string model_, body_, options_file_;
   OptionFlags<PeopleOptions> options_;
 };

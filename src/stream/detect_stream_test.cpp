@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "capsule/capsule_person.h"
+#include "stream/test_crossing.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/test_threads.h"
@@ -148,65 +148,6 @@ TEST(DetectedFrames, EndWithTheErrorOfACameraHoweverSlowTheDetectorIs) {
   EXPECT_EQ(std::count(failed.begin(), failed.end(), true), 1);
 }
 
-/// Two people of capsules who cross. Some frames cannot be labelled.
-class Crossing final : public FrameSource {
- public:
-  static constexpr int kLength = 24;
-
-  Crossing() {
-    for (int i = 0; i < kLength; ++i) {
-      CapsuleScene scene;
-      scene.people.resize(2);
-      scene.people[0].feet = {-0.8F + 0.07F * static_cast<float>(i), 0.9F, 2.2F};
-      scene.people[1].feet = {0.8F - 0.07F * static_cast<float>(i), 0.9F, 3.F};
-      scene.people[1].build.shirt = {200, 60, 40};
-      scene.floor_y_m = 0.9F;
-      LabelledFrame truth = render(scene, {160, 120, 131.F, 131.F, 79.5F, 59.5F}, paper_body());
-      truth.frame.name = std::to_string(i);
-      frames_.push_back(std::move(truth));
-    }
-  }
-  std::optional<Frame> next() override {
-    if (given_ == kLength) return std::nullopt;
-    return frames_[static_cast<std::size_t>(given_++)].frame;
-  }
-  int size() const override { return kLength; }
-  void begin_again() { given_ = 0; }
-  const std::vector<LabelledFrame>& frames() const { return frames_; }
-
- private:
-  std::vector<LabelledFrame> frames_;
-  int given_ = 0;
-};
-
-/// Knows the true labels of the frames of a source by their depth. Every third frame takes longer.
-class Knowing : public test::BlindLabeller {
- public:
-  explicit Knowing(const Crossing& source, int fails_at = -1) : source_(source), fails_at_(fails_at) {}
-
-  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
-    test::BlindLabeller::label_into(depth, camera, gate, out);
-    const auto& frames = source_.frames();
-    const auto truth = std::ranges::find_if(frames, [&](const LabelledFrame& f) { return f.frame.depth == depth; });
-    if (truth == frames.end()) throw Error("an unknown frame");
-    const auto index = static_cast<int>(truth - frames.begin());
-    if (index == fails_at_) throw Error("cannot label this one");
-    if (index % 3 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    for (int v = 0; v < depth.height(); ++v) {
-      for (int u = 0; u < depth.width(); ++u) {
-        const std::uint8_t label = truth->labels(u, v);
-        if (label == kBackground) continue;
-        out.at(u, v)[out.classes - 1] = 0;
-        out.at(u, v)[label] = 255;
-      }
-    }
-  }
-
- private:
-  const Crossing& source_;
-  int fails_at_;
-};
-
 std::string told(const FoundFrame& found) {
   std::string text = found.frame->name;
   if (found.error) return text + " failed";
@@ -217,9 +158,9 @@ std::string told(const FoundFrame& found) {
   return text;
 }
 
-std::vector<std::string> follow(Crossing& source, int fails_at = -1) {
+std::vector<std::string> follow(test::Crossing& source, int fails_at = -1) {
   source.begin_again();
-  const Detector detector(std::make_shared<Knowing>(source, fails_at));
+  const Detector detector(std::make_shared<test::Knowing>(source, fails_at));
   PeopleTracker tracker(detector.body(), {}, detector.appearance());
   std::vector<std::string> lines;
   stream_frames(source, detector, tracker, {}, [&](const FoundFrame& found) {
@@ -231,10 +172,10 @@ std::vector<std::string> follow(Crossing& source, int fails_at = -1) {
 
 // Labels: threads
 TEST(FollowedFramesThreads, HaveTheSameIdsForAnyNumberOfThreads) {
-  Crossing source;
+  test::Crossing source;
   std::vector<std::vector<std::string>> all;
   for_threads({1, 2, 4}, [&] { all.push_back(follow(source)); });
-  ASSERT_EQ(all[0].size(), static_cast<std::size_t>(Crossing::kLength));
+  ASSERT_EQ(all[0].size(), static_cast<std::size_t>(test::Crossing::kLength));
   EXPECT_EQ(all[1], all[0]);
   EXPECT_EQ(all[2], all[0]);
   EXPECT_THAT(all[0].back(), testing::AllOf(testing::HasSubstr(" 1tracked"), testing::HasSubstr(" 2tracked"),
@@ -243,10 +184,10 @@ TEST(FollowedFramesThreads, HaveTheSameIdsForAnyNumberOfThreads) {
 
 // Labels: threads
 TEST(FollowedFramesThreads, OneThatFailsLeavesTheOthersAsTheyAre) {
-  Crossing source;
+  test::Crossing source;
   std::vector<std::vector<std::string>> all;
   for_threads({1, 2}, [&] { all.push_back(follow(source, 5)); });
-  ASSERT_EQ(all[0].size(), static_cast<std::size_t>(Crossing::kLength));
+  ASSERT_EQ(all[0].size(), static_cast<std::size_t>(test::Crossing::kLength));
   EXPECT_EQ(all[0][5], "5 failed");
   EXPECT_THAT(all[0][6], testing::HasSubstr(" 1tracked"));
   EXPECT_EQ(all[1], all[0]);
@@ -254,11 +195,11 @@ TEST(FollowedFramesThreads, OneThatFailsLeavesTheOthersAsTheyAre) {
 
 // Labels: threads
 TEST(FollowedFramesThreads, EndWheneverTheTakerHasEnough) {
-  Crossing source;
+  test::Crossing source;
   const ThreadLimit limit(2);
   for (int enough = 1; enough < 6; ++enough) {
     source.begin_again();
-    const Detector detector(std::make_shared<Knowing>(source, 2));
+    const Detector detector(std::make_shared<test::Knowing>(source, 2));
     PeopleTracker tracker(detector.body(), {}, detector.appearance());
     int taken = 0;
     stream_frames(source, detector, tracker, {}, [&](const FoundFrame&) { return ++taken < enough; });
@@ -268,8 +209,8 @@ TEST(FollowedFramesThreads, EndWheneverTheTakerHasEnough) {
 
 // Labels: threads
 TEST(FollowedFramesThreads, InRealTimeHaveIdsToo) {
-  Crossing source;
-  const Detector detector(std::make_shared<Knowing>(source));
+  test::Crossing source;
+  const Detector detector(std::make_shared<test::Knowing>(source));
   PeopleTracker tracker(detector.body(), {}, detector.appearance());
   StreamOptions options;
   options.realtime = true;
@@ -280,7 +221,7 @@ TEST(FollowedFramesThreads, InRealTimeHaveIdsToo) {
     ++taken;
     return true;
   });
-  EXPECT_EQ(taken + dropped, Crossing::kLength);
+  EXPECT_EQ(taken + dropped, test::Crossing::kLength);
 }
 
 }  // namespace

@@ -1,0 +1,10 @@
+#include "stream/people_options.h"
+
+namespace vesalius {
+
+void visit_options(const std::string& prefix, PeopleOptions& options, OptionVisitor& visitor) {
+  visit_options(prefix, options.detect, visitor);
+  visit_options(prefix + "track.", options.track, visitor);
+}
+
+}  // namespace vesalius
