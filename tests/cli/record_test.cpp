@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "io/recordings/test_recorded.h"
 #include "run_program.h"
 #include "small_world.h"
 
@@ -45,6 +46,20 @@ TEST_F(Record, HoldsFramesInWhichTheSamePeopleAreFound) {
     EXPECT_EQ(late[0], found[1]);
     EXPECT_EQ(late[1], found[2]);
   }
+}
+
+TEST_F(Record, HoldsPeopleOverTimeAsDetectFollowsThem) {
+  const std::string file = path("followed.mcap");
+  const Outcome run = run_program("record " + frames() + " --out " + file + " --track -m " + model());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Outcome detect = run_program("detect " + frames() + " --track -q --json - -m " + model());
+  std::istringstream in(detect.out);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 4U);
+  lines.pop_back();  // it closes the stream
+  EXPECT_THAT(lines.front(), HasSubstr("\"id\":1,\"state\":\"new\""));
+  EXPECT_EQ(test::recorded_texts(file, "/people/json"), lines);
 }
 
 TEST_F(Record, GoesThroughAFolderWithoutLoss) {

@@ -478,6 +478,18 @@ def give_ours(vesalius, folder, work):
     assert len(depths) == len(wanted) and all(np.array_equal(a, b[1]) for a, b in zip(depths, wanted)), "mcap: depth differs"
     assert people == texts and people > 0, f"mcap: {people} people in markers, {texts} in JSON"
     print("mcap reads ours:", len(depths), "frames,", people, "people")
+    followed = work / "followed.mcap"
+    subprocess.run([vesalius, "record", folder, "--out", followed, "--track", "-q"], check=True)
+    found = subprocess.run([vesalius, "detect", folder, "--track", "-q", "--json", "-"], check=True, capture_output=True, text=True)
+    lines = [json.loads(line) for line in found.stdout.splitlines()]
+    lines = [line for line in lines if "people" in line]
+    with open(followed, "rb") as file:
+        recorded = [json.loads(decoded.data) for _, channel, _, decoded in
+                    make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages() if channel.topic == "/people/json"]
+    assert recorded == lines, "mcap: other people than detect --track finds"
+    bodies = sum("body" in person for line in recorded for person in line["people"])
+    assert bodies > 0 and all("id" in person for line in recorded for person in line["people"]), "mcap: no ids or bodies"
+    print("mcap reads people over time:", len(recorded), "frames,", bodies, "bodies")
     from rosbags.highlevel import AnyReader
     (work / "ours_bag").mkdir()
     with AnyReader([ours], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:

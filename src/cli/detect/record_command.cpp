@@ -15,6 +15,7 @@
 #include "stream/detect_stream.h"
 #include "stream/person_json.h"
 #include "vesalius/base/keep_memory.h"
+#include "vesalius/fit/fit_body.h"
 
 namespace vesalius::cli {
 namespace {
@@ -28,6 +29,7 @@ struct Arguments {
   double rate = kUsualRate;
   int frames = 0;  ///< 0 = all
   bool people = false;
+  bool track = false;  ///< implies people
   bool quiet = false;
 };
 
@@ -51,20 +53,30 @@ int record_frames(const Arguments& arguments, FrameSource& source, FrameRecorder
 /// Returns the number of frames that were dropped.
 int record_people(const Arguments& arguments, FrameSource& source, const Detector& detector, FrameRecorder& recorder,
                   const StreamOptions& options, Progress& progress) {
-  return stream_frames(source, detector, options, [&](const FoundFrame& found) {
+  const BodyModel& body = detector.body();
+  const auto take = [&](const FoundFrame& found) {
     if (found.error) std::rethrow_exception(found.error);
     recorder.write(*found.frame);
-    recorder.write_people(*found.frame, found.people, detector.body(),
-                          frame_json(*found.frame, found.people, detector.body(), found.latency_ms));
+    if (found.tracked) {
+      recorder.write_people(*found.frame, *found.tracked, body,
+                            tracked_frame_json(*found.frame, *found.tracked, body, found.latency_ms));
+    } else {
+      recorder.write_people(*found.frame, found.people, body,
+                            frame_json(*found.frame, found.people, body, found.latency_ms));
+    }
     progress.step();
     return !is_enough(arguments, progress);
-  });
+  };
+  if (!arguments.track) return stream_frames(source, detector, options, take);
+  PeopleTracker tracker(body, arguments.detector.track_options(), detector.appearance(),
+                        std::make_shared<const BodyFitter>(body));
+  return stream_frames(source, detector, tracker, options, take);
 }
 
 void run(const Arguments& arguments) {
   keep_freed_memory();
   std::optional<Detector> detector;
-  if (arguments.people) detector.emplace(arguments.detector.make());
+  if (arguments.people || arguments.track) detector.emplace(arguments.detector.make());
   LateLines late;
   SourceOptions camera = arguments.camera;
   camera.say = [&late](const std::string& line) { late.add(line); };
@@ -110,6 +122,7 @@ void add_record(CLI::App& program) {
   command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
   command->add_option("--out", arguments->out, "MCAP file to write; must not exist")->type_name("FILE")->required();
   command->add_flag("--people", arguments->people, "Find people and record them too: body index, parts, markers, JSON");
+  command->add_flag("--track", arguments->track, "Record people with ids, states and fitted bodies, as detect --track");
   command->add_option("--rate", arguments->rate, "Frames per second of a source that does not know its frames' times")
       ->type_name("N")
       ->check(CLI::Range(0.1, 1000.0))
@@ -128,6 +141,7 @@ killed lacks the last second at most.
 Examples:
   vesalius record frames/ --out session.mcap
   vesalius record session.bag --out found.mcap --people
+  vesalius record session.bag --out followed.mcap --track
   vesalius detect found.mcap)");
   command->callback([arguments] { run(*arguments); });
 }

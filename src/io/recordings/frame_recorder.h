@@ -9,6 +9,7 @@
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/detection.h"
+#include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
 
@@ -17,7 +18,7 @@ namespace vesalius {
 ///   /camera/color/image                                rgb8, registered to depth; only of frames with colour
 ///   /camera/imu                                        Imu: gravity; from the first frame on that knows up
 ///   /people/body_index, /people/parts                  mono8: person and part of each pixel, 255 = neither
-///   /people/markers                                    MarkerArray: links, parts and scores in 3-D
+///   /people/markers                                    MarkerArray: links, parts, and scores or ids in 3-D
 ///   /people/json                                       String: the line of `vesalius detect --json`
 /// All are in one coordinate frame, "camera_optical_frame". open_source reads depth, colour and up back as they were.
 class FrameRecorder {
@@ -30,10 +31,14 @@ class FrameRecorder {
   /// Adds the people of the frame that was added last. `json` is its line.
   void write_people(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
                     const std::string& json);
+  /// The same of people who are followed: the pictures hold their indices in `tracked`, the markers their ids.
+  void write_people(const Frame& frame, const TrackedFrame& tracked, const BodyModel& body, const std::string& json);
   /// Completes the file. Without this call it has all frames but those of the last second, and no summary.
   void close() { out_.close(); }
 
  private:
+  void write_people(const Frame& frame, const std::vector<Person>& people, const std::string& markers,
+                    const std::string& json);
   std::uint16_t topic(std::optional<std::uint16_t>& known, const char* name, const char* type);
 
   McapWriter out_;

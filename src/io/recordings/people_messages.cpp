@@ -143,18 +143,21 @@ Ball ball_of(const SkeletonPart& part, const BodyPart& of) {
   return {part.centre, of.colour, part.state == State::observed ? 1.F : kPale};
 }
 
-}  // namespace
+struct NamedSkeleton {
+  const Skeleton* skeleton;
+  std::string name;
+};
 
-std::string markers_message(const std::vector<Person>& people, const BodyModel& body, std::int64_t time_ns,
-                            std::string_view frame) {
+std::string markers_of(const std::vector<NamedSkeleton>& people, const BodyModel& body, std::int64_t time_ns,
+                       std::string_view frame) {
   constexpr std::uint32_t kMarkers = 3;  // of a person
   CdrWriter out;
   out.u32(1 + kMarkers * static_cast<std::uint32_t>(people.size()));
   const Eigen::Vector3f origin = Eigen::Vector3f::Zero();
   write_marker(out, time_ns, frame, 0, {0, kDeleteAll, {1, 1, 1}}, origin, {}, "");
   int id = 1;
-  for (std::size_t p = 0; p < people.size(); ++p) {
-    const std::vector<SkeletonPart>& parts = people[p].skeleton.parts;
+  for (const auto& [skeleton, name] : people) {
+    const std::vector<SkeletonPart>& parts = skeleton->parts;
     std::vector<Ball> balls, lines;
     Eigen::Vector3f highest(0.F, std::numeric_limits<float>::max(), 0.F);
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -170,9 +173,30 @@ std::string markers_message(const std::vector<Person>& people, const BodyModel& 
     write_marker(out, time_ns, frame, id++, {kLineList, kAdd, {kLine_m, 0, 0}}, origin, lines, "");
     write_marker(out, time_ns, frame, id++, {kSphereList, kAdd, {kBall_m, kBall_m, kBall_m}}, origin, balls, "");
     write_marker(out, time_ns, frame, id++, {kText, kAdd, {0, 0, kText_m}},
-                 highest - Eigen::Vector3f(0.F, kAbove_m, 0.F), {}, fmt::format("{}: {:.2f}", p, people[p].score));
+                 highest - Eigen::Vector3f(0.F, kAbove_m, 0.F), {}, name);
   }
   return out.message();
+}
+
+}  // namespace
+
+std::string markers_message(const std::vector<Person>& people, const BodyModel& body, std::int64_t time_ns,
+                            std::string_view frame) {
+  std::vector<NamedSkeleton> named;
+  for (const Person& person : people) {
+    named.push_back({&person.skeleton, fmt::format("{}: {:.2f}", named.size(), person.score)});
+  }
+  return markers_of(named, body, time_ns, frame);
+}
+
+std::string markers_message(const TrackedFrame& tracked, const BodyModel& body, std::int64_t time_ns,
+                            std::string_view frame) {
+  std::vector<NamedSkeleton> named;
+  for (const TrackedPerson& person : tracked.people) {
+    if (person.state == TrackState::lost) continue;
+    named.push_back({&person.person.skeleton, fmt::format("{} {}", person.id, to_string(person.state))});
+  }
+  return markers_of(named, body, time_ns, frame);
 }
 
 std::string message_definition(std::string_view type) {
