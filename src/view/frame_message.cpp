@@ -9,6 +9,7 @@
 #include "io/recordings/depth_codecs.h"
 #include "stream/json_numbers.h"
 #include "stream/person_json.h"
+#include "vesalius/fit/flesh_sections.h"
 #include "vesalius/planes/find_floor.h"
 #include "view/run_lengths.h"
 
@@ -44,10 +45,37 @@ class Pictures {
   std::string bytes_;
 };
 
-Json floor_json(const Frame& frame) {
-  const std::optional<Plane> floor = find_floor(find_planes(frame.depth, frame.camera, {}), frame.up);
+/// The floor over time; that of this frame alone while there is none.
+Json floor_json(const ViewedFrame& viewed) {
+  if (viewed.tracked && viewed.tracked->floor) {
+    const FloorView& floor = *viewed.tracked->floor;
+    return {{"normal", point_json(-floor.up)}, {"offset_m", rounded(floor.height_m)}, {"lasting", true}};
+  }
+  const std::optional<Plane> floor = find_floor(viewed.planes, viewed.frame->up);
   if (!floor) return {};
-  return {{"normal", point_json(floor->normal)}, {"offset_m", rounded(floor->offset)}};
+  return {{"normal", point_json(floor->normal)}, {"offset_m", rounded(floor->offset)}, {"lasting", false}};
+}
+
+Json section_json(const FleshSection& section) {
+  Json numbers = Json::array();
+  for (const Eigen::Vector3f* vector : {&section.centre, &section.first, &section.second}) {
+    for (const float number : *vector) numbers.push_back(rounded(number, 1e3));
+  }
+  return numbers;
+}
+
+/// The flesh of people's bodies by index; null for people without.
+Json flesh_json(const TrackedFrame& tracked) {
+  Json people = Json::array();
+  for (const TrackedPerson& person : tracked.people) {
+    Json& bones = people.emplace_back();
+    if (!person.body || person.state == TrackState::lost) continue;
+    for (const BoneSections& bone : flesh_sections(builtin_flesh(), *person.body)) {
+      Json& sections = bones.emplace_back();
+      for (const FleshSection& section : bone) sections.push_back(section_json(section));
+    }
+  }
+  return people;
 }
 
 Json times_json(const StageTimes& times) {
@@ -127,20 +155,29 @@ std::string message_of(Json head, const std::string& found, const Pictures& pict
 
 }  // namespace
 
+std::string found_json(const Frame& frame, const ViewedFrame& viewed, const BodyModel& body) {
+  return viewed.tracked ? tracked_frame_json(frame, *viewed.tracked, body, viewed.latency_ms)
+                        : frame_json(frame, viewed.people, body, viewed.latency_ms);
+}
+
 FrameMessages frame_messages(const ViewedFrame& viewed, const BodyModel& body) {
   const Frame& frame = *viewed.frame;
   const int width = frame.depth.width(), height = frame.depth.height();
   Pictures pictures;
   pictures.add("depth", "rvl", width, height, pack_rvl(frame.depth));
   if (!frame.colour.empty()) pictures.add("colour", "jpeg", width, height, encode_jpeg(frame.colour, kJpegQuality));
-  pictures.add_labels("people", body_index_map(viewed.people, width, height));
-  pictures.add_labels("parts", part_label_map(viewed.people, width, height));
+  const std::vector<Person> followed = viewed.tracked ? people_of(*viewed.tracked) : std::vector<Person>{};
+  const std::vector<Person>& people = viewed.tracked ? followed : viewed.people;
+  pictures.add_labels("people", body_index_map(people, width, height));
+  pictures.add_labels("parts", part_label_map(people, width, height));
   Json head = {{"number", viewed.number},
                {"at_s", viewed.at_s},
                {"times_ms", times_json(viewed.times)},
                {"detect_ms", rounded(viewed.times.total())},
-               {"floor", floor_json(frame)}};
-  const std::string found = frame_json(frame, viewed.people, body, viewed.latency_ms);
+               {"track_ms", rounded(viewed.track_ms)},
+               {"floor", floor_json(viewed)}};
+  if (viewed.tracked) head["flesh"] = flesh_json(*viewed.tracked);
+  const std::string found = found_json(frame, viewed, body);
   FrameMessages messages{message_of(head, found, pictures), {}};
   if (viewed.trace) {
     head["stages"] = stages_json(*viewed.trace, width, height, pictures);

@@ -8,6 +8,8 @@
 #include "io/files/image_file.h"
 #include "io/recordings/depth_codecs.h"
 #include "stream/person_json.h"
+#include "vesalius/fit/flesh_sections.h"
+#include "vesalius/fit/test_flesh.h"
 #include "view/test_runs.h"
 
 namespace vesalius {
@@ -58,6 +60,7 @@ ViewedFrame viewed_person(bool with_colour) {
   for (int i = 5000; i < 5100; ++i) person.mask[i] = 1, person.labels[i] = 3;
   person.score = 0.9F;
   viewed.people.push_back(person);
+  viewed.planes = find_planes(viewed.frame->depth, viewed.frame->camera, {});
   return viewed;
 }
 
@@ -78,6 +81,52 @@ TEST(FrameMessage, HoldsTheFrameAndItsPeople) {
   EXPECT_FALSE(parts.head.contains("stages"));
   EXPECT_NEAR(parts.head.at("floor").at("offset_m"), 1.0, 0.02);
   EXPECT_NEAR(parts.head.at("floor").at("normal").at(1), 1.0, 0.01);
+}
+
+TEST(FrameMessage, HoldsPeopleWhoAreFollowed) {
+  ViewedFrame viewed = viewed_person(true);
+  TrackedFrame& tracked = viewed.tracked.emplace();
+  TrackedPerson hidden;
+  hidden.id = 2;
+  hidden.state = TrackState::hidden;
+  hidden.person = viewed.people[0];
+  hidden.person.mask = {};
+  hidden.person.labels = {};
+  TrackedPerson seen;
+  seen.id = 5;
+  seen.state = TrackState::tracked;
+  seen.person = viewed.people[0];
+  const BodyState state = test::usual_state(0.0);
+  FittedBody& fitted = seen.body.emplace();
+  for (const PlacedBone& placed : place_bones(builtin_flesh(), state)) {
+    FittedBone& bone = fitted.bones.emplace_back();
+    bone.head = placed.head.cast<float>();
+    bone.global = Eigen::Quaternionf(placed.global.cast<float>());
+  }
+  tracked.people = {hidden, seen};
+  tracked.floor = FloorView{{0.F, -1.F, 0.F}, 0.9F, 0.F, 0.F};
+  viewed.people.clear();
+  viewed.track_ms = 2.5;
+  const Parts parts(frame_messages(viewed, paper_body()).plain);
+  EXPECT_EQ(parts.head.at("found"), json::parse(tracked_frame_json(*viewed.frame, tracked, paper_body())));
+  EXPECT_EQ(parts.head.at("track_ms"), 2.5);
+  const LabelImage index = parts.labels("people");
+  EXPECT_EQ(index[5000], 1) << "the second in the list";
+  EXPECT_EQ(std::ranges::count(index, 0), 0) << "nobody sees the first";
+  EXPECT_EQ(parts.labels("parts")[5000], 3);
+  EXPECT_EQ(parts.head.at("floor"), json::parse(R"({"normal":[0.0,1.0,0.0],"offset_m":0.9,"lasting":true})"));
+  const json& flesh = parts.head.at("flesh");
+  ASSERT_EQ(flesh.size(), 2U);
+  EXPECT_TRUE(flesh.at(0).is_null());
+  ASSERT_EQ(flesh.at(1).size(), builtin_flesh().bones.size());
+  const BoneSections pelvis = flesh_sections(builtin_flesh(), fitted).at(0);
+  const json& section = flesh.at(1).at(0).at(2);
+  ASSERT_EQ(section.size(), 9U);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(section.at(i), pelvis[2].centre[i], 6e-4);
+    EXPECT_NEAR(section.at(3 + i), pelvis[2].first[i], 6e-4);
+    EXPECT_NEAR(section.at(6 + i), pelvis[2].second[i], 6e-4);
+  }
 }
 
 TEST(FrameMessage, HoldsTheStagesOfATrace) {

@@ -21,11 +21,13 @@
 #include "io/files/options_file.h"
 #include "io/recordings/frame_recorder.h"
 #include "stream/frame_queue.h"
-#include "stream/person_json.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/quiet_thread.h"
+#include "vesalius/base/stage_times.h"
+#include "vesalius/fit/fit_body.h"
 #include "view/bundle_files.h"
 #include "view/frame_message.h"
+#include "view/track_history.h"
 #include "view/viewer_messages.h"
 
 namespace vesalius {
@@ -91,24 +93,37 @@ std::string new_recording(const std::string& folder) {
   }
 }
 
+/// Returns whether what is known of people with some options is of no use with others.
+bool are_tracks_others(const PeopleOptions& a, const PeopleOptions& b) {
+  const auto text = [](TrackOptions options) {
+    return options_toml([&](OptionVisitor& visitor) { visit_options("track.", options, visitor); });
+  };
+  return a.detect.grow.appearance != b.detect.grow.appearance || text(a.track) != text(b.track);
+}
+
 }  // namespace
 
 class Viewer::Session {
  public:
-  Session(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const DetectOptions& options,
+  Session(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options,
           const ViewerOptions& viewer)
       : source_(source),
         labeller_(std::move(labeller)),
         first_options_(options),
-        facts_{viewer.source, viewer.model, viewer.folder},
+        facts_{viewer.source, viewer.model, viewer.folder, viewer.track},
         rate_(viewer.player.rate),
         say_(viewer.say),
         options_(options),
-        detector_(labeller_, options),
+        detector_(labeller_, options.detect),
+        track_rate_(static_cast<double>(options.track.rate)),
         played_(1),
         found_(1),
         player_(source, viewer.player, outputs()),
         server_(viewer.web, handlers()) {
+    if (facts_.track) {
+      tracks_.emplace(PeopleTracker(labeller_->body(), options.track, detector_.appearance(),
+                                    std::make_shared<const BodyFitter>(labeller_->body())));
+    }
     worker_ = quiet_thread([this] { detect_all(); });
     server_.start();
     player_.start();
@@ -189,18 +204,19 @@ class Viewer::Session {
   }
 
   std::string options_text() const {
-    DetectOptions options = current_options();
+    PeopleOptions options = current_options();
     return options_toml([&](OptionVisitor& visitor) { visit_options("", options, visitor); });
   }
 
-  DetectOptions current_options() const {
+  PeopleOptions current_options() const {
     const std::scoped_lock lock(mutex_);
     return options_;
   }
 
   std::vector<std::string> greet() {
     look_again();
-    return {hello_message(facts_, labeller_->body()), options_message(current_options(), first_options_), state()};
+    return {hello_message(facts_, labeller_->body()), options_message(current_options(), first_options_, facts_.track),
+            state()};
   }
 
   /// Does what a page asks for.
@@ -236,7 +252,7 @@ class Viewer::Session {
   }
 
   void change_option(const std::string& name, const std::string& value) {
-    DetectOptions options = current_options();
+    PeopleOptions options = current_options();
     try {
       set_option(options, name, value);
       change_options(options);
@@ -246,10 +262,11 @@ class Viewer::Session {
     }
   }
 
-  void change_options(const DetectOptions& options) {
-    Detector changed(labeller_, options);  // it knows best which options it can use
+  void change_options(const PeopleOptions& options) {
+    Detector changed(labeller_, options.detect);  // it knows best which options it can use
     {
       const std::scoped_lock lock(mutex_);
+      tracks_changed_ = tracks_changed_ || are_tracks_others(options, options_);
       options_ = options;
       changed_detector_ = std::move(changed);
     }
@@ -257,7 +274,9 @@ class Viewer::Session {
     look_again();
   }
 
-  void tell_options() { server_.publish_text("options", options_message(current_options(), first_options_)); }
+  void tell_options() {
+    server_.publish_text("options", options_message(current_options(), first_options_, facts_.track));
+  }
 
   void want_recording(bool on) {
     const std::scoped_lock lock(mutex_);
@@ -318,8 +337,12 @@ class Viewer::Session {
       Frame frame = *viewed.frame;
       if (!frame.time_s) frame.time_s = viewed.at_s * kUsualRate / rate_;
       recorder_->write(frame);
-      recorder_->write_people(frame, viewed.people, labeller_->body(),
-                              frame_json(frame, viewed.people, labeller_->body(), viewed.latency_ms));
+      const std::string json = found_json(frame, viewed, labeller_->body());
+      if (viewed.tracked) {
+        recorder_->write_people(frame, *viewed.tracked, labeller_->body(), json);
+      } else {
+        recorder_->write_people(frame, viewed.people, labeller_->body(), json);
+      }
       recorded_up_to_s_ = viewed.at_s;
       const std::scoped_lock lock(mutex_);
       ++state_.recorded;
@@ -358,17 +381,50 @@ class Viewer::Session {
     }
   }
 
+  void take_changed_options() {
+    const std::scoped_lock lock(mutex_);
+    if (!changed_detector_) return;
+    detector_ = *std::exchange(changed_detector_, std::nullopt);
+    track_rate_ = static_cast<double>(options_.track.rate);
+    if (tracks_ && std::exchange(tracks_changed_, false)) tracks_->restart(options_.track, detector_.appearance());
+  }
+
+  void find(const Frame& frame, ViewedFrame& viewed) {
+    const AskPrior nothing = [](const Frame&) { return Prior{}; };
+    Detection found = detector_.detect(frame, nothing, viewed.trace ? &*viewed.trace : nullptr, &viewed.times);
+    viewed.people = std::move(found.people);
+    viewed.planes = std::move(found.planes);
+  }
+
+  void follow(const Frame& frame, ViewedFrame& viewed) {
+    // Some frames are dropped, and people move in a source: where frames have no times, their places count.
+    std::optional<Frame> timed;
+    if (!frame.time_s) (timed = frame)->time_s = viewed.at_s * kUsualRate / track_rate_;
+    const Frame& followed = timed ? *timed : frame;
+    PeopleTracker& tracker = tracks_->before(viewed.at_s);
+    const AskPrior ask = [&](const Frame& asked) {
+      Prior prior;
+      viewed.track_ms += elapsed_ms([&] { prior = tracker.expect(asked); });
+      return prior;
+    };
+    Detection found = detector_.detect(followed, ask, viewed.trace ? &*viewed.trace : nullptr, &viewed.times);
+    viewed.planes = std::move(found.planes);
+    viewed.track_ms +=
+        elapsed_ms([&] { viewed.tracked = tracker.update(followed, std::move(found.people), viewed.planes); });
+  }
+
   Found detect(const Job& job) {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (changed_detector_) detector_ = *std::exchange(changed_detector_, std::nullopt);
-    }
+    take_changed_options();
     Found found{{}, job.arrived, job.again};
     ViewedFrame& viewed = found.viewed;
     viewed.frame = {job.played, &job.played->frame};
     viewed.at_s = job.played->at_s;
     if (server_.clients_for_details() > 0) viewed.trace.emplace();
-    viewed.people = detector_.detect(*viewed.frame, viewed.trace ? &*viewed.trace : nullptr, &viewed.times);
+    if (tracks_) {
+      follow(*viewed.frame, viewed);
+    } else {
+      find(*viewed.frame, viewed);
+    }
     const Clock::time_point now = Clock::now();
     const double result_ms = milliseconds(now - found.arrived);
     if (viewed.frame->arrived_s) viewed.latency_ms = result_ms;
@@ -401,14 +457,15 @@ class Viewer::Session {
 
   FrameSource& source_;
   const std::shared_ptr<const PixelLabeller> labeller_;
-  const DetectOptions first_options_;
+  const PeopleOptions first_options_;
   const ViewerFacts facts_;
   const double rate_;
   const std::function<void(const std::string&)> say_;
 
   mutable std::mutex mutex_;  ///< of what follows
-  DetectOptions options_;
+  PeopleOptions options_;
   std::optional<Detector> changed_detector_;
+  bool tracks_changed_ = false;  ///< whether people must be followed anew
   ViewerState state_;
   RecentTimes result_times_, page_times_;
   RecentRate rate_now_;
@@ -422,7 +479,11 @@ class Viewer::Session {
   double recorded_up_to_s_ = 0.0;
   std::string failed_recording_;
 
-  Detector detector_;  ///< of the worker's thread alone
+  // Of the worker's thread alone:
+  Detector detector_;
+  double track_rate_;                   ///< frames a second of a source without times
+  std::optional<TrackHistory> tracks_;  ///< none if people are not followed
+
   FrameQueue<Job> played_;
   FrameQueue<Found> found_;
   Player player_;
@@ -430,7 +491,7 @@ class Viewer::Session {
   std::jthread worker_;
 };
 
-Viewer::Viewer(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const DetectOptions& options,
+Viewer::Viewer(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options,
                const ViewerOptions& viewer)
     : session_(std::make_unique<Session>(source, std::move(labeller), options, viewer)) {}
 

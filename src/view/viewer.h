@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "stream/people_options.h"
 #include "vesalius/base/frame_source.h"
-#include "vesalius/detect.h"
 #include "vesalius/forest/label_pixels.h"
 #include "view/player.h"
 #include "view/web_server.h"
@@ -15,6 +15,7 @@ namespace vesalius {
 struct ViewerOptions {
   WebServerOptions web;
   PlayerOptions player;
+  bool track = true;         ///< whether people are followed over frames
   std::string folder = ".";  ///< where recordings are written
   std::string source;        ///< its name, for the page
   std::string model;         ///< its name, for the page
@@ -22,13 +23,13 @@ struct ViewerOptions {
   std::function<void(const std::string&)> say = {};
 };
 
-/// Finds the people in a source and shows them on a page. Four threads: one plays the source, one detects, the
-/// caller's packs the results, one serves them. Each takes the newest that the one before it has, so that the page
-/// shows what is now, and a busy machine drops frames, which are counted.
+/// Finds the people in a source, follows them, and shows them on a page. Four threads: one plays the source, one
+/// detects, the caller's packs the results, one serves them. Each takes the newest that the one before it has, so that
+/// the page shows what is now, and a busy machine drops frames, which are counted.
 class Viewer {
  public:
   /// Listens and begins to play. Throws Error if it cannot listen, UsageError for an option outside its range.
-  Viewer(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const DetectOptions& options,
+  Viewer(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options,
          const ViewerOptions& viewer);
   ~Viewer();
   Viewer(const Viewer&) = delete;

@@ -9,6 +9,7 @@
 #include "stream/person_json.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/options.h"
+#include "vesalius/fit/flesh_model.h"
 
 namespace vesalius {
 namespace {
@@ -52,10 +53,21 @@ class Describer : public OptionVisitor {
   }
 };
 
-Json described(DetectOptions options) {
+Json described(PeopleOptions options, bool track) {
   Describer describer;
-  visit_options("", options, describer);
+  if (track) {
+    visit_options("", options, describer);
+  } else {
+    visit_options("", options.detect, describer);
+  }
   return std::move(describer.list);
+}
+
+/// Names and parents of the bones of fitted bodies.
+Json bones_json() {
+  Json bones = Json::array();
+  for (const FleshBone& bone : builtin_flesh().bones) bones.push_back({{"name", bone.name}, {"parent", bone.parent}});
+  return bones;
 }
 
 }  // namespace
@@ -69,6 +81,8 @@ std::string hello_message(const ViewerFacts& facts, const BodyModel& body) {
                   {"source", facts.source},
                   {"model", facts.model},
                   {"folder", facts.folder},
+                  {"track", facts.track},
+                  {"bones", bones_json()},
                   {"body", std::move(known)}});
 }
 
@@ -93,16 +107,16 @@ std::string state_message(const ViewerState& state, const PlayerState& player) {
                   {"recorded", state.recorded}});
 }
 
-std::string options_message(const DetectOptions& options, const DetectOptions& first) {
-  Json list = described(options);
-  const Json defaults = described(first);
+std::string options_message(const PeopleOptions& options, const PeopleOptions& first, bool track) {
+  Json list = described(options, track);
+  const Json defaults = described(first, track);
   for (std::size_t i = 0; i < list.size(); ++i) list[i]["default"] = defaults[i]["value"];
   return text_of({{"type", "options"}, {"options", std::move(list)}});
 }
 
 std::string notice_message(const std::string& text) { return text_of({{"type", "notice"}, {"text", text}}); }
 
-void set_option(DetectOptions& options, const std::string& name, const std::string& value_json) {
+void set_option(PeopleOptions& options, const std::string& name, const std::string& value_json) {
   const Json value = Json::parse(value_json);
   if (value.is_structured() || value.is_null()) {
     throw Error(fmt::format("option {}: found {}, expected a number, a text, true or false", name, value_json));
@@ -110,7 +124,7 @@ void set_option(DetectOptions& options, const std::string& name, const std::stri
   if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-.") != name.npos) {
     throw Error("option " + name + ": no such option");
   }
-  DetectOptions changed = options;
+  PeopleOptions changed = options;
   const VisitAll visit = [&](OptionVisitor& visitor) { visit_options("", changed, visitor); };
   // A number, a text or a truth value of JSON is one of TOML too.
   parse_options(name + " = " + value.dump(), "option", visit);

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "stream/people_options.h"
 #include "vesalius/base/body_model.h"
-#include "vesalius/detect.h"
 #include "view/player.h"
 
 namespace vesalius {
@@ -24,17 +24,19 @@ struct ViewerState {
 /// What never changes while a viewer runs.
 struct ViewerFacts {
   std::string source, model, folder;
+  bool track = true;  ///< whether people are followed over frames
 };
 
 // Messages to a page, as JSON texts with a "type" (docs/formats.md).
 std::string hello_message(const ViewerFacts& facts, const BodyModel& body);
 std::string state_message(const ViewerState& state, const PlayerState& player);
-/// `first` are the options with which the viewer began, to which a page can go back.
-std::string options_message(const DetectOptions& options, const DetectOptions& first);
+/// `first` are the options with which the viewer began, to which a page can go back. Those of tracking are left out
+/// where people are not followed.
+std::string options_message(const PeopleOptions& options, const PeopleOptions& first, bool track);
 std::string notice_message(const std::string& text);
 
 /// Sets the option `name` to a value given as JSON. Throws Error for one that does not exist or a value that does not
 /// fit.
-void set_option(DetectOptions& options, const std::string& name, const std::string& value_json);
+void set_option(PeopleOptions& options, const std::string& name, const std::string& value_json);
 
 }  // namespace vesalius

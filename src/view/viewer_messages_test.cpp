@@ -11,9 +11,10 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
-json option_named(const DetectOptions& options, const std::string& name) {
-  const json message = json::parse(options_message(options, {}));
+json option_named(const PeopleOptions& options, const std::string& name) {
+  const json message = json::parse(options_message(options, {}, true));
   for (const json& option : message.at("options")) {
     if (option.at("name") == name) return option;
   }
@@ -21,7 +22,7 @@ json option_named(const DetectOptions& options, const std::string& name) {
 }
 
 std::string refusal(const std::string& name, const std::string& value) {
-  DetectOptions options;
+  PeopleOptions options;
   try {
     set_option(options, name, value);
   } catch (const Error& e) {
@@ -31,11 +32,11 @@ std::string refusal(const std::string& name, const std::string& value) {
 }
 
 TEST(ViewerMessages, DescribeEveryOption) {
-  DetectOptions options;
-  options.search.min_parts = 9;
+  PeopleOptions options;
+  options.detect.search.min_parts = 9;
   const json changed = option_named(options, "search.min-parts");
   EXPECT_EQ(changed.at("value"), 9);
-  EXPECT_EQ(changed.at("default"), DetectOptions().search.min_parts);
+  EXPECT_EQ(changed.at("default"), PeopleOptions().detect.search.min_parts);
   EXPECT_EQ(changed.at("type"), "integer");
   EXPECT_LT(changed.at("low"), changed.at("high"));
   EXPECT_NE(changed.at("help"), "");
@@ -43,18 +44,29 @@ TEST(ViewerMessages, DescribeEveryOption) {
   EXPECT_EQ(option_named(options, "refine.second-pass").at("value"), true);
 }
 
+TEST(ViewerMessages, OptionsOfTrackingAreThoseOfWhoeverFollows) {
+  PeopleOptions options;
+  set_option(options, "track.hidden", "1.5");
+  EXPECT_EQ(options.track.hidden_s, 1.5F);
+  const json option = option_named(options, "track.hidden");
+  EXPECT_EQ(option.at("value"), 1.5);
+  EXPECT_EQ(option.at("default"), 3.0);
+  EXPECT_THAT(options_message(options, {}, false), Not(HasSubstr("track.")));
+  EXPECT_THAT(refusal("track.confirm", "0"), HasSubstr("expected 1 to 1000"));
+}
+
 TEST(ViewerMessages, OptionsAreSetAsTheyAreGiven) {
-  DetectOptions options;
+  PeopleOptions options;
   set_option(options, "refine.min-score", "0.25");
   set_option(options, "refine.area-scale", "1");  // a whole number is a number too
   set_option(options, "search.min-parts", "7");
   set_option(options, "refine.second-pass", "false");
   set_option(options, "grow.appearance", "\"texture\"");
-  EXPECT_FLOAT_EQ(options.refine.min_score, 0.25F);
-  EXPECT_FLOAT_EQ(options.refine.area_scale, 1.F);
-  EXPECT_EQ(options.search.min_parts, 7);
-  EXPECT_FALSE(options.refine.second_pass);
-  EXPECT_EQ(options.grow.appearance, "texture");
+  EXPECT_FLOAT_EQ(options.detect.refine.min_score, 0.25F);
+  EXPECT_FLOAT_EQ(options.detect.refine.area_scale, 1.F);
+  EXPECT_EQ(options.detect.search.min_parts, 7);
+  EXPECT_FALSE(options.detect.refine.second_pass);
+  EXPECT_EQ(options.detect.grow.appearance, "texture");
 }
 
 TEST(ViewerMessages, UnfitOptionsAreRefusedAndChangeNothing) {
@@ -80,11 +92,13 @@ TEST(ViewerMessages, StateTellsWhatIsKnown) {
 }
 
 TEST(ViewerMessages, HelloDescribesTheBody) {
-  const json hello = json::parse(hello_message({"frames/", "default.forest", "."}, paper_body()));
+  const json hello = json::parse(hello_message({"frames/", "default.forest", ".", false}, paper_body()));
   EXPECT_EQ(hello.at("body").at("parts").size(), 25U);
   EXPECT_EQ(hello.at("body").at("parts").at(3).at("name"), paper_body().parts[3].name);
   EXPECT_EQ(hello.at("body").at("links").size(), 24U);
   EXPECT_EQ(hello.at("source"), "frames/");
+  EXPECT_EQ(hello.at("track"), false);
+  EXPECT_EQ(hello.at("bones").at(0), json({{"name", "pelvis"}, {"parent", -1}}));
 }
 
 }  // namespace

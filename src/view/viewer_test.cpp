@@ -7,9 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "capsule/capsule_person.h"
 #include "io/files/test_files.h"
+#include "io/recordings/test_recorded.h"
 #include "io/sources/open_source.h"
+#include "stream/test_crossing.h"
 #include "vesalius/base/error.h"
 #include "vesalius/forest/test_blind_labeller.h"
 #include "view/test_page.h"
@@ -46,13 +47,25 @@ class Room : public FrameSource {
   int at_ = 0;
 };
 
+ViewerOptions viewer_options(bool paused, const std::string& folder) {
+  ViewerOptions options;
+  options.web.port = 0;
+  options.web.access = web_access("127.0.0.1", "");
+  options.player.playing = !paused;
+  options.folder = folder;
+  options.source = "room";
+  return options;
+}
+
 /// A viewer that runs.
 class Running {
  public:
   explicit Running(bool paused, const std::string& folder = ".", int width = 80)
-      : source_(width),
-        viewer_(source_, std::make_shared<test::BlindLabeller>(), {}, options(paused, folder)),
-        thread_([this] {
+      : Running(std::make_unique<Room>(width), std::make_shared<test::BlindLabeller>(),
+                viewer_options(paused, folder)) {}
+  Running(std::unique_ptr<FrameSource> source, std::shared_ptr<const PixelLabeller> labeller,
+          const ViewerOptions& options)
+      : source_(std::move(source)), viewer_(*source_, std::move(labeller), {}, options), thread_([this] {
           try {
             viewer_.run([this] { return stop_.load(); });
           } catch (const Error& e) {
@@ -69,17 +82,7 @@ class Running {
   std::uint16_t port() const { return viewer_.port(); }
 
  private:
-  static ViewerOptions options(bool paused, const std::string& folder) {
-    ViewerOptions options;
-    options.web.port = 0;
-    options.web.access = web_access("127.0.0.1", "");
-    options.player.playing = !paused;
-    options.folder = folder;
-    options.source = "room";
-    return options;
-  }
-
-  Room source_;
+  std::unique_ptr<FrameSource> source_;
   std::string ended_with;
   std::atomic<bool> stop_ = false;
   Viewer viewer_;
@@ -148,6 +151,95 @@ TEST(Viewer, PausedDoesWhatItIsTold) {
   const json late = next_frame(second);
   EXPECT_EQ(name_of(late), "149") << "whoever comes later sees it too";
   EXPECT_FALSE(late.contains("stages")) << "but not what others wish for";
+}
+
+/// Runs a viewer of two people who cross, paused at the first frame.
+std::unique_ptr<Running> run_crossing(bool timed, const ViewerOptions& options = viewer_options(true, ".")) {
+  auto source = std::make_unique<test::Crossing>(timed);
+  auto labeller = std::make_shared<test::Knowing>(*source);
+  return std::make_unique<Running>(std::move(source), std::move(labeller), options);
+}
+
+/// Ids with their states.
+std::vector<std::string> people_in(const json& frame) {
+  std::vector<std::string> all;
+  if (frame.is_null()) return {"none"};
+  for (const json& person : frame.at("found").at("people")) {
+    all.push_back(std::to_string(person.at("id").get<int>()) + person.at("state").get<std::string>());
+  }
+  return all;
+}
+
+// Labels: threads
+TEST(Viewer, FollowsPeopleHoweverOneMoves) {
+  for (const bool timed : {false, true}) {
+    const auto viewer = run_crossing(timed);
+    Page page(viewer->port());
+    EXPECT_THAT(people_in(next_frame(page)), testing::ElementsAre("1new", "2new"));
+    for (int i = 1; i < 6; ++i) {
+      page.send(R"({"do":"step","by":1})");
+      const json frame = frame_named(page, std::to_string(i));
+      EXPECT_THAT(people_in(frame), testing::ElementsAre(i < 2 ? "1new" : "1tracked", i < 2 ? "2new" : "2tracked"));
+      EXPECT_NEAR(frame.at("found").at("track_time_s"), i / kUsualRate, 1e-6);
+      EXPECT_EQ(frame.at("found").at("time_s").is_null(), !timed);
+    }
+    for (const auto& [command, name] : std::vector<std::pair<std::string, std::string>>{
+             {R"({"do":"stages","on":true})", "5"},
+             {R"({"do":"step","by":-1})", "4"},
+             {R"({"do":"set","option":"search.min-parts","value":3})", "4"},
+             {R"({"do":"seek","to_s":0.5})", "15"},
+             {R"({"do":"step","by":1})", "16"},
+             {R"({"do":"seek","to_s":0.1})", "3"}}) {
+      page.send(command);
+      EXPECT_THAT(people_in(frame_named(page, name)), testing::ElementsAre("1tracked", "2tracked")) << command;
+    }
+    // Other options of tracking: everybody is new, under ids that nobody had.
+    page.send(R"({"do":"set","option":"track.hidden","value":1})");
+    json frame = next_frame(page);
+    while (!frame.is_null() && people_in(frame)[0] == "1tracked") frame = next_frame(page);
+    EXPECT_THAT(people_in(frame), testing::ElementsAre("3new", "4new"));
+  }
+}
+
+// Labels: threads
+TEST(Viewer, FindsPeopleInEachFrameAloneIfThatIsWanted) {
+  ViewerOptions options = viewer_options(true, ".");
+  options.track = false;
+  const auto viewer = run_crossing(true, options);
+  Page page(viewer->port());
+  const auto known = page.receive_text("\"options\"");
+  ASSERT_TRUE(known);
+  EXPECT_THAT(known->bytes, testing::Not(HasSubstr("track.")));
+  const json frame = next_frame(page);
+  ASSERT_EQ(frame.at("found").at("people").size(), 2U);
+  EXPECT_FALSE(frame.at("found").at("people").at(0).contains("id"));
+  EXPECT_FALSE(frame.at("found").contains("events"));
+  EXPECT_NEAR(frame.at("floor").at("offset_m"), 0.9, 0.02);
+}
+
+// Labels: threads
+TEST(Viewer, RecordsPeopleWithIds) {
+  const test::TemporaryFolder folder;
+  {
+    const auto viewer = run_crossing(false, viewer_options(true, folder.path()));
+    Page page(viewer->port());
+    ASSERT_FALSE(frame_named(page, "0").is_null());
+    page.send(R"({"do":"record","on":true})");
+    ASSERT_TRUE(page.receive_text("\"recording\":\"" + folder.path()));
+    for (int i = 1; i < 4; ++i) {
+      page.send(R"({"do":"step","by":1})");
+      ASSERT_FALSE(frame_named(page, std::to_string(i)).is_null());
+    }
+    ASSERT_TRUE(page.receive_text("\"recorded\":3"));
+  }
+  std::vector<json> lines;
+  const std::string file = std::filesystem::directory_iterator(folder.path())->path().string();
+  for (const std::string& text : test::recorded_texts(file, "/people/json")) lines.push_back(json::parse(text));
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_THAT(people_in({{"found", lines[0]}}), testing::ElementsAre("1new", "2new"));
+  EXPECT_THAT(people_in({{"found", lines[2]}}), testing::ElementsAre("1tracked", "2tracked"));
+  EXPECT_EQ(lines[2].at("time_s"), 0.1) << "frames without times get those of the rate";
+  EXPECT_EQ(lines[2].at("track_time_s"), 0.1);
 }
 
 // Labels: threads

@@ -1,7 +1,10 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { Rgb, depthRange, personColour } from './palette';
+import { FleshSurface } from './flesh';
+import { Rgb, css, depthRange, personColour } from './palette';
 import { Body, CameraFacts, Found, Frame, Person, Xyz } from './protocol';
+import { Skeletons, isSeen } from './skeleton';
+import { TrackMemory, coloursByIndex, isHidden, numberOf, shownPeople } from './track';
 
 export type Colouring = 'picture' | 'depth' | 'person' | 'part';
 THREE.ColorManagement.enabled = false;  // colours are those of the picture as they are
@@ -13,6 +16,8 @@ const MOST_RODS = 4096;
 const MOST_BALLS = 2048;
 const DASH_M = 0.03;           // of a predicted limb, and the gap after it
 const ROD_M = 0.011;           // radius of a limb
+const TRAIL_M = 0.02;          // radius of a trail where it is newest
+const FLESH_OPACITY = 0.55;
 const FLOOR_STEPS = 12;        // of half a metre
 
 /** From the optical frame (x right, y down, z forward) to that of the view (x right, y up, z back). */
@@ -94,7 +99,7 @@ function bytesTexture(bytes: Uint8Array, width: number, height: number): THREE.D
 
 function colourTable(colours: Rgb[]): THREE.DataTexture {
   const bytes = new Uint8Array(4 * 256);
-  colours.slice(0, 256).forEach((colour, i) => bytes.set([...colour, 255], 4 * i));
+  colours.slice(0, 256).forEach((colour, i) => bytes.set([...colour, 255], 4 * i));  // gaps stay black
   const texture = new THREE.DataTexture(bytes, 256, 1, THREE.RGBAFormat, THREE.UnsignedByteType);
   texture.needsUpdate = true;
   return texture;
@@ -112,17 +117,23 @@ class Copies {
   private readonly colour = new THREE.Color();
   private readonly larger = new THREE.Matrix4();
 
-  constructor(shape: THREE.BufferGeometry, private readonly most: number, private readonly rimScale: THREE.Vector3) {
-    const mesh = (order: number): THREE.InstancedMesh => {
+  /** Copies of a lower order are drawn first. */
+  constructor(
+    shape: THREE.BufferGeometry,
+    private readonly most: number,
+    private readonly rimScale: THREE.Vector3,
+    order = 1,
+  ) {
+    const mesh = (at: number): THREE.InstancedMesh => {
       const made = new THREE.InstancedMesh(shape, new THREE.MeshBasicMaterial({ depthTest: false, transparent: true }), most);
-      made.renderOrder = order;
+      made.renderOrder = at;
       made.frustumCulled = false;
       made.count = 0;
       this.group.add(made);
       return made;
     };
-    this.rim = mesh(1);
-    this.fill = mesh(2);
+    this.rim = mesh(order);
+    this.fill = mesh(order + 0.1);
   }
   begin(): void {
     this.count = 0;
@@ -144,6 +155,11 @@ class Copies {
   }
 }
 
+/** Lighter, for what is predicted. */
+function pale(colour: Rgb): Rgb {
+  return colour.map((value) => Math.round(value + 0.45 * (255 - value))) as Rgb;
+}
+
 /** A name that stands beside a person. */
 interface Tag {
   element: HTMLElement;
@@ -160,6 +176,9 @@ export class Cloud {
   private points: THREE.Points | null = null;
   private readonly rods: Copies;
   private readonly balls: Copies;
+  private readonly trails: Copies;
+  private readonly flesh = new THREE.Group();
+  private readonly fleshMeshes: THREE.Mesh[];
   private readonly boxes = new THREE.LineSegments(
     new THREE.BufferGeometry(),
     new THREE.LineBasicMaterial({ vertexColors: true }),
@@ -174,7 +193,12 @@ export class Cloud {
   private isPlaced = false;
   selected = -1;
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly names: HTMLElement) {
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly names: HTMLElement,
+    private readonly skeletons: Skeletons,
+    private readonly memory: TrackMemory,
+  ) {
     const context = canvas.getContext('webgl2', { antialias: true });
     if (!context) throw new Error('no WebGL 2');
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
@@ -188,7 +212,7 @@ export class Cloud {
         peopleMap: { value: null },
         partsMap: { value: null },
         colourMap: { value: colourTable([]) },
-        peopleColours: { value: colourTable(Array.from({ length: 255 }, (_, i) => personColour(i))) },
+        peopleColours: { value: colourTable([]) },
         partColours: { value: colourTable([]) },
         depthColours: { value: null },
         size: { value: new THREE.Vector2() },
@@ -204,12 +228,29 @@ export class Cloud {
     rod.rotateX(Math.PI / 2);  // along z, as Object3D.lookAt turns it
     this.rods = new Copies(rod, MOST_RODS, new THREE.Vector3(1.6, 1.6, 1));
     this.balls = new Copies(new THREE.SphereGeometry(1, 12, 8), MOST_BALLS, new THREE.Vector3(1.3, 1.3, 1.3));
+    this.trails = new Copies(rod, MOST_RODS, new THREE.Vector3(1.4, 1.4, 1), 0.5);
+    // Depth first and then colour, so that of each body only what is in front is seen.
+    this.fleshMeshes = [
+      new THREE.MeshBasicMaterial({ colorWrite: false }),
+      new THREE.MeshLambertMaterial({ vertexColors: true, transparent: true }),
+    ].map((material, i) => {
+      const mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
+      material.transparent = true;  // both after the points
+      mesh.renderOrder = 0.1 * (i + 1);
+      mesh.frustumCulled = false;
+      return mesh;
+    });
+    this.flesh.add(...this.fleshMeshes);
+    const light = new THREE.DirectionalLight(0xffffff, 2.2);
+    light.position.set(0.3, 0.4, 1);
+    this.camera.add(light, light.target, new THREE.AmbientLight(0xffffff, 1.1));
+    light.target.position.set(0, 0, -1);
     this.floor = new THREE.LineSegments(
       Cloud.floorGrid(),
       new THREE.LineBasicMaterial({ color: 0x7a8aa0, transparent: true, opacity: 0.55 }),
     );
     for (const thing of [this.boxes, this.floor]) thing.frustumCulled = false;
-    this.scene.add(this.rods.group, this.balls.group, this.boxes, this.floor);
+    this.scene.add(this.camera, this.flesh, this.trails.group, this.rods.group, this.balls.group, this.boxes, this.floor);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('start', () => (this.followsCamera = false));
     this.controls.addEventListener('change', () => this.draw());
@@ -248,13 +289,12 @@ export class Cloud {
     this.draw();
   }
 
-  setShown(what: 'skeletons' | 'boxes' | 'floor', is: boolean): void {
-    if (what === 'skeletons') this.rods.group.visible = this.balls.group.visible = is;
-    if (what === 'boxes') {
-      this.boxes.visible = is;
-      this.showPeople();
-    }
-    if (what === 'floor') this.floor.userData.wanted = is;
+  setShown(shown: { boxes: boolean; trails: boolean; bodies: boolean; floor: boolean }): void {
+    this.boxes.visible = shown.boxes;
+    this.trails.group.visible = shown.trails;
+    this.flesh.visible = shown.bodies;
+    this.floor.userData.wanted = shown.floor;
+    this.showPeople();
     this.showFloor();
     this.draw();
   }
@@ -312,6 +352,7 @@ export class Cloud {
       uniforms[name].value = texture;
     };
     replace('depthMap', depth);
+    replace('peopleColours', colourTable(coloursByIndex(frame.found)));
     replace('peopleMap', bytesTexture(frame.labels.people, width, height));
     replace('partsMap', bytesTexture(frame.labels.parts, width, height));
     uniforms.hasColour.value = frame.colour !== null;
@@ -327,19 +368,22 @@ export class Cloud {
   }
 
   private showPeople(): void {
-    this.rods.begin();
-    this.balls.begin();
+    const all = [this.rods, this.balls, this.trails];
+    for (const copies of all) copies.begin();
+    const surface = new FleshSurface();
     const corners: number[] = [];
     const tints: number[] = [];
     this.clearTags();
     if (this.frame && this.body) {
-      for (const person of this.frame.found.people) {
-        this.addSkeleton(person, this.body);
+      for (const person of shownPeople(this.frame.found)) {
+        this.addSkeleton(person);
+        if (this.trails.group.visible) this.addTrail(person);
+        if (this.flesh.visible) Cloud.addFlesh(person, this.frame, surface);
         if (this.boxes.visible) this.addBox(person, this.frame, corners, tints);
       }
     }
-    this.rods.end();
-    this.balls.end();
+    for (const copies of all) copies.end();
+    this.showFlesh(surface);
     const box = new THREE.BufferGeometry();
     box.setAttribute('position', new THREE.Float32BufferAttribute(corners, 3));
     box.setAttribute('color', new THREE.Float32BufferAttribute(tints, 3));
@@ -347,43 +391,68 @@ export class Cloud {
     this.boxes.geometry = box;
   }
 
-  private addSkeleton(person: Person, body: Body): void {
-    const strong = this.selected < 0 || this.selected === person.index;
-    const tint = personColour(person.index);
-    const pale = tint.map((value) => Math.round(value + 0.45 * (255 - value))) as Rgb;
-    const parts = body.parts.map((part) => person.parts[part.name]);
-    for (const [a, b] of body.links) {
-      const from = parts[a];
-      const to = parts[b];
-      if (!from?.xyz_m || !to?.xyz_m) continue;
-      const seen = from.state === 'observed' && to.state === 'observed';
+  private addSkeleton(person: Person): void {
+    const strong = this.selected < 0 || this.selected === numberOf(person);
+    const tint = personColour(numberOf(person));
+    const { points, links } = this.skeletons.of(person);
+    for (const [a, b] of links) {
+      const from = points[a];
+      const to = points[b];
+      if (!from || !to) continue;
+      const seen = isSeen(from, to);
       const radius = ROD_M * (strong ? 1 : 0.6) * (seen ? 0.4 + 0.6 * Math.min(from.confidence, to.confidence) : 0.5);
-      this.addLimb(toView(from.xyz_m), toView(to.xyz_m), radius, seen ? tint : pale, !seen);
+      Cloud.addLimb(this.rods, toView(from.xyz), toView(to.xyz), radius, seen ? tint : pale(tint), !seen);
     }
     const place = new THREE.Matrix4();
-    let top: THREE.Vector3 | null = null;
-    for (const part of parts) {
-      if (!part?.xyz_m) continue;
-      const at = toView(part.xyz_m);
-      const radius = part.state === 'observed' ? 0.012 + 0.016 * part.confidence : 0.012;
+    let top = person.position_m ? toView(person.position_m) : null;
+    for (const point of points) {
+      if (!point) continue;
+      const at = toView(point.xyz);
+      const radius = point.state === 'observed' ? 0.012 + 0.016 * point.confidence : 0.012;
       place.makeScale(radius, radius, radius).setPosition(at);
-      this.balls.add(place, part.state === 'observed' ? tint : pale);
+      this.balls.add(place, point.state === 'observed' ? tint : pale(tint));
       if (!top || at.y > top.y) top = at;
     }
     if (top) this.addTag(person, top.clone().add(new THREE.Vector3(0, 0.15, 0)));
   }
 
+  /** Where the trunk was, ever thinner; dashed where that is a guess. */
+  private addTrail(person: Person): void {
+    const tint = personColour(numberOf(person));
+    this.memory.trail(person).forEach((piece, i) => {
+      if (piece.hidden && i % 2 === 1) return;
+      Cloud.addLimb(this.trails, toView(piece.from), toView(piece.to), TRAIL_M * (1 - 0.85 * piece.age), piece.hidden ? pale(tint) : tint, false);
+    });
+  }
+
+  private static addFlesh(person: Person, frame: Frame, surface: FleshSurface): void {
+    const tint = personColour(numberOf(person)).map((value) => value / 255);
+    const opacity = isHidden(person) ? 0.5 * FLESH_OPACITY : FLESH_OPACITY;
+    for (const bone of frame.flesh?.[person.index] ?? []) surface.add(bone, [...tint, opacity]);
+  }
+
+  private showFlesh(surface: FleshSurface): void {
+    const shape = new THREE.BufferGeometry();
+    shape.setAttribute('position', new THREE.Float32BufferAttribute(surface.places, 3));
+    shape.setAttribute('color', new THREE.Float32BufferAttribute(surface.tints, 4));
+    shape.setIndex(surface.triangles);
+    shape.scale(1, -1, -1);  // half a turn about x, into the frame of the view
+    shape.computeVertexNormals();
+    this.fleshMeshes[0].geometry.dispose();
+    for (const mesh of this.fleshMeshes) mesh.geometry = shape;
+  }
+
   /** A rod from `a` to `b`, or dashes where the limb is predicted. */
-  private addLimb(a: THREE.Vector3, b: THREE.Vector3, radius: number, tint: Rgb, dashed: boolean): void {
+  private static addLimb(to: Copies, a: THREE.Vector3, b: THREE.Vector3, radius: number, tint: Rgb, dashed: boolean): void {
     const length = a.distanceTo(b);
     if (length < 1e-4) return;
     const rod = new THREE.Object3D();
-    const add = (from: number, to: number): void => {
-      rod.position.lerpVectors(a, b, (from + to) / 2);
-      rod.scale.set(radius, radius, (to - from) * length);
+    const add = (from: number, until: number): void => {
+      rod.position.lerpVectors(a, b, (from + until) / 2);
+      rod.scale.set(radius, radius, (until - from) * length);
       rod.lookAt(b);
       rod.updateMatrix();
-      this.rods.add(rod.matrix, tint);
+      to.add(rod.matrix, tint);
     };
     if (!dashed) return add(0, 1);
     const dashes = Math.max(1, Math.round((length / DASH_M + 1) / 2));
@@ -410,7 +479,7 @@ export class Cloud {
     const at = (axis: number, share: number): number => along[axis][Math.round(share * (along[axis].length - 1))];
     const corner = (i: number): number[] =>
       toView([at(0, i & 1 ? 0.99 : 0.01), at(1, i & 2 ? 0.995 : 0.005), at(2, i & 4 ? 0.99 : 0.01)]).toArray();
-    const tint = personColour(person.index).map((value) => value / 255);
+    const tint = personColour(numberOf(person)).map((value) => value / 255);
     for (let i = 0; i < 8; ++i) {
       for (const bit of [1, 2, 4]) {
         if (i & bit) continue;
@@ -425,8 +494,10 @@ export class Cloud {
     this.floor.visible = !!floor && this.floor.userData.wanted !== false;
     if (!floor) return;
     const normal = toView(floor.normal);
-    const people = this.frame?.found.people ?? [];
-    const near = people[0]?.parts[this.body?.parts[0]?.name ?? '']?.xyz_m ?? [0, 0, 3];
+    // One that was seen for long is sure; another may be gone in the next frame.
+    (this.floor.material as THREE.LineBasicMaterial).opacity = floor.lasting ? 0.7 : 0.35;
+    const first = this.frame?.found.people[0];
+    const near = first?.position_m ?? first?.parts[this.body?.parts[0]?.name ?? '']?.xyz_m ?? [0, 0, 3];
     const centre = toView(near);
     centre.addScaledVector(normal, floor.offset_m - normal.dot(centre));
     this.floor.position.copy(centre);
@@ -436,8 +507,10 @@ export class Cloud {
   private addTag(person: Person, at: THREE.Vector3): void {
     const element = document.createElement('span');
     element.className = 'tag';
-    element.textContent = `${person.index} · ${person.score.toFixed(2)}`;
-    element.style.borderColor = `rgb(${personColour(person.index).join(' ')})`;
+    const word = person.state === 'tracked' ? person.stance : (person.state ?? person.score.toFixed(2));
+    element.textContent = word === 'unknown' ? String(numberOf(person)) : `${numberOf(person)} · ${word}`;
+    element.classList.toggle('hidden-person', isHidden(person));
+    element.style.borderColor = css(personColour(numberOf(person)));
     this.names.append(element);
     this.tags.push({ element, at });
   }
@@ -565,14 +638,15 @@ export class Cloud {
   }
 
   /** Numbers of what is drawn. */
-  counts(): { points: number; rods: number; balls: number } {
+  counts(): { points: number; rods: number; balls: number; trails: number; flesh: number } {
     const stride = this.material.uniforms.stride.value as number;
     let points = 0;
     const width = this.frame?.found.camera.width ?? 0;
     this.frame?.depth.forEach((mm, i) => {
       if (mm !== 0 && (i % width) % stride === 0 && Math.floor(i / width) % stride === 0) ++points;
     });
-    return { points, rods: this.rods.count, balls: this.balls.count };
+    const flesh = this.fleshMeshes[0].geometry.index?.count ?? 0;
+    return { points, rods: this.rods.count, balls: this.balls.count, trails: this.trails.count, flesh: flesh / 3 };
   }
 }
 

@@ -1,6 +1,8 @@
 import type { Colouring } from './cloud';
 import { Rgb, css, depthColour, depthRange, personColour } from './palette';
-import { BACKGROUND, Body, Frame } from './protocol';
+import { BACKGROUND, Body, Frame, Person } from './protocol';
+import { Skeletons, isSeen, project } from './skeleton';
+import { TrackMemory, coloursByIndex, isHidden, numberOf, shownPeople } from './track';
 
 const SHADES = 256;
 
@@ -66,13 +68,13 @@ export function drawOver(context: CanvasRenderingContext2D, pixels: Pixels): voi
 /** The links between points of a skeleton. */
 export function drawLinks(
   context: CanvasRenderingContext2D,
-  body: Body,
-  place: (part: number) => [number, number] | null,
+  links: [number, number][],
+  place: (point: number) => [number, number] | null,
   colour: Rgb,
   isDashed: (a: number, b: number) => boolean,
   width = 2.5,
 ): void {
-  for (const [a, b] of body.links) {
+  for (const [a, b] of links) {
     const from = place(a);
     const to = place(b);
     if (!from || !to) continue;
@@ -96,11 +98,16 @@ export class Flat {
   private body: Body | null = null;
   private partColours: Rgb[] = [];
   private colouring: Colouring = 'person';
-  private showsSkeletons = true;
   private showsBoxes = false;
+  private showsTrails = true;
   selected = -1;
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly readout: HTMLElement) {
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly readout: HTMLElement,
+    private readonly skeletons: Skeletons,
+    private readonly memory: TrackMemory,
+  ) {
     this.context = canvas.getContext('2d') as CanvasRenderingContext2D;
     canvas.addEventListener('pointermove', (event) => this.read(event));
     canvas.addEventListener('pointerdown', (event) => this.read(event));
@@ -115,9 +122,9 @@ export class Flat {
     this.colouring = colouring;
     this.draw();
   }
-  setShown(skeletons: boolean, boxes: boolean): void {
-    this.showsSkeletons = skeletons;
+  setShown(boxes: boolean, trails: boolean): void {
     this.showsBoxes = boxes;
+    this.showsTrails = trails;
     this.draw();
   }
   select(person: number): void {
@@ -143,26 +150,55 @@ export class Flat {
     } else {
       context.putImageData(new Pixels(width, height).depth(frame.depth, depthRange(frame.depth)).image, 0, 0);
     }
-    const people = frame.found.people.map((person) => personColour(person.index));
+    const people = coloursByIndex(frame.found);
     const over = new Pixels(width, height);
     if (this.colouring === 'person') over.labels(frame.labels.people, people, 120);
     if (this.colouring === 'part') over.labels(frame.labels.parts, this.partColours, 190);
     over.borders(frame.labels.people, width, (label) => Pixels.word(people[label] ?? [255, 255, 255]));
     drawOver(context, over);
-    for (const person of frame.found.people) {
-      const tint = personColour(person.index);
-      const parts = body.parts.map((part) => person.parts[part.name]);
-      if (this.showsSkeletons) {
-        const dashed = (a: number, b: number): boolean => parts[a].state !== 'observed' || parts[b].state !== 'observed';
-        drawLinks(context, body, (p) => parts[p]?.px ?? null, tint, dashed, (person.index === this.selected ? 2.6 : 1.6) * this.scale());
-      }
-      if (this.showsBoxes || person.index === this.selected) {
-        context.strokeStyle = css(tint);
-        context.lineWidth = 1.4 * this.scale();
-        context.strokeRect(...person.box_px);
-      }
-      this.tag(person.index, person.box_px);
+    for (const person of shownPeople(frame.found)) {
+      if (this.showsTrails) this.drawTrail(person, frame);
+      this.drawPerson(person, frame);
     }
+  }
+
+  private drawPerson(person: Person, frame: Frame): void {
+    const { context } = this;
+    const tint = personColour(numberOf(person));
+    const isSelected = numberOf(person) === this.selected;
+    const { points, links } = this.skeletons.of(person);
+    const places = points.map((point) => point && project(point.xyz, frame.found.camera));
+    const dashed = (a: number, b: number): boolean => !points[a] || !points[b] || !isSeen(points[a], points[b]);
+    context.globalAlpha = isHidden(person) ? 0.65 : 1;
+    drawLinks(context, links, (p) => places[p] ?? null, tint, dashed, (isSelected ? 2.6 : 1.6) * this.scale());
+    context.globalAlpha = 1;
+    const isInPicture = person.box_px[2] > 0;
+    if (isInPicture && (this.showsBoxes || isSelected)) {
+      context.strokeStyle = css(tint);
+      context.lineWidth = 1.4 * this.scale();
+      context.strokeRect(...person.box_px);
+    }
+    const corner = isInPicture ? person.box_px : places.reduce((top, place) => (place && (!top || place[1] < top[1]) ? place : top), null);
+    if (corner) this.tag(person, corner[0], corner[1]);
+  }
+
+  private drawTrail(person: Person, frame: Frame): void {
+    const { context } = this;
+    context.strokeStyle = css(personColour(numberOf(person)));
+    context.lineCap = 'round';
+    for (const piece of this.memory.trail(person)) {
+      const from = project(piece.from, frame.found.camera);
+      const to = project(piece.to, frame.found.camera);
+      if (!from || !to) continue;
+      context.globalAlpha = (piece.hidden ? 0.4 : 0.9) * (1 - piece.age);
+      context.lineWidth = (1 + 3 * (1 - piece.age)) * this.scale();
+      context.beginPath();
+      context.moveTo(...from);
+      context.lineTo(...to);
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+    context.lineCap = 'butt';
   }
 
   /** How many pixels of the picture one on the screen is: what is drawn on it should be as large for every camera. */
@@ -170,14 +206,15 @@ export class Flat {
     return Math.max(1, this.canvas.width / (this.canvas.clientWidth || this.canvas.width));
   }
 
-  private tag(index: number, [u, v]: [number, number, number, number]): void {
+  private tag(person: Person, u: number, v: number): void {
     const { context } = this;
-    const text = String(index);
+    const number = numberOf(person);
+    const text = isHidden(person) ? `${number} hidden` : String(number);
     const size = 12 * this.scale();
     context.font = `bold ${size}px system-ui, sans-serif`;
     const width = context.measureText(text).width + 0.6 * size;
     const top = Math.max(v - 1.25 * size, 0);
-    context.fillStyle = css(personColour(index));
+    context.fillStyle = css(personColour(number));
     context.fillRect(u, top, width, 1.25 * size);
     context.fillStyle = '#000';
     context.fillText(text, u + 0.3 * size, top + size);
@@ -194,10 +231,10 @@ export class Flat {
     if (u < 0 || v < 0 || u >= width || v >= height) return;
     const pixel = v * width + u;
     const mm = frame.depth[pixel];
-    const person = frame.labels.people[pixel];
+    const person = frame.found.people.find(({ index }) => index === frame.labels.people[pixel]);
     const part = frame.labels.parts[pixel];
     const words = [`(${u}, ${v})`, mm === 0 ? 'no reading' : `${(mm / 1000).toFixed(2)} m`];
-    if (person !== BACKGROUND) words.push(`person ${person}`);
+    if (person) words.push(`person ${numberOf(person)}`);
     if (part !== BACKGROUND) words.push(body.parts[part].name);
     this.readout.textContent = words.join(' · ');
   }

@@ -3,9 +3,11 @@ import { Connection } from './connection';
 import { DEPTH_COLOURS, Flat } from './flat';
 import { OptionFields } from './options';
 import { partColours } from './palette';
-import { PeopleList } from './people';
-import { Body, Frame, TextMessage, ViewState } from './protocol';
+import { PeopleList, showEvents } from './people';
+import { Body, Frame, Hello, TextMessage, ViewState } from './protocol';
+import { SkeletonChoice, Skeletons } from './skeleton';
 import { StagePictures } from './stages';
+import { TrackMemory, numberOf, shownPeople } from './track';
 
 function get<T extends HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
@@ -25,6 +27,7 @@ let seekTo: number | null = null;  // where the slider was moved to, until that 
 let holdsSlider = false;
 
 const colouring = get<HTMLSelectElement>('colouring');
+const skeletonChoice = get<HTMLSelectElement>('skeleton');
 const partColouring = get<HTMLSelectElement>('part-colours');
 const seek = get<HTMLInputElement>('seek');
 
@@ -49,10 +52,13 @@ function announce(text: string): void {
   if (get('announced').textContent !== text) get('announced').textContent = text;
 }
 
+const skeletons = new Skeletons();
+const memory = new TrackMemory();
+
 /** The 3-D view; none where the browser has no WebGL 2. */
 function makeCloud(): Cloud | null {
   try {
-    return new Cloud(get<HTMLCanvasElement>('cloud'), get('names'));
+    return new Cloud(get<HTMLCanvasElement>('cloud'), get('names'), skeletons, memory);
   } catch {
     get('no-cloud').textContent = 'This browser has no WebGL 2, so there is no 3-D view: the flat picture shows the people.';
     get('no-cloud').hidden = false;
@@ -62,7 +68,7 @@ function makeCloud(): Cloud | null {
 }
 
 const cloud = makeCloud();
-const flat = new Flat(get<HTMLCanvasElement>('picture'), get('readout'));
+const flat = new Flat(get<HTMLCanvasElement>('picture'), get('readout'), skeletons, memory);
 const people = new PeopleList(get('list'), get('nobody'), get('details'), choose);
 const stages = new StagePictures(get('stages'));
 const options = new OptionFields(get('option-list'), get<HTMLInputElement>('filter'), (option, value) =>
@@ -74,7 +80,10 @@ const connection = new Connection({
   async frame(shown) {
     const before = frame;
     frame = shown;
+    memory.add(shown.found);
     flat.show(shown);
+    showEvents(get('events'), memory.events, clock, state?.span_s?.[0] ?? 0);
+    get('happened').hidden = memory.events.length === 0;
     if (body) {
       people.show(shown, body);
       if (!get('stages').hidden) stages.show(shown, body, currentPartColours());
@@ -96,13 +105,10 @@ const connection = new Connection({
 function receive(message: TextMessage): void {
   switch (message.type) {
     case 'hello':
-      body = message.body;
-      frame = null;
-      choose(-1);
+      begin(message);
       get('source').textContent = `${message.source} · ${message.model}`;
       get('record').title = `Record frames and people into an MCAP file in ${message.folder} (m)`;
       document.title = `${message.source} – vesalius`;
-      showPartColours();
       break;
     case 'state':
       state = message;
@@ -115,6 +121,23 @@ function receive(message: TextMessage): void {
       notice(message.text);
       break;
   }
+}
+
+/** Begins anew: the program may be another, with another body. */
+function begin(hello: Hello): void {
+  body = hello.body;
+  frame = null;
+  memory.clear();
+  skeletons.setBody(hello.body, hello.bones);
+  document.body.classList.toggle('single-frames', !hello.track);
+  for (const name of ['bones', 'smoothed']) {
+    const option = skeletonChoice.querySelector<HTMLOptionElement>(`[value=${name}]`);
+    if (option) option.disabled = !hello.track;
+  }
+  if (!hello.track && skeletonChoice.selectedOptions[0]?.disabled) skeletonChoice.value = 'parts';
+  choose(-1);
+  setSkeleton();
+  showPartColours();
 }
 
 function clock(seconds: number): string {
@@ -165,11 +188,16 @@ function showPartColours(): void {
   if (frame && !get('stages').hidden) stages.show(frame, body, currentPartColours());
 }
 
-function choose(index: number): void {
-  selected = index;
-  cloud?.select(index);
-  flat.select(index);
-  people.select(index, frame, body);
+function choose(number: number): void {
+  selected = number;
+  cloud?.select(number);
+  flat.select(number);
+  people.select(number, frame, body);
+}
+
+function setSkeleton(): void {
+  skeletons.choice = skeletonChoice.value as SkeletonChoice;
+  showParts();
 }
 
 function setColouring(): void {
@@ -193,10 +221,9 @@ function isChecked(id: string): boolean {
 }
 
 function showParts(): void {
-  cloud?.setShown('skeletons', isChecked('show-skeletons'));
-  cloud?.setShown('boxes', isChecked('show-boxes'));
-  cloud?.setShown('floor', isChecked('show-floor'));
-  flat.setShown(isChecked('show-skeletons'), isChecked('show-boxes'));
+  const [boxes, trails] = [isChecked('show-boxes'), isChecked('show-trails')];
+  cloud?.setShown({ boxes, trails, bodies: isChecked('show-bodies'), floor: isChecked('show-floor') });
+  flat.setShown(boxes, trails);
 }
 
 const systemIsDark = matchMedia('(prefers-color-scheme: dark)');
@@ -241,6 +268,11 @@ function playOrPause(): void {
   connection.send({ do: state?.playing ? 'pause' : 'play' });
 }
 
+function chooseNext(choice: HTMLSelectElement): void {
+  const free = [...choice.options].filter((option) => !option.disabled);
+  choice.value = free[(free.indexOf(choice.selectedOptions[0]) + 1) % free.length].value;
+}
+
 const KEYS: Record<string, () => void> = {
   ' ': playOrPause,
   ArrowLeft: () => connection.send({ do: 'step', by: -1 }),
@@ -248,9 +280,15 @@ const KEYS: Record<string, () => void> = {
   Home: () => state?.span_s && connection.send({ do: 'seek', to_s: state.span_s[0] }),
   End: () => state?.span_s && connection.send({ do: 'seek', to_s: state.span_s[1] }),
   c: () => {
-    colouring.selectedIndex = (colouring.selectedIndex + 1) % colouring.options.length;
+    chooseNext(colouring);
     setColouring();
   },
+  j: () => {
+    chooseNext(skeletonChoice);
+    setSkeleton();
+  },
+  t: () => get('show-trails').click(),
+  b: () => get('show-bodies').click(),
   r: () => cloud?.resetView(),
   v: () => cloud?.viewOfCamera(),
   s: snapshot,
@@ -271,9 +309,9 @@ function onKey(event: KeyboardEvent): void {
   // A held key steps through frames, and does nothing else more than once.
   if (event.repeat && !event.key.startsWith('Arrow')) return;
   if (/^[0-9]$/.test(event.key)) {
-    const index = Number(event.key);
-    const isThere = frame?.found.people.some((person) => person.index === index);
-    choose(isThere && index !== selected ? index : -1);
+    const number = Number(event.key);
+    const isThere = frame && shownPeople(frame.found).some((person) => numberOf(person) === number);
+    choose(isThere && number !== selected ? number : -1);
     return;
   }
   const action = KEYS[event.key];
@@ -286,7 +324,8 @@ function listen(): void {
   document.addEventListener('keydown', onKey);
   colouring.addEventListener('change', setColouring);
   partColouring.addEventListener('change', showPartColours);
-  for (const id of ['show-skeletons', 'show-boxes', 'show-floor']) get(id).addEventListener('change', showParts);
+  skeletonChoice.addEventListener('change', setSkeleton);
+  for (const id of ['show-boxes', 'show-trails', 'show-bodies', 'show-floor']) get(id).addEventListener('change', showParts);
   get('view-reset').addEventListener('click', () => cloud?.resetView());
   get('view-camera').addEventListener('click', () => cloud?.viewOfCamera());
   get('play').addEventListener('click', playOrPause);
@@ -333,7 +372,7 @@ function listen(): void {
 
 listen();
 setColouring();
-showParts();
+setSkeleton();
 showTheme();
 
 // For tests, and for scripts in the console: what is shown now.
@@ -341,6 +380,7 @@ Object.assign(window, {
   vesalius: {
     frame: () => frame,
     state: () => state,
+    trail: (id: number) => frame?.found.people.filter((person) => numberOf(person) === id).flatMap((person) => memory.trail(person)) ?? [],
     counts: () => cloud?.counts() ?? null,
     draw: () => cloud?.drawNow(),
   },

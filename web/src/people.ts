@@ -1,5 +1,6 @@
 import { css, personColour } from './palette';
 import { Body, FoundPoint, Frame, Person } from './protocol';
+import { ToldEvent, isHidden, numberOf, shownPeople } from './track';
 
 function element<K extends keyof HTMLElementTagNameMap>(
   tag: K,
@@ -12,8 +13,9 @@ function element<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** Median distance along the optical axis of the parts that were seen, metres. */
+/** Distance along the optical axis: the median of the parts that were seen, else that of the trunk. Metres. */
 function distance(person: Person): number | null {
+  if (isHidden(person)) return person.position_m?.[2] ?? null;
   const z = Object.values(person.parts).flatMap((p) => (p.state === 'observed' && p.xyz_m ? [p.xyz_m[2]] : []));
   if (z.length === 0) return null;
   z.sort((a, b) => a - b);
@@ -27,6 +29,15 @@ function yawText(person: Person): string {
   return `yaw ${degrees}° (${facing})`;
 }
 
+/** What is known of a person over time. */
+function trackText(person: Person, now_s: number): string {
+  const words = [person.state === 'hidden' ? `hidden for ${(now_s - (person.seen_s ?? now_s)).toFixed(1)} s` : person.state];
+  if (person.stance && person.stance !== 'unknown') words.push(person.stance);
+  if (person.velocity_m_s) words.push(`${Math.hypot(...person.velocity_m_s).toFixed(1)} m/s`);
+  if (person.body) words.push(`${person.body.stature_m.toFixed(2)} m tall`);
+  return words.join(' · ');
+}
+
 function confidenceBar(point: FoundPoint): HTMLElement {
   const bar = element('meter', [`${Math.round(100 * point.confidence)} %`]);
   bar.min = 0;
@@ -34,6 +45,21 @@ function confidenceBar(point: FoundPoint): HTMLElement {
   bar.value = point.confidence;
   bar.title = `right with a probability of ${Math.round(100 * point.confidence)} %`;
   return bar;
+}
+
+const SMOOTHED = ', smoothed';
+
+/** The list of what happened, the newest first. `first_s` is when the source begins. */
+export function showEvents(list: HTMLElement, events: ToldEvent[], clock: (seconds: number) => string, first_s: number): void {
+  const lines = events.map((event) => `${clock(event.time_s - first_s)}  person ${event.id}: ${event.stance}`).reverse();
+  if (lines.join() === [...list.children].map((line) => line.textContent).join()) return;
+  list.replaceChildren(
+    ...lines.map((line, i) => {
+      const item = element('li', [line]);
+      item.style.borderLeftColor = css(personColour(events[events.length - 1 - i].id));
+      return item;
+    }),
+  );
 }
 
 /** The list of people, and the numbers of the one that is chosen. */
@@ -44,41 +70,50 @@ export class PeopleList {
     private readonly list: HTMLElement,
     private readonly nobody: HTMLElement,
     private readonly details: HTMLElement,
-    private readonly choose: (index: number) => void,
+    private readonly choose: (number: number) => void,
   ) {}
 
   private selected = -1;
 
-  select(index: number, frame: Frame | null, body: Body | null): void {
-    this.selected = index;
+  select(number: number, frame: Frame | null, body: Body | null): void {
+    this.selected = number;
     if (frame && body) this.show(frame, body);
   }
 
   show(frame: Frame, body: Body): void {
-    const { people } = frame.found;
+    const people = shownPeople(frame.found);
     this.nobody.hidden = people.length > 0;
     // Buttons stay as they are, so that the one with the focus keeps it from frame to frame.
     while (this.list.children.length > people.length) this.list.lastElementChild?.remove();
-    while (this.list.children.length < people.length) this.list.append(this.makeItem(this.list.children.length));
-    people.forEach((person, i) => this.fill(this.list.children[i] as HTMLElement, person, body));
-    this.person = people.find((person) => person.index === this.selected) ?? null;
+    while (this.list.children.length < people.length) this.list.append(this.makeItem());
+    const now_s = frame.found.track_time_s ?? 0;
+    people.forEach((person, i) => this.fill(this.list.children[i] as HTMLElement, person, body, now_s));
+    this.person = people.find((person) => numberOf(person) === this.selected) ?? null;
     this.showDetails();
   }
 
-  private makeItem(index: number): HTMLElement {
-    const button = element('button', [element('strong'), element('span', [], 'facts'), element('small')]);
-    button.addEventListener('click', () => this.choose(this.selected === index ? -1 : index));
+  private makeItem(): HTMLElement {
+    const lines = [element('strong'), element('span', [], 'over-time'), element('span', [], 'facts'), element('small')];
+    const button = element('button', lines);
+    button.addEventListener('click', () => {
+      const number = Number(button.dataset.number);
+      this.choose(this.selected === number ? -1 : number);
+    });
     return element('li', [button]);
   }
 
-  private fill(item: HTMLElement, person: Person, body: Body): void {
+  private fill(item: HTMLElement, person: Person, body: Body, now_s: number): void {
     const button = item.firstElementChild as HTMLButtonElement;
-    const [name, facts, missing] = button.children as unknown as HTMLElement[];
-    button.setAttribute('aria-pressed', String(person.index === this.selected));
-    button.style.borderLeftColor = css(personColour(person.index));
+    const [name, overTime, facts, missing] = button.children as unknown as HTMLElement[];
+    const number = numberOf(person);
+    button.dataset.number = String(number);
+    button.setAttribute('aria-pressed', String(number === this.selected));
+    button.classList.toggle('hidden-person', isHidden(person));
+    button.style.borderLeftColor = css(personColour(number));
     const z = distance(person);
     const seen = Object.values(person.parts).filter((part) => part.state === 'observed').length;
-    name.textContent = `Person ${person.index}`;
+    name.textContent = `Person ${number}`;
+    overTime.textContent = person.state ? trackText(person, now_s) : '';
     facts.textContent = [
       `score ${person.score.toFixed(2)}`,
       z === null ? 'distance unknown' : `${z.toFixed(2)} m`,
@@ -86,21 +121,22 @@ export class PeopleList {
       `${seen} of ${body.parts.length} parts`,
     ].join(' · ');
     const absent = body.parts.filter((part) => person.parts[part.name].state !== 'observed').map((part) => part.name);
-    missing.textContent = absent.length === 0 ? '' : `not seen: ${absent.join(', ')}`;
+    missing.textContent = absent.length === 0 || isHidden(person) ? '' : `not seen: ${absent.join(', ')}`;
   }
 
   private showDetails(): void {
     const { person, details } = this;
     details.hidden = !person;
     if (!person) return;
-    const names = ['parts', ...Object.keys(person.joints)];
+    const smoothed = Object.keys(person.smoothed ?? {}).map((name) => name + SMOOTHED);
+    const names = ['parts', ...Object.keys(person.joints), ...smoothed];
     const choice = details.querySelector('select') ?? this.makeDetails();
     if ([...choice.options].map((option) => option.value).join() !== names.join()) {
       choice.replaceChildren(...names.map((name) => element('option', [name])));
     }
     const title = details.querySelector('h2') as HTMLElement;
-    title.textContent = `Person ${person.index}`;
-    const points = person.joints[choice.value] ?? person.parts;
+    title.textContent = `Person ${numberOf(person)}`;
+    const points = this.points(person, choice.value);
     const rows = Object.entries(points).map(([name, point]) => {
       const xyz = point.xyz_m?.map((metres) => metres.toFixed(2)).join(', ') ?? '';
       const row = element('tr', [element('th', [name]), element('td', [point.state]), element('td', [confidenceBar(point)]), element('td', [xyz])]);
@@ -108,6 +144,11 @@ export class PeopleList {
       return row;
     });
     details.querySelector('tbody')?.replaceChildren(...rows);
+  }
+
+  private points(person: Person, name: string): Record<string, FoundPoint> {
+    if (name.endsWith(SMOOTHED)) return person.smoothed?.[name.slice(0, -SMOOTHED.length)] ?? person.parts;
+    return person.joints[name] ?? person.parts;
   }
 
   private makeDetails(): HTMLSelectElement {

@@ -14,7 +14,26 @@ export interface FoundPoint {
   state: State;
 }
 
+/** How somebody is known who is followed over frames (docs/tracking.md). */
+export type TrackState = 'new' | 'tracked' | 'hidden' | 'lost';
+
+export interface FittedBone {
+  head_m: Xyz;
+  tail_m: Xyz;
+  confidence: number;
+  state: State;
+}
+
+/** Those with a `?` are there where people are followed. */
 export interface Person {
+  id?: number;
+  state?: TrackState;
+  position_m?: Xyz;
+  velocity_m_s?: Xyz;
+  stance?: string;
+  seen_s?: number;
+  body?: { stature_m: number; bones: Record<string, FittedBone> };
+  smoothed?: Record<string, Record<string, FoundPoint>>;
   index: number;
   score: number;
   yaw: { degrees: number; confidence: number } | null;
@@ -32,9 +51,17 @@ export interface CameraFacts {
   cy: number;
 }
 
+export interface StanceEvent {
+  id: number;
+  time_s: number;
+  stance: string;
+}
+
 export interface Found {
   frame: string;
   time_s: number | null;
+  track_time_s?: number;
+  events?: StanceEvent[];
   camera: CameraFacts;
   people: Person[];
 }
@@ -65,7 +92,10 @@ interface FrameHead {
   at_s: number;
   times_ms: Record<string, number>;
   detect_ms: number;
-  floor: { normal: Xyz; offset_m: number } | null;
+  track_ms: number;
+  floor: { normal: Xyz; offset_m: number; lasting: boolean } | null;
+  /** Of each person the bones, of each bone three ellipses: centre, and both half axes (x, y, z in m each). */
+  flesh?: (number[][][] | null)[];
   stages?: Stages;
   pictures: PictureEntry[];
   found: Found;
@@ -90,11 +120,18 @@ export interface Body {
   links: [number, number][];
 }
 
+export interface BoneFacts {
+  name: string;
+  parent: number;
+}
+
 export interface Hello {
   type: 'hello';
   source: string;
   model: string;
   folder: string;
+  track: boolean;
+  bones: BoneFacts[];
   body: Body;
 }
 

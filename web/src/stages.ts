@@ -1,6 +1,8 @@
 import { Pixels, drawLinks, drawOver } from './flat';
 import { Rgb, depthRange, personColour } from './palette';
 import { BACKGROUND, Body, Frame, RoughSkeleton, Stages } from './protocol';
+import { project } from './skeleton';
+import { coloursByIndex, shownPeople } from './track';
 
 interface Stage {
   title: string;
@@ -31,12 +33,11 @@ class Painter {
     if (labels) drawOver(this.context, new Pixels(width, height).labels(labels, colours, 230));
   }
   skeleton(skeleton: RoughSkeleton, colour: Rgb): void {
-    const { fx, fy, cx, cy } = this.frame.found.camera;
     const place = (part: number): [number, number] | null => {
       const xyz = skeleton.parts[part];
-      return xyz && xyz[2] > 0 ? [(xyz[0] / xyz[2]) * fx + cx, (xyz[1] / xyz[2]) * fy + cy] : null;
+      return xyz && project(xyz, this.frame.found.camera);
     };
-    drawLinks(this.context, this.body, place, colour, () => false, 3);
+    drawLinks(this.context, this.body.links, place, colour, () => false, 3);
   }
 }
 
@@ -104,13 +105,15 @@ const STAGES: Stage[] = [
   },
   {
     title: 'People',
-    help: 'Candidates with a sufficient score.',
+    help: 'Candidates with a sufficient score, in the colours that people have over time.',
     draw(p) {
+      const colours = coloursByIndex(p.frame.found);
       p.base();
-      p.labels('people', CANDIDATES);
-      p.stages.candidates
-        .filter((candidate) => candidate.accepted)
-        .forEach((candidate, i) => p.skeleton(candidate.refined, personColour(i)));
+      p.labels('people', colours);
+      for (const person of shownPeople(p.frame.found)) {
+        const parts = p.body.parts.map(({ name }) => (person.parts[name].state === 'observed' ? person.parts[name].xyz_m : null));
+        p.skeleton({ score: person.score, found: 0, parts }, colours[person.index]);
+      }
     },
   },
 ];

@@ -30,6 +30,12 @@ export function run(...words) {
   return result.stdout;
 }
 
+/** Makes a clip of rendered people in `folder`/frames. */
+export function makeClip(folder) {
+  const words = ['--clip', '2', '--recipe', join(root, 'data/models/held_out_clip.toml'), '--count', '1', '--seed', '3', '-q'];
+  run('synth', '--out', join(folder, 'frames'), '--format', 'folder', ...words);
+}
+
 export function newFolder() {
   const folder = mkdtempSync(join(tmpdir(), 'vesalius_web_'));
   return { folder, remove: () => rmSync(folder, { recursive: true, force: true }) };

@@ -22,6 +22,12 @@ function memory() {
   return Number(/VmRSS:\s+(\d+)/.exec(status)[1]) / 1000;
 }
 
+/** Processor time of the program so far, milliseconds. */
+function processorMs() {
+  const fields = readFileSync(`/proc/${view.child.pid}/stat`, 'utf8').split(') ')[1].split(' ');
+  return 10 * (Number(fields[11]) + Number(fields[12]));  // Linux counts hundredths of a second
+}
+
 function median(values) {
   const sorted = [...values].sort((a, b) => a - b);
   return sorted[Math.floor(sorted.length / 2)];
@@ -45,7 +51,7 @@ function openPage(i) {
       ++frames[i];
       socket.send('next');
     } else if (i === 0 && JSON.parse(message).type === 'state') {
-      states.push(JSON.parse(message));
+      states.push({ ...JSON.parse(message), processorMs: processorMs() });
     }
   });
 }
@@ -71,6 +77,7 @@ const figures = {
   dropped_share: Number((dropped / (detected + dropped)).toFixed(4)),
   result_ms: median(settled.map((state) => state.result_ms)),
   page_ms: median(settled.map((state) => state.page_ms)),
+  processor_ms_a_frame: Math.round((last.processorMs - first.processorMs) / detected),
   memory_mb: [early, late, Math.max(...samples)].map(Math.round),
   frames_of_pages: frames,
   stalled_pages: stalls,

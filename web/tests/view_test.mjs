@@ -4,18 +4,31 @@ import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
 import http from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { NO_3D, View, demo, launch, newFolder, open, request, root, run, shown, until } from './program.mjs';
+import { NO_3D, View, demo, launch, makeClip, newFolder, open, request, root, run, shown, until } from './program.mjs';
 
 const pictures = join(root, 'out/web');
 mkdirSync(pictures, { recursive: true });
 
 let browser;
 before(async () => (browser = await launch()));
-after(async () => browser?.close());
+let made = null;
+after(async () => {
+  await browser?.close();
+  made?.remove();
+});
+
+/** A rendered clip of two seconds in which people walk, as a folder of frames. */
+function clip() {
+  if (!made) {
+    made = newFolder();
+    makeClip(made.folder);
+  }
+  return join(made.folder, 'frames');
+}
 
 /** Runs `work` with a viewer and a page on it; the page must not have complained. */
-async function withPage(work, words = [], options = {}, useBrowser = null) {
-  const view = await View.start(demo, '--paused', '--port', '0', ...words);
+async function withPage(work, words = [], options = {}, useBrowser = null, source = demo) {
+  const view = await View.start(source, '--paused', '--port', '0', ...words);
   const page = await open(useBrowser ?? browser, view.address, options);
   try {
     await until(page, () => window.vesalius?.frame());
@@ -27,9 +40,16 @@ async function withPage(work, words = [], options = {}, useBrowser = null) {
   }
 }
 
-function detected() {
-  const lines = run('detect', demo, '-q', '--json', '-').trim().split('\n');
+function detected(source = demo, ...flags) {
+  const lines = run('detect', source, '-q', '--json', '-', ...flags).trim().split('\n');
   return lines.map((line) => JSON.parse(line)).filter((line) => line.people);
+}
+
+/** Goes to the next frame and waits until it is shown. */
+async function step(page, by = 1) {
+  const { number } = await shown(page);
+  await page.keyboard.press(by > 0 ? 'ArrowRight' : 'ArrowLeft');
+  await until(page, (last) => window.vesalius.frame().number > last, number);
 }
 
 /** The label pictures of the shown frame beside those that `vesalius detect` saves. */
@@ -67,6 +87,7 @@ test('shows the people that detect finds, to the pixel', async () => {
   const { folder, remove } = newFolder();
   run('detect', demo, '-q', '--out', folder, '--save', 'labels,mask');
   await withPage(async (page) => {
+    await page.selectOption('#skeleton', 'parts');
     for (const [i, line] of expected.entries()) {
       if (i > 0) await page.keyboard.press('ArrowRight');
       await until(page, (name) => window.vesalius.frame().found.frame === name, line.frame);
@@ -80,8 +101,135 @@ test('shows the people that detect finds, to the pixel', async () => {
     assert.equal(counts.balls, parts.length);
     assert.ok(counts.rods >= parts.length - expected.at(-1).people.length, 'limbs between them');
     assert.ok(counts.points > 100000, `${counts.points} points`);
-  });
+    assert.ok(!(await page.locator('#show-trails').isVisible()), 'nobody is followed');
+    await page.click('#tab-options');
+    assert.equal(await page.locator('[data-name^="track."]').count(), 0);
+  }, ['--no-track']);
   remove();
+});
+
+test('follows the people of a clip as detect does', async () => {
+  const expected = detected(clip(), '--track');
+  const seen = expected.find((line) => line.people.some((person) => person.state === 'tracked' && person.body));
+  assert.ok(seen, 'the clip has somebody to follow');
+  await withPage(
+    async (page) => {
+      const colours = new Map();
+      for (const [i, line] of expected.entries()) {
+        if (i > 0) await step(page);
+        const { people } = await shown(page);
+        assert.deepEqual(people, line.people, line.frame);
+        const present = people.filter((person) => person.state !== 'lost');
+        const items = await page.locator('#list > li > button').evaluateAll((buttons) =>
+          buttons.map((button) => ({
+            number: button.dataset.number,
+            text: button.innerText,
+            colour: button.style.borderLeftColor,
+            dashed: getComputedStyle(button).borderTopStyle,
+          })),
+        );
+        assert.equal(items.length, present.length);
+        for (const [k, person] of present.entries()) {
+          const item = items[k];
+          assert.equal(item.number, String(person.id));
+          assert.match(item.text, new RegExp(`Person ${person.id}\\n.*${person.state}`));
+          if (person.body) assert.ok(item.text.includes(`${person.body.stature_m.toFixed(2)} m tall`), item.text);
+          if (person.stance !== 'unknown') assert.ok(item.text.includes(person.stance), item.text);
+          assert.equal(item.dashed, person.state === 'hidden' ? 'dashed' : 'solid');
+          colours.set(person.id, (colours.get(person.id) ?? new Set()).add(item.colour));
+        }
+        assert.equal(await page.locator('.tag.hidden-person').count(), present.filter((p) => p.state === 'hidden').length);
+      }
+      for (const [id, used] of colours) assert.equal(used.size, 1, `person ${id} keeps the colour`);
+      assert.equal(new Set([...colours.values()].flatMap((used) => [...used])).size, Math.min(colours.size, 7));
+      const events = expected.flatMap((line) => line.events);
+      assert.equal(await page.locator('#events > li').count(), events.length);
+      if (events.length > 0) {
+        const last = await page.locator('#events > li').first().innerText();
+        assert.ok(last.endsWith(`person ${events.at(-1).id}: ${events.at(-1).stance}`), last);
+      }
+      await page.click('#tab-options');
+      await page.fill('#filter', 'track.hidden');
+      assert.equal(await page.locator('[data-name="track.hidden"] input').inputValue(), '3');
+    },
+    [],
+    {},
+    null,
+    clip(),
+  );
+});
+
+test('trails grow, and going back takes them back', async () => {
+  await withPage(
+    async (page) => {
+      const sure = (found) => found.people.filter((person) => person.state === 'tracked');
+      const { name } = await shown(page);
+      for (let i = 0; i < 12; ++i) await step(page);
+      const [person] = sure(await shown(page));
+      assert.ok(person, 'somebody is tracked');
+      const length = () => page.evaluate((id) => window.vesalius.trail(id).length, person.id);
+      const early = await length();
+      const drawn = (await page.evaluate(() => window.vesalius.counts())).trails;
+      assert.ok(early > 0 && drawn >= early, `${early} pieces, ${drawn} rods`);
+      await step(page);
+      assert.equal(await length(), early + 1);
+      await page.screenshot({ path: join(pictures, 'trails.png') });
+      const looks = [await look(page, 'cloud'), await look(page, 'picture')];
+      await page.keyboard.press('t');
+      assert.ok(!(await page.isChecked('#show-trails')));
+      assert.equal((await page.evaluate(() => window.vesalius.counts())).trails, 0);
+      assert.notEqual(await look(page, 'cloud'), looks[0]);
+      assert.notEqual(await look(page, 'picture'), looks[1]);
+      await page.keyboard.press('t');
+      await step(page, -1);
+      assert.equal(await length(), early);
+      assert.ok(sure(await shown(page)).some(({ id }) => id === person.id), 'the same id as before');
+      await page.keyboard.press('Home');
+      await until(page, (first) => window.vesalius.frame().found.frame === first, name);
+      assert.equal(await length(), 0);
+      assert.equal((await page.evaluate(() => window.vesalius.counts())).trails, 0);
+    },
+    [],
+    {},
+    null,
+    clip(),
+  );
+});
+
+test('draws bodies and skeletons of each kind', async () => {
+  await withPage(
+    async (page) => {
+      for (let i = 0; i < 12; ++i) await step(page);
+      const bodies = (await shown(page)).people.filter((person) => person.body).length;
+      assert.ok(bodies > 0);
+      const looks = new Set();
+      for (const kind of ['bones', 'smoothed', 'joints', 'parts', 'none']) {
+        assert.equal(await page.locator('#skeleton').inputValue(), kind);
+        looks.add(`${await look(page, 'cloud')} ${await look(page, 'picture')}`);
+        await page.locator('#picture').hover();
+        await page.keyboard.press('j');
+      }
+      assert.equal(looks.size, 5, 'every one looks different');
+      const without = await look(page, 'cloud');
+      assert.equal((await page.evaluate(() => window.vesalius.counts())).flesh, 0);
+      await page.keyboard.press('b');
+      assert.ok(await page.isChecked('#show-bodies'));
+      assert.notEqual(await look(page, 'cloud'), without);
+      const { flesh } = await page.evaluate(() => window.vesalius.counts());
+      assert.equal(flesh % bodies, 0);
+      assert.ok(flesh / bodies > 19 * 100, `${flesh} triangles`);
+      await page.screenshot({ path: join(pictures, 'bodies.png') });
+      await page.locator('#list button').first().click();
+      const choice = page.locator('#details select');
+      assert.ok((await choice.innerText()).includes('nite15, smoothed'));
+      await choice.selectOption('nite15, smoothed');
+      assert.equal(await page.locator('#details tbody tr').count(), 15);
+    },
+    [],
+    {},
+    null,
+    clip(),
+  );
 });
 
 test('colours by picture, depth, people and parts', async () => {
@@ -94,7 +242,7 @@ test('colours by picture, depth, people and parts', async () => {
     }
     await page.selectOption('#part-colours', 'body');
     looks.set('parts of the body model', await look(page, 'cloud'));
-    await page.uncheck('#show-skeletons');
+    await page.selectOption('#skeleton', 'none');
     looks.set('no skeletons', await look(page, 'cloud'));
     await page.check('#show-boxes');
     looks.set('boxes', await look(page, 'cloud'));
@@ -268,7 +416,7 @@ test('works with the keyboard alone', async () => {
     await page.keyboard.press('ArrowRight');
     assert.ok(await page.locator('#stages').isVisible());
     await page.focus('#show-floor');
-    await page.keyboard.press('0');
+    await page.keyboard.press(String((await shown(page)).people[0].id));
     assert.ok(!(await page.locator('#details').isVisible()), 'chosen once more, no longer');
     await page.keyboard.press('?');
     assert.ok(await page.locator('#help').isVisible());

@@ -39,6 +39,7 @@ struct Arguments {
   double rate = kUsualRate;
   int threads = 0;
   bool paused = false;
+  bool no_track = false;
   bool no_browser = false;
   bool quiet = false;
 };
@@ -81,6 +82,7 @@ ViewerOptions viewer_options(const Arguments& arguments) {
   options.player.start_s = arguments.camera.start_s.value_or(0.0);
   options.player.playing = !arguments.paused;
   options.say = [](const std::string& line) { say("vesalius: " + line); };
+  options.track = !arguments.no_track;
   options.folder = arguments.folder;
   options.source = arguments.source;
   options.model = fs::path(arguments.detector.model()).filename().string();
@@ -91,7 +93,7 @@ void run(const Arguments& arguments) {
   check_folder(arguments.folder);
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
-  const DetectOptions detect = arguments.detector.options();
+  const PeopleOptions people = arguments.detector.people_options();
   const auto labeller = make_labeller(arguments.detector.forest());
   SourceOptions camera = arguments.camera;
   std::atomic<Viewer*> page = nullptr;  // cameras speak in the player's thread
@@ -104,7 +106,7 @@ void run(const Arguments& arguments) {
     for (const std::string& note : source->notes()) say("note: " + note);
   }
   const ViewerOptions options = viewer_options(arguments);
-  Viewer viewer(*source, labeller, detect, options);
+  Viewer viewer(*source, labeller, people, options);
   page = &viewer;
   watch_interrupts();
   const std::string& token = options.web.access.token;
@@ -156,19 +158,21 @@ void add_view(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads))
       ->group(kDetectorGroup);
+  command->add_flag("--no-track", arguments->no_track, "Find people in each frame alone, without ids");
   command->add_option("--rate", arguments->rate, "Frames per second of a source without times")
       ->type_name("N")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   command->add_flag("-q,--quiet", arguments->quiet, "Print the address and errors only");
   command->footer(R"(
-The page shows the point cloud with skeletons, the people and their numbers, the stages of the method and every detector
-option. Nothing leaves this machine, and no file of it is served.
+People are followed over the frames. The page shows the point cloud with skeletons, bodies and trails, the people and
+their numbers, the stages of the method and every option of detector and tracking. Nothing leaves this machine, and no file of it is served.
 
 Examples:
   vesalius view frames/
   vesalius view realsense: --port 8081
-  vesalius view session.mcap --host 0.0.0.0)");
+  vesalius view session.mcap --host 0.0.0.0
+  vesalius view frames/ --no-track)");
   command->callback([arguments] { run(*arguments); });
 }
 
