@@ -14,6 +14,7 @@
 #include "vesalius/base/pool.h"
 #include "vesalius/forest/label_scene.h"
 #include "vesalius/forest/make_labeller.h"
+#include "vesalius/known_people.h"
 #include "vesalius/predict_parts.h"
 
 namespace vesalius {
@@ -111,12 +112,18 @@ std::vector<Candidate> grow_rough(const Method& method, const Scene& scene, cons
   return candidates;
 }
 
-/// Searches for a known person's skeleton where the person is expected, and grows it with the known appearance.
+/// Searches for a known person's skeleton where the person is expected, and grows it with the known appearance. Whose
+/// flesh is known has a mask already.
 std::optional<Candidate> grow_known(const Method& method, const Frame& frame, const Scene& scene, const Prior& prior,
                                     int index, const PersonGrower& grower) {
   const Prior::KnownPerson& known = prior.people[static_cast<std::size_t>(index)];
   Candidate candidate;
   candidate.known = index;
+  if (!known.flesh.empty()) {
+    candidate.rough.parts.resize(method.body.parts.size());
+    candidate.grown = known.mask;
+    return candidate;
+  }
   candidate.labels = method.labeller.label_person(scene.labels, frame, known.mask, bounding_box(known.mask)).labels;
   const Clusters clusters =
       find_clusters(candidate.labels, frame.depth, frame.camera, method.body, method.options.cluster);
@@ -193,7 +200,7 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
     person = method.labeller.label_person(scene.labels, frame, candidate.grown, box);
     candidate.refined = second_pass(method, frame, person.labels, box);
   } else {
-    person.labels = candidate.known < 0 ? scene.proposals : std::move(candidate.labels);
+    person.labels = candidate.labels.empty() ? scene.proposals : std::move(candidate.labels);
     person.certain = mean_certainty(scene.labels.posteriors(), candidate.grown, method.body.part_count());
   }
   const auto contradicted = [&] {
@@ -209,16 +216,6 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
   candidate.labels = std::move(person.labels);
   candidate.points = std::move(person.points);
   return candidate;
-}
-
-/// Returns the pixels in both masks over those in either, 0-1; 0 if both are empty.
-float shared_pixels(const Mask& a, const Mask& b) {
-  long both = 0, either = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    both += a[i] != 0 && b[i] != 0 ? 1 : 0;
-    either += a[i] != 0 || b[i] != 0 ? 1 : 0;
-  }
-  return either > 0 ? static_cast<float>(both) / static_cast<float>(either) : 0.F;
 }
 
 constexpr float kSurelyKnown = 0.5F;  // overlap of masks from which they are surely of the same person
@@ -321,14 +318,23 @@ Person make_person(const BodyModel& body, const Candidate& candidate, const Mask
   return person;
 }
 
+/// Returns whether a candidate is taken for somebody whose body is known, so that it needs no parts of its own.
+bool is_followed(const Candidate& candidate, const Prior& prior) {
+  if (candidate.known < 0) return false;
+  const Prior::KnownPerson& known = prior.people[static_cast<std::size_t>(candidate.known)];
+  return !known.flesh.empty() && known.odds > 1.F;
+}
+
 /// Returns those candidates that are people, and marks them as accepted. `candidates` are sorted by certainty. A
 /// candidate that mostly repeats a more certain one is dropped; pixels that two share belong to the more certain one.
-std::vector<Person> choose_people(const Method& method, const Frame& frame, std::vector<Candidate>& candidates) {
+std::vector<Person> choose_people(const Method& method, const Frame& frame, const Prior& prior,
+                                  std::vector<Candidate>& candidates) {
   const RefineOptions& options = method.options.refine;
   std::vector<Person> people;
   Mask taken(frame.camera.width, frame.camera.height, 0);
   for (Candidate& candidate : candidates) {
-    if (candidate.certainty < options.min_score || candidate.refined.found < options.min_parts) continue;
+    const bool few = candidate.refined.found < options.min_parts && !is_followed(candidate, prior);
+    if (candidate.certainty < options.min_score || few) continue;
     if (repeats(candidate.grown, taken, options.max_overlap)) continue;
     candidate.accepted = true;
     people.push_back(make_person(method.body, candidate, taken));
@@ -371,18 +377,23 @@ Detection detect_everywhere(const Method& method, const Frame& frame, const std:
                             const Mask& person, StageTimes* times) {
   StageClock clock(times);
   Scene scene = first_pass(method, frame, clock);
-  const Prior prior = ask();
+  Prior prior = ask();
   clock.skip();  // the time that others took
+  const KnownPeople known(frame, scene.labels.flat, scene.labels.alone(), method.body.part_count(), prior);
   Looks looks;
   if (!scene.rough.empty() || !prior.people.empty()) looks = look_at(frame, method.appearance.get());
   std::vector<Candidate> candidates = propose(method, frame, scene, looks);
+  parallel_for(static_cast<int>(candidates.size()), [&](int i) {
+    candidates[i].known = known.shown_by(candidates[i].grown);
+    known.correct(candidates[i].known, candidates[i].grown);
+  });
   clock.lap(Stage::grow);
   refine_all(method, frame, scene, look_around(method, frame, scene, candidates), prior, candidates);
   add_known(method, frame, scene, looks, prior, candidates);
   clock.lap(Stage::second_pass);
   std::ranges::stable_sort(candidates,
                            [](const Candidate& a, const Candidate& b) { return a.certainty > b.certainty; });
-  Detection found{choose_people(method, frame, candidates), scene.labels.planes};
+  Detection found{choose_people(method, frame, prior, candidates), scene.labels.planes};
   clock.lap(Stage::people);
   if (trace != nullptr) fill(*trace, method, frame, scene, std::move(candidates), person);
   method.memory.give_back(std::move(scene.labels));

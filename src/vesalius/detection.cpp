@@ -7,6 +7,15 @@
 
 namespace vesalius {
 
+float shared_pixels(const Mask& a, const Mask& b) {
+  long both = 0, either = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    both += a[i] != 0 && b[i] != 0 ? 1 : 0;
+    either += a[i] != 0 || b[i] != 0 ? 1 : 0;
+  }
+  return either > 0 ? static_cast<float>(both) / static_cast<float>(either) : 0.F;
+}
+
 void check(const Prior& prior, const Frame& frame) {
   for (std::size_t i = 0; i < prior.people.size(); ++i) {
     const float odds = prior.people[i].odds;

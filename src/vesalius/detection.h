@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vesalius/base/blended_depth.h"
+#include "vesalius/base/capsule.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
 #include "vesalius/base/pixel_grid.h"
@@ -49,12 +50,19 @@ struct Prior {
     /// pixels in both over those in either) and in the one that started from it. 1 changes nothing, more lets a lower
     /// score suffice, less asks for a higher one. Above 0 and finite.
     float odds = 1.F;
+    /// The person's flesh where it is expected, optical frame; empty if that is unknown. With it the detector makes the
+    /// mask itself: of the pixels near the flesh that may be a body and are not nearer to somebody else's. With odds
+    /// above 1 nobody else grows over them, and a candidate may have any number of parts.
+    std::vector<Capsule> flesh = {};
   };
   std::vector<KnownPerson> people;
 };
 
 /// Least overlap of a candidate with the mask of a known person that lets it profit of that person's odds.
 inline constexpr float kKnownOverlap = 0.3F;
+
+/// Returns the pixels in both masks over those in either, 0-1; 0 if both are empty.
+float shared_pixels(const Mask& a, const Mask& b);
 
 /// Throws Error if a mask and the frame differ in size, or odds are not above 0 and finite.
 void check(const Prior& prior, const Frame& frame);
@@ -85,7 +93,7 @@ struct Trace {
   /// another mask than growing alone.
   struct Candidate {
     Skeleton rough;  ///< one of `rough`, or the one found in the mask of a known person
-    int known = -1;  ///< index in Prior::people of the person in whose mask it was found, or -1
+    int known = -1;  ///< index in Prior::people of the person for whom it is taken, or -1
     Mask grown;
     LabelImage labels;  ///< pass 2, smoothed
     std::vector<PersonPoint> points;

@@ -16,7 +16,7 @@ constexpr double kTurnShare = 0.5, kTurnKept = 0.8;  // the same of turns, and w
 constexpr double kVelocityShare = 0.3;               // of a new measurement of the velocity, in a frame
 constexpr double kNews = 0.2;                        // share of a frame that is new: neighbouring frames err alike
 constexpr double kKept = 0.998;                      // share of what was learned that a frame keeps: clothes move
-constexpr int kTryEvery = 3;                         // frames between fits from the kinematic skeleton
+constexpr float kMisfit = 0.3F;                      // of a body that may have lost its person
 
 /// Returns the matrix without negative eigenvalues, which rounding and local minima leave.
 Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
@@ -31,17 +31,23 @@ ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s) const 
   ExpectedBody expected;
   expected.shape = shape_.size() == shapes ? shape_ : Eigen::VectorXd::Zero(shapes);
   expected.shape_information = shape_.size() == shapes ? information_ : Eigen::MatrixXd::Identity(shapes, shapes);
-  if (!last_) return expected;
-  const double passed_s = time_s - last_->time_s;
-  if (!(passed_s >= 0.0) || passed_s > kLongest_s) return expected;
-  expected.pose = last_->state;
-  expected.pose->root += passed_s * last_->velocity;
-  for (std::size_t b = 0; b < expected.pose->local.size(); ++b) {
-    expected.pose->local[b] = (expected.pose->local[b] * exp_rotation(passed_s * last_->turning[b])).normalized();
-  }
-  expected.loosened = std::sqrt(std::max(passed_s / kFrame_s, 1.0));
-  expected.start = frames_ % kTryEvery == 0 ? frames_ / kTryEvery % kStarts : -1;
+  expected.pose = expected_state(time_s);
+  if (!expected.pose) return expected;
+  expected.loosened = std::sqrt(std::max((time_s - last_->time_s) / kFrame_s, 1.0));
+  expected.start = misfit_ > kMisfit ? frames_ % kStarts : -1;
   return expected;
+}
+
+std::optional<BodyState> BodyHistory::expected_state(double time_s) const {
+  if (!last_) return std::nullopt;
+  const double passed_s = time_s - last_->time_s;
+  if (!(passed_s >= 0.0) || passed_s > kLongest_s) return std::nullopt;
+  BodyState state = last_->state;
+  state.root += passed_s * last_->velocity;
+  for (std::size_t b = 0; b < state.local.size(); ++b) {
+    state.local[b] = (state.local[b] * exp_rotation(passed_s * last_->turning[b])).normalized();
+  }
+  return state;
 }
 
 void BodyHistory::learn(const BodyFit& fit, const ExpectedBody& expected) {
@@ -60,10 +66,10 @@ std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame
   const ExpectedBody expected = expect(fitter, time_s);
   std::optional<BodyFit> found = fitter.fit(frame, person, expected);
   if (!found) return std::nullopt;
-  learn(*found, expected);
+  if (found->body.misfit <= kMisfit) learn(*found, expected);
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> turning(found->state.local.size(), Eigen::Vector3d::Zero());
-  if (expected.pose && last_ && time_s > last_->time_s) {
+  if (expected.pose && !found->restarted && time_s > last_->time_s) {
     const Eigen::Vector3d now = (found->state.root - last_->state.root) / (time_s - last_->time_s);
     velocity = (1.0 - kVelocityShare) * last_->velocity + kVelocityShare * now;
     velocity *= std::min(1.0, kFastest_m_s / std::max(velocity.norm(), 1e-9));
@@ -76,6 +82,7 @@ std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame
   }
   last_ = Last{found->state, velocity, turning, time_s};
   stature_m_ = found->body.stature_m;
+  misfit_ = found->body.misfit;
   ++frames_;
   return std::move(found->body);
 }

@@ -16,6 +16,9 @@ class BodyHistory {
   /// of the person is known; then nothing is learned either.
   std::optional<FittedBody> fit(const BodyFitter& fitter, const Frame& frame, const Person& person, double time_s);
 
+  /// Returns the body that is expected at `time_s`; nothing if the pose is not known any more.
+  std::optional<BodyState> expected_state(double time_s) const;
+
   /// Forgets the pose and keeps the shape, as for somebody who comes back.
   void forget_pose() { last_.reset(); }
   /// Returns the height of the person standing upright, metres, if anything was learned yet.
@@ -36,6 +39,7 @@ class BodyHistory {
   Eigen::VectorXd shape_;        ///< mean; empty before the first frame
   Eigen::MatrixXd information_;  ///< inverse covariance of the shape
   std::optional<float> stature_m_;
+  float misfit_ = 0.F;  ///< of the last body
   int frames_ = 0;
 };
 

@@ -66,6 +66,27 @@ TEST(BodyHistory, LearnsThePersonsOwnLengths) {
   EXPECT_NEAR(*history.stature_m(), truth, 0.03 * truth);
 }
 
+TEST(BodyHistory, ABodyThatLostItsPersonBeginsAnew) {
+  const BodyFitter fitter(paper_body());
+  // The same place, but the back turned and an arm raised: nobody gets there in a thirtieth of a second.
+  BodyState turned = test::usual_state(3.0);
+  test::turn(turned, "l_upper_arm", {0.0, 0.0, 1.8});
+  turned.root.x() += 0.25;
+  const test::SeenBody before = test::see(test::usual_state(0.0)), after = test::see(turned);
+  BodyHistory history;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(history.fit(fitter, before.frame, before.person, i / 30.0));
+  const float stature = *history.stature_m();
+  std::optional<FittedBody> body;
+  for (int i = 5; i < 15; ++i) {
+    body = history.fit(fitter, after.frame, after.person, i / 30.0);
+    ASSERT_TRUE(body);
+  }
+  for (std::size_t b = 0; b < body->bones.size(); ++b) {
+    EXPECT_LT((body->bones[b].head.cast<double>() - after.truth[b].head).norm(), 0.1) << fitter.flesh().bones[b].name;
+  }
+  EXPECT_NEAR(body->stature_m, stature, 0.05F) << "bad fits teach nothing about the person";
+}
+
 TEST(BodyHistory, BadTimesForgetThePoseAndNeverFail) {
   const BodyFitter fitter(paper_body());
   const BodyState state = test::usual_state(0.0);

@@ -143,48 +143,67 @@ std::optional<BodyState> BodyFitter::first_state(const FitData& data, bool mirro
   return state;
 }
 
+std::optional<BodyFitter::Solution> BodyFitter::fit_afresh(const FitData& data, int first, int count) const {
+  std::optional<Solution> best;
+  for (int start = first; start < first + count; ++start) {
+    // The labels count as they are, whatever a start takes them for.
+    const bool mirrored = start % 2 == 1;
+    const std::optional<BodyState> state = first_state(data, mirrored, static_cast<std::size_t>(start) / 2);
+    if (!state) break;
+    const Solution rough = descend(*state, options_.iterations,
+                                   [&](const BodyState& at, std::vector<PlacedBone>& placed, NormalEquations& to) {
+                                     terms_.evaluate_centres(data, at, mirrored, placed, to);
+                                   });
+    Solution solution = fit_points(data, rough.state, options_.rounds);
+    if (!best || solution.cost < best->cost) best = std::move(solution);
+  }
+  return best;
+}
+
+double BodyFitter::cost(const FitData& data, const Solution& solution) const {
+  NormalEquations equations(flesh_);
+  std::vector<PlacedBone> placed;
+  terms_.evaluate_points(data, solution.state, solution.assigned, placed, equations);
+  return equations.cost();
+}
+
 std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person, const ExpectedBody& expected) const {
   if (!can_fit_) return std::nullopt;
   FitData data;
   data.points = person.points;
   if (data.points.size() < kLeastPoints) return std::nullopt;
   data.silhouette.emplace(frame, person.mask, person.box);
-  data.expected = expected;
-  if (data.expected.shape.size() == 0) {
-    data.expected.shape = Eigen::VectorXd::Zero(flesh_.shapes);
-    data.expected.shape_information = Eigen::MatrixXd::Identity(flesh_.shapes, flesh_.shapes);
-  }
   data.centres.resize(body_.parts.size());
   for (std::size_t p = 0; p < body_.parts.size(); ++p) {
     if (person.skeleton.parts[p].state == State::observed) {
       data.centres[p] = person.skeleton.parts[p].centre.cast<double>();
     }
   }
-  std::optional<Solution> best;
-  const auto offer = [&](Solution solution) {
-    if (!best || solution.cost < best->cost) best = std::move(solution);
-  };
-  if (data.expected.pose) {
-    BodyState start = *data.expected.pose;
-    start.shape = data.expected.shape;
-    offer(fit_points(data, std::move(start), options_.rounds));
+  data.expected = expected;
+  if (data.expected.shape.size() == 0) {
+    data.expected.shape = Eigen::VectorXd::Zero(flesh_.shapes);
+    data.expected.shape_information = Eigen::MatrixXd::Identity(flesh_.shapes, flesh_.shapes);
   }
-  const int count = data.expected.pose ? 1 : kStarts;
-  for (int i = 0; i < count; ++i) {
-    const int start = data.expected.pose ? data.expected.start : i;
-    if (start < 0) break;
-    // The labels count as they are, whatever a start takes them for.
-    const bool mirrored = start % 2 == 1;
-    const std::optional<BodyState> first = first_state(data, mirrored, static_cast<std::size_t>(start) / 2);
-    if (!first) break;
-    const Solution rough = descend(*first, options_.iterations,
-                                   [&](const BodyState& state, std::vector<PlacedBone>& at, NormalEquations& to) {
-                                     terms_.evaluate_centres(data, state, mirrored, at, to);
-                                   });
-    offer(fit_points(data, rough.state, options_.rounds));
+  if (!data.expected.pose) {
+    const std::optional<Solution> solution = fit_afresh(data, 0, kStarts);
+    if (!solution) return std::nullopt;
+    return report(data, *solution);
   }
-  if (!best) return std::nullopt;
-  return report(data, *best);
+  BodyState start = *data.expected.pose;
+  start.shape = data.expected.shape;
+  const Solution followed = fit_points(data, std::move(start), options_.rounds);
+  if (expected.start >= 0) {
+    // A body that lost its person stays near itself; without the expected pose both have the same chance.
+    data.expected.pose.reset();
+    const double least = cost(data, followed) - static_cast<double>(options_.restart_gain);
+    const std::optional<Solution> afresh = fit_afresh(data, expected.start, 1);
+    if (afresh && afresh->cost < least) {
+      BodyFit fit = report(data, *afresh);
+      fit.restarted = true;
+      return fit;
+    }
+  }
+  return report(data, followed);
 }
 
 BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const {

@@ -22,6 +22,8 @@ inline constexpr int kStarts = 4;
 struct BodyFit {
   FittedBody body;
   BodyState state;
+  /// Whether it was found without the expected pose, which does not fit what is seen.
+  bool restarted = false;
   Eigen::MatrixXd shape_information;  ///< what this frame's points tell of the shape, without what was known before
 };
 
@@ -52,6 +54,8 @@ class BodyFitter {
   using Evaluate = std::function<void(const BodyState&, std::vector<PlacedBone>&, NormalEquations&)>;
   Solution descend(BodyState start, int steps, const Evaluate& evaluate) const;
   Solution fit_points(const FitData& data, BodyState start, int rounds) const;
+  std::optional<Solution> fit_afresh(const FitData& data, int first, int count) const;
+  double cost(const FitData& data, const Solution& solution) const;
   std::optional<BodyState> first_state(const FitData& data, bool mirrored, std::size_t pose) const;
   BodyFit report(const FitData& data, const Solution& solution) const;
 

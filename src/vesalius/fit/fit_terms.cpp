@@ -90,6 +90,8 @@ void visit_options(const std::string& prefix, FitOptions& o, OptionVisitor& visi
                  {"m", 0.001, 10.0, "Standard deviation of a person's place from the expected one in 1/30 s."});
   visitor.option(prefix + "follow-turn", o.follow_rad,
                  {"rad", 0.001, 10.0, "Standard deviation of a bone's turn from the expected one in 1/30 s."});
+  visitor.option(prefix + "restart-gain", o.restart_gain,
+                 {"", 0.0, 10000.0, "Squared deviations that a fit afresh must gain to replace the followed body."});
 }
 
 PartSurface::PartSurface(const BodyModel& body, const FleshModel& flesh) : of_part(body.parts.size()) {

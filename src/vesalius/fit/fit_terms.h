@@ -33,6 +33,7 @@ struct FitOptions {
   float centre_m = 0.08F;       ///< of the parts' centres, from which a fit starts
   float follow_m = 0.02F;       ///< standard deviation of the root from its expected place after a thirtieth second
   float follow_rad = 0.1F;      ///< of a bone's turn from its expected one
+  float restart_gain = 40.F;    ///< by which a fit afresh must cost less than the followed body to replace it
 };
 void visit_options(const std::string& prefix, FitOptions& options, OptionVisitor& visitor);
 

@@ -9,6 +9,7 @@
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/fit/fit_body.h"
+#include "vesalius/fit/flesh_capsules.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/track/match_cost.h"
 #include "vesalius/track/match_tracks.h"
@@ -417,9 +418,12 @@ Prior PeopleTracker::expect(const Frame& frame) const {
     TrackMotion motion = track->motion;
     motion.predict(step.passed_s);
     Mask mask = track->place.expected(frame, track->place_position, motion.position());
-    if (mask.empty()) continue;
+    std::vector<Capsule> flesh;
+    const std::optional<BodyState> pose = track->history.expected_state(step.time_s);
+    if (pose) flesh = flesh_capsules(state_->fitter->flesh(), *pose);
+    if (mask.empty() && flesh.empty()) continue;
     const float odds = is_sure(*track) ? std::exp(track->log_odds) : 1.F;  // a guess must not confirm itself
-    prior.people.push_back({std::move(mask), track->look.histogram(), odds});
+    prior.people.push_back({std::move(mask), track->look.histogram(), odds, std::move(flesh)});
   }
   return prior;
 }
