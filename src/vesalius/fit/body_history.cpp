@@ -16,7 +16,8 @@ constexpr double kTurnShare = 0.5, kTurnKept = 0.8;  // the same of turns, and w
 constexpr double kVelocityShare = 0.3;               // of a new measurement of the velocity, in a frame
 constexpr double kNews = 0.2;                        // share of a frame that is new: neighbouring frames err alike
 constexpr double kKept = 0.998;                      // share of what was learned that a frame keeps: clothes move
-constexpr float kMisfit = 0.3F;                      // of a body that may have lost its person
+constexpr float kDoubtful = 0.3F;                    // misfit of a body that may have lost its person ...
+constexpr float kWrong = 0.6F;                       // ... and of one that surely tells nothing of its shape
 
 /// Returns the matrix without negative eigenvalues, which rounding and local minima leave.
 Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
@@ -34,7 +35,7 @@ ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s) const 
   expected.pose = expected_state(time_s);
   if (!expected.pose) return expected;
   expected.loosened = std::sqrt(std::max((time_s - last_->time_s) / kFrame_s, 1.0));
-  expected.start = misfit_ > kMisfit ? frames_ % kStarts : -1;
+  expected.start = misfit_ > kDoubtful ? frames_ % kStarts : -1;
   return expected;
 }
 
@@ -66,7 +67,7 @@ std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame
   const ExpectedBody expected = expect(fitter, time_s);
   std::optional<BodyFit> found = fitter.fit(frame, person, expected);
   if (!found) return std::nullopt;
-  if (found->body.misfit <= kMisfit) learn(*found, expected);
+  if (found->body.misfit <= kWrong) learn(*found, expected);
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> turning(found->state.local.size(), Eigen::Vector3d::Zero());
   if (expected.pose && !found->restarted && time_s > last_->time_s) {

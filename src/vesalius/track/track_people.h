@@ -26,7 +26,7 @@ struct TrackOptions {
   float gap_s = 5.F;       ///< a longer step in time, or one backwards, loses everybody
   int remembered = 32;     ///< most lost people who are known again
   float same_look = 0.1F;  ///< most difference of looks (look_distance) of one person who comes back
-  float odds = 20.F;       ///< most by which having been found before multiplies the odds of being found again
+  float odds = 40.F;       ///< most by which having been found before multiplies the odds of being found again
   bool smooth = true;      ///< whether TrackedPerson::smoothed is filled
   JointSmoothing smoothing;
 };
