@@ -1,10 +1,11 @@
 #include "eval/fit_score.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "eval/fit_logistic.h"
 #include "eval/match_people.h"
 #include "vesalius/base/error.h"
 
@@ -14,11 +15,7 @@ namespace {
 constexpr int kFeatures = static_cast<int>(kEvidenceWeights.size());
 using Features = Eigen::Matrix<double, kFeatures, 1>;
 using Weights = Eigen::Matrix<double, kFeatures + 1, 1>;  // the bias last
-using Curvature = Eigen::Matrix<double, kFeatures + 1, kFeatures + 1>;
 
-constexpr double kRidge = 1e-3;  // per unit of the samples' weight, on standardised features
-constexpr int kMostSteps = 100;
-constexpr double kSmallestStep = 1e-10;
 constexpr double kSmallestSpread = 0.1;  // of evidence; if values of few candidates hardly differ, they say nothing
 
 Features features(const Evidence& e) {
@@ -101,37 +98,19 @@ double area_under_curve(const std::vector<Weighted>& samples, const ScoreOptions
   return pairs / (people * nobodies);
 }
 
-/// Fits weights by Newton's method on standardised features.
 Weights logistic_weights(const std::vector<Weighted>& samples) {
-  Features mean = Features::Zero(), spread = Features::Zero();
-  double total = 0.0;
-  for (const Weighted& s : samples) {
-    mean += s.x;
-    total += s.weight;
+  const auto count = static_cast<Eigen::Index>(samples.size());
+  Eigen::MatrixXd features(kFeatures, count);
+  Eigen::VectorXd positive(count), weight(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Weighted& sample = samples[static_cast<std::size_t>(i)];
+    features.col(i) = sample.x;
+    positive[i] = sample.person ? 1.0 : 0.0;
+    weight[i] = sample.weight;
   }
-  mean /= static_cast<double>(samples.size());
-  for (const Weighted& s : samples) spread += (s.x - mean).cwiseAbs2();
-  spread = (spread / static_cast<double>(samples.size())).cwiseSqrt().cwiseMax(kSmallestSpread);
-
-  Curvature ridge = Curvature::Zero();
-  ridge.diagonal().head<kFeatures>().setConstant(kRidge * total);
-  Weights w = Weights::Zero();
-  for (int step = 0; step < kMostSteps; ++step) {
-    Weights slope = -(ridge * w);
-    Curvature curvature = ridge;
-    for (const Weighted& s : samples) {
-      Weights x;
-      x << (s.x - mean).cwiseQuotient(spread), 1.0;
-      const double p = 1.0 / (1.0 + std::exp(-w.dot(x)));
-      slope += s.weight * ((s.person ? 1.0 : 0.0) - p) * x;
-      curvature += s.weight * p * (1.0 - p) * x * x.transpose();
-    }
-    const Weights change = curvature.ldlt().solve(slope);
-    w += change;
-    if (change.norm() < kSmallestStep) break;
-  }
-  w.head<kFeatures>() = w.head<kFeatures>().cwiseQuotient(spread);
-  w[kFeatures] -= w.head<kFeatures>().dot(mean);
+  const LogisticFit fit = fit_logistic(features, positive, weight, kSmallestSpread);
+  Weights w;
+  w << fit.weights, fit.bias;
   return w;
 }
 
