@@ -13,18 +13,6 @@
 #include "vesalius/base/error.h"
 
 namespace vesalius::cli {
-namespace {
-
-PeopleOptions read_people_options(const std::string& options_file) {
-  PeopleOptions options;
-  if (!options_file.empty()) {
-    read_options(options_file, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
-  }
-  return options;
-}
-
-}  // namespace
-
 void replace_body(Forest& forest, const std::string& path) {
   BodyModel body = parse_body_model(read_file(path), path);
   const auto& trained = forest.body.parts;
@@ -38,8 +26,11 @@ void replace_body(Forest& forest, const std::string& path) {
   forest.body = std::move(body);
 }
 
-DetectOptions detect_options(const std::string& options_file, const OptionFlags<DetectOptions>& flags) {
-  DetectOptions options = read_people_options(options_file).detect;
+PeopleOptions people_options(const std::string& options_file, const OptionFlags<PeopleOptions>& flags) {
+  PeopleOptions options;
+  if (!options_file.empty()) {
+    read_options(options_file, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
+  }
   flags.apply(options);
   RangeCheck check;
   visit_options("", options, check);
@@ -59,17 +50,7 @@ DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
 
 std::string DetectorFlags::model() const { return model_.empty() ? default_model() : model_; }
 
-PeopleOptions DetectorFlags::people_options() const {
-  PeopleOptions options = read_people_options(options_file_);
-  options_.apply(options);
-  RangeCheck check;
-  visit_options("", options, check);
-  return options;
-}
-
-DetectOptions DetectorFlags::options() const { return people_options().detect; }
-
-TrackOptions DetectorFlags::track_options() const { return people_options().track; }
+PeopleOptions DetectorFlags::options() const { return people_options(options_file_, options_); }
 
 Forest DetectorFlags::forest() const {
   Forest forest = load_model(model());
@@ -78,7 +59,7 @@ Forest DetectorFlags::forest() const {
 }
 
 Detector DetectorFlags::make() const {
-  const DetectOptions detect = options();
+  const DetectOptions detect = options().detect;
   return Detector(forest(), detect);
 }
 

@@ -3,10 +3,9 @@
 #include <string>
 
 #include "cli/option_flags.h"
-#include "stream/people_options.h"
 #include "vesalius/detect.h"
 #include "vesalius/forest/forest.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/track/people_options.h"
 
 namespace CLI {
 class App;
@@ -15,15 +14,15 @@ class App;
 namespace vesalius::cli {
 
 /// Returns the default options, changed first by the TOML file (if the path is not empty) and then by the flags. Throws
-/// Error for a file that cannot be used and UsageError for options outside their range. The file may have options of
-/// tracking too.
-DetectOptions detect_options(const std::string& options_file, const OptionFlags<DetectOptions>& flags);
+/// Error for a file that cannot be used and UsageError for options outside their range.
+PeopleOptions people_options(const std::string& options_file, const OptionFlags<PeopleOptions>& flags);
 
 /// Replaces the forest's body by that of a file with the same parts but another kinematic tree or other joints. Throws
 /// Error for a file that cannot be used or has other parts.
 void replace_body(Forest& forest, const std::string& path);
 
-/// The flags that define a detector: --model, --body, --options and one for every option of detector and tracking.
+/// The flags that define a detector: --model, --body, --options and one for every option of detector, tracking and
+/// fitted bodies.
 class DetectorFlags {
  public:
   /// This object must live as long as the command.
@@ -31,10 +30,8 @@ class DetectorFlags {
 
   /// Makes the detector. Throws Error for files that cannot be used and UsageError for options outside their range.
   Detector make() const;
-  /// The parts of which `make` makes it.
-  DetectOptions options() const;
-  TrackOptions track_options() const;
-  PeopleOptions people_options() const;
+  /// The parts of which `make` makes it, with the options of tracking and of fitted bodies.
+  PeopleOptions options() const;
   Forest forest() const;
   /// Returns the path of the model. Throws Error if none is given and there is no default model.
   std::string model() const;

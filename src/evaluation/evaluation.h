@@ -16,7 +16,7 @@
 #include "eval/score_frame.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
-#include "vesalius/detect.h"
+#include "vesalius/track/people_options.h"
 
 namespace vesalius {
 
@@ -63,7 +63,7 @@ struct Evaluation {
   std::string model_checksum;
   std::string version;  ///< version of the program
   std::string machine;  ///< facts about the machine that timings depend on, on one line
-  DetectOptions options;
+  PeopleOptions options;  ///< those of tracking and fitted bodies count only where people were followed
   BodyModel body;
   bool labels_only = false;
   bool tracked = false;         ///< people were followed over recordings (evaluate_sequences)

@@ -97,7 +97,7 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
                {"seconds", set.seconds},
                {"figures", std::move(metrics)}};
   if (!evaluation.labels_only && !evaluation.tracked) {
-    const RefineOptions& refine = evaluation.options.refine;
+    const RefineOptions& refine = evaluation.options.detect.refine;
     json["curve_over_parts"] =
         curve_json(sweep_parts(set.log, evaluation.body.part_count(), static_cast<double>(refine.min_score)));
     json["curve_over_score"] = curve_json(sweep_score(set.log, kScoreSteps, refine.min_parts));
@@ -138,7 +138,11 @@ StoredSet read_set(const Json& json) {
 }  // namespace
 
 std::string evaluation_json(const Evaluation& evaluation) {
-  DetectOptions options = evaluation.options;
+  PeopleOptions options = evaluation.options;
+  const auto visit = [&](OptionVisitor& visitor) {
+    if (evaluation.tracked) return visit_options("", options, visitor);
+    visit_options("", options.detect, visitor);
+  };
   Json parts = Json::array();
   for (const BodyPart& part : evaluation.body.parts) parts.push_back(part.name);
   Json sets = Json::array();
@@ -148,7 +152,7 @@ std::string evaluation_json(const Evaluation& evaluation) {
       {"command", evaluation.command},
       {"version", evaluation.version},
       {"model", {{"path", evaluation.model}, {"checksum", evaluation.model_checksum}, {"parts", std::move(parts)}}},
-      {"options", options_toml([&](OptionVisitor& visitor) { visit_options("", options, visitor); })},
+      {"options", options_toml(visit)},
       {"machine", evaluation.machine},
       {"labels_only", evaluation.labels_only},
       {"tracked", evaluation.tracked},

@@ -118,7 +118,7 @@ void add_plot(const LinePlot& plot, const std::string& name, const std::string& 
 
 void add_detection_curves(const SetResult& set, const Evaluation& evaluation, Document& document) {
   if (set.log.expected == 0 || evaluation.labels_only || evaluation.tracked) return;
-  const RefineOptions& refine = evaluation.options.refine;
+  const RefineOptions& refine = evaluation.options.detect.refine;
   using P = DetectionPoint;
   const int parts = evaluation.body.part_count();
   const auto over_parts = sweep_parts(set.log, parts, static_cast<double>(refine.min_score));

@@ -80,7 +80,7 @@ std::string fitted_distribution_toml(const Evaluation& evaluation) {
 FittedOptions fit_score_options(const Evaluation& evaluation) {
   std::vector<std::vector<ScoreSample>> sets;
   for (const SetResult& set : evaluation.sets) sets.push_back(set.samples);
-  FittedOptions fitted{evaluation.options, {}};
+  FittedOptions fitted{evaluation.options.detect, {}};
   ScoreOptions& score = evaluation.has_background ? fitted.options.score : fitted.options.score_without_background;
   fitted.fit = fit_score(sets, score);
   score = fitted.fit.options;

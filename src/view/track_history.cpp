@@ -29,8 +29,9 @@ PeopleTracker& TrackHistory::before(double at_s) {
   return known_.back().tracker;
 }
 
-void TrackHistory::restart(const TrackOptions& options, const std::shared_ptr<const Appearance>& appearance) {
-  PeopleTracker anew = known_.back().tracker.restarted(options, appearance);
+void TrackHistory::restart(const TrackOptions& options, const std::shared_ptr<const Appearance>& appearance,
+                           const std::shared_ptr<const BodyFitter>& fitter) {
+  PeopleTracker anew = known_.back().tracker.restarted(options, appearance, fitter);
   known_.clear();
   known_.push_back({kBefore, std::move(anew)});
 }

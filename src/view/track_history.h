@@ -19,8 +19,10 @@ class TrackHistory {
   /// later ones. The reference holds until the next call.
   PeopleTracker& before(double at_s);
 
-  /// Begins anew with other options and looks; ids go on counting. Throws UsageError for an option outside its range.
-  void restart(const TrackOptions& options, const std::shared_ptr<const Appearance>& appearance);
+  /// Begins anew with other options, looks and fitter; ids go on counting. Throws UsageError for an option outside its
+  /// range.
+  void restart(const TrackOptions& options, const std::shared_ptr<const Appearance>& appearance,
+               const std::shared_ptr<const BodyFitter>& fitter);
 
  private:
   struct Known {

@@ -113,10 +113,10 @@ TEST(TrackHistory, BegunAnewItCountsOn) {
   for (int i = 0; i < 5; ++i) shown.show(i);
   TrackOptions options;
   options.confirm = 1;
-  shown.history().restart(options, shown.appearance());
+  shown.history().restart(options, shown.appearance(), nullptr);
   EXPECT_THAT(told(shown.show(5)), ElementsAre("3tracked", "4tracked"));
   options.confirm = 0;
-  EXPECT_THROW(shown.history().restart(options, shown.appearance()), UsageError);
+  EXPECT_THROW(shown.history().restart(options, shown.appearance(), nullptr), UsageError);
 }
 
 }  // namespace

@@ -95,10 +95,11 @@ std::string new_recording(const std::string& folder) {
 
 /// Returns whether what is known of people with some options is of no use with others.
 bool are_tracks_others(const PeopleOptions& a, const PeopleOptions& b) {
-  const auto text = [](TrackOptions options) {
-    return options_toml([&](OptionVisitor& visitor) { visit_options("track.", options, visitor); });
+  const auto text = [](PeopleOptions options) {
+    options.detect = {};
+    return options_toml([&](OptionVisitor& visitor) { visit_options("", options, visitor); });
   };
-  return a.detect.grow.appearance != b.detect.grow.appearance || text(a.track) != text(b.track);
+  return a.detect.grow.appearance != b.detect.grow.appearance || text(a) != text(b);
 }
 
 }  // namespace
@@ -122,7 +123,7 @@ class Viewer::Session {
         server_(viewer.web, handlers()) {
     if (facts_.track) {
       tracks_.emplace(PeopleTracker(labeller_->body(), options.track, detector_.appearance(),
-                                    std::make_shared<const BodyFitter>(labeller_->body())));
+                                    std::make_shared<const BodyFitter>(labeller_->body(), options.fit)));
     }
     worker_ = quiet_thread([this] { detect_all(); });
     server_.start();
@@ -386,7 +387,10 @@ class Viewer::Session {
     if (!changed_detector_) return;
     detector_ = *std::exchange(changed_detector_, std::nullopt);
     track_rate_ = static_cast<double>(options_.track.rate);
-    if (tracks_ && std::exchange(tracks_changed_, false)) tracks_->restart(options_.track, detector_.appearance());
+    if (tracks_ && std::exchange(tracks_changed_, false)) {
+      tracks_->restart(options_.track, detector_.appearance(),
+                       std::make_shared<const BodyFitter>(labeller_->body(), options_.fit));
+    }
   }
 
   void find(const Frame& frame, ViewedFrame& viewed) {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "stream/people_options.h"
 #include "vesalius/base/frame_source.h"
 #include "vesalius/forest/label_pixels.h"
+#include "vesalius/track/people_options.h"
 #include "view/player.h"
 #include "view/web_server.h"
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "stream/people_options.h"
 #include "vesalius/base/body_model.h"
+#include "vesalius/track/people_options.h"
 #include "view/player.h"
 
 namespace vesalius {

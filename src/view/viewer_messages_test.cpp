@@ -51,7 +51,12 @@ TEST(ViewerMessages, OptionsOfTrackingAreThoseOfWhoeverFollows) {
   const json option = option_named(options, "track.hidden");
   EXPECT_EQ(option.at("value"), 1.5);
   EXPECT_EQ(option.at("default"), 3.0);
-  EXPECT_THAT(options_message(options, {}, false), Not(HasSubstr("track.")));
+  set_option(options, "fit.surface", "0.04");
+  EXPECT_EQ(options.fit.surface_m, 0.04F);
+  EXPECT_EQ(option_named(options, "fit.surface").at("value"), 0.04);
+  const std::string alone = options_message(options, {}, false);
+  EXPECT_THAT(alone, Not(HasSubstr("track.")));
+  EXPECT_THAT(alone, Not(HasSubstr("fit.")));
   EXPECT_THAT(refusal("track.confirm", "0"), HasSubstr("expected 1 to 1000"));
 }
 

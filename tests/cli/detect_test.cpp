@@ -98,6 +98,18 @@ TEST_F(Detect, PrintsNothingBesideJson) {
   }
 }
 
+TEST_F(Detect, FitsBodiesWithTheOptionsOfTheFit) {
+  const auto misfit = [](const std::string& flags) {
+    const Outcome run = detect(" -q --track --json - " + flags);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return lines(run.out).at(0).at("people").at(0).at("body").at("misfit").get<double>();
+  };
+  EXPECT_LT(misfit("--fit.surface 0.2"), misfit("")) << "points may lie farther from the flesh";
+  write("fit.toml", "[fit]\nsurface = 0.2\n");
+  EXPECT_EQ(misfit("--options " + path("fit.toml")), misfit("--fit.surface 0.2"));
+  EXPECT_EQ(detect(" --track --fit.surface 0").exit_code, 2);
+}
+
 TEST_F(Detect, FindsTheRenderedPersonWhereItStands) {
   const json person = lines(detect(" --json -").out).at(0).at("people").at(0);
   const json& chest = person.at("parts").at("l_chest");

@@ -134,6 +134,18 @@ TEST_F(Evaluate, FollowsPeopleOnlyWhereFramesAreRecordings) {
   EXPECT_EQ(evaluate(" --track --labels-only").exit_code, 2);
 }
 
+TEST_F(Evaluate, FollowsWithTheOptionsOfTrackingAndFittedBodies) {
+  const auto options = [&](const std::string& flags) {
+    EXPECT_EQ(evaluate(flags + " --json " + path("options.json")).exit_code, 0);
+    return json::parse(bytes_of(path("options.json"))).at("options").get<std::string>();
+  };
+  const std::string tracked = options(" --track --track.confirm 2 --fit.surface 0.04");
+  EXPECT_THAT(tracked, HasSubstr("\ntrack.confirm = 2\n"));
+  EXPECT_THAT(tracked, HasSubstr("\nfit.surface = 0.04\n"));
+  EXPECT_THAT(options(""), Not(HasSubstr("track."))) << "nobody was followed";
+  EXPECT_EQ(evaluate(" --track --fit.surface 0").exit_code, 2);
+}
+
 // Labels: threads
 TEST_F(Evaluate, GivesTheSameMetricsForAnyNumberOfThreads) {
   std::vector<json> sets;

@@ -88,8 +88,9 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
     return arguments.frames == 0 || progress.done() < arguments.frames;
   };
   if (arguments.track) {
-    PeopleTracker tracker(detector.body(), arguments.detector.track_options(), detector.appearance(),
-                          std::make_shared<const BodyFitter>(detector.body()));
+    const PeopleOptions people = arguments.detector.options();
+    PeopleTracker tracker(detector.body(), people.track, detector.appearance(),
+                          std::make_shared<const BodyFitter>(detector.body(), people.fit));
     totals.dropped = stream_frames(source, detector, tracker, options, take);
   } else {
     totals.dropped = stream_frames(source, detector, options, take);
@@ -215,7 +216,8 @@ void add_detect(CLI::App& program) {
   command->add_flag("--keep-going", arguments->keep_going, "Skip frames that fail; the exit code is then 1");
   command->add_flag("-q,--quiet", arguments->outputs.quiet, "Print errors only");
   command->footer(R"(
-Every option of detector and tracking is a flag too, e.g. --search.min-parts 6; `vesalius options` lists them.
+Every option of detector, tracking and fitted bodies is a flag too, e.g. --search.min-parts 6; `vesalius options`
+lists them.
 
 Examples:
   vesalius detect frames/

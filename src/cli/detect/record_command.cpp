@@ -68,8 +68,9 @@ int record_people(const Arguments& arguments, FrameSource& source, const Detecto
     return !is_enough(arguments, progress);
   };
   if (!arguments.track) return stream_frames(source, detector, options, take);
-  PeopleTracker tracker(body, arguments.detector.track_options(), detector.appearance(),
-                        std::make_shared<const BodyFitter>(body));
+  const PeopleOptions people = arguments.detector.options();
+  PeopleTracker tracker(body, people.track, detector.appearance(),
+                        std::make_shared<const BodyFitter>(body, people.fit));
   return stream_frames(source, detector, tracker, options, take);
 }
 

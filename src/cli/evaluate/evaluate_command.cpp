@@ -60,7 +60,7 @@ struct Arguments {
   std::optional<double> rate_hz;
   std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
       fit_score, fit_judge, fit_context;
-  OptionFlags<DetectOptions> detector_flags;
+  OptionFlags<PeopleOptions> detector_flags;
   int step = 1;
   double turn_deg = 0.0;
   int threads = 0;
@@ -269,7 +269,7 @@ void run(const Arguments& arguments, const std::string& command) {
   if (fits_context) forest.context = {};
   const bool labels_only = arguments.labels_only || fits_context;
   Evaluation evaluation;
-  evaluation.options = detect_options(arguments.options_file, arguments.detector_flags);
+  evaluation.options = people_options(arguments.options_file, arguments.detector_flags);
   evaluation.labels_only = labels_only;
   evaluation.has_background = forest.has_background;
   evaluation.command = command;
@@ -277,13 +277,13 @@ void run(const Arguments& arguments, const std::string& command) {
   evaluation.model_checksum = model_checksum(bytes);
   evaluation.version = VESALIUS_VERSION;
   evaluation.machine = machine_facts();
-  const FrameScorer::Options scored{evaluation.options, labels_only, arguments.joint_set, fits_context};
+  const FrameScorer::Options scored{evaluation.options.detect, labels_only, arguments.joint_set, fits_context};
   std::vector<Variant> variants;
   if (arguments.ablation) variants = ablation_variants(forest, scored);
   const std::shared_ptr<const PixelLabeller> labeller = make_labeller(std::move(forest));
   const FrameScorer scorer(labeller, scored);
   SequenceTrackerFactory trackers;
-  if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options, {});
+  if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options);
   evaluation.tracked = arguments.track;
   evaluation.body = scorer.body();
   if (!arguments.report.empty()) prepare_report(arguments.report);
@@ -329,7 +329,8 @@ void add_evaluate(CLI::App& program) {
       ->type_name("DIR");
   command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`; - for standard output")
       ->type_name("FILE");
-  command->add_option("--options", arguments->options_file, "TOML file of detector options")->type_name("FILE");
+  command->add_option("--options", arguments->options_file, "TOML file of options, as `vesalius options` prints them")
+      ->type_name("FILE");
   command->add_option("--step", arguments->step, "Only the first of every N frames")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxStep));
@@ -410,8 +411,8 @@ void add_evaluate(CLI::App& program) {
   command->add_flag("--keep-going", arguments->keep_going, "Skip frames that fail; the exit code is then 1");
   command->add_flag("-q,--quiet", arguments->quiet, "Print no progress");
   command->footer(R"(
-Every detector option is a flag too, e.g. --search.min-parts 6; `vesalius options` lists them. docs/metrics.md says what
-the metrics mean.
+Every option of detector, tracking and fitted bodies is a flag too, e.g. --search.min-parts 6; `vesalius options` lists
+them. docs/metrics.md says what the metrics mean.
 
 Examples:
   vesalius evaluate held_out/ -m adult.forest --report out/

@@ -6,11 +6,10 @@
 
 namespace vesalius::cli {
 
-SequenceTrackerFactory sequence_trackers(std::shared_ptr<const PixelLabeller> labeller, const DetectOptions& options,
-                                         const TrackOptions& track) {
-  const auto detector = std::make_shared<const Detector>(std::move(labeller), options);
-  const auto fitter = std::make_shared<const BodyFitter>(detector->body());
-  return [detector, fitter, track] {
+SequenceTrackerFactory sequence_trackers(std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options) {
+  const auto detector = std::make_shared<const Detector>(std::move(labeller), options.detect);
+  const auto fitter = std::make_shared<const BodyFitter>(detector->body(), options.fit);
+  return [detector, fitter, track = options.track] {
     // A tracker refers to the detector's body, so that both live as long as this function.
     const auto tracker = std::make_shared<PeopleTracker>(detector->body(), track, detector->appearance(), fitter);
     return [detector, tracker](const Frame& frame) {

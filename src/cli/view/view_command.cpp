@@ -93,7 +93,7 @@ void run(const Arguments& arguments) {
   check_folder(arguments.folder);
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
-  const PeopleOptions people = arguments.detector.people_options();
+  const PeopleOptions people = arguments.detector.options();
   const auto labeller = make_labeller(arguments.detector.forest());
   SourceOptions camera = arguments.camera;
   std::atomic<Viewer*> page = nullptr;  // cameras speak in the player's thread

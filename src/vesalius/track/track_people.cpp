@@ -398,8 +398,9 @@ PeopleTracker& PeopleTracker::operator=(const PeopleTracker& other) { return *th
 PeopleTracker::PeopleTracker(PeopleTracker&&) noexcept = default;
 PeopleTracker& PeopleTracker::operator=(PeopleTracker&&) noexcept = default;
 
-PeopleTracker PeopleTracker::restarted(TrackOptions options, std::shared_ptr<const Appearance> appearance) const {
-  PeopleTracker tracker(state_->body, options, std::move(appearance), state_->fitter);
+PeopleTracker PeopleTracker::restarted(TrackOptions options, std::shared_ptr<const Appearance> appearance,
+                                       std::shared_ptr<const BodyFitter> fitter) const {
+  PeopleTracker tracker(state_->body, options, std::move(appearance), std::move(fitter));
   tracker.state_->last_id = state_->last_id;
   return tracker;
 }

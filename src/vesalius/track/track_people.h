@@ -50,9 +50,10 @@ class PeopleTracker {
   PeopleTracker(PeopleTracker&&) noexcept;
   PeopleTracker& operator=(PeopleTracker&&) noexcept;
 
-  /// Returns a tracker with other options and looks that knows nobody. Its ids go on counting, so that none is used
-  /// again. Throws UsageError for an option outside its range.
-  PeopleTracker restarted(TrackOptions options, std::shared_ptr<const Appearance> appearance) const;
+  /// Returns a tracker with other options, looks and fitter that knows nobody. Its ids go on counting, so that none is
+  /// used again. Throws UsageError for an option outside its range.
+  PeopleTracker restarted(TrackOptions options, std::shared_ptr<const Appearance> appearance,
+                          std::shared_ptr<const BodyFitter> fitter) const;
 
   /// Returns what the frames before tell about the people of this one, which comes next.
   Prior expect(const Frame& frame) const;

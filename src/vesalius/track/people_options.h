@@ -4,17 +4,18 @@
 
 #include "vesalius/base/options.h"
 #include "vesalius/detect.h"
+#include "vesalius/fit/fit_terms.h"
 #include "vesalius/track/track_people.h"
 
 namespace vesalius {
 
-/// The options of all that is done to find people and to follow them.
+/// The options of all that is done to find people, to follow them and to fit bodies to them.
 struct PeopleOptions {
   DetectOptions detect;
   TrackOptions track;
+  FitOptions fit;
 };
-
-/// Options of tracking have names that begin with "track.".
+/// Shows the detector's options under their own names, the others as `track.*` and `fit.*`.
 void visit_options(const std::string& prefix, PeopleOptions& options, OptionVisitor& visitor);
 
 }  // namespace vesalius
