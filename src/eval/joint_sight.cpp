@@ -11,12 +11,14 @@ namespace {
 
 /// The metrics of the joints that are seen, or of those that are hidden.
 struct SightMetrics {
-  Metric right, error;
+  Metric right, error, right_confidence;
 };
 
 constexpr SightMetrics metrics_of(Sight sight) {
-  if (sight == Sight::seen) return {Metric::joints_seen_at_10cm, Metric::joints_seen_error};
-  return {Metric::joints_hidden_at_10cm, Metric::joints_hidden_error};
+  if (sight == Sight::seen) {
+    return {Metric::joints_seen_at_10cm, Metric::joints_seen_error, Metric::joints_seen_right_confidence};
+  }
+  return {Metric::joints_hidden_at_10cm, Metric::joints_hidden_error, Metric::joints_hidden_right_confidence};
 }
 
 MetricTerm by_confidence(Metric metric, float confidence, double right) {
@@ -63,9 +65,7 @@ MetricTerms sight_terms(const JointPair& pair, const std::vector<float>& confide
     terms.push_back({metrics.right, right, 1.0});
     if (!found) continue;
     terms.push_back({metrics.error, errors[j], 1.0});
-    if (sight[j] == Sight::hidden) {
-      terms.push_back(by_confidence(Metric::joints_hidden_right_confidence, confidences[j], right));
-    }
+    terms.push_back(by_confidence(metrics.right_confidence, confidences[j], right));
   }
   return terms;
 }

@@ -25,9 +25,9 @@ enum class Sight {
 std::vector<Sight> joint_sight(const TrueFrame& frame, std::size_t person, const std::vector<Eigen::Vector3f>& joints);
 
 /// Returns how many of the seen and of the hidden joints of a person lie within kJointTolerance_m, their mean errors,
-/// and of the joints given out with a confidence from each tenth how many lie so, of all and of the hidden ones. As in
-/// joint_terms, joints that were not found count as wrong in the shares and are left out of the errors. `confidences`
-/// and `sight` have the order of the pair.
+/// and of the joints given out with a confidence from each tenth how many lie so, of all, of the seen and of the
+/// hidden. As in joint_terms, joints that were not found count as wrong in the shares and are left out of the errors.
+/// `confidences` and `sight` have the order of the pair.
 MetricTerms sight_terms(const JointPair& pair, const std::vector<float>& confidences, const std::vector<Sight>& sight);
 
 }  // namespace vesalius

@@ -54,6 +54,8 @@ TEST(SightTerms, TellSeenFromHiddenJoints) {
   EXPECT_NEAR(value_of(terms, "joints.hidden.error_m"), 0.03, 1e-6);
   EXPECT_DOUBLE_EQ(value_of(terms, "joints.right_at.90_to_100"), 0.5);
   EXPECT_DOUBLE_EQ(value_of(terms, "joints.right_at.30_to_40"), 1.0);
+  EXPECT_DOUBLE_EQ(value_of(terms, "joints.seen.right_at.90_to_100"), 0.5);
+  EXPECT_TRUE(std::isnan(value_of(terms, "joints.seen.right_at.30_to_40")));
   EXPECT_DOUBLE_EQ(value_of(terms, "joints.hidden.right_at.30_to_40"), 1.0);
   EXPECT_TRUE(std::isnan(value_of(terms, "joints.right_at.0_to_10")));
   EXPECT_TRUE(std::isnan(value_of(terms, "joints.hidden.right_at.90_to_100")));

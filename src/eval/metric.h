@@ -72,6 +72,7 @@ enum class Metric {
   joints_hidden_at_10cm,
   joints_hidden_error,
   joints_right_confidence,         ///< family
+  joints_seen_right_confidence,    ///< family
   joints_hidden_right_confidence,  ///< family
   joint_up,                        ///< family
   joint_up_placed,                 ///< family
@@ -204,6 +205,7 @@ inline constexpr auto kMetrics = [] {
       {M::joints_hidden_at_10cm, "joints.hidden.at_10cm", "hidden joints at 10 cm"},
       {M::joints_hidden_error, "joints.hidden.error_m", "mean error of hidden joints", metres, lower_is_better},
       {M::joints_right_confidence, "joints.right_at.*", "joints right by confidence"},
+      {M::joints_seen_right_confidence, "joints.seen.right_at.*", "seen joints right by confidence"},
       {M::joints_hidden_right_confidence, "joints.hidden.right_at.*", "hidden joints right by confidence"},
       {M::joint_up, "joint.*.up_mm", "too high", millimetres, nearer_zero_is_better},
       {M::joint_up_placed, "joint.*.placed_up_mm", "too high where placed", millimetres, nearer_zero_is_better},

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <span>
 #include <system_error>
+#include <utility>
 
 #include "draw/draw.h"
 #include "evaluation/ablation_report.h"
@@ -157,6 +158,30 @@ void add_joint_curve(const SetResult& set, Document& document) {
   add_plot(plot, set.name + "_joints", "Share of joints within a distance of the truth", document);
 }
 
+/// Adds how many of the joints given out with each confidence are right: on the diagonal it means what it says.
+void add_reliability(const SetResult& set, const std::vector<Estimate>& estimates, Document& document) {
+  LinePlot plot;
+  plot.title = set.name + ": joints right by confidence";
+  plot.x_label = "confidence";
+  plot.y_label = "share within 10 cm";
+  plot.x_range = PlotRange{0.0, 1.0};
+  plot.y_range = PlotRange{0.0, 1.02};
+  constexpr std::array kLines{std::pair{"all joints", Metric::joints_right_confidence},
+                              std::pair{"seen", Metric::joints_seen_right_confidence},
+                              std::pair{"hidden", Metric::joints_hidden_right_confidence}};
+  for (const auto& [name, family] : kLines) {
+    PlotSeries line{name, {}};
+    for (const Estimate& e : estimates) {
+      if (e.id.metric == family) line.points.emplace_back(0.1 * e.id.place + 0.05, e.value);
+    }
+    if (!line.points.empty()) plot.series.push_back(std::move(line));
+  }
+  if (plot.series.empty()) return;
+  plot.series.push_back({"as it is meant", {{0.0, 0.0}, {1.0, 1.0}}});
+  add_plot(plot, set.name + "_reliability", "Share of joints that are right by the confidence they were given with",
+           document);
+}
+
 /// Adds the average precision of each joint, or each part's centre, over all people proposed.
 void add_precision(const JointPrecision& precision, const std::string& what, Document& document) {
   const auto averages = precision.averages();
@@ -216,9 +241,11 @@ void add_set(const SetResult& set, const Evaluation& evaluation, Document& docum
                                  set.failed > 0 ? fmt::format(" ({} more failed)", set.failed) : "", speed_text(set)));
   for (const std::string& note : set.notes) document.paragraph("Note: " + note);
   for (const std::string& failure : set.failures) document.paragraph("Failed: " + failure);
-  add_tables(set.metrics.estimates(), document);
+  const std::vector<Estimate> estimates = set.metrics.estimates();
+  add_tables(estimates, document);
   add_detection_curves(set, evaluation, document);
   add_joint_curve(set, document);
+  add_reliability(set, estimates, document);
   add_precision(set.joint_precision, "joint", document);
   add_precision(set.centre_precision, "part's centre", document);
   add_ablation(set, document);
