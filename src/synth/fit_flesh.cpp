@@ -347,7 +347,7 @@ std::string limbs_toml(const std::vector<Pose>& poses, const FleshFitOptions& op
 
 }  // namespace
 
-std::string fitted_flesh_toml(const Generator& generator, const FleshFitOptions& options, const std::string& trust) {
+std::string fitted_flesh_toml(const Generator& generator, const FleshFitOptions& options) {
   std::vector<RestBody> bodies(options.bodies);
   parallel_for(options.bodies, [&](int i) { bodies[i] = rest_body(generator.body(i)); });
   std::vector<Pose> poses;
@@ -357,7 +357,7 @@ std::string fitted_flesh_toml(const Generator& generator, const FleshFitOptions&
              "# Bones, flesh and poses of a population (docs/tracking.md), by `vesalius synth --fit-flesh`.\n"
              "# Metres and radians; the right side mirrors the left one.\nshapes = {}\n",
              options.shapes) +
-         trust + bones_toml(population_of(bodies, options.shapes), poses) + limbs_toml(poses, options);
+         bones_toml(population_of(bodies, options.shapes), poses) + limbs_toml(poses, options);
 }
 
 }  // namespace vesalius::synth

@@ -17,8 +17,7 @@ struct FleshFitOptions {
 
 /// Returns the text of a flesh model (vesalius/fit/flesh_model.h) measured on the generator's bodies and poses: the
 /// mean body with the principal factors in which bodies differ, with clothes and hair, and mixtures of Gaussians over
-/// the rotations of each limb's bones (expectation maximisation). Left and right are measured together. How far its
-/// joints can be trusted is left as it is in `trust`, two lines of the text.
-std::string fitted_flesh_toml(const Generator& generator, const FleshFitOptions& options, const std::string& trust);
+/// the rotations of each limb's bones (expectation maximisation). Left and right are measured together.
+std::string fitted_flesh_toml(const Generator& generator, const FleshFitOptions& options);
 
 }  // namespace vesalius::synth

@@ -143,19 +143,12 @@ void write_preview(const Arguments& arguments, const FrameMaker& maker, const Bo
   if (!arguments.quiet) say(fmt::format("{}: {} frames", path, frames.size()));
 }
 
-/// Writes the bodies and poses of the recipe as a flesh model. Joints are trusted as those of the built-in one.
+/// Writes the bodies and poses of the recipe as a flesh model.
 void write_flesh(const Arguments& arguments, const synth::Recipe& recipe, const synth::Generator& generator) {
   synth::FleshFitOptions options;
   options.bodies = std::min(options.bodies, recipe.body.count);
   options.seed = arguments.seed;
-  const auto trust = [](const JointTrust& t) {
-    return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", t.bias, t.slope, t.misfit);
-  };
-  const FleshModel& flesh = builtin_flesh();
-  write_file_atomically(arguments.fit_flesh,
-                        synth::fitted_flesh_toml(generator, options,
-                                                 fmt::format("observed = {}\npredicted = {}\n", trust(flesh.observed),
-                                                             trust(flesh.predicted))));
+  write_file_atomically(arguments.fit_flesh, synth::fitted_flesh_toml(generator, options));
 }
 
 synth::ClipTiming timing_of(const Arguments& arguments) {

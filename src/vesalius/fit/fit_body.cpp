@@ -17,15 +17,8 @@ using Eigen::Vector3d;
 
 constexpr int kLeastCentres = 4;  // parts that a start needs
 constexpr std::size_t kLeastPoints = 30;
-constexpr int kLeastSupport = 4;  // points on a bone that make its joint observed
-
-/// Returns the probability that a joint of this covariance lies within 10 cm of the truth.
-float confidence(const JointTrust& trust, const Eigen::Matrix3d& covariance, float misfit) {
-  const double sigma = std::sqrt(std::max(covariance.trace() / 3.0, 1e-8));
-  const double logit = static_cast<double>(trust.bias) + static_cast<double>(trust.slope) * std::log(sigma) +
-                       static_cast<double>(trust.misfit * misfit);
-  return static_cast<float>(1.0 / (1.0 + std::exp(-logit)));
-}
+constexpr int kLeastSupport = 4;     // points on a bone that make its joint observed
+constexpr double kCovered_m = 0.15;  // by which something must be nearer than a joint to cover it
 
 }  // namespace
 
@@ -38,8 +31,13 @@ struct BodyFitter::Solution {
   double cost = std::numeric_limits<double>::max();
 };
 
-BodyFitter::BodyFitter(BodyModel body, FitOptions options, const FleshModel& flesh)
-    : body_(std::move(body)), options_(options), flesh_(flesh), terms_(flesh_, body_, options_), can_fit_(false) {
+BodyFitter::BodyFitter(BodyModel body, FitOptions options, const FleshModel& flesh, const BodyTrust& trust)
+    : body_(std::move(body)),
+      options_(options),
+      flesh_(flesh),
+      trust_(trust),
+      terms_(flesh_, body_, options_),
+      can_fit_(false) {
   RangeCheck check;
   visit_options("fit.", options_, check);
   can_fit_ = std::ranges::any_of(terms_.surface().of_part, [](const auto& stretches) { return !stretches.empty(); });
@@ -187,7 +185,7 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
   if (!data.expected.pose) {
     const std::optional<Solution> solution = fit_afresh(data, 0, kStarts);
     if (!solution) return std::nullopt;
-    return report(data, *solution);
+    return report(data, person.score, *solution);
   }
   BodyState start = *data.expected.pose;
   start.shape = data.expected.shape;
@@ -198,19 +196,19 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
     const double least = cost(data, followed) - static_cast<double>(options_.restart_gain);
     const std::optional<Solution> afresh = fit_afresh(data, expected.start, 1);
     if (afresh && afresh->cost < least) {
-      BodyFit fit = report(data, *afresh);
+      BodyFit fit = report(data, person.score, *afresh);
       fit.restarted = true;
       return fit;
     }
   }
-  return report(data, followed);
+  return report(data, person.score, followed);
 }
 
-BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const {
+BodyFit BodyFitter::report(const FitData& data, float score, const Solution& solution) const {
   const StateLayout layout(flesh_);
   BodyFit fit;
   fit.state = solution.state;
-  const std::vector<int> support = terms_.support(data, solution.placed, solution.assigned);
+  const std::vector<FitTerms::Support> support = terms_.support(data, solution.placed, solution.assigned);
   Eigen::MatrixXd matrix = solution.equations->matrix();
   matrix.diagonal().array() += 1e-6;
   const Eigen::LLT<Eigen::MatrixXd> solver(matrix);
@@ -223,6 +221,10 @@ BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const 
   body.misfit = static_cast<float>(solution.cost / static_cast<double>(data.points.size()));
   for (Index k = 0; k < solution.state.shape.size(); ++k)
     body.shape.push_back(static_cast<float>(solution.state.shape[k]));
+  TrustSignals of_all;
+  of_all.misfit = body.misfit;
+  of_all.shape = static_cast<float>(solution.state.shape.norm());
+  of_all.score = score_log_odds(score);
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const PlacedBone& placed = solution.placed[b];
     FittedBone& bone = body.bones.emplace_back();
@@ -231,18 +233,28 @@ BodyFit BodyFitter::report(const FitData& data, const Solution& solution) const 
     bone.global = Eigen::Quaternionf(Eigen::Quaterniond(placed.global).cast<float>());
     bone.local = solution.state.local[b].cast<float>();
     bone.length_m = static_cast<float>((placed.tail - placed.head).norm());
-    const Eigen::Matrix3Xd derivative = solution.equations->point_by_state(b, placed.head, solution.placed);
-    const Eigen::MatrixXd spread = solver.solve(derivative.transpose());
-    const Eigen::Matrix3d covariance = derivative * spread;
-    bone.covariance = covariance.cast<float>();
-    bone.support = support[b];
+    bone.support = support[b].on;
     const int parent = flesh_.bones[b].parent;
-    const int about = support[b] + (parent >= 0 ? support[parent] : 0);
-    bone.state = support[b] >= kLeastSupport && about >= 2 * kLeastSupport ? State::observed : State::predicted;
-    const JointTrust& trust = bone.state == State::observed ? flesh_.observed : flesh_.predicted;
-    bone.confidence = confidence(trust, covariance, body.misfit);
-    const Eigen::Matrix3Xd of_tail = solution.equations->point_by_state(b, placed.tail, solution.placed);
-    bone.tail_confidence = confidence(trust, of_tail * solver.solve(of_tail.transpose()), body.misfit);
+    const int about = support[b].on + (parent >= 0 ? support[parent].on : 0);
+    bone.state = support[b].on >= kLeastSupport && about >= 2 * kLeastSupport ? State::observed : State::predicted;
+    const auto covariance_of = [&](const Vector3d& at) {
+      const Eigen::Matrix3Xd by_state = solution.equations->point_by_state(b, at, solution.placed);
+      return Eigen::Matrix3d(by_state * solver.solve(by_state.transpose()));
+    };
+    const auto signals_of = [&](const Vector3d& at, const Eigen::Matrix3d& covariance) {
+      TrustSignals signals = of_all;
+      signals.log_sigma = static_cast<float>(0.5 * std::log(std::max(covariance.trace() / 3.0, 1e-8)));
+      signals.bone_misfit = static_cast<float>(support[b].misfit);
+      const Silhouette::Sight sight = data.silhouette->look(at, kCovered_m);
+      signals.free = sight.kind == Silhouette::Sight::Kind::behind ? 1.F : 0.F;
+      return signals;
+    };
+    const Eigen::Matrix3d covariance = covariance_of(placed.head);
+    bone.covariance = covariance.cast<float>();
+    bone.of_head = signals_of(placed.head, covariance);
+    bone.of_tail = signals_of(placed.tail, covariance_of(placed.tail));
+    bone.confidence = trusted(trust_, source_of(body, bone), bone.of_head);
+    bone.tail_confidence = trusted(trust_, source_of(body, bone), bone.of_tail);
   }
   body.stature_m = static_cast<float>(stature(flesh_, solution.state.shape));
   return fit;

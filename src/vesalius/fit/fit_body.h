@@ -33,8 +33,9 @@ struct BodyFit {
 /// and crossed limbs are decided by the whole body. It may be used from several threads.
 class BodyFitter {
  public:
-  /// Throws UsageError for an option outside its range. `flesh` must outlive it.
-  explicit BodyFitter(BodyModel body, FitOptions options = {}, const FleshModel& flesh = builtin_flesh());
+  /// Throws UsageError for an option outside its range. `flesh` and `trust` must outlive it.
+  explicit BodyFitter(BodyModel body, FitOptions options = {}, const FleshModel& flesh = builtin_flesh(),
+                      const BodyTrust& trust = builtin_trust());
   // Its terms refer to its body model and options.
   BodyFitter(const BodyFitter&) = delete;
   BodyFitter& operator=(const BodyFitter&) = delete;
@@ -47,6 +48,7 @@ class BodyFitter {
   std::optional<BodyFit> fit(const Frame& frame, const Person& person, const ExpectedBody& expected = {}) const;
 
   const FleshModel& flesh() const { return flesh_; }
+  const BodyTrust& trust() const { return trust_; }
   const BodyModel& body() const { return body_; }
 
  private:
@@ -57,11 +59,12 @@ class BodyFitter {
   std::optional<Solution> fit_afresh(const FitData& data, int first, int count) const;
   double cost(const FitData& data, const Solution& solution) const;
   std::optional<BodyState> first_state(const FitData& data, bool mirrored, std::size_t pose) const;
-  BodyFit report(const FitData& data, const Solution& solution) const;
+  BodyFit report(const FitData& data, float score, const Solution& solution) const;
 
   BodyModel body_;
   FitOptions options_;
   const FleshModel& flesh_;
+  const BodyTrust& trust_;
   FitTerms terms_;
   bool can_fit_;
 };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "vesalius/base/error.h"
@@ -104,6 +105,10 @@ TEST(FitBody, OutputsAgreeWithEachOther) {
     EXPECT_LT((up * bone.local).angularDistance(bone.global), 1e-3F);
     EXPECT_TRUE(bone.covariance.isApprox(bone.covariance.transpose(), 1e-4F));
     EXPECT_GT(bone.covariance.trace(), 0.F);
+    EXPECT_NEAR(bone.of_head.log_sigma, 0.5F * std::log(bone.covariance.trace() / 3.F), 1e-4F);
+    EXPECT_EQ(bone.of_head.misfit, fit->body.misfit);
+    EXPECT_EQ(bone.confidence, trusted(builtin_trust(), source_of(fit->body, bone), bone.of_head));
+    EXPECT_EQ(bone.of_head.unseen_s, 0.F);
     for (const float probability : {bone.confidence, bone.tail_confidence}) {
       EXPECT_GT(probability, 0.F);
       EXPECT_LT(probability, 1.F);
@@ -151,6 +156,34 @@ TEST(FitBody, BearsWrongSides) {
     EXPECT_LT(mean_error_m(fit->body, seen.truth), 0.03);
     expect_sides(fit->body, seen.truth);
   }
+}
+
+TEST(FitBody, TellsWhereTheCameraSeesPastAJoint) {
+  const FleshModel& flesh = builtin_flesh();
+  test::SeenBody seen = test::see(test::usual_state(0.0));
+  const int hand = flesh.find_bone("l_hand");
+  const BodyFitter fitter(paper_body());
+  const std::optional<BodyFit> whole = fitter.fit(seen.frame, seen.person);
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->body.bones[hand].of_head.free, 0.F);
+  // The pose is held as the forearm and the hand vanish: the camera sees the wall where they would be.
+  const Eigen::Vector2f at = seen.frame.camera.pixel(seen.truth[hand].head.cast<float>());
+  for (int v = 0; v < seen.frame.depth.height(); ++v) {
+    for (int u = 0; u < seen.frame.depth.width(); ++u) {
+      if ((Eigen::Vector2f(static_cast<float>(u), static_cast<float>(v)) - at).norm() > 18.F) continue;
+      seen.frame.depth(u, v) = 4500;
+      seen.person.labels(u, v) = kBackground;
+    }
+  }
+  test::describe(paper_body(), seen.frame, seen.person);
+  FitOptions options;
+  options.outline_weight = 0.F;
+  ExpectedBody expected;
+  expected.pose = whole->state;
+  expected.start = -1;
+  const std::optional<BodyFit> fit = BodyFitter(paper_body(), options).fit(seen.frame, seen.person, expected);
+  ASSERT_TRUE(fit);
+  EXPECT_EQ(fit->body.bones[hand].of_head.free, 1.F);
 }
 
 TEST(FitBody, NeedsPointsAndParts) {

@@ -414,16 +414,19 @@ void FitTerms::evaluate_centres(const FitData& data, const BodyState& state, boo
   equations.finish();
 }
 
-std::vector<int> FitTerms::support(const FitData& data, const std::vector<PlacedBone>& placed,
-                                   const std::vector<Assigned>& assigned) const {
-  std::vector<int> support(flesh_.bones.size(), 0);
+std::vector<FitTerms::Support> FitTerms::support(const FitData& data, const std::vector<PlacedBone>& placed,
+                                                 const std::vector<Assigned>& assigned) const {
+  std::vector<Support> support(flesh_.bones.size());
   const double most = static_cast<double>(options_.outlier) * static_cast<double>(options_.outlier);
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const int b = assigned[i].stretch.bone;
     if (b < 0) continue;
     const Hit hit = this->hit(placed[b], b, assigned[i].stretch, data.points[i].at.cast<double>());
-    if (hit.squared < most) ++support[b];
+    ++support[b].points;
+    support[b].misfit += hit.cost;
+    if (hit.squared < most) ++support[b].on;
   }
+  for (Support& of_bone : support) of_bone.misfit /= std::max(1, of_bone.points);
   return support;
 }
 

@@ -89,9 +89,15 @@ class FitTerms {
   void evaluate_centres(const FitData& data, const BodyState& state, bool mirrored, std::vector<PlacedBone>& placed,
                         NormalEquations& equations) const;
 
-  /// Returns for each bone how many points lie on it.
-  std::vector<int> support(const FitData& data, const std::vector<PlacedBone>& placed,
-                           const std::vector<Assigned>& assigned) const;
+  /// How the points that were assigned to a bone lie to it.
+  struct Support {
+    int points = 0;       ///< all of them
+    int on = 0;           ///< those that lie on it
+    double misfit = 0.0;  ///< mean of the robust squared deviations of all
+  };
+  /// Returns this for each bone.
+  std::vector<Support> support(const FitData& data, const std::vector<PlacedBone>& placed,
+                               const std::vector<Assigned>& assigned) const;
 
   const PartSurface& surface() const { return surface_; }
 

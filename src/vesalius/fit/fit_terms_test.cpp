@@ -112,7 +112,11 @@ TEST(FitTerms, PointsBelongToTheStretchOfTheirLabel) {
   }
   // Nearly all points lie on the flesh of the bones that they were drawn from.
   int supported = 0;
-  for (const int count : terms.support(data, seen.truth, assigned)) supported += count;
+  for (const FitTerms::Support& support : terms.support(data, seen.truth, assigned)) {
+    supported += support.on;
+    EXPECT_LE(support.on, support.points);
+    EXPECT_LT(support.misfit, 1.0) << "points of the flesh itself";
+  }
   EXPECT_GT(supported, static_cast<int>(0.95 * static_cast<double>(assigned.size())));
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vesalius/base/frame.h"
+#include "vesalius/fit/joint_trust.h"
 
 namespace vesalius {
 
@@ -18,8 +19,9 @@ struct FittedBone {
   float length_m = 0.F;                                  ///< from head to tail
   Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();  ///< of the head, square metres
   int support = 0;                                       ///< points of the person on the bone
-  float confidence = 0.F;       ///< probability that the head lies within 10 cm of the truth, 0-1
-  float tail_confidence = 0.F;  ///< the same of the tail
+  float confidence = 0.F;         ///< probability that the head lies within 10 cm of the truth, 0-1
+  float tail_confidence = 0.F;    ///< the same of the tail
+  TrustSignals of_head, of_tail;  ///< what the confidences follow from
 };
 
 /// A body fitted to one person.
@@ -28,6 +30,13 @@ struct FittedBody {
   std::vector<float> shape;  ///< coefficients of the flesh model's shapes, in standard deviations of the population
   float stature_m = 0.F;     ///< height of the body standing upright
   float misfit = 0.F;        ///< mean cost of a point, lower is better
+  bool hidden = false;       ///< moved on from an earlier frame, since the person was not found in this one
 };
+
+/// Returns how the place of a bone of a body is known.
+inline JointSource source_of(const FittedBody& body, const FittedBone& bone) {
+  if (body.hidden) return JointSource::hidden;
+  return bone.state == State::observed ? JointSource::observed : JointSource::predicted;
+}
 
 }  // namespace vesalius

@@ -66,13 +66,6 @@ std::vector<FleshJoint> read_joint(const TomlReader& reader, const toml::table& 
   return {joint, right};
 }
 
-/// Returns the place of joint `j` of a set, or null.
-const FleshJoint* find_place(const std::vector<FleshJoint>& places, const JointSet& set, std::size_t j) {
-  const auto place = std::ranges::find_if(
-      places, [&](const FleshJoint& p) { return p.set == set.name && p.name == set.joints[j].name; });
-  return place == places.end() ? nullptr : &*place;
-}
-
 }  // namespace
 
 std::vector<FleshJoint> parse_flesh_joints(std::string_view toml, const std::string& source, const FleshModel& flesh) {
@@ -96,19 +89,28 @@ const std::vector<FleshJoint>& builtin_flesh_joints() {
   return joints;
 }
 
+const FleshJoint* find_flesh_joint(const std::vector<FleshJoint>& places, std::string_view set, std::string_view name) {
+  const auto place = std::ranges::find_if(places, [&](const FleshJoint& p) { return p.set == set && p.name == name; });
+  return place == places.end() ? nullptr : &*place;
+}
+
+TrustSignals signals_of(const FleshJoint& joint, const FittedBody& fitted) {
+  const FittedBone& bone = fitted.bones[joint.bone];
+  return between(bone.of_head, bone.of_tail, std::clamp(joint.along, 0.F, 1.F));
+}
+
 void place_joints(const FittedBody& fitted, const std::vector<FleshJoint>& places, const BodyModel& body,
-                  std::vector<std::vector<Joint>>& joints) {
+                  const BodyTrust& trust, std::vector<std::vector<Joint>>& joints) {
   for (std::size_t s = 0; s < body.joint_sets.size(); ++s) {
     const JointSet& set = body.joint_sets[s];
     for (std::size_t j = 0; j < set.joints.size(); ++j) {
-      const FleshJoint* place = find_place(places, set, j);
+      const FleshJoint* place = find_flesh_joint(places, set.name, set.joints[j].name);
       if (place == nullptr) continue;
       const FittedBone& bone = fitted.bones[place->bone];
-      const float along = std::clamp(place->along, 0.F, 1.F);
       Joint& joint = joints[s][j];
       joint.state = bone.state;
       joint.position = bone.head + place->along * (bone.tail - bone.head) + bone.global * place->offset_m;
-      joint.confidence = (1.F - along) * bone.confidence + along * bone.tail_confidence;
+      joint.confidence = trusted(trust, source_of(fitted, bone), signals_of(*place, fitted));
     }
   }
 }
@@ -118,7 +120,7 @@ std::vector<std::optional<Eigen::Quaternionf>> joint_rotations(const FittedBody&
                                                                const JointSet& set) {
   std::vector<std::optional<Eigen::Quaternionf>> rotations(set.joints.size());
   for (std::size_t j = 0; j < set.joints.size(); ++j) {
-    const FleshJoint* place = find_place(places, set, j);
+    const FleshJoint* place = find_flesh_joint(places, set.name, set.joints[j].name);
     if (place == nullptr || !place->axes) continue;
     const FittedBone& bone = fitted.bones[place->bone];
     if (bone.state == State::none) continue;

@@ -30,10 +30,16 @@ std::vector<FleshJoint> parse_flesh_joints(std::string_view toml, const std::str
 /// Returns the joints of the built-in flesh (data/bodies/flesh_joints.toml).
 const std::vector<FleshJoint>& builtin_flesh_joints();
 
+/// Returns the place of that joint, or null if there is none.
+const FleshJoint* find_flesh_joint(const std::vector<FleshJoint>& places, std::string_view set, std::string_view name);
+
+/// Returns what the confidence of a joint follows from.
+TrustSignals signals_of(const FleshJoint& joint, const FittedBody& fitted);
+
 /// Gives the joints of a body's sets the places that a fitted body has for them, [set][joint]. Joints without such a
 /// place stay as they are.
 void place_joints(const FittedBody& fitted, const std::vector<FleshJoint>& places, const BodyModel& body,
-                  std::vector<std::vector<Joint>>& joints);
+                  const BodyTrust& trust, std::vector<std::vector<Joint>>& joints);
 
 /// Returns for each joint of a set the rotation that the tracker which names it would give: optical frame from the
 /// joint's. Nothing for joints without axes, and where nothing is known of the bone.

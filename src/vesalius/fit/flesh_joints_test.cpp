@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -95,13 +96,15 @@ TEST(FleshJoints, LieWhereTheirBonesAre) {
   // A quarter turn about z takes x to y: the hand points down in the picture.
   hand.global = Eigen::AngleAxisf(static_cast<float>(std::numbers::pi) / 2.F, Eigen::Vector3f::UnitZ());
   hand.state = State::predicted;
-  hand.confidence = 0.8F;
-  hand.tail_confidence = 0.4F;
+  hand.of_head.log_sigma = -3.F;
+  hand.of_tail.log_sigma = -1.F;
+  BodyTrust trust;
+  trust.predicted = {0.5F, {.log_sigma = -1.F}};
   std::vector<std::vector<Joint>> joints;
   for (const JointSet& each : body.joint_sets) {
     joints.emplace_back(each.joints.size(), Joint{State::observed, {7.F, 8.F, 9.F}, 0.5F});
   }
-  place_joints(fitted, parse_flesh_joints(kSmall, "small", flesh), body, joints);
+  place_joints(fitted, parse_flesh_joints(kSmall, "small", flesh), body, trust, joints);
   const auto joint_of = [&](const char* name) {
     const auto joint = std::ranges::find(set->joints, name, &JointDefinition::name);
     EXPECT_NE(joint, set->joints.end()) << name;
@@ -111,7 +114,8 @@ TEST(FleshJoints, LieWhereTheirBonesAre) {
   // 0.1 m down from (1, 0, 2); the offset turned is (-0.02, 0.01, 0.03).
   EXPECT_LT((placed.position - Eigen::Vector3f(0.98F, 0.11F, 2.03F)).norm(), 1e-5F);
   EXPECT_EQ(placed.state, State::predicted);
-  EXPECT_NEAR(placed.confidence, 0.7F, 1e-5F);
+  // A quarter of the way along: log sigma -2.5, logit 3.
+  EXPECT_NEAR(placed.confidence, 1.F / (1.F + std::exp(-3.F)), 1e-6F);
   // Those without a place in the flesh stay as they were.
   EXPECT_EQ(joint_of("l_knee").position, Eigen::Vector3f(7.F, 8.F, 9.F));
   EXPECT_EQ(joint_of("l_knee").state, State::observed);

@@ -172,11 +172,6 @@ void read_limb(const TomlReader& reader, const toml::table& table, FleshModel& m
   if (is_left) model.limbs.push_back(mirrored_limb(model, std::move(limb)));
 }
 
-JointTrust read_trust(const TomlReader& reader, const toml::table& root, std::string_view key) {
-  const std::array<float, 3> numbers = read_array<3>(reader, root, key, 100.0);
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
 }  // namespace
 
 int FleshModel::find_bone(std::string_view name) const {
@@ -187,11 +182,9 @@ int FleshModel::find_bone(std::string_view name) const {
 FleshModel parse_flesh_model(std::string_view toml, const std::string& source) {
   const TomlReader reader(source);
   const toml::table root = reader.parse(toml);
-  reader.expect_keys(root, {"shapes", "observed", "predicted", "bone", "limb"});
+  reader.expect_keys(root, {"shapes", "bone", "limb"});
   FleshModel model;
   model.shapes = static_cast<int>(reader.integer(reader.need(root, "shapes"), "shapes", 1, kMaxShapes));
-  model.observed = read_trust(reader, root, "observed");
-  model.predicted = read_trust(reader, root, "predicted");
   const toml::array& bones = reader.array(root, "bone");
   if (bones.empty() || bones.size() > kMaxBones) {
     reader.fail(bones, "bone: expected 1 to " + std::to_string(kMaxBones));

@@ -40,21 +40,12 @@ struct LimbPrior {
   std::vector<Component> components;  ///< the most usual first
 };
 
-/// A logistic regression for the probability that a joint lies within 10 cm of the truth, by its standard deviation and
-/// by how badly the body fits: logit = bias + slope * log(sigma in m) + misfit * FittedBody::misfit.
-struct JointTrust {
-  float bias = 0.F;
-  float slope = 0.F;
-  float misfit = 0.F;
-};
-
 /// A population of bodies and their poses, to which fit_body fits people. It comes from rendered people
 /// (`vesalius synth --fit-flesh`) and is the same for all body models with surface rules.
 struct FleshModel {
   int shapes = 0;  ///< coefficients of a body's shape, each of mean 0 and standard deviation 1
   std::vector<FleshBone> bones;
   std::vector<LimbPrior> limbs;
-  JointTrust observed, predicted;
 
   int bone_count() const { return static_cast<int>(bones.size()); }
   /// Returns the index of the bone of that name, or -1 if there is none.

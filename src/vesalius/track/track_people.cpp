@@ -30,14 +30,7 @@ constexpr float kFadePerS = 1.F;           // of the confidence of what is predi
 // ones.
 constexpr float kFramesASecond = 5.F;
 constexpr double kMostEvidence_s = 0.2;  // time for which one frame speaks
-constexpr float kMostLogit = 4.F;
-constexpr float kClearScore = 0.8F;  // that the frames in which somebody new is found have on average, at least
-
-/// Scores are probabilities; one of 0 or 1 is no more than very sure.
-float logit(float score) {
-  const float odds = score / (1.F - score);
-  return odds > 0.F ? std::clamp(std::log(odds), -kMostLogit, kMostLogit) : -kMostLogit;
-}
+constexpr float kClearScore = 0.8F;      // that the frames in which somebody new is found have on average, at least
 
 /// People are taken in an order of their own, so that ids do not depend on the list's.
 bool comes_before(const Sighting& a, const Sighting& b) {
@@ -76,14 +69,21 @@ void move(Person& person, const Eigen::Vector3f& by, float faded) {
   person.box = {};
 }
 
-void move(FittedBody& body, const Eigen::Vector3f& by, float faded, float sigma_m) {
+void move(FittedBody& body, const Eigen::Vector3f& by, float unseen_s, float sigma_m, const BodyTrust& trust) {
+  body.hidden = true;
+  const auto distrust = [&](TrustSignals& signals, float& confidence) {
+    signals.unseen_s = unseen_s;
+    signals.log_sigma = 0.5F * std::log(std::exp(2.F * signals.log_sigma) + sigma_m * sigma_m);
+    // Nobody is surer of a joint that is out of sight than of the same joint in sight.
+    confidence = std::min(confidence, trusted(trust.hidden, signals));
+  };
   for (FittedBone& bone : body.bones) {
     if (bone.state == State::none) continue;
     bone.state = State::predicted;
     bone.head += by;
     bone.tail += by;
-    bone.confidence *= faded;
-    bone.tail_confidence *= faded;
+    distrust(bone.of_head, bone.confidence);
+    distrust(bone.of_tail, bone.tail_confidence);
     bone.covariance += sigma_m * sigma_m * Eigen::Matrix3f::Identity();
   }
 }
@@ -102,14 +102,17 @@ TrackedPerson describe(const Track& track) {
   return out;
 }
 
-TrackedPerson describe_unseen(const Track& track, double time_s) {
+TrackedPerson describe_unseen(const Track& track, const BodyModel& body, const BodyFitter* fitter, double time_s) {
   TrackedPerson out = describe(track);
   const Eigen::Vector3f by = track.motion.position() - track.place_position;
   const auto unseen_s = static_cast<float>(std::clamp(time_s - track.seen_s, 0.0, 1e6));
   const float faded = std::exp(-kFadePerS * unseen_s);
   out.person = track.person;
   move(out.person, by, faded);
-  if (out.body) move(*out.body, by, faded, track.motion.sigma_m());
+  if (out.body && fitter != nullptr) {
+    move(*out.body, by, unseen_s, track.motion.sigma_m(), fitter->trust());
+    place_joints(*out.body, builtin_flesh_joints(), body, fitter->trust(), out.person.joints);
+  }
   return out;
 }
 
@@ -245,21 +248,21 @@ Track PeopleTracker::State::begin(const Sighting& sighting, double time_s) {
     track.history.forget_pose();
     lost.erase(lost.begin() + back);
   }
-  track.log_odds = std::clamp(logit(sighting.person.score), 0.F, std::log(options.odds));
+  track.log_odds = std::clamp(score_log_odds(sighting.person.score), 0.F, std::log(options.odds));
   confirm(track, sighting.person.score);
   return track;
 }
 
 void PeopleTracker::State::count(Track& track, float score, double passed_s) const {
   const auto evidence = static_cast<float>(std::min(passed_s, kMostEvidence_s)) * kFramesASecond;
-  track.log_odds = std::clamp(track.log_odds + evidence * logit(score), 0.F, std::log(options.odds));
+  track.log_odds = std::clamp(track.log_odds + evidence * score_log_odds(score), 0.F, std::log(options.odds));
 }
 
 /// Lets somebody fresh be sure who was found often and clearly enough.
 void PeopleTracker::State::confirm(Track& track, float score) const {
   if (!is_sure(track)) {
-    track.evidence += logit(score);
-    const float enough = static_cast<float>(options.confirm) * logit(kClearScore);
+    track.evidence += score_log_odds(score);
+    const float enough = static_cast<float>(options.confirm) * score_log_odds(kClearScore);
     if (track.found < options.confirm || track.evidence < enough) return;
   }
   track.state = TrackState::tracked;
@@ -277,7 +280,7 @@ void PeopleTracker::State::take(Track& track, const Sighting& sighting, double t
 void PeopleTracker::State::lose(Track track, double time_s, TrackedFrame& out) {
   if (!is_sure(track)) return;
   track.state = TrackState::lost;
-  out.people.push_back(describe_unseen(track, time_s));
+  out.people.push_back(describe_unseen(track, body, fitter.get(), time_s));
   track.place = {};
   track.expected = {};
   lost.push_back(std::move(track));
@@ -337,7 +340,7 @@ void PeopleTracker::State::fit_bodies(const Frame& frame, const std::vector<int>
     Person& person = sightings[static_cast<std::size_t>(sighting_of[t])].person;
     if (!person.mask.same_size(frame.depth)) return;
     track.body = track.history.fit(*fitter, frame, person, time_s);
-    if (track.body) place_joints(*track.body, builtin_flesh_joints(), body, person.joints);
+    if (track.body) place_joints(*track.body, builtin_flesh_joints(), body, fitter->trust(), person.joints);
     track.person.joints = person.joints;
   });
 }
@@ -376,7 +379,7 @@ void PeopleTracker::State::tell(const Frame& frame, const std::vector<int>& sigh
       told.person = std::move(sighting.person);
     } else {
       take_stance(frame, track, {}, out);
-      told = describe_unseen(track, out.time_s);
+      told = describe_unseen(track, body, fitter.get(), out.time_s);
     }
     smooth(track, told, out.time_s);
   }
