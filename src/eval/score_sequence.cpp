@@ -105,6 +105,9 @@ void SequenceScorer::follow(const TrueFrame& frame, const TrackPeople& people, c
       joints = found->person.joints[known->set - body.joint_sets.data()];
       step.found_bones_m = bone_lengths(body, known->set->name, found->person.joints);
       step.id = found->id;
+      if (options_.trust) {
+        add_trust_samples(*found, body.joint_sets, *known->set, known->names, known->of_person[who], trust_samples_);
+      }
       step.track_age = static_cast<int>(step.frame - first_frame_.at(found->id));
     }
     step.found = joints_by_name(known->names, *known->set, joints);

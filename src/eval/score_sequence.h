@@ -3,8 +3,10 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "eval/fit_trust.h"
 #include "eval/motion_metrics.h"
 #include "eval/score_frame.h"
 #include "eval/track_metrics.h"
@@ -23,6 +25,7 @@ class SequenceScorer {
  public:
   struct Options {
     bool hidden = false;  ///< people without pixels take part, true and found ones (track_people_of)
+    bool trust = false;   ///< keeps the joints of fitted bodies with their truth (trust_samples)
   };
 
   /// `judge` must outlive it; its options name the joint set.
@@ -37,6 +40,9 @@ class SequenceScorer {
   /// people are known, motion (add_motion_terms) and stances besides if somebody's joints or stance are. Nothing may
   /// be added afterwards.
   std::vector<MetricTerms> finish();
+
+  /// Gives away the fitted joints of all people who were matched, by frame and true person (Options::trust).
+  std::vector<TrustSample> take_trust_samples() { return std::move(trust_samples_); }
 
  private:
   void check_names(const TrueFrame& frame);
@@ -53,6 +59,7 @@ class SequenceScorer {
   std::vector<MetricTerms> terms_;          ///< [frame]
   std::map<int, PersonMotion> people_;      ///< by true id
   std::map<int, std::size_t> first_frame_;  ///< of each found id
+  std::vector<TrustSample> trust_samples_;
 };
 
 }  // namespace vesalius

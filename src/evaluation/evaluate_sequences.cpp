@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -35,6 +36,7 @@ struct SequenceResult {
   std::vector<Block> blocks;
   JointCurve joint_curve;
   std::vector<WorstFrame> worst;
+  std::vector<TrustSample> trust_samples;
 };
 
 /// One recording while its frames come.
@@ -69,6 +71,7 @@ class SequenceEvaluation {
       terms.insert(terms.end(), more[i].begin(), more[i].end());
     }
     result_.frames = static_cast<int>(of_frames_.size());
+    result_.trust_samples = scorer_.take_trust_samples();
     return std::move(result_);
   }
 
@@ -203,6 +206,7 @@ class SequencesEvaluation {
       result.metrics.add(frame_key(result.name.c_str(), block.name.c_str()), block.terms);
     }
     result.joint_curve.merge(sequence.joint_curve);
+    std::ranges::move(sequence.trust_samples, std::back_inserter(result.trust_samples));
     for (WorstFrame& worst : sequence.worst) keep_if_worst(std::move(worst), options_.worst, result.worst);
   }
 

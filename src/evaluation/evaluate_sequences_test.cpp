@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <string>
 
 #include "evaluation/evaluation_json.h"
 #include "evaluation/evaluation_summary.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/base/test_threads.h"
+#include "vesalius/fit/flesh_model.h"
 #include "vesalius/forest/test_blind_labeller.h"
 
 namespace vesalius {
@@ -151,6 +154,33 @@ TEST(EvaluateSequences, AreTheSameForAnyNumberOfThreads) {
   }
   EXPECT_EQ(reports[0], reports[1]);
   EXPECT_THAT(reports[0], HasSubstr("\"track.hota\""));
+}
+
+// Labels: threads
+TEST(EvaluateSequences, KeepTheJointsOfFittedBodiesInTheOrderOfTheRecordings) {
+  const auto trackers = [] {
+    return [tracker = TestTracker()](const Frame& frame) mutable {
+      TrackedFrame tracked = tracker(frame);
+      FittedBody& body = tracked.people[0].body.emplace();
+      body.bones.resize(builtin_flesh().bones.size());
+      for (FittedBone& bone : body.bones) {
+        bone.state = State::observed;
+        bone.of_head.misfit = std::stof(frame.name);
+      }
+      return tracked;
+    };
+  };
+  const OpenTruth open = [] { return std::make_unique<Recordings>(3); };
+  const SetOptions options{"clips", "memory"};
+  EXPECT_TRUE(evaluate_sequences(open, options, judge(), trackers).trust_samples.empty()) << "not asked for";
+  for_threads({1, 3}, [&] {
+    const SetResult set = evaluate_sequences(open, options, judge(), trackers, {.trust = true});
+    ASSERT_EQ(set.trust_samples.size(), 2U * 3U * kFrames) << "two joints of one person in each frame";
+    for (std::size_t i = 0; i < set.trust_samples.size(); ++i) {
+      EXPECT_EQ(set.trust_samples[i].signals.misfit, static_cast<float>(i / 2));
+      EXPECT_TRUE(set.trust_samples[i].right) << "2 cm off";
+    }
+  });
 }
 
 TEST(EvaluateSequences, CountAFrameWhoseTrackerFails) {

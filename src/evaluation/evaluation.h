@@ -9,6 +9,7 @@
 #include "eval/detection_curve.h"
 #include "eval/fit_joints.h"
 #include "eval/fit_score.h"
+#include "eval/fit_trust.h"
 #include "eval/joint_metrics.h"
 #include "eval/joint_precision.h"
 #include "eval/metric_table.h"
@@ -52,6 +53,7 @@ struct SetResult {
   std::vector<KnownPerson> known_people;          ///< for fitting joints
   std::vector<ScoreSample> samples;               ///< for fitting the score
   std::vector<BoostSample> context_samples = {};  ///< for fitting the context of bodies
+  std::vector<TrustSample> trust_samples = {};    ///< for fitting the trust in fitted joints
   std::vector<WorstFrame> worst;                  ///< the worst first
   std::vector<AblationRow> ablation;              ///< the same frames with each variant
 };
@@ -61,8 +63,8 @@ struct Evaluation {
   std::string command;  ///< command that repeats the evaluation
   std::string model;    ///< path
   std::string model_checksum;
-  std::string version;  ///< version of the program
-  std::string machine;  ///< facts about the machine that timings depend on, on one line
+  std::string version;    ///< version of the program
+  std::string machine;    ///< facts about the machine that timings depend on, on one line
   PeopleOptions options;  ///< those of tracking and fitted bodies count only where people were followed
   BodyModel body;
   bool labels_only = false;

@@ -105,6 +105,27 @@ FittedJudge fit_judge(const Evaluation& evaluation) {
   return fitted;
 }
 
+FittedTrust fit_evaluation_trust(const Evaluation& evaluation) {
+  std::vector<TrustSample> samples;
+  for (const SetResult& set : evaluation.sets) {
+    samples.insert(samples.end(), set.trust_samples.begin(), set.trust_samples.end());
+  }
+  FittedTrust fitted{fit_trust(samples, builtin_trust()), ""};
+  fitted.toml =
+      "# How far joints of fitted bodies can be trusted (docs/tracking.md), by `vesalius evaluate --fit-trust`: the "
+      "logit\n"
+      "# of the probability that a joint lies within 10 cm is the bias and the sum of each signal times its weight.\n";
+  for (const NamedSource& source : kJointSources) {
+    const JointTrust& trust = fitted.fit.trust.*source.trust;
+    fitted.toml += fmt::format("\n[{}]\nbias = {:.4f}\n", source.name, trust.bias);
+    for (const TrustSignal& signal : kTrustSignals) {
+      const float weight = trust.weights.*signal.value;
+      if (weight != 0.F) fitted.toml += fmt::format("{} = {:.4f}\n", signal.name, weight);
+    }
+  }
+  return fitted;
+}
+
 FittedContext fit_context(const Evaluation& evaluation) {
   FittedContext fitted;
   std::vector<BoostSample> samples;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "eval/fit_score.h"
+#include "eval/fit_trust.h"
 #include "evaluation/evaluation.h"
 #include "vesalius/forest/boosted_trees.h"
 
@@ -42,5 +43,13 @@ struct FittedContext {
 /// Fits a context for the evaluation's body to the samples that were kept (FrameScorer::Options::fit_context). Throws
 /// Error unless there are pixels of people and others.
 FittedContext fit_context(const Evaluation& evaluation);
+
+/// A trust in fitted joints, fitted to the joints of all sets.
+struct FittedTrust {
+  TrustFit fit;
+  std::string toml;  ///< data/bodies/flesh_trust.toml
+};
+/// Fits the trust, beginning with the built-in one. Throws Error as fit_trust does.
+FittedTrust fit_evaluation_trust(const Evaluation& evaluation);
 
 }  // namespace vesalius

@@ -9,6 +9,7 @@
 #include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_world.h"
+#include "vesalius/fit/joint_trust.h"
 
 namespace vesalius {
 namespace {
@@ -144,6 +145,35 @@ TEST_F(Evaluate, FollowsWithTheOptionsOfTrackingAndFittedBodies) {
   EXPECT_THAT(tracked, HasSubstr("\nfit.surface = 0.04\n"));
   EXPECT_THAT(options(""), Not(HasSubstr("track."))) << "nobody was followed";
   EXPECT_EQ(evaluate(" --track --fit.surface 0").exit_code, 2);
+}
+
+/// Clips of recipes that the built-in bodies suffice for.
+TEST_F(Evaluate, WritesTheTrustFittedToTheJointsOfClips) {
+  const std::string clips = path("clips"), forest = VESALIUS_SOURCE_DIR "/data/models/small.forest";
+  ASSERT_EQ(run_program(
+                "synth -q --sensor.width 160 --sensor.height 120 --body.kind builtin --body.count 2 --pose.captured 0 "
+                "--people.none 0 --people.one 0 --people.two 1 --people.three 0 --people.four 0 --people.cut-out 0 "
+                "--clip 2 --count 1 --seed 3 --out " +
+                clips)
+                .exit_code,
+            0);
+  const std::string fit = "evaluate " + clips + " -q -m " + forest + " --track --fit-trust ";
+  const Outcome run = run_program(fit + path("trust.toml"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out,
+              ContainsRegex("trust in observed joints: [1-9][0-9]* of [1-9][0-9]* right; confidence and share"));
+  const BodyTrust trust = parse_body_trust(bytes_of(path("trust.toml")), "trust.toml");
+  EXPECT_NE(trust.observed.bias, builtin_trust().observed.bias);
+  EXPECT_NEAR(trust.hidden.bias, builtin_trust().hidden.bias, 1e-3F) << "nobody is hidden without --hidden";
+
+  const Outcome single = evaluate(" --track --fit-trust " + path("none.toml"));
+  EXPECT_EQ(single.exit_code, 1);
+  EXPECT_THAT(single.err, HasSubstr("fitting the trust: expected fitted bodies"));
+  EXPECT_FALSE(fs::exists(path("none.toml")));
+  EXPECT_EQ(evaluate(" --fit-trust " + path("none.toml")).exit_code, 2) << "without --track";
+  const Outcome nowhere = run_program(fit + path("missing/trust.toml"));
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_EQ(nowhere.out, "") << "before any frame is looked at";
 }
 
 // Labels: threads

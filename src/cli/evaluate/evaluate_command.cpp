@@ -59,7 +59,7 @@ struct Arguments {
   std::optional<float> clip_s;
   std::optional<double> rate_hz;
   std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
-      fit_score, fit_judge, fit_context;
+      fit_score, fit_judge, fit_context, fit_trust;
   OptionFlags<PeopleOptions> detector_flags;
   int step = 1;
   double turn_deg = 0.0;
@@ -189,7 +189,8 @@ SetResult evaluate_shown(const Request& request, const Arguments& arguments, con
   };
   hooks.stop = interrupted;
   if (!arguments.track) return evaluate_set(*frames, request.set, scorer, variants, hooks);
-  return evaluate_sequences(open, request.set, scorer, trackers, {arguments.hidden}, hooks);
+  return evaluate_sequences(open, request.set, scorer, trackers, {arguments.hidden, !arguments.fit_trust.empty()},
+                            hooks);
 }
 
 /// Returns whether nothing but the JSON may go to standard output.
@@ -230,6 +231,22 @@ void write_fitted_context(const Evaluation& evaluation, const std::string& path,
       fitted.bodies, fitted.others));
 }
 
+/// Writes the trust in fitted joints fitted to all sets, and prints for each kind of joints how well confidence agrees
+/// with the share that is right, before and after.
+void write_fitted_trust(const Evaluation& evaluation, const std::string& path, bool quiet) {
+  const FittedTrust fitted = fit_evaluation_trust(evaluation);
+  write_file_atomically(path, fitted.toml);
+  if (quiet) return;
+  for (const NamedSource& source : kJointSources) {
+    const TrustAgreement& agreement = fitted.fit.agreement[static_cast<std::size_t>(source.source)];
+    if (agreement.samples == 0) continue;
+    print(fmt::format(
+        "trust in {} joints: {} of {} right; confidence and share right differ by {:.1f} %, were {:.1f} %{}\n",
+        source.name, agreement.right, agreement.samples, 100.0 * agreement.after, 100.0 * agreement.before,
+        agreement.fitted ? "" : " (too few to fit, left as it was)"));
+  }
+}
+
 void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.json.empty()) {
     TextSink sink(arguments.json);
@@ -244,12 +261,13 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.fit_score.empty()) write_fitted_score(evaluation, arguments.fit_score, prints_json(arguments));
   if (!arguments.fit_judge.empty()) write_fitted_judge(evaluation, arguments.fit_judge, prints_json(arguments));
   if (!arguments.fit_context.empty()) write_fitted_context(evaluation, arguments.fit_context, prints_json(arguments));
+  if (!arguments.fit_trust.empty()) write_fitted_trust(evaluation, arguments.fit_trust, prints_json(arguments));
 }
 
 /// Throws Error where a file that is to be fitted could not be written: that is known after the last frame otherwise.
 void check_writable(const Arguments& arguments) {
   for (const std::string* path : {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_score,
-                                  &arguments.fit_judge, &arguments.fit_context}) {
+                                  &arguments.fit_judge, &arguments.fit_context, &arguments.fit_trust}) {
     if (!path->empty() && !written_directly(*path)) const TemporaryFile probe(*path);
   }
 }
@@ -400,6 +418,11 @@ void add_evaluate(CLI::App& program) {
               "of recordings is one set")
           ->excludes("--labels-only", "--ablation", "--fit-joints", "--fit-parts", "--fit-score", "--fit-judge",
                      "--fit-context");
+  command
+      ->add_option("--fit-trust", arguments->fit_trust,
+                   "With --track: write how far the joints of fitted bodies can be trusted, fitted to these recordings")
+      ->type_name("FILE")
+      ->needs(track);
   command
       ->add_flag(
           "--hidden", arguments->hidden,
