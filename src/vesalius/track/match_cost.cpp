@@ -25,15 +25,10 @@ bool within_reach(const Track& track, const Sighting& sighting, double time_s) {
   return (sighting.trunk.position - track.place_position).norm() <= kReach_m + kRun_m_s * passed_s;
 }
 
-/// Pixels in both masks over those in either.
+/// Returns how much of the expected mask and the person's is shared, or -1 if that is unknown.
 float overlap(const Mask& expected, const Person& person) {
   if (expected.empty() || !expected.same_size(person.mask)) return -1.F;
-  long both = 0, either = 0;
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    both += (expected[i] != 0 && person.mask[i] != 0) ? 1 : 0;
-    either += (expected[i] != 0 || person.mask[i] != 0) ? 1 : 0;
-  }
-  return either > 0 ? static_cast<float>(both) / static_cast<float>(either) : 0.F;
+  return shared_pixels(expected, person.mask);
 }
 
 /// How much an overlap speaks against one person; half of the masks of neighbouring frames is plenty.
