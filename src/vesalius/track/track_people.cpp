@@ -419,12 +419,15 @@ Prior PeopleTracker::expect(const Frame& frame) const {
   std::ranges::stable_sort(known, [](const Track* a, const Track* b) { return a->log_odds > b->log_odds; });
   if (known.size() > kMostExpected) known.resize(kMostExpected);
   for (const Track* track : known) {
-    TrackMotion motion = track->motion;
-    motion.predict(step.passed_s);
-    Mask mask = track->place.expected(frame, track->place_position, motion.position());
+    Mask mask;
     std::vector<Capsule> flesh;
-    const std::optional<BodyState> pose = track->history.expected_state(step.time_s);
-    if (pose) flesh = flesh_capsules(state_->fitter->flesh(), *pose);
+    if (const std::optional<BodyState> pose = track->history.expected_state(step.time_s)) {
+      flesh = flesh_capsules(state_->fitter->flesh(), *pose);
+    } else {
+      TrackMotion motion = track->motion;
+      motion.predict(step.passed_s);
+      mask = track->place.expected(frame, track->place_position, motion.position());
+    }
     if (mask.empty() && flesh.empty()) continue;
     const float odds = is_sure(*track) ? std::exp(track->log_odds) : 1.F;  // a guess must not confirm itself
     prior.people.push_back({std::move(mask), track->look.histogram(), odds, std::move(flesh)});
