@@ -268,7 +268,7 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
 void check_writable(const Arguments& arguments) {
   for (const std::string* path : {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_score,
                                   &arguments.fit_judge, &arguments.fit_context, &arguments.fit_trust}) {
-    if (!path->empty() && !written_directly(*path)) const TemporaryFile probe(*path);
+    if (!path->empty()) vesalius::check_writable(*path);
   }
 }
 
