@@ -18,7 +18,6 @@
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/stage_times.h"
-#include "vesalius/fit/fit_body.h"
 
 namespace vesalius::cli {
 namespace {
@@ -88,9 +87,7 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
     return arguments.frames == 0 || progress.done() < arguments.frames;
   };
   if (arguments.track) {
-    const PeopleOptions people = arguments.detector.options();
-    PeopleTracker tracker(detector.body(), people.track, detector.appearance(),
-                          std::make_shared<const BodyFitter>(detector.body(), people.fit));
+    PeopleTracker tracker = make_tracker(detector, arguments.detector.options());
     totals.dropped = stream_frames(source, detector, tracker, options, take);
   } else {
     totals.dropped = stream_frames(source, detector, options, take);

@@ -15,7 +15,6 @@
 #include "stream/detect_stream.h"
 #include "stream/person_json.h"
 #include "vesalius/base/keep_memory.h"
-#include "vesalius/fit/fit_body.h"
 
 namespace vesalius::cli {
 namespace {
@@ -68,9 +67,7 @@ int record_people(const Arguments& arguments, FrameSource& source, const Detecto
     return !is_enough(arguments, progress);
   };
   if (!arguments.track) return stream_frames(source, detector, options, take);
-  const PeopleOptions people = arguments.detector.options();
-  PeopleTracker tracker(body, people.track, detector.appearance(),
-                        std::make_shared<const BodyFitter>(body, people.fit));
+  PeopleTracker tracker = make_tracker(detector, arguments.detector.options());
   return stream_frames(source, detector, tracker, options, take);
 }
 
