@@ -27,9 +27,10 @@ Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
-ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s) const {
+ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s, const std::optional<Ground>& ground) const {
   const int shapes = fitter.flesh().shapes;
   ExpectedBody expected;
+  expected.ground = ground;
   expected.shape = shape_.size() == shapes ? shape_ : Eigen::VectorXd::Zero(shapes);
   expected.shape_information = shape_.size() == shapes ? information_ : Eigen::MatrixXd::Identity(shapes, shapes);
   expected.pose = expected_state(time_s);
@@ -63,8 +64,8 @@ void BodyHistory::learn(const BodyFit& fit, const ExpectedBody& expected) {
 }
 
 std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame& frame, const Person& person,
-                                           double time_s) {
-  const ExpectedBody expected = expect(fitter, time_s);
+                                           double time_s, const std::optional<Ground>& ground) {
+  const ExpectedBody expected = expect(fitter, time_s, ground);
   std::optional<BodyFit> found = fitter.fit(frame, person, expected);
   if (!found) return std::nullopt;
   if (found->body.misfit <= kWrong) learn(*found, expected);

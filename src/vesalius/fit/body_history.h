@@ -13,8 +13,9 @@ namespace vesalius {
 class BodyHistory {
  public:
   /// Fits the person's body in the next frame, at `time_s` seconds, and learns from it. Returns nothing if too little
-  /// of the person is known; then nothing is learned either.
-  std::optional<FittedBody> fit(const BodyFitter& fitter, const Frame& frame, const Person& person, double time_s);
+  /// of the person is known; then nothing is learned either. `ground` is where the floor is, if that is known.
+  std::optional<FittedBody> fit(const BodyFitter& fitter, const Frame& frame, const Person& person, double time_s,
+                                const std::optional<Ground>& ground = {});
 
   /// Returns the body that is expected at `time_s`; nothing if the pose is not known any more.
   std::optional<BodyState> expected_state(double time_s) const;
@@ -26,7 +27,7 @@ class BodyHistory {
   int frames() const { return frames_; }
 
  private:
-  ExpectedBody expect(const BodyFitter& fitter, double time_s) const;
+  ExpectedBody expect(const BodyFitter& fitter, double time_s, const std::optional<Ground>& ground) const;
   void learn(const BodyFit& fit, const ExpectedBody& expected);
 
   struct Last {

@@ -57,6 +57,18 @@ void expect_sides(const FittedBody& body, const std::vector<PlacedBone>& truth) 
   }
 }
 
+/// Puts a box before the lower body.
+void hide_from_thighs_down(test::SeenBody& seen) {
+  const int top = static_cast<int>(seen.frame.camera.pixel(seen.truth[0].head.cast<float>()).y()) + 8;
+  for (int v = top; v < seen.frame.depth.height(); ++v) {
+    for (int u = 0; u < seen.frame.depth.width(); ++u) {
+      seen.frame.depth(u, v) = 1200;
+      seen.person.labels(u, v) = kBackground;
+    }
+  }
+  test::describe(paper_body(), seen.frame, seen.person);
+}
+
 bool same_bytes(const FittedBody& a, const FittedBody& b) {
   if (a.bones.size() != b.bones.size() || a.shape != b.shape || a.stature_m != b.stature_m || a.misfit != b.misfit) {
     return false;
@@ -119,15 +131,7 @@ TEST(FitBody, OutputsAgreeWithEachOther) {
 TEST(FitBody, HiddenLimbsArePredictedAndLessCertain) {
   const FleshModel& flesh = builtin_flesh();
   test::SeenBody seen = test::see(test::usual_state(0.0));
-  // A box before the lower body hides everything from the thighs downwards.
-  const int top = static_cast<int>(seen.frame.camera.pixel(seen.truth[0].head.cast<float>()).y()) + 8;
-  for (int v = top; v < seen.frame.depth.height(); ++v) {
-    for (int u = 0; u < seen.frame.depth.width(); ++u) {
-      seen.frame.depth(u, v) = 1200;
-      seen.person.labels(u, v) = kBackground;
-    }
-  }
-  test::describe(paper_body(), seen.frame, seen.person);
+  hide_from_thighs_down(seen);
   const std::optional<BodyFit> fit = BodyFitter(paper_body()).fit(seen.frame, seen.person);
   ASSERT_TRUE(fit);
   const FittedBone& foot = fit->body.bones[flesh.find_bone("l_foot")];
@@ -137,6 +141,30 @@ TEST(FitBody, HiddenLimbsArePredictedAndLessCertain) {
   EXPECT_EQ(hand.state, State::observed);
   EXPECT_GT(foot.covariance.trace(), 4.F * hand.covariance.trace());
   EXPECT_LT(foot.confidence, hand.confidence);
+}
+
+TEST(FitBody, HasNoLegsInTheGround) {
+  const FleshModel& flesh = builtin_flesh();
+  const BodyFitter fitter(paper_body());
+  test::SeenBody seen = test::see(test::usual_state(0.2));
+  hide_from_thighs_down(seen);
+  // Legs that are not seen are those of somebody who stands, unless the ground, here as high as the knees, forbids
+  // that.
+  const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
+  const Ground ground{up, -up.dot(seen.truth[flesh.find_bone("l_shin")].head)};
+  const auto lowest_m = [&](const std::optional<BodyFit>& fit) {
+    double lowest = 10.0;
+    for (const FittedBone& bone : fit->body.bones)
+      lowest = std::min(lowest, ground.height_of(bone.tail.cast<double>()));
+    return lowest;
+  };
+  ExpectedBody expected;
+  const std::optional<BodyFit> without = fitter.fit(seen.frame, seen.person, expected);
+  expected.ground = ground;
+  const std::optional<BodyFit> with = fitter.fit(seen.frame, seen.person, expected);
+  ASSERT_TRUE(without && with);
+  EXPECT_LT(lowest_m(without), -0.3);
+  EXPECT_GT(lowest_m(with), -0.08);
 }
 
 TEST(FitBody, BearsWrongSides) {

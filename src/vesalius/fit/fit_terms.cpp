@@ -14,7 +14,9 @@ using Eigen::Vector3d;
 // Of a point, in units of the flesh's half width: its direction is not defined at 0.
 constexpr double kLeastRadius = 0.1;
 constexpr double kLeastHalf_m = 0.008;
-constexpr double kLimit = 3.0;  // deviations beyond which centres, outline and fast limbs count less and less
+constexpr double kLimit = 3.0;  // deviations beyond which centres, outline, fast limbs and feet count less and less
+constexpr double kBelowLimit =
+    6.0;  // the same of flesh below the ground: starts may be far below, and the ground wrong
 
 /// The flesh of a bone at a place along it.
 struct CrossSection {
@@ -48,6 +50,50 @@ Vector3d middle_at(const PlacedBone& placed, const FleshBone& bone, const CrossS
   point[bone.axis] = along * placed.numbers[3 + bone.axis];
   for (int i = 0; i < 2; ++i) point[across[i]] = section.centre[i];
   return point;
+}
+
+/// The lowest place of a bone's flesh.
+struct LowPlace {
+  int bone = -1;
+  Vector3d at = Vector3d::Zero();
+  Eigen::VectorXd by_shape;  ///< derivative of its height by the shape, the bone's head left out
+  double height_m = std::numeric_limits<double>::max();
+};
+
+LowPlace low_place(const Ground& ground, int index, const PlacedBone& placed, const FleshBone& bone) {
+  const std::array<int, 2> across = axes_across(bone.axis);
+  const Vector3d up = placed.global.transpose() * ground.up;
+  LowPlace lowest;
+  int station = 0;
+  std::array<double, 2> of_half{};  // derivative of the height by the half widths there
+  for (int s = 0; s < FleshBone::kStations; ++s) {
+    Vector3d point = Vector3d::Zero();
+    point[bone.axis] = static_cast<double>(bone.stations[s]) * placed.numbers[3 + bone.axis];
+    std::array<double, 2> rise{};
+    for (int i = 0; i < 2; ++i) {
+      point[across[i]] = placed.numbers[6 + 4 * s + i];
+      rise[i] = placed.numbers[8 + 4 * s + i] * up[across[i]];
+    }
+    const double reach = std::max(std::hypot(rise[0], rise[1]), 1e-9);
+    for (int i = 0; i < 2; ++i) point[across[i]] -= placed.numbers[8 + 4 * s + i] * rise[i] / reach;
+    const Vector3d at = placed.head + placed.global * point;
+    const double height_m = ground.height_of(at);
+    if (height_m >= lowest.height_m) continue;
+    lowest = {index, at, {}, height_m};
+    station = s;
+    for (int i = 0; i < 2; ++i) of_half[i] = -rise[i] * up[across[i]] / reach;
+  }
+  lowest.by_shape.setZero(static_cast<Index>(bone.shapes.size()));
+  for (Index k = 0; k < lowest.by_shape.size(); ++k) {
+    const FleshBone::Numbers& by = bone.shapes[k];
+    double& change = lowest.by_shape[k];
+    change = static_cast<double>(bone.stations[station] * by[3 + bone.axis]) * up[bone.axis];
+    for (int i = 0; i < 2; ++i) {
+      change += static_cast<double>(by[6 + 4 * station + i]) * up[across[i]] +
+                static_cast<double>(by[8 + 4 * station + i]) * of_half[i];
+    }
+  }
+  return lowest;
 }
 
 double geman_mcclure(double squared, double limit) { return squared / (1.0 + squared / (limit * limit)); }
@@ -90,6 +136,8 @@ void visit_options(const std::string& prefix, FitOptions& o, OptionVisitor& visi
                  {"m", 0.001, 10.0, "Standard deviation of a person's place from the expected one in 1/30 s."});
   visitor.option(prefix + "follow-turn", o.follow_rad,
                  {"rad", 0.001, 10.0, "Standard deviation of a bone's turn from the expected one in 1/30 s."});
+  visitor.option(prefix + "ground", o.ground_m,
+                 {"m", 0.001, 10.0, "Standard deviation of flesh below the ground, and of the lowest foot above it."});
   visitor.option(prefix + "restart-gain", o.restart_gain,
                  {"", 0.0, 10000.0, "Squared deviations that a fit afresh must gain to replace the followed body."});
 }
@@ -124,7 +172,11 @@ struct FitTerms::Hit {
 };
 
 FitTerms::FitTerms(const FleshModel& flesh, const BodyModel& body, const FitOptions& options)
-    : flesh_(flesh), body_(body), options_(options), surface_(body, flesh) {}
+    : flesh_(flesh), body_(body), options_(options), surface_(body, flesh) {
+  for (int b = 0; b < flesh.bone_count(); ++b) {
+    if (flesh.bones[b].name.ends_with("foot")) feet_.push_back(b);
+  }
+}
 
 FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurface::Stretch& stretch,
                             const Vector3d& at) const {
@@ -323,6 +375,26 @@ void FitTerms::add_outline(const FitData& data, const std::vector<PlacedBone>& p
   }
 }
 
+void FitTerms::add_ground(const Ground& ground, const std::vector<PlacedBone>& placed,
+                          NormalEquations& equations) const {
+  const double information = 1.0 / (static_cast<double>(options_.ground_m) * static_cast<double>(options_.ground_m));
+  const auto pull = [&](const LowPlace& place, double limit) {
+    const double squared = information * place.height_m * place.height_m;
+    const double weight = information * robust_weight(squared, limit, 1.0, equations);
+    equations.add_point(place.bone, place.at, ground.up, place.by_shape, place.height_m, weight);
+  };
+  LowPlace lower_foot;
+  for (int b = 0; b < flesh_.bone_count(); ++b) {
+    LowPlace place = low_place(ground, b, placed[b], flesh_.bones[b]);
+    if (place.height_m < 0.0) pull(place, kBelowLimit);
+    if (std::ranges::find(feet_, b) != feet_.end() && place.height_m < lower_foot.height_m) {
+      lower_foot = std::move(place);
+    }
+  }
+  // Who sits with raised feet, lies or jumps is beyond the limit and hardly pulled down.
+  if (lower_foot.bone >= 0 && lower_foot.height_m > 0.0) pull(lower_foot, kLimit);
+}
+
 void FitTerms::add_poses(const BodyState& state, NormalEquations& equations) const {
   for (const LimbPrior& limb : flesh_.limbs) {
     const auto size = static_cast<Index>(3 * limb.bones.size());
@@ -400,6 +472,7 @@ void FitTerms::evaluate_points(const FitData& data, const BodyState& state, cons
   equations.clear(placed);
   add_points(data, placed, assigned, equations);
   add_outline(data, placed, equations);
+  if (data.expected.ground) add_ground(*data.expected.ground, placed, equations);
   add_priors(data.expected, state, equations);
   add_followed(data.expected, state, equations);
   equations.finish();
@@ -410,6 +483,7 @@ void FitTerms::evaluate_centres(const FitData& data, const BodyState& state, boo
   placed = place_bones(flesh_, state);
   equations.clear(placed);
   add_centres(data, placed, mirrored, equations);
+  if (data.expected.ground) add_ground(*data.expected.ground, placed, equations);
   add_priors(data.expected, state, equations);
   equations.finish();
 }

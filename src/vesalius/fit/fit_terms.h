@@ -33,6 +33,7 @@ struct FitOptions {
   float centre_m = 0.08F;       ///< of the parts' centres, from which a fit starts
   float follow_m = 0.02F;       ///< standard deviation of the root from its expected place after a thirtieth second
   float follow_rad = 0.1F;      ///< of a bone's turn from its expected one
+  float ground_m = 0.05F;       ///< standard deviation of flesh below the ground, and of the lowest foot above it
   float restart_gain = 40.F;    ///< by which a fit afresh must cost less than the followed body to replace it
 };
 void visit_options(const std::string& prefix, FitOptions& options, OptionVisitor& visitor);
@@ -50,8 +51,17 @@ struct PartSurface {
   PartSurface(const BodyModel& body, const FleshModel& flesh);
 };
 
+/// The level ground in the optical frame.
+struct Ground {
+  Eigen::Vector3d up{0.0, -1.0, 0.0};  ///< unit vector
+  double height_m = 0.0;               ///< of the camera above the ground
+
+  double height_of(const Eigen::Vector3d& point) const { return height_m + up.dot(point); }
+};
+
 /// What is known of a body before its points are looked at.
 struct ExpectedBody {
+  std::optional<Ground> ground;       ///< below which no flesh is, and on which most people stand
   std::optional<BodyState> pose;      ///< where the person is expected in this frame
   int start = 0;                      ///< which of kStarts is tried besides the pose; -1: none
   double loosened = 1.0;              ///< multiplies the standard deviations of following; grows with the time gone by
@@ -110,6 +120,7 @@ class FitTerms {
   void add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                    NormalEquations& equations) const;
   void add_outline(const FitData& data, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
+  void add_ground(const Ground& ground, const std::vector<PlacedBone>& placed, NormalEquations& equations) const;
   void add_poses(const BodyState& state, NormalEquations& equations) const;
   void add_limits(const BodyState& state, NormalEquations& equations) const;
   void add_followed(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const;
@@ -118,6 +129,7 @@ class FitTerms {
   const BodyModel& body_;
   const FitOptions& options_;
   PartSurface surface_;
+  std::vector<int> feet_;  ///< bones
 };
 
 }  // namespace vesalius

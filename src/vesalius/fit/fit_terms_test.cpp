@@ -73,6 +73,29 @@ TEST(FitTerms, TheExpectedPoseHasTheGradientOfItsCost) {
   expect_true_gradient(terms, data, state);
 }
 
+TEST(FitTerms, TheGroundHasTheGradientOfItsCost) {
+  FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  FitData data;
+  data.expected.shape = VectorXd::Zero(builtin_flesh().shapes);
+  data.expected.shape_information = Eigen::MatrixXd::Identity(builtin_flesh().shapes, builtin_flesh().shapes);
+  const BodyState state = test::random_state(9, 0.2);
+  const double without = costs_at(terms, data, state).cost;
+  // Knee-deep in the ground, and the feet just above it; the ground is not level with the picture.
+  double lowest = 1e9;
+  const Eigen::Vector3d up = Eigen::Vector3d(0.1, -0.95, -0.2).normalized();
+  for (const PlacedBone& bone : place_bones(builtin_flesh(), state)) lowest = std::min(lowest, up.dot(bone.tail));
+  for (const double deep_m : {0.3, -0.12}) {
+    SCOPED_TRACE(deep_m);
+    data.expected.ground = Ground{up, -lowest - deep_m};
+    EXPECT_GT(costs_at(terms, data, state).cost, without + 0.5);
+    expect_true_gradient(terms, data, state);
+  }
+  // Somebody high above it is left alone, but for what a foot off the ground costs at most.
+  data.expected.ground = Ground{up, -lowest + 5.0};
+  EXPECT_NEAR(costs_at(terms, data, state).cost, without + 9.0, 0.1);
+}
+
 TEST(FitTerms, BeyondAJointsRangeAndOffTheExpectedPlaceCosts) {
   const FitOptions options;
   const FitTerms terms(builtin_flesh(), paper_body(), options);

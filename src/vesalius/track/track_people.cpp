@@ -161,7 +161,7 @@ struct PeopleTracker::State {
   void lose_all(double time_s, TrackedFrame& out);
   void predict(const Frame& frame, double passed_s);
   std::vector<int> follow(const std::vector<Sighting>& sightings, double time_s, TrackedFrame& out);
-  void fit_bodies(const Frame& frame, const std::vector<int>& sighting_of, double time_s,
+  void fit_bodies(const Frame& frame, const std::vector<int>& sighting_of, const TrackedFrame& out,
                   std::vector<Sighting>& sightings);
   void tell(const Frame& frame, const std::vector<int>& sighting_of, std::vector<Sighting> sightings,
             TrackedFrame& out);
@@ -331,15 +331,17 @@ std::vector<int> PeopleTracker::State::follow(const std::vector<Sighting>& sight
   return sighting_of;
 }
 
-void PeopleTracker::State::fit_bodies(const Frame& frame, const std::vector<int>& sighting_of, double time_s,
+void PeopleTracker::State::fit_bodies(const Frame& frame, const std::vector<int>& sighting_of, const TrackedFrame& out,
                                       std::vector<Sighting>& sightings) {
   if (!fitter || !fitter->can_fit()) return;
+  std::optional<Ground> ground;
+  if (out.floor) ground = {out.floor->up.cast<double>(), static_cast<double>(out.floor->height_m)};
   parallel_for(static_cast<int>(tracks.size()), [&](int t) {
     if (sighting_of[t] < 0) return;
     Track& track = tracks[t];
     Person& person = sightings[static_cast<std::size_t>(sighting_of[t])].person;
     if (!person.mask.same_size(frame.depth)) return;
-    track.body = track.history.fit(*fitter, frame, person, time_s);
+    track.body = track.history.fit(*fitter, frame, person, out.time_s, ground);
     if (track.body) place_joints(*track.body, builtin_flesh_joints(), body, fitter->trust(), person.joints);
     track.person.joints = person.joints;
   });
@@ -451,7 +453,7 @@ TrackedFrame PeopleTracker::update(const Frame& frame, std::vector<Person> peopl
   out.floor = s.floor.view();
   s.predict(frame, step.passed_s);
   const std::vector<int> sighting_of = s.follow(sightings, step.time_s, out);
-  s.fit_bodies(frame, sighting_of, step.time_s, sightings);
+  s.fit_bodies(frame, sighting_of, out, sightings);
   s.tell(frame, sighting_of, std::move(sightings), out);
   return out;
 }
