@@ -17,7 +17,7 @@ constexpr double kVelocityShare = 0.3;               // of a new measurement of 
 constexpr double kNews = 0.2;                        // share of a frame that is new: neighbouring frames err alike
 constexpr double kKept = 0.998;                      // share of what was learned that a frame keeps: clothes move
 constexpr float kDoubtful = 0.3F;                    // misfit of a body that may have lost its person ...
-constexpr float kWrong = 0.6F;                       // ... and of one that surely tells nothing of its shape
+constexpr float kWrong = 0.4F;                       // ... and of one that surely tells nothing of its shape
 
 /// Returns the matrix without negative eigenvalues, which rounding and local minima leave.
 Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
@@ -65,9 +65,10 @@ void BodyHistory::learn(const BodyFit& fit, const ExpectedBody& expected) {
 
 std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame& frame, const Person& person,
                                            double time_s, const std::optional<Ground>& ground) {
-  const ExpectedBody expected = expect(fitter, time_s, ground);
+  ExpectedBody expected = expect(fitter, time_s, ground);
   std::optional<BodyFit> found = fitter.fit(frame, person, expected);
   if (!found) return std::nullopt;
+  if (found->restarted) fitter.forget_shape(expected);
   if (found->body.misfit <= kWrong) learn(*found, expected);
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> turning(found->state.local.size(), Eigen::Vector3d::Zero());

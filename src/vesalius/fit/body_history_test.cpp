@@ -87,6 +87,21 @@ TEST(BodyHistory, ABodyThatLostItsPersonBeginsAnew) {
   EXPECT_NEAR(body->stature_m, stature, 0.05F) << "bad fits teach nothing about the person";
 }
 
+TEST(BodyHistory, WhoBeginsAnewIsNotHeldToTheShapeOfAWrongBody) {
+  const BodyFitter fitter(paper_body());
+  BodyState small = test::usual_state(0.0);
+  small.shape[0] = -2.0;
+  BodyState tall = test::usual_state(3.0);
+  tall.shape[0] = 2.0;
+  tall.root += Eigen::Vector3d(0.25, 0.0, 0.4);
+  const test::SeenBody before = test::see(small), after = test::see(tall);
+  BodyHistory history;
+  for (int i = 0; i < 40; ++i) ASSERT_TRUE(history.fit(fitter, before.frame, before.person, i / 30.0));
+  for (int i = 40; i < 52; ++i) ASSERT_TRUE(history.fit(fitter, after.frame, after.person, i / 30.0));
+  const double truth = stature(fitter.flesh(), tall.shape);
+  EXPECT_NEAR(*history.stature_m(), truth, 0.04 * truth);
+}
+
 TEST(BodyHistory, BadTimesForgetThePoseAndNeverFail) {
   const BodyFitter fitter(paper_body());
   const BodyState state = test::usual_state(0.0);

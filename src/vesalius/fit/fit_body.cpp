@@ -43,6 +43,11 @@ BodyFitter::BodyFitter(BodyModel body, FitOptions options, const FleshModel& fle
   can_fit_ = std::ranges::any_of(terms_.surface().of_part, [](const auto& stretches) { return !stretches.empty(); });
 }
 
+void BodyFitter::forget_shape(ExpectedBody& expected) const {
+  expected.shape = Eigen::VectorXd::Zero(flesh_.shapes);
+  expected.shape_information = Eigen::MatrixXd::Identity(flesh_.shapes, flesh_.shapes);
+}
+
 BodyFitter::Solution BodyFitter::descend(BodyState start, int steps, const Evaluate& evaluate) const {
   constexpr double kEnough = 1e-3;  // share of the cost that a further step must gain
   constexpr int kTries = 4;
@@ -178,10 +183,7 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
     }
   }
   data.expected = expected;
-  if (data.expected.shape.size() == 0) {
-    data.expected.shape = Eigen::VectorXd::Zero(flesh_.shapes);
-    data.expected.shape_information = Eigen::MatrixXd::Identity(flesh_.shapes, flesh_.shapes);
-  }
+  if (data.expected.shape.size() == 0) forget_shape(data.expected);
   if (!data.expected.pose) {
     const std::optional<Solution> solution = fit_afresh(data, 0, kStarts);
     if (!solution) return std::nullopt;
@@ -191,9 +193,11 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
   start.shape = data.expected.shape;
   const Solution followed = fit_points(data, std::move(start), options_.rounds);
   if (expected.start >= 0) {
-    // A body that lost its person stays near itself; without the expected pose both have the same chance.
+    // A body that lost its person stays near itself; without the expected pose both have the same chance. The shape may
+    // have been learned from a wrong body, too.
     data.expected.pose.reset();
     const double least = cost(data, followed) - static_cast<double>(options_.restart_gain);
+    forget_shape(data.expected);
     const std::optional<Solution> afresh = fit_afresh(data, expected.start, 1);
     if (afresh && afresh->cost < least) {
       BodyFit fit = report(data, person.score, *afresh);

@@ -22,7 +22,7 @@ inline constexpr int kStarts = 4;
 struct BodyFit {
   FittedBody body;
   BodyState state;
-  /// Whether it was found without the expected pose, which does not fit what is seen.
+  /// Whether it was found without the expected pose and shape, which do not fit what is seen.
   bool restarted = false;
   Eigen::MatrixXd shape_information;  ///< what this frame's points tell of the shape, without what was known before
 };
@@ -46,6 +46,9 @@ class BodyFitter {
   /// Returns the body of a person, or nothing if too little of the person is known. `expected` is what earlier frames
   /// tell (its shape may be empty). The frame's size is the mask's.
   std::optional<BodyFit> fit(const Frame& frame, const Person& person, const ExpectedBody& expected = {}) const;
+
+  /// Sets the shape to what is known of anybody's.
+  void forget_shape(ExpectedBody& expected) const;
 
   const FleshModel& flesh() const { return flesh_; }
   const BodyTrust& trust() const { return trust_; }
