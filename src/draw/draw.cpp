@@ -207,10 +207,12 @@ ColourImage draw_people(const Frame& frame, const std::vector<Person>& people, c
   ColourImage picture = enlarge(frame.colour.empty() ? draw_depth(frame.depth) : frame.colour, scale);
   const auto colour_of = [](std::size_t index) { return kPersonColours[index % kPersonColours.size()]; };
   for (std::size_t i = 0; i < people.size(); ++i) {
+    if (people[i].mask.empty()) continue;
     check_fits(frame, people[i], i, body);
     draw_mask(picture, enlarge(people[i].mask, scale), colour_of(i));
   }
   for (std::size_t i = 0; i < people.size(); ++i) {
+    if (people[i].mask.empty()) continue;
     draw_skeleton(picture, people[i].skeleton, frame.camera, body, scale);
     draw_score(picture, people[i], i, colour_of(i), scale);
   }

@@ -62,7 +62,11 @@ std::string DetectOutputs::path(const char* kind, const Frame& frame, const char
 
 void DetectOutputs::write(const FoundFrame& found) {
   const Frame& frame = *found.frame;
-  write_pictures(frame, found.people);
+  if (found.tracked && !kinds_.empty()) {
+    write_pictures(frame, people_of(*found.tracked));  // in the order of the JSON, so that the numbers are the same
+  } else {
+    write_pictures(frame, found.people);
+  }
   if (json_) {
     json_->line(found.tracked ? tracked_frame_json(frame, *found.tracked, body_, found.latency_ms)
                               : frame_json(frame, found.people, body_, found.latency_ms));
