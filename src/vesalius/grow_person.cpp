@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "vesalius/base/capsule.h"
+
 namespace vesalius {
 namespace {
 
@@ -71,20 +73,9 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
   for (std::size_t i = 0; i < rough.parts.size(); ++i) {
     if (rough.parts[i].state != State::observed || reach[i] <= 0.F) continue;
     const Eigen::Vector3f& centre = rough.parts[i].centre;
-    // These are the rows and columns to which the sphere can project. If it is nearer than its own radius, it may fill
-    // the picture.
-    const float nearest = std::max(0.1F, centre.z() - reach[i]);
-    const Eigen::Vector2f middle = frame_.camera.pixel(centre);
-    const float ru =
-        reach[i] / nearest * frame_.camera.fx + std::abs(middle.x() - frame_.camera.cx) * reach[i] / nearest;
-    const float rv =
-        reach[i] / nearest * frame_.camera.fy + std::abs(middle.y() - frame_.camera.cy) * reach[i] / nearest;
-    const int left = std::max(0, static_cast<int>(middle.x() - ru));
-    const int right = std::min(out.width() - 1, static_cast<int>(middle.x() + ru) + 1);
-    const int top = std::max(0, static_cast<int>(middle.y() - rv));
-    const int bottom = std::min(out.height() - 1, static_cast<int>(middle.y() + rv) + 1);
-    for (int v = top; v <= bottom; ++v) {
-      for (int u = left; u <= right; ++u) {
+    const Box box = box_around({centre, centre, reach[i], reach[i]}, frame_.camera);
+    for (int v = box.v; v < box.v + box.height; ++v) {
+      for (int u = box.u; u < box.u + box.width; ++u) {
         if (frame_.depth(u, v) == 0 || out(u, v) != 0) continue;
         const float dz = static_cast<float>(frame_.depth(u, v)) * 1e-3F - centre.z();
         if (dz * dz > reach[i] * reach[i]) continue;  // most of them, before x and y cost their divisions

@@ -30,34 +30,6 @@ float log_odds(double share) {
   return std::log(least / (1.F - least));
 }
 
-/// The part of the picture in which points near a capsule can be seen.
-Box box_around(const Capsule& capsule, const Frame& frame, float reach_m) {
-  float left = kFar, right = -kFar, top = kFar, bottom = -kFar;
-  for (const auto& [centre, radius] :
-       {std::pair{capsule.from, capsule.from_radius}, std::pair{capsule.to, capsule.to_radius}}) {
-    const float r = radius + reach_m;
-    // If the sphere is nearer than its own radius, it may fill the picture.
-    const float nearest = std::max(0.1F, centre.z() - r), z = std::max(0.1F, centre.z());
-    const float x = centre.x() / z, y = centre.y() / z;
-    const float ru = frame.camera.fx * r / nearest * (1.F + std::abs(x)),
-                rv = frame.camera.fy * r / nearest * (1.F + std::abs(y));
-    const float u = frame.camera.cx + frame.camera.fx * x, v = frame.camera.cy + frame.camera.fy * y;
-    left = std::min(left, u - ru);
-    right = std::max(right, u + ru);
-    top = std::min(top, v - rv);
-    bottom = std::max(bottom, v + rv);
-  }
-  const auto inside = [](float at, int size) {
-    return static_cast<int>(std::clamp(at, 0.F, static_cast<float>(size)));
-  };
-  Box box;
-  box.u = inside(left, frame.camera.width);
-  box.v = inside(top, frame.camera.height);
-  box.width = inside(right + 1.F, frame.camera.width) - box.u;
-  box.height = inside(bottom + 1.F, frame.camera.height) - box.v;
-  return box;
-}
-
 }  // namespace
 
 Image<float> distance_from(const std::vector<Capsule>& capsules, const Frame& frame, float reach_m) {
@@ -68,7 +40,8 @@ Image<float> distance_from(const std::vector<Capsule>& capsules, const Frame& fr
     const float nearest = std::min(capsule.from.z(), capsule.to.z()) - reach;
     const float farthest = std::max(capsule.from.z(), capsule.to.z()) + reach;
     if (farthest <= 0.F) continue;
-    const Box box = box_around(capsule, frame, reach_m);
+    const Capsule around{capsule.from, capsule.to, capsule.from_radius + reach_m, capsule.to_radius + reach_m};
+    const Box box = box_around(around, frame.camera);
     for (int v = box.v; v < box.v + box.height; ++v) {
       for (int u = box.u; u < box.u + box.width; ++u) {
         const float z = static_cast<float>(frame.depth(u, v)) * 1e-3F;

@@ -3,6 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "vesalius/base/camera.h"
+#include "vesalius/base/image.h"
+
 namespace vesalius {
 
 /// All points near a line from one point to another, within a radius that changes evenly along it. Metres.
@@ -17,5 +20,9 @@ struct Capsule {
     return (offset - along * axis).norm() - (from_radius + along * (to_radius - from_radius));
   }
 };
+
+/// Returns the part of the camera's picture in which points of a capsule can be seen. If it is nearer than its own
+/// radius, that may be the whole picture.
+Box box_around(const Capsule& capsule, const Camera& camera);
 
 }  // namespace vesalius
