@@ -1,7 +1,6 @@
 #include "vesalius/fit/flesh_capsules.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace vesalius {
@@ -17,14 +16,12 @@ struct End {
 };
 
 End end_of(const FleshBone& bone, const PlacedBone& placed, int station) {
-  const std::array<int, 2> across = axes_across(bone.axis);
-  const double* numbers = placed.numbers.data() + 6 + 4 * station;
-  const int wide = numbers[2] > numbers[3] ? 0 : 1;
+  const FleshEllipse<double> ellipse = ellipse_of(bone, placed.numbers, station);
+  const auto& [first, second] = ellipse.half;
   End end;
-  end.centre[bone.axis] = static_cast<double>(bone.stations[station]) * placed.numbers[3 + bone.axis];
-  for (int i = 0; i < 2; ++i) end.centre[across[i]] = numbers[i];
-  end.radius = std::max(0.0, std::min(numbers[2], numbers[3]));
-  end.aside[across[wide]] = std::abs(numbers[2] - numbers[3]);
+  end.centre = ellipse.centre;
+  end.radius = std::max(0.0, std::min(first, second));
+  end.aside[ellipse.across[first > second ? 0 : 1]] = std::abs(first - second);
   return end;
 }
 

@@ -222,18 +222,12 @@ double stature(const FleshModel& flesh, const Eigen::VectorXd& shape) {
     const double head = (bone.parent < 0 ? 0.0 : heads[bone.parent]) + static_cast<double>(numbers[1]);
     heads.push_back(head);
     if (bone.axis == 0) continue;  // arms are stretched to the sides
-    const std::array<int, 2> across = axes_across(bone.axis);
     for (int s = 0; s < FleshBone::kStations; ++s) {
-      const double along = static_cast<double>(bone.stations[s] * numbers[4]);
-      for (const double side : {-1.0, 1.0}) {
-        double at = head + (bone.axis == 1 ? along : 0.0);
-        for (int i = 0; i < 2; ++i) {
-          if (across[i] == 1)
-            at += static_cast<double>(numbers[6 + 4 * s + i]) + side * static_cast<double>(numbers[8 + 4 * s + i]);
-        }
-        low = std::min(low, at);
-        high = std::max(high, at);
-      }
+      const FleshEllipse<float> ellipse = ellipse_of(bone, numbers, s);
+      const double at = head + static_cast<double>(ellipse.centre.y());
+      const double half = bone.axis == 1 ? 0.0 : static_cast<double>(ellipse.half[ellipse.across[0] == 1 ? 0 : 1]);
+      low = std::min({low, at - half, at + half});
+      high = std::max({high, at - half, at + half});
     }
   }
   return high - low;
@@ -248,7 +242,5 @@ FleshBone::Numbers mirrored(FleshBone::Numbers numbers, int axis) {
   }
   return numbers;
 }
-
-std::array<int, 2> axes_across(int axis) { return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2}; }
 
 }  // namespace vesalius

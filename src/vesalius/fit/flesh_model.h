@@ -28,6 +28,31 @@ struct FleshBone {
   std::array<float, 3> low{}, high{};
 };
 
+/// The ellipse of flesh across a bone at one of its stations, in the bone's frame, metres.
+template <class Number>
+struct FleshEllipse {
+  Eigen::Vector3<Number> centre = Eigen::Vector3<Number>::Zero();
+  std::array<int, 2> across{};   ///< its two axes
+  std::array<Number, 2> half{};  ///< half of its width along them
+};
+
+/// Returns the two axes across the bone, in rising order.
+constexpr std::array<int, 2> axes_across(int axis) { return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2}; }
+
+/// Returns the ellipse at a station for numbers of the bone, such as those of somebody's shape.
+template <class Number>
+FleshEllipse<Number> ellipse_of(const FleshBone& bone, const std::array<Number, FleshBone::kNumbers>& numbers,
+                                int station) {
+  FleshEllipse<Number> ellipse;
+  ellipse.across = axes_across(bone.axis);
+  ellipse.centre[bone.axis] = static_cast<Number>(bone.stations[station]) * numbers[3 + bone.axis];
+  for (int i = 0; i < 2; ++i) {
+    ellipse.centre[ellipse.across[i]] = numbers[6 + 4 * station + i];
+    ellipse.half[i] = numbers[8 + 4 * station + i];
+  }
+  return ellipse;
+}
+
 /// How the bones of a limb are turned in a population of poses: a mixture of Gaussians over their rotation vectors.
 struct LimbPrior {
   struct Component {
@@ -66,8 +91,5 @@ double stature(const FleshModel& flesh, const Eigen::VectorXd& shape);
 
 /// Returns the mirror image of a bone's numbers (x -> -x).
 FleshBone::Numbers mirrored(FleshBone::Numbers numbers, int axis);
-
-/// Returns the two axes across the bone, in rising order.
-std::array<int, 2> axes_across(int axis);
 
 }  // namespace vesalius

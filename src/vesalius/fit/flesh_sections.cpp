@@ -14,16 +14,13 @@ std::vector<BoneSections> flesh_sections(const FleshModel& flesh, const FittedBo
     const FleshBone& bone = flesh.bones[b];
     const FittedBone& placed = fitted.bones[b];
     const FleshBone::Numbers numbers = numbers_of(bone, shape);
-    const std::array<int, 2> across = axes_across(bone.axis);
     BoneSections& sections = all.emplace_back();
     for (std::size_t s = 0; s < sections.size(); ++s) {
-      Eigen::Vector3f at = Eigen::Vector3f::Zero(), first = at, second = at;
-      at[bone.axis] = bone.stations[s] * numbers[3 + bone.axis];
-      at[across[0]] = numbers[6 + 4 * s];
-      at[across[1]] = numbers[7 + 4 * s];
-      first[across[0]] = numbers[8 + 4 * s];
-      second[across[1]] = numbers[9 + 4 * s];
-      sections[s] = {placed.head + placed.global * at, placed.global * first, placed.global * second};
+      const FleshEllipse<float> ellipse = ellipse_of(bone, numbers, static_cast<int>(s));
+      const auto side = [&](int i) -> Eigen::Vector3f {
+        return placed.global * (ellipse.half[i] * Eigen::Vector3f::Unit(ellipse.across[i]));
+      };
+      sections[s] = {placed.head + placed.global * ellipse.centre, side(0), side(1)};
     }
   }
   return all;
