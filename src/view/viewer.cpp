@@ -122,8 +122,7 @@ class Viewer::Session {
         player_(source, viewer.player, outputs()),
         server_(viewer.web, handlers()) {
     if (facts_.track) {
-      tracks_.emplace(PeopleTracker(labeller_->body(), options.track, detector_.appearance(),
-                                    std::make_shared<const BodyFitter>(labeller_->body(), options.fit)));
+      tracks_.emplace(make_tracker(detector_, options));
     }
     worker_ = quiet_thread([this] { detect_all(); });
     server_.start();

@@ -2,16 +2,13 @@
 
 #include <utility>
 
-#include "vesalius/fit/fit_body.h"
-
 namespace vesalius::cli {
 
 SequenceTrackerFactory sequence_trackers(std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options) {
   const auto detector = std::make_shared<const Detector>(std::move(labeller), options.detect);
-  const auto fitter = std::make_shared<const BodyFitter>(detector->body(), options.fit);
-  return [detector, fitter, track = options.track] {
+  return [detector, options] {
     // A tracker refers to the detector's body, so that both live as long as this function.
-    const auto tracker = std::make_shared<PeopleTracker>(detector->body(), track, detector->appearance(), fitter);
+    const auto tracker = std::make_shared<PeopleTracker>(make_tracker(*detector, options));
     return [detector, tracker](const Frame& frame) {
       Detection found = detector->detect(frame, [&](const Frame& asked) { return tracker->expect(asked); });
       return tracker->update(frame, std::move(found.people), found.planes);

@@ -18,7 +18,8 @@ struct PeopleOptions {
 /// Shows the detector's options under their own names, the others as `track.*` and `fit.*`.
 void visit_options(const std::string& prefix, PeopleOptions& options, OptionVisitor& visitor);
 
-/// Returns a tracker of the people whom the detector finds, with a body fitted to each. The detector must outlive it.
+/// Returns a tracker of the people whom the detector finds, with a body fitted to each. The body model of the
+/// detector's forest must outlive it.
 /// Throws UsageError for an option outside its range.
 PeopleTracker make_tracker(const Detector& detector, const PeopleOptions& options);
 
