@@ -1,5 +1,5 @@
-// Measures the time of each stage of the detector and of the whole on all processors, and the time of making synthetic
-// frames on one. `./dev bench --help` lists the flags.
+// Measures the time of each stage of the detector and of the whole on all processors, and the time of fitting bodies
+// and of making synthetic frames on one. `./dev bench --help` lists the flags.
 
 #include <benchmark/benchmark.h>
 #include <hwy/targets.h>
@@ -9,6 +9,7 @@
 #include <iostream>
 #include <string>
 
+#include "bench/bench_fit.h"
 #include "bench/bench_scenes.h"
 #include "bench/bench_synth.h"
 #include "vesalius/base/parallel.h"
@@ -88,7 +89,8 @@ void add_search(const BenchScene& s) {
   add("grow_person", s, [&s] {
     const GrowOptions options;
     const Mask flat = flat_pixels(s.frame.depth, s.frame.camera, options.plane);
-    keep(PersonGrower(s.frame, flat, s.forest.body, options).grow(s.rough, s.clusters));
+    const Looks looks;
+    keep(PersonGrower(s.frame, flat, s.forest.body, options, looks).grow(s.rough, s.clusters));
   });
 }
 
@@ -110,6 +112,7 @@ int main(int argc, char** argv) {
       vesalius::add_search(scene);
       vesalius::add_detect(scene);
     }
+    vesalius::add_fit_benchmarks();
     vesalius::add_synth_benchmarks();
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& e) {
