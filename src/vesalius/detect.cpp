@@ -127,7 +127,7 @@ std::optional<Candidate> grow_known(const Method& method, const Frame& frame, co
   candidate.labels = method.labeller.label_person(scene.labels, frame, known.mask, bounding_box(known.mask)).labels;
   const Clusters clusters =
       find_clusters(candidate.labels, frame.depth, frame.camera, method.body, method.options.cluster);
-  std::vector<Skeleton> rough = search_skeletons(clusters.items, method.body, method.options.search);
+  std::vector<Skeleton> rough = search_skeletons(clusters.items, method.body, method.options.search, known.size);
   if (rough.empty()) return std::nullopt;
   candidate.rough = std::move(rough.front());
   candidate.grown = std::move(grower.grow({candidate.rough}, clusters, {known.appearance})[0]);
@@ -160,14 +160,15 @@ std::vector<Candidate> propose(const Method& method, const Frame& frame, const S
 }
 
 /// Returns the best skeleton of a candidate's labels, which are within `box`, or one without parts if there is none.
-Skeleton second_pass(const Method& method, const Frame& frame, const LabelImage& labels, const Box& box) {
+/// `size` is that of the person (search_skeletons).
+Skeleton second_pass(const Method& method, const Frame& frame, const LabelImage& labels, const Box& box, float size) {
   ClusterOptions options = method.options.cluster;
   const float scale = method.options.refine.area_scale;
   options.min_area_cm2 *= scale;
   options.min_pixels = std::max(1, static_cast<int>(static_cast<float>(options.min_pixels) * scale));
   const Clusters clusters =
       find_clusters(crop(labels, box), crop(frame.depth, box), cropped(frame.camera, box), method.body, options);
-  std::vector<Skeleton> found = search_skeletons(clusters.items, method.body, method.options.search);
+  std::vector<Skeleton> found = search_skeletons(clusters.items, method.body, method.options.search, size);
   return found.empty() ? Skeleton{} : std::move(found.front());
 }
 
@@ -192,13 +193,14 @@ bool swaps_sides(const Skeleton& skeleton, const Skeleton& other, const BodyMode
 /// Runs the same stages on one person a second time, and keeps the likelier of the two skeletons. Where the person's
 /// heading is known, a first one whose sides contradict it is not kept: it was found in labels of single pixels.
 Candidate refine(const Method& method, const Frame& frame, const Scene& scene, const Scenery& scenery,
-                 Candidate candidate) {
+                 const Prior& prior, Candidate candidate) {
   const Box box = bounding_box(candidate.grown);
   if (box.width == 0) return candidate;
   PersonLabels person;
   if (method.options.refine.second_pass) {
     person = method.labeller.label_person(scene.labels, frame, candidate.grown, box);
-    candidate.refined = second_pass(method, frame, person.labels, box);
+    const float size = candidate.known < 0 ? 1.F : prior.people[static_cast<std::size_t>(candidate.known)].size;
+    candidate.refined = second_pass(method, frame, person.labels, box, size);
   } else {
     person.labels = candidate.labels.empty() ? scene.proposals : std::move(candidate.labels);
     person.certain = mean_certainty(scene.labels.posteriors(), candidate.grown, method.body.part_count());
@@ -250,7 +252,7 @@ Scenery look_around(const Method& method, const Frame& frame, const Scene& scene
 void refine_all(const Method& method, const Frame& frame, const Scene& scene, const Scenery& scenery,
                 const Prior& prior, std::span<Candidate> candidates) {
   parallel_for(static_cast<int>(candidates.size()), [&](int i) {
-    candidates[i] = refine(method, frame, scene, scenery, std::move(candidates[i]));
+    candidates[i] = refine(method, frame, scene, scenery, prior, std::move(candidates[i]));
     candidates[i].certainty = certainty_of(candidates[i], prior);
   });
 }

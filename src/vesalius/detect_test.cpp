@@ -449,14 +449,43 @@ TEST_F(DetectorWithPrior, LowOddsAskForMore) {
   EXPECT_TRUE(detector->detect(truth.frame, {{{mask_of(0), {}, 0.99F * least}}}).empty());
 }
 
-TEST_F(DetectorWithPrior, RefusesOddsThatAreNone) {
-  for (const float odds : {0.F, -1.F, std::numeric_limits<float>::infinity(), std::nanf("")}) {
+TEST_F(DetectorWithPrior, RefusesOddsAndSizesThatAreNone) {
+  for (const float number : {0.F, -1.F, std::numeric_limits<float>::infinity(), std::nanf("")}) {
     EXPECT_THAT(
         [&] {
-          detector->detect(truth.frame, {{{mask_of(1), {}, odds}}});
+          detector->detect(truth.frame, {{{mask_of(1), {}, number}}});
         },
         testing::ThrowsMessage<Error>(testing::HasSubstr("odds of person 0")));
+    EXPECT_THAT(
+        [&] {
+          detector->detect(truth.frame, {{{mask_of(1), {}, 1.F, {}, number}}});
+        },
+        testing::ThrowsMessage<Error>(testing::HasSubstr("size of person 0")));
   }
+}
+
+TEST(Prior, LinksOfAKnownChildAreExpectedToBeShort) {
+  CapsuleScene scene = one_person(2.5F);
+  scene.people.push_back(scene.people[0]);
+  scene.people[1].feet.x() = -0.9F;
+  scene.people[1].build.stature_m = 1.F;
+  const LabelledFrame truth = render(scene, kCamera, paper_body());
+  const Detector detector(std::make_shared<TruthLabeller>(truth.labels, paper_body(), true));
+  Mask child(kCamera.width, kCamera.height, 0);
+  for (std::size_t i = 0; i < child.size(); ++i) child[i] = truth.person[i] == 1 ? 1 : 0;
+  const auto candidates_for = [&](float size) {
+    Trace trace;
+    EXPECT_EQ(detector.detect(truth.frame, {{{child, {}, 1.F, {}, size}}}, &trace).size(), 2U);
+    std::ranges::stable_sort(trace.candidates, {}, &Trace::Candidate::known);
+    return trace.candidates;
+  };
+  const auto usual = candidates_for(1.F), own = candidates_for(1.F / CapsuleBuild().stature_m);
+  ASSERT_EQ(usual.size(), own.size());
+  ASSERT_EQ(usual.back().known, 0);
+  EXPECT_LT(own.back().refined.mean_error, 0.7F * usual.back().refined.mean_error);
+  EXPECT_GT(own.back().evidence.likelihood, usual.back().evidence.likelihood);
+  ASSERT_EQ(usual.front().known, -1);
+  EXPECT_EQ(own.front().refined.score, usual.front().refined.score) << "nothing is known of the adult";
 }
 
 TEST_F(DetectorWithPrior, AsksOnceWhenTheFrameIsLabelled) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "vesalius/base/error.h"
 
@@ -18,12 +19,13 @@ float shared_pixels(const Mask& a, const Mask& b) {
 
 void check(const Prior& prior, const Frame& frame) {
   for (std::size_t i = 0; i < prior.people.size(); ++i) {
-    const float odds = prior.people[i].odds;
-    if (!std::isfinite(odds) || odds <= 0.F) {
-      throw Error("prior: the odds of person " + std::to_string(i) + " are " + std::to_string(odds) +
-                  ", expected a number above 0");
+    const Prior::KnownPerson& known = prior.people[i];
+    for (const auto& [name, number] : {std::pair{"odds", known.odds}, std::pair{"size", known.size}}) {
+      if (std::isfinite(number) && number > 0.F) continue;
+      throw Error("prior: the " + std::string(name) + " of person " + std::to_string(i) +
+                  ": expected a number above 0, found " + std::to_string(number));
     }
-    const Mask& mask = prior.people[i].mask;
+    const Mask& mask = known.mask;
     if (mask.empty() || mask.same_size(frame.depth)) continue;
     throw Error("prior: the mask of person " + std::to_string(i) + " has " + std::to_string(mask.width()) + "x" +
                 std::to_string(mask.height()) + " pixels, expected the frame's " + std::to_string(frame.depth.width()) +

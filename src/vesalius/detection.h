@@ -54,6 +54,9 @@ struct Prior {
     /// mask itself: of the pixels near the flesh that may be a body and are not nearer to somebody else's. With odds
     /// above 1 nobody else grows over them, and a candidate may have any number of parts.
     std::vector<Capsule> flesh = {};
+    /// How tall the person is against the body model's adult, if that is known, otherwise 1: the links of the person's
+    /// candidates are expected to be so much longer or shorter. Above 0 and finite.
+    float size = 1.F;
   };
   std::vector<KnownPerson> people;
 };
@@ -64,7 +67,7 @@ inline constexpr float kKnownOverlap = 0.3F;
 /// Returns the pixels in both masks over those in either, 0-1; 0 if both are empty.
 float shared_pixels(const Mask& a, const Mask& b);
 
-/// Throws Error if a mask and the frame differ in size, or odds are not above 0 and finite.
+/// Throws Error if a mask and the frame differ in size, or odds or sizes are not above 0 and finite.
 void check(const Prior& prior, const Frame& frame);
 
 /// Returns the prior on every `step`-th pixel of every `step`-th row.

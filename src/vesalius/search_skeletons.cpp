@@ -41,12 +41,15 @@ struct Span {
   float hidden_m = 0.F;  ///< length of an unseen part between them
 };
 
-Span span_of(const BodyLink& link) { return {link.length_m, link.length_m, link.tolerance_m, 0.F}; }
+/// `size` multiplies lengths. Tolerances stay: people of all sizes deviate by as much.
+Span span_of(const BodyLink& link, float size) {
+  return {size * link.length_m, size * link.length_m, link.tolerance_m, 0.F};
+}
 
 /// Returns the range for two consecutive links, from half folded to stretched out.
-Span span_of(const BodyLink& a, const BodyLink& b) {
-  const float most = a.length_m + b.length_m;
-  const float least = std::max(std::abs(a.length_m - b.length_m), 0.5F * most);
+Span span_of(const BodyLink& a, const BodyLink& b, float size) {
+  const float most = size * (a.length_m + b.length_m);
+  const float least = std::max(size * std::abs(a.length_m - b.length_m), 0.5F * most);
   return {least, most, std::max(a.tolerance_m, b.tolerance_m), 0.5F * most};
 }
 
@@ -79,10 +82,12 @@ struct Branch {
 
 class SkeletonSearch {
  public:
-  SkeletonSearch(const std::vector<PartCluster>& clusters, const BodyModel& body, const SearchOptions& options)
+  SkeletonSearch(const std::vector<PartCluster>& clusters, const BodyModel& body, const SearchOptions& options,
+                 float size)
       : clusters_(clusters),
         body_(body),
         options_(options),
+        size_(size),
         used_(clusters.size(), false),
         by_part_(body.parts.size()) {
     for (std::size_t i = 0; i < clusters.size(); ++i) {
@@ -131,12 +136,12 @@ class SkeletonSearch {
   void find_consistent_pairs() {
     one_step_.resize(clusters_.size());
     two_step_.resize(clusters_.size());
-    for (const BodyLink& link : body_.links) add_pairs(link.parent, link.child, span_of(link), one_step_);
+    for (const BodyLink& link : body_.links) add_pairs(link.parent, link.child, span_of(link, size_), one_step_);
     if (!options_.grandparents) return;
     for (std::size_t i = 0; i < body_.links.size(); ++i) {
       for (std::size_t j = i + 1; j < body_.links.size(); ++j) {
         const BodyLink &a = body_.links[i], &b = body_.links[j];
-        const Span span = span_of(a, b);
+        const Span span = span_of(a, b, size_);
         if (a.child == b.parent) add_pairs(a.parent, b.child, span, two_step_);
         if (b.child == a.parent) add_pairs(b.parent, a.child, span, two_step_);
         if (a.parent == b.parent) add_pairs(a.child, b.child, span, two_step_);
@@ -259,6 +264,7 @@ class SkeletonSearch {
   const std::vector<PartCluster>& clusters_;
   const BodyModel& body_;
   const SearchOptions& options_;
+  const float size_;
   std::vector<char> used_;                 ///< [cluster] belongs to a person already
   std::vector<std::vector<int>> by_part_;  ///< [part] clusters
   std::vector<float> gains_;               ///< [cluster]
@@ -293,8 +299,8 @@ void visit_options(const std::string& prefix, SearchOptions& o, OptionVisitor& v
 }
 
 std::vector<Skeleton> search_skeletons(const std::vector<PartCluster>& clusters, const BodyModel& body,
-                                       const SearchOptions& options) {
-  return SkeletonSearch(clusters, body, options).run();
+                                       const SearchOptions& options, float size) {
+  return SkeletonSearch(clusters, body, options, size).run();
 }
 
 }  // namespace vesalius

@@ -45,8 +45,9 @@ struct Skeleton {
   float score = 0.F;                ///< accumulated likelihood; ranks people
 };
 
-/// Returns all people in the proposals, best first. Each proposal belongs to at most one of them.
+/// Returns all people in the proposals, best first. Each proposal belongs to at most one of them. `size` multiplies the
+/// lengths of the body's links (above 0): how tall the people are against the body model's.
 std::vector<Skeleton> search_skeletons(const std::vector<PartCluster>& clusters, const BodyModel& body,
-                                       const SearchOptions& options);
+                                       const SearchOptions& options, float size = 1.F);
 
 }  // namespace vesalius

@@ -294,6 +294,25 @@ TEST(SearchSkeletons, ExcusesADeviationByTheCovarianceAlongTheLine) {
   EXPECT_LT(elongated, compact - 0.05F);
 }
 
+TEST(SearchSkeletons, ExpectsLinksOfTheGivenSize) {
+  for (const float size : {0.6F, 1.5F}) {
+    std::vector<PartCluster> clusters;
+    const Vector3f at(0.F, 0.F, 2.F);
+    const std::vector<Vector3f> usual = person_at(at);
+    for (int part = 0; part < 6; ++part) {
+      if (part == 1) continue;  // head and trunk hang together past the neck
+      clusters.push_back(cluster(part, at + size * (usual[part] - at), 0.02F, 0.13F));
+    }
+    const std::vector<Skeleton> found = search_skeletons(clusters, small_body(), {}, size);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].found, 5);
+    EXPECT_NEAR(found[0].total_error, 0.F, 1e-5F);
+    for (const Skeleton& other : search_skeletons(clusters, small_body(), {})) {
+      EXPECT_TRUE(other.found < 5 || other.total_error > 1.F) << size;
+    }
+  }
+}
+
 TEST(SearchSkeletons, FindsNobodyWithoutProposals) { EXPECT_TRUE(search_skeletons({}, paper_body(), {}).empty()); }
 
 }  // namespace

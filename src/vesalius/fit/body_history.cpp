@@ -52,7 +52,7 @@ std::optional<BodyState> BodyHistory::expected_state(double time_s) const {
   return state;
 }
 
-void BodyHistory::learn(const BodyFit& fit, const ExpectedBody& expected) {
+void BodyHistory::learn(const FleshModel& flesh, const BodyFit& fit, const ExpectedBody& expected) {
   const Eigen::MatrixXd& before = expected.shape_information;
   const Eigen::MatrixXd news = positive(fit.shape_information);
   // The frame's own estimate is what its information adds to what was known: news * own.
@@ -61,6 +61,9 @@ void BodyHistory::learn(const BodyFit& fit, const ExpectedBody& expected) {
   shape_ = information.llt().solve(before * expected.shape + kNews * own);
   const Eigen::MatrixXd usual = Eigen::MatrixXd::Identity(information.rows(), information.cols());
   information_ = usual + kKept * (information - usual);
+  ++learned_;
+  const double size = stature(flesh, shape_) / stature(flesh, Eigen::VectorXd::Zero(shape_.size()));
+  if (std::isfinite(size) && size > 0.0) size_ = static_cast<float>(size);
 }
 
 std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame& frame, const Person& person,
@@ -69,7 +72,7 @@ std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame
   std::optional<BodyFit> found = fitter.fit(frame, person, expected);
   if (!found) return std::nullopt;
   if (found->restarted) fitter.forget_shape(expected);
-  if (found->body.misfit <= kWrong) learn(*found, expected);
+  if (found->body.misfit <= kWrong) learn(fitter.flesh(), *found, expected);
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> turning(found->state.local.size(), Eigen::Vector3d::Zero());
   if (expected.pose && !found->restarted && time_s > last_->time_s) {

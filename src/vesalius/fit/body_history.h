@@ -24,11 +24,15 @@ class BodyHistory {
   void forget_pose() { last_.reset(); }
   /// Returns the height of the person standing upright, metres, if anything was learned yet.
   std::optional<float> stature_m() const { return stature_m_; }
+  /// Returns how tall the person is against the flesh model's mean body, by what all frames together tell. Nothing
+  /// before kSettledFrames frames have told it.
+  std::optional<float> size() const { return learned_ < kSettledFrames ? std::nullopt : size_; }
+  static constexpr int kSettledFrames = 30;
   int frames() const { return frames_; }
 
  private:
   ExpectedBody expect(const BodyFitter& fitter, double time_s, const std::optional<Ground>& ground) const;
-  void learn(const BodyFit& fit, const ExpectedBody& expected);
+  void learn(const FleshModel& flesh, const BodyFit& fit, const ExpectedBody& expected);
 
   struct Last {
     BodyState state;
@@ -42,6 +46,8 @@ class BodyHistory {
   std::optional<float> stature_m_;
   float misfit_ = 0.F;  ///< of the last body
   int frames_ = 0;
+  int learned_ = 0;  ///< frames that told something of the shape
+  std::optional<float> size_;
 };
 
 }  // namespace vesalius

@@ -50,6 +50,7 @@ TEST(BodyHistory, LearnsThePersonsOwnLengths) {
     const test::SeenBody& seen = frames[at < 5 ? at : 8 - at];
     body = history.fit(fitter, seen.frame, noisy(seen.person, random), i / 30.0);
     ASSERT_TRUE(body) << i;
+    EXPECT_EQ(history.size().has_value(), i + 1 >= BodyHistory::kSettledFrames);
   }
   EXPECT_EQ(history.frames(), 30);
   ASSERT_TRUE(history.stature_m());
@@ -64,6 +65,7 @@ TEST(BodyHistory, LearnsThePersonsOwnLengths) {
   const double truth = stature(flesh, shape);
   ASSERT_GT(truth, 1.05 * usual) << "the test asks for something";
   EXPECT_NEAR(*history.stature_m(), truth, 0.03 * truth);
+  EXPECT_NEAR(*history.size(), truth / usual, 0.03);
 }
 
 TEST(BodyHistory, ABodyThatLostItsPersonBeginsAnew) {

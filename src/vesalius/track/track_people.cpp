@@ -432,7 +432,8 @@ Prior PeopleTracker::expect(const Frame& frame) const {
     }
     if (mask.empty() && flesh.empty()) continue;
     const float odds = is_sure(*track) ? std::exp(track->log_odds) : 1.F;  // a guess must not confirm itself
-    prior.people.push_back({std::move(mask), track->look.histogram(), odds, std::move(flesh)});
+    prior.people.push_back(
+        {std::move(mask), track->look.histogram(), odds, std::move(flesh), track->history.size().value_or(1.F)});
   }
   return prior;
 }

@@ -14,6 +14,7 @@
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/fit/body_history.h"
 #include "vesalius/fit/fit_body.h"
 
 namespace vesalius {
@@ -568,6 +569,23 @@ TEST(TrackPeople, HaveABodyThatFadesWhileTheyAreHidden) {
     EXPECT_LT(hidden.bones[i].tail_confidence, seen.bones[i].tail_confidence);
     EXPECT_GT(hidden.bones[i].covariance.trace(), seen.bones[i].covariance.trace());
   }
+}
+
+TEST(TrackPeople, ExpectTheSizeOfTheFittedBodyOnceItHasSettled) {
+  const auto [frame, person] = rendered_person();
+  PeopleTracker tracker(paper_body(), {}, nullptr, std::make_shared<BodyFitter>(paper_body()));
+  TrackedFrame tracked;
+  for (int i = 0; i < BodyHistory::kSettledFrames; ++i) {
+    const Prior prior = tracker.expect(frame);
+    for (const Prior::KnownPerson& known : prior.people) EXPECT_EQ(known.size, 1.F);
+    tracked = tracker.update(frame, {person});
+  }
+  const FleshModel& flesh = builtin_flesh();
+  const double usual_m = stature(flesh, Eigen::VectorXd::Zero(flesh.shapes));
+  const Prior prior = tracker.expect(frame);
+  ASSERT_EQ(prior.people.size(), 1U);
+  EXPECT_NE(prior.people[0].size, 1.F);
+  EXPECT_NEAR(prior.people[0].size, tracked.people.at(0).body.value().stature_m / usual_m, 0.03);
 }
 
 TEST(TrackPeople, SmoothsUnlessItShallNot) {
