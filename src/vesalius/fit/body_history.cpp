@@ -71,7 +71,10 @@ std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame
   ExpectedBody expected = expect(fitter, time_s, ground);
   std::optional<BodyFit> found = fitter.fit(frame, person, expected);
   if (!found) return std::nullopt;
-  if (found->restarted) fitter.forget_shape(expected);
+  if (found->restarted) {
+    fitter.forget_shape(expected);
+    learned_ = 0;
+  }
   if (found->body.misfit <= kWrong) learn(fitter.flesh(), *found, expected);
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> turning(found->state.local.size(), Eigen::Vector3d::Zero());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace vesalius {
@@ -10,8 +11,9 @@ namespace {
 constexpr float kMostFrames = 100.F;
 constexpr float kFrameDeviation = 0.12F;  // of the logarithm of one frame's scale
 constexpr float kSameDeviation = 0.05F;   // that stays however many frames there are, since poses bias it
-
-float variance(float frames) { return kSameDeviation * kSameDeviation + kFrameDeviation * kFrameDeviation / frames; }
+constexpr float kFitDeviation = 0.075F;   // of the logarithm of the fitted body's size
+constexpr float kScaleOfFitted = -0.04F;  // mean logarithm of body_scale over the fitted size, on rendered people
+constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -35,10 +37,23 @@ void TrackSize::add(float scale) {
   mean_log_ += (std::log(scale) - mean_log_) / frames_;
 }
 
+void TrackSize::fit(std::optional<float> size) {
+  fitted_log_.reset();
+  if (size) fitted_log_ = std::log(*size) + kScaleOfFitted;
+}
+
+TrackSize::Estimate TrackSize::estimate() const {
+  const float of_frame = kFrameDeviation * kFrameDeviation / std::max(frames_, 1.F);
+  const float by_links = frames_ > 0.F ? 1.F / (kSameDeviation * kSameDeviation + of_frame) : 0.F;
+  const float by_fit = fitted_log_ ? 1.F / (kFitDeviation * kFitDeviation) : 0.F;
+  const float sum = by_links + by_fit;
+  if (sum == 0.F) return {0.F, kUnknown};
+  return {(by_links * mean_log_ + by_fit * fitted_log_.value_or(0.F)) / sum, 1.F / sum};
+}
+
 float TrackSize::distance2(const TrackSize& a, const TrackSize& b) {
-  if (a.frames_ == 0.F || b.frames_ == 0.F) return 0.F;
-  const float off = a.mean_log_ - b.mean_log_;
-  return off * off / (variance(a.frames_) + variance(b.frames_));
+  const Estimate one = a.estimate(), other = b.estimate();
+  return (one.log - other.log) * (one.log - other.log) / (one.variance + other.variance);
 }
 
 }  // namespace vesalius
