@@ -23,7 +23,7 @@ target_compile_options(vesalius_test_settings INTERFACE ${VESALIUS_TEST_FLAGS})
 target_link_libraries(vesalius_test_settings INTERFACE hwy::hwy)  # of kernels; the same in all, which share a precompiled header
 
 # vesalius_precompile(TARGET): what most files include is read once, where VESALIUS_PCH asks for it; the header of the core
-# serves all libraries. A build without (preset fuzz) shows which includes are missing.
+# serves all libraries. A build without (.ci/nightly) shows which includes are missing.
 function(vesalius_precompile target)
   if(NOT VESALIUS_PCH)
     return()

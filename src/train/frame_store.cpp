@@ -62,7 +62,7 @@ const TiledDepth& FrameUnpacker::operator()(std::size_t frame) {
   unpack_tiles(view.depth, frames_.convention().hole_mm, tiles_.data());
   tiles_[pixels] = frames_.convention().outside_mm;
   frame_ = frame;
-  return unpacked_.emplace(view.depth.grid, tiles_.data(), view.scaler);
+  return unpacked_.emplace(TiledDepth{view.depth.grid, tiles_.data(), view.scaler});
 }
 
 }  // namespace vesalius

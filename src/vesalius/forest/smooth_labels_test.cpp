@@ -128,7 +128,8 @@ TEST(MeanFilter, KeepsSettledPixels) {
 
 TEST(MeanFilter, LosesTheLowestBitsIfSumsExceed16Bits) {
   const Picture p = random_picture(9);
-  for (const auto& [trees, bits] : {std::pair{10, 0}, std::pair{11, 1}, std::pair{20, 1}, std::pair{40, 2}}) {
+  for (const auto& [trees, lost] : {std::pair{10, 0}, std::pair{11, 1}, std::pair{20, 1}, std::pair{40, 2}}) {
+    const int bits = lost;
     Posteriors in{37, 23, 26, trees, {}};
     in.settled = Mask(37, 23, 0);
     Random random(2);
