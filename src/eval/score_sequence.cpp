@@ -118,6 +118,9 @@ void SequenceScorer::follow(const TrueFrame& frame, const TrackPeople& people, c
 void SequenceScorer::judge_stance(const FrameTruth& truth, std::size_t person, const TrackedPerson& found) {
   const auto stance = stance_of(person < truth.postures.size() ? truth.postures[person] : truth.posture);
   if (!stance) return;
+  if (options_.stances && found.posture && *stance != Stance::fallen) {
+    stance_samples_.push_back({*found.posture, *stance});
+  }
   // That somebody lies says nothing about how it came to that.
   const bool right = found.stance == *stance || (*stance == Stance::lying && found.stance == Stance::fallen);
   MetricTerms& terms = terms_.back();

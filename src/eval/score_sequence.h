@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "eval/fit_stances.h"
 #include "eval/fit_trust.h"
 #include "eval/motion_metrics.h"
 #include "eval/score_frame.h"
@@ -24,8 +25,9 @@ using SequenceTrackerFactory = std::function<SequenceTracker()>;
 class SequenceScorer {
  public:
   struct Options {
-    bool hidden = false;  ///< people without pixels take part, true and found ones (track_people_of)
-    bool trust = false;   ///< keeps the joints of fitted bodies with their truth (trust_samples)
+    bool hidden = false;   ///< people without pixels take part, true and found ones (track_people_of)
+    bool trust = false;    ///< keeps the joints of fitted bodies with their truth (trust_samples)
+    bool stances = false;  ///< keeps the postures with the true stances (stance_samples)
   };
 
   /// `judge` must outlive it; its options name the joint set.
@@ -43,6 +45,8 @@ class SequenceScorer {
 
   /// Gives away the fitted joints of all people who were matched, by frame and true person (Options::trust).
   std::vector<TrustSample> take_trust_samples() { return std::move(trust_samples_); }
+  /// Gives away the postures of all people who were matched and whose true stance is known (Options::stances).
+  std::vector<StanceSample> take_stance_samples() { return std::move(stance_samples_); }
 
  private:
   void check_names(const TrueFrame& frame);
@@ -60,6 +64,7 @@ class SequenceScorer {
   std::map<int, PersonMotion> people_;      ///< by true id
   std::map<int, std::size_t> first_frame_;  ///< of each found id
   std::vector<TrustSample> trust_samples_;
+  std::vector<StanceSample> stance_samples_;
 };
 
 }  // namespace vesalius

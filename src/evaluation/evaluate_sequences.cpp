@@ -37,6 +37,7 @@ struct SequenceResult {
   JointCurve joint_curve;
   std::vector<WorstFrame> worst;
   std::vector<TrustSample> trust_samples;
+  std::vector<StanceSample> stance_samples;
 };
 
 /// One recording while its frames come.
@@ -72,6 +73,7 @@ class SequenceEvaluation {
     }
     result_.frames = static_cast<int>(of_frames_.size());
     result_.trust_samples = scorer_.take_trust_samples();
+    result_.stance_samples = scorer_.take_stance_samples();
     return std::move(result_);
   }
 
@@ -207,6 +209,7 @@ class SequencesEvaluation {
     }
     result.joint_curve.merge(sequence.joint_curve);
     std::ranges::move(sequence.trust_samples, std::back_inserter(result.trust_samples));
+    std::ranges::move(sequence.stance_samples, std::back_inserter(result.stance_samples));
     for (WorstFrame& worst : sequence.worst) keep_if_worst(std::move(worst), options_.worst, result.worst);
   }
 

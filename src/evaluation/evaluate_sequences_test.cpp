@@ -157,10 +157,11 @@ TEST(EvaluateSequences, AreTheSameForAnyNumberOfThreads) {
 }
 
 // Labels: threads
-TEST(EvaluateSequences, KeepTheJointsOfFittedBodiesInTheOrderOfTheRecordings) {
+TEST(EvaluateSequences, KeepJointsAndPosturesInTheOrderOfTheRecordings) {
   const auto trackers = [] {
     return [tracker = TestTracker()](const Frame& frame) mutable {
       TrackedFrame tracked = tracker(frame);
+      tracked.people[0].posture.emplace().chest_m = std::stof(frame.name);
       FittedBody& body = tracked.people[0].body.emplace();
       body.bones.resize(builtin_flesh().bones.size());
       for (FittedBone& bone : body.bones) {
@@ -179,6 +180,12 @@ TEST(EvaluateSequences, KeepTheJointsOfFittedBodiesInTheOrderOfTheRecordings) {
     for (std::size_t i = 0; i < set.trust_samples.size(); ++i) {
       EXPECT_EQ(set.trust_samples[i].signals.misfit, static_cast<float>(i / 2));
       EXPECT_TRUE(set.trust_samples[i].right) << "2 cm off";
+    }
+    const SetResult stances = evaluate_sequences(open, options, judge(), trackers, {.stances = true});
+    ASSERT_EQ(stances.stance_samples.size(), 3U * kFrames);
+    for (std::size_t i = 0; i < stances.stance_samples.size(); ++i) {
+      EXPECT_EQ(stances.stance_samples[i].posture.chest_m, static_cast<float>(i));
+      EXPECT_EQ(stances.stance_samples[i].stance, Stance::standing);
     }
   });
 }

@@ -9,6 +9,7 @@
 #include "eval/detection_curve.h"
 #include "eval/fit_joints.h"
 #include "eval/fit_score.h"
+#include "eval/fit_stances.h"
 #include "eval/fit_trust.h"
 #include "eval/joint_metrics.h"
 #include "eval/joint_precision.h"
@@ -54,6 +55,7 @@ struct SetResult {
   std::vector<ScoreSample> samples;               ///< for fitting the score
   std::vector<BoostSample> context_samples = {};  ///< for fitting the context of bodies
   std::vector<TrustSample> trust_samples = {};    ///< for fitting the trust in fitted joints
+  std::vector<StanceSample> stance_samples = {};  ///< for fitting the stances
   std::vector<WorstFrame> worst;                  ///< the worst first
   std::vector<AblationRow> ablation;              ///< the same frames with each variant
 };

@@ -126,6 +126,29 @@ FittedTrust fit_evaluation_trust(const Evaluation& evaluation) {
   return fitted;
 }
 
+FittedStances fit_evaluation_stances(const Evaluation& evaluation) {
+  std::vector<StanceSample> samples;
+  for (const SetResult& set : evaluation.sets) {
+    samples.insert(samples.end(), set.stance_samples.begin(), set.stance_samples.end());
+  }
+  FittedStances fitted{fit_stances(samples, builtin_stances()), ""};
+  fitted.toml =
+      "# How probable stances are by one frame (docs/tracking.md), by `vesalius evaluate --fit-stances`: the logit is "
+      "the\n"
+      "# bias and the sum of each sign of the posture times its weight, or the weight of not knowing it. Heights are "
+      "in\n"
+      "# units of the person's stature.\n";
+  for (const NamedRule& named : kStanceRules) {
+    const StanceRule& rule = fitted.fit.model.*named.rule;
+    fitted.toml += fmt::format("\n[{}]\nbias = {:.4f}\n", named.name, rule.bias);
+    for (std::size_t i = 0; i < kStanceSigns.size(); ++i) {
+      fitted.toml += fmt::format("{} = {:.4f}\n", kStanceSigns[i].name, rule.weights[i]);
+      if (rule.unknown[i] != 0.F) fitted.toml += fmt::format("no_{} = {:.4f}\n", kStanceSigns[i].name, rule.unknown[i]);
+    }
+  }
+  return fitted;
+}
+
 FittedContext fit_context(const Evaluation& evaluation) {
   FittedContext fitted;
   std::vector<BoostSample> samples;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "eval/fit_score.h"
+#include "eval/fit_stances.h"
 #include "eval/fit_trust.h"
 #include "evaluation/evaluation.h"
 #include "vesalius/forest/boosted_trees.h"
@@ -51,5 +52,13 @@ struct FittedTrust {
 };
 /// Fits the trust, beginning with the built-in one. Throws Error as fit_trust does.
 FittedTrust fit_evaluation_trust(const Evaluation& evaluation);
+
+/// A model of stances fitted to the postures of all sets.
+struct FittedStances {
+  StanceFit fit;
+  std::string toml;  ///< data/bodies/stances.toml
+};
+/// Fits the model. Throws Error as fit_stances does.
+FittedStances fit_evaluation_stances(const Evaluation& evaluation);
 
 }  // namespace vesalius

@@ -171,6 +171,10 @@ TEST_F(Evaluate, WritesTheTrustFittedToTheJointsOfClips) {
   EXPECT_THAT(single.err, HasSubstr("fitting the trust: expected fitted bodies"));
   EXPECT_FALSE(fs::exists(path("none.toml")));
   EXPECT_EQ(evaluate(" --fit-trust " + path("none.toml")).exit_code, 2) << "without --track";
+  const Outcome few = evaluate(" --track --fit-stances " + path("none.toml"));
+  EXPECT_EQ(few.exit_code, 1);
+  EXPECT_THAT(few.err, HasSubstr("fitting the stances: "));
+  EXPECT_FALSE(fs::exists(path("none.toml")));
   const Outcome nowhere = run_program(fit + path("missing/trust.toml"));
   EXPECT_EQ(nowhere.exit_code, 1);
   EXPECT_EQ(nowhere.out, "") << "before any frame is looked at";

@@ -59,7 +59,7 @@ struct Arguments {
   std::optional<float> clip_s;
   std::optional<double> rate_hz;
   std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
-      fit_score, fit_judge, fit_context, fit_trust;
+      fit_score, fit_judge, fit_context, fit_trust, fit_stances;
   OptionFlags<PeopleOptions> detector_flags;
   int step = 1;
   double turn_deg = 0.0;
@@ -189,8 +189,8 @@ SetResult evaluate_shown(const Request& request, const Arguments& arguments, con
   };
   hooks.stop = interrupted;
   if (!arguments.track) return evaluate_set(*frames, request.set, scorer, variants, hooks);
-  return evaluate_sequences(open, request.set, scorer, trackers, {arguments.hidden, !arguments.fit_trust.empty()},
-                            hooks);
+  return evaluate_sequences(open, request.set, scorer, trackers,
+                            {arguments.hidden, !arguments.fit_trust.empty(), !arguments.fit_stances.empty()}, hooks);
 }
 
 /// Returns whether nothing but the JSON may go to standard output.
@@ -247,6 +247,20 @@ void write_fitted_trust(const Evaluation& evaluation, const std::string& path, b
   }
 }
 
+/// Writes the model of stances fitted to all sets, and prints how often one frame alone tells each, before and after.
+void write_fitted_stances(const Evaluation& evaluation, const std::string& path, bool quiet) {
+  const FittedStances fitted = fit_evaluation_stances(evaluation);
+  write_file_atomically(path, fitted.toml);
+  if (quiet) return;
+  for (const StanceAgreement& agreement : fitted.fit.agreement) {
+    const double share = 100.0 / static_cast<double>(agreement.samples);
+    print(fmt::format("stances fitted to {} frames of people {}: {:.1f} % right by one frame, were {:.1f} %\n",
+                      agreement.samples, to_string(agreement.stance),
+                      share * static_cast<double>(agreement.right_after),
+                      share * static_cast<double>(agreement.right_before)));
+  }
+}
+
 void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.json.empty()) {
     TextSink sink(arguments.json);
@@ -262,12 +276,14 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.fit_judge.empty()) write_fitted_judge(evaluation, arguments.fit_judge, prints_json(arguments));
   if (!arguments.fit_context.empty()) write_fitted_context(evaluation, arguments.fit_context, prints_json(arguments));
   if (!arguments.fit_trust.empty()) write_fitted_trust(evaluation, arguments.fit_trust, prints_json(arguments));
+  if (!arguments.fit_stances.empty()) write_fitted_stances(evaluation, arguments.fit_stances, prints_json(arguments));
 }
 
 /// Throws Error where a file that is to be fitted could not be written: that is known after the last frame otherwise.
 void check_writable(const Arguments& arguments) {
-  for (const std::string* path : {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_score,
-                                  &arguments.fit_judge, &arguments.fit_context, &arguments.fit_trust}) {
+  for (const std::string* path :
+       {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_score, &arguments.fit_judge, &arguments.fit_context,
+        &arguments.fit_trust, &arguments.fit_stances}) {
     if (!path->empty()) vesalius::check_writable(*path);
   }
 }
@@ -421,6 +437,11 @@ void add_evaluate(CLI::App& program) {
   command
       ->add_option("--fit-trust", arguments->fit_trust,
                    "With --track: write how far the joints of fitted bodies can be trusted, fitted to these recordings")
+      ->type_name("FILE")
+      ->needs(track);
+  command
+      ->add_option("--fit-stances", arguments->fit_stances,
+                   "With --track: write how probable stances are by one frame, fitted to these recordings")
       ->type_name("FILE")
       ->needs(track);
   command

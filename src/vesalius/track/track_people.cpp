@@ -23,6 +23,7 @@ namespace {
 constexpr std::size_t kMostTracks = 128;   // at once: no camera sees so many
 constexpr std::size_t kMostExpected = 16;  // of whom the detector is told, the surest ones
 constexpr double kExpect_s = 1.0;          // after being seen; later nobody knows the place
+constexpr float kStays = 0.6F;             // share of the pixels that are as they were where somebody still lies
 constexpr float kClearlyBetter = 0.1F;     // by which another lost person must look more different
 constexpr float kFadePerS = 1.F;           // of the confidence of what is predicted of hidden people, per second
 
@@ -116,6 +117,11 @@ TrackedPerson describe_unseen(const Track& track, const BodyModel& body, const B
   return out;
 }
 
+/// Returns whether somebody who was found near the floor is still there, found or not: who is down does not vanish.
+bool stays_down(const Track& track, const Frame& frame) {
+  return track.stance.down() && !track.place.at_border() && track.place.unchanged(frame) >= kStays;
+}
+
 bool is_sure(const Track& track) { return track.state != TrackState::fresh; }
 
 }  // namespace
@@ -127,6 +133,8 @@ void visit_options(const std::string& prefix, TrackOptions& o, OptionVisitor& vi
   visitor.option(prefix + "confirm-within", o.confirm_s,
                  {"s", 0.0, 60.0, "Longest time from one of these to the next."});
   visitor.option(prefix + "hidden", o.hidden_s, {"s", 0.0, 3600.0, "Time after which somebody not found is lost."});
+  visitor.option(prefix + "down", o.down_s,
+                 {"s", 0.0, 3600.0, "The same for somebody near the floor, as long as something is still there."});
   visitor.option(prefix + "gap", o.gap_s, {"s", 0.0, 3600.0, "A longer step in time loses everybody."});
   visitor.option(prefix + "remembered", o.remembered, {"", 0, 10000, "Most lost people who are known again."});
   visitor.option(prefix + "same-look", o.same_look,
@@ -157,6 +165,7 @@ struct PeopleTracker::State {
   void take(Track& track, const Sighting& sighting, double time_s) const;
   void count(Track& track, float score, double passed_s) const;
   void confirm(Track& track, float score) const;
+  double longest_unseen_s(const Track& track) const;
   void lose(Track track, double time_s, TrackedFrame& out);
   void lose_all(double time_s, TrackedFrame& out);
   void predict(const Frame& frame, double passed_s);
@@ -165,7 +174,7 @@ struct PeopleTracker::State {
                   std::vector<Sighting>& sightings);
   void tell(const Frame& frame, const std::vector<int>& sighting_of, std::vector<Sighting> sightings,
             TrackedFrame& out);
-  void take_stance(const Frame& frame, Track& track, const Person& person, TrackedFrame& out) const;
+  std::optional<Posture> take_stance(const Frame& frame, Track& track, const Person* found, TrackedFrame& out) const;
   void smooth(Track& track, TrackedPerson& person, double time_s) const;
 
   const BodyModel& body;
@@ -276,6 +285,12 @@ void PeopleTracker::State::take(Track& track, const Sighting& sighting, double t
   confirm(track, sighting.person.score);
 }
 
+/// Returns the time after which somebody who is not found is given up.
+double PeopleTracker::State::longest_unseen_s(const Track& track) const {
+  if (!is_sure(track)) return static_cast<double>(options.confirm_s);
+  return static_cast<double>(track.stays ? std::max(options.down_s, options.hidden_s) : options.hidden_s);
+}
+
 /// Gives a track up. Nobody is told of a guess.
 void PeopleTracker::State::lose(Track track, double time_s, TrackedFrame& out) {
   if (!is_sure(track)) return;
@@ -296,6 +311,7 @@ void PeopleTracker::State::predict(const Frame& frame, double passed_s) {
   parallel_for(static_cast<int>(tracks.size()), [&](int t) {
     Track& track = tracks[t];
     track.motion.predict(passed_s);
+    track.stays = stays_down(track, frame);
     track.expected = track.place.expected(frame, track.place_position, track.motion.position());
   });
 }
@@ -313,7 +329,7 @@ std::vector<int> PeopleTracker::State::follow(const std::vector<Sighting>& sight
     if (matched[t] >= 0) {
       take(track, sightings[static_cast<std::size_t>(matched[t])], time_s);
       taken[static_cast<std::size_t>(matched[t])] = true;
-    } else if (time_s - track.seen_s > static_cast<double>(is_sure(track) ? options.hidden_s : options.confirm_s)) {
+    } else if (time_s - track.seen_s > longest_unseen_s(track)) {
       lose(std::move(track), time_s, out);
       continue;
     } else if (is_sure(track)) {
@@ -348,18 +364,24 @@ void PeopleTracker::State::fit_bodies(const Frame& frame, const std::vector<int>
   });
 }
 
-void PeopleTracker::State::take_stance(const Frame& frame, Track& track, const Person& person,
-                                       TrackedFrame& out) const {
+/// Takes what the frame tells of a track's stance, `found` being null for people who are not found. Returns it.
+std::optional<Posture> PeopleTracker::State::take_stance(const Frame& frame, Track& track, const Person* found,
+                                                         TrackedFrame& out) const {
   std::optional<Eigen::Vector3f> up = frame.up;
   std::optional<float> height_m;
   if (out.floor) {
     up = out.floor->up;
     height_m = out.floor->height_m;
   }
-  std::optional<Eigen::Vector3f> hips;
-  if (track.body && fitter) hips = trusted_hips(*track.body, fitter->flesh());
-  const auto changed = track.stance.update(posture_of(person.skeleton, body, up, height_m, hips), out.time_s);
+  std::optional<Posture> posture;
+  if (up && found) {
+    std::optional<PosedBody> posed;
+    if (track.body && fitter) posed.emplace(*track.body, fitter->flesh());
+    posture = posture_of(*found, frame, body, *up, height_m, posed);
+  }
+  const auto changed = track.stance.update(posture, out.time_s);
   if (changed && is_sure(track)) out.events.push_back({track.id, changed->second, changed->first});
+  return posture;
 }
 
 void PeopleTracker::State::smooth(Track& track, TrackedPerson& person, double time_s) const {
@@ -377,11 +399,13 @@ void PeopleTracker::State::tell(const Frame& frame, const std::vector<int>& sigh
     TrackedPerson& told = out.people.emplace_back();
     if (sighting_of[t] >= 0) {
       Sighting& sighting = sightings[static_cast<std::size_t>(sighting_of[t])];
-      take_stance(frame, track, sighting.person, out);
+      const std::optional<Posture> posture = take_stance(frame, track, &sighting.person, out);
       told = describe(track);
+      told.posture = posture;
       told.person = std::move(sighting.person);
     } else {
-      take_stance(frame, track, {}, out);
+      if (track.stays) track.stance.hold(out.time_s);
+      take_stance(frame, track, nullptr, out);
       told = describe_unseen(track, body, fitter.get(), out.time_s);
     }
     smooth(track, told, out.time_s);
@@ -417,7 +441,7 @@ Prior PeopleTracker::expect(const Frame& frame) const {
   if (step.jump) return prior;
   std::vector<const Track*> known;
   for (const Track& track : state_->tracks) {
-    if (step.time_s - track.seen_s <= kExpect_s) known.push_back(&track);
+    if (step.time_s - track.seen_s <= kExpect_s || stays_down(track, frame)) known.push_back(&track);
   }
   std::ranges::stable_sort(known, [](const Track* a, const Track* b) { return a->log_odds > b->log_odds; });
   if (known.size() > kMostExpected) known.resize(kMostExpected);
@@ -429,7 +453,8 @@ Prior PeopleTracker::expect(const Frame& frame) const {
     } else {
       TrackMotion motion = track->motion;
       motion.predict(step.passed_s);
-      mask = track->place.expected(frame, track->place_position, motion.position());
+      const bool stays = step.time_s - track->seen_s > kExpect_s;
+      mask = track->place.expected(frame, track->place_position, stays ? track->place_position : motion.position());
     }
     if (mask.empty() && flesh.empty()) continue;
     const float odds = is_sure(*track) ? std::exp(track->log_odds) : 1.F;  // a guess must not confirm itself

@@ -23,6 +23,7 @@ struct TrackOptions {
   int confirm = 3;         ///< frames in which somebody must be found to be more than a guess ...
   float confirm_s = 1.F;   ///< ... with at most this much time from one to the next
   float hidden_s = 3.F;    ///< time after which somebody who is not found is lost
+  float down_s = 30.F;     ///< the same of somebody near the floor, as long as something is there
   float gap_s = 5.F;       ///< a longer step in time, or one backwards, loses everybody
   int remembered = 32;     ///< most lost people who are known again
   float same_look = 0.1F;  ///< most difference of looks (look_distance) of one person who comes back

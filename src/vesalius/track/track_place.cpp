@@ -19,9 +19,21 @@ int tolerance_mm(int z_mm) { return 150 + static_cast<int>(static_cast<std::int6
 TrackPlace::TrackPlace(const Frame& frame, const Mask& mask, const Box& box)
     : width_(mask.width()), height_(mask.height()), box_(box), mask_(crop(mask, box)), depth_(crop(frame.depth, box)) {
   pixels_ = static_cast<long>(mask_.size()) - std::count(mask_.begin(), mask_.end(), std::uint8_t{0});
-  const int margin = std::max(1, width_ / 64);  // depth of structured light ends before the picture does
+  const int margin = view_margin(width_);
   at_border_ = box.u <= margin || box.v <= margin || box.u + box.width >= width_ - margin ||
                box.v + box.height >= height_ - margin;
+}
+
+float TrackPlace::unchanged(const Frame& frame) const {
+  if (pixels_ == 0 || frame.depth.width() != width_ || frame.depth.height() != height_) return 0.F;
+  long same = 0;
+  for (int v = 0; v < box_.height; ++v) {
+    for (int u = 0; u < box_.width; ++u) {
+      const int now = frame.depth(box_.u + u, box_.v + v);
+      if (mask_(u, v) != 0 && now != 0 && std::abs(now - depth_(u, v)) <= tolerance_mm(now)) ++same;
+    }
+  }
+  return static_cast<float>(same) / static_cast<float>(pixels_);
 }
 
 Mask TrackPlace::expected(const Frame& frame, const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
 
 namespace vesalius {
+
+/// Returns how near to the border of a picture of that width depth may end: that of structured light ends before it.
+inline int view_margin(int width) { return std::max(1, width / 64); }
 
 /// The pixels of somebody in one frame with their depth, from which follows where the person is to be expected in
 /// another.
@@ -18,6 +22,10 @@ class TrackPlace {
   bool empty() const { return mask_.empty(); }
   /// Returns whether the person reached to the border of the view, where people leave it.
   bool at_border() const { return at_border_; }
+
+  /// Returns the share of the pixels, 0-1, at which the frame has the same depth: whether the person, or somebody else,
+  /// is still there. 0 if the frame has another size.
+  float unchanged(const Frame& frame) const;
 
   /// Returns the pixels, moved as somebody who goes from `from` to `to` (metres, optical frame) moves in the picture,
   /// that are where the moved person would be: not those where something nearer hides them, nor those through which

@@ -1,42 +1,20 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <utility>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/fit/fitted_body.h"
-#include "vesalius/fit/flesh_model.h"
-#include "vesalius/search_skeletons.h"
+#include "vesalius/track/posture.h"
 #include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
 
-/// What one frame tells about how somebody holds the body.
-struct Posture {
-  float trunk_rad = 0.F;          ///< of the trunk's axis, from hips to chest and head, against up; 0 upright
-  bool hips_seen = true;          ///< false where they are those of the fitted body
-  std::optional<float> pelvis_m;  ///< height of the hips above the floor, if that is known
-  std::optional<float> head_m;    ///< of the head, or of the neck or chest where the head is not seen
-  bool head_seen = false;         ///< whether it is the head's
-  std::optional<float> knee_m;    ///< height of the knees, if they are seen
-};
-
-/// Returns the posture of a person; nothing where `up` is not known, or the skeleton lacks seen hips, or a seen part of
-/// the trunk or head above them. `up` is the unit vector away from the ground in the optical frame, `height_m` the
-/// camera's over the floor, if that is known. `fitted_hips` is the middle of the hips by the fitted body, metres,
-/// optical frame, where that is trusted; it stands in for hips that are not seen.
-std::optional<Posture> posture_of(const Skeleton& skeleton, const BodyModel& body,
-                                  const std::optional<Eigen::Vector3f>& up, std::optional<float> height_m,
-                                  const std::optional<Eigen::Vector3f>& fitted_hips = {});
-
-/// Returns where the parts of the hips have their middle by a fitted body, metres, optical frame, if that is rather
-/// within 10 cm of the truth than not.
-std::optional<Eigen::Vector3f> trusted_hips(const FittedBody& fitted, const FleshModel& flesh);
-
-/// Follows how one person stands, sits, lies or falls. A stance holds from when it has been seen without contradiction
-/// for some time, and then counts from the first frame in which it was seen. Whoever lies on the floor within 2 seconds
-/// of being upright has fallen, and so has whoever lies there for 10 seconds; who lies as high as on a bed has not.
-/// Nobody lies or falls by hips that are only fitted. Without evidence for 5 seconds the stance is unknown.
+/// Follows how one person stands, sits, lies or falls: the likeliest sequence of stances by all frames so far, by
+/// Viterbi's algorithm. Each frame tells how probable each stance is (stance_probabilities), and a person changes the
+/// stance seldom. A stance is told when it is clearly likelier than any other, and then counts from the frame in which
+/// it began. Whoever lies on the floor within 2 seconds of being upright has fallen, unless seen to sit there before,
+/// and so has whoever lies there for 10 seconds; who lies as high as on a bed has not. Without evidence for 5 seconds
+/// the stance is unknown.
 class TrackStance {
  public:
   /// Takes the posture of a frame, if there is one. Returns the new stance and when it began, if it changed.
@@ -44,21 +22,34 @@ class TrackStance {
 
   Stance stance() const { return stance_; }
 
- private:
-  /// A stance that lasts, but not yet for long enough.
-  struct Seen {
-    Stance stance = Stance::unknown;
-    double since_s = 0.0;
-    int frames = 0;
-  };
+  /// Says that the person, though not found, has not moved: the stance stays known.
+  void hold(double time_s);
+  /// Returns whether the person was near the floor when last seen: lay, sat on it, or was on the way down.
+  bool down() const { return down_; }
 
+ private:
+  /// The likeliest sequence of stances that ends in one stance.
+  struct Path {
+    double log_odds = 0.0;  ///< against the likeliest of all; 0 or below
+    double since_s = 0.0;   ///< when its last stance began
+    int frames = 0;         ///< with evidence, since then
+    double trunk_m = 0.0;   ///< sum of the trunk's heights over the floor in those in which they are known ...
+    int heights = 0;        ///< ... and their number
+    bool fell = false;      ///< whether the person had been upright shortly before, and did not sit down first
+  };
+  static constexpr std::array kStances{Stance::standing, Stance::sitting, Stance::lying};
+
+  void advance(const Posture& posture, double time_s);
+  std::optional<Stance> told(const Path& best, double margin, Stance stance, double time_s) const;
   std::optional<std::pair<Stance, double>> change(Stance stance, double since_s);
 
+  std::array<Path, kStances.size()> paths_;
   Stance stance_ = Stance::unknown;
-  Seen seen_;
-  std::optional<double> upright_s_;  ///< when the person was last seen upright
-  std::optional<double> known_s_;    ///< when there was evidence last
-  bool fell_ = false;                ///< whether the person had been upright shortly before what is seen now
+  std::optional<double> upright_s_;  ///< when the person was last seen upright, higher than on the floor
+  double near_floor_s_ = 0.0;        ///< for how long the person has been seen since
+  std::optional<double> seen_s_;     ///< when there was evidence last
+  std::optional<double> known_s_;    ///< when a stance was clear last
+  bool down_ = false;
 };
 
 }  // namespace vesalius

@@ -6,6 +6,7 @@
 
 #include "vesalius/detection.h"
 #include "vesalius/fit/fitted_body.h"
+#include "vesalius/track/posture.h"
 
 namespace vesalius {
 
@@ -32,6 +33,7 @@ struct TrackedPerson {
   std::optional<FittedBody> body;
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< of the trunk, metres, optical frame
   Eigen::Vector3f velocity = Eigen::Vector3f::Zero();  ///< of the trunk, metres a second
+  std::optional<Posture> posture;                      ///< in this frame, as far as it is known
   Stance stance = Stance::unknown;
   bool leaving = false;  ///< seen last at the border of the view, where people leave it
   double since_s = 0.0;  ///< time of the first frame in which the person was found
