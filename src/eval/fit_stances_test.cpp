@@ -36,7 +36,8 @@ TEST(FitStances, TellsThePeopleThatItWasFittedTo) {
   const StanceFit fit = fit_stances(drawn(), {});
   for (const StanceAgreement& agreement : fit.agreement) {
     EXPECT_GT(agreement.right_after, 0.97 * static_cast<double>(agreement.samples)) << to_string(agreement.stance);
-    EXPECT_EQ(agreement.right_before, 0) << "a model without weights tells nothing";
+    if (agreement.stance == Stance::lying) continue;
+    EXPECT_EQ(agreement.right_before, 0) << "a model without weights takes everybody for lying as soon as not";
   }
   EXPECT_EQ(fit.agreement[0].samples, 400);
 }
