@@ -143,7 +143,9 @@ TEST(ForestLabeller, SumsTheLeavesOfThePlainWalkForAnySizeAndThreads) {
       const DepthImage depth = random_depth(random, width, height);
       const Camera camera{width, height, 60.F, 50.F, 0.F, 0.F};
       const std::vector<std::uint16_t> expected = walked_sums(forest, depth, camera);
-      for_threads({1, 3}, [&] { EXPECT_EQ(labeller.label(depth, camera).sums, expected) << camera.width << 'x' << camera.height; });
+      for_threads({1, 3}, [&] {
+        EXPECT_EQ(labeller.label(depth, camera).sums, expected) << camera.width << 'x' << camera.height;
+      });
     }
   }
 }

@@ -24,6 +24,7 @@ constexpr std::size_t kMostTracks = 128;   // at once: no camera sees so many
 constexpr std::size_t kMostExpected = 16;  // of whom the detector is told, the surest ones
 constexpr double kExpect_s = 1.0;          // after being seen; later nobody knows the place
 constexpr float kStays = 0.6F;             // share of the pixels that are as they were where somebody still lies
+constexpr float kSamePlace_m = 1.F;        // of somebody new who is the one who lay there
 constexpr float kClearlyBetter = 0.1F;     // by which another lost person must look more different
 constexpr float kFadePerS = 1.F;           // of the confidence of what is predicted of hidden people, per second
 
@@ -165,6 +166,7 @@ struct PeopleTracker::State {
   void take(Track& track, const Sighting& sighting, double time_s) const;
   void count(Track& track, float score, double passed_s) const;
   void confirm(Track& track, float score) const;
+  bool begun_at(const Track& stayed, const std::vector<Sighting>& sightings, const std::vector<int>& matched) const;
   double longest_unseen_s(const Track& track) const;
   void lose(Track track, double time_s, TrackedFrame& out);
   void lose_all(double time_s, TrackedFrame& out);
@@ -285,6 +287,19 @@ void PeopleTracker::State::take(Track& track, const Sighting& sighting, double t
   confirm(track, sighting.person.score);
 }
 
+/// Returns whether somebody is found where `stayed` lay who is followed only since then: the same person, most likely.
+bool PeopleTracker::State::begun_at(const Track& stayed, const std::vector<Sighting>& sightings,
+                                    const std::vector<int>& matched) const {
+  std::vector<bool> is_new(sightings.size(), true);
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (matched[t] >= 0) is_new[static_cast<std::size_t>(matched[t])] = tracks[t].since_s > stayed.seen_s;
+  }
+  for (std::size_t s = 0; s < sightings.size(); ++s) {
+    if (is_new[s] && (sightings[s].trunk.position - stayed.place_position).norm() <= kSamePlace_m) return true;
+  }
+  return false;
+}
+
 /// Returns the time after which somebody who is not found is given up.
 double PeopleTracker::State::longest_unseen_s(const Track& track) const {
   if (!is_sure(track)) return static_cast<double>(options.confirm_s);
@@ -321,6 +336,9 @@ void PeopleTracker::State::predict(const Frame& frame, double passed_s) {
 std::vector<int> PeopleTracker::State::follow(const std::vector<Sighting>& sightings, double time_s,
                                               TrackedFrame& out) {
   const std::vector<int> matched = match(sightings, time_s);
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (tracks[t].stays && matched[t] < 0) tracks[t].stays = !begun_at(tracks[t], sightings, matched);
+  }
   std::vector<Track> staying;
   std::vector<int> sighting_of;
   std::vector<bool> taken(sightings.size(), false);

@@ -618,6 +618,44 @@ TEST(TrackPeople, TellsTheFloorAndWhoStandsOnIt) {
   EXPECT_EQ(events[0].stance, Stance::standing);
 }
 
+TEST(TrackPeople, WhoIsNearTheFloorIsFollowedWhileSomethingIsThere) {
+  const TrackOptions options;
+  const std::vector<Plane> low{{Vector3f::UnitY(), 0.3F, 4.F}}, high{{Vector3f::UnitY(), 1.1F, 4.F}};
+  Actor unseen;
+  unseen.found = false;
+  Actor other;
+  other.trunk.x() = 0.7F;
+  other.colour = {30, 30, 200};
+  struct Case {
+    const char* what;
+    const std::vector<Plane>& planes;
+    std::vector<Actor> after;
+    double gone_s;  ///< after not having been found any more
+  };
+  const double hidden_s = static_cast<double>(options.hidden_s), down_s = static_cast<double>(options.down_s);
+  for (const Case& each : {Case{"down", low, {unseen}, down_s}, Case{"upright", high, {unseen}, hidden_s},
+                           Case{"gone", low, {}, hidden_s}, Case{"found anew", low, {unseen, other}, hidden_s}}) {
+    SCOPED_TRACE(each.what);
+    PeopleTracker tracker(paper_body(), options, hue());
+    double time_s = 0.0;
+    const auto show = [&](const std::vector<Actor>& actors) {
+      Stage stage(actors);
+      stage.frame.time_s = time_s;
+      return tracker.update(stage.frame, stage.people, each.planes);
+    };
+    for (int i = 0; i < 30; ++i, time_s += 0.1) ASSERT_EQ(show({Actor{}}).people.front().id, 1);
+    const double last_s = time_s - 0.1;
+    std::optional<double> lost_s;
+    for (int i = 0; i < 320 && !lost_s; ++i, time_s += 0.1) {
+      for (const TrackedPerson& person : show(each.after).people) {
+        if (person.id == 1 && person.state == TrackState::lost) lost_s = time_s - last_s;
+      }
+    }
+    ASSERT_TRUE(lost_s);
+    EXPECT_NEAR(*lost_s, each.gone_s, 0.15);
+  }
+}
+
 TEST(TrackPeople, TellWhoStandsByTheFittedBodyWhereNoHipsAreSeen) {
   auto [frame, person] = rendered_person();
   const BodyModel& body = paper_body();
