@@ -394,7 +394,7 @@ std::optional<Posture> PeopleTracker::State::take_stance(const Frame& frame, Tra
   std::optional<Posture> posture;
   if (up && found) {
     std::optional<PosedBody> posed;
-    if (track.body && fitter) posed.emplace(*track.body, fitter->flesh());
+    if (track.body && fitter) posed.emplace(PosedBody{*track.body, fitter->flesh()});
     posture = posture_of(*found, frame, body, *up, height_m, posed);
   }
   const auto changed = track.stance.update(posture, out.time_s);

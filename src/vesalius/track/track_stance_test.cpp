@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace vesalius {
@@ -11,7 +10,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kDegree = std::numbers::pi_v<float> / 180.F;
 constexpr double kFrame_s = 1.0 / 30.0;
 
 /// A posture of which all is seen, of somebody of 1.7 m.
