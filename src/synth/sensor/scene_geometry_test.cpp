@@ -23,7 +23,7 @@ std::multiset<Triangle> triangles_of(const SceneGeometry& geometry) {
   for (const auto& q : geometry.quads) {
     for (Triangle t : {Triangle{q[0], q[1], q[3]}, Triangle{q[2], q[3], q[1]}}) {
       if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-      std::ranges::rotate(t, std::ranges::min_element(t));
+      std::rotate(t.begin(), std::ranges::min_element(t), t.end());
       result.insert(t);
     }
   }
@@ -46,7 +46,7 @@ TEST(SceneGeometry, HasExactlyTheTrianglesOfTheScene) {
     if (random.below(2) == 0) mesh.triangles.push_back({t[1], t[0], (t[0] + 7) % 60 == t[1] ? t[2] : (t[0] + 7) % 60});
   }
   for (Triangle t : mesh.triangles) {
-    std::ranges::rotate(t, std::ranges::min_element(t));
+    std::rotate(t.begin(), std::ranges::min_element(t), t.end());
     expected.insert(t);
   }
   Scene scene;
