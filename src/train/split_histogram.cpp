@@ -55,9 +55,9 @@ SplitHistogram count_bins(const FeatureRows& rows, const CountTask& task) {
 
 IntervalValues values_in(const FeatureRows& rows, const ValueInterval& interval) {
   IntervalValues found;
-  const std::int16_t* value = rows.values + interval.candidate;
-  for (std::size_t r = 0; r < rows.rows; ++r, value += rows.width) {
-    if (*value > interval.above && *value <= interval.last) found.values.push_back({*value, rows.labels[r]});
+  for (std::size_t r = 0; r < rows.rows; ++r) {
+    const std::int16_t value = rows.values[r * rows.width + interval.candidate];
+    if (value > interval.above && value <= interval.last) found.values.push_back({value, rows.labels[r]});
   }
   return found;
 }
