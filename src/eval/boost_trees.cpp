@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "vesalius/base/error.h"
+#include "vesalius/base/logistic.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
 
@@ -102,7 +103,7 @@ class Booster {
     drawn_.clear();
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       if (random_.uniform() >= options_.sample_share) continue;
-      const double p = 1.0 / (1.0 + std::exp(-log_odds_[i]));
+      const double p = logistic(log_odds_[i]);
       slopes_[i] = {p - (samples_[i].positive ? 1.0 : 0.0), p * (1.0 - p), 1};
       drawn_.push_back(static_cast<std::uint32_t>(i));
     }

@@ -9,6 +9,7 @@
 #include "eval/joint_metrics.h"
 #include "eval/median.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/logistic.h"
 #include "vesalius/predict_parts.h"
 
 namespace vesalius {
@@ -170,7 +171,7 @@ void fit_confidence(const std::vector<Outcome>& outcomes, PartDistribution& dist
     Eigen::Vector2d slope = -1e-3 * x;
     for (const Outcome& one : outcomes) {
       const Eigen::Vector2d row(1.0, one.log_sigma);
-      const double p = 1.0 / (1.0 + std::exp(-row.dot(x)));
+      const double p = logistic(row.dot(x));
       slope += ((one.right ? 1.0 : 0.0) - p) * row;
       curvature += std::max(p * (1.0 - p), 1e-6) * row * row.transpose();
     }

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "vesalius/base/logistic.h"
+
 namespace vesalius {
 namespace {
 
@@ -30,7 +32,7 @@ LogisticFit fit_logistic(const Eigen::MatrixXd& features, const Eigen::VectorXd&
     Eigen::MatrixXd curvature = ridge;
     for (Eigen::Index s = 0; s < samples; ++s) {
       x.head(count) = (features.col(s) - mean).cwiseQuotient(spread);
-      const double p = 1.0 / (1.0 + std::exp(-w.dot(x)));
+      const double p = logistic(w.dot(x));
       slope += weight[s] * (positive[s] - p) * x;
       curvature.selfadjointView<Eigen::Lower>().rankUpdate(x, weight[s] * p * (1.0 - p));
     }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "vesalius/base/logistic.h"
+
 namespace vesalius {
 namespace {
 
@@ -149,7 +151,7 @@ std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
 
 float predicted_confidence(const PartDistribution& distribution, float sigma_m) {
   const float logit = distribution.confidence_bias + distribution.confidence_slope * std::log(sigma_m);
-  return 1.F / (1.F + std::exp(-logit));
+  return logistic(logit);
 }
 
 void predict_missing_parts(const BodyModel& body, Skeleton& skeleton) {

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "vesalius/base/logistic.h"
+
 namespace vesalius {
 namespace {
 
@@ -401,7 +403,7 @@ float person_score(const Evidence& e, const ScoreOptions& o) {
   float sum = 0.F;
   for (const EvidenceWeight& piece : kEvidenceWeights) sum += o.*piece.weight * e.*piece.evidence;
   sum += o.bias;
-  return 1.F / (1.F + std::exp(-sum));
+  return logistic(sum);
 }
 
 }  // namespace vesalius

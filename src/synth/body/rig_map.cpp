@@ -33,9 +33,6 @@ class MapReader : public TomlReader {
   std::string name_or_empty(const toml::table& table, std::string_view key) const {
     return table.contains(key) ? name(table, key) : "";
   }
-  float number_or_zero(const toml::table& table, std::string_view key, double low, double high) const {
-    return table.contains(key) ? number(table, key, low, high) : 0.F;
-  }
   bool boolean_or_false(const toml::table& table, std::string_view key) const {
     return table.contains(key) && boolean(table, key);
   }

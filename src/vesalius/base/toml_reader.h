@@ -49,9 +49,11 @@ class TomlReader {
 
   [[noreturn]] void fail(const toml::node& at, const std::string& what) const { throw Error(place(at) + ": " + what); }
 
-  void expect_keys(const toml::table& table, std::initializer_list<std::string_view> known) const {
+  /// `known` is a range of strings.
+  template <class Keys = std::initializer_list<std::string_view>>
+  void expect_keys(const toml::table& table, const Keys& known) const {
     for (const auto& [key, node] : table) {
-      if (std::ranges::find(known, key.str()) != known.end()) continue;
+      if (std::ranges::find(known, key.str()) != std::end(known)) continue;
       std::string list;
       for (const std::string_view k : known) list.append(list.empty() ? "" : ", ").append(k);
       fail(node, "unknown key " + in_quotes(key.str()) + ", expected " + list);
@@ -94,6 +96,10 @@ class TomlReader {
   }
   float number(const toml::table& table, std::string_view key, double low, double high) const {
     return number(need(table, key), key, low, high);
+  }
+  /// Returns 0 where the table lacks the key.
+  float number_or_zero(const toml::table& table, std::string_view key, double low, double high) const {
+    return table.contains(key) ? number(table, key, low, high) : 0.F;
   }
 
   std::int64_t integer(const toml::node& node, std::string_view what, std::int64_t low, std::int64_t high) const {

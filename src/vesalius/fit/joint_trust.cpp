@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "vesalius/base/logistic.h"
 #include "vesalius/base/toml_reader.h"
 
 namespace vesalius {
@@ -16,16 +18,12 @@ constexpr double kMostWeight = 1000.0;
 
 JointTrust read_trust(const TomlReader& reader, const toml::table& table) {
   JointTrust trust;
+  std::vector<std::string_view> keys{"bias"};
+  for (const TrustSignal& signal : kTrustSignals) keys.push_back(signal.name);
+  reader.expect_keys(table, keys);
   trust.bias = reader.number(table, "bias", -kMostWeight, kMostWeight);
-  for (const auto& [key, node] : table) {
-    if (key.str() == "bias") continue;
-    const auto signal = std::ranges::find(kTrustSignals, key.str(), &TrustSignal::name);
-    if (signal == kTrustSignals.end()) {
-      std::string names = "bias";
-      for (const TrustSignal& known : kTrustSignals) names.append(", ").append(known.name);
-      reader.fail(node, "unknown key " + in_quotes(key.str()) + ", expected " + names);
-    }
-    trust.weights.*signal->value = reader.number(node, key.str(), -kMostWeight, kMostWeight);
+  for (const TrustSignal& signal : kTrustSignals) {
+    trust.weights.*signal.value = reader.number_or_zero(table, signal.name, -kMostWeight, kMostWeight);
   }
   return trust;
 }
@@ -37,7 +35,7 @@ float trusted(const JointTrust& trust, const TrustSignals& signals) {
   for (const TrustSignal& signal : kTrustSignals) {
     logit += static_cast<double>(trust.weights.*signal.value) * static_cast<double>(signals.*signal.value);
   }
-  return static_cast<float>(1.0 / (1.0 + std::exp(-logit)));
+  return static_cast<float>(logistic(logit));
 }
 
 float trusted(const BodyTrust& trust, JointSource source, const TrustSignals& signals) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vesalius/base/error.h"
+#include "vesalius/base/logistic.h"
 
 namespace vesalius {
 namespace {
@@ -29,7 +30,7 @@ void BoostedTrees::log_odds(const float* of, std::size_t count, float* out) cons
 float BoostedTrees::probability(const std::vector<float>& of) const {
   float sum = 0.F;
   log_odds(of.data(), 1, &sum);
-  return 1.F / (1.F + std::exp(-sum));
+  return logistic(sum);
 }
 
 void check(const BoostedTrees& trees, const std::string& what) {

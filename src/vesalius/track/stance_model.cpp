@@ -1,8 +1,8 @@
 #include "vesalius/track/stance_model.h"
 
-#include <algorithm>
-#include <cmath>
+#include <vector>
 
+#include "vesalius/base/logistic.h"
 #include "vesalius/base/toml_reader.h"
 
 namespace vesalius {
@@ -15,23 +15,19 @@ constexpr const char* kStances =
 constexpr double kMostWeight = 1000.0;
 constexpr float kUsual_m = 1.7F;  // stature of people without a fitted body
 constexpr float kBent_m = 0.7F;   // no bed is as high as hips that are higher: whose are bends over
-constexpr std::string_view kNot = "no_";
+
+std::string unknown_key(const StanceSign& sign) { return "no_" + std::string(sign.name); }
 
 StanceRule read_rule(const TomlReader& reader, const toml::table& table) {
   StanceRule rule;
+  std::vector<std::string> keys{"bias"};
+  for (const StanceSign& sign : kStanceSigns) keys.insert(keys.end(), {std::string(sign.name), unknown_key(sign)});
+  reader.expect_keys(table, keys);
   rule.bias = reader.number(table, "bias", -kMostWeight, kMostWeight);
-  for (const auto& [key, node] : table) {
-    if (key.str() == "bias") continue;
-    const bool unknown = key.str().starts_with(kNot);
-    const auto sign = std::ranges::find(kStanceSigns, key.str().substr(unknown ? kNot.size() : 0), &StanceSign::name);
-    if (sign == kStanceSigns.end()) {
-      std::string names = "bias";
-      for (const StanceSign& known : kStanceSigns) names.append(", [no_]").append(known.name);
-      reader.fail(node, "unknown key " + in_quotes(key.str()) + ", expected " + names);
-    }
-    auto& weights = unknown ? rule.unknown : rule.weights;
-    weights[static_cast<std::size_t>(sign - kStanceSigns.begin())] =
-        reader.number(node, key.str(), -kMostWeight, kMostWeight);
+  for (std::size_t i = 0; i < kStanceSigns.size(); ++i) {
+    const StanceSign& sign = kStanceSigns[i];
+    rule.weights[i] = reader.number_or_zero(table, sign.name, -kMostWeight, kMostWeight);
+    rule.unknown[i] = reader.number_or_zero(table, unknown_key(sign), -kMostWeight, kMostWeight);
   }
   return rule;
 }
@@ -50,7 +46,7 @@ float StanceRule::probability(const Posture& posture) const {
     const std::optional<float> value = value_of(kStanceSigns[i], posture);
     logit += static_cast<double>(value ? weights[i] * *value : unknown[i]);
   }
-  return static_cast<float>(1.0 / (1.0 + std::exp(-logit)));
+  return static_cast<float>(logistic(logit));
 }
 
 StanceProbabilities stance_probabilities(const StanceModel& model, const Posture& posture) {
