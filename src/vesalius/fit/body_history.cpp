@@ -28,11 +28,14 @@ Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
 }  // namespace
 
 ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s, const std::optional<Ground>& ground) const {
-  const int shapes = fitter.flesh().shapes;
   ExpectedBody expected;
   expected.ground = ground;
-  expected.shape = shape_.size() == shapes ? shape_ : Eigen::VectorXd::Zero(shapes);
-  expected.shape_information = shape_.size() == shapes ? information_ : Eigen::MatrixXd::Identity(shapes, shapes);
+  if (shape_.size() == fitter.flesh().shapes) {
+    expected.shape = shape_;
+    expected.shape_information = information_;
+  } else {
+    fitter.forget_shape(expected);
+  }
   expected.pose = expected_state(time_s);
   if (!expected.pose) return expected;
   expected.loosened = std::sqrt(std::max((time_s - last_->time_s) / kFrame_s, 1.0));

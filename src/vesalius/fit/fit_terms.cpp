@@ -15,8 +15,7 @@ using Eigen::Vector3d;
 constexpr double kLeastRadius = 0.1;
 constexpr double kLeastHalf_m = 0.008;
 constexpr double kLimit = 3.0;  // deviations beyond which centres, outline, fast limbs and feet count less and less
-constexpr double kBelowLimit =
-    6.0;  // the same of flesh below the ground: starts may be far below, and the ground wrong
+constexpr double kBelowLimit = 6.0;  // the same of flesh below the ground, where starts may be far down
 
 /// The flesh of a bone at a place along it.
 struct CrossSection {
@@ -54,46 +53,50 @@ Vector3d middle_at(const PlacedBone& placed, const FleshBone& bone, const CrossS
 
 /// The lowest place of a bone's flesh.
 struct LowPlace {
-  int bone = -1;
+  int bone = -1, station = 0;
   Vector3d at = Vector3d::Zero();
-  Eigen::VectorXd by_shape;  ///< derivative of its height by the shape, the bone's head left out
   double height_m = std::numeric_limits<double>::max();
 };
 
+/// By how much the half widths of an ellipse, each along its axis, rise upwards. `up` is in the bone's frame.
+Eigen::Vector2d rise_of(const FleshEllipse<double>& ellipse, const Vector3d& up) {
+  return {ellipse.half[0] * up[ellipse.across[0]], ellipse.half[1] * up[ellipse.across[1]]};
+}
+
+double reach_of(const Eigen::Vector2d& rise) { return std::max(std::hypot(rise[0], rise[1]), 1e-9); }
+
 LowPlace low_place(const Ground& ground, int index, const PlacedBone& placed, const FleshBone& bone) {
-  const std::array<int, 2> across = axes_across(bone.axis);
   const Vector3d up = placed.global.transpose() * ground.up;
   LowPlace lowest;
-  int station = 0;
-  std::array<double, 2> of_half{};  // derivative of the height by the half widths there
   for (int s = 0; s < FleshBone::kStations; ++s) {
-    Vector3d point = Vector3d::Zero();
-    point[bone.axis] = static_cast<double>(bone.stations[s]) * placed.numbers[3 + bone.axis];
-    std::array<double, 2> rise{};
-    for (int i = 0; i < 2; ++i) {
-      point[across[i]] = placed.numbers[6 + 4 * s + i];
-      rise[i] = placed.numbers[8 + 4 * s + i] * up[across[i]];
-    }
-    const double reach = std::max(std::hypot(rise[0], rise[1]), 1e-9);
-    for (int i = 0; i < 2; ++i) point[across[i]] -= placed.numbers[8 + 4 * s + i] * rise[i] / reach;
+    const FleshEllipse<double> ellipse = ellipse_of(bone, placed.numbers, s);
+    const Eigen::Vector2d rise = rise_of(ellipse, up);
+    const double reach = reach_of(rise);
+    Vector3d point = ellipse.centre;
+    for (int i = 0; i < 2; ++i) point[ellipse.across[i]] -= ellipse.half[i] * rise[i] / reach;
     const Vector3d at = placed.head + placed.global * point;
     const double height_m = ground.height_of(at);
-    if (height_m >= lowest.height_m) continue;
-    lowest = {index, at, {}, height_m};
-    station = s;
-    for (int i = 0; i < 2; ++i) of_half[i] = -rise[i] * up[across[i]] / reach;
-  }
-  lowest.by_shape.setZero(static_cast<Index>(bone.shapes.size()));
-  for (Index k = 0; k < lowest.by_shape.size(); ++k) {
-    const FleshBone::Numbers& by = bone.shapes[k];
-    double& change = lowest.by_shape[k];
-    change = static_cast<double>(bone.stations[station] * by[3 + bone.axis]) * up[bone.axis];
-    for (int i = 0; i < 2; ++i) {
-      change += static_cast<double>(by[6 + 4 * station + i]) * up[across[i]] +
-                static_cast<double>(by[8 + 4 * station + i]) * of_half[i];
-    }
+    if (height_m < lowest.height_m) lowest = {index, s, at, height_m};
   }
   return lowest;
+}
+
+/// Returns the derivative of the height of a place by the shape, the bone's head left out.
+Eigen::VectorXd height_by_shape(const Ground& ground, const LowPlace& place, const PlacedBone& placed,
+                                const FleshBone& bone) {
+  const Vector3d up = placed.global.transpose() * ground.up;
+  const FleshEllipse<double> ellipse = ellipse_of(bone, placed.numbers, place.station);
+  const Eigen::Vector2d rise = rise_of(ellipse, up);
+  const double reach = reach_of(rise);
+  Eigen::VectorXd by_shape(static_cast<Index>(bone.shapes.size()));
+  for (Index k = 0; k < by_shape.size(); ++k) {
+    const FleshEllipse<float> change = ellipse_of(bone, bone.shapes[k], place.station);
+    by_shape[k] = change.centre.cast<double>().dot(up);
+    for (int i = 0; i < 2; ++i) {
+      by_shape[k] -= static_cast<double>(change.half[i]) * rise[i] * up[ellipse.across[i]] / reach;
+    }
+  }
+  return by_shape;
 }
 
 double geman_mcclure(double squared, double limit) { return squared / (1.0 + squared / (limit * limit)); }
@@ -379,17 +382,16 @@ void FitTerms::add_ground(const Ground& ground, const std::vector<PlacedBone>& p
                           NormalEquations& equations) const {
   const double information = 1.0 / (static_cast<double>(options_.ground_m) * static_cast<double>(options_.ground_m));
   const auto pull = [&](const LowPlace& place, double limit) {
+    const Eigen::VectorXd by_shape = height_by_shape(ground, place, placed[place.bone], flesh_.bones[place.bone]);
     const double squared = information * place.height_m * place.height_m;
     const double weight = information * robust_weight(squared, limit, 1.0, equations);
-    equations.add_point(place.bone, place.at, ground.up, place.by_shape, place.height_m, weight);
+    equations.add_point(place.bone, place.at, ground.up, by_shape, place.height_m, weight);
   };
   LowPlace lower_foot;
   for (int b = 0; b < flesh_.bone_count(); ++b) {
-    LowPlace place = low_place(ground, b, placed[b], flesh_.bones[b]);
+    const LowPlace place = low_place(ground, b, placed[b], flesh_.bones[b]);
     if (place.height_m < 0.0) pull(place, kBelowLimit);
-    if (std::ranges::find(feet_, b) != feet_.end() && place.height_m < lower_foot.height_m) {
-      lower_foot = std::move(place);
-    }
+    if (std::ranges::find(feet_, b) != feet_.end() && place.height_m < lower_foot.height_m) lower_foot = place;
   }
   // Who sits with raised feet, lies or jumps is beyond the limit and hardly pulled down.
   if (lower_foot.bone >= 0 && lower_foot.height_m > 0.0) pull(lower_foot, kLimit);

@@ -88,7 +88,7 @@ void measure_pixels(const Person& person, const Frame& frame, const Vector3f& up
                     Posture& posture) {
   if (!person.mask.same_size(frame.depth)) return;
   std::vector<float> heights_m;
-  const Box box = bounding_box(person.mask);
+  const Box& box = person.box;
   for (int v = box.v; v < box.v + box.height; ++v) {
     for (int u = box.u; u < box.u + box.width; ++u) {
       if (person.mask(u, v) == 0 || frame.depth(u, v) == 0) continue;

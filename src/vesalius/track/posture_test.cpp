@@ -40,6 +40,7 @@ Person covering(Person person, const Box& box) {
   for (int v = box.v; v < box.v + box.height; ++v) {
     for (int u = box.u; u < box.u + box.width; ++u) person.mask(u, v) = 1;
   }
+  person.box = bounding_box(person.mask);
   return person;
 }
 

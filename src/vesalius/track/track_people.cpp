@@ -171,7 +171,7 @@ struct PeopleTracker::State {
   void lose(Track track, double time_s, TrackedFrame& out);
   void lose_all(double time_s, TrackedFrame& out);
   void predict(const Frame& frame, double passed_s);
-  std::vector<int> follow(const std::vector<Sighting>& sightings, double time_s, TrackedFrame& out);
+  std::vector<int> follow(const Frame& frame, const std::vector<Sighting>& sightings, double time_s, TrackedFrame& out);
   void fit_bodies(const Frame& frame, const std::vector<int>& sighting_of, const TrackedFrame& out,
                   std::vector<Sighting>& sightings);
   void tell(const Frame& frame, const std::vector<int>& sighting_of, std::vector<Sighting> sightings,
@@ -326,18 +326,17 @@ void PeopleTracker::State::predict(const Frame& frame, double passed_s) {
   parallel_for(static_cast<int>(tracks.size()), [&](int t) {
     Track& track = tracks[t];
     track.motion.predict(passed_s);
-    track.stays = stays_down(track, frame);
     track.expected = track.place.expected(frame, track.place_position, track.motion.position());
   });
 }
 
 /// Gives each sighting to its track, or begins one for it. Whoever is not found is hidden, or lost after some time.
 /// Returns for each track the index of its sighting, or -1.
-std::vector<int> PeopleTracker::State::follow(const std::vector<Sighting>& sightings, double time_s,
+std::vector<int> PeopleTracker::State::follow(const Frame& frame, const std::vector<Sighting>& sightings, double time_s,
                                               TrackedFrame& out) {
   const std::vector<int> matched = match(sightings, time_s);
   for (std::size_t t = 0; t < tracks.size(); ++t) {
-    if (tracks[t].stays && matched[t] < 0) tracks[t].stays = !begun_at(tracks[t], sightings, matched);
+    tracks[t].stays = matched[t] < 0 && stays_down(tracks[t], frame) && !begun_at(tracks[t], sightings, matched);
   }
   std::vector<Track> staying;
   std::vector<int> sighting_of;
@@ -497,7 +496,7 @@ TrackedFrame PeopleTracker::update(const Frame& frame, std::vector<Person> peopl
   s.floor.update(planes, frame.up, step.passed_s);
   out.floor = s.floor.view();
   s.predict(frame, step.passed_s);
-  const std::vector<int> sighting_of = s.follow(sightings, step.time_s, out);
+  const std::vector<int> sighting_of = s.follow(frame, sightings, step.time_s, out);
   s.fit_bodies(frame, sighting_of, out, sightings);
   s.tell(frame, sighting_of, std::move(sightings), out);
   return out;
