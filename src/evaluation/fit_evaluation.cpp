@@ -16,12 +16,12 @@ namespace {
 /// Rounds a weight to hundredths, which changes no score by more than a quarter of a hundredth.
 float rounded(float weight) { return std::round(weight * 100.F) / 100.F; }
 
-std::vector<KnownPerson> people_of(const Evaluation& evaluation) {
-  std::vector<KnownPerson> people;
-  for (const SetResult& set : evaluation.sets) {
-    people.insert(people.end(), set.known_people.begin(), set.known_people.end());
-  }
-  return people;
+/// Returns what the sets have of one kind, all together.
+template <class Kind>
+std::vector<Kind> of_all_sets(const Evaluation& evaluation, std::vector<Kind> SetResult::*kind) {
+  std::vector<Kind> all;
+  for (const SetResult& set : evaluation.sets) all.insert(all.end(), (set.*kind).begin(), (set.*kind).end());
+  return all;
 }
 
 /// Returns a number that TOML reads as a float: "1.0", not "1".
@@ -47,7 +47,8 @@ std::string joint_toml(const JointDefinition& joint, const BodyModel& body) {
 }  // namespace
 
 std::string fitted_joints_toml(const Evaluation& evaluation) {
-  const std::vector<JointSet> fitted = fit_joint_sets(people_of(evaluation), evaluation.body);
+  const std::vector<JointSet> fitted =
+      fit_joint_sets(of_all_sets(evaluation, &SetResult::known_people), evaluation.body);
   if (fitted.empty()) throw Error("no joints to fit: expected people found whose joints a set of the body has");
   std::string toml;
   for (const JointSet& set : fitted) {
@@ -58,7 +59,7 @@ std::string fitted_joints_toml(const Evaluation& evaluation) {
 }
 
 std::string fitted_distribution_toml(const Evaluation& evaluation) {
-  const PartDistribution fitted = fit_distribution(people_of(evaluation), evaluation.body);
+  const PartDistribution fitted = fit_distribution(of_all_sets(evaluation, &SetResult::known_people), evaluation.body);
   const auto numbers = [](const auto& values) {
     std::string text;
     for (const float value : values) text += fmt::format("{}{:.4f}", text.empty() ? "" : ", ", value);
@@ -106,11 +107,7 @@ FittedJudge fit_judge(const Evaluation& evaluation) {
 }
 
 FittedTrust fit_evaluation_trust(const Evaluation& evaluation) {
-  std::vector<TrustSample> samples;
-  for (const SetResult& set : evaluation.sets) {
-    samples.insert(samples.end(), set.trust_samples.begin(), set.trust_samples.end());
-  }
-  FittedTrust fitted{fit_trust(samples, builtin_trust()), ""};
+  FittedTrust fitted{fit_trust(of_all_sets(evaluation, &SetResult::trust_samples), builtin_trust()), ""};
   fitted.toml =
       "# How far joints of fitted bodies can be trusted (docs/tracking.md), by `vesalius evaluate --fit-trust`: the "
       "logit\n"
@@ -127,11 +124,7 @@ FittedTrust fit_evaluation_trust(const Evaluation& evaluation) {
 }
 
 FittedStances fit_evaluation_stances(const Evaluation& evaluation) {
-  std::vector<StanceSample> samples;
-  for (const SetResult& set : evaluation.sets) {
-    samples.insert(samples.end(), set.stance_samples.begin(), set.stance_samples.end());
-  }
-  FittedStances fitted{fit_stances(samples, builtin_stances()), ""};
+  FittedStances fitted{fit_stances(of_all_sets(evaluation, &SetResult::stance_samples), builtin_stances()), ""};
   fitted.toml =
       "# How probable stances are by one frame (docs/tracking.md), by `vesalius evaluate --fit-stances`: the logit is "
       "the\n"
@@ -151,10 +144,7 @@ FittedStances fit_evaluation_stances(const Evaluation& evaluation) {
 
 FittedContext fit_context(const Evaluation& evaluation) {
   FittedContext fitted;
-  std::vector<BoostSample> samples;
-  for (const SetResult& set : evaluation.sets) {
-    samples.insert(samples.end(), set.context_samples.begin(), set.context_samples.end());
-  }
+  const std::vector<BoostSample> samples = of_all_sets(evaluation, &SetResult::context_samples);
   for (const BoostSample& sample : samples) ++(sample.positive ? fitted.bodies : fitted.others);
   const std::string none = "fitting the context: the frames have no pixel that may be a body and is known to be ";
   if (fitted.bodies == 0) throw Error(none + "one");
