@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "io/sensors/sensor_drivers.h"
 #include "io/sources/open_source.h"
@@ -72,6 +74,21 @@ TEST_F(Cameras, AreEndedBySignalsWithoutAnError) {
                                   " 2>/dev/null | grep -q .; do sleep 0.1; i=$((i + 1)); done; kill -TERM $p; wait $p");
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("frames/s"));
+}
+
+TEST_F(Cameras, LeaveNoThreadBehind) {
+  const auto threads = [] {
+    const std::filesystem::directory_iterator all("/proc/self/task");
+    return std::distance(begin(all), end(all));
+  };
+  const auto use_camera = [] { ASSERT_TRUE(open_source("openni2:Dummy")->next()); };
+  use_camera();  // starts the library
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  const auto before = threads();
+  for (int i = 0; i < 3; ++i) {
+    use_camera();
+    EXPECT_EQ(threads(), before) << "one goes on with a camera that is closed";
+  }
 }
 
 TEST_F(Cameras, AreMeasuredForSoManyFrames) {
