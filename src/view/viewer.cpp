@@ -95,11 +95,13 @@ std::string new_recording(const std::string& folder) {
 
 /// Returns whether what is known of people with some options is of no use with others.
 bool are_tracks_others(const PeopleOptions& a, const PeopleOptions& b) {
-  const auto text = [](PeopleOptions options) {
-    options.detect = {};
-    return options_toml([&](OptionVisitor& visitor) { visit_options("", options, visitor); });
+  const auto text = [](TrackOptions track, FitOptions fit) {
+    return options_toml([&](OptionVisitor& visitor) {
+      visit_options("track.", track, visitor);
+      visit_options("fit.", fit, visitor);
+    });
   };
-  return a.detect.grow.appearance != b.detect.grow.appearance || text(a) != text(b);
+  return a.detect.grow.appearance != b.detect.grow.appearance || text(a.track, a.fit) != text(b.track, b.fit);
 }
 
 }  // namespace
