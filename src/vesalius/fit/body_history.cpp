@@ -27,9 +27,11 @@ Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
-ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s, const std::optional<Ground>& ground) const {
+ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s, const std::optional<Ground>& ground,
+                                 const Eigen::Vector3d& velocity) const {
   ExpectedBody expected;
   expected.ground = ground;
+  expected.velocity = velocity;
   if (shape_.size() == fitter.flesh().shapes) {
     expected.shape = shape_;
     expected.shape_information = information_;
@@ -39,7 +41,8 @@ ExpectedBody BodyHistory::expect(const BodyFitter& fitter, double time_s, const 
   expected.pose = expected_state(time_s);
   if (!expected.pose) return expected;
   expected.loosened = std::sqrt(std::max((time_s - last_->time_s) / kFrame_s, 1.0));
-  expected.start = misfit_ > kDoubtful ? frames_ % kStarts : -1;
+  const bool doubtful = misfit_ > kDoubtful || fitter.walks_backwards(expected);
+  expected.start = doubtful ? frames_ % kStarts : -1;
   return expected;
 }
 
@@ -70,8 +73,9 @@ void BodyHistory::learn(const FleshModel& flesh, const BodyFit& fit, const Expec
 }
 
 std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame& frame, const Person& person,
-                                           double time_s, const std::optional<Ground>& ground) {
-  ExpectedBody expected = expect(fitter, time_s, ground);
+                                           double time_s, const std::optional<Ground>& ground,
+                                           const Eigen::Vector3d& velocity) {
+  ExpectedBody expected = expect(fitter, time_s, ground, velocity);
   std::optional<BodyFit> found = fitter.fit(frame, person, expected);
   if (!found) return std::nullopt;
   if (found->restarted) {
@@ -79,12 +83,12 @@ std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame
     learned_ = 0;
   }
   if (found->body.misfit <= kWrong) learn(fitter.flesh(), *found, expected);
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d of_root = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> turning(found->state.local.size(), Eigen::Vector3d::Zero());
   if (expected.pose && !found->restarted && time_s > last_->time_s) {
     const Eigen::Vector3d now = (found->state.root - last_->state.root) / (time_s - last_->time_s);
-    velocity = (1.0 - kVelocityShare) * last_->velocity + kVelocityShare * now;
-    velocity *= std::min(1.0, kFastest_m_s / std::max(velocity.norm(), 1e-9));
+    of_root = (1.0 - kVelocityShare) * last_->velocity + kVelocityShare * now;
+    of_root *= std::min(1.0, kFastest_m_s / std::max(of_root.norm(), 1e-9));
     for (std::size_t b = 0; b < turning.size(); ++b) {
       const Eigen::Vector3d turn =
           log_rotation(last_->state.local[b].conjugate() * found->state.local[b]) / (time_s - last_->time_s);
@@ -92,7 +96,7 @@ std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame
       turning[b] *= std::min(1.0, kFastest_rad_s / std::max(turning[b].norm(), 1e-9));
     }
   }
-  last_ = Last{found->state, velocity, turning, time_s};
+  last_ = Last{found->state, of_root, turning, time_s};
   stature_m_ = found->body.stature_m;
   misfit_ = found->body.misfit;
   ++frames_;

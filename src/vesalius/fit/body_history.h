@@ -13,9 +13,11 @@ namespace vesalius {
 class BodyHistory {
  public:
   /// Fits the person's body in the next frame, at `time_s` seconds, and learns from it. Returns nothing if too little
-  /// of the person is known; then nothing is learned either. `ground` is where the floor is, if that is known.
+  /// of the person is known; then nothing is learned either. `ground` is where the floor is, if that is known;
+  /// `velocity` is that of the person's trunk, metres a second, optical frame.
   std::optional<FittedBody> fit(const BodyFitter& fitter, const Frame& frame, const Person& person, double time_s,
-                                const std::optional<Ground>& ground = {});
+                                const std::optional<Ground>& ground = {},
+                                const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero());
 
   /// Returns the body that is expected at `time_s`; nothing if the pose is not known any more.
   std::optional<BodyState> expected_state(double time_s) const;
@@ -31,7 +33,8 @@ class BodyHistory {
   int frames() const { return frames_; }
 
  private:
-  ExpectedBody expect(const BodyFitter& fitter, double time_s, const std::optional<Ground>& ground) const;
+  ExpectedBody expect(const BodyFitter& fitter, double time_s, const std::optional<Ground>& ground,
+                      const Eigen::Vector3d& velocity) const;
   void learn(const FleshModel& flesh, const BodyFit& fit, const ExpectedBody& expected);
 
   struct Last {

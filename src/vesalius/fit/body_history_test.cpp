@@ -104,6 +104,31 @@ TEST(BodyHistory, WhoBeginsAnewIsNotHeldToTheShapeOfAWrongBody) {
   EXPECT_NEAR(*history.stature_m(), truth, 0.04 * truth);
 }
 
+TEST(BodyHistory, WhoWalksBackwardsIsTurnedAround) {
+  const BodyFitter fitter(paper_body());
+  test::SeenBody seen = test::see(test::usual_state(0.0));
+  // At first all labels have the wrong side, so that the body turns its back; then they tell nothing of sides.
+  test::SeenBody wrong = seen, unsure = seen;
+  const auto mirror = [](PersonPoint& point) {
+    point.part.front() = static_cast<std::uint8_t>(paper_body().parts[point.part.front()].mirror);
+  };
+  for (PersonPoint& point : wrong.person.points) mirror(point);
+  for (std::size_t i = 0; i < unsure.person.points.size(); i += 2) mirror(unsure.person.points[i]);
+  const auto towards_camera = [&](const Eigen::Vector3d& velocity) {
+    BodyHistory history;
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(history.fit(fitter, wrong.frame, wrong.person, i / 30.0));
+    for (int i = 3; i < 8; ++i) {
+      EXPECT_TRUE(history.fit(fitter, unsure.frame, unsure.person, i / 30.0, {}, velocity));
+    }
+    const std::optional<BodyState> state = history.expected_state(7.0 / 30.0);
+    return state ? -state->local[0].toRotationMatrix()(2, 2) : 0.0;
+  };
+  EXPECT_LT(towards_camera(Eigen::Vector3d::Zero()), -0.7);
+  EXPECT_LT(towards_camera({0.0, 0.0, 1.0}), -0.7);
+  EXPECT_LT(towards_camera({0.0, 0.0, -0.2}), -0.7) << "slow: it may be the noise of somebody who stands";
+  EXPECT_GT(towards_camera({0.0, 0.0, -1.0}), 0.7);
+}
+
 TEST(BodyHistory, BadTimesForgetThePoseAndNeverFail) {
   const BodyFitter fitter(paper_body());
   const BodyState state = test::usual_state(0.0);

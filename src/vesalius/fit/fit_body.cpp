@@ -48,6 +48,12 @@ void BodyFitter::forget_shape(ExpectedBody& expected) const {
   expected.shape_information = Eigen::MatrixXd::Identity(flesh_.shapes, flesh_.shapes);
 }
 
+bool BodyFitter::walks_backwards(const ExpectedBody& expected) const {
+  constexpr double kSurely = 0.3;  // share of the full cost
+  return expected.pose &&
+         terms_.walk_cost(expected, *expected.pose) > kSurely * static_cast<double>(options_.walk_cost);
+}
+
 BodyFitter::Solution BodyFitter::descend(BodyState start, int steps, const Evaluate& evaluate) const {
   constexpr double kEnough = 1e-3;  // share of the cost that a further step must gain
   constexpr int kTries = 4;
@@ -148,6 +154,7 @@ std::optional<BodyState> BodyFitter::first_state(const FitData& data, bool mirro
 
 std::optional<BodyFitter::Solution> BodyFitter::fit_afresh(const FitData& data, int first, int count) const {
   std::optional<Solution> best;
+  double least = std::numeric_limits<double>::max();
   for (int start = first; start < first + count; ++start) {
     // The labels count as they are, whatever a start takes them for.
     const bool mirrored = start % 2 == 1;
@@ -158,7 +165,10 @@ std::optional<BodyFitter::Solution> BodyFitter::fit_afresh(const FitData& data, 
                                      terms_.evaluate_centres(data, at, mirrored, placed, to);
                                    });
     Solution solution = fit_points(data, rough.state, options_.rounds);
-    if (!best || solution.cost < best->cost) best = std::move(solution);
+    const double cost = solution.cost + terms_.walk_cost(data.expected, solution.state);
+    if (cost >= least) continue;
+    least = cost;
+    best = std::move(solution);
   }
   return best;
 }
@@ -167,7 +177,7 @@ double BodyFitter::cost(const FitData& data, const Solution& solution) const {
   NormalEquations equations(flesh_);
   std::vector<PlacedBone> placed;
   terms_.evaluate_points(data, solution.state, solution.assigned, placed, equations);
-  return equations.cost();
+  return equations.cost() + terms_.walk_cost(data.expected, solution.state);
 }
 
 std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person, const ExpectedBody& expected) const {
@@ -199,7 +209,7 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
     const double least = cost(data, followed) - static_cast<double>(options_.restart_gain);
     forget_shape(data.expected);
     const std::optional<Solution> afresh = fit_afresh(data, expected.start, 1);
-    if (afresh && afresh->cost < least) {
+    if (afresh && afresh->cost + terms_.walk_cost(data.expected, afresh->state) < least) {
       BodyFit fit = report(data, person.score, *afresh);
       fit.restarted = true;
       return fit;

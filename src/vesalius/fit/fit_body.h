@@ -47,6 +47,8 @@ class BodyFitter {
   /// tell (its shape may be empty). The frame's size is the mask's.
   std::optional<BodyFit> fit(const Frame& frame, const Person& person, const ExpectedBody& expected = {}) const;
 
+  /// Returns whether the expected body moves against its front, so that it may face the wrong way.
+  bool walks_backwards(const ExpectedBody& expected) const;
   /// Sets the shape to what is known of anybody's.
   void forget_shape(ExpectedBody& expected) const;
 

@@ -186,6 +186,27 @@ TEST(FitBody, BearsWrongSides) {
   }
 }
 
+TEST(FitBody, WhoWalksFacesWhereItGoes) {
+  const BodyFitter fitter(paper_body());
+  for (const double yaw : {0.0, pi}) {
+    SCOPED_TRACE(yaw);
+    // Labels of which every other has the wrong side do not tell how the body is turned.
+    test::SeenBody seen = test::see(test::usual_state(yaw));
+    for (std::size_t i = 0; i < seen.person.points.size(); i += 2) {
+      PersonPoint& point = seen.person.points[i];
+      point.part.front() = static_cast<std::uint8_t>(paper_body().parts[point.part.front()].mirror);
+    }
+    ExpectedBody expected;
+    for (const double speed : {1.2, -1.2}) {
+      expected.velocity = {0.1, 0.0, speed};
+      const std::optional<BodyFit> fit = fitter.fit(seen.frame, seen.person, expected);
+      ASSERT_TRUE(fit);
+      const Eigen::Vector3d front = fit->state.local[0].toRotationMatrix().col(2);
+      EXPECT_GT(front.dot(expected.velocity.normalized()), 0.7) << speed;
+    }
+  }
+}
+
 TEST(FitBody, TellsWhereTheCameraSeesPastAJoint) {
   const FleshModel& flesh = builtin_flesh();
   test::SeenBody seen = test::see(test::usual_state(0.0));

@@ -141,6 +141,8 @@ void visit_options(const std::string& prefix, FitOptions& o, OptionVisitor& visi
                  {"rad", 0.001, 10.0, "Standard deviation of a bone's turn from the expected one in 1/30 s."});
   visitor.option(prefix + "ground", o.ground_m,
                  {"m", 0.001, 10.0, "Standard deviation of flesh below the ground, and of the lowest foot above it."});
+  visitor.option(prefix + "walk-cost", o.walk_cost,
+                 {"", 0.0, 10000.0, "Squared deviations that a body costs which walks backwards."});
   visitor.option(prefix + "restart-gain", o.restart_gain,
                  {"", 0.0, 10000.0, "Squared deviations that a fit afresh must gain to replace the followed body."});
 }
@@ -179,6 +181,24 @@ FitTerms::FitTerms(const FleshModel& flesh, const BodyModel& body, const FitOpti
   for (int b = 0; b < flesh.bone_count(); ++b) {
     if (flesh.bones[b].name.ends_with("foot")) feet_.push_back(b);
   }
+}
+
+double FitTerms::walk_cost(const ExpectedBody& expected, const BodyState& state) const {
+  constexpr double kStands_m_s = 0.3, kWalks_m_s = 0.8;
+  constexpr double kBent = 0.8, kUpright = 0.95;  // cosine from the trunk to up
+  constexpr double kSteep = 0.75, kLevel = 0.25;  // speed up or down for that along the ground
+  const auto share = [](double value, double none, double all) {
+    return std::clamp((value - none) / (all - none), 0.0, 1.0);
+  };
+  const Eigen::Matrix3d turn = state.local[0].toRotationMatrix();  // left, up and front
+  const Vector3d up = expected.ground ? expected.ground->up : Vector3d(turn.col(1));
+  const double rise = expected.velocity.dot(up);
+  const Vector3d along = expected.velocity - rise * up;
+  const double speed = along.norm(), forward = along.dot(turn.col(2));
+  if (forward >= 0.0 || speed <= kStands_m_s) return 0.0;
+  const double walks = share(speed, kStands_m_s, kWalks_m_s) * share(std::abs(rise) / speed, kSteep, kLevel) *
+                       share(turn.col(1).dot(up), kBent, kUpright);
+  return static_cast<double>(options_.walk_cost) * walks * -forward / speed;
 }
 
 FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurface::Stretch& stretch,

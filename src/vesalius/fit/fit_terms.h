@@ -34,6 +34,7 @@ struct FitOptions {
   float follow_m = 0.02F;       ///< standard deviation of the root from its expected place after a thirtieth second
   float follow_rad = 0.1F;      ///< of a bone's turn from its expected one
   float ground_m = 0.05F;       ///< standard deviation of flesh below the ground, and of the lowest foot above it
+  float walk_cost = 200.F;      ///< squared deviations that walking backwards costs
   float restart_gain = 40.F;    ///< by which a fit afresh must cost less than the followed body to replace it
 };
 void visit_options(const std::string& prefix, FitOptions& options, OptionVisitor& visitor);
@@ -61,9 +62,10 @@ struct Ground {
 
 /// What is known of a body before its points are looked at.
 struct ExpectedBody {
-  std::optional<Ground> ground;       ///< below which no flesh is, and on which most people stand
-  std::optional<BodyState> pose;      ///< where the person is expected in this frame
-  int start = 0;                      ///< which of kStarts is tried besides the pose; -1: none
+  std::optional<Ground> ground;                        ///< below which no flesh is, and on which most people stand
+  std::optional<BodyState> pose;                       ///< where the person is expected in this frame
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the trunk, metres a second
+  int start = 0;                                       ///< which of kStarts is tried besides the pose; -1: none
   double loosened = 1.0;              ///< multiplies the standard deviations of following; grows with the time gone by
   Eigen::VectorXd shape;              ///< mean of the shape
   Eigen::MatrixXd shape_information;  ///< inverse of its covariance
@@ -98,6 +100,11 @@ class FitTerms {
   /// expected pose. Parts are taken for their mirror partners if `mirrored`.
   void evaluate_centres(const FitData& data, const BodyState& state, bool mirrored, std::vector<PlacedBone>& placed,
                         NormalEquations& equations) const;
+
+  /// Returns the squared deviations that an upright body costs which moves over the ground against its front: who walks
+  /// walks forwards, while people sit down, lie down and fall backwards, too. It is no term of the descent, since the
+  /// way from one facing to the other leads through poses that fit nothing.
+  double walk_cost(const ExpectedBody& expected, const BodyState& state) const;
 
   /// How the points that were assigned to a bone lie to it.
   struct Support {

@@ -73,6 +73,40 @@ TEST(FitTerms, TheExpectedPoseHasTheGradientOfItsCost) {
   expect_true_gradient(terms, data, state);
 }
 
+TEST(FitTerms, WhoWalksBackwardsCosts) {
+  FitOptions options;
+  options.walk_cost = 50.F;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  const BodyState state = test::usual_state(0.0);  // faces the camera: its front is -z, its left x
+  const auto cost_at = [&](double x, double y, double z) {
+    ExpectedBody expected;
+    expected.velocity = {x, y, z};
+    return terms.walk_cost(expected, state);
+  };
+  EXPECT_EQ(cost_at(0.0, 0.0, 0.0), 0.0);
+  EXPECT_EQ(cost_at(0.0, 0.0, -1.5), 0.0);
+  EXPECT_EQ(cost_at(1.5, 0.0, -0.1), 0.0) << "sideways";
+  EXPECT_EQ(cost_at(0.0, 0.0, 0.3), 0.0) << "too slow for a walk";
+  EXPECT_NEAR(cost_at(0.0, 0.0, 0.55), 25.0, 1e-9);
+  EXPECT_NEAR(cost_at(0.0, 0.0, 0.8), 50.0, 1e-9);
+  EXPECT_NEAR(cost_at(0.0, 0.0, 2.0), 50.0, 1e-9);
+  EXPECT_NEAR(cost_at(0.8, 0.0, 0.6), 30.0, 1e-9);
+  EXPECT_NEAR(cost_at(0.0, 0.4, 0.8), 25.0, 1e-9) << "down as well as back";
+  EXPECT_EQ(cost_at(0.0, 1.0, 1.0), 0.0) << "sits down";
+}
+
+TEST(FitTerms, WhoLeansFarBackDoesNotWalk) {
+  const FitOptions options;
+  const FitTerms terms(builtin_flesh(), paper_body(), options);
+  ExpectedBody expected;
+  expected.velocity = {0.0, 0.0, 1.0};
+  expected.ground = Ground{-Eigen::Vector3d::UnitY(), 1.0};
+  BodyState state = test::usual_state(0.0);
+  EXPECT_NEAR(terms.walk_cost(expected, state), static_cast<double>(options.walk_cost), 1e-6);
+  state.local[0] = Eigen::AngleAxisd(-0.7, Eigen::Vector3d::UnitX()) * state.local[0];
+  EXPECT_EQ(terms.walk_cost(expected, state), 0.0);
+}
+
 TEST(FitTerms, TheGroundHasTheGradientOfItsCost) {
   FitOptions options;
   const FitTerms terms(builtin_flesh(), paper_body(), options);

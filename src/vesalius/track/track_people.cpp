@@ -374,7 +374,7 @@ void PeopleTracker::State::fit_bodies(const Frame& frame, const std::vector<int>
     Track& track = tracks[t];
     Person& person = sightings[static_cast<std::size_t>(sighting_of[t])].person;
     if (!person.mask.same_size(frame.depth)) return;
-    track.body = track.history.fit(*fitter, frame, person, out.time_s, ground);
+    track.body = track.history.fit(*fitter, frame, person, out.time_s, ground, track.motion.velocity().cast<double>());
     track.size.fit(track.history.size());
     if (track.body) place_joints(*track.body, builtin_flesh_joints(), body, fitter->trust(), person.joints);
     track.person.joints = person.joints;
