@@ -24,8 +24,8 @@ constexpr int kWidth = 640, kHeight = 480, kRate = 30;
 constexpr std::int64_t kMostApart_us = 17'000;
 constexpr int kColourPatience_ms = 20;
 constexpr double kMicroseconds = 1e6;
-/// How long a stopped stream is kept. Some drivers (OpenNI2's own Dummy) do not wait in `stop` for the thread that makes
-/// their frames; it goes on with the stream until the next one, 33 ms away.
+/// How long a stopped stream is kept. Some drivers (OpenNI2's own Dummy) do not wait in `stop` for the thread that
+/// makes their frames; it goes on with the stream until the next one, 33 ms away.
 constexpr std::chrono::milliseconds kUntilThreadsEnd(200);
 
 std::string reason() {
