@@ -106,14 +106,11 @@ TEST(BodyHistory, WhoBeginsAnewIsNotHeldToTheShapeOfAWrongBody) {
 
 TEST(BodyHistory, WhoWalksBackwardsIsTurnedAround) {
   const BodyFitter fitter(paper_body());
-  test::SeenBody seen = test::see(test::usual_state(0.0));
+  const test::SeenBody seen = test::see(test::usual_state(0.0));
   // At first all labels have the wrong side, so that the body turns its back; then they tell nothing of sides.
   test::SeenBody wrong = seen, unsure = seen;
-  const auto mirror = [](PersonPoint& point) {
-    point.part.front() = static_cast<std::uint8_t>(paper_body().parts[point.part.front()].mirror);
-  };
-  for (PersonPoint& point : wrong.person.points) mirror(point);
-  for (std::size_t i = 0; i < unsure.person.points.size(); i += 2) mirror(unsure.person.points[i]);
+  for (PersonPoint& point : wrong.person.points) test::mirror_label(point);
+  for (std::size_t i = 0; i < unsure.person.points.size(); i += 2) test::mirror_label(unsure.person.points[i]);
   const auto towards_camera = [&](const Eigen::Vector3d& velocity) {
     BodyHistory history;
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(history.fit(fitter, wrong.frame, wrong.person, i / 30.0));

@@ -154,7 +154,6 @@ std::optional<BodyState> BodyFitter::first_state(const FitData& data, bool mirro
 
 std::optional<BodyFitter::Solution> BodyFitter::fit_afresh(const FitData& data, int first, int count) const {
   std::optional<Solution> best;
-  double least = std::numeric_limits<double>::max();
   for (int start = first; start < first + count; ++start) {
     // The labels count as they are, whatever a start takes them for.
     const bool mirrored = start % 2 == 1;
@@ -165,15 +164,18 @@ std::optional<BodyFitter::Solution> BodyFitter::fit_afresh(const FitData& data, 
                                      terms_.evaluate_centres(data, at, mirrored, placed, to);
                                    });
     Solution solution = fit_points(data, rough.state, options_.rounds);
-    const double cost = solution.cost + terms_.walk_cost(data.expected, solution.state);
-    if (cost >= least) continue;
-    least = cost;
-    best = std::move(solution);
+    if (!best || cost(data, solution) < cost(data, *best)) best = std::move(solution);
   }
   return best;
 }
 
+/// Returns what solutions are compared by.
 double BodyFitter::cost(const FitData& data, const Solution& solution) const {
+  return solution.cost + terms_.walk_cost(data.expected, solution.state);
+}
+
+/// The same by what is expected now, which has changed since the descent.
+double BodyFitter::cost_anew(const FitData& data, const Solution& solution) const {
   NormalEquations equations(flesh_);
   std::vector<PlacedBone> placed;
   terms_.evaluate_points(data, solution.state, solution.assigned, placed, equations);
@@ -206,10 +208,10 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
     // A body that lost its person stays near itself; without the expected pose both have the same chance. The shape may
     // have been learned from a wrong body, too.
     data.expected.pose.reset();
-    const double least = cost(data, followed) - static_cast<double>(options_.restart_gain);
+    const double least = cost_anew(data, followed) - static_cast<double>(options_.restart_gain);
     forget_shape(data.expected);
     const std::optional<Solution> afresh = fit_afresh(data, expected.start, 1);
-    if (afresh && afresh->cost + terms_.walk_cost(data.expected, afresh->state) < least) {
+    if (afresh && cost(data, *afresh) < least) {
       BodyFit fit = report(data, person.score, *afresh);
       fit.restarted = true;
       return fit;

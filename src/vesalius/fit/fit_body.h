@@ -63,6 +63,7 @@ class BodyFitter {
   Solution fit_points(const FitData& data, BodyState start, int rounds) const;
   std::optional<Solution> fit_afresh(const FitData& data, int first, int count) const;
   double cost(const FitData& data, const Solution& solution) const;
+  double cost_anew(const FitData& data, const Solution& solution) const;
   std::optional<BodyState> first_state(const FitData& data, bool mirrored, std::size_t pose) const;
   BodyFit report(const FitData& data, float score, const Solution& solution) const;
 

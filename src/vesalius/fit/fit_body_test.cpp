@@ -175,9 +175,7 @@ TEST(FitBody, BearsWrongSides) {
     test::SeenBody seen = test::see(states[i]);
     Random random(10 + i);
     for (PersonPoint& point : seen.person.points) {
-      if (random.below(10) == 0) {
-        point.part.front() = static_cast<std::uint8_t>(paper_body().parts[point.part.front()].mirror);
-      }
+      if (random.below(10) == 0) test::mirror_label(point);
     }
     const std::optional<BodyFit> fit = fitter.fit(seen.frame, seen.person);
     ASSERT_TRUE(fit);
@@ -192,10 +190,7 @@ TEST(FitBody, WhoWalksFacesWhereItGoes) {
     SCOPED_TRACE(yaw);
     // Labels of which every other has the wrong side do not tell how the body is turned.
     test::SeenBody seen = test::see(test::usual_state(yaw));
-    for (std::size_t i = 0; i < seen.person.points.size(); i += 2) {
-      PersonPoint& point = seen.person.points[i];
-      point.part.front() = static_cast<std::uint8_t>(paper_body().parts[point.part.front()].mirror);
-    }
+    for (std::size_t i = 0; i < seen.person.points.size(); i += 2) test::mirror_label(seen.person.points[i]);
     ExpectedBody expected;
     for (const double speed : {1.2, -1.2}) {
       expected.velocity = {0.1, 0.0, speed};

@@ -152,6 +152,11 @@ inline void describe(const BodyModel& body, const Frame& frame, Person& person) 
                                 {0, 0, frame.depth.width(), frame.depth.height()}, parts);
 }
 
+/// Gives a point the label of the body's other side.
+inline void mirror_label(PersonPoint& point, const BodyModel& body = paper_body()) {
+  point.part.front() = static_cast<std::uint8_t>(body.parts[point.part.front()].mirror);
+}
+
 /// Returns what a camera sees of a body: exact depth and labels.
 inline SeenBody see(const BodyState& state, const BodyModel& body = paper_body(),
                     const FleshModel& flesh = builtin_flesh()) {
