@@ -11,6 +11,12 @@ namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{64} << 20U;
 
+void expect_size(int width, int height) {
+  if (width > 0 && height > 0 && width <= kLargestTiledSide && height <= kLargestTiledSide) return;
+  throw Error("training: a frame has " + std::to_string(width) + "x" + std::to_string(height) +
+              " pixels, expected 1 to " + std::to_string(kLargestTiledSide) + " a side");
+}
+
 std::size_t whole_lines(std::size_t bytes) { return (bytes + kLineBytes - 1) / kLineBytes * kLineBytes; }
 
 }  // namespace
@@ -41,16 +47,17 @@ std::size_t FrameStore::add(const Camera& camera, const DepthImage& depth) {
     throw Error("training: depth is " + std::to_string(depth.width()) + "x" + std::to_string(depth.height()) +
                 ", its camera " + std::to_string(camera.width) + "x" + std::to_string(camera.height));
   }
-  if (depth.empty() || depth.width() > kLargestTiledSide || depth.height() > kLargestTiledSide) {
-    throw Error("training: a frame has " + std::to_string(depth.width()) + "x" + std::to_string(depth.height()) +
-                " pixels, expected 1 to " + std::to_string(kLargestTiledSide) + " a side");
-  }
-  const std::vector<std::uint32_t> words = pack_tiles(depth);
-  const std::size_t bytes = words.size() * sizeof(std::uint32_t);
-  std::byte* at = allocate(whole_lines(bytes));
-  std::memcpy(at, words.data(), bytes);
-  const PackedTiles tiles = packed_tiles({depth.width(), depth.height()}, reinterpret_cast<const std::uint32_t*>(at));
-  views_.push_back({tiles, bytes, OffsetScaler(convention_, camera)});
+  expect_size(depth.width(), depth.height());
+  return add_packed(camera, pack_tiles(depth));
+}
+
+std::size_t FrameStore::add_packed(const Camera& camera, std::span<const std::uint32_t> words) {
+  expect_size(camera.width, camera.height);
+  std::byte* at = allocate(whole_lines(words.size_bytes()));
+  std::memcpy(at, words.data(), words.size_bytes());
+  const PackedTiles tiles = packed_tiles({camera.width, camera.height}, reinterpret_cast<const std::uint32_t*>(at));
+  views_.push_back({tiles, words.size_bytes(), OffsetScaler(convention_, camera)});
+  cameras_.push_back(camera);
   return views_.size() - 1;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "train/depth_tiles.h"
@@ -30,9 +31,16 @@ class FrameStore {
   /// Adds a frame and returns its index. Throws Error if the depth image and the camera differ in size or a side has
   /// more than 32767 pixels.
   std::size_t add(const Camera& camera, const DepthImage& depth);
+  /// Adds a frame by the words that pack_tiles made of its depth. Throws Error as `add` does.
+  std::size_t add_packed(const Camera& camera, std::span<const std::uint32_t> words);
 
   std::size_t size() const { return views_.size(); }
   const View& operator[](std::size_t frame) const { return views_[frame]; }
+  const Camera& camera(std::size_t frame) const { return cameras_[frame]; }
+  /// Returns the words that pack_tiles made of a frame's depth.
+  std::span<const std::uint32_t> words(std::size_t frame) const {
+    return {views_[frame].depth.row_starts, views_[frame].bytes / sizeof(std::uint32_t)};
+  }
   const FeatureConvention& convention() const { return convention_; }
 
   /// Returns the memory of all depth in bytes.
@@ -49,6 +57,7 @@ class FrameStore {
   std::vector<HugeBuffer> blocks_;
   std::size_t used_ = 0;  ///< used bytes of the last block
   std::vector<View> views_;
+  std::vector<Camera> cameras_;
   std::size_t bytes_ = 0;
 };
 

@@ -21,29 +21,25 @@ constexpr float kMostSteps = 127.F;
 
 /// Grows the trees of a round that the store lacks, and returns all of the round in order.
 std::vector<Tree> grow_round(Executor& executor, const Forest& forest, const TrainOptions& options, TreeRound round,
-                             TreeStore& store, TrainObserver& observer, int trees_at_once) {
+                             TreeStore& store, TrainObserver& observer) {
   std::vector<std::optional<Tree>> trees;
   std::vector<int> missing;
   for (int t = 0; t < round.trees; ++t) {
     trees.push_back(store.load(round.first + t));
-    if (!trees.back()) missing.push_back(t);
+    if (!trees.back()) missing.push_back(round.first + t);
   }
   round.missing = static_cast<int>(missing.size());
   GrowProgress progress;
   observer.begin_round(round, progress);
-  const auto grow = [&](int t) {
-    const int number = round.first + t;
-    const std::unique_ptr<TreeExecutor> shards = executor.begin_tree(options.grow, number);
-    trees[t] = grow_tree(*shards, forest, options.grow, number, progress);
-    store.save(number, *trees[t]);
-    observer.add_tree(*trees[t]);
+  const auto take = [&](int number, Tree tree) {
+    store.save(number, tree);
+    observer.add_tree(tree);
+    trees[number - round.first] = std::move(tree);
   };
+  Forest untrained = forest;
+  untrained.trees.clear();
   try {
-    // Trees grow in batches. Otherwise a thread that waits within a tree may begin another one and hold the memory of
-    // both.
-    for (int begin = 0; begin < round.missing; begin += trees_at_once) {
-      parallel_for(std::min(round.missing - begin, trees_at_once), [&](int i) { grow(missing[begin + i]); });
-    }
+    if (!missing.empty()) executor.grow_trees(untrained, options.grow, missing, progress, take);
   } catch (...) {
     observer.end_round();
     throw;
@@ -91,10 +87,10 @@ std::size_t add_hard_negatives(Executor& executor, const Forest& forest, const S
 }
 
 Forest train_forest(Executor& executor, Forest forest, const TrainOptions& options, TreeStore& store,
-                    TrainObserver& observer, int trees_at_once) {
+                    TrainObserver& observer) {
   check(options);
   const auto grow = [&](const char* name, int first, int count) {
-    forest.trees = grow_round(executor, forest, options, {name, first, count, 0}, store, observer, trees_at_once);
+    forest.trees = grow_round(executor, forest, options, {name, first, count, 0}, store, observer);
     check(forest);
   };
   if (options.hard_trees > 0 && forest.has_background) {

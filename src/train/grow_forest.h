@@ -61,11 +61,11 @@ class TrainObserver {
 };
 
 /// Runs the loop of training_protocol.h: grows the first round, adds hard negatives, grows the forest, learns its
-/// leaves together. What `store` has is not done again. At most `trees_at_once` trees grow at a time, each of which
-/// needs memory. Returns `forest`, which says what is trained, with its trees. Throws Interrupted when the observer
-/// stops it, with all finished trees saved, and Error as grow_tree and the executor do.
+/// leaves together. What `store` has is not done again. Returns `forest`, which says what is trained, with its trees.
+/// Throws Interrupted when the observer stops it, with all finished trees saved, and Error as grow_tree and the
+/// executor do.
 Forest train_forest(Executor& executor, Forest forest, const TrainOptions& options, TreeStore& store,
-                    TrainObserver& observer, int trees_at_once = 1);
+                    TrainObserver& observer);
 
 /// Adds background that `forest` takes for a body as samples, at most as many as the options allow. Returns their
 /// number.

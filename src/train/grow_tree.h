@@ -1,23 +1,17 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "train/grow_options.h"
+#include "train/growing_tree.h"
 #include "train/training_protocol.h"
 #include "train/training_set.h"
 #include "vesalius/base/error.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {
-
-/// The progress of trees that are being grown, summed over all of them. It is only for display.
-struct GrowProgress {
-  std::atomic<std::uint64_t> evaluations{0};  ///< values of eq. 1
-  std::atomic<std::uint64_t> nodes{0};
-  std::atomic<std::uint64_t> settled{0};  ///< samples times levels done; a tree ends at samples times max_depth
-  std::atomic<bool> stop{false};          ///< if set, grow_tree throws Interrupted
-};
 
 /// grow_tree throws this error when it is asked to stop.
 class Interrupted : public Error {
@@ -34,6 +28,12 @@ class Interrupted : public Error {
 /// Error where there are no samples, UsageError for an option out of range.
 Tree grow_tree(TreeExecutor& shards, const Forest& forest, const GrowTreeOptions& options, int tree,
                GrowProgress& progress);
+
+/// Grows the trees below nodes of tree number `tree` whose samples the shards have moved there (LocalTree::walk_to);
+/// `samples` are those of the whole training. Returns their nodes, the roots first. Otherwise as grow_tree.
+std::vector<std::vector<GrownNode>> grow_subtrees(TreeExecutor& shards, const Forest& forest,
+                                                  const GrowTreeOptions& options, int tree, const SampleCounts& samples,
+                                                  std::span<const TreeRoot> roots, GrowProgress& progress);
 
 /// Grows a tree on one set within this process.
 Tree grow_tree(const TrainingSet& set, const GrowTreeOptions& options, int tree, GrowProgress* progress = nullptr);

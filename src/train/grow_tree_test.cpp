@@ -9,7 +9,7 @@
 
 #include "capsule/capsule_person.h"
 #include "train/leaf_shares.h"
-#include "train/local_executor.h"
+#include "train/local_shards.h"
 #include "train/prune_tree.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"

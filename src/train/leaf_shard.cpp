@@ -17,15 +17,21 @@ constexpr int kGrain = 2048;
 constexpr std::size_t kBatch = 16384;
 constexpr double kOne = static_cast<double>(SampleWeights::kUnit) * SampleWeights::kUnit;
 
+/// Returns whether a sample's frame is in a portion.
+bool in_portion(const TrainingSet& set, const TrainingSample& sample, int portion, int portions) {
+  return (sample.frame + set.first_frame()) % static_cast<unsigned>(portions) == static_cast<unsigned>(portion);
+}
+
 }  // namespace
 
-LeafShard::LeafShard(const TrainingSet& set, const Forest& forest, LogitLayout layout)
+LeafShard::LeafShard(const TrainingSet& set, const Forest& forest, LogitLayout layout, const GradientTask& portion)
     : set_(set), samples_(set.samples()), layout_(std::move(layout)) {
   for (const Tree& tree : forest.trees) {
     leaf_counts_.push_back(tree.leaves.size());
     std::vector<std::uint32_t>& leaves = leaves_.emplace_back(samples_.size());
     parallel_ranges(static_cast<int>(samples_.size()), kGrain, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
+        if (!in_portion(set, samples_[i], portion.portion, portion.portions)) continue;
         leaves[i] = static_cast<std::uint32_t>(leaf_of(tree, set.frames(), samples_[i]));
       }
     });
@@ -69,11 +75,8 @@ class LeafShard::Gradients {
   }
 
   LeafGradient run() {
-    const auto portions = static_cast<std::uint32_t>(task_.portions);
     for (std::size_t i = 0; i < shard_.samples_.size(); ++i) {
-      if ((shard_.samples_[i].frame + shard_.set_.first_frame()) % portions != static_cast<unsigned>(task_.portion)) {
-        continue;
-      }
+      if (!in_portion(shard_.set_, shard_.samples_[i], task_.portion, task_.portions)) continue;
       batch_.push_back(static_cast<std::uint32_t>(i));
       if (batch_.size() == kBatch) flush();
     }

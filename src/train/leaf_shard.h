@@ -14,8 +14,9 @@ namespace vesalius {
 /// LeafExecutor (training_protocol.h) for its own samples, under the same names.
 class LeafShard {
  public:
-  /// Walks all samples down all trees. `set` must outlive this object and not change.
-  LeafShard(const TrainingSet& set, const Forest& forest, LogitLayout layout);
+  /// Walks all samples down all trees, or those of one gradient: then `leaf_counts` and other gradients make no sense.
+  /// `set` must outlive this object and not change.
+  LeafShard(const TrainingSet& set, const Forest& forest, LogitLayout layout, const GradientTask& portion = {});
 
   LabelCounts label_counts() const;
   void set_weights(const SampleWeights& weights) { weights_ = weights; }

@@ -3,56 +3,20 @@
 #include <memory>
 #include <vector>
 
-#include "train/leaf_shard.h"
 #include "train/training_protocol.h"
 #include "train/training_set.h"
-#include "train/tree_shard.h"
 
 namespace vesalius {
-
-/// The shards of one tree within this process. Requests about a batch go to one shard after the other on the calling
-/// thread; all others go to all shards at once, each on all allowed threads.
-class LocalTree : public TreeExecutor {
- public:
-  /// Makes one shard for each set, in the order of their frames; there is at least one. The sets must outlive this
-  /// object and not change.
-  LocalTree(const std::vector<const TrainingSet*>& sets, const GrowTreeOptions& options, int tree);
-
-  SampleCounts sample_counts() override;
-  void open_level(const Level& level) override;
-  void evaluate(NodeRange group, int block) override;
-  std::vector<NodeValues> node_values(NodeRange batch) override;
-  std::vector<SplitHistogram> histograms(NodeRange batch, const std::vector<CountTask>& tasks) override;
-  std::vector<IntervalValues> values_in(const std::vector<ValueInterval>& intervals) override;
-  void set_splits(const std::vector<NodeSplit>& splits) override;
-  ChildCounts route() override;
-
- private:
-  std::vector<TreeShard> shards_;
-};
-
-/// The shards of learning leaves within this process, asked one after the other; each uses all allowed threads.
-class LocalLeaves : public LeafExecutor {
- public:
-  /// As LocalTree.
-  LocalLeaves(const std::vector<const TrainingSet*>& sets, const Forest& forest, const LogitLayout& layout);
-
-  LabelCounts label_counts() override;
-  void set_weights(const SampleWeights& weights) override;
-  LeafCounts leaf_counts(int tree) override;
-  LeafGradient gradient(const LeafLogits& logits, const GradientTask& task) override;
-
- private:
-  std::vector<LeafShard> shards_;
-};
 
 /// All shards of a training within this process.
 class LocalExecutor : public Executor {
  public:
-  /// There must be at least one set, and all must outlive this object.
-  explicit LocalExecutor(std::vector<TrainingSet*> sets);
+  /// There must be at least one set, and all must outlive this object. At most `trees_at_once` trees grow at a time,
+  /// each of which needs memory.
+  explicit LocalExecutor(std::vector<TrainingSet*> sets, int trees_at_once = 1);
 
-  std::unique_ptr<TreeExecutor> begin_tree(const GrowTreeOptions& options, int tree) override;
+  void grow_trees(const Forest& forest, const GrowTreeOptions& options, const std::vector<int>& numbers,
+                  GrowProgress& progress, const TakeTree& take) override;
   HardCounts count_hard_negatives(const Forest& forest) override;
   std::size_t add_hard_negatives(const HardCut& cut) override;
   std::unique_ptr<LeafExecutor> begin_leaves(const Forest& forest, const LogitLayout& layout) override;
@@ -60,6 +24,7 @@ class LocalExecutor : public Executor {
 
  private:
   std::vector<TrainingSet*> sets_;
+  int trees_at_once_;
   std::vector<HardCounts> hard_;  ///< last counts of each set
 };
 

@@ -4,37 +4,16 @@
 
 #include <atomic>
 
-#include "capsule/capsule_person.h"
 #include "train/grow_forest.h"
 #include "train/test_training.h"
 #include "vesalius/base/error.h"
-#include "vesalius/base/random.h"
 
 namespace vesalius {
 namespace {
 
 using test::train_over;
 
-constexpr Camera kCamera{80, 60, 66.F, 66.F, 39.5F, 29.5F};
-
-/// Returns noisy frames of people with an empty room after every third.
-std::vector<LabelledFrame> frames_of(int count) {
-  std::vector<LabelledFrame> frames;
-  for (int i = 0; i < count; ++i) {
-    Random random(5, static_cast<std::uint64_t>(i));
-    CapsuleScene scene;
-    if (i % 4 != 3) {
-      CapsulePerson person;
-      person.pose.yaw = static_cast<float>(random.uniform(-0.7, 0.7));
-      person.pose.l_arm.raise = static_cast<float>(random.uniform(0.2, 2.5));
-      person.feet.x() = static_cast<float>(random.uniform(-0.5, 0.5));
-      scene.people = {person};
-    }
-    frames.push_back(render(scene, kCamera, paper_body()));
-    add_sensor_noise(frames.back().frame, static_cast<std::uint64_t>(i));
-  }
-  return frames;
-}
+std::vector<LabelledFrame> frames_of(int count) { return test::noisy_frames(count, 0.7); }
 
 TrainOptions small_options() {
   TrainOptions options;

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "train/split_kernels.h"
 
@@ -104,6 +105,17 @@ ThresholdSplit refine_split(IntervalValues values, const BinSplit& split, const 
   const std::int64_t samples = std::accumulate(classes.totals.begin(), classes.totals.end(), std::int64_t{0});
   result.gain = static_cast<double>(best - before) / (EntropyTable::kUnitsPerBit * static_cast<double>(samples));
   return result;
+}
+
+RowSplit split_of(const FeatureRows& rows, int classes, int bins, int candidates, int least,
+                  const EntropyTable& entropy) {
+  const NodeValues values = node_values(rows, classes);
+  const CountTask task{{values.ranges, bins}, ClassIndex(values.class_counts)};
+  const SplitHistogram histogram = count_bins(rows, task);
+  const BinSplit best = best_split(histogram, candidates, task.classes, least, entropy);
+  if (best.candidate < 0) return {};
+  IntervalValues around = values_in(rows, beside(best, task.binning, 0));
+  return {best.candidate, refine_split(std::move(around), best, histogram, task.classes, least, entropy)};
 }
 
 }  // namespace vesalius

@@ -48,4 +48,14 @@ struct ThresholdSplit {
 ThresholdSplit refine_split(IntervalValues values, const BinSplit& split, const SplitHistogram& histogram,
                             const ClassIndex& classes, int least, const EntropyTable& entropy);
 
+/// The choice of a split from all rows of a node at once.
+struct RowSplit {
+  int candidate = -1;  ///< -1 if no threshold leaves `least` rows on both sides
+  ThresholdSplit threshold;
+};
+
+/// Returns the split among the first `candidates` candidates that the steps above choose together.
+RowSplit split_of(const FeatureRows& rows, int classes, int bins, int candidates, int least,
+                  const EntropyTable& entropy);
+
 }  // namespace vesalius

@@ -2,11 +2,32 @@
 
 #include <vector>
 
+#include "capsule/capsule_person.h"
 #include "train/grow_forest.h"
 #include "train/local_executor.h"
+#include "vesalius/base/random.h"
 
 // Training over several shards, which tests share.
 namespace vesalius::test {
+
+/// Returns noisy frames of 80x60 pixels of people who are turned by at most `most_yaw`, every fourth of an empty room.
+inline std::vector<LabelledFrame> noisy_frames(int count, double most_yaw) {
+  std::vector<LabelledFrame> frames;
+  for (int i = 0; i < count; ++i) {
+    Random random(5, static_cast<std::uint64_t>(i));
+    CapsuleScene scene;
+    if (i % 4 != 3) {
+      CapsulePerson person;
+      person.pose.yaw = static_cast<float>(random.uniform(-most_yaw, most_yaw));
+      person.pose.l_arm.raise = static_cast<float>(random.uniform(0.2, 2.5));
+      person.feet.x() = static_cast<float>(random.uniform(-0.5, 0.5));
+      scene.people = {person};
+    }
+    frames.push_back(render(scene, {80, 60, 66.F, 66.F, 39.5F, 29.5F}, paper_body()));
+    add_sensor_noise(frames.back().frame, static_cast<std::uint64_t>(i));
+  }
+  return frames;
+}
 
 /// Trains on shards; shard i has the frames [ends[i - 1], ends[i]).
 inline Forest train_over(const std::vector<int>& ends, const std::vector<LabelledFrame>& frames,
@@ -20,8 +41,8 @@ inline Forest train_over(const std::vector<int>& ends, const std::vector<Labelle
   }
   std::vector<TrainingSet*> shards;
   for (TrainingSet& set : sets) shards.push_back(&set);
-  LocalExecutor executor(shards);
-  return train_forest(executor, sets.front().untrained_forest(), options, store, observer, trees_at_once);
+  LocalExecutor executor(shards, trees_at_once);
+  return train_forest(executor, sets.front().untrained_forest(), options, store, observer);
 }
 
 }  // namespace vesalius::test

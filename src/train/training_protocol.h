@@ -42,6 +42,9 @@
 // Replies are integers and merge in any order to the same numbers, and all that depends on the order of samples is said
 // in ranks. So the forest does not depend on how many shards there are, nor on how many threads each of them uses.
 
+#include <atomic>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -89,13 +92,26 @@ class LeafExecutor {
   virtual LeafGradient gradient(const LeafLogits& logits, const GradientTask& task) = 0;
 };
 
+/// The progress of trees that are being grown, summed over all of them. It is only for display.
+struct GrowProgress {
+  std::atomic<std::uint64_t> evaluations{0};  ///< values of eq. 1
+  std::atomic<std::uint64_t> nodes{0};
+  std::atomic<std::uint64_t> settled{0};  ///< samples times levels done; a tree ends at samples times max_depth
+  std::atomic<bool> stop{false};          ///< if set, Interrupted is thrown
+};
+
 /// All shards of a training.
 class Executor {
  public:
   virtual ~Executor() = default;
 
-  /// Begins a tree. Trees may grow at the same time from several threads, but not while hard negatives are added.
-  virtual std::unique_ptr<TreeExecutor> begin_tree(const GrowTreeOptions& options, int tree) = 0;
+  /// Takes a finished tree; any thread may call it.
+  using TakeTree = std::function<void(int number, Tree tree)>;
+
+  /// Grows the trees of these numbers for a forest without trees and passes them on in any order. Throws Interrupted
+  /// when `progress` says stop.
+  virtual void grow_trees(const Forest& forest, const GrowTreeOptions& options, const std::vector<int>& numbers,
+                          GrowProgress& progress, const TakeTree& take) = 0;
   virtual HardCounts count_hard_negatives(const Forest& forest) = 0;
   /// Adds the pixels counted last as samples, in each shard its part of the ties (take_part). Returns their number.
   virtual std::size_t add_hard_negatives(const HardCut& cut) = 0;

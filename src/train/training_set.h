@@ -19,10 +19,22 @@ namespace vesalius {
 /// frames that follow those of the set before it.
 class TrainingSet {
  public:
+  /// What a set holds besides the options by which it was drawn.
+  struct Contents {
+    FrameStore frames;
+    std::vector<TrainingSample> samples = {}, pool = {}, held_out = {}, people_samples = {};
+    std::vector<PersonSamples> people = {};
+    std::vector<std::uint64_t> class_pixels = {};
+  };
+
   /// `first_frame` is the number of frames in the sets before this one. Throws UsageError for options out of range, and
   /// Error for a body without parts or with more than 254.
   TrainingSet(BodyModel body, FeatureConvention convention, const SampleOptions& options, std::uint64_t seed,
               std::size_t first_frame = 0);
+  /// A set with what another one held that had the same options. Throws Error for samples that are in no frame, and as
+  /// the other constructor.
+  TrainingSet(BodyModel body, const SampleOptions& options, std::uint64_t seed, std::size_t first_frame,
+              Contents contents);
 
   /// Draws this frame's pixels and keeps its depth; labels are not kept. The pixels depend on the seed, the number of
   /// frames added before and the frame. It is called from one thread at a time. Throws Error if the frame's images
@@ -40,41 +52,40 @@ class TrainingSet {
   SampleCounts sample_counts() const;
 
   const BodyModel& body() const { return body_; }
-  const FeatureConvention& convention() const { return convention_; }
+  const FeatureConvention& convention() const { return contents_.frames.convention(); }
   bool has_background() const { return options_.background_share > 0.F; }
   int class_count() const { return body_.part_count() + (has_background() ? 1 : 0); }
   /// Returns a forest without trees for this set's classes and convention.
   Forest untrained_forest() const;
 
-  const FrameStore& frames() const { return frames_; }
+  const FrameStore& frames() const { return contents_.frames; }
+  const Contents& contents() const { return contents_; }
   /// The number of frames in the sets before this one.
   std::size_t first_frame() const { return first_frame_; }
   /// The samples for learning, ordered by frame.
-  std::span<const TrainingSample> samples() const { return samples_; }
+  std::span<const TrainingSample> samples() const { return contents_.samples; }
   /// The samples for measuring accuracy, ordered by frame. `samples` has none of their frames.
-  std::span<const TrainingSample> held_out() const { return held_out_; }
+  std::span<const TrainingSample> held_out() const { return contents_.held_out; }
 
   /// The people of held-out frames whose heading is known, and their samples.
-  std::span<const PersonSamples> held_out_people() const { return people_; }
-  std::span<const TrainingSample> people_samples() const { return people_samples_; }
+  std::span<const PersonSamples> held_out_people() const { return contents_.people; }
+  std::span<const TrainingSample> people_samples() const { return contents_.people_samples; }
 
   /// The pixels of each class in all frames of learning, the background last.
-  std::span<const std::uint64_t> class_pixels() const { return class_pixels_; }
+  std::span<const std::uint64_t> class_pixels() const { return contents_.class_pixels; }
 
   /// Returns the memory of depth, samples and pool in bytes.
   std::size_t bytes() const;
 
  private:
+  void expect_inside(const TrainingSample& sample, bool labelled) const;
+
   BodyModel body_;
-  FeatureConvention convention_;
   SampleOptions options_;
   std::uint64_t seed_;
   std::size_t first_frame_;
-  FrameStore frames_;
-  std::vector<TrainingSample> samples_, pool_, held_out_, people_samples_;
-  std::vector<PersonSamples> people_;
+  Contents contents_;
   std::vector<std::uint32_t> pool_shares_;  ///< shares of the parts, in 1/255 over all trees; 0 up to half
-  std::vector<std::uint64_t> class_pixels_;
 };
 
 }  // namespace vesalius

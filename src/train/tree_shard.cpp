@@ -44,7 +44,6 @@ TreeShard::TreeShard(const TrainingSet& set, const GrowTreeOptions& options, int
       on_right_(samples_.size(), 0) {}
 
 void TreeShard::open_level(const Level& level, const ChildSizes& before) {
-  const bool first = level_.empty();
   level_.assign(level.nodes.size(), {});
   for (std::size_t n = 0; n < level_.size(); ++n) level_[n].all = level.nodes[n];
   std::int64_t row = 0;
@@ -58,8 +57,7 @@ void TreeShard::open_level(const Level& level, const ChildSizes& before) {
     node.row_end = row;
   }
   for (std::size_t s = 0; s < samples_.size(); ++s) {
-    if (node_of_[s] == kSettled) continue;
-    node_of_[s] = level.node_of_child[first ? 0 : std::size_t{2} * node_of_[s] + on_right_[s]];
+    if (node_of_[s] != kSettled) node_of_[s] = level.node_of_child[node_of_[s]];
   }
   assign_rows();
 }
@@ -220,13 +218,28 @@ void TreeShard::route_the_rest() {
 ChildCounts TreeShard::route() {
   route_the_rest();
   ChildCounts children{set_.class_count(), std::vector<std::int64_t>(2 * level_.size() * set_.class_count(), 0)};
+  for (std::int32_t& node : node_of_) {
+    if (node != kSettled) node = 2 * node + on_right_[&node - node_of_.data()];
+  }
+  count_children(children);
+  return children;
+}
+
+ChildCounts TreeShard::walk_to(const OpenTree& tree) {
+  const FrameStore& frames = set_.frames();
+  parallel_ranges(static_cast<int>(samples_.size()), kGrain, [&](int begin, int end) {
+    for (int s = begin; s < end; ++s) node_of_[s] = tree.child_of_leaf[leaf_of(tree.tree, frames, samples_[s])];
+  });
+  ChildCounts children{set_.class_count(), std::vector<std::int64_t>(tree.children * set_.class_count(), 0)};
+  count_children(children);
+  return children;
+}
+
+void TreeShard::count_children(ChildCounts& children) {
   for (std::size_t s = 0; s < samples_.size(); ++s) {
-    if (node_of_[s] == kSettled) continue;
-    const std::size_t child = std::size_t{2} * node_of_[s] + on_right_[s];
-    ++children.counts[child * children.classes + samples_[s].label];
+    if (node_of_[s] != kSettled) ++children.counts[std::size_t(node_of_[s]) * children.classes + samples_[s].label];
   }
   child_sizes_ = vesalius::child_sizes(children);
-  return children;
 }
 
 }  // namespace vesalius

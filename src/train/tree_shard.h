@@ -6,6 +6,7 @@
 
 #include "train/feature_rows.h"
 #include "train/grow_options.h"
+#include "train/growing_tree.h"
 #include "train/huge_buffer.h"
 #include "train/training_messages.h"
 #include "train/training_set.h"
@@ -28,11 +29,15 @@ class TreeShard {
   /// `before` are the total child sizes of all shards before this one.
   void open_level(const Level& level, const ChildSizes& before);
   void evaluate(NodeRange group, int block);
+  /// Returns the rows of a node of the last evaluated group. They are valid until the next call of `evaluate`.
+  FeatureRows rows(std::int32_t node) const { return rows_of(level_[node]); }
   std::vector<NodeValues> node_values(NodeRange batch) const;
   std::vector<SplitHistogram> histograms(NodeRange batch, const std::vector<CountTask>& tasks) const;
   std::vector<IntervalValues> values_in(const std::vector<ValueInterval>& intervals) const;
   void set_splits(const std::vector<NodeSplit>& splits);
   ChildCounts route();
+  /// Instead of all levels above: moves each sample to the child that it reaches in `tree`, and counts them.
+  ChildCounts walk_to(const OpenTree& tree);
 
  private:
   /// A node of the level with this shard's samples.
@@ -62,6 +67,7 @@ class TreeShard {
   FeatureRows rows_of(const Node& node) const;
   void route_by_rows(Node& node, int candidate);
   void route_the_rest();
+  void count_children(ChildCounts& children);
 
   const TrainingSet& set_;
   std::span<const TrainingSample> samples_;
@@ -69,7 +75,8 @@ class TreeShard {
   int tree_;
   ChildSizes child_sizes_;  ///< child sizes of this shard at the last level
   std::vector<Node> level_;
-  std::vector<std::int32_t> node_of_;   ///< [sample]: index in `level_`, or kSettled
+  /// [sample]: index in `level_`, or kSettled; between `route` or `walk_to` and `open_level` that of a child.
+  std::vector<std::int32_t> node_of_;
   std::vector<std::uint32_t> row_of_;   ///< [sample]
   std::vector<std::uint8_t> on_right_;  ///< [sample]: its side
 

@@ -24,19 +24,6 @@ namespace {
 constexpr double kMiB = 1024.0 * 1024.0;
 constexpr double kGiB = 1024.0 * kMiB;
 
-/// Returns the forest whose trees are kept, if there is one, or throws unless it has the inputs' parts and a
-/// background.
-std::optional<Forest> kept_trees(const TrainRun& run, const TrainInputs& inputs) {
-  if (run.trees_of.empty()) return std::nullopt;
-  Forest forest = load_model(run.trees_of);
-  if (!std::ranges::equal(forest.body.parts, inputs.body().parts, {}, &BodyPart::name, &BodyPart::name)) {
-    throw Error(run.trees_of + ": has other body parts than the frames, expected the same");
-  }
-  if (!forest.has_background)
-    throw Error(run.trees_of + ": has no background class, expected one to learn leaves with");
-  return forest;
-}
-
 /// Trains one forest and holds what its steps share.
 class Training {
  public:
@@ -44,7 +31,7 @@ class Training {
       : run_(run),
         options_(options),
         inputs_(inputs),
-        trees_of_(kept_trees(run, inputs)),
+        trees_of_(run.trees_of.empty() ? std::nullopt : std::optional(kept_trees(run, inputs))),
         set_(inputs.body(), trees_of_ ? trees_of_->convention : training_convention(options), options.sample,
              static_cast<std::uint64_t>(options.grow.seed)) {}
 
@@ -114,12 +101,11 @@ class Training {
   }
 
   Forest grow() {
-    LocalExecutor executor({&set_});
+    LocalExecutor executor({&set_}, run_.trees_at_once);
     TrainDisplay display(set_, options_.grow.leaf.max_depth, run_.shown);
     try {
-      Forest forest =
-          trees_of_ ? learn_again(executor, display)
-                    : train_forest(executor, untrained_forest(), options_, *session_, display, run_.trees_at_once);
+      Forest forest = trees_of_ ? learn_again(executor, display)
+                                : train_forest(executor, untrained_forest(), options_, *session_, display);
       figures_.grown = display.totals();
       return forest;
     } catch (const Interrupted&) {
@@ -172,6 +158,16 @@ class Training {
 };
 
 }  // namespace
+
+Forest kept_trees(const TrainRun& run, const TrainInputs& inputs) {
+  Forest forest = load_model(run.trees_of);
+  if (!std::ranges::equal(forest.body.parts, inputs.body().parts, {}, &BodyPart::name, &BodyPart::name)) {
+    throw Error(run.trees_of + ": has other body parts than the frames, expected the same");
+  }
+  if (!forest.has_background)
+    throw Error(run.trees_of + ": has no background class, expected one to learn leaves with");
+  return forest;
+}
 
 void train(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs) {
   Training(run, options, inputs).run();

@@ -20,6 +20,9 @@ struct TrainRun {
   std::uint64_t max_bytes = 0;  ///< most memory for frames and samples
 };
 
+/// Returns the forest whose trees are kept. Throws Error unless it has the inputs' parts and a background.
+Forest kept_trees(const TrainRun& run, const TrainInputs& inputs);
+
 /// Trains a forest: reads all frames, grows the first round, adds hard negatives, grows the forest, and writes model
 /// and report. If an earlier run with the same inputs and options was interrupted, its trees are used, and the model is
 /// the same as without the interruption. Throws Error for unusable frames, more memory than allowed, files that cannot

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "train/grow_options.h"
+#include "train/leaf_shares.h"
+#include "train/prune_tree.h"
+#include "train/training_messages.h"
+#include "vesalius/forest/forest.h"
+
+namespace vesalius {
+
+/// A node of the level that is to be split.
+struct OpenNode {
+  LevelNode node;
+  std::size_t at = 0;  ///< index in GrowingTree::nodes
+  int classes = 0;     ///< number of its samples' classes
+  TreeNode split;      ///< the best so far
+  double gain = 0;     ///< its bits per sample; 0 if there is none
+};
+
+/// A node from which a tree grows: the root, or one of another tree's level.
+struct TreeRoot {
+  std::uint32_t number = 1;          ///< numbered as in a heap
+  std::vector<std::int64_t> counts;  ///< [class]: its samples in all shards
+};
+
+/// A tree whose leaves are where samples wait: each leads to a child, or to kSettled.
+struct OpenTree {
+  Tree tree;  ///< nodes only
+  std::vector<std::int32_t> child_of_leaf;
+  std::size_t children = 0;
+};
+
+/// The driver's side of a growing tree: its nodes so far, and the level that is to be split.
+class GrowingTree {
+ public:
+  /// `samples` are those of the whole training, `parts` the classes that are parts of a body.
+  GrowingTree(const SampleCounts& samples, int parts, const GrowTreeOptions& options);
+
+  /// Begins with some roots, which are the children of no level. Returns as `descend` does.
+  std::vector<std::int32_t> begin(std::span<const TreeRoot> roots);
+  const std::vector<OpenNode>& level() const { return level_; }
+  /// Returns the smallest number of a node's counted samples on a side at which about `min_samples` of all go there.
+  int least_samples(const OpenNode& open) const;
+  /// Takes a split of a node of the level if it gains at least `min_gain` and more than those before. Returns whether
+  /// it did.
+  bool offer(std::int32_t node, const TreeNode& split, double gain);
+  /// Makes the children, numbered as in ChildCounts, of all nodes with a split; they become the next level. Returns for
+  /// each child its index there or kSettled.
+  std::vector<std::int32_t> descend(const ChildCounts& children);
+
+  /// Returns the tree whose leaves lead to the nodes of the level.
+  OpenTree open_level() const;
+  /// Returns the tree whose leaves lead to the children of the level's nodes that have a split.
+  OpenTree open_children() const;
+
+  /// Puts a tree that grew elsewhere in the place of a node of the level; its first node is the root.
+  void graft(std::int32_t node, std::span<const GrownNode> grown);
+  /// Ends the level: nodes that neither have a split nor were grafted are leaves.
+  void close() { level_.clear(); }
+
+  /// All nodes; roots come first.
+  const std::vector<GrownNode>& nodes() const { return nodes_; }
+  /// Returns the nodes below one of them, which becomes the first.
+  std::vector<GrownNode> subtree(std::size_t at) const;
+
+  /// Samples times levels that are done, of samples times `max_depth`.
+  std::int64_t settled() const { return settled_; }
+  /// Inner nodes.
+  std::int64_t split_nodes() const { return split_nodes_; }
+
+ private:
+  std::int32_t open_or_settle(std::uint32_t number, std::size_t at, const std::int64_t* counts);
+  OpenTree open_tree(bool children) const;
+
+  std::size_t classes_;
+  GrowTreeOptions options_;
+  LeafShares leaves_;
+  std::vector<OpenNode> level_;
+  std::vector<GrownNode> nodes_;
+  std::int64_t settled_ = 0, split_nodes_ = 0;
+};
+
+/// Returns the node's depth: 0 for the root.
+int depth_of(std::uint32_t number);
+
+}  // namespace vesalius
