@@ -1,0 +1,87 @@
+#include "cluster/folder_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+
+#include "cluster/store_name.h"
+#include "io/files/atomic_file.h"
+#include "io/files/read_file.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check(const std::error_code& error, const std::string& path, const char* what) {
+  if (error) throw Error(fmt::format("{}: {}: {}", path, what, error.message()));
+}
+
+std::string absolute(const std::string& folder) {
+  if (folder.empty()) throw UsageError("expected a folder, the name is empty");
+  std::error_code error;
+  std::string path = fs::absolute(folder, error).lexically_normal().string();
+  check(error, folder, "cannot be found");
+  while (path.size() > 1 && path.ends_with('/')) path.pop_back();
+  return path;
+}
+
+}  // namespace
+
+FolderStore::FolderStore(const std::string& folder) : folder_(absolute(folder)) {}
+
+std::string FolderStore::path_of(const std::string& name) const {
+  check_store_name(name);
+  return (fs::path(folder_) / name).string();
+}
+
+std::string FolderStore::read(const std::string& name) const {
+  return read_file(path_of(name), std::numeric_limits<std::size_t>::max());
+}
+
+bool FolderStore::exists(const std::string& name) const {
+  const std::string path = path_of(name);
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) return false;
+  check(error, path, "cannot be found");
+  return true;
+}
+
+void FolderStore::write(const std::string& name, const std::string& bytes) {
+  const std::string path = path_of(name);
+  std::error_code error;
+  fs::create_directories(fs::path(path).parent_path(), error);
+  check(error, path, "its folder cannot be made");
+  write_file_atomically(path, bytes);
+}
+
+std::vector<std::string> FolderStore::list(const std::string& folder) const {
+  check_store_folder(folder);
+  const std::string path = folder.empty() ? folder_ : path_of(folder);
+  std::vector<std::string> names;
+  std::error_code error;
+  fs::directory_iterator entry(path, error);
+  if (error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory) return names;
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
+  }
+  check(error, path, "cannot be listed");
+  std::erase_if(names, is_temporary_name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void FolderStore::remove(const std::string& name) {
+  const std::string path = path_of(name);
+  std::error_code error;
+  fs::remove_all(path, error);
+  if (error == std::errc::not_a_directory) return;  // a file stands where its folder would be: there is none
+  check(error, path, "cannot be removed");
+}
+
+}  // namespace vesalius

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace vesalius {
+
+/// A folder that the driver and the tasks of a cluster all see: a shared folder, or one of HDFS. Names are relative,
+/// with '/' between folders, of letters, digits, '.', '_' and '-'. A file is there wholly or not at all. All members
+/// throw Error naming the file and the reason; several threads may call them.
+class Store {
+ public:
+  virtual ~Store() = default;
+
+  /// Where it is, as open_store() takes it.
+  virtual std::string place() const = 0;
+  /// Returns the bytes of a file.
+  virtual std::string read(const std::string& name) const = 0;
+  virtual bool exists(const std::string& name) const = 0;
+  /// Writes a file beside its name and renames it, replacing what was there. Makes the folders that it needs.
+  virtual void write(const std::string& name, const std::string& bytes) = 0;
+  /// Returns the names of the files and folders in a folder, sorted; none if there is no such folder.
+  virtual std::vector<std::string> list(const std::string& folder) const = 0;
+  /// Removes a file, or a folder with all that is in it; nothing if there is none.
+  virtual void remove(const std::string& name) = 0;
+};
+
+/// Opens a folder, or an address webhdfs://HOST:PORT/PATH of HDFS's name node (its port of WebHDFS). The place itself
+/// is made when something is written. Throws UsageError for any other address.
+std::unique_ptr<Store> open_store(const std::string& place);
+
+}  // namespace vesalius
