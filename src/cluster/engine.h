@@ -1,0 +1,62 @@
+#pragma once
+
+// Who runs the tasks of a job. An engine knows nothing of training: it passes lines to `vesalius train map`, sorts what
+// comes out, passes it on to `vesalius train reduce`, and runs again what fails.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cluster/store.h"
+
+namespace vesalius {
+
+/// A job whose file is in the store.
+struct EngineJob {
+  std::string name;
+  std::string command = "train";   ///< the tasks are `vesalius COMMAND map` and `reduce`
+  std::vector<std::string> lines;  ///< input of the map tasks; those that take longest first
+  bool reduced = false;            ///< whether there are reduce tasks
+};
+
+struct JobProgress {
+  std::string job, phase;  ///< phase: "map", "reduce"
+  int done = 0, tasks = 0;
+  std::map<std::string, std::uint64_t> counters;  ///< what tasks have counted so far
+};
+
+struct EngineOptions {
+  std::string program;  ///< path of vesalius on all machines
+  int map_tasks = 1;    ///< most map tasks of a job
+  int reduce_tasks = 1;
+  int task_threads = 1;  ///< threads of a task
+  bool combine = true;
+  int attempts = 4;                    ///< of a task, before the job fails
+  std::vector<std::string> arguments;  ///< more for sbatch, or for Hadoop's streaming
+  std::function<void(const JobProgress&)> tell = [](const JobProgress& /*progress*/) {};
+  std::function<bool()> stopped = [] { return false; };  ///< asked several times a second
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  virtual Store& store() = 0;
+  /// Runs a job to its end. Afterwards the files part-* in result_folder(job) hold its records. What an earlier,
+  /// interrupted run of the same job finished may be used. Throws Error saying which task failed for good and with what
+  /// last line, if the engine refuses, and Interrupted if asked to stop.
+  virtual void run(const EngineJob& job) = 0;
+};
+
+std::string result_folder(const std::string& job);
+
+/// Runs at most `processes` tasks at a time on this machine.
+std::unique_ptr<Engine> make_local_engine(std::unique_ptr<Store> store, const EngineOptions& options, int processes);
+/// Submits jobs to Hadoop's streaming; the store is in HDFS.
+std::unique_ptr<Engine> make_hadoop_engine(std::unique_ptr<Store> store, const EngineOptions& options);
+/// Submits tasks to Slurm as array jobs; the store is a folder that all nodes share.
+std::unique_ptr<Engine> make_slurm_engine(std::unique_ptr<Store> store, const EngineOptions& options);
+
+}  // namespace vesalius

@@ -1,0 +1,302 @@
+#include "cluster/map_task.h"
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "cluster/merge_records.h"
+#include "cluster/message.h"
+#include "cluster/task_replies.h"
+#include "cluster/train_job.h"
+#include "cluster/training_set_bytes.h"
+#include "train/feature_rows.h"
+#include "train/grow_tree.h"
+#include "train/leaf_shard.h"
+#include "train/local_shards.h"
+#include "train/split_candidates.h"
+#include "train/tree_shard.h"
+#include "vesalius/base/parallel_in_order.h"
+#include "vesalius/forest/leaf_logits.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kFramesAtATime = 1 << 20;
+
+/// Runs the lines of one map task.
+class MapTask {
+ public:
+  MapTask(const TaskContext& context, std::ostream& out)
+      : context_(context),
+        out_(out),
+        name_(context.store.place() + "/" + job_file(context.job)),
+        job_(parse_train_job(context.store.read(job_file(context.job)), name_)),
+        layout_(job_.forest.body, job_.forest.has_background, job_.options.leaves.headings) {}
+
+  void run(std::istream& in) {
+    for (std::string line; std::getline(in, line);) {
+      if (line.empty()) continue;
+      const std::size_t index = parse_line(line);
+      with_context(fmt::format("{} {}", job_.kind == JobKind::kSubtrees ? "subtree task" : "shard", index),
+                   [&] { take(index); });
+    }
+    write_sums();
+    out_.flush();
+    if (!out_) throw Error("standard output: cannot be written");
+  }
+
+ private:
+  std::size_t parse_line(const std::string& line) const {
+    const std::size_t tab = line.rfind('\t');
+    const char* begin = line.data() + (tab == std::string::npos ? 0 : tab + 1);
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(begin, line.data() + line.size(), index);
+    const std::size_t most = job_.kind == JobKind::kSubtrees ? job_.subtrees.size() : job_.shards();
+    if (error != std::errc{} || end != line.data() + line.size() || index >= most) {
+      throw Error(fmt::format("standard input: {}, expected a number below {}", line, most));
+    }
+    return index;
+  }
+
+  void take(std::size_t index) {
+    switch (job_.kind) {
+      case JobKind::kPrepare:
+        return prepare(index);
+      case JobKind::kCount:
+        return count(index);
+      case JobKind::kRows:
+        return rows(index);
+      case JobKind::kSubtrees:
+        return subtrees(index);
+      case JobKind::kHardCounts:
+        return hard_counts(index);
+      case JobKind::kHarden:
+        return harden(index);
+      case JobKind::kLeafCounts:
+        return leaf_counts(index);
+      case JobKind::kGradient:
+        return gradient(index);
+      case JobKind::kFacing:
+        return facing(index);
+    }
+  }
+
+  void write(const std::string& key, std::string message) const { out_ << record_line({key, std::move(message)}); }
+
+  void tell(const char* counter, std::uint64_t more) const {
+    if (context_.count) context_.count(counter, more);
+  }
+
+  TrainingSet load_set(std::size_t shard) const {
+    const std::string name = set_name(job_.sets, shard);
+    return parse_training_set(context_.store.read(name), context_.store.place() + "/" + name, job_.forest.body,
+                              job_.forest.convention, job_.options.sample,
+                              static_cast<std::uint64_t>(job_.options.grow.seed), job_.first_frames[shard]);
+  }
+
+  void prepare(std::size_t shard) {
+    if (!read_frame_) read_frame_ = context_.open_source(job_.source);
+    TrainingSet set(job_.forest.body, job_.forest.convention, job_.options.sample,
+                    static_cast<std::uint64_t>(job_.options.grow.seed), job_.first_frames[shard]);
+    const std::uint64_t first = job_.first_frames[shard], last = job_.first_frames[shard + 1];
+    if (first < job_.background_frames || last - first > kFramesAtATime) throw Error("unexpected range of frames");
+    parallel_in_order(
+        static_cast<int>(last - first), [&](int i) { return read_frame_(first + i - job_.background_frames); },
+        [&](int /*i*/, const LabelledFrame& frame) {
+          set.add(frame);
+          tell("frames", 1);
+          return true;
+        });
+    out_ << record_line(store_set(context_.store, job_, set, shard, 0));
+  }
+
+  void count(std::size_t shard) {
+    const TrainingSet set = load_set(shard);
+    for (std::size_t t = 0; t < job_.trees.size(); ++t) {
+      const TreeRequest& tree = job_.trees[t];
+      const ChildCounts all = TreeShard(set, job_.options.grow, tree.number).walk_to(tree.open);
+      std::vector<std::int64_t> counts;
+      for (const std::int32_t child : tree.large)
+        counts.insert(counts.end(), all.of(child), all.of(child) + all.classes);
+      MessageWriter message;
+      message.array(counts);
+      write(tree_key(t), piece_message(static_cast<std::uint32_t>(shard), message.bytes()));
+    }
+    tell("shards", 1);
+  }
+
+  void rows(std::size_t shard) {
+    const TrainingSet set = load_set(shard);
+    for (std::size_t t = 0; t < job_.trees.size(); ++t) rows_of_tree(shard, set, t);
+    tell("shards", 1);
+  }
+
+  void rows_of_tree(std::size_t shard, const TrainingSet& set, std::size_t t) {
+    const TreeRequest& request = job_.trees[t];
+    TreeShard tree(set, job_.options.grow, request.number);
+    const ChildSizes own = child_sizes(tree.walk_to(request.open));
+    const auto nodes = static_cast<std::int32_t>(request.nodes.size());
+    Level level{{}, request.nodes};
+    for (std::int32_t n = 0; n < nodes; ++n) level.node_of_child.push_back(n);
+    ChildSizes before(nodes, 0);
+    for (std::size_t i = 0; i < request.large.size(); ++i) {
+      before[request.large[i]] = request.before[shard * request.large.size() + i];
+    }
+    tree.open_level(level, before);
+    constexpr std::size_t kRowBytes = sizeof(std::int16_t) * kBlockCandidates;
+    for (NodeRange group{0, 0}; group.begin < nodes; group.begin = group.end) {
+      std::size_t bytes = 0;
+      for (group.end = group.begin; group.end < nodes; ++group.end) {
+        bytes += std::min(own[group.end], request.nodes[group.end].counted) * kRowBytes;
+        if (group.end > group.begin && bytes > context_.row_bytes) break;
+      }
+      for (int block = 0; block < candidate_blocks(job_.options.grow.split); ++block)
+        write_rows(shard, tree, t, group, block);
+    }
+  }
+
+  void write_rows(std::size_t shard, TreeShard& tree, std::size_t t, NodeRange group, int block) {
+    const int candidates = block_candidates(job_.options.grow.split, block);
+    tree.evaluate(group, block);
+    std::uint64_t evaluations = 0;
+    std::vector<std::string> lines(group.size());
+    parallel_for(group.size(), [&](int i) {
+      const FeatureRows rows = tree.rows(group.begin + i);
+      if (rows.rows == 0) return;
+      NodeRows message{{rows.labels, rows.labels + rows.rows}, {}};
+      message.columns.resize(rows.rows * candidates);
+      for (std::size_t r = 0; r < rows.rows; ++r) {
+        for (int c = 0; c < candidates; ++c) message.columns[c * rows.rows + r] = rows.values[r * rows.width + c];
+      }
+      lines[i] = record_line(
+          {node_key(t, group.begin + i, block), piece_message(static_cast<std::uint32_t>(shard), serialise(message))});
+    });
+    for (int i = 0; i < group.size(); ++i) {
+      out_ << lines[i];
+      evaluations += tree.rows(group.begin + i).rows * candidates;
+    }
+    tell("evaluations", evaluations);
+  }
+
+  void subtrees(std::size_t index) {
+    for (std::size_t s = sets_.size(); s < job_.shards(); ++s) {
+      sets_.push_back(std::make_unique<const TrainingSet>(load_set(s)));
+    }
+    std::vector<const TrainingSet*> sets;
+    for (const auto& set : sets_) sets.push_back(set.get());
+    const SubtreeRequest& request = job_.subtrees[index];
+    const TreeRequest& tree = job_.trees.at(request.tree);
+    OpenTree open = tree.open;
+    std::vector<std::int32_t> root_of(open.children, kSettled);
+    std::vector<TreeRoot> roots;
+    for (std::size_t i = 0; i < request.nodes.size(); ++i) {
+      root_of.at(request.nodes[i]) = static_cast<std::int32_t>(i);
+      roots.push_back({tree.nodes.at(request.nodes[i]).number, job_.root_counts[index][i]});
+    }
+    for (std::int32_t& child : open.child_of_leaf) child = child == kSettled ? kSettled : root_of.at(child);
+    open.children = roots.size();
+    LocalTree shards(sets, job_.options.grow, tree.number);
+    shards.walk_to(open);
+    GrowProgress progress;
+    const auto grown =
+        grow_subtrees(shards, job_.forest, job_.options.grow, tree.number, job_.samples, roots, progress);
+    for (std::size_t i = 0; i < roots.size(); ++i)
+      write(node_key(request.tree, request.nodes[i], 0), serialise(grown[i]));
+    tell("evaluations", progress.evaluations);
+  }
+
+  void hard_counts(std::size_t shard) {
+    TrainingSet set = load_set(shard);
+    write(shard_key(shard), serialise(set.count_hard_negatives(job_.forest)));
+    tell("shards", 1);
+  }
+
+  void harden(std::size_t shard) {
+    TrainingSet set = load_set(shard);
+    set.count_hard_negatives(job_.forest);
+    const std::size_t added = set.add_hard_negatives(job_.cuts.at(shard));
+    out_ << record_line(store_set(context_.store, job_, set, shard, added));
+    tell("shards", 1);
+  }
+
+  void leaf_counts(std::size_t shard) {
+    const TrainingSet set = load_set(shard);
+    LeafShard leaves(set, job_.forest, layout_);
+    leaves.set_weights(job_.weights);
+    for (std::size_t t = 0; t < job_.forest.trees.size(); ++t) {
+      add_sums(t, leaves.leaf_counts(static_cast<int>(t)).weights);
+    }
+    summed_shards_.push_back(static_cast<std::uint32_t>(shard));
+    tell("shards", 1);
+  }
+
+  void gradient(std::size_t shard) {
+    const TrainingSet set = load_set(shard);
+    LeafShard leaves(set, job_.forest, layout_, job_.gradient);
+    leaves.set_weights(job_.weights);
+    const LeafGradient gradient = leaves.gradient(job_.logits, job_.gradient);
+    for (std::size_t t = 0; t < gradient.of_trees.size(); ++t) add_sums(t, gradient.of_trees[t]);
+    MessageWriter likelihood;
+    likelihood.real(gradient.log_likelihood);
+    likelihood.real(gradient.weight);
+    write(kLikelihoodKey, piece_message(static_cast<std::uint32_t>(shard), likelihood.bytes()));
+    summed_shards_.push_back(static_cast<std::uint32_t>(shard));
+    tell("shards", 1);
+  }
+
+  /// Adds a shard's numbers to those of the other shards of this task, so that each task writes them once.
+  template <class Number>
+  void add_sums(std::size_t tree, const std::vector<Number>& numbers) {
+    if (sums_.size() <= tree) sums_.resize(tree + 1);
+    sums_[tree].resize(numbers.size(), 0);
+    for (std::size_t i = 0; i < numbers.size(); ++i) sums_[tree][i] += numbers[i];
+  }
+
+  void write_sums() {
+    std::ranges::sort(summed_shards_);
+    const std::size_t row = job_.kind == JobKind::kGradient ? job_.logits.stride : layout_.size();
+    for (std::size_t t = 0; t < sums_.size(); ++t) {
+      const std::size_t block = kLeafBlock * row;
+      for (std::size_t begin = 0; begin < sums_[t].size(); begin += block) {
+        const std::size_t end = std::min(begin + block, sums_[t].size());
+        write(node_key(t, begin / block, 0),
+              sums_message({summed_shards_, {sums_[t].begin() + begin, sums_[t].begin() + end}}));
+      }
+    }
+  }
+
+  void facing(std::size_t shard) {
+    write(shard_key(shard), serialise(facing_samples(load_set(shard), job_.forest)));
+    tell("shards", 1);
+  }
+
+  const TaskContext& context_;
+  std::ostream& out_;
+  std::string name_;
+  TrainJob job_;
+  LogitLayout layout_;
+  TaskContext::ReadFrame read_frame_;
+  std::vector<std::unique_ptr<const TrainingSet>> sets_;
+  std::vector<std::vector<std::int64_t>> sums_;  ///< [tree]
+  std::vector<std::uint32_t> summed_shards_;
+};
+
+}  // namespace
+
+void run_map_task(const TaskContext& context, std::istream& in, std::ostream& out) { MapTask(context, out).run(in); }
+
+Record store_set(Store& store, const TrainJob& job, const TrainingSet& set, std::size_t shard, std::uint64_t hard) {
+  const std::string bytes = training_set_bytes(set);
+  store.write(set_name(job.new_sets, shard), bytes);
+  const LogitLayout layout(job.forest.body, job.forest.has_background, job.options.leaves.headings);
+  Forest without_trees = job.forest;
+  without_trees.trees.clear();
+  PreparedShard prepared{set.sample_counts(),   LeafShard(set, without_trees, layout).label_counts(),
+                         set.frames().size(),   bytes.size(),
+                         set.held_out().size(), hard};
+  return {shard_key(shard), serialise(prepared)};
+}
+
+}  // namespace vesalius

@@ -1,0 +1,73 @@
+#pragma once
+
+// The messages by which tasks reply to the driver, besides those that merge (merge_records.h).
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cluster/message.h"
+#include "train/growing_tree.h"
+#include "train/leaf_messages.h"
+#include "train/training_messages.h"
+
+namespace vesalius {
+
+/// Leaves whose numbers are in one message: what a reducer holds of a key.
+inline constexpr std::size_t kLeafBlock = 2048;
+/// Key of the likelihoods beside the gradients.
+inline constexpr const char* kLikelihoodKey = "likelihood";
+
+/// What is known of a shard's set.
+struct PreparedShard {
+  SampleCounts samples;
+  LabelCounts labels;
+  std::uint64_t frames = 0, bytes = 0, held_out = 0;
+  std::uint64_t hard_negatives = 0;  ///< samples that were added
+};
+std::string serialise(const PreparedShard& shard);
+PreparedShard parse_prepared_shard(std::string_view message, const std::string& name);
+
+/// Values of the counted samples of one node for one block of candidates, in one shard.
+struct NodeRows {
+  std::vector<std::uint8_t> labels;   ///< [row]
+  std::vector<std::int16_t> columns;  ///< [candidate * rows + row], mm
+};
+std::string serialise(const NodeRows& rows);
+NodeRows parse_node_rows(std::string_view message, const std::string& name);
+
+/// The best split of a node among one block of candidates.
+struct NodeReply {
+  double gain = 0.0;  ///< bits per sample; 0 if there is none
+  TreeNode split;
+  std::vector<std::int64_t> children;  ///< [side * classes + class]: its counted samples
+};
+std::string serialise(const NodeReply& reply);
+NodeReply parse_node_reply(std::string_view message, const std::string& name);
+
+/// Samples at the children of large nodes.
+struct CountReply {
+  std::vector<std::int64_t> totals;  ///< [child * classes + class], all shards
+  std::vector<std::int64_t> before;  ///< [shard * children + child]: in all shards before that one
+};
+std::string serialise(const CountReply& reply);
+CountReply parse_count_reply(std::string_view message, const std::string& name);
+
+std::string serialise(const std::vector<GrownNode>& nodes);
+std::vector<GrownNode> parse_grown_nodes(std::string_view message, const std::string& name);
+
+std::string serialise(const HardCounts& counts);
+HardCounts parse_hard_counts(std::string_view message, const std::string& name);
+
+std::string serialise(const std::vector<FacingSample>& samples);
+std::vector<FacingSample> parse_facing_samples(std::string_view message, const std::string& name);
+
+/// Keys: numbers of fixed width, so that lines sort as numbers do.
+std::string shard_key(std::size_t shard);
+std::string tree_key(std::size_t tree);
+std::string node_key(std::size_t tree, std::size_t node, std::size_t block);
+/// Reads the numbers of a key. Throws Error naming `name` if there are not `count`.
+std::vector<std::size_t> key_numbers(const std::string& key, std::size_t count, const std::string& name);
+
+}  // namespace vesalius
