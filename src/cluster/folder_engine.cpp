@@ -1,0 +1,184 @@
+#include "cluster/folder_engine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "cluster/train_job.h"
+#include "io/files/atomic_file.h"
+#include "io/files/read_file.h"
+#include "train/grow_tree.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCounter = "reporter:counter:vesalius,";  ///< as Hadoop's streaming expects
+
+/// Returns text as one word of a shell.
+std::string quoted(const std::string& text) {
+  std::string word = "'";
+  for (const char c : text) c == '\'' ? word += "'\\''" : word += c;
+  return word + "'";
+}
+
+/// Calls `take` with each line of a text.
+template <class Take>
+void for_lines(const std::string& text, const Take& take) {
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    take(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+std::string log_of(const std::string& folder, const std::string& kind, int number) {
+  return fmt::format("{}/{}-{}.log", folder, kind, number);
+}
+
+std::string text_of(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) ? read_file(path) : std::string();
+}
+
+/// Sorting, merging and compressing belong to the shell's tools and to the task; the script holds them together.
+/// It writes beside the names that others read, so that a task may run twice at the same time.
+constexpr const char* kScript = R"(#!/usr/bin/env bash
+# One task of a job: task.sh map|reduce NUMBER. A task that fails is tried again; one that is done is not run.
+set -uo pipefail
+cd {folder} || exit 1
+export LC_ALL=C
+tab=$'\t' kind=$1 number=${{2:-${{SLURM_ARRAY_TASK_ID:-}}}}
+own=".$(uname -n).$$"
+program={program}
+task() {{ "$program" {command} "$1" --store {store} --job {job} --threads {threads}; }}
+sorted() {{ sort -s -t "$tab" -k 1,1 -S 128M -T . "$@"; }}
+map_only() {{ task map <"in-$number" >"out/.part-m-$number$own" && mv "out/.part-m-$number$own" "out/part-m-$number"; }}
+map_for_reduce() {{ task map <"in-$number" | sorted | "$program" train combine {merge} --parts {reducers} --into "map-$number"; }}
+reduce() {{
+  local inputs
+  inputs=$(printf "map-%d.$number " {maps})
+  sorted -m $inputs | task reduce >"out/.part-r-$number$own" && mv "out/.part-r-$number$own" "out/part-r-$number"
+}}
+case $kind in
+  map) run={map} ;;
+  reduce) run=reduce ;;
+esac
+[ -e "$kind-$number.done" ] && exit 0
+for attempt in $(seq {attempts}); do
+  if $run 2>"$kind-$number.log"; then
+    rm -f "out/.part-"*"$own"
+    touch "$kind-$number.done"
+    exit 0
+  fi
+  echo "attempt $attempt of {attempts} failed" >>"$kind-$number.attempts"
+done
+rm -f "out/.part-"*"$own"
+touch "$kind-$number.failed"
+exit 1
+)";
+
+}  // namespace
+
+std::string result_folder(const std::string& job) { return job_folder(job) + "/out"; }
+
+std::string last_words(const std::string& log) {
+  std::string last, ours;
+  for_lines(log, [&](const std::string& line) {
+    if (line.empty() || line.starts_with("reporter:")) return;
+    last = line;
+    if (line.starts_with("vesalius: ")) ours = line.substr(std::string("vesalius: ").size());
+  });
+  return !ours.empty() ? ours : !last.empty() ? last : "it said nothing";
+}
+
+FolderEngine::FolderEngine(std::unique_ptr<Store> store, EngineOptions options)
+    : store_(std::move(store)), options_(std::move(options)) {}
+
+void FolderEngine::run(const EngineJob& job) {
+  const std::string folder = store_->place() + "/" + job_folder(job.name);
+  const auto maps = static_cast<int>(std::min<std::size_t>(job.lines.size(), options_.map_tasks));
+  if (maps == 0) throw Error(job.name + ": a job without input");
+  std::vector<std::string> inputs(maps);
+  for (std::size_t i = 0; i < job.lines.size(); ++i) inputs[i % maps] += job.lines[i] + "\n";
+  std::string all;
+  for (const std::string& input : inputs) all += input + "-\n";
+  const std::string text = script(job, options_.reduce_tasks);
+  std::error_code error;
+  fs::create_directories(folder + "/out", error);
+  if (error) throw Error(folder + "/out: folder cannot be made: " + error.message());
+  // Files of a run that divided the work otherwise are of no use.
+  if (text_of(folder + "/task.sh") != text || text_of(folder + "/inputs") != all) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      if (entry.path().filename() != "job") fs::remove_all(entry.path());
+    }
+    fs::create_directories(folder + "/out");
+    for (int i = 0; i < maps; ++i) write_file_atomically(fmt::format("{}/in-{}", folder, i), inputs[i]);
+    write_file_atomically(folder + "/task.sh", text);
+    write_file_atomically(folder + "/inputs", all);
+  }
+  run_all(job, "map", maps);
+  if (job.reduced) {
+    run_all(job, "reduce", options_.reduce_tasks);
+    for (int m = 0; m < maps; ++m) {
+      for (int r = 0; r < options_.reduce_tasks; ++r) fs::remove(fmt::format("{}/map-{}.{}", folder, m, r));
+    }
+  }
+  write_file_atomically(folder + "/out/_SUCCESS", "");
+}
+
+std::string FolderEngine::script(const EngineJob& job, int reducers) const {
+  const auto maps = std::min<std::size_t>(job.lines.size(), options_.map_tasks);
+  std::string numbers;
+  for (std::size_t m = 0; m < maps; ++m) numbers += fmt::format("{}{}", m > 0 ? " " : "", m);
+  return fmt::format(fmt::runtime(kScript), fmt::arg("folder", quoted(store_->place() + "/" + job_folder(job.name))),
+                     fmt::arg("program", quoted(options_.program)), fmt::arg("command", job.command),
+                     fmt::arg("store", quoted(store_->place())), fmt::arg("job", quoted(job.name)),
+                     fmt::arg("threads", options_.task_threads),
+                     fmt::arg("merge", options_.combine ? "" : "--unmerged"), fmt::arg("reducers", reducers),
+                     fmt::arg("maps", numbers), fmt::arg("map", job.reduced ? "map_for_reduce" : "map_only"),
+                     fmt::arg("attempts", options_.attempts));
+}
+
+bool FolderEngine::done(const Tasks& tasks, int number) const {
+  std::error_code ignored;
+  return fs::exists(fmt::format("{}/{}-{}.done", tasks.folder, tasks.kind, number), ignored);
+}
+
+void FolderEngine::report(const Tasks& tasks) const {
+  JobProgress progress{tasks.job, tasks.kind, 0, tasks.all, {}};
+  for (int number = 0; number < tasks.all; ++number) {
+    progress.done += done(tasks, number) ? 1 : 0;
+    for_lines(text_of(log_of(tasks.folder, tasks.kind, number)), [&](const std::string& line) {
+      if (!line.starts_with(kCounter)) return;
+      const std::size_t comma = line.rfind(',');
+      progress.counters[line.substr(std::string(kCounter).size(), comma - std::string(kCounter).size())] +=
+          std::strtoull(line.c_str() + comma + 1, nullptr, 10);
+    });
+  }
+  options_.tell(progress);
+  if (options_.stopped()) throw Interrupted("training: interrupted");
+}
+
+void FolderEngine::run_all(const EngineJob& job, const std::string& kind, int count) {
+  Tasks tasks{job.name, store_->place() + "/" + job_folder(job.name), kind, count, {}};
+  for (int number = 0; number < count; ++number) {
+    if (done(tasks, number)) continue;
+    tasks.numbers.push_back(number);
+    for (const char* file : {"failed", "attempts"}) {
+      fs::remove(fmt::format("{}/{}-{}.{}", tasks.folder, kind, number, file));
+    }
+  }
+  if (!tasks.numbers.empty()) run_tasks(tasks);
+  for (const int number : tasks.numbers) {
+    if (done(tasks, number)) continue;
+    throw Error(fmt::format("{}: {} task {} of {} failed {} times: {}", job.name, kind, number + 1, count,
+                            options_.attempts, last_words(text_of(log_of(tasks.folder, kind, number)))));
+  }
+  report(tasks);
+}
+
+}  // namespace vesalius

@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+#include <utility>
+
+#include "cluster/folder_engine.h"
+#include "cluster/process.h"
+#include "io/files/atomic_file.h"
+#include "io/files/read_file.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kPause{150};
+constexpr int kAskEvery = 4;                   ///< pauses from one question to Slurm to the next
+constexpr std::chrono::seconds kPatience{60};  ///< with a queue that starts nothing, before the user is told
+constexpr int kMostSilence = 20;               ///< questions that Slurm may leave without an answer
+
+/// Returns the task numbers as Slurm takes them, e.g. 0-6,9.
+std::string array_of(const std::vector<int>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t last = i;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    text += fmt::format("{}{}", text.empty() ? "" : ",", numbers[i]);
+    if (last > i) text += fmt::format("-{}", numbers[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+class SlurmEngine : public FolderEngine {
+ public:
+  using FolderEngine::FolderEngine;
+
+ protected:
+  void run_tasks(const Tasks& tasks) override {
+    const std::string id_file = fmt::format("{}/{}.slurm", tasks.folder, tasks.kind);
+    cancel_earlier(id_file);
+    const std::string id = submit(tasks);
+    write_file_atomically(id_file, id);
+    try {
+      wait_for(tasks, id);
+    } catch (...) {
+      run_command({"scancel", id});
+      throw;
+    }
+    std::filesystem::remove(id_file);
+  }
+
+ private:
+  /// Cancels the tasks that a killed driver left behind, since they would write the same files.
+  static void cancel_earlier(const std::string& id_file) {
+    std::error_code ignored;
+    if (std::filesystem::exists(id_file, ignored)) run_command({"scancel", read_file(id_file)});
+  }
+
+  std::string submit(const Tasks& tasks) const {
+    std::vector<std::string> command{"sbatch",
+                                     "--parsable",
+                                     "--requeue",
+                                     "--export=ALL",
+                                     "--job-name=vesalius-" + tasks.job + "-" + tasks.kind,
+                                     "--array=" + array_of(tasks.numbers),
+                                     fmt::format("--cpus-per-task={}", options().task_threads),
+                                     fmt::format("--output={}/{}-%a.slurm.log", tasks.folder, tasks.kind)};
+    command.insert(command.end(), options().arguments.begin(), options().arguments.end());
+    command.insert(command.end(), {tasks.folder + "/task.sh", tasks.kind});
+    const CommandResult result = run_command(command);
+    const std::string id = result.out.substr(0, result.out.find_first_of(";\n"));
+    if (result.exit_code != 0 || id.empty()) throw Error("Slurm refuses the job: " + last_words(result.err));
+    return id;
+  }
+
+  /// Waits until no task is in the queue any more.
+  void wait_for(const Tasks& tasks, const std::string& id) const {
+    const Clock::time_point start = Clock::now();
+    bool started = false;
+    int silent = 0;
+    for (int pause = 0;; ++pause) {
+      report(tasks);
+      if (std::ranges::all_of(tasks.numbers, [&](int number) { return done(tasks, number); })) return;
+      if (pause % kAskEvery == 0) {
+        const CommandResult queue = run_command({"squeue", "-h", "-r", "-t", "all", "-j", id, "-o", "%T %r"});
+        silent = queue.exit_code == 0 ? 0 : silent + 1;
+        if (queue.exit_code != 0 && queue.err.find("Invalid job id") != std::string::npos) return;
+        if (silent > kMostSilence) throw Error("Slurm does not answer any more: " + last_words(queue.err));
+        if (silent == 0 && !is_alive(queue.out)) return;
+        started = started || queue.out.find("RUNNING") != std::string::npos;
+        if (!started && Clock::now() - start > kPatience) tell_of(tasks, queue.out);
+      }
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+
+  /// Returns whether any task will run or is running.
+  static bool is_alive(const std::string& states) {
+    return std::ranges::any_of(std::vector<const char*>{"PENDING", "RUNNING", "REQUEUE", "COMPLETING", "CONFIGURING",
+                                                        "SUSPENDED", "STOPPED", "RESIZING", "SIGNALING"},
+                               [&](const char* state) { return states.find(state) != std::string::npos; });
+  }
+
+  void tell_of(const Tasks& tasks, const std::string& states) const {
+    const std::size_t space = states.find(' ');
+    const std::string reason =
+        space == std::string::npos ? "" : states.substr(space + 1, states.find('\n') - space - 1);
+    options().tell({tasks.job, fmt::format("waiting for Slurm ({})", reason), 0, tasks.all, {}});
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_slurm_engine(std::unique_ptr<Store> store, const EngineOptions& options) {
+  return std::make_unique<SlurmEngine>(std::move(store), options);
+}
+
+}  // namespace vesalius
