@@ -9,6 +9,8 @@
 #include "cli/option_flags.h"
 #include "cli/source_flags.h"
 #include "cli/text_sink.h"
+#include "cli/train/task_commands.h"
+#include "cli/train/train_cluster.h"
 #include "cli/train/train_inputs.h"
 #include "cli/train/train_plan.h"
 #include "cli/train/train_run.h"
@@ -30,6 +32,7 @@ struct Arguments {
   OptionFlags<TrainOptions> train_flags;
   double memory_gib = 0.0;
   int threads = 0;
+  TrainClusterFlags cluster;
   bool estimate = false, restart = false, curves = false, quiet = false;
 };
 
@@ -53,6 +56,9 @@ void check(const Arguments& arguments, const TrainOptions& options) {
   if (!arguments.trees_of.empty() && (options.leaves.rounds == 0 || options.sample.background_share <= 0.F)) {
     throw UsageError("--trees-of keeps the trees and learns leaves: expected --leaf-rounds above 0 and a background");
   }
+  if (!arguments.cluster.engine.on.empty() && (!arguments.report.empty() || arguments.estimate)) {
+    throw UsageError("--on expects neither --report nor --estimate, which need all frames in one process");
+  }
   if (arguments.curves && arguments.report.empty()) throw UsageError("--curves expects --report, where they go");
   if (!arguments.report.empty() && options.sample.held_out_share <= 0.F) {
     throw UsageError("--report expects frames to measure accuracy on: held-out-share above 0");
@@ -70,6 +76,15 @@ void run(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   const TrainOptions options = make_options(arguments);
   check(arguments, options);
+  if (!arguments.cluster.engine.on.empty()) {
+    watch_interrupts();
+    return train_on_cluster({.out = arguments.out,
+                             .trees_of = arguments.trees_of,
+                             .report = "",
+                             .restart = arguments.restart,
+                             .shown = !arguments.quiet},
+                            options, arguments.sources, arguments.cluster);
+  }
   const TrainInputs inputs(arguments.sources);
   if (!arguments.quiet) {
     for (const std::string& note : inputs.notes()) say("note: " + note);
@@ -149,6 +164,21 @@ void add_train(CLI::App& program) {
     command->get_option(name)->type_name("N")->group(group);
   }
   add_run_flags(*command, *arguments);
+  add_cluster_flags(*command, arguments->cluster.engine);
+  const std::string machines = "Several machines (docs/cluster.md)";
+  command->add_option("--shard-frames", arguments->cluster.shard_frames, "Frames of a shard")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str()
+      ->group(machines);
+  command
+      ->add_option("--task-memory", arguments->cluster.task_memory_gib,
+                   "GiB of a map task for all frames: where they fit, it grows whole subtrees")
+      ->type_name("GIB")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
+      ->group(machines);
+  add_train_tasks(*command);
   command->footer(R"(
 The options that decide how a forest is trained are flags too, e.g. --min-samples 20; `vesalius options train` lists
 them. An interrupted run continues when the same command is given again, and ends with the same model.
@@ -157,7 +187,9 @@ Examples:
   vesalius train --data train/ --out my.forest --report report/
   vesalius train --data kinect/ d435/ --background office/ --trees 4 --estimate
   vesalius train --recipe ceiling.toml --count 20000 --out ceiling.forest)");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, command] {
+    if (command->get_subcommands().empty()) run(*arguments);
+  });
 }
 
 }  // namespace vesalius::cli

@@ -26,11 +26,13 @@ namespace fs = std::filesystem;
 constexpr const char* kRecipeFile = "recipe.toml";
 
 constexpr const char* kLeavesFile = "leaves";
-constexpr int kLeavesLevel = 1;  ///< of compression: they are written every few rounds
+constexpr const char* kClusterFolder = "cluster";  ///< of a training on a cluster (train_cluster.h)
+constexpr int kLeavesLevel = 1;                    ///< of compression: they are written every few rounds
 constexpr std::size_t kMostStride = 4096;
 
 bool is_ours(const std::string& name) {
-  return name.starts_with("tree-") || name.starts_with(kRecipeFile) || name.starts_with(kLeavesFile);
+  return name.starts_with("tree-") || name.starts_with(kRecipeFile) || name.starts_with(kLeavesFile) ||
+         name == kClusterFolder;
 }
 
 /// Returns whether a killed run left this file half written.
@@ -77,7 +79,7 @@ void TrainSession::tidy(bool all) const {
   for (const fs::path& file : files_in(folder_)) {
     const std::string name = file.filename().string();
     std::error_code error;
-    if (is_ours(name) && (all || is_leftover(name))) fs::remove(file, error);
+    if (is_ours(name) && (all || is_leftover(name))) fs::remove_all(file, error);
     if (error) throw Error(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
   }
 }

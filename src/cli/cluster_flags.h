@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cluster/engine.h"
+
+namespace CLI {
+class App;
+}
+
+namespace vesalius::cli {
+
+/// The flags of commands whose work machines can share.
+struct ClusterFlags {
+  std::string on;                                         ///< local:N, slurm or hadoop; empty for this process
+  std::string store;                                      ///< place of the store; empty for the command's default
+  int map_tasks = 0, reduce_tasks = 0, task_threads = 0;  ///< 0 takes the engine's default
+  bool no_combiner = false;
+  std::string program;    ///< path of vesalius on all machines; empty for this one's
+  std::string arguments;  ///< more for sbatch or for Hadoop's streaming, separated by spaces
+};
+
+void add_cluster_flags(CLI::App& command, ClusterFlags& flags);
+
+/// What --on names, and the flags with the engine's defaults.
+struct EngineChoice {
+  std::string kind;   ///< "local", "slurm", "hadoop"
+  int processes = 0;  ///< of local:N
+  EngineOptions options;
+};
+
+/// Throws UsageError for an engine that does not exist and for flags out of range.
+EngineChoice choose_engine(const ClusterFlags& flags);
+
+/// Makes the engine with its store: where --store says, or else in `default_folder`. Throws UsageError if the engine
+/// cannot use the store.
+std::unique_ptr<Engine> make_engine(const ClusterFlags& flags, const EngineChoice& choice,
+                                    const std::string& default_folder);
+
+/// Shows the progress of jobs: a line that changes on a terminal, a line for each job elsewhere.
+std::function<void(const JobProgress&)> show_jobs(bool shown);
+
+}  // namespace vesalius::cli
