@@ -15,6 +15,6 @@ std::vector<Satellite> satellites() {
   };
 }
 
-std::vector<std::string> satellite_names() { return {"view", "synth", "train", "evaluate", "assets"}; }
+std::vector<std::string> satellite_names() { return {"view", "cluster", "synth", "train", "evaluate", "assets"}; }
 
 }  // namespace vesalius::cli

@@ -162,8 +162,33 @@ def check_local(trainings, full):
     trainings.refused(["--on", "local:2", "--report", "r"], "--on expects neither", "--report")
 
 
+def check_rendering(trainings, engine):
+    """The shards of a dataset are those of one process, also where the first run was killed."""
+    def render(arguments, out):
+        return [trainings.program, "synth", "--recipe", "recipe.toml", "--count", "25", "--shard", "4", "--out", out,
+                *arguments]
+
+    work, environment = trainings.work, trainings.environment
+    for arguments, out in (([], "one-data"), (engine, "machines-data")):
+        if arguments:
+            killed = subprocess.Popen(render(arguments, out), cwd=work, env=environment, stderr=subprocess.DEVNULL)
+            time.sleep(1.5)
+            killed.kill()
+            killed.wait()
+        ended = subprocess.run(render(arguments, out), cwd=work, env=environment, capture_output=True, text=True)
+        expect(ended.returncode == 0, f"synth {arguments}: {ended.stderr}")
+    files = sorted(path.name for path in (work / "one-data").iterdir() if path.is_file())
+    expect(len([name for name in files if name.endswith(".shard")]) == 7, f"files: {files}")
+    for name in files:
+        expect((work / "one-data" / name).read_bytes() == (work / "machines-data" / name).read_bytes(),
+               f"{name} differs")
+    expect(not (work / "machines-data.work").exists(), "machines-data.work was left behind")
+    print("same bytes: frames rendered by tasks", flush=True)
+
+
 def check_local_faults(trainings, full):
     check_faults(trainings, ["--on", "local:3"], full)
+    check_rendering(trainings, ["--on", "local:2", "--map-tasks", "3"])
 
     # A shard that is damaged after it was written: its task fails, is tried again, and one line names it.
     name = "damaged.forest"

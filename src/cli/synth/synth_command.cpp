@@ -10,6 +10,7 @@
 #include "cli/interrupts.h"
 #include "cli/option_flags.h"
 #include "cli/progress.h"
+#include "cli/synth/frame_maker.h"
 #include "cli/synth/synth_assets.h"
 #include "cli/synth/synth_recipe.h"
 #include "cli/text_sink.h"
@@ -20,7 +21,6 @@
 #include "io/files/atomic_file.h"
 #include "io/files/image_file.h"
 #include "io/files/read_file.h"
-#include "synth/clip_generator.h"
 #include "synth/fit_flesh.h"
 #include "synth/generate.h"
 #include "synth/skeleton_joints.h"
@@ -28,8 +28,20 @@
 #include "vesalius/base/parallel_in_order.h"
 #include "vesalius/fit/flesh_model.h"
 
+#ifdef VESALIUS_HAS_CLUSTER
+#include "cli/cluster/cluster_flags.h"
+#include "cli/synth/render_cluster.h"
+#endif
+
 namespace vesalius::cli {
 namespace {
+
+#ifndef VESALIUS_HAS_CLUSTER
+/// A build without training renders in this process alone.
+struct ClusterFlags {
+  std::string on;
+};
+#endif
 
 constexpr int kMaxFrames = 1'000'000'000;
 constexpr int kMaxPreview = 200;
@@ -41,8 +53,8 @@ struct Arguments {
   std::string recipe, sensor, camera, body, assets, motions, out, fit_flesh, format = "shards";
   std::vector<std::string> models;
   OptionFlags<synth::Recipe> recipe_flags;
-  std::optional<float> clip_s;
-  std::optional<double> rate_hz;
+  ClipRequest clip;
+  ClusterFlags cluster;
   int count = 0, preview = 0, first = 0, shard = 256, threads = 0;
   std::uint64_t seed = 1;
   bool quiet = false;
@@ -51,17 +63,6 @@ struct Arguments {
 BodyModel body_of(const Arguments& arguments) {
   return arguments.body.empty() ? paper_body() : parse_body_model(read_file(arguments.body), arguments.body);
 }
-
-/// The frames of a recipe by their numbers; those of clips come one clip after the other.
-struct FrameMaker {
-  std::function<LabelledFrame(std::uint64_t index)> frame;  ///< any thread may call it
-  ClipLayout clips;
-
-  /// Returns how many frames there are in so many frames or clips.
-  std::uint64_t frames_in(std::uint64_t count) const {
-    return clips.frames_per_clip == 0 ? count : count * clips.frames_per_clip;
-  }
-};
 
 /// Makes the frames of a range in order. `prepare` runs on all threads, `take` in the calling one.
 template <class Prepare, class Take>
@@ -151,25 +152,6 @@ void write_flesh(const Arguments& arguments, const synth::Recipe& recipe, const 
   write_file_atomically(arguments.fit_flesh, synth::fitted_flesh_toml(generator, options));
 }
 
-synth::ClipTiming timing_of(const Arguments& arguments) {
-  const synth::ClipTiming timing{*arguments.clip_s, arguments.rate_hz.value_or(synth::ClipTiming{}.rate_hz)};
-  check(timing);
-  return timing;
-}
-
-FrameMaker make_frame_maker(const Arguments& arguments, const synth::Recipe& recipe, synth::Assets assets,
-                            const BodyModel& body) {
-  if (!arguments.clip_s) {
-    const auto generator = std::make_shared<const synth::Generator>(recipe, std::move(assets), body, arguments.seed);
-    return {[generator](std::uint64_t index) { return generator->frame(index); }, {}};
-  }
-  const synth::ClipTiming timing = timing_of(arguments);
-  const auto generator =
-      std::make_shared<const synth::ClipGenerator>(recipe, std::move(assets), body, arguments.seed, timing);
-  return {[generator](std::uint64_t index) { return generator->frame(index); },
-          {static_cast<std::uint32_t>(timing.frames()), timing.rate_hz}};
-}
-
 void check(const Arguments& arguments) {
   if ((arguments.count > 0) + (arguments.preview > 0) + !arguments.fit_flesh.empty() != 1) {
     throw UsageError("expected one of --count, --preview and --fit-flesh");
@@ -178,13 +160,17 @@ void check(const Arguments& arguments) {
   if (arguments.first > 0 && arguments.count > 0 && arguments.format == "shards") {
     throw UsageError("a dataset begins with frame 0: --first expects --preview or --format folder");
   }
-  if (arguments.rate_hz && !arguments.clip_s) throw UsageError("--rate expects --clip, the seconds of each clip");
-  if (!arguments.clip_s) return;
+  if (!arguments.cluster.on.empty() && (arguments.count == 0 || arguments.format != "shards")) {
+    throw UsageError("--on expects --count with --format shards");
+  }
+  if (arguments.clip.rate_hz && !arguments.clip.clip_s)
+    throw UsageError("--rate expects --clip, the seconds of each clip");
+  if (!arguments.clip.clip_s) return;
   if (!arguments.fit_flesh.empty()) throw UsageError("--clip expects --count or --preview");
   const auto clips = static_cast<std::int64_t>(arguments.first) + std::max(1, arguments.count);
-  if (clips * timing_of(arguments).frames() > kMaxFrames) {
+  if (clips * timing_of(arguments.clip).frames() > kMaxFrames) {
     throw UsageError(fmt::format("{} clips of {} frames, expected at most {} frames in all", clips,
-                                 timing_of(arguments).frames(), kMaxFrames));
+                                 timing_of(arguments.clip).frames(), kMaxFrames));
   }
 }
 
@@ -200,11 +186,11 @@ void run(const Arguments& arguments) {
   const LoadedAssets loaded = load_assets(recipe, {.folder = arguments.assets,
                                                    .motions = arguments.motions,
                                                    .models = arguments.models,
-                                                   .movements = arguments.clip_s.has_value()});
+                                                   .movements = arguments.clip.clip_s.has_value()});
   if (!arguments.quiet) {
     for (const std::string& note : loaded.notes) say("note: " + note);
   }
-  const FrameMaker maker = make_frame_maker(arguments, recipe, loaded.assets, body);
+  const FrameMaker maker = make_frame_maker(recipe, loaded.assets, body, arguments.seed, arguments.clip);
   watch_interrupts();
   if (!arguments.fit_flesh.empty()) {
     return write_flesh(arguments, recipe, synth::Generator(recipe, loaded.assets, body, arguments.seed));
@@ -219,6 +205,13 @@ void run(const Arguments& arguments) {
   info.clips = maker.clips;
   info.joints = synth::joint_names();
   info.frames_per_shard = arguments.shard;
+#ifdef VESALIUS_HAS_CLUSTER
+  if (!arguments.cluster.on.empty()) {
+    const RenderRequest request{
+        recipe, body, {arguments.assets, arguments.motions, arguments.models, false}, arguments.clip};
+    return render_on_cluster(request, info, arguments.out, arguments.cluster, !arguments.quiet);
+  }
+#endif
   write_shards(arguments, maker, info, body.part_count());
 }
 
@@ -254,12 +247,12 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
       ->capture_default_str()
       ->group(group);
   command
-      .add_option("--clip", arguments.clip_s,
+      .add_option("--clip", arguments.clip.clip_s,
                   "Clips of so many seconds instead of single frames: people who move before a camera")
       ->type_name("SECONDS")
       ->group(group);
   command
-      .add_option("--rate", arguments.rate_hz,
+      .add_option("--rate", arguments.clip.rate_hz,
                   fmt::format("Frames a second of clips (default: {})", synth::ClipTiming{}.rate_hz))
       ->type_name("HZ")
       ->group(group);
@@ -314,6 +307,10 @@ void add_synth(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads));
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+#ifdef VESALIUS_HAS_CLUSTER
+  add_cluster_flags(*command, arguments->cluster);
+  add_render_task(*command);
+#endif
   command->footer(R"(
 Every option of a recipe is a flag too, e.g. --people.two 1; `vesalius options synth` lists them.
 
@@ -322,7 +319,9 @@ Examples:
   vesalius synth --preset kinect-v1 --count 10000 --seed 1 --out train/
   vesalius synth --clip 5 --preview 9 --out clip.png
   vesalius synth --preset d435 --mounting ceiling --recipe mine.toml --count 500 --out ceiling/)");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, command] {
+    if (command->get_subcommands().empty()) run(*arguments);
+  });
 }
 
 }  // namespace vesalius::cli

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "cli/cluster_flags.h"
+#include "cli/cluster/cluster_flags.h"
 #include "cli/train/train_inputs.h"
 #include "cli/train/train_run.h"
 #include "train/grow_forest.h"

@@ -1,4 +1,4 @@
-#include "cli/cluster_flags.h"
+#include "cli/cluster/cluster_flags.h"
 
 #include <fmt/format.h>
 
