@@ -148,8 +148,8 @@ bool FolderEngine::done(const Tasks& tasks, int number) const {
   return fs::exists(fmt::format("{}/{}-{}.done", tasks.folder, tasks.kind, number), ignored);
 }
 
-void FolderEngine::report(const Tasks& tasks) const {
-  JobProgress progress{tasks.job, tasks.kind, 0, tasks.all, {}};
+void FolderEngine::report(const Tasks& tasks, const std::string& waiting) const {
+  JobProgress progress{tasks.job, tasks.kind + waiting, 0, tasks.all, {}};
   for (int number = 0; number < tasks.all; ++number) {
     progress.done += done(tasks, number) ? 1 : 0;
     for_lines(text_of(log_of(tasks.folder, tasks.kind, number)), [&](const std::string& line) {

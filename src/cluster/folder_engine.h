@@ -29,8 +29,8 @@ class FolderEngine : public Engine {
   /// seen from their files.
   virtual void run_tasks(const Tasks& tasks) = 0;
 
-  /// Tells how many tasks are done; throws Interrupted if asked to stop.
-  void report(const Tasks& tasks) const;
+  /// Tells how many tasks are done, and what they wait for, if so; throws Interrupted if asked to stop.
+  void report(const Tasks& tasks, const std::string& waiting = "") const;
   bool done(const Tasks& tasks, int number) const;
   const EngineOptions& options() const { return options_; }
 

@@ -83,8 +83,9 @@ class SlurmEngine : public FolderEngine {
     const Clock::time_point start = Clock::now();
     bool started = false;
     int silent = 0;
+    std::string waiting;
     for (int pause = 0;; ++pause) {
-      report(tasks);
+      report(tasks, waiting);
       if (std::ranges::all_of(tasks.numbers, [&](int number) { return done(tasks, number); })) return;
       if (pause % kAskEvery == 0) {
         const CommandResult queue = run_command({"squeue", "-h", "-r", "-t", "all", "-j", id, "-o", "%T %r"});
@@ -93,7 +94,7 @@ class SlurmEngine : public FolderEngine {
         if (silent > kMostSilence) throw Error("Slurm does not answer any more: " + last_words(queue.err));
         if (silent == 0 && !is_alive(queue.out)) return;
         started = started || queue.out.find("RUNNING") != std::string::npos;
-        if (!started && Clock::now() - start > kPatience) tell_of(tasks, queue.out);
+        waiting = !started && Clock::now() - start > kPatience ? reason_of(queue.out) : "";
       }
       std::this_thread::sleep_for(kPause);
     }
@@ -106,11 +107,11 @@ class SlurmEngine : public FolderEngine {
                                [&](const char* state) { return states.find(state) != std::string::npos; });
   }
 
-  void tell_of(const Tasks& tasks, const std::string& states) const {
+  /// Returns why the first task of a list of states and reasons is not running.
+  static std::string reason_of(const std::string& states) {
     const std::size_t space = states.find(' ');
-    const std::string reason =
-        space == std::string::npos ? "" : states.substr(space + 1, states.find('\n') - space - 1);
-    options().tell({tasks.job, fmt::format("waiting for Slurm ({})", reason), 0, tasks.all, {}});
+    if (space == std::string::npos) return "";
+    return fmt::format(", waiting for Slurm: {}", states.substr(space + 1, states.find('\n') - space - 1));
   }
 };
 
