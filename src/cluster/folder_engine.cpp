@@ -68,16 +68,14 @@ case $kind in
   reduce) run=reduce ;;
 esac
 [ -e "$kind-$number.done" ] && exit 0
-for attempt in $(seq {attempts}); do
+for _ in $(seq {attempts}); do
   if $run 2>"$kind-$number.log"; then
     rm -f "out/.part-"*"$own"
     touch "$kind-$number.done"
     exit 0
   fi
-  echo "attempt $attempt of {attempts} failed" >>"$kind-$number.attempts"
 done
 rm -f "out/.part-"*"$own"
-touch "$kind-$number.failed"
 exit 1
 )";
 
@@ -106,7 +104,7 @@ void FolderEngine::run(const EngineJob& job) {
   for (std::size_t i = 0; i < job.lines.size(); ++i) inputs[i % maps] += job.lines[i] + "\n";
   std::string all;
   for (const std::string& input : inputs) all += input + "-\n";
-  const std::string text = script(job, options_.reduce_tasks);
+  const std::string text = script(job, maps);
   std::error_code error;
   fs::create_directories(folder + "/out", error);
   if (error) throw Error(folder + "/out: folder cannot be made: " + error.message());
@@ -130,17 +128,16 @@ void FolderEngine::run(const EngineJob& job) {
   write_file_atomically(folder + "/out/_SUCCESS", "");
 }
 
-std::string FolderEngine::script(const EngineJob& job, int reducers) const {
-  const auto maps = std::min<std::size_t>(job.lines.size(), options_.map_tasks);
+std::string FolderEngine::script(const EngineJob& job, int maps) const {
   std::string numbers;
-  for (std::size_t m = 0; m < maps; ++m) numbers += fmt::format("{}{}", m > 0 ? " " : "", m);
-  return fmt::format(fmt::runtime(kScript), fmt::arg("folder", quoted(store_->place() + "/" + job_folder(job.name))),
-                     fmt::arg("program", quoted(options_.program)), fmt::arg("command", job.command),
-                     fmt::arg("store", quoted(store_->place())), fmt::arg("job", quoted(job.name)),
-                     fmt::arg("threads", options_.task_threads),
-                     fmt::arg("merge", options_.combine ? "" : "--unmerged"), fmt::arg("reducers", reducers),
-                     fmt::arg("maps", numbers), fmt::arg("map", job.reduced ? "map_for_reduce" : "map_only"),
-                     fmt::arg("attempts", options_.attempts));
+  for (int m = 0; m < maps; ++m) numbers += fmt::format("{}{}", m > 0 ? " " : "", m);
+  return fmt::format(
+      fmt::runtime(kScript), fmt::arg("folder", quoted(store_->place() + "/" + job_folder(job.name))),
+      fmt::arg("program", quoted(options_.program)), fmt::arg("command", job.command),
+      fmt::arg("store", quoted(store_->place())), fmt::arg("job", quoted(job.name)),
+      fmt::arg("threads", options_.task_threads), fmt::arg("merge", options_.combine ? "" : "--unmerged"),
+      fmt::arg("reducers", options_.reduce_tasks), fmt::arg("maps", numbers),
+      fmt::arg("map", job.reduced ? "map_for_reduce" : "map_only"), fmt::arg("attempts", options_.attempts));
 }
 
 bool FolderEngine::done(const Tasks& tasks, int number) const {
@@ -166,11 +163,7 @@ void FolderEngine::report(const Tasks& tasks, const std::string& waiting) const 
 void FolderEngine::run_all(const EngineJob& job, const std::string& kind, int count) {
   Tasks tasks{job.name, store_->place() + "/" + job_folder(job.name), kind, count, {}};
   for (int number = 0; number < count; ++number) {
-    if (done(tasks, number)) continue;
-    tasks.numbers.push_back(number);
-    for (const char* file : {"failed", "attempts"}) {
-      fs::remove(fmt::format("{}/{}-{}.{}", tasks.folder, kind, number, file));
-    }
+    if (!done(tasks, number)) tasks.numbers.push_back(number);
   }
   if (!tasks.numbers.empty()) run_tasks(tasks);
   for (const int number : tasks.numbers) {

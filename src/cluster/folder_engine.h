@@ -36,7 +36,7 @@ class FolderEngine : public Engine {
 
  private:
   void run_all(const EngineJob& job, const std::string& kind, int count);
-  std::string script(const EngineJob& job, int reducers) const;
+  std::string script(const EngineJob& job, int maps) const;
 
   std::unique_ptr<Store> store_;
   EngineOptions options_;

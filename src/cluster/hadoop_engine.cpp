@@ -1,9 +1,9 @@
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
+#include <cstdlib>
+#include <optional>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -12,8 +12,8 @@
 #include "cluster/folder_engine.h"
 #include "cluster/process.h"
 #include "cluster/train_job.h"
-#include "io/files/atomic_file.h"
 #include "io/files/read_file.h"
+#include "io/files/temporary_folder.h"
 #include "train/grow_tree.h"
 
 namespace vesalius {
@@ -64,17 +64,8 @@ class HadoopEngine : public Engine {
       for (std::size_t i = m; i < job.lines.size(); i += maps) lines += job.lines[i] + "\n";
     }
     store_->write(folder + "/in/lines", lines);
-    std::string pattern = (std::filesystem::temp_directory_path() / "vesalius-hadoop-XXXXXX").string();
-    const int file = ::mkstemp(pattern.data());
-    if (file < 0) throw Error(pattern + ": cannot be made");
-    const Descriptor log_file(file);
-    try {
-      wait_for(job, folder, pattern, (job.lines.size() + maps - 1) / maps);
-    } catch (...) {
-      std::filesystem::remove(pattern);
-      throw;
-    }
-    std::filesystem::remove(pattern);
+    const TemporaryFolder logs;
+    wait_for(job, folder, logs.path("client.log"), (job.lines.size() + maps - 1) / maps);
   }
 
  private:

@@ -77,4 +77,10 @@ Record parse_record(std::string_view line, const std::string& name) {
 
 std::string program_build() { return fmt::format("vesalius {} by {}", VESALIUS_VERSION, __VERSION__); }
 
+void expect_this_build(const std::string& build, const std::string& name) {
+  if (build == program_build()) return;
+  throw Error(fmt::format("{}: made by {}, this machine has {}; expected the same on all machines", name, build,
+                          program_build()));
+}
+
 }  // namespace vesalius

@@ -66,5 +66,7 @@ Record parse_record(std::string_view line, const std::string& name);
 
 /// Returns how this program was built. Programs that differ may not work on one training, since their bytes might.
 std::string program_build();
+/// Throws Error naming `name`, which another machine wrote, unless its program was built as this one.
+void expect_this_build(const std::string& build, const std::string& name);
 
 }  // namespace vesalius

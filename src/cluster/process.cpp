@@ -6,12 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
-#include "io/files/descriptor.h"
 #include "io/files/read_file.h"
+#include "io/files/temporary_folder.h"
 #include "vesalius/base/error.h"
 
 extern char** environ;
@@ -51,30 +51,10 @@ pid_t start(const std::vector<std::string>& arguments, const std::string& out, c
   return pid;
 }
 
-/// Two files for what a program writes, removed at the end.
-class OutputFiles {
- public:
-  OutputFiles() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "vesalius-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) throw Error(pattern + ": folder cannot be made");
-    folder_ = pattern;
-  }
-  ~OutputFiles() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  OutputFiles(const OutputFiles&) = delete;
-  OutputFiles& operator=(const OutputFiles&) = delete;
-  std::string path(const char* name) const { return folder_ + "/" + name; }
-
- private:
-  std::string folder_;
-};
-
 }  // namespace
 
 CommandResult run_command(const std::vector<std::string>& arguments) {
-  const OutputFiles files;
+  const TemporaryFolder files;
   const pid_t pid = start(arguments, files.path("out"), files.path("err"));
   int status = 0;
   while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {

@@ -15,6 +15,7 @@
 #include "cluster/task_replies.h"
 #include "cluster/train_job.h"
 #include "io/files/atomic_file.h"
+#include "train/growing_tree.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
 
@@ -89,7 +90,7 @@ class ReduceTask {
     const auto block = static_cast<int>(numbers[2]);
     const SplitOptions& options = job_.options.grow.split;
     const int candidates = block_candidates(options, block);
-    const int width = (candidates + CandidateTable::kLanes - 1) / CandidateTable::kLanes * CandidateTable::kLanes;
+    const int width = CandidateTable(candidates).padded;
     labels_.clear();
     values_.assign(node.counted * width, 0);
     for (const auto& [shard, piece] : pieces.of_shards()) {
@@ -112,8 +113,7 @@ class ReduceTask {
     }
     const FeatureRows rows{values_.data(), labels_.data(), labels_.size(), width};
     const int bins = bins_for(node.counted, options.bins);
-    const auto least =
-        static_cast<int>((job_.options.grow.leaf.min_samples * node.counted + node.size - 1) / node.size);
+    const int least = least_samples(node, job_.options.grow.leaf);
     const RowSplit split = split_of(rows, classes_, bins, candidates, least, entropy_);
     NodeReply reply{0.0, {}, std::vector<std::int64_t>(2 * classes_, 0)};
     if (split.candidate < 0 || split.threshold.gain <= 0.0) return reply;

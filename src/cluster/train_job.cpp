@@ -155,10 +155,7 @@ std::string serialise(const TrainJob& job) {
 TrainJob parse_train_job(std::string_view bytes, const std::string& name) {
   const std::string message = opened(bytes, name);
   MessageReader in(message, name);
-  if (const std::string build(in.text("build")); build != program_build()) {
-    throw Error(fmt::format("{}: made by {}, this machine has {}; expected the same on all machines", name, build,
-                            program_build()));
-  }
+  expect_this_build(std::string(in.text("build")), name);
   TrainJob job;
   const auto kind = in.number<std::uint8_t>("kind");
   if (kind > kLastKind) in.fail("kind of job");

@@ -114,7 +114,7 @@ class TreeDriver {
     for (std::int32_t n = batch.begin; n < batch.end; ++n) {
       const int i = n - batch.begin;
       const BinSplit best = best_split(histograms[i], block_candidates(options_.split, block), tasks[i].classes,
-                                       grown_.least_samples(grown_.level()[n]), entropy_);
+                                       least_samples(grown_.level()[n].node, options_.leaf), entropy_);
       if (best.candidate < 0) continue;
       found.push_back(best);
       intervals.push_back(beside(best, tasks[i].binning, n));
@@ -127,7 +127,7 @@ class TreeDriver {
       const int i = node - batch.begin;
       const OpenNode& open = grown_.level()[node];
       const ThresholdSplit refined = refine_split(std::move(beside_split[f]), found[f], histograms[i], tasks[i].classes,
-                                                  grown_.least_samples(open), entropy_);
+                                                  least_samples(open.node, options_.leaf), entropy_);
       TreeNode split = node_candidates(convention_, options_, tree_, open.node.number, block).node(found[f].candidate);
       split.threshold_mm = static_cast<std::int16_t>(refined.threshold_mm);
       if (grown_.offer(node, split, refined.gain)) splits.push_back({node, found[f].candidate, split});

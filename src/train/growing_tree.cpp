@@ -7,6 +7,10 @@
 
 namespace vesalius {
 
+int least_samples(const LevelNode& node, const LeafOptions& options) {
+  return static_cast<int>((options.min_samples * node.counted + node.size - 1) / node.size);
+}
+
 int depth_of(std::uint32_t number) { return std::bit_width(number) - 1; }
 
 GrowingTree::GrowingTree(const SampleCounts& samples, int parts, const GrowTreeOptions& options)
@@ -37,10 +41,6 @@ std::int32_t GrowingTree::open_or_settle(std::uint32_t number, std::size_t at, c
   open.classes = present;
   level_.push_back(open);
   return static_cast<std::int32_t>(level_.size() - 1);
-}
-
-int GrowingTree::least_samples(const OpenNode& open) const {
-  return static_cast<int>((options_.leaf.min_samples * open.node.counted + open.node.size - 1) / open.node.size);
 }
 
 bool GrowingTree::offer(std::int32_t node, const TreeNode& split, double gain) {

@@ -43,8 +43,6 @@ class GrowingTree {
   /// Begins with some roots, which are the children of no level. Returns as `descend` does.
   std::vector<std::int32_t> begin(std::span<const TreeRoot> roots);
   const std::vector<OpenNode>& level() const { return level_; }
-  /// Returns the smallest number of a node's counted samples on a side at which about `min_samples` of all go there.
-  int least_samples(const OpenNode& open) const;
   /// Takes a split of a node of the level if it gains at least `min_gain` and more than those before. Returns whether
   /// it did.
   bool offer(std::int32_t node, const TreeNode& split, double gain);
@@ -83,6 +81,9 @@ class GrowingTree {
   std::vector<GrownNode> nodes_;
   std::int64_t settled_ = 0, split_nodes_ = 0;
 };
+
+/// Returns the smallest number of a node's counted samples on a side at which about `min_samples` of all go there.
+int least_samples(const LevelNode& node, const LeafOptions& options);
 
 /// Returns the node's depth: 0 for the root.
 int depth_of(std::uint32_t number);

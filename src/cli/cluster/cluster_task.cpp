@@ -6,10 +6,12 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
 
+#include "assets/assets.h"
 #include "cli/option_flags.h"
 #include "cluster/train_job.h"
 #include "vesalius/base/error.h"
@@ -52,6 +54,19 @@ void keep_for_driver(Store& store, const std::string& job, const std::string& me
 }
 
 }  // namespace
+
+std::string for_tasks(const std::string& path) {
+  return path.empty() ? path : std::filesystem::absolute(path).lexically_normal().string();
+}
+
+std::vector<std::string> for_tasks(std::vector<std::string> paths) {
+  for (std::string& path : paths) path = for_tasks(path);
+  return paths;
+}
+
+std::string assets_for_tasks(const std::string& folder) {
+  return for_tasks(folder.empty() ? default_assets_folder() : folder);
+}
 
 void add_task_flags(CLI::App& command, TaskArguments& arguments) {
   command.add_option("--store", arguments.store, "Folder that all machines see, or webhdfs://HOST:PORT/PATH")

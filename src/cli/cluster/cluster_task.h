@@ -3,6 +3,7 @@
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <vector>
 
 #include "cluster/map_task.h"
 
@@ -11,6 +12,13 @@ class App;
 }
 
 namespace vesalius::cli {
+
+/// Returns paths as tasks need them, which run in other folders: absolute; an empty one stays empty.
+std::string for_tasks(const std::string& path);
+std::vector<std::string> for_tasks(std::vector<std::string> paths);
+/// The same for the folder of `vesalius assets`; an empty one is this machine's default, since tasks may have another
+/// home folder, or none.
+std::string assets_for_tasks(const std::string& folder);
 
 /// The flags of a task.
 struct TaskArguments {

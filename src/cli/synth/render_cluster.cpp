@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "assets/assets.h"
 #include "cli/cluster/cluster_task.h"
 #include "cli/interrupts.h"
 #include "cli/synth/synth_recipe.h"
@@ -33,21 +32,18 @@ using Json = nlohmann::json;
 
 constexpr const char* kJob = "render";
 
-std::string absolute(const std::string& path) { return path.empty() ? path : fs::absolute(path).string(); }
-
 std::string stored_shard(std::uint64_t shard) { return fmt::format("shards/{:06}.shard", shard); }
 
 std::string serialise(RenderRequest request, const DatasetInfo& info) {
   Json json{{"build", program_build()},
             {"recipe", options_toml([&](OptionVisitor& visitor) { visit_options("", request.recipe, visitor); })},
             {"body", request.body.toml},
-            {"assets", absolute(request.places.folder.empty() ? default_assets_folder() : request.places.folder)},
-            {"motions", absolute(request.places.motions)},
-            {"models", Json::array()},
+            {"assets", assets_for_tasks(request.places.folder)},
+            {"motions", for_tasks(request.places.motions)},
+            {"models", for_tasks(request.places.models)},
             {"clip_s", nullptr},
             {"rate_hz", nullptr},
             {"dataset", serialise_description(info)}};
-  for (const std::string& model : request.places.models) json["models"].push_back(absolute(model));
   if (request.clip.clip_s) json["clip_s"] = *request.clip.clip_s;
   if (request.clip.rate_hz) json["rate_hz"] = *request.clip.rate_hz;
   return sealed(json.dump());
@@ -63,10 +59,7 @@ struct RenderJob {
 RenderJob open_job(const std::string& bytes, const std::string& name) {
   const Json json = Json::parse(opened(bytes, name), nullptr, false);
   if (json.is_discarded()) throw Error(name + ": damaged");
-  if (const auto build = json.at("build").get<std::string>(); build != program_build()) {
-    throw Error(fmt::format("{}: made by {}, this machine has {}; expected the same on all machines", name, build,
-                            program_build()));
-  }
+  expect_this_build(json.at("build").get<std::string>(), name);
   RenderJob job;
   job.info = parse_description(json.at("dataset").get<std::string>(), name);
   synth::Recipe recipe;
