@@ -58,31 +58,18 @@ class TreeDriver {
     shards_.open_level(level);
   }
 
-  /// Splits a range of nodes into runs of at most `most` bytes, but at least one node each.
-  template <class BytesOf>
-  std::vector<NodeRange> runs(NodeRange nodes, std::size_t most, const BytesOf& bytes_of) const {
-    std::vector<NodeRange> runs;
-    std::int64_t bytes = 0;
-    for (std::int32_t n = nodes.begin; n < nodes.end; ++n) {
-      const std::int64_t more = bytes_of(grown_.level()[n]);
-      if (runs.empty() || bytes + more > static_cast<std::int64_t>(most)) {
-        runs.push_back({n, n});
-        bytes = 0;
-      }
-      runs.back().end = n + 1;
-      bytes += more;
-    }
-    return runs;
-  }
-
   std::vector<NodeRange> groups() const {
-    return runs({0, static_cast<std::int32_t>(grown_.level().size())}, options_.row_bytes,
-                [](const OpenNode& open) { return open.node.counted * kRowBytes; });
+    const auto bytes_of = [&](std::int32_t n) { return grown_.level()[n].node.counted * kRowBytes; };
+    return node_runs({0, static_cast<std::int32_t>(grown_.level().size())},
+                     static_cast<std::int64_t>(options_.row_bytes), bytes_of);
   }
 
   std::vector<NodeRange> batches(NodeRange group) const {
-    return runs(group, options_.batch_bytes,
-                [&](const OpenNode& open) { return (open.node.counted + open.classes * bins_of(open)) * kRowBytes; });
+    const auto bytes_of = [&](std::int32_t n) {
+      const OpenNode& open = grown_.level()[n];
+      return (open.node.counted + open.classes * bins_of(open)) * kRowBytes;
+    };
+    return node_runs(group, static_cast<std::int64_t>(options_.batch_bytes), bytes_of);
   }
 
   int bins_of(const OpenNode& open) const { return bins_for(open.node.counted, options_.split.bins); }

@@ -82,6 +82,23 @@ class GrowingTree {
   std::int64_t settled_ = 0, split_nodes_ = 0;
 };
 
+/// Splits a range of nodes into runs of at most `most` together by `size_of`, but of one node at least.
+template <class SizeOf>
+std::vector<NodeRange> node_runs(NodeRange nodes, std::int64_t most, const SizeOf& size_of) {
+  std::vector<NodeRange> runs;
+  std::int64_t size = 0;
+  for (std::int32_t n = nodes.begin; n < nodes.end; ++n) {
+    const std::int64_t more = size_of(n);
+    if (runs.empty() || size + more > most) {
+      runs.push_back({n, n});
+      size = 0;
+    }
+    runs.back().end = n + 1;
+    size += more;
+  }
+  return runs;
+}
+
 /// Returns the smallest number of a node's counted samples on a side at which about `min_samples` of all go there.
 int least_samples(const LevelNode& node, const LeafOptions& options);
 

@@ -4,38 +4,34 @@
 #include <cmath>
 #include <utility>
 
+#include "train/find_leaves.h"
 #include "train/sample_logits.h"
-#include "train/walk_samples.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/forest/facing.h"
 
 namespace vesalius {
 namespace {
 
-constexpr int kGrain = 2048;
 /// Samples whose gradients are held at a time; they stay in the cache.
 constexpr std::size_t kBatch = 16384;
 constexpr double kOne = static_cast<double>(SampleWeights::kUnit) * SampleWeights::kUnit;
 
-/// Returns whether a sample's frame is in a portion.
-bool in_portion(const TrainingSet& set, const TrainingSample& sample, int portion, int portions) {
-  return (sample.frame + set.first_frame()) % static_cast<unsigned>(portions) == static_cast<unsigned>(portion);
+/// Returns whether a frame is in a portion.
+bool in_portion(const TrainingSet& set, std::uint32_t frame, int portion, int portions) {
+  return (frame + set.first_frame()) % static_cast<unsigned>(portions) == static_cast<unsigned>(portion);
 }
 
 }  // namespace
 
 LeafShard::LeafShard(const TrainingSet& set, const Forest& forest, LogitLayout layout, const GradientTask& portion)
     : set_(set), samples_(set.samples()), layout_(std::move(layout)) {
+  std::vector<const Tree*> trees;
   for (const Tree& tree : forest.trees) {
+    trees.push_back(&tree);
     leaf_counts_.push_back(tree.leaves.size());
-    std::vector<std::uint32_t>& leaves = leaves_.emplace_back(samples_.size());
-    parallel_ranges(static_cast<int>(samples_.size()), kGrain, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) {
-        if (!in_portion(set, samples_[i], portion.portion, portion.portions)) continue;
-        leaves[i] = static_cast<std::uint32_t>(leaf_of(tree, set.frames(), samples_[i]));
-      }
-    });
   }
+  leaves_ = find_leaves(trees, set.frames(), samples_,
+                        [&](std::uint32_t frame) { return in_portion(set, frame, portion.portion, portion.portions); });
 }
 
 LabelCounts LeafShard::label_counts() const {
@@ -76,7 +72,7 @@ class LeafShard::Gradients {
 
   LeafGradient run() {
     for (std::size_t i = 0; i < shard_.samples_.size(); ++i) {
-      if (!in_portion(shard_.set_, shard_.samples_[i], task_.portion, task_.portions)) continue;
+      if (!in_portion(shard_.set_, shard_.samples_[i].frame, task_.portion, task_.portions)) continue;
       batch_.push_back(static_cast<std::uint32_t>(i));
       if (batch_.size() == kBatch) flush();
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "train/find_leaves.h"
 #include "train/frame_prefetcher.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
@@ -226,10 +227,11 @@ ChildCounts TreeShard::route() {
 }
 
 ChildCounts TreeShard::walk_to(const OpenTree& tree) {
-  const FrameStore& frames = set_.frames();
-  parallel_ranges(static_cast<int>(samples_.size()), kGrain, [&](int begin, int end) {
-    for (int s = begin; s < end; ++s) node_of_[s] = tree.child_of_leaf[leaf_of(tree.tree, frames, samples_[s])];
-  });
+  return move_to(tree, find_leaves({&tree.tree}, set_.frames(), samples_).front());
+}
+
+ChildCounts TreeShard::move_to(const OpenTree& tree, std::span<const std::uint32_t> leaves) {
+  for (std::size_t s = 0; s < samples_.size(); ++s) node_of_[s] = tree.child_of_leaf[leaves[s]];
   ChildCounts children{set_.class_count(), std::vector<std::int64_t>(tree.children * set_.class_count(), 0)};
   count_children(children);
   return children;

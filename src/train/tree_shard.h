@@ -38,6 +38,8 @@ class TreeShard {
   ChildCounts route();
   /// Instead of all levels above: moves each sample to the child that it reaches in `tree`, and counts them.
   ChildCounts walk_to(const OpenTree& tree);
+  /// The same, if the leaf of each sample in `tree` is known.
+  ChildCounts move_to(const OpenTree& tree, std::span<const std::uint32_t> leaves);
 
  private:
   /// A node of the level with this shard's samples.
