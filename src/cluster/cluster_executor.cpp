@@ -184,16 +184,18 @@ class ClusterExecutor::Round {
     for (std::size_t t = 0; t < states_.size(); ++t) {
       State& state = states_[t];
       state.replies.assign(state.grown.level().size(), {});
-      for (std::size_t n = 0; n < state.replies.size(); ++n) {
+      const std::vector<NodeRange> groups = row_groups(job.trees[t].nodes, options_.split);
+      for (std::size_t g = 0; g < groups.size(); ++g) {
         for (std::size_t block = 0; block < blocks; ++block) {
-          const std::string key = node_key(t, n, block);
-          NodeReply reply = parse_node_reply(message_of(records, key, name), name);
-          if (state.grown.offer(static_cast<std::int32_t>(n), reply.split, reply.gain))
-            state.replies[n] = std::move(reply);
-        }
-        const auto counted = static_cast<std::uint64_t>(state.grown.level()[n].node.counted);
-        for (std::size_t b = 0; b < blocks; ++b) {
-          progress_.evaluations += counted * block_candidates(options_.split, static_cast<int>(b));
+          const std::string key = node_key(t, g, block);
+          std::vector<NodeReply> replies = parse_node_replies(message_of(records, key, name), name + ": " + key);
+          if (std::ssize(replies) != groups[g].size()) throw Error(name + ": splits of other nodes than expected");
+          for (std::int32_t n = groups[g].begin; n < groups[g].end; ++n) {
+            NodeReply& reply = replies[n - groups[g].begin];
+            const auto counted = static_cast<std::uint64_t>(job.trees[t].nodes[n].counted);
+            progress_.evaluations += counted * block_candidates(options_.split, static_cast<int>(block));
+            if (state.grown.offer(n, reply.split, reply.gain)) state.replies[n] = std::move(reply);
+          }
         }
       }
     }
@@ -384,7 +386,10 @@ ClusterExecutor::Records ClusterExecutor::run(const TrainJob& job, const std::ve
     store.write(job_file(job.name), bytes);
   }
   if (!known || !store.exists(result_folder(job.name) + "/_SUCCESS")) {
-    EngineJob request{job.name, "train", {}, reduced};
+    EngineJob request;
+    request.name = job.name;
+    request.reduced = reduced;
+    request.summed = job.kind == JobKind::kLeafCounts || job.kind == JobKind::kGradient;
     for (const std::size_t line : lines) request.lines.push_back(std::to_string(line));
     engine_.run(request);
   }

@@ -215,18 +215,41 @@ TEST_F(ClusterTrainingTest, RefusesLinesThatNameNoShard) {
   }
 }
 
-TEST(TrainingSetBytes, GiveTheSameSet) {
-  TrainOptions options = make_options();
-  TrainingSet set(paper_body(), training_convention(options), options.sample, 1, 7);
+class TrainingSetBytes : public testing::Test {
+ protected:
+  TrainingSet set_of(const TrainingSet& like, TrainingSet::Contents contents) const {
+    return {paper_body(), options_.sample, 1, like.first_frame(), std::move(contents)};
+  }
+
+  TrainOptions options_ = make_options();
+};
+
+TEST_F(TrainingSetBytes, GiveTheSameSet) {
+  TrainingSet set(paper_body(), training_convention(options_), options_.sample, 1, 7);
   for (const LabelledFrame& frame : make_frames(12)) set.add(frame);
   const std::string bytes = training_set_bytes(set);
-  const TrainingSet same = parse_training_set(bytes, "set", paper_body(), set.convention(), options.sample, 1, 7);
+  TrainingSet::Contents contents{.frames = FrameStore(set.convention())};
+  append_training_set(bytes, "set", contents);
+  const TrainingSet same = set_of(set, std::move(contents));
   EXPECT_EQ(training_set_bytes(same), bytes);
-  EXPECT_EQ(grow_tree(same, options.grow, 0), grow_tree(set, options.grow, 0));
+  EXPECT_EQ(grow_tree(same, options_.grow, 0), grow_tree(set, options_.grow, 0));
   for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 4) {
-    EXPECT_THROW(parse_training_set(bytes.substr(0, size), "set", paper_body(), set.convention(), options.sample, 1, 7),
-                 Error);
+    TrainingSet::Contents none{.frames = FrameStore(set.convention())};
+    EXPECT_THROW(append_training_set(bytes.substr(0, size), "set", none), Error);
   }
+}
+
+TEST_F(TrainingSetBytes, OfShardsGiveTheSetOfAllFrames) {
+  const std::vector<LabelledFrame> frames = make_frames(12);
+  TrainingSet all(paper_body(), training_convention(options_), options_.sample, 1, 0);
+  for (const LabelledFrame& frame : frames) all.add(frame);
+  TrainingSet::Contents contents{.frames = FrameStore(all.convention())};
+  for (const auto& [first, last] : {std::pair(0, 5), std::pair(5, 6), std::pair(6, 12)}) {
+    TrainingSet shard(paper_body(), training_convention(options_), options_.sample, 1, first);
+    for (int f = first; f < last; ++f) shard.add(frames[f]);
+    append_training_set(training_set_bytes(shard), "shard", contents);
+  }
+  EXPECT_EQ(training_set_bytes(set_of(all, std::move(contents))), training_set_bytes(all));
 }
 
 }  // namespace

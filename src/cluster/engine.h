@@ -20,6 +20,7 @@ struct EngineJob {
   std::string command = "train";   ///< the tasks are `vesalius COMMAND map` and `reduce`
   std::vector<std::string> lines;  ///< input of the map tasks; those that take longest first
   bool reduced = false;            ///< whether there are reduce tasks
+  bool summed = false;             ///< whether its records add up, so that combiners make them fewer
 };
 
 struct JobProgress {

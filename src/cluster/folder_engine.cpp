@@ -135,7 +135,7 @@ std::string FolderEngine::script(const EngineJob& job, int maps) const {
       fmt::runtime(kScript), fmt::arg("folder", quoted(store_->place() + "/" + job_folder(job.name))),
       fmt::arg("program", quoted(options_.program)), fmt::arg("command", job.command),
       fmt::arg("store", quoted(store_->place())), fmt::arg("job", quoted(job.name)),
-      fmt::arg("threads", options_.task_threads), fmt::arg("merge", options_.combine ? "" : "--unmerged"),
+      fmt::arg("threads", options_.task_threads), fmt::arg("merge", options_.combine && job.summed ? "" : "--unmerged"),
       fmt::arg("reducers", options_.reduce_tasks), fmt::arg("maps", numbers),
       fmt::arg("map", job.reduced ? "map_for_reduce" : "map_only"), fmt::arg("attempts", options_.attempts));
 }

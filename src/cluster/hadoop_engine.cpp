@@ -98,7 +98,8 @@ class HadoopEngine : public Engine {
     command.insert(command.end(), {"-inputformat", "org.apache.hadoop.mapred.lib.NLineInputFormat", "-input",
                                    path + "/in", "-output", path + "/out", "-mapper", task("map")});
     if (job.reduced) {
-      if (options_.combine) command.insert(command.end(), {"-combiner", options_.program + " train combine"});
+      if (options_.combine && job.summed)
+        command.insert(command.end(), {"-combiner", options_.program + " train combine"});
       command.insert(command.end(), {"-reducer", task("reduce")});
     }
     return command;

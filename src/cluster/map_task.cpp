@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "cluster/merge_records.h"
@@ -12,6 +12,7 @@
 #include "cluster/train_job.h"
 #include "cluster/training_set_bytes.h"
 #include "train/feature_rows.h"
+#include "train/find_leaves.h"
 #include "train/grow_tree.h"
 #include "train/leaf_shard.h"
 #include "train/local_shards.h"
@@ -89,11 +90,26 @@ class MapTask {
     if (context_.count) context_.count(counter, more);
   }
 
-  TrainingSet load_set(std::size_t shard) const {
+  void append_set(std::size_t shard, TrainingSet::Contents& contents) const {
     const std::string name = set_name(job_.sets, shard);
-    return parse_training_set(context_.store.read(name), context_.store.place() + "/" + name, job_.forest.body,
-                              job_.forest.convention, job_.options.sample,
-                              static_cast<std::uint64_t>(job_.options.grow.seed), job_.first_frames[shard]);
+    append_training_set(context_.store.read(name), context_.store.place() + "/" + name, contents);
+  }
+
+  TrainingSet set_of(TrainingSet::Contents contents, std::size_t first_shard) const {
+    return {job_.forest.body, job_.options.sample, static_cast<std::uint64_t>(job_.options.grow.seed),
+            job_.first_frames[first_shard], std::move(contents)};
+  }
+
+  TrainingSet load_set(std::size_t shard) const {
+    TrainingSet::Contents contents{.frames = FrameStore(job_.forest.convention)};
+    append_set(shard, contents);
+    return set_of(std::move(contents), shard);
+  }
+
+  TrainingSet load_all_sets() const {
+    TrainingSet::Contents contents{.frames = FrameStore(job_.forest.convention)};
+    for (std::size_t shard = 0; shard < job_.shards(); ++shard) append_set(shard, contents);
+    return set_of(std::move(contents), 0);
   }
 
   void prepare(std::size_t shard) {
@@ -112,11 +128,19 @@ class MapTask {
     out_ << record_line(store_set(context_.store, job_, set, shard, 0));
   }
 
+  /// Returns [tree][sample]: the leaf of each sample in the open trees.
+  std::vector<std::vector<std::uint32_t>> open_leaves(const TrainingSet& set) const {
+    std::vector<const Tree*> trees;
+    for (const TreeRequest& tree : job_.trees) trees.push_back(&tree.open.tree);
+    return find_leaves(trees, set.frames(), set.samples());
+  }
+
   void count(std::size_t shard) {
     const TrainingSet set = load_set(shard);
+    const auto leaves = open_leaves(set);
     for (std::size_t t = 0; t < job_.trees.size(); ++t) {
       const TreeRequest& tree = job_.trees[t];
-      const ChildCounts all = TreeShard(set, job_.options.grow, tree.number).walk_to(tree.open);
+      const ChildCounts all = TreeShard(set, job_.options.grow, tree.number).move_to(tree.open, leaves[t]);
       std::vector<std::int64_t> counts;
       for (const std::int32_t child : tree.large)
         counts.insert(counts.end(), all.of(child), all.of(child) + all.classes);
@@ -129,14 +153,15 @@ class MapTask {
 
   void rows(std::size_t shard) {
     const TrainingSet set = load_set(shard);
-    for (std::size_t t = 0; t < job_.trees.size(); ++t) rows_of_tree(shard, set, t);
+    const auto leaves = open_leaves(set);
+    for (std::size_t t = 0; t < job_.trees.size(); ++t) rows_of_tree(shard, set, t, leaves[t]);
     tell("shards", 1);
   }
 
-  void rows_of_tree(std::size_t shard, const TrainingSet& set, std::size_t t) {
+  void rows_of_tree(std::size_t shard, const TrainingSet& set, std::size_t t, std::span<const std::uint32_t> leaves) {
     const TreeRequest& request = job_.trees[t];
     TreeShard tree(set, job_.options.grow, request.number);
-    const ChildSizes own = child_sizes(tree.walk_to(request.open));
+    const ChildSizes own = child_sizes(tree.move_to(request.open, leaves));
     const auto nodes = static_cast<std::int32_t>(request.nodes.size());
     Level level{{}, request.nodes};
     for (std::int32_t n = 0; n < nodes; ++n) level.node_of_child.push_back(n);
@@ -145,47 +170,60 @@ class MapTask {
       before[request.large[i]] = request.before[shard * request.large.size() + i];
     }
     tree.open_level(level, before);
-    constexpr std::size_t kRowBytes = sizeof(std::int16_t) * kBlockCandidates;
-    for (NodeRange group{0, 0}; group.begin < nodes; group.begin = group.end) {
-      std::size_t bytes = 0;
-      for (group.end = group.begin; group.end < nodes; ++group.end) {
-        bytes += std::min(own[group.end], request.nodes[group.end].counted) * kRowBytes;
-        if (group.end > group.begin && bytes > context_.row_bytes) break;
+    const std::vector<NodeRange> groups = row_groups(request.nodes, job_.options.grow.split);
+    const auto bytes_of = [&](std::int32_t g) {
+      std::int64_t rows = 0;
+      for (std::int32_t n = groups[g].begin; n < groups[g].end; ++n) rows += std::min(own[n], request.nodes[n].counted);
+      return rows * static_cast<std::int64_t>(sizeof(std::int16_t) * kBlockCandidates);
+    };
+    for (const NodeRange& run : node_runs({0, static_cast<std::int32_t>(groups.size())},
+                                          static_cast<std::int64_t>(context_.row_bytes), bytes_of)) {
+      for (int block = 0; block < candidate_blocks(job_.options.grow.split); ++block) {
+        tree.evaluate({groups[run.begin].begin, groups[run.end - 1].end}, block);
+        write_rows(shard, tree, t, {groups.data() + run.begin, groups.data() + run.end}, run.begin, block);
       }
-      for (int block = 0; block < candidate_blocks(job_.options.grow.split); ++block)
-        write_rows(shard, tree, t, group, block);
     }
   }
 
-  void write_rows(std::size_t shard, TreeShard& tree, std::size_t t, NodeRange group, int block) {
-    const int candidates = block_candidates(job_.options.grow.split, block);
-    tree.evaluate(group, block);
-    std::uint64_t evaluations = 0;
-    std::vector<std::string> lines(group.size());
-    parallel_for(group.size(), [&](int i) {
-      const FeatureRows rows = tree.rows(group.begin + i);
-      if (rows.rows == 0) return;
-      NodeRows message{{rows.labels, rows.labels + rows.rows}, {}};
-      message.columns.resize(rows.rows * candidates);
-      for (std::size_t r = 0; r < rows.rows; ++r) {
-        for (int c = 0; c < candidates; ++c) message.columns[c * rows.rows + r] = rows.values[r * rows.width + c];
-      }
+  /// Writes the rows that were evaluated last, whose groups begin with number `first` of tree `t`.
+  void write_rows(std::size_t shard, const TreeShard& tree, std::size_t t, std::span<const NodeRange> groups, int first,
+                  int block) {
+    std::vector<std::string> lines(groups.size());
+    parallel_for(static_cast<int>(groups.size()), [&](int i) {
+      const GroupRows rows = rows_of(tree, groups[i], block_candidates(job_.options.grow.split, block));
+      if (rows.labels.empty()) return;
       lines[i] = record_line(
-          {node_key(t, group.begin + i, block), piece_message(static_cast<std::uint32_t>(shard), serialise(message))});
+          {node_key(t, first + i, block), piece_message(static_cast<std::uint32_t>(shard), serialise(rows))});
     });
-    for (int i = 0; i < group.size(); ++i) {
-      out_ << lines[i];
-      evaluations += tree.rows(group.begin + i).rows * candidates;
+    std::uint64_t evaluations = 0;
+    for (const std::string& line : lines) out_ << line;
+    for (std::int32_t n = groups.front().begin; n < groups.back().end; ++n) {
+      evaluations += tree.rows(n).rows * block_candidates(job_.options.grow.split, block);
     }
     tell("evaluations", evaluations);
   }
 
-  void subtrees(std::size_t index) {
-    for (std::size_t s = sets_.size(); s < job_.shards(); ++s) {
-      sets_.push_back(std::make_unique<const TrainingSet>(load_set(s)));
+  static GroupRows rows_of(const TreeShard& tree, NodeRange nodes, int candidates) {
+    GroupRows group;
+    for (std::int32_t n = nodes.begin; n < nodes.end; ++n) {
+      const FeatureRows rows = tree.rows(n);
+      group.rows.push_back(static_cast<std::uint32_t>(rows.rows));
+      group.labels.insert(group.labels.end(), rows.labels, rows.labels + rows.rows);
     }
-    std::vector<const TrainingSet*> sets;
-    for (const auto& set : sets_) sets.push_back(set.get());
+    group.columns.resize(group.labels.size() * candidates);
+    std::int16_t* columns = group.columns.data();
+    for (std::int32_t n = nodes.begin; n < nodes.end; ++n) {
+      const FeatureRows rows = tree.rows(n);
+      for (std::size_t r = 0; r < rows.rows; ++r) {
+        for (int c = 0; c < candidates; ++c) columns[c * rows.rows + r] = rows.values[r * rows.width + c];
+      }
+      columns += rows.rows * candidates;
+    }
+    return group;
+  }
+
+  void subtrees(std::size_t index) {
+    if (!all_) all_.emplace(load_all_sets());
     const SubtreeRequest& request = job_.subtrees[index];
     const TreeRequest& tree = job_.trees.at(request.tree);
     OpenTree open = tree.open;
@@ -197,7 +235,7 @@ class MapTask {
     }
     for (std::int32_t& child : open.child_of_leaf) child = child == kSettled ? kSettled : root_of.at(child);
     open.children = roots.size();
-    LocalTree shards(sets, job_.options.grow, tree.number);
+    LocalTree shards({&*all_}, job_.options.grow, tree.number);
     shards.walk_to(open);
     GrowProgress progress;
     const auto grown =
@@ -278,7 +316,7 @@ class MapTask {
   TrainJob job_;
   LogitLayout layout_;
   TaskContext::ReadFrame read_frame_;
-  std::vector<std::unique_ptr<const TrainingSet>> sets_;
+  std::optional<TrainingSet> all_;               ///< the sets of all shards as one
   std::vector<std::vector<std::int64_t>> sums_;  ///< [tree]
   std::vector<std::uint32_t> summed_shards_;
 };

@@ -63,7 +63,7 @@ class ReduceTask {
     const std::string name = job_.name + ": " + key;
     switch (job_.kind) {
       case JobKind::kRows:
-        return write(key, serialise(best_split_of(key, merged.pieces(), name)));
+        return write(key, serialise(best_splits_of(key, merged.pieces(), name)));
       case JobKind::kCount:
         return write(key, serialise(totals_of(key, merged.pieces(), name)));
       case JobKind::kLeafCounts:
@@ -82,31 +82,57 @@ class ReduceTask {
     return job_.trees[tree];
   }
 
-  NodeReply best_split_of(const std::string& key, const Pieces& pieces, const std::string& name) {
+  std::vector<NodeReply> best_splits_of(const std::string& key, const Pieces& pieces, const std::string& name) {
     const std::vector<std::size_t> numbers = key_numbers(key, 3, name);
     const TreeRequest& tree = tree_of(numbers[0], name);
-    if (numbers[1] >= tree.nodes.size()) throw Error(name + ": no such node");
-    const LevelNode& node = tree.nodes[numbers[1]];
+    const std::vector<NodeRange> groups = row_groups(tree.nodes, job_.options.grow.split);
+    if (numbers[1] >= groups.size()) throw Error(name + ": no such nodes");
+    const NodeRange nodes = groups[numbers[1]];
     const auto block = static_cast<int>(numbers[2]);
+    std::vector<Part> parts;
+    for (const auto& [shard, piece] : pieces.of_shards()) {
+      parts.push_back({parse_group_rows(piece, static_cast<std::size_t>(nodes.size()),
+                                        block_candidates(job_.options.grow.split, block), name)});
+    }
+    std::vector<NodeReply> replies;
+    for (std::int32_t n = nodes.begin; n < nodes.end; ++n) {
+      for (Part& part : parts) part.node = n - nodes.begin;
+      replies.push_back(best_split_of(tree, n, block, parts, name));
+    }
+    return replies;
+  }
+
+  /// What a shard sent of some nodes, and where the rows of the next node begin.
+  struct Part {
+    GroupRows rows;
+    std::int32_t node = 0;
+    std::size_t begin = 0;
+  };
+
+  /// Takes the rows of the next node from all parts, in the order of the shards.
+  NodeReply best_split_of(const TreeRequest& tree, std::int32_t n, int block, std::vector<Part>& parts,
+                          const std::string& name) {
+    const LevelNode& node = tree.nodes[n];
     const SplitOptions& options = job_.options.grow.split;
     const int candidates = block_candidates(options, block);
     const int width = CandidateTable(candidates).padded;
+    std::int64_t came = 0;
+    for (const Part& part : parts) came += part.rows.rows[part.node];
+    if (came != node.counted) {
+      throw Error(
+          fmt::format("{}: {} of {} samples came; the output of a map task is missing", name, came, node.counted));
+    }
     labels_.clear();
     values_.assign(node.counted * width, 0);
-    for (const auto& [shard, piece] : pieces.of_shards()) {
-      const NodeRows rows = parse_node_rows(piece, name);
-      const std::size_t count = rows.labels.size(), begin = labels_.size();
-      if (rows.columns.size() != count * candidates || begin + count > static_cast<std::size_t>(node.counted)) {
-        throw Error(fmt::format("{}: shard {} has other samples than expected", name, shard));
-      }
-      labels_.insert(labels_.end(), rows.labels.begin(), rows.labels.end());
+    for (Part& part : parts) {
+      const std::size_t count = part.rows.rows[part.node], first = labels_.size();
+      const auto labels = part.rows.labels.begin() + static_cast<std::ptrdiff_t>(part.begin);
+      labels_.insert(labels_.end(), labels, labels + static_cast<std::ptrdiff_t>(count));
+      const std::int16_t* columns = part.rows.columns.data() + part.begin * candidates;
       for (int c = 0; c < candidates; ++c) {
-        for (std::size_t r = 0; r < count; ++r) values_[(begin + r) * width + c] = rows.columns[c * count + r];
+        for (std::size_t r = 0; r < count; ++r) values_[(first + r) * width + c] = columns[c * count + r];
       }
-    }
-    if (static_cast<std::int64_t>(labels_.size()) != node.counted) {
-      throw Error(fmt::format("{}: {} of {} samples came; the output of a map task is missing", name, labels_.size(),
-                              node.counted));
+      part.begin += count;
     }
     if (std::ranges::any_of(labels_, [&](std::uint8_t label) { return label >= classes_; })) {
       throw Error(name + ": a sample of an unknown class");

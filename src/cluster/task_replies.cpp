@@ -1,5 +1,6 @@
 #include "cluster/task_replies.h"
 
+#include <numeric>
 #include <utility>
 
 namespace vesalius {
@@ -48,39 +49,51 @@ PreparedShard parse_prepared_shard(std::string_view message, const std::string& 
   return shard;
 }
 
-std::string serialise(const NodeRows& rows) {
+std::string serialise(const GroupRows& rows) {
   MessageWriter out;
+  out.array(rows.rows);
   out.array(rows.labels);
   out.array(rows.columns);
   return std::move(out.bytes());
 }
 
-NodeRows parse_node_rows(std::string_view message, const std::string& name) {
+GroupRows parse_group_rows(std::string_view message, std::size_t nodes, int candidates, const std::string& name) {
   MessageReader in(message, name);
-  NodeRows rows{in.array<std::uint8_t>("labels"), in.array<std::int16_t>("values")};
+  GroupRows rows;
+  rows.rows = in.array<std::uint32_t>("rows");
+  rows.labels = in.array<std::uint8_t>("labels");
+  rows.columns = in.array<std::int16_t>("values");
   in.expect_end();
-  if (rows.labels.empty() ? !rows.columns.empty() : rows.columns.size() % rows.labels.size() != 0) {
-    in.fail("labels and values do not fit");
+  const std::size_t all = std::accumulate(rows.rows.begin(), rows.rows.end(), std::size_t{0});
+  if (rows.rows.size() != nodes || rows.labels.size() != all || rows.columns.size() != all * candidates) {
+    in.fail("other numbers of rows and values than expected");
   }
   return rows;
 }
 
-std::string serialise(const NodeReply& reply) {
+std::string serialise(const std::vector<NodeReply>& replies) {
   MessageWriter out;
-  out.real(reply.gain);
-  write_split(out, reply.split);
-  out.array(reply.children);
+  out.number(static_cast<std::uint64_t>(replies.size()));
+  for (const NodeReply& reply : replies) {
+    out.real(reply.gain);
+    write_split(out, reply.split);
+    out.array(reply.children);
+  }
   return std::move(out.bytes());
 }
 
-NodeReply parse_node_reply(std::string_view message, const std::string& name) {
+std::vector<NodeReply> parse_node_replies(std::string_view message, const std::string& name) {
   MessageReader in(message, name);
-  NodeReply reply;
-  reply.gain = in.real64("gain");
-  reply.split = read_split(in);
-  reply.children = in.array<std::int64_t>("children");
+  const auto count = in.number<std::uint64_t>("nodes");
+  std::vector<NodeReply> replies;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    NodeReply& reply = replies.emplace_back();
+    reply.gain = in.real64("gain");
+    reply.split = read_split(in);
+    reply.children = in.array<std::int64_t>("children");
+  }
   in.expect_end();
-  return reply;
+  return replies;
 }
 
 std::string serialise(const CountReply& reply) {

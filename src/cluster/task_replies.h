@@ -29,13 +29,15 @@ struct PreparedShard {
 std::string serialise(const PreparedShard& shard);
 PreparedShard parse_prepared_shard(std::string_view message, const std::string& name);
 
-/// Values of the counted samples of one node for one block of candidates, in one shard.
-struct NodeRows {
-  std::vector<std::uint8_t> labels;   ///< [row]
-  std::vector<std::int16_t> columns;  ///< [candidate * rows + row], mm
+/// Values of the counted samples of neighbouring nodes for one block of candidates, in one shard; node by node.
+struct GroupRows {
+  std::vector<std::uint32_t> rows;    ///< [node]
+  std::vector<std::uint8_t> labels;   ///< [row of the node]
+  std::vector<std::int16_t> columns;  ///< [candidate * rows of the node + row of the node], mm
 };
-std::string serialise(const NodeRows& rows);
-NodeRows parse_node_rows(std::string_view message, const std::string& name);
+std::string serialise(const GroupRows& rows);
+/// Throws Error naming `name` as well if there are not `nodes` nodes and `candidates` values in a row.
+GroupRows parse_group_rows(std::string_view message, std::size_t nodes, int candidates, const std::string& name);
 
 /// The best split of a node among one block of candidates.
 struct NodeReply {
@@ -43,8 +45,8 @@ struct NodeReply {
   TreeNode split;
   std::vector<std::int64_t> children;  ///< [side * classes + class]: its counted samples
 };
-std::string serialise(const NodeReply& reply);
-NodeReply parse_node_reply(std::string_view message, const std::string& name);
+std::string serialise(const std::vector<NodeReply>& replies);
+std::vector<NodeReply> parse_node_replies(std::string_view message, const std::string& name);
 
 /// Samples at the children of large nodes.
 struct CountReply {

@@ -73,7 +73,7 @@ class TestEngine : public Engine {
         store_.write(result_folder(job.name) + "/part-" + std::to_string(m), text);
         continue;
       }
-      if (options_.combine) text = combined(text);
+      if (options_.combine && job.summed) text = combined(text);
       for (int copy = options_.twice ? 2 : 1; copy > 0; --copy) {
         for (const std::string& line : lines_of(text)) {
           parts[part_of(line.substr(0, line.find('\t')), options_.reduce_tasks)].push_back(line);

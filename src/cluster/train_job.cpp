@@ -108,6 +108,11 @@ TreeRequest read_tree(MessageReader& in) {
 
 }  // namespace
 
+std::vector<NodeRange> row_groups(const std::vector<LevelNode>& nodes, const SplitOptions& options) {
+  return node_runs({0, static_cast<std::int32_t>(nodes.size())}, options.split_pixels,
+                   [&](std::int32_t n) { return nodes[n].counted; });
+}
+
 std::string set_name(const std::string& sets, std::size_t shard) { return fmt::format("{}/{:06}", sets, shard); }
 
 std::string job_folder(const std::string& name) { return "jobs/" + name; }

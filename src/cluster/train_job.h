@@ -40,6 +40,9 @@ struct TreeRequest {
   std::vector<std::int64_t> before;
 };
 
+/// Returns which nodes of a level share a record of their rows: as many as a reducer can hold.
+std::vector<NodeRange> row_groups(const std::vector<LevelNode>& nodes, const SplitOptions& options);
+
 /// Nodes of one tree whose subtrees one task grows.
 struct SubtreeRequest {
   std::int32_t tree = 0;            ///< index among TrainJob::trees

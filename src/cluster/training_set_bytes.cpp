@@ -3,6 +3,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "cluster/message.h"
@@ -44,9 +45,7 @@ std::string training_set_bytes(const TrainingSet& set) {
   return std::move(out.bytes());
 }
 
-TrainingSet parse_training_set(std::string_view bytes, const std::string& name, const BodyModel& body,
-                               const FeatureConvention& convention, const SampleOptions& options, std::uint64_t seed,
-                               std::size_t first_frame) {
+void append_training_set(std::string_view bytes, const std::string& name, TrainingSet::Contents& contents) {
   MessageReader in(bytes, name);
   if (in.number<std::uint32_t>("the mark of a shard") != kMagic) throw Error(name + ": no shard of a training");
   if (const auto version = in.number<std::uint16_t>("version"); version != kVersion) {
@@ -57,16 +56,25 @@ TrainingSet parse_training_set(std::string_view bytes, const std::string& name, 
   if (checksum != XXH64(rest.data(), rest.size(), 0)) {
     throw Error(name + ": damaged, its checksum does not match; --restart makes all shards anew");
   }
-  TrainingSet::Contents contents{.frames = FrameStore(convention)};
-  contents.samples = in.array<TrainingSample>("samples");
-  contents.pool = in.array<TrainingSample>("background");
-  contents.held_out = in.array<TrainingSample>("held-out samples");
-  contents.people_samples = in.array<TrainingSample>("people's samples");
+  const auto first_frame = static_cast<std::uint32_t>(contents.frames.size());
+  const auto append_samples = [&](std::vector<TrainingSample>& all, const char* what) {
+    std::vector<TrainingSample> more = in.array<TrainingSample>(what);
+    for (TrainingSample& sample : more) sample.frame += first_frame;
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  const auto first_person = static_cast<std::uint32_t>(contents.people_samples.size());
+  append_samples(contents.samples, "samples");
+  append_samples(contents.pool, "background");
+  append_samples(contents.held_out, "held-out samples");
+  append_samples(contents.people_samples, "people's samples");
   const auto people = in.array<std::uint32_t>("people");
   for (std::size_t i = 0; i + 2 < people.size(); i += 3) {
-    contents.people.push_back({static_cast<std::uint8_t>(people[i]), people[i + 1], people[i + 2]});
+    contents.people.push_back(
+        {static_cast<std::uint8_t>(people[i]), people[i + 1] + first_person, people[i + 2] + first_person});
   }
-  contents.class_pixels = in.array<std::uint64_t>("pixels");
+  const auto pixels = in.array<std::uint64_t>("pixels");
+  contents.class_pixels.resize(std::max(contents.class_pixels.size(), pixels.size()), 0);
+  for (std::size_t k = 0; k < pixels.size(); ++k) contents.class_pixels[k] += pixels[k];
   const auto frames = in.number<std::uint64_t>("frames");
   for (std::uint64_t f = 0; f < frames; ++f) {
     Camera camera;
@@ -76,7 +84,6 @@ TrainingSet parse_training_set(std::string_view bytes, const std::string& name, 
     contents.frames.add_packed(camera, in.array<std::uint32_t>("depth"));
   }
   in.expect_end();
-  return {body, options, seed, first_frame, std::move(contents)};
 }
 
 }  // namespace vesalius

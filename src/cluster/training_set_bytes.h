@@ -10,10 +10,8 @@ namespace vesalius {
 /// Returns a set's frames and samples as bytes with a checksum (docs/formats.md).
 std::string training_set_bytes(const TrainingSet& set);
 
-/// Returns the set of such bytes; the other arguments are those it was drawn with. Throws Error naming `name` if the
-/// bytes are damaged or of another version.
-TrainingSet parse_training_set(std::string_view bytes, const std::string& name, const BodyModel& body,
-                               const FeatureConvention& convention, const SampleOptions& options, std::uint64_t seed,
-                               std::size_t first_frame);
+/// Adds what such bytes hold behind what `contents` has. Throws Error naming `name` if the bytes are damaged or of
+/// another version.
+void append_training_set(std::string_view bytes, const std::string& name, TrainingSet::Contents& contents);
 
 }  // namespace vesalius

@@ -15,6 +15,7 @@
 #include "cli/option_flags.h"
 #include "cluster/train_job.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/keep_memory.h"
 #include "vesalius/base/parallel.h"
 
 namespace vesalius::cli {
@@ -82,6 +83,7 @@ void run_task(const TaskArguments& arguments,
               const std::function<TaskContext::ReadFrame(const std::string& source)>& open_source,
               const std::function<void(const TaskContext&, std::istream&, std::ostream&)>& task) {
   std::ios::sync_with_stdio(false);
+  keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
   const std::unique_ptr<Store> store = open_store(arguments.store);
   CounterLines counters;

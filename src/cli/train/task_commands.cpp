@@ -9,6 +9,7 @@
 #include "cli/train/train_frames.h"
 #include "cluster/map_task.h"
 #include "cluster/reduce_task.h"
+#include "vesalius/base/keep_memory.h"
 
 namespace vesalius::cli {
 namespace {
@@ -37,6 +38,7 @@ void add_train_tasks(CLI::App& train) {
   combine->add_flag("--unmerged", combining->unmerged, "With --into: divide only");
   combine->callback([combining] {
     std::ios::sync_with_stdio(false);
+    keep_freed_memory();
     if (combining->into.empty()) return run_combine_task(std::cin, std::cout);
     run_partition_task(std::cin, combining->into, combining->parts, !combining->unmerged);
   });
