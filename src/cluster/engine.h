@@ -36,7 +36,7 @@ struct EngineOptions {
   int task_threads = 1;  ///< threads of a task
   bool combine = true;
   int attempts = 4;                    ///< of a task, before the job fails
-  std::vector<std::string> arguments;  ///< more for sbatch, or for Hadoop's streaming
+  std::vector<std::string> arguments;  ///< more for sbatch, for Hadoop's streaming, or for the script
   std::function<void(const JobProgress&)> tell = [](const JobProgress& /*progress*/) {};
   std::function<bool()> stopped = [] { return false; };  ///< asked several times a second
 };
@@ -53,11 +53,19 @@ class Engine {
 
 std::string result_folder(const std::string& job);
 
+/// Returns the input of each of at most `most` map tasks. The lines are dealt out, so that what takes longest is
+/// spread. Throws Error if there are none.
+std::vector<std::string> inputs_of(const EngineJob& job, int most);
+
 /// Runs at most `processes` tasks at a time on this machine.
 std::unique_ptr<Engine> make_local_engine(std::unique_ptr<Store> store, const EngineOptions& options, int processes);
 /// Submits jobs to Hadoop's streaming; the store is in HDFS.
 std::unique_ptr<Engine> make_hadoop_engine(std::unique_ptr<Store> store, const EngineOptions& options);
 /// Submits tasks to Slurm as array jobs; the store is a folder that all nodes share.
 std::unique_ptr<Engine> make_slurm_engine(std::unique_ptr<Store> store, const EngineOptions& options);
+/// Runs a program of the user's for each job, which brings the tasks to an engine of its own (docs/cluster.md); the
+/// store is a folder.
+std::unique_ptr<Engine> make_script_engine(std::unique_ptr<Store> store, const EngineOptions& options,
+                                           const std::string& script);
 
 }  // namespace vesalius

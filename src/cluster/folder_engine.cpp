@@ -18,13 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCounter = "reporter:counter:vesalius,";  ///< as Hadoop's streaming expects
 
-/// Returns text as one word of a shell.
-std::string quoted(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) c == '\'' ? word += "'\\''" : word += c;
-  return word + "'";
-}
-
 /// Calls `take` with each line of a text.
 template <class Take>
 void for_lines(const std::string& text, const Take& take) {
@@ -83,6 +76,19 @@ exit 1
 
 std::string result_folder(const std::string& job) { return job_folder(job) + "/out"; }
 
+std::vector<std::string> inputs_of(const EngineJob& job, int most) {
+  std::vector<std::string> inputs(std::min<std::size_t>(job.lines.size(), most));
+  if (inputs.empty()) throw Error(job.name + ": a job without input");
+  for (std::size_t i = 0; i < job.lines.size(); ++i) inputs[i % inputs.size()] += job.lines[i] + "\n";
+  return inputs;
+}
+
+std::string shell_word(const std::string& text) {
+  std::string word = "'";
+  for (const char c : text) c == '\'' ? word += "'\\''" : word += c;
+  return word + "'";
+}
+
 std::string last_words(const std::string& log) {
   std::string last, ours;
   for_lines(log, [&](const std::string& line) {
@@ -98,10 +104,8 @@ FolderEngine::FolderEngine(std::unique_ptr<Store> store, EngineOptions options)
 
 void FolderEngine::run(const EngineJob& job) {
   const std::string folder = store_->place() + "/" + job_folder(job.name);
-  const auto maps = static_cast<int>(std::min<std::size_t>(job.lines.size(), options_.map_tasks));
-  if (maps == 0) throw Error(job.name + ": a job without input");
-  std::vector<std::string> inputs(maps);
-  for (std::size_t i = 0; i < job.lines.size(); ++i) inputs[i % maps] += job.lines[i] + "\n";
+  const std::vector<std::string> inputs = inputs_of(job, options_.map_tasks);
+  const auto maps = static_cast<int>(inputs.size());
   std::string all;
   for (const std::string& input : inputs) all += input + "-\n";
   const std::string text = script(job, maps);
@@ -132,9 +136,9 @@ std::string FolderEngine::script(const EngineJob& job, int maps) const {
   std::string numbers;
   for (int m = 0; m < maps; ++m) numbers += fmt::format("{}{}", m > 0 ? " " : "", m);
   return fmt::format(
-      fmt::runtime(kScript), fmt::arg("folder", quoted(store_->place() + "/" + job_folder(job.name))),
-      fmt::arg("program", quoted(options_.program)), fmt::arg("command", job.command),
-      fmt::arg("store", quoted(store_->place())), fmt::arg("job", quoted(job.name)),
+      fmt::runtime(kScript), fmt::arg("folder", shell_word(store_->place() + "/" + job_folder(job.name))),
+      fmt::arg("program", shell_word(options_.program)), fmt::arg("command", job.command),
+      fmt::arg("store", shell_word(store_->place())), fmt::arg("job", shell_word(job.name)),
       fmt::arg("threads", options_.task_threads), fmt::arg("merge", options_.combine && job.summed ? "" : "--unmerged"),
       fmt::arg("reducers", options_.reduce_tasks), fmt::arg("maps", numbers),
       fmt::arg("map", job.reduced ? "map_for_reduce" : "map_only"), fmt::arg("attempts", options_.attempts));

@@ -42,6 +42,9 @@ class FolderEngine : public Engine {
   EngineOptions options_;
 };
 
+/// Returns text as one word of a shell.
+std::string shell_word(const std::string& text);
+
 /// Returns the line of a task's log that says most: the last one of vesalius, or the last one.
 std::string last_words(const std::string& log);
 

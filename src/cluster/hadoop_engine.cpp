@@ -57,15 +57,10 @@ class HadoopEngine : public Engine {
     const std::string folder = job_folder(job.name);
     kill_earlier(folder);
     for (const char* part : {"/out", "/failed"}) store_->remove(folder + part);
-    const std::size_t maps = std::min<std::size_t>(job.lines.size(), options_.map_tasks);
-    if (maps == 0) throw Error(job.name + ": a job without input");
-    std::string lines;  // tasks take neighbours, so what takes longest is spread
-    for (std::size_t m = 0; m < maps; ++m) {
-      for (std::size_t i = m; i < job.lines.size(); i += maps) lines += job.lines[i] + "\n";
-    }
-    store_->write(folder + "/in/lines", lines);
+    const std::vector<std::string> inputs = inputs_of(job, options_.map_tasks);
+    store_->write(folder + "/in/lines", fmt::format("{}", fmt::join(inputs, "")));  // tasks take neighbours
     const TemporaryFolder logs;
-    wait_for(job, folder, logs.path("client.log"), (job.lines.size() + maps - 1) / maps);
+    wait_for(job, folder, logs.path("client.log"), (job.lines.size() + inputs.size() - 1) / inputs.size());
   }
 
  private:

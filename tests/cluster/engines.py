@@ -1,13 +1,14 @@
 """Trains one small forest in one process and on an engine, and compares the files byte for byte.
 
-    engines.py PROGRAM SOURCE_FOLDER WORK_FOLDER local|faults|slurm|hadoop [--full]
+    engines.py PROGRAM SOURCE_FOLDER WORK_FOLDER local|faults|slurm|hadoop|spark [--full]
 
-`local` and `faults` run processes of this machine.
+`local` and `faults` run processes of this machine; `spark` is this Python's pyspark.
 
 Exits with 77 where the engine cannot be had, saying why. --full adds what takes minutes: all numbers of tasks, a node
 that is killed, every first attempt that dies.
 """
 
+import importlib.util
 import itertools
 import os
 import pathlib
@@ -64,8 +65,9 @@ def expect(right, what):
 class Trainings:
     """Runs `vesalius train` in a folder of its own."""
 
-    def __init__(self, program, work, options):
+    def __init__(self, program, source, work, options):
         self.program = program
+        self.examples = source / "examples" / "cluster"
         self.work = work
         self.environment = dict(os.environ, VESALIUS_ASSETS="/nonexistent")
         (work / "options.toml").write_text(options)
@@ -157,9 +159,19 @@ def check_local(trainings, full):
         trainings.same(["--on", "local:2", "--map-tasks", "7", "--shard-frames", "6", "--no-combiner"],
                        "local:2, 7 map tasks without combiner")
     trainings.refused(["--on", "local:0"], "expected local:N", "local:0")
-    trainings.refused(["--on", "mars"], "expected local:N, slurm or hadoop", "an unknown engine")
+    trainings.refused(["--on", "mars"], "expected local:N, slurm, hadoop or script:FILE", "an unknown engine")
     trainings.refused(["--on", "hadoop"], "expects --store webhdfs://", "Hadoop without HDFS")
     trainings.refused(["--on", "local:2", "--report", "r"], "--on expects neither", "--report")
+    check_script(trainings)
+
+
+def check_script(trainings):
+    plain = ["--on", f"script:{trainings.examples / 'plain_job.sh'}", "--shard-frames", "6", "--map-tasks", "3"]
+    trainings.same(plain, "a script, 3 map tasks")
+    trainings.refused([*plain, "--program", "/nonexistent/vesalius"], "plain_job.sh failed: bash: line 1: /nonexistent",
+                      "a script that fails")
+    trainings.refused(["--on", "script:recipe.toml"], "the file cannot be executed", "a script that is none")
+    trainings.refused(["--on", "script:nowhere"], "script:nowhere: no such file", "no script")
 
 
 def check_rendering(trainings, engine):
@@ -249,12 +261,37 @@ def check_hadoop(trainings, full):
     trainings.same_after_kills([*engine, "--map-tasks", "3"], [20, 25], "driver killed with -9 and begun again")
 
 
+def check_spark(trainings, full):
+    engine = ["--on", f"script:{trainings.examples / 'spark_job.py'}", "--shard-frames", "9"]
+    program, marks = dying_program(trainings)
+    trainings.same([*engine, "--map-tasks", "3", "--program", program], "Spark, first attempts killed")
+    expect(list(marks.iterdir()), "no attempt was killed")
+    trainings.refused([*engine, "--program", "/nonexistent/vesalius"], "No such file or directory: '/nonexistent/",
+                      "no program on the machine")
+    if not full:
+        return
+    trainings.same([*engine, "--map-tasks", "5", "--task-memory", "0", "--no-combiner"], "Spark, every level a job")
+    check_rendering(trainings, engine[:2])
+
+
+def missing_for_spark():
+    if importlib.util.find_spec("pyspark") is None:
+        return f"{sys.executable} has no pyspark"
+    return None if shutil.which("java") or "JAVA_HOME" in os.environ else "java is not installed"
+
+
 def main():
     program, source, work, engine = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]), sys.argv[4]
     full = "--full" in sys.argv
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
     os.environ.setdefault("VESALIUS_HADOOP_LIB", str(work.parent / "hadoop-lib"))
+    if engine == "spark":
+        if missing := missing_for_spark():
+            print("SKIPPED:", missing)
+            return 77
+        # The example asks for python3, and no machine but this one is to be heard.
+        os.environ.update(PATH=f"{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}", SPARK_LOCAL_IP="127.0.0.1")
     real = engine in ("slurm", "hadoop")
     folder = tempfile.mkdtemp(prefix="vesalius-") if real else ""  # sockets' paths must be short
     if real:
@@ -266,9 +303,10 @@ def main():
     try:
         if real:
             os.environ.update(environment_of(folder))
-        options = {"hadoop": HADOOP_OPTIONS, "slurm": OPTIONS if full else SLURM_OPTIONS}
-        trainings = Trainings(program, work, options.get(engine, OPTIONS))
-        {"local": check_local, "faults": check_local_faults, "slurm": check_slurm, "hadoop": check_hadoop}[engine](trainings, full)
+        options = {"hadoop": HADOOP_OPTIONS, "spark": HADOOP_OPTIONS, "slurm": OPTIONS if full else SLURM_OPTIONS}
+        trainings = Trainings(program, source, work, options.get(engine, OPTIONS))
+        {"local": check_local, "faults": check_local_faults, "slurm": check_slurm, "hadoop": check_hadoop,
+         "spark": check_spark}[engine](trainings, full)
     except Failure as failure:
         print("FAILED:", failure)
         return 1

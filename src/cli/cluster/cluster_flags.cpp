@@ -1,6 +1,7 @@
 #include "cli/cluster/cluster_flags.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "cli/cluster/cluster_task.h"
 #include "cli/option_flags.h"
 #include "cli/status_line.h"
 #include "cli/text_sink.h"
@@ -23,6 +25,7 @@ constexpr int kMostTasks = 100'000;
 constexpr int kDefaultMapTasks = 8;
 constexpr int kMostReducers = 4;  ///< unless asked for more
 constexpr const char* kLocal = "local:";
+constexpr const char* kScript = "script:";
 
 /// Returns the number of processes of local:N.
 int local_processes(const std::string& on) {
@@ -33,6 +36,18 @@ int local_processes(const std::string& on) {
     throw UsageError(fmt::format("--on {}: expected local:N with N from 1 to {}", on, kMostTasks));
   }
   return processes;
+}
+
+/// Returns the path of script:FILE.
+std::string script_path(const std::string& on) {
+  const std::string file = on.substr(std::string(kScript).size());
+  std::error_code ignored;
+  if (file.empty()) throw UsageError("--on script:: expected script:FILE, a program");
+  if (!std::filesystem::exists(file, ignored)) throw UsageError(fmt::format("--on {}: no such file", on));
+  if (!std::filesystem::is_regular_file(file, ignored) || ::access(file.c_str(), X_OK) != 0) {
+    throw UsageError(fmt::format("--on {}: expected a program, the file cannot be executed", on));
+  }
+  return for_tasks(file);
 }
 
 std::string this_program() {
@@ -57,7 +72,9 @@ void add_cluster_flags(CLI::App& command, ClusterFlags& flags) {
   const auto add = [&](const char* name, auto& value, const char* help, const char* type) {
     return command.add_option(name, value, help)->type_name(type)->group(group);
   };
-  add("--on", flags.on, "Who does the work: local:N (so many processes), slurm, hadoop. The result is the same",
+  add("--on", flags.on,
+      "Who does the work: local:N (so many processes), slurm, hadoop, or script:FILE (any other engine). The result is "
+      "the same",
       "ENGINE");
   add("--store", flags.store,
       "Folder that all machines see, or webhdfs://HOST:PORT/PATH (default: beside --out; hadoop needs one)", "PLACE");
@@ -69,7 +86,8 @@ void add_cluster_flags(CLI::App& command, ClusterFlags& flags) {
       ->check(CLI::Range(1, kMaxThreads));
   command.add_flag("--no-combiner", flags.no_combiner, "Do not merge what a map task writes")->group(group);
   add("--program", flags.program, "Path of vesalius on all machines (default: this one's)", "FILE");
-  add("--engine-arguments", flags.arguments, "More arguments for sbatch, or for Hadoop's streaming", "ARGS");
+  add("--engine-arguments", flags.arguments, "More arguments for sbatch, for Hadoop's streaming, or for the script",
+      "ARGS");
 }
 
 EngineChoice choose_engine(const ClusterFlags& flags) {
@@ -83,8 +101,12 @@ EngineChoice choose_engine(const ClusterFlags& flags) {
   } else if (flags.on == "slurm" || flags.on == "hadoop") {
     choice.kind = flags.on;
     options.map_tasks = kDefaultMapTasks;
+  } else if (flags.on.starts_with(kScript)) {
+    choice.kind = "script";
+    choice.script = script_path(flags.on);
+    options.map_tasks = kDefaultMapTasks;
   } else {
-    throw UsageError(fmt::format("--on {}: expected local:N, slurm or hadoop", flags.on));
+    throw UsageError(fmt::format("--on {}: expected local:N, slurm, hadoop or script:FILE", flags.on));
   }
   if (flags.map_tasks > 0) options.map_tasks = flags.map_tasks;
   options.reduce_tasks = flags.reduce_tasks > 0 ? flags.reduce_tasks : std::min(options.map_tasks, kMostReducers);
@@ -105,6 +127,7 @@ std::unique_ptr<Engine> make_engine(const ClusterFlags& flags, const EngineChoic
   }
   if (web) throw UsageError(fmt::format("--on {} expects a folder as --store", flags.on));
   std::unique_ptr<Store> store = open_store(flags.store.empty() ? default_folder : flags.store);
+  if (choice.kind == "script") return make_script_engine(std::move(store), choice.options, choice.script);
   if (choice.kind == "slurm") return make_slurm_engine(std::move(store), choice.options);
   return make_local_engine(std::move(store), choice.options, choice.processes);
 }

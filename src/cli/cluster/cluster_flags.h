@@ -15,24 +15,25 @@ namespace vesalius::cli {
 
 /// The flags of commands whose work machines can share.
 struct ClusterFlags {
-  std::string on;                                         ///< local:N, slurm or hadoop; empty for this process
-  std::string store;                                      ///< place of the store; empty for the command's default
+  std::string on;     ///< local:N, slurm, hadoop or script:FILE; empty for this process
+  std::string store;  ///< place of the store; empty for the command's default
   int map_tasks = 0, reduce_tasks = 0, task_threads = 0;  ///< 0 takes the engine's default
   bool no_combiner = false;
   std::string program;    ///< path of vesalius on all machines; empty for this one's
-  std::string arguments;  ///< more for sbatch or for Hadoop's streaming, separated by spaces
+  std::string arguments;  ///< more for sbatch, for Hadoop's streaming or for the script, separated by spaces
 };
 
 void add_cluster_flags(CLI::App& command, ClusterFlags& flags);
 
 /// What --on names, and the flags with the engine's defaults.
 struct EngineChoice {
-  std::string kind;   ///< "local", "slurm", "hadoop"
-  int processes = 0;  ///< of local:N
+  std::string kind;    ///< "local", "slurm", "hadoop", "script"
+  int processes = 0;   ///< of local:N
+  std::string script;  ///< path of script:FILE
   EngineOptions options;
 };
 
-/// Throws UsageError for an engine that does not exist and for flags out of range.
+/// Throws UsageError for an engine or a script that does not exist and for flags out of range.
 EngineChoice choose_engine(const ClusterFlags& flags);
 
 /// Makes the engine with its store: where --store says, or else in `default_folder`. Throws UsageError if the engine
