@@ -108,6 +108,7 @@ void FolderEngine::run(const EngineJob& job) {
   std::error_code error;
   fs::create_directories(folder + "/out", error);
   if (error) throw Error(folder + "/out: folder cannot be made: " + error.message());
+  end_earlier(folder);
   // Files of a run that divided the work otherwise are of no use.
   if (text_of(folder + "/task.sh") != text || text_of(folder + "/inputs") != all) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {

@@ -29,6 +29,9 @@ class FolderEngine : public Engine {
   /// seen from their files.
   virtual void run_tasks(const Tasks& tasks) = 0;
 
+  /// Ends the tasks in a job's folder that a killed driver left behind, since they would write the same files.
+  virtual void end_earlier(const std::string& /*folder*/) {}
+
   /// Tells how many tasks are done, and what they wait for, if so; throws Interrupted if asked to stop.
   void report(const Tasks& tasks, const std::string& waiting = "") const;
   bool done(const Tasks& tasks, int number) const;

@@ -69,10 +69,15 @@ class HadoopEngine : public Engine {
   }
 
  private:
+  CommandResult kill_job(const std::string& id) const {
+    return run_command({"mapred", "job", "-kill", id}, std::chrono::duration<double>(options_.answer_s));
+  }
+
   /// Ends the job that a killed driver left behind, since it would write the same folder.
   void kill_earlier(const std::string& folder) {
     if (!store_->exists(folder + "/hadoop-job")) return;
-    run_command({"mapred", "job", "-kill", store_->read(folder + "/hadoop-job")});
+    const CommandResult result = kill_job(store_->read(folder + "/hadoop-job"));
+    if (!result.in_time) throw Error("Hadoop: " + result.err);
     store_->remove(folder + "/hadoop-job");
   }
 
@@ -111,7 +116,7 @@ class HadoopEngine : public Engine {
     for (int pause = 0; !(code = client.ended()); ++pause) {
       if (options_.stopped()) {
         client.kill();
-        if (!id.empty()) run_command({"mapred", "job", "-kill", id});
+        if (!id.empty()) kill_job(id);
         throw Interrupted("training: interrupted");
       }
       if (pause % kReportEvery == 0) {
