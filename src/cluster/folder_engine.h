@@ -19,7 +19,7 @@ class FolderEngine : public Engine {
   /// Some tasks of a job, by their numbers.
   struct Tasks {
     std::string job;     ///< its name
-    std::string folder;  ///< its folder, a path
+    std::string folder;  ///< of these tasks, a path
     std::string kind;    ///< "map" or "reduce"
     int all = 0;
     std::vector<int> numbers;  ///< of the tasks that are not done
@@ -29,7 +29,7 @@ class FolderEngine : public Engine {
   /// seen from their files.
   virtual void run_tasks(const Tasks& tasks) = 0;
 
-  /// Ends the tasks in a job's folder that a killed driver left behind, since they would write the same files.
+  /// Ends the tasks that a killed driver left behind, which may have been in the same folder.
   virtual void end_earlier(const std::string& /*folder*/) {}
 
   /// Tells how many tasks are done, and what they wait for, if so; throws Interrupted if asked to stop.
@@ -38,8 +38,8 @@ class FolderEngine : public Engine {
   const EngineOptions& options() const { return options_; }
 
  private:
-  void run_all(const EngineJob& job, const std::string& kind, int count);
-  std::string script(const EngineJob& job, int maps) const;
+  void run_all(const EngineJob& job, const std::string& folder, const std::string& kind, int count);
+  std::string script(const EngineJob& job, int maps, const std::string& folder) const;
 
   std::unique_ptr<Store> store_;
   EngineOptions options_;

@@ -136,10 +136,15 @@ class HadoopEngine : public Engine {
     options_.tell({job.name, mapping ? "map, percent" : "reduce, percent", mapping ? maps : reduces, 100, {}});
   }
 
-  /// Returns what a task wrote when it failed, or else what Hadoop's client says.
+  /// Returns what a task wrote when it failed, or else why nothing can be written, or else what Hadoop's client says.
   std::string cause_of(const std::string& folder, const std::string& log) const {
     const std::vector<std::string> failed = store_->list(folder + "/failed");
     if (!failed.empty()) return store_->read(folder + "/failed/" + failed.back());
+    try {
+      store_->write(folder + "/failed/driver", "-");
+    } catch (const Error& e) {
+      return e.what();
+    }
     std::string cause;
     for (const char* word : {"Exception: ", "ERROR ", "failed with state"}) {
       const std::size_t at = log.find(word);
