@@ -1,6 +1,8 @@
 #include "cluster/folder_engine.h"
 
 #include <fmt/format.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -103,43 +105,39 @@ FolderEngine::FolderEngine(std::unique_ptr<Store> store, EngineOptions options)
     : store_(std::move(store)), options_(std::move(options)) {}
 
 void FolderEngine::run(const EngineJob& job) {
-  const std::string folder = store_->place() + "/" + job_folder(job.name);
+  const std::string folder = store_->place() + "/" + job_folder(job.name), results = folder + "/out";
   const std::vector<std::string> inputs = inputs_of(job, options_.map_tasks);
   const auto maps = static_cast<int>(inputs.size());
   std::string all;
   for (const std::string& input : inputs) all += input + "-\n";
-  const std::string text = script(job, maps);
+  // Tasks of a killed driver that divided the work otherwise may still run: each division has a folder of its own.
+  const std::string division = all + script(job, maps, "");
+  const std::string own = fmt::format("{}/tasks-{:016x}", folder, XXH64(division.data(), division.size(), 0));
   std::error_code error;
-  fs::create_directories(folder + "/out", error);
-  if (error) throw Error(folder + "/out: folder cannot be made: " + error.message());
-  // Files of a run that divided the work otherwise are of no use.
-  if (text_of(folder + "/task.sh") != text || text_of(folder + "/inputs") != all) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      if (entry.path().filename() != "job") fs::remove_all(entry.path());
-    }
-    fs::create_directories(folder + "/out");
-    for (int i = 0; i < maps; ++i) write_file_atomically(fmt::format("{}/in-{}", folder, i), inputs[i]);
-    write_file_atomically(folder + "/task.sh", text);
-    write_file_atomically(folder + "/inputs", all);
+  fs::create_directories(own + "/out", error);
+  if (error) throw Error(own + "/out: folder cannot be made: " + error.message());
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename().string().starts_with("tasks-")) end_earlier(entry.path().string());
+    if (entry.path() != own && entry.path().filename() != "job") fs::remove_all(entry.path(), error);
   }
-  run_all(job, "map", maps);
-  if (job.reduced) {
-    run_all(job, "reduce", options_.reduce_tasks);
-    for (int m = 0; m < maps; ++m) {
-      for (int r = 0; r < options_.reduce_tasks; ++r) fs::remove(fmt::format("{}/map-{}.{}", folder, m, r));
-    }
-  }
-  write_file_atomically(folder + "/out/_SUCCESS", "");
+  for (int i = 0; i < maps; ++i) write_file_atomically(fmt::format("{}/in-{}", own, i), inputs[i]);
+  write_file_atomically(own + "/task.sh", script(job, maps, own));
+  run_all(job, own, "map", maps);
+  if (job.reduced) run_all(job, own, "reduce", options_.reduce_tasks);
+  fs::rename(own + "/out", results, error);
+  if (error) throw Error(results + ": cannot be renamed: " + error.message());
+  write_file_atomically(results + "/_SUCCESS", "");
+  fs::remove_all(own, error);
 }
 
-std::string FolderEngine::script(const EngineJob& job, int maps) const {
+std::string FolderEngine::script(const EngineJob& job, int maps, const std::string& folder) const {
   std::string numbers;
   for (int m = 0; m < maps; ++m) numbers += fmt::format("{}{}", m > 0 ? " " : "", m);
   return fmt::format(
-      fmt::runtime(kScript), fmt::arg("folder", shell_word(store_->place() + "/" + job_folder(job.name))),
-      fmt::arg("program", shell_word(options_.program)), fmt::arg("command", job.command),
-      fmt::arg("store", shell_word(store_->place())), fmt::arg("job", shell_word(job.name)),
-      fmt::arg("threads", options_.task_threads), fmt::arg("merge", options_.combine && job.summed ? "" : "--unmerged"),
+      fmt::runtime(kScript), fmt::arg("folder", shell_word(folder)), fmt::arg("program", shell_word(options_.program)),
+      fmt::arg("command", job.command), fmt::arg("store", shell_word(store_->place())),
+      fmt::arg("job", shell_word(job.name)), fmt::arg("threads", options_.task_threads),
+      fmt::arg("merge", options_.combine && job.summed ? "" : "--unmerged"),
       fmt::arg("reducers", options_.reduce_tasks), fmt::arg("maps", numbers),
       fmt::arg("map", job.reduced ? "map_for_reduce" : "map_only"), fmt::arg("attempts", options_.attempts));
 }
@@ -164,8 +162,8 @@ void FolderEngine::report(const Tasks& tasks, const std::string& waiting) const 
   if (options_.stopped()) throw Interrupted("training: interrupted");
 }
 
-void FolderEngine::run_all(const EngineJob& job, const std::string& kind, int count) {
-  Tasks tasks{job.name, store_->place() + "/" + job_folder(job.name), kind, count, {}};
+void FolderEngine::run_all(const EngineJob& job, const std::string& folder, const std::string& kind, int count) {
+  Tasks tasks{job.name, folder, kind, count, {}};
   for (int number = 0; number < count; ++number) {
     if (!done(tasks, number)) tasks.numbers.push_back(number);
   }

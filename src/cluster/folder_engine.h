@@ -19,7 +19,7 @@ class FolderEngine : public Engine {
   /// Some tasks of a job, by their numbers.
   struct Tasks {
     std::string job;     ///< its name
-    std::string folder;  ///< its folder, a path
+    std::string folder;  ///< of these tasks, a path
     std::string kind;    ///< "map" or "reduce"
     int all = 0;
     std::vector<int> numbers;  ///< of the tasks that are not done
@@ -29,14 +29,17 @@ class FolderEngine : public Engine {
   /// seen from their files.
   virtual void run_tasks(const Tasks& tasks) = 0;
 
+  /// Ends the tasks that a killed driver left behind, which may have been in the same folder.
+  virtual void end_earlier(const std::string& /*folder*/) {}
+
   /// Tells how many tasks are done, and what they wait for, if so; throws Interrupted if asked to stop.
   void report(const Tasks& tasks, const std::string& waiting = "") const;
   bool done(const Tasks& tasks, int number) const;
   const EngineOptions& options() const { return options_; }
 
  private:
-  void run_all(const EngineJob& job, const std::string& kind, int count);
-  std::string script(const EngineJob& job, int maps) const;
+  void run_all(const EngineJob& job, const std::string& folder, const std::string& kind, int count);
+  std::string script(const EngineJob& job, int maps, const std::string& folder) const;
 
   std::unique_ptr<Store> store_;
   EngineOptions options_;

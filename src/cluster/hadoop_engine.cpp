@@ -64,10 +64,15 @@ class HadoopEngine : public Engine {
   }
 
  private:
+  CommandResult kill_job(const std::string& id) const {
+    return run_command({"mapred", "job", "-kill", id}, std::chrono::duration<double>(options_.answer_s));
+  }
+
   /// Ends the job that a killed driver left behind, since it would write the same folder.
   void kill_earlier(const std::string& folder) {
     if (!store_->exists(folder + "/hadoop-job")) return;
-    run_command({"mapred", "job", "-kill", store_->read(folder + "/hadoop-job")});
+    const CommandResult result = kill_job(store_->read(folder + "/hadoop-job"));
+    if (!result.in_time) throw Error("Hadoop: " + result.err);
     store_->remove(folder + "/hadoop-job");
   }
 
@@ -107,7 +112,7 @@ class HadoopEngine : public Engine {
     for (int pause = 0; !(code = client.ended()); ++pause) {
       if (options_.stopped()) {
         client.kill();
-        if (!id.empty()) run_command({"mapred", "job", "-kill", id});
+        if (!id.empty()) kill_job(id);
         throw Interrupted("training: interrupted");
       }
       if (pause % kReportEvery == 0) {
@@ -127,10 +132,15 @@ class HadoopEngine : public Engine {
     options_.tell({job.name, mapping ? "map, percent" : "reduce, percent", mapping ? maps : reduces, 100, {}});
   }
 
-  /// Returns what a task wrote when it failed, or else what Hadoop's client says.
+  /// Returns what a task wrote when it failed, or else why nothing can be written, or else what Hadoop's client says.
   std::string cause_of(const std::string& folder, const std::string& log) const {
     const std::vector<std::string> failed = store_->list(folder + "/failed");
     if (!failed.empty()) return store_->read(folder + "/failed/" + failed.back());
+    try {
+      store_->write(folder + "/failed/driver", "-");
+    } catch (const Error& e) {
+      return e.what();
+    }
     std::string cause;
     for (const char* word : {"Exception: ", "ERROR ", "failed with state"}) {
       const std::size_t at = log.find(word);

@@ -1,13 +1,14 @@
 #include "cluster/process.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "io/files/read_file.h"
@@ -18,6 +19,8 @@ extern char** environ;
 
 namespace vesalius {
 namespace {
+
+constexpr std::chrono::milliseconds kPause{5};
 
 int code_of(int status) { return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status); }
 
@@ -53,17 +56,25 @@ pid_t start(const std::vector<std::string>& arguments, const std::string& out, c
 
 }  // namespace
 
-CommandResult run_command(const std::vector<std::string>& arguments) {
+CommandResult run_command(const std::vector<std::string>& arguments, std::chrono::duration<double> limit) {
   const TemporaryFolder files;
-  const pid_t pid = start(arguments, files.path("out"), files.path("err"));
-  int status = 0;
-  while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  ChildProcess child(arguments, files.path("out"), files.path("err"));
+  const auto begun = std::chrono::steady_clock::now();
+  std::optional<int> code;
+  while (!(code = child.ended())) {
+    if (std::chrono::steady_clock::now() - begun > limit) {
+      child.kill();
+      return {128 + SIGKILL, "", fmt::format("{} does not answer within {:g} s", arguments.front(), limit.count()),
+              false};
+    }
+    std::this_thread::sleep_for(kPause);
   }
-  return {code_of(status), read_file(files.path("out")), read_file(files.path("err"))};
+  return {*code, read_file(files.path("out")), read_file(files.path("err"))};
 }
 
-ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std::string& output)
-    : pid_(start(arguments, output, output)) {}
+ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std::string& output,
+                           const std::string& errors)
+    : pid_(start(arguments, output, errors)) {}
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept : pid_(std::exchange(other.pid_, -1)) {}
 

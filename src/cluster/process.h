@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,17 +13,20 @@ namespace vesalius {
 struct CommandResult {
   int exit_code = 0;  ///< 128 and the signal if one ended it
   std::string out, err;
+  bool in_time = true;  ///< if not, it was killed, and `err` says so
 };
 
-/// Runs a program and waits for it. Throws Error if it cannot be started.
-CommandResult run_command(const std::vector<std::string>& arguments);
+/// Runs a program and waits for it, at most for `limit`. Throws Error if it cannot be started.
+CommandResult run_command(const std::vector<std::string>& arguments, std::chrono::duration<double> limit);
 
-/// A program that runs meanwhile, in a process group of its own. Its output goes to a file. The destructor kills the
-/// whole group if it still runs.
+/// A program that runs meanwhile, in a process group of its own. Its output goes to a file, or to two. The destructor
+/// kills the whole group if it still runs.
 class ChildProcess {
  public:
   /// Throws Error if it cannot be started.
-  ChildProcess(const std::vector<std::string>& arguments, const std::string& output);
+  ChildProcess(const std::vector<std::string>& arguments, const std::string& output, const std::string& errors);
+  ChildProcess(const std::vector<std::string>& arguments, const std::string& output)
+      : ChildProcess(arguments, output, output) {}
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;

@@ -20,7 +20,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kPause{150};
 constexpr int kAskEvery = 4;                   ///< pauses from one question to Slurm to the next
 constexpr std::chrono::seconds kPatience{60};  ///< with a queue that starts nothing, before the user is told
-constexpr int kMostSilence = 20;               ///< questions that Slurm may leave without an answer
+constexpr int kMostSilence = 20;               ///< questions in a row that Slurm may leave without an answer
+constexpr int kCutOff = 7;                     ///< a question that took too long counts as so many
 
 /// Returns the task numbers as Slurm takes them, e.g. 0-6,9.
 std::string array_of(const std::vector<int>& numbers) {
@@ -41,24 +42,37 @@ class SlurmEngine : public FolderEngine {
 
  protected:
   void run_tasks(const Tasks& tasks) override {
-    const std::string id_file = fmt::format("{}/{}.slurm", tasks.folder, tasks.kind);
-    cancel_earlier(id_file);
+    const std::string id_file = id_file_of(tasks.folder, tasks.kind);
     const std::string id = submit(tasks);
     write_file_atomically(id_file, id);
     try {
       wait_for(tasks, id);
     } catch (...) {
-      run_command({"scancel", id});
+      ask({"scancel", id});
       throw;
     }
     std::filesystem::remove(id_file);
   }
 
+  void end_earlier(const std::string& folder) override {
+    for (const char* kind : {"map", "reduce"}) {
+      const std::string id_file = id_file_of(folder, kind);
+      std::error_code ignored;
+      if (!std::filesystem::exists(id_file, ignored)) continue;
+      const CommandResult result = ask({"scancel", read_file(id_file)});
+      if (!result.in_time) throw Error("Slurm: " + result.err);
+      std::filesystem::remove(id_file);
+    }
+  }
+
  private:
-  /// Cancels the tasks that a killed driver left behind, since they would write the same files.
-  static void cancel_earlier(const std::string& id_file) {
-    std::error_code ignored;
-    if (std::filesystem::exists(id_file, ignored)) run_command({"scancel", read_file(id_file)});
+  /// Where the number of Slurm's job is kept while it may run.
+  static std::string id_file_of(const std::string& folder, const std::string& kind) {
+    return fmt::format("{}/{}.slurm", folder, kind);
+  }
+
+  CommandResult ask(const std::vector<std::string>& command) const {
+    return run_command(command, std::chrono::duration<double>(options().answer_s));
   }
 
   std::string submit(const Tasks& tasks) const {
@@ -72,7 +86,8 @@ class SlurmEngine : public FolderEngine {
                                      fmt::format("--output={}/{}-%a.slurm.log", tasks.folder, tasks.kind)};
     command.insert(command.end(), options().arguments.begin(), options().arguments.end());
     command.insert(command.end(), {tasks.folder + "/task.sh", tasks.kind});
-    const CommandResult result = run_command(command);
+    const CommandResult result = ask(command);
+    if (!result.in_time) throw Error("Slurm: " + result.err);
     const std::string id = result.out.substr(0, result.out.find_first_of(";\n"));
     if (result.exit_code != 0 || id.empty()) throw Error("Slurm refuses the job: " + last_words(result.err));
     return id;
@@ -88,10 +103,12 @@ class SlurmEngine : public FolderEngine {
       report(tasks, waiting);
       if (std::ranges::all_of(tasks.numbers, [&](int number) { return done(tasks, number); })) return;
       if (pause % kAskEvery == 0) {
-        const CommandResult queue = run_command({"squeue", "-h", "-r", "-t", "all", "-j", id, "-o", "%T %r"});
-        silent = queue.exit_code == 0 ? 0 : silent + 1;
+        const CommandResult queue = ask({"squeue", "-h", "-r", "-t", "all", "-j", id, "-o", "%T %r"});
+        silent = queue.exit_code == 0 ? 0 : silent + (queue.in_time ? 1 : kCutOff);
         if (queue.exit_code != 0 && queue.err.find("Invalid job id") != std::string::npos) return;
-        if (silent > kMostSilence) throw Error("Slurm does not answer any more: " + last_words(queue.err));
+        if (silent > kMostSilence) {
+          throw Error((queue.in_time ? "Slurm does not answer any more: " : "Slurm: ") + last_words(queue.err));
+        }
         if (silent == 0 && !is_alive(queue.out)) return;
         started = started || queue.out.find("RUNNING") != std::string::npos;
         waiting = !started && Clock::now() - start > kPatience ? reason_of(queue.out) : "";
