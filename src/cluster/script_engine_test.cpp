@@ -50,7 +50,7 @@ class ScriptEngineTest : public testing::Test {
   std::string run(const std::string& script, bool reduced = true) const {
     const auto engine =
         make_script_engine(std::make_unique<FolderStore>(folder_ / kStore), options_, program("script", script));
-    const EngineJob job{"count", "train", {"a1", "a2", "b1", "a1"}, reduced};
+    const EngineJob job{"count", "train", {"a1", "a2", "b1", "a1"}, reduced, reduced};
     engine->run(job);
     EXPECT_TRUE(engine->store().exists(result_folder(job.name) + "/_SUCCESS"));
     return engine->store().read(result_folder(job.name) + "/part-0");
