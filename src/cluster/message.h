@@ -37,13 +37,19 @@ class MessageReader : public ByteReader {
 
   template <class T>
   std::vector<T> array(const char* what) {
+    std::vector<T> values;
+    array_into(values, what);
+    return values;
+  }
+  /// The same into a vector whose memory is used again.
+  template <class T>
+  void array_into(std::vector<T>& values, const char* what) {
     static_assert(std::is_trivially_copyable_v<T>);
     const auto size = number<std::uint64_t>(what);
     if (size > left() / sizeof(T)) fail(fmt::format("{} numbers of {}, {} bytes are left", size, what, left()));
-    std::vector<T> values(size);
+    values.resize(size);
     const std::string_view raw = take(size * sizeof(T), what);
     if (size > 0) std::memcpy(values.data(), raw.data(), raw.size());
-    return values;
   }
 };
 

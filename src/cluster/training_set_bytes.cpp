@@ -75,13 +75,15 @@ void append_training_set(std::string_view bytes, const std::string& name, Traini
   const auto pixels = in.array<std::uint64_t>("pixels");
   contents.class_pixels.resize(std::max(contents.class_pixels.size(), pixels.size()), 0);
   for (std::size_t k = 0; k < pixels.size(); ++k) contents.class_pixels[k] += pixels[k];
+  std::vector<std::uint32_t> words;
   const auto frames = in.number<std::uint64_t>("frames");
   for (std::uint64_t f = 0; f < frames; ++f) {
     Camera camera;
     camera.width = static_cast<int>(in.number<std::uint32_t>("width"));
     camera.height = static_cast<int>(in.number<std::uint32_t>("height"));
     for (float* number : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *number = in.real32("camera");
-    contents.frames.add_packed(camera, in.array<std::uint32_t>("depth"));
+    in.array_into(words, "depth");
+    contents.frames.add_packed(camera, words);
   }
   in.expect_end();
 }
