@@ -90,27 +90,18 @@ class MapTask {
     if (context_.count) context_.count(counter, more);
   }
 
-  void append_set(std::size_t shard, TrainingSet::Contents& contents) const {
-    const std::string name = set_name(job_.sets, shard);
-    append_training_set(context_.store.read(name), context_.store.place() + "/" + name, contents);
-  }
-
-  TrainingSet set_of(TrainingSet::Contents contents, std::size_t first_shard) const {
+  /// Returns the sets of shards begin to end - 1 as one.
+  TrainingSet load_sets(std::size_t begin, std::size_t end) const {
+    TrainingSet::Contents contents{.frames = FrameStore(job_.forest.convention)};
+    for (std::size_t shard = begin; shard < end; ++shard) {
+      const std::string name = set_name(job_.sets, shard);
+      append_training_set(context_.store.read(name), context_.store.place() + "/" + name, contents);
+    }
     return {job_.forest.body, job_.options.sample, static_cast<std::uint64_t>(job_.options.grow.seed),
-            job_.first_frames[first_shard], std::move(contents)};
+            job_.first_frames[begin], std::move(contents)};
   }
 
-  TrainingSet load_set(std::size_t shard) const {
-    TrainingSet::Contents contents{.frames = FrameStore(job_.forest.convention)};
-    append_set(shard, contents);
-    return set_of(std::move(contents), shard);
-  }
-
-  TrainingSet load_all_sets() const {
-    TrainingSet::Contents contents{.frames = FrameStore(job_.forest.convention)};
-    for (std::size_t shard = 0; shard < job_.shards(); ++shard) append_set(shard, contents);
-    return set_of(std::move(contents), 0);
-  }
+  TrainingSet load_set(std::size_t shard) const { return load_sets(shard, shard + 1); }
 
   void prepare(std::size_t shard) {
     if (!read_frame_) read_frame_ = context_.open_source(job_.source);
@@ -223,7 +214,7 @@ class MapTask {
   }
 
   void subtrees(std::size_t index) {
-    if (!all_) all_.emplace(load_all_sets());
+    if (!all_) all_.emplace(load_sets(0, job_.shards()));
     const SubtreeRequest& request = job_.subtrees[index];
     const TreeRequest& tree = job_.trees.at(request.tree);
     OpenTree open = tree.open;

@@ -57,7 +57,9 @@ class ReduceTask {
       : out_(out),
         job_(parse_train_job(context.store.read(job_file(context.job)),
                              context.store.place() + "/" + job_file(context.job))),
-        classes_(job_.forest.class_count()) {}
+        classes_(job_.forest.class_count()) {
+    for (const TreeRequest& tree : job_.trees) groups_.push_back(row_groups(tree.nodes, job_.options.grow.split));
+  }
 
   void take(const std::string& key, const KeyMerger& merged) {
     const std::string name = job_.name + ": " + key;
@@ -85,7 +87,7 @@ class ReduceTask {
   std::vector<NodeReply> best_splits_of(const std::string& key, const Pieces& pieces, const std::string& name) {
     const std::vector<std::size_t> numbers = key_numbers(key, 3, name);
     const TreeRequest& tree = tree_of(numbers[0], name);
-    const std::vector<NodeRange> groups = row_groups(tree.nodes, job_.options.grow.split);
+    const std::vector<NodeRange>& groups = groups_[numbers[0]];
     if (numbers[1] >= groups.size()) throw Error(name + ": no such nodes");
     const NodeRange nodes = groups[numbers[1]];
     const auto block = static_cast<int>(numbers[2]);
@@ -204,6 +206,7 @@ class ReduceTask {
   std::ostream& out_;
   TrainJob job_;
   int classes_;
+  std::vector<std::vector<NodeRange>> groups_;  ///< [tree]: the nodes of each record of rows
   EntropyTable entropy_;
   std::vector<std::uint8_t> labels_;
   std::vector<std::int16_t> values_;

@@ -54,9 +54,15 @@ std::vector<std::vector<std::uint32_t>> find_leaves(const std::vector<const Tree
                                                     std::span<const TrainingSample> samples,
                                                     const std::function<bool(std::uint32_t)>& wanted) {
   const FeatureConvention& convention = frames.convention();
-  std::vector<PackedTree> packed;
-  for (const Tree* tree : trees) packed.push_back(pack(*tree, convention));
   std::vector<std::vector<std::uint32_t>> leaves(trees.size(), std::vector<std::uint32_t>(samples.size(), 0));
+  std::vector<PackedTree> packed;
+  std::vector<std::size_t> walked;  // trees of a single leaf need no walk
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    if (trees[t]->nodes.empty()) continue;
+    packed.push_back(pack(*trees[t], convention));
+    walked.push_back(t);
+  }
+  if (walked.empty()) return leaves;
   const std::vector<Run> runs = runs_of(samples, wanted);
   parallel_ranges(static_cast<int>(runs.size()), kGrain, [&](int first, int last) {
     std::vector<std::uint16_t> tiles;
@@ -65,8 +71,8 @@ std::vector<std::vector<std::uint32_t>> find_leaves(const std::vector<const Tree
       const Run run = runs[r];
       const FrameStore::View& view = frames[samples[run.begin].frame];
       const bool fits = std::max(view.depth.grid.width, view.depth.grid.height) <= PaddedDepth::kMaxSide;
-      if (!fits || (run.end - run.begin) * trees.size() < kManyWalks) {
-        for (std::size_t t = 0; t < trees.size(); ++t) {
+      if (!fits || (run.end - run.begin) * walked.size() < kManyWalks) {
+        for (const std::size_t t : walked) {
           for (std::size_t i = run.begin; i < run.end; ++i) {
             leaves[t][i] = static_cast<std::uint32_t>(leaf_of(*trees[t], frames, samples[i]));
           }
@@ -77,9 +83,9 @@ std::vector<std::vector<std::uint32_t>> find_leaves(const std::vector<const Tree
       WalkPixels pixels(run.end - run.begin, view.scaler, convention);
       for (std::size_t i = run.begin; i < run.end; ++i) pixels.add(samples[i].u, samples[i].v, samples[i].depth_mm);
       found.resize(pixels.padded_size());
-      for (std::size_t t = 0; t < trees.size(); ++t) {
-        walk_pixels(packed[t], depth, pixels, found.data());
-        std::copy_n(found.begin(), pixels.size(), leaves[t].begin() + static_cast<std::ptrdiff_t>(run.begin));
+      for (std::size_t w = 0; w < walked.size(); ++w) {
+        walk_pixels(packed[w], depth, pixels, found.data());
+        std::copy_n(found.begin(), pixels.size(), leaves[walked[w]].begin() + static_cast<std::ptrdiff_t>(run.begin));
       }
     }
   });
