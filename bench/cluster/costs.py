@@ -196,6 +196,9 @@ def main():
     parser.add_argument("--growing", action="store_true")
     parser.add_argument("--out", type=pathlib.Path)
     arguments = parser.parse_args()
+    for path in (arguments.program, arguments.recipe):
+        if not os.path.isfile(path):
+            sys.exit(f"{path}: no such file")
     folder = pathlib.Path(tempfile.mkdtemp(prefix="vesalius-costs-"))
     try:
         measurements = Measurements(arguments.program, arguments.recipe, arguments.frames, folder)

@@ -46,16 +46,18 @@ def level(program, folder, engine):
 
 
 def main():
+    if len(sys.argv) != 4 or sys.argv[3] not in ("slurm", "hadoop") or not os.path.isfile(sys.argv[1]):
+        sys.exit("expected: overhead.py PROGRAM SOURCE_FOLDER slurm|hadoop")
     program, source, engine = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]), sys.argv[3]
     folder = tempfile.mkdtemp(prefix="vesalius-")
     work = pathlib.Path(folder, "work")
     work.mkdir()
     (work / "recipe.toml").write_text(RECIPE)
     (work / "options.toml").write_text(OPTIONS)
-    started = cluster(source, folder, engine, "start")
-    if started.returncode != 0:
-        sys.exit(started.stderr)
     try:
+        started = cluster(source, folder, engine, "start")
+        if started.returncode != 0:
+            sys.exit(started.stderr.strip())
         os.environ.update(environment_of(folder))
         store = ["--store", os.environ["VESALIUS_HDFS"] + "/overhead"] if engine == "hadoop" else []
         local = level(program, work, ["--on", "local:2"])

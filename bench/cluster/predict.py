@@ -219,9 +219,8 @@ def check(known):
     for run in known["runs"]:
         if run["name"].startswith("one process"):
             continue
-        training = dataclasses.replace(small, memory=1.0 if "every level" in run["name"] else 1e12, **run.get("training", {}))
-        cluster = dataclasses.replace(here, **run.get("cluster", {}))
-        simulated = Simulation(known, cluster, training).run()
+        training = dataclasses.replace(small, memory=1.0 if "every level" in run["name"] else 1e12)
+        simulated = Simulation(known, here, training).run()
         print(f"{run['name']}: {run['wall']:.0f} s, simulated {simulated.seconds:.0f} s ({simulated.seconds / run['wall']:.0%}); "
               f"of processors {run['cpu']:.0f} s, simulated {simulated.work:.0f} s")
 
@@ -237,8 +236,13 @@ def main():
             parser.add_argument("--" + field.name.replace("_", "-"), type=kind, default=default)
     parser.add_argument("--memory", type=float, default=64e9, help="bytes of a node")
     arguments = parser.parse_args()
-    with open(arguments.measured) as file:
-        known = json.load(file)
+    try:
+        with open(arguments.measured) as file:
+            known = json.load(file)
+    except (OSError, ValueError) as error:
+        sys.exit(f"{arguments.measured}: expected what costs.py --out wrote: {error}")
+    if not isinstance(known, dict) or "gradient_bytes" not in known:
+        sys.exit(f"{arguments.measured}: expected what costs.py --out wrote")
     if arguments.check:
         return check(known)
     values = vars(arguments)

@@ -7,8 +7,10 @@
 # Unpacked in /opt, it is /opt/vesalius/vesalius, and the assets are /opt/vesalius/assets.
 set -euo pipefail
 [ $# = 3 ] || { sed -n '5,7s/^# *//p' "$0" >&2; exit 2; }
+[ -x "$1" ] && [ -f "$1" ] || { echo "bundle.sh: $1: expected a program" >&2; exit 1; }
+[ -d "$2" ] || { echo "bundle.sh: $2: expected the folder of the assets" >&2; exit 1; }
 folder=$(mktemp -d)
-trap 'rm -r "$folder"' EXIT
+trap 'rm -rf "$folder" "$3.part"' EXIT
 mkdir -p "$folder/vesalius/lib"
 ldd "$1" | sed -nE 's/.* => (\/[^ ]+) .*/\1/p; s/^\s*(\/[^ ]+) .*/\1/p' | xargs cp -L -t "$folder/vesalius/lib"
 cp "$1" "$folder/vesalius/lib/vesalius"
@@ -20,4 +22,5 @@ lib=/opt/vesalius/lib
 exec $lib/ld-linux-x86-64.so.2 --library-path $lib $lib/vesalius "$@"
 END
 chmod +x "$folder/vesalius/vesalius"
-tar -C "$folder" -czf "$3" vesalius
+tar -C "$folder" -czf "$3.part" vesalius
+mv "$3.part" "$3"
