@@ -41,7 +41,7 @@ leaf-rounds = 0
 # Combiners add up what leaves learn from.
 FULL_HADOOP_OPTIONS = HADOOP_OPTIONS.replace("depth = 3", "depth = 2").replace("leaf-rounds = 0", "leaf-rounds = 1")
 # Half of the levels and rounds, for what must be quick: each job costs Slurm two seconds.
-SLURM_OPTIONS = OPTIONS.replace("depth = 4", "depth = 2").replace("leaf-rounds = 3", "leaf-rounds = 1")
+QUICK_OPTIONS = OPTIONS.replace("depth = 4", "depth = 2").replace("leaf-rounds = 3", "leaf-rounds = 1")
 RECIPE = """[body]
 kind = "builtin"
 [pose]
@@ -480,7 +480,7 @@ def main():
         if real:
             os.environ.update(environment_of(folder))
         options = {"hadoop": FULL_HADOOP_OPTIONS if full else HADOOP_OPTIONS, "spark": HADOOP_OPTIONS,
-                   "slurm": SLURM_OPTIONS, "local": OPTIONS if full else SLURM_OPTIONS}
+                   "slurm": QUICK_OPTIONS, "local": OPTIONS if full else QUICK_OPTIONS}
         trainings = Trainings(program, source, work, options.get(engine, OPTIONS))
         if real:
             check = {"slurm": check_slurm, "hadoop": check_hadoop}[engine]
