@@ -130,6 +130,7 @@ def measure(m):
 
     starts = sorted(m.run(["train", "map", "--help"])[1] for _ in range(5))
     start = known["start"] = starts[2]
+    print(f"start of a task: {start:.2f} s of a processor")
     frames = m.frames
     few, many = (m.tasks_of(["--trees", "1", "--depth", "1", *GROWING], ["--recipe", m.recipe, "--count", str(count)])
                  ["prepare", "map"]["cpu"] for count in (SHARD // 4, SHARD))
