@@ -229,13 +229,13 @@ TEST_F(TrainingSetBytes, GiveTheSameSet) {
   for (const LabelledFrame& frame : make_frames(12)) set.add(frame);
   const std::string bytes = training_set_bytes(set);
   TrainingSet::Contents contents{.frames = FrameStore(set.convention())};
-  append_training_set(bytes, "set", contents);
+  append_training_set(HugeBuffer(bytes), "set", contents);
   const TrainingSet same = set_of(set, std::move(contents));
   EXPECT_EQ(training_set_bytes(same), bytes);
   EXPECT_EQ(grow_tree(same, options_.grow, 0), grow_tree(set, options_.grow, 0));
   for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 4) {
     TrainingSet::Contents none{.frames = FrameStore(set.convention())};
-    EXPECT_THROW(append_training_set(bytes.substr(0, size), "set", none), Error);
+    EXPECT_THROW(append_training_set(HugeBuffer(bytes.substr(0, size)), "set", none), Error);
   }
 }
 
@@ -247,7 +247,7 @@ TEST_F(TrainingSetBytes, OfShardsGiveTheSetOfAllFrames) {
   for (const auto& [first, last] : {std::pair(0, 5), std::pair(5, 6), std::pair(6, 12)}) {
     TrainingSet shard(paper_body(), training_convention(options_), options_.sample, 1, first);
     for (int f = first; f < last; ++f) shard.add(frames[f]);
-    append_training_set(training_set_bytes(shard), "shard", contents);
+    append_training_set(HugeBuffer(training_set_bytes(shard)), "shard", contents);
   }
   EXPECT_EQ(training_set_bytes(set_of(all, std::move(contents))), training_set_bytes(all));
 }

@@ -9,6 +9,7 @@
 
 #include "cluster/store_name.h"
 #include "io/files/atomic_file.h"
+#include "io/files/data_file.h"
 #include "io/files/read_file.h"
 #include "vesalius/base/error.h"
 
@@ -41,6 +42,14 @@ std::string FolderStore::path_of(const std::string& name) const {
 
 std::string FolderStore::read(const std::string& name) const {
   return read_file(path_of(name), std::numeric_limits<std::size_t>::max());
+}
+
+HugeBuffer FolderStore::load(const std::string& name) const {
+  const DataFile file(path_of(name));
+  HugeBuffer buffer(file.size());
+  const std::size_t size = file.read_into(0, {buffer.data(), buffer.size()});
+  if (size != buffer.size()) throw Error(fmt::format("{}: {} bytes, expected {}", file.path(), size, buffer.size()));
+  return buffer;
 }
 
 bool FolderStore::exists(const std::string& name) const {

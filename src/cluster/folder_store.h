@@ -13,6 +13,7 @@ class FolderStore : public Store {
   /// The folder's absolute path, since others may run elsewhere.
   std::string place() const override { return folder_; }
   std::string read(const std::string& name) const override;
+  HugeBuffer load(const std::string& name) const override;
   bool exists(const std::string& name) const override;
   void write(const std::string& name, const std::string& bytes) override;
   std::vector<std::string> list(const std::string& folder) const override;

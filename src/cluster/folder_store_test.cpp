@@ -22,6 +22,8 @@ TEST(FolderStore, ReadsWhatWasWritten) {
   const std::string bytes = bytes_of(100000, 1);
   store.write("a/b/c.bin", bytes);
   EXPECT_EQ(store.read("a/b/c.bin"), bytes);
+  const HugeBuffer loaded = store.load("a/b/c.bin");
+  EXPECT_EQ(std::string_view(reinterpret_cast<const char*>(loaded.data()), loaded.size()), bytes);
   EXPECT_TRUE(store.exists("a/b/c.bin"));
   EXPECT_TRUE(store.exists("a/b"));
   EXPECT_FALSE(store.exists("a/c"));
@@ -72,6 +74,7 @@ TEST(FolderStore, RefusesNamesThatLeadElsewhere) {
   FolderStore store(folder / "store");
   for (const char* name : {"", "/x", "../x", "x/../y", "x/./y", "x//y", "x/", "a b", "x?", "x%41", "x.tmp1", "\n"}) {
     EXPECT_THROW(store.read(name), UsageError) << name;
+    EXPECT_THROW(store.load(name), UsageError) << name;
     EXPECT_THROW(store.exists(name), UsageError) << name;
     EXPECT_THROW(store.write(name, "bytes"), UsageError) << name;
     EXPECT_THROW(store.remove(name), UsageError) << name;

@@ -95,7 +95,7 @@ class MapTask {
     TrainingSet::Contents contents{.frames = FrameStore(job_.forest.convention)};
     for (std::size_t shard = begin; shard < end; ++shard) {
       const std::string name = set_name(job_.sets, shard);
-      append_training_set(context_.store.read(name), context_.store.place() + "/" + name, contents);
+      append_training_set(context_.store.load(name), context_.store.place() + "/" + name, contents);
     }
     return {job_.forest.body, job_.options.sample, static_cast<std::uint64_t>(job_.options.grow.seed),
             job_.first_frames[begin], std::move(contents)};

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "train/huge_buffer.h"
+
 namespace vesalius {
 
 /// A folder that the driver and the tasks of a cluster all see: a shared folder, or one of HDFS. Names are relative,
@@ -17,6 +19,8 @@ class Store {
   virtual std::string place() const = 0;
   /// Returns the bytes of a file.
   virtual std::string read(const std::string& name) const = 0;
+  /// The same for a large file, whose memory the caller keeps.
+  virtual HugeBuffer load(const std::string& name) const { return HugeBuffer(read(name)); }
   virtual bool exists(const std::string& name) const = 0;
   /// Writes a file beside its name and renames it, replacing what was there. Makes the folders that it needs.
   virtual void write(const std::string& name, const std::string& bytes) = 0;

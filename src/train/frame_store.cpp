@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "vesalius/base/error.h"
 
@@ -55,10 +56,30 @@ std::size_t FrameStore::add_packed(const Camera& camera, std::span<const std::ui
   expect_size(camera.width, camera.height);
   std::byte* at = allocate(whole_lines(words.size_bytes()));
   std::memcpy(at, words.data(), words.size_bytes());
-  const PackedTiles tiles = packed_tiles({camera.width, camera.height}, reinterpret_cast<const std::uint32_t*>(at));
+  add_view(camera, {reinterpret_cast<const std::uint32_t*>(at), words.size()});
+  return views_.size() - 1;
+}
+
+void FrameStore::add_view(const Camera& camera, std::span<const std::uint32_t> words) {
+  const PackedTiles tiles = packed_tiles({camera.width, camera.height}, words.data());
   views_.push_back({tiles, words.size_bytes(), OffsetScaler(convention_, camera)});
   cameras_.push_back(camera);
-  return views_.size() - 1;
+}
+
+void FrameStore::add_block(HugeBuffer block, std::span<const InBlock> frames) {
+  for (const InBlock& frame : frames) {
+    expect_size(frame.camera.width, frame.camera.height);
+    if (frame.at % sizeof(std::uint32_t) != 0 || frame.at > block.size() ||
+        frame.words > (block.size() - frame.at) / sizeof(std::uint32_t)) {
+      throw Error("training: a frame is not in its block");
+    }
+  }
+  blocks_.push_back(std::move(block));
+  used_ = blocks_.back().size();
+  for (const InBlock& frame : frames) {
+    add_view(frame.camera, {reinterpret_cast<const std::uint32_t*>(blocks_.back().data() + frame.at), frame.words});
+    bytes_ += whole_lines(frame.words * sizeof(std::uint32_t));
+  }
 }
 
 const TiledDepth& FrameUnpacker::operator()(std::size_t frame) {

@@ -34,6 +34,15 @@ class FrameStore {
   /// Adds a frame by the words that pack_tiles made of its depth. Throws Error as `add` does.
   std::size_t add_packed(const Camera& camera, std::span<const std::uint32_t> words);
 
+  /// A frame within a block of memory: its words begin at byte `at`, a multiple of 4.
+  struct InBlock {
+    Camera camera;
+    std::size_t at = 0;
+    std::size_t words = 0;
+  };
+  /// Takes a block with frames where they lie in it. Throws Error as `add` does, or if a frame is not in the block.
+  void add_block(HugeBuffer block, std::span<const InBlock> frames);
+
   std::size_t size() const { return views_.size(); }
   const View& operator[](std::size_t frame) const { return views_[frame]; }
   const Camera& camera(std::size_t frame) const { return cameras_[frame]; }
@@ -52,6 +61,7 @@ class FrameStore {
 
  private:
   std::byte* allocate(std::size_t bytes);
+  void add_view(const Camera& camera, std::span<const std::uint32_t> words);
 
   FeatureConvention convention_;
   std::vector<HugeBuffer> blocks_;

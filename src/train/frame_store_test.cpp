@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
 
@@ -41,6 +46,37 @@ TEST(FrameStore, KeepsFramesOfDifferentSizes) {
       }
     }
   }
+}
+
+TEST(FrameStore, TakesFramesWhereTheyLieInABlock) {
+  Random random(14);
+  const FeatureConvention convention;
+  FrameStore one_by_one{convention}, in_block{convention};
+  const Camera wide{33, 20, 300.F, 300.F, 16.F, 10.F}, small{7, 5, 80.F, 80.F, 3.F, 2.F};
+  std::string bytes(8, '\0');
+  std::vector<FrameStore::InBlock> places;
+  for (const Camera& camera : {wide, small, wide}) {
+    const std::size_t f = one_by_one.add(camera, random_depth(camera.width, camera.height, random));
+    const auto words = one_by_one.words(f);
+    places.push_back({camera, bytes.size(), words.size()});
+    bytes.append(reinterpret_cast<const char*>(words.data()), words.size_bytes());
+  }
+  in_block.add(small, random_depth(7, 5, random));
+  in_block.add_block(HugeBuffer(bytes), places);
+  in_block.add(small, random_depth(7, 5, random));
+  ASSERT_EQ(in_block.size(), 5U);
+  EXPECT_EQ(in_block.bytes(), one_by_one.bytes() + 64 * ((in_block.words(0).size_bytes() + 63) / 64) +
+                                  64 * ((in_block.words(4).size_bytes() + 63) / 64));
+  for (std::size_t f = 0; f < 3; ++f) {
+    EXPECT_TRUE(std::ranges::equal(in_block.words(f + 1), one_by_one.words(f)));
+    EXPECT_EQ(in_block.camera(f + 1), one_by_one.camera(f));
+  }
+  const std::size_t words = bytes.size() / 4;
+  for (const FrameStore::InBlock& outside :
+       {FrameStore::InBlock{small, 2, 1}, {small, bytes.size() + 4, 0}, {small, 4, words}, {Camera{}, 0, 1}}) {
+    EXPECT_THROW(in_block.add_block(HugeBuffer(bytes), std::span(&outside, 1)), Error);
+  }
+  EXPECT_EQ(in_block.size(), 5U);
 }
 
 TEST(FrameStore, RefusesDepthOfAnotherSizeThanItsCamera) {

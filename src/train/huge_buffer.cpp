@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <cstring>
 #include <new>
 #include <utility>
 
@@ -13,6 +14,10 @@ HugeBuffer::HugeBuffer(std::size_t bytes) : bytes_(bytes) {
   if (mapped == MAP_FAILED) throw std::bad_alloc();
   memory_ = static_cast<std::byte*>(mapped);
   madvise(mapped, bytes, MADV_HUGEPAGE);
+}
+
+HugeBuffer::HugeBuffer(std::string_view bytes) : HugeBuffer(bytes.size()) {
+  if (!bytes.empty()) std::memcpy(memory_, bytes.data(), bytes.size());
 }
 
 HugeBuffer::~HugeBuffer() {

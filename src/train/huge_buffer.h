@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 
 namespace vesalius {
 
@@ -13,6 +14,8 @@ class HugeBuffer {
  public:
   /// Throws std::bad_alloc if the system has not enough memory.
   explicit HugeBuffer(std::size_t bytes);
+  /// A copy of these bytes.
+  explicit HugeBuffer(std::string_view bytes);
   ~HugeBuffer();
   HugeBuffer(HugeBuffer&& other) noexcept;
   HugeBuffer& operator=(HugeBuffer&& other) noexcept;

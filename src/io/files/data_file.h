@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "io/files/descriptor.h"
@@ -18,6 +20,8 @@ class DataFile {
   /// Returns the `count` bytes from `at` on, or those up to the end where there are fewer. Throws Error if the system
   /// cannot read them.
   std::string read(std::uint64_t at, std::uint64_t count) const;
+  /// Reads the bytes from `at` on into memory that is there, and returns their number: fewer only at the end.
+  std::size_t read_into(std::uint64_t at, std::span<std::byte> memory) const;
 
  private:
   std::string path_;
