@@ -50,8 +50,8 @@ class ClusterExecutor : public Executor {
   /// Facts of all shards together.
   PreparedShard total() const;
   std::size_t shards() const { return first_frames_.size() - 1; }
-  /// Removes all jobs and sets from a store.
-  static void clear(Store& store);
+  /// Ends what is left of jobs, and removes all jobs and sets from the engine's store.
+  static void clear(Engine& engine);
 
  private:
   friend class ClusterLeaves;

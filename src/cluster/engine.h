@@ -50,6 +50,8 @@ class Engine {
   /// interrupted run of the same job finished may be used. Throws Error saying which task failed for good and with what
   /// last line, if the engine refuses, and Interrupted if asked to stop.
   virtual void run(const EngineJob& job) = 0;
+  /// Ends what a killed driver left running or in a queue for a job. Throws Error where the engine does not answer.
+  virtual void end_earlier(const std::string& /*job*/) {}
 };
 
 std::string result_folder(const std::string& job);

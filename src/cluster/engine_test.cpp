@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "cluster/cluster_executor.h"
 #include "cluster/process.h"
 #include "cluster/test_engine.h"
 #include "io/files/test_files.h"
@@ -92,6 +93,18 @@ TEST(SlurmEngine, CancelsWhatAKilledDriverLeft) {
   make_slurm_engine(open_store(run.programs / "store"), run.options)->run(run.job);
   EXPECT_EQ(test::get(run.programs / "before"), "6\n");
   EXPECT_EQ(test::get(run.programs / "cancelled"), "6\n");
+}
+
+TEST(SlurmEngine, CancelsAllThatIsLeftOfATrainingThatBeginsAnew) {
+  OneJob run;
+  test::put(run.file("tasks-1/reduce.slurm"), "6");
+  test::put(run.programs / "store/jobs/other/tasks-2/map.slurm", "7");
+  test::put(run.programs / "store/sets-0/000000", "a shard");
+  run.programs.set("scancel", "echo $* >>" + (run.programs / "cancelled"));
+  const auto engine = make_slurm_engine(open_store(run.programs / "store"), run.options);
+  ClusterExecutor::clear(*engine);
+  EXPECT_EQ(test::get(run.programs / "cancelled"), "7\n6\n");
+  EXPECT_TRUE(std::filesystem::is_empty(run.programs / "store"));
 }
 
 TEST(SlurmEngine, SubmitsNothingWhereScancelDoesNotAnswer) {

@@ -116,8 +116,8 @@ void FolderEngine::run(const EngineJob& job) {
   std::error_code error;
   fs::create_directories(own + "/out", error);
   if (error) throw Error(own + "/out: folder cannot be made: " + error.message());
+  end_earlier(job.name);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string().starts_with("tasks-")) end_earlier(entry.path().string());
     if (entry.path() != own && entry.path().filename() != "job") fs::remove_all(entry.path(), error);
   }
   for (int i = 0; i < maps; ++i) write_file_atomically(fmt::format("{}/in-{}", own, i), inputs[i]);
@@ -128,6 +128,12 @@ void FolderEngine::run(const EngineJob& job) {
   if (error) throw Error(results + ": cannot be renamed: " + error.message());
   write_file_atomically(results + "/_SUCCESS", "");
   fs::remove_all(own, error);
+}
+
+void FolderEngine::end_earlier(const std::string& job) {
+  for (const std::string& name : store_->list(job_folder(job))) {
+    if (name.starts_with("tasks-")) end_tasks(fmt::format("{}/{}/{}", store_->place(), job_folder(job), name));
+  }
 }
 
 std::string FolderEngine::script(const EngineJob& job, int maps, const std::string& folder) const {

@@ -14,6 +14,7 @@ class FolderEngine : public Engine {
 
   Store& store() override { return *store_; }
   void run(const EngineJob& job) override;
+  void end_earlier(const std::string& job) override;
 
  protected:
   /// Some tasks of a job, by their numbers.
@@ -29,8 +30,8 @@ class FolderEngine : public Engine {
   /// seen from their files.
   virtual void run_tasks(const Tasks& tasks) = 0;
 
-  /// Ends the tasks that a killed driver left behind, which may have been in the same folder.
-  virtual void end_earlier(const std::string& /*folder*/) {}
+  /// Ends the tasks in a folder that a killed driver left behind.
+  virtual void end_tasks(const std::string& /*folder*/) {}
 
   /// Tells how many tasks are done, and what they wait for, if so; throws Interrupted if asked to stop.
   void report(const Tasks& tasks, const std::string& waiting = "") const;

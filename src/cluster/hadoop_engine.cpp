@@ -55,7 +55,7 @@ class HadoopEngine : public Engine {
 
   void run(const EngineJob& job) override {
     const std::string folder = job_folder(job.name);
-    kill_earlier(folder);
+    end_earlier(job.name);
     for (const char* part : {"/out", "/failed"}) store_->remove(folder + part);
     const std::vector<std::string> inputs = inputs_of(job, options_.map_tasks);
     store_->write(folder + "/in/lines", fmt::format("{}", fmt::join(inputs, "")));  // tasks take neighbours
@@ -63,17 +63,17 @@ class HadoopEngine : public Engine {
     wait_for(job, folder, logs.path("client.log"), (job.lines.size() + inputs.size() - 1) / inputs.size());
   }
 
+  void end_earlier(const std::string& job) override {
+    const std::string file = job_folder(job) + "/hadoop-job";
+    if (!store_->exists(file)) return;
+    const CommandResult result = kill_job(store_->read(file));
+    if (!result.in_time) throw Error("Hadoop: " + result.err);
+    store_->remove(file);
+  }
+
  private:
   CommandResult kill_job(const std::string& id) const {
     return run_command({"mapred", "job", "-kill", id}, std::chrono::duration<double>(options_.answer_s));
-  }
-
-  /// Ends the job that a killed driver left behind, since it would write the same folder.
-  void kill_earlier(const std::string& folder) {
-    if (!store_->exists(folder + "/hadoop-job")) return;
-    const CommandResult result = kill_job(store_->read(folder + "/hadoop-job"));
-    if (!result.in_time) throw Error("Hadoop: " + result.err);
-    store_->remove(folder + "/hadoop-job");
   }
 
   std::vector<std::string> command_of(const EngineJob& job, const std::string& folder, std::size_t lines) const {

@@ -54,7 +54,7 @@ class SlurmEngine : public FolderEngine {
     std::filesystem::remove(id_file);
   }
 
-  void end_earlier(const std::string& folder) override {
+  void end_tasks(const std::string& folder) override {
     for (const char* kind : {"map", "reduce"}) {
       const std::string id_file = id_file_of(folder, kind);
       std::error_code ignored;

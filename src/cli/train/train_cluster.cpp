@@ -63,7 +63,7 @@ class ClusterRun {
     Forest forest = background.untrained_forest();
     forest.recipe = train_recipe(options_, inputs_, facts, kept ? &*kept : nullptr);
     session_.emplace(run_.out + ".work", forest, run_.restart);
-    if (run_.restart) ClusterExecutor::clear(engine->store());
+    if (run_.restart) ClusterExecutor::clear(*engine);
     try {
       train(*engine, choice, background, kept, std::move(forest));
     } catch (const Interrupted&) {
@@ -99,7 +99,7 @@ class ClusterRun {
       forest = train_forest(executor, std::move(forest), options_, *session_, observer);
     }
     save_model(forest, run_.out);
-    ClusterExecutor::clear(engine.store());
+    ClusterExecutor::clear(engine);
     session_->remove();
     if (!run_.shown) return;
     say(fmt::format("{}: {} trees, {:.2f} MiB, trained in {:.1f} s", run_.out, forest.trees.size(),
