@@ -455,11 +455,23 @@ def missing_for_spark():
     return None if shutil.which("java") or "JAVA_HOME" in os.environ else "java is not installed"
 
 
-def main():
-    program, source, work, engine = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]), sys.argv[4]
-    full = "--full" in sys.argv
+def empty_folder(work):
+    """Empties the folder of an earlier run, and no other."""
+    mark = work / ".of-engines-py"
+    if work.exists() and not mark.exists() and any(work.iterdir()):
+        sys.exit(f"{work}: has other files, expected a new folder")
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
+    mark.touch()
+
+
+def main():
+    arguments = [argument for argument in sys.argv[1:] if argument != "--full"]
+    full = len(arguments) < len(sys.argv) - 1
+    if len(arguments) != 4 or arguments[3] not in ("local", "faults", "slurm", "hadoop", "spark"):
+        sys.exit("expected: engines.py PROGRAM SOURCE_FOLDER WORK_FOLDER local|faults|slurm|hadoop|spark [--full]")
+    program, source, work, engine = arguments[0], pathlib.Path(arguments[1]), pathlib.Path(arguments[2]), arguments[3]
+    empty_folder(work)
     os.environ.setdefault("VESALIUS_HADOOP_LIB", str(work.parent / "hadoop-lib"))
     if engine == "spark":
         if missing := missing_for_spark():
