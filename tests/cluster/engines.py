@@ -470,7 +470,8 @@ def main():
     full = len(arguments) < len(sys.argv) - 1
     if len(arguments) != 4 or arguments[3] not in ("local", "faults", "slurm", "hadoop", "spark"):
         sys.exit("expected: engines.py PROGRAM SOURCE_FOLDER WORK_FOLDER local|faults|slurm|hadoop|spark [--full]")
-    program, source, work, engine = arguments[0], pathlib.Path(arguments[1]), pathlib.Path(arguments[2]), arguments[3]
+    program = str(pathlib.Path(arguments[0]).resolve())
+    source, work, engine = pathlib.Path(arguments[1]).resolve(), pathlib.Path(arguments[2]).resolve(), arguments[3]
     empty_folder(work)
     os.environ.setdefault("VESALIUS_HADOOP_LIB", str(work.parent / "hadoop-lib"))
     if engine == "spark":
