@@ -255,7 +255,7 @@ def main():
     for job in simulation.jobs:
         print(f"{job.name}: {duration(job.seconds)}, {job.work / 3600:.2f} core-hours, read {job.read / 1e9:.1f} GB, "
               f"shuffled {job.shuffled / 1e9:.2f} GB")
-    print(f"in all {duration(simulation.seconds)}, {simulation.work / 3600:.1f} core-hours; shards {simulation.bytes / 1e9:.1f} GB, "
+    print(f"in all {duration(simulation.seconds)}, {simulation.work / 3600:.2f} core-hours; shards {simulation.bytes / 1e9:.1f} GB, "
           f"one PC of {cluster.cores} cores {duration(one_pc(known, training, cluster.cores))}")
 
 
