@@ -382,8 +382,7 @@ ClusterExecutor::Records ClusterExecutor::run(const TrainJob& job, const std::ve
   const std::string bytes = serialise(job);
   const bool known = store.exists(job_file(job.name)) && store.read(job_file(job.name)) == bytes;
   if (!known) {
-    engine_.end_earlier(job.name);
-    store.remove(job_folder(job.name));
+    engine_.remove(job.name);
     store.write(job_file(job.name), bytes);
   }
   if (!known || !store.exists(result_folder(job.name) + "/_SUCCESS")) {
@@ -493,7 +492,7 @@ std::vector<FacingSample> ClusterExecutor::facing_samples(const Forest& forest) 
 
 void ClusterExecutor::clear(Engine& engine) {
   Store& store = engine.store();
-  for (const std::string& job : store.list("jobs")) engine.end_earlier(job);
+  for (const std::string& job : store.list("jobs")) engine.remove(job);
   for (const char* folder : {"jobs", "sets-0", "sets-1"}) store.remove(folder);
 }
 

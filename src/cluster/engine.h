@@ -52,6 +52,8 @@ class Engine {
   virtual void run(const EngineJob& job) = 0;
   /// Ends what a killed driver left running or in a queue for a job. Throws Error where the engine does not answer.
   virtual void end_earlier(const std::string& /*job*/) {}
+  /// Removes a job from the store, after what is left of it has ended. Throws Error as `end_earlier` does.
+  void remove(const std::string& job);
 };
 
 std::string result_folder(const std::string& job);

@@ -78,6 +78,11 @@ exit 1
 
 std::string result_folder(const std::string& job) { return job_folder(job) + "/out"; }
 
+void Engine::remove(const std::string& job) {
+  end_earlier(job);
+  store().remove(job_folder(job));
+}
+
 std::vector<std::string> inputs_of(const EngineJob& job, int most) {
   std::vector<std::string> inputs(std::min<std::size_t>(job.lines.size(), most));
   if (inputs.empty()) throw Error(job.name + ": a job without input");

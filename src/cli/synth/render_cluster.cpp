@@ -124,9 +124,8 @@ void render_on_cluster(const RenderRequest& request, const DatasetInfo& info, co
   if (!job.lines.empty()) {
     const std::string bytes = serialise(request, info);
     if (!store.exists(job_file(kJob)) || store.read(job_file(kJob)) != bytes) {
-      engine->end_earlier(kJob);
+      engine->remove(kJob);
       store.remove("shards");
-      store.remove(job_folder(kJob));
       store.write(job_file(kJob), bytes);
     }
     try {
