@@ -134,8 +134,8 @@ class Simulation:
         threads = self.threads()
         tasks = max(trees, 2 * self.cluster.slots // threads) if level > 0 else trees
         slots = max(1, self.cluster.slots // threads)
-        runs = min(tasks, slots)  # each process of an engine reads all sets once a task
-        work = left * k["evaluation"] + tasks * t.frames * k["read"]
+        runs = min(tasks, slots)  # processes: each reads all sets once, however many subtrees it grows
+        work = left * k["evaluation"] + runs * t.frames * k["read"]
         self.add(f"{name} subtrees from level {level}", work / threads, tasks=tasks, read=self.bytes * runs,
                  job_bytes=1e5 + 30 * trees * 2**level, slots=slots)
         self.jobs[-1].work = work
