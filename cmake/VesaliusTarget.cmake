@@ -1,21 +1,20 @@
 # Settings that every target of this project shares.
 add_library(vesalius_settings INTERFACE)
 target_compile_features(vesalius_settings INTERFACE cxx_std_20)
-target_compile_options(vesalius_settings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
 # No fused multiply-add: the same bytes from every compiler and processor.
-target_compile_options(vesalius_settings INTERFACE -ffp-contract=off)
+set(vesalius_options -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off)
 if(VESALIUS_WERROR)
-  target_compile_options(vesalius_settings INTERFACE -Werror)
+  list(APPEND vesalius_options -Werror)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # Its bug 105651: it warns of std::string's own copying.
-  target_compile_options(vesalius_settings INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+  list(APPEND vesalius_options -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
 endif()
 if(VESALIUS_SANITIZE)
-  target_compile_options(vesalius_settings INTERFACE -fsanitize=${VESALIUS_SANITIZE} -fno-omit-frame-pointer
-                                                     -fno-sanitize-recover=all)
+  list(APPEND vesalius_options -fsanitize=${VESALIUS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(vesalius_settings INTERFACE -fsanitize=${VESALIUS_SANITIZE})
 endif()
+target_compile_options(vesalius_settings INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${vesalius_options}>")  # nvcc has others
 
 # What tests are compiled with besides, after all else: VESALIUS_TEST_FLAGS.
 add_library(vesalius_test_settings INTERFACE)
@@ -44,7 +43,8 @@ endfunction()
 #   real        needs the real frames, which are not part of the project
 #   statistics  counts over hundreds of bodies, poses or scenes
 #   slow        takes more than some seconds
-set(VESALIUS_TEST_LABELS threads real statistics slow)
+#   gpu         needs a card, and a build with its kernels
+set(VESALIUS_TEST_LABELS threads real statistics slow gpu)
 
 # vesalius_thread_tests(LIST): leaves of the tests' sources those with a test labelled `threads`, and what is no test.
 function(vesalius_thread_tests list)

@@ -18,6 +18,12 @@ class UsageError : public Error {
   using Error::Error;
 };
 
+/// A device that is not there, ran out of memory or was lost. What was asked of it may be done on another.
+class DeviceError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Runs `f` and adds the prefix "context: " to the message of any Error that it throws.
 template <class F>
 auto with_context(const std::string& context, F&& f) -> decltype(f()) {
@@ -25,6 +31,8 @@ auto with_context(const std::string& context, F&& f) -> decltype(f()) {
     return f();
   } catch (const UsageError& e) {
     throw UsageError(context + ": " + e.what());
+  } catch (const DeviceError& e) {
+    throw DeviceError(context + ": " + e.what());
   } catch (const Error& e) {
     throw Error(context + ": " + e.what());
   }

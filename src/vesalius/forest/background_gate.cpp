@@ -6,29 +6,25 @@
 #include "vesalius/base/pixel_grid.h"
 
 namespace vesalius {
-namespace {
-
-/// Largest difference in depth between a pixel and a neighbour whose posteriors it takes. Parts of a body that are a
-/// hand's breadth apart are not one surface.
-constexpr int kGuideMm = 50;
-
-}  // namespace
-
 bool take_from_grid(const DepthImage& depth, int step, int u, int v, Posteriors& out) {
-  const GridPixel nearest = nearest_on_grid(depth, step, u, v, kGuideMm);
+  const GridPixel nearest = nearest_on_grid(depth, step, u, v, BackgroundGate::kGuideMm);
   if (nearest.found) std::copy_n(out.at(nearest.u, nearest.v), out.classes, out.at(u, v));
   return nearest.found;
+}
+
+long BackgroundGate::enough(float least, int trees) {
+  return static_cast<long>(std::ceil(least * 255.F * static_cast<float>(trees)));
 }
 
 BackgroundGate::BackgroundGate(const DepthImage& depth, const Posteriors& posteriors, float least)
     : width_(depth.width()),
       states_((depth.width() + kStep - 1) / kStep, (depth.height() + kStep - 1) / kStep, kNoReading) {
-  const auto enough = static_cast<long>(std::ceil(least * 255.F * static_cast<float>(posteriors.trees)));
+  const long certain = enough(least, posteriors.trees);
   for (int j = 0; j < states_.height(); ++j) {
     for (int i = 0; i < states_.width(); ++i) {
       const int u = i * kStep, v = j * kStep;
       if (depth(u, v) == 0) continue;
-      states_(i, j) = posteriors.at(u, v)[posteriors.classes - 1] >= enough ? kSure : kUnsure;
+      states_(i, j) = posteriors.at(u, v)[posteriors.classes - 1] >= certain ? kSure : kUnsure;
     }
   }
 }

@@ -16,6 +16,12 @@ bool take_from_grid(const DepthImage& depth, int step, int u, int v, Posteriors&
 class BackgroundGate {
  public:
   static constexpr int kStep = 4;
+  /// Largest difference in depth between a pixel and a neighbour whose posteriors it takes. Parts of a body that are a
+  /// hand's breadth apart are not one surface.
+  static constexpr int kGuideMm = 50;
+
+  /// Returns the sum over `trees` trees from which on the background is certain.
+  static long enough(float least, int trees);
 
   /// `posteriors` have at least the pixels of the grid; their last class is the background. The forest is certain if
   /// that class has a probability of at least `least`.

@@ -16,6 +16,15 @@ struct OffsetScale {
   std::int32_t v = 0;
 };
 
+/// The scale that a unit of offset never exceeds: 32 pixels.
+inline constexpr double kMaxOffsetScale = 32.0 * 65536.0;
+
+/// Returns the scale along one axis at `depth_mm`, which must be above 0: `unit` is that of 1 mm (OffsetScaler).
+constexpr std::int32_t offset_scale(double unit, int depth_mm) {
+  const double scale = unit / depth_mm;
+  return static_cast<std::int32_t>(scale < kMaxOffsetScale ? scale : kMaxOffsetScale);
+}
+
 /// Millimetres that the probes of one pixel are clamped to.
 struct ProbeRange {
   int low_mm = 0;

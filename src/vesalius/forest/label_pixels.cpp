@@ -22,22 +22,20 @@ namespace {
 
 constexpr int kRowGrain = 8;
 
-/// The weighted posteriors of one pixel in fixed point, so that every platform makes the same choice.
+/// The weighted posteriors of one pixel.
 class Weights {
  public:
-  Weights(const LabelChoice& choice, const LabelOptions& options)
-      : background_(std::lround(options.background_weight * kOne)), parts_(choice.part_count) {}
+  Weights(const LabelChoice& choice, const ChoiceWeights& weights) : weights_(weights), parts_(choice.part_count) {}
 
   std::int64_t operator()(const std::uint16_t* sums, int c) const {
     return c < parts_ ? of_part(sums[c]) : of_background(sums[c]);
   }
-  static constexpr float kOne = 1024.F;
-
-  std::int64_t of_part(std::uint16_t sum) const { return sum * static_cast<std::int64_t>(kOne); }
-  std::int64_t of_background(std::uint16_t sum) const { return sum * static_cast<std::int64_t>(background_); }
+  std::int64_t of_part(std::uint16_t sum) const { return sum * weights_.part; }
+  std::int64_t of_background(std::uint16_t sum) const { return sum * weights_.background; }
+  std::int64_t margin() const { return weights_.margin; }
 
  private:
-  long background_;
+  ChoiceWeights weights_;
   int parts_;
 };
 
@@ -60,10 +58,8 @@ class Chooser {
       : posteriors_(posteriors),
         depth_(depth),
         choice_(choice),
-        weight_(choice, options),
+        weight_(choice, choice_weights(options, posteriors.trees)),
         classes_(choice.part_count + (choice.has_background && choice.prior == nullptr ? 1 : 0)),
-        margin_(static_cast<std::int64_t>(
-            std::ceil(static_cast<double>(options.unsure_margin) * 255.0 * posteriors.trees * Weights::kOne))),
         box_(choice.box != nullptr ? *choice.box : Box{0, 0, depth.width(), depth.height()}),
         first_(depth.width(), depth.height(), kBackground),
         unsure_(depth.width(), depth.height(), 0) {}
@@ -119,14 +115,14 @@ class Chooser {
     if (first == 0) return;
     label = static_cast<std::uint8_t>(background > part ? choice_.part_count : parts.best);
     const std::int64_t second = std::max(std::min(part, background), weight_.of_part(parts.second));
-    unsure = second > 0 && first - second < margin_ ? 1 : 0;
+    unsure = second > 0 && first - second < weight_.margin() ? 1 : 0;
   }
 
   /// Returns that one of the nearly best classes which most neighbours have.
   std::uint8_t ask_neighbours(int u, int v) const {
     const std::uint16_t* sums = posteriors_.at(u, v);
     std::uint8_t label = first_(u, v);
-    const std::int64_t rival = std::max<std::int64_t>(1, weight_(sums, label) - margin_ + 1);
+    const std::int64_t rival = std::max<std::int64_t>(1, weight_(sums, label) - weight_.margin() + 1);
     int most = count_neighbours(first_, u, v, label);
     for (int c = 0; c < classes_; ++c) {
       if (weight_(sums, c) < rival) continue;
@@ -143,7 +139,6 @@ class Chooser {
   const LabelChoice& choice_;
   Weights weight_;
   int classes_;
-  std::int64_t margin_;
   Box box_;
   LabelImage first_;
   Mask unsure_;
@@ -160,16 +155,9 @@ void clear_rows(int begin, int end, Posteriors& out) { std::fill(out.at(0, begin
 
 /// The trees as pixels walk them, and how their leaves are read.
 struct PackedForest {
-  BodyModel body;
   FeatureConvention convention;
-  bool background = false;
-  bool distributions = false;
-  int classes = 0;
   float logit_unit = 0.F;
   LogitLayout layout;  ///< where leaves have logits
-  FacingModel facing;
-  BoostedTrees context;
-  BoostedTrees judge;
   std::vector<PackedTree> trees;
 
   bool has_logits() const { return logit_unit > 0.F; }
@@ -298,21 +286,47 @@ void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& vi
                   "probability all around, it is not asked about pixels between; above 1 it is asked about all."});
 }
 
+namespace {
+
+const Forest& checked(const Forest& forest) {
+  check(forest);
+  return forest;
+}
+
+}  // namespace
+
+TrainedLabeller::TrainedLabeller(const Forest& forest)
+    : body_(checked(forest).body),
+      has_background_(forest.has_background),
+      has_distributions_(vesalius::has_distributions(forest)),
+      classes_(forest.class_count()),
+      trees_(static_cast<int>(forest.trees.size())),
+      layout_(forest.body, forest.has_background, forest.headings),
+      facing_(forest.facing),
+      context_(forest.context),
+      judge_(forest.judge) {}
+
+void TrainedLabeller::check_size(const DepthImage& depth) {
+  if (std::max(depth.width(), depth.height()) > PaddedDepth::kMaxSide) {
+    throw Error("depth image of " + std::to_string(depth.width()) + "x" + std::to_string(depth.height()) +
+                " pixels, expected at most " + std::to_string(PaddedDepth::kMaxSide) + " a side");
+  }
+}
+
+void TrainedLabeller::prepare(const DepthImage& depth, Posteriors& out) const {
+  check_size(depth);
+  out.resize_like({.width = depth.width(), .height = depth.height(), .classes = classes_, .trees = trees_, .sums = {}});
+  out.headings = layout_.headings;
+  out.turns.resize(depth.size() * out.turn_count());
+}
+
 struct ForestLabeller::Packed : PackedForest {};
 
-ForestLabeller::ForestLabeller(Forest forest) {
-  check(forest);
+ForestLabeller::ForestLabeller(Forest forest) : TrainedLabeller(forest) {
   Packed packed;
-  packed.body = forest.body;
   packed.convention = forest.convention;
-  packed.background = forest.has_background;
-  packed.distributions = vesalius::has_distributions(forest);
-  packed.classes = forest.class_count();
-  packed.facing = forest.facing;
-  packed.context = forest.context;
-  packed.judge = forest.judge;
   packed.logit_unit = forest.logit_unit;
-  packed.layout = LogitLayout(forest.body, forest.has_background, forest.headings);
+  packed.layout = layout();
   packed.trees.resize(forest.trees.size());
   parallel_for(static_cast<int>(packed.trees.size()), [&](int t) {
     packed.trees[t] = pack(forest.trees[t], forest.convention);
@@ -323,28 +337,11 @@ ForestLabeller::ForestLabeller(Forest forest) {
 
 ForestLabeller::~ForestLabeller() = default;
 
-const BodyModel& ForestLabeller::body() const { return packed_->body; }
-const FacingModel& ForestLabeller::facing_model() const { return packed_->facing; }
-const BoostedTrees& ForestLabeller::context() const { return packed_->context; }
-const BoostedTrees& ForestLabeller::judge() const { return packed_->judge; }
-bool ForestLabeller::has_background() const { return packed_->background; }
-bool ForestLabeller::has_distributions() const { return packed_->distributions; }
-
 void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const {
-  if (std::max(depth.width(), depth.height()) > PaddedDepth::kMaxSide) {
-    throw Error("depth image of " + std::to_string(depth.width()) + "x" + std::to_string(depth.height()) +
-                " pixels, expected at most " + std::to_string(PaddedDepth::kMaxSide) + " a side");
-  }
-  out.resize_like({.width = depth.width(),
-                   .height = depth.height(),
-                   .classes = packed_->classes,
-                   .trees = static_cast<int>(packed_->trees.size()),
-                   .sums = {}});
-  out.headings = packed_->layout.headings;
-  out.turns.resize(depth.size() * out.turn_count());
+  prepare(depth, out);
   const OffsetScaler scaler(packed_->convention, camera);
   const PaddedDepth padded(depth, packed_->convention);
-  if (gate <= 1.F && packed_->background) {
+  if (gate <= 1.F && has_background()) {
     GatedLabels(*packed_, depth, padded, scaler, out).run(gate);
     return;
   }
@@ -352,6 +349,15 @@ void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, f
     clear_rows(begin, end, out);
     label_rows(*packed_, padded, WalkPixels(depth, begin, end, scaler, packed_->convention), out);
   });
+}
+
+ChoiceWeights choice_weights(const LabelOptions& options, int trees) {
+  ChoiceWeights weights;
+  const auto one = static_cast<float>(weights.part);
+  weights.background = std::lround(options.background_weight * one);
+  weights.margin =
+      static_cast<std::int64_t>(std::ceil(static_cast<double>(options.unsure_margin) * 255.0 * trees * one));
+  return weights;
 }
 
 LabelImage choose_labels(const Posteriors& posteriors, const DepthImage& depth, const LabelChoice& choice,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -9,9 +10,12 @@
 #include "vesalius/forest/boosted_trees.h"
 #include "vesalius/forest/facing.h"
 #include "vesalius/forest/forest.h"
+#include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
+
+struct SmoothOptions;
 
 struct LabelOptions {
   float background_weight = 0.5F;  ///< multiplies the background's posterior, which corrects its prior
@@ -37,6 +41,14 @@ class PixelLabeller {
   /// settled. A labeller that looks at such pixels gives other posteriors there, which are equally valid. With a gate
   /// above 1 every pixel is looked at, and all devices give the same bits for one forest.
   virtual void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const = 0;
+
+  /// Writes the posteriors as label_into does, and to `smooth` what mean_filter (smooth_labels.h) makes of them.
+  /// Returns false and does nothing where the labeller has no quicker way than one after the other.
+  virtual bool label_and_smooth_into(const DepthImage& /*depth*/, const Camera& /*camera*/, float /*gate*/,
+                                     const SmoothOptions& /*options*/, Posteriors& /*out*/,
+                                     Posteriors& /*smooth*/) const {
+    return false;
+  }
 
   /// Returns the posteriors of all pixels, each looked at.
   Posteriors label(const DepthImage& depth, const Camera& camera) const {
@@ -67,9 +79,42 @@ class PixelLabeller {
   }
 };
 
+/// What the labellers of a trained forest have in common, on whatever device they walk it.
+class TrainedLabeller : public PixelLabeller {
+ public:
+  const BodyModel& body() const override { return body_; }
+  bool has_background() const override { return has_background_; }
+  bool has_distributions() const override { return has_distributions_; }
+  const FacingModel& facing_model() const override { return facing_; }
+  const BoostedTrees& context() const override { return context_; }
+  const BoostedTrees& judge() const override { return judge_; }
+
+ protected:
+  /// Throws Error for an inconsistent forest (check(Forest)).
+  explicit TrainedLabeller(const Forest& forest);
+
+  int tree_count() const { return trees_; }
+  /// Returns where leaves have their logits, if they have some.
+  const LogitLayout& layout() const { return layout_; }
+
+  /// Throws Error for a picture of more than 16,000 pixels a side.
+  static void check_size(const DepthImage& depth);
+  /// Does the same, and gives `out` the size of the picture; the numbers are undefined.
+  void prepare(const DepthImage& depth, Posteriors& out) const;
+
+ private:
+  BodyModel body_;
+  bool has_background_, has_distributions_;
+  int classes_, trees_;
+  LogitLayout layout_;
+  FacingModel facing_;
+  BoostedTrees context_;
+  BoostedTrees judge_;
+};
+
 /// Labels on the processor (section 4.3, eq. 2): the posteriors of a pixel are the mean over the trees of the
 /// distributions in the leaves that it reaches.
-class ForestLabeller : public PixelLabeller {
+class ForestLabeller : public TrainedLabeller {
  public:
   /// Throws Error for an inconsistent forest (check(Forest)).
   explicit ForestLabeller(Forest forest);
@@ -77,12 +122,6 @@ class ForestLabeller : public PixelLabeller {
 
   /// Throws Error for a picture of more than 16,000 pixels a side.
   void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override;
-  const BodyModel& body() const override;
-  bool has_background() const override;
-  bool has_distributions() const override;
-  const FacingModel& facing_model() const override;
-  const BoostedTrees& context() const override;
-  const BoostedTrees& judge() const override;
 
  private:
   struct Packed;
@@ -99,6 +138,15 @@ struct LabelChoice {
   /// Optional. Pixels outside it are background and take no time.
   const Box* box = nullptr;
 };
+
+/// What posteriors weigh when the labels of a picture are chosen, in fixed point, so that every platform makes the same
+/// choice.
+struct ChoiceWeights {
+  std::int64_t part = 1024;  ///< of a part's posterior
+  std::int64_t background = 0;
+  std::int64_t margin = 0;  ///< weight by which a class must exceed the others to be sure
+};
+ChoiceWeights choice_weights(const LabelOptions& options, int trees);
 
 /// Returns the most likely class of each pixel, with the background written as kBackground. If the two best classes of
 /// a pixel differ by less than `unsure_margin` in probability, it takes that one of the nearly best classes which most

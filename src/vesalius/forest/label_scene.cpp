@@ -85,8 +85,13 @@ SceneLabels SceneLabeller::label_scene(const Frame& frame, StageClock& clock, Sc
     scene.planes = std::move(surfaces.planes);
     scene.flat = std::move(surfaces.pixels);
   };
+  scene.smoothed = !by_mode_;
+  bool is_smooth = false;
   const auto label = [&](const DepthImage& depth) {
-    labeller_->label_into(depth, frame.camera, options_.label.gate, scene.raw);
+    const float gate = options_.label.gate;
+    is_smooth = scene.smoothed &&
+                labeller_->label_and_smooth_into(depth, frame.camera, gate, options_.smooth, scene.raw, scene.smooth);
+    if (!is_smooth) labeller_->label_into(depth, frame.camera, gate, scene.raw);
   };
   if (labeller_->has_background()) {
     scene.shown = {};
@@ -100,8 +105,7 @@ SceneLabels SceneLabeller::label_scene(const Frame& frame, StageClock& clock, Sc
     label(scene.shown);
     clock.lap(Stage::label);
   }
-  scene.smoothed = !by_mode_;
-  if (scene.smoothed) {
+  if (scene.smoothed && !is_smooth) {
     const DepthImage& depth = scene.shown.empty() ? frame.depth : scene.shown;
     mean_filter(scene.raw, depth, frame.camera, options_.smooth, scene.smooth);
   }

@@ -1,16 +1,38 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "vesalius/forest/forest.h"
 #include "vesalius/forest/label_pixels.h"
 
 namespace vesalius {
 
-/// Returns a labeller with `forest` on `device`, which can only be "cpu" so far. All programs get their labellers here,
-/// so another device would be added in one place. Throws Error for an inconsistent forest and UsageError for a device
-/// that this build or this machine does not have.
-std::shared_ptr<const PixelLabeller> make_labeller(Forest forest, const std::string& device = "cpu");
+/// A kind of device besides the processor that labels pixels.
+struct LabellerDevice {
+  std::string name;  ///< as users write it: "cuda"
+  /// Returns a labeller on device `number`, from 0 on, of this kind. Throws Error for an inconsistent forest and
+  /// DeviceError where the device is not there or cannot take the forest.
+  std::function<std::shared_ptr<const PixelLabeller>(Forest forest, int number)> make;
+};
+
+/// The devices that a program was built with, and where it hears of what "auto" decided.
+struct LabellerDevices {
+  std::vector<LabellerDevice> kinds;
+  std::function<void(const std::string&)> note = {};  ///< may be called from any thread
+};
+
+/// Returns a labeller with `forest` on `device`:
+///   "cpu"               the processor
+///   "NAME", "NAME:N"    the first or N-th device (from 0 on) of a kind, e.g. "cuda:1"
+///   "auto"              the first device that can be had, otherwise the processor. A device that fails later is left
+///                       for good, with a note, and its pictures are labelled on the processor: with a gate above 1 the
+///                       same bits.
+/// All programs get their labellers here. Throws Error for an inconsistent forest, UsageError for a device that this
+/// build does not know and DeviceError for one that this machine does not have.
+std::shared_ptr<const PixelLabeller> make_labeller(Forest forest, const std::string& device = "cpu",
+                                                   const LabellerDevices& devices = {});
 
 }  // namespace vesalius

@@ -6,20 +6,10 @@
 #include <vector>
 
 #include "vesalius/base/image.h"
-#include "vesalius/forest/label_pixels.h"
+#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/smooth_window.h"
 
 namespace vesalius {
-
-/// The neighbours that smoothing uses: those in a square around the pixel, including itself, whose depth differs from
-/// its depth by at most `gate_mm`.
-struct SmoothWindow {
-  int each_way = 0;  ///< neighbours to each side, upwards and downwards
-  int spacing = 1;   ///< pixels from one neighbour to the next
-  int gate_mm = 0;
-
-  int reach() const { return each_way * spacing; }
-  int most() const { return (2 * each_way + 1) * (2 * each_way + 1); }
-};
 
 /// Calls `use(nu, nv)` for every neighbour of (u, v), itself included, inside window, picture and depth gate.
 template <class Use>

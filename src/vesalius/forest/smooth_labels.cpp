@@ -46,13 +46,6 @@ class EvenWindows {
   Image<std::uint8_t> run_;  ///< equal labels in a row that end here, at most 255
 };
 
-/// Returns how many bits a sum of posteriors must lose so that the sum over a window takes at most 16.
-int excess_bits(const Posteriors& posteriors, const SmoothWindow& window) {
-  int bits = 0;
-  while ((255 * posteriors.trees >> bits) * window.most() > 65535) ++bits;
-  return bits;
-}
-
 /// Does mean_filter without the lowest bits of all sums.
 void coarse_mean(const Posteriors& posteriors, const DepthImage& depth, const SmoothWindow& window, int bits,
                  Posteriors& out) {
@@ -73,26 +66,6 @@ void coarse_mean(const Posteriors& posteriors, const DepthImage& depth, const Sm
 }
 
 }  // namespace
-
-void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& visitor) {
-  visitor.option(
-      prefix + "window", o.window,
-      {"", 1, 31,
-       "Neighbours along a side of the smoothing window, 1 = none; an even number counts as the next odd one."});
-  visitor.option(
-      prefix + "spacing", o.spacing,
-      {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length; smoothing by mode takes 1."});
-  visitor.option(prefix + "depth-gate", o.depth_gate_mm,
-                 {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
-  visitor.option(prefix + "mode", o.mode,
-                 {"", 0, 1, "Smooth labels by their mode even if the forest has distributions."});
-}
-
-SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
-  constexpr float kSpacings = 140.F;  // number of spacings in the focal length
-  if (options.spacing == 0) options.spacing = std::max(1, static_cast<int>(std::lround(camera.fx / kSpacings)));
-  return options;
-}
 
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
   LabelImage out(labels.width(), labels.height(), kBackground);
@@ -125,8 +98,8 @@ LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const 
 void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Camera& camera,
                  const SmoothOptions& options, Posteriors& out) {
   out.resize_like(posteriors);
-  const SmoothWindow window{options.window / 2, spaced(options, camera).spacing, options.depth_gate_mm};
-  const int bits = excess_bits(posteriors, window);
+  const SmoothWindow window = smooth_window(options, camera);
+  const int bits = excess_bits(posteriors.trees, window);
   if (bits > 0) {
     coarse_mean(posteriors, depth, window, bits, out);
     return;

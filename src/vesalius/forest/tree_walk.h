@@ -6,7 +6,6 @@
 //   probe   one depth read. Holes and places outside the picture read as the convention says.
 //   walk    the way from the root to a leaf. It takes integers only, so that it ends in the same leaf on every machine.
 
-#include <algorithm>
 #include <cstdint>
 
 #include "vesalius/base/camera.h"
@@ -26,12 +25,13 @@ class OffsetScaler {
   /// Returns the scale at `depth_mm`, which must be above 0. It saturates at 32 pixels a unit: for units of 12 mm and a
   /// focal length of 525 pixels that is nearer than 20 cm.
   OffsetScale at(std::uint16_t depth_mm) const {
-    return {static_cast<std::int32_t>(std::min(unit_u_ / depth_mm, kMaxScale)),
-            static_cast<std::int32_t>(std::min(unit_v_ / depth_mm, kMaxScale))};
+    return {offset_scale(unit_u_, depth_mm), offset_scale(unit_v_, depth_mm)};
   }
+  /// Returns the scales that 1 mm of depth would have if they did not saturate.
+  double unit_u() const { return unit_u_; }
+  double unit_v() const { return unit_v_; }
 
  private:
-  static constexpr double kMaxScale = 32.0 * 65536.0;
   double unit_u_;
   double unit_v_;
 };

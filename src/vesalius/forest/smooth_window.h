@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+#include "vesalius/base/camera.h"
+#include "vesalius/base/options.h"
+
+namespace vesalius {
+
+struct SmoothOptions {
+  int window = 5;   ///< neighbours along a side of the square; an even number counts as the next odd one; 1 = none
+  int spacing = 0;  ///< pixels from one neighbour to the next when smoothing posteriors; 0: see `spaced`
+  int depth_gate_mm = 60;  ///< posteriors of neighbours further away than this in depth do not count
+  bool mode = false;       ///< smooth labels by their mode even where the forest has distributions
+};
+void visit_options(const std::string& prefix, SmoothOptions& options, OptionVisitor& visitor);
+
+/// Returns the options with a spacing. If it is 0, it becomes 1/140 of the focal length in pixels, rounded, at least 1,
+/// which is a step of 18 mm at 2.5 m.
+SmoothOptions spaced(SmoothOptions options, const Camera& camera);
+
+/// The neighbours that smoothing uses: those in a square around the pixel, including itself, whose depth differs from
+/// its depth by at most `gate_mm`.
+struct SmoothWindow {
+  int each_way = 0;  ///< neighbours to each side, upwards and downwards
+  int spacing = 1;   ///< pixels from one neighbour to the next
+  int gate_mm = 0;
+
+  int reach() const { return each_way * spacing; }
+  int most() const { return (2 * each_way + 1) * (2 * each_way + 1); }
+};
+
+/// Returns the window of mean_filter.
+SmoothWindow smooth_window(const SmoothOptions& options, const Camera& camera);
+
+/// Returns how many bits a sum over `trees` trees must lose so that the sum over a window takes at most 16.
+int excess_bits(int trees, const SmoothWindow& window);
+
+}  // namespace vesalius
