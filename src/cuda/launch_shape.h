@@ -1,0 +1,15 @@
+#pragma once
+
+namespace vesalius::gpu {
+
+/// How many threads run a kernel: `blocks_x` times `blocks_y` blocks.
+struct LaunchShape {
+  unsigned blocks_x = 1;
+  unsigned blocks_y = 1;
+  unsigned threads = 256;  ///< of a block
+};
+
+/// Most threads of a block: what every card of the last fifteen years can do.
+inline constexpr unsigned kMostThreads = 1024;
+
+}  // namespace vesalius::gpu
