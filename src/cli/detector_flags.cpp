@@ -37,7 +37,7 @@ PeopleOptions people_options(const std::string& options_file, const OptionFlags<
   return options;
 }
 
-DetectorFlags::DetectorFlags(CLI::App& command) : options_(command) {
+DetectorFlags::DetectorFlags(CLI::App& command) : device_(command, kDetectorGroup), options_(command) {
   command.add_option("-m,--model", model_, "Trained forest; without it the default.forest that comes with vesalius")
       ->type_name("FILE");
   command.add_option("--options", options_file_, "TOML file of detector options")
@@ -52,15 +52,15 @@ std::string DetectorFlags::model() const { return model_.empty() ? default_model
 
 PeopleOptions DetectorFlags::options() const { return people_options(options_file_, options_); }
 
-Forest DetectorFlags::forest() const {
+std::shared_ptr<const PixelLabeller> DetectorFlags::labeller() const {
   Forest forest = load_model(model());
   if (!body_.empty()) replace_body(forest, body_);
-  return forest;
+  return device_.make(std::move(forest));
 }
 
 Detector DetectorFlags::make() const {
   const DetectOptions detect = options().detect;
-  return Detector(forest(), detect);
+  return Detector(labeller(), detect);
 }
 
 }  // namespace vesalius::cli

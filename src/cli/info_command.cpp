@@ -47,7 +47,7 @@ Json part_facts() {
     facts[std::string(driver.scheme)] = driver.built ? "present" : "absent";
   }
   facts["mkv"] = has_mkv() ? "present" : "absent";
-  for (const char* name : {"k4a", "cuda"}) facts[name] = "absent";
+  facts["k4a"] = "absent";
   return facts;
 }
 

@@ -15,6 +15,8 @@ std::vector<Satellite> satellites() {
   };
 }
 
-std::vector<std::string> satellite_names() { return {"view", "cluster", "synth", "train", "evaluate", "assets"}; }
+std::vector<std::string> satellite_names() {
+  return {"view", "cluster", "synth", "train", "evaluate", "assets", "cuda"};
+}
 
 }  // namespace vesalius::cli

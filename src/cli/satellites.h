@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "vesalius/forest/make_labeller.h"
+
 namespace CLI {
 class App;
 }
@@ -20,6 +22,7 @@ struct Satellite {
   /// This function returns names and values that `vesalius info` prints; if it is null, only the satellite's name is
   /// printed.
   std::vector<std::pair<std::string, std::string>> (*facts)() = nullptr;
+  std::vector<LabellerDevice> devices = {};  ///< that label pixels
 };
 
 /// Returns the satellites of this build.

@@ -19,7 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::AnyOf;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::StartsWith;
 
@@ -136,6 +138,28 @@ TEST_F(Detect, WritesTheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(all.size(), 17U);  // five kinds for three frames, labels.json and the people
     EXPECT_TRUE(all == first) << threads << " threads";
   }
+}
+
+TEST_F(Detect, TakesTheProcessorWhereAnyDeviceWillDo) {
+  const auto json_on = [&](const std::string& device) {
+    const Outcome run = run_program("detect " + frames() + " -q -m " + model() + " --json - --device " + device);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, AnyOf(IsEmpty(), HasSubstr("note: cuda: "))) << device;
+    return run.out;
+  };
+  EXPECT_EQ(json_on("auto"), json_on("cpu"));
+}
+
+TEST_F(Detect, RefusesDevicesThatAreNotThere) {
+  const auto run_on = [&](const std::string& device) {
+    return run_program("detect " + frames() + " -m " + model() + " --device " + device);
+  };
+  const Outcome unknown = run_on("gpu");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("device \"gpu\" is not known to this build, expected \"cpu\", \"auto\""));
+  const Outcome none = run_on("cuda:999");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, StartsWith("vesalius: cuda"));
 }
 
 TEST_F(Detect, SavesTheRequestedPictures) {

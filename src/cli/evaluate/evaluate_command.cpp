@@ -12,6 +12,7 @@
 
 #include "cli/commands.h"
 #include "cli/detector_flags.h"
+#include "cli/device_flag.h"
 #include "cli/evaluate/sequence_trackers.h"
 #include "cli/evaluate/truth_bvh.h"
 #include "cli/evaluate/truth_recipe.h"
@@ -37,7 +38,6 @@
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
 #include "vesalius/base/parallel.h"
-#include "vesalius/forest/make_labeller.h"
 
 namespace vesalius::cli {
 namespace {
@@ -52,7 +52,7 @@ struct Request {
 };
 
 struct Arguments {
-  explicit Arguments(CLI::App& command) : detector_flags(command) {}
+  explicit Arguments(CLI::App& command) : device(command), detector_flags(command) {}
 
   std::vector<std::string> sources, recipes;
   RenderedTruth rendered;
@@ -60,6 +60,7 @@ struct Arguments {
   std::optional<double> rate_hz;
   std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
       fit_score, fit_judge, fit_context, fit_trust, fit_stances;
+  DeviceFlag device;
   OptionFlags<PeopleOptions> detector_flags;
   int step = 1;
   double turn_deg = 0.0;
@@ -314,7 +315,7 @@ void run(const Arguments& arguments, const std::string& command) {
   const FrameScorer::Options scored{evaluation.options.detect, labels_only, arguments.joint_set, fits_context};
   std::vector<Variant> variants;
   if (arguments.ablation) variants = ablation_variants(forest, scored);
-  const std::shared_ptr<const PixelLabeller> labeller = make_labeller(std::move(forest));
+  const std::shared_ptr<const PixelLabeller> labeller = arguments.device.make(std::move(forest));
   const FrameScorer scorer(labeller, scored);
   SequenceTrackerFactory trackers;
   if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options);

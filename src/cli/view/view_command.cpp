@@ -19,7 +19,6 @@
 #include "cli/view/open_browser.h"
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/base/parallel.h"
-#include "vesalius/forest/make_labeller.h"
 #include "view/viewer.h"
 
 namespace vesalius::cli {
@@ -94,7 +93,7 @@ void run(const Arguments& arguments) {
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
   const PeopleOptions people = arguments.detector.options();
-  const auto labeller = make_labeller(arguments.detector.forest());
+  const auto labeller = arguments.detector.labeller();
   SourceOptions camera = arguments.camera;
   std::atomic<Viewer*> page = nullptr;  // cameras speak in the player's thread
   camera.say = [&page](const std::string& line) {

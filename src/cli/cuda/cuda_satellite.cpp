@@ -1,0 +1,42 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/satellites.h"
+#include "cuda/cuda_device.h"
+#include "cuda/device_labeller.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::cli {
+namespace {
+
+/// Returns what `vesalius info` says of cards.
+std::vector<std::pair<std::string, std::string>> facts() {
+  if (!gpu::has_cuda()) return {{"kernels", "absent"}};
+  std::vector<std::pair<std::string, std::string>> found{{"kernels", "present"}};
+  try {
+    int number = 0;
+    for (const gpu::CudaFacts& card : gpu::cuda_devices()) {
+      found.emplace_back(fmt::format("cuda:{}", number++),
+                         fmt::format("{}, {:.0f} GiB, {} multiprocessors, compute capability {}.{}", card.name,
+                                     static_cast<double>(card.memory_bytes) / (1U << 30U), card.multiprocessors,
+                                     card.major, card.minor));
+    }
+  } catch (const DeviceError& e) {
+    found.emplace_back("cards", e.what());
+  }
+  return found;
+}
+
+std::shared_ptr<const PixelLabeller> make(const Forest& forest, int number) {
+  return std::make_shared<gpu::DeviceLabeller>(forest, gpu::open_cuda_device(number));
+}
+
+}  // namespace
+
+Satellite cuda_satellite() { return {.name = "cuda", .commands = {}, .facts = facts, .devices = {{"cuda", make}}}; }
+
+}  // namespace vesalius::cli
