@@ -10,6 +10,11 @@ if(VESALIUS_CUDA AND NOT VESALIUS_SANITIZE)
     # Kept as code for later cards; made for A100, RTX 30, Orin and H100.
     set(CMAKE_CUDA_ARCHITECTURES 75-virtual 80 86 87 90)
     enable_language(CUDA)
+    # CMake before 3.25.2 does not know this of nvcc 12 and newer.
+    if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
+      set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
+      set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
+    endif()
     set(VESALIUS_HAS_CUDA TRUE)
   elseif(NOT VESALIUS_CUDA STREQUAL AUTO)
     message(FATAL_ERROR "VESALIUS_CUDA=${VESALIUS_CUDA}: no nvcc; say where it is by -DCMAKE_CUDA_COMPILER=PATH")

@@ -57,8 +57,10 @@ std::vector<Frame> read_frames(const std::string& from) {
   return frames;
 }
 
-Json count(const Forest& forest, const Frame& frame) {
-  const WalkReads reads = count_reads(forest, frame.depth, frame.camera);
+Json count(const Forest& forest, const Frame& frame, float gate) {
+  Posteriors posteriors;
+  ForestLabeller(forest).label_into(frame.depth, frame.camera, gate, posteriors);
+  const WalkReads reads = count_reads(forest, frame.depth, frame.camera, posteriors.settled);
   return {{"width", frame.camera.width},
           {"height", frame.camera.height},
           {"trees", forest.trees.size()},
@@ -154,7 +156,9 @@ void run(const Arguments& arguments) {
   keep_freed_memory();
   const Forest forest = load_model(VESALIUS_SOURCE_DIR "/data/models/default.forest");
   const std::vector<Frame> frames = read_frames(arguments.frames);
-  Json figures{{"counts", count(forest, frames.front())}};
+  constexpr float kNoGate = 2.F;
+  Json figures{{"counts", count(forest, frames.front(), kNoGate)},
+               {"gated_counts", count(forest, frames.front(), LabelOptions{}.gate)}};
   if (!arguments.count_only) {
     std::shared_ptr<gpu::Device> device;
     if (arguments.simulated) {

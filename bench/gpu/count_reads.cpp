@@ -70,13 +70,13 @@ void walk_group(const Tree& tree, std::uint64_t node_bytes, const FeatureConvent
 
 }  // namespace
 
-WalkReads count_reads(const Forest& forest, const DepthImage& depth, const Camera& camera) {
+WalkReads count_reads(const Forest& forest, const DepthImage& depth, const Camera& camera, const Mask& settled) {
   WalkReads reads;
   const OffsetScaler scaler(forest.convention, camera);
   std::vector<Pixel> pixels;
   for (int v = 0; v < depth.height(); ++v) {
     for (int u = 0; u < depth.width(); ++u) {
-      if (depth(u, v) != 0) pixels.push_back({u, v});
+      if (depth(u, v) != 0 && (settled.empty() || settled(u, v) == 0)) pixels.push_back({u, v});
     }
   }
   reads.pixels = pixels.size();

@@ -42,11 +42,16 @@ ISSUE = 0.5  # share of the four instructions a cycle that a multiprocessor reac
 SECTORS_A_CYCLE = 4  # of the first-level cache: 128 bytes
 LEVEL1_HITS = 0.7  # of probes and nodes: neighbouring pixels look at neighbouring places
 SECTOR = 32
-# Instructions of a thread, counted in the code that nvcc makes (cuobjdump -sass) and rounded.
-INSTRUCTIONS_A_LEVEL = 60
-INSTRUCTIONS_A_LOGIT = 90
-INSTRUCTIONS_A_MEAN = 12
+# Instructions of a thread in the loops of the code for sm_90 (tools/cuda/loops.py).
+INSTRUCTIONS_A_LEVEL = 69
+INSTRUCTIONS_A_TREE = 18  # of four logits
+INSTRUCTIONS_A_PLACE = 110  # from the sum of the trees to the posterior
+INSTRUCTIONS_A_PIXEL = 300  # what one of the pixel's threads does alone
+INSTRUCTIONS_A_NEIGHBOUR = 9.6  # of two classes
+INSTRUCTIONS_TO_FIND_ONE = 142
+INSTRUCTIONS_A_CLASS = 28  # of choosing
 NEIGHBOURS = 25
+LANES = 16  # threads of a pixel
 
 
 def kernel_us(card, occupancy, instructions, sectors, level2_bytes, memory_bytes):
@@ -62,20 +67,21 @@ def predict(card, counts, kernels):
 
     pixels, trees, classes = counts["pixels"], counts["trees"], counts["classes"]
     places = classes + 3 * counts["headings"]
-    warps = pixels / 32
     sectors = counts["node_sectors"] + counts["probe_sectors"]
     touched = counts["touched_bytes"] + 2 * pixels
     misses = (1 - LEVEL1_HITS) * sectors * SECTOR
+    of_logits = (INSTRUCTIONS_A_TREE * trees * -(-places // 4) + INSTRUCTIONS_A_PLACE * places + LANES * INSTRUCTIONS_A_PIXEL) / 32
+    of_neighbour = (INSTRUCTIONS_A_NEIGHBOUR * LANES + INSTRUCTIONS_TO_FIND_ONE) / 32
     fits = touched + counts["logit_bytes"] < card.level2_mb * 1e6
     times = {
         "walk": kernel_us(card, occupancy("Walk"), INSTRUCTIONS_A_LEVEL * counts["warp_levels"], sectors, misses,
                           touched if fits else misses),
-        "logits": kernel_us(card, occupancy("Logit"), INSTRUCTIONS_A_LOGIT * pixels * -(-places // 32),
-                            pixels * trees * 2 * 2, pixels * trees * 64, pixels * (trees * 64 + 2 * classes)),
-        "mean": kernel_us(card, occupancy("Mean"), INSTRUCTIONS_A_MEAN * NEIGHBOURS * pixels, pixels * NEIGHBOURS * 2,
+        "logits": kernel_us(card, occupancy("Logit"), pixels * of_logits, pixels * trees * 3, pixels * trees * 64,
+                            pixels * (trees * 64 + 2 * places)),
+        "mean": kernel_us(card, occupancy("Mean"), pixels * NEIGHBOURS * of_neighbour, pixels * NEIGHBOURS * 2,
                           pixels * NEIGHBOURS * 2 * classes * (1 - LEVEL1_HITS), pixels * 4 * classes),
-        "choose": kernel_us(card, occupancy("ChooseAlone"), warps * 8 * classes, pixels * classes / 8, pixels * 2 * classes,
-                            pixels * 2 * classes),
+        "choose": kernel_us(card, occupancy("ChooseAlone"), pixels / 32 * INSTRUCTIONS_A_CLASS * classes, pixels * classes,
+                            pixels * 2 * classes, pixels * 2 * classes),
         "others": 4 * START_US,
     }
     area = counts["width"] * counts["height"]
@@ -83,15 +89,8 @@ def predict(card, counts, kernels):
     return times
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("counts", type=Path)
-    parser.add_argument("kernels", type=Path)
-    parser.add_argument("--measured", type=Path, metavar="FILE")
-    arguments = parser.parse_args()
-    counts = json.loads(arguments.counts.read_text())["counts"]
-    kernels = json.loads(arguments.kernels.read_text())
-    print(f"{counts['width']}x{counts['height']}, {counts['pixels']:,} pixels with a reading, {counts['trees']} trees: "
+def print_table(what, counts, kernels):
+    print(f"{what}: {counts['width']}x{counts['height']}, {counts['pixels']:,} pixels walked, {counts['trees']} trees: "
           f"{counts['nodes'] / counts['pixels'] / counts['trees']:.1f} nodes a tree, "
           f"{counts['node_sectors'] / counts['warp_levels']:.1f} sectors of nodes and "
           f"{counts['probe_sectors'] / counts['warp_levels']:.1f} of depth a level of 32 pixels, "
@@ -105,8 +104,20 @@ def main():
         batched = max(kernels_us - START_US * (len(names) + 2), times["copies"] - 2 * START_US)
         print(f"| {card.name} | " + " | ".join(f"{times[name]:.0f}" for name in names) +
               f" | {kernels_us + times['copies']:.0f} | {1e6 / batched:,.0f} |")
+    print()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("counts", type=Path)
+    parser.add_argument("kernels", type=Path)
+    parser.add_argument("--measured", type=Path, metavar="FILE")
+    arguments = parser.parse_args()
+    figures = json.loads(arguments.counts.read_text())
+    kernels = json.loads(arguments.kernels.read_text())
+    for what, key in (("Every pixel is looked at", "counts"), ("With the gate", "gated_counts")):
+        print_table(what, figures[key], kernels)
     if arguments.measured:
-        print()
         for device, ms in json.loads(arguments.measured.read_text())["measured"]["kernel_ms"].items():
             print(f"measured {device}: {1e3 * ms:.0f} us")
     return 0

@@ -265,7 +265,7 @@ class DeviceLabeller::Workspace {
 
 DeviceLabeller::DeviceLabeller(const Forest& forest, std::shared_ptr<Device> device, DeviceLabellerOptions options)
     : TrainedLabeller(forest), options_(options), device_(std::move(device)), forest_(forest, device_) {
-  if (options.threads < kLogitLanes || options.threads > kMostThreads) {
+  if (options.threads < kLeastThreads || options.threads > kMostThreads) {
     throw Error(std::to_string(options.threads) + " threads a block, expected 32 to 1024");
   }
   if (layout().size() > static_cast<int>(kSharedLogits)) {

@@ -32,8 +32,9 @@ GPU_FUNCTION const std::uint16_t* depth_of(const Pictures& pictures, int picture
 }
 
 GPU_FUNCTION int depth_at(const Pictures& pictures, int picture, int u, int v) {
-  return depth_of(pictures, picture)[static_cast<std::size_t>(v) * static_cast<std::size_t>(pictures.stride) +
-                                     static_cast<std::size_t>(u)];
+  return depth_of(
+      pictures,
+      picture)[static_cast<std::size_t>(v) * static_cast<std::size_t>(pictures.stride) + static_cast<std::size_t>(u)];
 }
 
 /// The place of a pixel among all, as sums and masks have them.
@@ -74,8 +75,8 @@ GPU_KERNEL void run_kernel(const SelectArguments a) {
     const int depth_mm = depth_at(a.pictures, at.picture, u, v);
     const OffsetUnits unit = a.units[at.picture];
     a.asked.pixels[found[1] + slots[thread]] = {static_cast<std::uint16_t>(u), static_cast<std::uint16_t>(v),
-                                                static_cast<std::uint32_t>(at.picture),
-                                                offset_scale(unit.u, depth_mm), offset_scale(unit.v, depth_mm)};
+                                                static_cast<std::uint32_t>(at.picture), offset_scale(unit.u, depth_mm),
+                                                offset_scale(unit.v, depth_mm)};
   }
 }
 
@@ -98,12 +99,9 @@ struct CompactNodes {
   static constexpr std::uint32_t kWords = 2;
   static GPU_FUNCTION WalkNode read(const std::uint32_t* words, std::uint32_t link_bits) {
     const auto w = *reinterpret_cast<const TwoWords*>(words);
-    return {static_cast<int>(w.word[0] & 255U) - 128,
-            static_cast<int>(w.word[0] >> 8U & 255U) - 128,
-            static_cast<int>(w.word[0] >> 16U & 255U) - 128,
-            static_cast<int>(w.word[0] >> 24U) - 128,
-            static_cast<std::int32_t>(w.word[1]) >> link_bits,
-            w.word[1] & ((1U << link_bits) - 1U)};
+    return {static_cast<int>(w.word[0] & 255U) - 128,          static_cast<int>(w.word[0] >> 8U & 255U) - 128,
+            static_cast<int>(w.word[0] >> 16U & 255U) - 128,   static_cast<int>(w.word[0] >> 24U) - 128,
+            static_cast<std::int32_t>(w.word[1]) >> link_bits, w.word[1] & ((1U << link_bits) - 1U)};
   }
 };
 
@@ -112,12 +110,9 @@ struct WideNodes {
   static constexpr std::uint32_t kWords = 4;
   static GPU_FUNCTION WalkNode read(const std::uint32_t* words, std::uint32_t /*link_bits*/) {
     const auto w = *reinterpret_cast<const FourWords*>(words);
-    return {static_cast<std::int16_t>(w.word[0]),
-            static_cast<std::int16_t>(w.word[0] >> 16U),
-            static_cast<std::int16_t>(w.word[1]),
-            static_cast<std::int16_t>(w.word[1] >> 16U),
-            static_cast<std::int32_t>(w.word[2]),
-            w.word[3]};
+    return {static_cast<std::int16_t>(w.word[0]), static_cast<std::int16_t>(w.word[0] >> 16U),
+            static_cast<std::int16_t>(w.word[1]), static_cast<std::int16_t>(w.word[1] >> 16U),
+            static_cast<std::int32_t>(w.word[2]), w.word[3]};
   }
 };
 
@@ -161,8 +156,8 @@ GPU_KERNEL void run_kernel(const AddArguments a) {
     const std::uint32_t i = block_x() * threads_in_block() + thread;
     if (i >= asked) continue;
     const AskedPixel pixel = a.asked.pixels[i];
-    std::uint16_t* sums =
-        a.sums + place_of(a.pictures, static_cast<int>(pixel.picture), pixel.u, pixel.v) * static_cast<std::size_t>(a.classes);
+    std::uint16_t* sums = a.sums + place_of(a.pictures, static_cast<int>(pixel.picture), pixel.u, pixel.v) *
+                                       static_cast<std::size_t>(a.classes);
     for (int t = 0; t < a.trees; ++t) {
       const std::size_t leaf = a.reached[static_cast<std::size_t>(t) * a.most_asked + i];
       const std::uint8_t* label = a.leaves + leaf * 2 * kLeafClasses;
@@ -239,7 +234,7 @@ GPU_KERNEL void run_kernel(const LogitArguments a) {
   GPU_SHARED(float, values, kSharedLogits);
   GPU_SHARED(std::int32_t, tops, kMostPixels * G::kCount);
   GPU_SHARED(std::int32_t, fixed, kMostPixels * G::kCount);
-  GPU_SHARED(float, scales, kMostPixels * G::kCount);
+  GPU_SHARED(float, scales, kMostPixels* G::kCount);
   GPU_SHARED(float, turn_scale, kMostPixels);
   const auto pixels = static_cast<unsigned>(a.pixels_in_block), places = static_cast<unsigned>(a.places);
   const std::uint32_t asked = *a.asked.count;
@@ -255,15 +250,20 @@ GPU_KERNEL void run_kernel(const LogitArguments a) {
   GPU_PHASE(thread) {
     const unsigned pixel = thread / kLogitLanes;
     if (pixel >= here) continue;
-    for (unsigned p = thread % kLogitLanes; p < places; p += kLogitLanes) {
-      int sum = 0;
+    for (unsigned p = thread % kLogitLanes * 4; p < places; p += 4 * kLogitLanes) {
+      int sums[4] = {0, 0, 0, 0};
       for (int t = 0; t < a.trees; ++t) {
         const std::uint32_t leaf = a.reached[static_cast<std::size_t>(t) * a.most_asked + first + pixel];
-        sum += a.logits[static_cast<std::size_t>(leaf) * a.leaf_bytes + p];
+        // A leaf ends with zeros, so there are four more wherever there is one.
+        const auto four =
+            *reinterpret_cast<const std::int32_t*>(a.logits + static_cast<std::size_t>(leaf) * a.leaf_bytes + p);
+        for (int k = 0; k < 4; ++k) sums[k] += static_cast<std::int8_t>(four >> (8 * k));
       }
-      const float value = static_cast<float>(sum) * a.unit;
-      values[pixel * places + p] = value;
-      raise(&tops[pixel * G::kCount + a.groups[p]], ordered(value));
+      for (unsigned k = 0; k < 4 && p + k < places; ++k) {
+        const float value = static_cast<float>(sums[k]) * a.unit;
+        values[pixel * places + p + k] = value;
+        raise(&tops[pixel * G::kCount + a.groups[p + k]], ordered(value));
+      }
     }
   }
   GPU_PHASE(thread) {
@@ -344,7 +344,8 @@ GPU_KERNEL void run_kernel(const GateArguments a) {
 
 GPU_FUNCTION bool is_shut(const SettleArguments& a, const PixelAt& at) {
   const int columns = gate_columns(a.pictures), rows = gate_rows(a.pictures);
-  const std::uint8_t* states = a.states + static_cast<std::size_t>(at.picture) * static_cast<std::size_t>(columns * rows);
+  const std::uint8_t* states =
+      a.states + static_cast<std::size_t>(at.picture) * static_cast<std::size_t>(columns * rows);
   const int left = at.u / kGateStep, above = at.v / kGateStep;
   int right = (at.u + kGateStep - 1) / kGateStep, below = (at.v + kGateStep - 1) / kGateStep;
   right = right < columns ? right : columns - 1;
@@ -397,15 +398,63 @@ GPU_KERNEL void run_kernel(const SettleArguments a) {
   }
 }
 
+/// The classes of a pixel one by one, and two by two where there is an even number. The halves of a sum of two stay
+/// below 2^16, as `bits` sees to.
+struct OneClass {
+  using Value = std::uint16_t;
+  static constexpr std::uint32_t kClasses = 1;
+  static GPU_FUNCTION std::uint32_t without(std::uint32_t x, int bits) { return x >> bits; }
+  static GPU_FUNCTION std::uint32_t mean(std::uint32_t sum, std::uint32_t count, int bits) {
+    return sum / count << bits;
+  }
+};
+struct TwoClasses {
+  using Value = std::uint32_t;
+  static constexpr std::uint32_t kClasses = 2;
+  static GPU_FUNCTION std::uint32_t without(std::uint32_t x, int bits) {
+    return x >> bits & (0xFFFFU >> bits) * 0x10001U;
+  }
+  static GPU_FUNCTION std::uint32_t mean(std::uint32_t sum, std::uint32_t count, int bits) {
+    return (sum & 0xFFFFU) / count << bits | ((sum >> 16U) / count << bits) << 16U;
+  }
+};
+
+/// The lane of a pixel takes every kMeanLanes-th of the pixel's values.
+template <class Classes, class Neighbours>
+GPU_FUNCTION void mean_of_pixel(const MeanArguments& a, const PixelAt& at, unsigned lane, unsigned first,
+                                unsigned count, const Neighbours& neighbours) {
+  using Value = typename Classes::Value;
+  const std::uint32_t values = static_cast<std::uint32_t>(a.classes) / Classes::kClasses;
+  const auto* all = reinterpret_cast<const Value*>(a.sums);
+  const Value* picture = all + place_of(a.pictures, at.picture, 0, 0) * values;
+  const Value* own = all + static_cast<std::size_t>(at.index) * values;
+  Value* out = reinterpret_cast<Value*>(a.means) + static_cast<std::size_t>(at.index) * values;
+  const bool settled = a.settled != nullptr && a.settled[at.index] != 0;
+  const bool reads = depth_at(a.pictures, at.picture, at.u, at.v) != 0;
+  for (std::uint32_t c = lane; c < values; c += kMeanLanes) {
+    if (settled || !reads) {
+      out[c] = settled ? own[c] : Value{0};
+      continue;
+    }
+    std::uint32_t sum = 0, near = 0;
+    for (unsigned n = 0; n < count; ++n) {
+      const std::int32_t place = neighbours[first + n];
+      if (place < 0) continue;
+      sum += Classes::without(picture[static_cast<std::size_t>(place) * values + c], a.bits);
+      ++near;
+    }
+    out[c] = static_cast<Value>(Classes::mean(sum, near, a.bits));
+  }
+}
+
 /// First the block finds which neighbours count, then neighbouring threads add up neighbouring classes.
 GPU_KERNEL void run_kernel(const MeanArguments a) {
-  constexpr std::int32_t kNone = -1;
-  GPU_SHARED(std::int32_t, neighbours, kSharedNeighbours);  // within the picture; [pixel][neighbour]
+  GPU_SHARED(std::int32_t, neighbours, kSharedNeighbours);  // within the picture, or below 0; [pixel][neighbour]
   const auto pixels = static_cast<unsigned>(a.pixels_in_block), side = static_cast<unsigned>(2 * a.each_way + 1);
   GPU_PHASE(thread) {
     for (unsigned i = thread; i < pixels * side * side; i += threads_in_block()) {
       const unsigned neighbour = i % (side * side);
-      std::int32_t place = kNone;
+      std::int32_t place = -1;
       PixelAt at;
       if (find_pixel(a.pictures, block_x(), i / (side * side), pixels, at)) {
         const int u = at.u + (static_cast<int>(neighbour % side) - a.each_way) * a.spacing;
@@ -420,24 +469,13 @@ GPU_KERNEL void run_kernel(const MeanArguments a) {
     }
   }
   GPU_LAST_PHASE(thread) {
-    const unsigned pixel = thread / kMeanLanes;
+    const unsigned pixel = thread / kMeanLanes, count = side * side;
     PixelAt at;
     if (pixel >= pixels || !find_pixel(a.pictures, block_x(), pixel, pixels, at)) continue;
-    const bool reads = depth_at(a.pictures, at.picture, at.u, at.v) != 0;
-    const bool settled = a.settled != nullptr && a.settled[at.index] != 0;
-    const auto classes = static_cast<std::size_t>(a.classes);
-    const std::uint16_t* picture = a.sums + place_of(a.pictures, at.picture, 0, 0) * classes;
-    const std::uint16_t* own = a.sums + at.index * classes;
-    for (std::size_t c = thread % kMeanLanes; c < classes; c += kMeanLanes) {
-      std::uint32_t sum = 0, count = 0;
-      for (unsigned n = 0; reads && !settled && n < side * side; ++n) {
-        const std::int32_t place = neighbours[pixel * side * side + n];
-        if (place == kNone) continue;
-        sum += static_cast<std::uint32_t>(picture[static_cast<std::size_t>(place) * classes + c]) >> a.bits;
-        ++count;
-      }
-      const std::uint32_t mean = count > 0 ? sum / count << a.bits : 0;
-      a.means[at.index * classes + c] = settled ? own[c] : static_cast<std::uint16_t>(mean);
+    if (a.classes % 2 == 0) {
+      mean_of_pixel<TwoClasses>(a, at, thread % kMeanLanes, pixel * count, count, neighbours);
+    } else {
+      mean_of_pixel<OneClass>(a, at, thread % kMeanLanes, pixel * count, count, neighbours);
     }
   }
 }

@@ -152,9 +152,10 @@ struct AskNeighboursArguments {
 using KernelCall = std::variant<SelectArguments, WalkArguments, AddArguments, LogitArguments, GateArguments,
                                 SettleArguments, MeanArguments, ChooseAloneArguments, AskNeighboursArguments>;
 
-/// Threads that share a pixel: of a warp, so that they read a leaf's logits or a pixel's sums together.
-inline constexpr unsigned kLogitLanes = 32;
-inline constexpr unsigned kMeanLanes = 32;
+/// Threads that share a pixel, neighbours so that they read a leaf's logits or a pixel's sums together: four logits
+/// each, two classes each.
+inline constexpr unsigned kLogitLanes = 16;
+inline constexpr unsigned kMeanLanes = 16;
 /// What a block has room for in shared memory.
 inline constexpr unsigned kSharedLogits = 2048;
 inline constexpr unsigned kSharedNeighbours = 2048;

@@ -11,5 +11,7 @@ struct LaunchShape {
 
 /// Most threads of a block: what every card of the last fifteen years can do.
 inline constexpr unsigned kMostThreads = 1024;
+/// A warp: fewer would leave lanes idle.
+inline constexpr unsigned kLeastThreads = 32;
 
 }  // namespace vesalius::gpu
