@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,8 +11,22 @@
 namespace CLI {
 class App;
 }
+namespace vesalius {
+class Executor;
+class TrainingSet;
+}  // namespace vesalius
 
 namespace vesalius::cli {
+
+/// Makes an executor over the sets, which grows at most so many trees at a time (train/local_executor.h).
+using MakeExecutor = std::function<std::unique_ptr<Executor>(const std::vector<TrainingSet*>&, int trees_at_once)>;
+
+/// A kind of device besides the processor that trains.
+struct TrainerDevice {
+  std::string name;
+  /// Opens device `number`. Throws DeviceError if it is not there.
+  std::function<MakeExecutor(int number)> open;
+};
 
 /// A part of the program that a build may leave out, by VESALIUS_SYNTH, _TRAIN, _EVAL and _ASSETS of CMakeLists.txt.
 struct Satellite {
@@ -23,6 +39,7 @@ struct Satellite {
   /// printed.
   std::vector<std::pair<std::string, std::string>> (*facts)() = nullptr;
   std::vector<LabellerDevice> devices = {};  ///< that label pixels
+  std::vector<TrainerDevice> trainers = {};
 };
 
 /// Returns the satellites of this build.

@@ -24,7 +24,12 @@ DeviceArray<T> uploaded(const std::shared_ptr<Device>& device, Stream& stream, c
   return array;
 }
 
-/// Returns the group of each place of a leaf's logits (kernels.cuh, LogitGroups).
+unsigned blocks_for(std::uint32_t threads, unsigned of_block) {
+  return std::max(1U, (threads + of_block - 1) / of_block);
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> groups_of(const LogitLayout& layout) {
   std::vector<std::uint8_t> groups = layout.side;
   if (layout.background) groups.push_back(kSides);
@@ -32,12 +37,6 @@ std::vector<std::uint8_t> groups_of(const LogitLayout& layout) {
     groups.insert(groups.end(), layout.headings, static_cast<std::uint8_t>(kSides + 1 + s));
   return groups;
 }
-
-unsigned blocks_for(std::uint32_t threads, unsigned of_block) {
-  return std::max(1U, (threads + of_block - 1) / of_block);
-}
-
-}  // namespace
 
 DeviceForest::DeviceForest(const Forest& forest, const std::shared_ptr<Device>& device)
     : convention_(forest.convention), logit_unit_(forest.logit_unit), headings_(forest.headings) {

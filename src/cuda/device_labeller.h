@@ -21,6 +21,9 @@ struct DeviceLabellerOptions {
   std::uint32_t batch_pixels = 1U << 21U;
 };
 
+/// Returns the group of each place of a leaf's logits (kernels.cuh, LogitGroups).
+std::vector<std::uint8_t> groups_of(const LogitLayout& layout);
+
 /// A forest in a device's memory.
 class DeviceForest {
  public:

@@ -16,6 +16,8 @@
 //   add(place, value)                atomic; returns what was there before
 //   raise(place, value)              atomic; the larger of both
 //   nearest(x)                       the nearest integer, the even one of two
+//   rounded(x)                       the nearest integer, of two the one further from zero
+//   logarithm(x)                     for display only: its last bits differ from card to card
 //   bits_as_float(x)
 
 #include <cstdint>
@@ -35,7 +37,13 @@ GPU_FUNCTION unsigned block_y() { return blockIdx.y; }
 GPU_FUNCTION unsigned threads_in_block() { return blockDim.x; }
 GPU_FUNCTION std::uint32_t add(std::uint32_t* place, std::uint32_t value) { return atomicAdd(place, value); }
 GPU_FUNCTION std::int32_t add(std::int32_t* place, std::int32_t value) { return atomicAdd(place, value); }
+GPU_FUNCTION void add(std::uint64_t* place, std::uint64_t value) {
+  static_assert(sizeof(unsigned long long) == sizeof(std::uint64_t));
+  atomicAdd(reinterpret_cast<unsigned long long*>(place), static_cast<unsigned long long>(value));
+}
 GPU_FUNCTION void raise(std::int32_t* place, std::int32_t value) { atomicMax(place, value); }
+GPU_FUNCTION std::int32_t rounded(float x) { return static_cast<std::int32_t>(roundf(x)); }
+GPU_FUNCTION float logarithm(float x) { return logf(x); }
 GPU_FUNCTION std::int32_t nearest(float x) { return __float2int_rn(x); }
 GPU_FUNCTION float bits_as_float(std::int32_t x) { return __int_as_float(x); }
 GPU_FUNCTION std::int32_t float_as_bits(float x) { return __float_as_int(x); }
@@ -73,6 +81,8 @@ GPU_FUNCTION void raise(std::int32_t* place, std::int32_t value) {
   }
 }
 GPU_FUNCTION std::int32_t nearest(float x) { return static_cast<std::int32_t>(std::nearbyint(x)); }
+GPU_FUNCTION std::int32_t rounded(float x) { return static_cast<std::int32_t>(std::lround(x)); }
+GPU_FUNCTION float logarithm(float x) { return std::log(x); }
 GPU_FUNCTION float bits_as_float(std::int32_t x) { return std::bit_cast<float>(x); }
 GPU_FUNCTION std::int32_t float_as_bits(float x) { return std::bit_cast<std::int32_t>(x); }
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <variant>
 
+#include "cuda/train_kernels.h"
+
 namespace vesalius::gpu {
 
 /// Depth in mm, [picture][row][column].
@@ -149,8 +151,12 @@ struct AskNeighboursArguments {
   std::uint8_t* labels = nullptr;  ///< kBackground where there is no part
 };
 
-using KernelCall = std::variant<SelectArguments, WalkArguments, AddArguments, LogitArguments, GateArguments,
-                                SettleArguments, MeanArguments, ChooseAloneArguments, AskNeighboursArguments>;
+using KernelCall =
+    std::variant<SelectArguments, WalkArguments, AddArguments, LogitArguments, GateArguments, SettleArguments,
+                 MeanArguments, ChooseAloneArguments, AskNeighboursArguments, ScaleArguments, RelabelArguments,
+                 RowsArguments, EvaluateArguments, RangesArguments, FillArguments, CountArguments, BestArguments,
+                 CollectArguments, RouteArguments, CountRightArguments, MoveArguments, FindLeavesArguments,
+                 LeafWeightsArguments, GradientArguments>;
 
 /// Threads that share a pixel, neighbours so that they read a leaf's logits or a pixel's sums together: four logits
 /// each, two classes each.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cuda/kernels.cuh"
+#include "cuda/train_kernels.cuh"
 #include "vesalius/base/error.h"
 
 namespace vesalius::gpu {

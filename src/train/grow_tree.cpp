@@ -95,29 +95,30 @@ class TreeDriver {
       const NodeValues& of_node = values[n - batch.begin];
       tasks.push_back({{of_node.ranges, bins_of(grown_.level()[n])}, ClassIndex(of_node.class_counts)});
     }
-    const std::vector<SplitHistogram> histograms = shards_.histograms(batch, tasks);
-    std::vector<BinSplit> found;
+    std::vector<int> least;
+    for (std::int32_t n = batch.begin; n < batch.end; ++n) {
+      least.push_back(least_samples(grown_.level()[n].node, options_.leaf));
+    }
+    const std::vector<BinChoice> best =
+        shards_.best_bins(batch, tasks, least, block_candidates(options_.split, block), entropy_);
     std::vector<ValueInterval> intervals;
     for (std::int32_t n = batch.begin; n < batch.end; ++n) {
       const int i = n - batch.begin;
-      const BinSplit best = best_split(histograms[i], block_candidates(options_.split, block), tasks[i].classes,
-                                       least_samples(grown_.level()[n].node, options_.leaf), entropy_);
-      if (best.candidate < 0) continue;
-      found.push_back(best);
-      intervals.push_back(beside(best, tasks[i].binning, n));
+      if (best[i].split.candidate >= 0) intervals.push_back(beside(best[i].split, tasks[i].binning, n));
     }
-    if (found.empty()) return;
+    if (intervals.empty()) return;
     std::vector<IntervalValues> beside_split = shards_.values_in(intervals);
     std::vector<NodeSplit> splits;
-    for (std::size_t f = 0; f < found.size(); ++f) {
+    for (std::size_t f = 0; f < intervals.size(); ++f) {
       const std::int32_t node = intervals[f].node;
       const int i = node - batch.begin;
       const OpenNode& open = grown_.level()[node];
-      const ThresholdSplit refined = refine_split(std::move(beside_split[f]), found[f], histograms[i], tasks[i].classes,
-                                                  least_samples(open.node, options_.leaf), entropy_);
-      TreeNode split = node_candidates(convention_, options_, tree_, open.node.number, block).node(found[f].candidate);
+      const int candidate = best[i].split.candidate;
+      const ThresholdSplit refined =
+          refine_split(std::move(beside_split[f]), best[i], tasks[i].classes, least[i], entropy_);
+      TreeNode split = node_candidates(convention_, options_, tree_, open.node.number, block).node(candidate);
       split.threshold_mm = static_cast<std::int16_t>(refined.threshold_mm);
-      if (grown_.offer(node, split, refined.gain)) splits.push_back({node, found[f].candidate, split});
+      if (grown_.offer(node, split, refined.gain)) splits.push_back({node, candidate, split});
     }
     if (!splits.empty()) shards_.set_splits(splits);
   }
@@ -133,6 +134,18 @@ class TreeDriver {
 };
 
 }  // namespace
+
+std::vector<BinChoice> TreeExecutor::best_bins(NodeRange batch, const std::vector<CountTask>& tasks,
+                                               const std::vector<int>& least, int candidates,
+                                               const EntropyTable& entropy) {
+  const std::vector<SplitHistogram> counts = histograms(batch, tasks);
+  std::vector<BinChoice> best;
+  best.reserve(counts.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    best.push_back(choose_bin(counts[i], candidates, tasks[i].classes, least[i], entropy));
+  }
+  return best;
+}
 
 Tree grow_tree(TreeExecutor& shards, const Forest& forest, const GrowTreeOptions& options, int tree,
                GrowProgress& progress) {

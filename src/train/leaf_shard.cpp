@@ -34,11 +34,11 @@ LeafShard::LeafShard(const TrainingSet& set, const Forest& forest, LogitLayout l
                         [&](std::uint32_t frame) { return in_portion(set, frame, portion.portion, portion.portions); });
 }
 
-LabelCounts LeafShard::label_counts() const {
-  LabelCounts counts{std::vector<std::int64_t>(layout_.classes(), 0), std::vector<std::int64_t>(layout_.headings, 0)};
-  for (const TrainingSample& sample : samples_) {
+LabelCounts count_labels(std::span<const TrainingSample> samples, const LogitLayout& layout) {
+  LabelCounts counts{std::vector<std::int64_t>(layout.classes(), 0), std::vector<std::int64_t>(layout.headings, 0)};
+  for (const TrainingSample& sample : samples) {
     ++counts.classes[sample.label];
-    if (sample.heading < layout_.headings) ++counts.headings[sample.heading];
+    if (sample.heading < layout.headings) ++counts.headings[sample.heading];
   }
   return counts;
 }

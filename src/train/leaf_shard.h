@@ -10,6 +10,9 @@
 
 namespace vesalius {
 
+/// Returns how many samples of each class, and of each heading among those of parts.
+LabelCounts count_labels(std::span<const TrainingSample> samples, const LogitLayout& layout);
+
 /// One shard's part in learning the leaves of a forest: which leaves its samples reach. It answers the requests of
 /// LeafExecutor (training_protocol.h) for its own samples, under the same names.
 class LeafShard {
@@ -18,7 +21,7 @@ class LeafShard {
   /// `set` must outlive this object and not change.
   LeafShard(const TrainingSet& set, const Forest& forest, LogitLayout layout, const GradientTask& portion = {});
 
-  LabelCounts label_counts() const;
+  LabelCounts label_counts() const { return count_labels(samples_, layout_); }
   void set_weights(const SampleWeights& weights) { weights_ = weights; }
   LeafCounts leaf_counts(int tree) const;
   LeafGradient gradient(const LeafLogits& logits, const GradientTask& task) const;

@@ -10,22 +10,24 @@
 #include "vesalius/base/parallel.h"
 
 namespace vesalius {
+
 LocalExecutor::LocalExecutor(std::vector<TrainingSet*> sets, int trees_at_once)
     : sets_(std::move(sets)), trees_at_once_(trees_at_once) {}
 
-/// Trees grow in batches. Otherwise a thread that waits within a tree may begin another one and hold the memory of
-/// both.
+void for_trees(const std::vector<int>& numbers, int at_once, const std::function<void(int)>& grow) {
+  const auto count = static_cast<int>(numbers.size());
+  for (int begin = 0; begin < count; begin += at_once) {
+    parallel_for(std::min(count - begin, at_once), [&](int i) { grow(numbers[begin + i]); });
+  }
+}
+
 void LocalExecutor::grow_trees(const Forest& forest, const GrowTreeOptions& options, const std::vector<int>& numbers,
                                GrowProgress& progress, const TakeTree& take) {
   const std::vector<const TrainingSet*> sets(sets_.begin(), sets_.end());
-  const auto count = static_cast<int>(numbers.size());
-  for (int begin = 0; begin < count; begin += trees_at_once_) {
-    parallel_for(std::min(count - begin, trees_at_once_), [&](int i) {
-      const int number = numbers[begin + i];
-      LocalTree shards(sets, options, number);
-      take(number, grow_tree(shards, forest, options, number, progress));
-    });
-  }
+  for_trees(numbers, trees_at_once_, [&](int number) {
+    LocalTree shards(sets, options, number);
+    take(number, grow_tree(shards, forest, options, number, progress));
+  });
 }
 
 HardCounts LocalExecutor::count_hard_negatives(const Forest& forest) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -7,6 +8,10 @@
 #include "train/training_set.h"
 
 namespace vesalius {
+
+/// Calls `grow(number)` for trees, at most `at_once` at a time. They grow in batches: otherwise a thread that waits
+/// within a tree may begin another one and hold the memory of both.
+void for_trees(const std::vector<int>& numbers, int at_once, const std::function<void(int)>& grow);
 
 /// All shards of a training within this process.
 class LocalExecutor : public Executor {

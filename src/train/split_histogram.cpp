@@ -74,21 +74,27 @@ BinSplit best_split(const SplitHistogram& histogram, int candidates, const Class
   return best;
 }
 
+BinChoice choose_bin(const SplitHistogram& histogram, int candidates, const ClassIndex& classes, int least,
+                     const EntropyTable& entropy) {
+  BinChoice choice{best_split(histogram, candidates, classes, least, entropy), {}};
+  choice.below.assign(classes.size(), 0);
+  for (std::size_t k = 0; choice.split.candidate >= 0 && k < classes.size(); ++k) {
+    for (int bin = 0; bin < choice.split.bin; ++bin) choice.below[k] += histogram.at(k, bin, choice.split.candidate);
+  }
+  return choice;
+}
+
 ValueInterval beside(const BinSplit& split, const Binning& binning, int node) {
   const std::int32_t above =
       split.bin > 0 ? binning.last_value(split.candidate, split.bin - 1) : std::numeric_limits<std::int32_t>::min();
   return {node, split.candidate, above, binning.last_value(split.candidate, split.bin + 1)};
 }
 
-ThresholdSplit refine_split(IntervalValues values, const BinSplit& split, const SplitHistogram& histogram,
-                            const ClassIndex& classes, int least, const EntropyTable& entropy) {
+ThresholdSplit refine_split(IntervalValues values, const BinChoice& choice, const ClassIndex& classes, int least,
+                            const EntropyTable& entropy) {
   Sides sides(classes, entropy);
   const std::int64_t before = sides.score();  // the score with all samples on one side
-  for (std::size_t k = 0; k < classes.size(); ++k) {
-    std::int32_t below = 0;
-    for (int bin = 0; bin < split.bin; ++bin) below += histogram.at(k, bin, split.candidate);
-    sides.move(k, below);
-  }
+  for (std::size_t k = 0; k < classes.size(); ++k) sides.move(k, choice.below[k]);
   std::vector<LabelledValue>& around = values.values;
   std::ranges::sort(around, {}, &LabelledValue::value);
   std::int64_t best = std::numeric_limits<std::int64_t>::min();
@@ -112,10 +118,10 @@ RowSplit split_of(const FeatureRows& rows, int classes, int bins, int candidates
   const NodeValues values = node_values(rows, classes);
   const CountTask task{{values.ranges, bins}, ClassIndex(values.class_counts)};
   const SplitHistogram histogram = count_bins(rows, task);
-  const BinSplit best = best_split(histogram, candidates, task.classes, least, entropy);
-  if (best.candidate < 0) return {};
-  IntervalValues around = values_in(rows, beside(best, task.binning, 0));
-  return {best.candidate, refine_split(std::move(around), best, histogram, task.classes, least, entropy)};
+  const BinChoice best = choose_bin(histogram, candidates, task.classes, least, entropy);
+  if (best.split.candidate < 0) return {};
+  IntervalValues around = values_in(rows, beside(best.split, task.binning, 0));
+  return {best.split.candidate, refine_split(std::move(around), best, task.classes, least, entropy)};
 }
 
 }  // namespace vesalius

@@ -21,17 +21,12 @@ SplitHistogram count_bins(const FeatureRows& rows, const CountTask& task);
 /// Returns the rows whose value lies in an interval.
 IntervalValues values_in(const FeatureRows& rows, const ValueInterval& interval);
 
-/// The threshold between `bin` and the next one of a candidate. `score` is the sum of n log2 n over both sides and all
-/// classes minus that of the sides, in units of EntropyTable; it is largest where most information is gained.
-struct BinSplit {
-  int candidate = -1;  ///< -1 if no threshold leaves `least` samples on both sides
-  int bin = 0;
-  std::int32_t score = 0;
-};
-
 /// Returns the best split over the first `candidates` candidates; on a tie the first candidate, then the lowest bin.
 BinSplit best_split(const SplitHistogram& histogram, int candidates, const ClassIndex& classes, int least,
                     const EntropyTable& entropy);
+/// Returns the same with the samples below its bin.
+BinChoice choose_bin(const SplitHistogram& histogram, int candidates, const ClassIndex& classes, int least,
+                     const EntropyTable& entropy);
 
 /// Returns the interval of the values in the bins on either side of a split.
 ValueInterval beside(const BinSplit& split, const Binning& binning, int node);
@@ -42,11 +37,10 @@ struct ThresholdSplit {
   double gain = 0;
 };
 
-/// Returns the best threshold of the chosen candidate in the bins on either side of `split`: midway between two
-/// consecutive values, the lowest on a tie. `values` are those of `beside`; `histogram` is the one in which the split
-/// was found.
-ThresholdSplit refine_split(IntervalValues values, const BinSplit& split, const SplitHistogram& histogram,
-                            const ClassIndex& classes, int least, const EntropyTable& entropy);
+/// Returns the best threshold of the chosen candidate in the bins on either side of `choice`: midway between two
+/// consecutive values, the lowest on a tie. `values` are those of `beside`.
+ThresholdSplit refine_split(IntervalValues values, const BinChoice& choice, const ClassIndex& classes, int least,
+                            const EntropyTable& entropy);
 
 /// The choice of a split from all rows of a node at once.
 struct RowSplit {

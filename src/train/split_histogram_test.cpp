@@ -178,10 +178,11 @@ TEST(RefineSplit, FindsTheBestThresholdOfBothBins) {
     const Rows rows = random_rows(200, 16, random);
     const auto [binning, classes] = task_of(rows, 8);
     const SplitHistogram histogram = count_bins(rows.view(), {binning, classes});
-    const BinSplit split = best_split(histogram, 16, classes, 10, entropy);
+    const BinChoice choice = choose_bin(histogram, 16, classes, 10, entropy);
+    const BinSplit& split = choice.split;
     ASSERT_GE(split.candidate, 0);
     const ThresholdSplit refined =
-        refine_split(values_in(rows.view(), beside(split, binning, 0)), split, histogram, classes, 10, entropy);
+        refine_split(values_in(rows.view(), beside(split, binning, 0)), choice, classes, 10, entropy);
     EXPECT_NEAR(refined.gain, gain_of(rows, split.candidate, refined.threshold_mm), 1e-3);
     double best = 0.0;
     const int low = split.bin > 0 ? binning.last_value(split.candidate, split.bin - 1) : -32768;
@@ -201,10 +202,10 @@ TEST(RefineSplit, LiesMidwayBetweenValuesAndKeepsASingleBinEdge) {
     rows.values.insert(rows.values.end(), 16, value);
   const auto [binning, classes] = task_of(rows, 8);
   const SplitHistogram histogram = count_bins(rows.view(), {binning, classes});
-  const BinSplit split = best_split(histogram, 16, classes, 1, entropy);
-  EXPECT_EQ(split.candidate, 0);
+  const BinChoice choice = choose_bin(histogram, 16, classes, 1, entropy);
+  EXPECT_EQ(choice.split.candidate, 0);
   const ThresholdSplit refined =
-      refine_split(values_in(rows.view(), beside(split, binning, 0)), split, histogram, classes, 1, entropy);
+      refine_split(values_in(rows.view(), beside(choice.split, binning, 0)), choice, classes, 1, entropy);
   EXPECT_NEAR(refined.gain, 1.0, 1e-3);
   EXPECT_GE(refined.threshold_mm, -90);
   EXPECT_LT(refined.threshold_mm, 300);

@@ -29,19 +29,30 @@ inline std::vector<LabelledFrame> noisy_frames(int count, double most_yaw) {
   return frames;
 }
 
-/// Trains on shards; shard i has the frames [ends[i - 1], ends[i]).
-inline Forest train_over(const std::vector<int>& ends, const std::vector<LabelledFrame>& frames,
-                         const TrainOptions& options, TreeStore& store, TrainObserver& observer,
-                         int trees_at_once = 1) {
+/// Returns shards; shard i has the frames [ends[i - 1], ends[i]).
+inline std::vector<TrainingSet> shards_of(const std::vector<int>& ends, const std::vector<LabelledFrame>& frames,
+                                          const TrainOptions& options) {
   std::vector<TrainingSet> sets;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const int begin = i > 0 ? ends[i - 1] : 0;
     sets.emplace_back(paper_body(), training_convention(options), options.sample, 1, begin);
     for (int f = begin; f < ends[i]; ++f) sets.back().add(frames[f]);
   }
-  std::vector<TrainingSet*> shards;
-  for (TrainingSet& set : sets) shards.push_back(&set);
-  LocalExecutor executor(shards, trees_at_once);
+  return sets;
+}
+
+inline std::vector<TrainingSet*> pointers_to(std::vector<TrainingSet>& sets) {
+  std::vector<TrainingSet*> pointers;
+  for (TrainingSet& set : sets) pointers.push_back(&set);
+  return pointers;
+}
+
+/// Trains on shards.
+inline Forest train_over(const std::vector<int>& ends, const std::vector<LabelledFrame>& frames,
+                         const TrainOptions& options, TreeStore& store, TrainObserver& observer,
+                         int trees_at_once = 1) {
+  std::vector<TrainingSet> sets = shards_of(ends, frames, options);
+  LocalExecutor executor(pointers_to(sets), trees_at_once);
   return train_forest(executor, sets.front().untrained_forest(), options, store, observer);
 }
 

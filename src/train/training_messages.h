@@ -111,6 +111,20 @@ struct SplitHistogram {
 /// Throws Error also if a sum exceeds 16 bits.
 void merge(SplitHistogram& all, const SplitHistogram& other);
 
+/// The threshold between `bin` and the next one of a candidate. `score` is the sum of n log2 n over both sides and all
+/// classes minus that of the sides, in units of EntropyTable; it is largest where most information is gained.
+struct BinSplit {
+  int candidate = -1;  ///< -1 if no threshold leaves enough samples on both sides
+  int bin = 0;
+  std::int32_t score = 0;
+};
+
+/// The best of a node's thresholds between bins.
+struct BinChoice {
+  BinSplit split;
+  std::vector<std::int32_t> below;  ///< [renumbered class]: counted samples in the bins before `split.bin`
+};
+
 /// Request: the values in (above, last] of one candidate of one node.
 struct ValueInterval {
   std::int32_t node = 0;

@@ -47,10 +47,10 @@ ThresholdSplit split_over(const Rows& rows, const std::vector<std::size_t>& ends
   const NodeValues values = merged([](const FeatureRows& shard) { return node_values(shard, kClasses); });
   const CountTask task{{values.ranges, 16}, ClassIndex(values.class_counts)};
   const SplitHistogram histogram = merged([&](const FeatureRows& shard) { return count_bins(shard, task); });
-  const BinSplit best = best_split(histogram, kWidth, task.classes, 20, entropy);
-  const ValueInterval interval = beside(best, task.binning, 0);
-  return refine_split(merged([&](const FeatureRows& shard) { return values_in(shard, interval); }), best, histogram,
-                      task.classes, 20, entropy);
+  const BinChoice best = choose_bin(histogram, kWidth, task.classes, 20, entropy);
+  const ValueInterval interval = beside(best.split, task.binning, 0);
+  return refine_split(merged([&](const FeatureRows& shard) { return values_in(shard, interval); }), best, task.classes,
+                      20, entropy);
 }
 
 TEST(TrainingMessages, GiveTheSameSplitsMergedAsFromOneShard) {

@@ -26,6 +26,7 @@
 //           for each batch of nodes, several at a time
 //             node_values                  class counts and ranges of values; from them bins and class numbers
 //             histograms                   counted samples by class, candidate and bin; from them the best split
+//                                          (best_bins)
 //             values_in                    values beside that split; from them its threshold
 //             set_splits                   the shards note the splits that gain more than those before
 //         route                            samples by class at both children of each node; from them the next level
@@ -49,6 +50,7 @@
 #include <span>
 #include <vector>
 
+#include "train/entropy_table.h"
 #include "train/grow_options.h"
 #include "train/leaf_messages.h"
 #include "train/training_messages.h"
@@ -73,6 +75,10 @@ class TreeExecutor {
   // The following are about a batch, which is nodes of the last evaluated group.
   virtual std::vector<NodeValues> node_values(NodeRange batch) = 0;
   virtual std::vector<SplitHistogram> histograms(NodeRange batch, const std::vector<CountTask>& tasks) = 0;
+  /// Returns the best threshold of each node between bins of the first `candidates` candidates, with at least `least`
+  /// [node] samples on each side. Chosen from `histograms` unless the executor has a quicker way.
+  virtual std::vector<BinChoice> best_bins(NodeRange batch, const std::vector<CountTask>& tasks,
+                                           const std::vector<int>& least, int candidates, const EntropyTable& entropy);
   virtual std::vector<IntervalValues> values_in(const std::vector<ValueInterval>& intervals) = 0;
   virtual void set_splits(const std::vector<NodeSplit>& splits) = 0;
 

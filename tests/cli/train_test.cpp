@@ -8,6 +8,7 @@
 #include <string>
 
 #include "io/files/atomic_file.h"
+#include "io/files/read_file.h"
 #include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_frames.h"
@@ -17,7 +18,9 @@ namespace vesalius {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AnyOf;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 
 /// Two small datasets that are made once for all tests, and a folder for each test, which is removed afterwards.
@@ -75,6 +78,26 @@ class TrainProgram : public testing::Test {
   static fs::path shared() { return fs::path(testing::TempDir()) / fmt::format("vesalius_train_{}", ::getpid()); }
   fs::path folder_;
 };
+
+TEST_F(TrainProgram, TrainsOnTheProcessorWhereAnyDeviceWillDo) {
+  const auto bytes_from = [&](const std::string& device) {
+    const std::string model = path(device + ".forest");
+    const Outcome run = run_program(train("--data " + data() + " -q --device " + device + " --out " + model));
+    expect_done(run);
+    EXPECT_THAT(run.err, AnyOf(IsEmpty(), HasSubstr("note: cuda: "))) << device;
+    return read_file(model);
+  };
+  EXPECT_EQ(bytes_from("auto"), bytes_from("cpu"));
+}
+
+TEST_F(TrainProgram, RefusesDevicesThatAreNotThere) {
+  const std::string command = train("--data " + data() + " --out " + path("m.forest"));
+  refused(command + " --device gpu", 2, "device \"gpu\" is not known to this build");
+  refused(command + " --device cuda:999", 1, "vesalius: cuda");
+  refused(command + " --device cuda --on local:2", 2, "--on expects no --device");
+  EXPECT_FALSE(fs::exists(path("m.forest")));
+  EXPECT_FALSE(fs::exists(path("m.forest.work"))) << "before anything is read";
+}
 
 TEST_F(TrainProgram, WritesAModelThatDetectLoads) {
   const Outcome run =

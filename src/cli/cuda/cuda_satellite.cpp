@@ -8,6 +8,9 @@
 #include "cli/satellites.h"
 #include "cuda/cuda_device.h"
 #include "cuda/device_labeller.h"
+#ifdef VESALIUS_HAS_TRAINING
+#include "cuda/train/device_executor.h"
+#endif
 #include "vesalius/base/error.h"
 
 namespace vesalius::cli {
@@ -35,8 +38,22 @@ std::shared_ptr<const PixelLabeller> make(const Forest& forest, int number) {
   return std::make_shared<gpu::DeviceLabeller>(forest, gpu::open_cuda_device(number));
 }
 
+#ifdef VESALIUS_HAS_TRAINING
+MakeExecutor open_trainer(int number) {
+  return [card = gpu::open_cuda_device(number)](const std::vector<TrainingSet*>& sets, int trees_at_once) {
+    return std::make_unique<gpu::DeviceExecutor>(sets, std::vector{card}, trees_at_once);
+  };
+}
+#endif
+
 }  // namespace
 
-Satellite cuda_satellite() { return {.name = "cuda", .commands = {}, .facts = facts, .devices = {{"cuda", make}}}; }
+Satellite cuda_satellite() {
+  Satellite satellite{.name = "cuda", .commands = {}, .facts = facts, .devices = {{"cuda", make}}};
+#ifdef VESALIUS_HAS_TRAINING
+  satellite.trainers = {{"cuda", open_trainer}};
+#endif
+  return satellite;
+}
 
 }  // namespace vesalius::cli

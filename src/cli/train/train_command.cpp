@@ -28,7 +28,7 @@ struct Arguments {
   explicit Arguments(CLI::App& command) : train_flags(command) {}
 
   TrainSources sources;
-  std::string out, options_file, report, trees_of;
+  std::string out, options_file, report, trees_of, device = "cpu";
   OptionFlags<TrainOptions> train_flags;
   double memory_gib = 0.0;
   int threads = 0;
@@ -58,6 +58,9 @@ void check(const Arguments& arguments, const TrainOptions& options) {
   }
   if (!arguments.cluster.engine.on.empty() && (!arguments.report.empty() || arguments.estimate)) {
     throw UsageError("--on expects neither --report nor --estimate, which need all frames in one process");
+  }
+  if (!arguments.cluster.engine.on.empty() && arguments.device != "cpu") {
+    throw UsageError("--on expects no --device: the tasks of an engine run on processors");
   }
   if (arguments.curves && arguments.report.empty()) throw UsageError("--curves expects --report, where they go");
   if (!arguments.report.empty() && options.sample.held_out_share <= 0.F) {
@@ -98,6 +101,7 @@ void run(const Arguments& arguments) {
          .curves = arguments.curves,
          .restart = arguments.restart,
          .shown = !arguments.quiet,
+         .device = arguments.device,
          .trees_at_once = plan.trees_at_once,
          .max_bytes = memory_limit(arguments)},
         options, inputs);
@@ -140,6 +144,13 @@ void add_run_flags(CLI::App& command, Arguments& arguments) {
   command.add_option("--threads", arguments.threads, "Threads to use; 0 = all. The result is the same")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxThreads))
+      ->group(group);
+  command
+      .add_option("--device", arguments.device,
+                  "What trains: cpu, cuda or cuda:N (a card), or auto, a card where one works and otherwise the "
+                  "processor. The result is the same")
+      ->type_name("NAME")
+      ->capture_default_str()
       ->group(group);
   command.add_flag("-q,--quiet", arguments.quiet, "Print errors only")->group(group);
 }

@@ -10,11 +10,11 @@
 #include "cli/text_sink.h"
 #include "cli/train/grow_display.h"
 #include "cli/train/train_curves.h"
+#include "cli/train/train_device.h"
 #include "cli/train/train_recipe.h"
 #include "cli/train/train_report.h"
 #include "cli/train/train_session.h"
 #include "io/model/model_file.h"
-#include "train/local_executor.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 
@@ -31,6 +31,7 @@ class Training {
       : run_(run),
         options_(options),
         inputs_(inputs),
+        device_(run.device),
         trees_of_(run.trees_of.empty() ? std::nullopt : std::optional(kept_trees(run, inputs))),
         set_(inputs.body(), trees_of_ ? trees_of_->convention : training_convention(options), options.sample,
              static_cast<std::uint64_t>(options.grow.seed)) {}
@@ -101,21 +102,23 @@ class Training {
   }
 
   Forest grow() {
-    LocalExecutor executor({&set_}, run_.trees_at_once);
-    TrainDisplay display(set_, options_.grow.leaf.max_depth, run_.shown);
-    try {
-      Forest forest = trees_of_ ? learn_again(executor, display)
-                                : train_forest(executor, untrained_forest(), options_, *session_, display);
-      figures_.grown = display.totals();
-      return forest;
-    } catch (const Interrupted&) {
-      throw Error(
-          fmt::format("interrupted, {} are in {}: the same command goes on", display.done(), session_->folder()));
-    }
+    Forest forest;
+    device_.run({&set_}, run_.trees_at_once, [&](Executor& executor) {
+      TrainDisplay display(set_, options_.grow.leaf.max_depth, run_.shown);
+      try {
+        forest = trees_of_ ? learn_again(executor, display)
+                           : train_forest(executor, untrained_forest(), options_, *session_, display);
+        figures_.grown = display.totals();
+      } catch (const Interrupted&) {
+        throw Error(
+            fmt::format("interrupted, {} are in {}: the same command goes on", display.done(), session_->folder()));
+      }
+    });
+    return forest;
   }
 
   /// Learns the leaves of the kept trees. Background that their old leaves take for a body is learned from as well.
-  Forest learn_again(LocalExecutor& executor, TrainDisplay& display) {
+  Forest learn_again(Executor& executor, TrainDisplay& display) {
     Forest forest = *trees_of_;
     forest.recipe = recipe_;
     if (options_.hard_trees > 0) display.add_hard_negatives(add_hard_negatives(executor, forest, options_.sample));
@@ -149,6 +152,7 @@ class Training {
   const TrainRun& run_;
   const TrainOptions& options_;
   const TrainInputs& inputs_;
+  TrainDevice device_;
   std::optional<Forest> trees_of_;
   TrainingSet set_;
   std::size_t background_frames_ = 0;

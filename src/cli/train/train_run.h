@@ -16,6 +16,7 @@ struct TrainRun {
   bool curves = false;          ///< whether the report has curves
   bool restart = false;         ///< whether to discard the trees of an earlier run
   bool shown = true;            ///< whether to show progress on standard error
+  std::string device = "cpu";   ///< what trains (TrainDevice)
   int trees_at_once = 1;        ///< most trees grown at a time
   std::uint64_t max_bytes = 0;  ///< most memory for frames and samples
 };

@@ -64,12 +64,6 @@ class RescuedLabeller : public PixelLabeller {
   mutable std::unique_ptr<const ForestLabeller> processor_;
 };
 
-[[noreturn]] void unknown(const std::string& device, const LabellerDevices& devices) {
-  std::string known = "\"cpu\", \"auto\"";
-  for (const LabellerDevice& kind : devices.kinds) known += ", \"" + kind.name + "\" or \"" + kind.name + ":NUMBER\"";
-  throw UsageError("device \"" + device + "\" is not known to this build, expected " + known);
-}
-
 Labeller make_on_any(Forest forest, const LabellerDevices& devices) {
   const auto note = [&](const std::string& text) {
     if (devices.note) devices.note(text);
@@ -88,20 +82,29 @@ Labeller make_on_any(Forest forest, const LabellerDevices& devices) {
 
 }  // namespace
 
+void throw_unknown_device(const std::string& device, const LabellerDevices& devices) {
+  std::string known = "\"cpu\", \"auto\"";
+  for (const LabellerDevice& kind : devices.kinds) known += ", \"" + kind.name + "\" or \"" + kind.name + ":NUMBER\"";
+  throw UsageError("device \"" + device + "\" is not known to this build, expected " + known);
+}
+
+DeviceName parse_device(const std::string& name) {
+  const std::size_t colon = name.find(':');
+  DeviceName parsed{name.substr(0, colon), 0};
+  if (colon == std::string::npos) return parsed;
+  const char* end = name.data() + name.size();
+  const auto [read, error] = std::from_chars(name.data() + colon + 1, end, parsed.number);
+  return error == std::errc{} && read == end && parsed.number >= 0 ? parsed : DeviceName{};
+}
+
 Labeller make_labeller(Forest forest, const std::string& device, const LabellerDevices& devices) {
   if (device == "cpu") return std::make_shared<ForestLabeller>(std::move(forest));
   if (device == "auto") return make_on_any(std::move(forest), devices);
-  const std::size_t colon = device.find(':');
-  int number = 0;
-  if (colon != std::string::npos) {
-    const char* end = device.data() + device.size();
-    const auto [read, error] = std::from_chars(device.data() + colon + 1, end, number);
-    if (error != std::errc{} || read != end || number < 0) unknown(device, devices);
-  }
+  const DeviceName wanted = parse_device(device);
   for (const LabellerDevice& kind : devices.kinds) {
-    if (kind.name == device.substr(0, colon)) return kind.make(std::move(forest), number);
+    if (kind.name == wanted.kind) return kind.make(std::move(forest), wanted.number);
   }
-  unknown(device, devices);
+  throw_unknown_device(device, devices);
 }
 
 }  // namespace vesalius

@@ -18,11 +18,22 @@ struct LabellerDevice {
   std::function<std::shared_ptr<const PixelLabeller>(Forest forest, int number)> make;
 };
 
+/// The name of a device in parts: "cuda:1" is number 1 of kind "cuda".
+struct DeviceName {
+  std::string kind;
+  int number = 0;
+};
+/// Returns an empty kind for what is no name of a device.
+DeviceName parse_device(const std::string& name);
+
 /// The devices that a program was built with, and where it hears of what "auto" decided.
 struct LabellerDevices {
   std::vector<LabellerDevice> kinds;
   std::function<void(const std::string&)> note = {};  ///< may be called from any thread
 };
+
+/// Throws UsageError, which says what is known.
+[[noreturn]] void throw_unknown_device(const std::string& device, const LabellerDevices& devices);
 
 /// Returns a labeller with `forest` on `device`:
 ///   "cpu"               the processor

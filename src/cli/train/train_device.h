@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/satellites.h"
+#include "train/training_protocol.h"
+#include "train/training_set.h"
+
+namespace vesalius::cli {
+
+/// What trains: the processor or a card (`vesalius train --device`).
+class TrainDevice {
+ public:
+  /// Takes a name as make_labeller does. Throws UsageError for a device that this build does not know and DeviceError
+  /// for one that this machine does not have. What "auto" decides is said on standard error.
+  explicit TrainDevice(const std::string& name);
+
+  /// Calls `train` with an executor over the sets. Where any device will do and one fails, a note is said and `train`
+  /// is called again with an executor on the processor; what it stored until then is not done again.
+  void run(const std::vector<TrainingSet*>& sets, int trees_at_once, const std::function<void(Executor&)>& train) const;
+
+ private:
+  MakeExecutor make_;  ///< empty for the processor
+  bool any_ = false;
+};
+
+}  // namespace vesalius::cli

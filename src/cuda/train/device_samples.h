@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cuda/device.h"
+#include "train/training_set.h"
+
+namespace vesalius::gpu {
+
+/// A shard's frames in a device's memory: packed tiles, which never change while a forest is trained.
+class DeviceFrames {
+ public:
+  /// Throws DeviceError if the device has no room for them.
+  DeviceFrames(const FrameStore& frames, std::shared_ptr<Device> device);
+
+  const std::shared_ptr<Device>& device() const { return device_; }
+  TiledFrames describe() const;
+  std::size_t bytes() const { return words_.bytes() + infos_.bytes(); }
+
+ private:
+  std::shared_ptr<Device> device_;
+  FeatureConvention convention_;
+  DeviceArray<std::uint32_t> words_;
+  DeviceArray<FrameInfo> infos_;
+};
+
+/// A shard's samples there, which grow by hard negatives between two rounds of trees.
+class DeviceSamples {
+ public:
+  DeviceSamples(const TrainingSet& set, std::shared_ptr<const DeviceFrames> frames);
+
+  const std::shared_ptr<Device>& device() const { return frames_->device(); }
+  TiledFrames frames() const { return frames_->describe(); }
+  Samples describe() const { return {pixels_.data(), scales_.data(), count_}; }
+
+ private:
+  std::shared_ptr<const DeviceFrames> frames_;
+  DeviceArray<SamplePixel> pixels_;
+  DeviceArray<SampleScale> scales_;
+  std::uint32_t count_ = 0;
+};
+
+/// A stream with what nearly all work on it needs.
+class TrainStream {
+ public:
+  explicit TrainStream(std::shared_ptr<Device> device) : device_(std::move(device)), stream_(device_->make_stream()) {}
+
+  const std::shared_ptr<Device>& device() const { return device_; }
+  Stream& operator*() const { return *stream_; }
+  Stream* operator->() const { return stream_.get(); }
+
+  /// Makes room for `count` values; what was there goes if there was not enough.
+  template <class T>
+  void fit(DeviceArray<T>& array, std::size_t count) const {
+    if (array.size() >= count) return;
+    array = {};
+    array = DeviceArray<T>(device_, count);
+  }
+  /// Copies values there. They must stay until `wait`.
+  template <class T>
+  void send(DeviceArray<T>& array, const std::vector<T>& values) const {
+    fit(array, values.size());
+    if (!values.empty()) stream_->copy_to_device(array.data(), values.data(), values.size() * sizeof(T));
+  }
+  /// Returns the first `count` values when all that was asked before is done.
+  template <class T>
+  std::vector<T> fetch(const DeviceArray<T>& array, std::size_t count) const {
+    std::vector<T> values(count);
+    if (count > 0) stream_->copy_to_host(values.data(), array.data(), count * sizeof(T));
+    stream_->wait();
+    return values;
+  }
+  /// Makes room for `count` values and sets all to 0.
+  template <class T>
+  void clear(DeviceArray<T>& array, std::size_t count) const {
+    fit(array, count);
+    if (count > 0) stream_->clear(array.data(), count * sizeof(T));
+  }
+  /// Runs a kernel with a thread for each of `count`.
+  void launch(const KernelCall& call, std::size_t count) const {
+    if (count > 0) launch_blocks(call, (count + kThreads - 1) / kThreads);
+  }
+  /// Runs a kernel on `blocks` blocks, in several launches if one cannot have so many.
+  void launch_blocks(const KernelCall& call, std::size_t blocks, unsigned blocks_y = 1) const {
+    if (blocks > 0) stream_->launch(call, {static_cast<unsigned>(blocks), blocks_y, kThreads});
+  }
+
+  static constexpr unsigned kThreads = 256;
+
+ private:
+  std::shared_ptr<Device> device_;
+  std::unique_ptr<Stream> stream_;
+};
+
+}  // namespace vesalius::gpu
