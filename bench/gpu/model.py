@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Predicts how fast a card labels pictures, from counts.
+"""Predicts how fast a card labels pictures and trains, from counts.
 
 `vesalius_bench_gpu --count-only` counts what walking one picture reads (nodes, and sectors of 32 bytes of nodes and depth
 for each group of 32 pixels), tools/cuda/kernels.py says how much of a multiprocessor each kernel fills. For each kernel
@@ -52,6 +52,7 @@ INSTRUCTIONS_TO_FIND_ONE = 142
 INSTRUCTIONS_A_CLASS = 28  # of choosing
 NEIGHBOURS = 25
 LANES = 16  # threads of a pixel
+INSTRUCTIONS_A_VALUE = {"Evaluate": 229, "Ranges": 29, "Count": 52}  # of a candidate at a sample
 
 
 def kernel_us(card, occupancy, instructions, sectors, level2_bytes, memory_bytes):
@@ -107,6 +108,18 @@ def print_table(what, counts, kernels):
     print()
 
 
+def print_training(kernels):
+    """Values of eq. 1 a second where they are computed, ranged and counted; instructions are what bounds them."""
+    print("| predicted | values of eq. 1 a second |\n|---|---|")
+    for card in CARDS:
+        rate = 0.0
+        for name, instructions in INSTRUCTIONS_A_VALUE.items():
+            occupancy = next(k["occupancy"] for k in kernels if k["kernel"] == name and k["arch"] == card.arch)
+            rate += instructions / (card.multiprocessors * 4 * ISSUE * 32 * card.ghz * 1e9) / min(1.0, occupancy / 0.5)
+        print(f"| {card.name} | {1e-9 / rate:.1f} thousand million |")
+    print()
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("counts", type=Path)
@@ -117,6 +130,7 @@ def main():
     kernels = json.loads(arguments.kernels.read_text())
     for what, key in (("Every pixel is looked at", "counts"), ("With the gate", "gated_counts")):
         print_table(what, figures[key], kernels)
+    print_training(kernels)
     if arguments.measured:
         for device, ms in json.loads(arguments.measured.read_text())["measured"]["kernel_ms"].items():
             print(f"measured {device}: {1e3 * ms:.0f} us")

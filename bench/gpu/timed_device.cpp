@@ -1,16 +1,9 @@
 #include "bench/gpu/timed_device.h"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 
 namespace vesalius::gpu {
-
-std::string kernel_name(const KernelCall& call) {
-  constexpr std::array<const char*, std::variant_size_v<KernelCall>> kNames{
-      "select", "walk", "add", "logits", "gate", "settle", "mean", "choose", "neighbours"};
-  return kNames[call.index()];
-}
 
 class TimedDevice::TimedStream : public Stream {
  public:
@@ -27,7 +20,7 @@ class TimedDevice::TimedStream : public Stream {
     timed("clear", [&] { stream_->clear(at, bytes); });
   }
   void launch(const KernelCall& call, const LaunchShape& shape) override {
-    timed(kernel_name(call), [&] { stream_->launch(call, shape); });
+    timed(kKernelNames[call.index()], [&] { stream_->launch(call, shape); });
   }
   void record(Event& event) override { stream_->record(event); }
   void wait() override {

@@ -10,9 +10,6 @@
 
 namespace vesalius::gpu {
 
-/// Returns how figures call the kernel of a call.
-std::string kernel_name(const KernelCall& call);
-
 /// Another device whose kernels and copies are timed one by one. For one stream at a time.
 class TimedDevice : public Device, public std::enable_shared_from_this<TimedDevice> {
  public:

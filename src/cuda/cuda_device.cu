@@ -6,6 +6,7 @@
 #include <cuda_runtime.h>
 #endif
 
+#include <utility>
 #include <variant>
 
 #include "cuda/kernels.cuh"
@@ -156,6 +157,11 @@ KernelFacts facts_of(const char* name, const std::string& device) {
           static_cast<float>(blocks * kThreads) / static_cast<float>(threads)};
 }
 
+template <std::size_t... kIndex>
+std::vector<KernelFacts> facts_of_all(const std::string& device, std::index_sequence<kIndex...> /*all*/) {
+  return {facts_of<std::variant_alternative_t<kIndex, KernelCall>>(kKernelNames[kIndex], device)...};
+}
+
 }  // namespace
 
 bool has_cuda() { return true; }
@@ -187,15 +193,7 @@ std::shared_ptr<Device> open_cuda_device(int number) {
 std::vector<KernelFacts> kernel_facts(int number) {
   const std::string device = number_of(number);
   expect(cudaSetDevice(number), device, "cannot be used");
-  return {facts_of<SelectArguments>("select", device),
-          facts_of<WalkArguments>("walk", device),
-          facts_of<AddArguments>("add", device),
-          facts_of<LogitArguments>("logits", device),
-          facts_of<GateArguments>("gate", device),
-          facts_of<SettleArguments>("settle", device),
-          facts_of<MeanArguments>("mean", device),
-          facts_of<ChooseAloneArguments>("choose", device),
-          facts_of<AskNeighboursArguments>("neighbours", device)};
+  return facts_of_all(device, std::make_index_sequence<std::variant_size_v<KernelCall>>{});
 }
 
 }  // namespace vesalius::gpu

@@ -3,6 +3,7 @@
 // What kernels (kernels.cuh) are told. Pictures of one size are worked on together, a camera each: a kernel's threads
 // go over the pixels of all of them. All pointers are to the device's memory.
 
+#include <array>
 #include <cstdint>
 #include <variant>
 
@@ -157,6 +158,11 @@ using KernelCall =
                  RowsArguments, EvaluateArguments, RangesArguments, FillArguments, CountArguments, BestArguments,
                  CollectArguments, RouteArguments, CountRightArguments, MoveArguments, FindLeavesArguments,
                  LeafWeightsArguments, GradientArguments>;
+/// [KernelCall::index()]: how figures and messages call a kernel.
+inline constexpr std::array<const char*, std::variant_size_v<KernelCall>> kKernelNames{
+    "select",     "walk",    "add",     "logits",      "gate",     "settle",      "mean",         "choose",
+    "neighbours", "scale",   "relabel", "rows",        "evaluate", "ranges",      "fill",         "count",
+    "best",       "collect", "route",   "count right", "move",     "find leaves", "leaf weights", "gradient"};
 
 /// Threads that share a pixel, neighbours so that they read a leaf's logits or a pixel's sums together: four logits
 /// each, two classes each.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "cuda/gpu.h"
@@ -99,6 +100,17 @@ TEST(SimulatedDevice, NoticesKernelsThatWriteBesideTheirMemory) {
   GateArguments gate{{depth.data(), 8, 8, 1, 8}, sums.data(), 1, 1, states.data()};
   stream->launch(gate, {1, 1, 32});
   EXPECT_THROW(stream->wait(), std::logic_error);
+}
+
+TEST(KernelNames, AreAsManyAsKernelsAndInTheirOrder) {
+  for (const char* name : kKernelNames) EXPECT_NE(name, nullptr);
+  const auto name_of = [](const KernelCall& call) { return std::string(kKernelNames[call.index()]); };
+  EXPECT_EQ(name_of(WalkArguments{}), "walk");
+  EXPECT_EQ(name_of(AskNeighboursArguments{}), "neighbours");
+  EXPECT_EQ(name_of(EvaluateArguments{}), "evaluate");
+  EXPECT_EQ(name_of(CollectArguments{}), "collect");
+  EXPECT_EQ(name_of(MoveArguments{}), "move");
+  EXPECT_EQ(name_of(GradientArguments{}), "gradient");
 }
 
 TEST(SimulatedDevice, HasNoMoreMemoryThanItWasGiven) {

@@ -83,7 +83,7 @@ class TrainStream {
   void launch(const KernelCall& call, std::size_t count) const {
     if (count > 0) launch_blocks(call, (count + kThreads - 1) / kThreads);
   }
-  /// Runs a kernel on `blocks` blocks, in several launches if one cannot have so many.
+  /// Runs a kernel on so many blocks.
   void launch_blocks(const KernelCall& call, std::size_t blocks, unsigned blocks_y = 1) const {
     if (blocks > 0) stream_->launch(call, {static_cast<unsigned>(blocks), blocks_y, kThreads});
   }
