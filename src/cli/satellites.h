@@ -24,8 +24,8 @@ using MakeExecutor = std::function<std::unique_ptr<Executor>(const std::vector<T
 /// A kind of device besides the processor that trains.
 struct TrainerDevice {
   std::string name;
-  /// Opens device `number`. Throws DeviceError if it is not there.
-  std::function<MakeExecutor(int number)> open;
+  /// Opens devices by their numbers, at least one. Throws DeviceError if one is not there.
+  std::function<MakeExecutor(const std::vector<int>& numbers)> open;
 };
 
 /// A part of the program that a build may leave out, by VESALIUS_SYNTH, _TRAIN, _EVAL and _ASSETS of CMakeLists.txt.

@@ -27,7 +27,7 @@ GPU_FUNCTION int tiled_depth(const std::uint32_t* words, const FrameInfo& frame,
 
 template <class Offsets>
 GPU_FUNCTION int feature_at(const TiledFrames& frames, const SamplePixel& sample, SampleScale scale, const Offsets& offsets) {
-  const FrameInfo frame = frames.frames[sample.frame];
+  const FrameInfo frame = frames.frames[sample.frame - frames.first];
   const std::uint32_t* words = frames.words + frame.word;
   const auto read = [&](int u, int v) -> int {
     if (u < 0 || v < 0 || u >= frame.width || v >= frame.height) return frames.outside_mm;
@@ -44,7 +44,7 @@ GPU_KERNEL void run_kernel(const ScaleArguments a) {
     const std::uint32_t i = global_thread(thread);
     if (i >= a.samples.count) continue;
     const SamplePixel sample = a.samples.pixels[i];
-    const FrameInfo& frame = a.frames.frames[sample.frame];
+    const FrameInfo& frame = a.frames.frames[sample.frame - a.frames.first];
     a.scales[i] = {offset_scale(frame.unit_u, sample.depth_mm), offset_scale(frame.unit_v, sample.depth_mm)};
   }
 }

@@ -18,6 +18,7 @@ struct FrameInfo {
 struct TiledFrames {
   const std::uint32_t* words = nullptr;
   const FrameInfo* frames = nullptr;
+  std::uint32_t first = 0;  ///< number of the first of them among the frames that samples name
   std::int32_t hole_mm = 0, outside_mm = 0, clip_mm = 0;  ///< FeatureConvention
 };
 

@@ -94,6 +94,8 @@ TEST_F(TrainProgram, RefusesDevicesThatAreNotThere) {
   const std::string command = train("--data " + data() + " --out " + path("m.forest"));
   refused(command + " --device gpu", 2, "device \"gpu\" is not known to this build");
   refused(command + " --device cuda:999", 1, "vesalius: cuda");
+  refused(command + " --device cuda:0,gpu:1", 2, "device \"cuda:0,gpu:1\" is not known to this build");
+  refused(command + " --device cuda:998,cuda:999", 1, "vesalius: cuda");
   refused(command + " --device cuda --on local:2", 2, "--on expects no --device");
   EXPECT_FALSE(fs::exists(path("m.forest")));
   EXPECT_FALSE(fs::exists(path("m.forest.work"))) << "before anything is read";

@@ -39,9 +39,11 @@ std::shared_ptr<const PixelLabeller> make(const Forest& forest, int number) {
 }
 
 #ifdef VESALIUS_HAS_TRAINING
-MakeExecutor open_trainer(int number) {
-  return [card = gpu::open_cuda_device(number)](const std::vector<TrainingSet*>& sets, int trees_at_once) {
-    return std::make_unique<gpu::DeviceExecutor>(sets, std::vector{card}, trees_at_once);
+MakeExecutor open_trainer(const std::vector<int>& numbers) {
+  std::vector<std::shared_ptr<gpu::Device>> cards;
+  for (const int number : numbers) cards.push_back(gpu::open_cuda_device(number));
+  return [cards](const std::vector<TrainingSet*>& sets, int trees_at_once) {
+    return std::make_unique<gpu::DeviceExecutor>(sets, cards, trees_at_once);
   };
 }
 #endif

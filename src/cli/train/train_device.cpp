@@ -1,5 +1,6 @@
 #include "cli/train/train_device.h"
 
+#include <sstream>
 #include <utility>
 
 #include "cli/text_sink.h"
@@ -9,16 +10,38 @@
 
 namespace vesalius::cli {
 
-TrainDevice::TrainDevice(const std::string& name) : any_(name == "auto") {
-  if (name == "cpu") return;
+namespace {
+
+/// The devices that a list like "cuda:0,cuda:1" names.
+struct Wanted {
+  std::string kind;  ///< empty if they are no devices or of several kinds
+  std::vector<int> numbers;
+};
+
+Wanted parse_list(const std::string& names) {
+  Wanted wanted;
+  std::istringstream list(names);
+  for (std::string name; std::getline(list, name, ',');) {
+    const DeviceName device = parse_device(name);
+    if (!wanted.numbers.empty() && device.kind != wanted.kind) return {};
+    wanted.kind = device.kind;
+    wanted.numbers.push_back(device.number);
+  }
+  return names.ends_with(',') ? Wanted{} : wanted;
+}
+
+}  // namespace
+
+TrainDevice::TrainDevice(const std::string& names) : any_(names == "auto") {
+  if (names == "cpu") return;
   LabellerDevices known;  // for what is said of an unknown one
-  const DeviceName wanted = parse_device(name);
+  const Wanted wanted = any_ ? Wanted{{}, {0}} : parse_list(names);
   for (const Satellite& satellite : satellites()) {
     for (const TrainerDevice& trainer : satellite.trainers) {
       known.kinds.push_back({trainer.name, {}});
       if (!any_ && trainer.name != wanted.kind) continue;
       try {
-        make_ = trainer.open(any_ ? 0 : wanted.number);
+        make_ = trainer.open(wanted.numbers);
         return;
       } catch (const DeviceError& e) {
         if (!any_) throw;
@@ -26,7 +49,7 @@ TrainDevice::TrainDevice(const std::string& name) : any_(name == "auto") {
       }
     }
   }
-  if (!any_) throw_unknown_device(name, known);
+  if (!any_) throw_unknown_device(names, known);
 }
 
 void TrainDevice::run(const std::vector<TrainingSet*>& sets, int trees_at_once,

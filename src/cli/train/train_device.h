@@ -11,12 +11,13 @@
 
 namespace vesalius::cli {
 
-/// What trains: the processor or a card (`vesalius train --device`).
+/// What trains: the processor, or one or more cards (`vesalius train --device`).
 class TrainDevice {
  public:
-  /// Takes a name as make_labeller does. Throws UsageError for a device that this build does not know and DeviceError
-  /// for one that this machine does not have. What "auto" decides is said on standard error.
-  explicit TrainDevice(const std::string& name);
+  /// Takes a name as make_labeller does, or several of one kind with commas between. Throws UsageError for a device
+  /// that this build does not know and DeviceError for one that this machine does not have. What "auto" decides is said
+  /// on standard error.
+  explicit TrainDevice(const std::string& names);
 
   /// Calls `train` with an executor over the sets. Where any device will do and one fails, a note is said and `train`
   /// is called again with an executor on the processor; what it stored until then is not done again.

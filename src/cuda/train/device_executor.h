@@ -8,13 +8,14 @@
 
 namespace vesalius::gpu {
 
-/// All shards of a training, on one or more devices: the same bytes as LocalExecutor. Shard i is on device i, beginning
-/// anew behind the last one. Growing trees and learning leaves is the devices' work; hard negatives and the headings'
-/// regression, which only look at few samples, the processor's.
+/// All shards of a training, on one or more devices: the same bytes as LocalExecutor. Where there are more devices than
+/// sets, each set's frames are divided among some of them; else the sets go to the devices in turn. Growing trees and
+/// learning leaves is the devices' work; hard negatives and the headings' regression, which only look at few samples,
+/// the processor's.
 class DeviceExecutor : public Executor {
  public:
   /// As LocalExecutor; there is at least one device. Throws DeviceError if a device has no room for its frames.
-  DeviceExecutor(std::vector<TrainingSet*> sets, const std::vector<std::shared_ptr<Device>>& devices,
+  DeviceExecutor(const std::vector<TrainingSet*>& sets, const std::vector<std::shared_ptr<Device>>& devices,
                  int trees_at_once = 1);
 
   void grow_trees(const Forest& forest, const GrowTreeOptions& options, const std::vector<int>& numbers,
@@ -28,8 +29,13 @@ class DeviceExecutor : public Executor {
   std::vector<std::shared_ptr<const DeviceSamples>> samples() const;
 
   LocalExecutor local_;
-  std::vector<const TrainingSet*> sets_;
-  std::vector<std::shared_ptr<const DeviceFrames>> frames_;
+  /// Frames of a set on one device.
+  struct Shard {
+    const TrainingSet* set = nullptr;
+    std::shared_ptr<const DeviceFrames> frames;
+    bool leads = true;  ///< whether it is the first of the set
+  };
+  std::vector<Shard> shards_;
   int trees_at_once_;
 };
 

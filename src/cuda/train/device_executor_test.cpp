@@ -59,9 +59,9 @@ Forest train_on_processor(const std::vector<LabelledFrame>& frames, const TrainO
 void expect_same(const Forest& found, const Forest& expected) {
   ASSERT_EQ(found.trees.size(), expected.trees.size());
   for (std::size_t t = 0; t < found.trees.size(); ++t) {
-    EXPECT_EQ(found.trees[t].nodes, expected.trees[t].nodes) << "tree " << t;
-    EXPECT_EQ(found.trees[t].leaves, expected.trees[t].leaves) << "tree " << t;
-    EXPECT_EQ(found.trees[t].logits, expected.trees[t].logits) << "tree " << t;
+    EXPECT_TRUE(found.trees[t].nodes == expected.trees[t].nodes) << "tree " << t;
+    EXPECT_TRUE(found.trees[t].leaves == expected.trees[t].leaves) << "tree " << t;
+    EXPECT_TRUE(found.trees[t].logits == expected.trees[t].logits) << "tree " << t;
   }
   EXPECT_EQ(found.logit_unit, expected.logit_unit);
   EXPECT_EQ(found.facing, expected.facing);
@@ -91,6 +91,11 @@ TEST(DeviceExecutor, GrowsTheSameForestFromShardsOnSeveralDevices) {
   const Forest expected = train_on_processor(frames, options);
   expect_same(train_on({simulated()}, {11, 24}, frames, options), expected);
   expect_same(train_on({simulated(), simulated()}, {3, 4, 4, 15, 24}, frames, options), expected);
+  for (const std::size_t devices : {2, 3, 30}) {  // which divide a set among them, the last in part with nothing
+    std::vector<std::shared_ptr<Device>> all;
+    for (std::size_t i = 0; i < devices; ++i) all.push_back(simulated());
+    expect_same(train_on(all, {24}, frames, options), expected);
+  }
 }
 
 TEST(DeviceExecutor, GrowsTheSameForestWithOtherOptions) {

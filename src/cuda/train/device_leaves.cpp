@@ -16,9 +16,8 @@ constexpr double kOne = static_cast<double>(SampleWeights::kUnit) * SampleWeight
 
 }  // namespace
 
-DeviceLeafShard::DeviceLeafShard(const TrainingSet& set, std::shared_ptr<const DeviceSamples> samples,
-                                 const Forest& forest, LogitLayout layout)
-    : set_(set), samples_(std::move(samples)), layout_(std::move(layout)), stream_(samples_->device()) {
+DeviceLeafShard::DeviceLeafShard(std::shared_ptr<const DeviceSamples> samples, const Forest& forest, LogitLayout layout)
+    : samples_(std::move(samples)), layout_(std::move(layout)), stream_(samples_->device()) {
   if (layout_.size() > static_cast<int>(kSharedLogits)) {
     throw DeviceError(stream_.device()->name() + ": leaves with " + std::to_string(layout_.size()) +
                       " logits, expected at most 2048");
@@ -48,7 +47,7 @@ DeviceLeafShard::DeviceLeafShard(const TrainingSet& set, std::shared_ptr<const D
   stream_->wait();
 }
 
-LabelCounts DeviceLeafShard::label_counts() const { return count_labels(set_.samples(), layout_); }
+LabelCounts DeviceLeafShard::label_counts() const { return count_labels(samples_->here(), layout_); }
 
 void DeviceLeafShard::set_weights(const SampleWeights& weights) {
   weighted_headings_ = static_cast<std::int32_t>(weights.of_heading.size());
@@ -91,7 +90,7 @@ LeafGradient DeviceLeafShard::gradient(const LeafLogits& logits, const GradientT
   a.scale = std::ldexp(1.F, task.shift) / static_cast<float>(kOne);
   a.portion = static_cast<std::uint32_t>(task.portion);
   a.portions = static_cast<std::uint32_t>(task.portions);
-  a.first_frame = static_cast<std::uint32_t>(set_.first_frame());
+  a.first_frame = static_cast<std::uint32_t>(samples_->set().first_frame());
   const unsigned in_block =
       pixels_in_block(TrainStream::kThreads, kLogitLanes, static_cast<unsigned>(layout_.size()), kSharedLogits);
   a.samples_in_block = static_cast<std::int32_t>(in_block);
@@ -110,10 +109,9 @@ LeafGradient DeviceLeafShard::gradient(const LeafLogits& logits, const GradientT
   return gradient;
 }
 
-DeviceLeaves::DeviceLeaves(const std::vector<const TrainingSet*>& sets,
-                           const std::vector<std::shared_ptr<const DeviceSamples>>& samples, const Forest& forest,
+DeviceLeaves::DeviceLeaves(const std::vector<std::shared_ptr<const DeviceSamples>>& samples, const Forest& forest,
                            const LogitLayout& layout) {
-  for (std::size_t i = 0; i < sets.size(); ++i) shards_.emplace_back(*sets[i], samples[i], forest, layout);
+  for (const auto& of_shard : samples) shards_.emplace_back(of_shard, forest, layout);
 }
 
 }  // namespace vesalius::gpu

@@ -14,9 +14,8 @@ namespace vesalius::gpu {
 /// One shard's part in learning the leaves of a forest, as LeafShard, on a device. Requests come one at a time.
 class DeviceLeafShard {
  public:
-  /// `set` must outlive this object and not change. Throws DeviceError for leaves with more than 2048 logits.
-  DeviceLeafShard(const TrainingSet& set, std::shared_ptr<const DeviceSamples> samples, const Forest& forest,
-                  LogitLayout layout);
+  /// Throws DeviceError for leaves with more than 2048 logits.
+  DeviceLeafShard(std::shared_ptr<const DeviceSamples> samples, const Forest& forest, LogitLayout layout);
 
   LabelCounts label_counts() const;
   void set_weights(const SampleWeights& weights);
@@ -26,7 +25,6 @@ class DeviceLeafShard {
  private:
   LeafLabels labels() const;
 
-  const TrainingSet& set_;
   std::shared_ptr<const DeviceSamples> samples_;
   LogitLayout layout_;
   std::vector<std::uint32_t> first_leaf_;  ///< [tree]; behind the last the number of all
@@ -43,8 +41,7 @@ class DeviceLeafShard {
 /// The shards of learning leaves, each on a device.
 class DeviceLeaves : public ShardedLeaves<DeviceLeafShard> {
  public:
-  DeviceLeaves(const std::vector<const TrainingSet*>& sets,
-               const std::vector<std::shared_ptr<const DeviceSamples>>& samples, const Forest& forest,
+  DeviceLeaves(const std::vector<std::shared_ptr<const DeviceSamples>>& samples, const Forest& forest,
                const LogitLayout& layout);
 };
 

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "cuda/device.h"
@@ -10,37 +12,47 @@
 
 namespace vesalius::gpu {
 
-/// A shard's frames in a device's memory: packed tiles, which never change while a forest is trained.
+/// Frames in a device's memory: packed tiles, which never change while a forest is trained.
 class DeviceFrames {
  public:
-  /// Throws DeviceError if the device has no room for them.
-  DeviceFrames(const FrameStore& frames, std::shared_ptr<Device> device);
+  /// Takes frames `first` to `end` - 1. Throws DeviceError if the device has no room for them.
+  DeviceFrames(const FrameStore& frames, std::uint32_t first, std::uint32_t end, std::shared_ptr<Device> device);
 
   const std::shared_ptr<Device>& device() const { return device_; }
   TiledFrames describe() const;
-  std::size_t bytes() const { return words_.bytes() + infos_.bytes(); }
+  std::uint32_t first() const { return first_; }
+  std::uint32_t end() const { return end_; }
 
  private:
   std::shared_ptr<Device> device_;
   FeatureConvention convention_;
+  std::uint32_t first_, end_;
   DeviceArray<std::uint32_t> words_;
   DeviceArray<FrameInfo> infos_;
 };
 
-/// A shard's samples there, which grow by hard negatives between two rounds of trees.
+/// The samples of such frames there, which are a shard. They grow by hard negatives between two rounds of trees.
 class DeviceSamples {
  public:
-  DeviceSamples(const TrainingSet& set, std::shared_ptr<const DeviceFrames> frames);
+  /// `leads` is true for one shard of the set. `set` must outlive this object and not change.
+  DeviceSamples(const TrainingSet& set, std::shared_ptr<const DeviceFrames> frames, bool leads = true);
 
   const std::shared_ptr<Device>& device() const { return frames_->device(); }
   TiledFrames frames() const { return frames_->describe(); }
-  Samples describe() const { return {pixels_.data(), scales_.data(), count_}; }
+  Samples describe() const { return {pixels_.data(), scales_.data(), static_cast<std::uint32_t>(samples_.size())}; }
+  const TrainingSet& set() const { return set_; }
+  /// Returns the same samples in this machine's memory.
+  std::span<const TrainingSample> here() const { return samples_; }
+  /// Returns the set's counts if this shard leads and none otherwise, so that those of all shards add up.
+  SampleCounts sample_counts() const;
 
  private:
+  const TrainingSet& set_;
   std::shared_ptr<const DeviceFrames> frames_;
+  std::span<const TrainingSample> samples_;
+  bool leads_;
   DeviceArray<SamplePixel> pixels_;
   DeviceArray<SampleScale> scales_;
-  std::uint32_t count_ = 0;
 };
 
 /// A stream with what nearly all work on it needs.

@@ -24,10 +24,8 @@ std::int64_t counted_before(const LevelNode& node, std::int64_t rank) {
 
 }  // namespace
 
-DeviceTreeShard::DeviceTreeShard(const TrainingSet& set, std::shared_ptr<const DeviceSamples> samples,
-                                 const GrowTreeOptions& options, int tree)
-    : set_(set),
-      samples_(std::move(samples)),
+DeviceTreeShard::DeviceTreeShard(std::shared_ptr<const DeviceSamples> samples, const GrowTreeOptions& options, int tree)
+    : samples_(std::move(samples)),
       options_(options),
       tree_(tree),
       child_sizes_{samples_->describe().count},
@@ -83,7 +81,7 @@ void DeviceTreeShard::evaluate(NodeRange group, int block) {
     rows_of_ = group;
   }
   const auto draw = [&](std::int32_t node) {
-    return node_candidates(set_.convention(), options_, tree_, level_[node].all.number, block);
+    return node_candidates(samples_->set().convention(), options_, tree_, level_[node].all.number, block);
   };
   padded_ = draw(group.begin).padded;
   const std::size_t length = std::size_t{4} * padded_;
@@ -125,7 +123,7 @@ Rows DeviceTreeShard::rows() const {
 
 std::vector<NodeValues> DeviceTreeShard::node_values(NodeRange batch) const {
   const std::vector<RowChunk> chunks = chunks_of(batch);
-  const int classes = set_.class_count();
+  const int classes = samples_->set().class_count();
   const std::size_t candidates = std::size_t(batch.size()) * padded_;
   stream_.send(scratch_.chunks, chunks);
   stream_.fit(scratch_.negated_low, candidates);
@@ -158,7 +156,7 @@ std::vector<NodeValues> DeviceTreeShard::node_values(NodeRange batch) const {
 
 std::vector<CountNode> DeviceTreeShard::count(NodeRange batch, const std::vector<CountTask>& tasks,
                                               const std::vector<int>& least) const {
-  const std::size_t all_classes = set_.class_count();
+  const std::size_t all_classes = samples_->set().class_count();
   std::vector<CountNode> nodes;
   std::vector<std::int16_t> low;
   std::vector<std::uint16_t> factor;
@@ -270,7 +268,7 @@ void DeviceTreeShard::set_splits(const std::vector<NodeSplit>& splits) {
 }
 
 ChildCounts DeviceTreeShard::route() {
-  const int classes = set_.class_count();
+  const int classes = samples_->set().class_count();
   const Samples samples = samples_->describe();
   const std::size_t cells = 2 * level_.size() * std::size_t(classes);
   stream_.send(scratch_.splits, splits_);
@@ -319,10 +317,9 @@ void DeviceTreeShard::move_samples(const ChildCounts& children) {
   std::swap(order_, scratch_.next_order);
 }
 
-DeviceTree::DeviceTree(const std::vector<const TrainingSet*>& sets,
-                       const std::vector<std::shared_ptr<const DeviceSamples>>& samples, const GrowTreeOptions& options,
+DeviceTree::DeviceTree(const std::vector<std::shared_ptr<const DeviceSamples>>& samples, const GrowTreeOptions& options,
                        int tree) {
-  for (std::size_t i = 0; i < sets.size(); ++i) shards_.emplace_back(*sets[i], samples[i], options, tree);
+  for (const auto& of_shard : samples) shards_.emplace_back(of_shard, options, tree);
 }
 
 std::vector<BinChoice> DeviceTree::best_bins(NodeRange batch, const std::vector<CountTask>& tasks,

@@ -15,11 +15,9 @@ namespace vesalius::gpu {
 /// at a time.
 class DeviceTreeShard {
  public:
-  /// `set` must outlive this object and not change.
-  DeviceTreeShard(const TrainingSet& set, std::shared_ptr<const DeviceSamples> samples, const GrowTreeOptions& options,
-                  int tree);
+  DeviceTreeShard(std::shared_ptr<const DeviceSamples> samples, const GrowTreeOptions& options, int tree);
 
-  SampleCounts sample_counts() const { return set_.sample_counts(); }
+  SampleCounts sample_counts() const { return samples_->sample_counts(); }
   const ChildSizes& child_sizes() const { return child_sizes_; }
   void open_level(const Level& level, const ChildSizes& before);
   void evaluate(NodeRange group, int block);
@@ -67,7 +65,6 @@ class DeviceTreeShard {
                                const std::vector<int>& least) const;
   void move_samples(const ChildCounts& children);
 
-  const TrainingSet& set_;
   std::shared_ptr<const DeviceSamples> samples_;
   GrowTreeOptions options_;
   int tree_;
@@ -88,9 +85,8 @@ class DeviceTreeShard {
 /// The shards of one tree, each on a device.
 class DeviceTree : public ShardedTree<DeviceTreeShard> {
  public:
-  /// Makes one shard for each set. `samples` are those of the sets.
-  DeviceTree(const std::vector<const TrainingSet*>& sets,
-             const std::vector<std::shared_ptr<const DeviceSamples>>& samples, const GrowTreeOptions& options,
+  /// Makes one shard for each; there is at least one.
+  DeviceTree(const std::vector<std::shared_ptr<const DeviceSamples>>& samples, const GrowTreeOptions& options,
              int tree);
   /// Chosen on the device where there is only one shard.
   std::vector<BinChoice> best_bins(NodeRange batch, const std::vector<CountTask>& tasks, const std::vector<int>& least,

@@ -32,8 +32,9 @@ class BothShards {
         processor_(set, options, 0),
         grown_(set.sample_counts(), set.body().part_count(), options) {
     const auto device = std::make_shared<SimulatedDevice>(simulated);
-    const auto frames = std::make_shared<const DeviceFrames>(set.frames(), device);
-    device_.emplace(set, std::make_shared<const DeviceSamples>(set, frames), options, 0);
+    const auto count = static_cast<std::uint32_t>(set.frames().size());
+    const auto frames = std::make_shared<const DeviceFrames>(set.frames(), 0, count, device);
+    device_.emplace(std::make_shared<const DeviceSamples>(set, frames), options, 0);
   }
 
   /// Returns the first reply that differs; empty if all are the same.
