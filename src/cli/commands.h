@@ -11,6 +11,7 @@ namespace vesalius::cli {
 void add_detect(CLI::App& program);
 void add_info(CLI::App& program);
 void add_convert(CLI::App& program);
+void add_export(CLI::App& program);
 void add_bench(CLI::App& program);
 void add_record(CLI::App& program);
 void add_cameras(CLI::App& program);

@@ -55,6 +55,7 @@ Exit codes: 0 done, 1 failed, 2 wrong usage.)");
   add_detect(program);
   add_info(program);
   add_convert(program);
+  add_export(program);
   add_record(program);
   add_cameras(program);
   add_bench(program);

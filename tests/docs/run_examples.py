@@ -111,6 +111,9 @@ class Wrapper:
                     self.place(name, "some.forest")
                 else:
                     self.place(name, self.stand_in_of_source(name) if "--to" in words else "tree.txt")
+        if command == "export":
+            for name in self.positional(words):
+                self.place(name, "followed.mcap" if name.endswith(".mcap") else "people.jsonl")
         if command == "info":
             for name in self.positional(words):
                 self.place(name, "some.forest")
@@ -193,6 +196,8 @@ def make_stand_ins(program, source, folder):
     vesalius("synth", "-q", "--count", 3, "--seed", 6, "--format", "folder", "--out", folder / "rooms", *nobody)
     vesalius("convert", source / "data/sample", folder / "walking", "--to", "tum", "--rate", 30, "-q")
     vesalius("record", source / "data/sample", "--out", folder / "session.mcap", "-q")
+    vesalius("record", source / "data/sample", "--out", folder / "followed.mcap", "--track", "-q")
+    vesalius("detect", source / "data/sample", "--json", folder / "people.jsonl", "--track", "-q")
     (folder / "frames").symlink_to(source / "data/sample")
     (folder / "some.forest").symlink_to(source / "data/models/capsule.forest")
     (folder / "rendered.forest").symlink_to(source / "data/models/small.forest")

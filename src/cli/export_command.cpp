@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/text_sink.h"
+#include "export/moving_skeleton.h"
+#include "export/people_record.h"
+#include "export/write_people.h"
+#include "io/files/atomic_file.h"
+#include "io/files/read_file.h"
+#include "io/recordings/message_fields.h"
+#include "io/recordings/open_recording.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string people, to, format, joints;
+  std::optional<int> person;
+  RecordOptions record;
+  bool quiet = false;
+};
+
+/// Returns the lines of people in an MCAP file that `vesalius record --people` or --track wrote.
+std::string lines_of_mcap(const std::string& path) {
+  const std::unique_ptr<Recording> recording = open_recording(path);
+  std::optional<std::size_t> wanted;
+  const std::vector<RecordedTopic>& topics = recording->topics();
+  for (std::size_t t = 0; t < topics.size(); ++t) {
+    if (!topics[t].name.ends_with("/people/json") || topics[t].type != "std_msgs/String") continue;
+    if (wanted) throw Error(fmt::format("{}: people of several cameras, expected those of one", path));
+    wanted = t;
+  }
+  if (!wanted)
+    throw Error(fmt::format("{}: no people in it, expected a recording of record --people or --track", path));
+  std::string lines;
+  while (const auto message = recording->next()) {
+    if (message->topic != *wanted) continue;
+    lines += MessageFields(message->bytes, topics[*wanted].layout, path).text("data");
+    lines += '\n';
+  }
+  return lines;
+}
+
+/// Returns the format that is asked for, or that the file's name tells.
+std::string format_of(const Arguments& arguments) {
+  const std::string extension = fs::path(arguments.to).extension().string();
+  if (!arguments.format.empty()) return arguments.format;
+  for (const char* known : {"csv", "trc", "bvh", "glb"}) {
+    if (extension == std::string(".") + known) return known;
+  }
+  throw UsageError(fmt::format("{}: expected a name that ends in .csv, .trc, .bvh or .glb, or --format", arguments.to));
+}
+
+/// A file for one of several people: name.csv becomes name-3.csv.
+std::string path_of(const std::string& path, int person) {
+  fs::path file(path);
+  const std::string name = fmt::format("{}-{}{}", file.stem().string(), person, file.extension().string());
+  return file.replace_filename(name).string();
+}
+
+struct File {
+  std::string path, bytes;
+};
+
+/// Returns a file for each person where there are several.
+template <class Write>
+std::vector<File> files_of(const Arguments& arguments, const std::vector<int>& people, const Write& write) {
+  std::vector<File> files;
+  for (const int person : people) {
+    const std::string path = people.size() > 1 ? path_of(arguments.to, person) : arguments.to;
+    files.push_back({path, write(person, path)});
+  }
+  return files;
+}
+
+std::vector<File> make_files(const Arguments& arguments, const std::string& format) {
+  const bool is_mcap = arguments.people.ends_with(".mcap");
+  const std::string lines = is_mcap ? lines_of_mcap(arguments.people) : read_file(arguments.people);
+  const PeopleRecord record = parse_people(lines, arguments.people, arguments.record);
+  const auto named = [&](auto&& work) { return with_context(arguments.people, work); };
+  if (format == "bvh" || format == "glb") {
+    return named([&]() -> std::vector<File> {
+      const std::vector<MovingSkeleton> skeletons = moving_skeletons(record, arguments.person);
+      if (format == "glb") return {{arguments.to, to_glb(skeletons)}};
+      std::vector<int> people;
+      for (const MovingSkeleton& skeleton : skeletons) people.push_back(skeleton.id);
+      return files_of(arguments, people, [&](int person, const std::string&) {
+        return to_bvh(*std::ranges::find(skeletons, person, &MovingSkeleton::id));
+      });
+    });
+  }
+  if (format == "k4abt") return {{arguments.to, to_k4abt(record, arguments.people)}};
+  if (record.sets.empty()) throw Error(arguments.people + ": nobody in any frame");
+  const char* usual = format == "coco" ? "coco17" : "k4abt32";
+  const std::string wanted = arguments.joints.empty() ? usual : arguments.joints;
+  const bool falls_back = arguments.joints.empty() && std::ranges::find(record.sets, wanted) == record.sets.end();
+  const std::size_t set = falls_back ? 0 : record.find_set(wanted);
+  if (format == "csv") return {{arguments.to, to_csv(record, set)}};
+  if (format == "coco") return {{arguments.to, to_coco(record, set)}};
+  const std::vector<int> people = arguments.person ? std::vector<int>{*arguments.person} : people_in(record);
+  return named([&] {
+    return files_of(arguments, people, [&](int person, const std::string& path) {
+      return to_trc(record, set, person, fs::path(path).filename().string());
+    });
+  });
+}
+
+void run(const Arguments& arguments) {
+  const std::string format = format_of(arguments);
+  const bool of_one = format == "trc" || format == "bvh" || format == "glb";
+  if (arguments.person && !of_one) throw UsageError("--person goes with trc, bvh and glb: the others have all people");
+  for (const File& file : make_files(arguments, format)) {
+    write_file_atomically(file.path, file.bytes);
+    if (!arguments.quiet) say(fmt::format("{}: {} bytes", file.path, file.bytes.size()));
+  }
+}
+
+}  // namespace
+
+void add_export(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("export", "Write people in the formats of other programs");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("PEOPLE", arguments->people,
+                   "What detect --json wrote, or an MCAP file of record --people or --track")
+      ->required();
+  command
+      ->add_option("--to", arguments->to,
+                   "File to write: .csv (a table), .trc (OpenSim), .bvh or .glb (animation; people need fitted bodies, "
+                   "detect --track); others with --format. Of several people .trc and .bvh take a file each, NAME-ID")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--format", arguments->format, "csv, trc, bvh, glb, coco (keypoints), k4abt (Azure Kinect's JSON)")
+      ->check(CLI::IsMember({"csv", "trc", "bvh", "glb", "coco", "k4abt"}))
+      ->type_name("NAME");
+  command
+      ->add_option("--joints", arguments->joints,
+                   "Joint set of csv, trc and coco (default: coco17 for coco, else k4abt32)")
+      ->type_name("SET");
+  command->add_option("--person", arguments->person, "Only the person with this id, in trc, bvh or glb")
+      ->type_name("ID");
+  command->add_flag("--smoothed", arguments->record.smoothed, "Smoothed joints, where people were followed");
+  command->add_option("--rate", arguments->record.rate_hz, "Frames a second where frames have no times")
+      ->type_name("HZ")
+      ->check(CLI::Range(0.01, 10000.0))
+      ->capture_default_str();
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command->footer(R"(
+Positions are metres in the optical frame (x right, y down, z away) in csv, millimetres in k4abt; y is up and the camera in the origin in trc
+(millimetres), bvh (centimetres) and glb (metres).
+
+Examples:
+  vesalius detect frames/ --track --json people.jsonl
+  vesalius export people.jsonl --to people.csv
+  vesalius export people.jsonl --to walk.bvh --person 1
+  vesalius export session.mcap --to keypoints.json --format coco)");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace vesalius::cli

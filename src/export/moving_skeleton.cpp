@@ -1,0 +1,176 @@
+#include "export/moving_skeleton.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "vesalius/base/error.h"
+#include "vesalius/fit/flesh_model.h"
+
+namespace vesalius {
+namespace {
+
+/// Names of bones in animation programs.
+const std::map<std::string, std::string>& mixamo_names() {
+  static const std::map<std::string, std::string> kNames{{"pelvis", "Hips"},
+                                                         {"spine", "Spine"},
+                                                         {"chest", "Spine1"},
+                                                         {"neck", "Neck"},
+                                                         {"head", "Head"},
+                                                         {"l_clavicle", "LeftShoulder"},
+                                                         {"r_clavicle", "RightShoulder"},
+                                                         {"l_upper_arm", "LeftArm"},
+                                                         {"r_upper_arm", "RightArm"},
+                                                         {"l_forearm", "LeftForeArm"},
+                                                         {"r_forearm", "RightForeArm"},
+                                                         {"l_hand", "LeftHand"},
+                                                         {"r_hand", "RightHand"},
+                                                         {"l_thigh", "LeftUpLeg"},
+                                                         {"r_thigh", "RightUpLeg"},
+                                                         {"l_shin", "LeftLeg"},
+                                                         {"r_shin", "RightLeg"},
+                                                         {"l_foot", "LeftFoot"},
+                                                         {"r_foot", "RightFoot"}};
+  return kNames;
+}
+
+/// From the optical frame (y down, z away) to one with y up and z towards the camera.
+const Eigen::Quaterniond& upright() {
+  static const Eigen::Quaterniond kTurn(0.0, 1.0, 0.0, 0.0);  // half a turn about x
+  return kTurn;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Eigen::Vector3d median(const std::vector<Eigen::Vector3d>& values) {
+  Eigen::Vector3d result;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> along;
+    for (const Eigen::Vector3d& value : values) along.push_back(value[axis]);
+    result[axis] = median(std::move(along));
+  }
+  return result;
+}
+
+/// Returns where a bone's head is in the frame of the bone that it hangs on.
+Eigen::Vector3d offset_from(const RecordedBone& parent, const RecordedBone& bone) {
+  return parent.global.conjugate() * (bone.head_m - parent.head_m);
+}
+
+/// The bodies of one person.
+struct Bodies {
+  std::size_t first = 0, last = 0;  ///< frames
+  std::map<std::size_t, const RecordedPerson*> of_frame;
+};
+
+std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bodies& bodies) {
+  const FleshModel& flesh = builtin_flesh();
+  std::vector<MovingSkeleton::Bone> bones;
+  for (std::size_t b = 0; b < record.bones.size(); ++b) {
+    const int known = flesh.find_bone(record.bones[b]);
+    if (known < 0) throw Error(fmt::format("a body with a bone {}, which this version does not know", record.bones[b]));
+    MovingSkeleton::Bone bone;
+    const auto name = mixamo_names().find(record.bones[b]);
+    bone.name = name != mixamo_names().end() ? name->second : record.bones[b];
+    const int parent = flesh.bones[known].parent;
+    if (parent >= 0) {
+      const auto at = std::ranges::find(record.bones, flesh.bones[parent].name);
+      if (at - record.bones.begin() >= static_cast<std::ptrdiff_t>(b)) {
+        throw Error(fmt::format("a body whose bone {} comes before {}", record.bones[b], flesh.bones[parent].name));
+      }
+      bone.parent = static_cast<int>(at - record.bones.begin());
+      bones[bone.parent].ends = false;
+    }
+    std::vector<Eigen::Vector3d> offsets, tails;
+    for (const auto& [unused, person] : bodies.of_frame) {
+      const RecordedBone& here = person->bones[b];
+      tails.push_back(here.global.conjugate() * (here.tail_m - here.head_m));
+      if (bone.parent < 0) continue;
+      offsets.push_back(offset_from(person->bones[bone.parent], here));
+    }
+    bone.tail_m = median(tails);
+    if (!offsets.empty()) bone.offset_m = median(offsets);
+    bones.push_back(std::move(bone));
+  }
+  return bones;
+}
+
+MovingSkeleton::Pose pose_of(const RecordedPerson& person, const std::vector<MovingSkeleton::Bone>& bones) {
+  MovingSkeleton::Pose pose;
+  pose.root_m = upright() * person.bones.front().head_m;
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    const RecordedBone& here = person.bones[b];
+    if (bones[b].parent < 0) {
+      pose.local.push_back(upright() * here.global);
+      pose.offsets_m.emplace_back(Eigen::Vector3d::Zero());
+      continue;
+    }
+    pose.local.push_back(person.bones[bones[b].parent].global.conjugate() * here.global);
+    pose.offsets_m.push_back(offset_from(person.bones[bones[b].parent], here));
+  }
+  return pose;
+}
+
+}  // namespace
+
+std::vector<MovingSkeleton> moving_skeletons(const PeopleRecord& record, std::optional<int> person) {
+  std::map<int, Bodies> all;
+  for (std::size_t f = 0; f < record.frames.size(); ++f) {
+    for (const RecordedPerson& one : record.frames[f].people) {
+      if (one.bones.empty() || (person && one.id != *person)) continue;
+      Bodies& bodies = all[one.id];
+      if (bodies.of_frame.empty()) bodies.first = f;
+      bodies.last = f;
+      bodies.of_frame[f] = &one;
+    }
+  }
+  if (all.empty()) {
+    throw Error(person ? fmt::format("person {} has no fitted body, expected one as detect --track fits it", *person)
+                       : "nobody has a fitted body, expected some as detect --track fits them");
+  }
+  std::vector<MovingSkeleton> skeletons;
+  for (const auto& [id, bodies] : all) {
+    MovingSkeleton& skeleton = skeletons.emplace_back();
+    skeleton.id = id;
+    skeleton.bones = bones_of(record, bodies);
+    for (std::size_t f = bodies.first; f <= bodies.last; ++f) {
+      const auto here = bodies.of_frame.find(f);
+      if (here != bodies.of_frame.end()) {
+        skeleton.poses.push_back(pose_of(*here->second, skeleton.bones));
+        if (skeleton.poses.size() > 1) {
+          // The same rotation as two quaternions: programs interpolate between neighbours.
+          const MovingSkeleton::Pose& before = skeleton.poses[skeleton.poses.size() - 2];
+          for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
+            Eigen::Quaterniond& now = skeleton.poses.back().local[b];
+            if (before.local[b].dot(now) < 0.0) now.coeffs() = -now.coeffs();
+          }
+        }
+      } else {
+        skeleton.poses.push_back(skeleton.poses.back());
+      }
+      skeleton.poses.back().time_s = record.frames[f].time_s;
+    }
+  }
+  return skeletons;
+}
+
+Eigen::Vector3d zxy_degrees(const Eigen::Quaterniond& rotation) {
+  const Eigen::Matrix3d r = rotation.toRotationMatrix();
+  const double sine = std::clamp(r(2, 1), -1.0, 1.0);
+  // Near a quarter turn about x the other two turn about the same axis: all of it is given to z.
+  const bool locked = std::abs(sine) > 1.0 - 1e-9;
+  const double z = locked ? std::atan2(r(1, 0), r(0, 0)) : std::atan2(-r(0, 1), r(1, 1));
+  const double y = locked ? 0.0 : std::atan2(-r(2, 0), r(2, 2));
+  return Eigen::Vector3d(z, std::asin(sine), y) * (180.0 / std::numbers::pi);
+}
+
+}  // namespace vesalius

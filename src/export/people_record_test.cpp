@@ -1,0 +1,70 @@
+#include "export/people_record.h"
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "export/test_people.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(ParsePeople, ReadsFramesPeopleJointsAndBodies) {
+  const PeopleRecord record = test::people();
+  ASSERT_EQ(record.frames.size(), test::kFrames);
+  EXPECT_TRUE(record.followed);
+  EXPECT_THAT(record.sets, testing::ElementsAre("k4abt32", "coco17"));
+  EXPECT_THAT(record.bones, testing::ElementsAre("pelvis", "spine", "l_thigh"));
+  EXPECT_EQ(record.frames[2].people.size(), 1U);
+  EXPECT_DOUBLE_EQ(record.frames[2].time_s, 0.08);
+  const RecordedPerson& person = record.frames[1].people[1];
+  EXPECT_EQ(person.id, 7);
+  EXPECT_DOUBLE_EQ(person.joints[1][0].at_m->x(), 1.1);
+  EXPECT_FALSE(person.joints[0][1].at_m.has_value());
+  EXPECT_TRUE(person.rotations[0][1].has_value());
+  EXPECT_FALSE(person.rotations[0][0].has_value());
+  EXPECT_EQ(record.find_set("coco17"), 1U);
+  EXPECT_THAT([&] { (void)record.find_set("body25"); }, ThrowsMessage<UsageError>(HasSubstr("k4abt32, coco17")));
+}
+
+TEST(ParsePeople, CountsFramesWithoutTimes) {
+  const std::string frame =
+      R"({"frame":"1","time_s":null,"camera":{"width":4,"height":3,"fx":1,"fy":1,"cx":1,"cy":1},"people":[]})";
+  const PeopleRecord record = parse_people(frame + "\n\n" + frame, "x", {.rate_hz = 10.0});
+  ASSERT_EQ(record.frames.size(), 2U);
+  EXPECT_DOUBLE_EQ(record.frames[1].time_s, 0.1);
+  EXPECT_FALSE(record.followed);
+}
+
+TEST(ParsePeople, SaysWhereALineIsNotAsExpected) {
+  const auto refused = [](std::string text, const std::string& from, const std::string& to, const std::string& why) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    EXPECT_THAT([&] { parse_people(text, "p.jsonl", {}); },
+                ThrowsMessage<Error>(testing::AllOf(HasSubstr("p.jsonl: line 1: "), HasSubstr(why))));
+  };
+  const std::string good = test::lines();
+  refused(good, "\"people\":", "\"nobody\":", "expected a line of vesalius detect --json");
+  refused(good, "[0.1,0.2,2.0]", "[0.1,0.2]", "expected 3 numbers");
+  refused(good, "\"score\":0.9", "\"score\":\"high\"", "expected a line");
+  refused(good, "{\"frame\"", "\"frame\"", "no JSON from byte");
+  refused(good, "[-0.5,0.5,-0.5,0.5]", "[0,0,0,0]", "expected a quaternion");
+  std::string other_joint = good;
+  other_joint.replace(other_joint.find("\"l_wrist\":"), 9, "\"l_rist\"");
+  EXPECT_THAT([&] { parse_people(other_joint, "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("p.jsonl: line 2: ")));
+  EXPECT_THAT([] { parse_people("[]", "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("expected an object")));
+  for (const char* empty : {"", "\n\n", "{\"complete\":true,\"frames\":0}"}) {
+    EXPECT_THAT([&] { parse_people(empty, "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("p.jsonl: no frames")));
+  }
+  std::string back = good;
+  back.replace(back.find("0.04,"), 5, "9.04,");
+  EXPECT_THAT([&] { parse_people(back, "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("line 3: a time before")));
+}
+
+}  // namespace
+}  // namespace vesalius

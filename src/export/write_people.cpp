@@ -1,0 +1,401 @@
+#include "export/write_people.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+/// Returns a text as a field of a table: in quotes where it needs them.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+/// Returns a number with so many decimals, without a minus before nothing.
+double rounded(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale + 0.0;
+}
+
+/// Millimetres with y up.
+Eigen::Vector3d upright_mm(const Eigen::Vector3d& optical_m) {
+  return 1000.0 * Eigen::Vector3d(optical_m.x(), -optical_m.y(), -optical_m.z());
+}
+
+/// Returns the frames a second: the median of the times between them.
+double rate_of(const std::vector<double>& times_s) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times_s.size(); ++i) steps.push_back(times_s[i] - times_s[i - 1]);
+  std::erase_if(steps, [](double step) { return step <= 0.0; });
+  if (steps.empty()) return 30.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  return 1.0 / *middle;
+}
+
+}  // namespace
+
+std::string to_csv(const PeopleRecord& record, std::size_t set) {
+  fmt::memory_buffer out;
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to, "frame,time_s,person,score");
+  for (const std::string& joint : record.joints[set]) {
+    const std::string name = field(joint);
+    fmt::format_to(to, ",{0}_x_m,{0}_y_m,{0}_z_m,{0}_confidence,{0}_state", name);
+  }
+  fmt::format_to(to, "\n");
+  for (const RecordedFrame& frame : record.frames) {
+    for (const RecordedPerson& person : frame.people) {
+      fmt::format_to(to, "{},{:.6f},{},{:.4f}", field(frame.name), frame.time_s, person.id, person.score);
+      for (const RecordedJoint& joint : person.joints[set]) {
+        if (joint.at_m) {
+          fmt::format_to(to, ",{:.4f},{:.4f},{:.4f}", joint.at_m->x(), joint.at_m->y(), joint.at_m->z());
+        } else {
+          fmt::format_to(to, ",,,");
+        }
+        fmt::format_to(to, ",{:.4f},{}", joint.confidence, field(joint.state));
+      }
+      fmt::format_to(to, "\n");
+    }
+  }
+  return fmt::to_string(out);
+}
+
+std::vector<int> people_in(const PeopleRecord& record) {
+  std::set<int> ids;
+  for (const RecordedFrame& frame : record.frames) {
+    for (const RecordedPerson& person : frame.people) ids.insert(person.id);
+  }
+  return {ids.begin(), ids.end()};
+}
+
+std::string to_trc(const PeopleRecord& record, std::size_t set, int person, const std::string& name) {
+  std::vector<const RecordedPerson*> of_frame;
+  std::vector<double> times_s;
+  std::size_t known = 0;  // rows up to the last with the person
+  for (const RecordedFrame& frame : record.frames) {
+    const auto found = std::ranges::find(frame.people, person, &RecordedPerson::id);
+    if (found == frame.people.end() && of_frame.empty()) continue;
+    of_frame.push_back(found != frame.people.end() ? &*found : nullptr);
+    times_s.push_back(frame.time_s);
+    if (found != frame.people.end()) known = of_frame.size();
+  }
+  if (of_frame.empty()) throw Error(fmt::format("person {} is in no frame", person));
+  of_frame.resize(known);
+  times_s.resize(known);
+  const double rate = rate_of(times_s);
+  const std::vector<std::string>& joints = record.joints[set];
+  fmt::memory_buffer out;
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to, "PathFileType\t4\t(X/Y/Z)\t{}\n", name);
+  fmt::format_to(
+      to, "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n");
+  fmt::format_to(to, "{0:.2f}\t{0:.2f}\t{1}\t{2}\tmm\t{0:.2f}\t1\t{1}\n", rate, known, joints.size());
+  fmt::format_to(to, "Frame#\tTime");
+  for (const std::string& joint : joints) fmt::format_to(to, "\t{}\t\t", joint);
+  fmt::format_to(to, "\n\t");
+  for (std::size_t j = 1; j <= joints.size(); ++j) fmt::format_to(to, "\tX{0}\tY{0}\tZ{0}", j);
+  fmt::format_to(to, "\n\n");
+  for (std::size_t i = 0; i < known; ++i) {
+    fmt::format_to(to, "{}\t{:.6f}", i + 1, times_s[i] - times_s.front());
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const bool placed = of_frame[i] != nullptr && of_frame[i]->joints[set][j].at_m.has_value();
+      if (!placed) {
+        fmt::format_to(to, "\t\t\t");
+        continue;
+      }
+      const Eigen::Vector3d at = upright_mm(*of_frame[i]->joints[set][j].at_m);
+      fmt::format_to(to, "\t{:.3f}\t{:.3f}\t{:.3f}", at.x(), at.y(), at.z());
+    }
+    fmt::format_to(to, "\n");
+  }
+  return fmt::to_string(out);
+}
+
+std::string to_coco(const PeopleRecord& record, std::size_t set) {
+  Json images = Json::array(), annotations = Json::array();
+  for (std::size_t f = 0; f < record.frames.size(); ++f) {
+    const RecordedFrame& frame = record.frames[f];
+    images.push_back(
+        {{"id", f + 1}, {"file_name", frame.name}, {"width", frame.camera.width}, {"height", frame.camera.height}});
+    for (const RecordedPerson& person : frame.people) {
+      Json keypoints = Json::array();
+      int visible = 0;
+      for (const RecordedJoint& joint : person.joints[set]) {
+        const int visibility = !joint.px ? 0 : joint.state == "observed" ? 2 : 1;
+        keypoints.push_back(visibility > 0 ? rounded(joint.px->x(), 2) : 0.0);
+        keypoints.push_back(visibility > 0 ? rounded(joint.px->y(), 2) : 0.0);
+        keypoints.push_back(visibility);
+        visible += visibility > 0 ? 1 : 0;
+      }
+      annotations.push_back({{"id", annotations.size() + 1},
+                             {"image_id", f + 1},
+                             {"category_id", 1},
+                             {"keypoints", std::move(keypoints)},
+                             {"num_keypoints", visible},
+                             {"bbox", person.box_px},
+                             {"area", person.box_px[2] * person.box_px[3]},
+                             {"iscrowd", 0},
+                             {"score", person.score},
+                             {"track_id", person.id}});
+    }
+  }
+  const Json category{{"id", 1},
+                      {"name", "person"},
+                      {"supercategory", "person"},
+                      {"keypoints", record.joints[set]},
+                      {"skeleton", Json::array()}};
+  return dumped({{"info", {{"description", "vesalius " VESALIUS_VERSION}}},
+                 {"images", std::move(images)},
+                 {"annotations", std::move(annotations)},
+                 {"categories", Json::array({category})}});
+}
+
+namespace {
+
+/// Joints of k4abt32 as Azure Kinect's headers call them, without K4ABT_JOINT_.
+std::string k4abt_name(std::string name) {
+  const bool left = name.starts_with("l_"), right = name.starts_with("r_");
+  if (left || right) name.erase(0, 2);
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return left ? name + "_LEFT" : right ? name + "_RIGHT" : name;
+}
+
+/// Each joint's parent, as Azure Kinect's documentation has them.
+const std::vector<std::pair<std::string, std::string>>& k4abt_bones() {
+  static const std::vector<std::pair<std::string, std::string>> kBones{{"pelvis", "spine_naval"},
+                                                                       {"spine_naval", "spine_chest"},
+                                                                       {"spine_chest", "neck"},
+                                                                       {"neck", "head"},
+                                                                       {"head", "nose"},
+                                                                       {"head", "l_eye"},
+                                                                       {"head", "l_ear"},
+                                                                       {"head", "r_eye"},
+                                                                       {"head", "r_ear"},
+                                                                       {"spine_chest", "l_clavicle"},
+                                                                       {"l_clavicle", "l_shoulder"},
+                                                                       {"l_shoulder", "l_elbow"},
+                                                                       {"l_elbow", "l_wrist"},
+                                                                       {"l_wrist", "l_hand"},
+                                                                       {"l_hand", "l_handtip"},
+                                                                       {"l_wrist", "l_thumb"},
+                                                                       {"spine_chest", "r_clavicle"},
+                                                                       {"r_clavicle", "r_shoulder"},
+                                                                       {"r_shoulder", "r_elbow"},
+                                                                       {"r_elbow", "r_wrist"},
+                                                                       {"r_wrist", "r_hand"},
+                                                                       {"r_hand", "r_handtip"},
+                                                                       {"r_wrist", "r_thumb"},
+                                                                       {"pelvis", "l_hip"},
+                                                                       {"l_hip", "l_knee"},
+                                                                       {"l_knee", "l_ankle"},
+                                                                       {"l_ankle", "l_foot"},
+                                                                       {"pelvis", "r_hip"},
+                                                                       {"r_hip", "r_knee"},
+                                                                       {"r_knee", "r_ankle"},
+                                                                       {"r_ankle", "r_foot"}};
+  return kBones;
+}
+
+}  // namespace
+
+std::string to_k4abt(const PeopleRecord& record, const std::string& source) {
+  const std::size_t set = record.find_set("k4abt32");
+  Json frames = Json::array(), names = Json::array(), bones = Json::array();
+  for (const std::string& joint : record.joints[set]) names.push_back(k4abt_name(joint));
+  for (const auto& [from, to] : k4abt_bones()) bones.push_back({k4abt_name(from), k4abt_name(to)});
+  for (std::size_t f = 0; f < record.frames.size(); ++f) {
+    const RecordedFrame& frame = record.frames[f];
+    Json bodies = Json::array();
+    for (const RecordedPerson& person : frame.people) {
+      Json positions = Json::array(), orientations = Json::array();
+      for (std::size_t j = 0; j < record.joints[set].size(); ++j) {
+        const Eigen::Vector3d mm = 1000.0 * person.joints[set][j].at_m.value_or(Eigen::Vector3d::Zero());
+        positions.push_back({rounded(mm.x(), 3), rounded(mm.y(), 3), rounded(mm.z(), 3)});
+        const bool turned = j < person.rotations[set].size() && person.rotations[set][j].has_value();
+        const Eigen::Quaterniond q = turned ? *person.rotations[set][j] : Eigen::Quaterniond::Identity();
+        orientations.push_back({rounded(q.w(), 6), rounded(q.x(), 6), rounded(q.y(), 6), rounded(q.z(), 6)});
+      }
+      bodies.push_back({{"body_id", person.id},
+                        {"joint_positions", std::move(positions)},
+                        {"joint_orientations", std::move(orientations)}});
+    }
+    frames.push_back({{"frame_id", f},
+                      {"timestamp_usec", static_cast<std::int64_t>(std::llround(1e6 * frame.time_s))},
+                      {"num_bodies", frame.people.size()},
+                      {"bodies", std::move(bodies)}});
+  }
+  return dumped({{"k4abt_sdk_version", "vesalius " VESALIUS_VERSION},
+                 {"source_file", source},
+                 {"joint_names", std::move(names)},
+                 {"bone_list", std::move(bones)},
+                 {"frames", std::move(frames)}});
+}
+
+namespace {
+
+/// Writes a bone of BVH's hierarchy and all that hang on it.
+void append_bone(const MovingSkeleton& skeleton, std::size_t bone, int depth, std::string& out,
+                 std::vector<std::size_t>& order) {
+  const MovingSkeleton::Bone& b = skeleton.bones[bone];
+  const std::string indent(static_cast<std::size_t>(depth), '\t');
+  const auto offset = [&](const std::string& before, const Eigen::Vector3d& m) {
+    out += fmt::format("{}OFFSET {:.6f} {:.6f} {:.6f}\n", before, 100.0 * m.x(), 100.0 * m.y(), 100.0 * m.z());
+  };
+  order.push_back(bone);
+  out += fmt::format("{}{} {}\n{}{{\n", indent, b.parent < 0 ? "ROOT" : "JOINT", b.name, indent);
+  offset(indent + "\t", b.offset_m);
+  out += indent + (b.parent < 0 ? "\tCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+                                : "\tCHANNELS 3 Zrotation Xrotation Yrotation\n");
+  for (std::size_t child = bone + 1; child < skeleton.bones.size(); ++child) {
+    if (skeleton.bones[child].parent == static_cast<int>(bone)) append_bone(skeleton, child, depth + 1, out, order);
+  }
+  if (b.ends) {
+    out += indent + "\tEnd Site\n" + indent + "\t{\n";
+    offset(indent + "\t\t", b.tail_m);
+    out += indent + "\t}\n";
+  }
+  out += indent + "}\n";
+}
+
+}  // namespace
+
+std::string to_bvh(const MovingSkeleton& skeleton) {
+  std::string out = "HIERARCHY\n";
+  std::vector<std::size_t> order;
+  append_bone(skeleton, 0, 0, out, order);
+  std::vector<double> times_s;
+  for (const MovingSkeleton::Pose& pose : skeleton.poses) times_s.push_back(pose.time_s);
+  out += fmt::format("MOTION\nFrames: {}\nFrame Time: {:.6f}\n", skeleton.poses.size(), 1.0 / rate_of(times_s));
+  for (const MovingSkeleton::Pose& pose : skeleton.poses) {
+    const Eigen::Vector3d root = 100.0 * pose.root_m;
+    out += fmt::format("{:.4f} {:.4f} {:.4f}", root.x(), root.y(), root.z());
+    for (const std::size_t bone : order) {
+      const Eigen::Vector3d angles = zxy_degrees(pose.local[bone]);
+      out += fmt::format(" {:.4f} {:.4f} {:.4f}", angles[0], angles[1], angles[2]);
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+namespace {
+
+/// The binary part of a glTF file with its accessors.
+class GltfBuffer {
+ public:
+  /// Adds floats, `of_each` to an element, and returns the accessor's index.
+  std::size_t add(const std::vector<float>& values, std::size_t of_each) {
+    static const char* const kTypes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+    Json accessor{{"bufferView", views.size()},
+                  {"componentType", 5126},
+                  {"count", values.size() / of_each},
+                  {"type", kTypes[of_each]}};
+    if (of_each == 1) {  // key frames must say their range
+      accessor["min"] = {*std::ranges::min_element(values)};
+      accessor["max"] = {*std::ranges::max_element(values)};
+    }
+    accessors.push_back(std::move(accessor));
+    views.push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(float)}});
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+    return accessors.size() - 1;
+  }
+
+  Json accessors = Json::array(), views = Json::array();
+  std::string bytes;
+};
+
+void append_word(std::string& out, std::uint32_t word) {
+  for (unsigned i = 0; i < 4; ++i) out += static_cast<char>(word >> (8 * i) & 255U);
+}
+
+void append_chunk(std::string& out, const char* type, std::string content, char filler) {
+  content.resize((content.size() + 3) / 4 * 4, filler);
+  append_word(out, static_cast<std::uint32_t>(content.size()));
+  out.append(type, 4);
+  out += content;
+}
+
+}  // namespace
+
+std::string to_glb(const std::vector<MovingSkeleton>& skeletons) {
+  GltfBuffer buffer;
+  Json nodes = Json::array(), roots = Json::array(), samplers = Json::array(), channels = Json::array();
+  double begin_s = skeletons.front().poses.front().time_s;
+  for (const MovingSkeleton& skeleton : skeletons) begin_s = std::min(begin_s, skeleton.poses.front().time_s);
+  for (const MovingSkeleton& skeleton : skeletons) {
+    const std::size_t first = nodes.size();
+    std::vector<float> times, places;
+    for (const MovingSkeleton::Pose& pose : skeleton.poses) {
+      // Key frames must rise strictly; recordings may have two frames at one time.
+      const auto time = static_cast<float>(pose.time_s - begin_s);
+      times.push_back(times.empty() || time > times.back() ? time : std::nextafter(times.back(), 1e9F));
+      for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(pose.root_m[axis]));
+    }
+    const std::size_t input = buffer.add(times, 1);
+    const auto animate = [&](std::size_t node, const char* path, std::size_t output) {
+      channels.push_back({{"sampler", samplers.size()}, {"target", {{"node", node}, {"path", path}}}});
+      samplers.push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
+    };
+    const std::string prefix = skeletons.size() > 1 ? fmt::format("person{}:", skeleton.id) : "";
+    for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
+      const MovingSkeleton::Bone& bone = skeleton.bones[b];
+      Json node{{"name", prefix + bone.name}};
+      if (bone.parent >= 0) node["translation"] = {bone.offset_m.x(), bone.offset_m.y(), bone.offset_m.z()};
+      Json children = Json::array();
+      for (std::size_t child = b + 1; child < skeleton.bones.size(); ++child) {
+        if (skeleton.bones[child].parent == static_cast<int>(b)) children.push_back(first + child);
+      }
+      if (!children.empty()) node["children"] = std::move(children);
+      nodes.push_back(std::move(node));
+      std::vector<float> turns;
+      for (const MovingSkeleton::Pose& pose : skeleton.poses) {
+        for (const double part : pose.local[b].coeffs()) turns.push_back(static_cast<float>(part));
+      }
+      animate(first + b, "rotation", buffer.add(turns, 4));
+      if (bone.parent < 0) continue;
+      std::vector<float> offsets;
+      for (const MovingSkeleton::Pose& pose : skeleton.poses) {
+        for (const double along : pose.offsets_m[b]) offsets.push_back(static_cast<float>(along));
+      }
+      animate(first + b, "translation", buffer.add(offsets, 3));
+    }
+    roots.push_back(first);
+    animate(first, "translation", buffer.add(places, 3));
+  }
+  const Json gltf{
+      {"asset", {{"version", "2.0"}, {"generator", "vesalius " VESALIUS_VERSION}}},
+      {"scene", 0},
+      {"scenes", Json::array({{{"nodes", std::move(roots)}}})},
+      {"nodes", std::move(nodes)},
+      {"animations",
+       Json::array({{{"name", "people"}, {"channels", std::move(channels)}, {"samplers", std::move(samplers)}}})},
+      {"accessors", std::move(buffer.accessors)},
+      {"bufferViews", std::move(buffer.views)},
+      {"buffers", Json::array({{{"byteLength", buffer.bytes.size()}}})}};
+  std::string chunks;
+  append_chunk(chunks, "JSON", gltf.dump(), ' ');
+  append_chunk(chunks, std::string("BIN\0", 4).c_str(), std::move(buffer.bytes), '\0');
+  std::string out = "glTF";
+  append_word(out, 2);
+  append_word(out, static_cast<std::uint32_t>(12 + chunks.size()));
+  return out + chunks;
+}
+
+}  // namespace vesalius

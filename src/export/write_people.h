@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "export/moving_skeleton.h"
+#include "export/people_record.h"
+
+namespace vesalius {
+
+/// All people as a table, a row for each frame and person: frame, time, id, score, and of each joint of a set its place
+/// in metres (optical frame), confidence and state. Places of joints without one are empty.
+std::string to_csv(const PeopleRecord& record, std::size_t set);
+
+/// One person's joints as OpenSim's markers: millimetres, y up, the camera in the origin. A row for each frame from the
+/// person's first to the last; places that are not known are empty. `name` is what the file calls itself. Throws Error
+/// if the person is not there.
+std::string to_trc(const PeopleRecord& record, std::size_t set, int person, const std::string& name);
+
+/// Returns the ids of all people, rising.
+std::vector<int> people_in(const PeopleRecord& record);
+
+/// All people as COCO's keypoints: images, annotations with boxes, one category with the set's joints. Pixels are those
+/// of the depth picture. Visibility is 2 for what is observed, 1 for what is predicted and 0 for the rest.
+std::string to_coco(const PeopleRecord& record, std::size_t set);
+
+/// All people as the offline processor of the Azure Kinect samples writes them: positions in millimetres in the depth
+/// camera's frame, orientations as w, x, y, z. The record must have the joint set k4abt32; a joint without a place or
+/// rotation is at the origin or unturned. Throws UsageError otherwise. `source` is what the file says it comes from.
+std::string to_k4abt(const PeopleRecord& record, const std::string& source);
+
+/// A skeleton as BVH: centimetres, angles about z, x and y. Its bones keep their length, as the format has them once.
+std::string to_bvh(const MovingSkeleton& skeleton);
+
+/// Skeletons as binary glTF 2.0: nodes with an animation, metres, each frame's body as it was fitted.
+std::string to_glb(const std::vector<MovingSkeleton>& skeletons);
+
+}  // namespace vesalius
