@@ -190,6 +190,13 @@ GPU_FUNCTION std::int32_t ordered(float x) {
 }
 GPU_FUNCTION float unordered(std::int32_t bits) { return bits_as_float(bits >= 0 ? bits : bits ^ 0x7FFFFFFF); }
 
+/// Returns the power of a logit relative to the largest of its group.
+GPU_FUNCTION float power_below(float logit, std::int32_t ordered_top) {
+  float x = logit - unordered(ordered_top);
+  x = x > -80.F ? x : -80.F;
+  return exponential(x < 0.F ? x : 0.F);
+}
+
 /// What the groups of a pixel's places have in common: the parts of each side, the background, the headings of each
 /// side (leaf_logits.cpp).
 struct LogitGroups {
@@ -271,9 +278,7 @@ GPU_KERNEL void run_kernel(const LogitArguments a) {
     if (pixel >= here) continue;
     for (unsigned p = thread % kLogitLanes; p < places; p += kLogitLanes) {
       const unsigned group = pixel * G::kCount + a.groups[p];
-      float x = values[pixel * places + p] - unordered(tops[group]);
-      x = x > -80.F ? x : -80.F;
-      const float power = exponential(x < 0.F ? x : 0.F);
+      const float power = power_below(values[pixel * places + p], tops[group]);
       values[pixel * places + p] = power;
       add(&fixed[group], nearest(power * G::kFixed));
     }

@@ -419,9 +419,7 @@ GPU_KERNEL void run_kernel(const GradientArguments a) {
     if (i >= samples || !is_in_portion(a, first + i)) continue;
     for (unsigned p = thread % kLogitLanes; p < places; p += kLogitLanes) {
       const unsigned group = i * G::kCount + a.labels.groups[p];
-      float x = values[i * places + p] - unordered(tops[group]);
-      x = x > -80.F ? x : -80.F;
-      const float power = exponential(x < 0.F ? x : 0.F);
+      const float power = power_below(values[i * places + p], tops[group]);
       values[i * places + p] = power;
       add(&fixed[group], nearest(power * G::kFixed));
     }

@@ -11,22 +11,10 @@
 namespace vesalius {
 namespace {
 
+using test::small_options;
 using test::train_over;
 
 std::vector<LabelledFrame> frames_of(int count) { return test::noisy_frames(count, 0.7); }
-
-TrainOptions small_options() {
-  TrainOptions options;
-  options.trees = 2;
-  options.hard_trees = 2;
-  options.sample.pixels_per_frame = 200;
-  options.sample.held_out_share = 0.1F;
-  options.sample.hard_pool = 1000;
-  options.grow.leaf.max_depth = 6;
-  options.grow.leaf.min_samples = 4;
-  options.grow.split.candidates = 12;
-  return options;
-}
 
 /// Counts the reports of a training, and may stop it after some trees.
 class Listener : public TrainObserver {

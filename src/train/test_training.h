@@ -29,6 +29,20 @@ inline std::vector<LabelledFrame> noisy_frames(int count, double most_yaw) {
   return frames;
 }
 
+/// Returns options of a training that takes well under a second.
+inline TrainOptions small_options() {
+  TrainOptions options;
+  options.trees = 2;
+  options.hard_trees = 2;
+  options.sample.pixels_per_frame = 200;
+  options.sample.held_out_share = 0.1F;
+  options.sample.hard_pool = 1000;
+  options.grow.leaf.max_depth = 6;
+  options.grow.leaf.min_samples = 4;
+  options.grow.split.candidates = 12;
+  return options;
+}
+
 /// Returns shards; shard i has the frames [ends[i - 1], ends[i]).
 inline std::vector<TrainingSet> shards_of(const std::vector<int>& ends, const std::vector<LabelledFrame>& frames,
                                           const TrainOptions& options) {

@@ -20,16 +20,11 @@ namespace {
 using test::pointers_to;
 using test::shards_of;
 
+/// With hard negatives, several counted samples a node and joint leaves.
 TrainOptions small_options() {
-  TrainOptions options;
-  options.trees = 2;
-  options.hard_trees = 2;
-  options.sample.pixels_per_frame = 200;
-  options.sample.held_out_share = 0.1F;
-  options.sample.hard_pool = 1000;
+  TrainOptions options = test::small_options();
   options.sample.hard_share = 0.05F;
   options.grow.leaf.max_depth = 7;
-  options.grow.leaf.min_samples = 4;
   options.grow.split.candidates = 24;
   options.grow.split.split_pixels = 600;
   options.leaves.rounds = 3;
