@@ -180,6 +180,20 @@ std::string tracked_frame_json(const Frame& frame, const TrackedFrame& tracked, 
   return line(json);
 }
 
+std::vector<std::string> json_datagrams(const std::string& whole, std::size_t most) {
+  if (whole.size() <= most) return {whole};
+  Json frame = Json::parse(whole);
+  const Json people = std::move(frame.at("people"));
+  std::vector<std::string> datagrams;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    frame["people"] = Json::array({people[i]});
+    frame["part"] = i;
+    frame["parts"] = people.size();
+    datagrams.push_back(line(frame));
+  }
+  return datagrams;
+}
+
 std::string closing_json(int lines, bool complete, const std::string& why) {
   Json json = {{"complete", complete}, {"frames", lines}};
   if (!why.empty()) json["why"] = why;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,10 @@ std::string frame_json(const Frame& frame, const std::vector<Person>& people, co
 /// and the times since when it is known and when it was last found; the frame has the floor and what happened.
 std::string tracked_frame_json(const Frame& frame, const TrackedFrame& tracked, const BodyModel& body,
                                std::optional<double> latency_ms = {});
+
+/// Returns a frame's line as datagrams of at most `most` bytes: the line itself if it fits, otherwise a line for each
+/// person with that one alone in `people`, and with `part` and `parts`: which of how many it is.
+std::vector<std::string> json_datagrams(const std::string& line, std::size_t most);
 
 /// Returns the line that closes a file of such lines: whether all frames of the source are in it, how many lines there
 /// are, and where some are missing why. A file without it was cut.

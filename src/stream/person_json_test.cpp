@@ -183,5 +183,13 @@ TEST(PersonJson, PartTableNumbersTheLabels) {
   EXPECT_EQ(table.at("parts").at(0).at("mirror"), 4);
 }
 
+TEST(JsonDatagrams, AreOneForEachPersonWhereAllAreTooLarge) {
+  const std::string line = R"({"frame":"1","time_s":2.0,"people":[{"id":3,"x":"aaaa"},{"id":5,"x":"bbbb"}]})";
+  EXPECT_THAT(json_datagrams(line, line.size()), testing::ElementsAre(line));
+  EXPECT_THAT(json_datagrams(line, line.size() - 1),
+              testing::ElementsAre(R"({"frame":"1","time_s":2.0,"people":[{"id":3,"x":"aaaa"}],"part":0,"parts":2})",
+                                   R"({"frame":"1","time_s":2.0,"people":[{"id":5,"x":"bbbb"}],"part":1,"parts":2})"));
+}
+
 }  // namespace
 }  // namespace vesalius

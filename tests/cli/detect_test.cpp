@@ -150,6 +150,21 @@ TEST_F(Detect, TakesTheProcessorWhereAnyDeviceWillDo) {
   EXPECT_EQ(json_on("auto"), json_on("cpu"));
 }
 
+TEST_F(Detect, SendsPeopleWhereNobodyNeedsToListen) {
+  const Outcome run = detect(" -q --udp 127.0.0.1:9 --osc 127.0.0.1:9");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, IsEmpty());
+  for (const auto& [flags, exit_code, why] :
+       {std::tuple{" --osc nowhere", 2, "nowhere: expected HOST:PORT"},
+        std::tuple{" --udp 1.2.3.4:99999", 2, "HOST:PORT"},
+        std::tuple{" --osc 127.0.0.1:9 --osc-joints feet", 2, "joint set \"feet\" is not of this body"},
+        std::tuple{" --udp no.such.host.invalid:9", 1, "no.such.host.invalid:9"}}) {
+    const Outcome refused = detect(flags);
+    EXPECT_EQ(refused.exit_code, exit_code) << flags;
+    EXPECT_THAT(refused.err, HasSubstr(why));
+  }
+}
+
 TEST_F(Detect, RefusesDevicesThatAreNotThere) {
   const auto run_on = [&](const std::string& device) {
     return run_program("detect " + frames() + " -m " + model() + " --device " + device);

@@ -157,6 +157,18 @@ void add_output_flags(CLI::App& command, OutputRequest& outputs) {
   command.add_option("--json", outputs.json, "People as JSON, one line a frame; - is standard output")
       ->type_name("FILE")
       ->group(group);
+  command
+      .add_option("--udp", outputs.udp,
+                  "Send each frame's JSON there as datagrams, of more than 64 kB one for each person")
+      ->type_name("HOST:PORT")
+      ->group(group);
+  command.add_option("--osc", outputs.osc, "Send people there as OSC messages, for TouchDesigner, Max and others")
+      ->type_name("HOST:PORT")
+      ->group(group);
+  command.add_option("--osc-joints", outputs.osc_options.joints, "Joint set of these messages")
+      ->type_name("SET")
+      ->capture_default_str()
+      ->group(group);
   command.add_option("--out", outputs.folder, "Folder for pictures, created if missing")
       ->type_name("DIR")
       ->group(group);

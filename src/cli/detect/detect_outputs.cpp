@@ -51,6 +51,22 @@ DetectOutputs::DetectOutputs(OutputRequest request, const BodyModel& body)
     if (wants("video")) video_.emplace(in_folder("overlay.avi"), request_.video_rate);
   }
   if (!request_.json.empty()) json_.emplace(request_.json);
+  if (!request_.udp.empty()) udp_.emplace(request_.udp);
+  if (!request_.osc.empty()) {
+    (void)osc_bundles(std::vector<Person>{}, body, request_.osc_options);  // says if the joint set is unknown
+    osc_.emplace(request_.osc);
+  }
+}
+
+void DetectOutputs::send(const FoundFrame& found, const std::string& json) const {
+  if (udp_) {
+    for (const std::string& datagram : json_datagrams(json, UdpSender::kMost)) udp_->send(datagram);
+  }
+  if (!osc_) return;
+  for (const std::string& bundle : found.tracked ? osc_bundles(*found.tracked, body_, request_.osc_options)
+                                                 : osc_bundles(found.people, body_, request_.osc_options)) {
+    osc_->send(bundle);
+  }
 }
 
 std::string DetectOutputs::path(const char* kind, const Frame& frame, const char* extension) const {
@@ -67,10 +83,13 @@ void DetectOutputs::write(const FoundFrame& found) {
   } else {
     write_pictures(frame, found.people);
   }
-  if (json_) {
-    json_->line(found.tracked ? tracked_frame_json(frame, *found.tracked, body_, found.latency_ms)
-                              : frame_json(frame, found.people, body_, found.latency_ms));
+  std::string json;
+  if (json_ || udp_) {
+    json = found.tracked ? tracked_frame_json(frame, *found.tracked, body_, found.latency_ms)
+                         : frame_json(frame, found.people, body_, found.latency_ms);
   }
+  send(found, json);
+  if (json_) json_->line(json);
   if (request_.lines()) {
     print(one_line(found.tracked ? describe(frame, *found.tracked) : describe(frame, found.people)) + "\n");
   }

@@ -7,22 +7,26 @@
 
 #include "cli/text_sink.h"
 #include "io/files/video.h"
+#include "io/net/udp_sender.h"
 #include "stream/detect_stream.h"
+#include "stream/osc_messages.h"
 #include "vesalius/detect.h"
 
 namespace vesalius::cli {
 
 /// The outputs that `vesalius detect` writes.
 struct OutputRequest {
-  std::string json;               ///< path; "-" means standard output, empty means none
-  std::string folder;             ///< folder for pictures; empty means none
+  std::string json;      ///< path; "-" means standard output, empty means none
+  std::string folder;    ///< folder for pictures; empty means none
+  std::string udp, osc;  ///< addresses to which people are sent; empty means none
+  OscOptions osc_options;
   std::vector<std::string> save;  ///< words of kSaveKinds; if empty and there is a folder, overlays
   double video_rate = 30.0;       ///< frames per second
   bool quiet = false;             ///< print no lines of text
 
   /// Returns whether each frame prints a line of text on standard output. It does so only if no other output is
   /// requested.
-  bool lines() const { return !quiet && json.empty() && folder.empty(); }
+  bool lines() const { return !quiet && json.empty() && folder.empty() && udp.empty() && osc.empty(); }
 };
 
 inline const std::set<std::string> kSaveKinds = {"overlay", "parts", "labels", "mask", "cloud", "video"};
@@ -46,6 +50,7 @@ class DetectOutputs {
   bool wants(const std::string& kind) const { return kinds_.contains(kind); }
   std::string path(const char* kind, const Frame& frame, const char* extension) const;
   void write_pictures(const Frame& frame, const std::vector<Person>& people);
+  void send(const FoundFrame& found, const std::string& json) const;
 
   OutputRequest request_;
   std::set<std::string> kinds_;
@@ -54,6 +59,7 @@ class DetectOutputs {
   std::optional<TextSink> json_;
   int frames_ = 0;  ///< number of frames written
   std::optional<VideoWriter> video_;
+  std::optional<UdpSender> udp_, osc_;
 };
 
 /// Returns a line such as "0172: 2 people: 23 parts at 2.31 m (score 0.87), ...".

@@ -1,0 +1,127 @@
+#include "stream/osc_messages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+/// An Ethernet packet's data without the heads of IP and UDP.
+constexpr std::size_t kMostBundle = 1432;
+
+/// Texts end with a zero and fill whole words.
+void append_text(std::string& to, std::string_view text) {
+  to.append(text);
+  to.append(4 - text.size() % 4, '\0');
+}
+
+void append_word(std::string& to, std::uint32_t word) {
+  for (int shift = 24; shift >= 0; shift -= 8) to += static_cast<char>(word >> shift & 255U);
+}
+
+/// Packs messages into as few bundles as they need.
+class Bundles {
+ public:
+  void add(const OscMessage& message) {
+    const std::string bytes = message.bytes();
+    if (bundles_.empty() || bundles_.back().size() + 4 + bytes.size() > kMostBundle) {
+      bundles_.emplace_back();
+      append_text(bundles_.back(), "#bundle");
+      append_word(bundles_.back(), 0);
+      append_word(bundles_.back(), 1);  // the time tag that means at once
+    }
+    append_word(bundles_.back(), static_cast<std::uint32_t>(bytes.size()));
+    bundles_.back() += bytes;
+  }
+  std::vector<std::string> take() { return std::move(bundles_); }
+
+ private:
+  std::vector<std::string> bundles_;
+};
+
+std::size_t find_set(const BodyModel& body, const std::string& name) {
+  const auto found = std::ranges::find(body.joint_sets, name, &JointSet::name);
+  if (found != body.joint_sets.end()) return static_cast<std::size_t>(found - body.joint_sets.begin());
+  std::string known;
+  for (const JointSet& set : body.joint_sets) known += (known.empty() ? "" : ", ") + set.name;
+  throw UsageError(fmt::format("joint set \"{}\" is not of this body, expected one of: {}", name, known));
+}
+
+/// Adds a place with y up and z towards the camera.
+OscMessage& add_place(OscMessage& message, const Eigen::Vector3f& at) {
+  return message.add(at.x()).add(-at.y()).add(-at.z());
+}
+
+void add_joints(Bundles& bundles, int id, const std::vector<Joint>& joints, const JointSet& set) {
+  for (std::size_t j = 0; j < set.joints.size(); ++j) {
+    if (joints[j].state == State::none) continue;
+    OscMessage message(fmt::format("/vesalius/{}/{}", id, set.joints[j].name));
+    bundles.add(add_place(message, joints[j].position).add(joints[j].confidence));
+  }
+}
+
+}  // namespace
+
+OscMessage::OscMessage(std::string_view address) { append_text(address_, address); }
+
+OscMessage& OscMessage::add(std::int32_t value) {
+  types_ += 'i';
+  append_word(values_, static_cast<std::uint32_t>(value));
+  return *this;
+}
+
+OscMessage& OscMessage::add(float value) {
+  types_ += 'f';
+  append_word(values_, std::bit_cast<std::uint32_t>(value));
+  return *this;
+}
+
+OscMessage& OscMessage::add(std::string_view text) {
+  types_ += 's';
+  append_text(values_, text);
+  return *this;
+}
+
+std::string OscMessage::bytes() const {
+  std::string all = address_;
+  append_text(all, types_);
+  return all + values_;
+}
+
+std::vector<std::string> osc_bundles(const std::vector<Person>& people, const BodyModel& body,
+                                     const OscOptions& options) {
+  const std::size_t set = find_set(body, options.joints);
+  Bundles bundles;
+  OscMessage all("/vesalius/people");
+  all.add(static_cast<std::int32_t>(people.size()));
+  for (std::size_t i = 0; i < people.size(); ++i) all.add(static_cast<std::int32_t>(i));
+  bundles.add(all);
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    bundles.add(OscMessage(fmt::format("/vesalius/{}/state", i)).add("seen"));
+    add_joints(bundles, static_cast<int>(i), people[i].joints[set], body.joint_sets[set]);
+  }
+  return bundles.take();
+}
+
+std::vector<std::string> osc_bundles(const TrackedFrame& tracked, const BodyModel& body, const OscOptions& options) {
+  const std::size_t set = find_set(body, options.joints);
+  Bundles bundles;
+  OscMessage all("/vesalius/people");
+  all.add(static_cast<std::int32_t>(tracked.people.size()));
+  for (const TrackedPerson& person : tracked.people) all.add(person.id);
+  bundles.add(all);
+  for (const TrackedPerson& person : tracked.people) {
+    bundles.add(OscMessage(fmt::format("/vesalius/{}/state", person.id)).add(to_string(person.state)));
+    OscMessage position(fmt::format("/vesalius/{}/position", person.id));
+    bundles.add(add_place(position, person.position));
+    add_joints(bundles, person.id, person.person.joints[set], body.joint_sets[set]);
+  }
+  return bundles.take();
+}
+
+}  // namespace vesalius

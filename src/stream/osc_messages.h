@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vesalius/base/frame.h"
+#include "vesalius/detect.h"
+#include "vesalius/track/tracked_frame.h"
+
+namespace vesalius {
+
+/// Puts one OSC 1.0 message together.
+class OscMessage {
+ public:
+  explicit OscMessage(std::string_view address);
+  OscMessage& add(std::int32_t value);
+  OscMessage& add(float value);
+  OscMessage& add(std::string_view text);
+  /// Returns the message's bytes.
+  std::string bytes() const;
+
+ private:
+  std::string address_, types_ = ",", values_;
+};
+
+/// What is sent of each joint.
+struct OscOptions {
+  std::string joints = "k4abt32";  ///< joint set
+};
+
+/// Returns the people of a frame as OSC bundles that fit into Ethernet's packets. Metres, x right, y up, z towards the
+/// camera, which is in the origin:
+///   /vesalius/people        how many, then their ids
+///   /vesalius/ID/state      tracked, hidden ...; "seen" where nobody follows people
+///   /vesalius/ID/position   x y z: the middle of the trunk, of people who are followed
+///   /vesalius/ID/JOINT      x y z confidence: of every joint that has a place
+/// The id is that of the track, or the index in the frame where nobody follows people. Throws UsageError if the body
+/// has no such joint set.
+std::vector<std::string> osc_bundles(const std::vector<Person>& people, const BodyModel& body,
+                                     const OscOptions& options);
+std::vector<std::string> osc_bundles(const TrackedFrame& tracked, const BodyModel& body, const OscOptions& options);
+
+}  // namespace vesalius
