@@ -32,7 +32,7 @@ struct Arguments {
 };
 
 /// Returns the lines of people in an MCAP file that `vesalius record --people` or --track wrote.
-std::string lines_of_mcap(const std::string& path) {
+std::string lines_of_mcap(const std::string& path, bool quiet) {
   const std::unique_ptr<Recording> recording = open_recording(path);
   std::optional<std::size_t> wanted;
   const std::vector<RecordedTopic>& topics = recording->topics();
@@ -49,11 +49,15 @@ std::string lines_of_mcap(const std::string& path) {
     lines += MessageFields(message->bytes, topics[*wanted].layout, path).text("data");
     lines += '\n';
   }
+  if (!quiet) {
+    for (const std::string& note : recording->notes()) say("note: " + note);
+  }
   return lines;
 }
 
 /// Returns the format that is asked for, or that the file's name tells.
 std::string format_of(const Arguments& arguments) {
+  if (arguments.to == "-") throw UsageError("--to expects the name of a file; /dev/stdout is standard output");
   const std::string extension = fs::path(arguments.to).extension().string();
   if (!arguments.format.empty()) return arguments.format;
   for (const char* known : {"csv", "trc", "bvh", "glb"}) {
@@ -86,7 +90,7 @@ std::vector<File> files_of(const Arguments& arguments, const std::vector<int>& p
 
 std::vector<File> make_files(const Arguments& arguments, const std::string& format) {
   const bool is_mcap = arguments.people.ends_with(".mcap");
-  const std::string lines = is_mcap ? lines_of_mcap(arguments.people) : read_file(arguments.people);
+  const std::string lines = is_mcap ? lines_of_mcap(arguments.people, arguments.quiet) : read_file(arguments.people);
   const PeopleRecord record = parse_people(lines, arguments.people, arguments.record);
   const auto named = [&](auto&& work) { return with_context(arguments.people, work); };
   if (format == "bvh" || format == "glb") {

@@ -26,13 +26,15 @@ class LineReader {
       json = Json::parse(line);
     } catch (const Json::parse_error& e) {
       fail(fmt::format("no JSON from byte {} on, expected a line of vesalius detect --json", e.byte));
+    } catch (const Json::exception& e) {
+      fail(reason(e));
     }
     if (!json.is_object()) fail("expected an object, a line of vesalius detect --json");
     if (!json.contains("frame")) return;  // the closing line
     try {
       record_.frames.push_back(frame_of(json));
     } catch (const Json::exception& e) {
-      fail(fmt::format("{}; expected a line of vesalius detect --json", e.what()));
+      fail(reason(e));
     }
   }
 
@@ -44,6 +46,13 @@ class LineReader {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(fmt::format("{}: line {}: {}", source_, line_, what));
+  }
+
+  /// What the library says, without its own number for it.
+  static std::string reason(const Json::exception& e) {
+    const std::string what = e.what();
+    const std::size_t end = what.find("] ");
+    return (end == std::string::npos ? what : what.substr(end + 2)) + "; expected a line of vesalius detect --json";
   }
 
   double number(const Json& value) const {

@@ -57,6 +57,7 @@ TEST(ParsePeople, SaysWhereALineIsNotAsExpected) {
   std::string other_joint = good;
   other_joint.replace(other_joint.find("\"l_wrist\":"), 9, "\"l_rist\"");
   EXPECT_THAT([&] { parse_people(other_joint, "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("p.jsonl: line 2: ")));
+  refused(good, "\"score\":0.9", "\"score\":1e999", "number overflow");
   EXPECT_THAT([] { parse_people("[]", "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("expected an object")));
   for (const char* empty : {"", "\n\n", "{\"complete\":true,\"frames\":0}"}) {
     EXPECT_THAT([&] { parse_people(empty, "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("p.jsonl: no frames")));
