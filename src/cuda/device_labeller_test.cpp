@@ -74,6 +74,19 @@ TEST(DeviceLabeller, GivesTheProcessorsBitsForEveryKindOfForest) {
   EXPECT_GT(settled, 1000) << "the gate had nothing to do";
 }
 
+TEST(DeviceLabeller, GivesTheProcessorsBitsForBodiesOfManyParts) {
+  // More logits than a pixel's lanes take at a time, an odd and an even number of classes.
+  for (const int more_parts : {40, 95, 170}) {
+    for (const LeafKind leaves : {LeafKind::distributions, LeafKind::headings}) {
+      Random random(16);
+      const Forest forest = random_forest(random, {.leaves = leaves, .more_parts = more_parts});
+      const DeviceLabeller device(forest, simulated());
+      const DepthImage depth = random_scene(random, 41, 33);
+      for (const float gate : {kNoGate, kGate}) expect_same_labels(forest, device, depth, gate);
+    }
+  }
+}
+
 TEST(DeviceLabeller, GivesTheSameBitsForPicturesOfEverySize) {
   Random random(6);
   const Forest forest = random_forest(random, {});

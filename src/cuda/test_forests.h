@@ -27,6 +27,7 @@ struct ForestKind {
   int trees = 3;
   int max_offset = 127;  ///< above 127 nodes take four words
   std::uint16_t clip_mm = 800;
+  int more_parts = 0;  ///< than the paper's body has
 };
 
 inline TreeLeaf random_leaf(Random& random, int classes, bool vote) {
@@ -45,6 +46,12 @@ inline TreeLeaf random_leaf(Random& random, int classes, bool vote) {
 inline Forest random_forest(Random& random, const ForestKind& kind) {
   Forest forest;
   forest.body = paper_body();
+  for (int p = 0; p < kind.more_parts; ++p) {
+    BodyPart part = forest.body.parts.front();
+    part.name = "l_more_" + std::to_string(p);
+    part.mirror = p % 3 == 0 ? forest.body.part_count() : 0;
+    forest.body.parts.push_back(part);
+  }
   forest.has_background = kind.background;
   forest.convention.clip_mm = kind.clip_mm;
   forest.headings = kind.leaves == LeafKind::headings ? 8 : 0;

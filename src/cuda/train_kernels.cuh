@@ -187,7 +187,8 @@ GPU_KERNEL void run_kernel(const CountArguments a) {
         add(&counts[((label - begin) * bins + bin) * kPairs + i % (2 * kPairs) / 2], i % 2 == 0 ? 1U : 65536U);
       }
     }
-    GPU_PHASE(thread) {
+    // No barrier: a thread clears for the next pass what it reads here.
+    GPU_LAST_PHASE(thread) {
       for (unsigned i = thread; i < cells; i += threads_in_block()) {
         if (counts[i] == 0) continue;
         const std::size_t to = node.first + (static_cast<std::size_t>(begin) * bins + i / kPairs) * (kMostCandidates / 2) +

@@ -170,6 +170,76 @@ TEST_F(DeviceTreeShardTest, NeedsEveryBarrier) {
   }
 }
 
+/// Rows of one node of a body with many parts.
+struct ManyClasses {
+  static constexpr int kClasses = 70, kWidth = 16;
+  std::vector<std::int16_t> values;
+  std::vector<std::uint8_t> labels;
+
+  ManyClasses() {
+    Random random(6);
+    for (int r = 0; r < 3000; ++r) {
+      labels.push_back(static_cast<std::uint8_t>(random.below(kClasses)));
+      for (int c = 0; c < kWidth; ++c) values.push_back(static_cast<std::int16_t>(random.below(4000) - 2000));
+    }
+  }
+  FeatureRows rows() const { return {values.data(), labels.data(), labels.size(), kWidth}; }
+
+  /// Counts them on a device, in two chunks.
+  std::vector<std::uint16_t> counts(const CountTask& task, const SimulatedDeviceOptions& options) const {
+    const TrainStream stream(std::make_shared<SimulatedDevice>(options));
+    DeviceArray<std::int16_t> device_values, low;
+    DeviceArray<std::uint8_t> device_labels, class_of;
+    DeviceArray<std::uint16_t> factor;
+    DeviceArray<RowChunk> chunks;
+    DeviceArray<CountNode> nodes;
+    DeviceArray<std::uint32_t> counts;
+    const std::vector<RowChunk> all{{0, 0, 2000}, {0, 2000, 1000}};
+    const std::vector<CountNode> node{{0, 0, task.binning.bins, static_cast<std::int32_t>(task.classes.size()), 1}};
+    const std::size_t pairs = task.classes.size() * task.binning.bins * kBlockCandidates / 2;
+    stream.send(device_values, values);
+    stream.send(device_labels, labels);
+    stream.send(low, task.binning.low);
+    stream.send(factor, task.binning.factor);
+    stream.send(class_of, task.classes.index);
+    stream.send(chunks, all);
+    stream.send(nodes, node);
+    stream.clear(counts, pairs);
+    stream.launch_blocks(CountArguments{{chunks.data(), device_values.data(), device_labels.data(), kWidth},
+                                        {nodes.data(), counts.data(), kWidth},
+                                        low.data(),
+                                        factor.data(),
+                                        class_of.data(),
+                                        kClasses},
+                         all.size(), kWidth / 8);
+    std::vector<std::uint16_t> found;
+    for (const std::uint32_t pair : stream.fetch(counts, pairs)) {
+      found.push_back(static_cast<std::uint16_t>(pair));
+      found.push_back(static_cast<std::uint16_t>(pair >> 16U));
+    }
+    return found;
+  }
+};
+
+TEST(CountRows, CountsMoreClassesThanABlockHasRoomForAndNeedsEveryBarrier) {
+  const ManyClasses many;
+  const NodeValues node = node_values(many.rows(), ManyClasses::kClasses);
+  const CountTask task{{node.ranges, 32}, ClassIndex(node.class_counts)};
+  ASSERT_GT(task.classes.size() * 32 * 4, 2 * std::size_t{kSharedCounts}) << "three passes";
+  const std::vector<std::uint16_t> expected = count_bins(many.rows(), task).counts;
+  for (const bool backwards : {false, true}) {
+    EXPECT_EQ(many.counts(task, {.simulator = {.backwards = backwards}}), expected);
+  }
+  for (const int barrier : {0, 1, 3, 4, 6, 7}) {  // a pass has two, and three phases
+    bool found = false;
+    for (const bool backwards : {false, true}) {
+      const SimulatorOptions simulator{.backwards = backwards, .zeroed = true, .faults = {.left_out_barrier = barrier}};
+      found = found || many.counts(task, {.simulator = simulator}) != expected;
+    }
+    EXPECT_TRUE(found) << "barrier " << barrier;
+  }
+}
+
 /// Moves the samples of one node by the parity of their child, on a device with these options.
 std::vector<std::uint32_t> moved(const std::vector<std::int32_t>& node_of, const SimulatorOptions& simulator,
                                  int faulty_kernel) {
