@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "vesalius/base/error.h"
@@ -56,9 +57,17 @@ class LineReader {
   }
 
   double number(const Json& value) const {
+    constexpr double kMost = 1e12;  // seconds since 1970 have ten digits
     const auto read = value.get<double>();
-    if (!std::isfinite(read)) fail("a number that is none");
+    if (!(std::abs(read) <= kMost)) fail(fmt::format("{}: expected at most 10^12", value.dump()));
     return read;
+  }
+  int whole_number(const Json& value) const {
+    const double read = number(value);
+    if (read != std::floor(read) || std::abs(read) > std::numeric_limits<int>::max()) {
+      fail(fmt::format("{}: expected a whole number", value.dump()));
+    }
+    return static_cast<int>(read);
   }
   template <int kSize>
   Eigen::Matrix<double, kSize, 1> vector(const Json& value) const {
@@ -83,8 +92,8 @@ class LineReader {
       fail("a time before that of the line before, expected rising times");
     }
     const Json& camera = json.at("camera");
-    frame.camera = {camera.at("width").get<int>(),
-                    camera.at("height").get<int>(),
+    frame.camera = {whole_number(camera.at("width")),
+                    whole_number(camera.at("height")),
                     static_cast<float>(number(camera.at("fx"))),
                     static_cast<float>(number(camera.at("fy"))),
                     static_cast<float>(number(camera.at("cx"))),
@@ -96,7 +105,7 @@ class LineReader {
   RecordedPerson person_of(const Json& json) {
     RecordedPerson person;
     record_.followed = record_.followed || json.contains("id");
-    person.id = json.at(json.contains("id") ? "id" : "index").get<int>();
+    person.id = whole_number(json.at(json.contains("id") ? "id" : "index"));
     person.score = number(json.at("score"));
     const Json& box = json.at("box_px");
     if (!box.empty()) {

@@ -58,6 +58,9 @@ TEST(ParsePeople, SaysWhereALineIsNotAsExpected) {
   other_joint.replace(other_joint.find("\"l_wrist\":"), 9, "\"l_rist\"");
   EXPECT_THAT([&] { parse_people(other_joint, "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("p.jsonl: line 2: ")));
   refused(good, "\"score\":0.9", "\"score\":1e999", "number overflow");
+  refused(good, "\"id\":1,", "\"id\":1e39,", "1e+39: expected at most 10^12");
+  refused(good, "\"id\":1,", "\"id\":1.5,", "1.5: expected a whole number");
+  refused(good, "\"width\":640", "\"width\":3000000000", "expected a whole number");
   EXPECT_THAT([] { parse_people("[]", "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("expected an object")));
   for (const char* empty : {"", "\n\n", "{\"complete\":true,\"frames\":0}"}) {
     EXPECT_THAT([&] { parse_people(empty, "p.jsonl", {}); }, ThrowsMessage<Error>(HasSubstr("p.jsonl: no frames")));
