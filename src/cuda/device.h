@@ -71,6 +71,13 @@ class DeviceArray {
     return *this;
   }
 
+  /// Makes room for `count` values. What was there goes, before more is asked for, if there was not enough.
+  void fit(const std::shared_ptr<Device>& device, std::size_t count) {
+    if (count_ >= count) return;
+    *this = {};
+    *this = DeviceArray(device, count);
+  }
+
   T* data() const { return values_; }
   std::size_t size() const { return count_; }
   std::size_t bytes() const { return count_ * sizeof(T); }

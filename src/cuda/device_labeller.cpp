@@ -16,6 +16,8 @@
 namespace vesalius::gpu {
 namespace {
 
+static_assert(kGateStep == BackgroundGate::kStep && kGuideMm == BackgroundGate::kGuideMm, "as kernels gate");
+
 /// Copies values to new memory of a device.
 template <class T>
 DeviceArray<T> uploaded(const std::shared_ptr<Device>& device, Stream& stream, const std::vector<T>& values) {
@@ -111,7 +113,6 @@ class DeviceLabeller::Workspace {
       : device_(std::move(device)), forest_(forest), options_(options), stream_(device_->make_stream()) {}
 
   Stream& stream() const { return *stream_; }
-  const Batch& batch() const { return batch_; }
 
   /// Makes room for a batch; the work on the one before must be done. Without headings only posteriors are found.
   void begin(const Batch& batch, int classes, int headings) {
@@ -203,8 +204,7 @@ class DeviceLabeller::Workspace {
  private:
   template <class Array>
   void fit(Array& array, std::size_t count) {
-    if (array.size() < count) array = {};  // first what is there goes
-    if (array.size() < count) array = Array(device_, count);
+    array.fit(device_, count);
   }
 
   Pictures pictures() const { return {depth_.data(), batch_.width, batch_.height, batch_.count, batch_.width}; }
@@ -290,15 +290,23 @@ std::optional<long> gate_sum(const PixelLabeller& labeller, float gate, int tree
 
 }  // namespace
 
-void DeviceLabeller::label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const {
+/// Makes room in `out` and starts finding the posteriors. Returns where that is done; null for an empty picture.
+std::unique_ptr<DeviceLabeller::Workspace> DeviceLabeller::start(const DepthImage& depth, const Camera& camera,
+                                                                 float gate, Posteriors& out) const {
   prepare(depth, out);
   const std::optional<long> enough = gate_sum(*this, gate, tree_count());
   if (enough) out.settled = Mask(depth.width(), depth.height(), 0);
-  if (depth.empty()) return;
+  if (depth.empty()) return nullptr;
   std::unique_ptr<Workspace> space = take();
   space->begin({depth.width(), depth.height(), 1}, out.classes, out.headings);
   space->send(0, depth.data(), camera);
   space->label(enough);
+  return space;
+}
+
+void DeviceLabeller::label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const {
+  std::unique_ptr<Workspace> space = start(depth, camera, gate, out);
+  if (space == nullptr) return;
   space->fetch_posteriors(out);
   space->stream().wait();
   free_.give_back(std::move(space));
@@ -306,15 +314,9 @@ void DeviceLabeller::label_into(const DepthImage& depth, const Camera& camera, f
 
 bool DeviceLabeller::label_and_smooth_into(const DepthImage& depth, const Camera& camera, float gate,
                                            const SmoothOptions& options, Posteriors& out, Posteriors& smooth) const {
-  prepare(depth, out);
-  const std::optional<long> enough = gate_sum(*this, gate, tree_count());
-  if (enough) out.settled = Mask(depth.width(), depth.height(), 0);
+  std::unique_ptr<Workspace> space = start(depth, camera, gate, out);
   smooth.resize_like(out);
-  if (depth.empty()) return true;
-  std::unique_ptr<Workspace> space = take();
-  space->begin({depth.width(), depth.height(), 1}, out.classes, out.headings);
-  space->send(0, depth.data(), camera);
-  space->label(enough);
+  if (space == nullptr) return true;
   space->smooth(smooth_window(options, camera));
   space->fetch_posteriors(out);
   space->fetch_means(smooth);

@@ -77,6 +77,7 @@ class DeviceLabeller : public TrainedLabeller {
   struct Batch;
 
   std::unique_ptr<Workspace> take() const;
+  std::unique_ptr<Workspace> start(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const;
 
   DeviceLabellerOptions options_;
   std::shared_ptr<Device> device_;

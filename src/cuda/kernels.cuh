@@ -323,9 +323,6 @@ GPU_KERNEL void run_kernel(const LogitArguments a) {
   }
 }
 
-/// The gate's grid (BackgroundGate).
-constexpr int kGateStep = 4;
-constexpr int kGuideMm = 50;
 enum GateState : std::uint8_t { kGateNoReading = 0, kGateSure = 1, kGateUnsure = 3 };
 
 GPU_FUNCTION int gate_columns(const Pictures& pictures) { return (pictures.width + kGateStep - 1) / kGateStep; }

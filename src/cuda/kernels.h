@@ -98,6 +98,11 @@ struct LogitArguments {
   std::uint16_t* turns = nullptr;  ///< null if nobody asks
 };
 
+/// The gate's grid and the largest difference in depth between a pixel and a neighbour whose sums it takes, as
+/// BackgroundGate has them.
+constexpr int kGateStep = 4;
+constexpr int kGuideMm = 50;
+
 /// Tells for every fourth pixel of every fourth row whether the background is certain there. One thread for each.
 struct GateArguments {
   Pictures pictures;

@@ -22,8 +22,9 @@ void merge(LabelCounts& all, const LabelCounts& other);
 /// Request: how much a sample counts, in 1/kUnit.
 struct SampleWeights {
   static constexpr int kUnit = 64;
-  std::vector<std::int32_t> of_class;    ///< [class]
-  std::vector<std::int32_t> of_heading;  ///< [heading]; samples of parts without heading count kUnit
+  static constexpr double kOne = double{kUnit} * kUnit;  ///< the weight of a sample that counts once
+  std::vector<std::int32_t> of_class;                    ///< [class]
+  std::vector<std::int32_t> of_heading;                  ///< [heading]; samples of parts without heading count kUnit
 
   /// Returns the weight of a sample in 1/(kUnit * kUnit).
   std::int32_t of(const TrainingSample& sample) const {

@@ -14,7 +14,6 @@ namespace {
 
 /// Samples whose gradients are held at a time; they stay in the cache.
 constexpr std::size_t kBatch = 16384;
-constexpr double kOne = static_cast<double>(SampleWeights::kUnit) * SampleWeights::kUnit;
 
 /// Returns whether a frame is in a portion.
 bool in_portion(const TrainingSet& set, std::uint32_t frame, int portion, int portions) {
@@ -64,7 +63,7 @@ class LeafShard::Gradients {
         logits_(logits),
         task_(task),
         softmax_(shard.layout_),
-        scale_(std::ldexp(1.F, task.shift) / static_cast<float>(kOne)),
+        scale_(std::ldexp(1.F, task.shift) / static_cast<float>(SampleWeights::kOne)),
         rows_(kBatch * logits.stride),
         likelihood_(kBatch) {
     for (const std::size_t leaves : shard.leaf_counts_) out_.of_trees.emplace_back(leaves * logits.stride, 0);
@@ -87,7 +86,7 @@ class LeafShard::Gradients {
       for (int k = begin; k < end; ++k) row_of(k, shares);
     });
     for (std::size_t k = 0; k < batch_.size(); ++k) {
-      const double weight = shard_.weights_.of(shard_.samples_[batch_[k]]) / kOne;
+      const double weight = shard_.weights_.of(shard_.samples_[batch_[k]]) / SampleWeights::kOne;
       out_.log_likelihood += weight * likelihood_[k];
       out_.weight += weight;
     }

@@ -19,7 +19,6 @@ constexpr float kLargestStep = 0.5F;  ///< of a logit in one round, nats
 /// Smallest unit of logits in a file, nats: rounding over eight trees then adds about 0.05.
 constexpr float kLeastUnit = 1.F / 16.F;
 constexpr float kLargestLogit = 16.F;  ///< nats
-constexpr double kOne = static_cast<double>(SampleWeights::kUnit) * SampleWeights::kUnit;
 
 /// Returns weights in proportion to counts to the power of -balance, with a mean of 1 over all that are counted.
 std::vector<double> balanced(const std::int64_t* counts, std::size_t size, float balance) {
@@ -104,7 +103,7 @@ class LeafLearner {
       for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
         float* row = counts_[t].data() + leaf * size;
         for (std::size_t c = 0; c < size; ++c) {
-          row[c] = static_cast<float>(static_cast<double>(counts.weights[leaf * size + c]) / kOne);
+          row[c] = static_cast<float>(static_cast<double>(counts.weights[leaf * size + c]) / SampleWeights::kOne);
         }
         largest = std::max(largest, static_cast<double>(weight_of(row)));
         std::int16_t* logits = logits_.of_trees[t].data() + leaf * logits_.stride;
@@ -134,7 +133,8 @@ class LeafLearner {
     const std::size_t size = layout_.size();
     prior_.assign(size, 0.0);
     for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
-      for (std::size_t c = 0; c < size; ++c) prior_[c] += static_cast<double>(counts.weights[leaf * size + c]) / kOne;
+      for (std::size_t c = 0; c < size; ++c)
+        prior_[c] += static_cast<double>(counts.weights[leaf * size + c]) / SampleWeights::kOne;
     }
     for_groups([&](std::size_t begin, std::size_t end) {
       double sum = 0.0;

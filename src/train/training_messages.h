@@ -33,6 +33,9 @@ struct LevelNode {
   std::uint32_t number = 1;  ///< numbered as in a heap: root 1, children 2n and 2n + 1
   std::int64_t size = 0;     ///< number of samples in all shards
   std::int64_t counted = 0;  ///< number of evenly spaced samples that choose the split; at most kMostCounted
+
+  /// Returns how many of the first `rank` samples are counted.
+  std::int64_t counted_before(std::int64_t rank) const { return counted == size ? rank : rank * counted / size; }
 };
 
 /// Request: the nodes of the next level.

@@ -27,11 +27,6 @@ void prefetch_lines(const void* from, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += kLineBytes) __builtin_prefetch(at + i, 0, 3);
 }
 
-/// Returns how many of the first `rank` samples of a node are counted.
-std::int64_t counted_before(const LevelNode& node, std::int64_t rank) {
-  return node.counted == node.size ? rank : rank * node.counted / node.size;
-}
-
 }  // namespace
 
 TreeShard::TreeShard(const TrainingSet& set, const GrowTreeOptions& options, int tree)
@@ -54,7 +49,7 @@ void TreeShard::open_level(const Level& level, const ChildSizes& before) {
     node.size = child_sizes_[child];
     node.first_rank = before[child];
     node.row_begin = row;
-    row += counted_before(node.all, before[child] + node.size) - counted_before(node.all, before[child]);
+    row += node.all.counted_before(before[child] + node.size) - node.all.counted_before(before[child]);
     node.row_end = row;
   }
   for (std::size_t s = 0; s < samples_.size(); ++s) {
@@ -72,9 +67,9 @@ void TreeShard::assign_rows() {
     if (node_of_[s] == kSettled) continue;
     const Node& node = level_[node_of_[s]];
     const std::int64_t rank = ranks[node_of_[s]]++;
-    const std::int64_t before = counted_before(node.all, rank);
-    if (counted_before(node.all, rank + 1) == before) continue;
-    row_of_[s] = static_cast<std::uint32_t>(node.row_begin + before - counted_before(node.all, node.first_rank));
+    const std::int64_t before = node.all.counted_before(rank);
+    if (node.all.counted_before(rank + 1) == before) continue;
+    row_of_[s] = static_cast<std::uint32_t>(node.row_begin + before - node.all.counted_before(node.first_rank));
   }
 }
 

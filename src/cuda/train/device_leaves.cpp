@@ -10,11 +10,6 @@
 #include "vesalius/base/error.h"
 
 namespace vesalius::gpu {
-namespace {
-
-constexpr double kOne = static_cast<double>(SampleWeights::kUnit) * SampleWeights::kUnit;
-
-}  // namespace
 
 DeviceLeafShard::DeviceLeafShard(std::shared_ptr<const DeviceSamples> samples, const Forest& forest, LogitLayout layout)
     : samples_(std::move(samples)), layout_(std::move(layout)), stream_(samples_->device()) {
@@ -87,7 +82,7 @@ LeafGradient DeviceLeafShard::gradient(const LeafLogits& logits, const GradientT
   a.trees = static_cast<std::int32_t>(trees);
   a.stride = static_cast<std::int32_t>(logits.stride);
   a.unit = LeafLogits::kUnit;
-  a.scale = std::ldexp(1.F, task.shift) / static_cast<float>(kOne);
+  a.scale = std::ldexp(1.F, task.shift) / static_cast<float>(SampleWeights::kOne);
   a.portion = static_cast<std::uint32_t>(task.portion);
   a.portions = static_cast<std::uint32_t>(task.portions);
   a.first_frame = static_cast<std::uint32_t>(samples_->set().first_frame());
@@ -104,8 +99,8 @@ LeafGradient DeviceLeafShard::gradient(const LeafLogits& logits, const GradientT
                           of_tree.size() * sizeof(std::int32_t));
   }
   const std::vector<std::uint64_t> sums = stream_.fetch(likelihood_, 2);
-  gradient.log_likelihood = static_cast<double>(static_cast<std::int64_t>(sums[0])) / 4096.0 / kOne;
-  gradient.weight = static_cast<double>(sums[1]) / kOne;
+  gradient.log_likelihood = static_cast<double>(static_cast<std::int64_t>(sums[0])) / 4096.0 / SampleWeights::kOne;
+  gradient.weight = static_cast<double>(sums[1]) / SampleWeights::kOne;
   return gradient;
 }
 

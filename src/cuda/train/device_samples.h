@@ -67,9 +67,7 @@ class TrainStream {
   /// Makes room for `count` values; what was there goes if there was not enough.
   template <class T>
   void fit(DeviceArray<T>& array, std::size_t count) const {
-    if (array.size() >= count) return;
-    array = {};
-    array = DeviceArray<T>(device_, count);
+    array.fit(device_, count);
   }
   /// Copies values there. They must stay until `wait`.
   template <class T>

@@ -17,11 +17,6 @@ constexpr std::int32_t kLeast = -32768;  ///< below which no value is, nor a val
 
 static_assert(kMostCandidates == kBlockCandidates);
 
-/// Returns how many of the first `rank` samples of a node are counted.
-std::int64_t counted_before(const LevelNode& node, std::int64_t rank) {
-  return node.counted == node.size ? rank : rank * node.counted / node.size;
-}
-
 }  // namespace
 
 DeviceTreeShard::DeviceTreeShard(std::shared_ptr<const DeviceSamples> samples, const GrowTreeOptions& options, int tree)
@@ -52,7 +47,7 @@ void DeviceTreeShard::open_level(const Level& level, const ChildSizes& before) {
     node.size = static_cast<std::uint32_t>(child_sizes_[child]);
     node.first_rank = before[child];
     node.row_begin = row;
-    row += counted_before(node.all, before[child] + node.size) - counted_before(node.all, before[child]);
+    row += node.all.counted_before(before[child] + node.size) - node.all.counted_before(before[child]);
     node.row_end = row;
   }
   const std::uint32_t count = samples_->describe().count;
