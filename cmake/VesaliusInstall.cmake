@@ -29,7 +29,8 @@ install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/v
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZF.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindHDF5C.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZ4.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenNI2.cmake ${PROJECT_SOURCE_DIR}/cmake/FindFreenect.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/FindAvformat.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindAvformat.cmake ${PROJECT_SOURCE_DIR}/cmake/FindSpng.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindTurboJpeg.cmake
         DESTINATION ${VESALIUS_CMAKE_DIR})
 
 # What the program finds without being told where (src/cli/default_model.h), and what bash asks for commands and flags.

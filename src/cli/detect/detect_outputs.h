@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/text_sink.h"
-#include "io/files/video.h"
+#include "draw/video.h"
 #include "io/net/udp_sender.h"
 #include "stream/detect_stream.h"
 #include "stream/osc_messages.h"

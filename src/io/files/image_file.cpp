@@ -1,11 +1,13 @@
 #include "io/files/image_file.h"
 
 #include <fmt/format.h>
+#include <spng.h>
+#include <turbojpeg.h>
+#include <zlib.h>
 
-#include <cstring>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <vector>
+#include <cstdlib>
+#include <memory>
+#include <utility>
 
 #include "io/files/atomic_file.h"
 #include "io/files/image_bytes.h"
@@ -15,17 +17,18 @@
 namespace vesalius {
 namespace {
 
-cv::Mat decode(std::string_view bytes, int flags, int type, const std::string& name) {
-  cv::Mat decoded;
-  try {
-    // imdecode only reads, but takes a Mat, which has no const form.
-    const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
-    decoded = cv::imdecode(raw, flags);
-  } catch (const cv::Exception&) {
-    decoded.release();
+using Png = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
+
+/// Decodes a PNG that check_png took, as `format` says, which gives pixels of T.
+template <class T>
+Image<T> decode_png(const PngBytes& png, spng_format format, const std::string& name) {
+  const Png context(spng_ctx_new(0), &spng_ctx_free);
+  Image<T> image(png.width, png.height);
+  if (!context || spng_set_png_buffer(context.get(), png.pixels.data(), png.pixels.size()) != 0 ||
+      spng_decode_image(context.get(), image.data(), image.size() * sizeof(T), format, 0) != 0) {
+    throw Error(name + ": damaged picture: it cannot be decoded");
   }
-  if (decoded.empty() || decoded.type() != type) throw Error(name + ": damaged picture: it cannot be decoded");
-  return decoded;
+  return image;
 }
 
 template <class T>
@@ -35,37 +38,55 @@ Image<T> decode_grey_png(std::string_view bytes, const std::string& name, const 
     const char* kind = png.colour_type == 0 ? "grey" : png.colour_type == 4 ? "grey and alpha" : "colour";
     throw Error(fmt::format("{}: {}-bit {} PNG, expected {}", name, png.bit_depth, kind, expected));
   }
-  const cv::Mat mat = decode(png.pixels, cv::IMREAD_UNCHANGED, sizeof(T) == 2 ? CV_16UC1 : CV_8UC1, name);
-  Image<T> image(mat.cols, mat.rows);
-  for (int v = 0; v < mat.rows; ++v) std::memcpy(image.row(v), mat.ptr(v), sizeof(T) * mat.cols);
+  return decode_png<T>(png, SPNG_FMT_PNG, name);
+}
+
+ColourImage decode_jpeg(std::string_view bytes, const std::string& name) {
+  const auto free = [](void* handle) { tjDestroy(handle); };
+  const std::unique_ptr<void, decltype(free)> decoder(tjInitDecompress(), free);
+  const auto* jpeg = reinterpret_cast<const unsigned char*>(bytes.data());
+  int width = 0, height = 0, subsampling = 0, colours = 0;
+  if (!decoder ||
+      tjDecompressHeader3(decoder.get(), jpeg, bytes.size(), &width, &height, &subsampling, &colours) != 0) {
+    throw Error(name + ": damaged picture: it cannot be decoded");
+  }
+  if (colours == TJCS_CMYK || colours == TJCS_YCCK) throw Error(name + ": JPEG of CMYK, expected RGB or grey");
+  ColourImage image(width, height);
+  auto* rgb = reinterpret_cast<unsigned char*>(image.data());
+  // Cameras write JPEG of which libjpeg warns, but that it decodes.
+  if (tjDecompress2(decoder.get(), jpeg, bytes.size(), rgb, width, 0, height, TJPF_RGB, 0) != 0 &&
+      tjGetErrorCode(decoder.get()) != TJERR_WARNING) {
+    throw Error(name + ": damaged picture: it cannot be decoded");
+  }
   return image;
 }
 
-std::string encode(const cv::Mat& mat, const char* extension = ".png", const std::vector<int>& parameters = {}) {
-  std::vector<unsigned char> bytes;
-  try {
-    if (mat.empty() || !cv::imencode(extension, mat, bytes, parameters)) {
-      throw Error(fmt::format("picture cannot be encoded as {}", extension));
-    }
-  } catch (const cv::Exception& e) {
-    throw Error(fmt::format("picture cannot be encoded as {}: {}", extension, e.err));
-  }
-  return {bytes.begin(), bytes.end()};
-}
-
-cv::Mat bgr_mat(const ColourImage& image) {
-  cv::Mat mat(image.height(), image.width(), CV_8UC3);
-  for (int v = 0; v < image.height(); ++v) {
-    auto* bgr = mat.ptr<cv::Vec3b>(v);
-    const Rgb* rgb = image.row(v);
-    for (int u = 0; u < image.width(); ++u) bgr[u] = {rgb[u].b, rgb[u].g, rgb[u].r};
-  }
-  return mat;
-}
-
+/// Fast rather than small: most of such files are frames.
 template <class T>
-std::string encode_grey(const Image<T>& image, int type) {
-  return encode(cv::Mat(image.height(), image.width(), type, const_cast<T*>(image.data())));
+std::string encode(const Image<T>& image, spng_color_type colours, int bits) {
+  const Png context(spng_ctx_new(SPNG_CTX_ENCODER), &spng_ctx_free);
+  spng_ihdr header{};
+  header.width = static_cast<std::uint32_t>(image.width());
+  header.height = static_cast<std::uint32_t>(image.height());
+  header.bit_depth = static_cast<std::uint8_t>(bits);
+  header.color_type = static_cast<std::uint8_t>(colours);
+  int error = context ? spng_set_ihdr(context.get(), &header) : SPNG_EMEM;
+  for (const auto& [option, value] : {std::pair(SPNG_ENCODE_TO_BUFFER, 1),
+                                      {SPNG_IMG_COMPRESSION_LEVEL, Z_BEST_SPEED},
+                                      {SPNG_IMG_COMPRESSION_STRATEGY, Z_RLE},
+                                      {SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_SUB}}) {
+    if (error == 0) error = spng_set_option(context.get(), option, value);
+  }
+  if (error == 0) {
+    error =
+        spng_encode_image(context.get(), image.data(), image.size() * sizeof(T), SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
+  }
+  std::size_t size = 0;
+  const auto free = [](void* bytes) { std::free(bytes); };
+  const std::unique_ptr<void, decltype(free)> bytes(
+      error == 0 ? spng_get_png_buffer(context.get(), &size, &error) : nullptr, free);
+  if (!bytes) throw Error(fmt::format("picture cannot be encoded as PNG: {}", spng_strerror(error)));
+  return {static_cast<const char*>(bytes.get()), size};
 }
 
 template <class T>
@@ -85,36 +106,37 @@ Image<std::uint8_t> read_png8(const std::string& path) {
   return decode_grey_png<std::uint8_t>(read_file(path), path, "8-bit grey");
 }
 
+static_assert(sizeof(Rgb) == 3);
+
 ColourImage decode_colour(std::string_view bytes, const std::string& name) {
-  constexpr int kFlags = cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION;
-  cv::Mat mat;
-  if (is_png(bytes)) {
-    mat = decode(check_png(bytes, name).pixels, kFlags, CV_8UC3, name);
-  } else if (is_jpeg(bytes)) {
-    check_jpeg(bytes, name);
-    mat = decode(bytes, kFlags, CV_8UC3, name);
-  } else {
+  if (is_png(bytes)) return decode_png<Rgb>(check_png(bytes, name), SPNG_FMT_RGB8, name);
+  if (!is_jpeg(bytes)) {
     throw Error(name + (bytes.empty() ? ": empty file" : ": unknown kind of picture") + ", expected a PNG or JPEG");
   }
-  ColourImage image(mat.cols, mat.rows);
-  for (int v = 0; v < mat.rows; ++v) {
-    const cv::Vec3b* bgr = mat.ptr<cv::Vec3b>(v);
-    Rgb* rgb = image.row(v);
-    for (int u = 0; u < mat.cols; ++u) rgb[u] = {bgr[u][2], bgr[u][1], bgr[u][0]};
-  }
-  return image;
+  check_jpeg(bytes, name);
+  return decode_jpeg(bytes, name);
 }
 
 ColourImage read_colour(const std::string& path) { return decode_colour(read_file(path), path); }
 
-std::string encode_png(const Image<std::uint16_t>& image) { return encode_grey(image, CV_16UC1); }
+std::string encode_png(const Image<std::uint16_t>& image) { return encode(image, SPNG_COLOR_TYPE_GRAYSCALE, 16); }
 
-std::string encode_png(const Image<std::uint8_t>& image) { return encode_grey(image, CV_8UC1); }
+std::string encode_png(const Image<std::uint8_t>& image) { return encode(image, SPNG_COLOR_TYPE_GRAYSCALE, 8); }
 
-std::string encode_png(const ColourImage& image) { return encode(bgr_mat(image)); }
+std::string encode_png(const ColourImage& image) { return encode(image, SPNG_COLOR_TYPE_TRUECOLOR, 8); }
 
 std::string encode_jpeg(const ColourImage& image, int quality) {
-  return encode(bgr_mat(image), ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality});
+  const auto free = [](void* handle) { tjDestroy(handle); };
+  const std::unique_ptr<void, decltype(free)> encoder(tjInitCompress(), free);
+  unsigned char* jpeg = nullptr;
+  unsigned long size = 0;
+  const auto* rgb = reinterpret_cast<const unsigned char*>(image.data());
+  const int error = encoder && !image.empty() ? tjCompress2(encoder.get(), rgb, image.width(), 0, image.height(),
+                                                            TJPF_RGB, &jpeg, &size, TJSAMP_420, quality, 0)
+                                              : -1;
+  const std::unique_ptr<unsigned char, decltype(&tjFree)> bytes(jpeg, &tjFree);
+  if (error != 0) throw Error(fmt::format("picture cannot be encoded as JPEG: {}", tjGetErrorStr2(encoder.get())));
+  return {reinterpret_cast<const char*>(jpeg), size};
 }
 
 void write_png(const Image<std::uint16_t>& image, const std::string& path) { write(image, path); }

@@ -1,9 +1,13 @@
 #include "io/files/image_file.h"
 
 #include <gmock/gmock.h>
+#include <turbojpeg.h>
 
+#include <algorithm>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "io/files/image_bytes.h"
@@ -51,6 +55,56 @@ TEST(ImageFile, ReadsJpegChannelsAsRedGreenBlue) {
   EXPECT_NEAR(image(8, 8).r, 220, 4);
   EXPECT_NEAR(image(8, 8).g, 60, 4);
   EXPECT_NEAR(image(8, 8).b, 20, 4);
+}
+
+/// What OpenCV makes of a picture.
+ColourImage decoded_by_opencv(const std::string& bytes) {
+  const std::vector<unsigned char> raw(bytes.begin(), bytes.end());
+  const cv::Mat mat = cv::imdecode(raw, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  ColourImage image(mat.cols, mat.rows);
+  for (int v = 0; v < mat.rows; ++v) {
+    for (int u = 0; u < mat.cols; ++u) {
+      const auto bgr = mat.at<cv::Vec3b>(v, u);
+      image(u, v) = {bgr[2], bgr[1], bgr[0]};
+    }
+  }
+  return image;
+}
+
+TEST(ImageFile, ReadsPicturesOfAllKindsAsOpenCvDoes) {
+  cv::Mat bgr(37, 53, CV_8UC3), deep(37, 53, CV_16UC3), grey(37, 53, CV_16UC1);
+  for (cv::Mat* mat : {&bgr, &deep, &grey}) cv::randu(*mat, 0, mat == &bgr ? 255 : 65535);
+  cv::blur(bgr, bgr, {5, 5});
+  for (const std::string& picture :
+       {encoded(".jpg", bgr), encoded(".jpg", bgr, {cv::IMWRITE_JPEG_PROGRESSIVE, 1}),
+        encoded(".jpg", bgr, {cv::IMWRITE_JPEG_RST_INTERVAL, 2}), encoded(".jpg", bgr.reshape(1, 37)),
+        encoded(".png", bgr), encoded(".png", deep), encoded(".png", grey),
+        encoded(".png", bgr.reshape(1, 37) > 100, {cv::IMWRITE_PNG_BILEVEL, 1})}) {
+    EXPECT_EQ(decode_colour(picture, "a"), decoded_by_opencv(picture));
+  }
+}
+
+TEST(ImageFile, WritesPicturesThatOpenCvReads) {
+  const Frame frame = random_frame("f", 5);
+  EXPECT_EQ(decoded_by_opencv(encode_png(frame.colour)), frame.colour);
+  const std::string jpeg = encode_jpeg(frame.colour, 90);
+  EXPECT_EQ(decoded_by_opencv(jpeg), decode_colour(jpeg, "a.jpg"));
+  const std::string depth = encode_png(frame.depth);
+  const cv::Mat mat = cv::imdecode(std::vector<unsigned char>(depth.begin(), depth.end()), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(mat.type(), CV_16UC1);
+  EXPECT_TRUE(std::equal(frame.depth.begin(), frame.depth.end(), mat.begin<std::uint16_t>(), mat.end<std::uint16_t>()));
+}
+
+TEST(ImageFile, SaysThatAJpegIsOfInks) {
+  const auto free = [](void* handle) { tjDestroy(handle); };
+  const std::unique_ptr<void, decltype(free)> encoder(tjInitCompress(), free);
+  const std::vector<unsigned char> inks(std::size_t{16} * 16 * 4, 90);
+  unsigned char* made = nullptr;
+  unsigned long size = 0;
+  ASSERT_EQ(tjCompress2(encoder.get(), inks.data(), 16, 0, 16, TJPF_CMYK, &made, &size, TJSAMP_444, 90, 0), 0);
+  const std::string jpeg(reinterpret_cast<const char*>(made), size);
+  tjFree(made);
+  EXPECT_EQ(error_of([&] { decode_colour(jpeg, "a.jpg"); }), "a.jpg: JPEG of CMYK, expected RGB or grey");
 }
 
 TEST(ImageFile, IgnoresTheOrientationTagOfAJpeg) {
@@ -134,6 +188,7 @@ TEST(ImageFile, RefusesToWriteAnEmptyPicture) {
   const TemporaryFolder folder;
   EXPECT_THAT(error_of([&] { write_png(DepthImage(), folder / "d.png"); }), HasSubstr("d.png: picture cannot"));
   EXPECT_EQ(folder.file_count(), 0U);
+  EXPECT_THAT(error_of([] { encode_jpeg(ColourImage(), 90); }), HasSubstr("picture cannot"));
 }
 
 }  // namespace

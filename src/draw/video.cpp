@@ -1,4 +1,4 @@
-#include "io/files/video.h"
+#include "draw/video.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "io/files/video.h"
+#include "draw/video.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>
