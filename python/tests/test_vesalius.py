@@ -42,9 +42,13 @@ def frames():
         yield path.stem, numpy.array(Image.open(path)).astype(numpy.uint16), numpy.array(Image.open(colour))
 
 
+def lines_of_program(source, *flags):
+    out = subprocess.run([PROGRAM, "detect", str(source), "-q", "--json", "-", *flags], check=True, capture_output=True, text=True)
+    return {line["frame"]: line for line in map(json.loads, out.stdout.splitlines()) if "frame" in line}
+
+
 def people_of_program(*flags):
-    out = subprocess.run([PROGRAM, "detect", WITHOUT_COLOUR.name, "-q", "--json", "-", *flags], check=True, capture_output=True, text=True)
-    return {line["frame"]: line["people"] for line in map(json.loads, out.stdout.splitlines()) if "frame" in line}
+    return {frame: line["people"] for frame, line in lines_of_program(WITHOUT_COLOUR.name, *flags).items()}
 
 
 class Package(unittest.TestCase):
@@ -89,6 +93,100 @@ class Package(unittest.TestCase):
             for person, theirs in zip(people, expected[name]):
                 self.expect_joints(person, theirs)
 
+    def test_opens_what_the_program_opens(self):
+        with tempfile.TemporaryDirectory() as folder:
+            recording = Path(folder) / "demo.mcap"
+            subprocess.run([PROGRAM, "record", str(FOLDER), "--out", str(recording), "-q"], check=True)
+            for source in (FOLDER, str(recording)):
+                expected = lines_of_program(source)
+                opened = vesalius.open(source)
+                names = []
+                for frame in opened:
+                    people = self.detector.detect(frame)
+                    self.assertEqual(json.loads(people.json()), expected[frame.name])
+                    names.append(frame.name)
+                self.assertEqual(names, list(expected))
+                self.assertIsNone(next(opened, None))
+                self.assertFalse(opened.is_live)
+        self.assertEqual(vesalius.open(FOLDER).size, len(self.frames))
+
+    def test_follows_what_it_opens_as_the_program_does(self):
+        expected = lines_of_program(FOLDER, "--track")
+        tracker = vesalius.Tracker(self.detector)
+        for frame in vesalius.open(FOLDER):
+            people = tracker.update(frame)
+            self.assertEqual(json.loads(people.json()), expected[frame.name])
+            for person, theirs in zip(people, expected[frame.name]["people"]):
+                self.assertEqual(person.stance, theirs["stance"])
+                body = theirs["body"]
+                self.assertAlmostEqual(person.stature, body["stature_m"], places=3)
+                self.assertEqual([bone.name for bone in person.bones], list(body["bones"]))
+                for bone in person.bones:
+                    length = math.dist(bone.head, bone.tail)
+                    self.assertAlmostEqual(bone.length, length, places=4)
+                    numpy.testing.assert_allclose(bone.head, body["bones"][bone.name]["head_m"], atol=1e-3)
+                rotations = dict(zip(self.detector.joint_names(), person.rotations()))
+                for joint, xyzw in body["joint_rotations_xyzw"]["k4abt32"].items():
+                    numpy.testing.assert_allclose(rotations.pop(joint), xyzw, atol=1e-3)
+                self.assertTrue(all(numpy.isnan(unknown).all() for unknown in rotations.values()))
+
+    def test_shows_a_frame_without_copying_it(self):
+        with vesalius.open(FOLDER) as source:
+            frame = next(source)
+            self.assertIsNone(frame.time)
+        self.assertIsNone(next(source, None))
+        self.assertTrue(numpy.shares_memory(frame.depth, frame.depth))
+        name, depth, colour = self.frames[0]
+        numpy.testing.assert_array_equal(frame.depth, depth)
+        self.assertEqual(frame.colour.shape, colour.shape)
+        self.assertEqual((frame.name, frame.camera.fx), (name, numpy.float32(META["fx"])))
+        shown = frame.depth
+        self.assertGreater(len(self.detector.detect(frame)), 0)
+        shown[:] = 0
+        self.assertEqual(len(self.detector.detect(frame)), 0)
+        del frame, source
+        gc.collect()
+        self.assertEqual(int(shown.max()), 0)
+        made = vesalius.Frame(depth, CAMERA, colour, time=2.5, up=(0, -2, 0), name="made")
+        self.assertEqual((made.name, made.time, list(made.up)), ("made", 2.5, [0, -1, 0]))
+        numpy.testing.assert_array_equal(self.detector.detect(made).joints(),
+                                         self.detector.detect(depth, CAMERA, colour).joints())
+
+    def test_gives_parts_as_the_program_does(self):
+        expected = lines_of_program(FOLDER)
+        for frame in vesalius.open(FOLDER):
+            people = self.detector.detect(frame)
+            self.assertEqual(people.part_names, self.detector.parts)
+            self.assertEqual(len(people.links), len(people.part_names) - 1)
+            self.assertEqual(people.parts.shape, (len(people), len(people.part_names), 3))
+            numpy.testing.assert_array_equal((people.labels != 255) <= (people.masks == 1), True)
+            for person, theirs in zip(people, expected[frame.name]["people"]):
+                for name, mine, confidence, state in zip(people.part_names, person.parts, person.part_confidences,
+                                                         person.part_states):
+                    part = theirs["parts"][name]
+                    self.assertEqual(state, part["state"])
+                    if part["xyz_m"] is None:
+                        self.assertTrue(numpy.isnan(mine).all())
+                    else:
+                        numpy.testing.assert_allclose(mine, part["xyz_m"], atol=1e-3)
+                        self.assertAlmostEqual(float(confidence), part["confidence"], places=3)
+
+    def test_goes_on_after_a_frame_that_cannot_be_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copytree(FOLDER, folder, dirs_exist_ok=True)
+            names = sorted(path.stem for path in (Path(folder) / "depth").iterdir())
+            (Path(folder) / "depth" / f"{names[1]}.png").write_bytes(b"no picture")
+            source = vesalius.open(folder)
+            read = []
+            while True:
+                try:
+                    read.append(next(source).name)
+                except vesalius.Error as e:
+                    self.assertIn(f"{names[1]}.png", str(e))
+                except StopIteration:
+                    break
+            self.assertEqual(read, names[:1] + names[2:])
+
     def test_takes_metres_as_millimetres(self):
         _, depth, colour = self.frames[0]
         metres = depth.astype(numpy.float32) / 1000
@@ -122,12 +220,16 @@ class Package(unittest.TestCase):
             "expected a whole number": lambda: vesalius.Detector(refine_max_candidates=1.5),
             "threads: expected": lambda: vesalius.Detector(threads=-1),
             "expected one of": lambda: detect(depth, CAMERA, colour).joints("body25"),
+            "up: expected": lambda: vesalius.Frame(depth, CAMERA, up=(0, 0, 0)),
+            "a start of 1000000 s": lambda: vesalius.open(FOLDER, start=1e6),
             "time: expected": lambda: vesalius.Tracker(self.detector).update(depth, CAMERA, time=math.nan),
         }.items():
             with self.assertRaises(ValueError, msg=why) as raised:
                 wrong()
             self.assertIn(why, str(raised.exception))
         for wrong in (lambda: vesalius.Detector("/none.forest"), lambda: vesalius.Detector(__file__),
+                      lambda: vesalius.open("/none"), lambda: vesalius.open(Path(__file__)),
+                      lambda: vesalius.open("realsense:none"), lambda: vesalius.open(FOLDER, camera_file="/none"),
                       lambda: detect(depth, vesalius.Camera(math.nan, 1, 1, 1))):
             with self.assertRaises(vesalius.Error) as raised:
                 wrong()

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "vesalius/base/frame.h"
+#include "vesalius/base/image.h"
+
+namespace vesalius {
+
+/// The camera of the depth picture, in pixels.
+struct PythonCamera {
+  float fx, fy, cx, cy;
+};
+
+using AnyArray = nanobind::ndarray<nanobind::ro, nanobind::c_contig, nanobind::device::cpu>;
+
+/// Returns a frame with copies of the arrays: depth (height, width) uint16 millimetres or float32 metres, colour
+/// (height, width, 3) uint8. Throws UsageError for another dtype or shape, and for a time that is no number.
+Frame frame_of(const AnyArray& depth, const PythonCamera& camera, const std::optional<AnyArray>& colour,
+               std::optional<double> time_s);
+
+/// Returns a numpy array that keeps its values alive.
+template <class T>
+nanobind::ndarray<nanobind::numpy, T> array_of(std::vector<T> values, std::vector<std::size_t> shape) {
+  auto* kept = new std::vector<T>(std::move(values));
+  const nanobind::capsule owner(kept, [](void* at) noexcept { delete static_cast<std::vector<T>*>(at); });
+  return nanobind::ndarray<nanobind::numpy, T>(kept->data(), shape.size(), shape.data(), owner);
+}
+
+template <class T>
+nanobind::ndarray<nanobind::numpy, T> array_of(const Image<T>& image) {
+  return array_of(std::vector<T>(image.begin(), image.end()),
+                  {static_cast<std::size_t>(image.height()), static_cast<std::size_t>(image.width())});
+}
+
+}  // namespace vesalius
