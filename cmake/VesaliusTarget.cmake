@@ -59,7 +59,7 @@ function(vesalius_thread_tests list)
 endfunction()
 
 # vesalius_add_suites(TARGET source.cpp...): a ctest test for each suite of the sources, since starting a process for each test
-# takes longer than most tests; those with labels apart: Suite.threads.
+# takes longer than most tests; those with labels apart: Suite.threads. The target is a label of all its tests.
 function(vesalius_add_suites target)
   set(groups)
   foreach(source IN LISTS ARGN)
@@ -96,7 +96,7 @@ function(vesalius_add_suites target)
     list(JOIN tests_${group} ":" filter)
     add_test(NAME ${group} COMMAND ${target} --gtest_filter=${filter})
     # GoogleTest calls a filter that fits nothing a success.
-    set_tests_properties(${group} PROPERTIES TIMEOUT 900 LABELS "${labels_${group}}"
+    set_tests_properties(${group} PROPERTIES TIMEOUT 900 LABELS "${target};${labels_${group}}"
                                              FAIL_REGULAR_EXPRESSION "Running 0 tests")
     if(labels_${group})
       set_tests_properties(${group} PROPERTIES COST 100)  # the longest first, so that none runs alone at the end

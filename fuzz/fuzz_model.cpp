@@ -37,7 +37,8 @@ std::string packed_tree(std::string_view input) {
   out.number(std::uint32_t{byte()});
   out.number(std::uint32_t{byte()});
   while (!input.empty()) {
-    const std::size_t size = std::min<std::size_t>(byte(), input.size());
+    const std::size_t asked = byte();
+    const std::size_t size = std::min(asked, input.size());
     columns.bytes() += vesalius::pack(input.substr(0, size), 1);
     input.remove_prefix(size);
   }
