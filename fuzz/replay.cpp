@@ -1,6 +1,6 @@
-// Runs the fuzz targets without libFuzzer, so that every change can be tried with whatever compiler and sanitizers there are:
-// each seed as it is, cut short, and changed at random, always in the same way.
-// Usage: fuzz_replay TARGET RUNS FOLDER
+// Runs the fuzz targets without libFuzzer, so that every change can be tried with whatever compiler and sanitizers
+// there are: each seed as it is, cut short, and changed at random, always in the same way. Usage: fuzz_replay TARGET
+// RUNS FOLDER
 
 #include <algorithm>
 #include <array>
@@ -66,7 +66,8 @@ void change(Bytes& bytes, std::mt19937& random) {
       *place ^= static_cast<std::uint8_t>(1U << random() % 8);
       break;
     case 1:
-      std::fill(place, place + static_cast<std::ptrdiff_t>(std::min<std::size_t>(count, 4)), random() % 2 ? 0xFF : 0x00);
+      std::fill(place, place + static_cast<std::ptrdiff_t>(std::min<std::size_t>(count, 4)),
+                random() % 2 ? 0xFF : 0x00);
       break;
     case 2:
       *place = static_cast<std::uint8_t>("0123456789-.e{}[]\","[random() % 19]);

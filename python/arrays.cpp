@@ -1,9 +1,11 @@
 #include "arrays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
 
+#include "vesalius/base/depth_reading.h"
 #include "vesalius/base/error.h"
 
 namespace nb = nanobind;
@@ -28,11 +30,7 @@ DepthImage depth_of(const AnyArray& array) {
     std::memcpy(depth.data(), array.data(), depth.size() * sizeof(std::uint16_t));
   } else if (array.dtype() == nb::dtype<float>()) {
     const auto* metres = static_cast<const float*>(array.data());
-    for (std::size_t i = 0; i < depth.size(); ++i) {
-      // What is no number, or no distance, is no reading (as ROS has it).
-      const float mm = metres[i] * 1000.F;
-      depth[i] = mm >= 0.5F && mm < 65535.F ? static_cast<std::uint16_t>(mm + 0.5F) : std::uint16_t{0};
-    }
+    std::transform(metres, metres + depth.size(), depth.begin(), depth_reading);
   } else {
     throw UsageError("depth: expected dtype uint16 (millimetres) or float32 (metres)");
   }

@@ -18,6 +18,7 @@
 #include "options_from_keywords.h"
 #include "people.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/find_joint_set.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/detect.h"
 #include "vesalius/track/people_options.h"
@@ -68,10 +69,8 @@ class PythonTracker {
     const nb::gil_scoped_release released;
     const std::scoped_lock lock(mutex_);
     const ThreadLimit limit(detector_.threads());
-    const Detection found =
-        detector_.detector().detect(frame, [&](const Frame& asked) { return tracker_.expect(asked); });
-    return {std::make_shared<FoundPeople>(FoundPeople{
-        without_pictures(frame), detector_.body(), {}, tracker_.update(frame, found.people, found.planes)})};
+    return {std::make_shared<FoundPeople>(
+        FoundPeople{without_pictures(frame), detector_.body(), {}, follow(detector_.detector(), tracker_, frame)})};
   }
 
  private:
@@ -116,7 +115,7 @@ void bind_detector(nb::module_& m) {
           "joint_names",
           [](const PythonDetector& d, const std::string& set) {
             std::vector<std::string> names;
-            for (const JointDefinition& joint : d.body()->joint_sets[joint_set_of(*d.body(), set)].joints) {
+            for (const JointDefinition& joint : d.body()->joint_sets[find_joint_set(*d.body(), set)].joints) {
               names.push_back(joint.name);
             }
             return names;

@@ -15,7 +15,7 @@
 
 #include "arrays.h"
 #include "stream/person_json.h"
-#include "vesalius/base/error.h"
+#include "vesalius/base/find_joint_set.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"
 
@@ -39,7 +39,7 @@ struct PythonPerson {
   const TrackedPerson* tracked() const { return of->tracked ? &of->tracked->people[index] : nullptr; }
   const FittedBody* fitted() const { return tracked() && tracked()->body ? &*tracked()->body : nullptr; }
   const std::vector<Joint>& joints(const std::string& set) const {
-    return person().joints[joint_set_of(*of->body, set)];
+    return person().joints[find_joint_set(*of->body, set)];
   }
 };
 
@@ -77,7 +77,7 @@ Floats part_confidences(const PythonPerson& p) {
 }
 
 Floats rotations(const PythonPerson& p, const std::string& name) {
-  const JointSet& set = p.of->body->joint_sets[joint_set_of(*p.of->body, name)];
+  const JointSet& set = p.of->body->joint_sets[find_joint_set(*p.of->body, name)];
   std::vector<std::optional<Eigen::Quaternionf>> known(set.joints.size());
   if (p.fitted()) known = joint_rotations(*p.fitted(), builtin_flesh_joints(), set);
   std::vector<float> values;
@@ -251,14 +251,6 @@ void bind_person(nb::module_& m) {
 
 }  // namespace
 
-std::size_t joint_set_of(const BodyModel& body, const std::string& name) {
-  const auto found = std::ranges::find(body.joint_sets, name, &JointSet::name);
-  if (found != body.joint_sets.end()) return static_cast<std::size_t>(found - body.joint_sets.begin());
-  std::string known;
-  for (const JointSet& one : body.joint_sets) known += (known.empty() ? "" : ", ") + one.name;
-  throw UsageError("joint set \"" + name + "\": expected one of " + known);
-}
-
 void bind_people(nb::module_& m) {
   bind_bone(m);
   bind_person(m);
@@ -274,7 +266,7 @@ void bind_people(nb::module_& m) {
       .def(
           "joints",
           [](const PythonPeople& p, const std::string& set) {
-            const std::size_t joints = p.of->body->joint_sets[joint_set_of(*p.of->body, set)].joints.size();
+            const std::size_t joints = p.of->body->joint_sets[find_joint_set(*p.of->body, set)].joints.size();
             std::vector<float> values;
             for (std::size_t i = 0; i < p.of->size(); ++i) append_joints({p.of, i}, set, values);
             return vesalius::array_of(std::move(values), {p.of->size(), joints, 3});

@@ -30,9 +30,6 @@ struct PythonPeople {
   std::shared_ptr<const FoundPeople> of;
 };
 
-/// Returns the number of the joint set of that name. Throws UsageError that lists those there are.
-std::size_t joint_set_of(const BodyModel& body, const std::string& name);
-
 /// Defines Person, Bone and People.
 void bind_people(nanobind::module_& m);
 

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <bit>
 #include <cstring>
 
-#include "vesalius/base/error.h"
+#include "vesalius/base/find_joint_set.h"
 
 namespace vesalius {
 namespace {
@@ -43,14 +42,6 @@ class Bundles {
  private:
   std::vector<std::string> bundles_;
 };
-
-std::size_t find_set(const BodyModel& body, const std::string& name) {
-  const auto found = std::ranges::find(body.joint_sets, name, &JointSet::name);
-  if (found != body.joint_sets.end()) return static_cast<std::size_t>(found - body.joint_sets.begin());
-  std::string known;
-  for (const JointSet& set : body.joint_sets) known += (known.empty() ? "" : ", ") + set.name;
-  throw UsageError(fmt::format("joint set \"{}\" is not of this body, expected one of: {}", name, known));
-}
 
 /// Adds a place with y up and z towards the camera.
 OscMessage& add_place(OscMessage& message, const Eigen::Vector3f& at) {
@@ -95,7 +86,7 @@ std::string OscMessage::bytes() const {
 
 std::vector<std::string> osc_bundles(const std::vector<Person>& people, const BodyModel& body,
                                      const OscOptions& options) {
-  const std::size_t set = find_set(body, options.joints);
+  const std::size_t set = find_joint_set(body, options.joints);
   Bundles bundles;
   OscMessage all("/vesalius/people");
   all.add(static_cast<std::int32_t>(people.size()));
@@ -109,7 +100,7 @@ std::vector<std::string> osc_bundles(const std::vector<Person>& people, const Bo
 }
 
 std::vector<std::string> osc_bundles(const TrackedFrame& tracked, const BodyModel& body, const OscOptions& options) {
-  const std::size_t set = find_set(body, options.joints);
+  const std::size_t set = find_joint_set(body, options.joints);
   Bundles bundles;
   OscMessage all("/vesalius/people");
   all.add(static_cast<std::int32_t>(tracked.people.size()));

@@ -7,7 +7,7 @@
 
 #include "cli/satellites.h"
 #include "cuda/cuda_device.h"
-#include "cuda/device_labeller.h"
+#include "cuda/cuda_labeller.h"
 #ifdef VESALIUS_HAS_TRAINING
 #include "cuda/train/device_executor.h"
 #endif
@@ -34,10 +34,6 @@ std::vector<std::pair<std::string, std::string>> facts() {
   return found;
 }
 
-std::shared_ptr<const PixelLabeller> make(const Forest& forest, int number) {
-  return std::make_shared<gpu::DeviceLabeller>(forest, gpu::open_cuda_device(number));
-}
-
 #ifdef VESALIUS_HAS_TRAINING
 MakeExecutor open_trainer(const std::vector<int>& numbers) {
   std::vector<std::shared_ptr<gpu::Device>> cards;
@@ -51,7 +47,7 @@ MakeExecutor open_trainer(const std::vector<int>& numbers) {
 }  // namespace
 
 Satellite cuda_satellite() {
-  Satellite satellite{.name = "cuda", .commands = {}, .facts = facts, .devices = {{"cuda", make}}};
+  Satellite satellite{.name = "cuda", .commands = {}, .facts = facts, .devices = {gpu::cuda_labeller()}};
 #ifdef VESALIUS_HAS_TRAINING
   satellite.trainers = {{"cuda", open_trainer}};
 #endif

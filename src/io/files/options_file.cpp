@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -20,6 +21,12 @@ namespace {
 constexpr std::size_t kMaxOptionsBytes = std::size_t{1} << 14;
 constexpr std::size_t kMaxShown = 64;
 
+std::string unknown_option(const std::string& name, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(name, known);
+  return fmt::format("no option is called {}{}", in_quotes(name),
+                     nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest));
+}
+
 /// The values of a TOML text by their dotted names.
 class Values : public TomlReader {
  public:
@@ -32,9 +39,7 @@ class Values : public TomlReader {
   void expect_only(const std::vector<std::string>& known) const {
     for (const auto& [option, node] : nodes_) {
       if (std::ranges::find(known, option) != known.end()) continue;
-      const std::string nearest = nearest_name(option, known);
-      fail(*node, fmt::format("no option is called {}{}", in_quotes(option),
-                              nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+      fail(*node, unknown_option(option, known));
     }
   }
 
@@ -53,16 +58,87 @@ class Values : public TomlReader {
   std::map<std::string, const toml::node*> nodes_;
 };
 
-class NameCollector : public OptionVisitor {
+class Lister : public OptionVisitor {
  public:
-  void option(const std::string& name, float& /*value*/, const OptionInfo& /*info*/) override { names.push_back(name); }
-  void option(const std::string& name, int& /*value*/, const OptionInfo& /*info*/) override { names.push_back(name); }
-  void option(const std::string& name, bool& /*value*/, const OptionInfo& /*info*/) override { names.push_back(name); }
-  void option(const std::string& name, std::string& /*value*/, const OptionInfo& /*info*/) override {
-    names.push_back(name);
+  void option(const std::string& name, float& value, const OptionInfo& info) override {
+    std::string number = fmt::format("{}", value);
+    if (number.find_first_not_of("-0123456789") == std::string::npos) number += ".0";  // a real stays a real in TOML
+    options.push_back({name, OptionKind::number, number, info});
+  }
+  void option(const std::string& name, int& value, const OptionInfo& info) override {
+    options.push_back({name, OptionKind::whole_number, std::to_string(value), info});
+  }
+  void option(const std::string& name, bool& value, const OptionInfo& info) override {
+    options.push_back({name, OptionKind::truth, value ? "true" : "false", info});
+  }
+  void option(const std::string& name, std::string& value, const OptionInfo& info) override {
+    options.push_back({name, OptionKind::word, value, info});
   }
 
+  std::vector<OptionText> options;
+};
+
+std::vector<std::string> names_of(const VisitAll& visit) {
   std::vector<std::string> names;
+  for (OptionText& option : list_options(visit)) names.push_back(std::move(option.name));
+  return names;
+}
+
+/// Returns the number that the whole text states, if it states one.
+template <class T>
+std::optional<T> number_in(std::string_view text) {
+  T number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+/// Sets the option of one name to what a text states.
+class TextSetter : public OptionVisitor {
+ public:
+  TextSetter(const std::string& name, std::string_view text) : name_(name), text_(text) {}
+
+  void option(const std::string& name, float& value, const OptionInfo& info) override {
+    if (!wanted(name)) return;
+    const auto read = number_in<double>(text_);
+    if (!read) fail("a number");
+    set(value, static_cast<float>(*read), info);
+  }
+  void option(const std::string& name, int& value, const OptionInfo& info) override {
+    if (!wanted(name)) return;
+    const auto read = number_in<int>(text_);
+    if (!read) fail("a whole number");
+    set(value, *read, info);
+  }
+  void option(const std::string& name, bool& value, const OptionInfo& /*info*/) override {
+    if (!wanted(name)) return;
+    if (text_ != "true" && text_ != "false") fail("true or false");
+    value = text_ == "true";
+  }
+  void option(const std::string& name, std::string& value, const OptionInfo& /*info*/) override {
+    if (wanted(name)) value = text_;
+  }
+
+  bool found() const { return found_; }
+
+ private:
+  bool wanted(const std::string& name) {
+    if (name != name_) return false;
+    found_ = true;
+    return true;
+  }
+  template <class T>
+  void set(T& value, T read, const OptionInfo& info) const {
+    RangeCheck().option(name_, read, info);
+    value = read;
+  }
+  [[noreturn]] void fail(const char* expected) const {
+    throw UsageError(fmt::format("option {}: found {}, expected {}", name_, in_quotes(text_), expected));
+  }
+
+  const std::string& name_;
+  std::string_view text_;
+  bool found_ = false;
 };
 
 class Setter : public OptionVisitor {
@@ -112,42 +188,11 @@ class Setter : public OptionVisitor {
   const Values& values_;
 };
 
-class TomlWriter : public OptionVisitor {
- public:
-  void option(const std::string& name, float& value, const OptionInfo& info) override {
-    std::string number = fmt::format("{}", value);
-    if (number.find_first_not_of("-0123456789") == std::string::npos) number += ".0";  // a real stays a real in TOML
-    line(name, number, info, true);
-  }
-  void option(const std::string& name, int& value, const OptionInfo& info) override {
-    line(name, std::to_string(value), info, true);
-  }
-  void option(const std::string& name, bool& value, const OptionInfo& info) override {
-    line(name, value ? "true" : "false", info, false);
-  }
-  void option(const std::string& name, std::string& value, const OptionInfo& info) override {
-    std::ostringstream quoted;
-    quoted << toml::value<std::string>(value);
-    line(name, quoted.str(), info, false);
-  }
-
-  std::string text;
-
- private:
-  void line(const std::string& name, const std::string& value, const OptionInfo& info, bool ranged) {
-    const std::string stage = name.substr(0, name.rfind('.'));
-    if (!text.empty() && stage != stage_) text += '\n';
-    stage_ = stage;
-    text += fmt::format("# {}", info.help);
-    if (ranged) {
-      const std::string unit = *info.unit == '\0' ? "" : fmt::format(" {}", info.unit);
-      text += fmt::format(" ({} to {}{})", info.low, info.high, unit);
-    }
-    text += fmt::format("\n{} = {}\n", name, value);
-  }
-
-  std::string stage_;
-};
+std::string quoted(const std::string& word) {
+  std::ostringstream text;
+  text << toml::value<std::string>(word);
+  return text.str();
+}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -184,9 +229,7 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
 void parse_options(std::string_view toml, const std::string& name, const VisitAll& visit) {
   const toml::table root = TomlReader(name).parse(toml);
   const Values values(root, name);
-  NameCollector known;
-  visit(known);
-  values.expect_only(known.names);
+  values.expect_only(names_of(visit));
   Setter setter(values);
   visit(setter);
 }
@@ -195,10 +238,32 @@ void read_options(const std::string& path, const VisitAll& visit) {
   parse_options(read_file(path, kMaxOptionsBytes), path, visit);
 }
 
+std::vector<OptionText> list_options(const VisitAll& visit) {
+  Lister lister;
+  visit(lister);
+  return std::move(lister.options);
+}
+
+void set_option(const std::string& name, std::string_view text, const VisitAll& visit) {
+  TextSetter setter(name, text);
+  visit(setter);
+  if (!setter.found()) throw UsageError(unknown_option(name, names_of(visit)));
+}
+
 std::string options_toml(const VisitAll& visit) {
-  TomlWriter writer;
-  visit(writer);
-  return writer.text;
+  std::string text, last_stage;
+  for (const auto& [name, kind, value, info] : list_options(visit)) {
+    const std::string stage = name.substr(0, name.rfind('.'));
+    if (!text.empty() && stage != last_stage) text += '\n';
+    last_stage = stage;
+    text += fmt::format("# {}", info.help);
+    if (kind == OptionKind::number || kind == OptionKind::whole_number) {
+      const std::string unit = *info.unit == '\0' ? "" : fmt::format(" {}", info.unit);
+      text += fmt::format(" ({} to {}{})", info.low, info.high, unit);
+    }
+    text += fmt::format("\n{} = {}\n", name, kind == OptionKind::word ? quoted(value) : value);
+  }
+  return text;
 }
 
 void write_options(const VisitAll& visit, const std::string& path) { write_file_atomically(path, options_toml(visit)); }

@@ -17,6 +17,25 @@ using VisitAll = std::function<void(OptionVisitor&)>;
 /// option (naming the most similar known one), and for a value of the wrong type or out of range.
 void parse_options(std::string_view toml, const std::string& name, const VisitAll& visit);
 
+/// What values an option takes.
+enum class OptionKind { number, whole_number, truth, word };
+
+/// An option with its value as text, as `set_option` reads it.
+struct OptionText {
+  std::string name;
+  OptionKind kind = OptionKind::number;
+  std::string value;
+  OptionInfo info;  ///< its range applies to numbers
+};
+
+/// Returns every option with its value.
+std::vector<OptionText> list_options(const VisitAll& visit);
+
+/// Sets one option to the value that a text states: a number, a whole number, "true" or "false", or a word as it
+/// stands. All others keep their values. Throws UsageError for an unknown option (naming the most similar known one),
+/// and for a value of the wrong type or out of range; the option keeps its value then.
+void set_option(const std::string& name, std::string_view text, const VisitAll& visit);
+
 /// Reads the options from a file; see `parse_options`.
 void read_options(const std::string& path, const VisitAll& visit);
 

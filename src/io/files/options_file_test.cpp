@@ -104,6 +104,33 @@ TEST(OptionsFile, KeepsDetectorOptionsInAFile) {
   EXPECT_NO_THROW(visit_options("", again, check)) << "defaults lie in their ranges";
 }
 
+TEST(OptionText, SetsWhatItLists) {
+  TestOptions written{.gap = 0.1F, .parts = 9, .mode = true, .tiny = 3e-7F, .word = "a \"b\" \\ c"};
+  TestOptions again;
+  for (const OptionText& option : list_options(visit(written))) set_option(option.name, option.value, visit(again));
+  EXPECT_EQ(options_toml(visit(again)), options_toml(visit(written)));
+  EXPECT_EQ(list_options(visit(again)).size(), 5U);
+  EXPECT_EQ(list_options(visit(again))[1].kind, OptionKind::whole_number);
+}
+
+TEST(OptionText, KeepsTheValueWhereATextDoesNotFit) {
+  TestOptions options;
+  const auto set = [&](const char* name, const char* text) {
+    return [&options, name, text] { set_option(name, text, visit(options)); };
+  };
+  EXPECT_THAT(set("search.parts", "26"), ThrowsMessage<UsageError>("option search.parts is 26, expected 1 to 25"));
+  EXPECT_THAT(set("search.parts", "4.5"),
+              ThrowsMessage<UsageError>("option search.parts: found \"4.5\", expected a whole number"));
+  EXPECT_THAT(set("cluster.gap", "0.1 m"), ThrowsMessage<UsageError>(HasSubstr("expected a number")));
+  EXPECT_THAT(set("cluster.gap", ""), ThrowsMessage<UsageError>(HasSubstr("expected a number")));
+  EXPECT_THAT(set("cluster.gap", "nan"), ThrowsMessage<UsageError>(HasSubstr("option cluster.gap is nan")));
+  EXPECT_THAT(set("search.mode", "yes"), ThrowsMessage<UsageError>(HasSubstr("expected true or false")));
+  EXPECT_THAT(set("serach.parts", "4"),
+              ThrowsMessage<UsageError>("no option is called \"serach.parts\"; did you mean \"search.parts\"?"));
+  TestOptions defaults;
+  EXPECT_EQ(options_toml(visit(options)), options_toml(visit(defaults)));
+}
+
 TEST(NearestName, FindsOnlySimilarNames) {
   const std::vector<std::string> known = {"search.min-parts", "search.max-total-error", "smooth.window"};
   EXPECT_EQ(nearest_name("search.min-part", known), "search.min-parts");

@@ -23,4 +23,7 @@ void visit_options(const std::string& prefix, PeopleOptions& options, OptionVisi
 /// Throws UsageError for an option outside its range.
 PeopleTracker make_tracker(const Detector& detector, const PeopleOptions& options);
 
+/// Finds the people of the frame that comes next, and follows them.
+TrackedFrame follow(const Detector& detector, PeopleTracker& tracker, const Frame& frame);
+
 }  // namespace vesalius

@@ -1,0 +1,40 @@
+#include "io/model/default_model.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kName = "default.forest";
+
+}  // namespace
+
+std::vector<std::string> model_folders(const std::string& own_folder, const std::string& installed) {
+  std::vector<std::string> folders;
+  const char* chosen = std::getenv("VESALIUS_MODELS");
+  if (chosen != nullptr && *chosen != '\0') folders.emplace_back(chosen);
+  if (own_folder.empty()) return folders;
+  folders.push_back((fs::path(own_folder) / "models").string());
+  folders.push_back((fs::path(own_folder) / installed).lexically_normal().string());
+  return folders;
+}
+
+std::string find_default_model(const std::vector<std::string>& folders, const std::string& context) {
+  std::error_code ignored;
+  for (const std::string& folder : folders) {
+    const fs::path model = fs::path(folder) / kName;
+    if (fs::is_regular_file(model, ignored)) return model.string();
+  }
+  throw Error(fmt::format("{}, and no {} in {}", context, kName, fmt::join(folders, ", ")));
+}
+
+}  // namespace vesalius
