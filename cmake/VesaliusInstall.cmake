@@ -21,6 +21,20 @@ foreach(component IN LISTS VESALIUS_COMPONENTS)
   endforeach()
 endforeach()
 
+# The C library, with all that it needs inside: the component c stands on no other.
+if(TARGET vesalius_c)
+  list(APPEND VESALIUS_COMPONENTS c)
+  string(APPEND VESALIUS_USES_LINES "set(vesalius_c_uses)\n")
+  install(TARGETS vesalius_c EXPORT vesalius_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime
+          NAMELINK_COMPONENT development INCLUDES DESTINATION ${VESALIUS_INCLUDE_DIR})
+  install(EXPORT vesalius_c NAMESPACE vesalius:: FILE vesalius-c.cmake DESTINATION ${VESALIUS_CMAKE_DIR} COMPONENT development)
+  install(FILES ${PROJECT_SOURCE_DIR}/src/c/vesalius.h DESTINATION ${VESALIUS_INCLUDE_DIR} COMPONENT development)
+  file(RELATIVE_PATH VESALIUS_PREFIX_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  string(REGEX REPLACE "/$" "" VESALIUS_PREFIX_FROM_PC ${VESALIUS_PREFIX_FROM_PC})
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/vesalius.pc.in ${PROJECT_BINARY_DIR}/vesalius.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/vesalius.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+endif()
+
 get_property(VESALIUS_OPTIONAL_PACKAGES GLOBAL PROPERTY VESALIUS_OPTIONAL_PACKAGES)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vesaliusConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake INSTALL_DESTINATION ${VESALIUS_CMAKE_DIR})
@@ -33,12 +47,15 @@ install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/v
               ${PROJECT_SOURCE_DIR}/cmake/FindTurboJpeg.cmake
         DESTINATION ${VESALIUS_CMAKE_DIR})
 
-# What the program finds without being told where (src/cli/default_model.h), and what bash asks for commands and flags.
-if(TARGET vesalius)
-  set(VESALIUS_DATA_DIR ${CMAKE_INSTALL_DATADIR}/vesalius)
+# What the program and the C library find without being told where (src/io/model/default_model.h).
+set(VESALIUS_DATA_DIR ${CMAKE_INSTALL_DATADIR}/vesalius)
+if(TARGET vesalius OR TARGET vesalius_c)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/models DESTINATION ${VESALIUS_DATA_DIR} FILES_MATCHING
           PATTERN "*.forest" PATTERN "README.md")
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${VESALIUS_DATA_DIR}/models)
+endif()
+# What else the program reads, and what bash asks for commands and flags.
+if(TARGET vesalius)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/bodies DESTINATION ${VESALIUS_DATA_DIR})
   install(FILES ${PROJECT_SOURCE_DIR}/data/completion.bash RENAME vesalius
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)

@@ -1,0 +1,165 @@
+#include <dlfcn.h>
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "c/guard.h"
+#include "c/handles.h"
+#include "c/vesalius.h"
+#include "cuda/cuda_labeller.h"
+#include "io/model/default_model.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/find_joint_set.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/forest/make_labeller.h"
+
+namespace vesalius::c {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+/// Returns the folder in which this library lies; empty if that cannot be found out.
+std::string own_folder() {
+  Dl_info found{};
+  if (dladdr(reinterpret_cast<const void*>(&vesalius_detector_create), &found) == 0 || found.dli_fname == nullptr)
+    return {};
+  std::error_code error;
+  const std::filesystem::path library = std::filesystem::canonical(found.dli_fname, error);
+  return error ? std::string() : library.parent_path().string();
+}
+
+std::string default_model() {
+  return find_default_model(model_folders(own_folder(), VESALIUS_MODELS_FROM_LIB), "model is NULL");
+}
+
+std::shared_ptr<const SharedDetector> make_detector(const char* model, const vesalius_options* options, int threads,
+                                                    const char* device) {
+  if (threads < 0 || threads > kMaxThreads) {
+    throw UsageError("threads is " + std::to_string(threads) + ", expected 0 (all) to " + std::to_string(kMaxThreads));
+  }
+  const ThreadLimit limit(threads);
+  const PeopleOptions values = options != nullptr ? options->values : PeopleOptions{};
+  auto labeller = make_labeller(load_model(model != nullptr ? model : default_model()),
+                                device != nullptr ? device : "cpu", {{gpu::cuda_labeller()}, {}});
+  return std::shared_ptr<const SharedDetector>(
+      new SharedDetector{values, threads, Detector(std::move(labeller), values.detect)});
+}
+
+const BodyModel& body_of(const vesalius_detector* detector) {
+  return need(detector, "detector").shared->detector.body();
+}
+
+const JointSet& joint_set_of(const vesalius_detector* detector, const char* name) {
+  const BodyModel& body = body_of(detector);
+  return body.joint_sets[find_joint_set(body, set_or_usual(name))];
+}
+
+std::int32_t state_of(TrackState state) {
+  switch (state) {
+    case TrackState::fresh:
+      return VESALIUS_PERSON_NEW;
+    case TrackState::tracked:
+      return VESALIUS_PERSON_TRACKED;
+    case TrackState::hidden:
+      return VESALIUS_PERSON_HIDDEN;
+    default:
+      return VESALIUS_PERSON_LOST;
+  }
+}
+
+/// Gives the people that `find` finds in a frame of the interface.
+template <class Find>
+void give_people(const std::shared_ptr<const SharedDetector>& shared, const vesalius_frame* frame,
+                 const vesalius_camera* camera, vesalius_people*& people, const Find& find) {
+  const ThreadLimit limit(shared->threads);
+  const Frame read = read_frame(frame, camera, shared->rectifications);
+  people = new vesalius_people{shared, read.camera.width, read.camera.height, find(read)};
+}
+
+}  // namespace
+}  // namespace vesalius::c
+
+using namespace vesalius;
+using namespace vesalius::c;
+
+vesalius_status vesalius_detector_create(const char* model, const vesalius_options* options, int32_t threads,
+                                         const char* device, vesalius_detector** detector) {
+  return guarded([&] {
+    need(detector, "detector") = nullptr;
+    *detector = new vesalius_detector{make_detector(model, options, threads, device)};
+  });
+}
+
+vesalius_status vesalius_detector_detect(const vesalius_detector* detector, const vesalius_frame* frame,
+                                         const vesalius_camera* camera, vesalius_people** people) {
+  return guarded([&] {
+    need(people, "people") = nullptr;
+    const auto& shared = need(detector, "detector").shared;
+    give_people(shared, frame, camera, *people, [&](const Frame& read) {
+      std::vector<FoundPerson> found;
+      for (Person& person : shared->detector.detect(read)) {
+        found.push_back({std::move(person), 0, VESALIUS_PERSON_SEEN, Eigen::Vector3f::Constant(kUnknown)});
+      }
+      return found;
+    });
+  });
+}
+
+void vesalius_detector_destroy(vesalius_detector* detector) { delete detector; }
+
+int32_t vesalius_detector_part_count(const vesalius_detector* detector) {
+  return guarded_value(-1, [&] { return body_of(detector).part_count(); });
+}
+
+const char* vesalius_detector_part_name(const vesalius_detector* detector, int32_t part) {
+  return guarded_value<const char*>(nullptr, [&] { return at(body_of(detector).parts, part, "part").name.c_str(); });
+}
+
+int32_t vesalius_detector_joint_set_count(const vesalius_detector* detector) {
+  return guarded_value(-1, [&] { return static_cast<int32_t>(body_of(detector).joint_sets.size()); });
+}
+
+const char* vesalius_detector_joint_set_name(const vesalius_detector* detector, int32_t set) {
+  return guarded_value<const char*>(nullptr,
+                                    [&] { return at(body_of(detector).joint_sets, set, "joint set").name.c_str(); });
+}
+
+int32_t vesalius_detector_joint_count(const vesalius_detector* detector, const char* joint_set) {
+  return guarded_value(-1, [&] { return static_cast<int32_t>(joint_set_of(detector, joint_set).joints.size()); });
+}
+
+const char* vesalius_detector_joint_name(const vesalius_detector* detector, const char* joint_set, int32_t joint) {
+  return guarded_value<const char*>(
+      nullptr, [&] { return at(joint_set_of(detector, joint_set).joints, joint, "joint").name.c_str(); });
+}
+
+vesalius_status vesalius_tracker_create(const vesalius_detector* detector, vesalius_tracker** tracker) {
+  return guarded([&] {
+    need(tracker, "tracker") = nullptr;
+    const auto& shared = need(detector, "detector").shared;
+    *tracker = new vesalius_tracker{shared, make_tracker(shared->detector, shared->options)};
+  });
+}
+
+vesalius_status vesalius_tracker_update(vesalius_tracker* tracker, const vesalius_frame* frame,
+                                        const vesalius_camera* camera, vesalius_people** people) {
+  return guarded([&] {
+    need(people, "people") = nullptr;
+    const auto& shared = need(tracker, "tracker").shared;
+    give_people(shared, frame, camera, *people, [&](const Frame& read) {
+      const std::scoped_lock lock(tracker->mutex);
+      std::vector<FoundPerson> found;
+      for (TrackedPerson& person : follow(shared->detector, tracker->tracker, read).people) {
+        found.push_back({std::move(person.person), person.id, state_of(person.state), person.velocity});
+      }
+      return found;
+    });
+  });
+}
+
+void vesalius_tracker_destroy(vesalius_tracker* tracker) { delete tracker; }

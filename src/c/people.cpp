@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "c/guard.h"
+#include "c/handles.h"
+#include "c/sized_struct.h"
+#include "c/vesalius.h"
+#include "vesalius/base/find_joint_set.h"
+
+namespace vesalius::c {
+namespace {
+
+static_assert(static_cast<int>(State::none) == VESALIUS_STATE_NONE &&
+              static_cast<int>(State::predicted) == VESALIUS_STATE_PREDICTED &&
+              static_cast<int>(State::observed) == VESALIUS_STATE_OBSERVED);
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+const FoundPerson& person_of(const vesalius_people* people, std::int32_t index) {
+  return at(need(people, "people").people, index, "person");
+}
+
+/// Gives the caller an array as far as the header promises.
+template <class T, class List, class Convert>
+void give(const List& list, const char* name, T* buffer, std::int32_t capacity, std::int32_t* count,
+          const Convert& convert) {
+  const auto length = static_cast<std::int32_t>(list.size());
+  if (capacity < 0) throw UsageError("capacity is " + std::to_string(capacity) + ", expected 0 or more");
+  if (buffer == nullptr && capacity > 0) throw UsageError(std::string(name) + " is NULL, but capacity is not 0");
+  if (count != nullptr) *count = length;
+  if (buffer == nullptr) {
+    if (count == nullptr) throw UsageError(std::string(name) + " and count are NULL");
+    return;
+  }
+  if (capacity < length) {
+    throw CapacityError(std::string(name) + ": capacity is " + std::to_string(capacity) + ", expected " +
+                        std::to_string(length) + " or more");
+  }
+  std::transform(list.begin(), list.end(), buffer, convert);
+}
+
+/// Gives a picture of the people's size; one that is empty is filled with `outside`.
+void give_picture(const vesalius_people& people, const Image<std::uint8_t>& picture, std::uint8_t outside,
+                  const char* name, std::uint8_t* buffer, std::int32_t capacity, std::int32_t* count) {
+  const auto same = [](std::uint8_t value) { return value; };
+  if (!picture.empty()) return give(picture, name, buffer, capacity, count, same);
+  give(Image<std::uint8_t>(people.width, people.height, outside), name, buffer, capacity, count, same);
+}
+
+vesalius_joint to_joint(const Joint& joint) {
+  const Eigen::Vector3f place = joint.state != State::none ? joint.position : Eigen::Vector3f::Constant(kUnknown);
+  return {place.x(), place.y(), place.z(), joint.confidence, static_cast<std::int32_t>(joint.state)};
+}
+
+vesalius_part to_part(const SkeletonPart& part) {
+  const Eigen::Vector3f place = part.state != State::none ? part.centre : Eigen::Vector3f::Constant(kUnknown);
+  const Eigen::Vector3f& extent = part.extent_m;
+  return {place.x(),       place.y(),
+          place.z(),       {extent.x(), extent.y(), extent.z()},
+          part.confidence, static_cast<std::int32_t>(part.state)};
+}
+
+}  // namespace
+}  // namespace vesalius::c
+
+using namespace vesalius;
+using namespace vesalius::c;
+
+int32_t vesalius_people_count(const vesalius_people* people) {
+  return guarded_value(-1, [&] { return static_cast<int32_t>(need(people, "people").people.size()); });
+}
+
+vesalius_status vesalius_people_get(const vesalius_people* people, int32_t index, vesalius_person* person) {
+  return guarded([&] {
+    const FoundPerson& found = person_of(people, index);
+    const Box& box = found.person.box;
+    const Eigen::Vector3f& velocity = found.velocity_m_s;
+    vesalius_person values{};
+    values.id = found.id;
+    values.state = found.state;
+    values.score = found.person.score;
+    values.box_u = box.u;
+    values.box_v = box.v;
+    values.box_width = box.width;
+    values.box_height = box.height;
+    values.yaw_rad = found.person.yaw ? found.person.yaw->yaw_rad : kUnknown;
+    std::copy_n(velocity.data(), 3, values.velocity_m_s);
+    write_struct(values, person, "person");
+  });
+}
+
+vesalius_status vesalius_people_joints(const vesalius_people* people, int32_t index, const char* joint_set,
+                                       vesalius_joint* joints, int32_t capacity, int32_t* count) {
+  return guarded([&] {
+    const FoundPerson& found = person_of(people, index);
+    const std::size_t set = find_joint_set(people->shared->detector.body(), set_or_usual(joint_set));
+    give(found.person.joints[set], "joints", joints, capacity, count, to_joint);
+  });
+}
+
+vesalius_status vesalius_people_parts(const vesalius_people* people, int32_t index, vesalius_part* parts,
+                                      int32_t capacity, int32_t* count) {
+  return guarded(
+      [&] { give(person_of(people, index).person.skeleton.parts, "parts", parts, capacity, count, to_part); });
+}
+
+vesalius_status vesalius_people_mask(const vesalius_people* people, int32_t index, uint8_t* mask, int32_t capacity,
+                                     int32_t* count) {
+  return guarded([&] {
+    const FoundPerson& found = person_of(people, index);
+    give_picture(*people, found.person.mask, 0, "mask", mask, capacity, count);
+  });
+}
+
+vesalius_status vesalius_people_labels(const vesalius_people* people, int32_t index, uint8_t* labels, int32_t capacity,
+                                       int32_t* count) {
+  return guarded([&] {
+    const FoundPerson& found = person_of(people, index);
+    give_picture(*people, found.person.labels, kBackground, "labels", labels, capacity, count);
+  });
+}
+
+void vesalius_people_destroy(vesalius_people* people) { delete people; }
