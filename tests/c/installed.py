@@ -49,6 +49,10 @@ def check_pkg_config(source, prefix, folder, frames):
         program = folder / compiler
         run(compiler, *C99, source / "examples/detect_people.c", *flags, "-lm", "-o", program)
         expect_example([program], "-", frames, env=library)  # with the model that is installed
+    # The program that the document begins with, in which nobody is in view.
+    (folder / "heads.c").write_text((source / "docs/c.md").read_text().split("```c\n")[1].split("```")[0])
+    run("cc", *C99, folder / "heads.c", *flags, "-o", folder / "heads")
+    expect_same(run(folder / "heads", env=library), "", "docs/c.md")
     (folder / "user.cpp").write_text(CPLUSPLUS)
     for compiler in compilers("c++", "g++", "clang++", "clang++-14"):
         for standard in "c++11", "c++20":
