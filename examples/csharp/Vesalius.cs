@@ -20,6 +20,7 @@ namespace Vesalius
     public enum Lens { Pinhole = 0, BrownConrady = 1, ModifiedBrownConrady = 2, KannalaBrandt = 3 }
     public enum ColourFormat { Rgb = 0, Bgr = 1, Rgba = 2, Bgra = 3 }
     public enum PersonState { Seen = 0, New = 1, Tracked = 2, Hidden = 3, Lost = 4 }
+    public enum Stance { Unknown = 0, Standing = 1, Sitting = 2, Lying = 3, Fallen = 4 }
     public enum JointState { None = 0, Predicted = 1, Observed = 2 }
 
     /// <summary>A joint: metres, x right, y down, z away from the camera; NaN where nothing is known of it.</summary>
@@ -40,6 +41,25 @@ namespace Vesalius
         public float Extent0, Extent1, Extent2;
         public float Confidence;
         public JointState State;
+    }
+
+    /// <summary>A bone of a fitted body: its ends, metres, and the unit quaternion from the bone's frame to the camera's.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Bone
+    {
+        public float HeadX, HeadY, HeadZ;
+        public float TailX, TailY, TailZ;
+        public float RotationX, RotationY, RotationZ, RotationW;
+        public float Length;
+        public float Confidence;
+        public JointState State;
+    }
+
+    /// <summary>A unit quaternion, from the joint's frame to the camera's; NaN where it is unknown.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Rotation
+    {
+        public float X, Y, Z, W;
     }
 
     /// <summary>The camera of the depth picture, pixels.</summary>
@@ -246,6 +266,27 @@ namespace Vesalius
             }
         }
 
+        /// <summary>Names of the bones of the bodies that a tracker fits.</summary>
+        public string[] Bones
+        {
+            get
+            {
+                return Native.Names(Native.vesalius_detector_bone_count(Handle),
+                                    i => Native.vesalius_detector_bone_name(Handle, i));
+            }
+        }
+
+        /// <summary>For each bone the one whose child it is, which comes before it; -1 for the first.</summary>
+        public int[] BoneParents
+        {
+            get
+            {
+                var parents = new int[Native.vesalius_detector_bone_count(Handle)];
+                for (int i = 0; i < parents.Length; ++i) parents[i] = Native.vesalius_detector_bone_parent(Handle, i);
+                return parents;
+            }
+        }
+
         public void Dispose() { Handle.Dispose(); }
     }
 
@@ -310,6 +351,9 @@ namespace Vesalius
         public readonly float Yaw;
         /// <summary>Of the trunk, metres a second; NaN from a detector.</summary>
         public readonly float VelocityX, VelocityY, VelocityZ;
+        public readonly Stance Stance;
+        /// <summary>Height standing upright, metres, by the fitted body; NaN without one.</summary>
+        public readonly float Stature;
 
         internal Person(People people, int index)
         {
@@ -323,6 +367,8 @@ namespace Vesalius
             BoxU = native.BoxU; BoxV = native.BoxV; BoxWidth = native.BoxWidth; BoxHeight = native.BoxHeight;
             Yaw = native.Yaw;
             VelocityX = native.VelocityX; VelocityY = native.VelocityY; VelocityZ = native.VelocityZ;
+            Stance = (Stance)native.Stance;
+            Stature = native.Stature;
         }
 
         public Joint[] Joints(string set = "k4abt32")
@@ -342,6 +388,27 @@ namespace Vesalius
             var parts = new Part[count];
             Native.Check(Native.vesalius_people_parts(people.Handle, index, parts, count, out count));
             return parts;
+        }
+
+        /// <summary>The bones of the fitted body, by Detector.Bones; none without one.</summary>
+        public Bone[] Bones()
+        {
+            int count;
+            Native.Check(Native.vesalius_people_bones(people.Handle, index, null, 0, out count));
+            var bones = new Bone[count];
+            Native.Check(Native.vesalius_people_bones(people.Handle, index, bones, count, out count));
+            return bones;
+        }
+
+        /// <summary>Rotations of a set's joints, by the fitted body; the set k4abt32 has some.</summary>
+        public Rotation[] Rotations(string set = "k4abt32")
+        {
+            var name = Native.Utf8(set);
+            int count;
+            Native.Check(Native.vesalius_people_rotations(people.Handle, index, name, null, 0, out count));
+            var rotations = new Rotation[count];
+            Native.Check(Native.vesalius_people_rotations(people.Handle, index, name, rotations, count, out count));
+            return rotations;
         }
 
         /// <summary>Row by row from the top: 1 on the person's pixels, 0 elsewhere.</summary>
@@ -414,6 +481,8 @@ namespace Vesalius
             public int BoxU, BoxV, BoxWidth, BoxHeight;
             public float Yaw;
             public float VelocityX, VelocityY, VelocityZ;
+            public int Stance;
+            public float Stature;
         }
 
         internal abstract class Handle : SafeHandle
@@ -488,6 +557,9 @@ namespace Vesalius
         [DllImport(Library)] internal static extern IntPtr vesalius_detector_joint_set_name(DetectorHandle detector, int set);
         [DllImport(Library)] internal static extern int vesalius_detector_joint_count(DetectorHandle detector, byte[] set);
         [DllImport(Library)] internal static extern IntPtr vesalius_detector_joint_name(DetectorHandle detector, byte[] set, int joint);
+        [DllImport(Library)] internal static extern int vesalius_detector_bone_count(DetectorHandle detector);
+        [DllImport(Library)] internal static extern IntPtr vesalius_detector_bone_name(DetectorHandle detector, int bone);
+        [DllImport(Library)] internal static extern int vesalius_detector_bone_parent(DetectorHandle detector, int bone);
         [DllImport(Library)] internal static extern Status vesalius_tracker_create(DetectorHandle detector, out IntPtr tracker);
         [DllImport(Library)] internal static extern Status vesalius_tracker_update(TrackerHandle tracker, ref Frame frame, ref Camera camera, out IntPtr people);
         [DllImport(Library)] internal static extern void vesalius_tracker_destroy(IntPtr tracker);
@@ -495,6 +567,8 @@ namespace Vesalius
         [DllImport(Library)] internal static extern Status vesalius_people_get(PeopleHandle people, int index, ref Person person);
         [DllImport(Library)] internal static extern Status vesalius_people_joints(PeopleHandle people, int index, byte[] set, [Out] Joint[] joints, int capacity, out int count);
         [DllImport(Library)] internal static extern Status vesalius_people_parts(PeopleHandle people, int index, [Out] Part[] parts, int capacity, out int count);
+        [DllImport(Library)] internal static extern Status vesalius_people_bones(PeopleHandle people, int index, [Out] Bone[] bones, int capacity, out int count);
+        [DllImport(Library)] internal static extern Status vesalius_people_rotations(PeopleHandle people, int index, byte[] set, [Out] Rotation[] rotations, int capacity, out int count);
         [DllImport(Library)] internal static extern Status vesalius_people_mask(PeopleHandle people, int index, [Out] byte[] mask, int capacity, out int count);
         [DllImport(Library)] internal static extern Status vesalius_people_labels(PeopleHandle people, int index, [Out] byte[] labels, int capacity, out int count);
         [DllImport(Library)] internal static extern void vesalius_people_destroy(IntPtr people);

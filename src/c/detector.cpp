@@ -15,6 +15,7 @@
 #include "io/model/model_file.h"
 #include "vesalius/base/find_joint_set.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/fit/flesh_model.h"
 #include "vesalius/forest/make_labeller.h"
 
 namespace vesalius::c {
@@ -57,6 +58,12 @@ const BodyModel& body_of(const vesalius_detector* detector) {
 const JointSet& joint_set_of(const vesalius_detector* detector, const char* name) {
   const BodyModel& body = body_of(detector);
   return body.joint_sets[find_joint_set(body, set_or_usual(name))];
+}
+
+/// Bodies of every detector are fitted with the same bones.
+const FleshBone& bone_of(const vesalius_detector* detector, std::int32_t bone) {
+  need(detector, "detector");
+  return at(builtin_flesh().bones, bone, "bone");
 }
 
 std::int32_t state_of(TrackState state) {
@@ -138,6 +145,21 @@ const char* vesalius_detector_joint_name(const vesalius_detector* detector, cons
       nullptr, [&] { return at(joint_set_of(detector, joint_set).joints, joint, "joint").name.c_str(); });
 }
 
+int32_t vesalius_detector_bone_count(const vesalius_detector* detector) {
+  return guarded_value(-1, [&] {
+    need(detector, "detector");
+    return builtin_flesh().bone_count();
+  });
+}
+
+const char* vesalius_detector_bone_name(const vesalius_detector* detector, int32_t bone) {
+  return guarded_value<const char*>(nullptr, [&] { return bone_of(detector, bone).name.c_str(); });
+}
+
+int32_t vesalius_detector_bone_parent(const vesalius_detector* detector, int32_t bone) {
+  return guarded_value(-1, [&] { return bone_of(detector, bone).parent; });
+}
+
 vesalius_status vesalius_tracker_create(const vesalius_detector* detector, vesalius_tracker** tracker) {
   return guarded([&] {
     need(tracker, "tracker") = nullptr;
@@ -155,7 +177,8 @@ vesalius_status vesalius_tracker_update(vesalius_tracker* tracker, const vesaliu
       const std::scoped_lock lock(tracker->mutex);
       std::vector<FoundPerson> found;
       for (TrackedPerson& person : follow(shared->detector, tracker->tracker, read).people) {
-        found.push_back({std::move(person.person), person.id, state_of(person.state), person.velocity});
+        found.push_back({std::move(person.person), person.id, state_of(person.state), person.velocity, person.stance,
+                         std::move(person.body)});
       }
       return found;
     });

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct FoundPerson {
   std::int32_t id = 0;
   std::int32_t state = VESALIUS_PERSON_SEEN;
   Eigen::Vector3f velocity_m_s;
+  Stance stance = Stance::unknown;
+  std::optional<FittedBody> body = {};
 };
 
 /// The joint set of those who name none, as in Python.

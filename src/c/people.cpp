@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "c/sized_struct.h"
 #include "c/vesalius.h"
 #include "vesalius/base/find_joint_set.h"
+#include "vesalius/fit/flesh_joints.h"
 
 namespace vesalius::c {
 namespace {
@@ -15,6 +17,12 @@ namespace {
 static_assert(static_cast<int>(State::none) == VESALIUS_STATE_NONE &&
               static_cast<int>(State::predicted) == VESALIUS_STATE_PREDICTED &&
               static_cast<int>(State::observed) == VESALIUS_STATE_OBSERVED);
+
+static_assert(static_cast<int>(Stance::unknown) == VESALIUS_STANCE_UNKNOWN &&
+              static_cast<int>(Stance::standing) == VESALIUS_STANCE_STANDING &&
+              static_cast<int>(Stance::sitting) == VESALIUS_STANCE_SITTING &&
+              static_cast<int>(Stance::lying) == VESALIUS_STANCE_LYING &&
+              static_cast<int>(Stance::fallen) == VESALIUS_STANCE_FALLEN);
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -62,6 +70,22 @@ vesalius_part to_part(const SkeletonPart& part) {
           part.confidence, static_cast<std::int32_t>(part.state)};
 }
 
+vesalius_bone to_bone(const FittedBone& bone) {
+  vesalius_bone values{};
+  std::copy_n(bone.head.data(), 3, values.head_m);
+  std::copy_n(bone.tail.data(), 3, values.tail_m);
+  std::copy_n(bone.global.coeffs().data(), 4, values.rotation_xyzw);
+  values.length_m = bone.length_m;
+  values.confidence = bone.confidence;
+  values.state = static_cast<std::int32_t>(bone.state);
+  return values;
+}
+
+vesalius_rotation to_rotation(const std::optional<Eigen::Quaternionf>& rotation) {
+  if (!rotation) return {kUnknown, kUnknown, kUnknown, kUnknown};
+  return {rotation->x(), rotation->y(), rotation->z(), rotation->w()};
+}
+
 }  // namespace
 }  // namespace vesalius::c
 
@@ -87,6 +111,8 @@ vesalius_status vesalius_people_get(const vesalius_people* people, int32_t index
     values.box_height = box.height;
     values.yaw_rad = found.person.yaw ? found.person.yaw->yaw_rad : kUnknown;
     std::copy_n(velocity.data(), 3, values.velocity_m_s);
+    values.stance = static_cast<std::int32_t>(found.stance);
+    values.stature_m = found.body ? found.body->stature_m : kUnknown;
     write_struct(values, person, "person");
   });
 }
@@ -104,6 +130,26 @@ vesalius_status vesalius_people_parts(const vesalius_people* people, int32_t ind
                                       int32_t capacity, int32_t* count) {
   return guarded(
       [&] { give(person_of(people, index).person.skeleton.parts, "parts", parts, capacity, count, to_part); });
+}
+
+vesalius_status vesalius_people_bones(const vesalius_people* people, int32_t index, vesalius_bone* bones,
+                                      int32_t capacity, int32_t* count) {
+  return guarded([&] {
+    const FoundPerson& found = person_of(people, index);
+    give(found.body ? found.body->bones : std::vector<FittedBone>(), "bones", bones, capacity, count, to_bone);
+  });
+}
+
+vesalius_status vesalius_people_rotations(const vesalius_people* people, int32_t index, const char* joint_set,
+                                          vesalius_rotation* rotations, int32_t capacity, int32_t* count) {
+  return guarded([&] {
+    const FoundPerson& found = person_of(people, index);
+    const BodyModel& body = people->shared->detector.body();
+    const JointSet& set = body.joint_sets[find_joint_set(body, set_or_usual(joint_set))];
+    std::vector<std::optional<Eigen::Quaternionf>> known(set.joints.size());
+    if (found.body) known = joint_rotations(*found.body, builtin_flesh_joints(), set);
+    give(known, "rotations", rotations, capacity, count, to_rotation);
+  });
 }
 
 vesalius_status vesalius_people_mask(const vesalius_people* people, int32_t index, uint8_t* mask, int32_t capacity,

@@ -223,6 +223,14 @@ VESALIUS_API int32_t vesalius_detector_joint_count(const vesalius_detector* dete
 VESALIUS_API const char* vesalius_detector_joint_name(const vesalius_detector* detector, const char* joint_set,
                                                       int32_t joint);
 
+/// Returns how many bones the bodies have that a tracker fits to people; -1 for NULL.
+VESALIUS_API int32_t vesalius_detector_bone_count(const vesalius_detector* detector);
+/// Returns the name of a bone, 0 to count - 1, e.g. "l_thigh"; NULL for an index that is not there.
+VESALIUS_API const char* vesalius_detector_bone_name(const vesalius_detector* detector, int32_t bone);
+/// Returns the bone of which a bone is the child, which comes before it; -1 for the first, which has none, and for an
+/// index that is not there.
+VESALIUS_API int32_t vesalius_detector_bone_parent(const vesalius_detector* detector, int32_t bone);
+
 /// Makes a tracker of what `detector` finds, with the options track.* and fit.* of that detector.
 VESALIUS_API vesalius_status vesalius_tracker_create(const vesalius_detector* detector, vesalius_tracker** tracker);
 
@@ -245,6 +253,15 @@ enum {
   VESALIUS_PERSON_LOST = 4      ///< given up in this frame; the id is kept for somebody who comes back
 };
 
+/// How somebody holds the body over the floor.
+enum {
+  VESALIUS_STANCE_UNKNOWN = 0,  ///< no floor is seen, or not for long enough; always from a detector
+  VESALIUS_STANCE_STANDING = 1,
+  VESALIUS_STANCE_SITTING = 2,
+  VESALIUS_STANCE_LYING = 3,
+  VESALIUS_STANCE_FALLEN = 4  ///< lying after a fall
+};
+
 typedef struct vesalius_person {
   uint32_t struct_size;
   int32_t id;     ///< from 1, the same over the frames of a tracker, never used for two people; 0 from a detector
@@ -256,6 +273,8 @@ typedef struct vesalius_person {
   int32_t box_height;
   float yaw_rad;          ///< which way the person faces: 0 the camera, positive turned to the own left; NaN if unknown
   float velocity_m_s[3];  ///< of the trunk, metres a second, optical frame; NaN from a detector
+  int32_t stance;         ///< VESALIUS_STANCE_*
+  float stature_m;        ///< height standing upright, metres, by the fitted body; NaN without one
 } vesalius_person;
 
 /// Whether a joint or part was seen.
@@ -278,6 +297,21 @@ typedef struct vesalius_part {
   int32_t state;        ///< VESALIUS_STATE_*
 } vesalius_part;
 
+/// A bone of the body that a tracker fits to a person.
+typedef struct vesalius_bone {
+  float head_m[3];         ///< the joint about which it turns: metres, optical frame
+  float tail_m[3];         ///< its other end
+  float rotation_xyzw[4];  ///< unit quaternion: optical frame from the bone's
+  float length_m;          ///< metres from head to tail
+  float confidence;        ///< probability that the head lies within 10 cm of the truth, 0 to 1
+  int32_t state;           ///< VESALIUS_STATE_* of the head
+} vesalius_bone;
+
+/// A rotation as a unit quaternion; NaN where it is unknown.
+typedef struct vesalius_rotation {
+  float x, y, z, w;
+} vesalius_rotation;
+
 /// Returns how many people there are; -1 for NULL.
 VESALIUS_API int32_t vesalius_people_count(const vesalius_people* people);
 
@@ -295,6 +329,17 @@ VESALIUS_API vesalius_status vesalius_people_joints(const vesalius_people* peopl
 /// Parts; their names and number are those of the detector.
 VESALIUS_API vesalius_status vesalius_people_parts(const vesalius_people* people, int32_t index, vesalius_part* parts,
                                                    int32_t capacity, int32_t* count);
+
+/// Bones of the fitted body; their names and parents are those of the detector. None, which is no error, for people of
+/// a detector and where no body could be fitted.
+VESALIUS_API vesalius_status vesalius_people_bones(const vesalius_people* people, int32_t index, vesalius_bone* bones,
+                                                   int32_t capacity, int32_t* count);
+
+/// Rotations of the joints of a joint set, by the fitted body, in the convention of the tracker that names them:
+/// optical frame from the joint's. NULL is the set "k4abt32", the one that has some.
+VESALIUS_API vesalius_status vesalius_people_rotations(const vesalius_people* people, int32_t index,
+                                                       const char* joint_set, vesalius_rotation* rotations,
+                                                       int32_t capacity, int32_t* count);
 
 /// The mask, width * height bytes, row by row without gaps: 1 on the person's pixels, 0 elsewhere.
 VESALIUS_API vesalius_status vesalius_people_mask(const vesalius_people* people, int32_t index, uint8_t* mask,

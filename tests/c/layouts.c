@@ -32,7 +32,8 @@ static void print_found(void) {
   AT(vesalius_person, struct_size), AT(vesalius_person, id), AT(vesalius_person, state), AT(vesalius_person, score);
   AT(vesalius_person, box_u), AT(vesalius_person, box_v), AT(vesalius_person, box_width);
   AT(vesalius_person, box_height), AT(vesalius_person, yaw_rad), AT(vesalius_person, velocity_m_s[0]);
-  AT(vesalius_person, velocity_m_s[1]), AT(vesalius_person, velocity_m_s[2]);
+  AT(vesalius_person, velocity_m_s[1]), AT(vesalius_person, velocity_m_s[2]), AT(vesalius_person, stance);
+  AT(vesalius_person, stature_m);
   END();
   BEGIN("joint", vesalius_joint);
   AT(vesalius_joint, x_m), AT(vesalius_joint, y_m), AT(vesalius_joint, z_m), AT(vesalius_joint, confidence);
@@ -45,8 +46,22 @@ static void print_found(void) {
   END();
 }
 
+static void print_bodies(void) {
+  BEGIN("bone", vesalius_bone);
+  AT(vesalius_bone, head_m[0]), AT(vesalius_bone, head_m[1]), AT(vesalius_bone, head_m[2]);
+  AT(vesalius_bone, tail_m[0]), AT(vesalius_bone, tail_m[1]), AT(vesalius_bone, tail_m[2]);
+  AT(vesalius_bone, rotation_xyzw[0]), AT(vesalius_bone, rotation_xyzw[1]), AT(vesalius_bone, rotation_xyzw[2]);
+  AT(vesalius_bone, rotation_xyzw[3]), AT(vesalius_bone, length_m), AT(vesalius_bone, confidence);
+  AT(vesalius_bone, state);
+  END();
+  BEGIN("rotation", vesalius_rotation);
+  AT(vesalius_rotation, x), AT(vesalius_rotation, y), AT(vesalius_rotation, z), AT(vesalius_rotation, w);
+  END();
+}
+
 int main(void) {
   print_given();
   print_found();
+  print_bodies();
   return 0;
 }

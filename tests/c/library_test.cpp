@@ -20,6 +20,8 @@
 #include "io/sources/open_source.h"
 #include "vesalius.h"
 #include "vesalius/detect.h"
+#include "vesalius/fit/flesh_joints.h"
+#include "vesalius/fit/flesh_model.h"
 #include "vesalius/track/people_options.h"
 
 namespace vesalius {
@@ -202,6 +204,38 @@ void expect_same(const Person& expected, const BodyModel& body, const Frame& fra
   expect_picture(expected.labels, kBackground, frame, picture_at(people, index, vesalius_people_labels));
 }
 
+/// Expects the fitted body of a person, or that there is none.
+void expect_same_body(const TrackedPerson& expected, const BodyModel& body, const CPeople& people, int index) {
+  const vesalius_person person = person_at(people, index);
+  EXPECT_EQ(person.stance, static_cast<int>(expected.stance));
+  EXPECT_TRUE(same_float(person.stature_m, expected.body ? expected.body->stature_m : kNan));
+  const auto bones = array_of<vesalius_bone>([&](vesalius_bone* to, int32_t capacity, int32_t* count) {
+    return vesalius_people_bones(people.get(), index, to, capacity, count);
+  });
+  ASSERT_EQ(bones.size(), expected.body ? expected.body->bones.size() : 0U);
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    const FittedBone& bone = expected.body->bones[b];
+    expect_place(bone.head, State::observed, bones[b].head_m);
+    expect_place(bone.tail, State::observed, bones[b].tail_m);
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(same_float(bones[b].rotation_xyzw[i], bone.global.coeffs()[i]));
+    EXPECT_TRUE(same_float(bones[b].length_m, bone.length_m));
+    EXPECT_TRUE(same_float(bones[b].confidence, bone.confidence));
+    EXPECT_EQ(bones[b].state, static_cast<int>(bone.state));
+  }
+  for (const JointSet& set : body.joint_sets) {
+    const auto rotations = array_of<vesalius_rotation>([&](vesalius_rotation* to, int32_t capacity, int32_t* count) {
+      return vesalius_people_rotations(people.get(), index, set.name.c_str(), to, capacity, count);
+    });
+    ASSERT_EQ(rotations.size(), set.joints.size());
+    std::vector<std::optional<Eigen::Quaternionf>> known(set.joints.size());
+    if (expected.body) known = joint_rotations(*expected.body, builtin_flesh_joints(), set);
+    for (std::size_t j = 0; j < known.size(); ++j) {
+      EXPECT_TRUE(same_float(rotations[j].x, known[j] ? known[j]->x() : kNan));
+      EXPECT_TRUE(same_float(rotations[j].w, known[j] ? known[j]->w() : kNan));
+    }
+  }
+}
+
 // Labels: slow
 TEST(CLibrary, FindsTheSamePeopleAsTheDetectorToTheBit) {
   const Detector detector(load_model(kModel));
@@ -228,7 +262,7 @@ TEST(CLibrary, FollowsPeopleAsTheTrackerToTheBit) {
   const Detector detector(load_model(kModel));
   PeopleTracker tracker = make_tracker(detector, {});
   const CTracker c_tracker = make_tracker(usual_detector());
-  int hidden = 0;
+  int hidden = 0, fitted = 0;
   // Thrice the same frame, so that people are sure, and one without them.
   for (const std::size_t which : {0, 0, 0, 1, 2}) {
     Frame frame = demo().at(which);
@@ -247,10 +281,13 @@ TEST(CLibrary, FollowsPeopleAsTheTrackerToTheBit) {
       EXPECT_EQ(person.id, theirs.id);
       EXPECT_EQ(person.state, 1 + static_cast<int>(theirs.state));
       for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(same_float(person.velocity_m_s[axis], theirs.velocity[axis]));
+      expect_same_body(theirs, detector.body(), people, static_cast<int>(i));
+      fitted += theirs.body ? 1 : 0;
       hidden += person.state == VESALIUS_PERSON_HIDDEN ? 1 : 0;
     }
   }
   EXPECT_GT(hidden, 0);
+  EXPECT_GT(fitted, 0);
 }
 
 TEST(CLibrary, NamesPartsAndJointsAsTheBody) {
@@ -270,6 +307,23 @@ TEST(CLibrary, NamesPartsAndJointsAsTheBody) {
   EXPECT_EQ(vesalius_detector_joint_count(detector, nullptr), 32);
   EXPECT_STREQ(vesalius_detector_joint_name(detector, nullptr, 0),
                vesalius_detector_joint_name(detector, "k4abt32", 0));
+}
+
+TEST(CLibrary, NamesBonesAsTheFlesh) {
+  const vesalius_detector* detector = usual_detector();
+  const std::vector<FleshBone>& bones = builtin_flesh().bones;
+  ASSERT_EQ(vesalius_detector_bone_count(detector), static_cast<int>(bones.size()));
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    EXPECT_EQ(vesalius_detector_bone_name(detector, static_cast<int>(b)), bones[b].name);
+    EXPECT_EQ(vesalius_detector_bone_parent(detector, static_cast<int>(b)), bones[b].parent);
+  }
+  for (const int index : {-1, static_cast<int>(bones.size())}) {
+    EXPECT_EQ(vesalius_detector_bone_name(detector, index), nullptr);
+    EXPECT_EQ(vesalius_detector_bone_parent(detector, index), -1);
+    EXPECT_THAT(vesalius_last_error(), HasSubstr("bone " + std::to_string(index) + " is not there"));
+  }
+  EXPECT_EQ(vesalius_detector_bone_count(nullptr), -1);
+  EXPECT_EQ(vesalius_detector_bone_name(nullptr, 0), nullptr);
 }
 
 /// The first frame of the demo in a way of storing it, and the same people in it.
@@ -646,6 +700,9 @@ TEST_F(CErrors, OfPeople) {
     expect_error(vesalius_people_joints(people.get(), index, nullptr, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT,
                  why);
     expect_error(vesalius_people_parts(people.get(), index, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT, why);
+    expect_error(vesalius_people_bones(people.get(), index, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT, why);
+    expect_error(vesalius_people_rotations(people.get(), index, nullptr, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT,
+                 why);
     expect_error(vesalius_people_mask(people.get(), index, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT, why);
     expect_error(vesalius_people_labels(people.get(), index, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT, why);
     EXPECT_EQ(count, 7);
@@ -661,6 +718,10 @@ TEST_F(CErrors, OfPeople) {
   expect_error(vesalius_people_get(people.get(), 0, &person), VESALIUS_ERROR_ARGUMENT, "person: struct_size is 4");
   expect_error(vesalius_people_joints(people.get(), 0, "feet", nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT,
                "joint set \"feet\"");
+  expect_error(vesalius_people_rotations(people.get(), 0, "feet", nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT,
+               "joint set \"feet\"");
+  EXPECT_EQ(vesalius_people_bones(people.get(), 0, nullptr, 0, &count), VESALIUS_OK);
+  EXPECT_EQ(count, 0) << "a detector fits no bodies";
 }
 
 TEST_F(CErrors, OfBuffers) {

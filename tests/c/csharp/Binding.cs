@@ -55,10 +55,31 @@ static class Binding
         Expect(parts.Length == detector.Parts.Length, "all parts");
         Expect(parts.Where(part => part.State == JointState.Observed).All(part => part.Z > 0.3f && part.Extent0 >= part.Extent1), "parts in the room");
         Expect(float.IsNaN(person.VelocityX) && person.Id == 0 && person.State == PersonState.Seen, "what a detector tells");
+        Expect(person.Bones().Length == 0 && float.IsNaN(person.Stature) && float.IsNaN(person.Rotations()[0].W), "no body from a detector");
         Expect(detector.JointSets.Contains("coco17") && person.Joints("coco17").Length == 17, "joints of COCO");
         ExpectError(Status.Argument, "joint set \"feet\"", () => person.Joints("feet"));
         ExpectError(Status.Argument, "joint set \"feet\"", () => detector.JointNames("feet"));
         ExpectError(Status.Argument, "is not there", () => Console.WriteLine(people[99]));
+    }
+
+    static void CheckBodies(Detector detector, ushort[] depth, Camera camera)
+    {
+        using (var tracker = new Tracker(detector))
+        using (var people = tracker.Update(new Frame(depth), camera))
+        {
+            var person = people[0];
+            var bones = person.Bones();
+            Expect(person.Id > 0 && person.Stature > 1 && person.Stature < 2.2f, "a fitted body");
+            Expect(bones.Length == detector.Bones.Length && bones.Length == detector.BoneParents.Length, "its bones");
+            Expect(detector.BoneParents.Select((parent, i) => parent < i).All(earlier => earlier) && detector.BoneParents[0] == -1, "parents first");
+            foreach (var bone in bones)
+            {
+                double length = Math.Sqrt(Math.Pow(bone.TailX - bone.HeadX, 2) + Math.Pow(bone.TailY - bone.HeadY, 2) + Math.Pow(bone.TailZ - bone.HeadZ, 2));
+                double norm = Math.Pow(bone.RotationX, 2) + Math.Pow(bone.RotationY, 2) + Math.Pow(bone.RotationZ, 2) + Math.Pow(bone.RotationW, 2);
+                Expect(Math.Abs(length - bone.Length) < 1e-3 && Math.Abs(norm - 1) < 1e-3, "ends and rotation of a bone");
+            }
+            Expect(person.Rotations().Any(rotation => !float.IsNaN(rotation.W)), "rotations of joints");
+        }
     }
 
     static void CheckLayouts(Detector detector, ushort[] depth, Camera camera, byte[] expected)
@@ -118,6 +139,7 @@ static class Binding
             CheckPeople(detector, people);
             expected = Everything(people);
         }
+        CheckBodies(detector, depth, camera);
         CheckLayouts(detector, depth, camera, expected);
         CheckThreads(detector, depth, camera, expected);
         // Without Dispose the collector frees them, in any order.

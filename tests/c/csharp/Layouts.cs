@@ -23,5 +23,7 @@ static class Layouts
         Print("person", typeof(Native.Person));
         Print("joint", typeof(Joint));
         Print("part", typeof(Part));
+        Print("bone", typeof(Bone));
+        Print("rotation", typeof(Rotation));
     }
 }
