@@ -17,6 +17,7 @@ void add_record(CLI::App& program);
 void add_cameras(CLI::App& program);
 void add_options(CLI::App& program);
 void add_completion(CLI::App& program);
+void add_man(CLI::App& program);
 
 // The following commands belong to satellites (satellites.h); a build that leaves out a satellite lacks its commands.
 void add_view(CLI::App& program);

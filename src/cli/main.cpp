@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/commands.h"
-#include "cli/satellites.h"
+#include "cli/program.h"
 #include "cli/text_sink.h"
 #include "io/files/options_file.h"
 #include "vesalius/base/error.h"
@@ -24,47 +23,6 @@ constexpr int kUsage = 2;
 int complain(const std::string& message, int exit_code) {
   say("vesalius: " + message);
   return exit_code;
-}
-
-/// Refuses empty values of flags: they come from unset shell variables rather than from an intention.
-void refuse_empty_values(CLI::App& program) {
-  const auto check = [](const std::string& value) { return value.empty() ? "expected a value, found none" : ""; };
-  for (CLI::App* command : program.get_subcommands({})) {
-    for (CLI::Option* option : command->get_options()) {
-      if (option->get_items_expected_max() > 0) option->check(check);
-    }
-  }
-}
-
-void describe(CLI::App& program) {
-  program.name("vesalius");
-  program.description(
-      "Finds people in RGB-D frames: 3-D body parts and joints, a part label for every pixel, a mask per person.");
-  program.set_version_flag("--version", "vesalius " VESALIUS_VERSION, "Print the version and end");
-  program.get_option("--help")->description("Print this help and end");
-  program.footer(R"(
-Examples:
-  vesalius detect frames/                                  what is found, a line per frame
-  vesalius detect frames/ --json people.jsonl --out pictures/
-  vesalius info capsule.forest                             what is in a model
-  vesalius train --data train/ --out my.forest             a model of your own
-  vesalius detect --help                                   everything about one command
-
-Exit codes: 0 done, 1 failed, 2 wrong usage.)");
-  program.require_subcommand(1);
-  add_detect(program);
-  add_info(program);
-  add_convert(program);
-  add_export(program);
-  add_record(program);
-  add_cameras(program);
-  add_bench(program);
-  for (const Satellite& satellite : satellites()) {
-    for (const auto add : satellite.commands) add(program);
-  }
-  add_options(program);
-  add_completion(program);
-  refuse_empty_values(program);
 }
 
 std::vector<std::string> names_in(const CLI::App& app) {
@@ -93,7 +51,7 @@ std::string explain(const CLI::App& program, const CLI::ParseError& error) {
 
 int run(int argc, char** argv) {
   CLI::App program;
-  describe(program);
+  describe_program(program);
   try {
     if (argc < 2) {
       std::fputs(program.help().c_str(), stderr);

@@ -42,7 +42,7 @@ class Adder : public OptionVisitor {
  private:
   template <class T>
   void keep(CLI::Option* option, const T* value) {
-    option->group(kHidden);
+    option->group(kHidden)->default_str(fmt::format("{}", *value));
     flags_.push_back({option, value});
   }
 

@@ -32,7 +32,7 @@ TEST_F(Commands, PrintHelpAndVersion) {
 
 TEST_F(Commands, AllHaveHelp) {
   for (const char* command : {"detect", "record", "cameras", "view", "bench", "info", "convert", "export", "assets",
-                              "options", "completion"}) {
+                              "options", "completion", "man"}) {
     const Outcome run = run_program(std::string(command) + " --help");
     EXPECT_EQ(run.exit_code, 0) << command;
     EXPECT_THAT(run.out, HasSubstr(std::string("Usage: vesalius ") + command));
