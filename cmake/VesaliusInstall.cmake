@@ -1,5 +1,7 @@
-# `cmake --install`, and the package that find_package(vesalius COMPONENTS core io ...) finds afterwards.
+# `cmake --install`, and the package that find_package(vesalius COMPONENTS core io ...) finds afterwards. Components of the
+# installation are `program`, `library` and `development`: each is a Debian package (VesaliusPackage.cmake).
 include(CMakePackageConfigHelpers)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 
 set(VESALIUS_INCLUDE_DIR ${CMAKE_INSTALL_INCLUDEDIR}/vesalius-${PROJECT_VERSION_MAJOR})
 set(VESALIUS_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/vesalius)
@@ -25,14 +27,14 @@ endforeach()
 if(TARGET vesalius_c)
   list(APPEND VESALIUS_COMPONENTS c)
   string(APPEND VESALIUS_USES_LINES "set(vesalius_c_uses)\n")
-  install(TARGETS vesalius_c EXPORT vesalius_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime
+  install(TARGETS vesalius_c EXPORT vesalius_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library
           NAMELINK_COMPONENT development INCLUDES DESTINATION ${VESALIUS_INCLUDE_DIR})
-  install(EXPORT vesalius_c NAMESPACE vesalius:: FILE vesalius-c.cmake DESTINATION ${VESALIUS_CMAKE_DIR} COMPONENT development)
-  install(FILES ${PROJECT_SOURCE_DIR}/src/c/vesalius.h DESTINATION ${VESALIUS_INCLUDE_DIR} COMPONENT development)
+  install(EXPORT vesalius_c NAMESPACE vesalius:: FILE vesalius-c.cmake DESTINATION ${VESALIUS_CMAKE_DIR})
+  install(FILES ${PROJECT_SOURCE_DIR}/src/c/vesalius.h DESTINATION ${VESALIUS_INCLUDE_DIR})
   file(RELATIVE_PATH VESALIUS_PREFIX_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
   string(REGEX REPLACE "/$" "" VESALIUS_PREFIX_FROM_PC ${VESALIUS_PREFIX_FROM_PC})
   configure_file(${PROJECT_SOURCE_DIR}/cmake/vesalius.pc.in ${PROJECT_BINARY_DIR}/vesalius.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/vesalius.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+  install(FILES ${PROJECT_BINARY_DIR}/vesalius.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endif()
 
 get_property(VESALIUS_OPTIONAL_PACKAGES GLOBAL PROPERTY VESALIUS_OPTIONAL_PACKAGES)
@@ -48,15 +50,27 @@ install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/v
         DESTINATION ${VESALIUS_CMAKE_DIR})
 
 # What the program and the C library find without being told where (src/io/model/default_model.h).
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 set(VESALIUS_DATA_DIR ${CMAKE_INSTALL_DATADIR}/vesalius)
 if(TARGET vesalius OR TARGET vesalius_c)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/models DESTINATION ${VESALIUS_DATA_DIR} FILES_MATCHING
           PATTERN "*.forest" PATTERN "README.md")
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${VESALIUS_DATA_DIR}/models)
 endif()
-# What else the program reads, and what bash asks for commands and flags.
+# What else the program reads, what bash asks for commands and flags, and the manual.
 if(TARGET vesalius)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/bodies DESTINATION ${VESALIUS_DATA_DIR})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/bodies ${PROJECT_SOURCE_DIR}/data/demo DESTINATION ${VESALIUS_DATA_DIR})
   install(FILES ${PROJECT_SOURCE_DIR}/data/completion.bash RENAME vesalius
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+  # The program writes its manual; -n leaves the time out.
+  set(pages ${PROJECT_BINARY_DIR}/man)
+  add_custom_command(OUTPUT ${pages}/vesalius.1.gz COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages} COMMAND vesalius man ${pages}
+                     COMMAND gzip -9nr ${pages} DEPENDS vesalius COMMENT "Writing the manual" VERBATIM)
+  add_custom_target(vesalius_manual DEPENDS ${pages}/vesalius.1.gz)
+  if(NOT VESALIUS_SANITIZE)  # nothing is installed of these
+    set_target_properties(vesalius_manual PROPERTIES EXCLUDE_FROM_ALL OFF)
+  endif()
+  install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.gz")
 endif()

@@ -57,6 +57,10 @@ class Package(unittest.TestCase):
         cls.detector = vesalius.Detector()
         cls.frames = list(frames())
 
+    def test_has_the_programs_version(self):
+        said = subprocess.run([PROGRAM, "--version"], check=True, capture_output=True, text=True).stdout
+        self.assertEqual(said, f"vesalius {vesalius.__version__}\n")
+
     def expect_joints(self, person, expected):
         for name, mine, confidence, state in zip(self.detector.joint_names(), person.joints(), person.confidences(),
                                                  person.states()):
