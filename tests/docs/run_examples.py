@@ -215,12 +215,14 @@ def make_stand_ins(program, source, folder):
 
 def blocks_of(document):
     """Blocks between ``` that call vesalius."""
-    blocks, block = [], None
+    blocks, block, is_bash = [], None, False
     for line in document.read_text().splitlines():
-        if line.startswith("```"):
-            if block is not None and any(re.match(r"(time )?vesalius ", each) for each in block):
+        if line.startswith("```") and block is None:
+            block, is_bash = [], line.split(" ")[0] in ("```", "```bash", "```sh")
+        elif line.startswith("```"):
+            if is_bash and any(re.match(r"(time )?vesalius ", each) for each in block):
                 blocks.append("\n".join(block))
-            block = [] if block is None and line.strip() in ("```", "```bash", "```sh") else None
+            block = None
         elif block is not None:
             block.append(line)
     return blocks
