@@ -26,7 +26,7 @@ struct Definition {
   std::vector<std::string_view> uses;
 };
 
-/// Types of common_interfaces, by their fields.
+/// Types of common_interfaces, geometry2 and hri_msgs, by their fields.
 const std::vector<Definition>& definitions() {
   static const std::vector<Definition> all = {
       {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n", {}},
@@ -68,6 +68,26 @@ const std::vector<Definition>& definitions() {
        {"std_msgs/Header", "geometry_msgs/Pose", "geometry_msgs/Vector3", "std_msgs/ColorRGBA",
         "builtin_interfaces/Duration", "geometry_msgs/Point", "sensor_msgs/CompressedImage",
         "visualization_msgs/UVCoordinate", "visualization_msgs/MeshFile"}},
+      {"sensor_msgs/PointField", "string name\nuint32 offset\nuint8 datatype\nuint32 count\n", {}},
+      {"sensor_msgs/PointCloud2",
+       "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\nbool is_bigendian\n"
+       "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n",
+       {"std_msgs/Header", "sensor_msgs/PointField"}},
+      {"geometry_msgs/Transform",
+       "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n",
+       {"geometry_msgs/Vector3", "geometry_msgs/Quaternion"}},
+      {"geometry_msgs/TransformStamped",
+       "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
+       {"std_msgs/Header", "geometry_msgs/Transform"}},
+      {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n", {"geometry_msgs/TransformStamped"}},
+      {"hri_msgs/IdsList", "std_msgs/Header header\nstring[] ids\n", {"std_msgs/Header"}},
+      {"hri_msgs/NormalizedRegionOfInterest2D",
+       "std_msgs/Header header\nfloat32 xmin\nfloat32 ymin\nfloat32 xmax\nfloat32 ymax\nfloat32 c\n",
+       {"std_msgs/Header"}},
+      {"hri_msgs/NormalizedPointOfInterest2D", "float32 x\nfloat32 y\nfloat32 c\n", {}},
+      {"hri_msgs/Skeleton2D",
+       "std_msgs/Header header\nhri_msgs/NormalizedPointOfInterest2D[18] skeleton\n",
+       {"std_msgs/Header", "hri_msgs/NormalizedPointOfInterest2D"}},
       {"visualization_msgs/MarkerArray", "visualization_msgs/Marker[] markers\n", {"visualization_msgs/Marker"}},
   };
   return all;

@@ -13,6 +13,7 @@
 #include "io/recordings/message_fields.h"
 #include "io/recordings/realsense_topics.h"
 #include "io/recordings/transform_messages.h"
+#include "io/sources/calibrated_camera.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -188,52 +189,13 @@ const std::pair<std::string, T>* nearest(const std::vector<std::pair<std::string
   return found == all.end() ? nullptr : &*found;
 }
 
-/// A calibration as cameras are made of it.
-struct CalibratedCamera {
-  std::string topic;
-  Camera pinhole;  ///< that the pictures are of once nothing distorts them
-  LensCamera lens;
-  std::string odd_model;  ///< of distortion, where that is not known
+struct TopicCamera {
+  std::string topic;  ///< of the calibration
+  CalibratedCamera camera;
 };
 
-/// Returns whether rectified pictures are seen from the same place in the same direction, as those of one camera are.
-bool keeps_direction(const Calibration& c) {
-  const std::array<double, 9> same{1, 0, 0, 0, 1, 0, 0, 0, 1}, none{};
-  return (c.rotation == same || c.rotation == none) && c.projection[3] == 0.0 && c.projection[7] == 0.0;
-}
-
-CalibratedCamera calibrated(const std::string& topic, const Calibration& c, bool is_rectified) {
-  const auto camera = [&](double fx, double fy, double cx, double cy) {
-    return Camera{c.width,
-                  c.height,
-                  static_cast<float>(fx),
-                  static_cast<float>(fy),
-                  static_cast<float>(cx),
-                  static_cast<float>(cy)};
-  };
-  const Camera of_matrix = camera(c.matrix[0], c.matrix[4], c.matrix[2], c.matrix[5]);
-  const std::optional<Lens> lens = make_lens(c.model, c.distortion);
-  const bool distorted = lens != Lens{};
-  const bool has_projection = c.projection[0] > 0.0 && c.projection[5] > 0.0;
-  CalibratedCamera all{topic, of_matrix, {of_matrix, {}}, {}};
-  if (!distorted) return all;
-  // What image_proc turns the pictures into.
-  if (has_projection && (is_rectified || keeps_direction(c))) {
-    all.pinhole = camera(c.projection[0], c.projection[5], c.projection[2], c.projection[6]);
-  }
-  if (is_rectified && has_projection) {
-    all.lens.camera = all.pinhole;
-  } else if (lens) {
-    all.lens.lens = *lens;
-  } else {
-    all.pinhole = of_matrix;
-    all.odd_model = c.model;
-  }
-  return all;
-}
-
 /// Returns the camera of a topic: of its size and coordinate frame, and recorded nearest to it by name.
-std::optional<CalibratedCamera> camera_of(const Contents& contents, const PictureTopic& picture) {
+std::optional<TopicCamera> camera_of(const Contents& contents, const PictureTopic& picture) {
   std::vector<std::pair<std::string, Calibration>> fitting;
   for (const auto& one : contents.calibrations) {
     const Calibration& c = one.second;
@@ -246,13 +208,14 @@ std::optional<CalibratedCamera> camera_of(const Contents& contents, const Pictur
   if (std::ranges::any_of(fitting, is_own)) std::erase_if(fitting, [&](const auto& one) { return !is_own(one); });
   const auto* one = nearest(fitting, picture.topic.name);
   if (one == nullptr) return std::nullopt;
-  return calibrated(one->first, one->second, picture.is_rectified());
+  return TopicCamera{one->first, calibrated(one->second, picture.is_rectified())};
 }
 
 CameraFacts facts_of(const Contents& contents, const PictureTopic& depth, const std::string& place) {
   CameraFacts facts;
-  if (const auto camera = camera_of(contents, depth)) {
-    facts.origin = fmt::format("{}: {}", place, camera->topic);
+  if (const auto found = camera_of(contents, depth)) {
+    const CalibratedCamera* camera = &found->camera;
+    facts.origin = fmt::format("{}: {}", place, found->topic);
     facts.width = depth.width;
     facts.height = depth.height;
     facts.fx = camera->pinhole.fx;
@@ -272,17 +235,17 @@ CameraFacts facts_of(const Contents& contents, const PictureTopic& depth, const 
 std::optional<RecordedCameras::Colour> connect(const Contents& contents, const PictureTopic& depth,
                                                const PictureTopic& colour) {
   const auto transform = contents.transforms.find(colour.frame, depth.frame);
-  const auto camera = camera_of(contents, colour);
-  if (!transform || !camera || !camera->odd_model.empty()) return std::nullopt;
-  return RecordedCameras::Colour{colour.topic.name, camera->lens, *transform, {}};
+  const auto found = camera_of(contents, colour);
+  if (!transform || !found || !found->camera.odd_model.empty()) return std::nullopt;
+  return RecordedCameras::Colour{colour.topic.name, found->camera.lens, *transform, {}};
 }
 
 /// Colour that lies on the grid of depth.
 RecordedCameras::Colour on_grid(const Contents& contents, const PictureTopic& colour,
                                 const std::optional<LensCamera>& depth_lens) {
   RecordedCameras::Colour on_grid{colour.topic.name, {}, Eigen::Isometry3d::Identity(), {}};
-  if (const auto camera = camera_of(contents, colour)) {
-    if (camera->lens.lens != Lens{}) on_grid.distorted = camera->lens;
+  if (const auto found = camera_of(contents, colour)) {
+    if (found->camera.lens.lens != Lens{}) on_grid.distorted = found->camera.lens;
   } else if (!colour.is_rectified()) {
     on_grid.distorted = depth_lens;
   }

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace vesalius::ros2 {
+
+/// A topic that messages are written to.
+struct Topic {
+  std::string name;      ///< full, e.g. "/vesalius/body_index"
+  std::string type;      ///< e.g. "sensor_msgs/Image"
+  bool latched = false;  ///< whoever comes late gets the last message
+};
+
+/// Takes messages of topics, which begin when they are first mentioned.
+class MessageSink {
+ public:
+  virtual ~MessageSink() = default;
+  /// Returns whether a message of the topic would get to anybody now. Those that would not need not be made.
+  virtual bool wants(const Topic& topic) = 0;
+  /// Takes a message as CDR. Throws Error if it cannot.
+  virtual void put(const Topic& topic, std::int64_t time_ns, std::string_view message) = 0;
+  /// Ends a topic.
+  virtual void end(const std::string& topic) = 0;
+};
+
+}  // namespace vesalius::ros2

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "ros2/messages/cloud_message.h"
+#include "ros2/messages/message_sink.h"
+#include "ros2/messages/named_joints.h"
+
+namespace vesalius::ros2 {
+
+/// When and where a frame was taken.
+struct Stamp {
+  std::int64_t time_ns = 0;  ///< since 1970 as ROS counts, or since any moment
+  std::string frame;         ///< coordinate frame of the depth camera, optical: x right, y down, z forward
+};
+
+struct PeopleTopicsOptions {
+  std::string name_space = "/";
+  std::string node = "vesalius";
+  std::string id_prefix = "p";  ///< before the number in the names of bodies, which may not begin with a digit
+  CloudExtent cloud = CloudExtent::people;
+  bool frames = false;  ///< whether depth and colour are published too
+  /// Names to put in place of others, full ones both.
+  std::map<std::string, std::string> remap = {};
+};
+
+/// Writes frames and the people in them as ROS 2 messages (docs/ros2.md has the table):
+///   ~/body_index, ~/labels, ~/camera_info, ~/points, ~/markers, ~/people, /tf
+///   /humans/bodies/tracked, and of each body /humans/bodies/<id>/roi and skeleton2d (REP-155)
+///   ~/depth/image_rect, ~/depth/camera_info, ~/color/image_rect, ~/color/camera_info where frames are wanted
+/// All of one frame have its time. Messages that the sink does not want are not made.
+class PeopleTopics {
+ public:
+  /// Throws UsageError where names do not fit. `body` and `sink` must outlive this object.
+  PeopleTopics(const BodyModel& body, PeopleTopicsOptions options, MessageSink& sink);
+
+  /// Writes a frame and its people, without those who are lost. `json` is its line.
+  void write(const Frame& frame, const TrackedFrame& tracked, const std::string& json, const Stamp& stamp);
+  /// Writes once, to /tf_static, where the camera stands.
+  void write_camera_pose(const std::string& parent, const Eigen::Isometry3d& parent_from_optical, const Stamp& stamp);
+  /// Writes an empty list of bodies and ends those that there were.
+  void clear(const Stamp& stamp);
+
+  /// Returns the name of a body, e.g. "p3".
+  std::string id_of(int number) const { return options_.id_prefix + std::to_string(number); }
+
+ private:
+  Topic topic(std::string_view name, const char* type, bool latched = false) const;
+  void write_frame(const Frame& frame, const Stamp& stamp);
+  void write_pictures(const Frame& frame, const TrackedFrame& people, const Stamp& stamp);
+  void write_transforms(const TrackedFrame& people, const Stamp& stamp);
+  void write_bodies(const Frame& frame, const TrackedFrame& people, const Stamp& stamp);
+  void end_bodies_but(const std::set<std::string>& ids);
+
+  const BodyModel& body_;
+  NamedJoints joints_;
+  PeopleTopicsOptions options_;
+  MessageSink& sink_;
+  std::set<std::string> bodies_;  ///< that have topics
+};
+
+}  // namespace vesalius::ros2
