@@ -21,6 +21,7 @@ void add_man(CLI::App& program);
 
 // The following commands belong to satellites (satellites.h); a build that leaves out a satellite lacks its commands.
 void add_view(CLI::App& program);
+void add_ros2(CLI::App& program);
 void add_synth(CLI::App& program);
 void add_train(CLI::App& program);
 void add_evaluate(CLI::App& program);

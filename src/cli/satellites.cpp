@@ -16,7 +16,7 @@ std::vector<Satellite> satellites() {
 }
 
 std::vector<std::string> satellite_names() {
-  return {"view", "cluster", "synth", "train", "evaluate", "assets", "cuda"};
+  return {"view", "ros2", "cluster", "synth", "train", "evaluate", "assets", "cuda"};
 }
 
 }  // namespace vesalius::cli

@@ -1,0 +1,213 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/detector_flags.h"
+#include "cli/interrupts.h"
+#include "cli/late_lines.h"
+#include "cli/progress.h"
+#include "cli/ros2/ros2_flags.h"
+#include "cli/source_flags.h"
+#include "cli/text_sink.h"
+#include "io/sensors/live_source.h"
+#include "ros2/dds/node_sink.h"
+#include "ros2/messages/record_sink.h"
+#include "stream/detect_stream.h"
+#include "stream/person_json.h"
+#include "vesalius/base/keep_memory.h"
+#include "vesalius/base/parallel.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr const char* kUsualFrame = "camera_optical_frame";
+
+struct Arguments {
+  explicit Arguments(CLI::App& command) : detector(command) {}
+
+  std::string source, record;
+  SourceOptions camera;
+  DetectorFlags detector;
+  Ros2Flags ros2;
+  double rate = kUsualRate;
+  int threads = 0;
+  int frames = 0;  ///< 0 = all
+  bool every_frame = false;
+  bool quiet = false;
+};
+
+/// Tells when and where frames were taken.
+class Stamps {
+ public:
+  Stamps(const Arguments& arguments, bool is_live, const ros2::TopicSource* topics)
+      : arguments_(arguments), is_live_(is_live), topics_(topics) {}
+
+  ros2::Stamp of(const Frame& frame) {
+    ros2::Stamp stamp = topics_ != nullptr ? topics_->stamp_of(frame) : ros2::Stamp{time_ns(frame), kUsualFrame};
+    if (!arguments_.ros2.frame_id.empty()) stamp.frame = arguments_.ros2.frame_id;
+    ++frames_;
+    return stamp;
+  }
+
+ private:
+  static std::int64_t nanoseconds(double seconds) { return std::llround(1e9 * seconds); }
+
+  std::int64_t time_ns(const Frame& frame) {
+    const std::string& wanted = arguments_.ros2.stamps;
+    // A camera's clock may count from anything; ROS 2 counts from 1970.
+    if (is_live_ && wanted != "frame") return nanoseconds(frame.arrived_s.value_or(now_s()));
+    const double own_s = frame.time_s.value_or(frames_ / arguments_.rate);
+    if (wanted != "now") return nanoseconds(own_s);
+    if (!later_s_) later_s_ = now_s() - own_s;
+    return nanoseconds(own_s + *later_s_);
+  }
+
+  const Arguments& arguments_;
+  bool is_live_;
+  const ros2::TopicSource* topics_;  ///< null where frames come from a source
+  int frames_ = 0;
+  std::optional<double> later_s_;  ///< what times of frames become those of this machine by
+};
+
+void check(const Arguments& arguments) {
+  if (arguments.source.empty() == arguments.ros2.subscribe.empty()) {
+    throw UsageError("expected either SOURCE or --subscribe NAMESPACE (see vesalius ros2 --help)");
+  }
+  if (!arguments.ros2.subscribe.empty()) {
+    if (arguments.camera.start_s) throw UsageError("--start goes with a SOURCE only");
+    if (!arguments.ros2.stamps.empty()) throw UsageError("--stamps: subscribed pictures have times of their own");
+    if (arguments.every_frame) throw UsageError("--every-frame goes with a SOURCE only");
+    return;
+  }
+  if (!arguments.ros2.camera_info_topic.empty()) throw UsageError("--camera-info-topic goes with --subscribe only");
+  if (arguments.ros2.reliable) throw UsageError("--reliable goes with --subscribe only");
+}
+
+/// Follows people in a source and writes their messages. Returns how many frames were dropped.
+int publish(const Arguments& arguments, FrameSource& source, const Detector& detector, Stamps& stamps,
+            ros2::MessageSink& sink, LateLines& late, Progress& progress) {
+  const BodyModel& body = detector.body();
+  ros2::PeopleTopics topics(body, topic_options(arguments.ros2), sink);
+  const std::optional<CameraPose> pose = parse_camera_pose(arguments.ros2.camera_pose);
+  PeopleTracker tracker = make_tracker(detector, arguments.detector.options());
+  StreamOptions options;
+  options.realtime = !arguments.every_frame;
+  options.rate = arguments.rate;
+  options.stop = [&] {
+    late.print(progress);
+    return interrupted();
+  };
+  ros2::Stamp last;
+  const int dropped = stream_frames(source, detector, tracker, options, [&](const FoundFrame& found) {
+    if (found.error) std::rethrow_exception(found.error);
+    last = stamps.of(*found.frame);
+    if (pose && progress.done() == 0) topics.write_camera_pose(pose->parent, pose->parent_from_optical, last);
+    topics.write(*found.frame, *found.tracked, tracked_frame_json(*found.frame, *found.tracked, body, found.latency_ms),
+                 last);
+    progress.step();
+    return arguments.frames == 0 || progress.done() < arguments.frames;
+  });
+  if (progress.done() > 0) topics.clear(last);
+  return dropped;
+}
+
+void run(const Arguments& arguments) {
+  check(arguments);
+  parse_camera_pose(arguments.ros2.camera_pose);
+  LateLines late;
+  const auto say_late = [&late](const std::string& line) { late.add(line); };
+  ros2::NodeOptions node_settings = node_options(arguments.ros2);
+  node_settings.say = say_late;
+  keep_freed_memory();
+  const ThreadLimit limit(arguments.threads);
+  const Detector detector = arguments.detector.make();
+  // Names are checked before anything is opened.
+  const bool subscribes = !arguments.ros2.subscribe.empty();
+  ros2::Node node(node_settings);
+  std::unique_ptr<FrameSource> source;
+  const ros2::TopicSource* topics = nullptr;
+  if (subscribes) {
+    ros2::TopicSourceOptions wanted = subscribe_options(arguments.ros2, arguments.camera);
+    wanted.say = say_late;
+    auto from = std::make_unique<ros2::TopicSource>(node, wanted);
+    topics = from.get();
+    source = std::move(from);
+  } else {
+    SourceOptions camera = arguments.camera;
+    camera.say = say_late;
+    source = open_source(arguments.source, camera);
+  }
+  if (!arguments.quiet) {
+    for (const std::string& note : source->notes()) say("note: " + note);
+  }
+  ros2::NodeSink network(node);
+  std::optional<ros2::RecordSink> recorder;
+  if (!arguments.record.empty()) recorder.emplace(arguments.record, network);
+  watch_interrupts();
+  Progress progress(arguments.frames > 0 ? arguments.frames : source->size(), !arguments.quiet);
+  Stamps stamps(arguments, source->is_live(), topics);
+  int missed = 0;
+  try {
+    ros2::MessageSink& sink = recorder ? static_cast<ros2::MessageSink&>(*recorder) : network;
+    missed = publish(arguments, *source, detector, stamps, sink, late, progress);
+  } catch (const Error&) {
+    progress.clear();
+    late.print(progress);
+    if (recorder) recorder->close();  // what was recorded is kept
+    throw;
+  }
+  if (recorder) recorder->close();
+  network.wait_until_read(std::chrono::milliseconds(1000));
+  progress.clear();
+  late.print(progress);
+  missed += source->missed();
+  if (!arguments.quiet) {
+    say(fmt::format("{} frames{}", progress.done(), missed > 0 ? fmt::format(", {} dropped", missed) : ""));
+  }
+}
+
+}  // namespace
+
+void add_ros2(CLI::App& program) {
+  CLI::App* command =
+      program.add_subcommand("ros2", "Publish the people in a source, or in topics, as a node of ROS 2");
+  const auto arguments = std::make_shared<Arguments>(*command);
+  command->add_option("SOURCE", arguments->source, kSourceHelp);
+  add_ros2_flags(*command, arguments->ros2);
+  command->add_option("--record", arguments->record, "Write the same messages to an MCAP file too; must not exist")
+      ->type_name("FILE");
+  command->add_option("--frames", arguments->frames, "End after so many frames; 0 = all")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--every-frame", arguments->every_frame,
+                    "Take all frames of a file one after the other, not at the pace at which they were taken");
+  command->add_option("--rate", arguments->rate, "Frames per second of a source without times")
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxThreads))
+      ->group(kDetectorGroup);
+  add_camera_flags(*command, arguments->camera);
+  add_start_flag(*command, arguments->camera);
+  add_reconnect_flag(*command, arguments->camera);
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command->footer(R"(
+People are followed over the frames, so that names of bodies hold. docs/ros2.md has the topics. No installation of
+ROS 2 is needed. Every option of detector and tracking is a flag too; `vesalius options` lists them.
+
+Examples:
+  vesalius ros2 frames/
+  vesalius ros2 session.mcap --frame-id camera_link --record people.mcap
+  vesalius ros2 --subscribe /camera --namespace /robot
+  vesalius ros2 realsense: --camera-pose base_link,0.1,0,1.2,0,0.2,0)");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,8 @@
+#include "cli/commands.h"
+#include "cli/satellites.h"
+
+namespace vesalius::cli {
+
+Satellite ros2_satellite() { return {.name = "ros2", .commands = {add_ros2}}; }
+
+}  // namespace vesalius::cli
