@@ -96,7 +96,7 @@ class Wrapper:
         command = words[0]
         for name in self.values(words, "-m", "--model"):
             self.place(name, "rendered.forest" if "--recipe" in words else "some.forest")
-        if command in ("detect", "record", "bench", "view"):
+        if command in ("detect", "record", "bench", "view", "ros2"):
             for name in self.positional(words):
                 self.place(name, self.stand_in_of_source(name))
         if command == "evaluate":
@@ -166,7 +166,12 @@ class Wrapper:
             if word == "--recipe" and words[0] in ("train", "evaluate"):
                 words[i + 1] = self.small_recipe(words[i + 1])
         words = self.shrink(words)
-        code = self.look(words) if words[0] == "view" else subprocess.run([self.program, *words], check=False).returncode
+        if words[0] == "view":
+            code = self.look(words)
+        elif words[0] == "ros2":
+            code = self.speak(words)
+        else:
+            code = subprocess.run([self.program, *words], check=False).returncode
         with open(os.environ["EXAMPLE_LOG"], "a", encoding="utf-8") as log:
             log.write(f"{code} {' '.join(words)}\n")
         return code
@@ -181,6 +186,17 @@ class Wrapper:
                     assert page.status == 200, address
                 viewer.send_signal(signal.SIGINT)
             return viewer.wait(timeout=30)
+
+
+    def speak(self, words):
+        """Runs a node where nobody hears it; one that waits for topics until it says so."""
+        words = [*words, "--localhost", "--domain", str(1 + os.getpid() % 200)]
+        if "--subscribe" not in words:
+            return subprocess.run([self.program, *words], check=False).returncode
+        with subprocess.Popen([self.program, *words], stderr=subprocess.PIPE, text=True) as node:
+            assert "waiting" in node.stderr.readline()
+            node.send_signal(signal.SIGINT)
+            return node.wait(timeout=30)
 
 
 def make_stand_ins(program, source, folder):
@@ -232,7 +248,7 @@ def blocks_of_help(program):
     def output(*words):
         return subprocess.run([program, *words], check=True, capture_output=True, text=True).stdout
 
-    names = re.findall(r"^  ([a-z]+) {2,}", output("--help").split("Subcommands:")[1], re.MULTILINE)
+    names = re.findall(r"^  ([a-z0-9]+) {2,}", output("--help").split("Subcommands:")[1], re.MULTILINE)
     blocks = []
     for name in ["", *names]:
         text = output(*([name] if name else []), "--help")

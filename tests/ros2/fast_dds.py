@@ -8,6 +8,7 @@ usage: fast_dds.py CASE VESALIUS SENDER SOURCE_DIR WORK_DIR [PEER]
   rate       all topics at 30 Hz with pictures of 640x480 for VESALIUS_ROS2_SECONDS (5): none is lost, though another
              reader is killed meanwhile; whoever comes late gets what is latched
   subscribe  frames from topics that Fast DDS publishes, depth in millimetres and in metres
+  usage      what cannot be meant ends in one line (needs no Fast DDS)
   spoilt     pictures and calibrations that are not what they say: a line each, then the good ones are taken
 
 Exit code 77 without PEER: Fast DDS is not installed.
@@ -122,6 +123,29 @@ class Case:
         same = [line for line in done.stdout.splitlines() if ": same, " in line]
         if done.returncode != 0 or len(same) != len(kinds):
             fail(f"types: {done.stdout}{done.stderr}")
+
+    def usage(self):
+        demo = f"{self.source}/data/demo"
+        for words, code, why in (([], 2, "either SOURCE or --subscribe"), ([demo, "--subscribe", "/c"], 2, "either SOURCE"),
+                                 (["--subscribe", "c"], 2, "--subscribe c: expected a name"),
+                                 (["--subscribe", "/c", "--every-frame"], 2, "--every-frame goes with"),
+                                 (["--subscribe", "/c", "--depth-topic", "/3"], 2, "--depth-topic /3: expected a name"),
+                                 ([demo, "--node", "a-b"], 2, "node a-b: expected"),
+                                 ([demo, "--namespace", "robot"], 2, "namespace robot: expected"),
+                                 ([demo, "--remap", "tf"], 2, "--remap tf: expected FROM:=TO"),
+                                 ([demo, "--domain", "300"], 2, "300"), ([demo, "--ros-distro", "hydro"], 2, "hydro"),
+                                 ([demo, "--camera-pose", "base"], 2, "--camera-pose base: expected"),
+                                 ([demo, "--id-prefix", "3"], 2, "prefix of ids 3: expected"),
+                                 ([demo, "--reliable"], 2, "--reliable goes with"),
+                                 ([f"{self.work}/nothing"], 1, "nothing"),
+                                 ([demo, "--record", f"{self.work}/no/x.mcap"], 1, "x.mcap: cannot be created")):
+            done = subprocess.run([self.program, "ros2", "--localhost", "-q", *words], capture_output=True, text=True, timeout=60)
+            lines = done.stderr.splitlines()
+            if done.returncode != code or len(lines) != 1 or why not in lines[0]:
+                fail(f"{words}: {done.returncode}, {done.stderr}")
+        settings = {**os.environ, "CYCLONEDDS_URI": "<CycloneDDS><Nonsense/></CycloneDDS>"}
+        done = subprocess.run([self.program, "ros2", demo, "-q"], capture_output=True, text=True, timeout=60, env=settings)
+        expect([done.returncode, len(done.stderr.splitlines()), "Nonsense" in done.stderr], [1, 1, True], done.stderr)
 
     def topics(self):
         ids = ["p1", "p2", "p3"]
@@ -280,7 +304,7 @@ class Case:
 
 def main():
     case = Case(sys.argv[1:])
-    if not case.peer:
+    if not case.peer and case.name != "usage":
         print("SKIPPED: Fast DDS (libfastrtps-dev, fastddsgen) is not installed")
         sys.exit(77)
     case.run()

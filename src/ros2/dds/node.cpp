@@ -24,8 +24,13 @@ constexpr const char* kDiscoveryType = "rmw_dds_common::msg::dds_::ParticipantEn
 
 /// Without these watermarks a writer would wait for a reader that is gone until its lease ends, 20 s with Fast DDS. The
 /// depth of its history bounds what it keeps. Publishers are flushed by us, all together.
+/// Pictures are sent in fewer and larger fragments than usual, and all that a reader asks for again is sent at once: it
+/// asks for 256 fragments at a time, and a picture must be whole before the next thirty have come.
 constexpr const char* kWriters =
-    "<Internal><Watermarks><WhcAdaptive>false</WhcAdaptive><WhcLow>1 kB</WhcLow><WhcHigh>1 GB</WhcHigh>"
+    "<General><FragmentSize>14000 B</FragmentSize></General><Internal><MaxQueuedRexmitBytes>64 "
+    "MB</MaxQueuedRexmitBytes>"
+    "<MaxQueuedRexmitMessages>10000</MaxQueuedRexmitMessages><SocketReceiveBufferSize max=\"8 MB\"/>"
+    "<Watermarks><WhcAdaptive>false</WhcAdaptive><WhcLow>1 kB</WhcLow><WhcHigh>1 GB</WhcHigh>"
     "<WhcHighInit>1 GB</WhcHighInit></Watermarks><WriterLingerDuration>0 s</WriterLingerDuration></Internal>";
 /// The loopback does not say that it can multicast, yet it can: Fast DDS finds others by that alone. Cyclone itself
 /// asks one by one there.
@@ -76,6 +81,11 @@ class Log {
     const std::scoped_lock lock(mutex_);
     say_ = std::move(say);
   }
+  /// Returns the last line, which is then forgotten; empty if there was none.
+  std::string last() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(last_, {});
+  }
 
  private:
   Log() {
@@ -85,14 +95,16 @@ class Log {
   }
   static void line(void* log, const dds_log_data_t* data) {
     auto* self = static_cast<Log*>(log);
-    std::string text(data->message + data->hdrsize, data->size - data->hdrsize);
+    std::string text(data->message, data->size);  // without the time before it
     while (text.ends_with('\n')) text.pop_back();
     const std::scoped_lock lock(self->mutex_);
+    self->last_ = text;
     if (self->say_) self->say_("DDS: " + text);
   }
 
   std::mutex mutex_;
   std::function<void(const std::string&)> say_;
+  std::string last_;
 };
 
 /// A domain of this process; nodes in it share it, with the settings of the first.
@@ -114,8 +126,11 @@ class Domain {
     if (const char* more = std::getenv("CYCLONEDDS_URI"); more != nullptr && *more != '\0') {
       settings += fmt::format(",{}", more);
     }
-    domain_ = expect(dds_create_domain(static_cast<dds_domainid_t>(number), settings.c_str()),
-                     fmt::format("domain {}", number));
+    Log::instance().last();
+    domain_ = dds_create_domain(static_cast<dds_domainid_t>(number), settings.c_str());
+    if (domain_ >= 0) return;
+    const std::string why = Log::instance().last();
+    throw Error(fmt::format("ROS 2: domain {}: {}", number, why.empty() ? dds_strretcode(-domain_) : why));
   }
   ~Domain() { dds_delete(domain_); }
   Domain(const Domain&) = delete;

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 
 #include "io/recordings/message_fields.h"
 #include "vesalius/base/error.h"
@@ -106,6 +107,18 @@ TEST(Node, RefusesNamesAndDomains) {
   EXPECT_THROW(Node{options}, UsageError);
   Node node(alone());
   EXPECT_THROW(node.advertise("/3d", "std_msgs/String", {}), UsageError);
+}
+
+TEST(Node, SaysWhatIsWrongWithTheUsersSettings) {
+  ::setenv("CYCLONEDDS_URI", "<CycloneDDS><Domain><Nonsense/></Domain></CycloneDDS>", 1);
+  try {
+    Node node(alone());
+    ADD_FAILURE() << "took them";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("Nonsense"));
+  }
+  ::unsetenv("CYCLONEDDS_URI");
+  Node node(alone());
 }
 
 }  // namespace
