@@ -221,7 +221,7 @@ class Case:
             else:
                 expect(sorted(set(expected) - set(stamps)), [], f"{topic}: lost")
                 expect(stamps, expected, f"{topic}: stamps")
-        if told["seconds"] > seconds + 0.5:
+        if told["seconds"] > 1.1 * seconds + 1:  # a writer that waits for the killed reader takes many seconds more
             fail(f"rate: {told['frames']} frames took {told['seconds']} s")
         if not self.messages(came)["/humans/bodies/tracked"] or not self.messages(came)["/vesalius/labels"]:
             fail("rate: who came late got nothing")

@@ -178,7 +178,7 @@ DataReader* reader_of(const std::string& topic, const std::string& how) {
   DataReaderQos qos = DATAREADER_QOS_DEFAULT;
   qos.reliability().kind = how == "sensor" ? BEST_EFFORT_RELIABILITY_QOS : RELIABLE_RELIABILITY_QOS;
   qos.durability().kind = how == "latched" ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS;
-  qos.history().depth = 30;
+  qos.history().depth = 60;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   return subscriber->create_datareader(topic_of<PubSub>(topic), qos);
 }
@@ -187,7 +187,7 @@ template <class PubSub>
 DataWriter* writer_of(const std::string& topic) {
   DataWriterQos qos = DATAWRITER_QOS_DEFAULT;
   qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
-  qos.history().depth = 30;
+  qos.history().depth = 60;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.publish_mode().kind = ASYNCHRONOUS_PUBLISH_MODE;
   return publisher->create_datawriter(topic_of<PubSub>(topic), qos);

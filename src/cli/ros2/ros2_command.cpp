@@ -74,18 +74,23 @@ class Stamps {
   std::optional<double> later_s_;  ///< what times of frames become those of this machine by
 };
 
+/// Throws UsageError for flags that do not go together, or say what cannot be meant.
 void check(const Arguments& arguments) {
-  if (arguments.source.empty() == arguments.ros2.subscribe.empty()) {
+  const Ros2Flags& flags = arguments.ros2;
+  if (arguments.source.empty() == flags.subscribe.empty()) {
     throw UsageError("expected either SOURCE or --subscribe NAMESPACE (see vesalius ros2 --help)");
   }
-  if (!arguments.ros2.subscribe.empty()) {
+  if (!flags.subscribe.empty()) {
     if (arguments.camera.start_s) throw UsageError("--start goes with a SOURCE only");
-    if (!arguments.ros2.stamps.empty()) throw UsageError("--stamps: subscribed pictures have times of their own");
+    if (!flags.stamps.empty()) throw UsageError("--stamps: subscribed pictures have times of their own");
     if (arguments.every_frame) throw UsageError("--every-frame goes with a SOURCE only");
-    return;
+    subscribe_options(flags, arguments.camera);
+  } else {
+    if (!flags.camera_info_topic.empty()) throw UsageError("--camera-info-topic goes with --subscribe only");
+    if (flags.reliable) throw UsageError("--reliable goes with --subscribe only");
   }
-  if (!arguments.ros2.camera_info_topic.empty()) throw UsageError("--camera-info-topic goes with --subscribe only");
-  if (arguments.ros2.reliable) throw UsageError("--reliable goes with --subscribe only");
+  ros2::check(topic_options(flags));
+  parse_camera_pose(flags.camera_pose);
 }
 
 /// Follows people in a source and writes their messages. Returns how many frames were dropped.
@@ -116,35 +121,37 @@ int publish(const Arguments& arguments, FrameSource& source, const Detector& det
   return dropped;
 }
 
+/// Returns the frames; `topics` receives their source if they come from topics.
+std::unique_ptr<FrameSource> open_frames(const Arguments& arguments, ros2::Node& node, LateLines& late,
+                                         const ros2::TopicSource*& topics) {
+  const auto say_late = [&late](const std::string& line) { late.add(line); };
+  if (arguments.ros2.subscribe.empty()) {
+    SourceOptions camera = arguments.camera;
+    camera.say = say_late;
+    auto source = open_source(arguments.source, camera);
+    if (!arguments.quiet) {
+      for (const std::string& note : source->notes()) say("note: " + note);
+    }
+    return source;
+  }
+  ros2::TopicSourceOptions wanted = subscribe_options(arguments.ros2, arguments.camera);
+  wanted.say = say_late;
+  auto source = std::make_unique<ros2::TopicSource>(node, wanted);
+  topics = source.get();
+  return source;
+}
+
 void run(const Arguments& arguments) {
   check(arguments);
-  parse_camera_pose(arguments.ros2.camera_pose);
   LateLines late;
-  const auto say_late = [&late](const std::string& line) { late.add(line); };
   ros2::NodeOptions node_settings = node_options(arguments.ros2);
-  node_settings.say = say_late;
+  node_settings.say = [&late](const std::string& line) { late.add(line); };
+  ros2::Node node(node_settings);
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
   const Detector detector = arguments.detector.make();
-  // Names are checked before anything is opened.
-  const bool subscribes = !arguments.ros2.subscribe.empty();
-  ros2::Node node(node_settings);
-  std::unique_ptr<FrameSource> source;
   const ros2::TopicSource* topics = nullptr;
-  if (subscribes) {
-    ros2::TopicSourceOptions wanted = subscribe_options(arguments.ros2, arguments.camera);
-    wanted.say = say_late;
-    auto from = std::make_unique<ros2::TopicSource>(node, wanted);
-    topics = from.get();
-    source = std::move(from);
-  } else {
-    SourceOptions camera = arguments.camera;
-    camera.say = say_late;
-    source = open_source(arguments.source, camera);
-  }
-  if (!arguments.quiet) {
-    for (const std::string& note : source->notes()) say("note: " + note);
-  }
+  const auto source = open_frames(arguments, node, late, topics);
   ros2::NodeSink network(node);
   std::optional<ros2::RecordSink> recorder;
   if (!arguments.record.empty()) recorder.emplace(arguments.record, network);
@@ -166,6 +173,7 @@ void run(const Arguments& arguments) {
   progress.clear();
   late.print(progress);
   missed += source->missed();
+  if (interrupted() && !source->is_live()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
   if (!arguments.quiet) {
     say(fmt::format("{} frames{}", progress.done(), missed > 0 ? fmt::format(", {} dropped", missed) : ""));
   }

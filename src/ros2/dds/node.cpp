@@ -25,7 +25,7 @@ constexpr const char* kDiscoveryType = "rmw_dds_common::msg::dds_::ParticipantEn
 /// Without these watermarks a writer would wait for a reader that is gone until its lease ends, 20 s with Fast DDS. The
 /// depth of its history bounds what it keeps. Publishers are flushed by us, all together.
 /// Pictures are sent in fewer and larger fragments than usual, and all that a reader asks for again is sent at once: it
-/// asks for 256 fragments at a time, and a picture must be whole before the next thirty have come.
+/// asks for 256 fragments at a time, and a picture must be whole before it leaves the history.
 constexpr const char* kWriters =
     "<General><FragmentSize>14000 B</FragmentSize></General><Internal><MaxQueuedRexmitBytes>64 "
     "MB</MaxQueuedRexmitBytes>"

@@ -6,8 +6,8 @@ namespace vesalius::ros2 {
 
 Publisher& NodeSink::publisher(const Topic& topic) {
   std::unique_ptr<Publisher>& known = publishers_[topic.name];
-  // Reliable ones suit readers that are and readers that are not. For a second, what got lost can be sent again.
-  constexpr int kDepth = 30;
+  // Reliable ones suit readers that are and readers that are not. For two seconds, what got lost can be sent again.
+  constexpr int kDepth = 60;
   if (!known) known = node_.advertise(topic.name, topic.type, {.latched = topic.latched, .depth = kDepth});
   return *known;
 }

@@ -28,15 +28,19 @@ TrackedFrame without_lost(const TrackedFrame& tracked) {
 
 }  // namespace
 
-PeopleTopics::PeopleTopics(const BodyModel& body, PeopleTopicsOptions options, MessageSink& sink)
-    : body_(body), joints_(body), options_(std::move(options)), sink_(sink) {
-  check_node_name(options_.node, "node");
-  check_full_name(options_.name_space, "namespace", true);
-  check_node_name(options_.id_prefix, "prefix of ids");
-  for (const auto& [from, to] : options_.remap) {
+void check(const PeopleTopicsOptions& options) {
+  check_node_name(options.node, "node");
+  check_full_name(options.name_space, "namespace", true);
+  check_node_name(options.id_prefix, "prefix of ids");
+  for (const auto& [from, to] : options.remap) {
     check_full_name(from, "remapped topic");
     check_full_name(to, "remapped topic");
   }
+}
+
+PeopleTopics::PeopleTopics(const BodyModel& body, PeopleTopicsOptions options, MessageSink& sink)
+    : body_(body), joints_(body), options_(std::move(options)), sink_(sink) {
+  check(options_);
 }
 
 Topic PeopleTopics::topic(std::string_view name, const char* type, bool latched) const {

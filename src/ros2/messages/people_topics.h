@@ -30,6 +30,9 @@ struct PeopleTopicsOptions {
   std::map<std::string, std::string> remap = {};
 };
 
+/// Throws UsageError where names do not fit.
+void check(const PeopleTopicsOptions& options);
+
 /// Writes frames and the people in them as ROS 2 messages (docs/ros2.md has the table):
 ///   ~/body_index, ~/labels, ~/camera_info, ~/points, ~/markers, ~/people, /tf
 ///   /humans/bodies/tracked, and of each body /humans/bodies/<id>/roi and skeleton2d (REP-155)
