@@ -104,11 +104,10 @@ void TopicFrames::take_calibration(std::string_view message) {
     note_once("lens", fmt::format("{}: a lens distorts by the model {}, which is not undone", place, found.odd_model));
   }
   // Cameras repeat it with every picture.
-  if (camera_ == found.pinhole && lens_ == found.lens.lens) return;
+  if (camera_ == found.pinhole && lens_.camera == found.lens.camera && lens_.lens == found.lens.lens) return;
   camera_ = found.pinhole;
-  lens_ = found.lens.lens;
+  lens_ = found.lens;
   rectification_.reset();
-  if (lens_ != Lens{}) rectification_ = make_rectification(found.lens, found.pinhole);
 }
 
 TopicFrames::Picture TopicFrames::parse(const std::string& topic, std::string_view message) {
@@ -169,6 +168,8 @@ std::optional<TopicFrame> TopicFrames::next(double now_s) {
     throw Error(fmt::format("{}: {}x{} pixels, expected {}x{} as {} says", topics_.depth, made.frame.depth.width(),
                             made.frame.depth.height(), camera_->width, camera_->height, topics_.camera_info));
   }
+  // Not before: a calibration may state any size, a picture of that size has the bytes to show for it.
+  if (lens_.lens != Lens{} && !rectification_) rectification_ = make_rectification(lens_, *camera_);
   if (!colours_.empty()) {
     try {
       made.frame.colour = colour_for(depth, made.frame.depth);

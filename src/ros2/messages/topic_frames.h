@@ -81,8 +81,8 @@ class TopicFrames {
 
   CameraTopics topics_;
   std::optional<Camera> camera_;
-  Lens lens_;
-  std::optional<Rectification> rectification_;
+  LensCamera lens_;
+  std::optional<Rectification> rectification_;  ///< made with the first picture of the camera
   std::deque<Picture> depths_, colours_;
   std::map<std::string, bool> noted_;
   std::vector<std::string> notes_;

@@ -170,6 +170,18 @@ TEST_F(TopicFramesTest, RefuseCalibrationsThatAreNone) {
   EXPECT_FALSE(frames.next(20.0));
 }
 
+TEST_F(TopicFramesTest, KeepNothingForACalibrationOfAnEnormousCamera) {
+  Calibration calibration;
+  calibration.width = calibration.height = 60'000'000;
+  calibration.model = "plumb_bob";
+  calibration.distortion = {0.1, 0, 0, 0, 0};
+  calibration.matrix = {10, 0, 3.5, 0, 10, 2.5, 0, 0, 1};
+  TopicFrames frames(topics(false));
+  frames.take_calibration(calibration_message(calibration, 0));
+  frames.take_depth(depth(1), 10.0);
+  EXPECT_THROW(frames.next(10.0), Error);
+}
+
 TEST_F(TopicFramesTest, RefusePicturesThatAreNoneAndGoOn) {
   TopicFrames frames(topics());
   frames.take_calibration(info());
