@@ -9,6 +9,7 @@ usage: fast_dds.py CASE VESALIUS SENDER SOURCE_DIR WORK_DIR [PEER]
              reader is killed meanwhile; whoever comes late gets what is latched
   subscribe  frames from topics that Fast DDS publishes, depth in millimetres and in metres
   usage      what cannot be meant ends in one line (needs no Fast DDS)
+  vanish     the process that publishes a camera's topics is killed; the node says so and goes on when there is another
   spoilt     pictures and calibrations that are not what they say: a line each, then the good ones are taken
 
 Exit code 77 without PEER: Fast DDS is not installed.
@@ -232,11 +233,14 @@ class Case:
     def latched(self):
         latched = {"/tf_static": "tf2_msgs/TFMessage", "/humans/bodies/tracked": "hri_msgs/IdsList",
                    DISCOVERY: "rmw_dds_common/ParticipantEntitiesInfo"}
-        sender = subprocess.Popen([self.sender, str(self.domain), "latched", "6"], stdout=subprocess.PIPE, text=True)
+        sender = subprocess.Popen([self.sender, str(self.domain), "latched", "30"], stdout=subprocess.PIPE, text=True)
         self.running.append(sender)
         expect(sender.stdout.readline().strip(), "written", "sender")
-        _, out = self.start_peer(4, listen(latched, "latched") + listen({"/vesalius/people": TEXT}), "late_joiner")
-        time.sleep(4)
+        _, out = self.start_peer(30, listen(latched, "latched") + listen({"/vesalius/people": TEXT}), "late_joiner")
+        end = time.monotonic() + 20
+        while len(self.messages(out)) < len(latched) and time.monotonic() < end:
+            time.sleep(0.1)
+        time.sleep(0.5)  # for what must not come
         found = self.messages(out)
         expect({topic: len(found[topic]) for topic in latched}, {topic: 1 for topic in latched}, "latched messages")
         expect(found["/humans/bodies/tracked"][0]["ids"], ["p3", "p12"], "ids")
@@ -250,25 +254,53 @@ class Case:
                 return message[inner][0]["stamp_ns"]
         return message.get("stamp_ns", -1)
 
+    @staticmethod
+    def relay(*unit):
+        """A peer that publishes the frames of the node `source` as a camera's driver would."""
+        return ["relay", IMAGE, "/source/depth/image_rect", "/camera/depth/image_raw", *unit,
+                "relay", INFO, "/source/depth/camera_info", "/camera/depth/camera_info",
+                "relay", IMAGE, "/source/color/image_rect", "/camera/color/image_raw"]
+
+    def source_until(self, holds, seconds=90):
+        """Lets a node `source` play the clip again and again until something holds."""
+        source, clip, end = None, self.clip(12), time.monotonic() + seconds
+        while not holds():
+            if time.monotonic() > end:
+                fail(f"{self.name}: nothing for {seconds} s")
+            if source is None or source.poll() is not None:
+                source = subprocess.Popen(self.vesalius(clip, "--node", "source", "--rate", "2", "--quiet"))
+                self.running.append(source)
+            time.sleep(0.1)
+        return source
+
+    def vanish(self):
+        lines = Path(self.work) / "said.txt"
+        reader = subprocess.Popen(self.vesalius("--subscribe", "/camera", "--frames", "6", "--reliable"), stderr=lines.open("w"))
+        self.running.append(reader)
+        heard = {"/vesalius/people": TEXT}
+        first, out = self.start_peer(200, self.relay() + listen(heard), "first")
+        source = self.source_until(lambda: len(self.messages(out)["/vesalius/people"]) >= 2)
+        first.kill()
+        end = time.monotonic() + 30
+        while "no depth on" not in lines.read_text() and time.monotonic() < end:
+            time.sleep(0.1)
+        expect(["no depth on /camera/depth/image_raw" in lines.read_text(), reader.poll()], [True, None], lines.read_text())
+        source.kill()
+        self.start_peer(200, self.relay(), "second")
+        self.source_until(lambda: reader.poll() is not None)
+        expect([reader.poll(), "6 frames" in lines.read_text()], [0, True], lines.read_text())
+        print(lines.read_text(), end="")
+
     def subscribe(self):
-        clip = self.clip(12)
         for unit in ("", "metres"):
-            words = ["relay", IMAGE, "/source/depth/image_rect", "/camera/depth/image_raw", *([unit] if unit else []),
-                     "relay", INFO, "/source/depth/camera_info", "/camera/depth/camera_info",
-                     "relay", IMAGE, "/source/color/image_rect", "/camera/color/image_raw",
-                     *listen({"/source/people": TEXT, "/vesalius/people": TEXT, "/vesalius/camera_info": INFO})]
+            words = self.relay(*([unit] if unit else []))
+            words += listen({"/source/people": TEXT, "/vesalius/people": TEXT, "/vesalius/camera_info": INFO})
             peer, out = self.start_peer(100, words, f"relay_{unit or 'millimetres'}")
             reader = subprocess.Popen(self.vesalius("--subscribe", "/camera", "--reliable", "--frames", "3"),
                                       stderr=subprocess.PIPE, text=True)
             self.running.append(reader)
             time.sleep(1)
-            source = None
-            end = time.monotonic() + 90
-            while reader.poll() is None and time.monotonic() < end:
-                if source is None or source.poll() is not None:
-                    source = subprocess.Popen(self.vesalius(clip, "--node", "source", "--rate", "2", "--quiet"))
-                    self.running.append(source)
-                time.sleep(0.1)
+            source = self.source_until(lambda: reader.poll() is not None)
             said = reader.stderr.read()
             if reader.poll() != 0:
                 fail(f"subscribe: {said}")
