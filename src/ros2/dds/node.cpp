@@ -51,7 +51,7 @@ struct DeleteQos {
 using QosPointer = std::unique_ptr<dds_qos_t, DeleteQos>;
 
 QosPointer dds_qos(const Qos& qos) {
-  constexpr dds_duration_t kMostWait = DDS_MSECS(100);
+  constexpr dds_duration_t kMostWait = 0;
   QosPointer all(dds_create_qos());
   dds_qset_reliability(all.get(), qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, kMostWait);
   dds_qset_history(all.get(), DDS_HISTORY_KEEP_LAST, qos.depth);
@@ -193,13 +193,16 @@ class Participant {
     return reader;
   }
 
-  void remove(dds_entity_t endpoint) {
+  void remove(dds_entity_t endpoint) noexcept {
     const std::scoped_lock lock(mutex_);
-    const Gid gid = gid_of(endpoint);
-    std::erase(entities_.writers, gid);
-    std::erase(entities_.readers, gid);
-    dds_delete(endpoint);
-    announce();
+    try {
+      const Gid gid = gid_of(endpoint);
+      std::erase(entities_.writers, gid);
+      std::erase(entities_.readers, gid);
+      dds_delete(endpoint);
+      announce();
+    } catch (const Error&) {  // it is gone either way
+    }
   }
 
   bool wait(std::chrono::milliseconds most) {
@@ -259,7 +262,10 @@ Publisher::Publisher(std::shared_ptr<Participant> participant, std::int32_t writ
     : participant_(std::move(participant)), writer_(writer) {}
 Publisher::~Publisher() { participant_->remove(writer_); }
 
-void Publisher::publish(std::string_view message) { expect(dds_write(writer_, &message), "a message"); }
+void Publisher::publish(std::string_view message) {
+  const dds_return_t result = dds_write(writer_, &message);
+  if (result != DDS_RETCODE_TIMEOUT) expect(result, "a message");
+}
 
 int Publisher::readers() const {
   dds_publication_matched_status_t status;

@@ -42,7 +42,8 @@ class Publisher {
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
 
-  /// Sends a message that is CDR. Does not wait for readers. Throws Error if the network refuses it.
+  /// Sends a message that is CDR. Does not wait for readers: where those that lag hold 1 GB, it is dropped. Throws
+  /// Error if the network refuses it.
   void publish(std::string_view message);
   /// Returns how many readers there are.
   int readers() const;
