@@ -142,23 +142,23 @@ ros2::TopicSourceOptions subscribe_options(const Ros2Flags& flags, const SourceO
 
 std::optional<CameraPose> parse_camera_pose(const std::string& text) {
   if (text.empty()) return std::nullopt;
-  const auto refuse = [&]() -> UsageError {
+  const auto refusal = [&] {
     return UsageError(fmt::format(
         "--camera-pose {}: expected FRAME,X,Y,Z,ROLL,PITCH,YAW in metres and radians, e.g. base_link,0.1,0,1.2,0,0,0",
         text));
   };
   std::size_t at = text.find(',');
-  if (at == 0 || at == text.npos) throw refuse();
+  if (at == 0 || at == text.npos) throw refusal();
   std::array<double, 6> numbers{};
   const char* from = text.data() + at;
   const char* end = text.data() + text.size();
   for (double& number : numbers) {
-    if (from == end || *from != ',') throw refuse();
+    if (from == end || *from != ',') throw refusal();
     const auto [stop, error] = std::from_chars(from + 1, end, number);
-    if (error != std::errc() || !std::isfinite(number)) throw refuse();
+    if (error != std::errc() || !std::isfinite(number)) throw refusal();
     from = stop;
   }
-  if (from != end) throw refuse();
+  if (from != end) throw refusal();
   const auto [x, y, z, roll, pitch, yaw] = numbers;
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;

@@ -224,9 +224,8 @@ class Participant {
       if (auto topic = topic_from_wire(endpoint->topic_name, endpoint->type_name)) topics.push_back(std::move(*topic));
     }
     if (count > 0) dds_return_loan(publications_, samples.data(), count);
-    std::ranges::sort(topics);
-    const auto doubled = std::ranges::unique(topics);
-    topics.erase(doubled.begin(), doubled.end());
+    std::ranges::sort(topics, {}, [](const TopicType& topic) { return std::pair(topic.name, topic.type); });
+    topics.erase(std::unique(topics.begin(), topics.end()), topics.end());
     return topics;
   }
 

@@ -7,7 +7,8 @@ namespace vesalius::ros2 {
 
 NamedJoints::NamedJoints(const BodyModel& body) : body_(body), sets_(body.joint_sets.size()) {
   std::iota(sets_.begin(), sets_.end(), std::size_t{0});
-  std::ranges::stable_partition(sets_, [&](std::size_t set) { return body.joint_sets[set].name == "k4abt32"; });
+  std::stable_partition(sets_.begin(), sets_.end(),
+                        [&](std::size_t set) { return body.joint_sets[set].name == "k4abt32"; });
 }
 
 std::optional<Joint> NamedJoints::find(const TrackedPerson& person, std::string_view name) const {

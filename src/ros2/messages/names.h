@@ -29,7 +29,7 @@ struct TopicType {
   std::string name;  ///< "/camera/depth/image_raw"
   std::string type;  ///< "sensor_msgs/Image"
 
-  friend auto operator<=>(const TopicType&, const TopicType&) = default;
+  friend bool operator==(const TopicType&, const TopicType&) = default;
 };
 
 /// Returns what names on the wire stand for; nothing if they are not those of a topic of ROS 2.
