@@ -212,7 +212,7 @@ ROS 2 is needed. Every option of detector and tracking is a flag too; `vesalius 
 
 Examples:
   vesalius ros2 frames/
-  vesalius ros2 session.mcap --frame-id camera_link --record people.mcap
+  vesalius ros2 session.mcap --frame-id camera_depth_optical_frame --record people.mcap
   vesalius ros2 --subscribe /camera --namespace /robot
   vesalius ros2 realsense: --camera-pose base_link,0.1,0,1.2,0,0.2,0)");
   command->callback([arguments] { run(*arguments); });
