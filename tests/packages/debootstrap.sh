@@ -81,7 +81,7 @@ unshare --net --mount --pid --fork --kill-child --mount-proc="$root/proc" bash -
 
 step "info, manual, completion"
 offline vesalius info | head -n 2
-for page in $(grep -o 'vesalius[a-z-]*\.1\.gz' "$work/files"); do
+for page in $(grep -o 'vesalius[a-z0-9-]*\.1\.gz' "$work/files"); do
   said="$(offline man --warnings -E UTF-8 -l -Tutf8 -Z "/usr/share/man/man1/$page" 2>&1 >/dev/null)"
   [ -z "$said" ] || fail "man says of $page: $said"
 done

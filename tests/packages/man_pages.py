@@ -22,7 +22,7 @@ def said(*command):
 
 def commands_of(help_text):
     found = re.search(r"^Subcommands:\n((?:  .*\n)+)", help_text, re.M)
-    return re.findall(r"^  ([a-z]+)", found[1], re.M) if found else []
+    return re.findall(r"^  ([a-z0-9]+)", found[1], re.M) if found else []
 
 
 def flags_of(help_text):
