@@ -37,7 +37,7 @@ lintian --allow-root --info --fail-on error,warning "$packages"/*.deb
 
 step "an empty Debian"
 mirror="$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' 'Release: bookworm' 2>/dev/null | head -n 1)"
-debootstrap --variant=minbase bookworm "$root" "${mirror:-http://deb.debian.org/debian}" >"$work/debootstrap.log" 2>&1 ||
+debootstrap --variant=minbase bookworm "$root" ${mirror:+"$mirror"} >"$work/debootstrap.log" 2>&1 ||
   { tail -n 20 "$work/debootstrap.log"; fail "debootstrap failed"; }
 # What leads this machine to the mirror.
 {
@@ -54,7 +54,7 @@ install() {
 }
 
 step "apt install"
-cp "$packages"/*.deb "$packages"/*.tar.gz "$root/root/"
+cp "$packages"/*.deb "$packages"/vesalius-*-linux-*.tar.gz "$root/root/"
 inside apt-get -qq update
 install man-db
 for deb in "$packages"/vesalius_*.deb; do
@@ -91,13 +91,13 @@ offline bash -c '. /usr/share/bash-completion/completions/vesalius; COMP_WORDS=(
   [ "${COMPREPLY[*]}" = detect ]'
 
 step "archive"
-inside bash -c 'mkdir /opt/anywhere && tar -C /opt/anywhere -xzf /root/vesalius-*.tar.gz'
+inside bash -c 'mkdir /opt/anywhere && tar -C /opt/anywhere -xzf /root/vesalius-*-linux-*.tar.gz'
 offline bash -c 'cd / && /opt/anywhere/vesalius-*/bin/vesalius detect /opt/anywhere/vesalius-*/share/vesalius/demo --json - -q' >"$work/unpacked.jsonl"
 cmp "$work/wanted.jsonl" "$work/unpacked.jsonl"
 
 step "libraries"
 install $(cd "$packages" && printf '/root/%s ' libvesalius[0-9]*.deb libvesalius-dev_*.deb) g++ gcc cmake make pkg-config
-inside dpkg --verify 'libvesalius*'
+inside bash -c 'dpkg --verify $(dpkg-query --show --showformat "${Package} " "libvesalius*")'
 cp -r "$source/tests/consumer" "$source/examples" "$root/root/"
 offline bash -c 'cd /root && cmake -S consumer -B build -DMAIN_SOURCE=/root/examples/detect_people.cpp -DEXAMPLES=/root/examples \
   -DVESALIUS_HEADERS="$(echo /usr/include/vesalius-*)" >/dev/null && cmake --build build --target detect_people >/dev/null &&
