@@ -13,7 +13,7 @@ import tomllib
 from pathlib import Path
 
 FLAG = re.compile(r"(?:^|[\s,])(--?[A-Za-z][\w.-]*)")
-OF_A_FILE = {"detect": "detect", "view": "detect", "bench": "detect", "synth": "synth", "train": "train"}
+OF_A_FILE = {"detect": "detect", "view": "detect", "bench": "detect", "ros2": "detect", "synth": "synth", "train": "train"}
 
 
 def said(*command):
