@@ -111,7 +111,7 @@ void TopicSource::say_if_silent() {
   if (said_silent_ || now_s() - last_s_ < kSilence_s) return;
   said_silent_ = true;
   if (!topics_) {
-    options_.say(fmt::format("no topic of depth below {} yet; waiting (--depth names one)", options_.name_space));
+    options_.say(fmt::format("no topic of depth below {} yet; waiting (--depth-topic names one)", options_.name_space));
   } else if (frames_->lacks_calibration()) {
     options_.say(fmt::format("no calibration on {} yet; waiting", topics_->camera_info));
   } else {
