@@ -37,6 +37,8 @@ bool wait_for(const std::function<bool()>& holds) {
   return true;
 }
 
+std::string no_line() { return "{}"; }
+
 int rate(ros2::Node& node, int length_s, int readers) {
   const LabelledFrame truth = ros2::test::two_people(640, 480);
   const TrackedFrame people = ros2::test::tracked(truth);
@@ -44,7 +46,7 @@ int rate(ros2::Node& node, int length_s, int readers) {
   ros2::PeopleTopicsOptions options;
   options.frames = true;
   ros2::PeopleTopics topics(paper_body(), options, sink);
-  topics.write(truth.frame, people, "{}", {0, "camera"});  // now all topics are there
+  topics.write(truth.frame, people, no_line, {0, "camera"});  // now all topics are there
   const ros2::Topic labels{"/vesalius/labels", "sensor_msgs/Image"};
   if (!wait_for([&] { return sink.readers(labels) >= readers; })) {
     std::cerr << "ros2_sender: no readers\n";
@@ -57,7 +59,7 @@ int rate(ros2::Node& node, int length_s, int readers) {
   for (int i = 1; i <= frames; ++i) {
     std::this_thread::sleep_until(start + i * nanoseconds(1'000'000'000 / kRate));
     const auto before = Clock::now();
-    topics.write(truth.frame, people, "{}", {i * 1'000'000'000LL, "camera"});
+    topics.write(truth.frame, people, no_line, {i * 1'000'000'000LL, "camera"});
     const double took_ms = duration<double, std::milli>(Clock::now() - before).count();
     longest_ms = std::max(longest_ms, took_ms);
     sum_ms += took_ms;
@@ -85,7 +87,8 @@ int types(ros2::Node& node) {
   const LabelledFrame truth = ros2::test::two_people(320, 240);
   Keep keep;
   ros2::PeopleTopics topics(paper_body(), {.frames = true}, keep);
-  topics.write(truth.frame, ros2::test::tracked(truth), R"({"people": []})", {1'234'567'890'123'456'789, "camera"});
+  topics.write(truth.frame, ros2::test::tracked(truth), [] { return R"({"people": []})"; },
+               {1'234'567'890'123'456'789, "camera"});
   ros2::NodeEntities entities{"/robot", "camera", {{1, 2, 3}}, {{4}, {5}}};
   keep.messages["rmw_dds_common/ParticipantEntitiesInfo"] = discovery_message({7, 8, 9}, entities, ros2::kGidBytes);
   int failed = 0;
@@ -117,7 +120,7 @@ int latched(ros2::Node& node, int length_s) {
   const LabelledFrame truth = ros2::test::two_people(64, 48);
   const ros2::Stamp stamp{42, "camera"};
   topics.write_camera_pose("base_link", Eigen::Isometry3d::Identity(), stamp);
-  topics.write(truth.frame, ros2::test::tracked(truth), "{}", stamp);
+  topics.write(truth.frame, ros2::test::tracked(truth), no_line, stamp);
   std::cout << "written" << std::endl;
   std::this_thread::sleep_for(seconds(length_s));
   return 0;

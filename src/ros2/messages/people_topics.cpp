@@ -49,41 +49,45 @@ Topic PeopleTopics::topic(std::string_view name, const char* type, bool latched)
   return {std::move(full), type, latched};
 }
 
-void PeopleTopics::write(const Frame& frame, const TrackedFrame& tracked, const std::string& json, const Stamp& stamp) {
+template <class Make>
+void PeopleTopics::put(const Topic& topic, const Stamp& stamp, const Make& make) {
+  if (sink_.wants(topic)) sink_.put(topic, stamp.time_ns, make());
+}
+
+void PeopleTopics::write(const Frame& frame, const TrackedFrame& tracked, const std::function<std::string()>& json,
+                         const Stamp& stamp) {
   const TrackedFrame people = without_lost(tracked);
   if (options_.frames) write_frame(frame, stamp);
   write_transforms(people, stamp);
   write_bodies(frame, people, stamp);
   write_pictures(frame, people, stamp);
-  if (const Topic markers = topic("~/markers", "visualization_msgs/MarkerArray"); sink_.wants(markers)) {
-    sink_.put(markers, stamp.time_ns, markers_message(people, body_, stamp.time_ns, stamp.frame));
-  }
-  CdrWriter text;
-  text.text(json);
-  sink_.put(topic("~/people", "std_msgs/String"), stamp.time_ns, text.message());
+  put(topic("~/markers", "visualization_msgs/MarkerArray"), stamp,
+      [&] { return markers_message(people, body_, stamp.time_ns, stamp.frame); });
+  put(topic("~/people", "std_msgs/String"), stamp, [&] {
+    CdrWriter text;
+    text.text(json());
+    return text.message();
+  });
 }
 
 void PeopleTopics::write_frame(const Frame& frame, const Stamp& stamp) {
-  const auto put = [&](const char* name, const char* info, const auto& picture) {
-    const Topic image = topic(name, kImage), camera = topic(info, kCameraInfo);
-    if (sink_.wants(camera)) {
-      sink_.put(camera, stamp.time_ns, calibration_message(frame.camera, stamp.time_ns, stamp.frame));
-    }
-    if (sink_.wants(image)) sink_.put(image, stamp.time_ns, picture());
-  };
-  put("~/depth/image_rect", "~/depth/camera_info",
+  put_calibration("~/depth/camera_info", frame.camera, stamp);
+  put(topic("~/depth/image_rect", kImage), stamp,
       [&] { return depth_message(frame.depth, stamp.time_ns, stamp.frame); });
   if (frame.colour.empty()) return;
-  put("~/color/image_rect", "~/color/camera_info",
+  put_calibration("~/color/camera_info", frame.camera, stamp);
+  put(topic("~/color/image_rect", kImage), stamp,
       [&] { return colour_message(frame.colour, stamp.time_ns, stamp.frame); });
 }
 
+void PeopleTopics::put_calibration(std::string_view name, const Camera& camera, const Stamp& stamp) {
+  put(topic(name, kCameraInfo), stamp, [&] { return calibration_message(camera, stamp.time_ns, stamp.frame); });
+}
+
 void PeopleTopics::write_pictures(const Frame& frame, const TrackedFrame& people, const Stamp& stamp) {
-  const Topic camera = topic("~/camera_info", kCameraInfo), index = topic("~/body_index", kImage),
-              labels = topic("~/labels", kImage), points = topic("~/points", "sensor_msgs/PointCloud2");
-  if (sink_.wants(camera)) {
-    sink_.put(camera, stamp.time_ns, calibration_message(frame.camera, stamp.time_ns, stamp.frame));
-  }
+  put_calibration("~/camera_info", frame.camera, stamp);
+  const Topic index = topic("~/body_index", kImage), labels = topic("~/labels", kImage),
+              points = topic("~/points", "sensor_msgs/PointCloud2");
   const bool wants_index = sink_.wants(index), wants_labels = sink_.wants(labels), wants_points = sink_.wants(points);
   if (!wants_index && !wants_labels && !wants_points) return;
   const int width = frame.depth.width(), height = frame.depth.height();
@@ -100,33 +104,37 @@ void PeopleTopics::write_pictures(const Frame& frame, const TrackedFrame& people
 }
 
 void PeopleTopics::write_transforms(const TrackedFrame& people, const Stamp& stamp) {
+  const Topic transforms = topic("/tf", "tf2_msgs/TFMessage");
+  if (!sink_.wants(transforms)) return;
   const Eigen::Vector3f up = people.floor.value_or(FloorView{}).up;
   std::vector<FrameTransform> frames;
   for (const TrackedPerson& person : people.people) {
     std::ranges::move(human_frames(person, joints_, id_of(person.id), stamp.frame, up), std::back_inserter(frames));
   }
   if (frames.empty()) return;
-  sink_.put(topic("/tf", "tf2_msgs/TFMessage"), stamp.time_ns, transforms_message(frames, stamp.time_ns));
+  sink_.put(transforms, stamp.time_ns, transforms_message(frames, stamp.time_ns));
 }
 
 void PeopleTopics::write_bodies(const Frame& frame, const TrackedFrame& people, const Stamp& stamp) {
   std::vector<std::string> ids;
   for (const TrackedPerson& person : people.people) ids.push_back(id_of(person.id));
-  end_bodies_but({ids.begin(), ids.end()});
-  sink_.put(topic(fmt::format("{}/tracked", kBodies), "hri_msgs/IdsList", true), stamp.time_ns,
-            ids_message(ids, stamp.time_ns, stamp.frame));
+  write_ids(ids, stamp);
   for (const TrackedPerson& person : people.people) {
     const std::string id = id_of(person.id);
     bodies_.insert(id);
-    const Topic region = topic(fmt::format("{}/{}/roi", kBodies, id), "hri_msgs/NormalizedRegionOfInterest2D"),
-                skeleton = topic(fmt::format("{}/{}/skeleton2d", kBodies, id), "hri_msgs/Skeleton2D");
-    if (const auto box = region_message(person, frame.camera, stamp.time_ns, stamp.frame); box && sink_.wants(region)) {
-      sink_.put(region, stamp.time_ns, *box);
+    if (const auto box = region_message(person, frame.camera, stamp.time_ns, stamp.frame)) {
+      put(topic(fmt::format("{}/{}/roi", kBodies, id), "hri_msgs/NormalizedRegionOfInterest2D"), stamp,
+          [&] { return *box; });
     }
-    if (sink_.wants(skeleton)) {
-      sink_.put(skeleton, stamp.time_ns, skeleton_message(person, joints_, frame.camera, stamp.time_ns, stamp.frame));
-    }
+    put(topic(fmt::format("{}/{}/skeleton2d", kBodies, id), "hri_msgs/Skeleton2D"), stamp,
+        [&] { return skeleton_message(person, joints_, frame.camera, stamp.time_ns, stamp.frame); });
   }
+}
+
+void PeopleTopics::write_ids(const std::vector<std::string>& ids, const Stamp& stamp) {
+  end_bodies_but({ids.begin(), ids.end()});
+  put(topic(fmt::format("{}/tracked", kBodies), "hri_msgs/IdsList", true), stamp,
+      [&] { return ids_message(ids, stamp.time_ns, stamp.frame); });
 }
 
 void PeopleTopics::end_bodies_but(const std::set<std::string>& ids) {
@@ -144,10 +152,6 @@ void PeopleTopics::write_camera_pose(const std::string& parent, const Eigen::Iso
             transforms_message({{parent, stamp.frame, parent_from_optical}}, stamp.time_ns));
 }
 
-void PeopleTopics::clear(const Stamp& stamp) {
-  end_bodies_but({});
-  sink_.put(topic(fmt::format("{}/tracked", kBodies), "hri_msgs/IdsList", true), stamp.time_ns,
-            ids_message({}, stamp.time_ns, stamp.frame));
-}
+void PeopleTopics::clear(const Stamp& stamp) { write_ids({}, stamp); }
 
 }  // namespace vesalius::ros2

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -43,8 +44,9 @@ class PeopleTopics {
   /// Throws UsageError where names do not fit. `body` and `sink` must outlive this object.
   PeopleTopics(const BodyModel& body, PeopleTopicsOptions options, MessageSink& sink);
 
-  /// Writes a frame and its people, without those who are lost. `json` is its line.
-  void write(const Frame& frame, const TrackedFrame& tracked, const std::string& json, const Stamp& stamp);
+  /// Writes a frame and its people, without those who are lost. `json` returns its line.
+  void write(const Frame& frame, const TrackedFrame& tracked, const std::function<std::string()>& json,
+             const Stamp& stamp);
   /// Writes once, to /tf_static, where the camera stands.
   void write_camera_pose(const std::string& parent, const Eigen::Isometry3d& parent_from_optical, const Stamp& stamp);
   /// Writes an empty list of bodies and ends those that there were.
@@ -55,10 +57,15 @@ class PeopleTopics {
 
  private:
   Topic topic(std::string_view name, const char* type, bool latched = false) const;
+  /// Puts what `make` returns, if it is wanted.
+  template <class Make>
+  void put(const Topic& topic, const Stamp& stamp, const Make& make);
+  void put_calibration(std::string_view name, const Camera& camera, const Stamp& stamp);
   void write_frame(const Frame& frame, const Stamp& stamp);
   void write_pictures(const Frame& frame, const TrackedFrame& people, const Stamp& stamp);
   void write_transforms(const TrackedFrame& people, const Stamp& stamp);
   void write_bodies(const Frame& frame, const TrackedFrame& people, const Stamp& stamp);
+  void write_ids(const std::vector<std::string>& ids, const Stamp& stamp);
   void end_bodies_but(const std::set<std::string>& ids);
 
   const BodyModel& body_;

@@ -43,6 +43,8 @@ const LabelledFrame& truth() {
 const Stamp kStamp{5'000'000'007, "camera"};
 const std::string kPlace = "test";
 
+std::string no_line() { return "{}"; }
+
 MessageFields fields(const std::string& message) { return {message, MessageLayout::cdr, kPlace}; }
 
 PictureMessage picture(const Kept& kept, const std::string& topic) {
@@ -52,7 +54,7 @@ PictureMessage picture(const Kept& kept, const std::string& topic) {
 TEST(PeopleTopics, WriteEveryTopicOnceForAFrame) {
   Kept kept;
   PeopleTopics(paper_body(), {.name_space = "/robot", .node = "eye", .frames = true}, kept)
-      .write(truth().frame, test::tracked(truth()), "{}", kStamp);
+      .write(truth().frame, test::tracked(truth()), no_line, kStamp);
   std::vector<std::string> names;
   for (const auto& [name, type] : kept.types)
     names.push_back(name + " " + type + (kept.latched.at(name) ? " latched" : ""));
@@ -77,7 +79,7 @@ TEST(PeopleTopics, IndicesArePlacesInTheListOfBodies) {
   TrackedFrame people = test::tracked(truth());
   people.people.insert(people.people.begin(), test::person_of(truth(), 0, 1));
   people.people.front().state = TrackState::lost;  // is not among them
-  PeopleTopics(paper_body(), {}, kept).write(truth().frame, people, "{}", kStamp);
+  PeopleTopics(paper_body(), {}, kept).write(truth().frame, people, no_line, kStamp);
   MessageFields ids = fields(kept.messages.at("/humans/bodies/tracked"));
   std::string frame;
   EXPECT_EQ(ids.header(frame), kStamp.time_ns);
@@ -101,7 +103,7 @@ struct CloudPoint {
 
 TEST(CloudMessage, HasAPointForEachPixelOfAPerson) {
   Kept kept;
-  PeopleTopics(paper_body(), {}, kept).write(truth().frame, test::tracked(truth()), "{}", kStamp);
+  PeopleTopics(paper_body(), {}, kept).write(truth().frame, test::tracked(truth()), no_line, kStamp);
   MessageFields cloud = fields(kept.messages.at("/vesalius/points"));
   std::string frame;
   cloud.header(frame);
@@ -211,10 +213,10 @@ TEST(PeopleTopics, EndThoseOfBodiesThatAreGone) {
   Kept kept;
   PeopleTopics topics(paper_body(), {}, kept);
   TrackedFrame people = test::tracked(truth());
-  topics.write(truth().frame, people, "{}", kStamp);
+  topics.write(truth().frame, people, no_line, kStamp);
   EXPECT_TRUE(kept.ended.empty());
   people.people.pop_back();
-  topics.write(truth().frame, people, "{}", kStamp);
+  topics.write(truth().frame, people, no_line, kStamp);
   EXPECT_THAT(kept.ended, UnorderedElementsAre("/humans/bodies/p12/roi", "/humans/bodies/p12/skeleton2d"));
   topics.clear(kStamp);
   EXPECT_TRUE(kept.ended.contains("/humans/bodies/p3/roi"));
@@ -228,7 +230,7 @@ TEST(PeopleTopics, GoUnderOtherNames) {
   Kept kept;
   PeopleTopicsOptions options;
   options.remap = {{"/tf", "/robot/tf"}, {"/vesalius/points", "/cloud"}};
-  PeopleTopics(paper_body(), options, kept).write(truth().frame, test::tracked(truth()), "{}", kStamp);
+  PeopleTopics(paper_body(), options, kept).write(truth().frame, test::tracked(truth()), no_line, kStamp);
   EXPECT_TRUE(kept.types.contains("/robot/tf"));
   EXPECT_TRUE(kept.types.contains("/cloud"));
   EXPECT_FALSE(kept.types.contains("/tf"));
@@ -239,9 +241,15 @@ TEST(PeopleTopics, GoUnderOtherNames) {
 
 TEST(PeopleTopics, MakeNothingThatNobodyWants) {
   Kept kept;
-  kept.unwanted = {"/vesalius/body_index", "/vesalius/labels", "/vesalius/points", "/vesalius/markers",
-                   "/humans/bodies/p3/skeleton2d"};
-  PeopleTopics(paper_body(), {}, kept).write(truth().frame, test::tracked(truth()), "{}", kStamp);
+  kept.unwanted = {"/vesalius/body_index",  "/vesalius/labels",
+                   "/vesalius/points",      "/vesalius/markers",
+                   "/vesalius/people",      "/tf",
+                   "/vesalius/camera_info", "/humans/bodies/p3/skeleton2d"};
+  const auto line = [] {
+    ADD_FAILURE() << "nobody wants the line";
+    return std::string();
+  };
+  PeopleTopics(paper_body(), {}, kept).write(truth().frame, test::tracked(truth()), line, kStamp);
   EXPECT_TRUE(kept.types.contains("/humans/bodies/p3/roi"));
 }
 
