@@ -4,22 +4,20 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "io/files/image_bytes.h"
 #include "io/files/image_file.h"
 #include "io/recordings/depth_codecs.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/realsense_topics.h"
+#include "vesalius/base/depth_reading.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
 
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
-constexpr double kMaxDepth = std::numeric_limits<std::uint16_t>::max();
 
 /// Encodings of colour and where red, green and blue stand in a pixel.
 struct ColourEncoding {
@@ -78,11 +76,6 @@ T value_at(const PictureMessage& picture, int u, int v) {
               sizeof(T));
   if (picture.big_endian != (std::endian::native == std::endian::big)) std::ranges::reverse(bytes);
   return std::bit_cast<T>(bytes);
-}
-
-std::uint16_t millimetres(double depth_mm) {
-  // A reading beyond 16 bits is none; neither is NaN.
-  return depth_mm >= 0.5 && depth_mm < kMaxDepth ? static_cast<std::uint16_t>(std::lround(depth_mm)) : std::uint16_t{0};
 }
 
 /// From librealsense 2.56 on, what the library itself states: its messages of sensor_msgs call every model plumb_bob.
@@ -267,7 +260,7 @@ DepthImage depth_of(const PictureMessage& picture, float units_per_m, const std:
   if (picture.compressed) {
     Image<std::uint16_t> stored = unpack_compressed_depth(picture.data, picture.encoding, name);
     if (!is_float && to_mm != 1.0) {
-      for (std::uint16_t& value : stored) value = millimetres(value * to_mm);
+      for (std::uint16_t& value : stored) value = depth_reading_of_mm(value * to_mm);
     }
     return stored;
   }
@@ -276,10 +269,10 @@ DepthImage depth_of(const PictureMessage& picture, float units_per_m, const std:
   for (int v = 0; v < picture.height; ++v) {
     for (int u = 0; u < picture.width; ++u) {
       if (is_float) {
-        depth(u, v) = millimetres(1e3 * static_cast<double>(value_at<float>(picture, u, v)));
+        depth(u, v) = depth_reading_of_mm(1e3 * static_cast<double>(value_at<float>(picture, u, v)));
       } else {
         const auto stored = value_at<std::uint16_t>(picture, u, v);
-        depth(u, v) = to_mm == 1.0 ? stored : millimetres(stored * to_mm);
+        depth(u, v) = to_mm == 1.0 ? stored : depth_reading_of_mm(stored * to_mm);
       }
     }
   }

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <cmath>
-#include <limits>
 
 #include "io/files/byte_stream.h"
 #include "io/files/image_bytes.h"
 #include "io/files/image_file.h"
+#include "vesalius/base/depth_reading.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -140,9 +139,7 @@ Image<std::uint16_t> unpack_compressed_depth(std::string_view data, std::string_
   if (!is_float) return stored;
   for (std::uint16_t& value : stored) {
     if (value == 0) continue;
-    const double depth_mm = 1e3 * scale / (static_cast<double>(value) - offset);
-    const bool fits = depth_mm >= 0.5 && depth_mm < std::numeric_limits<std::uint16_t>::max();
-    value = fits ? static_cast<std::uint16_t>(std::lround(depth_mm)) : std::uint16_t{0};
+    value = depth_reading_of_mm(1e3 * scale / (static_cast<double>(value) - offset));
   }
   return stored;
 }
