@@ -18,6 +18,11 @@ namespace vesalius {
 namespace {
 
 using Png = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
+using Jpeg = std::unique_ptr<void, decltype(&tjDestroy)>;
+
+[[noreturn]] void fail_to_decode(const std::string& name) {
+  throw Error(name + ": damaged picture: it cannot be decoded");
+}
 
 /// Decodes a PNG that check_png took, as `format` says, which gives pixels of T.
 template <class T>
@@ -26,7 +31,7 @@ Image<T> decode_png(const PngBytes& png, spng_format format, const std::string& 
   Image<T> image(png.width, png.height);
   if (!context || spng_set_png_buffer(context.get(), png.pixels.data(), png.pixels.size()) != 0 ||
       spng_decode_image(context.get(), image.data(), image.size() * sizeof(T), format, 0) != 0) {
-    throw Error(name + ": damaged picture: it cannot be decoded");
+    fail_to_decode(name);
   }
   return image;
 }
@@ -42,13 +47,12 @@ Image<T> decode_grey_png(std::string_view bytes, const std::string& name, const 
 }
 
 ColourImage decode_jpeg(std::string_view bytes, const std::string& name) {
-  const auto free = [](void* handle) { tjDestroy(handle); };
-  const std::unique_ptr<void, decltype(free)> decoder(tjInitDecompress(), free);
+  const Jpeg decoder(tjInitDecompress(), &tjDestroy);
   const auto* jpeg = reinterpret_cast<const unsigned char*>(bytes.data());
   int width = 0, height = 0, subsampling = 0, colours = 0;
   if (!decoder ||
       tjDecompressHeader3(decoder.get(), jpeg, bytes.size(), &width, &height, &subsampling, &colours) != 0) {
-    throw Error(name + ": damaged picture: it cannot be decoded");
+    fail_to_decode(name);
   }
   if (colours == TJCS_CMYK || colours == TJCS_YCCK) throw Error(name + ": JPEG of CMYK, expected RGB or grey");
   ColourImage image(width, height);
@@ -56,7 +60,7 @@ ColourImage decode_jpeg(std::string_view bytes, const std::string& name) {
   // Cameras write JPEG of which libjpeg warns, but that it decodes.
   if (tjDecompress2(decoder.get(), jpeg, bytes.size(), rgb, width, 0, height, TJPF_RGB, 0) != 0 &&
       tjGetErrorCode(decoder.get()) != TJERR_WARNING) {
-    throw Error(name + ": damaged picture: it cannot be decoded");
+    fail_to_decode(name);
   }
   return image;
 }
@@ -126,14 +130,14 @@ std::string encode_png(const Image<std::uint8_t>& image) { return encode(image, 
 std::string encode_png(const ColourImage& image) { return encode(image, SPNG_COLOR_TYPE_TRUECOLOR, 8); }
 
 std::string encode_jpeg(const ColourImage& image, int quality) {
-  const auto free = [](void* handle) { tjDestroy(handle); };
-  const std::unique_ptr<void, decltype(free)> encoder(tjInitCompress(), free);
+  if (image.empty()) throw Error("picture cannot be encoded as JPEG: it is empty");
+  const Jpeg encoder(tjInitCompress(), &tjDestroy);
   unsigned char* jpeg = nullptr;
   unsigned long size = 0;
   const auto* rgb = reinterpret_cast<const unsigned char*>(image.data());
-  const int error = encoder && !image.empty() ? tjCompress2(encoder.get(), rgb, image.width(), 0, image.height(),
-                                                            TJPF_RGB, &jpeg, &size, TJSAMP_420, quality, 0)
-                                              : -1;
+  const int error = encoder ? tjCompress2(encoder.get(), rgb, image.width(), 0, image.height(), TJPF_RGB, &jpeg, &size,
+                                          TJSAMP_420, quality, 0)
+                            : -1;
   const std::unique_ptr<unsigned char, decltype(&tjFree)> bytes(jpeg, &tjFree);
   if (error != 0) throw Error(fmt::format("picture cannot be encoded as JPEG: {}", tjGetErrorStr2(encoder.get())));
   return {reinterpret_cast<const char*>(jpeg), size};
