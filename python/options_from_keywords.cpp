@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "io/files/options_file.h"
 #include "vesalius/base/error.h"
 
 namespace nb = nanobind;
@@ -71,33 +72,17 @@ class Setter : public OptionVisitor {
   std::set<std::string> taken_;
 };
 
-class Describer : public OptionVisitor {
- public:
-  void option(const std::string& name, float& value, const OptionInfo& info) override {
-    add(name, std::to_string(value), info);
+/// Returns a value as Python writes it.
+std::string as_python(const OptionText& option) {
+  switch (option.kind) {
+    case OptionKind::truth:
+      return option.value == "true" ? "True" : "False";
+    case OptionKind::word:
+      return "\"" + option.value + "\"";
+    default:
+      return option.value;
   }
-  void option(const std::string& name, int& value, const OptionInfo& info) override {
-    add(name, std::to_string(value), info);
-  }
-  void option(const std::string& name, bool& value, const OptionInfo& info) override {
-    add(name, value ? "True" : "False", info);
-  }
-  void option(const std::string& name, std::string& value, const OptionInfo& info) override {
-    add(name, "\"" + value + "\"", info);
-  }
-
-  std::string text;
-
- private:
-  void add(const std::string& name, std::string value, const OptionInfo& info) {
-    if (value.find('.') != std::string::npos && value.front() != '"') {
-      value.erase(value.find_last_not_of('0') + 1);
-      if (value.back() == '.') value += '0';
-    }
-    const std::string unit = *info.unit != '\0' ? std::string(" ") + info.unit : "";
-    text += keyword_of(name) + " = " + value + unit + ": " + info.help + "\n";
-  }
-};
+}
 
 }  // namespace
 
@@ -111,9 +96,12 @@ void set_options(PeopleOptions& options, const nb::dict& keywords) {
 
 std::string describe_options() {
   PeopleOptions options;
-  Describer describer;
-  visit_options("", options, describer);
-  return describer.text;
+  std::string text;
+  for (const OptionText& option : list_options([&](OptionVisitor& visitor) { visit_options("", options, visitor); })) {
+    const std::string unit = *option.info.unit != '\0' ? std::string(" ") + option.info.unit : "";
+    text += keyword_of(option.name) + " = " + as_python(option) + unit + ": " + option.info.help + "\n";
+  }
+  return text;
 }
 
 }  // namespace vesalius
