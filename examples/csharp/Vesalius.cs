@@ -374,41 +374,25 @@ namespace Vesalius
         public Joint[] Joints(string set = "k4abt32")
         {
             var name = Native.Utf8(set);
-            int count;
-            Native.Check(Native.vesalius_people_joints(people.Handle, index, name, null, 0, out count));
-            var joints = new Joint[count];
-            Native.Check(Native.vesalius_people_joints(people.Handle, index, name, joints, count, out count));
-            return joints;
+            return Native.Copy((Joint[] to, int capacity, out int count) => Native.vesalius_people_joints(people.Handle, index, name, to, capacity, out count));
         }
 
         public Part[] Parts()
         {
-            int count;
-            Native.Check(Native.vesalius_people_parts(people.Handle, index, null, 0, out count));
-            var parts = new Part[count];
-            Native.Check(Native.vesalius_people_parts(people.Handle, index, parts, count, out count));
-            return parts;
+            return Native.Copy((Part[] to, int capacity, out int count) => Native.vesalius_people_parts(people.Handle, index, to, capacity, out count));
         }
 
         /// <summary>The bones of the fitted body, by Detector.Bones; none without one.</summary>
         public Bone[] Bones()
         {
-            int count;
-            Native.Check(Native.vesalius_people_bones(people.Handle, index, null, 0, out count));
-            var bones = new Bone[count];
-            Native.Check(Native.vesalius_people_bones(people.Handle, index, bones, count, out count));
-            return bones;
+            return Native.Copy((Bone[] to, int capacity, out int count) => Native.vesalius_people_bones(people.Handle, index, to, capacity, out count));
         }
 
         /// <summary>Rotations of a set's joints, by the fitted body; the set k4abt32 has some.</summary>
         public Rotation[] Rotations(string set = "k4abt32")
         {
             var name = Native.Utf8(set);
-            int count;
-            Native.Check(Native.vesalius_people_rotations(people.Handle, index, name, null, 0, out count));
-            var rotations = new Rotation[count];
-            Native.Check(Native.vesalius_people_rotations(people.Handle, index, name, rotations, count, out count));
-            return rotations;
+            return Native.Copy((Rotation[] to, int capacity, out int count) => Native.vesalius_people_rotations(people.Handle, index, name, to, capacity, out count));
         }
 
         /// <summary>Row by row from the top: 1 on the person's pixels, 0 elsewhere.</summary>
@@ -537,6 +521,18 @@ namespace Vesalius
             var names = new string[count];
             for (int i = 0; i < count; ++i) names[i] = Text(name(i));
             return names;
+        }
+
+        /// <summary>A function of the library that copies an array, and tells its length where there is no room.</summary>
+        internal delegate Status Give<T>(T[] to, int capacity, out int count);
+
+        internal static T[] Copy<T>(Give<T> give)
+        {
+            int count;
+            Check(give(null, 0, out count));
+            var all = new T[count];
+            Check(give(all, count, out count));
+            return all;
         }
 
         [DllImport(Library)] internal static extern IntPtr vesalius_version();

@@ -135,8 +135,9 @@ vesalius_status vesalius_people_parts(const vesalius_people* people, int32_t ind
 vesalius_status vesalius_people_bones(const vesalius_people* people, int32_t index, vesalius_bone* bones,
                                       int32_t capacity, int32_t* count) {
   return guarded([&] {
-    const FoundPerson& found = person_of(people, index);
-    give(found.body ? found.body->bones : std::vector<FittedBone>(), "bones", bones, capacity, count, to_bone);
+    static const std::vector<FittedBone> none;
+    const std::optional<FittedBody>& body = person_of(people, index).body;
+    give(body ? body->bones : none, "bones", bones, capacity, count, to_bone);
   });
 }
 
