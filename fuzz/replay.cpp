@@ -1,6 +1,7 @@
 // Runs the fuzz targets without libFuzzer, so that every change can be tried with whatever compiler and sanitizers
-// there are: each seed as it is, cut short, and changed at random, always in the same way. Usage: fuzz_replay TARGET
-// RUNS FOLDER
+// there are: each seed as it is, cut short, and changed at random, always in the same way.
+//
+// Usage: fuzz_replay TARGET RUNS FOLDER
 
 #include <algorithm>
 #include <array>
