@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "assets/asset_list.h"
-#include "assets/assets.h"
-#include "cli/synth/synth_assets.h"
+#include "commands/synth/synth_assets.h"
 #include "dataset/labelled_frame_codec.h"
+#include "downloads/asset_list.h"
+#include "downloads/assets.h"
 #include "synth/body/body_detail.h"
 #include "synth/body/builtin_body.h"
 #include "synth/dress/dress.h"

@@ -43,7 +43,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vesaliusConfig.cmake.i
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vesaliusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/vesaliusConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenCV.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZF.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/FindHDF5C.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLZ4.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindLZ4.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindOpenNI2.cmake ${PROJECT_SOURCE_DIR}/cmake/FindFreenect.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindAvformat.cmake ${PROJECT_SOURCE_DIR}/cmake/FindSpng.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindTurboJpeg.cmake

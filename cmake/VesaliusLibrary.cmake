@@ -39,6 +39,9 @@ function(vesalius_library name)
   if(NOT name STREQUAL core)
     target_link_libraries(${target} PUBLIC vesalius_core)
   endif()
+  # Includes are written from the wing's folder: src/, training/ or tests/.
+  string(REGEX REPLACE "^${PROJECT_SOURCE_DIR}/([a-z]+)/.*" "\\1" wing ${CMAKE_CURRENT_SOURCE_DIR})
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/${wing}>)
   foreach(library IN LISTS ARG_USES)
     target_link_libraries(${target} PUBLIC vesalius_${library})
   endforeach()
@@ -69,4 +72,14 @@ function(vesalius_generate target template)
   string(REGEX REPLACE "\\.in$" "" name ${name})
   configure_file(${template} ${CMAKE_CURRENT_BINARY_DIR}/generated/${name} @ONLY)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated)
+endfunction()
+
+# vesalius_words(LIBRARY): for libraries of words and flags, where nothing is worth the compiler's time, half of which goes into
+# CLI11's header.
+function(vesalius_words library)
+  target_compile_options(vesalius_${library} PRIVATE -O1)
+  if(VESALIUS_PCH)
+    target_precompile_headers(vesalius_${library} PRIVATE <CLI/CLI.hpp> <Eigen/Geometry> <algorithm> <filesystem> <functional>
+                              <map> <memory> <optional> <ranges> <string> <vector>)
+  endif()
 endfunction()

@@ -1,48 +1,47 @@
-// People in frames of one's own making, as lines of JSON: MODEL. A camera's source looks the same: next() waits for a
-// frame.
+// People in frames of one's own making, as lines of JSON: MODEL FRAMES. A camera's source looks the same: next() waits
+// for a frame.
 
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "io/model/model_file.h"
+#include "io/sources/open_source.h"
 #include "stream/detect_stream.h"
 #include "stream/person_json.h"
-#include "synth/generate.h"
 #include "vesalius/vesalius.h"
 
 namespace {
 
-/// Six rendered frames.
-class RenderedSource : public vesalius::FrameSource {
+constexpr int kFarthest_mm = 4000;
+
+/// The frames of another source without what is far away.
+class NearSource : public vesalius::FrameSource {
  public:
+  explicit NearSource(std::unique_ptr<vesalius::FrameSource> source) : source_(std::move(source)) {}
+
   std::optional<vesalius::Frame> next() override {
-    if (index_ == size()) return std::nullopt;
-    vesalius::Frame frame = generator_.frame(static_cast<std::uint64_t>(index_)).frame;
-    frame.name = "rendered_" + std::to_string(index_++);
+    std::optional<vesalius::Frame> frame = source_->next();
+    if (!frame) return std::nullopt;
+    for (std::uint16_t& depth_mm : frame->depth) {
+      if (depth_mm > kFarthest_mm) depth_mm = 0;
+    }
     return frame;
   }
-  int size() const override { return 6; }
+  int size() const override { return source_->size(); }
 
  private:
-  static vesalius::synth::Recipe recipe() {
-    vesalius::synth::Recipe recipe;
-    recipe.body.count = 3;
-    recipe.sensor.width = 160;
-    recipe.sensor.height = 120;
-    return recipe;
-  }
-
-  vesalius::synth::Generator generator_{recipe(), {}, vesalius::paper_body(), 1};
-  int index_ = 0;
+  std::unique_ptr<vesalius::FrameSource> source_;
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
+  if (argc != 3) return 2;
   const vesalius::Detector detector(vesalius::load_model(argv[1]));
-  RenderedSource source;
+  NearSource source(vesalius::open_source(argv[2]));
   vesalius::stream_frames(source, detector, {}, [&](const vesalius::FoundFrame& found) {
     if (found.error) std::rethrow_exception(found.error);
     std::cout << vesalius::frame_json(*found.frame, found.people, detector.body()) << '\n';

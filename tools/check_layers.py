@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
-"""Checks who includes whom in src/ (ARCHITECTURE.md, "Layers").
+"""Checks who includes whom, and how much there is (ARCHITECTURE.md, "Folders").
 
-Each library is a call of vesalius_library in a CMakeLists.txt below src/: its FOLDERS bottom to top, the libraries it
-USES, and those that its TESTS_USE besides.
+The product stands in src/, the workshop in training/. Each library is a call of vesalius_library in a CMakeLists.txt there:
+its FOLDERS bottom to top, the libraries it USES, and those that its TESTS_USE besides.
 
 1. A file includes its own folder, folders of its library that stand before its own, the core, and what its library USES.
    Unit tests include all of their library, `capsule` and TESTS_USE as well.
 2. No unit (a header with its sources) includes another that includes it, over however many steps.
 3. A library that OPENS_NO_FILES includes no <fstream>, <iostream> or <filesystem>.
 4. A header that is installed (PUBLIC) includes only headers that are.
-5. Every include is written from src/ and names a file that is there; every source belongs to a library.
+5. Every include is written from its wing's folder and names a file that is there; every source belongs to a library.
+6. No library of the product uses one of the workshop. The program has the workshop's commands by its build alone.
+7. A folder has at most 25 units besides tests, and at most the lines of C++ that tools/line_budget.txt grants it.
 
 Usage: check_layers.py [ROOT]. Prints one line for each violation; exit code 1 if there are any.
 """
@@ -21,6 +23,9 @@ from pathlib import Path
 
 CORE = "core"
 FOR_TESTS = "capsule"
+WINGS = ("src", "training", "tests/capsule")  # includes are written from src/, training/ and tests/
+MOST_UNITS = 25
+BUDGET = "tools/line_budget.txt"
 FILE_HEADERS = {"fstream", "iostream", "filesystem"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 CALL = re.compile(r"^vesalius_library\(\s*([^)]*)\)", re.MULTILINE)
@@ -30,10 +35,11 @@ KEYWORDS = ("FOLDERS", "USES", "TESTS_USE", "PUBLIC", "OPENS_NO_FILES", "PRECOMP
 @dataclass
 class Library:
     name: str
-    folders: list  # below src/, bottom to top
+    wing: str
+    folders: list  # from the wing's folder, bottom to top
     uses: list
     tests_use: list
-    public: set  # headers, from src/
+    public: set  # headers, from the wing's folder
     opens_no_files: bool
 
 
@@ -45,7 +51,7 @@ def set_values(text):
     return values
 
 
-def read_library(path, source_folder):
+def read_library(path, root):
     text = path.read_text()
     call = CALL.search(text)
     if not call:
@@ -67,10 +73,11 @@ def read_library(path, source_folder):
         if satellite[0] != "name":
             lists["FOLDERS"].append(satellite[0])
             lists["USES"] += satellite[1].split()
-    here = path.parent.relative_to(source_folder)
+    wing = path.relative_to(root).parts[0]
+    here = path.parent.relative_to(root / wing)
     folders = [str(here if folder == "." else here / folder) for folder in lists["FOLDERS"] or ["."]]
     public = {str(here / header) for header in lists["PUBLIC"]}
-    return Library(words[0], folders, lists["USES"], lists["TESTS_USE"], public, "OPENS_NO_FILES" in present)
+    return Library(words[0], wing, folders, lists["USES"], lists["TESTS_USE"], public, "OPENS_NO_FILES" in present)
 
 
 def includes(path):
@@ -124,9 +131,8 @@ def circles(graph):
 class Checker:
     def __init__(self, root):
         self.root = root
-        self.source = root / "src"
         self.violations = []
-        found = [read_library(path, self.source) for path in sorted(self.source.rglob("CMakeLists.txt"))]
+        found = [read_library(path, root) for wing in WINGS for path in sorted((root / wing).rglob("CMakeLists.txt"))]
         self.libraries = {library.name: library for library in found if library}
         self.public = {header for library in self.libraries.values() for header in library.public}
         self.owner = {folder: library for library in self.libraries.values() for folder in library.folders}
@@ -134,6 +140,13 @@ class Checker:
 
     def complain(self, path, number, what):
         self.violations.append(f"{path.relative_to(self.root)}:{number}: {what}")
+
+    def wing_of(self, path):
+        return path.relative_to(self.root).parts[0]
+
+    def place_of(self, path):
+        """The file's path from its wing's folder, as includes name it."""
+        return path.relative_to(self.root / self.wing_of(path))
 
     def why_not(self, path, library, folder, target):
         """Why the file may not include the target, or None."""
@@ -145,18 +158,20 @@ class Checker:
             if is_for_tests(path) or library.folders.index(target_folder) <= library.folders.index(folder):
                 return None
             return f"includes {target}, whose folder stands above {folder}"
+        if library.wing == "src" and other.wing == "training":
+            return f"includes {target}: the product uses nothing of the workshop"
         allowed = {CORE, *library.uses}
         if is_for_tests(path):
             allowed |= {FOR_TESTS, *library.tests_use}
         return None if other.name in allowed else f"includes {target}: {library.name} may not include {other.name}"
 
     def check_file(self, path):
-        folder = str(path.parent.relative_to(self.source))
+        folder = str(self.place_of(path).parent)
         library = self.owner.get(folder)
         if library is None:
             self.complain(path, 1, "belongs to no vesalius_library")
             return
-        unit = unit_of(str(path.relative_to(self.source)))
+        unit = unit_of(str(self.place_of(path)))
         edges = self.graph.setdefault(unit, set()) if not is_for_tests(path) else set()
         for number, quoted, target in includes(path):
             if not quoted:
@@ -165,26 +180,59 @@ class Checker:
             elif target.endswith(".inc"):
                 continue
             elif "/" not in target:
-                self.complain(path, number, f'includes "{target}", expected a path from src/')
-            elif not (self.source / target).is_file():
-                self.complain(path, number, f'includes "{target}", which src/ lacks')
+                self.complain(path, number, f'includes "{target}", expected a path from src/ or training/')
+            elif not any((self.root / wing / target).is_file() for wing in ("src", "training", "tests")):
+                self.complain(path, number, f'includes "{target}", which is not there')
             else:
                 reason = self.why_not(path, library, folder, target)
                 if reason:
                     self.complain(path, number, reason)
-                if str(path.relative_to(self.source)) in library.public and target not in self.public:
+                if str(self.place_of(path)) in library.public and target not in self.public:
                     self.complain(path, number, f"is installed and includes {target}, which is not")
                 if unit_of(target) != unit:
                     edges.add(unit_of(target))
 
+    def read_budget(self):
+        """The folders' lines: each line of the file is a folder, a number, and for whom it was last raised."""
+        path = self.root / BUDGET
+        lines = path.read_text().splitlines() if path.is_file() else []
+        words = [line.split(maxsplit=2) for line in lines if line and not line.startswith("#")]
+        return {folder: int(number) for folder, number, *_ in words}
+
+    def check_amounts(self, sources):
+        """`sources`: those that are no tests."""
+        budget = self.read_budget()
+        if not budget:
+            return
+        by_folder = {}
+        for path in sources:
+            by_folder.setdefault(path.parent, []).append(path)
+        for folder, paths in sorted(by_folder.items()):
+            name = str(folder.relative_to(self.root))
+            units = {path.stem for path in paths if path.suffix in (".h", ".cpp")}
+            if len(units) > MOST_UNITS:
+                self.violations.append(f"{name}: {len(units)} units, expected at most {MOST_UNITS}")
+            lines = sum(len(path.read_text().splitlines()) for path in paths)
+            if name not in budget:
+                self.violations.append(f"{BUDGET}: {name} is missing; it has {lines} lines")
+            elif lines > budget[name]:
+                self.violations.append(f"{name}: {lines} lines, granted are {budget[name]}; take some out, or raise the number in "
+                                       f"{BUDGET} and say for whom")
+        for name in sorted(set(budget) - {str(folder.relative_to(self.root)) for folder in by_folder}):
+            self.violations.append(f"{BUDGET}: {name} has no sources")
+
     def check(self):
         if CORE not in self.libraries:
             sys.exit("src/: no CMakeLists.txt calls vesalius_library(core ...)")
-        for path in sorted(self.source.rglob("*")):
+        sources = []
+        for path in sorted(path for wing in WINGS for path in (self.root / wing).rglob("*")):
             if path.suffix in (".h", ".cpp"):
                 self.check_file(path)
+            if path.suffix in (".h", ".cpp", ".cu", ".cuh") and not is_for_tests(path) and self.wing_of(path) != "tests":
+                sources.append(path)
         for group in circles(self.graph):
             self.violations.append(f"src/{group[0]}.h:1: units include each other: {', '.join(group)}")
+        self.check_amounts(sources)
         return self.violations
 
 

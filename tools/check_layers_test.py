@@ -11,7 +11,7 @@ SCRIPT = Path(__file__).parent / "check_layers.py"
 
 GOOD = {
     "src/vesalius/CMakeLists.txt": "vesalius_library(core FOLDERS base forest . OPENS_NO_FILES PUBLIC base/error.h base/image.h)\n",
-    "src/capsule/CMakeLists.txt": "vesalius_library(capsule)\n",
+    "tests/capsule/CMakeLists.txt": "vesalius_library(capsule)\n",
     "src/io/CMakeLists.txt": "vesalius_library(io FOLDERS files\n  sources)  # bottom to top\n",
     "src/draw/CMakeLists.txt": "set(public_headers\n  draw.h)\nvesalius_library(draw TESTS_USE io PUBLIC ${public_headers})\n",
     "src/cli/CMakeLists.txt": (
@@ -25,14 +25,28 @@ GOOD = {
     "src/vesalius/detect.h": '//   #include "io/sources/open.h"\n#include "vesalius/forest/forest.h"\n',
     "src/vesalius/detect.cpp": '#include "vesalius/detect.h"\n#include "generated.inc"\n',
     "src/vesalius/base/error_test.cpp": '#include <fstream>\n#include "vesalius/detect.h"\n#include "capsule/body.h"\n',
-    "src/capsule/body.h": '#include "vesalius/base/image.h"\n',
+    "tests/capsule/body.h": '#include "vesalius/base/image.h"\n',
     "src/io/files/png.h": '#include "vesalius/detect.h"\n#include <fstream>\n',
     "src/io/sources/open.h": '#include "io/files/png.h"\n',
     "src/draw/draw.h": '#include "vesalius/base/image.h"\n',
     "src/draw/draw_test.cpp": '#include "io/files/png.h"\n',
+    "training/train/CMakeLists.txt": "vesalius_library(train USES io)\n",
+    "training/train/grow.h": '#include "io/files/png.h"\n#include "vesalius/detect.h"\n',
     "src/cli/flags.h": '#include "io/sources/open.h"\n',
     "src/cli/pictures/pictures.cpp": '#include "draw/draw.h"\n#include "cli/flags.h"\n',
 }
+
+BUDGET = """# folder, lines, for whom
+src/vesalius 9
+src/vesalius/base 9
+src/vesalius/forest 9
+src/io/files 9  people who bring PNG
+src/io/sources 9
+src/draw 9
+src/cli 9
+src/cli/pictures 9
+training/train 9
+"""
 
 
 def run(changes):
@@ -106,6 +120,29 @@ class CheckLayers(unittest.TestCase):
 
     def test_missing_file(self):
         self.expect_violation({"src/io/files/png.cpp": '#include "io/files/gone.h"\n'}, "src/io/files/png.cpp:1:")
+
+    def test_product_uses_workshop(self):
+        changes = {"src/draw/CMakeLists.txt": "vesalius_library(draw USES train TESTS_USE io)\n",
+                   "src/draw/canvas.h": '#include "train/grow.h"\n'}
+        self.expect_violation(changes, "src/draw/canvas.h:1:")
+
+    def test_workshop_uses_what_it_does_not_name(self):
+        self.expect_violation({"training/train/grow.h": '#include "draw/draw.h"\n'}, "training/train/grow.h:1:")
+
+    def test_folder_grows_past_its_budget(self):
+        grown = {"src/draw/draw.cpp": "//\n" * 5}
+        self.expect_violation({**grown, "tools/line_budget.txt": BUDGET.replace("src/draw 9", "src/draw 5")}, "src/draw: 6 lines")
+        code, output = run({**grown, "src/draw/draw_test.cpp": "//\n" * 99, "tools/line_budget.txt": BUDGET})
+        self.assertEqual(code, 0, output)
+
+    def test_budget_names_each_folder(self):
+        changes = {"tools/line_budget.txt": BUDGET.replace("src/draw 9\n", "")}
+        self.expect_violation(changes, "tools/line_budget.txt: src/draw is missing; it has 1 lines")
+        self.expect_violation({"tools/line_budget.txt": BUDGET + "src/gone 9\n"}, "tools/line_budget.txt: src/gone has no sources")
+
+    def test_folder_has_many_units(self):
+        changes = {f"src/draw/unit{i}.h": "" for i in range(25)}
+        self.expect_violation({**changes, "tools/line_budget.txt": BUDGET}, "src/draw: 26 units")
 
     def test_no_core(self):
         code, output = run({"src/vesalius/CMakeLists.txt": ""})

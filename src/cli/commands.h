@@ -19,13 +19,9 @@ void add_options(CLI::App& program);
 void add_completion(CLI::App& program);
 void add_man(CLI::App& program);
 
-// The following commands belong to satellites (satellites.h); a build that leaves out a satellite lacks its commands.
+// The following commands belong to satellites (console/satellites.h); a build that leaves out a satellite lacks its
+// commands.
 void add_view(CLI::App& program);
 void add_ros2(CLI::App& program);
-void add_synth(CLI::App& program);
-void add_train(CLI::App& program);
-void add_evaluate(CLI::App& program);
-void add_compare(CLI::App& program);
-void add_assets(CLI::App& program);
 
 }  // namespace vesalius::cli

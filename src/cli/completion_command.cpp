@@ -3,7 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/completion.h"
-#include "cli/text_sink.h"
+#include "console/text_sink.h"
 
 namespace vesalius::cli {
 

@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/detector_flags.h"
-#include "cli/interrupts.h"
-#include "cli/progress.h"
-#include "cli/source_flags.h"
-#include "cli/text_sink.h"
+#include "console/detector_flags.h"
+#include "console/interrupts.h"
+#include "console/progress.h"
+#include "console/source_flags.h"
+#include "console/text_sink.h"
 #include "io/model/model_file.h"
 #include "io/model/text_trees.h"
 #include "io/sources/write_frames.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/text_sink.h"
+#include "console/text_sink.h"
 #include "export/moving_skeleton.h"
 #include "export/people_record.h"
 #include "export/write_people.h"

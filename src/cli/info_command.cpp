@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/satellites.h"
-#include "cli/text_sink.h"
+#include "console/satellites.h"
+#include "console/text_sink.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
 #include "io/recordings/mkv_recording.h"

@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "cli/detector_flags.h"
 #include "cli/program.h"
+#include "console/detector_flags.h"
 
 namespace vesalius::cli {
 namespace {

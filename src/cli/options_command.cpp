@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/detector_flags.h"
-#include "cli/satellites.h"
-#include "cli/text_sink.h"
+#include "console/detector_flags.h"
+#include "console/satellites.h"
+#include "console/text_sink.h"
 #include "io/files/options_file.h"
 
 namespace vesalius::cli {

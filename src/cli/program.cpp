@@ -4,10 +4,24 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/satellites.h"
+#include "console/satellites.h"
 
 namespace vesalius::cli {
+
+// CMake writes satellites.inc, which names the satellites of this build.
+#define VESALIUS_SATELLITE(name) Satellite name##_satellite();
+#include "satellites.inc"
+#undef VESALIUS_SATELLITE
+
 namespace {
+
+std::vector<Satellite> satellites_of_this_build() {
+  return {
+#define VESALIUS_SATELLITE(name) name##_satellite(),
+#include "satellites.inc"
+#undef VESALIUS_SATELLITE
+  };
+}
 
 /// Refuses empty values of flags: they come from unset shell variables rather than from an intention.
 void refuse_empty_values(CLI::App& program) {
@@ -22,6 +36,7 @@ void refuse_empty_values(CLI::App& program) {
 }  // namespace
 
 void describe_program(CLI::App& program) {
+  use_satellites(satellites_of_this_build());
   program.name("vesalius");
   program.description(
       "Finds people in RGB-D frames: 3-D body parts and joints, a part label for every pixel, a mask per person.");
@@ -31,7 +46,7 @@ void describe_program(CLI::App& program) {
 Examples:
   vesalius detect frames/                                  what is found, a line per frame
   vesalius detect frames/ --json people.jsonl --out pictures/
-  vesalius info capsule.forest                             what is in a model
+  vesalius info data/models/default.forest                 what is in a model
   vesalius train --data train/ --out my.forest             a model of your own
   vesalius detect --help                                   everything about one command
 

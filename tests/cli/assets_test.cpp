@@ -1,4 +1,4 @@
-#include "assets/assets.h"
+#include "downloads/assets.h"
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>
@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "assets/test_server.h"
+#include "downloads/test_server.h"
 #include "io/files/test_files.h"
 #include "run_program.h"
 

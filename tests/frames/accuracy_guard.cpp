@@ -8,9 +8,9 @@
 #include <memory>
 
 #include "dataset/open_truth.h"
-#include "eval/score_frame.h"
 #include "evaluation/evaluation_joints.h"
 #include "io/model/model_file.h"
+#include "metrics/score_frame.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/forest/make_labeller.h"

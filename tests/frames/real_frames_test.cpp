@@ -8,8 +8,8 @@
 #include <map>
 #include <set>
 
-#include "eval/pixel_metrics.h"
 #include "io/model/model_file.h"
+#include "metrics/pixel_metrics.h"
 #include "shared_frames.h"
 #include "vesalius/base/for_each_target.h"
 #include "vesalius/base/test_threads.h"

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Metrics of tracks by other programs, for the same random sequences as src/eval/track_metrics_test.cpp makes.
+"""Metrics of tracks by other programs, for the same random sequences as training/metrics/track_metrics_test.cpp makes.
 
 CLEAR MOT and IDF1 come from motmetrics, HOTA from trackeval. Prints the table of the test; with a path, checks that the
 test has just these numbers.
 
 Needs a Python with: motmetrics trackeval
 
-usage: reference.py [src/eval/track_metrics_test.cpp]
+usage: reference.py [training/metrics/track_metrics_test.cpp]
 """
 import contextlib
 import io

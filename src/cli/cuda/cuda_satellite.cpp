@@ -5,12 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "cli/satellites.h"
+#include "console/satellites.h"
 #include "cuda/cuda_device.h"
 #include "cuda/cuda_labeller.h"
-#ifdef VESALIUS_HAS_TRAINING
-#include "cuda/train/device_executor.h"
-#endif
 #include "vesalius/base/error.h"
 
 namespace vesalius::cli {
@@ -34,24 +31,10 @@ std::vector<std::pair<std::string, std::string>> facts() {
   return found;
 }
 
-#ifdef VESALIUS_HAS_TRAINING
-MakeExecutor open_trainer(const std::vector<int>& numbers) {
-  std::vector<std::shared_ptr<gpu::Device>> cards;
-  for (const int number : numbers) cards.push_back(gpu::open_cuda_device(number));
-  return [cards](const std::vector<TrainingSet*>& sets, int trees_at_once) {
-    return std::make_unique<gpu::DeviceExecutor>(sets, cards, trees_at_once);
-  };
-}
-#endif
-
 }  // namespace
 
 Satellite cuda_satellite() {
-  Satellite satellite{.name = "cuda", .commands = {}, .facts = facts, .devices = {gpu::cuda_labeller()}};
-#ifdef VESALIUS_HAS_TRAINING
-  satellite.trainers = {{"cuda", open_trainer}};
-#endif
-  return satellite;
+  return {.name = "cuda", .commands = {}, .facts = facts, .devices = {gpu::cuda_labeller()}};
 }
 
 }  // namespace vesalius::cli

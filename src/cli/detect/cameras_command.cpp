@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/text_sink.h"
+#include "console/text_sink.h"
 #include "io/sensors/sensor_drivers.h"
 #include "vesalius/base/error.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/text_sink.h"
+#include "console/text_sink.h"
 #include "draw/video.h"
 #include "io/net/udp_sender.h"
 #include "stream/detect_stream.h"

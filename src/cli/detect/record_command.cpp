@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "cli/commands.h"
-#include "cli/detector_flags.h"
-#include "cli/interrupts.h"
-#include "cli/late_lines.h"
-#include "cli/progress.h"
-#include "cli/source_flags.h"
-#include "cli/text_sink.h"
+#include "console/detector_flags.h"
+#include "console/interrupts.h"
+#include "console/late_lines.h"
+#include "console/progress.h"
+#include "console/source_flags.h"
+#include "console/text_sink.h"
 #include "io/recordings/frame_recorder.h"
 #include "stream/detect_stream.h"
 #include "stream/person_json.h"

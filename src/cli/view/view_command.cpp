@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/detector_flags.h"
-#include "cli/interrupts.h"
-#include "cli/source_flags.h"
-#include "cli/text_sink.h"
 #include "cli/view/open_browser.h"
+#include "console/detector_flags.h"
+#include "console/interrupts.h"
+#include "console/source_flags.h"
+#include "console/text_sink.h"
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/base/parallel.h"
 #include "view/viewer.h"

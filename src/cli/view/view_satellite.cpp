@@ -1,5 +1,5 @@
 #include "cli/commands.h"
-#include "cli/satellites.h"
+#include "console/satellites.h"
 
 namespace vesalius::cli {
 

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "console/device_flag.h"
+#include "console/option_flags.h"
+#include "vesalius/detect.h"
+#include "vesalius/forest/forest.h"
+#include "vesalius/track/people_options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace vesalius::cli {
+
+/// Returns the default options, changed first by the TOML file (if the path is not empty) and then by the flags. Throws
+/// Error for a file that cannot be used and UsageError for options outside their range.
+PeopleOptions people_options(const std::string& options_file, const OptionFlags<PeopleOptions>& flags);
+
+/// Replaces the forest's body by that of a file with the same parts but another kinematic tree or other joints. Throws
+/// Error for a file that cannot be used or has other parts.
+void replace_body(Forest& forest, const std::string& path);
+
+/// The flags that define a detector: --model, --body, --device, --options and one for every option of detector,
+/// tracking and fitted bodies.
+class DetectorFlags {
+ public:
+  /// This object must live as long as the command.
+  explicit DetectorFlags(CLI::App& command);
+
+  /// Makes the detector. Throws Error for files that cannot be used, UsageError for options outside their range, and
+  /// DeviceError if there is no such device.
+  Detector make() const;
+  /// The parts of which `make` makes it, with the options of tracking and of fitted bodies.
+  PeopleOptions options() const;
+  /// Throws DeviceError if there is no such device.
+  std::shared_ptr<const PixelLabeller> labeller() const;
+  /// Returns the path of the model. Throws Error if none is given and there is no default model.
+  std::string model() const;
+
+ private:
+  std::string model_, body_, options_file_;
+  DeviceFlag device_;
+  OptionFlags<PeopleOptions> options_;
+};
+
+inline constexpr const char* kDetectorGroup = "Detector";
+
+}  // namespace vesalius::cli

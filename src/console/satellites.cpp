@@ -1,0 +1,36 @@
+#include "console/satellites.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace vesalius::cli {
+namespace {
+
+std::vector<Satellite>& present_satellites() {
+  static std::vector<Satellite> present;
+  return present;
+}
+
+}  // namespace
+
+void use_satellites(std::vector<Satellite> present) { present_satellites() = std::move(present); }
+
+const std::vector<Satellite>& satellites() { return present_satellites(); }
+
+std::vector<std::string> satellite_names() {
+  return {"view", "ros2", "cluster", "synth", "train", "evaluate", "assets", "cuda"};
+}
+
+std::string absent_command(const std::string& command) {
+  const std::vector<std::string> workshop{"train", "synth", "evaluate", "compare", "assets"};
+  const bool here = std::ranges::any_of(satellites(), [&](const Satellite& s) { return s.name == command; });
+  if (here) return "";
+  if (std::ranges::find(workshop, command) != workshop.end()) {
+    return command + " is not in this build, which was made without training (VESALIUS_TRAINING=OFF)";
+  }
+  if (command == "view") return "view is not in this build, which was made without Boost";
+  if (command == "ros2") return "ros2 is not in this build, which was made without Cyclone DDS";
+  return "";
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands/training_commands.h"
+#include "console/interrupts.h"
+#include "console/progress.h"
+#include "console/text_sink.h"
+#include "downloads/assets.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr std::uint64_t kKilobyte = 1000;
+
+struct Arguments {
+  std::vector<std::string> names;
+  std::string mirror;
+  std::string folder;
+  bool list = false;
+  bool quiet = false;
+};
+
+std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6); }
+
+void print_list(const std::string& folder) {
+  for (const AssetPackage& package : asset_packages()) {
+    print(fmt::format("{}: {} files, {}, {}\n", package.name, package.files.size(), megabytes(package.bytes()),
+                      has_assets(package, folder) ? "in " + folder + "/" + package.name : "not fetched"));
+    print(fmt::format("  licence: {}\n  credit: {}\n  see: {}\n", package.licence, package.credit, package.page));
+  }
+}
+
+void install(const AssetPackage& package, const std::string& folder, const Arguments& arguments) {
+  Progress progress(-1, !arguments.quiet, "kB");
+  const InstallWatch watch = [&](std::uint64_t done, std::uint64_t total) {
+    if (total > 0) progress.set(static_cast<int>(done / kKilobyte), static_cast<int>(total / kKilobyte));
+    return !interrupted();
+  };
+  const InstallReport report = install_assets(package, folder, arguments.mirror, watch);
+  progress.clear();
+  if (arguments.quiet) return;
+  say(fmt::format("{}/{}: {} files fetched, {} were there", folder, package.name, report.fetched, report.kept));
+  if (report.fetched > 0) say(fmt::format("  licence: {}; credit: {}", package.licence, package.credit));
+}
+
+void run(const Arguments& arguments) {
+  const std::string folder = arguments.folder.empty() ? assets_folder() : arguments.folder;
+  if (arguments.list) {
+    print_list(folder);
+    return;
+  }
+  std::vector<const AssetPackage*> wanted;
+  for (const std::string& name : arguments.names) wanted.push_back(&asset_package(name));
+  if (arguments.names.empty()) {
+    for (const AssetPackage& package : asset_packages()) {
+      if (!package.homes.empty() || !arguments.mirror.empty()) {
+        wanted.push_back(&package);
+      } else if (!arguments.quiet && !has_assets(package, folder)) {
+        say(fmt::format("note: {} is left out: it comes from a mirror only (--mirror)", package.name));
+      }
+    }
+  }
+  watch_interrupts();
+  for (const AssetPackage* package : wanted) install(*package, folder, arguments);
+}
+
+}  // namespace
+
+void add_assets(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("assets", "Fetch the bodies and motions that `vesalius synth` can use");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("NAME", arguments->names,
+                      "Packages (makehuman, mocap); all that can be fetched if none is named");
+  command->add_option("--mirror", arguments->mirror,
+                      "Folder or address (http://, https://, file://) that holds NAME.tar.xz or the files below NAME/");
+  command->add_option("--dir", arguments->folder,
+                      "Folder for them (default: $VESALIUS_ASSETS, else vesalius in $XDG_DATA_HOME or ~/.local/share)");
+  command->add_flag("--list", arguments->list,
+                    "Only list the packages: size, licence, credit and whether each is there");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command->footer(R"(
+Each file gets its name only if its SHA-256 is right. Running the command again fetches missing files.
+
+Examples:
+  vesalius assets makehuman
+  vesalius assets --mirror /media/usb/assets --dir ~/vesalius-assets)");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,472 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "commands/evaluate/sequence_trackers.h"
+#include "commands/evaluate/truth_bvh.h"
+#include "commands/evaluate/truth_recipe.h"
+#include "commands/training_commands.h"
+#include "console/detector_flags.h"
+#include "console/device_flag.h"
+#include "console/interrupts.h"
+#include "console/machine_facts.h"
+#include "console/option_flags.h"
+#include "console/progress.h"
+#include "console/text_sink.h"
+#include "dataset/truth_folder.h"
+#include "dataset/truth_headings.h"
+#include "dataset/truth_sequences.h"
+#include "dataset/turned_truth.h"
+#include "evaluation/ablation_report.h"
+#include "evaluation/evaluate_sequences.h"
+#include "evaluation/evaluate_set.h"
+#include "evaluation/evaluation_joints.h"
+#include "evaluation/evaluation_json.h"
+#include "evaluation/evaluation_report.h"
+#include "evaluation/evaluation_summary.h"
+#include "evaluation/fit_evaluation.h"
+#include "io/files/atomic_file.h"
+#include "io/files/options_file.h"
+#include "io/files/read_file.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/parallel.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr int kMaxStep = 1000000;
+constexpr int kMaxCount = 1000000000;
+
+/// A set to be evaluated, and how to open it.
+struct Request {
+  SetOptions set;
+  bool is_recipe = false;
+};
+
+struct Arguments {
+  explicit Arguments(CLI::App& command) : device(command), detector_flags(command) {}
+
+  std::vector<std::string> sources, recipes;
+  RenderedTruth rendered;
+  std::optional<float> clip_s;
+  std::optional<double> rate_hz;
+  std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
+      fit_score, fit_judge, fit_context, fit_trust, fit_stances;
+  DeviceFlag device;
+  OptionFlags<PeopleOptions> detector_flags;
+  int step = 1;
+  double turn_deg = 0.0;
+  int threads = 0;
+  bool labels_only = false;
+  bool track = false;
+  bool hidden = false;
+  bool ablation = false;
+  bool keep_going = false;
+  bool quiet = false;
+};
+
+/// Returns the name as valid UTF-8 on one line, since names go into pictures and JSON.
+std::string clean(const std::string& name) {
+  const nlohmann::json json = one_line(name);
+  return nlohmann::json::parse(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+std::filesystem::path whole_path(const std::string& path) {
+  std::error_code ignored;
+  const std::filesystem::path whole = std::filesystem::absolute(path, ignored).lexically_normal();
+  return whole.has_filename() ? whole : whole.parent_path();
+}
+
+/// Returns what is rendered of recipes, with the length of clips.
+RenderedTruth rendered_truth(const Arguments& arguments) {
+  RenderedTruth rendered = arguments.rendered;
+  if (arguments.rate_hz && !arguments.clip_s) throw UsageError("--rate expects --clip, the seconds of each clip");
+  if (!arguments.clip_s) return rendered;
+  if (arguments.recipes.empty()) throw UsageError("--clip expects --recipe, of which clips are rendered");
+  rendered.clip = synth::ClipTiming{*arguments.clip_s, arguments.rate_hz.value_or(synth::ClipTiming{}.rate_hz)};
+  check(*rendered.clip);
+  return rendered;
+}
+
+/// Gives each source a distinct name: its last folder or, if these are not distinct, its path.
+std::vector<Request> set_requests(const Arguments& arguments) {
+  std::vector<Request> requests;
+  std::set<std::string> paths, names;
+  const auto add = [&](const std::string& source, const std::filesystem::path& path, std::string name, bool is_recipe) {
+    if (!paths.insert(path.string()).second) throw UsageError(fmt::format("{}: given twice", source));
+    if (!names.insert(name).second) name = clean(path.string());
+    requests.push_back(
+        {{name, source, arguments.keep_going, !arguments.fit_joints.empty() || !arguments.fit_parts.empty()},
+         is_recipe});
+  };
+  for (const std::string& source : arguments.sources) {
+    for (const std::string& set : arguments.track ? std::vector{source} : sets_in(source)) {
+      const std::filesystem::path path = whole_path(set);
+      add(set, path, clean(path.filename().string()), false);
+    }
+  }
+  for (const std::string& recipe : arguments.recipes) {
+    const std::filesystem::path path = whole_path(recipe);
+    add(recipe, path, clean(path.stem().string()), true);
+  }
+  if (requests.empty()) throw UsageError("expected a source or --recipe to measure on");
+  return requests;
+}
+
+/// Quotes a word for a shell.
+std::string shell_word(const std::string& word) {
+  const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("/._-:+,=@%").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (plain) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+/// Returns an option as it was given: "--step 2", "--no-refine.second-pass", or the words of a positional argument.
+std::string as_given(const CLI::Option& option) {
+  const std::vector<std::string>& names = option.get_lnames();
+  std::string text;
+  if (!names.empty()) {
+    const bool negated = option.get_items_expected_max() == 0 && option.results() == std::vector<std::string>{"false"};
+    text += " --" + (negated ? names.back() : names.front());
+  }
+  if (option.get_items_expected_max() == 0) return text;
+  for (const std::string& value : option.results()) text += " " + shell_word(value);
+  return text;
+}
+
+/// Returns the command as it was given, with the options in the order in which the program defines them.
+std::string command_line(const CLI::App& command) {
+  std::string line = "vesalius " + command.get_name();
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() > 0) line += as_given(*option);
+  }
+  return one_line(line);
+}
+
+/// Opens the frames of a source with what the command line adds to them.
+std::unique_ptr<TruthSource> open_frames(const std::string& source, const Arguments& arguments) {
+  auto frames = open_evaluation_truth(source, arguments.step);
+  if (!arguments.headings_file.empty()) {
+    const std::string set = whole_path(source).filename().string();
+    frames = with_headings(std::move(frames), HeadingTable::read(arguments.headings_file), set);
+  }
+  return arguments.turn_deg != 0.0 ? with_turn(std::move(frames), arguments.turn_deg) : std::move(frames);
+}
+
+/// Opens the frames of a set. Where people are followed, the folders of a source are recordings of one set.
+std::unique_ptr<TruthSource> open_set(const Request& request, const Arguments& arguments, const BodyModel& body) {
+  const std::string& source = request.set.source;
+  if (request.is_recipe) {
+    auto frames = open_recipe_truth(source, rendered_truth(arguments), arguments.step, body);
+    return arguments.turn_deg != 0.0 ? with_turn(std::move(frames), arguments.turn_deg) : std::move(frames);
+  }
+  const std::vector<std::string> folders = arguments.track ? sequences_in(source) : std::vector{source};
+  if (folders.size() == 1) return open_frames(folders.front(), arguments);
+  return joined_truth(folders, [&arguments](const std::string& folder) { return open_frames(folder, arguments); });
+}
+
+SetResult evaluate_shown(const Request& request, const Arguments& arguments, const FrameScorer& scorer,
+                         const std::vector<Variant>& variants, const SequenceTrackerFactory& trackers) {
+  const OpenTruth open = [&] { return open_set(request, arguments, scorer.body()); };
+  const auto frames = open();
+  for (const std::string& note : frames->notes()) say(fmt::format("note: {}: {}", request.set.name, note));
+  Progress progress(-1, !arguments.quiet);
+  EvaluationHooks hooks;
+  hooks.progress = [&](int done, int total) { progress.set(done, total); };
+  hooks.failure = [&](const std::string& why) {
+    progress.clear();
+    say("vesalius: " + why);
+  };
+  hooks.stop = interrupted;
+  if (!arguments.track) return evaluate_set(*frames, request.set, scorer, variants, hooks);
+  return evaluate_sequences(open, request.set, scorer, trackers,
+                            {arguments.hidden, !arguments.fit_trust.empty(), !arguments.fit_stances.empty()}, hooks);
+}
+
+/// Returns whether nothing but the JSON may go to standard output.
+bool prints_json(const Arguments& arguments) { return arguments.json == "-"; }
+
+/// Writes the detector options of this run with the score fitted to all sets, and prints how good the fit is.
+void write_fitted_score(const Evaluation& evaluation, const std::string& path, bool quiet) {
+  FittedOptions fitted = fit_score_options(evaluation);
+  write_options([&](OptionVisitor& visitor) { visit_options("", fitted.options, visitor); }, path);
+  if (quiet) return;
+  const ScoreFit& fit = fitted.fit;
+  print(fmt::format(
+      "score fitted to {} candidates that were people and {} that were not: area under the curve {:.3f}, was {:.3f}\n",
+      fit.people, fit.nobodies, fit.area_after, fit.area_before));
+}
+
+/// Writes the model with a judge fitted to all sets, and prints how many candidates it was fitted to.
+void write_fitted_judge(const Evaluation& evaluation, const std::string& path, bool quiet) {
+  FittedJudge fitted = fit_judge(evaluation);
+  Forest forest = load_model(evaluation.model);
+  forest.judge = std::move(fitted.judge);
+  save_model(forest, path);
+  if (quiet) return;
+  print(fmt::format("judge fitted to {} candidates that were people and {} that were not\n", fitted.people,
+                    fitted.nobodies));
+}
+
+/// Writes the model with a context of bodies fitted to all sets, and prints how many pixels it was fitted to.
+void write_fitted_context(const Evaluation& evaluation, const std::string& path, bool quiet) {
+  FittedContext fitted = fit_context(evaluation);
+  Forest forest = load_model(evaluation.model);
+  forest.context = std::move(fitted.context);
+  forest.judge = {};
+  save_model(forest, path);
+  if (quiet) return;
+  print(fmt::format(
+      "context fitted to {} pixels of people and {} of other things; the judge, if there was one, is left out\n",
+      fitted.bodies, fitted.others));
+}
+
+/// Writes the trust in fitted joints fitted to all sets, and prints for each kind of joints how well confidence agrees
+/// with the share that is right, before and after.
+void write_fitted_trust(const Evaluation& evaluation, const std::string& path, bool quiet) {
+  const FittedTrust fitted = fit_evaluation_trust(evaluation);
+  write_file_atomically(path, fitted.toml);
+  if (quiet) return;
+  for (const NamedSource& source : kJointSources) {
+    const TrustAgreement& agreement = fitted.fit.agreement[static_cast<std::size_t>(source.source)];
+    if (agreement.samples == 0) continue;
+    print(fmt::format(
+        "trust in {} joints: {} of {} right; confidence and share right differ by {:.1f} %, were {:.1f} %{}\n",
+        source.name, agreement.right, agreement.samples, 100.0 * agreement.after, 100.0 * agreement.before,
+        agreement.fitted ? "" : " (too few to fit, left as it was)"));
+  }
+}
+
+/// Writes the model of stances fitted to all sets, and prints how often one frame alone tells each, before and after.
+void write_fitted_stances(const Evaluation& evaluation, const std::string& path, bool quiet) {
+  const FittedStances fitted = fit_evaluation_stances(evaluation);
+  write_file_atomically(path, fitted.toml);
+  if (quiet) return;
+  for (const StanceAgreement& agreement : fitted.fit.agreement) {
+    const double share = 100.0 / static_cast<double>(agreement.samples);
+    print(fmt::format("stances fitted to {} frames of people {}: {:.1f} % right by one frame, were {:.1f} %\n",
+                      agreement.samples, to_string(agreement.stance),
+                      share * static_cast<double>(agreement.right_after),
+                      share * static_cast<double>(agreement.right_before)));
+  }
+}
+
+void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
+  if (!arguments.json.empty()) {
+    TextSink sink(arguments.json);
+    sink.line(evaluation_json(evaluation));
+    sink.finish();
+  }
+  if (!arguments.report.empty()) write_report(evaluation, arguments.report);
+  if (!arguments.fit_joints.empty()) write_file_atomically(arguments.fit_joints, fitted_joints_toml(evaluation));
+  if (!arguments.fit_parts.empty()) {
+    write_file_atomically(arguments.fit_parts, fitted_distribution_toml(evaluation));
+  }
+  if (!arguments.fit_score.empty()) write_fitted_score(evaluation, arguments.fit_score, prints_json(arguments));
+  if (!arguments.fit_judge.empty()) write_fitted_judge(evaluation, arguments.fit_judge, prints_json(arguments));
+  if (!arguments.fit_context.empty()) write_fitted_context(evaluation, arguments.fit_context, prints_json(arguments));
+  if (!arguments.fit_trust.empty()) write_fitted_trust(evaluation, arguments.fit_trust, prints_json(arguments));
+  if (!arguments.fit_stances.empty()) write_fitted_stances(evaluation, arguments.fit_stances, prints_json(arguments));
+}
+
+/// Throws Error where a file that is to be fitted could not be written: that is known after the last frame otherwise.
+void check_writable(const Arguments& arguments) {
+  for (const std::string* path :
+       {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_score, &arguments.fit_judge, &arguments.fit_context,
+        &arguments.fit_trust, &arguments.fit_stances}) {
+    if (!path->empty()) vesalius::check_writable(*path);
+  }
+}
+
+void run(const Arguments& arguments, const std::string& command) {
+  const ThreadLimit limit(arguments.threads);
+  check_writable(arguments);
+  const std::vector<Request> requests = set_requests(arguments);
+  (void)rendered_truth(arguments);  // before anything is read
+  const std::string bytes = read_file(arguments.model);
+  Forest forest = parse_model(bytes, arguments.model);
+  forest.body = arguments.joints_file.empty() ? with_evaluation_joints(forest.body)
+                                              : with_joints_of(forest.body, arguments.joints_file);
+  // Candidates are the same with any judge, and one of an earlier version would not be understood.
+  const bool fits_context = !arguments.fit_context.empty();
+  if (!arguments.fit_judge.empty() || fits_context) forest.judge = {};
+  if (fits_context) forest.context = {};
+  const bool labels_only = arguments.labels_only || fits_context;
+  Evaluation evaluation;
+  evaluation.options = people_options(arguments.options_file, arguments.detector_flags);
+  evaluation.labels_only = labels_only;
+  evaluation.has_background = forest.has_background;
+  evaluation.command = command;
+  evaluation.model = arguments.model;
+  evaluation.model_checksum = model_checksum(bytes);
+  evaluation.version = VESALIUS_VERSION;
+  evaluation.machine = machine_facts();
+  const FrameScorer::Options scored{evaluation.options.detect, labels_only, arguments.joint_set, fits_context};
+  std::vector<Variant> variants;
+  if (arguments.ablation) variants = ablation_variants(forest, scored);
+  const std::shared_ptr<const PixelLabeller> labeller = arguments.device.make(std::move(forest));
+  const FrameScorer scorer(labeller, scored);
+  SequenceTrackerFactory trackers;
+  if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options);
+  evaluation.tracked = arguments.track;
+  evaluation.body = scorer.body();
+  if (!arguments.report.empty()) prepare_report(arguments.report);
+  watch_interrupts();
+  int failed = 0;
+  for (const Request& request : requests) {
+    evaluation.sets.push_back(evaluate_shown(request, arguments, scorer, variants, trackers));
+    failed += evaluation.sets.back().failed;
+    if (!prints_json(arguments)) print(summary_lines(evaluation.sets.back()) + ablation_lines(evaluation.sets.back()));
+    std::fflush(stdout);  // a set can take minutes
+  }
+  write_outputs(arguments, evaluation);
+  if (failed > 0) throw Error(fmt::format("{} frames failed", failed));
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("evaluate", "Measure a model against frames whose truth is known");
+  const auto arguments = std::make_shared<Arguments>(*command);
+  command->add_option("SOURCE", arguments->sources,
+                      "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/, joints.csv or "
+                      "truth_bvh.toml, a folder of such folders with one frames.csv, or ITOP_..._depth_map.h5");
+  command
+      ->add_option("--recipe", arguments->recipes,
+                   "Frames rendered from this recipe and not kept, as `vesalius synth --recipe` makes them")
+      ->type_name("FILE");
+  command->add_option("--count", arguments->rendered.count, "Frames of each recipe; with --clip clips")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxCount));
+  command
+      ->add_option("--clip", arguments->clip_s,
+                   "Clips of so many seconds of each recipe instead of single frames, as `vesalius synth --clip`")
+      ->type_name("SECONDS");
+  command->add_option("--rate", arguments->rate_hz, "Frames a second of clips (default: 30)")->type_name("HZ");
+  command->add_option("--render-seed", arguments->rendered.seed, "Seed of the recipes' frames")->type_name("N");
+  command->add_option("--assets", arguments->rendered.assets.folder, "Folder in which `vesalius assets` put its files")
+      ->type_name("DIR");
+  command->add_option("-m,--model", arguments->model, "Trained forest")->type_name("FILE")->required();
+  command
+      ->add_option("--report", arguments->report,
+                   "Folder for report.html, report.md, report.json, figures.csv (and ablation.csv)")
+      ->type_name("DIR");
+  command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`; - for standard output")
+      ->type_name("FILE");
+  command->add_option("--options", arguments->options_file, "TOML file of options, as `vesalius options` prints them")
+      ->type_name("FILE");
+  command->add_option("--step", arguments->step, "Only the first of every N frames")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxStep));
+  command
+      ->add_option("--turn", arguments->turn_deg, "Turn every picture clockwise by so much, as a rolled camera sees it")
+      ->type_name("DEGREES")
+      ->check(CLI::Range(-180.0, 180.0));
+  CLI::Option* labels_only = command->add_flag("--labels-only", arguments->labels_only,
+                                               "Only the pixel labels of the first pass: much faster");
+  command
+      ->add_flag("--ablation", arguments->ablation,
+                 "Evaluate also without each part of the method in turn, with the time per frame; takes about fifteen "
+                 "times as long")
+      ->excludes(labels_only);
+  command
+      ->add_option("--joints", arguments->joints_file,
+                   "TOML with joint sets named as the truth names its joints, instead of those built in")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--joint-set", arguments->joint_set,
+          "Joint set to compare the truth's joints with and to fit, e.g. kinect20; by default the truth's choice")
+      ->type_name("NAME");
+  command
+      ->add_option("--headings", arguments->headings_file,
+                   "Table of the side that people turn to the camera: columns set (the last folder of the source), "
+                   "frame, heading (front, side, back)")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--fit-joints", arguments->fit_joints,
+          "Write the joint sets of the model's body fitted to the people found in these frames, whose joints are then "
+          "not measured")
+      ->type_name("FILE")
+      ->excludes(labels_only);
+  command
+      ->add_option("--fit-parts", arguments->fit_parts,
+                   "Write how the parts of the people found lie to each other, from which a body model predicts hidden "
+                   "parts; rendered people only, whose joints are then not measured")
+      ->type_name("FILE")
+      ->excludes(labels_only);
+  command
+      ->add_option(
+          "--fit-score", arguments->fit_score,
+          "Write the detector options used, with the weights of the person score fitted to these frames; it is "
+          "for models without a judge")
+      ->type_name("FILE")
+      ->excludes(labels_only);
+  command
+      ->add_option(
+          "--fit-judge", arguments->fit_judge,
+          "Write the model with a judge fitted to these frames, which tells people from what is taken for them")
+      ->type_name("FOREST")
+      ->excludes(labels_only);
+  command
+      ->add_option(
+          "--fit-context", arguments->fit_context,
+          "Write the model with a context fitted to these labelled frames, which corrects by what is around each "
+          "pixel whether it is a body; measures nothing, and leaves out the judge, which is fitted afterwards")
+      ->type_name("FOREST")
+      ->excludes("--fit-joints", "--fit-parts", "--fit-score", "--fit-judge", "--ablation");
+  CLI::Option* track =
+      command
+          ->add_flag(
+              "--track", arguments->track,
+              "Follow the people over each recording, frame after frame, and measure ids and motion too; a folder "
+              "of recordings is one set")
+          ->excludes("--labels-only", "--ablation", "--fit-joints", "--fit-parts", "--fit-score", "--fit-judge",
+                     "--fit-context");
+  command
+      ->add_option("--fit-trust", arguments->fit_trust,
+                   "With --track: write how far the joints of fitted bodies can be trusted, fitted to these recordings")
+      ->type_name("FILE")
+      ->needs(track);
+  command
+      ->add_option("--fit-stances", arguments->fit_stances,
+                   "With --track: write how probable stances are by one frame, fitted to these recordings")
+      ->type_name("FILE")
+      ->needs(track);
+  command
+      ->add_flag(
+          "--hidden", arguments->hidden,
+          "With --track: people who are hidden take part, true and tracked ones, instead of only those with pixels")
+      ->needs(track);
+  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The metrics are the same")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxThreads));
+  command->add_flag("--keep-going", arguments->keep_going, "Skip frames that fail; the exit code is then 1");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print no progress");
+  command->footer(R"(
+Every option of detector, tracking and fitted bodies is a flag too, e.g. --search.min-parts 6; `vesalius options` lists
+them. docs/metrics.md says what the metrics mean.
+
+Examples:
+  vesalius evaluate held_out/ -m adult.forest --report out/
+  vesalius evaluate --recipe data/protocol/cluttered.toml --count 5000 -m adult.forest
+  vesalius evaluate real/room real/hall -m adult.forest --json a.json
+  vesalius evaluate recordings/ -m adult.forest --track
+  vesalius evaluate held_out/ empty_rooms/ -m adult.forest --fit-score detector.toml
+  vesalius evaluate rendered/ empty_rooms/ -m adult.forest --fit-judge judged.forest)");
+  command->callback([arguments, command] { run(*arguments, command_line(*command)); });
+}
+
+}  // namespace vesalius::cli

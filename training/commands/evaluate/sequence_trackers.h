@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+
+#include "metrics/score_sequence.h"
+#include "vesalius/detect.h"
+#include "vesalius/track/people_options.h"
+
+namespace vesalius::cli {
+
+/// Returns what makes the trackers that `evaluate --track` measures, each for one sequence, as `detect --track` does
+/// it.
+SequenceTrackerFactory sequence_trackers(std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options);
+
+}  // namespace vesalius::cli

@@ -1,0 +1,313 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "commands/cluster/cluster_flags.h"
+#include "commands/synth/frame_maker.h"
+#include "commands/synth/render_cluster.h"
+#include "commands/synth/synth_assets.h"
+#include "commands/synth/synth_recipe.h"
+#include "commands/training_commands.h"
+#include "console/interrupts.h"
+#include "console/option_flags.h"
+#include "console/progress.h"
+#include "console/text_sink.h"
+#include "dataset/labelled_dataset.h"
+#include "dataset/labelled_export.h"
+#include "dataset/labelled_frame_codec.h"
+#include "draw/contact_sheet.h"
+#include "io/files/atomic_file.h"
+#include "io/files/image_file.h"
+#include "io/files/read_file.h"
+#include "synth/fit_flesh.h"
+#include "synth/generate.h"
+#include "synth/skeleton_joints.h"
+#include "vesalius/base/parallel.h"
+#include "vesalius/base/parallel_in_order.h"
+#include "vesalius/fit/flesh_model.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr int kMaxFrames = 1'000'000'000;
+constexpr int kMaxPreview = 200;
+constexpr int kPreviewColumns = 3;
+
+struct Arguments {
+  explicit Arguments(CLI::App& command) : recipe_flags(command) {}
+
+  std::string recipe, sensor, camera, body, assets, motions, out, fit_flesh, format = "shards";
+  std::vector<std::string> models;
+  OptionFlags<synth::Recipe> recipe_flags;
+  ClipRequest clip;
+  ClusterFlags cluster;
+  int count = 0, preview = 0, first = 0, shard = 256, threads = 0;
+  std::uint64_t seed = 1;
+  bool quiet = false;
+};
+
+BodyModel body_of(const Arguments& arguments) {
+  return arguments.body.empty() ? paper_body() : parse_body_model(read_file(arguments.body), arguments.body);
+}
+
+/// Makes the frames of a range in order. `prepare` runs on all threads, `take` in the calling one.
+template <class Prepare, class Take>
+void make_frames(const FrameMaker& maker, std::uint64_t first, int count, Progress& progress, const Prepare& prepare,
+                 const Take& take) {
+  parallel_in_order(
+      count,
+      [&](int i) {
+        const std::uint64_t index = first + i;
+        return prepare(index, maker.frame(index));
+      },
+      [&](int i, auto item) {
+        if (interrupted()) return false;
+        take(first + i, std::move(item));
+        progress.step();
+        return true;
+      });
+  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+}
+
+LabelledFrame as_it_is(std::uint64_t /*index*/, LabelledFrame frame) { return frame; }
+
+void write_shards(const Arguments& arguments, const FrameMaker& maker, const DatasetInfo& info, int part_count) {
+  DatasetWriter writer(arguments.out, info);
+  std::uint64_t missing = 0;
+  for (const FrameRange& range : writer.missing()) missing += range.count;
+  if (missing < info.frames && !arguments.quiet) {
+    say(fmt::format("{}: {} of {} frames are there", arguments.out, info.frames - missing, info.frames));
+  }
+  Progress progress(static_cast<int>(missing), !arguments.quiet);
+  const auto encode = [&](std::uint64_t index, LabelledFrame frame) {
+    return encode_frame({index, info.seed, std::move(frame)}, part_count);
+  };
+  const std::vector<FrameRange> ranges = writer.missing();
+  for (const FrameRange& range : ranges) {
+    make_frames(maker, range.first, static_cast<int>(range.count), progress, encode,
+                [&](std::uint64_t index, std::string bytes) { writer.write_encoded(index, std::move(bytes)); });
+  }
+  progress.clear();
+  if (!arguments.quiet) {
+    say(fmt::format("{}: {} frames, {:.1f} frames/s", arguments.out, info.frames,
+                    progress.done() / progress.seconds()));
+  }
+}
+
+void write_folder(const Arguments& arguments, const FrameMaker& maker, const BodyModel& body) {
+  LabelledExporter exporter(arguments.out, body, synth::joint_names(), maker.clips);
+  const auto count = static_cast<int>(maker.frames_in(arguments.count));
+  Progress progress(count, !arguments.quiet);
+  make_frames(maker, maker.frames_in(arguments.first), count, progress, as_it_is,
+              [&](std::uint64_t /*index*/, const LabelledFrame& frame) { exporter.write(frame); });
+  progress.clear();
+  if (!arguments.quiet) say(fmt::format("{}: {} frames", arguments.out, progress.done()));
+}
+
+/// Returns the numbers of a preview's frames: those from `first` on, or frames spread evenly over that clip.
+std::vector<std::uint64_t> preview_frames(const Arguments& arguments, const FrameMaker& maker) {
+  const std::uint64_t first = maker.frames_in(arguments.first), per_clip = maker.clips.frames_per_clip;
+  std::vector<std::uint64_t> numbers;
+  for (int i = 0; i < arguments.preview; ++i) {
+    const auto step = static_cast<std::uint64_t>(i);
+    if (per_clip == 0) numbers.push_back(first + step);
+    if (per_clip > step)
+      numbers.push_back(first + step * per_clip / std::min<std::uint64_t>(per_clip, arguments.preview));
+  }
+  return numbers;
+}
+
+void write_preview(const Arguments& arguments, const FrameMaker& maker, const BodyModel& body) {
+  const std::vector<std::uint64_t> numbers = preview_frames(arguments, maker);
+  const FrameMaker shown{[&](std::uint64_t i) { return maker.frame(numbers[i]); }, {}};
+  std::vector<LabelledFrame> frames;
+  Progress progress(static_cast<int>(numbers.size()), !arguments.quiet);
+  make_frames(shown, 0, static_cast<int>(numbers.size()), progress, as_it_is,
+              [&](std::uint64_t /*index*/, LabelledFrame frame) { frames.push_back(std::move(frame)); });
+  progress.clear();
+  const std::string path = arguments.out.empty() ? "preview.png" : arguments.out;
+  write_png(contact_sheet(frames, body, kPreviewColumns), path);
+  if (!arguments.quiet) say(fmt::format("{}: {} frames", path, frames.size()));
+}
+
+/// Writes the bodies and poses of the recipe as a flesh model.
+void write_flesh(const Arguments& arguments, const synth::Recipe& recipe, const synth::Generator& generator) {
+  synth::FleshFitOptions options;
+  options.bodies = std::min(options.bodies, recipe.body.count);
+  options.seed = arguments.seed;
+  write_file_atomically(arguments.fit_flesh, synth::fitted_flesh_toml(generator, options));
+}
+
+void check(const Arguments& arguments) {
+  if ((arguments.count > 0) + (arguments.preview > 0) + !arguments.fit_flesh.empty() != 1) {
+    throw UsageError("expected one of --count, --preview and --fit-flesh");
+  }
+  if (arguments.count > 0 && arguments.out.empty()) throw UsageError("--count expects --out, the folder to write");
+  if (arguments.first > 0 && arguments.count > 0 && arguments.format == "shards") {
+    throw UsageError("a dataset begins with frame 0: --first expects --preview or --format folder");
+  }
+  if (!arguments.cluster.on.empty() && (arguments.count == 0 || arguments.format != "shards")) {
+    throw UsageError("--on expects --count with --format shards");
+  }
+  if (arguments.clip.rate_hz && !arguments.clip.clip_s)
+    throw UsageError("--rate expects --clip, the seconds of each clip");
+  if (!arguments.clip.clip_s) return;
+  if (!arguments.fit_flesh.empty()) throw UsageError("--clip expects --count or --preview");
+  const auto clips = static_cast<std::int64_t>(arguments.first) + std::max(1, arguments.count);
+  if (clips * timing_of(arguments.clip).frames() > kMaxFrames) {
+    throw UsageError(fmt::format("{} clips of {} frames, expected at most {} frames in all", clips,
+                                 timing_of(arguments.clip).frames(), kMaxFrames));
+  }
+}
+
+void run(const Arguments& arguments) {
+  check(arguments);
+  if (!arguments.fit_flesh.empty()) check_writable(arguments.fit_flesh);
+  const ThreadLimit limit(arguments.threads);
+  const synth::Recipe recipe = make_recipe({.file = arguments.recipe,
+                                            .sensor = arguments.sensor,
+                                            .camera = arguments.camera,
+                                            .flags = &arguments.recipe_flags});
+  const BodyModel body = body_of(arguments);
+  const LoadedAssets loaded = load_assets(recipe, {.folder = arguments.assets,
+                                                   .motions = arguments.motions,
+                                                   .models = arguments.models,
+                                                   .movements = arguments.clip.clip_s.has_value()});
+  if (!arguments.quiet) {
+    for (const std::string& note : loaded.notes) say("note: " + note);
+  }
+  const FrameMaker maker = make_frame_maker(recipe, loaded.assets, body, arguments.seed, arguments.clip);
+  watch_interrupts();
+  if (!arguments.fit_flesh.empty()) {
+    return write_flesh(arguments, recipe, synth::Generator(recipe, loaded.assets, body, arguments.seed));
+  }
+  if (arguments.preview > 0) return write_preview(arguments, maker, body);
+  if (arguments.format == "folder") return write_folder(arguments, maker, body);
+  DatasetInfo info;
+  info.body_toml = body.toml;
+  info.recipe = full_recipe(recipe, loaded);
+  info.seed = arguments.seed;
+  info.frames = maker.frames_in(arguments.count);
+  info.clips = maker.clips;
+  info.joints = synth::joint_names();
+  info.frames_per_shard = arguments.shard;
+  if (!arguments.cluster.on.empty()) {
+    const RenderRequest request{
+        recipe, body, {arguments.assets, arguments.motions, arguments.models, false}, arguments.clip};
+    return render_on_cluster(request, info, arguments.out, arguments.cluster, !arguments.quiet);
+  }
+  write_shards(arguments, maker, info, body.part_count());
+}
+
+void add_output_flags(CLI::App& command, Arguments& arguments) {
+  const std::string group = "Output";
+  command.add_option("--count", arguments.count, "Frames to make; with --clip clips")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxFrames))
+      ->group(group);
+  command
+      .add_option("--preview", arguments.preview,
+                  "Instead of a dataset, a picture of this many frames; with --clip spread over the first clip")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxPreview))
+      ->group(group);
+  command
+      .add_option("--out", arguments.out,
+                  "Folder for the frames, created if missing; an interrupted run continues. With --preview the "
+                  "picture (default: preview.png)")
+      ->type_name("PATH")
+      ->group(group);
+  command
+      .add_option("--fit-flesh", arguments.fit_flesh,
+                  "Instead of frames, the bodies and poses of the recipe as the model that people are fitted with")
+      ->type_name("FILE")
+      ->group(group);
+  command.add_option("--format", arguments.format, "shards: compact, for training; folder: PNG and JSON")
+      ->check(CLI::IsMember({"shards", "folder"}))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--seed", arguments.seed, "A frame depends only on the recipe, this seed and its number")
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--clip", arguments.clip.clip_s,
+                  "Clips of so many seconds instead of single frames: people who move before a camera")
+      ->type_name("SECONDS")
+      ->group(group);
+  command
+      .add_option("--rate", arguments.clip.rate_hz,
+                  fmt::format("Frames a second of clips (default: {})", synth::ClipTiming{}.rate_hz))
+      ->type_name("HZ")
+      ->group(group);
+  command
+      .add_option("--first", arguments.first, "Number of the first frame, or clip, for --preview and --format folder")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxFrames))
+      ->group(group);
+  command.add_option("--shard", arguments.shard, "Frames in a shard")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str()
+      ->group(group);
+}
+
+void add_recipe_flags(CLI::App& command, Arguments& arguments) {
+  const std::string group = "What to make";
+  std::vector<std::string> names;
+  for (const synth::Sensor& sensor : synth::sensors()) names.push_back(sensor.name);
+  command
+      .add_option("--preset", arguments.sensor,
+                  fmt::format("Depth camera: {} (default: {})", fmt::join(names, ", "), synth::SensorOptions{}.preset))
+      ->type_name("NAME")
+      ->group(group);
+  command.add_option("--camera", arguments.camera, "Other intrinsics for the camera: meta.json or camera_info YAML")
+      ->type_name("FILE")
+      ->group(group);
+  command.get_option("--mounting")->type_name("NAME")->group(group);
+  command.add_option("--recipe", arguments.recipe, "TOML file of options; `vesalius options synth` prints one")
+      ->type_name("FILE")
+      ->group(group);
+  command.add_option("--body", arguments.body, "Body model with other parts")->type_name("FILE")->group(group);
+  command.add_option("--models", arguments.models, "Furniture of your own: OBJ or glTF, metres, y up")
+      ->type_name("FILE")
+      ->group(group);
+  command.add_option("--motions", arguments.motions, "Motions of your own: a folder of .bvh, or .amc with .asf")
+      ->type_name("DIR")
+      ->group(group);
+  command.add_option("--assets", arguments.assets, "Folder in which `vesalius assets` put its files")
+      ->type_name("DIR")
+      ->group(group);
+}
+
+}  // namespace
+
+void add_synth(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("synth", "Make labelled frames of synthetic people");
+  const auto arguments = std::make_shared<Arguments>(*command);
+  add_output_flags(*command, *arguments);
+  add_recipe_flags(*command, *arguments);
+  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The result is the same")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxThreads));
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  add_cluster_flags(*command, arguments->cluster);
+  add_render_task(*command);
+  command->footer(R"(
+Every option of a recipe is a flag too, e.g. --people.two 1; `vesalius options synth` lists them.
+
+Examples:
+  vesalius synth --preview 24 --out look.png
+  vesalius synth --preset kinect-v1 --count 10000 --seed 1 --out train/
+  vesalius synth --clip 5 --preview 9 --out clip.png
+  vesalius synth --preset d435 --mounting ceiling --recipe mine.toml --count 500 --out ceiling/)");
+  command->callback([arguments, command] {
+    if (command->get_subcommands().empty()) run(*arguments);
+  });
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+
+#include "commands/cluster/cluster_flags.h"
+#include "commands/train/train_inputs.h"
+#include "commands/train/train_run.h"
+#include "train/grow_forest.h"
+
+namespace vesalius::cli {
+
+/// How a training on a cluster is divided, besides the engine's flags.
+struct TrainClusterFlags {
+  ClusterFlags engine;
+  int shard_frames = 2000;
+  double task_memory_gib = 2.0;  ///< that a map task may take for all shards
+};
+
+/// Trains as train() does, with the work done by the tasks of an engine; the model is the same. Finished jobs are kept
+/// where --store says until the model is written, so an interrupted run continues. Throws Error as train() and
+/// Engine::run do.
+void train_on_cluster(const TrainRun& run, const TrainOptions& options, const TrainSources& sources,
+                      const TrainClusterFlags& flags);
+
+}  // namespace vesalius::cli

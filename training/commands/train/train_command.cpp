@@ -1,0 +1,206 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "commands/train/task_commands.h"
+#include "commands/train/train_cluster.h"
+#include "commands/train/train_inputs.h"
+#include "commands/train/train_plan.h"
+#include "commands/train/train_run.h"
+#include "commands/training_commands.h"
+#include "console/interrupts.h"
+#include "console/option_flags.h"
+#include "console/source_flags.h"
+#include "console/text_sink.h"
+#include "io/files/atomic_file.h"
+#include "io/files/options_file.h"
+#include "vesalius/base/parallel.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr int kMaxFrames = 100'000'000;
+constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
+
+struct Arguments {
+  explicit Arguments(CLI::App& command) : train_flags(command) {}
+
+  TrainSources sources;
+  std::string out, options_file, report, trees_of, device = "cpu";
+  OptionFlags<TrainOptions> train_flags;
+  double memory_gib = 0.0;
+  int threads = 0;
+  TrainClusterFlags cluster;
+  bool estimate = false, restart = false, curves = false, quiet = false;
+};
+
+TrainOptions make_options(const Arguments& arguments) {
+  TrainOptions options;
+  if (!arguments.options_file.empty()) {
+    read_options(arguments.options_file, [&](OptionVisitor& visitor) { visit_options("", options, visitor); });
+  }
+  arguments.train_flags.apply(options);
+  check(options);
+  return options;
+}
+
+void check(const Arguments& arguments, const TrainOptions& options) {
+  if (arguments.out.empty() && !arguments.estimate)
+    throw UsageError("expected --out, the model to write, or --estimate");
+  std::error_code ignored;
+  if (written_directly(arguments.out) || std::filesystem::is_directory(arguments.out, ignored)) {
+    throw UsageError(arguments.out + ": expected the name of a file to write");
+  }
+  if (!arguments.trees_of.empty() && (options.leaves.rounds == 0 || options.sample.background_share <= 0.F)) {
+    throw UsageError("--trees-of keeps the trees and learns leaves: expected --leaf-rounds above 0 and a background");
+  }
+  if (!arguments.cluster.engine.on.empty() && (!arguments.report.empty() || arguments.estimate)) {
+    throw UsageError("--on expects neither --report nor --estimate, which need all frames in one process");
+  }
+  if (!arguments.cluster.engine.on.empty() && arguments.device != "cpu") {
+    throw UsageError("--on expects no --device: the tasks of an engine run on processors");
+  }
+  if (arguments.curves && arguments.report.empty()) throw UsageError("--curves expects --report, where they go");
+  if (!arguments.report.empty() && options.sample.held_out_share <= 0.F) {
+    throw UsageError("--report expects frames to measure accuracy on: held-out-share above 0");
+  }
+  if (!arguments.sources.backgrounds.empty() && options.sample.background_share <= 0.F) {
+    throw UsageError("--background expects a background class: background-share above 0");
+  }
+}
+
+std::uint64_t memory_limit(const Arguments& arguments) {
+  return arguments.memory_gib > 0.0 ? static_cast<std::uint64_t>(arguments.memory_gib * kGiB) : default_memory();
+}
+
+void run(const Arguments& arguments) {
+  const ThreadLimit limit(arguments.threads);
+  const TrainOptions options = make_options(arguments);
+  check(arguments, options);
+  if (!arguments.cluster.engine.on.empty()) {
+    watch_interrupts();
+    return train_on_cluster({.out = arguments.out,
+                             .trees_of = arguments.trees_of,
+                             .report = "",
+                             .restart = arguments.restart,
+                             .shown = !arguments.quiet},
+                            options, arguments.sources, arguments.cluster);
+  }
+  const TrainInputs inputs(arguments.sources);
+  if (!arguments.quiet) {
+    for (const std::string& note : inputs.notes()) say("note: " + note);
+  }
+  const MemoryPlan plan = plan_memory(inputs, options, arguments.curves, memory_limit(arguments));
+  if (arguments.estimate) return print(estimate_text(inputs, options, plan));
+  watch_interrupts();
+  train({.out = arguments.out,
+         .trees_of = arguments.trees_of,
+         .report = arguments.report,
+         .curves = arguments.curves,
+         .restart = arguments.restart,
+         .shown = !arguments.quiet,
+         .device = arguments.device,
+         .trees_at_once = plan.trees_at_once,
+         .max_bytes = memory_limit(arguments)},
+        options, inputs);
+}
+
+void add_source_flags(CLI::App& command, TrainSources& sources) {
+  const std::string group = "What to learn from";
+  const auto add = [&](const char* name, auto& value, const char* help, const char* type) {
+    return command.add_option(name, value, help)->type_name(type)->group(group);
+  };
+  add("--data", sources.data, "Folders that `vesalius synth` wrote", "DIR");
+  add("--recipe", sources.recipes, "TOML files of synth: frames are rendered and not kept", "FILE");
+  add("--count", sources.count, "Frames to render of each recipe; most frames to take of each dataset", "N")
+      ->check(CLI::Range(1, kMaxFrames));
+  add("--recipe-seed", sources.render_seed, "Seed of the rendered frames, as in `vesalius synth --seed`", "N")
+      ->capture_default_str();
+  add("--background", sources.backgrounds, "Frames of rooms without people: all that `vesalius detect` reads",
+      "SOURCE");
+  add("--body", sources.body, "Body model with other parts, for --recipe", "FILE");
+  add("--models", sources.assets.models, "Furniture of your own for --recipe: OBJ or glTF, metres, y up", "FILE");
+  add("--motions", sources.assets.motions, "Motions of your own for --recipe: a folder of .bvh, or .amc with .asf",
+      "DIR");
+  add("--assets", sources.assets.folder, "Folder in which `vesalius assets` put its files", "DIR");
+  add_camera_flags(command, sources.camera);
+}
+
+void add_run_flags(CLI::App& command, Arguments& arguments) {
+  const std::string group = "Run";
+  command.add_flag("--estimate", arguments.estimate, "Only estimate time and memory")->group(group);
+  command.add_option("--memory", arguments.memory_gib, "GiB it may take (default: 80 % of what the machine has)")
+      ->type_name("GIB")
+      ->check(CLI::Range(0.01, 1e6))
+      ->group(group);
+  command.add_flag("--restart", arguments.restart, "Discard the trees of an interrupted run")->group(group);
+  command.add_option("--report", arguments.report, "Folder for a report, as web page and Markdown; needs gnuplot")
+      ->type_name("DIR")
+      ->group(group);
+  command.add_flag("--curves", arguments.curves, "With --report: accuracy against frames and candidates as well")
+      ->group(group);
+  command.add_option("--threads", arguments.threads, "Threads to use; 0 = all. The result is the same")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxThreads))
+      ->group(group);
+  command
+      .add_option("--device", arguments.device,
+                  "What trains: cpu, cuda or cuda:N (a card), cuda:N,cuda:M (several), or auto, a card where one works "
+                  "and otherwise the processor. The result is the same")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->group(group);
+  command.add_flag("-q,--quiet", arguments.quiet, "Print errors only")->group(group);
+}
+
+}  // namespace
+
+void add_train(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("train", "Train a forest from labelled frames");
+  const auto arguments = std::make_shared<Arguments>(*command);
+  add_source_flags(*command, arguments->sources);
+  const std::string group = "Forest";
+  command->add_option("--out", arguments->out, "Model to write; OUT.work keeps trees until all are grown")
+      ->type_name("FILE")
+      ->group(group);
+  command->add_option("--options", arguments->options_file, "TOML file of options; `vesalius options train` prints one")
+      ->type_name("FILE")
+      ->group(group);
+  command->add_option("--trees-of", arguments->trees_of, "Keep the trees of this model and only learn leaves anew")
+      ->type_name("FILE")
+      ->group(group);
+  for (const char* name : {"--trees", "--depth", "--candidates", "--pixels"}) {
+    command->get_option(name)->type_name("N")->group(group);
+  }
+  add_run_flags(*command, *arguments);
+  add_cluster_flags(*command, arguments->cluster.engine);
+  const std::string machines = "Several machines (docs/cluster.md)";
+  command->add_option("--shard-frames", arguments->cluster.shard_frames, "Frames of a shard")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str()
+      ->group(machines);
+  command
+      ->add_option("--task-memory", arguments->cluster.task_memory_gib,
+                   "GiB of a map task for all frames: where they fit, it grows whole subtrees")
+      ->type_name("GIB")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
+      ->group(machines);
+  add_train_tasks(*command);
+  command->footer(R"(
+The options that decide how a forest is trained are flags too, e.g. --min-samples 20; `vesalius options train` lists
+them. An interrupted run continues when the same command is given again, and ends with the same model.
+
+Examples:
+  vesalius train --data train/ --out my.forest --report report/
+  vesalius train --data kinect/ d435/ --background office/ --trees 4 --estimate
+  vesalius train --recipe ceiling.toml --count 20000 --out ceiling.forest)");
+  command->callback([arguments, command] {
+    if (command->get_subcommands().empty()) run(*arguments);
+  });
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,88 @@
+#include "commands/train/train_recipe.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "downloads/sha256.h"
+#include "io/files/options_file.h"
+#include "io/model/model_file.h"
+
+namespace vesalius::cli {
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+bool is_comment(const std::string& line) { return line.starts_with('#'); }
+
+/// Returns options without their explanations, since this text is for programs to read.
+std::string without_help(const std::string& toml, std::string_view indent) {
+  const std::vector<std::string> lines = lines_of(toml);
+  std::string text;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool help =
+        is_comment(lines[i]) && i + 1 < lines.size() && !lines[i + 1].empty() && !is_comment(lines[i + 1]);
+    if (!lines[i].empty() && !help) text.append(indent).append(lines[i]).append("\n");
+  }
+  return text;
+}
+
+/// Returns the text with every line as a comment.
+std::string commented(const std::string& text) {
+  std::string all;
+  for (const std::string& line : lines_of(text)) all.append("#   ").append(line).append("\n");
+  return all;
+}
+
+std::string sha256_of(const std::string& text) {
+  Sha256 sum;
+  sum.update(text);
+  return sum.finish();
+}
+
+}  // namespace
+
+std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
+                         const std::vector<BackgroundFacts>& backgrounds, const Forest* trees_of) {
+  const auto all = [&](OptionVisitor& visitor) { visit_options("", options, visitor); };
+  std::string text = without_help(options_toml(all), "");
+  text += fmt::format("# body {}: sha256 {}\n", inputs.body().name, sha256_of(inputs.body().toml));
+  for (std::size_t i = 0; i < backgrounds.size(); ++i) {
+    text += fmt::format("# background {}: {} frames, sha256 {}\n", i + 1, backgrounds[i].frames, backgrounds[i].sha256);
+  }
+  for (std::size_t i = 0; i < inputs.inputs().size(); ++i) {
+    const TrainInput& input = inputs.inputs()[i];
+    text += fmt::format("# data {}: {} frames, seed {}, hash {:016x}, made by\n", i + 1, input.frames, input.seed,
+                        input.hash);
+    text += without_help(input.made_by, "#   ");
+  }
+  if (trees_of != nullptr) {
+    text += fmt::format("# trees of a model of checksum {}, made by\n{}", model_checksum(serialise_model(*trees_of)),
+                        commented(trees_of->recipe));
+  }
+  return fmt::format("# vesalius train {}\n# key {}\n{}", VESALIUS_VERSION, sha256_of(text), text);
+}
+
+std::string first_difference(const std::string& before, const std::string& now) {
+  const std::vector<std::string> old_lines = lines_of(before);
+  const std::vector<std::string> new_lines = lines_of(now);
+  std::string difference;
+  for (std::size_t i = 0; i < std::max(old_lines.size(), new_lines.size()); ++i) {
+    const std::string then = i < old_lines.size() ? old_lines[i] : "nothing";
+    const std::string here = i < new_lines.size() ? new_lines[i] : "nothing";
+    if (then == here) continue;
+    difference = fmt::format("`{}` before, now `{}`", then, here);
+    if (!here.starts_with("# key ")) break;  // the key is skipped, since it differs whenever anything does
+  }
+  return difference;
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "commands/train/train_inputs.h"
+#include "train/grow_forest.h"
+
+namespace vesalius::cli {
+
+/// Returns how a forest is made, as the text that its model file carries: options as TOML, each source of frames with
+/// its hash and, as comments, the recipe that makes it. Folders are not named, so the same data in another place gives
+/// the same text. Equal texts give equal forests. `vesalius train --options` reads the text.
+std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
+                         const std::vector<BackgroundFacts>& backgrounds, const Forest* trees_of = nullptr);
+
+/// Returns the first line in which two such texts differ, as "`candidates = 50` before, now `candidates = 60`"; empty
+/// if they are equal.
+std::string first_difference(const std::string& before, const std::string& now);
+
+}  // namespace vesalius::cli

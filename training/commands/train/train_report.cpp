@@ -1,0 +1,201 @@
+#include "commands/train/train_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "io/files/atomic_file.h"
+#include "report/plot.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr double kMiB = 1024.0 * 1024.0;
+
+std::string share_text(double share) { return fmt::format("{:.3f}", share); }
+
+std::vector<std::string> class_names(const TrainingSet& set) {
+  std::vector<std::string> names;
+  for (const BodyPart& part : set.body().parts) names.push_back(part.name);
+  if (set.has_background()) names.emplace_back("background");
+  return names;
+}
+
+/// Plots both accuracies against numbers that begin with `first`, 0 or 1.
+std::string accuracy_plot(const std::string& x_label, const std::vector<AccuracyPoint>& points, int first) {
+  LinePlot plot;
+  plot.x_label = x_label;
+  plot.y_label = "mean recall of the parts";
+  plot.series = {{"among parts", {}}, {"background a rival", {}}};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double x = static_cast<double>(i) + first;
+    plot.series[0].points.emplace_back(x, points[i].parts_only);
+    plot.series[1].points.emplace_back(x, points[i].with_background);
+  }
+  // The range is given because a single point would span none.
+  plot.x_range = PlotRange{static_cast<double>(first), std::max(static_cast<double>(points.size()) - 1, 1.0) + first};
+  plot.y_range = PlotRange{0.0, 1.0};
+  return plot_svg(plot);
+}
+
+void add_summary(Document& document, const Forest& forest, const TrainingSet& set, const TrainFigures& figures) {
+  const double core_s = figures.grown.seconds * figures.threads;
+  const auto evaluations = static_cast<double>(figures.grown.evaluations);
+  std::vector<std::vector<std::string>> rows = {
+      {"Accuracy among parts", share_text(figures.accuracy.parts_only())},
+      {"Accuracy, background a rival", share_text(figures.accuracy.with_background())},
+      {"Frames", fmt::format("{}", set.frames().size())},
+      {"Samples learned from", fmt::format("{}", set.samples().size())},
+      {"of them hard negatives", fmt::format("{}", figures.grown.hard_negatives)},
+      {"Samples held out", fmt::format("{}", set.held_out().size())},
+      {"Frames and samples in memory, MiB", fmt::format("{:.0f}", static_cast<double>(set.bytes()) / kMiB)},
+      {"Reading or rendering, s", fmt::format("{:.1f}", figures.reading_s)},
+      {"Growing, s", fmt::format("{:.1f}", figures.grown.seconds)},
+      {"Threads", fmt::format("{}", figures.threads)},
+      {"Million evaluations per core-second", core_s > 0.0 ? fmt::format("{:.1f}", evaluations / core_s * 1e-6) : ""},
+      {"Model, MiB", fmt::format("{:.2f}", static_cast<double>(figures.model_bytes) / kMiB)},
+      {"Trees", fmt::format("{}", forest.trees.size())}};
+  document.table({"", ""}, rows);
+  if (figures.grown.resumed > 0) {
+    document.paragraph(
+        fmt::format("{} trees of both rounds are of an earlier run; times and evaluations are those of "
+                    "the last one.",
+                    figures.grown.resumed));
+  }
+  document.paragraph(
+      "Accuracy is the mean recall of the body parts on held-out samples, which were drawn as those to learn from: "
+      "half "
+      "of them balanced over the parts. It compares forests on the same samples and is no figure over all pixels.");
+}
+
+void add_trees(Document& document, const Forest& forest, const TrainFigures& figures) {
+  document.heading(2, "Trees");
+  document.svg("accuracy-trees", accuracy_plot("trees", figures.by_trees, 1), "Accuracy of the first trees together");
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t t = 0; t < forest.trees.size(); ++t) {
+    const Tree& tree = forest.trees[t];
+    const AccuracyPoint& point = figures.by_trees[t];
+    rows.push_back({fmt::format("{}", t + 1), fmt::format("{}", depth(tree)), fmt::format("{}", tree.nodes.size()),
+                    fmt::format("{}", tree.leaves.size()), share_text(point.parts_only),
+                    share_text(point.with_background)});
+  }
+  document.table({"Trees", "Depth", "Nodes", "Leaves", "Among parts", "Background a rival"}, rows);
+}
+
+void add_levels(Document& document, const TrainFigures& figures) {
+  document.heading(2, "Levels");
+  document.svg("accuracy-levels", accuracy_plot("level", figures.by_level, 0),
+               "Accuracy of the forest cut at a level, inner nodes answering with the samples that pass them");
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t level = 0; level < figures.by_level.size(); ++level) {
+    rows.push_back({fmt::format("{}", level), share_text(figures.by_level[level].parts_only),
+                    share_text(figures.by_level[level].with_background)});
+  }
+  document.table({"Level", "Among parts", "Background a rival"}, rows);
+}
+
+/// Plots the shares of the samples of each class that were given each class.
+std::string confusion_plot(const Confusion& confusion, const std::vector<std::string>& names) {
+  MatrixPlot plot{"confusion matrix", "true class", "given class", names, {}};
+  for (int truth = 0; truth < confusion.classes; ++truth) {
+    std::vector<double>& row = plot.shares.emplace_back();
+    const auto sum = static_cast<double>(std::max(confusion.row_sum(truth), std::uint64_t{1}));
+    for (int given = 0; given < confusion.classes; ++given) {
+      row.push_back(static_cast<double>(confusion.at(truth, given)) / sum);
+    }
+  }
+  return plot_svg(plot);
+}
+
+void add_classes(Document& document, const TrainingSet& set, const TrainFigures& figures) {
+  const std::vector<std::string> names = class_names(set);
+  document.heading(2, "Classes");
+  document.svg("confusion", confusion_plot(figures.accuracy.all, names),
+               "Confusion matrix: percent of a true class (row) that were given a class (column)");
+  std::vector<std::uint64_t> samples(names.size(), 0);
+  for (const TrainingSample& sample : set.samples()) ++samples[sample.label];
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const int index = static_cast<int>(c);
+    const bool part = index < set.body().part_count();
+    rows.push_back({names[c], fmt::format("{}", set.class_pixels()[c]), fmt::format("{}", samples[c]),
+                    fmt::format("{}", figures.accuracy.all.row_sum(index)),
+                    part ? share_text(figures.accuracy.parts.recall(index)) : "",
+                    share_text(figures.accuracy.all.recall(index))});
+  }
+  document.table({"Class", "Pixels", "Samples", "Held out", "Recall among parts", "Recall"}, rows);
+}
+
+/// Plots the accuracy among parts against `x_of`, for the points that differ from the largest run in nothing else.
+template <class XOf>
+std::string curve_plot(const std::string& x_label, const std::vector<CurvePoint>& curve, const XOf& x_of) {
+  LinePlot plot;
+  plot.x_label = x_label;
+  plot.y_label = "mean recall of the parts";
+  plot.log_x = true;
+  plot.y_range = PlotRange{0.0, 1.0};
+  plot.series = {{"among parts", {}}, {"background a rival", {}}};
+  for (const CurvePoint& point : curve) {
+    plot.series[0].points.emplace_back(x_of(point), point.accuracy.parts_only);
+    plot.series[1].points.emplace_back(x_of(point), point.accuracy.with_background);
+  }
+  return plot_svg(plot);
+}
+
+void add_curves(Document& document, const std::vector<CurvePoint>& points) {
+  if (points.empty()) return;
+  document.heading(2, "Curves");
+  std::vector<CurvePoint> by_frames, by_candidates;
+  for (const CurvePoint& point : points) {
+    if (point.candidates == points.front().candidates) by_frames.push_back(point);
+    if (point.frame_share >= 1.0) by_candidates.push_back(point);
+  }
+  std::ranges::sort(by_candidates, {}, &CurvePoint::candidates);
+  document.svg("accuracy-frames",
+               curve_plot("frames", by_frames, [](const CurvePoint& p) { return static_cast<double>(p.frames); }),
+               "Accuracy against frames learned from");
+  document.svg(
+      "accuracy-candidates",
+      curve_plot("candidates", by_candidates, [](const CurvePoint& p) { return static_cast<double>(p.candidates); }),
+      "Accuracy against candidates of a node");
+  std::vector<std::vector<std::string>> rows;
+  for (const CurvePoint& point : points) {
+    rows.push_back({fmt::format("{}", point.frames), fmt::format("{}", point.candidates),
+                    fmt::format("{}", point.trees), share_text(point.accuracy.parts_only),
+                    share_text(point.accuracy.with_background), fmt::format("{:.1f}", point.seconds)});
+  }
+  document.table({"Frames", "Candidates", "Trees", "Among parts", "Background a rival", "Growing, s"}, rows);
+}
+
+}  // namespace
+
+Document train_report(const Forest& forest, const TrainingSet& set, const TrainFigures& figures) {
+  Document document(fmt::format("Training of {}", figures.model));
+  add_summary(document, forest, set, figures);
+  add_trees(document, forest, figures);
+  add_levels(document, figures);
+  add_classes(document, set, figures);
+  add_curves(document, figures.curves);
+  document.heading(2, "Recipe");
+  document.preformatted(forest.recipe);
+  return document;
+}
+
+void expect_plots() { accuracy_plot("trees", {{0.0, 0.0}, {1.0, 1.0}}, 1); }
+
+void write_report(const Document& document, const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Error(folder + ": folder cannot be made: " + error.message());
+  const std::filesystem::path place(folder);
+  for (const Document::Picture& picture : document.pictures()) {
+    write_file_atomically((place / picture.file).string(), picture.bytes);
+  }
+  write_file_atomically((place / "report.md").string(), document.markdown());
+  write_file_atomically((place / "report.html").string(), document.html());
+}
+
+}  // namespace vesalius::cli

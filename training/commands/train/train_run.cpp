@@ -1,0 +1,180 @@
+#include "commands/train/train_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "commands/train/grow_display.h"
+#include "commands/train/train_curves.h"
+#include "commands/train/train_device.h"
+#include "commands/train/train_recipe.h"
+#include "commands/train/train_report.h"
+#include "commands/train/train_session.h"
+#include "console/progress.h"
+#include "console/text_sink.h"
+#include "io/model/model_file.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
+
+namespace vesalius::cli {
+namespace {
+
+constexpr double kMiB = 1024.0 * 1024.0;
+constexpr double kGiB = 1024.0 * kMiB;
+
+/// Trains one forest and holds what its steps share.
+class Training {
+ public:
+  Training(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs)
+      : run_(run),
+        options_(options),
+        inputs_(inputs),
+        device_(run.device),
+        trees_of_(run.trees_of.empty() ? std::nullopt : std::optional(kept_trees(run, inputs))),
+        set_(inputs.body(), trees_of_ ? trees_of_->convention : training_convention(options), options.sample,
+             static_cast<std::uint64_t>(options.grow.seed)) {}
+
+  void run() {
+    if (!run_.report.empty()) expect_plots();
+    fill();
+    expect_enough();
+    if (run_.curves) {
+      figures_.curves = train_curves(inputs_, set_, background_frames_, options_, run_.shown);
+    }
+    const Forest forest = grow();
+    save_model(forest, run_.out);
+    session_->remove();
+    summarise(forest);
+    if (!run_.report.empty()) report(forest);
+  }
+
+ private:
+  /// Reads all frames, the backgrounds first: the recipe contains a hash of their bytes, so a run that does not match
+  /// the session is refused before the rest is read.
+  void fill() {
+    Progress progress(total_frames(), run_.shown);
+    const auto add = [&](const LabelledFrame& frame) {
+      set_.add(frame);
+      progress.step();
+      if (set_.bytes() <= run_.max_bytes) return;
+      throw Error(fmt::format(
+          "{} frames take {:.2f} GiB, --memory allows {:.2f}: expected frames like those measured beforehand",
+          progress.done(), static_cast<double>(set_.bytes()) / kGiB, static_cast<double>(run_.max_bytes) / kGiB));
+    };
+    const std::vector<BackgroundFacts> backgrounds = inputs_.read_backgrounds(add);
+    background_frames_ = set_.frames().size();
+    recipe_ = train_recipe(options_, inputs_, backgrounds, trees_of_ ? &*trees_of_ : nullptr);
+    session_.emplace(run_.out + ".work", untrained_forest(), run_.restart);
+    inputs_.read({}, add);
+    figures_.reading_s = progress.seconds();
+    progress.clear();
+    tell(fmt::format("{} frames, {:.2f} million samples, {:.1f} s", set_.frames().size(),
+                     static_cast<double>(set_.samples().size()) * 1e-6, figures_.reading_s));
+  }
+
+  void expect_enough() {
+    const auto body = set_.class_pixels().first(set_.body().part_count());
+    const bool people = std::ranges::any_of(body, [](std::uint64_t pixels) { return pixels > 0; });
+    const bool judged = run_.report.empty() || !set_.held_out().empty();
+    if (people && judged) return;
+    session_->remove();
+    const std::size_t frames = set_.frames().size();
+    if (!people) throw Error(fmt::format("no person in any of {} frames, expected some to learn from", frames));
+    throw Error(fmt::format("no frame of {} is held out, --report expects some: --held-out-share up", frames));
+  }
+
+  /// Returns the number of frames with an estimate for backgrounds that do not know theirs.
+  int total_frames() const {
+    std::int64_t frames = inputs_.frames();
+    for (const TrainBackground& background : inputs_.backgrounds()) {
+      if (background.frames < 0) return -1;
+      frames += background.frames;
+    }
+    return static_cast<int>(frames);
+  }
+
+  Forest untrained_forest() const {
+    Forest forest = set_.untrained_forest();
+    forest.recipe = recipe_;
+    return forest;
+  }
+
+  Forest grow() {
+    Forest forest;
+    device_.run({&set_}, run_.trees_at_once, [&](Executor& executor) {
+      TrainDisplay display(set_, options_.grow.leaf.max_depth, run_.shown);
+      try {
+        forest = trees_of_ ? learn_again(executor, display)
+                           : train_forest(executor, untrained_forest(), options_, *session_, display);
+        figures_.grown = display.totals();
+      } catch (const Interrupted&) {
+        throw Error(
+            fmt::format("interrupted, {} are in {}: the same command goes on", display.done(), session_->folder()));
+      }
+    });
+    return forest;
+  }
+
+  /// Learns the leaves of the kept trees. Background that their old leaves take for a body is learned from as well.
+  Forest learn_again(Executor& executor, TrainDisplay& display) {
+    Forest forest = *trees_of_;
+    forest.recipe = recipe_;
+    if (options_.hard_trees > 0) display.add_hard_negatives(add_hard_negatives(executor, forest, options_.sample));
+    relearn_leaves(executor, forest, options_.leaves, *session_, display);
+    return forest;
+  }
+
+  void summarise(const Forest& forest) {
+    figures_.accuracy = held_out_accuracy(forest, set_);
+    figures_.model = run_.out;
+    figures_.model_bytes = std::filesystem::file_size(run_.out);
+    figures_.threads = thread_count();
+    tell(fmt::format("{}: {} trees, {:.2f} MiB, grown in {:.1f} s", run_.out, forest.trees.size(),
+                     static_cast<double>(figures_.model_bytes) / kMiB, figures_.grown.seconds));
+    if (set_.held_out().empty()) return;
+    tell(fmt::format("accuracy {:.3f} ({:.3f} among parts) on {} held-out samples", figures_.accuracy.with_background(),
+                     figures_.accuracy.parts_only(), set_.held_out().size()));
+  }
+
+  void report(const Forest& forest) {
+    figures_.by_trees = accuracy_by_trees(forest, set_);
+    figures_.by_level = accuracy_by_level(forest, set_);
+    write_report(train_report(forest, set_, figures_), run_.report);
+    tell(fmt::format("{}/report.html", run_.report));
+  }
+
+  void tell(const std::string& text) const {
+    if (run_.shown) say(text);
+  }
+
+  const TrainRun& run_;
+  const TrainOptions& options_;
+  const TrainInputs& inputs_;
+  TrainDevice device_;
+  std::optional<Forest> trees_of_;
+  TrainingSet set_;
+  std::size_t background_frames_ = 0;
+  std::string recipe_;
+  std::optional<TrainSession> session_;
+  TrainFigures figures_;
+};
+
+}  // namespace
+
+Forest kept_trees(const TrainRun& run, const TrainInputs& inputs) {
+  Forest forest = load_model(run.trees_of);
+  if (!std::ranges::equal(forest.body.parts, inputs.body().parts, {}, &BodyPart::name, &BodyPart::name)) {
+    throw Error(run.trees_of + ": has other body parts than the frames, expected the same");
+  }
+  if (!forest.has_background)
+    throw Error(run.trees_of + ": has no background class, expected one to learn leaves with");
+  return forest;
+}
+
+void train(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs) {
+  Training(run, options, inputs).run();
+}
+
+}  // namespace vesalius::cli

@@ -1,0 +1,186 @@
+#include "evaluation/evaluate_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <utility>
+
+#include "metrics/median.h"
+#include "report/escape_text.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/parallel.h"
+
+namespace vesalius {
+namespace {
+
+constexpr std::size_t kFramesPerThread = 4;
+constexpr std::size_t kFailuresKept = 10;
+
+/// A frame that is being scored.
+struct Item {
+  TrueFrame frame;
+  int index = 0;
+  FrameScore score;
+  std::vector<FrameScore> of_variants;
+  std::string failure;
+};
+
+/// The sums over a variant's frames so far.
+struct VariantSums {
+  MetricTable metrics;
+  std::vector<double> frame_ms;
+};
+
+class SetEvaluation {
+ public:
+  SetEvaluation(TruthSource& source, const SetOptions& options, const FrameScorer& scorer,
+                const std::vector<Variant>& variants, const EvaluationHooks& hooks)
+      : source_(source),
+        options_(options),
+        scorer_(scorer),
+        variants_(variants),
+        hooks_(hooks),
+        of_variants_(variants.size()) {
+    result_.name = options.name;
+    result_.source = options.source;
+    result_.notes = source.notes();
+    check_parts(source.part_names(), scorer.body(), options.source);
+  }
+
+  SetResult run() {
+    const auto start = std::chrono::steady_clock::now();
+    const std::size_t batch = kFramesPerThread * std::max(1, thread_count());
+    for (std::vector<Item> items = read(batch); !items.empty(); items = read(batch)) {
+      score_all(items);
+      for (Item& item : items) take(std::move(item));
+      if (hooks_.stop && hooks_.stop())
+        throw Error(fmt::format("{}: interrupted after {} frames", result_.name, index_));
+    }
+    result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (result_.frames == 0) throw Error(fmt::format("{}: no frame that could be evaluated", options_.source));
+    result_.frame_ms = median(std::move(frame_ms_));
+    for (std::size_t v = 0; v < variants_.size(); ++v) {
+      VariantSums& sums = of_variants_[v];
+      result_.ablation.push_back({variants_[v].name, sums.metrics.estimates(), median(std::move(sums.frame_ms))});
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// Returns the next frames, fewer at the end. Frames that cannot be read are reported.
+  std::vector<Item> read(std::size_t count) {
+    std::vector<Item> items;
+    while (items.size() < count) {
+      try {
+        std::optional<TrueFrame> frame = source_.next();
+        if (!frame) break;
+        items.push_back({std::move(*frame), index_, {}, {}, {}});
+      } catch (const Error& e) {
+        fail(e.what());
+      }
+      ++index_;
+    }
+    return items;
+  }
+
+  /// Scores frames in parallel. They share threads, so only all of them together can be timed.
+  void score_all(std::vector<Item>& items) const {
+    if (variants_.empty()) {
+      parallel_for(static_cast<int>(items.size()), [&](int i) { score(items[i]); });
+    } else {
+      for (Item& item : items) score(item);
+    }
+  }
+
+  void score(Item& item) const {
+    try {
+      const bool fit = options_.fit_joints || item.index % kFitEvery == 0;
+      item.score = scorer_.score(item.frame, fit);
+      for (const Variant& variant : variants_) {
+        FrameScore& score = item.of_variants.emplace_back(variant.scorer->score(item.frame, fit));
+        score.people.clear();  // only a variant's metrics are kept, since its pictures would fill the memory
+        score.labels = {};
+      }
+    } catch (const Error& e) {
+      item.failure = e.what();
+    }
+  }
+
+  void fail(const std::string& why) {
+    if (!options_.keep_going) throw Error(why);
+    if (hooks_.failure) hooks_.failure(why);
+    ++result_.failed;
+    if (result_.failures.size() < kFailuresKept) result_.failures.push_back(one_line_text(why));
+  }
+
+  void take(Item item) {
+    ++done_;
+    if (hooks_.progress) hooks_.progress(done_, source_.size());
+    if (!item.failure.empty())
+      return fail(fmt::format("{}: frame {}: {}", options_.source, item.frame.frame.name, item.failure));
+    ++result_.frames;
+    FrameScore& score = item.score;
+    const std::uint64_t key = frame_key(result_.name.c_str(), item.frame.frame.name.c_str());
+    result_.metrics.add(key, score.terms);
+    if (!variants_.empty()) frame_ms_.push_back(1e3 * score.detect_s);
+    for (std::size_t v = 0; v < variants_.size(); ++v) {
+      of_variants_[v].metrics.add(key, item.of_variants[v].terms);
+      of_variants_[v].frame_ms.push_back(1e3 * item.of_variants[v].detect_s);
+    }
+    ++result_.log.frames;
+    result_.log.expected += score.expected;
+    result_.log.proposals.insert(result_.log.proposals.end(), score.proposals.begin(), score.proposals.end());
+    result_.samples.insert(result_.samples.end(), score.samples.begin(), score.samples.end());
+    std::ranges::move(score.context_samples, std::back_inserter(result_.context_samples));
+    for (const auto& errors_m : score.joint_errors_m) result_.joint_curve.add(errors_m);
+    result_.joint_precision.add(score.joint_precision);
+    result_.centre_precision.add(score.centre_precision);
+    if (options_.fit_joints) std::ranges::move(score.known_people, std::back_inserter(result_.known_people));
+    if (score.confusion) {
+      if (!result_.confusion) result_.confusion.emplace(score.confusion->parts());
+      result_.confusion->add(*score.confusion);
+    }
+    keep_if_worst({std::move(item.frame.frame), std::move(item.score)}, options_.worst, result_.worst);
+  }
+
+  TruthSource& source_;
+  const SetOptions& options_;
+  const FrameScorer& scorer_;
+  const std::vector<Variant>& variants_;
+  const EvaluationHooks& hooks_;
+  std::vector<VariantSums> of_variants_;
+  std::vector<double> frame_ms_;
+  int index_ = 0;
+  int done_ = 0;
+  SetResult result_;
+};
+
+}  // namespace
+
+void check_parts(const std::vector<std::string>& names, const BodyModel& body, const std::string& source) {
+  const std::vector<BodyPart>& parts = body.parts;
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    const std::string ours = p < parts.size() ? parts[p].name : "missing";
+    if (ours == names[p]) continue;
+    throw Error(fmt::format("{}: part {} is {}, in the model {}", source, p, names[p], ours));
+  }
+  if (names.empty() || names.size() == parts.size()) return;
+  throw Error(fmt::format("{}: {} parts, the model has {}", source, names.size(), parts.size()));
+}
+
+void keep_if_worst(WorstFrame frame, std::size_t most, std::vector<WorstFrame>& worst) {
+  if (frame.score.what_went_wrong.empty()) return;
+  const auto place =
+      std::ranges::find_if(worst, [&](const WorstFrame& other) { return other.score.badness < frame.score.badness; });
+  worst.insert(place, std::move(frame));
+  if (worst.size() > most) worst.pop_back();
+}
+
+SetResult evaluate_set(TruthSource& frames, const SetOptions& options, const FrameScorer& scorer,
+                       const std::vector<Variant>& variants, const EvaluationHooks& hooks) {
+  return SetEvaluation(frames, options, scorer, variants, hooks).run();
+}
+
+}  // namespace vesalius

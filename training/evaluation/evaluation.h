@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metrics/boost_trees.h"
+#include "metrics/detection_curve.h"
+#include "metrics/fit_joints.h"
+#include "metrics/fit_score.h"
+#include "metrics/fit_stances.h"
+#include "metrics/fit_trust.h"
+#include "metrics/joint_metrics.h"
+#include "metrics/joint_precision.h"
+#include "metrics/metric_table.h"
+#include "metrics/pixel_metrics.h"
+#include "metrics/score_frame.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/frame.h"
+#include "vesalius/track/people_options.h"
+
+namespace vesalius {
+
+/// A frame that is shown in the report.
+struct WorstFrame {
+  Frame frame;
+  FrameScore score;
+};
+
+/// The figures of a set for one variant of the method.
+struct AblationRow {
+  std::string variant;
+  std::vector<Estimate> metrics;
+  double frame_ms = 0.0;  ///< as SetResult's
+};
+
+/// The results of an evaluation on one set of frames.
+struct SetResult {
+  std::string name;
+  std::string source;
+  int frames = 0;
+  int failed = 0;
+  double seconds = 0.0;
+  double frame_ms = 0.0;           ///< median time of the detector on a frame with all threads; only with an ablation
+  std::vector<std::string> notes;  ///< remarks of the source on its frames, one line each
+  std::vector<std::string> failures;  ///< the first failures, one line each
+  MetricTable metrics;
+  DetectionLog log;
+  JointCurve joint_curve;
+  JointPrecision joint_precision;
+  JointPrecision centre_precision;
+  std::optional<PixelConfusion> confusion;
+  std::vector<KnownPerson> known_people;          ///< for fitting joints
+  std::vector<ScoreSample> samples;               ///< for fitting the score
+  std::vector<BoostSample> context_samples = {};  ///< for fitting the context of bodies
+  std::vector<TrustSample> trust_samples = {};    ///< for fitting the trust in fitted joints
+  std::vector<StanceSample> stance_samples = {};  ///< for fitting the stances
+  std::vector<WorstFrame> worst;                  ///< the worst first
+  std::vector<AblationRow> ablation;              ///< the same frames with each variant
+};
+
+/// The results of a model on some sets of frames, from which reports are made.
+struct Evaluation {
+  std::string command;  ///< command that repeats the evaluation
+  std::string model;    ///< path
+  std::string model_checksum;
+  std::string version;    ///< version of the program
+  std::string machine;    ///< facts about the machine that timings depend on, on one line
+  PeopleOptions options;  ///< those of tracking and fitted bodies count only where people were followed
+  BodyModel body;
+  bool labels_only = false;
+  bool tracked = false;         ///< people were followed over recordings (evaluate_sequences)
+  bool has_background = false;  ///< the model has a background class
+  std::vector<SetResult> sets;
+};
+
+/// Number of steps of the curve over the score.
+inline constexpr int kScoreSteps = 50;
+
+}  // namespace vesalius

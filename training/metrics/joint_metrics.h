@@ -1,0 +1,94 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metrics/metric_table.h"
+#include "vesalius/base/frame_truth.h"
+#include "vesalius/derive_joints.h"
+
+namespace vesalius {
+
+/// Distance below which a joint counts as right, metres. The tables of ITOP call the share of right joints mAP.
+inline constexpr double kJointTolerance_m = 0.1;
+/// A joint that lies farther from the truth was mistaken for something else and tells nothing about its place.
+inline constexpr double kPlacedJoint_m = 0.25;
+/// Largest distance of the curve over distances, centimetres.
+inline constexpr int kJointCurve_cm = 30;
+
+/// The joints of one true person under the names of its data set, and where they were found. NaN means not known or not
+/// found.
+struct JointPair {
+  std::vector<Eigen::Vector3f> truth;
+  std::vector<Eigen::Vector3f> found;  ///< found positions, of the same length
+};
+
+/// Returns the positions of `joints`, which are in the order of `set`, in the order of `names`. Joints that were not
+/// found are NaN; if the person was not found (`joints` is empty), all are. Throws Error for a name that the set lacks.
+std::vector<Eigen::Vector3f> joints_by_name(const std::vector<std::string>& names, const JointSet& set,
+                                            const std::vector<Joint>& joints);
+
+/// Returns the confidences of the same joints; 0 of those that were not found.
+std::vector<float> confidences_by_name(const std::vector<std::string>& names, const JointSet& set,
+                                       const std::vector<Joint>& joints);
+
+/// Returns the joint set called `wanted` if the body has it and it has any of these joints, otherwise the first one
+/// that has all of them, or null.
+const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names,
+                               std::string_view wanted = "");
+
+/// Points of the true people that a joint set of the body predicts.
+struct KnownPoints {
+  const JointSet* set = nullptr;
+  std::vector<std::string> names;  ///< those that the set has
+  std::vector<std::vector<Eigen::Vector3f>> of_person;
+};
+/// Returns the true joints in a set of the body: the one called `joint_set`, or where that is empty the truth's own
+/// choice. Returns nothing if no joints are known or no set has them. The result is valid while `body` is.
+std::optional<KnownPoints> known_joints(const FrameTruth& truth, const BodyModel& body, const std::string& joint_set);
+
+/// Returns the distance of each joint in metres: NaN if the truth is not known, infinity if the joint was not found.
+std::vector<double> joint_errors(const JointPair& pair);
+
+/// The mean distance of the joints that both have; NaN if there are too few joints for a mean or a fit.
+struct MeanErrors {
+  double absolute_m = 0.0;
+  double root_aligned_m = 0.0;  ///< after moving the mean of the joints named "...hip..." onto the true one
+  double procrustes_m = 0.0;    ///< after the similarity with the least squared error (Umeyama 1991)
+};
+MeanErrors mean_joint_errors(const JointPair& pair, const std::vector<std::string>& names);
+
+/// Returns the joint metrics of one person. Joints that were not found count as wrong in the shares of right joints,
+/// and are left out of the mean errors.
+MetricTerms joint_terms(const JointPair& pair, const std::vector<std::string>& names);
+/// Returns the shares and mean errors of the centres of one person's parts, in the same way.
+MetricTerms centre_terms(const JointPair& pair, const std::vector<std::string>& names);
+
+/// Returns how many of a person's parts that were not observed have a predicted place within kJointTolerance_m, of
+/// those with a predicted place (also by their confidence) and of all that were not observed. `centres` are those of
+/// the parts' volumes, true and found.
+MetricTerms predicted_part_terms(const Skeleton& skeleton, const JointPair& centres);
+
+/// Returns how far the joints that both have lie from the truth, in millimetres with a sign: along the true body's axis
+/// from the middle of the hips to the neck (up), across it towards the person's own left (left), and along the viewing
+/// ray away from the camera (behind). There are no terms up and left unless the truth has hips and neck or shoulders,
+/// and none of joints nearer to their partner's truth than to their own: one swapped arm would outweigh many biases.
+/// The way up is given once more for the joints within kPlacedJoint_m alone.
+MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names);
+
+/// The numbers of joints within 1, 2, ... kJointCurve_cm centimetres of the truth.
+struct JointCurve {
+  std::array<long, kJointCurve_cm> within{};
+  long joints = 0;
+
+  void add(const std::vector<double>& errors_m);
+  void merge(const JointCurve& other);
+  /// Returns the share within `cm`, 1 to kJointCurve_cm; NaN without joints.
+  double share(int cm) const;
+};
+
+}  // namespace vesalius

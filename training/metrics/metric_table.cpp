@@ -1,0 +1,139 @@
+#include "metrics/metric_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+double ratio(double numerator, double denominator) { return denominator > 0.0 ? numerator / denominator : kNaN; }
+
+/// Returns the mean of values. Those that are not known do not count.
+double known_mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    count += 1.0;
+  }
+  return ratio(sum, count);
+}
+
+/// Returns the mean of a family's members. Members that a resample lacks do not count in its mean.
+Estimate mean_of(Metric metric, const std::vector<Estimate>& members) {
+  Estimate mean{metric};
+  for (const Estimate& member : members) mean.numerator += member.value;
+  mean.denominator = static_cast<double>(members.size());
+  mean.value = mean.numerator / mean.denominator;
+  std::vector<double> values;
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    values.clear();
+    for (const Estimate& member : members) values.push_back(member.replicates[r]);
+    mean.replicates.push_back(known_mean(values));
+  }
+  mean.interval = percentile_interval(mean.replicates);
+  return mean;
+}
+
+/// Returns for each of `members` what `of` has of the same parameter, or 0; with `roots` the root of the product of
+/// both.
+std::vector<Estimate> along(const std::vector<Estimate>& members, const std::vector<Estimate>& of, bool roots) {
+  std::vector<Estimate> values;
+  for (const Estimate& member : members) {
+    const auto other =
+        std::ranges::find_if(of, [&](const Estimate& e) { return e.id.parameter == member.id.parameter; });
+    const auto value = [&](double first, double second) {
+      if (std::isnan(first)) return kNaN;  // the resample has nobody
+      if (std::isnan(second)) return 0.0;
+      return roots ? std::sqrt(first * second) : second;
+    };
+    Estimate& result = values.emplace_back(Estimate{member.id});
+    result.value = value(member.value, other != of.end() ? other->value : kNaN);
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      result.replicates.push_back(value(member.replicates[r], other != of.end() ? other->replicates[r] : kNaN));
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+const Estimate* find_estimate(const std::vector<Estimate>& estimates, Metric metric, std::string_view parameter) {
+  const auto found = std::ranges::find_if(
+      estimates, [&](const Estimate& e) { return e.id.metric == metric && e.id.parameter == parameter; });
+  return found == estimates.end() ? nullptr : &*found;
+}
+
+std::string text_with_interval(const Estimate& estimate) {
+  const MetricUnit unit = info(estimate.id.metric).unit;
+  const double scale = unit == MetricUnit::share ? 100.0 : 1.0;
+  const int digits = metric_digits(estimate.id.metric);
+  return fmt::format("{} ({:.{}f} to {:.{}f})", metric_text(estimate.id.metric, estimate.value),
+                     scale * estimate.interval.low, digits, scale * estimate.interval.high, digits);
+}
+
+void MetricTable::add(std::uint64_t key, const MetricTerms& terms) {
+  for (const MetricTerm& term : terms) {
+    if (std::isfinite(term.numerator) && std::isfinite(term.denominator) && term.denominator >= 0.0) continue;
+    throw Error(fmt::format("{}: {} of {}, expected finite numbers", term.id.name(), term.numerator, term.denominator));
+  }
+  frames_key_ += key * 0x9e3779b97f4a7c15ULL;  // a sum, so that the order does not matter
+  const Weights weights = bootstrap_weights(key);
+  for (const MetricTerm& term : terms) {
+    const auto [found, is_new] = sums_.try_emplace({term.id.metric, term.id.parameter});
+    Sums& sums = found->second;
+    sums.place = is_new ? term.id.place : std::min(sums.place, term.id.place);
+    sums.numerator += term.numerator;
+    sums.denominator += term.denominator;
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      sums.numerators[r] += weights[r] * term.numerator;
+      sums.denominators[r] += weights[r] * term.denominator;
+    }
+  }
+}
+
+Estimate MetricTable::estimate(MetricId id, const Sums& sums) {
+  Estimate estimate{std::move(id)};
+  estimate.numerator = sums.numerator;
+  estimate.denominator = sums.denominator;
+  estimate.value = ratio(sums.numerator, sums.denominator);
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    estimate.replicates.push_back(ratio(sums.numerators[r], sums.denominators[r]));
+  }
+  estimate.interval = info(estimate.id.metric).kind == MetricKind::trials ? wilson(sums.numerator, sums.denominator)
+                                                                          : percentile_interval(estimate.replicates);
+  return estimate;
+}
+
+std::vector<Estimate> MetricTable::estimates_of(Metric metric) const {
+  std::vector<Estimate> estimates;
+  for (const auto& [key, sums] : sums_) {
+    if (key.first != metric || sums.denominator <= 0.0) continue;
+    estimates.push_back(estimate({metric, sums.place, key.second}, sums));
+  }
+  std::ranges::stable_sort(estimates, {}, [](const Estimate& e) { return e.id.place; });
+  return estimates;
+}
+
+std::vector<Estimate> MetricTable::estimates() const {
+  std::vector<Estimate> all;
+  for (const MetricInfo& metric : kMetrics) {
+    std::vector<Estimate> some = estimates_of(metric.mean_of.value_or(metric.metric));
+    if (metric.members) some = along(estimates_of(*metric.members), some, metric.kind == MetricKind::root_mean);
+    if (metric.mean_of && !some.empty()) some = {mean_of(metric.metric, some)};
+    std::ranges::move(some, std::back_inserter(all));
+  }
+  return all;
+}
+
+}  // namespace vesalius

@@ -1,0 +1,114 @@
+#include "metrics/metric_table.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "vesalius/base/error.h"
+#include "vesalius/base/random.h"
+
+namespace vesalius {
+namespace {
+
+using testing::ElementsAre;
+
+MetricId recall(int place, const char* part) { return {Metric::pixel_recall, place, part}; }
+
+std::vector<std::string> names(const std::vector<Estimate>& estimates) {
+  std::vector<std::string> all;
+  for (const Estimate& estimate : estimates) all.push_back(estimate.id.name());
+  return all;
+}
+
+TEST(MetricTable, GivesRatiosOfSumsAndMeansOfFamilies) {
+  MetricTable table;
+  table.add(1, {{Metric::mask_iou, 0.5, 1.0}, {recall(0, "a"), 1.0, 4.0}, {recall(1, "b"), 3.0, 3.0}});
+  table.add(2, {{Metric::mask_iou, 0.9, 1.0}, {recall(0, "a"), 1.0, 0.0}});
+  table.add(3, {{recall(0, "a"), 2.0, 4.0}, {recall(2, "c"), 0.0, 0.0}});
+  const std::vector<Estimate> estimates = table.estimates();
+  EXPECT_THAT(names(estimates), ElementsAre("mask.iou", "pixels.recall.a", "pixels.recall.b", "pixels.mean_recall"));
+  EXPECT_DOUBLE_EQ(estimates[0].value, 0.7);
+  EXPECT_DOUBLE_EQ(estimates[1].value, 0.5);
+  EXPECT_DOUBLE_EQ(estimates[3].value, 0.75);  // the mean of a and b, as c never occurred
+  EXPECT_EQ(find_estimate(estimates, Metric::pixel_recall, "b"), &estimates[2]);
+  EXPECT_EQ(find_estimate(estimates, Metric::pixel_recall, "c"), nullptr);
+  EXPECT_EQ(find_estimate(estimates, Metric::people_found), nullptr);
+}
+
+TEST(MetricTable, ListsEstimatesInTheOrderOfTheMetrics) {
+  MetricTable table;
+  table.add(1,
+            {{Metric::joints_error, 1.0}, {{Metric::distance, 3, "3-4m"}, 1.0}, {{Metric::heading, 2, "back"}, 1.0}});
+  table.add(2,
+            {{{Metric::distance, 4, "4m-"}, 1.0}, {{Metric::heading, 0, "front"}, 1.0}, {Metric::people_found, 1.0}});
+  table.add(3, {{{Metric::distance, 0, "0-1m"}, 1.0}, {{Metric::heading, 1, "side"}, 1.0}});
+  EXPECT_THAT(names(table.estimates()), ElementsAre("people.found", "distance.0-1m", "distance.3-4m", "distance.4m-",
+                                                    "heading.front", "heading.side", "heading.back", "joints.error_m"));
+}
+
+TEST(MetricTable, TakesAMemberWithSeveralPlacesAsOneMetric) {
+  MetricTable table;
+  table.add(1, {{{Metric::joint_error, 1, "head"}, 0.1}, {{Metric::joint_error, 0, "neck"}, 0.1}});
+  table.add(2, {{{Metric::joint_error, 0, "head"}, 0.3}, {{Metric::joint_error, 1, "neck"}, 0.1}});
+  const std::vector<Estimate> estimates = table.estimates();
+  EXPECT_THAT(names(estimates), ElementsAre("joint.head.error_m", "joint.neck.error_m"));
+  EXPECT_DOUBLE_EQ(estimates[0].value, 0.2);
+}
+
+TEST(MetricTable, GivesSharesOfTrialsWilsonsInterval) {
+  MetricTable table;
+  for (std::uint64_t i = 0; i < 10; ++i) table.add(i, {{Metric::people_found, i < 9 ? 1.0 : 0.0, 1.0}});
+  const Estimate found = table.estimates().front();
+  EXPECT_DOUBLE_EQ(found.interval.low, wilson(9, 10).low);
+  EXPECT_DOUBLE_EQ(found.interval.high, wilson(9, 10).high);
+  EXPECT_EQ(text_with_interval(found), "90.00 % (59.58 to 98.21)");
+}
+
+/// The standard error of a mean is known, and the bootstrap's interval must be about 3.92 times as wide.
+TEST(MetricTable, GivesMeansTheirIntervalByTheBootstrap) {
+  MetricTable table;
+  Random random(5);
+  constexpr int kFrames = 2000;
+  for (int i = 0; i < kFrames; ++i) {
+    table.add(static_cast<std::uint64_t>(i), {{Metric::joints_error, random.normal(0.1, 0.02), 1.0}});
+  }
+  const Estimate mean = table.estimates().front();
+  const double expected = 2 * 1.96 * 0.02 / std::sqrt(kFrames);
+  EXPECT_NEAR(mean.value, 0.1, 0.002);
+  EXPECT_NEAR(mean.interval.high - mean.interval.low, expected, 0.25 * expected);
+  EXPECT_LT(mean.interval.low, mean.value);
+  EXPECT_GT(mean.interval.high, mean.value);
+}
+
+TEST(MetricTable, DoesNotDependOnTheOrderOfFrames) {
+  MetricTable forwards, backwards;
+  const auto terms = [](std::uint64_t i) { return MetricTerms{{Metric::mask_iou, static_cast<double>(i), 1.0}}; };
+  for (std::uint64_t i = 0; i < 9; ++i) forwards.add(i, terms(i));
+  for (std::uint64_t i = 9; i-- > 0;) backwards.add(i, terms(i));
+  EXPECT_EQ(forwards.frames_key(), backwards.frames_key());
+  EXPECT_EQ(forwards.estimates()[0].replicates, backwards.estimates()[0].replicates);
+  backwards.add(9, terms(9));
+  EXPECT_NE(forwards.frames_key(), backwards.frames_key());
+}
+
+TEST(MetricTable, RefusesTermsThatAreNotFinite) {
+  MetricTable table;
+  EXPECT_THROW(table.add(1, {{Metric::mask_iou, std::nan(""), 1.0}}), Error);
+  EXPECT_THROW(table.add(1, {{Metric::mask_iou, 1.0, -1.0}}), Error);
+  EXPECT_TRUE(table.estimates().empty());
+}
+
+TEST(MetricTable, MeansRootsOfProductsOverTheMembersOfOneFamily) {
+  MetricTable table;
+  table.add(1, {{{Metric::track_det_a_at, 0, "0.05"}, 1.0, 4.0},
+                {{Metric::track_ass_a_at, 0, "0.05"}, 1.0, 1.0},
+                {{Metric::track_det_a_at, 1, "0.10"}, 0.0, 4.0}});
+  const std::vector<Estimate> estimates = table.estimates();
+  EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_hota)->value, 0.25);  // sqrt(1/4 * 1) and 0
+  EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_ass_a)->value, 0.5);
+  EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_det_a)->value, 0.125);
+}
+
+}  // namespace
+}  // namespace vesalius

@@ -1,0 +1,293 @@
+#include "metrics/track_metrics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "vesalius/base/assign_pairs.h"
+#include "vesalius/base/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr int kThresholds = 19;
+
+double threshold_of(int place) { return 0.05 * (place + 1); }
+
+double count(const std::vector<int>& ids) { return static_cast<double>(ids.size()); }
+
+/// Indices of a sequence's ids, in the order of the ids.
+class IdIndex {
+ public:
+  IdIndex(const std::vector<TrackSample>& sequence, std::vector<int> TrackSample::*ids) {
+    for (const TrackSample& sample : sequence) {
+      for (const int id : sample.*ids) index_.try_emplace(id, 0);
+    }
+    int next = 0;
+    for (auto& [id, index] : index_) index = next++;
+  }
+
+  int size() const { return static_cast<int>(index_.size()); }
+  int of(int id) const { return index_.at(id); }
+
+ private:
+  std::map<int, int> index_;
+};
+
+/// CLEAR MOT of a sequence, frame by frame.
+class ClearMot {
+ public:
+  explicit ClearMot(bool graded) : graded_(graded) {}
+
+  void add(const TrackSample& sample, std::size_t frame, MetricTerms& terms) {
+    const std::vector<int> match = matcher_.match(sample);
+    double matched = 0.0, similarity = 0.0, switches = 0.0;
+    for (std::size_t t = 0; t < match.size(); ++t) {
+      Person& person = people_.try_emplace(sample.truth[t], Person{frame}).first->second;
+      if (frame != person.seen + 1 || match[t] >= 0) person.gap = 0;
+      person.seen = frame;
+      if (match[t] < 0) {
+        person.longest_gap = std::max(person.longest_gap, ++person.gap);
+        person.interrupted = !person.ids.empty();
+        continue;
+      }
+      const int id = sample.found[match[t]];
+      matched += 1.0;
+      similarity += sample.similarity(static_cast<Eigen::Index>(t), match[t]);
+      if (!person.ids.empty() && person.last != id) switches += 1.0;
+      if (person.interrupted) terms.push_back({Metric::track_fragmentations, 1.0, 0.0});
+      if (person.ids.insert(id).second) terms.push_back({Metric::track_ids, 1.0, 0.0});
+      person.interrupted = false;
+      person.last = id;
+    }
+    const double truth = count(sample.truth), wrong = count(sample.found) - matched;
+    terms.push_back({Metric::track_mota, matched - wrong - switches, truth});
+    if (graded_) terms.push_back({Metric::track_motp, similarity, matched});
+    terms.push_back({Metric::track_missed, truth - matched, truth});
+    terms.push_back({Metric::track_false, wrong, 1.0});
+    terms.push_back({Metric::track_switches, switches, 0.0});
+  }
+
+  /// Adds what is said of each true person to the frame in which it is first.
+  void finish(std::vector<MetricTerms>& terms) const {
+    for (const auto& [id, person] : people_) {
+      MetricTerms& first = terms[person.first];
+      for (const Metric metric : {Metric::track_switches, Metric::track_fragmentations, Metric::track_ids}) {
+        first.push_back({metric, 0.0, 1.0});
+      }
+      first.push_back({Metric::track_longest_gap, static_cast<double>(person.longest_gap), 1.0});
+    }
+  }
+
+ private:
+  /// A true person so far.
+  struct Person {
+    std::size_t first = 0;  ///< its first frame
+    std::size_t seen = 0;   ///< its latest frame
+    std::set<int> ids = {};
+    int last = 0;  ///< the id that it was found with last
+    bool interrupted = false;
+    int gap = 0;
+    int longest_gap = 0;
+  };
+
+  bool graded_;
+  TrackMatcher matcher_;
+  std::map<int, Person> people_;
+};
+
+/// The numbers of frames that true and found ids share.
+struct SharedFrames {
+  Eigen::MatrixXd both;  ///< [true id][found id]
+  Eigen::VectorXd of_truth, of_found;
+
+  SharedFrames(int truth, int found)
+      : both(Eigen::MatrixXd::Zero(truth, found)),
+        of_truth(Eigen::VectorXd::Zero(truth)),
+        of_found(Eigen::VectorXd::Zero(found)) {}
+};
+
+/// Calls `use(true person, found person, index of the true id, of the found id)` for all pairs of a frame.
+template <class Use>
+void for_pairs(const TrackSample& sample, const IdIndex& truth, const IdIndex& found, const Use& use) {
+  for (std::size_t t = 0; t < sample.truth.size(); ++t) {
+    for (std::size_t f = 0; f < sample.found.size(); ++f) {
+      use(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(f), truth.of(sample.truth[t]),
+          found.of(sample.found[f]));
+    }
+  }
+}
+
+void add_identity(const std::vector<TrackSample>& sequence, std::vector<MetricTerms>& terms) {
+  const IdIndex truth(sequence, &TrackSample::truth), found(sequence, &TrackSample::found);
+  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(truth.size(), found.size());
+  for (const TrackSample& sample : sequence) {
+    for_pairs(sample, truth, found, [&](Eigen::Index t, Eigen::Index f, int true_id, int found_id) {
+      if (sample.similarity(t, f) >= kTrackSimilarity - kEpsilon) shared(true_id, found_id) += 1.0;
+    });
+  }
+  const std::vector<int> found_of = assign_pairs(-shared);
+  for (std::size_t frame = 0; frame < sequence.size(); ++frame) {
+    const TrackSample& sample = sequence[frame];
+    double right = 0.0;
+    for_pairs(sample, truth, found, [&](Eigen::Index t, Eigen::Index f, int true_id, int found_id) {
+      if (found_of[true_id] == found_id && sample.similarity(t, f) >= kTrackSimilarity - kEpsilon) right += 1.0;
+    });
+    const double of_truth = count(sample.truth), of_found = count(sample.found);
+    terms[frame].push_back({Metric::track_idf1, 2.0 * right, of_truth + of_found});
+    terms[frame].push_back({Metric::track_idp, right, of_found});
+    terms[frame].push_back({Metric::track_idr, right, of_truth});
+  }
+}
+
+/// HOTA of a sequence: one match of each frame for all thresholds, by similarity and by how well ids agree over all.
+class Hota {
+ public:
+  Hota(const std::vector<TrackSample>& sequence, bool graded)
+      : sequence_(sequence),
+        graded_(graded),
+        truth_(sequence, &TrackSample::truth),
+        found_(sequence, &TrackSample::found) {
+    const Eigen::MatrixXd agreement = ids_agree();
+    for (const TrackSample& sample : sequence_) {
+      Eigen::MatrixXd cost = sample.similarity;
+      for_pairs(sample, truth_, found_, [&](Eigen::Index t, Eigen::Index f, int true_id, int found_id) {
+        cost(t, f) *= -agreement(true_id, found_id);
+      });
+      matches_.push_back(assign_pairs(cost));
+    }
+  }
+
+  void add(int place, std::vector<MetricTerms>& terms) const {
+    const double threshold = threshold_of(place);
+    SharedFrames shared(truth_.size(), found_.size());
+    for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
+      for (const int id : sequence_[frame].truth) shared.of_truth[truth_.of(id)] += 1.0;
+      for (const int id : sequence_[frame].found) shared.of_found[found_.of(id)] += 1.0;
+      for_matches(frame, threshold, [&](int true_id, int found_id, double) { shared.both(true_id, found_id) += 1.0; });
+    }
+    const std::string parameter = fmt::format("{:.2f}", threshold);
+    const auto id = [&](Metric metric) { return MetricId(metric, place, parameter); };
+    for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
+      double matched = 0.0, associated = 0.0, similarity = 0.0;
+      for_matches(frame, threshold, [&](int true_id, int found_id, double similar) {
+        const double both = shared.both(true_id, found_id);
+        matched += 1.0;
+        associated += both / (shared.of_truth[true_id] + shared.of_found[found_id] - both);
+        similarity += similar;
+      });
+      const double all = count(sequence_[frame].truth) + count(sequence_[frame].found) - matched;
+      terms[frame].push_back({id(Metric::track_det_a_at), matched, all});
+      terms[frame].push_back({id(Metric::track_ass_a_at), associated, matched});
+      if (graded_) terms[frame].push_back({id(Metric::track_loc_a_at), similarity, matched});
+    }
+  }
+
+ private:
+  /// Returns for each pair of ids the share of their frames in which they are the same person, each frame weighted by
+  /// how much more similar they are than others.
+  Eigen::MatrixXd ids_agree() const {
+    SharedFrames shared(truth_.size(), found_.size());
+    for (const TrackSample& sample : sequence_) {
+      for (const int id : sample.truth) shared.of_truth[truth_.of(id)] += 1.0;
+      for (const int id : sample.found) shared.of_found[found_.of(id)] += 1.0;
+      const Eigen::VectorXd of_truth = sample.similarity.rowwise().sum();
+      const Eigen::RowVectorXd of_found = sample.similarity.colwise().sum();
+      for_pairs(sample, truth_, found_, [&](Eigen::Index t, Eigen::Index f, int true_id, int found_id) {
+        const double similar = sample.similarity(t, f);
+        const double either = of_truth[t] + of_found[f] - similar;
+        if (either > kEpsilon) shared.both(true_id, found_id) += similar / either;
+      });
+    }
+    for (Eigen::Index t = 0; t < shared.both.rows(); ++t) {
+      for (Eigen::Index f = 0; f < shared.both.cols(); ++f) {
+        shared.both(t, f) /= shared.of_truth[t] + shared.of_found[f] - shared.both(t, f);
+      }
+    }
+    return shared.both;
+  }
+
+  template <class Use>
+  void for_matches(std::size_t frame, double threshold, const Use& use) const {
+    const TrackSample& sample = sequence_[frame];
+    for (std::size_t t = 0; t < sample.truth.size(); ++t) {
+      const int f = matches_[frame][t];
+      if (f < 0) continue;
+      const double similar = sample.similarity(static_cast<Eigen::Index>(t), f);
+      if (similar >= threshold - kEpsilon) use(truth_.of(sample.truth[t]), found_.of(sample.found[f]), similar);
+    }
+  }
+
+  const std::vector<TrackSample>& sequence_;
+  bool graded_;
+  IdIndex truth_, found_;
+  std::vector<std::vector<int>> matches_;  ///< [frame][true person]
+};
+
+void check(const TrackSample& sample) {
+  const Eigen::MatrixXd& similarity = sample.similarity;
+  if (similarity.rows() != static_cast<Eigen::Index>(sample.truth.size()) ||
+      similarity.cols() != static_cast<Eigen::Index>(sample.found.size())) {
+    throw Error(fmt::format("similarity of tracks: {}x{}, expected {} true and {} found people", similarity.rows(),
+                            similarity.cols(), sample.truth.size(), sample.found.size()));
+  }
+  if (similarity.size() > 0 &&
+      !(similarity.minCoeff() >= 0.0 && similarity.maxCoeff() <= 1.0 && similarity.allFinite())) {
+    throw Error("similarity of tracks: expected numbers from 0 to 1");
+  }
+}
+
+}  // namespace
+
+std::vector<int> TrackMatcher::match(const TrackSample& sample) {
+  check(sample);
+  std::vector<int> match(sample.truth.size(), -1);
+  std::vector<bool> taken(sample.found.size(), false);
+  const auto fits = [&](std::size_t t, std::size_t f) {
+    const double similar = sample.similarity(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(f));
+    return similar >= kTrackSimilarity - kEpsilon;
+  };
+  for (std::size_t t = 0; t < match.size(); ++t) {
+    const auto last = last_.find(sample.truth[t]);
+    if (last == last_.end()) continue;
+    const std::size_t f = std::ranges::find(sample.found, last->second) - sample.found.begin();
+    if (f == taken.size() || taken[f] || !fits(t, f)) continue;
+    match[t] = static_cast<int>(f);
+    taken[f] = true;
+  }
+  // A pair that does not fit costs more than all that do.
+  const double no_pair = 1.0 + static_cast<double>(std::max(match.size(), taken.size()));
+  Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(sample.similarity.rows(), sample.similarity.cols(), no_pair);
+  for (std::size_t t = 0; t < match.size(); ++t) {
+    for (std::size_t f = 0; f < taken.size(); ++f) {
+      const auto row = static_cast<Eigen::Index>(t), column = static_cast<Eigen::Index>(f);
+      if (match[t] < 0 && !taken[f] && fits(t, f)) cost(row, column) = 1.0 - sample.similarity(row, column);
+    }
+  }
+  const std::vector<int> pairs = assign_pairs(cost);
+  for (std::size_t t = 0; t < match.size(); ++t) {
+    if (match[t] < 0 && pairs[t] >= 0 && cost(static_cast<Eigen::Index>(t), pairs[t]) < no_pair) match[t] = pairs[t];
+    if (match[t] >= 0) last_[sample.truth[t]] = sample.found[match[t]];
+  }
+  return match;
+}
+
+std::vector<MetricTerms> track_terms(const std::vector<TrackSample>& sequence, bool graded) {
+  std::vector<MetricTerms> terms(sequence.size());
+  ClearMot clear(graded);
+  for (std::size_t frame = 0; frame < sequence.size(); ++frame) clear.add(sequence[frame], frame, terms[frame]);
+  clear.finish(terms);
+  add_identity(sequence, terms);
+  const Hota hota(sequence, graded);
+  for (int place = 0; place < kThresholds; ++place) hota.add(place, terms);
+  return terms;
+}
+
+}  // namespace vesalius
