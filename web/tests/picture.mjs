@@ -1,4 +1,4 @@
-// Makes a picture of the viewer's page, as docs/images/view.png:
+// Makes a picture of the viewer's page, of which docs/images/view.webp is packed (docs/view.md):
 //   node web/tests/picture.mjs FILE.png SOURCE FRAMES
 // It goes FRAMES frames on before, so that there are trails.
 import { View, launch, open, shown, until } from './program.mjs';
