@@ -6,7 +6,6 @@
 #include "synth/body/makehuman.h"
 #include "synth/mocap/movement_library.h"
 #include "synth/pose/pose_sampler.h"
-#include "synth/scene/scene.h"
 
 namespace vesalius::synth {
 
@@ -15,7 +14,6 @@ struct Assets {
   std::shared_ptr<const MakeHumanModel> makehuman;
   std::vector<SampledPose> captured;  ///< poses from motion capture
   MovementLibrary movements;          ///< movements from motion capture, which only clips use
-  std::vector<SceneMesh> models;      ///< the user's own furniture
 };
 
 }  // namespace vesalius::synth

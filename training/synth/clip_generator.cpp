@@ -189,7 +189,7 @@ struct ClipGenerator::State {
       Random random = random_for(seed, Purpose::plan, stream);
       std::vector<ClipPersonPlan> plans;
       for (std::size_t i = 0; i < count; ++i) plans.push_back(draw_person(random));
-      ClipScene made = build_clip(recipe.clip, recipe.scene, recipe.camera, photographer.camera(), plans, assets.models,
+      ClipScene made = build_clip(recipe.clip, recipe.scene, recipe.camera, photographer.camera(), plans,
                                   timing.seconds, random_for(seed, Purpose::scene, stream));
       if (attempt == 0 || made.people.size() > best.people.size()) best = std::move(made);
       if (best.people.size() == count) break;

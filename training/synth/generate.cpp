@@ -35,7 +35,7 @@ BuiltScene Generator::scene(std::uint64_t index) const {
   Random plan_random = random_for(s.seed, Purpose::plan, index);
   std::vector<PersonPlan> plans(s.cast.draw_count(plan_random));
   for (PersonPlan& plan : plans) plan = s.cast.draw_person(plan_random);
-  return build_scene(s.recipe.scene, s.recipe.camera, s.photographer.camera(), plans, s.assets.models,
+  return build_scene(s.recipe.scene, s.recipe.camera, s.photographer.camera(), plans,
                      random_for(s.seed, Purpose::scene, index));
 }
 

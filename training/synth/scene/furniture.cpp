@@ -18,17 +18,4 @@ Eigen::Isometry3f standing_at(float x_m, float height_m, float z_m, float yaw_ra
   return pose;
 }
 
-Furniture as_furniture(SceneMesh mesh) {
-  Furniture piece;
-  Eigen::AlignedBox3f bounds;
-  for (const Vector3f& p : mesh.vertices) bounds.extend(p);
-  if (!bounds.isEmpty()) {
-    Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
-    pose.translation() = bounds.center();
-    piece.solids.push_back({pose, 0.5F * bounds.sizes()});
-  }
-  piece.mesh = std::move(mesh);
-  return piece;
-}
-
 }  // namespace vesalius::synth

@@ -20,7 +20,4 @@ void move(Furniture& piece, const Eigen::Isometry3f& motion);
 /// to (x, height, z).
 Eigen::Isometry3f standing_at(float x_m, float height_m, float z_m, float yaw_rad);
 
-/// Returns a piece made of a user's mesh. Its solid is the bounding box.
-Furniture as_furniture(SceneMesh mesh);
-
 }  // namespace vesalius::synth

@@ -66,7 +66,7 @@ double triangles_of_furniture(const SceneOptions& options) {
   double sum = 0.0;
   constexpr int kScenes = 30;
   for (std::uint64_t i = 0; i < kScenes; ++i) {
-    const BuiltScene built = build_scene(options, {}, kCamera, {}, {}, Random(15, i));
+    const BuiltScene built = build_scene(options, {}, kCamera, {}, Random(15, i));
     for (std::size_t m = 1; m < built.scene.meshes.size(); ++m) {
       sum += static_cast<double>(built.scene.meshes[m].triangles.size());
     }
