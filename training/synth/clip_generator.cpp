@@ -11,8 +11,8 @@
 #include "synth/photographer.h"
 #include "synth/pose/change_posture.h"
 #include "synth/pose/fidget.h"
+#include "synth/random_streams.h"
 #include "synth/scene/palette.h"
-#include "synth/streams.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::synth {
@@ -77,7 +77,7 @@ void check(const ClipTiming& timing) {
 
 struct ClipGenerator::State {
   Recipe recipe;
-  Assets assets;
+  BodiesAndMotions assets;
   BodyModel body;
   std::uint64_t seed = 0;
   ClipTiming timing;
@@ -85,7 +85,7 @@ struct ClipGenerator::State {
   Photographer photographer;
   ClipStore clips;
 
-  State(const Recipe& the_recipe, Assets the_assets, const BodyModel& the_body, std::uint64_t the_seed,
+  State(const Recipe& the_recipe, BodiesAndMotions the_assets, const BodyModel& the_body, std::uint64_t the_seed,
         const ClipTiming& the_timing)
       : recipe(checked(the_recipe)),
         assets(std::move(the_assets)),
@@ -198,7 +198,7 @@ struct ClipGenerator::State {
   }
 };
 
-ClipGenerator::ClipGenerator(const Recipe& recipe, Assets assets, const BodyModel& body, std::uint64_t seed,
+ClipGenerator::ClipGenerator(const Recipe& recipe, BodiesAndMotions assets, const BodyModel& body, std::uint64_t seed,
                              const ClipTiming& timing) {
   check(timing);
   state_ = std::make_unique<State>(recipe, std::move(assets), body, seed, timing);

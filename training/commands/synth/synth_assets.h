@@ -9,7 +9,7 @@ namespace vesalius::cli {
 
 /// The data that `vesalius synth` reads from files.
 struct LoadedAssets {
-  synth::Assets assets;
+  synth::BodiesAndMotions assets;
   std::string sum;                 ///< SHA-256 over everything that was read, on which frames depend
   std::vector<std::string> notes;  ///< remarks for the user, one line each
   /// The substitutes for missing packages that the recipe would have used, one line each. They are also in `notes`.

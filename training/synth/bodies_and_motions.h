@@ -10,7 +10,7 @@
 namespace vesalius::synth {
 
 /// Data from files. All of it is optional.
-struct Assets {
+struct BodiesAndMotions {
   std::shared_ptr<const MakeHumanModel> makehuman;
   std::vector<SampledPose> captured;  ///< poses from motion capture
   MovementLibrary movements;          ///< movements from motion capture, which only clips use
