@@ -8,11 +8,11 @@
 #include <mutex>
 
 #include "synth/cast.h"
+#include "synth/mesh/palette.h"
 #include "synth/photographer.h"
 #include "synth/pose/change_posture.h"
 #include "synth/pose/fidget.h"
 #include "synth/random_streams.h"
-#include "synth/scene/palette.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::synth {

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "synth/clip/plan_stroll.h"
+#include "synth/mesh/palette.h"
 #include "synth/pose/posture.h"
 #include "synth/scene/furnish.h"
-#include "synth/scene/palette.h"
 #include "synth/scene/people_group.h"
 #include "synth/scene/person_mesh.h"
 #include "synth/scene/place_people.h"

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "synth/body/poser.h"
+#include "synth/mesh/oriented_box.h"
 #include "synth/scene/camera_pose.h"
-#include "synth/scene/oriented_box.h"
 #include "synth/scene/person_plan.h"
 #include "synth/scene/room.h"
 #include "synth/scene/scene.h"

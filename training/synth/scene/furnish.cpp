@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "synth/scene/make_furniture.h"
-#include "synth/scene/nobody.h"
-#include "synth/scene/palette.h"
+#include "synth/furniture/make_furniture.h"
+#include "synth/furniture/nobody.h"
+#include "synth/mesh/palette.h"
 
 namespace vesalius::synth {
 namespace {
