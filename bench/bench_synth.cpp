@@ -46,7 +46,7 @@ class Later {
   std::function<T()> make_;
   std::unique_ptr<T> value_;
 };
-using AssetsLater = std::shared_ptr<Later<Assets>>;
+using AssetsLater = std::shared_ptr<Later<BodiesAndMotions>>;
 
 /// Frames of a recipe, with the input of each stage of making them.
 struct Stages {
@@ -57,7 +57,7 @@ struct Stages {
   std::vector<LabelledFrame> frames;
   Renderer renderer;
 
-  Stages(const Assets& assets, int width, int height) {
+  Stages(const BodiesAndMotions& assets, int width, int height) {
     Recipe recipe;
     recipe.body.count = static_cast<int>(kBodies);
     recipe.sensor.width = width;
@@ -105,7 +105,7 @@ void add_stages(const std::string& kind, const AssetsLater& assets, int width, i
 /// Adds benchmarks of the steps that make a new body.
 void add_body_steps(const std::string& kind, const AssetsLater& assets) {
   const auto bare = [assets](Random& random) {
-    const Assets& a = **assets;
+    const BodiesAndMotions& a = **assets;
     return a.makehuman == nullptr ? make_builtin_body(sample_builtin_shape({}, random), paper_body())
                                   : make_body(*a.makehuman, sample_factors({}, random), paper_body());
   };
@@ -172,15 +172,15 @@ void add_thinning(const std::string& kind, int steps) {
 void add_synth_benchmarks() {
   add_thinning("motions", 25);
   add_thinning("single", 1);
-  add_kind("builtin", std::make_shared<Later<Assets>>([] { return Assets(); }));
+  add_kind("builtin", std::make_shared<Later<BodiesAndMotions>>([] { return BodiesAndMotions(); }));
   const std::string folder = default_assets_folder();
   for (const char* package : {"makehuman", "mocap"}) {
     if (has_assets(asset_package(package), folder)) continue;
     std::cerr << "no MakeHuman bodies in captured poses: " << package << " is not in \"" << folder << "\"\n";
     return;
   }
-  add_kind("makehuman", std::make_shared<Later<Assets>>([folder] {
-             return cli::load_assets(Recipe(), {folder, {}, {}}).assets;
+  add_kind("makehuman", std::make_shared<Later<BodiesAndMotions>>([folder] {
+             return cli::load_assets(Recipe(), {folder, {}}).assets;
            }));
 }
 

@@ -173,7 +173,6 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
   write_file_atomically(path("deep.toml"), deep + " = 1\n");
   refused(synth("--count 3 --recipe " + path("deep.toml") + " --out " + path("x")), 1, "deep.toml");
   refused(synth("--fit-flesh " + path("none/flesh.toml")), 1, path("none/flesh.toml") + ": cannot be written");
-  refused(synth("--count 3 --models " + path("none.obj") + " --out " + path("x")), 1, "none.obj");
   refused("synth -q --body.kind makehuman --count 1 --assets " + path("nowhere") + " --out " + path("x"), 1,
           "vesalius assets makehuman");
   EXPECT_FALSE(fs::exists(path("x")));
@@ -197,13 +196,6 @@ TEST_F(SynthProgram, NeverSubstitutesMissingAssetsSilently) {
   EXPECT_THAT(bytes_of(path("r.json")), HasSubstr("makehuman is not there, the built-in body instead"));
   expect_done(run_program("synth -q --count 2 --recipe " + path("any.toml") + nowhere + " --out " + path("d")));
   EXPECT_THAT(DatasetReader(path("d")).info().recipe, HasSubstr("# mocap is not there, sampled poses instead\n"));
-}
-
-TEST_F(SynthProgram, RefusesSmallModelFilesThatGrowLarge) {
-  write_file_atomically(path("a.glb"), std::string("glTF\2\0\0\0\24\0\0\0\360\377\377\377JSON", 20));
-  const Outcome run = run_program(synth("--preview 1 --models " + path("a.glb") + " --out " + path("p.png")));
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_THAT(run.err, HasSubstr("a.glb: a chunk of 4294967280 bytes at byte 12"));
 }
 
 }  // namespace

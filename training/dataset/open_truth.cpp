@@ -9,7 +9,6 @@
 #include "dataset/labelled_folder.h"
 #include "dataset/skeleton_truth.h"
 #include "dataset/truth_folder.h"
-#include "dataset/truth_itop.h"
 #include "io/sources/open_source.h"
 #include "io/sources/stepped_source.h"
 #include "vesalius/base/error.h"
@@ -110,7 +109,6 @@ std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step, const 
   if (step < 1) throw UsageError("every 0th frame, expected a step of at least 1");
   if (is_dataset(uri)) return std::make_unique<LabelledTruth<DatasetReader>>(uri, step);
   if (is_labelled_folder(uri)) return std::make_unique<LabelledTruth<LabelledFolder>>(uri, step);
-  if (is_itop(uri)) return open_itop(uri, step);
   return std::make_unique<FolderTruth>(uri, step, options);
 }
 

@@ -10,9 +10,9 @@
 
 namespace vesalius {
 
-/// Opens frames with their truth: a labelled dataset, a folder of labelled frames (LabelledExporter), depth maps of
-/// ITOP (truth_itop.h), or any other source that `open_source` opens and TruthFolder has truth for. Gives the first of
-/// every `step` frames. Throws Error as those readers do.
+/// Opens frames with their truth: a labelled dataset, a folder of labelled frames (LabelledExporter), or any other
+/// source that `open_source` opens and TruthFolder has truth for. Gives the first of every `step` frames. Throws Error
+/// as those readers do.
 std::unique_ptr<TruthSource> open_truth(const std::string& uri, int step = 1, const SourceOptions& options = {});
 
 /// Converts a labelled frame to truth. `joint_names` names its skeletons' joints (skeleton_truth.h). `clip` is the

@@ -20,7 +20,7 @@ bool has_set(const BodyModel& body, const std::string& name) {
 }  // namespace
 
 BodyModel with_evaluation_joints(const BodyModel& body) {
-  if (has_set(body, "kinect20") || has_set(body, "itop15") || has_set(body, "part_centres")) return body;
+  if (has_set(body, "kinect20") || has_set(body, "part_centres")) return body;
   for (const BodyPart& part : paper_body().parts) {
     if (body.find_part(part.name) < 0) return body;
   }

@@ -5,7 +5,7 @@
 #include "synth/body/builtin_body.h"
 #include "synth/dress/dress.h"
 #include "synth/pose/mix_poses.h"
-#include "synth/streams.h"
+#include "synth/random_streams.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::synth {

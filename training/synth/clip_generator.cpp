@@ -8,11 +8,11 @@
 #include <mutex>
 
 #include "synth/cast.h"
+#include "synth/mesh/palette.h"
 #include "synth/photographer.h"
 #include "synth/pose/change_posture.h"
 #include "synth/pose/fidget.h"
-#include "synth/scene/palette.h"
-#include "synth/streams.h"
+#include "synth/random_streams.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::synth {
@@ -77,7 +77,7 @@ void check(const ClipTiming& timing) {
 
 struct ClipGenerator::State {
   Recipe recipe;
-  Assets assets;
+  BodiesAndMotions assets;
   BodyModel body;
   std::uint64_t seed = 0;
   ClipTiming timing;
@@ -85,7 +85,7 @@ struct ClipGenerator::State {
   Photographer photographer;
   ClipStore clips;
 
-  State(const Recipe& the_recipe, Assets the_assets, const BodyModel& the_body, std::uint64_t the_seed,
+  State(const Recipe& the_recipe, BodiesAndMotions the_assets, const BodyModel& the_body, std::uint64_t the_seed,
         const ClipTiming& the_timing)
       : recipe(checked(the_recipe)),
         assets(std::move(the_assets)),
@@ -189,7 +189,7 @@ struct ClipGenerator::State {
       Random random = random_for(seed, Purpose::plan, stream);
       std::vector<ClipPersonPlan> plans;
       for (std::size_t i = 0; i < count; ++i) plans.push_back(draw_person(random));
-      ClipScene made = build_clip(recipe.clip, recipe.scene, recipe.camera, photographer.camera(), plans, assets.models,
+      ClipScene made = build_clip(recipe.clip, recipe.scene, recipe.camera, photographer.camera(), plans,
                                   timing.seconds, random_for(seed, Purpose::scene, stream));
       if (attempt == 0 || made.people.size() > best.people.size()) best = std::move(made);
       if (best.people.size() == count) break;
@@ -198,7 +198,7 @@ struct ClipGenerator::State {
   }
 };
 
-ClipGenerator::ClipGenerator(const Recipe& recipe, Assets assets, const BodyModel& body, std::uint64_t seed,
+ClipGenerator::ClipGenerator(const Recipe& recipe, BodiesAndMotions assets, const BodyModel& body, std::uint64_t seed,
                              const ClipTiming& timing) {
   check(timing);
   state_ = std::make_unique<State>(recipe, std::move(assets), body, seed, timing);

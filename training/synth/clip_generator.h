@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "synth/assets.h"
+#include "synth/bodies_and_motions.h"
 #include "synth/clip/build_clip.h"
 #include "synth/recipe.h"
 #include "vesalius/base/frame.h"
@@ -33,7 +33,7 @@ void check(const ClipTiming& timing);
 class ClipGenerator {
  public:
   /// Throws UsageError for an invalid recipe or timing, and Error if the recipe requires bodies that the assets lack.
-  ClipGenerator(const Recipe& recipe, Assets assets, const BodyModel& body, std::uint64_t seed,
+  ClipGenerator(const Recipe& recipe, BodiesAndMotions assets, const BodyModel& body, std::uint64_t seed,
                 const ClipTiming& timing);
   ~ClipGenerator();
   ClipGenerator(const ClipGenerator&) = delete;

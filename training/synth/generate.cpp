@@ -4,19 +4,19 @@
 
 #include "synth/cast.h"
 #include "synth/photographer.h"
-#include "synth/streams.h"
+#include "synth/random_streams.h"
 
 namespace vesalius::synth {
 
 struct Generator::State {
   Recipe recipe;
-  Assets assets;
+  BodiesAndMotions assets;
   BodyModel body;
   std::uint64_t seed = 0;
   Cast cast;
   Photographer photographer;
 
-  State(const Recipe& the_recipe, Assets the_assets, const BodyModel& the_body, std::uint64_t the_seed)
+  State(const Recipe& the_recipe, BodiesAndMotions the_assets, const BodyModel& the_body, std::uint64_t the_seed)
       : recipe(checked(the_recipe)),
         assets(std::move(the_assets)),
         body(the_body),
@@ -25,7 +25,7 @@ struct Generator::State {
         photographer(recipe, seed) {}
 };
 
-Generator::Generator(const Recipe& recipe, Assets assets, const BodyModel& body, std::uint64_t seed)
+Generator::Generator(const Recipe& recipe, BodiesAndMotions assets, const BodyModel& body, std::uint64_t seed)
     : state_(std::make_unique<State>(recipe, std::move(assets), body, seed)) {}
 
 Generator::~Generator() = default;
@@ -35,7 +35,7 @@ BuiltScene Generator::scene(std::uint64_t index) const {
   Random plan_random = random_for(s.seed, Purpose::plan, index);
   std::vector<PersonPlan> plans(s.cast.draw_count(plan_random));
   for (PersonPlan& plan : plans) plan = s.cast.draw_person(plan_random);
-  return build_scene(s.recipe.scene, s.recipe.camera, s.photographer.camera(), plans, s.assets.models,
+  return build_scene(s.recipe.scene, s.recipe.camera, s.photographer.camera(), plans,
                      random_for(s.seed, Purpose::scene, index));
 }
 

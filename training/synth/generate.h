@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "synth/assets.h"
+#include "synth/bodies_and_motions.h"
 #include "synth/recipe.h"
 #include "synth/scene/build_scene.h"
 #include "vesalius/base/body_model.h"
@@ -16,7 +16,7 @@ namespace vesalius::synth {
 class Generator {
  public:
   /// Throws UsageError for an invalid recipe, and Error if it requires bodies that the assets lack.
-  Generator(const Recipe& recipe, Assets assets, const BodyModel& body, std::uint64_t seed);
+  Generator(const Recipe& recipe, BodiesAndMotions assets, const BodyModel& body, std::uint64_t seed);
   ~Generator();
   Generator(const Generator&) = delete;
   Generator& operator=(const Generator&) = delete;

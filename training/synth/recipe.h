@@ -49,8 +49,8 @@ struct SensorOptions {
   DepthFilterOptions filter;  ///< applied with and without noise
 };
 
-/// Everything that decides how synthetic frames look (section 4.1). Together with a seed and the files of `Assets` it
-/// determines every byte of every frame.
+/// Everything that decides how synthetic frames look (section 4.1). Together with a seed and the files of
+/// `BodiesAndMotions` it determines every byte of every frame.
 struct Recipe {
   std::string mounting = "room";  ///< sets the camera's options: room, ceiling or wheelchair
   SensorOptions sensor;

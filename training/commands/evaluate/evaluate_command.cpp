@@ -341,7 +341,7 @@ void add_evaluate(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>(*command);
   command->add_option("SOURCE", arguments->sources,
                       "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/, joints.csv or "
-                      "truth_bvh.toml, a folder of such folders with one frames.csv, or ITOP_..._depth_map.h5");
+                      "truth_bvh.toml, or a folder of such folders with one frames.csv");
   command
       ->add_option("--recipe", arguments->recipes,
                    "Frames rendered from this recipe and not kept, as `vesalius synth --recipe` makes them")

@@ -8,7 +8,7 @@
 
 namespace vesalius::cli {
 
-FrameMaker make_frame_maker(const synth::Recipe& recipe, synth::Assets assets, const BodyModel& body,
+FrameMaker make_frame_maker(const synth::Recipe& recipe, synth::BodiesAndMotions assets, const BodyModel& body,
                             std::uint64_t seed, const ClipRequest& clips) {
   if (!clips.clip_s) {
     const auto generator = std::make_shared<const synth::Generator>(recipe, std::move(assets), body, seed);

@@ -34,7 +34,7 @@ struct FrameMaker {
 };
 
 /// Throws UsageError as timing_of does.
-FrameMaker make_frame_maker(const synth::Recipe& recipe, synth::Assets assets, const BodyModel& body,
+FrameMaker make_frame_maker(const synth::Recipe& recipe, synth::BodiesAndMotions assets, const BodyModel& body,
                             std::uint64_t seed, const ClipRequest& clips);
 
 }  // namespace vesalius::cli

@@ -40,7 +40,6 @@ std::string serialise(RenderRequest request, const DatasetInfo& info) {
             {"body", request.body.toml},
             {"assets", assets_for_tasks(request.places.folder)},
             {"motions", for_tasks(request.places.motions)},
-            {"models", for_tasks(request.places.models)},
             {"clip_s", nullptr},
             {"rate_hz", nullptr},
             {"dataset", serialise_description(info)}};
@@ -71,7 +70,6 @@ RenderJob open_job(const std::string& bytes, const std::string& name) {
   if (!json.at("rate_hz").is_null()) clip.rate_hz = json.at("rate_hz").get<double>();
   LoadedAssets loaded = load_assets(recipe, {.folder = json.at("assets").get<std::string>(),
                                              .motions = json.at("motions").get<std::string>(),
-                                             .models = json.at("models").get<std::vector<std::string>>(),
                                              .movements = clip.clip_s.has_value()});
   if (full_recipe(recipe, loaded) != job.info.recipe) {
     throw Error(

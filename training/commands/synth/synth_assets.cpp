@@ -9,7 +9,6 @@
 #include "downloads/assets.h"
 #include "downloads/sha256.h"
 #include "io/files/read_file.h"
-#include "synth/scene/model_import.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::cli {
@@ -90,11 +89,6 @@ class Loader {
     take_motions(paths_of(package), reader(package), recipe, loaded);
   }
 
-  void load_models(LoadedAssets& loaded) {
-    const synth::ReadText read = summed([](const std::string& path) { return read_file(path); });
-    for (const std::string& path : places_.models) loaded.assets.models.push_back(synth::import_model(path, read));
-  }
-
   std::string sum() { return sum_.finish(); }
 
  private:
@@ -149,7 +143,6 @@ LoadedAssets load_assets(const synth::Recipe& recipe, const AssetPlaces& places)
   Loader loader(found);
   loader.load_makehuman(recipe, loaded);
   loader.load_motions(recipe, loaded);
-  loader.load_models(loaded);
   loaded.sum = loader.sum();
   return loaded;
 }

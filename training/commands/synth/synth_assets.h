@@ -9,7 +9,7 @@ namespace vesalius::cli {
 
 /// The data that `vesalius synth` reads from files.
 struct LoadedAssets {
-  synth::Assets assets;
+  synth::BodiesAndMotions assets;
   std::string sum;                 ///< SHA-256 over everything that was read, on which frames depend
   std::vector<std::string> notes;  ///< remarks for the user, one line each
   /// The substitutes for missing packages that the recipe would have used, one line each. They are also in `notes`.
@@ -18,10 +18,9 @@ struct LoadedAssets {
 
 /// The places of files.
 struct AssetPlaces {
-  std::string folder;               ///< the folder in which `vesalius assets` keeps packages; empty takes its default
-  std::string motions;              ///< the user's own motions (.bvh, .amc with .asf), used instead; may be empty
-  std::vector<std::string> models;  ///< the user's own furniture: OBJ, glTF
-  bool movements = false;           ///< whether movements are loaded besides poses, as clips need them
+  std::string folder;      ///< the folder in which `vesalius assets` keeps packages; empty takes its default
+  std::string motions;     ///< the user's own motions (.bvh, .amc with .asf), used instead; may be empty
+  bool movements = false;  ///< whether movements are loaded besides poses, as clips need them
 };
 
 /// Loads the assets that `recipe` uses. If the recipe leaves a choice (body.kind auto, default share of captured

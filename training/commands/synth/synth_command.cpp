@@ -41,7 +41,6 @@ struct Arguments {
   explicit Arguments(CLI::App& command) : recipe_flags(command) {}
 
   std::string recipe, sensor, camera, body, assets, motions, out, fit_flesh, format = "shards";
-  std::vector<std::string> models;
   OptionFlags<synth::Recipe> recipe_flags;
   ClipRequest clip;
   ClusterFlags cluster;
@@ -173,10 +172,9 @@ void run(const Arguments& arguments) {
                                             .camera = arguments.camera,
                                             .flags = &arguments.recipe_flags});
   const BodyModel body = body_of(arguments);
-  const LoadedAssets loaded = load_assets(recipe, {.folder = arguments.assets,
-                                                   .motions = arguments.motions,
-                                                   .models = arguments.models,
-                                                   .movements = arguments.clip.clip_s.has_value()});
+  const LoadedAssets loaded = load_assets(
+      recipe,
+      {.folder = arguments.assets, .motions = arguments.motions, .movements = arguments.clip.clip_s.has_value()});
   if (!arguments.quiet) {
     for (const std::string& note : loaded.notes) say("note: " + note);
   }
@@ -196,8 +194,7 @@ void run(const Arguments& arguments) {
   info.joints = synth::joint_names();
   info.frames_per_shard = arguments.shard;
   if (!arguments.cluster.on.empty()) {
-    const RenderRequest request{
-        recipe, body, {arguments.assets, arguments.motions, arguments.models, false}, arguments.clip};
+    const RenderRequest request{recipe, body, {arguments.assets, arguments.motions, false}, arguments.clip};
     return render_on_cluster(request, info, arguments.out, arguments.cluster, !arguments.quiet);
   }
   write_shards(arguments, maker, info, body.part_count());
@@ -273,9 +270,6 @@ void add_recipe_flags(CLI::App& command, Arguments& arguments) {
       ->type_name("FILE")
       ->group(group);
   command.add_option("--body", arguments.body, "Body model with other parts")->type_name("FILE")->group(group);
-  command.add_option("--models", arguments.models, "Furniture of your own: OBJ or glTF, metres, y up")
-      ->type_name("FILE")
-      ->group(group);
   command.add_option("--motions", arguments.motions, "Motions of your own: a folder of .bvh, or .amc with .asf")
       ->type_name("DIR")
       ->group(group);

@@ -121,7 +121,6 @@ void add_source_flags(CLI::App& command, TrainSources& sources) {
   add("--background", sources.backgrounds, "Frames of rooms without people: all that `vesalius detect` reads",
       "SOURCE");
   add("--body", sources.body, "Body model with other parts, for --recipe", "FILE");
-  add("--models", sources.assets.models, "Furniture of your own for --recipe: OBJ or glTF, metres, y up", "FILE");
   add("--motions", sources.assets.motions, "Motions of your own for --recipe: a folder of .bvh, or .amc with .asf",
       "DIR");
   add("--assets", sources.assets.folder, "Folder in which `vesalius assets` put its files", "DIR");

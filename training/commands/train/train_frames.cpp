@@ -37,7 +37,6 @@ TrainSources sources_of(const Json& json, const TemporaryFolder& texts) {
   if (!json.at("body").get<std::string>().empty()) sources.body = put("body.toml", json.at("body"));
   sources.count = json.at("count").get<int>();
   sources.render_seed = json.at("seed").get<std::uint64_t>();
-  sources.assets.models = json.at("models").get<std::vector<std::string>>();
   sources.assets.motions = json.at("motions").get<std::string>();
   sources.assets.folder = json.at("assets").get<std::string>();
   return sources;
@@ -51,7 +50,6 @@ std::string frames_text(const TrainSources& sources, const TrainInputs& inputs) 
             {"body", sources.body.empty() ? "" : read_file(sources.body)},
             {"count", sources.count},
             {"seed", sources.render_seed},
-            {"models", for_tasks(sources.assets.models)},
             {"motions", for_tasks(sources.assets.motions)},
             {"assets", assets_for_tasks(sources.assets.folder)},
             {"inputs", Json::array()}};

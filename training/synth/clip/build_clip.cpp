@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "synth/clip/plan_stroll.h"
+#include "synth/mesh/palette.h"
 #include "synth/pose/posture.h"
 #include "synth/scene/furnish.h"
-#include "synth/scene/palette.h"
 #include "synth/scene/people_group.h"
 #include "synth/scene/person_mesh.h"
 #include "synth/scene/place_people.h"
@@ -62,7 +62,7 @@ class Builder {
     ground_.view.camera = intrinsics;
   }
 
-  ClipScene run(const std::vector<SceneMesh>& models) {
+  ClipScene run() {
     place_sitters();
     moves_ = asked(options_.moving_share, random_);
     ground_.camera_reach_m = moves_ ? kCameraReach_m : 0.F;
@@ -71,7 +71,7 @@ class Builder {
     place_movers();
     ClipScene clip = with_people();
     clip.camera = camera_of(clip);
-    surround(models, clip);
+    surround(clip);
     return clip;
   }
 
@@ -252,7 +252,7 @@ class Builder {
   }
 
   /// Builds room and furniture about everything that moves.
-  void surround(const std::vector<SceneMesh>& models, ClipScene& clip) {
+  void surround(ClipScene& clip) {
     std::vector<Vector3f> eyes;
     for (float t = 0.F; t <= (moves_ ? seconds_ : 0.F); t += 0.5F) eyes.push_back(clip.camera.at(t).translation());
     const PlacedGroup* first = stage_.groups.empty() ? nullptr : stage_.groups.data();
@@ -275,7 +275,7 @@ class Builder {
         scene.meshes.push_back(std::move(piece.mesh));
       }
     }
-    for (Furniture& piece : furnish(scene_, clip.room, models, chests, eyes.front(), occupancy, random_)) {
+    for (Furniture& piece : furnish(scene_, clip.room, chests, eyes.front(), occupancy, random_)) {
       scene.meshes.push_back(std::move(piece.mesh));
     }
     add_lights(clip.room, scene, random_);
@@ -324,12 +324,11 @@ class Builder {
 }  // namespace
 
 ClipScene build_clip(const ClipOptions& options, const SceneOptions& scene, const CameraPlacement& placement,
-                     const Camera& intrinsics, const std::vector<ClipPersonPlan>& plans,
-                     const std::vector<SceneMesh>& models, float seconds, Random random) {
+                     const Camera& intrinsics, const std::vector<ClipPersonPlan>& plans, float seconds, Random random) {
   check(scene);
   check(placement);
   vesalius::check(intrinsics);
-  return Builder(options, scene, placement, intrinsics, plans, seconds, random).run(models);
+  return Builder(options, scene, placement, intrinsics, plans, seconds, random).run();
 }
 
 BuiltScene scene_at(const ClipScene& clip, const Camera& intrinsics, float detail_px, float time_s) {

@@ -41,8 +41,7 @@ struct ClipScene {
 /// camera or each other: that is looked at several times a second. People who find no place or way after a bounded
 /// number of tries are left out. The same arguments give the same clip. Throws UsageError for invalid options.
 ClipScene build_clip(const ClipOptions& options, const SceneOptions& scene, const CameraPlacement& placement,
-                     const Camera& intrinsics, const std::vector<ClipPersonPlan>& plans,
-                     const std::vector<SceneMesh>& models, float seconds, Random random);
+                     const Camera& intrinsics, const std::vector<ClipPersonPlan>& plans, float seconds, Random random);
 
 /// Returns the scene of a clip at a time, as build_scene() gives those of single frames. The posture of each person is
 /// that of the pose (classify_posture).

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "synth/scene/palette.h"
+#include "synth/mesh/palette.h"
 
 namespace vesalius::synth {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "synth/clip/plant_feet.h"
-#include "synth/scene/palette.h"
+#include "synth/mesh/palette.h"
 
 namespace vesalius::synth {
 namespace {

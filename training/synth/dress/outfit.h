@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "synth/scene/scene.h"
+#include "synth/mesh/scene_mesh.h"
 #include "vesalius/base/options.h"
 #include "vesalius/base/random.h"
 

@@ -75,7 +75,7 @@ void check_arguments(const SceneOptions& options, const CameraPlacement& placeme
 }  // namespace
 
 BuiltScene build_scene(const SceneOptions& options, const CameraPlacement& placement, const Camera& intrinsics,
-                       const std::vector<PersonPlan>& plans, const std::vector<SceneMesh>& models, Random random) {
+                       const std::vector<PersonPlan>& plans, Random random) {
   check_arguments(options, placement, intrinsics, plans);
   std::vector<PeopleGroup> groups = make_groups(options, plans, random);
   Stage stage = place_people(options, placement, intrinsics, plans, groups, random);
@@ -92,7 +92,7 @@ BuiltScene build_scene(const SceneOptions& options, const CameraPlacement& place
   std::vector<Vector3f> people;
   for (const PlacedPerson& person : built.people) people.push_back(person.body.joints[index(Bone::chest)]);
   const Vector3f eye(0.F, stage.camera.height_m, 0.F);
-  for (Furniture& piece : furnish(options, room, models, people, eye, stage.occupancy, random)) {
+  for (Furniture& piece : furnish(options, room, people, eye, stage.occupancy, random)) {
     built.scene.meshes.push_back(std::move(piece.mesh));
   }
   add_lights(room, built.scene, random);

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "synth/body/poser.h"
+#include "synth/mesh/oriented_box.h"
 #include "synth/scene/camera_pose.h"
-#include "synth/scene/oriented_box.h"
 #include "synth/scene/person_plan.h"
 #include "synth/scene/room.h"
 #include "synth/scene/scene.h"
@@ -32,9 +32,9 @@ struct BuiltScene {
 /// Puts the people of the plans into a room in front of a camera. They stand or kneel on the floor, sit on seats that
 /// are made to fit, or lie on beds, sofas or the floor. Furniture stands around them, and some things in front of them.
 /// Nobody is inside furniture, walls or other people by more than 3 cm. People who find no place after a bounded number
-/// of tries are left out. `models` are the user's own pieces of furniture, standing on y = 0 about the origin. The same
+/// of tries are left out. The same
 /// arguments give the same scene. Throws UsageError for invalid options.
 BuiltScene build_scene(const SceneOptions& options, const CameraPlacement& placement, const Camera& intrinsics,
-                       const std::vector<PersonPlan>& plans, const std::vector<SceneMesh>& models, Random random);
+                       const std::vector<PersonPlan>& plans, Random random);
 
 }  // namespace vesalius::synth

@@ -43,7 +43,7 @@ TEST(BuildScene, ShowsTheLeftHandOfAFacingPersonOnTheRight) {
   PersonPlan plan = plan_of({}, 0);
   for (const float yaw : {0.F, 3.14159F}) {
     plan.yaw_rad = yaw;
-    const BuiltScene built = build_scene(options, upright, kCamera, {plan}, {}, Random(5));
+    const BuiltScene built = build_scene(options, upright, kCamera, {plan}, Random(5));
     ASSERT_EQ(built.people.size(), 1U);
     const auto column = [&](Bone bone) {
       return kCamera.pixel(built.view.camera_from_world * built.people[0].body.joints[index(bone)]).x();
@@ -60,7 +60,7 @@ TEST(BuildScene, FollowsTheFrontalShare) {
   SceneOptions options;
   options.furniture_max = 0;
   for (std::uint64_t i = 0; i < 800; ++i) {
-    const BuiltScene built = build_scene(options, {}, kCamera, {plan_of({}, 0)}, {}, Random(6, i));
+    const BuiltScene built = build_scene(options, {}, kCamera, {plan_of({}, 0)}, Random(6, i));
     for (const PlacedPerson& person : built.people) {
       Vector3f to_camera = -person.world_from_body.translation();
       to_camera.y() = 0.F;
@@ -115,9 +115,9 @@ TEST(BuildScene, DarkensOnlyWholePieces) {
   SceneOptions options;
   options.furniture_min = 4;
   options.dark_furniture = 0.F;
-  const BuiltScene pale = build_scene(options, {}, kCamera, {plan_of({}, 0)}, {}, Random(9));
+  const BuiltScene pale = build_scene(options, {}, kCamera, {plan_of({}, 0)}, Random(9));
   options.dark_furniture = 1.F;
-  const BuiltScene dark = build_scene(options, {}, kCamera, {plan_of({}, 0)}, {}, Random(9));
+  const BuiltScene dark = build_scene(options, {}, kCamera, {plan_of({}, 0)}, Random(9));
   ASSERT_EQ(pale.scene.meshes.size(), dark.scene.meshes.size());
   int pieces = 0;
   for (std::size_t i = 0; i < pale.scene.meshes.size(); ++i) {
@@ -146,7 +146,7 @@ TEST(BuildScene, PlacesSomethingLargeCloseWithTheGivenProbability) {
     int near = 0;
     options.near_probability = probability;
     for (std::uint64_t i = 0; i < 60; ++i) {
-      const BuiltScene built = build_scene(options, {}, kCamera, {}, {}, Random(10, i));
+      const BuiltScene built = build_scene(options, {}, kCamera, {}, Random(10, i));
       const Vector3f eye = built.view.camera_from_world.inverse().translation();
       for (const OrientedBox& box : built.solids) near += (box.pose.translation() - eye).norm() < 2.5F ? 1 : 0;
     }
@@ -156,32 +156,18 @@ TEST(BuildScene, PlacesSomethingLargeCloseWithTheGivenProbability) {
   EXPECT_GE(near_pieces(1.F), 40);
 }
 
-TEST(BuildScene, UsesTheGivenModels) {
-  SceneMesh model;
-  model.vertices = {{-0.2F, 0.F, -0.2F}, {0.2F, 0.F, -0.2F}, {0.2F, 0.F, 0.2F}, {0.F, 0.5F, 0.F}};
-  model.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  SceneOptions options;
-  options.furniture_min = options.furniture_max = 10;
-  int found = 0;
-  for (std::uint64_t i = 0; i < 20; ++i) {
-    const BuiltScene built = build_scene(options, {}, kCamera, {}, {model}, Random(8, i));
-    for (const SceneMesh& mesh : built.scene.meshes) found += mesh.vertices.size() == 4 ? 1 : 0;
-  }
-  EXPECT_GT(found, 10);
-}
-
 TEST(BuildScene, NamesInvalidOptions) {
   SceneOptions options;
   options.furniture_min = 5;
   options.furniture_max = 2;
-  EXPECT_THAT([&] { build_scene(options, {}, kCamera, {}, {}, Random(1)); },
+  EXPECT_THAT([&] { build_scene(options, {}, kCamera, {}, Random(1)); },
               ThrowsMessage<UsageError>(HasSubstr("scene.furniture-min is 5, above scene.furniture-max 2")));
   options = {};
   options.frontal_share = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW(build_scene(options, {}, kCamera, {}, {}, Random(1)), UsageError);
-  EXPECT_THAT([&] { build_scene({}, {}, kCamera, {PersonPlan{}}, {}, Random(1)); },
+  EXPECT_THROW(build_scene(options, {}, kCamera, {}, Random(1)), UsageError);
+  EXPECT_THAT([&] { build_scene({}, {}, kCamera, {PersonPlan{}}, Random(1)); },
               ThrowsMessage<Error>(HasSubstr("person 0 of a scene has no body")));
-  EXPECT_THROW(build_scene({}, {}, Camera{}, {}, {}, Random(1)), Error);
+  EXPECT_THROW(build_scene({}, {}, Camera{}, {}, Random(1)), Error);
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "synth/scene/palette.h"
-#include "synth/scene/seats.h"
-#include "synth/scene/soft_support.h"
+#include "synth/furniture/seats.h"
+#include "synth/furniture/soft_support.h"
+#include "synth/mesh/palette.h"
 
 namespace vesalius::synth {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "synth/scene/furniture.h"
+#include "synth/furniture/furniture.h"
 #include "synth/scene/occupancy.h"
 
 namespace vesalius::synth {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "synth/scene/make_furniture.h"
-#include "synth/scene/nobody.h"
-#include "synth/scene/palette.h"
+#include "synth/furniture/make_furniture.h"
+#include "synth/furniture/nobody.h"
+#include "synth/mesh/palette.h"
 
 namespace vesalius::synth {
 namespace {
@@ -19,9 +19,9 @@ constexpr int kTries = 6;
 
 class Furnisher {
  public:
-  Furnisher(const SceneOptions& options, const RoomShape& room, const std::vector<SceneMesh>& models,
-            const Vector3f& eye, Occupancy& occupancy, Random& random)
-      : options_(options), room_(room), models_(models), eye_(eye), occupancy_(occupancy), random_(random) {}
+  Furnisher(const SceneOptions& options, const RoomShape& room, const Vector3f& eye, Occupancy& occupancy,
+            Random& random)
+      : options_(options), room_(room), eye_(eye), occupancy_(occupancy), random_(random) {}
 
   /// Places something between the camera and a person.
   void occlude(const Vector3f& person) {
@@ -77,9 +77,6 @@ class Furnisher {
   float any_turn() { return between(-std::numbers::pi, std::numbers::pi, random_); }
 
   Piece draw_piece() {
-    if (!models_.empty() && chance(0.3, random_)) {
-      return {as_furniture(models_[random_.below(static_cast<std::uint32_t>(models_.size()))])};
-    }
     if (asked(options_.nobody_share, random_)) return draw_nobody();
     if (chance(options_.mannequin_share, random_)) {
       constexpr std::array<FurnitureKind, 3> kLike = {FurnitureKind::coat_stand, FurnitureKind::mannequin,
@@ -145,7 +142,6 @@ class Furnisher {
 
   const SceneOptions& options_;
   const RoomShape& room_;
-  const std::vector<SceneMesh>& models_;
   Vector3f eye_;
   Occupancy& occupancy_;
   Random& random_;
@@ -154,10 +150,9 @@ class Furnisher {
 
 }  // namespace
 
-std::vector<Furniture> furnish(const SceneOptions& options, const RoomShape& room, const std::vector<SceneMesh>& models,
-                               const std::vector<Vector3f>& people, const Vector3f& eye, Occupancy& occupancy,
-                               Random& random) {
-  Furnisher furnisher(options, room, models, eye, occupancy, random);
+std::vector<Furniture> furnish(const SceneOptions& options, const RoomShape& room, const std::vector<Vector3f>& people,
+                               const Vector3f& eye, Occupancy& occupancy, Random& random) {
+  Furnisher furnisher(options, room, eye, occupancy, random);
   for (const Vector3f& person : people) {
     if (chance(options.occluder_probability, random)) furnisher.occlude(person);
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "synth/body/poser.h"
-#include "synth/scene/oriented_box.h"
+#include "synth/mesh/oriented_box.h"
 #include "synth/scene/room.h"
 
 namespace vesalius::synth {

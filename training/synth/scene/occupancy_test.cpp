@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "synth/scene/furniture.h"
+#include "synth/furniture/furniture.h"
 
 namespace vesalius::synth {
 namespace {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <optional>
 
-#include "synth/scene/desk.h"
+#include "synth/furniture/desk.h"
+#include "synth/furniture/make_furniture.h"
+#include "synth/furniture/seats.h"
+#include "synth/furniture/soft_support.h"
+#include "synth/mesh/palette.h"
 #include "synth/scene/fit_support.h"
-#include "synth/scene/make_furniture.h"
-#include "synth/scene/palette.h"
-#include "synth/scene/seats.h"
-#include "synth/scene/soft_support.h"
 
 namespace vesalius::synth {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "synth/scene/furniture.h"
+#include "synth/furniture/furniture.h"
 #include "synth/scene/occupancy.h"
 #include "synth/scene/person_plan.h"
 #include "synth/scene/scene_options.h"

@@ -5,7 +5,7 @@
 
 #include "synth/body/body_detail.h"
 #include "synth/body/poser.h"
-#include "synth/scene/scene.h"
+#include "synth/mesh/scene_mesh.h"
 
 namespace vesalius::synth {
 

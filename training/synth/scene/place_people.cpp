@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "synth/scene/palette.h"
+#include "synth/mesh/palette.h"
 
 namespace vesalius::synth {
 namespace {

@@ -61,7 +61,7 @@ TEST(BuildScene, PutsTheFeetOfStandingAndKneelingPeopleOnTheFloor) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     Random random(21, i);
     std::vector<PersonPlan> plans = draw_plans(2, random);
-    const BuiltScene built = build_scene({}, {}, kCamera, plans, {}, Random(22, i));
+    const BuiltScene built = build_scene({}, {}, kCamera, plans, Random(22, i));
     for (const PlacedPerson& person : built.people) {
       const Posture posture = plans[person.plan].posture;
       if (posture == Posture::lying || posture == Posture::sitting) continue;
@@ -80,7 +80,7 @@ TEST(BuildScene, PutsSeatsDirectlyUnderSittingPeople) {
     const std::vector<PersonPlan> plans = {
         plan_of(sample_pose(only(&PoseSamplerOptions::sitting), random), random.next()),
         plan_of(sample_pose(only(&PoseSamplerOptions::sitting), random), random.next())};
-    const BuiltScene built = build_scene({}, {}, kCamera, plans, {}, Random(32, i));
+    const BuiltScene built = build_scene({}, {}, kCamera, plans, Random(32, i));
     for (const PlacedPerson& person : built.people) {
       ++sitters;
       // There is a seat just below the lowest skin at the hips.
@@ -168,7 +168,7 @@ int close_pairs(float beside_probability, int scenes, bool& sunk) {
       plans.push_back(plan_of(sample_pose({}, random), random.next()));
       if (plans.back().posture != Posture::standing) plans.pop_back();
     }
-    const BuiltScene built = build_scene({.beside_probability = beside_probability}, {}, kCamera, plans, {},
+    const BuiltScene built = build_scene({.beside_probability = beside_probability}, {}, kCamera, plans,
                                          Random(22, static_cast<std::uint64_t>(i)));
     if (built.people.size() < 2 || apart(built.people[0], built.people[1]) > 0.15F) continue;
     ++close;

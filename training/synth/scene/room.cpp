@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "synth/scene/palette.h"
-#include "synth/scene/shapes.h"
+#include "synth/mesh/palette.h"
+#include "synth/mesh/shapes.h"
 
 namespace vesalius::synth {
 namespace {

@@ -35,7 +35,7 @@ void for_scenes(int count, const SceneOptions& options, float PoseSamplerOptions
                 const std::function<void(const BuiltScene&)>& use) {
   for (int i = 0; i < count; ++i) {
     const auto stream = static_cast<std::uint64_t>(i);
-    use(build_scene(options, {}, kCamera, plan_of_kind(kind, stream), {}, Random(42, stream)));
+    use(build_scene(options, {}, kCamera, plan_of_kind(kind, stream), Random(42, stream)));
   }
 }
 
@@ -61,7 +61,7 @@ TEST(SceneOptions, KeepPeopleOutOfSolidsAndWallsWithAllOn) {
   constexpr int kScenes = 120;
   for (std::uint64_t i = 0; i < kScenes; ++i) {
     Random random(43, i);
-    const BuiltScene built = build_scene(options, {}, kCamera, draw_plans(2, random), {}, Random(44, i));
+    const BuiltScene built = build_scene(options, {}, kCamera, draw_plans(2, random), Random(44, i));
     placed += static_cast<int>(built.people.size());
     for (const PlacedPerson& person : built.people) {
       for (const Vector3f& p : person.body.vertices) {

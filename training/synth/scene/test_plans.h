@@ -55,7 +55,7 @@ inline std::vector<PersonPlan> draw_plans(int count, Random& random) {
 
 inline BuiltScene build(std::uint64_t stream, int people, const CameraPlacement& placement = {}) {
   Random random(11, stream);
-  return build_scene({}, placement, kCamera, draw_plans(people, random), {}, Random(12, stream));
+  return build_scene({}, placement, kCamera, draw_plans(people, random), Random(12, stream));
 }
 
 }  // namespace vesalius::synth::test
