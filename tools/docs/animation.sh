@@ -20,7 +20,7 @@ trap 'rm -rf "$work"' EXIT
   --clip.moving-share 0 --clip.walking-share 1 --clip.crossing-share 1 --clip.leaving-share 0 \
   --camera.distance-min 2 --camera.distance-max 4 --camera.height-min 1 --camera.height-max 1.6 --camera.pitch-max 15
 "$program" detect "$work/clip" -q --track --rate 10 --save overlay --out "$work/found"
-ffmpeg -v error -y -framerate 10 -pattern_type glob -i "$work/found/overlay/*.png" -vf scale=480:-1:flags=lanczos -loop 0 -quality 70 \
+ffmpeg -v error -y -framerate 10 -pattern_type glob -i "$work/found/overlay/*.png" -vf scale=400:-1:flags=lanczos -loop 0 -quality 40 \
   -compression_level 6 "$work/people.webp"
 mv "$work/people.webp" "$out"
 ls -l "$out"
