@@ -95,27 +95,6 @@ TEST_F(Evaluate, WritesAReportWithPictures) {
   EXPECT_EQ(json::parse(bytes_of(path("out/report.json"))).at("sets").size(), 1U);
 }
 
-TEST_F(Evaluate, WritesTheContributionOfEachPartOfTheMethod) {
-  if (!has_gnuplot()) GTEST_SKIP() << "no program gnuplot (Debian: gnuplot-nox)";
-  const Outcome run = evaluate(" --ablation --step 3 --report " + path("out"));
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, ContainsRegex("  every second pixel +[0-9.]+ ms, [0-9.]+ of it; people found "));
-  const std::string page = bytes_of(path("out/report.md"));
-  EXPECT_THAT(page, ContainsRegex("\\| as it is \\| 100.00 % \\|"));
-  EXPECT_THAT(page, HasSubstr("| no second iteration |"));
-  EXPECT_THAT(bytes_of(path("out/ablation.csv")), HasSubstr("\nframes,root neck alone,people.found,"));
-  const json set = json::parse(bytes_of(path("out/report.json"))).at("sets").at(0);
-  const json& rows = set.at("ablation");
-  EXPECT_GT(rows.size(), 6U);
-  for (const json& row : rows) {
-    EXPECT_GT(row.at("frame_ms"), 0.0) << row.at("variant");
-    const json& found = row.at("figures").at("people.found");
-    const double whole = set.at("figures").at("people.found").at("value");
-    EXPECT_NEAR(found.at("value").get<double>() - found.at("difference").get<double>(), whole, 1e-9);
-  }
-  EXPECT_EQ(evaluate(" --ablation --labels-only").exit_code, 2);
-}
-
 TEST_F(Evaluate, FollowsThePeopleOfARecording) {
   write("frames/frames.csv", "frame,people\na,1\nb,1\nc,0\n");
   const Outcome run = evaluate(" --track --hidden --json " + path("track.json"));
@@ -424,7 +403,6 @@ TEST_F(Evaluate, WritesTheModelWithAContextFittedToTheFrames) {
   EXPECT_EQ(unlabelled.exit_code, 1);
   EXPECT_THAT(unlabelled.err, HasSubstr("no pixel that may be a body and is known to be one"));
   EXPECT_FALSE(fs::exists(path("none.forest")));
-  EXPECT_EQ(run_program(fit + path("none.forest") + " --ablation").exit_code, 2);
 }
 
 class Compare : public Evaluate {};

@@ -28,24 +28,4 @@ std::string evaluation_csv(const Evaluation& evaluation) {
   return csv;
 }
 
-std::string ablation_csv(const std::vector<SetResult>& sets) {
-  std::string csv = "set,variant,figure,value,difference,low,high,verdict\n";
-  for (const SetResult& set : sets) {
-    if (set.ablation.empty()) continue;
-    const std::string name = field(set.name);
-    const std::vector<Estimate> whole = set.metrics.estimates();
-    for (const Estimate& e : whole) csv += fmt::format("{},,{},{:.6g},,,,\n", name, e.id.name(), e.value);
-    csv += fmt::format("{},,frame_ms,{:.6g},,,,\n", name, set.frame_ms);
-    for (const AblationRow& row : set.ablation) {
-      const std::string variant = field(row.variant);
-      for (const Comparison& c : compare_common(whole, row.metrics, true)) {
-        csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", name, variant, c.id.name(), c.second,
-                           c.difference, c.interval.low, c.interval.high, verdict_word(c.verdict));
-      }
-      csv += fmt::format("{},{},frame_ms,{:.6g},{:.6g},,,\n", name, variant, row.frame_ms, row.frame_ms - set.frame_ms);
-    }
-  }
-  return csv;
-}
-
 }  // namespace vesalius

@@ -64,26 +64,6 @@ Json confusion_json(const PixelConfusion& confusion) {
   return rows;
 }
 
-Json ablation_json(const SetResult& set) {
-  const std::vector<Estimate> whole = set.metrics.estimates();
-  Json rows = Json::array();
-  for (const AblationRow& row : set.ablation) {
-    Json metrics = Json::object();
-    for (const Comparison& c : compare_common(whole, row.metrics, true)) {
-      metrics[c.id.name()] = {{"value", json_number(c.second)},
-                              {"difference", json_number(c.difference)},
-                              {"low", json_number(c.interval.low)},
-                              {"high", json_number(c.interval.high)},
-                              {"verdict", verdict_word(c.verdict)}};
-    }
-    rows.push_back({{"variant", row.variant},
-                    {"frame_ms", row.frame_ms},
-                    {"frame_ms_as_it_is", set.frame_ms},
-                    {"figures", std::move(metrics)}});
-  }
-  return rows;
-}
-
 Json set_json(const SetResult& set, const Evaluation& evaluation) {
   Json metrics = Json::object();
   for (const Estimate& estimate : set.metrics.estimates()) metrics[estimate.id.name()] = metric_json(estimate);
@@ -105,7 +85,6 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
   if (set.joint_curve.joints > 0) json["joints_within_cm"] = joint_curve_json(set.joint_curve);
   for (const auto& [joint, precision] : set.joint_precision.averages()) json["joint_precision"][joint] = precision;
   for (const auto& [part, precision] : set.centre_precision.averages()) json["centre_precision"][part] = precision;
-  if (!set.ablation.empty()) json["ablation"] = ablation_json(set);
   if (set.confusion) json["confusion"] = confusion_json(*set.confusion);
   Json worst = Json::array();
   for (const WorstFrame& frame : set.worst) {

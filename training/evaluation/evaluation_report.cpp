@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "draw/draw.h"
-#include "evaluation/ablation_report.h"
 #include "evaluation/evaluation_csv.h"
 #include "evaluation/evaluation_json.h"
 #include "evaluation/evaluation_summary.h"
@@ -248,7 +247,6 @@ void add_set(const SetResult& set, const Evaluation& evaluation, Document& docum
   add_reliability(set, estimates, document);
   add_precision(set.joint_precision, "joint", document);
   add_precision(set.centre_precision, "part's centre", document);
-  add_ablation(set, document);
   if (set.confusion) add_confusion(*set.confusion, evaluation.body, document);
   for (const WorstFrame& worst : set.worst) {
     document.picture(
@@ -295,10 +293,6 @@ void write_report(const Evaluation& evaluation, const std::string& folder) {
   write_file_atomically((path / "report.md").string(), document.markdown("pictures"));
   write_file_atomically((path / "report.html").string(), document.html());
   write_file_atomically((path / "figures.csv").string(), evaluation_csv(evaluation));
-  const auto has_ablation = [](const SetResult& set) { return !set.ablation.empty(); };
-  if (std::ranges::any_of(evaluation.sets, has_ablation)) {
-    write_file_atomically((path / "ablation.csv").string(), ablation_csv(evaluation.sets));
-  }
   write_file_atomically((path / "report.json").string(), evaluation_json(evaluation) + "\n");
 }
 

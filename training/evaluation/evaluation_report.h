@@ -10,7 +10,7 @@ namespace vesalius {
 /// evaluation, so that a long run does not fail at its end.
 void prepare_report(const std::string& folder);
 
-/// Writes report.html, report.md with its pictures, report.json, figures.csv and, after an ablation, ablation.csv into
+/// Writes report.html, report.md with its pictures, report.json and figures.csv into
 /// a folder that was prepared. Throws Error with the path that cannot be written.
 void write_report(const Evaluation& evaluation, const std::string& folder);
 

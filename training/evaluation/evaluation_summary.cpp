@@ -128,7 +128,6 @@ std::string metrics_text(const std::vector<Estimate>& estimates, std::span<const
 }  // namespace
 
 std::string speed_text(const SetResult& set) {
-  if (!set.ablation.empty()) return fmt::format("{:.1f} ms a frame", set.frame_ms);
   return fmt::format("{:.1f} frames/s", set.frames / std::max(1e-9, set.seconds));
 }
 

@@ -6,7 +6,7 @@
 
 namespace vesalius {
 
-/// Returns "12.3 frames/s", or "41.0 ms a frame" if frames were timed one by one.
+/// Returns "12.3 frames/s".
 std::string speed_text(const SetResult& set);
 
 /// Returns a summary of a set for a terminal: one line, one more for people followed over time, and one for each family

@@ -32,7 +32,6 @@ struct FrameScore {
   std::vector<KnownPerson> known_people;            ///< only of frames for fitting joints
 
   std::string what_went_wrong;  ///< empty if nothing did
-  double detect_s = 0.0;        ///< time of the detector; 0 if only labels were requested
   double badness = 0.0;         ///< 0 if everything is right; ranks the frames for reports
   std::vector<Person> people;
   LabelImage labels;  ///< smoothed labels of the first pass
