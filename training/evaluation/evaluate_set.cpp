@@ -7,7 +7,6 @@
 #include <iterator>
 #include <utility>
 
-#include "report/escape_text.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 
@@ -78,7 +77,7 @@ class SetEvaluation {
     if (!options_.keep_going) throw Error(why);
     if (hooks_.failure) hooks_.failure(why);
     ++result_.failed;
-    if (result_.failures.size() < kFailuresKept) result_.failures.push_back(one_line_text(why));
+    if (result_.failures.size() < kFailuresKept) result_.failures.push_back(why);
   }
 
   void take(Item item) {

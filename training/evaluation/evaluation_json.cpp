@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,7 +10,6 @@
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "metrics/compare_metrics.h"
-#include "report/escape_text.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -96,7 +96,7 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
 
 Estimate read_metric(const std::string& name, const Json& json) {
   const auto id = parse_metric(name);
-  if (!id) throw Error(fmt::format("unknown metric {}", one_line_text(name)));
+  if (!id) throw Error(fmt::format("unknown metric {}", name));
   Estimate estimate{*id};
   estimate.value = number(json.at("value"));
   estimate.interval = {number(json.at("low")), number(json.at("high"))};
@@ -139,6 +139,19 @@ std::string evaluation_json(const Evaluation& evaluation) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string evaluation_csv(const Evaluation& evaluation) {
+  std::string csv = "set,figure,value,low,high,numerator,denominator,better\n";
+  for (const SetResult& set : evaluation.sets) {
+    std::string name = set.name;
+    std::ranges::replace(name, ',', ';');
+    for (const Estimate& e : set.metrics.estimates()) {
+      csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.10g},{:.10g},{}\n", name, e.id.name(), e.value, e.interval.low,
+                         e.interval.high, e.numerator, e.denominator, better_word(e.id.metric));
+    }
+  }
+  return csv;
+}
+
 std::vector<StoredSet> read_evaluation(const std::string& path) {
   const Json json = Json::parse(read_file(path), nullptr, false);
   if (!json.is_object() || !json.contains("vesalius_evaluation")) {
@@ -153,7 +166,7 @@ std::vector<StoredSet> read_evaluation(const std::string& path) {
     for (const Json& set : json.at("sets")) sets.push_back(read_set(set));
     return sets;
   } catch (const nlohmann::json::exception& e) {
-    throw Error(one_line_text(fmt::format("{}: damaged evaluation: {}", path, e.what())));
+    throw Error(fmt::format("{}: damaged evaluation: {}", path, e.what()));
   } catch (const Error& e) {
     throw Error(fmt::format("{}: {}", path, e.what()));
   }

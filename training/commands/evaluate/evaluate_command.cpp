@@ -36,6 +36,7 @@
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
+#include "report/document.h"
 #include "vesalius/base/parallel.h"
 
 namespace vesalius::cli {
@@ -317,7 +318,7 @@ void run(const Arguments& arguments, const std::string& command) {
   if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options);
   evaluation.tracked = arguments.track;
   evaluation.body = scorer.body();
-  if (!arguments.report.empty()) prepare_report(arguments.report);
+  if (!arguments.report.empty()) make_report_folder(arguments.report);
   watch_interrupts();
   int failed = 0;
   for (const Request& request : requests) {
@@ -354,7 +355,7 @@ void add_evaluate(CLI::App& program) {
   command->add_option("--assets", arguments->rendered.assets.folder, "Folder in which `vesalius assets` put its files")
       ->type_name("DIR");
   command->add_option("-m,--model", arguments->model, "Trained forest")->type_name("FILE")->required();
-  command->add_option("--report", arguments->report, "Folder for report.html, report.md, report.json and figures.csv")
+  command->add_option("--report", arguments->report, "Folder for report.html, report.json and figures.csv")
       ->type_name("DIR");
   command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`; - for standard output")
       ->type_name("FILE");
