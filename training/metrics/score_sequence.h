@@ -56,7 +56,6 @@ class SequenceScorer {
   const FrameScorer& judge_;
   Options options_;
   bool ids_known_ = true;
-  bool graded_ = true;
   std::vector<std::string> joint_names_;
   TrackMatcher matcher_;
   std::vector<TrackSample> samples_;        ///< [frame]
