@@ -2,15 +2,10 @@
 
 #include <vector>
 
+#include "metrics/fit_samples.h"
 #include "vesalius/forest/boosted_trees.h"
 
 namespace vesalius {
-
-/// What is known of a case, and whether the answer was yes.
-struct BoostSample {
-  std::vector<float> features;
-  bool positive = false;
-};
 
 struct BoostOptions {
   int trees = 1600;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "metrics/fit_samples.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/derive_joints.h"
 
@@ -28,15 +29,6 @@ inline constexpr std::size_t kLeastJointSamples = 100;
 /// Without `with_neighbours` only its own parts are used.
 JointDefinition fit_joint(const JointDefinition& joint, const std::vector<JointSample>& samples, const BodyModel& body,
                           bool with_neighbours = true);
-
-/// A person who was found, with the truth about that person. Places are in metres, optical frame; NaN = not known.
-struct KnownPerson {
-  Skeleton skeleton;                          ///< what was given out, with predicted parts
-  std::string joint_set;                      ///< the only set that is compared with the joints; empty means any
-  std::vector<std::string> joint_names;       ///< of `joints`
-  std::vector<Eigen::Vector3f> joints;        ///< in the order of joint_names
-  std::vector<Eigen::Vector3f> part_centres;  ///< [part] centre of the part's volume; empty if not known
-};
 
 /// Returns the body's joint sets of which the people's truth has joints, fitted to them; a joint that it lacks stays as
 /// it is. A set with a joint under each part's name is fitted to the parts' centres,

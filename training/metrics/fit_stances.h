@@ -3,16 +3,10 @@
 #include <array>
 #include <vector>
 
+#include "metrics/fit_samples.h"
 #include "vesalius/track/stance_model.h"
-#include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
-
-/// The posture of somebody in a frame, and the true stance.
-struct StanceSample {
-  Posture posture;
-  Stance stance = Stance::unknown;  ///< standing, sitting or lying
-};
 
 /// Fewest samples of each stance to which a model is fitted.
 inline constexpr long kLeastStanceSamples = 100;

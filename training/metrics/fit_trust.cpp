@@ -7,9 +7,7 @@
 #include <cstddef>
 
 #include "metrics/fit_logistic.h"
-#include "metrics/joint_metrics.h"
 #include "vesalius/base/error.h"
-#include "vesalius/fit/flesh_joints.h"
 
 namespace vesalius {
 namespace {
@@ -53,23 +51,6 @@ double disagreement(const std::vector<const TrustSample*>& samples, const JointT
 }
 
 }  // namespace
-
-void add_trust_samples(const TrackedPerson& found, const std::vector<JointSet>& sets, const JointSet& set,
-                       const std::vector<std::string>& names, const std::vector<Eigen::Vector3f>& truth,
-                       std::vector<TrustSample>& samples) {
-  if (!found.body) return;
-  const std::vector<Joint>& joints = found.person.joints.at(static_cast<std::size_t>(&set - sets.data()));
-  for (std::size_t n = 0; n < names.size(); ++n) {
-    const FleshJoint* place = find_flesh_joint(builtin_flesh_joints(), set.name, names[n]);
-    const auto defined = std::ranges::find(set.joints, names[n], &JointDefinition::name);
-    if (place == nullptr || defined == set.joints.end() || !truth[n].allFinite()) continue;
-    const Joint& joint = joints.at(static_cast<std::size_t>(defined - set.joints.begin()));
-    if (joint.state == State::none) continue;
-    const FittedBone& bone = found.body->bones.at(static_cast<std::size_t>(place->bone));
-    const double error_m = static_cast<double>((joint.position - truth[n]).norm());
-    samples.push_back({source_of(*found.body, bone), signals_of(*place, *found.body), error_m < kJointTolerance_m});
-  }
-}
 
 TrustFit fit_trust(const std::vector<TrustSample>& samples, const BodyTrust& start) {
   TrustFit fit;

@@ -1,29 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
-#include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
+#include "metrics/fit_samples.h"
 #include "vesalius/fit/joint_trust.h"
-#include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
-
-/// A joint that was given out by a fitted body, and whether it was right.
-struct TrustSample {
-  JointSource source = JointSource::observed;
-  TrustSignals signals;
-  bool right = false;  ///< within kJointTolerance_m of the truth
-};
-
-/// Adds a sample for each joint of a person that comes from the fitted body (builtin_flesh_joints) and whose truth is
-/// known. `names` and `truth` (metres, optical frame; NaN = not known) have one order; the places are those of
-/// found.person.joints.
-void add_trust_samples(const TrackedPerson& found, const std::vector<JointSet>& sets, const JointSet& set,
-                       const std::vector<std::string>& names, const std::vector<Eigen::Vector3f>& truth,
-                       std::vector<TrustSample>& samples);
 
 /// Fewest right and fewest wrong samples of one kind to which its trust is fitted.
 inline constexpr long kLeastTrustSamples = 200;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "metrics/breakdown_metrics.h"
-#include "metrics/fit_context.h"
 #include "metrics/heading.h"
 #include "metrics/joint_sight.h"
 #include "metrics/match_people.h"

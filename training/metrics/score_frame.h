@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "metrics/boost_trees.h"
 #include "metrics/detection_curve.h"
-#include "metrics/fit_joints.h"
+#include "metrics/fit_samples.h"
 #include "metrics/fit_score.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/joint_precision.h"

@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "metrics/fit_stances.h"
-#include "metrics/fit_trust.h"
 #include "metrics/motion_metrics.h"
 #include "metrics/score_frame.h"
 #include "metrics/track_metrics.h"

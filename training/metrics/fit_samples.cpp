@@ -1,11 +1,14 @@
-#include "metrics/fit_context.h"
+#include "metrics/fit_samples.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <string>
 
+#include "metrics/joint_metrics.h"
 #include "vesalius/base/blended_depth.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/base/random.h"
+#include "vesalius/fit/flesh_joints.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/forest/label_scene.h"
 
@@ -45,6 +48,23 @@ std::vector<BoostSample> context_samples(const TrueFrame& frame, const std::shar
     return samples;
   };
   return on_grid(seen, options.grid, nullptr, sample, [](const GridGuide&, const std::vector<BoostSample>&) {});
+}
+
+void add_trust_samples(const TrackedPerson& found, const std::vector<JointSet>& sets, const JointSet& set,
+                       const std::vector<std::string>& names, const std::vector<Eigen::Vector3f>& truth,
+                       std::vector<TrustSample>& samples) {
+  if (!found.body) return;
+  const std::vector<Joint>& joints = found.person.joints.at(static_cast<std::size_t>(&set - sets.data()));
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const FleshJoint* place = find_flesh_joint(builtin_flesh_joints(), set.name, names[n]);
+    const auto defined = std::ranges::find(set.joints, names[n], &JointDefinition::name);
+    if (place == nullptr || defined == set.joints.end() || !truth[n].allFinite()) continue;
+    const Joint& joint = joints.at(static_cast<std::size_t>(defined - set.joints.begin()));
+    if (joint.state == State::none) continue;
+    const FittedBone& bone = found.body->bones.at(static_cast<std::size_t>(place->bone));
+    const double error_m = static_cast<double>((joint.position - truth[n]).norm());
+    samples.push_back({source_of(*found.body, bone), signals_of(*place, *found.body), error_m < kJointTolerance_m});
+  }
 }
 
 }  // namespace vesalius

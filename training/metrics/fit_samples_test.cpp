@@ -1,4 +1,4 @@
-#include "metrics/fit_context.h"
+#include "metrics/fit_samples.h"
 
 #include <gtest/gtest.h>
 
