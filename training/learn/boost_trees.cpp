@@ -1,4 +1,4 @@
-#include "metrics/boost_trees.h"
+#include "learn/boost_trees.h"
 
 #include <algorithm>
 #include <cmath>

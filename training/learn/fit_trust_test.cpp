@@ -1,4 +1,4 @@
-#include "metrics/fit_trust.h"
+#include "learn/fit_trust.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "metrics/fit_joints.h"
+#include "learn/fit_joints.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "metrics/fit_joints.h"
+#include "learn/fit_joints.h"
 #include "vesalius/base/body_model.h"
 
 namespace vesalius {

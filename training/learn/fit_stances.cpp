@@ -1,4 +1,4 @@
-#include "metrics/fit_stances.h"
+#include "learn/fit_stances.h"
 
 #include <fmt/format.h>
 

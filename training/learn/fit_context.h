@@ -1,6 +1,6 @@
 #pragma once
 
-#include "metrics/boost_trees.h"
+#include "learn/boost_trees.h"
 
 namespace vesalius {
 

@@ -1,4 +1,4 @@
-#include "metrics/fit_distribution.h"
+#include "learn/fit_distribution.h"
 
 #include <fmt/format.h>
 
