@@ -56,7 +56,7 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME ${VESALIUS_PACKAGE_OF_program})
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "bash-completion, gnuplot-nox, xdg-utils")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "bash-completion, xdg-utils")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
     "finds people in frames of depth cameras
 vesalius takes frames with colour and depth (RGB-D) and gives people: body

@@ -21,8 +21,6 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null") == 0; }
-
 /// Tests on the small world's frames with a table of the people in them.
 class Evaluate : public SmallWorld {
  protected:
@@ -60,10 +58,8 @@ class Evaluate : public SmallWorld {
 TEST_F(Evaluate, PrintsTheMetricsOfASet) {
   const Outcome run = evaluate("");
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out,
-              StartsWith("frames: 3 frames, people 2 of 2, false 0, somebody in 0 of 1 empty, parts seen on average "));
-  EXPECT_THAT(run.out, ContainsRegex("parts seen, %: l_foot [0-9]+, l_leg "));
-  EXPECT_THAT(run.out, HasSubstr("found by posture, %: standing 100\n"));
+  EXPECT_THAT(run.out, ContainsRegex("^frames: 3 frames, people 2 of 2, false 0, somebody in 0 of 1 empty, [0-9.]+ "
+                                     "frames/s\n  body on empty frames +[0-9.]+ % \\("));
 }
 
 TEST_F(Evaluate, StepTakesTheFirstOfEveryN) {
@@ -73,47 +69,24 @@ TEST_F(Evaluate, StepTakesTheFirstOfEveryN) {
 TEST_F(Evaluate, MeasuresNoPeopleWithLabelsOnly) {
   const Outcome run = evaluate(" --labels-only");
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, StartsWith("frames: 3 frames, body on empty "));
+  EXPECT_THAT(run.out, ContainsRegex("^frames: 3 frames, [0-9.]+ frames/s\n  body on empty "));
   EXPECT_THAT(run.out, Not(HasSubstr("people")));
 }
 
 TEST_F(Evaluate, WritesAReportWithPictures) {
-  if (!has_gnuplot()) GTEST_SKIP() << "no program gnuplot (Debian: gnuplot-nox)";
   // With these options somebody is missed.
   const Outcome run = evaluate(" --refine.min-score 1 --no-refine.second-pass --report " + path("out"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::string html = bytes_of(path("out/report.html"));
-  EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64,"));
-  EXPECT_THAT(html, HasSubstr("src=\"data:image/svg+xml;base64,"));
+  EXPECT_THAT(html, HasSubstr("\"png\":\"iVBOR"));
+  EXPECT_THAT(html, HasSubstr("\"kind\":\"plot\""));
+  EXPECT_THAT(html, HasSubstr("[\"posture.standing\","));
+  EXPECT_THAT(html, HasSubstr("[\"l_foot\","));
   EXPECT_THAT(html, HasSubstr("1 of 1 people missed"));
   EXPECT_THAT(html, HasSubstr("vesalius evaluate --no-refine.second-pass --refine.min-score 1 " + frames() +
                               " --model " + model() + " --report " + path("out") + " --quiet"));
-  EXPECT_THAT(bytes_of(path("out/report.md")), HasSubstr("(<pictures/frames_a.png>)"));
-  EXPECT_FALSE(read_colour(path("out/pictures/frames_a.png")).empty());
-  EXPECT_THAT(bytes_of(path("out/pictures/frames_parts.svg")), HasSubstr("</svg>"));
   EXPECT_THAT(bytes_of(path("out/figures.csv")), HasSubstr("\nframes,people.found,0,0,0.65"));
   EXPECT_EQ(json::parse(bytes_of(path("out/report.json"))).at("sets").size(), 1U);
-}
-
-TEST_F(Evaluate, WritesTheContributionOfEachPartOfTheMethod) {
-  if (!has_gnuplot()) GTEST_SKIP() << "no program gnuplot (Debian: gnuplot-nox)";
-  const Outcome run = evaluate(" --ablation --step 3 --report " + path("out"));
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, ContainsRegex("  every second pixel +[0-9.]+ ms, [0-9.]+ of it; people found "));
-  const std::string page = bytes_of(path("out/report.md"));
-  EXPECT_THAT(page, ContainsRegex("\\| as it is \\| 100.00 % \\|"));
-  EXPECT_THAT(page, HasSubstr("| no second iteration |"));
-  EXPECT_THAT(bytes_of(path("out/ablation.csv")), HasSubstr("\nframes,root neck alone,people.found,"));
-  const json set = json::parse(bytes_of(path("out/report.json"))).at("sets").at(0);
-  const json& rows = set.at("ablation");
-  EXPECT_GT(rows.size(), 6U);
-  for (const json& row : rows) {
-    EXPECT_GT(row.at("frame_ms"), 0.0) << row.at("variant");
-    const json& found = row.at("figures").at("people.found");
-    const double whole = set.at("figures").at("people.found").at("value");
-    EXPECT_NEAR(found.at("value").get<double>() - found.at("difference").get<double>(), whole, 1e-9);
-  }
-  EXPECT_EQ(evaluate(" --ablation --labels-only").exit_code, 2);
 }
 
 TEST_F(Evaluate, FollowsThePeopleOfARecording) {
@@ -121,7 +94,7 @@ TEST_F(Evaluate, FollowsThePeopleOfARecording) {
   const Outcome run = evaluate(" --track --hidden --json " + path("track.json"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, StartsWith("frames: 3 frames, people 2 of 2, false 0, somebody in 0 of 1 empty, "));
-  EXPECT_THAT(run.out, ContainsRegex("\n  over time: MOTA [0-9.]+ %, .*ids [12].00 a person, longest gap 0.0 frames"));
+  EXPECT_THAT(run.out, ContainsRegex("\n  MOTA +[0-9.]+ % .*\n  ids +[12].00 a person "));
   const json report = json::parse(bytes_of(path("track.json")));
   EXPECT_TRUE(report.at("tracked").get<bool>());
   EXPECT_EQ(report.at("sets").at(0).at("figures").at("track.missed").at("value"), 0.0);
@@ -424,7 +397,6 @@ TEST_F(Evaluate, WritesTheModelWithAContextFittedToTheFrames) {
   EXPECT_EQ(unlabelled.exit_code, 1);
   EXPECT_THAT(unlabelled.err, HasSubstr("no pixel that may be a body and is known to be one"));
   EXPECT_FALSE(fs::exists(path("none.forest")));
-  EXPECT_EQ(run_program(fit + path("none.forest") + " --ablation").exit_code, 2);
 }
 
 class Compare : public Evaluate {};

@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "report/escape_text.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 
@@ -115,7 +114,7 @@ class SequencesEvaluation {
     for (auto& [index, sequence] : results_) take(std::move(sequence), result);
     result.failed = static_cast<int>(failures_.size());
     for (const std::string& why : failures_) {
-      if (result.failures.size() < kFailuresKept) result.failures.push_back(one_line_text(why));
+      if (result.failures.size() < kFailuresKept) result.failures.push_back(why);
     }
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result.frames == 0) throw Error(fmt::format("{}: no frame that could be evaluated", options_.source));

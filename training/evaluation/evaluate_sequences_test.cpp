@@ -18,6 +18,7 @@
 namespace vesalius {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
@@ -119,7 +120,7 @@ TEST(EvaluateSequences, MeasuresTracksMotionAndSingleFrames) {
   EXPECT_DOUBLE_EQ(value(set, Metric::joints_right_confidence, "80_to_90"), 1.0);
   EXPECT_DOUBLE_EQ(value(set, Metric::stance_right), 0.75);
   EXPECT_DOUBLE_EQ(value(set, Metric::stance_given, "standing_as_sitting"), 0.25);
-  EXPECT_THAT(summary_lines(set), HasSubstr("\n  over time: MOTA 97.50 %, MOTP 100.00 %"));
+  EXPECT_THAT(summary_lines(set), ContainsRegex("\n  MOTA +97.50 % "));
 }
 
 TEST(EvaluateSequences, UsesSmoothedJointsWhereThereAreSome) {

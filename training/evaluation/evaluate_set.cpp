@@ -7,8 +7,6 @@
 #include <iterator>
 #include <utility>
 
-#include "metrics/median.h"
-#include "report/escape_text.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 
@@ -23,26 +21,13 @@ struct Item {
   TrueFrame frame;
   int index = 0;
   FrameScore score;
-  std::vector<FrameScore> of_variants;
   std::string failure;
-};
-
-/// The sums over a variant's frames so far.
-struct VariantSums {
-  MetricTable metrics;
-  std::vector<double> frame_ms;
 };
 
 class SetEvaluation {
  public:
-  SetEvaluation(TruthSource& source, const SetOptions& options, const FrameScorer& scorer,
-                const std::vector<Variant>& variants, const EvaluationHooks& hooks)
-      : source_(source),
-        options_(options),
-        scorer_(scorer),
-        variants_(variants),
-        hooks_(hooks),
-        of_variants_(variants.size()) {
+  SetEvaluation(TruthSource& source, const SetOptions& options, const FrameScorer& scorer, const EvaluationHooks& hooks)
+      : source_(source), options_(options), scorer_(scorer), hooks_(hooks) {
     result_.name = options.name;
     result_.source = options.source;
     result_.notes = source.notes();
@@ -53,18 +38,13 @@ class SetEvaluation {
     const auto start = std::chrono::steady_clock::now();
     const std::size_t batch = kFramesPerThread * std::max(1, thread_count());
     for (std::vector<Item> items = read(batch); !items.empty(); items = read(batch)) {
-      score_all(items);
+      parallel_for(static_cast<int>(items.size()), [&](int i) { score(items[i]); });
       for (Item& item : items) take(std::move(item));
       if (hooks_.stop && hooks_.stop())
         throw Error(fmt::format("{}: interrupted after {} frames", result_.name, index_));
     }
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (result_.frames == 0) throw Error(fmt::format("{}: no frame that could be evaluated", options_.source));
-    result_.frame_ms = median(std::move(frame_ms_));
-    for (std::size_t v = 0; v < variants_.size(); ++v) {
-      VariantSums& sums = of_variants_[v];
-      result_.ablation.push_back({variants_[v].name, sums.metrics.estimates(), median(std::move(sums.frame_ms))});
-    }
     return std::move(result_);
   }
 
@@ -76,7 +56,7 @@ class SetEvaluation {
       try {
         std::optional<TrueFrame> frame = source_.next();
         if (!frame) break;
-        items.push_back({std::move(*frame), index_, {}, {}, {}});
+        items.push_back({std::move(*frame), index_, {}, {}});
       } catch (const Error& e) {
         fail(e.what());
       }
@@ -85,24 +65,9 @@ class SetEvaluation {
     return items;
   }
 
-  /// Scores frames in parallel. They share threads, so only all of them together can be timed.
-  void score_all(std::vector<Item>& items) const {
-    if (variants_.empty()) {
-      parallel_for(static_cast<int>(items.size()), [&](int i) { score(items[i]); });
-    } else {
-      for (Item& item : items) score(item);
-    }
-  }
-
   void score(Item& item) const {
     try {
-      const bool fit = options_.fit_joints || item.index % kFitEvery == 0;
-      item.score = scorer_.score(item.frame, fit);
-      for (const Variant& variant : variants_) {
-        FrameScore& score = item.of_variants.emplace_back(variant.scorer->score(item.frame, fit));
-        score.people.clear();  // only a variant's metrics are kept, since its pictures would fill the memory
-        score.labels = {};
-      }
+      item.score = scorer_.score(item.frame, options_.fit_joints || item.index % kFitEvery == 0);
     } catch (const Error& e) {
       item.failure = e.what();
     }
@@ -112,7 +77,7 @@ class SetEvaluation {
     if (!options_.keep_going) throw Error(why);
     if (hooks_.failure) hooks_.failure(why);
     ++result_.failed;
-    if (result_.failures.size() < kFailuresKept) result_.failures.push_back(one_line_text(why));
+    if (result_.failures.size() < kFailuresKept) result_.failures.push_back(why);
   }
 
   void take(Item item) {
@@ -122,13 +87,7 @@ class SetEvaluation {
       return fail(fmt::format("{}: frame {}: {}", options_.source, item.frame.frame.name, item.failure));
     ++result_.frames;
     FrameScore& score = item.score;
-    const std::uint64_t key = frame_key(result_.name.c_str(), item.frame.frame.name.c_str());
-    result_.metrics.add(key, score.terms);
-    if (!variants_.empty()) frame_ms_.push_back(1e3 * score.detect_s);
-    for (std::size_t v = 0; v < variants_.size(); ++v) {
-      of_variants_[v].metrics.add(key, item.of_variants[v].terms);
-      of_variants_[v].frame_ms.push_back(1e3 * item.of_variants[v].detect_s);
-    }
+    result_.metrics.add(frame_key(result_.name.c_str(), item.frame.frame.name.c_str()), score.terms);
     ++result_.log.frames;
     result_.log.expected += score.expected;
     result_.log.proposals.insert(result_.log.proposals.end(), score.proposals.begin(), score.proposals.end());
@@ -148,10 +107,7 @@ class SetEvaluation {
   TruthSource& source_;
   const SetOptions& options_;
   const FrameScorer& scorer_;
-  const std::vector<Variant>& variants_;
   const EvaluationHooks& hooks_;
-  std::vector<VariantSums> of_variants_;
-  std::vector<double> frame_ms_;
   int index_ = 0;
   int done_ = 0;
   SetResult result_;
@@ -179,8 +135,8 @@ void keep_if_worst(WorstFrame frame, std::size_t most, std::vector<WorstFrame>& 
 }
 
 SetResult evaluate_set(TruthSource& frames, const SetOptions& options, const FrameScorer& scorer,
-                       const std::vector<Variant>& variants, const EvaluationHooks& hooks) {
-  return SetEvaluation(frames, options, scorer, variants, hooks).run();
+                       const EvaluationHooks& hooks) {
+  return SetEvaluation(frames, options, scorer, hooks).run();
 }
 
 }  // namespace vesalius

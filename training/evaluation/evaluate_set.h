@@ -7,7 +7,6 @@
 
 #include "dataset/truth_source.h"
 #include "evaluation/evaluation.h"
-#include "metrics/ablation_variants.h"
 #include "metrics/score_frame.h"
 
 namespace vesalius {
@@ -39,11 +38,9 @@ void keep_if_worst(WorstFrame frame, std::size_t most, std::vector<WorstFrame>& 
 
 /// Scores all frames of a source on all allowed threads. Its memory grows by 28 bytes for each proposal, 8 for each
 /// joint of one and 20 for each sample, for fitting joints by 4 kB for each person found, but not with the frames
-/// themselves. With `variants`, frames are processed one after the other, each by `scorer` and by all variants in turn,
-/// and are timed; so times of one frame can be compared even if the machine's speed changes. Throws Error for labels of
-/// other parts than the model's, a source without frames, the first frame that fails (unless it is to keep going), and
-/// when it is stopped.
+/// themselves. Throws Error for labels of other parts than the model's, a source without frames, the first frame that
+/// fails (unless it is to keep going), and when it is stopped.
 SetResult evaluate_set(TruthSource& frames, const SetOptions& options, const FrameScorer& scorer,
-                       const std::vector<Variant>& variants = {}, const EvaluationHooks& hooks = {});
+                       const EvaluationHooks& hooks = {});
 
 }  // namespace vesalius

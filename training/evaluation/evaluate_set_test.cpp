@@ -84,7 +84,7 @@ TEST(EvaluateSet, ReportsFailuresAndContinuesIfAsked) {
     last = done;
     EXPECT_EQ(total, 5);
   };
-  const SetResult set = evaluate_set(goes_on, {"room", "memory", true}, blind_scorer(), {}, hooks);
+  const SetResult set = evaluate_set(goes_on, {"room", "memory", true}, blind_scorer(), hooks);
   EXPECT_EQ(set.frames, 4);
   EXPECT_EQ(set.failed, 1);
   EXPECT_THAT(failures, ElementsAre("2: damaged"));
@@ -110,7 +110,7 @@ TEST(EvaluateSet, RefusesOtherPartsAndEmptySourcesAndCanBeStopped) {
   hooks.stop = [] { return true; };
   EXPECT_THAT(
       [&] {
-        evaluate_set(many, {"a", "memory"}, blind_scorer(), {}, hooks);
+        evaluate_set(many, {"a", "memory"}, blind_scorer(), hooks);
       },
       ThrowsMessage<Error>(HasSubstr("a: interrupted after ")));
 }

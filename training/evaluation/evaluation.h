@@ -5,12 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "metrics/boost_trees.h"
 #include "metrics/detection_curve.h"
-#include "metrics/fit_joints.h"
+#include "metrics/fit_samples.h"
 #include "metrics/fit_score.h"
-#include "metrics/fit_stances.h"
-#include "metrics/fit_trust.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/joint_precision.h"
 #include "metrics/metric_table.h"
@@ -28,13 +25,6 @@ struct WorstFrame {
   FrameScore score;
 };
 
-/// The figures of a set for one variant of the method.
-struct AblationRow {
-  std::string variant;
-  std::vector<Estimate> metrics;
-  double frame_ms = 0.0;  ///< as SetResult's
-};
-
 /// The results of an evaluation on one set of frames.
 struct SetResult {
   std::string name;
@@ -42,8 +32,7 @@ struct SetResult {
   int frames = 0;
   int failed = 0;
   double seconds = 0.0;
-  double frame_ms = 0.0;           ///< median time of the detector on a frame with all threads; only with an ablation
-  std::vector<std::string> notes;  ///< remarks of the source on its frames, one line each
+  std::vector<std::string> notes;     ///< remarks of the source on its frames, one line each
   std::vector<std::string> failures;  ///< the first failures, one line each
   MetricTable metrics;
   DetectionLog log;
@@ -57,7 +46,6 @@ struct SetResult {
   std::vector<TrustSample> trust_samples = {};    ///< for fitting the trust in fitted joints
   std::vector<StanceSample> stance_samples = {};  ///< for fitting the stances
   std::vector<WorstFrame> worst;                  ///< the worst first
-  std::vector<AblationRow> ablation;              ///< the same frames with each variant
 };
 
 /// The results of a model on some sets of frames, from which reports are made.

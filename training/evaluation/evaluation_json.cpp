@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,7 +10,6 @@
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "metrics/compare_metrics.h"
-#include "report/escape_text.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -64,26 +64,6 @@ Json confusion_json(const PixelConfusion& confusion) {
   return rows;
 }
 
-Json ablation_json(const SetResult& set) {
-  const std::vector<Estimate> whole = set.metrics.estimates();
-  Json rows = Json::array();
-  for (const AblationRow& row : set.ablation) {
-    Json metrics = Json::object();
-    for (const Comparison& c : compare_common(whole, row.metrics, true)) {
-      metrics[c.id.name()] = {{"value", json_number(c.second)},
-                              {"difference", json_number(c.difference)},
-                              {"low", json_number(c.interval.low)},
-                              {"high", json_number(c.interval.high)},
-                              {"verdict", verdict_word(c.verdict)}};
-    }
-    rows.push_back({{"variant", row.variant},
-                    {"frame_ms", row.frame_ms},
-                    {"frame_ms_as_it_is", set.frame_ms},
-                    {"figures", std::move(metrics)}});
-  }
-  return rows;
-}
-
 Json set_json(const SetResult& set, const Evaluation& evaluation) {
   Json metrics = Json::object();
   for (const Estimate& estimate : set.metrics.estimates()) metrics[estimate.id.name()] = metric_json(estimate);
@@ -105,7 +85,6 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
   if (set.joint_curve.joints > 0) json["joints_within_cm"] = joint_curve_json(set.joint_curve);
   for (const auto& [joint, precision] : set.joint_precision.averages()) json["joint_precision"][joint] = precision;
   for (const auto& [part, precision] : set.centre_precision.averages()) json["centre_precision"][part] = precision;
-  if (!set.ablation.empty()) json["ablation"] = ablation_json(set);
   if (set.confusion) json["confusion"] = confusion_json(*set.confusion);
   Json worst = Json::array();
   for (const WorstFrame& frame : set.worst) {
@@ -117,7 +96,7 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
 
 Estimate read_metric(const std::string& name, const Json& json) {
   const auto id = parse_metric(name);
-  if (!id) throw Error(fmt::format("unknown metric {}", one_line_text(name)));
+  if (!id) throw Error(fmt::format("unknown metric {}", name));
   Estimate estimate{*id};
   estimate.value = number(json.at("value"));
   estimate.interval = {number(json.at("low")), number(json.at("high"))};
@@ -160,6 +139,19 @@ std::string evaluation_json(const Evaluation& evaluation) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string evaluation_csv(const Evaluation& evaluation) {
+  std::string csv = "set,figure,value,low,high,numerator,denominator,better\n";
+  for (const SetResult& set : evaluation.sets) {
+    std::string name = set.name;
+    std::ranges::replace(name, ',', ';');
+    for (const Estimate& e : set.metrics.estimates()) {
+      csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.10g},{:.10g},{}\n", name, e.id.name(), e.value, e.interval.low,
+                         e.interval.high, e.numerator, e.denominator, better_word(e.id.metric));
+    }
+  }
+  return csv;
+}
+
 std::vector<StoredSet> read_evaluation(const std::string& path) {
   const Json json = Json::parse(read_file(path), nullptr, false);
   if (!json.is_object() || !json.contains("vesalius_evaluation")) {
@@ -174,7 +166,7 @@ std::vector<StoredSet> read_evaluation(const std::string& path) {
     for (const Json& set : json.at("sets")) sets.push_back(read_set(set));
     return sets;
   } catch (const nlohmann::json::exception& e) {
-    throw Error(one_line_text(fmt::format("{}: damaged evaluation: {}", path, e.what())));
+    throw Error(fmt::format("{}: damaged evaluation: {}", path, e.what()));
   } catch (const Error& e) {
     throw Error(fmt::format("{}: {}", path, e.what()));
   }

@@ -14,6 +14,10 @@ inline constexpr int kEvaluationVersion = 1;
 /// Returns report.json (docs/metrics.md), which has all results as numbers, and null for unknown ones.
 std::string evaluation_json(const Evaluation& evaluation);
 
+/// Returns figures.csv: one line for each metric of each set, under a header. Commas in the sets' names become
+/// semicolons.
+std::string evaluation_csv(const Evaluation& evaluation);
+
 /// A set of a report.json.
 struct StoredSet {
   std::string name;

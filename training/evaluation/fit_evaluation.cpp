@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "metrics/boost_trees.h"
-#include "metrics/fit_context.h"
-#include "metrics/fit_distribution.h"
-#include "metrics/fit_joints.h"
+#include "learn/boost_trees.h"
+#include "learn/fit_context.h"
+#include "learn/fit_distribution.h"
+#include "learn/fit_joints.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {

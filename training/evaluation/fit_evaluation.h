@@ -3,9 +3,9 @@
 #include <string>
 
 #include "evaluation/evaluation.h"
+#include "learn/fit_stances.h"
+#include "learn/fit_trust.h"
 #include "metrics/fit_score.h"
-#include "metrics/fit_stances.h"
-#include "metrics/fit_trust.h"
 #include "vesalius/forest/boosted_trees.h"
 
 namespace vesalius {

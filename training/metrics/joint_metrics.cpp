@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <initializer_list>
-#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -21,68 +18,9 @@ constexpr double kMillimetres = 1e3;
 constexpr double kLeastAxis_m = 0.05;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// The joints that both sides have, as columns.
-struct Common {
-  Eigen::Matrix3Xd truth;
-  Eigen::Matrix3Xd found;
-  std::vector<std::size_t> joints;
-};
-
-Common common_joints(const JointPair& pair) {
-  Common common;
-  for (std::size_t j = 0; j < pair.truth.size(); ++j) {
-    if (pair.truth[j].allFinite() && pair.found[j].allFinite()) common.joints.push_back(j);
-  }
-  const auto count = static_cast<Eigen::Index>(common.joints.size());
-  common.truth.resize(3, count);
-  common.found.resize(3, count);
-  for (Eigen::Index c = 0; c < count; ++c) {
-    common.truth.col(c) = pair.truth[common.joints[c]].cast<double>();
-    common.found.col(c) = pair.found[common.joints[c]].cast<double>();
-  }
-  return common;
-}
-
-double mean_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
-  return a.cols() > 0 ? (a - b).colwise().norm().mean() : kNaN;
-}
-
-double root_aligned(const Common& common, const std::vector<std::string>& names) {
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-  int roots = 0;
-  for (std::size_t c = 0; c < common.joints.size(); ++c) {
-    if (names[common.joints[c]].find("hip") == std::string::npos) continue;
-    shift += common.truth.col(c) - common.found.col(c);
-    ++roots;
-  }
-  if (roots == 0) return kNaN;
-  const Eigen::Matrix3Xd moved = common.found.colwise() + shift / roots;
-  return mean_distance(common.truth, moved);
-}
-
-double after_procrustes(const Common& common) {
-  if (common.joints.size() < 3) return kNaN;
-  const Eigen::Vector3d middle = common.found.rowwise().mean();
-  if ((common.found.colwise() - middle).squaredNorm() < 1e-12)
-    return kNaN;  // all joints are at one place, so no scale fits
-  const Eigen::Matrix4d fit = Eigen::umeyama(common.found, common.truth, true);
-  const Eigen::Matrix3Xd moved =
-      (fit.topLeftCorner<3, 3>() * common.found).colwise() + fit.topRightCorner<3, 1>().col(0);
-  return mean_distance(common.truth, moved);
-}
-
-void add_mean(MetricTerms& terms, MetricId id, double mean) {
-  if (std::isfinite(mean)) terms.push_back({std::move(id), mean, 1.0});
-}
-
-/// The metrics of the errors of single joints.
-struct ErrorMetrics {
-  Metric each_right, all_right, each_error;
-};
-
-void add_errors(const JointPair& pair, const std::vector<std::string>& names, const ErrorMetrics& metrics,
-                MetricTerms& terms) {
-  const std::vector<double> errors = joint_errors(pair);
+/// Adds which joints are right, under the metrics of each and of all.
+void add_right(const std::vector<double>& errors, const std::vector<std::string>& names, Metric each, Metric all,
+               MetricTerms& terms) {
   double right = 0.0;
   double known = 0.0;
   for (std::size_t j = 0; j < errors.size(); ++j) {
@@ -90,11 +28,9 @@ void add_errors(const JointPair& pair, const std::vector<std::string>& names, co
     const bool is_right = errors[j] < kJointTolerance_m;
     known += 1.0;
     right += is_right ? 1.0 : 0.0;
-    const int place = static_cast<int>(j);
-    terms.push_back({{metrics.each_right, place, names[j]}, is_right ? 1.0 : 0.0, 1.0});
-    add_mean(terms, {metrics.each_error, place, names[j]}, errors[j]);
+    terms.push_back({{each, static_cast<int>(j), names[j]}, is_right ? 1.0 : 0.0, 1.0});
   }
-  if (known > 0.0) terms.push_back({metrics.all_right, right, known});
+  if (known > 0.0) terms.push_back({all, right, known});
 }
 
 /// Returns whether a joint lies nearer to its partner's truth than to its own.
@@ -103,12 +39,6 @@ bool is_swapped(const JointPair& pair, std::size_t joint, int partner) {
   const Eigen::Vector3f& found = pair.found[joint];
   return (found - pair.truth[partner]).norm() < (found - pair.truth[joint]).norm();
 }
-
-/// Unit vectors of a body.
-struct BodyAxes {
-  Eigen::Vector3d up;    ///< from the hips to the neck
-  Eigen::Vector3d left;  ///< from the right to the left hip and shoulder, perpendicular to `up`
-};
 
 /// Returns the mean of those of the joints that are known; nothing if none is.
 std::optional<Eigen::Vector3d> middle_of(const std::vector<Eigen::Vector3f>& truth,
@@ -124,20 +54,16 @@ std::optional<Eigen::Vector3d> middle_of(const std::vector<Eigen::Vector3f>& tru
   return count == static_cast<double>(joints.size()) ? std::optional(Eigen::Vector3d(sum / count)) : std::nullopt;
 }
 
-std::optional<BodyAxes> body_axes(const std::vector<Eigen::Vector3f>& truth, const std::vector<std::string>& names) {
+/// Returns the unit vector from the hips to the neck.
+std::optional<Eigen::Vector3d> body_up(const std::vector<Eigen::Vector3f>& truth,
+                                       const std::vector<std::string>& names) {
   const auto of = [&](std::initializer_list<std::string_view> joints) { return middle_of(truth, names, joints); };
-  const auto left = of({"l_hip", "l_shoulder"}), right = of({"r_hip", "r_shoulder"});
   auto low = of({"hip_center"}), high = of({"shoulder_center"});
   if (!low) low = of({"l_hip", "r_hip"});
   if (!high) high = of({"neck"});
   if (!high) high = of({"l_shoulder", "r_shoulder"});
-  if (!left || !right || !low || !high) return std::nullopt;
-  const Eigen::Vector3d up = *high - *low;
-  const Eigen::Vector3d across = *left - *right;
-  if (up.norm() < kLeastAxis_m) return std::nullopt;
-  const Eigen::Vector3d level = across - across.dot(up) / up.squaredNorm() * up;
-  if (level.norm() < kLeastAxis_m) return std::nullopt;
-  return BodyAxes{up.normalized(), level.normalized()};
+  if (!low || !high || (*high - *low).norm() < kLeastAxis_m) return std::nullopt;
+  return (*high - *low).normalized();
 }
 
 /// Returns a joint of those in the order of `set`; null if it was not found. Throws Error if the set has none so named.
@@ -210,65 +136,53 @@ std::vector<double> joint_errors(const JointPair& pair) {
   return errors;
 }
 
-MeanErrors mean_joint_errors(const JointPair& pair, const std::vector<std::string>& names) {
-  const Common common = common_joints(pair);
-  return {mean_distance(common.truth, common.found), root_aligned(common, names), after_procrustes(common)};
-}
-
 MetricTerms joint_terms(const JointPair& pair, const std::vector<std::string>& names) {
+  const std::vector<double> errors = joint_errors(pair);
   MetricTerms terms;
-  add_errors(pair, names, {Metric::joint_at_10cm, Metric::joints_at_10cm, Metric::joint_error}, terms);
-  const MeanErrors means = mean_joint_errors(pair, names);
-  add_mean(terms, Metric::joints_error, means.absolute_m);
-  add_mean(terms, Metric::joints_root_aligned_error, means.root_aligned_m);
-  add_mean(terms, Metric::joints_procrustes_error, means.procrustes_m);
+  add_right(errors, names, Metric::joint_at_10cm, Metric::joints_at_10cm, terms);
+  double sum = 0.0;
+  double found = 0.0;
+  for (std::size_t j = 0; j < errors.size(); ++j) {
+    if (!std::isfinite(errors[j])) continue;
+    terms.push_back({{Metric::joint_error, static_cast<int>(j), names[j]}, errors[j], 1.0});
+    sum += errors[j];
+    found += 1.0;
+  }
+  if (found > 0.0) terms.push_back({Metric::joints_error, sum / found, 1.0});
   return terms;
 }
 
 MetricTerms centre_terms(const JointPair& pair, const std::vector<std::string>& names) {
   MetricTerms terms;
-  add_errors(pair, names, {Metric::centre_at_10cm, Metric::centres_at_10cm, Metric::centre_error}, terms);
-  const Common common = common_joints(pair);
-  add_mean(terms, Metric::centres_error, mean_distance(common.truth, common.found));
+  add_right(joint_errors(pair), names, Metric::centre_at_10cm, Metric::centres_at_10cm, terms);
   return terms;
 }
 
 MetricTerms predicted_part_terms(const Skeleton& skeleton, const JointPair& centres) {
-  constexpr std::array kRanges{"0-20%", "20-40%", "40-60%", "60-80%", "80-100%"};
   const std::vector<double> errors = joint_errors(centres);
   MetricTerms terms;
   for (std::size_t p = 0; p < errors.size(); ++p) {
-    const SkeletonPart& part = skeleton.parts[p];
-    if (part.state == State::observed || std::isnan(errors[p])) continue;
-    const bool predicted = part.state == State::predicted;
-    const double right = predicted && errors[p] < kJointTolerance_m ? 1.0 : 0.0;
-    terms.push_back({Metric::missing_right, right, 1.0});
-    if (!predicted) continue;
-    const int range = std::clamp(static_cast<int>(part.confidence * 5.F), 0, static_cast<int>(kRanges.size()) - 1);
-    terms.push_back({Metric::predicted_right, right, 1.0});
-    terms.push_back({{Metric::predicted_right_confidence, range, kRanges[range]}, right, 1.0});
+    const State state = skeleton.parts[p].state;
+    if (state == State::observed || std::isnan(errors[p])) continue;
+    const bool right = state == State::predicted && errors[p] < kJointTolerance_m;
+    terms.push_back({Metric::missing_right, right ? 1.0 : 0.0, 1.0});
   }
   return terms;
 }
 
 MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names) {
-  const std::optional<BodyAxes> axes = body_axes(pair.truth, names);
-  const Common common = common_joints(pair);
+  const std::optional<Eigen::Vector3d> up = body_up(pair.truth, names);
+  if (!up) return {};
   MetricTerms terms;
   const SidedNames sides = sided(names);
-  for (std::size_t c = 0; c < common.joints.size(); ++c) {
-    const std::size_t joint = common.joints[c];
-    if (is_swapped(pair, joint, sides.partner[joint])) continue;
-    const Eigen::Vector3d truth = common.truth.col(static_cast<Eigen::Index>(c));
-    const Eigen::Vector3d off_mm = kMillimetres * (common.found.col(static_cast<Eigen::Index>(c)) - truth);
-    const auto id = [&](Metric metric) { return MetricId(metric, static_cast<int>(joint), names[joint]); };
-    if (axes) {
-      const double up_mm = off_mm.dot(axes->up);
-      add_mean(terms, id(Metric::joint_up), up_mm);
-      if (off_mm.norm() < kMillimetres * kPlacedJoint_m) add_mean(terms, id(Metric::joint_up_placed), up_mm);
-      add_mean(terms, id(Metric::joint_left), off_mm.dot(axes->left));
+  for (std::size_t j = 0; j < pair.truth.size(); ++j) {
+    if (!pair.truth[j].allFinite() || !pair.found[j].allFinite() || is_swapped(pair, j, sides.partner[j])) continue;
+    const Eigen::Vector3d off_mm = kMillimetres * (pair.found[j].cast<double>() - pair.truth[j].cast<double>());
+    const auto id = [&](Metric metric) { return MetricId(metric, static_cast<int>(j), names[j]); };
+    terms.push_back({id(Metric::joint_up), off_mm.dot(*up), 1.0});
+    if (off_mm.norm() < kMillimetres * kPlacedJoint_m) {
+      terms.push_back({id(Metric::joint_up_placed), off_mm.dot(*up), 1.0});
     }
-    add_mean(terms, id(Metric::joint_behind), off_mm.dot(truth.normalized()));
   }
   return terms;
 }

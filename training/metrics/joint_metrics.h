@@ -54,30 +54,20 @@ std::optional<KnownPoints> known_joints(const FrameTruth& truth, const BodyModel
 /// Returns the distance of each joint in metres: NaN if the truth is not known, infinity if the joint was not found.
 std::vector<double> joint_errors(const JointPair& pair);
 
-/// The mean distance of the joints that both have; NaN if there are too few joints for a mean or a fit.
-struct MeanErrors {
-  double absolute_m = 0.0;
-  double root_aligned_m = 0.0;  ///< after moving the mean of the joints named "...hip..." onto the true one
-  double procrustes_m = 0.0;    ///< after the similarity with the least squared error (Umeyama 1991)
-};
-MeanErrors mean_joint_errors(const JointPair& pair, const std::vector<std::string>& names);
-
 /// Returns the joint metrics of one person. Joints that were not found count as wrong in the shares of right joints,
 /// and are left out of the mean errors.
 MetricTerms joint_terms(const JointPair& pair, const std::vector<std::string>& names);
-/// Returns the shares and mean errors of the centres of one person's parts, in the same way.
+/// Returns the shares of the centres of one person's parts, in the same way.
 MetricTerms centre_terms(const JointPair& pair, const std::vector<std::string>& names);
 
-/// Returns how many of a person's parts that were not observed have a predicted place within kJointTolerance_m, of
-/// those with a predicted place (also by their confidence) and of all that were not observed. `centres` are those of
-/// the parts' volumes, true and found.
+/// Returns how many of a person's parts that were not observed have a predicted place within kJointTolerance_m.
+/// `centres` are those of the parts' volumes, true and found.
 MetricTerms predicted_part_terms(const Skeleton& skeleton, const JointPair& centres);
 
-/// Returns how far the joints that both have lie from the truth, in millimetres with a sign: along the true body's axis
-/// from the middle of the hips to the neck (up), across it towards the person's own left (left), and along the viewing
-/// ray away from the camera (behind). There are no terms up and left unless the truth has hips and neck or shoulders,
-/// and none of joints nearer to their partner's truth than to their own: one swapped arm would outweigh many biases.
-/// The way up is given once more for the joints within kPlacedJoint_m alone.
+/// Returns how far the joints that both have lie from the truth along the true body's axis from the middle of the hips
+/// to the neck, in millimetres with a sign; once more for the joints within kPlacedJoint_m alone. There are no terms
+/// unless the truth has hips and neck or shoulders, and none of joints nearer to their partner's truth than to their
+/// own: one swapped arm would outweigh many biases.
 MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names);
 
 /// The numbers of joints within 1, 2, ... kJointCurve_cm centimetres of the truth.

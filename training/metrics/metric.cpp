@@ -45,12 +45,8 @@ std::string metric_text(Metric metric, double value) {
       return fmt::format("{:.3f} a frame", value);
     case MetricUnit::per_person:
       return fmt::format("{:.2f} a person", value);
-    case MetricUnit::frames:
-      return fmt::format("{:.1f} frames", value);
     case MetricUnit::millimetres:
       return fmt::format("{:+.0f} mm", value);
-    case MetricUnit::milliseconds:
-      return fmt::format("{:+.0f} ms", value);
     case MetricUnit::mm_per_s2:
       return fmt::format("{:.0f} mm/s^2", value);
     default:
@@ -66,12 +62,8 @@ std::string metric_difference_text(Metric metric, double difference) {
       return fmt::format("{:+.3f}", difference);
     case MetricUnit::per_person:
       return fmt::format("{:+.2f}", difference);
-    case MetricUnit::frames:
-      return fmt::format("{:+.1f}", difference);
     case MetricUnit::millimetres:
       return fmt::format("{:+.0f} mm", difference);
-    case MetricUnit::milliseconds:
-      return fmt::format("{:+.0f} ms", difference);
     case MetricUnit::mm_per_s2:
       return fmt::format("{:+.0f} mm/s^2", difference);
     default:
@@ -84,8 +76,6 @@ int metric_digits(Metric metric) {
     case MetricUnit::share:
     case MetricUnit::per_person:
       return 2;
-    case MetricUnit::frames:
-      return 1;
     case MetricUnit::metres:
     case MetricUnit::per_frame:
       return 3;

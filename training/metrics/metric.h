@@ -29,15 +29,11 @@ enum class Metric {
   part_mean_seen,
   parts_right,
   parts_right_upper,
-  predicted_right,
-  predicted_right_confidence,  ///< family
   missing_right,
   given_right,
   given_mirrored,
-  given_elsewhere,
-  given_right_heading,      ///< family
-  given_mirrored_heading,   ///< family
-  given_elsewhere_heading,  ///< family
+  given_right_heading,     ///< family
+  given_mirrored_heading,  ///< family
   sides_swapped,
   sides_swapped_heading,  ///< family
   sides_order,
@@ -58,14 +54,8 @@ enum class Metric {
   joints_at_10cm,
   joint_error,  ///< family
   joints_error,
-  joints_root_aligned_error,
-  joints_procrustes_error,
   joints_given_right,
-  joints_given_mirrored,
-  joints_given_elsewhere,
-  joints_given_right_heading,      ///< family
-  joints_given_mirrored_heading,   ///< family
-  joints_given_elsewhere_heading,  ///< family
+  joints_given_right_heading,  ///< family
   joints_swapped,
   joints_seen_at_10cm,
   joints_seen_error,
@@ -76,48 +66,32 @@ enum class Metric {
   joints_hidden_right_confidence,  ///< family
   joint_up,                        ///< family
   joint_up_placed,                 ///< family
-  joint_left,                      ///< family
-  joint_behind,                    ///< family
   centre_at_10cm,                  ///< family
   centres_at_10cm,
-  centre_error,  ///< family
-  centres_error,
   track_mota,
-  track_motp,
   track_missed,
   track_false,
   track_switches,
-  track_fragmentations,
   track_ids,
-  track_longest_gap,
   track_idf1,
-  track_idp,
-  track_idr,
   track_hota,
-  track_det_a,
-  track_ass_a,
-  track_loc_a,
   track_det_a_at,  ///< family
   track_ass_a_at,  ///< family
-  track_loc_a_at,  ///< family
   joints_jitter,
   joints_true_jitter,
-  joints_delay,
   bones_error,
-  bone_error,  ///< family
   bones_spread,
   stance_right,
   stance_given,  ///< family
 };
 
-enum class MetricUnit { share, per_frame, per_person, frames, metres, millimetres, milliseconds, mm_per_s2 };
+enum class MetricUnit { share, per_frame, per_person, metres, millimetres, mm_per_s2 };
 enum class MetricDirection { higher_is_better, lower_is_better, nearer_zero_is_better };
 /// How a metric is computed from the terms of its frames, which determines its interval.
 enum class MetricKind {
-  trials,     ///< share of independent trials, with Wilson's interval
-  ratio,      ///< ratio of two sums over the frames, with the bootstrap's interval
-  mean,       ///< mean over the members of the family `mean_of`, with the bootstrap's interval
-  root_mean,  ///< mean of the roots of the products of the members of `mean_of` and `members`, with the bootstrap's
+  trials,  ///< share of independent trials, with Wilson's interval
+  ratio,   ///< ratio of two sums over the frames, with the bootstrap's interval
+  mean,    ///< mean over the members of the family `mean_of`, with the bootstrap's interval
 };
 
 struct MetricInfo {
@@ -128,8 +102,9 @@ struct MetricInfo {
   MetricDirection direction = MetricDirection::higher_is_better;
   MetricKind kind = MetricKind::ratio;
   std::optional<Metric> mean_of = std::nullopt;
-  /// Family whose members are gone through: one that `mean_of` lacks counts as 0. Otherwise those that it has.
-  std::optional<Metric> members = std::nullopt;
+  /// If given, the mean is that of the roots of the products of each of its members and that of `mean_of`, 0 if there
+  /// is none.
+  std::optional<Metric> times = std::nullopt;
 
   constexpr bool is_family() const { return name.find('*') != std::string_view::npos; }
 };
@@ -158,15 +133,11 @@ inline constexpr auto kMetrics = [] {
       {M::part_mean_seen, "part.mean_seen", "parts seen on average", share, higher_is_better, mean, M::part_seen},
       {M::parts_right, "parts.right", "visible parts right"},
       {M::parts_right_upper, "parts.right_upper", "visible upper parts right"},
-      {M::predicted_right, "predicted.right", "predicted parts right"},
-      {M::predicted_right_confidence, "predicted.right.*", "predicted parts right by confidence"},
       {M::missing_right, "missing.right", "parts not observed that are predicted right"},
       {M::given_right, "given.right", "given-out parts right"},
       {M::given_mirrored, "given.mirrored", "given-out parts mirrored", share, lower_is_better},
-      {M::given_elsewhere, "given.elsewhere", "given-out parts elsewhere", share, lower_is_better},
       {M::given_right_heading, "given.right.*", "given-out parts right by heading"},
       {M::given_mirrored_heading, "given.mirrored.*", "given-out parts mirrored by heading", share, lower_is_better},
-      {M::given_elsewhere_heading, "given.elsewhere.*", "given-out parts elsewhere by heading", share, lower_is_better},
       {M::sides_swapped, "sides.swapped", "people with swapped sides", share, lower_is_better, trials},
       {M::sides_swapped_heading, "sides.swapped.*", "swapped sides by heading", share, lower_is_better, trials},
       {M::sides_order, "sides.order", "pairs in order"},
@@ -189,16 +160,8 @@ inline constexpr auto kMetrics = [] {
       {M::joints_at_10cm, "joints.at_10cm", "joints at 10 cm"},
       {M::joint_error, "joint.*.error_m", "mean error", metres, lower_is_better},
       {M::joints_error, "joints.error_m", "mean error of joints", metres, lower_is_better},
-      {M::joints_root_aligned_error, "joints.root_aligned_error_m", "root-aligned", metres, lower_is_better},
-      {M::joints_procrustes_error, "joints.procrustes_error_m", "Procrustes", metres, lower_is_better},
       {M::joints_given_right, "joints.given_right", "given-out joints right"},
-      {M::joints_given_mirrored, "joints.given_mirrored", "given-out joints mirrored", share, lower_is_better},
-      {M::joints_given_elsewhere, "joints.given_elsewhere", "given-out joints elsewhere", share, lower_is_better},
       {M::joints_given_right_heading, "joints.given_right.*", "given-out joints right by heading"},
-      {M::joints_given_mirrored_heading, "joints.given_mirrored.*", "given-out joints mirrored by heading", share,
-       lower_is_better},
-      {M::joints_given_elsewhere_heading, "joints.given_elsewhere.*", "given-out joints elsewhere by heading", share,
-       lower_is_better},
       {M::joints_swapped, "joints.swapped", "people with swapped joints", share, lower_is_better, trials},
       {M::joints_seen_at_10cm, "joints.seen.at_10cm", "seen joints at 10 cm"},
       {M::joints_seen_error, "joints.seen.error_m", "mean error of seen joints", metres, lower_is_better},
@@ -209,35 +172,20 @@ inline constexpr auto kMetrics = [] {
       {M::joints_hidden_right_confidence, "joints.hidden.right_at.*", "hidden joints right by confidence"},
       {M::joint_up, "joint.*.up_mm", "too high", millimetres, nearer_zero_is_better},
       {M::joint_up_placed, "joint.*.placed_up_mm", "too high where placed", millimetres, nearer_zero_is_better},
-      {M::joint_left, "joint.*.left_mm", "too far left", millimetres, nearer_zero_is_better},
-      {M::joint_behind, "joint.*.behind_mm", "too far behind", millimetres, nearer_zero_is_better},
       {M::centre_at_10cm, "centre.*.at_10cm", "centre within 10 cm", share, higher_is_better, trials},
       {M::centres_at_10cm, "centres.at_10cm", "parts' centres at 10 cm"},
-      {M::centre_error, "centre.*.error_m", "mean error of centre", metres, lower_is_better},
-      {M::centres_error, "centres.error_m", "mean error of centres", metres, lower_is_better},
       {M::track_mota, "track.mota", "MOTA"},
-      {M::track_motp, "track.motp", "MOTP"},
       {M::track_missed, "track.missed", "missed by tracks", share, lower_is_better},
       {M::track_false, "track.false", "false by tracks", per_frame, lower_is_better},
       {M::track_switches, "track.switches", "id switches", per_person, lower_is_better},
-      {M::track_fragmentations, "track.fragmentations", "fragmentations", per_person, lower_is_better},
       {M::track_ids, "track.ids", "ids", per_person, lower_is_better},
-      {M::track_longest_gap, "track.longest_gap", "longest gap", frames, lower_is_better},
       {M::track_idf1, "track.idf1", "IDF1"},
-      {M::track_idp, "track.idp", "IDP"},
-      {M::track_idr, "track.idr", "IDR"},
-      {M::track_hota, "track.hota", "HOTA", share, higher_is_better, root_mean, M::track_ass_a_at, M::track_det_a_at},
-      {M::track_det_a, "track.det_a", "DetA", share, higher_is_better, mean, M::track_det_a_at},
-      {M::track_ass_a, "track.ass_a", "AssA", share, higher_is_better, mean, M::track_ass_a_at, M::track_det_a_at},
-      {M::track_loc_a, "track.loc_a", "LocA", share, higher_is_better, mean, M::track_loc_a_at},
+      {M::track_hota, "track.hota", "HOTA", share, higher_is_better, mean, M::track_ass_a_at, M::track_det_a_at},
       {M::track_det_a_at, "track.det_a.at_*", "DetA by threshold"},
       {M::track_ass_a_at, "track.ass_a.at_*", "AssA by threshold"},
-      {M::track_loc_a_at, "track.loc_a.at_*", "LocA by threshold"},
       {M::joints_jitter, "joints.jitter_mm_s2", "jitter", mm_per_s2, lower_is_better},
       {M::joints_true_jitter, "joints.true_jitter_mm_s2", "jitter of the truth", mm_per_s2, lower_is_better},
-      {M::joints_delay, "joints.delay_ms", "delay", milliseconds, nearer_zero_is_better},
       {M::bones_error, "bones.error", "error of bones' lengths", share, lower_is_better},
-      {M::bone_error, "bone.*.error", "error of length", share, lower_is_better},
       {M::bones_spread, "bones.spread", "spread of bones' lengths", share, lower_is_better},
       {M::stance_right, "stance.right", "stances right", share, higher_is_better, trials},
       {M::stance_given, "stance.given.*", "stance given by the true one", share, higher_is_better, trials},
@@ -277,7 +225,7 @@ std::optional<MetricId> parse_metric(std::string_view name);
 const char* better_word(Metric metric);
 
 /// Returns a value in its unit: "97.20 %", "0.041 m", "0.013 a frame", "+12 mm",
-/// "1.20 a person", "12.0 frames", "+33 ms", "5100 mm/s^2".
+/// "1.20 a person", "5100 mm/s^2".
 std::string metric_text(Metric metric, double value);
 /// Returns a difference of two values: "+1.20 %", "-0.003 m", "+0.013".
 std::string metric_difference_text(Metric metric, double difference);

@@ -106,8 +106,6 @@ TEST(MetricTable, MeansRootsOfProductsOverTheMembersOfOneFamily) {
                 {{Metric::track_det_a_at, 1, "0.10"}, 0.0, 4.0}});
   const std::vector<Estimate> estimates = table.estimates();
   EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_hota)->value, 0.25);  // sqrt(1/4 * 1) and 0
-  EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_ass_a)->value, 0.5);
-  EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_det_a)->value, 0.125);
 }
 
 }  // namespace

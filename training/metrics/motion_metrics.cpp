@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 
 #include "metrics/joint_metrics.h"
 #include "metrics/median.h"
@@ -111,8 +110,6 @@ void add_bones(const PersonMotion& person, std::vector<MetricTerms>& frames) {
       if (!std::isfinite(step.found_bones_m[b]) || !std::isfinite(truth_m[b])) continue;
       const double error = std::abs(step.found_bones_m[b] - truth_m[b]) / truth_m[b];
       frames[step.frame].push_back({Metric::bones_error, error, 1.0});
-      const int place = static_cast<int>(b % kLimbBones.size());
-      frames[step.frame].push_back({{Metric::bone_error, place, limb_bone(b).name}, error, 1.0});
       settled.lengths_m[b].push_back(step.found_bones_m[b]);
     }
   }
@@ -123,70 +120,6 @@ void add_bones(const PersonMotion& person, std::vector<MetricTerms>& frames) {
       frames[settled.last_frame].push_back({Metric::bones_spread, spread, 1.0});
     }
   }
-}
-
-/// The velocities of a person's joints at each frame of a sequence, metres a frame; NaN where not known.
-struct Velocities {
-  std::vector<std::vector<Vector3d>> truth, found;  ///< [frame][joint]; empty where there are none
-};
-
-Velocities velocities(const PersonMotion& person, double period_s, std::size_t frames) {
-  Velocities result{std::vector<std::vector<Vector3d>>(frames), std::vector<std::vector<Vector3d>>(frames)};
-  for (std::size_t i = 1; i < person.size(); ++i) {
-    const MotionStep &before = person[i - 1], &step = person[i];
-    if (!follows(before, step, period_s)) continue;
-    for (std::size_t j = 0; j < step.truth.size(); ++j) {
-      result.truth[step.frame].push_back((step.truth[j] - before.truth[j]).cast<double>());
-      const bool same = step.id != 0 && step.id == before.id;
-      result.found[step.frame].push_back(same ? Vector3d((step.found[j] - before.found[j]).cast<double>())
-                                              : Vector3d::Constant(kNaN));
-    }
-  }
-  return result;
-}
-
-/// How well found velocities agree with true ones that many frames earlier.
-struct Agreement {
-  double product = 0.0, of_truth = 0.0, of_found = 0.0;
-
-  void add(const Velocities& person, int lag) {
-    const auto frames = static_cast<int>(person.truth.size());
-    for (int at = std::max(0, -lag); at < std::min(frames, frames - lag); ++at) {
-      const auto &truth = person.truth[at], &found = person.found[at + lag];
-      for (std::size_t j = 0; j < std::min(truth.size(), found.size()); ++j) {
-        if (!truth[j].allFinite() || !found[j].allFinite()) continue;
-        product += truth[j].dot(found[j]);
-        of_truth += truth[j].squaredNorm();
-        of_found += found[j].squaredNorm();
-      }
-    }
-  }
-  double correlation() const {
-    return of_truth > 0.0 && of_found > 0.0 ? product / std::sqrt(of_truth * of_found) : -1.0;
-  }
-};
-
-/// Returns the lag in frames at which the correlation is highest; nothing where that is at an end or not above 0.
-std::optional<double> best_lag(const std::array<double, 2 * kMostLag + 1>& correlation) {
-  const auto best = std::ranges::max_element(correlation) - correlation.begin();
-  if (best == 0 || best == 2 * kMostLag || correlation[best] <= 0.0) return std::nullopt;
-  const double before = correlation[best - 1], at = correlation[best], after = correlation[best + 1];
-  const double bend = before - 2.0 * at + after;
-  const double off = bend < 0.0 ? 0.5 * (before - after) / bend : 0.0;
-  return static_cast<double>(best) - kMostLag + off;
-}
-
-void add_delay(const std::vector<PersonMotion>& people, double period_s, std::vector<MetricTerms>& frames) {
-  std::array<Agreement, 2 * kMostLag + 1> agreement;
-  for (const PersonMotion& person : people) {
-    const Velocities v = velocities(person, period_s, frames.size());
-    for (int lag = -kMostLag; lag <= kMostLag; ++lag) agreement[lag + kMostLag].add(v, lag);
-  }
-  std::array<double, 2 * kMostLag + 1> correlation{};
-  std::ranges::transform(agreement, correlation.begin(), &Agreement::correlation);
-  const std::optional<double> lag = best_lag(correlation);
-  const double weight = agreement[kMostLag].of_truth;
-  if (lag) frames.front().push_back({Metric::joints_delay, *lag * period_s * kMillimetres * weight, weight});
 }
 
 }  // namespace
@@ -229,7 +162,6 @@ void add_motion_terms(const std::vector<PersonMotion>& people, std::vector<Metri
     add_bones(person, frames);
     if (period_s > 0.0) add_jitter(person, period_s, frames);
   }
-  if (period_s > 0.0) add_delay(people, period_s, frames);
 }
 
 }  // namespace vesalius

@@ -14,13 +14,11 @@ namespace vesalius {
 
 /// A bone between two joints, on the left and on the right.
 struct LimbBone {
-  const char* name;
   const char* from;
   const char* to;
 };
-inline constexpr std::array kLimbBones{LimbBone{"upper_arm", "shoulder", "elbow"},
-                                       LimbBone{"forearm", "elbow", "wrist"}, LimbBone{"thigh", "hip", "knee"},
-                                       LimbBone{"shin", "knee", "ankle"}};
+inline constexpr std::array kLimbBones{LimbBone{"shoulder", "elbow"}, LimbBone{"elbow", "wrist"},
+                                       LimbBone{"hip", "knee"}, LimbBone{"knee", "ankle"}};
 /// Lengths in metres of those of the left, then of those of the right; NaN where one is not known.
 using BoneLengths = std::array<double, 2 * kLimbBones.size()>;
 
@@ -46,22 +44,15 @@ using PersonMotion = std::vector<MotionStep>;
 
 /// Frames of a track after which its bones should have their lengths.
 inline constexpr int kSettledFrames = 30;
-/// Largest lag at which a delay is looked for, frames.
-inline constexpr int kMostLag = 10;
 
 /// Adds to the frames of a sequence, [frame], what its true people have in the metrics of motion:
 ///
 /// - joints.jitter: the mean length of the second difference of a joint's places in three consecutive frames over the
 ///   square of the time between two, mm/s^2, where it was found in all three under one id; joints.true_jitter: the same
 ///   of the truth, of the same joints in the same frames.
-/// - bones.error, bone.NAME.error: |length found - true| / true, of the frames after the kSettledFrames-th of a track,
-/// the
-///   true length being the median over the sequence; bones.spread: the standard deviation of a bone's length over these
-///   frames of a track (at least kSettledFrames of them), over its true length.
-/// - joints.delay: the lag, in ms and refined by a parabola, at which the velocities of found joints agree best with
-/// the
-///   true ones; positive is late. A sequence counts by how much its joints move. Without a best lag within kMostLag
-///   frames there is none.
+/// - bones.error: |length found - true| / true, of the frames after the kSettledFrames-th of a track, the true length
+///   being the median over the sequence; bones.spread: the standard deviation of a bone's length over these frames of a
+///   track (at least kSettledFrames of them), over its true length.
 ///
 /// Frames are consecutive where the time between them is within half of the usual one, the median of the sequence.
 void add_motion_terms(const std::vector<PersonMotion>& people, std::vector<MetricTerms>& frames);

@@ -2,18 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <limits>
-
 #include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
-
-double share(std::uint64_t part, std::uint64_t whole) {
-  if (whole == 0) return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(part) / static_cast<double>(whole);
-}
 
 void add_term(MetricTerms& terms, MetricId id, std::uint64_t numerator, std::uint64_t denominator) {
   if (denominator == 0) return;
@@ -80,29 +72,6 @@ std::uint64_t PixelConfusion::of_truth(int truth) const {
   return sum;
 }
 
-double PixelConfusion::recall(int truth) const { return share(count(truth, truth), of_truth(truth)); }
-
-double PixelConfusion::mean_recall() const {
-  double sum = 0.0;
-  int classes = 0;
-  for (int part = 0; part < parts_; ++part) {
-    if (of_truth(part) == 0) continue;
-    sum += recall(part);
-    ++classes;
-  }
-  return classes > 0 ? sum / classes : std::numeric_limits<double>::quiet_NaN();
-}
-
-double PixelConfusion::person_iou() const {
-  const Overlap overlap = person_overlap(*this);
-  return share(overlap.both, overlap.either);
-}
-
-double PixelConfusion::background_iou() const {
-  const Overlap overlap = background_overlap(*this);
-  return share(overlap.both, overlap.either);
-}
-
 double mask_iou(const Mask& a, const Mask& b, const DepthImage& depth) {
   std::uint64_t both = 0;
   std::uint64_t either = 0;
@@ -111,7 +80,7 @@ double mask_iou(const Mask& a, const Mask& b, const DepthImage& depth) {
     both += a[i] != 0 && b[i] != 0 ? 1U : 0U;
     either += a[i] != 0 || b[i] != 0 ? 1U : 0U;
   }
-  return either > 0 ? share(both, either) : 0.0;
+  return either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 0.0;
 }
 
 MetricTerms pixel_terms(const PixelConfusion& with_background, const PixelConfusion& inside, const BodyModel& body) {

@@ -22,14 +22,6 @@ class PixelConfusion {
   int parts() const { return parts_; }
   std::uint64_t count(int truth, int given) const { return counts_[index(truth, given)]; }
   std::uint64_t of_truth(int truth) const;
-  /// Returns the share of the true pixels of a class that were given it; NaN where there are none.
-  double recall(int truth) const;
-  /// Returns the mean recall of the parts that occur: the mean per-class accuracy.
-  double mean_recall() const;
-  /// Returns the intersection over union of all parts taken together; NaN where neither side has any.
-  double person_iou() const;
-  /// Returns the same of the background.
-  double background_iou() const;
 
  private:
   int index(int truth, int given) const { return truth * (parts_ + 1) + given; }

@@ -24,28 +24,36 @@ Image<T> row(const std::vector<T>& values) {
   return image;
 }
 
+double mean_recall(const PixelConfusion& confusion) {
+  MetricTable table;
+  table.add(1, pixel_terms(confusion, confusion, paper_body()));
+  return find_estimate(table.estimates(), Metric::pixel_mean_recall)->value;
+}
+
 TEST(PixelConfusion, AgreesWithCountingByHand) {
   // Truth:  a a a a b b . . . .   and two pixels without reading.
   // Given:  a a b . b a . . a .
   const LabelImage truth = row<std::uint8_t>({0, 0, 0, 0, 1, 1, kNone, kNone, kNone, kNone, 0, 1});
   const LabelImage given = row<std::uint8_t>({0, 0, 1, kNone, 1, 0, kNone, kNone, 0, kNone, 1, 0});
   const DepthImage depth = row<std::uint16_t>({9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 0, 0});
-  PixelConfusion confusion(3);
+  const int background = paper_body().part_count();
+  PixelConfusion confusion(background);
   confusion.add(truth, given, depth);
   EXPECT_EQ(confusion.count(0, 0), 2U);
-  EXPECT_EQ(confusion.count(0, 3), 1U);
-  EXPECT_EQ(confusion.of_truth(3), 4U);
-  EXPECT_DOUBLE_EQ(confusion.recall(0), 0.5);
-  EXPECT_DOUBLE_EQ(confusion.recall(1), 0.5);
-  EXPECT_TRUE(std::isnan(confusion.recall(2)));
-  EXPECT_DOUBLE_EQ(confusion.mean_recall(), 0.5);  // the third part does not occur
-  EXPECT_DOUBLE_EQ(confusion.person_iou(), 5.0 / 7.0);
-  EXPECT_DOUBLE_EQ(confusion.background_iou(), 3.0 / 5.0);
+  EXPECT_EQ(confusion.count(0, background), 1U);
+  EXPECT_EQ(confusion.of_truth(background), 4U);
+  const MetricTerms terms = pixel_terms(confusion, confusion, paper_body());
+  EXPECT_DOUBLE_EQ(value_of(terms, "pixels.recall.l_foot"), 0.5);
+  EXPECT_DOUBLE_EQ(value_of(terms, "pixels.recall.l_leg"), 0.5);
+  EXPECT_TRUE(std::isnan(value_of(terms, "pixels.recall.l_knee")));
+  EXPECT_DOUBLE_EQ(mean_recall(confusion), 0.5);  // other parts do not occur
+  EXPECT_DOUBLE_EQ(value_of(terms, "pixels.person_iou"), 5.0 / 7.0);
+  EXPECT_DOUBLE_EQ(value_of(terms, "pixels.background_iou"), 3.0 / 5.0);
 }
 
 TEST(PixelConfusion, AgreesWithSets) {
   Random random(3);
-  const int parts = 5;
+  const int parts = paper_body().part_count();
   LabelImage truth(40, 30), given(40, 30);
   DepthImage depth(40, 30);
   const auto label = [&] { return static_cast<std::uint8_t>(random.below(6) == 5 ? kNone : random.below(5)); };
@@ -68,13 +76,14 @@ TEST(PixelConfusion, AgreesWithSets) {
   }
   double sum = 0.0;
   for (const auto& [part, counts] : right_of) sum += static_cast<double>(counts.first) / counts.second;
-  EXPECT_NEAR(confusion.mean_recall(), sum / static_cast<double>(right_of.size()), 1e-12);
-  EXPECT_DOUBLE_EQ(confusion.person_iou(), static_cast<double>(both) / either);
+  EXPECT_NEAR(mean_recall(confusion), sum / static_cast<double>(right_of.size()), 1e-12);
+  EXPECT_DOUBLE_EQ(value_of(pixel_terms(confusion, confusion, paper_body()), "pixels.person_iou"),
+                   static_cast<double>(both) / either);
   PixelConfusion twice(parts);
   twice.add(confusion);
   twice.add(confusion);
   EXPECT_EQ(twice.count(1, 1), 2 * confusion.count(1, 1));
-  EXPECT_DOUBLE_EQ(twice.mean_recall(), confusion.mean_recall());
+  EXPECT_DOUBLE_EQ(mean_recall(twice), mean_recall(confusion));
 }
 
 TEST(PixelConfusion, RefusesOtherSizesAndLabels) {

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <set>
 #include <utility>
 
 #include "metrics/breakdown_metrics.h"
-#include "metrics/fit_context.h"
 #include "metrics/heading.h"
 #include "metrics/joint_sight.h"
 #include "metrics/match_people.h"
@@ -148,9 +146,7 @@ FrameLabels FrameScorer::find_people(const TrueFrame& frame, const Mask* asked, 
                                      FrameScore& score) const {
   Trace trace;
   trace.person = asked;
-  const auto start = std::chrono::steady_clock::now();
   score.people = detector_.detect(frame.frame, &trace);
-  score.detect_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::vector<const Person*> of_person = judge_people(frame, score);
   log_proposals(frame, trace, fit_joints, score);
   if (fit_joints) {

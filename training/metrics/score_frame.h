@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "metrics/boost_trees.h"
 #include "metrics/detection_curve.h"
-#include "metrics/fit_joints.h"
+#include "metrics/fit_samples.h"
 #include "metrics/fit_score.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/joint_precision.h"
@@ -32,7 +31,6 @@ struct FrameScore {
   std::vector<KnownPerson> known_people;            ///< only of frames for fitting joints
 
   std::string what_went_wrong;  ///< empty if nothing did
-  double detect_s = 0.0;        ///< time of the detector; 0 if only labels were requested
   double badness = 0.0;         ///< 0 if everything is right; ranks the frames for reports
   std::vector<Person> people;
   LabelImage labels;  ///< smoothed labels of the first pass

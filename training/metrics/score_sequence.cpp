@@ -63,7 +63,6 @@ FrameScore SequenceScorer::add(TrueFrame frame, TrackedFrame tracked) {
   if (!people) ids_known_ = false;
   if (people && ids_known_) {
     sample = people->sample;
-    graded_ = graded_ && (sample.truth.empty() || similarity_kind(frame.truth) != SimilarityKind::counts);
     const std::vector<int> match = matcher_.match(sample);
     follow(frame, *people, match, frame.frame.time_s.value_or(static_cast<double>(index) / kUsualRate));
     if (options_.hidden) unseen.resize(people->truth.size(), nullptr);
@@ -135,7 +134,7 @@ void SequenceScorer::judge_stance(const FrameTruth& truth, std::size_t person, c
 
 std::vector<MetricTerms> SequenceScorer::finish() {
   if (!ids_known_) return std::move(terms_);
-  const std::vector<MetricTerms> tracks = track_terms(samples_, graded_);
+  const std::vector<MetricTerms> tracks = track_terms(samples_);
   for (std::size_t frame = 0; frame < tracks.size(); ++frame) {
     terms_[frame].insert(terms_[frame].end(), tracks[frame].begin(), tracks[frame].end());
   }

@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "metrics/fit_stances.h"
-#include "metrics/fit_trust.h"
 #include "metrics/motion_metrics.h"
 #include "metrics/score_frame.h"
 #include "metrics/track_metrics.h"
@@ -56,7 +54,6 @@ class SequenceScorer {
   const FrameScorer& judge_;
   Options options_;
   bool ids_known_ = true;
-  bool graded_ = true;
   std::vector<std::string> joint_names_;
   TrackMatcher matcher_;
   std::vector<TrackSample> samples_;        ///< [frame]

@@ -80,7 +80,9 @@ GivenPoints count_given(const SidedNames& names, const std::vector<Vector3f>& fo
     const double own_m = distance_m(found[p], truth[p]);
     const double partner_m =
         has_partner ? distance_m(found[p], truth[names.partner[p]]) : std::numeric_limits<double>::infinity();
-    ++(own_m <= tolerance_m ? counts.right : partner_m <= tolerance_m ? counts.mirrored : counts.elsewhere);
+    ++counts.all;
+    counts.right += own_m <= tolerance_m ? 1 : 0;
+    counts.mirrored += own_m > tolerance_m && partner_m <= tolerance_m ? 1 : 0;
     counts.paired += has_partner ? 1 : 0;
     counts.swapped += partner_m < own_m ? 1 : 0;
   }
@@ -90,17 +92,13 @@ GivenPoints count_given(const SidedNames& names, const std::vector<Vector3f>& fo
 MetricTerms given_terms(const GivenPoints& points, GivenKind kind, std::optional<Heading> heading, bool with_swapped) {
   const bool parts = kind == GivenKind::parts;
   MetricTerms terms;
-  const auto add = [&](Metric metric, Metric family, int count) {
-    add_by_heading(metric, family, heading, count, points.all(), terms);
-  };
   using M = Metric;
-  if (points.all() > 0) {
-    add(parts ? M::given_right : M::joints_given_right, parts ? M::given_right_heading : M::joints_given_right_heading,
-        points.right);
-    add(parts ? M::given_mirrored : M::joints_given_mirrored,
-        parts ? M::given_mirrored_heading : M::joints_given_mirrored_heading, points.mirrored);
-    add(parts ? M::given_elsewhere : M::joints_given_elsewhere,
-        parts ? M::given_elsewhere_heading : M::joints_given_elsewhere_heading, points.elsewhere);
+  if (points.all > 0) {
+    add_by_heading(parts ? M::given_right : M::joints_given_right,
+                   parts ? M::given_right_heading : M::joints_given_right_heading, heading, points.right, points.all,
+                   terms);
+    if (parts)
+      add_by_heading(M::given_mirrored, M::given_mirrored_heading, heading, points.mirrored, points.all, terms);
   }
   if (points.paired == 0) return terms;
   const int swapped = 2 * points.swapped > points.paired ? 1 : 0;

@@ -13,13 +13,11 @@ namespace vesalius {
 
 /// How many of the points that were given out for a person lie where.
 struct GivenPoints {
-  int right = 0;      ///< within the tolerance of their own truth
-  int mirrored = 0;   ///< not right, and within the tolerance of their partner's truth
-  int elsewhere = 0;  ///< neither
-  int paired = 0;     ///< points whose truth is known on both sides
-  int swapped = 0;    ///< of the paired ones, those nearer to their partner's truth than to their own
-
-  int all() const { return right + mirrored + elsewhere; }
+  int all = 0;
+  int right = 0;     ///< within the tolerance of their own truth
+  int mirrored = 0;  ///< not right, and within the tolerance of their partner's truth
+  int paired = 0;    ///< points whose truth is known on both sides
+  int swapped = 0;   ///< of the paired ones, those nearer to their partner's truth than to their own
 };
 
 /// Counts the points of `found` (NaN = not given out) whose truth is known. All have the order of `names`, in metres.

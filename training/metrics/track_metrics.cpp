@@ -44,32 +44,20 @@ class IdIndex {
 /// CLEAR MOT of a sequence, frame by frame.
 class ClearMot {
  public:
-  explicit ClearMot(bool graded) : graded_(graded) {}
-
   void add(const TrackSample& sample, std::size_t frame, MetricTerms& terms) {
     const std::vector<int> match = matcher_.match(sample);
-    double matched = 0.0, similarity = 0.0, switches = 0.0;
+    double matched = 0.0, switches = 0.0;
     for (std::size_t t = 0; t < match.size(); ++t) {
       Person& person = people_.try_emplace(sample.truth[t], Person{frame}).first->second;
-      if (frame != person.seen + 1 || match[t] >= 0) person.gap = 0;
-      person.seen = frame;
-      if (match[t] < 0) {
-        person.longest_gap = std::max(person.longest_gap, ++person.gap);
-        person.interrupted = !person.ids.empty();
-        continue;
-      }
+      if (match[t] < 0) continue;
       const int id = sample.found[match[t]];
       matched += 1.0;
-      similarity += sample.similarity(static_cast<Eigen::Index>(t), match[t]);
       if (!person.ids.empty() && person.last != id) switches += 1.0;
-      if (person.interrupted) terms.push_back({Metric::track_fragmentations, 1.0, 0.0});
       if (person.ids.insert(id).second) terms.push_back({Metric::track_ids, 1.0, 0.0});
-      person.interrupted = false;
       person.last = id;
     }
     const double truth = count(sample.truth), wrong = count(sample.found) - matched;
     terms.push_back({Metric::track_mota, matched - wrong - switches, truth});
-    if (graded_) terms.push_back({Metric::track_motp, similarity, matched});
     terms.push_back({Metric::track_missed, truth - matched, truth});
     terms.push_back({Metric::track_false, wrong, 1.0});
     terms.push_back({Metric::track_switches, switches, 0.0});
@@ -78,11 +66,9 @@ class ClearMot {
   /// Adds what is said of each true person to the frame in which it is first.
   void finish(std::vector<MetricTerms>& terms) const {
     for (const auto& [id, person] : people_) {
-      MetricTerms& first = terms[person.first];
-      for (const Metric metric : {Metric::track_switches, Metric::track_fragmentations, Metric::track_ids}) {
-        first.push_back({metric, 0.0, 1.0});
+      for (const Metric metric : {Metric::track_switches, Metric::track_ids}) {
+        terms[person.first].push_back({metric, 0.0, 1.0});
       }
-      first.push_back({Metric::track_longest_gap, static_cast<double>(person.longest_gap), 1.0});
     }
   }
 
@@ -90,15 +76,10 @@ class ClearMot {
   /// A true person so far.
   struct Person {
     std::size_t first = 0;  ///< its first frame
-    std::size_t seen = 0;   ///< its latest frame
     std::set<int> ids = {};
     int last = 0;  ///< the id that it was found with last
-    bool interrupted = false;
-    int gap = 0;
-    int longest_gap = 0;
   };
 
-  bool graded_;
   TrackMatcher matcher_;
   std::map<int, Person> people_;
 };
@@ -140,21 +121,15 @@ void add_identity(const std::vector<TrackSample>& sequence, std::vector<MetricTe
     for_pairs(sample, truth, found, [&](Eigen::Index t, Eigen::Index f, int true_id, int found_id) {
       if (found_of[true_id] == found_id && sample.similarity(t, f) >= kTrackSimilarity - kEpsilon) right += 1.0;
     });
-    const double of_truth = count(sample.truth), of_found = count(sample.found);
-    terms[frame].push_back({Metric::track_idf1, 2.0 * right, of_truth + of_found});
-    terms[frame].push_back({Metric::track_idp, right, of_found});
-    terms[frame].push_back({Metric::track_idr, right, of_truth});
+    terms[frame].push_back({Metric::track_idf1, 2.0 * right, count(sample.truth) + count(sample.found)});
   }
 }
 
 /// HOTA of a sequence: one match of each frame for all thresholds, by similarity and by how well ids agree over all.
 class Hota {
  public:
-  Hota(const std::vector<TrackSample>& sequence, bool graded)
-      : sequence_(sequence),
-        graded_(graded),
-        truth_(sequence, &TrackSample::truth),
-        found_(sequence, &TrackSample::found) {
+  explicit Hota(const std::vector<TrackSample>& sequence)
+      : sequence_(sequence), truth_(sequence, &TrackSample::truth), found_(sequence, &TrackSample::found) {
     const Eigen::MatrixXd agreement = ids_agree();
     for (const TrackSample& sample : sequence_) {
       Eigen::MatrixXd cost = sample.similarity;
@@ -171,22 +146,20 @@ class Hota {
     for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
       for (const int id : sequence_[frame].truth) shared.of_truth[truth_.of(id)] += 1.0;
       for (const int id : sequence_[frame].found) shared.of_found[found_.of(id)] += 1.0;
-      for_matches(frame, threshold, [&](int true_id, int found_id, double) { shared.both(true_id, found_id) += 1.0; });
+      for_matches(frame, threshold, [&](int true_id, int found_id) { shared.both(true_id, found_id) += 1.0; });
     }
     const std::string parameter = fmt::format("{:.2f}", threshold);
     const auto id = [&](Metric metric) { return MetricId(metric, place, parameter); };
     for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
-      double matched = 0.0, associated = 0.0, similarity = 0.0;
-      for_matches(frame, threshold, [&](int true_id, int found_id, double similar) {
+      double matched = 0.0, associated = 0.0;
+      for_matches(frame, threshold, [&](int true_id, int found_id) {
         const double both = shared.both(true_id, found_id);
         matched += 1.0;
         associated += both / (shared.of_truth[true_id] + shared.of_found[found_id] - both);
-        similarity += similar;
       });
       const double all = count(sequence_[frame].truth) + count(sequence_[frame].found) - matched;
       terms[frame].push_back({id(Metric::track_det_a_at), matched, all});
       terms[frame].push_back({id(Metric::track_ass_a_at), associated, matched});
-      if (graded_) terms[frame].push_back({id(Metric::track_loc_a_at), similarity, matched});
     }
   }
 
@@ -220,13 +193,12 @@ class Hota {
     for (std::size_t t = 0; t < sample.truth.size(); ++t) {
       const int f = matches_[frame][t];
       if (f < 0) continue;
-      const double similar = sample.similarity(static_cast<Eigen::Index>(t), f);
-      if (similar >= threshold - kEpsilon) use(truth_.of(sample.truth[t]), found_.of(sample.found[f]), similar);
+      if (sample.similarity(static_cast<Eigen::Index>(t), f) < threshold - kEpsilon) continue;
+      use(truth_.of(sample.truth[t]), found_.of(sample.found[f]));
     }
   }
 
   const std::vector<TrackSample>& sequence_;
-  bool graded_;
   IdIndex truth_, found_;
   std::vector<std::vector<int>> matches_;  ///< [frame][true person]
 };
@@ -279,13 +251,13 @@ std::vector<int> TrackMatcher::match(const TrackSample& sample) {
   return match;
 }
 
-std::vector<MetricTerms> track_terms(const std::vector<TrackSample>& sequence, bool graded) {
+std::vector<MetricTerms> track_terms(const std::vector<TrackSample>& sequence) {
   std::vector<MetricTerms> terms(sequence.size());
-  ClearMot clear(graded);
+  ClearMot clear;
   for (std::size_t frame = 0; frame < sequence.size(); ++frame) clear.add(sequence[frame], frame, terms[frame]);
   clear.finish(terms);
   add_identity(sequence, terms);
-  const Hota hota(sequence, graded);
+  const Hota hota(sequence);
   for (int place = 0; place < kThresholds; ++place) hota.add(place, terms);
   return terms;
 }

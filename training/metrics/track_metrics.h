@@ -31,14 +31,12 @@ class TrackMatcher {
   std::map<int, int> last_;  ///< the found id that each true id had last
 };
 
-/// What the frames of a sequence add to the metrics of tracks, [frame]. `graded` says that similarities between 0 and 1
-/// mean something; otherwise there are no track.motp and track.loc_a. Throws Error as TrackMatcher does.
+/// What the frames of a sequence add to the metrics of tracks, [frame]. Throws Error as TrackMatcher does.
 ///
-/// - CLEAR MOT by TrackMatcher: track.mota, motp, missed, false, switches, fragmentations; ids and the longest gap of a
-///   true person.
-/// - IDF1, IDP, IDR (E. Ristani et al. 2016): one found id for each true one over the sequence, such that as many
-///   frames as possible are right.
-/// - HOTA and its DetA, AssA, LocA at the thresholds .05 to .95 (J. Luiten et al. 2021).
-std::vector<MetricTerms> track_terms(const std::vector<TrackSample>& sequence, bool graded);
+/// - CLEAR MOT by TrackMatcher: track.mota, missed, false, switches; ids of a true person.
+/// - IDF1 (E. Ristani et al. 2016): one found id for each true one over the sequence, such that as many frames as
+///   possible are right.
+/// - HOTA, of DetA and AssA at the thresholds .05 to .95 (J. Luiten et al. 2021).
+std::vector<MetricTerms> track_terms(const std::vector<TrackSample>& sequence);
 
 }  // namespace vesalius

@@ -1,62 +1,72 @@
 #pragma once
 
-#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace vesalius {
 
-/// A report that is composed once and written as a web page or as Markdown. All text is plain UTF-8: characters that
-/// HTML or Markdown would read as markup are escaped, and control characters become spaces.
+/// One line of a plot. A point whose y is not finite breaks the line, one whose x is not is left out.
+struct PlotSeries {
+  std::string name;
+  std::vector<std::pair<double, double>> points;  ///< x and y; the line goes along x
+};
+
+/// A plot of lines over a common axis.
+struct LinePlot {
+  std::string caption;
+  std::string x_label;
+  std::string y_label;
+  std::vector<PlotSeries> series;
+  std::optional<std::pair<double, double>> x_range{};  ///< low and high; if empty, the range of the points
+  std::optional<std::pair<double, double>> y_range{};
+  bool log_x = false;  ///< requires all x to be positive
+};
+
+/// A matrix of shares with the same names for rows and columns, such as a confusion matrix.
+struct MatrixPlot {
+  std::string caption;
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> shares;  ///< [row][column], 0 to 1
+};
+
+/// A report that is composed once and written as one web page, which holds its pictures, its style and the scripts that
+/// draw its plots (web/report): it opens offline. All text is plain UTF-8 and is shown as it is.
 class Document {
  public:
-  /// A picture file that belongs to the Markdown text.
-  struct Picture {
-    std::string file;   ///< "detection.svg": letters, digits, '-' and '_', then the extension; unique
-    std::string bytes;  ///< SVG text or PNG
-    std::string caption;
-  };
-
   explicit Document(std::string title);
 
-  /// Adds a heading of level 2 to 6; the title has level 1. Throws Error for any other level.
+  /// Adds a heading of level 2 to 6; the title has level 1. The page begins with a list of those of level 2. Throws
+  /// Error for any other level.
   void heading(int level, std::string_view text);
   void paragraph(std::string_view text);
+  /// Adds a command or listing, whose spaces and line breaks are kept.
+  void preformatted(std::string_view text);
   /// Adds a table. A column is aligned at the right if all its cells are numbers or empty. Throws Error if the header
   /// has no columns or a row has another length.
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
-  /// Adds a picture. `name` becomes its file name: characters unsuited for file names are replaced by '_', and a number
-  /// is appended if the name is taken. Throws Error for bytes that are not SVG or PNG.
-  void svg(std::string_view name, std::string bytes, std::string_view caption);
-  void picture(std::string_view name, std::string png, std::string_view caption);
-  /// Adds a command or listing, whose spaces and line breaks are kept.
-  void preformatted(std::string_view text);
+  /// Adds a picture. Throws Error for bytes that are not PNG.
+  void picture(std::string_view png, std::string_view caption);
+  /// Adds a plot and its values; nothing where no point is finite.
+  void plot(const LinePlot& plot);
+  /// Adds a matrix, coloured by its shares, with percents in the cells of half a percent and more. Throws Error unless
+  /// there are as many rows and columns as names.
+  void matrix(const MatrixPlot& matrix);
 
-  /// Returns one page that contains its pictures (data URIs) and its style, so it can be opened offline.
   std::string html() const;
-  /// Returns GitHub's Markdown. It links pictures as `folder`/file, or as file if `folder` is empty.
-  std::string markdown(const std::string& folder = "") const;
-  /// The pictures in the order of their appearance.
-  const std::vector<Picture>& pictures() const { return pictures_; }
 
  private:
-  enum class Kind { heading, paragraph, table, picture, preformatted };
-  struct Block {
-    Kind kind = Kind::paragraph;
-    int level = 0;                               ///< level of a heading
-    std::string text;                            ///< text of a heading, paragraph or preformatted block
-    std::vector<std::vector<std::string>> rows;  ///< rows of a table, header first
-    std::size_t picture = 0;                     ///< index in pictures_
-  };
-
-  void add_picture(std::string_view name, const char* extension, std::string bytes, std::string_view caption);
-  std::string html_of(const Block& block) const;
-  std::string markdown_of(const Block& block, const std::string& folder) const;
-
   std::string title_;
-  std::vector<Block> blocks_;
-  std::vector<Picture> pictures_;
+  std::string blocks_;  ///< JSON of what was added, separated by commas
 };
+
+/// Makes the folder of a report unless it is there. Throws Error naming it if it cannot be made. It is called before
+/// what takes long.
+void make_report_folder(const std::string& folder);
+
+/// Writes `folder`/report.html atomically. Throws Error naming the file if it cannot be written.
+void write_report_page(const Document& document, const std::string& folder);
 
 }  // namespace vesalius

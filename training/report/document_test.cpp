@@ -2,83 +2,69 @@
 
 #include <gmock/gmock.h>
 
-#include "report/escape_text.h"
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/files/read_file.h"
+#include "io/files/test_files.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
 namespace {
 
+using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 
-const std::string kSvg = "<svg></svg>";
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const std::string kPng = "\x89PNG\r\n\x1a\n";
 
-TEST(EscapeText, EncodesBase64AsInRfc4648) {
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foo"), "Zm9v");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-  EXPECT_EQ(base64(std::string("\xff\xfe\x00", 3)), "//4A");
+/// Returns what the page is given to show.
+json shown(const std::string& page) {
+  const std::string mark = "id=\"report\">";
+  const std::size_t begin = page.find(mark) + mark.size();
+  return json::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
-TEST(EscapeText, TurnsHtmlMarkupIntoText) {
-  EXPECT_EQ(escape_html("<a href=\"x\">&</a>"), "&lt;a href=&quot;x&quot;&gt;&amp;&lt;/a&gt;");
-  EXPECT_EQ(escape_html(std::string("a\x1b[0m\n\tb")), "a [0m\n\tb");
-}
-
-TEST(EscapeText, TurnsMarkdownMarkupIntoText) {
-  EXPECT_EQ(escape_markdown("a|b *c* `d` [e](f) <g>"), "a\\|b \\*c\\* \\`d\\` \\[e\\](f) \\<g\\>");
-  EXPECT_EQ(escape_markdown("# 1"), "\\# 1");
-  EXPECT_EQ(escape_markdown("- 1"), "\\- 1");
-  EXPECT_EQ(escape_markdown("-1"), "-1");
-  EXPECT_EQ(escape_markdown("12. x"), "12\\. x");
-  EXPECT_EQ(escape_markdown("0.5 of 1.5"), "0.5 of 1.5");
-  EXPECT_EQ(escape_markdown("alina_wave _x_"), "alina_wave \\_x\\_");
-  EXPECT_EQ(escape_markdown("    two\nlines"), "two lines");
-}
-
-TEST(Document, IsWrittenAsMarkdown) {
-  Document document("Report");
-  document.heading(2, "Sets");
-  document.paragraph("All of it.");
-  document.table({"set", "frames"}, {{"a|b", "75"}, {"c", "-1.5"}});
-  document.svg("curve one", kSvg, "A curve");
-  document.preformatted("run ``` this\nand that");
-  EXPECT_EQ(document.markdown("pictures"),
-            "# Report\n\n## Sets\n\nAll of it.\n\n"
-            "| set | frames |\n|---|---:|\n| a\\|b | 75 |\n| c | -1.5 |\n\n"
-            "![A curve](<pictures/curve_one.svg>)\n\n*A curve*\n\n"
-            "````\nrun ``` this\nand that\n````\n");
-  EXPECT_THAT(document.markdown(), HasSubstr("(<curve_one.svg>)"));
-}
-
-TEST(Document, IsOnePageOfHtmlWithItsPictures) {
+TEST(Document, IsOnePageWithAllThatIsShown) {
   Document document("A & B");
   document.heading(3, "x < y");
+  document.paragraph("</script><script>alert(1)</script>");
+  document.preformatted("run this\n  and that");
   document.table({"n"}, {{"1"}, {""}});
-  document.picture("frame", kPng, "the \"worst\"");
+  document.picture(kPng, "the \"worst\"");
   const std::string page = document.html();
-  EXPECT_THAT(page, StartsWith("<!DOCTYPE html>"));
-  EXPECT_THAT(page, HasSubstr("<h1>A &amp; B</h1>"));
-  EXPECT_THAT(page, HasSubstr("<h3>x &lt; y</h3>"));
-  EXPECT_THAT(page, HasSubstr("<td class=\"number\">1</td>"));
-  EXPECT_THAT(page, HasSubstr("alt=\"the &quot;worst&quot;\" src=\"data:image/png;base64," + base64(kPng) + "\""));
-  EXPECT_THAT(page, Not(HasSubstr("http")));  // opens offline
+  EXPECT_THAT(page, StartsWith("<!doctype html>"));
+  EXPECT_THAT(page, Not(HasSubstr("alert(1)</script>")));
+  EXPECT_THAT(page, Not(HasSubstr("src=\"http")));  // opens offline
+  EXPECT_THAT(page, HasSubstr("The MIT License (MIT)")) << "of the plot library";
+  EXPECT_EQ(shown(page), json::parse(R"({"title": "A & B", "blocks": [
+    {"kind": "heading", "level": 3, "text": "x < y"},
+    {"kind": "paragraph", "text": "</script><script>alert(1)</script>"},
+    {"kind": "preformatted", "text": "run this\n  and that"},
+    {"kind": "table", "rows": [["n"], ["1"], [""]]},
+    {"kind": "picture", "caption": "the \"worst\"", "png": "iVBORw0KGgo="}]})"));
 }
 
-TEST(Document, GivesPicturesSafeUniqueFileNames) {
+TEST(Document, GivesPlotsAsNumbers) {
   Document document("r");
-  document.svg("../a b", kSvg, "");
-  document.svg(".._a_b", kSvg, "");
-  document.picture("../a b", kPng, "");
-  document.svg("", kSvg, "");
-  std::vector<std::string> files;
-  for (const Document::Picture& picture : document.pictures()) files.push_back(picture.file);
-  EXPECT_THAT(files, testing::ElementsAre("___a_b.svg", "___a_b-2.svg", "___a_b.png", "picture.svg"));
+  document.plot({"Curve", "x", "y", {{"a", {{1.0, 0.5}, {2.0, kNaN}}}, {"b", {}}}, {}, std::pair{0.0, 1.0}, true});
+  document.plot({"Nothing", "x", "y", {{"a", {{kNaN, 0.5}, {2.0, kNaN}}}}});
+  document.matrix({"Confusion", {"hand", "foot"}, {{0.75, 0.25}, {0.0, 1.0}}});
+  EXPECT_EQ(shown(document.html()).at("blocks"), json::parse(R"([
+    {"kind": "plot", "caption": "Curve", "x": "x", "y": "y", "log_x": true, "x_range": null, "y_range": [0.0, 1.0],
+     "series": [{"name": "a", "points": [[1.0, 0.5], [2.0, null]]}, {"name": "b", "points": []}]},
+    {"kind": "matrix", "caption": "Confusion", "names": ["hand", "foot"], "shares": [[0.75, 0.25], [0.0, 1.0]]}])"));
+}
+
+TEST(Document, HoldsPicturesInBase64AsInRfc4648) {
+  for (const auto& [bytes, text] : {std::pair{"", "iVBORw=="}, {"f", "iVBOR2Y="}, {"fo", "iVBOR2Zv"}}) {
+    Document document("r");
+    document.picture("\x89PNG" + std::string(bytes), "");
+    EXPECT_EQ(shown(document.html()).at("blocks").at(0).at("png"), text);
+  }
 }
 
 TEST(Document, RefusesInvalidTablesHeadingsAndPictures) {
@@ -90,8 +76,21 @@ TEST(Document, RefusesInvalidTablesHeadingsAndPictures) {
       },
       ThrowsMessage<Error>(HasSubstr("row 1 of a table has 1 cells, expected 2")));
   EXPECT_THAT([&] { document.table({}, {}); }, ThrowsMessage<Error>(HasSubstr("without columns")));
-  EXPECT_THAT([&] { document.picture("x", kSvg, ""); }, ThrowsMessage<Error>(HasSubstr("x: no PNG")));
-  EXPECT_THAT([&] { document.svg("x", kPng, ""); }, ThrowsMessage<Error>(HasSubstr("x: no SVG")));
+  EXPECT_THAT([&] { document.picture("<svg>", "x"); }, ThrowsMessage<Error>(HasSubstr("x: no PNG")));
+  EXPECT_THAT(
+      [&] {
+        document.matrix({"m", {"a", "b"}, {{1.0}, {0.0}}});
+      },
+      ThrowsMessage<Error>(HasSubstr("m: expected 2 rows of as many shares")));
+}
+
+TEST(Document, IsWrittenIntoItsFolder) {
+  const test::TemporaryFolder folder;
+  make_report_folder(folder / "a/b");
+  write_report_page(Document("r"), folder / "a/b");
+  EXPECT_EQ(read_file(folder / "a/b/report.html"), Document("r").html());
+  EXPECT_THAT([&] { make_report_folder(folder / "a/b/report.html/c"); },
+              ThrowsMessage<Error>(HasSubstr("report.html/c: cannot be made")));
 }
 
 }  // namespace

@@ -25,7 +25,6 @@
 #include "dataset/truth_headings.h"
 #include "dataset/truth_sequences.h"
 #include "dataset/turned_truth.h"
-#include "evaluation/ablation_report.h"
 #include "evaluation/evaluate_sequences.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
@@ -37,6 +36,7 @@
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
+#include "report/document.h"
 #include "vesalius/base/parallel.h"
 
 namespace vesalius::cli {
@@ -68,7 +68,6 @@ struct Arguments {
   bool labels_only = false;
   bool track = false;
   bool hidden = false;
-  bool ablation = false;
   bool keep_going = false;
   bool quiet = false;
 };
@@ -177,7 +176,7 @@ std::unique_ptr<TruthSource> open_set(const Request& request, const Arguments& a
 }
 
 SetResult evaluate_shown(const Request& request, const Arguments& arguments, const FrameScorer& scorer,
-                         const std::vector<Variant>& variants, const SequenceTrackerFactory& trackers) {
+                         const SequenceTrackerFactory& trackers) {
   const OpenTruth open = [&] { return open_set(request, arguments, scorer.body()); };
   const auto frames = open();
   for (const std::string& note : frames->notes()) say(fmt::format("note: {}: {}", request.set.name, note));
@@ -189,7 +188,7 @@ SetResult evaluate_shown(const Request& request, const Arguments& arguments, con
     say("vesalius: " + why);
   };
   hooks.stop = interrupted;
-  if (!arguments.track) return evaluate_set(*frames, request.set, scorer, variants, hooks);
+  if (!arguments.track) return evaluate_set(*frames, request.set, scorer, hooks);
   return evaluate_sequences(open, request.set, scorer, trackers,
                             {arguments.hidden, !arguments.fit_trust.empty(), !arguments.fit_stances.empty()}, hooks);
 }
@@ -313,21 +312,19 @@ void run(const Arguments& arguments, const std::string& command) {
   evaluation.version = VESALIUS_VERSION;
   evaluation.machine = machine_facts();
   const FrameScorer::Options scored{evaluation.options.detect, labels_only, arguments.joint_set, fits_context};
-  std::vector<Variant> variants;
-  if (arguments.ablation) variants = ablation_variants(forest, scored);
   const std::shared_ptr<const PixelLabeller> labeller = arguments.device.make(std::move(forest));
   const FrameScorer scorer(labeller, scored);
   SequenceTrackerFactory trackers;
   if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options);
   evaluation.tracked = arguments.track;
   evaluation.body = scorer.body();
-  if (!arguments.report.empty()) prepare_report(arguments.report);
+  if (!arguments.report.empty()) make_report_folder(arguments.report);
   watch_interrupts();
   int failed = 0;
   for (const Request& request : requests) {
-    evaluation.sets.push_back(evaluate_shown(request, arguments, scorer, variants, trackers));
+    evaluation.sets.push_back(evaluate_shown(request, arguments, scorer, trackers));
     failed += evaluation.sets.back().failed;
-    if (!prints_json(arguments)) print(summary_lines(evaluation.sets.back()) + ablation_lines(evaluation.sets.back()));
+    if (!prints_json(arguments)) print(summary_lines(evaluation.sets.back()));
     std::fflush(stdout);  // a set can take minutes
   }
   write_outputs(arguments, evaluation);
@@ -358,9 +355,7 @@ void add_evaluate(CLI::App& program) {
   command->add_option("--assets", arguments->rendered.assets.folder, "Folder in which `vesalius assets` put its files")
       ->type_name("DIR");
   command->add_option("-m,--model", arguments->model, "Trained forest")->type_name("FILE")->required();
-  command
-      ->add_option("--report", arguments->report,
-                   "Folder for report.html, report.md, report.json, figures.csv (and ablation.csv)")
+  command->add_option("--report", arguments->report, "Folder for report.html, report.json and figures.csv")
       ->type_name("DIR");
   command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`; - for standard output")
       ->type_name("FILE");
@@ -375,11 +370,6 @@ void add_evaluate(CLI::App& program) {
       ->check(CLI::Range(-180.0, 180.0));
   CLI::Option* labels_only = command->add_flag("--labels-only", arguments->labels_only,
                                                "Only the pixel labels of the first pass: much faster");
-  command
-      ->add_flag("--ablation", arguments->ablation,
-                 "Evaluate also without each part of the method in turn, with the time per frame; takes about fifteen "
-                 "times as long")
-      ->excludes(labels_only);
   command
       ->add_option("--joints", arguments->joints_file,
                    "TOML with joint sets named as the truth names its joints, instead of those built in")
@@ -426,15 +416,14 @@ void add_evaluate(CLI::App& program) {
           "Write the model with a context fitted to these labelled frames, which corrects by what is around each "
           "pixel whether it is a body; measures nothing, and leaves out the judge, which is fitted afterwards")
       ->type_name("FOREST")
-      ->excludes("--fit-joints", "--fit-parts", "--fit-score", "--fit-judge", "--ablation");
+      ->excludes("--fit-joints", "--fit-parts", "--fit-score", "--fit-judge");
   CLI::Option* track =
       command
           ->add_flag(
               "--track", arguments->track,
               "Follow the people over each recording, frame after frame, and measure ids and motion too; a folder "
               "of recordings is one set")
-          ->excludes("--labels-only", "--ablation", "--fit-joints", "--fit-parts", "--fit-score", "--fit-judge",
-                     "--fit-context");
+          ->excludes("--labels-only", "--fit-joints", "--fit-parts", "--fit-score", "--fit-judge", "--fit-context");
   command
       ->add_option("--fit-trust", arguments->fit_trust,
                    "With --track: write how far the joints of fitted bodies can be trusted, fitted to these recordings")

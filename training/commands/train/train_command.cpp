@@ -135,9 +135,7 @@ void add_run_flags(CLI::App& command, Arguments& arguments) {
       ->check(CLI::Range(0.01, 1e6))
       ->group(group);
   command.add_flag("--restart", arguments.restart, "Discard the trees of an interrupted run")->group(group);
-  command.add_option("--report", arguments.report, "Folder for a report, as web page and Markdown; needs gnuplot")
-      ->type_name("DIR")
-      ->group(group);
+  command.add_option("--report", arguments.report, "Folder for a report, a web page")->type_name("DIR")->group(group);
   command.add_flag("--curves", arguments.curves, "With --report: accuracy against frames and candidates as well")
       ->group(group);
   command.add_option("--threads", arguments.threads, "Threads to use; 0 = all. The result is the same")

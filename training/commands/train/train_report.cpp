@@ -3,12 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
-
-#include "io/files/atomic_file.h"
-#include "report/plot.h"
-#include "vesalius/base/error.h"
 
 namespace vesalius::cli {
 namespace {
@@ -25,20 +19,18 @@ std::vector<std::string> class_names(const TrainingSet& set) {
 }
 
 /// Plots both accuracies against numbers that begin with `first`, 0 or 1.
-std::string accuracy_plot(const std::string& x_label, const std::vector<AccuracyPoint>& points, int first) {
-  LinePlot plot;
-  plot.x_label = x_label;
-  plot.y_label = "mean recall of the parts";
-  plot.series = {{"among parts", {}}, {"background a rival", {}}};
+LinePlot accuracy_plot(const std::string& caption, const std::string& x_label, const std::vector<AccuracyPoint>& points,
+                       int first) {
+  LinePlot plot{caption, x_label, "mean recall of the parts", {{"among parts", {}}, {"background a rival", {}}}};
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double x = static_cast<double>(i) + first;
     plot.series[0].points.emplace_back(x, points[i].parts_only);
     plot.series[1].points.emplace_back(x, points[i].with_background);
   }
   // The range is given because a single point would span none.
-  plot.x_range = PlotRange{static_cast<double>(first), std::max(static_cast<double>(points.size()) - 1, 1.0) + first};
-  plot.y_range = PlotRange{0.0, 1.0};
-  return plot_svg(plot);
+  plot.x_range = {static_cast<double>(first), std::max(static_cast<double>(points.size()) - 1, 1.0) + first};
+  plot.y_range = {0.0, 1.0};
+  return plot;
 }
 
 void add_summary(Document& document, const Forest& forest, const TrainingSet& set, const TrainFigures& figures) {
@@ -73,7 +65,7 @@ void add_summary(Document& document, const Forest& forest, const TrainingSet& se
 
 void add_trees(Document& document, const Forest& forest, const TrainFigures& figures) {
   document.heading(2, "Trees");
-  document.svg("accuracy-trees", accuracy_plot("trees", figures.by_trees, 1), "Accuracy of the first trees together");
+  document.plot(accuracy_plot("Accuracy of the first trees together", "trees", figures.by_trees, 1));
   std::vector<std::vector<std::string>> rows;
   for (std::size_t t = 0; t < forest.trees.size(); ++t) {
     const Tree& tree = forest.trees[t];
@@ -87,8 +79,9 @@ void add_trees(Document& document, const Forest& forest, const TrainFigures& fig
 
 void add_levels(Document& document, const TrainFigures& figures) {
   document.heading(2, "Levels");
-  document.svg("accuracy-levels", accuracy_plot("level", figures.by_level, 0),
-               "Accuracy of the forest cut at a level, inner nodes answering with the samples that pass them");
+  document.plot(
+      accuracy_plot("Accuracy of the forest cut at a level, inner nodes answering with the samples that pass them",
+                    "level", figures.by_level, 0));
   std::vector<std::vector<std::string>> rows;
   for (std::size_t level = 0; level < figures.by_level.size(); ++level) {
     rows.push_back({fmt::format("{}", level), share_text(figures.by_level[level].parts_only),
@@ -97,9 +90,9 @@ void add_levels(Document& document, const TrainFigures& figures) {
   document.table({"Level", "Among parts", "Background a rival"}, rows);
 }
 
-/// Plots the shares of the samples of each class that were given each class.
-std::string confusion_plot(const Confusion& confusion, const std::vector<std::string>& names) {
-  MatrixPlot plot{"confusion matrix", "true class", "given class", names, {}};
+/// Returns the shares of the samples of each class that were given each class.
+MatrixPlot confusion_plot(const Confusion& confusion, const std::vector<std::string>& names) {
+  MatrixPlot plot{"Confusion matrix: percent of a true class (row) that were given a class (column)", names, {}};
   for (int truth = 0; truth < confusion.classes; ++truth) {
     std::vector<double>& row = plot.shares.emplace_back();
     const auto sum = static_cast<double>(std::max(confusion.row_sum(truth), std::uint64_t{1}));
@@ -107,14 +100,13 @@ std::string confusion_plot(const Confusion& confusion, const std::vector<std::st
       row.push_back(static_cast<double>(confusion.at(truth, given)) / sum);
     }
   }
-  return plot_svg(plot);
+  return plot;
 }
 
 void add_classes(Document& document, const TrainingSet& set, const TrainFigures& figures) {
   const std::vector<std::string> names = class_names(set);
   document.heading(2, "Classes");
-  document.svg("confusion", confusion_plot(figures.accuracy.all, names),
-               "Confusion matrix: percent of a true class (row) that were given a class (column)");
+  document.matrix(confusion_plot(figures.accuracy.all, names));
   std::vector<std::uint64_t> samples(names.size(), 0);
   for (const TrainingSample& sample : set.samples()) ++samples[sample.label];
   std::vector<std::vector<std::string>> rows;
@@ -129,20 +121,19 @@ void add_classes(Document& document, const TrainingSet& set, const TrainFigures&
   document.table({"Class", "Pixels", "Samples", "Held out", "Recall among parts", "Recall"}, rows);
 }
 
-/// Plots the accuracy among parts against `x_of`, for the points that differ from the largest run in nothing else.
+/// Plots both accuracies against `x_of`, for the points that differ from the largest run in nothing else.
 template <class XOf>
-std::string curve_plot(const std::string& x_label, const std::vector<CurvePoint>& curve, const XOf& x_of) {
-  LinePlot plot;
-  plot.x_label = x_label;
-  plot.y_label = "mean recall of the parts";
+LinePlot curve_plot(const std::string& caption, const std::string& x_label, const std::vector<CurvePoint>& curve,
+                    const XOf& x_of) {
+  LinePlot plot{caption, x_label, "mean recall of the parts", {{"among parts", {}}, {"background a rival", {}}}};
   plot.log_x = true;
-  plot.y_range = PlotRange{0.0, 1.0};
-  plot.series = {{"among parts", {}}, {"background a rival", {}}};
+  plot.y_range = {0.0, 1.0};
   for (const CurvePoint& point : curve) {
-    plot.series[0].points.emplace_back(x_of(point), point.accuracy.parts_only);
-    plot.series[1].points.emplace_back(x_of(point), point.accuracy.with_background);
+    const auto x = static_cast<double>(x_of(point));
+    plot.series[0].points.emplace_back(x, point.accuracy.parts_only);
+    plot.series[1].points.emplace_back(x, point.accuracy.with_background);
   }
-  return plot_svg(plot);
+  return plot;
 }
 
 void add_curves(Document& document, const std::vector<CurvePoint>& points) {
@@ -153,14 +144,10 @@ void add_curves(Document& document, const std::vector<CurvePoint>& points) {
     if (point.candidates == points.front().candidates) by_frames.push_back(point);
     if (point.frame_share >= 1.0) by_candidates.push_back(point);
   }
-  std::ranges::sort(by_candidates, {}, &CurvePoint::candidates);
-  document.svg("accuracy-frames",
-               curve_plot("frames", by_frames, [](const CurvePoint& p) { return static_cast<double>(p.frames); }),
-               "Accuracy against frames learned from");
-  document.svg(
-      "accuracy-candidates",
-      curve_plot("candidates", by_candidates, [](const CurvePoint& p) { return static_cast<double>(p.candidates); }),
-      "Accuracy against candidates of a node");
+  document.plot(curve_plot("Accuracy against frames learned from", "frames", by_frames,
+                           [](const CurvePoint& p) { return p.frames; }));
+  document.plot(curve_plot("Accuracy against candidates of a node", "candidates", by_candidates,
+                           [](const CurvePoint& p) { return p.candidates; }));
   std::vector<std::vector<std::string>> rows;
   for (const CurvePoint& point : points) {
     rows.push_back({fmt::format("{}", point.frames), fmt::format("{}", point.candidates),
@@ -182,20 +169,6 @@ Document train_report(const Forest& forest, const TrainingSet& set, const TrainF
   document.heading(2, "Recipe");
   document.preformatted(forest.recipe);
   return document;
-}
-
-void expect_plots() { accuracy_plot("trees", {{0.0, 0.0}, {1.0, 1.0}}, 1); }
-
-void write_report(const Document& document, const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Error(folder + ": folder cannot be made: " + error.message());
-  const std::filesystem::path place(folder);
-  for (const Document::Picture& picture : document.pictures()) {
-    write_file_atomically((place / picture.file).string(), picture.bytes);
-  }
-  write_file_atomically((place / "report.md").string(), document.markdown());
-  write_file_atomically((place / "report.html").string(), document.html());
 }
 
 }  // namespace vesalius::cli

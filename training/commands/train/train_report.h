@@ -33,14 +33,7 @@ struct TrainFigures {
 };
 
 /// Returns a report with tables and plots: accuracy on held-out samples against trees and levels, the confusion matrix,
-/// sizes, samples of each class and the recipe. Throws Error if gnuplot cannot be run.
+/// sizes, samples of each class and the recipe.
 Document train_report(const Forest& forest, const TrainingSet& set, const TrainFigures& figures);
-
-/// Throws Error if gnuplot cannot be run. It is called before a training, so that the error does not come after it.
-void expect_plots();
-
-/// Writes `folder`/report.html, `folder`/report.md and the pictures that it links, each file atomically. Throws Error
-/// naming a file that cannot be written.
-void write_report(const Document& document, const std::string& folder);
 
 }  // namespace vesalius::cli

@@ -37,7 +37,7 @@ class Training {
              static_cast<std::uint64_t>(options.grow.seed)) {}
 
   void run() {
-    if (!run_.report.empty()) expect_plots();
+    if (!run_.report.empty()) make_report_folder(run_.report);
     fill();
     expect_enough();
     if (run_.curves) {
@@ -141,7 +141,7 @@ class Training {
   void report(const Forest& forest) {
     figures_.by_trees = accuracy_by_trees(forest, set_);
     figures_.by_level = accuracy_by_level(forest, set_);
-    write_report(train_report(forest, set_, figures_), run_.report);
+    write_report_page(train_report(forest, set_, figures_), run_.report);
     tell(fmt::format("{}/report.html", run_.report));
   }
 

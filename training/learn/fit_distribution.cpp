@@ -1,0 +1,199 @@
+#include "learn/fit_distribution.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "metrics/joint_metrics.h"
+#include "metrics/median.h"
+#include "vesalius/base/error.h"
+#include "vesalius/base/logistic.h"
+#include "vesalius/predict_parts.h"
+
+namespace vesalius {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3f;
+
+constexpr std::size_t kLeastPeople = 100;
+/// Observed centres beyond this are those of other things; they say nothing about a part's depth.
+constexpr float kOnPart_m = 0.2F;
+/// Standard deviation along an axis of the centres observed on their part.
+constexpr float kNoise_m = 0.04F;
+constexpr int kRounds = 8;  ///< of turning all bodies onto their mean
+
+bool complete(const KnownPerson& person) {
+  return !person.part_centres.empty() &&
+         std::ranges::all_of(person.part_centres, [](const Vector3f& c) { return c.allFinite(); });
+}
+
+/// Returns how far each part's centre lies behind its visible surface along the viewing ray, the same for both sides.
+std::vector<float> depths_of(const std::vector<KnownPerson>& people, const BodyModel& body) {
+  std::vector<std::vector<double>> samples(body.parts.size());
+  for (const KnownPerson& person : people) {
+    for (std::size_t p = 0; p < person.part_centres.size(); ++p) {
+      const SkeletonPart& part = person.skeleton.parts[p];
+      const Vector3f off = person.part_centres[p] - part.centre;
+      if (part.state != State::observed || !off.allFinite() || off.norm() > kOnPart_m) continue;
+      const auto behind_m = static_cast<double>(off.dot(part.centre.normalized()));
+      samples[p].push_back(behind_m);
+      if (body.parts[p].mirror != static_cast<int>(p)) samples[body.parts[p].mirror].push_back(behind_m);
+    }
+  }
+  std::vector<float> depths;
+  for (std::vector<double>& of_part : samples) depths.push_back(static_cast<float>(median(std::move(of_part))));
+  return depths;
+}
+
+/// Returns where a person's parts would be observed if nothing hid them.
+std::vector<Vector3f> surfaces_of(const KnownPerson& person, const std::vector<float>& depths_m) {
+  std::vector<Vector3f> surfaces;
+  for (std::size_t p = 0; p < person.part_centres.size(); ++p) {
+    surfaces.emplace_back(person.part_centres[p] - depths_m[p] * person.part_centres[p].normalized());
+  }
+  return surfaces;
+}
+
+/// Returns the bodies, one in a matrix of the parts' columns, and their mirror images.
+std::vector<Matrix3Xd> bodies_of(const std::vector<KnownPerson>& people, const std::vector<float>& depths_m,
+                                 const BodyModel& body) {
+  std::vector<Matrix3Xd> bodies;
+  for (const KnownPerson& person : people) {
+    if (!complete(person)) continue;
+    const std::vector<Vector3f> surfaces = surfaces_of(person, depths_m);
+    Matrix3Xd one(3, body.part_count()), other(3, body.part_count());
+    for (int p = 0; p < body.part_count(); ++p) {
+      one.col(p) = surfaces[p].cast<double>();
+      other.col(body.parts[p].mirror) = one.col(p);
+    }
+    other.row(0) *= -1.0;
+    bodies.push_back(std::move(one));
+    bodies.push_back(std::move(other));
+  }
+  return bodies;
+}
+
+/// Turns and shifts all bodies onto their mean (generalised Procrustes analysis), and returns this.
+Matrix3Xd align(std::vector<Matrix3Xd>& bodies) {
+  Matrix3Xd mean = bodies.front().colwise() - bodies.front().rowwise().mean();
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(mean.cols());
+  for (int round = 0; round < kRounds; ++round) {
+    Matrix3Xd sum = Matrix3Xd::Zero(3, mean.cols());
+    for (Matrix3Xd& one : bodies) {
+      const Eigen::Matrix3d turn = best_rotation(one, mean, weights);
+      const Eigen::Vector3d shift = (turn * one - mean) * weights / weights.sum();
+      one = ((turn * one).colwise() - shift).eval();
+      sum += one;
+    }
+    mean = sum / static_cast<double>(bodies.size());
+    const Eigen::Vector3d middle = mean.rowwise().mean();
+    mean.colwise() -= middle;
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(mean.cols());
+    for (Matrix3Xd& one : bodies) {
+      one.colwise() -= middle;
+      squares += (one - mean).colwise().squaredNorm().transpose();
+    }
+    // What moves little tells best how a body is turned.
+    const double noise2 = static_cast<double>(kNoise_m) * static_cast<double>(kNoise_m);
+    weights = (squares.array() / (3.0 * static_cast<double>(bodies.size())) + noise2).inverse();
+  }
+  return mean;
+}
+
+PartDistribution distribution_of(const std::vector<Matrix3Xd>& bodies, const Matrix3Xd& mean) {
+  const Index rows = 3 * mean.cols();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows, rows);
+  for (const Matrix3Xd& one : bodies) {
+    const Matrix3Xd off = one - mean;
+    const Eigen::Map<const Eigen::VectorXd> offsets(off.data(), rows);
+    covariance.selfadjointView<Eigen::Lower>().rankUpdate(offsets);
+  }
+  covariance /= static_cast<double>(bodies.size());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+  PartDistribution distribution;
+  distribution.factors = static_cast<int>(std::min<Index>(kDistributionFactors, rows));
+  distribution.noise_m = kNoise_m;
+  for (Index p = 0; p < mean.cols(); ++p) {
+    PartDistribution::Part& part = distribution.parts.emplace_back();
+    double rest = 0.0;
+    for (Index axis = 0; axis < 3; ++axis) {
+      const Index row = 3 * p + axis;
+      part.mean_m[axis] = static_cast<float>(mean(axis, p));
+      rest += covariance(row, row);
+      for (int k = 0; k < distribution.factors; ++k) {
+        const Index column = rows - 1 - k;  // the largest come last
+        const double factor =
+            solver.eigenvectors()(row, column) * std::sqrt(std::max(0.0, solver.eigenvalues()[column]));
+        part.factors_m[axis].push_back(static_cast<float>(factor));
+        rest -= factor * factor;
+      }
+    }
+    part.residual_m = static_cast<float>(std::sqrt(std::max(0.0, rest / 3.0)));
+  }
+  return distribution;
+}
+
+/// A predicted part.
+struct Outcome {
+  double log_sigma = 0.0;
+  bool right = false;
+};
+
+std::vector<Outcome> outcomes_of(const std::vector<KnownPerson>& people, const std::vector<float>& depths_m,
+                                 const PartDistribution& distribution) {
+  std::vector<Outcome> outcomes;
+  for (const KnownPerson& person : people) {
+    if (person.part_centres.empty()) continue;
+    const std::vector<Vector3f> surfaces = surfaces_of(person, depths_m);
+    Skeleton observed = person.skeleton;
+    for (SkeletonPart& part : observed.parts) {
+      if (part.state == State::predicted) part.state = State::none;
+    }
+    const std::vector<PredictedPart> predicted = predict_parts(distribution, given_centres(observed));
+    for (std::size_t p = 0; p < predicted.size(); ++p) {
+      if (observed.parts[p].state != State::none || !surfaces[p].allFinite()) continue;
+      const double error_m = static_cast<double>((predicted[p].centre - surfaces[p]).norm());
+      outcomes.push_back({std::log(static_cast<double>(predicted[p].sigma_m)), error_m < kJointTolerance_m});
+    }
+  }
+  return outcomes;
+}
+
+/// Fits the confidence by logistic regression (Newton's method).
+void fit_confidence(const std::vector<Outcome>& outcomes, PartDistribution& distribution) {
+  Eigen::Vector2d x = Eigen::Vector2d::Zero();
+  for (int round = 0; round < 30; ++round) {
+    Eigen::Matrix2d curvature = 1e-3 * Eigen::Matrix2d::Identity();  // keeps it finite where all or none are right
+    Eigen::Vector2d slope = -1e-3 * x;
+    for (const Outcome& one : outcomes) {
+      const Eigen::Vector2d row(1.0, one.log_sigma);
+      const double p = logistic(row.dot(x));
+      slope += ((one.right ? 1.0 : 0.0) - p) * row;
+      curvature += std::max(p * (1.0 - p), 1e-6) * row * row.transpose();
+    }
+    x += curvature.ldlt().solve(slope);
+  }
+  distribution.confidence_bias = static_cast<float>(x[0]);
+  distribution.confidence_slope = static_cast<float>(x[1]);
+}
+
+}  // namespace
+
+PartDistribution fit_distribution(const std::vector<KnownPerson>& people, const BodyModel& body) {
+  const std::vector<float> depths_m = depths_of(people, body);
+  std::vector<Matrix3Xd> bodies = bodies_of(people, depths_m, body);
+  if (bodies.size() < 2 * kLeastPeople) {
+    throw Error(fmt::format("distribution of parts: {} people found whose parts' centres are all known, expected {}",
+                            bodies.size() / 2, kLeastPeople));
+  }
+  const Matrix3Xd mean = align(bodies);
+  PartDistribution distribution = distribution_of(bodies, mean);
+  fit_confidence(outcomes_of(people, depths_m, distribution), distribution);
+  return distribution;
+}
+
+}  // namespace vesalius

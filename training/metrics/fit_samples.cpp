@@ -1,0 +1,70 @@
+#include "metrics/fit_samples.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "metrics/joint_metrics.h"
+#include "vesalius/base/blended_depth.h"
+#include "vesalius/base/pixel_grid.h"
+#include "vesalius/base/random.h"
+#include "vesalius/fit/flesh_joints.h"
+#include "vesalius/forest/body_context.h"
+#include "vesalius/forest/label_scene.h"
+
+namespace vesalius {
+namespace {
+
+std::uint64_t seed_of(const std::string& name) {
+  std::uint64_t seed = 14695981039346656037ULL;  // FNV-1a, so that it is the same everywhere
+  for (const char c : name) seed = (seed ^ static_cast<std::uint8_t>(c)) * 1099511628211ULL;
+  return seed;
+}
+
+}  // namespace
+
+std::vector<BoostSample> context_samples(const TrueFrame& frame, const std::shared_ptr<const PixelLabeller>& labeller,
+                                         const DetectOptions& options) {
+  if (frame.truth.labels.empty() || !labeller->has_background()) return {};
+  const SceneLabeller scenes(labeller, {options.label, options.smooth, options.grow.plane});
+  Frame memory;
+  const Frame& seen = without_blended(frame.frame, options.blend, memory);
+  const auto sample = [&](const Frame& grid, int step) {
+    StageClock clock(nullptr);
+    const SceneLabels scene = scenes.label_scene(grid, clock);
+    const BodySurroundings around(scene.posteriors(), grid.depth, grid.camera, labeller->body());
+    const int apart = step * around.step();
+    Random random(seed_of(frame.frame.name));
+    std::vector<BoostSample> samples;
+    for (int row = 0; row < around.rows(); ++row) {
+      for (int column = 0; column < around.columns(); ++column) {
+        if (!around.is_open(column, row) || random.below(kContextEvery) != 0) continue;
+        BoostSample& cell = samples.emplace_back();
+        cell.features.resize(BodySurroundings::feature_count(labeller->body()));
+        around.features(column, row, cell.features.data());
+        cell.positive = frame.truth.labels(column * apart, row * apart) != kBackground;
+      }
+    }
+    return samples;
+  };
+  return on_grid(seen, options.grid, nullptr, sample, [](const GridGuide&, const std::vector<BoostSample>&) {});
+}
+
+void add_trust_samples(const TrackedPerson& found, const std::vector<JointSet>& sets, const JointSet& set,
+                       const std::vector<std::string>& names, const std::vector<Eigen::Vector3f>& truth,
+                       std::vector<TrustSample>& samples) {
+  if (!found.body) return;
+  const std::vector<Joint>& joints = found.person.joints.at(static_cast<std::size_t>(&set - sets.data()));
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const FleshJoint* place = find_flesh_joint(builtin_flesh_joints(), set.name, names[n]);
+    const auto defined = std::ranges::find(set.joints, names[n], &JointDefinition::name);
+    if (place == nullptr || defined == set.joints.end() || !truth[n].allFinite()) continue;
+    const Joint& joint = joints.at(static_cast<std::size_t>(defined - set.joints.begin()));
+    if (joint.state == State::none) continue;
+    const FittedBone& bone = found.body->bones.at(static_cast<std::size_t>(place->bone));
+    const double error_m = static_cast<double>((joint.position - truth[n]).norm());
+    samples.push_back({source_of(*found.body, bone), signals_of(*place, *found.body), error_m < kJointTolerance_m});
+  }
+}
+
+}  // namespace vesalius
