@@ -2,7 +2,7 @@
 """Recordings between vesalius and other programs, both ways.
 
 Writes the frames of FOLDER (depth/*.png, rgb/*, meta.json) into recordings with rosbags and mcap, in every layout, compression
-and encoding of depth, with OpenNI2's recorder, and as a log of Kintinuous, and has vesalius turn each back into a folder: its
+and encoding of depth, and with OpenNI2's recorder, and has vesalius turn each back into a folder: its
 depth must be the same, pixel by pixel, and its colour, where nothing was lost. Recordings begun in the middle must give the
 same frames. Then has vesalius record FOLDER, and rosbags, mcap and rerun read that.
 
@@ -21,7 +21,6 @@ import sys
 import sysconfig
 import tempfile
 import time
-import zlib
 from importlib import metadata
 from pathlib import Path
 
@@ -352,17 +351,6 @@ def openni_recorder(work):
     return record
 
 
-def write_klg(path, folder, packed, colour_of, first_us=0):
-    pictures = list(frames(folder))
-    with open(path, "wb") as out:
-        out.write(struct.pack("<i", len(pictures)))
-        for time_ns, depth, colour in pictures:
-            data = depth.astype("<u2").tobytes()
-            data = zlib.compress(data) if packed else data
-            picture = colour_of(colour)
-            out.write(struct.pack("<qii", first_us + (time_ns - FIRST_NS) // 1000, len(data), len(picture)) + data + picture)
-
-
 def people(vesalius, source, camera):
     done = subprocess.run([vesalius, "detect", source, "--json", "-", "-q", "--camera", camera,
                            *(("--colour-topic", "Image") if str(source).endswith(".oni") else ())],
@@ -370,7 +358,7 @@ def people(vesalius, source, camera):
     return [frame["people"] for frame in map(json.loads, done.stdout.splitlines()) if "people" in frame]
 
 
-def read_openni_and_logs(vesalius, folder, work):
+def read_openni(vesalius, folder, work):
     wanted = [(depth, colour) for _, depth, colour in frames(folder)]
     camera = folder / "meta.json"
 
@@ -398,11 +386,6 @@ def read_openni_and_logs(vesalius, folder, work):
         assert abs(own["fx"] - meta["fx"]) < 0.01 and abs(own["fy"] - meta["fy"]) < 0.01, f"jpeg.oni: {own}"
         assert people(vesalius, work / "lossless.oni", camera) == truth, "lossless.oni: other people"
         cut_oni(vesalius, work, len(wanted))
-    write_klg(work / "raw.klg", folder, False, lambda c: np.ascontiguousarray(c[:, :, ::-1]).tobytes())
-    write_klg(work / "jpeg.klg", folder, True, lambda c: cv2.imencode(".jpg", c)[1].tobytes())
-    expect(work / "raw.klg", True)
-    expect(work / "jpeg.klg", False)
-    assert people(vesalius, work / "raw.klg", camera) == truth, "raw.klg: other people"
     print("same people in all", flush=True)
 
 
@@ -815,8 +798,8 @@ def matroska(vesalius, folder, work):
 
 def write_fixtures(out):
     """Three pictures of 16x12 whose every pixel follows from its place (recording_source_test.cpp); out is fuzz/seeds."""
-    oni, klg, out = out / "fuzz_oni", out / "fuzz_klg", out / "fuzz_recording"
-    for place in (oni, klg, out):
+    oni, out = out / "fuzz_oni", out / "fuzz_recording"
+    for place in (oni, out):
         place.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as work:
         folder = Path(work) / "small"
@@ -847,11 +830,6 @@ def write_fixtures(out):
         if record:
             record(folder, oni / "raw.oni", False)
             record(folder, oni / "jpeg.oni", True)
-        write_klg(klg / "packed.klg", folder, True, lambda c: cv2.imencode(".jpg", c)[1].tobytes(), 10**15)
-        write_klg(klg / "raw.klg", folder, False, lambda c: cv2.imencode(".jpg", c)[1].tobytes(), 10**15)
-        for path in (folder / "depth").glob("*.png"):
-            cv2.imwrite(str(path), cv2.resize(cv2.imread(str(path), cv2.IMREAD_UNCHANGED), (160, 120), interpolation=cv2.INTER_NEAREST))
-        write_klg(klg / "without_colour.klg", folder, True, lambda c: b"")
 
 
 def main():
@@ -863,7 +841,7 @@ def main():
         cut_short(vesalius, folder, Path(work))
         give_ours(vesalius, folder, Path(work))
         realsense(vesalius, Path(work))
-        read_openni_and_logs(vesalius, folder, Path(work))
+        read_openni(vesalius, folder, Path(work))
         seek_in_theirs(vesalius, folder, Path(work))
         matroska(vesalius, folder, Path(work))
 

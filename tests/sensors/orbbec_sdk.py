@@ -106,7 +106,7 @@ def main():
     path = next(folder.glob("libOrbbecSDK.so.2"))
     sdk = Sdk(path)
     header = (source / "src/io/sensors/orbbec_api.h").read_text()
-    names = re.findall(r"\(\*(\w+)\)\(", header[header.index("struct Api"):])
+    names = re.findall(r"VESALIUS_FUNCTION\([^,]+,\s*(\w+)", header)
     lacking = [name for name in names if not hasattr(sdk.library, "ob_" + name)]
     assert len(names) > 50 and not lacking, f"the SDK has no {lacking}"
     sdk("set_logger_severity", None, 5)

@@ -3,7 +3,6 @@
 #include <bzlib.h>
 #include <fmt/format.h>
 #include <lz4frame.h>
-#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -22,7 +21,7 @@ constexpr std::size_t kFirstStep = std::size_t{1} << 16;
 
 /// Asks `more` for the next bytes until it has none. It gets room and returns how many bytes it wrote, 0 at the end.
 template <class More>
-std::string collect_up_to(std::size_t size, const std::string& name, std::string_view method, const More& more) {
+std::string collect(std::size_t size, const std::string& name, std::string_view method, const More& more) {
   std::string out;
   for (;;) {
     const std::size_t had = out.size();
@@ -33,12 +32,6 @@ std::string collect_up_to(std::size_t size, const std::string& name, std::string
     if (got == 0) break;
     if (out.size() > size) fail(name, method);
   }
-  return out;
-}
-
-template <class More>
-std::string collect(std::size_t size, const std::string& name, std::string_view method, const More& more) {
-  std::string out = collect_up_to(size, name, method, more);
   if (out.size() != size) fail(name, method);
   return out;
 }
@@ -108,26 +101,6 @@ std::string decompress(std::string_view packed, std::string_view method, std::si
   if (method == "lz4") return of_lz4(packed, size, name);
   if (method == "bz2") return of_bzip2(packed, size, name);
   throw Error(fmt::format("{}: compressed with \"{}\", expected zstd, lz4 or bz2", name, method));
-}
-
-std::string decompress_zlib(std::string_view packed, std::size_t most, const std::string& name) {
-  z_stream stream{};
-  if (packed.size() > kMaxPieceBytes || inflateInit(&stream) != Z_OK) fail(name, "zlib");
-  const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, inflateEnd);
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // zlib reads only
-  stream.avail_in = static_cast<uInt>(packed.size());
-  bool ended = false;
-  return collect_up_to(most, name, "zlib", [&](char* to, std::size_t room) -> std::size_t {
-    if (ended) return 0;
-    stream.next_out = reinterpret_cast<Bytef*>(to);
-    stream.avail_out = static_cast<uInt>(room);
-    const int status = inflate(&stream, Z_NO_FLUSH);
-    if (status != Z_OK && status != Z_STREAM_END) fail(name, "zlib");
-    ended = status == Z_STREAM_END;
-    // A stream that ends too early asks for more than there is.
-    if (!ended && stream.avail_in == 0 && stream.avail_out > 0) fail(name, "zlib");
-    return room - stream.avail_out;
-  });
 }
 
 std::size_t stated_zstd_size(std::string_view packed, const std::string& name) {

@@ -14,9 +14,6 @@ inline constexpr std::size_t kMaxPieceBytes = std::size_t{1} << 28;
 /// or of another size. Memory grows with what comes out, not with what is stated.
 std::string decompress(std::string_view packed, std::string_view method, std::size_t size, const std::string& name);
 
-/// Decompresses a stream of zlib into at most `most` bytes. Throws Error naming `name` if it is damaged or has more.
-std::string decompress_zlib(std::string_view packed, std::size_t most, const std::string& name);
-
 /// Returns the size that the header of a zstd frame states. Throws Error naming `name` if it states none.
 std::size_t stated_zstd_size(std::string_view packed, const std::string& name);
 

@@ -7,20 +7,24 @@
 
 namespace vesalius {
 
-void* load_library(const char* variable, const std::vector<std::string>& names, const std::string& missing) {
+RunTimeLibrary::RunTimeLibrary(std::string name, const std::string& expected, const char* variable, std::string prefix,
+                               const std::vector<std::string>& files)
+    : name_(std::move(name)), prefix_(std::move(prefix)) {
+  const std::string missing = fmt::format("{} is not installed, {} (docs/cameras.md)", name_, expected);
+  const auto load = [this](const std::string& file) { handle_ = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL); };
   if (const char* given = std::getenv(variable)) {
-    if (void* handle = ::dlopen(given, RTLD_NOW | RTLD_LOCAL)) return handle;
-    throw Error(fmt::format("{} ({}={}: {})", missing, variable, given, ::dlerror()));
+    load(given);
+    if (handle_ == nullptr) throw Error(fmt::format("{} ({}={}: {})", missing, variable, given, ::dlerror()));
   }
-  for (const std::string& name : names) {
-    if (void* handle = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) return handle;
-  }
-  throw Error(missing);
+  for (auto file = files.begin(); handle_ == nullptr && file != files.end(); ++file) load(*file);
+  if (handle_ == nullptr) throw Error(missing);
 }
 
-void* find_address(void* handle, const char* library, const std::string& name) {
-  void* found = ::dlsym(handle, name.c_str());
-  if (found == nullptr) throw Error(fmt::format("{} has no {}, expected another version of it", library, name));
+void* RunTimeLibrary::find_address(const char* function) const {
+  void* found = ::dlsym(handle_, (prefix_ + function).c_str());
+  if (found == nullptr) {
+    throw Error(fmt::format("{} has no {}{}, expected another version of it", name_, prefix_, function));
+  }
   return found;
 }
 

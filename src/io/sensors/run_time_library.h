@@ -12,19 +12,31 @@
 
 namespace vesalius {
 
-/// Loads the first of several files that is a library, or the one that `variable` of the environment names, and returns
-/// its handle. It stays loaded: threads of it may run until the end. Throws Error with `missing`, and the loader's
-/// reason where a file was named.
-void* load_library(const char* variable, const std::vector<std::string>& names, const std::string& missing);
+/// The C functions of a library that is loaded while the program runs, each a member (VESALIUS_FUNCTION) of what
+/// derives from this. The library stays loaded: threads of it may run until the end.
+class RunTimeLibrary {
+ protected:
+  /// Loads the first of several files that is a library, or the one that `variable` of the environment names. Functions
+  /// have names that begin with `prefix`. Throws Error with `name`, what is `expected` and the loader's reason where a
+  /// file was named.
+  RunTimeLibrary(std::string name, const std::string& expected, const char* variable, std::string prefix,
+                 const std::vector<std::string>& files);
 
-/// Returns the address of a function. Throws Error naming `library` where it has none of this name.
-void* find_address(void* handle, const char* library, const std::string& name);
+  /// Returns the library's function of this name. Throws Error naming the library where it has none.
+  template <class Function>
+  Function* find(const char* function) const {
+    return reinterpret_cast<Function*>(find_address(function));
+  }
 
-/// Sets `function` to the library's function of this name. Throws Error as `find_address` does.
-template <class Function>
-void find_function(void* handle, const char* library, const std::string& name, Function& function) {
-  function = reinterpret_cast<Function>(find_address(handle, library, name));
-}
+ private:
+  void* find_address(const char* function) const;
+
+  std::string name_, prefix_;
+  void* handle_ = nullptr;
+};
+
+/// A pointer to a function of the library: what it returns, its name without the prefix, and what it takes.
+#define VESALIUS_FUNCTION(result, name, ...) result (*name)(__VA_ARGS__) = find<result(__VA_ARGS__)>(#name)
 
 /// Receives what a C function of a library that is loaded while the program runs says, and throws it as Error. For the
 /// library's type of errors there are two functions: `const char* text_of(const Failure*)` and `void free(Failure*)`.

@@ -16,7 +16,6 @@
 #include "io/recordings/oni_recording.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/list_source.h"
-#include "io/sources/timed_frames.h"
 
 namespace vesalius {
 namespace {
@@ -112,31 +111,52 @@ std::string names_of(const std::vector<const OniStream*>& streams) {
   return text;
 }
 
-class OniSource final : public TimedSource {
+class OniSource final : public FrameSource {
  public:
   OniSource(const std::string& path, const SourceOptions& options) : path_(path), recording_(DataFile(path)) {
     notes_ = recording_.notes();
     choose_depth(options);
     choose_colour(options);
     set_camera(options);
-    std::vector<std::int64_t> times_us;
-    for (const OniPicture& picture : depth_->pictures) times_us.push_back(picture.time_us);
-    frames_ = TimedFrames(times_us);
+    name_frames();
   }
 
   std::optional<Frame> next() override {
     if (next_ == depth_->pictures.size()) return std::nullopt;
     const std::size_t index = next_++;
     const OniPicture& picture = depth_->pictures[index];
-    const std::string place = fmt::format("{}: {}", path_, frames_.name(index));
-    Frame frame = frame_at(index);
+    const std::string place = fmt::format("{}: {}", path_, names_[index]);
+    Frame frame;
+    frame.name = names_[index];
+    frame.time_s = times_s_[index];
+    frame.camera = camera_;
     frame.depth = to_millimetres(depth_at(picture, place), units_per_m_);
     if (picture.mirrored) turn_back(frame.depth);
     if (colour_ != nullptr) frame.colour = colour_near(picture.time_us, place);
     return frame;
   }
+  int size() const override { return static_cast<int>(times_s_.size()); }
+  std::optional<TimeSpan> span() const override {
+    return TimeSpan{times_s_.front(), std::max(times_s_.front(), times_s_.back())};
+  }
+  void seek(double time_s) override {
+    const auto found = std::ranges::find_if(times_s_, [time_s](double one) { return !(one < time_s); });
+    next_ = static_cast<std::size_t>(found - times_s_.begin());
+  }
+  std::vector<std::string> notes() const override { return notes_; }
 
  private:
+  /// Names frames by their times; those of one time get different names.
+  void name_frames() {
+    constexpr double kMicroseconds = 1e6;
+    for (const OniPicture& picture : depth_->pictures) {
+      times_s_.push_back(static_cast<double>(picture.time_us) / kMicroseconds);
+      std::string name = fmt::format("{:.6f}", times_s_.back());
+      while (!names_.empty() && names_.back().starts_with(name)) name += "_again";
+      names_.push_back(std::move(name));
+    }
+  }
+
   std::vector<const OniStream*> streams_of(OniKind kind) const {
     std::vector<const OniStream*> found;
     for (const OniStream& stream : recording_.streams()) {
@@ -304,6 +324,10 @@ class OniSource final : public TimedSource {
   Grid grid_;
   std::vector<std::uint16_t> shifts_;  ///< millimetres by shift; empty = depth is stored
   float units_per_m_ = 1000.F;
+  Camera camera_;
+  std::vector<double> times_s_;
+  std::vector<std::string> names_, notes_;
+  std::size_t next_ = 0;
 };
 
 }  // namespace
