@@ -21,6 +21,7 @@
 #include "io/files/options_file.h"
 #include "io/recordings/frame_recorder.h"
 #include "stream/frame_queue.h"
+#include "stream/person_json.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/quiet_thread.h"
 #include "vesalius/base/stage_times.h"
@@ -339,12 +340,8 @@ class Viewer::Session {
       Frame frame = *viewed.frame;
       if (!frame.time_s) frame.time_s = viewed.at_s * kUsualRate / rate_;
       recorder_->write(frame);
-      const std::string json = found_json(frame, viewed, labeller_->body());
-      if (viewed.tracked) {
-        recorder_->write_people(frame, *viewed.tracked, labeller_->body(), json);
-      } else {
-        recorder_->write_people(frame, viewed.people, labeller_->body(), json);
-      }
+      const BodyModel& body = labeller_->body();
+      recorder_->write_people(frame, viewed.people, body, frame_json(frame, viewed.people, body, viewed.latency_ms));
       recorded_up_to_s_ = viewed.at_s;
       const std::scoped_lock lock(mutex_);
       ++state_.recorded;
@@ -397,7 +394,7 @@ class Viewer::Session {
   void find(const Frame& frame, ViewedFrame& viewed) {
     const AskPrior nothing = [](const Frame&) { return Prior{}; };
     Detection found = detector_.detect(frame, nothing, viewed.trace ? &*viewed.trace : nullptr, &viewed.times);
-    viewed.people = std::move(found.people);
+    viewed.people = seen_people(std::move(found.people));
     viewed.planes = std::move(found.planes);
   }
 
@@ -415,7 +412,7 @@ class Viewer::Session {
     Detection found = detector_.detect(followed, ask, viewed.trace ? &*viewed.trace : nullptr, &viewed.times);
     viewed.planes = std::move(found.planes);
     viewed.track_ms +=
-        elapsed_ms([&] { viewed.tracked = tracker.update(followed, std::move(found.people), viewed.planes); });
+        elapsed_ms([&] { viewed.people = tracker.update(followed, std::move(found.people), viewed.planes); });
   }
 
   Found detect(const Job& job) {
