@@ -382,4 +382,29 @@ std::string to_glb(const std::vector<MovingSkeleton>& skeletons) {
   return out + chunks;
 }
 
+namespace {
+
+std::vector<int> people_with_bodies(const PeopleRecord& record) {
+  std::vector<int> ids;
+  for (const MovingSkeleton& skeleton : moving_skeletons(record, std::nullopt)) ids.push_back(skeleton.id);
+  return ids;
+}
+
+}  // namespace
+
+const std::vector<ExportFormat>& export_formats() {
+  using Record = const PeopleRecord&;
+  using Request = const ExportRequest&;
+  static const std::vector<ExportFormat> kFormats{
+      {"csv", ".csv", "k4abt32", false, nullptr, [](Record r, Request q) { return to_csv(r, q.set); }},
+      {"trc", ".trc", "k4abt32", true, people_in,
+       [](Record r, Request q) { return to_trc(r, q.set, *q.person, q.name); }},
+      {"bvh", ".bvh", "", true, people_with_bodies,
+       [](Record r, Request q) { return to_bvh(moving_skeletons(r, q.person)[0]); }},
+      {"glb", ".glb", "", true, nullptr, [](Record r, Request q) { return to_glb(moving_skeletons(r, q.person)); }},
+      {"coco", "", "coco17", false, nullptr, [](Record r, Request q) { return to_coco(r, q.set); }},
+      {"k4abt", "", "", false, nullptr, [](Record r, Request q) { return to_k4abt(r, q.source); }}};
+  return kFormats;
+}
+
 }  // namespace vesalius
