@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,14 @@ using AnyArray = nanobind::ndarray<nanobind::ro, nanobind::c_contig, nanobind::d
 /// (height, width, 3) uint8. Throws UsageError for another dtype or shape, and for a time that is no number.
 Frame frame_of(const AnyArray& depth, const PythonCamera& camera, const std::optional<AnyArray>& colour,
                std::optional<double> time_s);
+
+/// Returns the names of parts, joints and the like.
+template <class Item>
+std::vector<std::string> names_of(const std::vector<Item>& items) {
+  std::vector<std::string> names;
+  for (const Item& item : items) names.push_back(item.name);
+  return names;
+}
 
 /// Returns a numpy array that keeps its values alive.
 template <class T>

@@ -45,7 +45,8 @@ class PythonDetector {
   PythonPeople detect(const Frame& frame) const {
     const nb::gil_scoped_release released;
     const ThreadLimit limit(threads_);
-    return {std::make_shared<FoundPeople>(FoundPeople{without_pictures(frame), body_, detector_->detect(frame), {}})};
+    return {std::make_shared<FoundPeople>(
+        FoundPeople{without_pictures(frame), body_, seen_people(detector_->detect(frame))})};
   }
 
   const Detector& detector() const { return *detector_; }
@@ -70,7 +71,7 @@ class PythonTracker {
     const std::scoped_lock lock(mutex_);
     const ThreadLimit limit(detector_.threads());
     return {std::make_shared<FoundPeople>(
-        FoundPeople{without_pictures(frame), detector_.body(), {}, follow(detector_.detector(), tracker_, frame)})};
+        FoundPeople{without_pictures(frame), detector_.body(), follow(detector_.detector(), tracker_, frame)})};
   }
 
  private:
@@ -96,29 +97,15 @@ void bind_detector(nb::module_& m) {
           "float32 what is no number, is no reading. colour: (height, width, 3) uint8, registered to depth. Returns "
           "People, the most certain first. Raises ValueError for arrays or options that do not fit, Error otherwise.")
       .def_prop_ro(
-          "parts",
-          [](const PythonDetector& d) {
-            std::vector<std::string> names;
-            for (const BodyPart& part : d.body()->parts) names.push_back(part.name);
-            return names;
-          },
+          "parts", [](const PythonDetector& d) { return names_of(d.body()->parts); },
           "Names of the parts, by their numbers in Person.labels.")
       .def_prop_ro(
-          "joint_sets",
-          [](const PythonDetector& d) {
-            std::vector<std::string> names;
-            for (const JointSet& set : d.body()->joint_sets) names.push_back(set.name);
-            return names;
-          },
+          "joint_sets", [](const PythonDetector& d) { return names_of(d.body()->joint_sets); },
           "Names of the joint sets.")
       .def(
           "joint_names",
           [](const PythonDetector& d, const std::string& set) {
-            std::vector<std::string> names;
-            for (const JointDefinition& joint : d.body()->joint_sets[find_joint_set(*d.body(), set)].joints) {
-              names.push_back(joint.name);
-            }
-            return names;
+            return names_of(d.body()->joint_sets[find_joint_set(*d.body(), set)].joints);
           },
           "set"_a = "k4abt32", "Names of a set's joints, in their order.");
   nb::class_<PythonTracker>(m, "Tracker", "Follows people over the frames of one source: ids that hold, fitted bodies.")

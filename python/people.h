@@ -4,26 +4,20 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
-#include "vesalius/detection.h"
 #include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
 
-/// The people of a frame: as found, or as followed.
+/// The people of a frame.
 struct FoundPeople {
   Frame frame;  ///< without its pictures
   std::shared_ptr<const BodyModel> body;
-  std::vector<Person> found;
-  std::optional<TrackedFrame> tracked;  ///< then `found` is empty
+  TrackedFrame people;
 
-  std::size_t size() const { return tracked ? tracked->people.size() : found.size(); }
-  const Person& person(std::size_t i) const { return tracked ? tracked->people[i].person : found[i]; }
+  std::size_t size() const { return people.people.size(); }
 };
 
 struct PythonPeople {

@@ -1,7 +1,6 @@
 #include <dlfcn.h>
 
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -22,7 +21,6 @@ namespace vesalius::c {
 namespace {
 
 constexpr int kMaxThreads = 1024;
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 /// Returns the folder in which this library lies; empty if that cannot be found out.
 std::string own_folder() {
@@ -66,26 +64,13 @@ const FleshBone& bone_of(const vesalius_detector* detector, std::int32_t bone) {
   return at(builtin_flesh().bones, bone, "bone");
 }
 
-std::int32_t state_of(TrackState state) {
-  switch (state) {
-    case TrackState::fresh:
-      return VESALIUS_PERSON_NEW;
-    case TrackState::tracked:
-      return VESALIUS_PERSON_TRACKED;
-    case TrackState::hidden:
-      return VESALIUS_PERSON_HIDDEN;
-    default:
-      return VESALIUS_PERSON_LOST;
-  }
-}
-
 /// Gives the people that `find` finds in a frame of the interface.
 template <class Find>
 void give_people(const std::shared_ptr<const SharedDetector>& shared, const vesalius_frame* frame,
                  const vesalius_camera* camera, vesalius_people*& people, const Find& find) {
   const ThreadLimit limit(shared->threads);
   const Frame read = read_frame(frame, camera, shared->rectifications);
-  people = new vesalius_people{shared, read.camera.width, read.camera.height, find(read)};
+  people = new vesalius_people{shared, read.camera.width, read.camera.height, find(read).people};
 }
 
 }  // namespace
@@ -107,13 +92,8 @@ vesalius_status vesalius_detector_detect(const vesalius_detector* detector, cons
   return guarded([&] {
     need(people, "people") = nullptr;
     const auto& shared = need(detector, "detector").shared;
-    give_people(shared, frame, camera, *people, [&](const Frame& read) {
-      std::vector<FoundPerson> found;
-      for (Person& person : shared->detector.detect(read)) {
-        found.push_back({std::move(person), 0, VESALIUS_PERSON_SEEN, Eigen::Vector3f::Constant(kUnknown)});
-      }
-      return found;
-    });
+    give_people(shared, frame, camera, *people,
+                [&](const Frame& read) { return seen_people(shared->detector.detect(read)); });
   });
 }
 
@@ -175,12 +155,7 @@ vesalius_status vesalius_tracker_update(vesalius_tracker* tracker, const vesaliu
     const auto& shared = need(tracker, "tracker").shared;
     give_people(shared, frame, camera, *people, [&](const Frame& read) {
       const std::scoped_lock lock(tracker->mutex);
-      std::vector<FoundPerson> found;
-      for (TrackedPerson& person : follow(shared->detector, tracker->tracker, read).people) {
-        found.push_back({std::move(person.person), person.id, state_of(person.state), person.velocity, person.stance,
-                         std::move(person.body)});
-      }
-      return found;
+      return follow(shared->detector, tracker->tracker, read);
     });
   });
 }

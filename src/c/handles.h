@@ -1,10 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,16 +19,6 @@ struct SharedDetector {
   int threads = 0;
   Detector detector;
   Rectifications rectifications = {};
-};
-
-/// Somebody in a frame.
-struct FoundPerson {
-  Person person;
-  std::int32_t id = 0;
-  std::int32_t state = VESALIUS_PERSON_SEEN;
-  Eigen::Vector3f velocity_m_s;
-  Stance stance = Stance::unknown;
-  std::optional<FittedBody> body = {};
 };
 
 /// The joint set of those who name none, as in Python.
@@ -54,5 +41,5 @@ struct vesalius_tracker {
 struct vesalius_people {
   std::shared_ptr<const vesalius::c::SharedDetector> shared;
   int width = 0, height = 0;
-  std::vector<vesalius::c::FoundPerson> people = {};
+  std::vector<vesalius::TrackedPerson> people = {};
 };

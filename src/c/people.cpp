@@ -9,7 +9,6 @@
 #include "c/sized_struct.h"
 #include "c/vesalius.h"
 #include "vesalius/base/find_joint_set.h"
-#include "vesalius/fit/flesh_joints.h"
 
 namespace vesalius::c {
 namespace {
@@ -17,6 +16,12 @@ namespace {
 static_assert(static_cast<int>(State::none) == VESALIUS_STATE_NONE &&
               static_cast<int>(State::predicted) == VESALIUS_STATE_PREDICTED &&
               static_cast<int>(State::observed) == VESALIUS_STATE_OBSERVED);
+
+static_assert(static_cast<int>(TrackState::seen) == VESALIUS_PERSON_SEEN &&
+              static_cast<int>(TrackState::fresh) == VESALIUS_PERSON_NEW &&
+              static_cast<int>(TrackState::tracked) == VESALIUS_PERSON_TRACKED &&
+              static_cast<int>(TrackState::hidden) == VESALIUS_PERSON_HIDDEN &&
+              static_cast<int>(TrackState::lost) == VESALIUS_PERSON_LOST);
 
 static_assert(static_cast<int>(Stance::unknown) == VESALIUS_STANCE_UNKNOWN &&
               static_cast<int>(Stance::standing) == VESALIUS_STANCE_STANDING &&
@@ -26,7 +31,7 @@ static_assert(static_cast<int>(Stance::unknown) == VESALIUS_STANCE_UNKNOWN &&
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-const FoundPerson& person_of(const vesalius_people* people, std::int32_t index) {
+const TrackedPerson& person_of(const vesalius_people* people, std::int32_t index) {
   return at(need(people, "people").people, index, "person");
 }
 
@@ -98,19 +103,18 @@ int32_t vesalius_people_count(const vesalius_people* people) {
 
 vesalius_status vesalius_people_get(const vesalius_people* people, int32_t index, vesalius_person* person) {
   return guarded([&] {
-    const FoundPerson& found = person_of(people, index);
+    const TrackedPerson& found = person_of(people, index);
     const Box& box = found.person.box;
-    const Eigen::Vector3f& velocity = found.velocity_m_s;
     vesalius_person values{};
-    values.id = found.id;
-    values.state = found.state;
+    values.id = found.state == TrackState::seen ? 0 : found.id;
+    values.state = static_cast<std::int32_t>(found.state);
     values.score = found.person.score;
     values.box_u = box.u;
     values.box_v = box.v;
     values.box_width = box.width;
     values.box_height = box.height;
     values.yaw_rad = found.person.yaw ? found.person.yaw->yaw_rad : kUnknown;
-    std::copy_n(velocity.data(), 3, values.velocity_m_s);
+    std::copy_n(found.velocity.data(), 3, values.velocity_m_s);
     values.stance = static_cast<std::int32_t>(found.stance);
     values.stature_m = found.body ? found.body->stature_m : kUnknown;
     write_struct(values, person, "person");
@@ -120,7 +124,7 @@ vesalius_status vesalius_people_get(const vesalius_people* people, int32_t index
 vesalius_status vesalius_people_joints(const vesalius_people* people, int32_t index, const char* joint_set,
                                        vesalius_joint* joints, int32_t capacity, int32_t* count) {
   return guarded([&] {
-    const FoundPerson& found = person_of(people, index);
+    const TrackedPerson& found = person_of(people, index);
     const std::size_t set = find_joint_set(people->shared->detector.body(), set_or_usual(joint_set));
     give(found.person.joints[set], "joints", joints, capacity, count, to_joint);
   });
@@ -144,19 +148,17 @@ vesalius_status vesalius_people_bones(const vesalius_people* people, int32_t ind
 vesalius_status vesalius_people_rotations(const vesalius_people* people, int32_t index, const char* joint_set,
                                           vesalius_rotation* rotations, int32_t capacity, int32_t* count) {
   return guarded([&] {
-    const FoundPerson& found = person_of(people, index);
+    const TrackedPerson& found = person_of(people, index);
     const BodyModel& body = people->shared->detector.body();
     const JointSet& set = body.joint_sets[find_joint_set(body, set_or_usual(joint_set))];
-    std::vector<std::optional<Eigen::Quaternionf>> known(set.joints.size());
-    if (found.body) known = joint_rotations(*found.body, builtin_flesh_joints(), set);
-    give(known, "rotations", rotations, capacity, count, to_rotation);
+    give(rotations_of(found, set), "rotations", rotations, capacity, count, to_rotation);
   });
 }
 
 vesalius_status vesalius_people_mask(const vesalius_people* people, int32_t index, uint8_t* mask, int32_t capacity,
                                      int32_t* count) {
   return guarded([&] {
-    const FoundPerson& found = person_of(people, index);
+    const TrackedPerson& found = person_of(people, index);
     give_picture(*people, found.person.mask, 0, "mask", mask, capacity, count);
   });
 }
@@ -164,7 +166,7 @@ vesalius_status vesalius_people_mask(const vesalius_people* people, int32_t inde
 vesalius_status vesalius_people_labels(const vesalius_people* people, int32_t index, uint8_t* labels, int32_t capacity,
                                        int32_t* count) {
   return guarded([&] {
-    const FoundPerson& found = person_of(people, index);
+    const TrackedPerson& found = person_of(people, index);
     give_picture(*people, found.person.labels, kBackground, "labels", labels, capacity, count);
   });
 }

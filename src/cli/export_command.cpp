@@ -10,7 +10,6 @@
 
 #include "cli/commands.h"
 #include "console/text_sink.h"
-#include "export/moving_skeleton.h"
 #include "export/people_record.h"
 #include "export/write_people.h"
 #include "io/files/atomic_file.h"
@@ -56,14 +55,19 @@ std::string lines_of_mcap(const std::string& path, bool quiet) {
 }
 
 /// Returns the format that is asked for, or that the file's name tells.
-std::string format_of(const Arguments& arguments) {
+const ExportFormat& format_of(const Arguments& arguments) {
   if (arguments.to == "-") throw UsageError("--to expects the name of a file; /dev/stdout is standard output");
   const std::string extension = fs::path(arguments.to).extension().string();
-  if (!arguments.format.empty()) return arguments.format;
-  for (const char* known : {"csv", "trc", "bvh", "glb"}) {
-    if (extension == std::string(".") + known) return known;
+  std::vector<std::string> endings;
+  for (const ExportFormat& format : export_formats()) {
+    if (!format.ending.empty()) endings.push_back(format.ending);
+    const bool named = arguments.format.empty() && !extension.empty() && format.ending == extension;
+    if (named || format.name == arguments.format) return format;
   }
-  throw UsageError(fmt::format("{}: expected a name that ends in .csv, .trc, .bvh or .glb, or --format", arguments.to));
+  const std::string last = endings.back();
+  endings.pop_back();
+  throw UsageError(fmt::format("{}: expected a name that ends in {} or {}, or --format", arguments.to,
+                               fmt::join(endings, ", "), last));
 }
 
 /// A file for one of several people: name.csv becomes name-3.csv.
@@ -77,53 +81,40 @@ struct File {
   std::string path, bytes;
 };
 
-/// Returns a file for each person where there are several.
-template <class Write>
-std::vector<File> files_of(const Arguments& arguments, const std::vector<int>& people, const Write& write) {
-  std::vector<File> files;
-  for (const int person : people) {
-    const std::string path = people.size() > 1 ? path_of(arguments.to, person) : arguments.to;
-    files.push_back({path, write(person, path)});
-  }
-  return files;
+/// Returns the set that is asked for, or the format's usual one, or without that the first.
+std::size_t find_set(const PeopleRecord& record, const Arguments& arguments, const ExportFormat& format) {
+  if (record.sets.empty()) throw Error(arguments.people + ": nobody in any frame");
+  if (!arguments.joints.empty()) return record.find_set(arguments.joints);
+  return std::ranges::count(record.sets, format.joints) > 0 ? record.find_set(format.joints) : 0;
 }
 
-std::vector<File> make_files(const Arguments& arguments, const std::string& format) {
+std::vector<File> make_files(const Arguments& arguments, const ExportFormat& format) {
   const bool is_mcap = arguments.people.ends_with(".mcap");
   const std::string lines = is_mcap ? lines_of_mcap(arguments.people, arguments.quiet) : read_file(arguments.people);
   const PeopleRecord record = parse_people(lines, arguments.people, arguments.record);
-  const auto named = [&](auto&& work) { return with_context(arguments.people, work); };
-  if (format == "bvh" || format == "glb") {
-    return named([&]() -> std::vector<File> {
-      const std::vector<MovingSkeleton> skeletons = moving_skeletons(record, arguments.person);
-      if (format == "glb") return {{arguments.to, to_glb(skeletons)}};
-      std::vector<int> people;
-      for (const MovingSkeleton& skeleton : skeletons) people.push_back(skeleton.id);
-      return files_of(arguments, people, [&](int person, const std::string&) {
-        return to_bvh(*std::ranges::find(skeletons, person, &MovingSkeleton::id));
-      });
-    });
-  }
-  if (format == "k4abt") return {{arguments.to, to_k4abt(record, arguments.people)}};
-  if (record.sets.empty()) throw Error(arguments.people + ": nobody in any frame");
-  const char* usual = format == "coco" ? "coco17" : "k4abt32";
-  const std::string wanted = arguments.joints.empty() ? usual : arguments.joints;
-  const bool falls_back = arguments.joints.empty() && std::ranges::find(record.sets, wanted) == record.sets.end();
-  const std::size_t set = falls_back ? 0 : record.find_set(wanted);
-  if (format == "csv") return {{arguments.to, to_csv(record, set)}};
-  if (format == "coco") return {{arguments.to, to_coco(record, set)}};
-  const std::vector<int> people = arguments.person ? std::vector<int>{*arguments.person} : people_in(record);
-  return named([&] {
-    return files_of(arguments, people, [&](int person, const std::string& path) {
-      return to_trc(record, set, person, fs::path(path).filename().string());
-    });
+  ExportRequest request{0, arguments.person, "", arguments.people};
+  if (!format.joints.empty()) request.set = find_set(record, arguments, format);
+  return with_context(arguments.people, [&] {
+    std::vector<std::optional<int>> people{arguments.person};
+    if (format.files != nullptr && !arguments.person) {
+      const std::vector<int> all = format.files(record);
+      people.assign(all.begin(), all.end());
+    }
+    std::vector<File> files;
+    for (const std::optional<int>& person : people) {
+      const std::string path = people.size() > 1 ? path_of(arguments.to, *person) : arguments.to;
+      request.person = person;
+      request.name = fs::path(path).filename().string();
+      files.push_back({path, format.write(record, request)});
+    }
+    return files;
   });
 }
 
 void run(const Arguments& arguments) {
-  const std::string format = format_of(arguments);
-  const bool of_one = format == "trc" || format == "bvh" || format == "glb";
-  if (arguments.person && !of_one) throw UsageError("--person goes with trc, bvh and glb: the others have all people");
+  const ExportFormat& format = format_of(arguments);
+  if (arguments.person && !format.of_one)
+    throw UsageError("--person goes with trc, bvh and glb: the others have all people");
   for (const File& file : make_files(arguments, format)) {
     write_file_atomically(file.path, file.bytes);
     if (!arguments.quiet) say(fmt::format("{}: {} bytes", file.path, file.bytes.size()));
@@ -135,6 +126,8 @@ void run(const Arguments& arguments) {
 void add_export(CLI::App& program) {
   CLI::App* command = program.add_subcommand("export", "Write people in the formats of other programs");
   const auto arguments = std::make_shared<Arguments>();
+  std::vector<std::string> names;
+  for (const ExportFormat& format : export_formats()) names.push_back(format.name);
   command
       ->add_option("PEOPLE", arguments->people,
                    "What detect --json wrote, or an MCAP file of record --people or --track")
@@ -147,7 +140,7 @@ void add_export(CLI::App& program) {
       ->type_name("FILE");
   command
       ->add_option("--format", arguments->format, "csv, trc, bvh, glb, coco (keypoints), k4abt (Azure Kinect's JSON)")
-      ->check(CLI::IsMember({"csv", "trc", "bvh", "glb", "coco", "k4abt"}))
+      ->check(CLI::IsMember(names))
       ->type_name("NAME");
   command
       ->add_option("--joints", arguments->joints,

@@ -5,38 +5,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
+#include "stream/json_numbers.h"
 #include "vesalius/base/error.h"
 #include "vesalius/fit/flesh_model.h"
 
 namespace vesalius {
 namespace {
 
-/// Names of bones in animation programs.
-const std::map<std::string, std::string>& mixamo_names() {
-  static const std::map<std::string, std::string> kNames{{"pelvis", "Hips"},
-                                                         {"spine", "Spine"},
-                                                         {"chest", "Spine1"},
-                                                         {"neck", "Neck"},
-                                                         {"head", "Head"},
-                                                         {"l_clavicle", "LeftShoulder"},
-                                                         {"r_clavicle", "RightShoulder"},
-                                                         {"l_upper_arm", "LeftArm"},
-                                                         {"r_upper_arm", "RightArm"},
-                                                         {"l_forearm", "LeftForeArm"},
-                                                         {"r_forearm", "RightForeArm"},
-                                                         {"l_hand", "LeftHand"},
-                                                         {"r_hand", "RightHand"},
-                                                         {"l_thigh", "LeftUpLeg"},
-                                                         {"r_thigh", "RightUpLeg"},
-                                                         {"l_shin", "LeftLeg"},
-                                                         {"r_shin", "RightLeg"},
-                                                         {"l_foot", "LeftFoot"},
-                                                         {"r_foot", "RightFoot"}};
-  return kNames;
+/// Returns the name of a bone in animation programs; its own where they have none.
+std::string mixamo_name(const std::string& bone) {
+  constexpr std::array<std::string_view, 24> kNames{"pelvis",    "Hips",  "spine",   "Spine",   "chest",    "Spine1",
+                                                    "neck",      "Neck",  "head",    "Head",    "clavicle", "Shoulder",
+                                                    "upper_arm", "Arm",   "forearm", "ForeArm", "hand",     "Hand",
+                                                    "thigh",     "UpLeg", "shin",    "Leg",     "foot",     "Foot"};
+  const bool left = bone.starts_with("l_"), right = bone.starts_with("r_");
+  const auto found = std::ranges::find(kNames, std::string_view(bone).substr(left || right ? 2 : 0));
+  if (found == kNames.end()) return bone;
+  return (left ? "Left" : right ? "Right" : "") + std::string(*std::next(found));
 }
 
 /// From the optical frame (y down, z away) to one with y up and z towards the camera.
@@ -61,15 +52,17 @@ Eigen::Vector3d median(const std::vector<Eigen::Vector3d>& values) {
   return result;
 }
 
+Eigen::Quaterniond turn_of(const FittedBone& bone) { return rounded(bone.global).normalized(); }
+
 /// Returns where a bone's head is in the frame of the bone that it hangs on.
-Eigen::Vector3d offset_from(const RecordedBone& parent, const RecordedBone& bone) {
-  return parent.global.conjugate() * (bone.head_m - parent.head_m);
+Eigen::Vector3d offset_from(const FittedBone& parent, const FittedBone& bone) {
+  return turn_of(parent).conjugate() * (rounded(bone.head) - rounded(parent.head));
 }
 
 /// The bodies of one person.
 struct Bodies {
   std::size_t first = 0, last = 0;  ///< frames
-  std::map<std::size_t, const RecordedPerson*> of_frame;
+  std::map<std::size_t, const std::vector<FittedBone>*> of_frame;
 };
 
 std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bodies& bodies) {
@@ -79,8 +72,7 @@ std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bod
     const int known = flesh.find_bone(record.bones[b]);
     if (known < 0) throw Error(fmt::format("a body with a bone {}, which this version does not know", record.bones[b]));
     MovingSkeleton::Bone bone;
-    const auto name = mixamo_names().find(record.bones[b]);
-    bone.name = name != mixamo_names().end() ? name->second : record.bones[b];
+    bone.name = mixamo_name(record.bones[b]);
     const int parent = flesh.bones[known].parent;
     if (parent >= 0) {
       const auto at = std::ranges::find(record.bones, flesh.bones[parent].name);
@@ -91,11 +83,10 @@ std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bod
       bones[bone.parent].ends = false;
     }
     std::vector<Eigen::Vector3d> offsets, tails;
-    for (const auto& [unused, person] : bodies.of_frame) {
-      const RecordedBone& here = person->bones[b];
-      tails.push_back(here.global.conjugate() * (here.tail_m - here.head_m));
-      if (bone.parent < 0) continue;
-      offsets.push_back(offset_from(person->bones[bone.parent], here));
+    for (const auto& [unused, body] : bodies.of_frame) {
+      const FittedBone& here = (*body)[b];
+      tails.push_back(turn_of(here).conjugate() * (rounded(here.tail) - rounded(here.head)));
+      if (bone.parent >= 0) offsets.push_back(offset_from((*body)[bone.parent], here));
     }
     bone.tail_m = median(tails);
     if (!offsets.empty()) bone.offset_m = median(offsets);
@@ -104,18 +95,18 @@ std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bod
   return bones;
 }
 
-MovingSkeleton::Pose pose_of(const RecordedPerson& person, const std::vector<MovingSkeleton::Bone>& bones) {
+MovingSkeleton::Pose pose_of(const std::vector<FittedBone>& body, const std::vector<MovingSkeleton::Bone>& bones) {
   MovingSkeleton::Pose pose;
-  pose.root_m = upright() * person.bones.front().head_m;
+  pose.root_m = upright() * rounded(body.front().head);
   for (std::size_t b = 0; b < bones.size(); ++b) {
-    const RecordedBone& here = person.bones[b];
     if (bones[b].parent < 0) {
-      pose.local.push_back(upright() * here.global);
+      pose.local.push_back(upright() * turn_of(body[b]));
       pose.offsets_m.emplace_back(Eigen::Vector3d::Zero());
       continue;
     }
-    pose.local.push_back(person.bones[bones[b].parent].global.conjugate() * here.global);
-    pose.offsets_m.push_back(offset_from(person.bones[bones[b].parent], here));
+    const FittedBone& parent = body[bones[b].parent];
+    pose.local.push_back(turn_of(parent).conjugate() * turn_of(body[b]));
+    pose.offsets_m.push_back(offset_from(parent, body[b]));
   }
   return pose;
 }
@@ -126,11 +117,11 @@ std::vector<MovingSkeleton> moving_skeletons(const PeopleRecord& record, std::op
   std::map<int, Bodies> all;
   for (std::size_t f = 0; f < record.frames.size(); ++f) {
     for (const RecordedPerson& one : record.frames[f].people) {
-      if (one.bones.empty() || (person && one.id != *person)) continue;
+      if (!one.body || one.body->bones.empty() || (person && one.id != *person)) continue;
       Bodies& bodies = all[one.id];
       if (bodies.of_frame.empty()) bodies.first = f;
       bodies.last = f;
-      bodies.of_frame[f] = &one;
+      bodies.of_frame[f] = &one.body->bones;
     }
   }
   if (all.empty()) {

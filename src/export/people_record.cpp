@@ -6,7 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
+#include "stream/json_numbers.h"
+#include "stream/person_fields.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -76,10 +79,44 @@ class LineReader {
     for (int i = 0; i < kSize; ++i) read[i] = number(value.at(static_cast<std::size_t>(i)));
     return read;
   }
-  Eigen::Quaterniond rotation(const Json& xyzw) const {
+  Eigen::Vector4d quaternion(const Json& xyzw) const {
     const Eigen::Vector4d read = vector<4>(xyzw);
     if (read.norm() < 0.5) fail(fmt::format("{}: expected a quaternion of length 1", xyzw.dump()));
-    return Eigen::Quaterniond(read[3], read[0], read[1], read[2]).normalized();
+    return read;
+  }
+
+  void read_value(const Json& json, int& to) const { to = whole_number(json); }
+  void read_value(const Json& json, bool& to) const { to = json.get<bool>(); }
+  void read_value(const Json& json, float& to) const { to = static_cast<float>(number(json)); }
+  void read_value(const Json& json, double& to) const { to = number(json); }
+  void read_value(const Json& json, Eigen::Vector3f& to) const { to = vector<3>(json).cast<float>(); }
+  void read_value(const Json& json, Eigen::Quaternionf& to) const { to.coeffs() = quaternion(json).cast<float>(); }
+  void read_value(const Json& json, Box& to) const {
+    if (json.empty()) return;
+    (void)vector<4>(json);
+    to = {whole_number(json[0]), whole_number(json[1]), whole_number(json[2]), whole_number(json[3])};
+  }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void read_value(const Json& json, Enum& to) const {
+    constexpr int kMostWords = 8;
+    const auto word = json.get<std::string>();
+    for (int i = 0; i < kMostWords; ++i) {
+      if (to_string(to = static_cast<Enum>(i)) == word) return;
+    }
+    fail(fmt::format("{}: expected a word of vesalius detect --json", json.dump()));
+  }
+  /// Of other kinds nothing is exported.
+  template <class Other>
+  void read_value(const Json& /*json*/, Other& /*to*/) const {}
+
+  /// Reads those fields that the line has: older lines have fewer.
+  template <class Struct>
+  void read_fields(const Json& json, Struct& to) const {
+    visit_fields<Struct>([&](const auto& field) {
+      const auto found = json.find(key_of(field));
+      if (found != json.end()) read_value(*found, to.*field.member);
+    });
   }
 
   RecordedFrame frame_of(const Json& json) {
@@ -104,21 +141,17 @@ class LineReader {
 
   RecordedPerson person_of(const Json& json) {
     RecordedPerson person;
-    record_.followed = record_.followed || json.contains("id");
-    person.id = whole_number(json.at(json.contains("id") ? "id" : "index"));
-    person.score = number(json.at("score"));
-    const Json& box = json.at("box_px");
-    if (!box.empty()) {
-      const Eigen::Vector4d read = vector<4>(box);
-      std::copy_n(read.data(), 4, person.box_px.data());
-    }
+    read_fields<TrackedPerson>(json, person);
+    read_fields<Person>(json, person.person);
+    if (!json.contains("id")) person.id = whole_number(json.at("index"));
     const bool smoothed = options_.smoothed && json.contains("smoothed");
     const Json& sets = json.at(smoothed ? "smoothed" : "joints");
     if (record_.sets.empty()) name_joints(sets);
     for (std::size_t s = 0; s < record_.sets.size(); ++s) {
       const Json& set = sets.at(record_.sets[s]);
-      std::vector<RecordedJoint>& joints = person.joints.emplace_back();
-      for (const std::string& name : record_.joints[s]) joints.push_back(joint_of(set.at(name)));
+      person.person.joints.emplace_back();
+      person.px.emplace_back();
+      for (const std::string& name : record_.joints[s]) add_joint(set.at(name), person);
     }
     person.rotations.resize(record_.sets.size());
     if (json.contains("body") && !json.at("body").is_null()) add_body(json.at("body"), person);
@@ -133,31 +166,38 @@ class LineReader {
     }
   }
 
-  RecordedJoint joint_of(const Json& json) const {
-    RecordedJoint joint;
-    if (!json.at("xyz_m").is_null()) joint.at_m = vector<3>(json.at("xyz_m"));
-    if (json.contains("px") && !json.at("px").is_null()) joint.px = vector<2>(json.at("px"));
-    joint.confidence = number(json.at("confidence"));
-    joint.state = json.at("state").get<std::string>();
-    return joint;
+  void add_joint(const Json& json, RecordedPerson& person) const {
+    Joint& joint = person.person.joints.back().emplace_back();
+    read_value(json.at("state"), joint.state);
+    read_value(json.at("confidence"), joint.confidence);
+    if (json.at("xyz_m").is_null()) {
+      joint.state = State::none;
+    } else {
+      read_value(json.at("xyz_m"), joint.position);
+    }
+    auto& px = person.px.back().emplace_back();
+    if (json.contains("px") && !json.at("px").is_null()) px = vector<2>(json.at("px"));
   }
 
   void add_body(const Json& json, RecordedPerson& person) {
+    FittedBody& body = person.body.emplace();
+    read_fields(json, body);
     const Json& bones = json.at("bones");
     if (record_.bones.empty()) {
       for (const auto& [name, unused] : bones.items()) record_.bones.push_back(name);
     }
     for (const std::string& name : record_.bones) {
       const Json& bone = bones.at(name);
-      person.bones.push_back(
-          {vector<3>(bone.at("head_m")), vector<3>(bone.at("tail_m")), rotation(bone.at("global_xyzw"))});
+      for (const char* key : {"head_m", "tail_m", "global_xyzw"}) (void)bone.at(key);  // there is none without
+      read_fields(bone, body.bones.emplace_back());
     }
     if (!json.contains("joint_rotations_xyzw")) return;
     for (std::size_t s = 0; s < record_.sets.size(); ++s) {
       if (!json.at("joint_rotations_xyzw").contains(record_.sets[s])) continue;
       const Json& set = json.at("joint_rotations_xyzw").at(record_.sets[s]);
       for (const std::string& name : record_.joints[s]) {
-        person.rotations[s].push_back(set.contains(name) ? std::optional(rotation(set.at(name))) : std::nullopt);
+        auto& rotation = person.rotations[s].emplace_back();
+        if (set.contains(name)) rotation.emplace(quaternion(set.at(name))).normalize();
       }
     }
   }

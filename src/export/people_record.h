@@ -1,37 +1,21 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "vesalius/base/camera.h"
+#include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
 
-/// A joint or nothing, as a line of `vesalius detect --json` has it (docs/formats.md).
-struct RecordedJoint {
-  std::optional<Eigen::Vector3d> at_m;  ///< optical frame
-  std::optional<Eigen::Vector2d> px;
-  double confidence = 0.0;
-  std::string state = "none";  ///< observed, predicted or none
-};
-
-/// A bone of a fitted body (docs/tracking.md).
-struct RecordedBone {
-  Eigen::Vector3d head_m = Eigen::Vector3d::Zero(), tail_m = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond global = Eigen::Quaterniond::Identity();  ///< from the bone's frame at rest to the optical frame
-};
-
-struct RecordedPerson {
-  int id = 0;  ///< that of the track, or the index in a single frame
-  double score = 0.0;
-  std::array<double, 4> box_px{};                  ///< column, row, width, height; all 0 where the person is not found
-  std::vector<std::vector<RecordedJoint>> joints;  ///< [set][joint]
+/// Somebody in a line of `vesalius detect --json`: the fields of stream/person_fields.h, joints and bones, and besides
+/// what the line has of joints. Numbers as floats; rounded() makes of them what the line says.
+struct RecordedPerson : TrackedPerson {
+  std::vector<std::vector<std::optional<Eigen::Vector2d>>> px;            ///< [set][joint]
   std::vector<std::vector<std::optional<Eigen::Quaterniond>>> rotations;  ///< [set][joint], in the set's convention
-  std::vector<RecordedBone> bones;                                        ///< [bone]; empty without a fitted body
 };
 
 struct RecordedFrame {
@@ -47,7 +31,6 @@ struct PeopleRecord {
   std::vector<std::vector<std::string>> joints;  ///< [set][joint]
   std::vector<std::string> bones;                ///< empty if nobody has a fitted body
   std::vector<RecordedFrame> frames;
-  bool followed = false;  ///< whether ids hold over frames
 
   /// Returns the index of a set. Throws UsageError naming those that there are.
   std::size_t find_set(const std::string& name) const;

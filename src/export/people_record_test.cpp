@@ -16,15 +16,14 @@ using testing::ThrowsMessage;
 TEST(ParsePeople, ReadsFramesPeopleJointsAndBodies) {
   const PeopleRecord record = test::people();
   ASSERT_EQ(record.frames.size(), test::kFrames);
-  EXPECT_TRUE(record.followed);
   EXPECT_THAT(record.sets, testing::ElementsAre("k4abt32", "coco17"));
   EXPECT_THAT(record.bones, testing::ElementsAre("pelvis", "spine", "l_thigh"));
   EXPECT_EQ(record.frames[2].people.size(), 1U);
   EXPECT_DOUBLE_EQ(record.frames[2].time_s, 0.08);
   const RecordedPerson& person = record.frames[1].people[1];
   EXPECT_EQ(person.id, 7);
-  EXPECT_DOUBLE_EQ(person.joints[1][0].at_m->x(), 1.1);
-  EXPECT_FALSE(person.joints[0][1].at_m.has_value());
+  EXPECT_FLOAT_EQ(person.person.joints[1][0].position.x(), 1.1F);
+  EXPECT_EQ(person.person.joints[0][1].state, State::none);
   EXPECT_TRUE(person.rotations[0][1].has_value());
   EXPECT_FALSE(person.rotations[0][0].has_value());
   EXPECT_EQ(record.find_set("coco17"), 1U);
@@ -37,7 +36,6 @@ TEST(ParsePeople, CountsFramesWithoutTimes) {
   const PeopleRecord record = parse_people(frame + "\n\n" + frame, "x", {.rate_hz = 10.0});
   ASSERT_EQ(record.frames.size(), 2U);
   EXPECT_DOUBLE_EQ(record.frames[1].time_s, 0.1);
-  EXPECT_FALSE(record.followed);
 }
 
 TEST(ParsePeople, SaysWhereALineIsNotAsExpected) {

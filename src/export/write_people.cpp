@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -10,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "stream/json_numbers.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -28,7 +30,7 @@ std::string field(const std::string& text) {
 }
 
 /// Returns a number with so many decimals, without a minus before nothing.
-double rounded(double value, int decimals) {
+double with_decimals(double value, int decimals) {
   const double scale = std::pow(10.0, decimals);
   return std::round(value * scale) / scale + 0.0;
 }
@@ -62,14 +64,15 @@ std::string to_csv(const PeopleRecord& record, std::size_t set) {
   fmt::format_to(to, "\n");
   for (const RecordedFrame& frame : record.frames) {
     for (const RecordedPerson& person : frame.people) {
-      fmt::format_to(to, "{},{:.6f},{},{:.4f}", field(frame.name), frame.time_s, person.id, person.score);
-      for (const RecordedJoint& joint : person.joints[set]) {
-        if (joint.at_m) {
-          fmt::format_to(to, ",{:.4f},{:.4f},{:.4f}", joint.at_m->x(), joint.at_m->y(), joint.at_m->z());
+      fmt::format_to(to, "{},{:.6f},{},{:.4f}", field(frame.name), frame.time_s, person.id, person.person.score);
+      for (const Joint& joint : person.person.joints[set]) {
+        if (joint.state != State::none) {
+          const Eigen::Vector3d at = rounded(joint.position);
+          fmt::format_to(to, ",{:.4f},{:.4f},{:.4f}", at.x(), at.y(), at.z());
         } else {
           fmt::format_to(to, ",,,");
         }
-        fmt::format_to(to, ",{:.4f},{}", joint.confidence, field(joint.state));
+        fmt::format_to(to, ",{:.4f},{}", joint.confidence, to_string(joint.state));
       }
       fmt::format_to(to, "\n");
     }
@@ -115,12 +118,12 @@ std::string to_trc(const PeopleRecord& record, std::size_t set, int person, cons
   for (std::size_t i = 0; i < known; ++i) {
     fmt::format_to(to, "{}\t{:.6f}", i + 1, times_s[i] - times_s.front());
     for (std::size_t j = 0; j < joints.size(); ++j) {
-      const bool placed = of_frame[i] != nullptr && of_frame[i]->joints[set][j].at_m.has_value();
-      if (!placed) {
+      const Joint joint = of_frame[i] != nullptr ? of_frame[i]->person.joints[set][j] : Joint{};
+      if (joint.state == State::none) {
         fmt::format_to(to, "\t\t\t");
         continue;
       }
-      const Eigen::Vector3d at = upright_mm(*of_frame[i]->joints[set][j].at_m);
+      const Eigen::Vector3d at = upright_mm(rounded(joint.position));
       fmt::format_to(to, "\t{:.3f}\t{:.3f}\t{:.3f}", at.x(), at.y(), at.z());
     }
     fmt::format_to(to, "\n");
@@ -137,22 +140,25 @@ std::string to_coco(const PeopleRecord& record, std::size_t set) {
     for (const RecordedPerson& person : frame.people) {
       Json keypoints = Json::array();
       int visible = 0;
-      for (const RecordedJoint& joint : person.joints[set]) {
-        const int visibility = !joint.px ? 0 : joint.state == "observed" ? 2 : 1;
-        keypoints.push_back(visibility > 0 ? rounded(joint.px->x(), 2) : 0.0);
-        keypoints.push_back(visibility > 0 ? rounded(joint.px->y(), 2) : 0.0);
+      for (std::size_t j = 0; j < record.joints[set].size(); ++j) {
+        const std::optional<Eigen::Vector2d>& px = person.px[set][j];
+        const int visibility = !px ? 0 : person.person.joints[set][j].state == State::observed ? 2 : 1;
+        keypoints.push_back(px ? with_decimals(px->x(), 2) : 0.0);
+        keypoints.push_back(px ? with_decimals(px->y(), 2) : 0.0);
         keypoints.push_back(visibility);
-        visible += visibility > 0 ? 1 : 0;
+        visible += px ? 1 : 0;
       }
+      const Box& b = person.person.box;
+      const std::array<double, 4> box{double(b.u), double(b.v), double(b.width), double(b.height)};
       annotations.push_back({{"id", annotations.size() + 1},
                              {"image_id", f + 1},
                              {"category_id", 1},
                              {"keypoints", std::move(keypoints)},
                              {"num_keypoints", visible},
-                             {"bbox", person.box_px},
-                             {"area", person.box_px[2] * person.box_px[3]},
+                             {"bbox", box},
+                             {"area", box[2] * box[3]},
                              {"iscrowd", 0},
-                             {"score", person.score},
+                             {"score", rounded(person.person.score)},
                              {"track_id", person.id}});
     }
   }
@@ -177,41 +183,16 @@ std::string k4abt_name(std::string name) {
   return left ? name + "_LEFT" : right ? name + "_RIGHT" : name;
 }
 
-/// Each joint's parent, as Azure Kinect's documentation has them.
-const std::vector<std::pair<std::string, std::string>>& k4abt_bones() {
-  static const std::vector<std::pair<std::string, std::string>> kBones{{"pelvis", "spine_naval"},
-                                                                       {"spine_naval", "spine_chest"},
-                                                                       {"spine_chest", "neck"},
-                                                                       {"neck", "head"},
-                                                                       {"head", "nose"},
-                                                                       {"head", "l_eye"},
-                                                                       {"head", "l_ear"},
-                                                                       {"head", "r_eye"},
-                                                                       {"head", "r_ear"},
-                                                                       {"spine_chest", "l_clavicle"},
-                                                                       {"l_clavicle", "l_shoulder"},
-                                                                       {"l_shoulder", "l_elbow"},
-                                                                       {"l_elbow", "l_wrist"},
-                                                                       {"l_wrist", "l_hand"},
-                                                                       {"l_hand", "l_handtip"},
-                                                                       {"l_wrist", "l_thumb"},
-                                                                       {"spine_chest", "r_clavicle"},
-                                                                       {"r_clavicle", "r_shoulder"},
-                                                                       {"r_shoulder", "r_elbow"},
-                                                                       {"r_elbow", "r_wrist"},
-                                                                       {"r_wrist", "r_hand"},
-                                                                       {"r_hand", "r_handtip"},
-                                                                       {"r_wrist", "r_thumb"},
-                                                                       {"pelvis", "l_hip"},
-                                                                       {"l_hip", "l_knee"},
-                                                                       {"l_knee", "l_ankle"},
-                                                                       {"l_ankle", "l_foot"},
-                                                                       {"pelvis", "r_hip"},
-                                                                       {"r_hip", "r_knee"},
-                                                                       {"r_knee", "r_ankle"},
-                                                                       {"r_ankle", "r_foot"}};
-  return kBones;
-}
+/// Pairs of a joint's parent and the joint, as Azure Kinect's documentation has them.
+constexpr std::array<const char*, 62> kK4abtBones{
+    "pelvis",      "spine_naval", "spine_naval", "spine_chest", "spine_chest", "neck",       "neck",       "head",
+    "head",        "nose",        "head",        "l_eye",       "head",        "l_ear",      "head",       "r_eye",
+    "head",        "r_ear",       "spine_chest", "l_clavicle",  "l_clavicle",  "l_shoulder", "l_shoulder", "l_elbow",
+    "l_elbow",     "l_wrist",     "l_wrist",     "l_hand",      "l_hand",      "l_handtip",  "l_wrist",    "l_thumb",
+    "spine_chest", "r_clavicle",  "r_clavicle",  "r_shoulder",  "r_shoulder",  "r_elbow",    "r_elbow",    "r_wrist",
+    "r_wrist",     "r_hand",      "r_hand",      "r_handtip",   "r_wrist",     "r_thumb",    "pelvis",     "l_hip",
+    "l_hip",       "l_knee",      "l_knee",      "l_ankle",     "l_ankle",     "l_foot",     "pelvis",     "r_hip",
+    "r_hip",       "r_knee",      "r_knee",      "r_ankle",     "r_ankle",     "r_foot"};
 
 }  // namespace
 
@@ -219,18 +200,21 @@ std::string to_k4abt(const PeopleRecord& record, const std::string& source) {
   const std::size_t set = record.find_set("k4abt32");
   Json frames = Json::array(), names = Json::array(), bones = Json::array();
   for (const std::string& joint : record.joints[set]) names.push_back(k4abt_name(joint));
-  for (const auto& [from, to] : k4abt_bones()) bones.push_back({k4abt_name(from), k4abt_name(to)});
+  for (std::size_t i = 0; i < kK4abtBones.size(); i += 2) {
+    bones.push_back({k4abt_name(kK4abtBones[i]), k4abt_name(kK4abtBones[i + 1])});
+  }
   for (std::size_t f = 0; f < record.frames.size(); ++f) {
     const RecordedFrame& frame = record.frames[f];
     Json bodies = Json::array();
     for (const RecordedPerson& person : frame.people) {
       Json positions = Json::array(), orientations = Json::array();
       for (std::size_t j = 0; j < record.joints[set].size(); ++j) {
-        const Eigen::Vector3d mm = 1000.0 * person.joints[set][j].at_m.value_or(Eigen::Vector3d::Zero());
-        positions.push_back({rounded(mm.x(), 3), rounded(mm.y(), 3), rounded(mm.z(), 3)});
+        const Eigen::Vector3d mm = 1000.0 * rounded(person.person.joints[set][j].position);
+        positions.push_back({with_decimals(mm.x(), 3), with_decimals(mm.y(), 3), with_decimals(mm.z(), 3)});
         const bool turned = j < person.rotations[set].size() && person.rotations[set][j].has_value();
         const Eigen::Quaterniond q = turned ? *person.rotations[set][j] : Eigen::Quaterniond::Identity();
-        orientations.push_back({rounded(q.w(), 6), rounded(q.x(), 6), rounded(q.y(), 6), rounded(q.z(), 6)});
+        orientations.push_back(
+            {with_decimals(q.w(), 6), with_decimals(q.x(), 6), with_decimals(q.y(), 6), with_decimals(q.z(), 6)});
       }
       bodies.push_back({{"body_id", person.id},
                         {"joint_positions", std::move(positions)},
@@ -396,6 +380,31 @@ std::string to_glb(const std::vector<MovingSkeleton>& skeletons) {
   append_word(out, 2);
   append_word(out, static_cast<std::uint32_t>(12 + chunks.size()));
   return out + chunks;
+}
+
+namespace {
+
+std::vector<int> people_with_bodies(const PeopleRecord& record) {
+  std::vector<int> ids;
+  for (const MovingSkeleton& skeleton : moving_skeletons(record, std::nullopt)) ids.push_back(skeleton.id);
+  return ids;
+}
+
+}  // namespace
+
+const std::vector<ExportFormat>& export_formats() {
+  using Record = const PeopleRecord&;
+  using Request = const ExportRequest&;
+  static const std::vector<ExportFormat> kFormats{
+      {"csv", ".csv", "k4abt32", false, nullptr, [](Record r, Request q) { return to_csv(r, q.set); }},
+      {"trc", ".trc", "k4abt32", true, people_in,
+       [](Record r, Request q) { return to_trc(r, q.set, *q.person, q.name); }},
+      {"bvh", ".bvh", "", true, people_with_bodies,
+       [](Record r, Request q) { return to_bvh(moving_skeletons(r, q.person)[0]); }},
+      {"glb", ".glb", "", true, nullptr, [](Record r, Request q) { return to_glb(moving_skeletons(r, q.person)); }},
+      {"coco", "", "coco17", false, nullptr, [](Record r, Request q) { return to_coco(r, q.set); }},
+      {"k4abt", "", "", false, nullptr, [](Record r, Request q) { return to_k4abt(r, q.source); }}};
+  return kFormats;
 }
 
 }  // namespace vesalius

@@ -160,11 +160,11 @@ TEST(ToBvh, PutsJointsWhereTheBodyHasThem) {
   for (std::size_t f = 0; f < kFrames; ++f) {
     const RecordedPerson& person = record.frames[f].people[0];
     for (const auto& [bone, name] : {std::pair{0, "Hips"}, std::pair{1, "Spine"}, std::pair{2, "LeftUpLeg"}}) {
-      const Eigen::Vector3d& head = person.bones[bone].head_m;
+      const Eigen::Vector3d head = person.body->bones[bone].head.cast<double>();
       const Eigen::Vector3d expected = 100.0 * Eigen::Vector3d(head.x(), -head.y(), -head.z());
       EXPECT_LT((places.at(name)[f] - expected).norm(), 0.02) << name << " in frame " << f;
     }
-    const Eigen::Vector3d& tail = person.bones[2].tail_m;
+    const Eigen::Vector3d tail = person.body->bones[2].tail.cast<double>();
     EXPECT_LT((places.at("LeftUpLeg end")[f] - 100.0 * Eigen::Vector3d(tail.x(), -tail.y(), -tail.z())).norm(), 0.02);
   }
 }

@@ -74,7 +74,7 @@ class Finder {
   }
 
  private:
-  void detect(FoundFrame& in) { in.people = detector_.detect(*in.frame, nullptr, &in.times); }
+  void detect(FoundFrame& in) { in.people = seen_people(detector_.detect(*in.frame, nullptr, &in.times)); }
 
   void follow(FoundFrame& in, long number) {
     const AskPrior ask = [&](const Frame& frame) {
@@ -84,8 +84,7 @@ class Finder {
       return prior;
     };
     Detection found = detector_.detect(*in.frame, ask, nullptr, &in.times);
-    in.people = found.people;
-    in.track_ms += elapsed_ms([&] { in.tracked = tracker_->update(*in.frame, std::move(found.people), found.planes); });
+    in.track_ms += elapsed_ms([&] { in.people = tracker_->update(*in.frame, std::move(found.people), found.planes); });
   }
 
   const Detector& detector_;

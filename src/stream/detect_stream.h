@@ -4,7 +4,6 @@
 #include <exception>
 #include <functional>
 #include <optional>
-#include <vector>
 
 #include "vesalius/base/frame_source.h"
 #include "vesalius/base/stage_times.h"
@@ -13,11 +12,10 @@
 
 namespace vesalius {
 
-/// A frame with the people found in it, or the error that prevented it.
+/// A frame with the people in it, or the error that prevented it.
 struct FoundFrame {
   std::optional<Frame> frame;  ///< empty if it could not be read
-  std::vector<Person> people;
-  std::optional<TrackedFrame> tracked;  ///< the same people followed over frames, where that was asked for
+  TrackedFrame people;         ///< followed over frames, where that was asked for
   StageTimes times;
   double read_ms = 0.0;
   double track_ms = 0.0;  ///< time to follow people, beside the detector's stages and without waiting for other frames
@@ -52,7 +50,7 @@ int stream_frames(FrameSource& source, const Detector& detector, const StreamOpt
                   const std::function<bool(FoundFrame)>& take);
 
 /// As above, and follows the people over the frames: what `tracker` knows of them helps to find them, and
-/// FoundFrame::tracked has them with their ids. While people are looked for in one frame, the pixels of the next are
+/// FoundFrame::people has them with their ids. While people are looked for in one frame, the pixels of the next are
 /// labelled; the tracker is asked and told frame by frame in the source's order. A frame that fails leaves it as it is.
 /// Ids are the same for any number of threads and any speed, but in real time, where frames are dropped. `tracker` must
 /// follow people of the detector's body and is used until this function returns.

@@ -151,7 +151,7 @@ TEST(DetectedFrames, EndWithTheErrorOfACameraHoweverSlowTheDetectorIs) {
 std::string told(const FoundFrame& found) {
   std::string text = found.frame->name;
   if (found.error) return text + " failed";
-  for (const TrackedPerson& person : found.tracked->people) {
+  for (const TrackedPerson& person : found.people.people) {
     text += " " + std::to_string(person.id) + to_string(person.state) + std::to_string(person.person.score);
     for (const float x : person.position) text += "," + std::to_string(x);
   }
@@ -217,7 +217,7 @@ TEST(FollowedFramesThreads, InRealTimeHaveIdsToo) {
   options.rate = 100.0;
   int taken = 0;
   const int dropped = stream_frames(source, detector, tracker, options, [&](const FoundFrame& found) {
-    EXPECT_TRUE(found.tracked) << found.frame->name;
+    EXPECT_TRUE(found.people.followed) << found.frame->name;
     ++taken;
     return true;
   });

@@ -48,14 +48,6 @@ OscMessage& add_place(OscMessage& message, const Eigen::Vector3f& at) {
   return message.add(at.x()).add(-at.y()).add(-at.z());
 }
 
-void add_joints(Bundles& bundles, int id, const std::vector<Joint>& joints, const JointSet& set) {
-  for (std::size_t j = 0; j < set.joints.size(); ++j) {
-    if (joints[j].state == State::none) continue;
-    OscMessage message(fmt::format("/vesalius/{}/{}", id, set.joints[j].name));
-    bundles.add(add_place(message, joints[j].position).add(joints[j].confidence));
-  }
-}
-
 }  // namespace
 
 OscMessage::OscMessage(std::string_view address) { append_text(address_, address); }
@@ -84,33 +76,27 @@ std::string OscMessage::bytes() const {
   return all + values_;
 }
 
-std::vector<std::string> osc_bundles(const std::vector<Person>& people, const BodyModel& body,
-                                     const OscOptions& options) {
+std::vector<std::string> osc_bundles(const TrackedFrame& people, const BodyModel& body, const OscOptions& options) {
   const std::size_t set = find_joint_set(body, options.joints);
+  const JointSet& names = body.joint_sets[set];
   Bundles bundles;
   OscMessage all("/vesalius/people");
-  all.add(static_cast<std::int32_t>(people.size()));
-  for (std::size_t i = 0; i < people.size(); ++i) all.add(static_cast<std::int32_t>(i));
+  all.add(static_cast<std::int32_t>(people.people.size()));
+  for (const TrackedPerson& person : people.people) all.add(person.id);
   bundles.add(all);
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    bundles.add(OscMessage(fmt::format("/vesalius/{}/state", i)).add("seen"));
-    add_joints(bundles, static_cast<int>(i), people[i].joints[set], body.joint_sets[set]);
-  }
-  return bundles.take();
-}
-
-std::vector<std::string> osc_bundles(const TrackedFrame& tracked, const BodyModel& body, const OscOptions& options) {
-  const std::size_t set = find_joint_set(body, options.joints);
-  Bundles bundles;
-  OscMessage all("/vesalius/people");
-  all.add(static_cast<std::int32_t>(tracked.people.size()));
-  for (const TrackedPerson& person : tracked.people) all.add(person.id);
-  bundles.add(all);
-  for (const TrackedPerson& person : tracked.people) {
-    bundles.add(OscMessage(fmt::format("/vesalius/{}/state", person.id)).add(to_string(person.state)));
-    OscMessage position(fmt::format("/vesalius/{}/position", person.id));
-    bundles.add(add_place(position, person.position));
-    add_joints(bundles, person.id, person.person.joints[set], body.joint_sets[set]);
+  for (const TrackedPerson& person : people.people) {
+    const std::string address = fmt::format("/vesalius/{}/", person.id);
+    bundles.add(OscMessage(address + "state").add(to_string(person.state)));
+    if (people.followed) {
+      OscMessage position(address + "position");
+      bundles.add(add_place(position, person.position));
+    }
+    const std::vector<Joint>& joints = person.person.joints[set];
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (joints[j].state == State::none) continue;
+      OscMessage message(address + names.joints[j].name);
+      bundles.add(add_place(message, joints[j].position).add(joints[j].confidence));
+    }
   }
   return bundles.take();
 }

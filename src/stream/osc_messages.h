@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/detect.h"
 #include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
@@ -33,13 +31,11 @@ struct OscOptions {
 /// Returns the people of a frame as OSC bundles that fit into Ethernet's packets. Metres, x right, y up, z towards the
 /// camera, which is in the origin:
 ///   /vesalius/people        how many, then their ids
-///   /vesalius/ID/state      tracked, hidden ...; "seen" where nobody follows people
+///   /vesalius/ID/state      tracked, hidden ...; seen where nobody follows people
 ///   /vesalius/ID/position   x y z: the middle of the trunk, of people who are followed
 ///   /vesalius/ID/JOINT      x y z confidence: of every joint that has a place
 /// The id is that of the track, or the index in the frame where nobody follows people. Throws UsageError if the body
 /// has no such joint set.
-std::vector<std::string> osc_bundles(const std::vector<Person>& people, const BodyModel& body,
-                                     const OscOptions& options);
-std::vector<std::string> osc_bundles(const TrackedFrame& tracked, const BodyModel& body, const OscOptions& options);
+std::vector<std::string> osc_bundles(const TrackedFrame& people, const BodyModel& body, const OscOptions& options);
 
 }  // namespace vesalius

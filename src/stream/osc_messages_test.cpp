@@ -68,7 +68,8 @@ Person person_at(const BodyModel& body, float x) {
 TEST(OscBundles, SendEveryJointThatHasAPlaceWithYUp) {
   const BodyModel body = paper_body();
   const JointSet& set = body.joint_sets[0];
-  const auto messages = read(osc_bundles({person_at(body, 0.25F), person_at(body, 1.F)}, body, {set.name}));
+  const auto messages =
+      read(osc_bundles(seen_people({person_at(body, 0.25F), person_at(body, 1.F)}), body, {set.name}));
   EXPECT_EQ(messages.at("/vesalius/people").first, ",iii");
   EXPECT_THAT(messages.at("/vesalius/people").second, testing::ElementsAre(2, 0, 1));
   EXPECT_EQ(messages.at("/vesalius/1/state").first, ",s");

@@ -1,10 +1,10 @@
 #include "stream/person_json.h"
 
 #include <nlohmann/json.hpp>
-#include <numbers>
+#include <type_traits>
 
 #include "stream/json_numbers.h"
-#include "vesalius/fit/flesh_joints.h"
+#include "stream/person_fields.h"
 #include "vesalius/fit/flesh_model.h"
 
 namespace vesalius {
@@ -12,21 +12,61 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+// What kinds of values become. Times are the only doubles.
+Json value_json(int value) { return value; }
+Json value_json(bool value) { return value; }
+Json value_json(float value) { return rounded(value); }
+Json value_json(double time_s) { return rounded(time_s, 1e6); }
+Json value_json(const Eigen::Vector3f& v) { return {rounded(v.x()), rounded(v.y()), rounded(v.z())}; }
+Json value_json(const Eigen::Quaternionf& q) {
+  return {rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w())};
+}
+Json value_json(const Box& box) { return {box.u, box.v, box.width, box.height}; }
+/// A covariance in square metres, as square millimetres.
+Json value_json(const Eigen::Matrix3f& c) {
+  constexpr double kSquareMillimetres = 1e6;
+  Json numbers = Json::array();
+  for (const float number : {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}) {
+    numbers.push_back(rounded(static_cast<double>(number) * kSquareMillimetres, 10));
+  }
+  return numbers;
+}
+template <class Enum>
+requires std::is_enum_v<Enum> Json value_json(Enum value) { return to_string(value); }
+Json value_json(const std::optional<YawEstimate>& yaw) {
+  if (!yaw) return {};
+  return {{"degrees", rounded(kDegrees * static_cast<double>(yaw->yaw_rad), 10)},
+          {"confidence", rounded(yaw->confidence)}};
+}
 
-Json point_json(State state, const Eigen::Vector3f& point, float confidence, const Camera& camera) {
-  Json xyz, px;  // null
-  if (state != State::none) {
-    xyz = {rounded(point.x()), rounded(point.y()), rounded(point.z())};
-    if (point.z() > 0.F) {
-      const Eigen::Vector2f pixel = camera.pixel(point);
+template <class Struct>
+Json fields_json(const Struct& of) {
+  Json json = Json::object();
+  visit_fields<Struct>([&](const auto& field) { json[key_of(field)] = value_json(of.*field.member); });
+  return json;
+}
+
+const Eigen::Vector3f& place_of(const Joint& joint) { return joint.position; }
+const Eigen::Vector3f& place_of(const SkeletonPart& part) { return part.centre; }
+
+/// Parts or joints by their names.
+template <class Named, class Point>
+Json points_json(const std::vector<Named>& names, const std::vector<Point>& points, const Camera& camera) {
+  Json all = Json::object();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Point& point = points.at(i);
+    Json xyz, px;  // null
+    if (point.state != State::none) xyz = value_json(place_of(point));
+    if (point.state != State::none && place_of(point).z() > 0.F) {
+      const Eigen::Vector2f pixel = camera.pixel(place_of(point));
       px = {rounded(pixel.x(), 10), rounded(pixel.y(), 10)};
     }
+    all[names[i].name] = {{"xyz_m", xyz},
+                          {"px", px},
+                          {"confidence", point.state == State::none ? 0.0 : rounded(point.confidence)},
+                          {"state", to_string(point.state)}};
   }
-  return {{"xyz_m", xyz},
-          {"px", px},
-          {"confidence", state == State::none ? 0.0 : rounded(confidence)},
-          {"state", to_string(state)}};
+  return all;
 }
 
 Json camera_json(const Camera& camera) {
@@ -34,114 +74,61 @@ Json camera_json(const Camera& camera) {
           {"fy", shortest(camera.fy)}, {"cx", shortest(camera.cx)}, {"cy", shortest(camera.cy)}};
 }
 
-Json parts_json(const Skeleton& skeleton, const BodyModel& body, const Camera& camera) {
-  Json parts = Json::object();
-  for (std::size_t p = 0; p < body.parts.size(); ++p) {
-    const SkeletonPart& part = skeleton.parts.at(p);
-    parts[body.parts[p].name] = point_json(part.state, part.centre, part.confidence, camera);
-  }
-  return parts;
-}
-
-Json joints_json(const std::vector<std::vector<Joint>>& all, const BodyModel& body, const Camera& camera) {
+Json joints_json(const std::vector<std::vector<Joint>>& joints, const BodyModel& body, const Camera& camera) {
   Json sets = Json::object();
   for (std::size_t s = 0; s < body.joint_sets.size(); ++s) {
-    const JointSet& set = body.joint_sets[s];
-    Json joints = Json::object();
-    for (std::size_t j = 0; j < set.joints.size(); ++j) {
-      const Joint& joint = all.at(s).at(j);
-      joints[set.joints[j].name] = point_json(joint.state, joint.position, joint.confidence, camera);
-    }
-    sets[set.name] = std::move(joints);
+    sets[body.joint_sets[s].name] = points_json(body.joint_sets[s].joints, joints.at(s), camera);
   }
   return sets;
 }
 
-Json yaw_json(const std::optional<YawEstimate>& yaw) {
-  if (!yaw) return {};
-  return {{"degrees", rounded(kDegrees * static_cast<double>(yaw->yaw_rad), 10)},
-          {"confidence", rounded(yaw->confidence)}};
-}
-
 /// File names need not be UTF-8; JSON must.
 std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-Json xyz_json(const Eigen::Vector3f& point) { return {rounded(point.x()), rounded(point.y()), rounded(point.z())}; }
-
-Json person_json(const Person& person, std::size_t index, const BodyModel& body, const Camera& camera) {
-  return {{"index", index},
-          {"score", rounded(person.score)},
-          {"yaw", yaw_json(person.yaw)},
-          {"box_px", {person.box.u, person.box.v, person.box.width, person.box.height}},
-          {"parts", parts_json(person.skeleton, body, camera)},
-          {"joints", joints_json(person.joints, body, camera)}};
-}
 
 /// Takes the camera's own time; `latency_ms` as frame_json.
 Json frame_facts(const Frame& frame, std::optional<double> latency_ms) {
   Json json = {{"frame", frame.name}, {"time_s", frame.time_s ? Json(rounded(*frame.time_s, 1e6)) : Json()}};
   if (frame.arrived_s) json["arrived_s"] = rounded(*frame.arrived_s, 1e6);
   if (latency_ms) json["latency_ms"] = rounded(*latency_ms, 1e3);
-  if (frame.up) json["up"] = xyz_json(*frame.up);
+  if (frame.up) json["up"] = value_json(*frame.up);
   json["camera"] = camera_json(frame.camera);
   return json;
 }
 
-Json xyzw_json(const Eigen::Quaternionf& q) { return {rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w())}; }
-
-/// Returns the joints' rotations of the joint sets that have some, in the sets' own conventions.
-Json rotations_json(const FittedBody& fitted, const BodyModel& body) {
-  Json sets = Json::object();
-  for (const JointSet& set : body.joint_sets) {
-    const auto rotations = joint_rotations(fitted, builtin_flesh_joints(), set);
-    for (std::size_t j = 0; j < rotations.size(); ++j) {
-      if (rotations[j]) sets[set.name][set.joints[j].name] = xyzw_json(*rotations[j]);
-    }
-  }
-  return sets;
-}
-
-/// Bones by name. Rotations are xyzw, `global` into the optical frame, `local` into the parent's.
-Json body_json(const FittedBody& fitted, const BodyModel& body) {
-  Json bones = Json::object();
+Json body_json(const TrackedPerson& person, const BodyModel& body) {
+  Json json = fields_json(*person.body);
+  Json& bones = json["bones"] = Json::object();
   const std::vector<FleshBone>& names = builtin_flesh().bones;
-  for (std::size_t b = 0; b < fitted.bones.size() && b < names.size(); ++b) {
-    const FittedBone& bone = fitted.bones[b];
-    const Eigen::Matrix3f& c = bone.covariance;
-    constexpr double kSquareMillimetres = 1e6;
-    Json covariance = Json::array();
-    for (const float number : {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}) {
-      covariance.push_back(rounded(static_cast<double>(number) * kSquareMillimetres, 10));
-    }
-    bones[names[b].name] = {{"head_m", xyz_json(bone.head)},          {"tail_m", xyz_json(bone.tail)},
-                            {"length_m", rounded(bone.length_m)},     {"global_xyzw", xyzw_json(bone.global)},
-                            {"local_xyzw", xyzw_json(bone.local)},    {"covariance_mm2", covariance},
-                            {"confidence", rounded(bone.confidence)}, {"state", to_string(bone.state)}};
+  for (std::size_t b = 0; b < person.body->bones.size() && b < names.size(); ++b) {
+    bones[names[b].name] = fields_json(person.body->bones[b]);
   }
-  return {{"stature_m", rounded(fitted.stature_m)},
-          {"misfit", rounded(fitted.misfit)},
-          {"bones", bones},
-          {"joint_rotations_xyzw", rotations_json(fitted, body)}};
+  // Of the joint sets that have some, in the sets' own conventions.
+  Json& sets = json["joint_rotations_xyzw"] = Json::object();
+  for (const JointSet& set : body.joint_sets) {
+    const auto rotations = rotations_of(person, set);
+    for (std::size_t j = 0; j < rotations.size(); ++j) {
+      if (rotations[j]) sets[set.name][set.joints[j].name] = value_json(*rotations[j]);
+    }
+  }
+  return json;
 }
 
-Json tracked_json(const TrackedPerson& tracked, std::size_t index, const BodyModel& body, const Camera& camera) {
-  Json json = {{"id", tracked.id},
-               {"state", to_string(tracked.state)},
-               {"position_m", xyz_json(tracked.position)},
-               {"velocity_m_s", xyz_json(tracked.velocity)},
-               {"stance", to_string(tracked.stance)},
-               {"leaving", tracked.leaving},
-               {"since_s", rounded(tracked.since_s, 1e6)},
-               {"seen_s", rounded(tracked.seen_s, 1e6)}};
-  json.update(person_json(tracked.person, index, body, camera));
-  if (tracked.body) json["body"] = body_json(*tracked.body, body);
+Json person_json(const TrackedPerson& tracked, bool followed, std::size_t index, const BodyModel& body,
+                 const Camera& camera) {
+  const Person& person = tracked.person;
+  Json json = followed ? fields_json(tracked) : Json::object();
+  json["index"] = index;
+  json.update(fields_json(person));
+  json["parts"] = points_json(body.parts, person.skeleton.parts, camera);
+  json["joints"] = joints_json(person.joints, body, camera);
+  if (tracked.body) json["body"] = body_json(tracked, body);
   if (!tracked.smoothed.empty()) json["smoothed"] = joints_json(tracked.smoothed, body, camera);
   return json;
 }
 
 Json floor_json(const std::optional<FloorView>& floor) {
   if (!floor) return {};
-  return {{"up", xyz_json(floor->up)},
+  return {{"up", value_json(floor->up)},
           {"height_m", rounded(floor->height_m)},
           {"tilt_degrees", rounded(kDegrees * static_cast<double>(floor->tilt_rad), 10)},
           {"roll_degrees", rounded(kDegrees * static_cast<double>(floor->roll_rad), 10)}};
@@ -150,33 +137,25 @@ Json floor_json(const std::optional<FloorView>& floor) {
 Json events_json(const std::vector<StanceEvent>& events) {
   Json list = Json::array();
   for (const StanceEvent& event : events) {
-    list.push_back({{"id", event.id}, {"time_s", rounded(event.time_s, 1e6)}, {"stance", to_string(event.stance)}});
+    list.push_back({{"id", event.id}, {"time_s", value_json(event.time_s)}, {"stance", to_string(event.stance)}});
   }
   return list;
 }
 
 }  // namespace
 
-std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
+std::string frame_json(const Frame& frame, const TrackedFrame& people, const BodyModel& body,
                        std::optional<double> latency_ms) {
-  Json list = Json::array();
-  for (std::size_t i = 0; i < people.size(); ++i) list.push_back(person_json(people[i], i, body, frame.camera));
   Json json = frame_facts(frame, latency_ms);
-  json["people"] = std::move(list);
-  return line(json);
-}
-
-std::string tracked_frame_json(const Frame& frame, const TrackedFrame& tracked, const BodyModel& body,
-                               std::optional<double> latency_ms) {
-  Json list = Json::array();
-  for (std::size_t i = 0; i < tracked.people.size(); ++i) {
-    list.push_back(tracked_json(tracked.people[i], i, body, frame.camera));
+  if (people.followed) {
+    json["track_time_s"] = value_json(people.time_s);
+    json["floor"] = floor_json(people.floor);
+    json["events"] = events_json(people.events);
   }
-  Json json = frame_facts(frame, latency_ms);
-  json["track_time_s"] = rounded(tracked.time_s, 1e6);
-  json["floor"] = floor_json(tracked.floor);
-  json["events"] = events_json(tracked.events);
-  json["people"] = std::move(list);
+  Json& list = json["people"] = Json::array();
+  for (const TrackedPerson& person : people.people) {
+    list.push_back(person_json(person, people.followed, list.size(), body, frame.camera));
+  }
   return line(json);
 }
 

@@ -7,23 +7,18 @@
 
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
-#include "vesalius/detect.h"
 #include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
 
 /// Returns one line of JSON, without its end, about a frame (docs/formats.md): its name, its time, its camera and the
-/// people with their box (pixels), parts and joints. Points are given in metres in the optical frame (xyz_m) and in
-/// pixels of the depth picture (px). A frame that a live source got also has the time of its arrival and, if
-/// `latency_ms` is given, how long its people took from then on; one that knows up has that. Every part and joint is
-/// listed; where the state is "none" xyz_m and px are null.
-std::string frame_json(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
+/// people with their fields (stream/person_fields.h), parts and joints. Points are given in metres in the optical frame
+/// (xyz_m) and in pixels of the depth picture (px). A frame that a live source got also has the time of its arrival
+/// and, if `latency_ms` is given, how long its people took from then on; one that knows up has that. Every part and
+/// joint is listed; where the state is "none" xyz_m and px are null. Where people are followed (docs/tracking.md) the
+/// frame has the floor and what happened.
+std::string frame_json(const Frame& frame, const TrackedFrame& people, const BodyModel& body,
                        std::optional<double> latency_ms = {});
-
-/// Returns the same line about people who are followed (docs/tracking.md). Each has its id, state, trunk with velocity,
-/// and the times since when it is known and when it was last found; the frame has the floor and what happened.
-std::string tracked_frame_json(const Frame& frame, const TrackedFrame& tracked, const BodyModel& body,
-                               std::optional<double> latency_ms = {});
 
 /// Returns a frame's line as datagrams of at most `most` bytes: the line itself if it fits, otherwise a line for each
 /// person with that one alone in `people`, and with `part` and `parts`: which of how many it is.

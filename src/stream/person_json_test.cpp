@@ -13,6 +13,8 @@ namespace {
 
 using nlohmann::json;
 
+const TrackedFrame kNobody = seen_people({});
+
 /// One person of whom the neck was seen and the left hand inferred.
 Person half_seen(const BodyModel& body) {
   Person person;
@@ -42,20 +44,20 @@ Frame named(const std::string& name) {
 
 TEST(PersonJson, NobodyIsAnEmptyList) {
   EXPECT_EQ(
-      frame_json(named("0172"), {}, paper_body()),
+      frame_json(named("0172"), kNobody, paper_body()),
       R"({"frame":"0172","time_s":1.5,"camera":{"width":320,"height":240,"fx":250.0,"fy":262.1,"cx":160.0,"cy":120.0},"people":[]})");
 }
 
 TEST(PersonJson, SaysWhereUpIsIfTheFrameKnows) {
   Frame frame = named("a");
-  EXPECT_FALSE(json::parse(frame_json(frame, {}, paper_body())).contains("up"));
+  EXPECT_FALSE(json::parse(frame_json(frame, kNobody, paper_body())).contains("up"));
   frame.up = {0.F, -0.8F, 0.6F};
-  EXPECT_EQ(json::parse(frame_json(frame, {}, paper_body())).at("up"), json({0.0, -0.8, 0.6}));
+  EXPECT_EQ(json::parse(frame_json(frame, kNobody, paper_body())).at("up"), json({0.0, -0.8, 0.6}));
 }
 
 TEST(PersonJson, ListsEveryPartAndJoint) {
   const BodyModel& body = paper_body();
-  const std::string line = frame_json(named("f"), {half_seen(body)}, body);
+  const std::string line = frame_json(named("f"), seen_people({half_seen(body)}), body);
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const json person = json::parse(line).at("people").at(0);
   EXPECT_EQ(person.at("index"), 0);
@@ -77,17 +79,17 @@ TEST(PersonJson, AYawIsGivenInDegrees) {
   const BodyModel& body = paper_body();
   Person person = half_seen(body);
   person.yaw = YawEstimate{-std::numbers::pi_v<float> / 2.F, 0.875F};
-  const json yaw = json::parse(frame_json(named("f"), {person}, body)).at("people").at(0).at("yaw");
+  const json yaw = json::parse(frame_json(named("f"), seen_people({person}), body)).at("people").at(0).at("yaw");
   EXPECT_EQ(yaw, json::parse(R"({"degrees":-90.0,"confidence":0.875})"));
 }
 
 TEST(PersonJson, AnUnknownTimeIsNull) {
   Frame frame = named("f");
   frame.time_s.reset();
-  EXPECT_TRUE(json::parse(frame_json(frame, {}, paper_body())).at("time_s").is_null());
-  EXPECT_FALSE(json::parse(frame_json(frame, {}, paper_body())).contains("arrived_s"));
+  EXPECT_TRUE(json::parse(frame_json(frame, kNobody, paper_body())).at("time_s").is_null());
+  EXPECT_FALSE(json::parse(frame_json(frame, kNobody, paper_body())).contains("arrived_s"));
   frame.arrived_s = 1.7e9;
-  const json live = json::parse(frame_json(frame, {}, paper_body(), 12.5));
+  const json live = json::parse(frame_json(frame, kNobody, paper_body(), 12.5));
   EXPECT_EQ(live.at("arrived_s"), 1.7e9);
   EXPECT_EQ(live.at("latency_ms"), 12.5);
 }
@@ -96,7 +98,8 @@ TEST(PersonJson, APointBehindTheCameraHasNoPixel) {
   const BodyModel& body = paper_body();
   Person person = half_seen(body);
   person.skeleton.parts[body.find_part("neck")].centre.z() = -0.1F;
-  const json neck = json::parse(frame_json(named("f"), {person}, body)).at("people").at(0).at("parts").at("neck");
+  const json neck =
+      json::parse(frame_json(named("f"), seen_people({person}), body)).at("people").at(0).at("parts").at("neck");
   EXPECT_TRUE(neck.at("px").is_null());
   EXPECT_FALSE(neck.at("xyz_m").is_null());
 }
@@ -115,7 +118,7 @@ TEST(PersonJson, PeopleWhoAreFollowedHaveIdsStatesAndVelocities) {
   tracked.seen_s = 2.0;
   TrackedFrame frame{
       2.5, {tracked}, FloorView{{0.F, -0.8F, -0.6F}, 1.5F, 0.643501F, 0.F}, {{7, 2.25, Stance::sitting}}};
-  const json line = json::parse(tracked_frame_json(named("f"), frame, body));
+  const json line = json::parse(frame_json(named("f"), frame, body));
   EXPECT_EQ(line.at("time_s"), 1.5) << "the frame's own";
   EXPECT_EQ(line.at("track_time_s"), 2.5);
   EXPECT_EQ(line.at("floor"), json::parse(R"({"up":[0.0,-0.8,-0.6],"height_m":1.5,"tilt_degrees":36.9,
@@ -130,12 +133,12 @@ TEST(PersonJson, PeopleWhoAreFollowedHaveIdsStatesAndVelocities) {
   EXPECT_EQ(person.at("leaving"), true);
   EXPECT_EQ(person.at("since_s"), 1.25);
   EXPECT_EQ(person.at("seen_s"), 2.0);
-  const json alone = json::parse(frame_json(named("f"), {half_seen(body)}, body)).at("people").at(0);
+  const json alone = json::parse(frame_json(named("f"), seen_people({half_seen(body)}), body)).at("people").at(0);
   for (const auto& [key, value] : alone.items()) EXPECT_EQ(person.at(key), value) << key;
   EXPECT_FALSE(person.contains("smoothed"));
   frame.people[0].smoothed = tracked.person.joints;
   frame.floor.reset();
-  const json smoothed = json::parse(tracked_frame_json(named("f"), frame, body));
+  const json smoothed = json::parse(frame_json(named("f"), frame, body));
   EXPECT_EQ(smoothed.at("people").at(0).at("smoothed"), person.at("joints"));
   EXPECT_TRUE(smoothed.at("floor").is_null());
 }
@@ -150,7 +153,8 @@ TEST(PersonJson, FittedBodiesHaveTheRotationsOfTheJointsThatTheyKnow) {
     bone.state = State::predicted;
     bone.tail = {0.F, 1.F, 0.F};
   }
-  const json person = json::parse(tracked_frame_json(named("f"), {0.0, {tracked}, {}, {}}, body)).at("people").at(0);
+  const json person =
+      json::parse(frame_json(named("f"), TrackedFrame{0.0, {tracked}, {}, {}}, body)).at("people").at(0);
   const json& sets = person.at("body").at("joint_rotations_xyzw");
   ASSERT_EQ(sets.size(), 1U) << "other sets have none";
   EXPECT_EQ(sets.at("k4abt32").size(), 30U);
@@ -158,7 +162,8 @@ TEST(PersonJson, FittedBodiesHaveTheRotationsOfTheJointsThatTheyKnow) {
   // The bone's frame is the optical one: x along y, y along z, z along x.
   EXPECT_EQ(sets.at("k4abt32").at("pelvis"), json({0.5, 0.5, 0.5, 0.5}));
   fitted.bones.assign(fitted.bones.size(), {});
-  const json nothing = json::parse(tracked_frame_json(named("f"), {0.0, {tracked}, {}, {}}, body)).at("people").at(0);
+  const json nothing =
+      json::parse(frame_json(named("f"), TrackedFrame{0.0, {tracked}, {}, {}}, body)).at("people").at(0);
   EXPECT_TRUE(nothing.at("body").at("joint_rotations_xyzw").empty());
 }
 
@@ -168,7 +173,7 @@ TEST(PersonJson, TheLastLineSaysWhetherAllIsThere) {
 }
 
 TEST(PersonJson, AnyFileNameGivesValidJson) {
-  const std::string line = frame_json(named("a\"b\\\xff\n"), {}, paper_body());
+  const std::string line = frame_json(named("a\"b\\\xff\n"), kNobody, paper_body());
   EXPECT_TRUE(json::parse(line).at("frame").is_string());
   EXPECT_EQ(line.find('\n'), std::string::npos);
 }

@@ -47,8 +47,8 @@ class Pictures {
 
 /// The floor over time; that of this frame alone while there is none.
 Json floor_json(const ViewedFrame& viewed) {
-  if (viewed.tracked && viewed.tracked->floor) {
-    const FloorView& floor = *viewed.tracked->floor;
+  if (viewed.people.floor) {
+    const FloorView& floor = *viewed.people.floor;
     return {{"normal", point_json(-floor.up)}, {"offset_m", rounded(floor.height_m)}, {"lasting", true}};
   }
   const std::optional<Plane> floor = find_floor(viewed.planes, viewed.frame->up);
@@ -155,19 +155,13 @@ std::string message_of(Json head, const std::string& found, const Pictures& pict
 
 }  // namespace
 
-std::string found_json(const Frame& frame, const ViewedFrame& viewed, const BodyModel& body) {
-  return viewed.tracked ? tracked_frame_json(frame, *viewed.tracked, body, viewed.latency_ms)
-                        : frame_json(frame, viewed.people, body, viewed.latency_ms);
-}
-
 FrameMessages frame_messages(const ViewedFrame& viewed, const BodyModel& body) {
   const Frame& frame = *viewed.frame;
   const int width = frame.depth.width(), height = frame.depth.height();
   Pictures pictures;
   pictures.add("depth", "rvl", width, height, pack_rvl(frame.depth));
   if (!frame.colour.empty()) pictures.add("colour", "jpeg", width, height, encode_jpeg(frame.colour, kJpegQuality));
-  const std::vector<Person> followed = viewed.tracked ? people_of(*viewed.tracked) : std::vector<Person>{};
-  const std::vector<Person>& people = viewed.tracked ? followed : viewed.people;
+  const std::vector<Person> people = people_of(viewed.people);
   pictures.add_labels("people", body_index_map(people, width, height));
   pictures.add_labels("parts", part_label_map(people, width, height));
   Json head = {{"number", viewed.number},
@@ -176,8 +170,8 @@ FrameMessages frame_messages(const ViewedFrame& viewed, const BodyModel& body) {
                {"detect_ms", rounded(viewed.times.total())},
                {"track_ms", rounded(viewed.track_ms)},
                {"floor", floor_json(viewed)}};
-  if (viewed.tracked) head["flesh"] = flesh_json(*viewed.tracked);
-  const std::string found = found_json(frame, viewed, body);
+  if (viewed.people.followed) head["flesh"] = flesh_json(viewed.people);
+  const std::string found = frame_json(frame, viewed.people, body, viewed.latency_ms);
   FrameMessages messages{message_of(head, found, pictures), {}};
   if (viewed.trace) {
     head["stages"] = stages_json(*viewed.trace, width, height, pictures);

@@ -8,7 +8,6 @@
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/stage_times.h"
-#include "vesalius/detection.h"
 #include "vesalius/planes/find_planes.h"
 #include "vesalius/track/tracked_frame.h"
 
@@ -19,18 +18,13 @@ struct ViewedFrame {
   int number = 0;     ///< of the frames that were detected, from 1
   double at_s = 0.0;  ///< its place in the source
   std::shared_ptr<const Frame> frame;
-  std::vector<Person> people;           ///< where they are not followed
-  std::optional<TrackedFrame> tracked;  ///< the people followed over frames
-  std::vector<Plane> planes;            ///< large flat surfaces
+  TrackedFrame people;
+  std::vector<Plane> planes;  ///< large flat surfaces
   StageTimes times;
   double track_ms = 0.0;             ///< time to follow people, beside the stages
   std::optional<Trace> trace;        ///< where somebody looks at the stages
   std::optional<double> latency_ms;  ///< from its arrival to its people
 };
-
-/// Returns the frame's people as a line of JSON: that of `vesalius detect --json`, with --track where they are
-/// followed. `frame` is that of `viewed`, perhaps with a time that its source does not know.
-std::string found_json(const Frame& frame, const ViewedFrame& viewed, const BodyModel& body);
 
 /// The messages of a frame, as pages want more or less of it.
 struct FrameMessages {

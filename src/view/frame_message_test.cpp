@@ -59,7 +59,7 @@ ViewedFrame viewed_person(bool with_colour) {
   person.labels = LabelImage(160, 120, kBackground);
   for (int i = 5000; i < 5100; ++i) person.mask[i] = 1, person.labels[i] = 3;
   person.score = 0.9F;
-  viewed.people.push_back(person);
+  viewed.people = seen_people({person});
   viewed.planes = find_planes(viewed.frame->depth, viewed.frame->camera, {});
   return viewed;
 }
@@ -72,8 +72,8 @@ TEST(FrameMessage, HoldsTheFrameAndItsPeople) {
   EXPECT_EQ(parts.head.at("number"), 7);
   EXPECT_EQ(parts.head.at("found"), json::parse(frame_json(*viewed.frame, viewed.people, paper_body())));
   EXPECT_EQ(unpack_rvl(parts.bytes("depth"), 160, 120, "depth"), viewed.frame->depth);
-  EXPECT_EQ(parts.labels("people"), body_index_map(viewed.people, 160, 120));
-  EXPECT_EQ(parts.labels("parts"), part_label_map(viewed.people, 160, 120));
+  EXPECT_EQ(parts.labels("people"), body_index_map(people_of(viewed.people), 160, 120));
+  EXPECT_EQ(parts.labels("parts"), part_label_map(people_of(viewed.people), 160, 120));
   const ColourImage colour = decode_colour(parts.bytes("colour"), "colour");
   double difference = 0.0;
   for (std::size_t i = 0; i < colour.size(); ++i) difference += std::abs(colour[i].g - viewed.frame->colour[i].g);
@@ -85,17 +85,17 @@ TEST(FrameMessage, HoldsTheFrameAndItsPeople) {
 
 TEST(FrameMessage, HoldsPeopleWhoAreFollowed) {
   ViewedFrame viewed = viewed_person(true);
-  TrackedFrame& tracked = viewed.tracked.emplace();
+  TrackedFrame tracked;
   TrackedPerson hidden;
   hidden.id = 2;
   hidden.state = TrackState::hidden;
-  hidden.person = viewed.people[0];
+  hidden.person = viewed.people.people[0].person;
   hidden.person.mask = {};
   hidden.person.labels = {};
   TrackedPerson seen;
   seen.id = 5;
   seen.state = TrackState::tracked;
-  seen.person = viewed.people[0];
+  seen.person = viewed.people.people[0].person;
   const BodyState state = test::usual_state(0.0);
   FittedBody& fitted = seen.body.emplace();
   for (const PlacedBone& placed : place_bones(builtin_flesh(), state)) {
@@ -105,10 +105,10 @@ TEST(FrameMessage, HoldsPeopleWhoAreFollowed) {
   }
   tracked.people = {hidden, seen};
   tracked.floor = FloorView{{0.F, -1.F, 0.F}, 0.9F, 0.F, 0.F};
-  viewed.people.clear();
+  viewed.people = tracked;
   viewed.track_ms = 2.5;
   const Parts parts(frame_messages(viewed, paper_body()).plain);
-  EXPECT_EQ(parts.head.at("found"), json::parse(tracked_frame_json(*viewed.frame, tracked, paper_body())));
+  EXPECT_EQ(parts.head.at("found"), json::parse(frame_json(*viewed.frame, tracked, paper_body())));
   EXPECT_EQ(parts.head.at("track_ms"), 2.5);
   const LabelImage index = parts.labels("people");
   EXPECT_EQ(index[5000], 1) << "the second in the list";
@@ -132,19 +132,19 @@ TEST(FrameMessage, HoldsPeopleWhoAreFollowed) {
 TEST(FrameMessage, HoldsTheStagesOfATrace) {
   ViewedFrame viewed = viewed_person(false);
   Trace& trace = viewed.trace.emplace();
-  trace.raw_labels = trace.labels = viewed.people[0].labels;
+  trace.raw_labels = trace.labels = viewed.people.people[0].person.labels;
   trace.flat = Mask(160, 120, 1);
   trace.clusters.items.resize(1);
   trace.clusters.items[0].label = 3;
   trace.clusters.items[0].pixels = 100;
   trace.clusters.index = Image<std::int32_t>(160, 120, -1);
   for (int i = 5000; i < 5100; ++i) trace.clusters.index[i] = 0;
-  trace.rough.push_back(viewed.people[0].skeleton);
+  trace.rough.push_back(viewed.people.people[0].person.skeleton);
   // Two candidates claim the same pixels: the first is the surer one.
   Trace::Candidate candidate;
-  candidate.rough = candidate.refined = viewed.people[0].skeleton;
-  candidate.grown = viewed.people[0].mask;
-  candidate.labels = viewed.people[0].labels;
+  candidate.rough = candidate.refined = viewed.people.people[0].person.skeleton;
+  candidate.grown = viewed.people.people[0].person.mask;
+  candidate.labels = viewed.people.people[0].person.labels;
   candidate.accepted = true;
   trace.candidates = {candidate, candidate};
   trace.candidates[1].accepted = false;

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "stream/person_json.h"
 #include "vesalius/base/frame_source.h"
 
 namespace vesalius {
@@ -29,12 +30,7 @@ void Recording::add_frame(const ViewedFrame& viewed, const BodyModel& body) {
   Frame frame = *viewed.frame;
   if (!frame.time_s) frame.time_s = viewed.at_s * kUsualRate / rate_;
   file_.write(frame);
-  const std::string json = found_json(frame, viewed, body);
-  if (viewed.tracked) {
-    file_.write_people(frame, *viewed.tracked, body, json);
-  } else {
-    file_.write_people(frame, viewed.people, body, json);
-  }
+  file_.write_people(frame, viewed.people, body, frame_json(frame, viewed.people, body, viewed.latency_ms));
   up_to_s_ = viewed.at_s;
   ++frames_;
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -51,15 +52,14 @@ void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals
   if (found.error) std::rethrow_exception(found.error);
   const double write_ms = elapsed_ms([&] { outputs.write(found); });
   totals.times.add(found.times, found.read_ms, write_ms);
-  if (found.tracked) totals.times.add_tracking(found.track_ms);
+  if (found.people.followed) totals.times.add_tracking(found.track_ms);
   if (found.latency_ms) totals.times.add_latency(*found.latency_ms);
-  if (found.tracked) {
-    for (const TrackedPerson& person : found.tracked->people) {
-      if (person.state == TrackState::tracked) totals.ids.insert(person.id);
-    }
+  const std::vector<TrackedPerson>& people = found.people.people;
+  for (const TrackedPerson& person : people) {
+    if (person.state == TrackState::tracked) totals.ids.insert(person.id);
   }
-  totals.people += static_cast<int>(found.people.size());
-  totals.frames_with_people += found.people.empty() ? 0 : 1;
+  totals.people += static_cast<int>(std::ranges::count_if(people, is_found));
+  totals.frames_with_people += std::ranges::any_of(people, is_found) ? 1 : 0;
 }
 
 void detect_all(const Arguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,

@@ -53,20 +53,17 @@ DetectOutputs::DetectOutputs(OutputRequest request, const BodyModel& body)
   if (!request_.json.empty()) json_.emplace(request_.json);
   if (!request_.udp.empty()) udp_.emplace(request_.udp);
   if (!request_.osc.empty()) {
-    (void)osc_bundles(std::vector<Person>{}, body, request_.osc_options);  // says if the joint set is unknown
+    (void)osc_bundles(TrackedFrame{}, body, request_.osc_options);  // says if the joint set is unknown
     osc_.emplace(request_.osc);
   }
 }
 
-void DetectOutputs::send(const FoundFrame& found, const std::string& json) const {
+void DetectOutputs::send(const TrackedFrame& people, const std::string& json) const {
   if (udp_) {
     for (const std::string& datagram : json_datagrams(json, UdpSender::kMost)) udp_->send(datagram);
   }
   if (!osc_) return;
-  for (const std::string& bundle : found.tracked ? osc_bundles(*found.tracked, body_, request_.osc_options)
-                                                 : osc_bundles(found.people, body_, request_.osc_options)) {
-    osc_->send(bundle);
-  }
+  for (const std::string& bundle : osc_bundles(people, body_, request_.osc_options)) osc_->send(bundle);
 }
 
 std::string DetectOutputs::path(const char* kind, const Frame& frame, const char* extension) const {
@@ -78,28 +75,18 @@ std::string DetectOutputs::path(const char* kind, const Frame& frame, const char
 
 void DetectOutputs::write(const FoundFrame& found) {
   const Frame& frame = *found.frame;
-  if (found.tracked && !kinds_.empty()) {
-    write_pictures(frame, people_of(*found.tracked));  // in the order of the JSON, so that the numbers are the same
-  } else {
-    write_pictures(frame, found.people);
-  }
-  std::string json;
-  if (json_ || udp_) {
-    json = found.tracked ? tracked_frame_json(frame, *found.tracked, body_, found.latency_ms)
-                         : frame_json(frame, found.people, body_, found.latency_ms);
-  }
-  send(found, json);
+  if (!kinds_.empty()) write_pictures(frame, people_of(found.people));  // numbered as in the JSON
+  const std::string json = json_ || udp_ ? frame_json(frame, found.people, body_, found.latency_ms) : "";
+  send(found.people, json);
   if (json_) json_->line(json);
-  if (request_.lines()) {
-    print(one_line(found.tracked ? describe(frame, *found.tracked) : describe(frame, found.people)) + "\n");
-  }
+  if (request_.lines()) print(one_line(describe(frame, found.people)) + "\n");
   ++frames_;
 }
 
 void DetectOutputs::write_pictures(const Frame& frame, const std::vector<Person>& people) {
   const int width = frame.depth.width();
   const int height = frame.depth.height();
-  if (!kinds_.empty() && !names_.insert(frame.name).second) {
+  if (!names_.insert(frame.name).second) {
     throw Error(
         fmt::format("frame \"{}\": its pictures would replace those of another frame of this name", frame.name));
   }
@@ -129,25 +116,16 @@ void DetectOutputs::finish(const std::string& why_not_all) {
   if (request_.lines()) finish_stdout();
 }
 
-std::string describe(const Frame& frame, const std::vector<Person>& people) {
-  if (people.empty()) return frame.name + ": nobody";
-  std::string text = fmt::format("{}: {} {}: ", frame.name, people.size(), people.size() == 1 ? "person" : "people");
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    const Person& person = people[i];
-    text += fmt::format("{}{} parts at {:.2f} m (score {:.2f})", i == 0 ? "" : ", ", person.skeleton.found,
-                        distance_m(person.skeleton), person.score);
-  }
-  return text;
-}
-
-std::string describe(const Frame& frame, const TrackedFrame& tracked) {
+std::string describe(const Frame& frame, const TrackedFrame& people) {
   std::string text;
-  for (const TrackedPerson& person : tracked.people) {
-    const bool here = person.state == TrackState::fresh || person.state == TrackState::tracked;
-    text += fmt::format("{}{} {} at {:.2f} m{}", text.empty() ? "" : ", ", person.id, to_string(person.state),
-                        person.position.z(), here ? fmt::format(" (score {:.2f})", person.person.score) : "");
+  for (const TrackedPerson& person : people.people) {
+    const Person& found = person.person;
+    text += text.empty() ? "" : ", ";
+    text += people.followed ? fmt::format("{} {} at {:.2f} m", person.id, to_string(person.state), person.position.z())
+                            : fmt::format("{} parts at {:.2f} m", found.skeleton.found, distance_m(found.skeleton));
+    if (is_found(person)) text += fmt::format(" (score {:.2f})", found.score);
   }
-  const std::size_t count = tracked.people.size();
+  const std::size_t count = people.people.size();
   if (count == 0) return frame.name + ": nobody";
   return fmt::format("{}: {} {}: {}", frame.name, count, count == 1 ? "person" : "people", text);
 }

@@ -50,7 +50,7 @@ class DetectOutputs {
   bool wants(const std::string& kind) const { return kinds_.contains(kind); }
   std::string path(const char* kind, const Frame& frame, const char* extension) const;
   void write_pictures(const Frame& frame, const std::vector<Person>& people);
-  void send(const FoundFrame& found, const std::string& json) const;
+  void send(const TrackedFrame& people, const std::string& json) const;
 
   OutputRequest request_;
   std::set<std::string> kinds_;
@@ -62,11 +62,8 @@ class DetectOutputs {
   std::optional<UdpSender> udp_, osc_;
 };
 
-/// Returns a line such as "0172: 2 people: 23 parts at 2.31 m (score 0.87), ...".
-std::string describe(const Frame& frame, const std::vector<Person>& people);
-
-/// Returns the same of people who are followed, such as "0172: 2 people: 1 tracked at 2.31 m (score 0.87), 2 hidden at
-/// 3.02 m"; the number before the state is the id.
-std::string describe(const Frame& frame, const TrackedFrame& tracked);
+/// Returns a line such as "0172: 2 people: 23 parts at 2.31 m (score 0.87), ...", or of people who are followed "0172:
+/// 2 people: 1 tracked at 2.31 m (score 0.87), 2 hidden at 3.02 m"; the number before the state is the id.
+std::string describe(const Frame& frame, const TrackedFrame& people);
 
 }  // namespace vesalius::cli

@@ -56,10 +56,8 @@ TEST(DetectOutputs, PicturesOfFollowedPeopleHaveTheIndicesOfTheJson) {
   found.frame->name = "0001";
   found.frame->camera = {kWidth, kHeight, 60.F, 60.F, 31.5F, 23.5F};
   found.frame->depth = DepthImage(kWidth, kHeight, 2000);
-  found.people = {middle, right, left};  // surest first
-  found.tracked.emplace();
-  found.tracked->people = {followed(2, TrackState::tracked, left), followed(5, TrackState::hidden, out_of_sight),
-                           followed(7, TrackState::tracked, right), followed(9, TrackState::tracked, middle)};
+  found.people.people = {followed(2, TrackState::tracked, left), followed(5, TrackState::hidden, out_of_sight),
+                         followed(7, TrackState::tracked, right), followed(9, TrackState::tracked, middle)};
   OutputRequest request;
   request.json = json;
   request.folder = folder.string();

@@ -56,13 +56,8 @@ int record_people(const Arguments& arguments, FrameSource& source, const Detecto
   const auto take = [&](const FoundFrame& found) {
     if (found.error) std::rethrow_exception(found.error);
     recorder.write(*found.frame);
-    if (found.tracked) {
-      recorder.write_people(*found.frame, *found.tracked, body,
-                            tracked_frame_json(*found.frame, *found.tracked, body, found.latency_ms));
-    } else {
-      recorder.write_people(*found.frame, found.people, body,
-                            frame_json(*found.frame, found.people, body, found.latency_ms));
-    }
+    recorder.write_people(*found.frame, found.people, body,
+                          frame_json(*found.frame, found.people, body, found.latency_ms));
     progress.step();
     return !is_enough(arguments, progress);
   };

@@ -112,8 +112,8 @@ int publish(const Arguments& arguments, FrameSource& source, const Detector& det
     if (found.error) std::rethrow_exception(found.error);
     last = stamps.of(*found.frame);
     if (pose && progress.done() == 0) topics.write_camera_pose(pose->parent, pose->parent_from_optical, last);
-    const auto json = [&] { return tracked_frame_json(*found.frame, *found.tracked, body, found.latency_ms); };
-    topics.write(*found.frame, *found.tracked, json, last);
+    const auto json = [&] { return frame_json(*found.frame, found.people, body, found.latency_ms); };
+    topics.write(*found.frame, found.people, json, last);
     progress.step();
     return arguments.frames == 0 || progress.done() < arguments.frames;
   });

@@ -45,24 +45,16 @@ void FrameRecorder::write(const Frame& frame) {
              depth_message(frame.depth, time_ns_, kFrame));
 }
 
-void FrameRecorder::write_people(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
+void FrameRecorder::write_people(const Frame& frame, const TrackedFrame& people, const BodyModel& body,
                                  const std::string& json) {
-  write_people(frame, people, markers_message(people, body, time_ns_, kFrame), json);
-}
-
-void FrameRecorder::write_people(const Frame& frame, const TrackedFrame& tracked, const BodyModel& body,
-                                 const std::string& json) {
-  write_people(frame, people_of(tracked), markers_message(tracked, body, time_ns_, kFrame), json);
-}
-
-void FrameRecorder::write_people(const Frame& frame, const std::vector<Person>& people, const std::string& markers,
-                                 const std::string& json) {
+  const std::vector<Person> found = people_of(people);
   const int width = frame.depth.width(), height = frame.depth.height();
   out_.write(topic(index_, "/people/body_index", "sensor_msgs/Image"), log_ns_,
-             grey_message(body_index_map(people, width, height), time_ns_, kFrame));
+             grey_message(body_index_map(found, width, height), time_ns_, kFrame));
   out_.write(topic(parts_, "/people/parts", "sensor_msgs/Image"), log_ns_,
-             grey_message(part_label_map(people, width, height), time_ns_, kFrame));
-  out_.write(topic(markers_, "/people/markers", "visualization_msgs/MarkerArray"), log_ns_, markers);
+             grey_message(part_label_map(found, width, height), time_ns_, kFrame));
+  out_.write(topic(markers_, "/people/markers", "visualization_msgs/MarkerArray"), log_ns_,
+             markers_message(people, body, time_ns_, kFrame));
   CdrWriter text;
   text.text(json);
   out_.write(topic(json_, "/people/json", "std_msgs/String"), log_ns_, text.message());

@@ -3,12 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "io/recordings/mcap_writer.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
-#include "vesalius/detection.h"
 #include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
@@ -29,16 +27,12 @@ class FrameRecorder {
   /// Adds a frame. Throws Error naming the path if it cannot be written.
   void write(const Frame& frame);
   /// Adds the people of the frame that was added last. `json` is its line.
-  void write_people(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
-                    const std::string& json);
-  /// The same of people who are followed: the pictures hold their indices in `tracked`, the markers their ids.
-  void write_people(const Frame& frame, const TrackedFrame& tracked, const BodyModel& body, const std::string& json);
+  /// The pictures hold their indices in `people`.
+  void write_people(const Frame& frame, const TrackedFrame& people, const BodyModel& body, const std::string& json);
   /// Completes the file. Without this call it has all frames but those of the last second, and no summary.
   void close() { out_.close(); }
 
  private:
-  void write_people(const Frame& frame, const std::vector<Person>& people, const std::string& markers,
-                    const std::string& json);
   std::uint16_t topic(std::optional<std::uint16_t>& known, const char* name, const char* type);
 
   McapWriter out_;

@@ -163,21 +163,25 @@ Ball ball_of(const SkeletonPart& part, const BodyPart& of) {
   return {part.centre, of.colour, part.state == State::observed ? 1.F : kPale};
 }
 
-struct NamedSkeleton {
-  const Skeleton* skeleton;
-  std::string name;
-};
+std::string name_of(const TrackedPerson& person) {
+  if (person.state == TrackState::seen) return fmt::format("{}: {:.2f}", person.id, person.person.score);
+  return fmt::format("{} {}", person.id, to_string(person.state));
+}
 
-std::string markers_of(const std::vector<NamedSkeleton>& people, const BodyModel& body, std::int64_t time_ns,
-                       std::string_view frame) {
+}  // namespace
+
+std::string markers_message(const TrackedFrame& people, const BodyModel& body, std::int64_t time_ns,
+                            std::string_view frame) {
   constexpr std::uint32_t kMarkers = 3;  // of a person
+  const auto lost = std::ranges::count(people.people, TrackState::lost, &TrackedPerson::state);
   CdrWriter out;
-  out.u32(1 + kMarkers * static_cast<std::uint32_t>(people.size()));
+  out.u32(1 + kMarkers * static_cast<std::uint32_t>(people.people.size() - static_cast<std::size_t>(lost)));
   const Eigen::Vector3f origin = Eigen::Vector3f::Zero();
   write_marker(out, time_ns, frame, 0, {0, kDeleteAll, {1, 1, 1}}, origin, {}, "");
   int id = 1;
-  for (const auto& [skeleton, name] : people) {
-    const std::vector<SkeletonPart>& parts = skeleton->parts;
+  for (const TrackedPerson& person : people.people) {
+    if (person.state == TrackState::lost) continue;
+    const std::vector<SkeletonPart>& parts = person.person.skeleton.parts;
     std::vector<Ball> balls, lines;
     Eigen::Vector3f highest(0.F, std::numeric_limits<float>::max(), 0.F);
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -193,30 +197,9 @@ std::string markers_of(const std::vector<NamedSkeleton>& people, const BodyModel
     write_marker(out, time_ns, frame, id++, {kLineList, kAdd, {kLine_m, 0, 0}}, origin, lines, "");
     write_marker(out, time_ns, frame, id++, {kSphereList, kAdd, {kBall_m, kBall_m, kBall_m}}, origin, balls, "");
     write_marker(out, time_ns, frame, id++, {kText, kAdd, {0, 0, kText_m}},
-                 highest - Eigen::Vector3f(0.F, kAbove_m, 0.F), {}, name);
+                 highest - Eigen::Vector3f(0.F, kAbove_m, 0.F), {}, name_of(person));
   }
   return out.message();
-}
-
-}  // namespace
-
-std::string markers_message(const std::vector<Person>& people, const BodyModel& body, std::int64_t time_ns,
-                            std::string_view frame) {
-  std::vector<NamedSkeleton> named;
-  for (const Person& person : people) {
-    named.push_back({&person.skeleton, fmt::format("{}: {:.2f}", named.size(), person.score)});
-  }
-  return markers_of(named, body, time_ns, frame);
-}
-
-std::string markers_message(const TrackedFrame& tracked, const BodyModel& body, std::int64_t time_ns,
-                            std::string_view frame) {
-  std::vector<NamedSkeleton> named;
-  for (const TrackedPerson& person : tracked.people) {
-    if (person.state == TrackState::lost) continue;
-    named.push_back({&person.person.skeleton, fmt::format("{} {}", person.id, to_string(person.state))});
-  }
-  return markers_of(named, body, time_ns, frame);
 }
 
 std::string message_definition(std::string_view type) {

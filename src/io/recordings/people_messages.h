@@ -12,11 +12,9 @@
 namespace vesalius {
 
 /// Returns a visualization_msgs/MarkerArray as CDR that shows people and nothing from before: of each the links between
-/// its parts, the parts as balls in their colours (predicted ones paler), and its index and score above the head.
-std::string markers_message(const std::vector<Person>& people, const BodyModel& body, std::int64_t time_ns,
-                            std::string_view frame);
-/// The same of people who are followed, with id and state above the head; without those who are lost.
-std::string markers_message(const TrackedFrame& tracked, const BodyModel& body, std::int64_t time_ns,
+/// its parts, the parts as balls in their colours (predicted ones paler), and above the head its index and score, or id
+/// and state of those who are followed; without those who are lost.
+std::string markers_message(const TrackedFrame& people, const BodyModel& body, std::int64_t time_ns,
                             std::string_view frame);
 
 /// Returns the fields of a ROS 2 type that is recorded, and of all that it is made of, as ROS 2 describes them.

@@ -1,9 +1,16 @@
 #include "vesalius/track/tracked_frame.h"
 
+#include <limits>
+#include <utility>
+
+#include "vesalius/fit/flesh_joints.h"
+
 namespace vesalius {
 
 const char* to_string(TrackState state) {
   switch (state) {
+    case TrackState::seen:
+      return "seen";
     case TrackState::fresh:
       return "new";
     case TrackState::tracked:
@@ -30,11 +37,30 @@ const char* to_string(Stance stance) {
   }
 }
 
+TrackedFrame seen_people(std::vector<Person> people) {
+  TrackedFrame seen;
+  seen.followed = false;
+  for (Person& person : people) {
+    const auto index = static_cast<int>(seen.people.size());
+    TrackedPerson& one = seen.people.emplace_back();
+    one.id = index;
+    one.state = TrackState::seen;
+    one.person = std::move(person);
+    one.position = one.velocity = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  }
+  return seen;
+}
+
 std::vector<Person> people_of(const TrackedFrame& tracked) {
   std::vector<Person> people;
   people.reserve(tracked.people.size());
   for (const TrackedPerson& person : tracked.people) people.push_back(person.person);
   return people;
+}
+
+std::vector<std::optional<Eigen::Quaternionf>> rotations_of(const TrackedPerson& person, const JointSet& set) {
+  if (!person.body) return std::vector<std::optional<Eigen::Quaternionf>>(set.joints.size());
+  return joint_rotations(*person.body, builtin_flesh_joints(), set);
 }
 
 }  // namespace vesalius

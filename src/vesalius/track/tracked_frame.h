@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -10,8 +11,9 @@
 
 namespace vesalius {
 
-/// What is known about somebody who is followed over frames.
+/// What is known about somebody over frames.
 enum class TrackState {
+  seen,     ///< found in this frame by a detector alone, which does not follow people
   fresh,    ///< found, but not yet for long enough to be sure of
   tracked,  ///< found in this frame
   hidden,   ///< not found in this frame; the place is a prediction
@@ -23,9 +25,9 @@ const char* to_string(TrackState state);
 enum class Stance { unknown, standing, sitting, lying, fallen };
 const char* to_string(Stance stance);
 
-/// Somebody who is followed over frames.
+/// Somebody in a frame, followed over frames or seen in this one alone.
 struct TrackedPerson {
-  int id = 0;  ///< from 1; the same for one person over a run, never used for two
+  int id = 0;  ///< from 1; the same for one person over a run, never used for two; of those only seen the index
   TrackState state = TrackState::fresh;
   /// As found in this frame; its joints are those of the fitted body where there is one. Of hidden people the mask and
   /// the labels are empty, and parts and joints are predicted.
@@ -57,16 +59,26 @@ struct StanceEvent {
   Stance stance = Stance::unknown;
 };
 
-/// The people of a frame of a sequence.
+/// The people of a frame: of one of a sequence over which they are followed, or as a detector found them (seen_people).
 struct TrackedFrame {
   double time_s = 0.0;                ///< the frame's time, or its number over the rate where it has none
   std::vector<TrackedPerson> people;  ///< by id; of lost ones those that were lost in this frame
   std::optional<FloorView> floor;
   std::vector<StanceEvent> events;
+  bool followed = true;  ///< whether people are followed; otherwise there is nothing in it but them
 };
+
+/// Returns people as a detector found them, in their order: with their index as id, and a trunk that is not-a-number.
+TrackedFrame seen_people(std::vector<Person> people);
+
+/// Returns whether somebody was found in the frame, and not only expected there.
+inline bool is_found(const TrackedPerson& person) { return person.state <= TrackState::tracked; }
 
 /// Returns the people as they were found, in their order, so that each has the same index in both lists. Hidden and
 /// lost ones have empty masks.
 std::vector<Person> people_of(const TrackedFrame& tracked);
+
+/// Returns joint_rotations by the person's body; without one nothing for every joint.
+std::vector<std::optional<Eigen::Quaternionf>> rotations_of(const TrackedPerson& person, const JointSet& set);
 
 }  // namespace vesalius
