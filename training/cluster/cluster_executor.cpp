@@ -9,7 +9,7 @@
 #include "cluster/map_task.h"
 #include "cluster/message.h"
 #include "train/grow_tree.h"
-#include "train/leaf_shard.h"
+#include "train/leaves/leaf_shard.h"
 #include "train/split_candidates.h"
 #include "vesalius/base/error.h"
 

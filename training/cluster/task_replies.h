@@ -9,8 +9,8 @@
 
 #include "cluster/message.h"
 #include "train/growing_tree.h"
-#include "train/leaf_messages.h"
-#include "train/training_messages.h"
+#include "train/messages/leaf_messages.h"
+#include "train/messages/training_messages.h"
 
 namespace vesalius {
 

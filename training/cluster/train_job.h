@@ -11,8 +11,8 @@
 
 #include "train/grow_forest.h"
 #include "train/growing_tree.h"
-#include "train/leaf_messages.h"
-#include "train/training_messages.h"
+#include "train/messages/leaf_messages.h"
+#include "train/messages/training_messages.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "train/local_executor.h"
-#include "train/walk_samples.h"
+#include "train/samples/walk_samples.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 

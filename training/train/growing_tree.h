@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "train/grow_options.h"
-#include "train/leaf_shares.h"
-#include "train/prune_tree.h"
-#include "train/training_messages.h"
+#include "train/leaves/leaf_shares.h"
+#include "train/leaves/prune_tree.h"
+#include "train/messages/grow_options.h"
+#include "train/messages/training_messages.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "train/prune_tree.h"
-#include "train/training_messages.h"
+#include "train/leaves/prune_tree.h"
+#include "train/messages/training_messages.h"
 
 namespace vesalius {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "capsule/capsule_person.h"
-#include "train/frame_store.h"
+#include "train/samples/frame_store.h"
 
 namespace vesalius {
 namespace {
