@@ -32,6 +32,10 @@ struct OpenTree {
   Tree tree;  ///< nodes only
   std::vector<std::int32_t> child_of_leaf;
   std::size_t children = 0;
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("tree", of.tree...)("child of leaf", of.child_of_leaf...)("children", of.children...);
+  }
 };
 
 /// The driver's side of a growing tree: its nodes so far, and the level that is to be split.

@@ -13,6 +13,8 @@ namespace vesalius {
 struct LeafState {
   int rounds = 0;  ///< done
   LeafLogits logits;
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("rounds", of.rounds...)("logits", of.logits...); }
 };
 
 /// Keeps the finished trees of a training, and the leaves in learning, so that an interrupted run can be continued. The

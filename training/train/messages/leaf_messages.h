@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "train/messages/training_messages.h"
 #include "train/messages/training_sample.h"
 #include "vesalius/forest/leaf_logits.h"
 
@@ -16,8 +17,9 @@ namespace vesalius {
 struct LabelCounts {
   std::vector<std::int64_t> classes;   ///< [class]
   std::vector<std::int64_t> headings;  ///< [heading]
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("classes", of.classes...)("headings", of.headings...); }
 };
-void merge(LabelCounts& all, const LabelCounts& other);
 
 /// Request: how much a sample counts, in 1/kUnit.
 struct SampleWeights {
@@ -30,13 +32,18 @@ struct SampleWeights {
   std::int32_t of(const TrainingSample& sample) const {
     return of_class[sample.label] * (sample.heading < of_heading.size() ? of_heading[sample.heading] : kUnit);
   }
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("of class", of.of_class...)("of heading", of.of_heading...);
+  }
 };
 
 /// Reply: for each leaf of one tree the weights of its samples by class and by side and heading, in 1/(kUnit * kUnit).
 struct LeafCounts {
   std::vector<std::int64_t> weights;  ///< [leaf][LogitLayout]
+
+  static void visit_fields(auto&& visit, auto&... self) { visit("weights", self.weights...); }
 };
-void merge(LeafCounts& all, const LeafCounts& other);
 
 /// The logits of all leaves in learning.
 struct LeafLogits {
@@ -45,8 +52,12 @@ struct LeafLogits {
 
   std::size_t stride = 0;                           ///< numbers of a leaf
   std::vector<std::vector<std::int16_t>> of_trees;  ///< [tree][leaf * stride + place in the LogitLayout]
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("stride", of.stride...)("of trees", of.of_trees...); }
 };
-std::size_t padded_size(const LogitLayout& layout);
+inline std::size_t padded_size(const LogitLayout& layout) {
+  return (static_cast<std::size_t>(layout.size()) + LeafLogits::kLanes - 1) / LeafLogits::kLanes * LeafLogits::kLanes;
+}
 
 /// Request: the gradient over one of the parts into which all frames are divided.
 struct GradientTask {
@@ -61,13 +72,18 @@ struct LeafGradient {
   std::vector<std::vector<std::int32_t>> of_trees;  ///< [tree][leaf * stride + place]
   double log_likelihood = 0.0;                      ///< sum over the samples, for progress only
   double weight = 0.0;                              ///< of all samples
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("of trees", of.of_trees...)("log likelihood", of.log_likelihood...)("weight", of.weight...);
+  }
 };
-void merge(LeafGradient& all, const LeafGradient& other);
 
 /// A person from whom the regression of headings is learned.
 struct FacingSample {
   std::vector<float> features;  ///< FacingEvidence::features
   int heading = 0;              ///< the true one
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("features", of.features...)("heading", of.heading...); }
 };
 
 }  // namespace vesalius

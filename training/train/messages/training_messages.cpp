@@ -12,21 +12,10 @@ using detail::expect_alike;
 
 constexpr int kLargestRange = 32767;
 
-template <class Number>
-void add(std::vector<Number>& all, const std::vector<Number>& other, const char* what) {
-  expect_alike(all.size() == other.size(), what);
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] += other[i];
-}
-
 }  // namespace
 
 void detail::expect_alike(bool alike, const char* what) {
-  if (!alike) throw Error(std::string("training: two shards replied about different ") + what);
-}
-
-void merge(SampleCounts& all, const SampleCounts& other) {
-  add(all.samples, other.samples, "classes");
-  add(all.pixels, other.pixels, "classes");
+  if (!alike) throw Error(std::string("training: two shards replied with other numbers of ") + what);
 }
 
 ValueRanges::ValueRanges(int candidates)
@@ -39,11 +28,6 @@ void merge(ValueRanges& all, const ValueRanges& other) {
     all.low[c] = std::min(all.low[c], other.low[c]);
     all.high[c] = std::max(all.high[c], other.high[c]);
   }
-}
-
-void merge(NodeValues& all, const NodeValues& other) {
-  add(all.class_counts, other.class_counts, "classes");
-  merge(all.ranges, other.ranges);
 }
 
 int bins_for(std::int64_t samples, int most) {
@@ -98,7 +82,7 @@ void merge(IntervalValues& all, const IntervalValues& other) {
 
 void merge(ChildCounts& all, const ChildCounts& other) {
   expect_alike(all.classes == other.classes, "classes");
-  add(all.counts, other.counts, "nodes");
+  merge(all.counts, other.counts);
 }
 
 ChildSizes child_sizes(const ChildCounts& counts) {
@@ -107,13 +91,6 @@ ChildSizes child_sizes(const ChildCounts& counts) {
     for (int c = 0; c < counts.classes; ++c) sizes[child] += counts.of(child)[c];
   }
   return sizes;
-}
-
-void merge(ChildSizes& all, const ChildSizes& other) { add(all, other, "nodes"); }
-
-void merge(HardCounts& all, const HardCounts& other) {
-  all.background += other.background;
-  add(all.counts, other.counts, "trees");
 }
 
 HardCut hard_cut(const HardCounts& all, std::uint64_t most) {

@@ -1,18 +1,76 @@
 #pragma once
 
 // The messages between the driver of a training and the shards of its samples, as plain structs of integers.
-// training_protocol.h explains their order. `merge(all, other)` adds the reply of one more shard. Since numbers are
-// integers, the result does not depend on the order of merging, unless a comment says otherwise. Every `merge` throws
-// Error if the replies are about different nodes, classes or bins.
+// training_protocol.h explains their order. What goes to other machines has `visit_fields`, which passes each field
+// with its name to a visitor, or each pair of fields of two messages: reading, writing (cluster/message.h) and merging
+// follow from it. `merge(all, other)` adds the reply of one more shard. Since numbers are integers, the result does not
+// depend on the order of merging, unless a comment says otherwise. Every `merge` throws Error if the replies are about
+// different nodes, classes or bins.
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {
+
+namespace detail {
+struct SeeFields {
+  const SeeFields& operator()(const char* /*name*/, auto&... /*field*/) const { return *this; }
+};
+}  // namespace detail
+
+/// Has `visit_fields`: visit("name", field)("name", field) ...
+template <class T>
+concept HasFields = requires(T& message) {
+  T::visit_fields(detail::SeeFields(), message);
+};
+
+/// Adds all numbers.
+template <HasFields Reply>
+void merge(Reply& all, const Reply& other);
+
+namespace detail {
+
+/// Throws Error about shards that replied with other numbers of `what`.
+void expect_alike(bool alike, const char* what);
+
+template <class T>
+void add(const char* /*what*/, T& all, const T& other) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    all += other;
+  } else {
+    merge(all, other);
+  }
+}
+template <class T>
+void add(const char* what, std::vector<T>& all, const std::vector<T>& other) {
+  expect_alike(all.size() == other.size(), what);
+  for (std::size_t i = 0; i < all.size(); ++i) add(what, all[i], other[i]);
+}
+
+struct AddFields {
+  const AddFields& operator()(const char* name, auto& all, const auto& other) const {
+    add(name, all, other);
+    return *this;
+  }
+};
+
+}  // namespace detail
+
+template <HasFields Reply>
+void merge(Reply& all, const Reply& other) {
+  Reply::visit_fields(detail::AddFields(), all, other);
+}
+
+/// Replies about several nodes merge node by node.
+template <class Reply>
+void merge(std::vector<Reply>& all, const std::vector<Reply>& other) {
+  detail::add("nodes", all, other);
+}
 
 /// Number of candidates in a block. A node's histogram of so many stays in the second-level cache.
 inline constexpr int kBlockCandidates = 64;
@@ -25,8 +83,9 @@ inline constexpr std::int32_t kSettled = -1;
 struct SampleCounts {
   std::vector<std::int64_t> samples;  ///< [class]
   std::vector<std::uint64_t> pixels;  ///< [class]
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("samples", of.samples...)("pixels", of.pixels...); }
 };
-void merge(SampleCounts& all, const SampleCounts& other);
 
 /// A node whose split is to be chosen.
 struct LevelNode {
@@ -36,6 +95,10 @@ struct LevelNode {
 
   /// Returns how many of the first `rank` samples are counted.
   std::int64_t counted_before(std::int64_t rank) const { return counted == size ? rank : rank * counted / size; }
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("number", of.number...)("size", of.size...)("counted", of.counted...);
+  }
 };
 
 /// Request: the nodes of the next level.
@@ -63,8 +126,11 @@ void merge(ValueRanges& all, const ValueRanges& other);
 struct NodeValues {
   std::vector<std::int32_t> class_counts;  ///< [class]
   ValueRanges ranges;
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("class counts", of.class_counts...)("ranges", of.ranges...);
+  }
 };
-void merge(NodeValues& all, const NodeValues& other);
 
 /// Returns the number of bins for a node of so many counted samples, at most `most`; few samples do not distinguish
 /// many bins.
@@ -167,37 +233,27 @@ void merge(ChildCounts& all, const ChildCounts& other);
 /// this is an exclusive prefix sum of the replies of the shards before it.
 using ChildSizes = std::vector<std::int64_t>;
 ChildSizes child_sizes(const ChildCounts& counts);
-void merge(ChildSizes& all, const ChildSizes& other);
 
 /// Reply: the background that a forest takes for a body, by the parts' share.
 struct HardCounts {
   std::int64_t background = 0;        ///< background samples from which the forest already learns
   std::vector<std::uint64_t> counts;  ///< [parts' share in 1/255 over all trees]: pixels of the pool above half
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("background", of.background...)("counts", of.counts...); }
 };
-void merge(HardCounts& all, const HardCounts& other);
 
 /// Request: the pixels of the pool that become samples: all with a share above `above`, and the first `ties` with
 /// exactly that share.
 struct HardCut {
   std::uint32_t above = 0;
   std::uint64_t ties = 0;
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("above", of.above...)("ties", of.ties...); }
 };
 /// Returns the cut that takes the `most` worst pixels of all shards, and on a tie the earlier ones.
 HardCut hard_cut(const HardCounts& all, std::uint64_t most);
 /// Returns the part of `cut` for a shard that counted `own`, and subtracts its ties from `cut`, so that the next shard
 /// gets the rest.
 HardCut take_part(HardCut& cut, const HardCounts& own);
-
-namespace detail {
-/// Throws Error naming `what` if two shards disagree about it.
-void expect_alike(bool alike, const char* what);
-}  // namespace detail
-
-/// Replies about several nodes merge node by node.
-template <class Reply>
-void merge(std::vector<Reply>& all, const std::vector<Reply>& other) {
-  detail::expect_alike(all.size() == other.size(), "nodes");
-  for (std::size_t i = 0; i < all.size(); ++i) merge(all[i], other[i]);
-}
 
 }  // namespace vesalius

@@ -22,6 +22,10 @@ struct TrainingSample {
 struct PersonSamples {
   std::uint8_t heading = 0;
   std::uint32_t begin = 0, end = 0;
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("heading", of.heading...)("begin", of.begin...)("end", of.end...);
+  }
 };
 
 }  // namespace vesalius

@@ -25,6 +25,12 @@ class TrainingSet {
     std::vector<TrainingSample> samples = {}, pool = {}, held_out = {}, people_samples = {};
     std::vector<PersonSamples> people = {};
     std::vector<std::uint64_t> class_pixels = {};
+
+    /// All but the frames.
+    static void visit_fields(auto&& visit, auto&... of) {
+      visit("samples", of.samples...)("pool", of.pool...)("held out", of.held_out...)(
+          "people samples", of.people_samples...)("people", of.people...)("class pixels", of.class_pixels...);
+    }
   };
 
   /// `first_frame` is the number of frames in the sets before this one. Throws UsageError for options out of range, and
