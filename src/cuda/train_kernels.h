@@ -1,14 +1,14 @@
 #pragma once
 
 // What the kernels of training (train_kernels.cuh) are told: one shard's part in growing a tree (train/tree_shard.h)
-// and in learning leaves (train/leaf_shard.h). All pointers are to the device's memory. Every kernel has a thread for
-// each of what it counts, unless it says otherwise.
+// and in learning leaves (train/leaves/leaf_shard.h). All pointers are to the device's memory. Every kernel has a
+// thread for each of what it counts, unless it says otherwise.
 
 #include <cstdint>
 
 namespace vesalius::gpu {
 
-/// A frame among the packed tiles of all (train/depth_tiles.h).
+/// A frame among the packed tiles of all (train/samples/depth_tiles.h).
 struct FrameInfo {
   std::uint64_t word = 0;  ///< its first
   std::int32_t width = 0, height = 0;

@@ -223,7 +223,7 @@ TEST_F(TrainProgram, ReportsBadInputInOneLine) {
   write_file_atomically(path("broken.png"), "no picture");
   refused(train("--data " + data() + " --background " + path("broken.png") + " --fx 60" + out), 1, "broken.png");
   refused("train --data " + data() + " --memory 0.01" + out, 1, "--memory allows 0.01: expected --memory 0.");
-  refused("train --data " + data() + " --memory 0.5 --pixels 100000" + out, 1, ", or --pixels ");
+  refused("train --data " + data() + " --memory 0.5 --pixels 100000" + out, 1, "fewer --pixels, or --on");
   std::string other(paper_body().toml);
   other.replace(other.find("\"l_foot\""), 8, "\"l_fuss\"");
   for (std::size_t at = 0; (at = other.find("\"l_foot\"")) != std::string::npos;) other.replace(at, 8, "\"l_fuss\"");

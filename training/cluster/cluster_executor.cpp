@@ -9,7 +9,8 @@
 #include "cluster/map_task.h"
 #include "cluster/message.h"
 #include "train/grow_tree.h"
-#include "train/leaf_shard.h"
+#include "train/leaves/leaf_shard.h"
+#include "train/sharded.h"
 #include "train/split_candidates.h"
 #include "vesalius/base/error.h"
 
@@ -22,18 +23,18 @@ std::vector<std::size_t> up_to(std::size_t count) {
   return numbers;
 }
 
-template <class Number>
-void add(std::vector<Number>& all, const std::vector<Number>& more) {
-  all.resize(std::max(all.size(), more.size()), 0);
-  for (std::size_t i = 0; i < more.size(); ++i) all[i] += more[i];
-}
-
-/// Returns the message of a key. Throws Error if a job did not write it.
-const std::string& message_of(const std::map<std::string, std::string>& records, const std::string& key,
-                              const std::string& job) {
+/// Returns the bytes under a key. Throws Error if a job did not write it.
+const std::string& bytes_of(const std::map<std::string, std::string>& records, const std::string& key,
+                            const std::string& job) {
   const auto found = records.find(key);
   if (found == records.end()) throw Error(fmt::format("{}: no result for {}", job, key));
   return found->second;
+}
+
+/// Returns the message under a key. Throws Error as well if it is damaged.
+template <class T>
+T message_of(const std::map<std::string, std::string>& records, const std::string& key, const std::string& job) {
+  return from_message<T>(bytes_of(records, key, job), job + ": " + key);
 }
 
 }  // namespace
@@ -69,9 +70,9 @@ class ClusterLeaves : public LeafExecutor {
     for (const std::vector<std::int64_t>& sums : sums_of_trees(records, job.name, logits.stride)) {
       gradient.of_trees.emplace_back(sums.begin(), sums.end());
     }
-    MessageReader likelihood(message_of(records, kLikelihoodKey, job.name), job.name);
-    gradient.log_likelihood = likelihood.real64("likelihood");
-    gradient.weight = likelihood.real64("weight");
+    const auto likelihood = message_of<Likelihood>(records, kLikelihoodKey, job.name);
+    gradient.log_likelihood = likelihood.log_likelihood;
+    gradient.weight = likelihood.weight;
     // The logits are kept elsewhere, and a round's result is large.
     if (!last_.empty()) all_.engine_.store().remove(job_folder(last_));
     last_ = job.name;
@@ -87,8 +88,7 @@ class ClusterLeaves : public LeafExecutor {
       std::vector<std::int64_t>& sums = all.emplace_back();
       const std::size_t size = forest_.trees[t].leaves.size() * row;
       for (std::size_t block = 0; sums.size() < size; ++block) {
-        MessageReader in(message_of(records, node_key(t, block, 0), job), job);
-        const auto numbers = in.array<std::int64_t>("sums");
+        const auto numbers = message_of<std::vector<std::int64_t>>(records, node_key(t, block, 0), job);
         sums.insert(sums.end(), numbers.begin(), numbers.end());
         if (numbers.empty() || sums.size() > size) throw Error(job + ": sums of other leaves than expected");
       }
@@ -187,8 +187,7 @@ class ClusterExecutor::Round {
       const std::vector<NodeRange> groups = row_groups(job.trees[t].nodes, options_.split);
       for (std::size_t g = 0; g < groups.size(); ++g) {
         for (std::size_t block = 0; block < blocks; ++block) {
-          const std::string key = node_key(t, g, block);
-          std::vector<NodeReply> replies = parse_node_replies(message_of(records, key, name), name + ": " + key);
+          auto replies = message_of<std::vector<NodeReply>>(records, node_key(t, g, block), name);
           if (std::ssize(replies) != groups[g].size()) throw Error(name + ": splits of other nodes than expected");
           for (std::int32_t n = groups[g].begin; n < groups[g].end; ++n) {
             NodeReply& reply = replies[n - groups[g].begin];
@@ -217,7 +216,7 @@ class ClusterExecutor::Round {
     if (needed) records = all_.run_over_shards(job, true);
     for (std::size_t t = 0; t < states_.size(); ++t) {
       CountReply reply;
-      if (needed) reply = parse_count_reply(message_of(records, tree_key(t), name), name);
+      if (needed) reply = message_of<CountReply>(records, tree_key(t), name);
       descend(states_[t], job.trees[t].large, reply, name);
     }
   }
@@ -301,15 +300,14 @@ class ClusterExecutor::Round {
       job.trees.push_back(std::move(request));
     }
     job.subtrees = tasks;
-    for (const SubtreeRequest& task : tasks) {
-      auto& counts = job.root_counts.emplace_back();
-      for (const std::int32_t n : task.nodes) counts.push_back(states_[task.tree].counts[n]);
+    for (SubtreeRequest& task : job.subtrees) {
+      for (const std::int32_t n : task.nodes) task.counts.push_back(states_[task.tree].counts[n]);
     }
     const Records records = all_.run(job, up_to(tasks.size()), false);
     for (const SubtreeRequest& task : tasks) {
       for (const std::int32_t n : task.nodes) {
         const std::string key = node_key(task.tree, n, 0);
-        states_[task.tree].grown.graft(n, parse_grown_nodes(message_of(records, key, name), name + ": " + key));
+        states_[task.tree].grown.graft(n, parse_grown_nodes(bytes_of(records, key, name), name + ": " + key));
       }
     }
     for (State& state : states_) state.grown.close();
@@ -352,7 +350,7 @@ ClusterExecutor::ClusterExecutor(Engine& engine, ClusterTraining training, const
   const std::size_t own = training_.backgrounds.size();
   for (std::size_t s = 0; s < own; ++s) {
     const Record record = store_set(engine_.store(), job, *training_.backgrounds[s], s, 0);
-    prepared_[s] = parse_prepared_shard(record.message, job.name);
+    prepared_[s] = from_message<PreparedShard>(record.message, job.name);
   }
   std::vector<std::size_t> lines = up_to(shards());
   lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(own));
@@ -416,7 +414,7 @@ void ClusterExecutor::take_prepared(const Records& records, const std::string& j
   for (const auto& [key, message] : records) {
     const std::size_t shard = key_numbers(key, 1, job)[0];
     if (shard >= shards()) throw Error(job + ": unexpected result for " + key);
-    prepared_[shard] = parse_prepared_shard(message, job);
+    prepared_[shard] = from_message<PreparedShard>(message, job);
   }
   for (std::size_t s = 0; s < shards(); ++s) {
     if (prepared_[s].frames != first_frames_[s + 1] - first_frames_[s]) {
@@ -426,18 +424,7 @@ void ClusterExecutor::take_prepared(const Records& records, const std::string& j
 }
 
 PreparedShard ClusterExecutor::total() const {
-  PreparedShard all;
-  for (const PreparedShard& shard : prepared_) {
-    add(all.samples.samples, shard.samples.samples);
-    add(all.samples.pixels, shard.samples.pixels);
-    add(all.labels.classes, shard.labels.classes);
-    add(all.labels.headings, shard.labels.headings);
-    all.frames += shard.frames;
-    all.bytes += shard.bytes;
-    all.held_out += shard.held_out;
-    all.hard_negatives += shard.hard_negatives;
-  }
-  return all;
+  return merged(prepared_, [](const PreparedShard& shard) { return shard; });
 }
 
 void ClusterExecutor::grow_trees(const Forest& /*forest*/, const GrowTreeOptions& /*options*/,
@@ -451,16 +438,8 @@ HardCounts ClusterExecutor::count_hard_negatives(const Forest& forest) {
   hard_forest_ = forest;
   const Records records = run_over_shards(job, false);
   hard_.clear();
-  HardCounts all;
-  for (std::size_t s = 0; s < shards(); ++s) {
-    hard_.push_back(parse_hard_counts(message_of(records, shard_key(s), job.name), job.name));
-    if (s == 0) {
-      all = hard_.back();
-    } else {
-      merge(all, hard_.back());
-    }
-  }
-  return all;
+  for (std::size_t s = 0; s < shards(); ++s) hard_.push_back(message_of<HardCounts>(records, shard_key(s), job.name));
+  return merged(hard_, [](const HardCounts& counts) { return counts; });
 }
 
 std::size_t ClusterExecutor::add_hard_negatives(const HardCut& cut) {
@@ -484,8 +463,7 @@ std::vector<FacingSample> ClusterExecutor::facing_samples(const Forest& forest) 
   const Records records = run_over_shards(job, false);
   std::vector<FacingSample> all;
   for (std::size_t s = 0; s < shards(); ++s) {
-    const std::string& message = message_of(records, shard_key(s), job.name);
-    std::ranges::move(parse_facing_samples(message, job.name), std::back_inserter(all));
+    std::ranges::move(message_of<std::vector<FacingSample>>(records, shard_key(s), job.name), std::back_inserter(all));
   }
   return all;
 }

@@ -9,8 +9,8 @@
 #include "cluster/engine.h"
 #include "cluster/task_replies.h"
 #include "cluster/train_job.h"
-#include "train/training_protocol.h"
-#include "train/training_set.h"
+#include "train/messages/training_protocol.h"
+#include "train/samples/training_set.h"
 
 namespace vesalius {
 

@@ -11,7 +11,7 @@
 #include "cluster/process.h"
 #include "cluster/test_engine.h"
 #include "io/files/test_files.h"
-#include "train/grow_tree.h"
+#include "train/messages/training_protocol.h"
 
 namespace vesalius {
 namespace {

@@ -14,7 +14,7 @@
 #include "cluster/train_job.h"
 #include "io/files/read_file.h"
 #include "io/files/temporary_folder.h"
-#include "train/grow_tree.h"
+#include "train/messages/training_protocol.h"
 
 namespace vesalius {
 namespace {

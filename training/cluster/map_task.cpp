@@ -12,10 +12,10 @@
 #include "cluster/train_job.h"
 #include "cluster/training_set_bytes.h"
 #include "train/feature_rows.h"
-#include "train/find_leaves.h"
 #include "train/grow_tree.h"
-#include "train/leaf_shard.h"
+#include "train/leaves/leaf_shard.h"
 #include "train/local_shards.h"
+#include "train/samples/find_leaves.h"
 #include "train/split_candidates.h"
 #include "train/tree_shard.h"
 #include "vesalius/base/parallel_in_order.h"
@@ -62,26 +62,12 @@ class MapTask {
   }
 
   void take(std::size_t index) {
-    switch (job_.kind) {
-      case JobKind::kPrepare:
-        return prepare(index);
-      case JobKind::kCount:
-        return count(index);
-      case JobKind::kRows:
-        return rows(index);
-      case JobKind::kSubtrees:
-        return subtrees(index);
-      case JobKind::kHardCounts:
-        return hard_counts(index);
-      case JobKind::kHarden:
-        return harden(index);
-      case JobKind::kLeafCounts:
-        return leaf_counts(index);
-      case JobKind::kGradient:
-        return gradient(index);
-      case JobKind::kFacing:
-        return facing(index);
-    }
+    using Work = void (MapTask::*)(std::size_t);
+    static constexpr Work kWork[] = {&MapTask::prepare,     &MapTask::count,       &MapTask::rows,
+                                     &MapTask::subtrees,    &MapTask::hard_counts, &MapTask::harden,
+                                     &MapTask::leaf_counts, &MapTask::gradient,    &MapTask::facing};  // as JobKind
+    (this->*kWork[static_cast<std::size_t>(job_.kind)])(index);
+    if (job_.kind != JobKind::kPrepare && job_.kind != JobKind::kSubtrees) tell("shards", 1);
   }
 
   void write(const std::string& key, std::string message) const { out_ << record_line({key, std::move(message)}); }
@@ -135,18 +121,14 @@ class MapTask {
       std::vector<std::int64_t> counts;
       for (const std::int32_t child : tree.large)
         counts.insert(counts.end(), all.of(child), all.of(child) + all.classes);
-      MessageWriter message;
-      message.array(counts);
-      write(tree_key(t), piece_message(static_cast<std::uint32_t>(shard), message.bytes()));
+      write(tree_key(t), piece_message(static_cast<std::uint32_t>(shard), to_message(counts)));
     }
-    tell("shards", 1);
   }
 
   void rows(std::size_t shard) {
     const TrainingSet set = load_set(shard);
     const auto leaves = open_leaves(set);
     for (std::size_t t = 0; t < job_.trees.size(); ++t) rows_of_tree(shard, set, t, leaves[t]);
-    tell("shards", 1);
   }
 
   void rows_of_tree(std::size_t shard, const TrainingSet& set, std::size_t t, std::span<const std::uint32_t> leaves) {
@@ -184,7 +166,7 @@ class MapTask {
       const GroupRows rows = rows_of(tree, groups[i], block_candidates(job_.options.grow.split, block));
       if (rows.labels.empty()) return;
       lines[i] = record_line(
-          {node_key(t, first + i, block), piece_message(static_cast<std::uint32_t>(shard), serialise(rows))});
+          {node_key(t, first + i, block), piece_message(static_cast<std::uint32_t>(shard), to_message(rows))});
     });
     std::uint64_t evaluations = 0;
     for (const std::string& line : lines) out_ << line;
@@ -201,14 +183,19 @@ class MapTask {
       group.rows.push_back(static_cast<std::uint32_t>(rows.rows));
       group.labels.insert(group.labels.end(), rows.labels, rows.labels + rows.rows);
     }
-    group.columns.resize(group.labels.size() * candidates);
-    std::int16_t* columns = group.columns.data();
+    group.low.resize(group.labels.size() * candidates);
+    group.high.resize(group.low.size());
+    std::size_t at = 0;
     for (std::int32_t n = nodes.begin; n < nodes.end; ++n) {
       const FeatureRows rows = tree.rows(n);
       for (std::size_t r = 0; r < rows.rows; ++r) {
-        for (int c = 0; c < candidates; ++c) columns[c * rows.rows + r] = rows.values[r * rows.width + c];
+        for (int c = 0; c < candidates; ++c) {
+          const auto value = static_cast<std::uint16_t>(rows.values[r * rows.width + c]);
+          group.low[at + c * rows.rows + r] = static_cast<std::uint8_t>(value);
+          group.high[at + c * rows.rows + r] = static_cast<std::uint8_t>(value >> 8U);
+        }
       }
-      columns += rows.rows * candidates;
+      at += rows.rows * candidates;
     }
     return group;
   }
@@ -222,7 +209,7 @@ class MapTask {
     std::vector<TreeRoot> roots;
     for (std::size_t i = 0; i < request.nodes.size(); ++i) {
       root_of.at(request.nodes[i]) = static_cast<std::int32_t>(i);
-      roots.push_back({tree.nodes.at(request.nodes[i]).number, job_.root_counts[index][i]});
+      roots.push_back({tree.nodes.at(request.nodes[i]).number, request.counts.at(i)});
     }
     for (std::int32_t& child : open.child_of_leaf) child = child == kSettled ? kSettled : root_of.at(child);
     open.children = roots.size();
@@ -232,14 +219,13 @@ class MapTask {
     const auto grown =
         grow_subtrees(shards, job_.forest, job_.options.grow, tree.number, job_.samples, roots, progress);
     for (std::size_t i = 0; i < roots.size(); ++i)
-      write(node_key(request.tree, request.nodes[i], 0), serialise(grown[i]));
+      write(node_key(request.tree, request.nodes[i], 0), to_message(grown[i]));
     tell("evaluations", progress.evaluations);
   }
 
   void hard_counts(std::size_t shard) {
     TrainingSet set = load_set(shard);
-    write(shard_key(shard), serialise(set.count_hard_negatives(job_.forest)));
-    tell("shards", 1);
+    write(shard_key(shard), to_message(set.count_hard_negatives(job_.forest)));
   }
 
   void harden(std::size_t shard) {
@@ -247,7 +233,6 @@ class MapTask {
     set.count_hard_negatives(job_.forest);
     const std::size_t added = set.add_hard_negatives(job_.cuts.at(shard));
     out_ << record_line(store_set(context_.store, job_, set, shard, added));
-    tell("shards", 1);
   }
 
   void leaf_counts(std::size_t shard) {
@@ -258,7 +243,6 @@ class MapTask {
       add_sums(t, leaves.leaf_counts(static_cast<int>(t)).weights);
     }
     summed_shards_.push_back(static_cast<std::uint32_t>(shard));
-    tell("shards", 1);
   }
 
   void gradient(std::size_t shard) {
@@ -267,12 +251,9 @@ class MapTask {
     leaves.set_weights(job_.weights);
     const LeafGradient gradient = leaves.gradient(job_.logits, job_.gradient);
     for (std::size_t t = 0; t < gradient.of_trees.size(); ++t) add_sums(t, gradient.of_trees[t]);
-    MessageWriter likelihood;
-    likelihood.real(gradient.log_likelihood);
-    likelihood.real(gradient.weight);
-    write(kLikelihoodKey, piece_message(static_cast<std::uint32_t>(shard), likelihood.bytes()));
+    const std::string likelihood = to_message(Likelihood{gradient.log_likelihood, gradient.weight});
+    write(kLikelihoodKey, piece_message(static_cast<std::uint32_t>(shard), likelihood));
     summed_shards_.push_back(static_cast<std::uint32_t>(shard));
-    tell("shards", 1);
   }
 
   /// Adds a shard's numbers to those of the other shards of this task, so that each task writes them once.
@@ -296,10 +277,7 @@ class MapTask {
     }
   }
 
-  void facing(std::size_t shard) {
-    write(shard_key(shard), serialise(facing_samples(load_set(shard), job_.forest)));
-    tell("shards", 1);
-  }
+  void facing(std::size_t shard) { write(shard_key(shard), to_message(facing_samples(load_set(shard), job_.forest))); }
 
   const TaskContext& context_;
   std::ostream& out_;
@@ -325,7 +303,7 @@ Record store_set(Store& store, const TrainJob& job, const TrainingSet& set, std:
   PreparedShard prepared{set.sample_counts(),   LeafShard(set, without_trees, layout).label_counts(),
                          set.frames().size(),   bytes.size(),
                          set.held_out().size(), hard};
-  return {shard_key(shard), serialise(prepared)};
+  return {shard_key(shard), to_message(prepared)};
 }
 
 }  // namespace vesalius

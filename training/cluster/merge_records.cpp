@@ -4,55 +4,54 @@
 #include <iterator>
 #include <utility>
 
+#include "cluster/message.h"
+
 namespace vesalius {
 namespace {
 
-constexpr std::uint8_t kPieces = 0, kSums = 1;
+struct Piece {
+  std::uint32_t shard = 0;
+  std::string message;
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("shard", of.shard...)("message", of.message...); }
+};
+
+/// What is under a key: either pieces or sums.
+struct KeyMessage {
+  bool summed = false;
+  std::vector<Piece> pieces = {};
+  Sums sums = {};
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("summed", of.summed...)("pieces", of.pieces...)("sums", of.sums...);
+  }
+};
 
 }  // namespace
 
-void Pieces::add(std::uint32_t shard, std::string_view message, const std::string& name) {
-  const auto [at, fresh] = of_shards_.try_emplace(shard, message);
+std::string piece_message(std::uint32_t shard, std::string_view message) {
+  return to_message(KeyMessage{.pieces = {{shard, std::string(message)}}});
+}
+
+std::string sums_message(const Sums& sums) { return to_message(KeyMessage{.summed = true, .sums = sums}); }
+
+void KeyMerger::add(std::string_view message, const std::string& name) {
+  auto more = from_message<KeyMessage>(message, name);
+  if (started_ && summed_ != more.summed) throw Error(name + ": pieces and sums under one key");
+  started_ = true;
+  summed_ = more.summed;
+  if (summed_) return add_sums(std::move(more.sums), name);
+  for (Piece& piece : more.pieces) add_piece(piece.shard, std::move(piece.message), name);
+}
+
+void KeyMerger::add_piece(std::uint32_t shard, std::string message, const std::string& name) {
+  const std::size_t bytes = message.size();
+  const auto [at, fresh] = pieces_.try_emplace(shard, std::move(message));
   if (fresh) {
-    bytes_ += message.size();
+    piece_bytes_ += bytes;
   } else if (at->second != message) {
     throw Error(fmt::format("{}: shard {} came twice with different messages", name, shard));
   }
-}
-
-std::string piece_message(std::uint32_t shard, std::string_view message) {
-  MessageWriter out;
-  out.number(kPieces);
-  out.number(std::uint32_t{1});
-  out.number(shard);
-  out.text(message);
-  return std::move(out.bytes());
-}
-
-std::string sums_message(const Sums& sums) {
-  MessageWriter out;
-  out.number(kSums);
-  out.array(sums.shards);
-  out.array(sums.numbers);
-  return std::move(out.bytes());
-}
-
-void KeyMerger::add(std::string_view message, const std::string& name) {
-  MessageReader in(message, name);
-  const auto kind = in.number<std::uint8_t>("kind");
-  if (kind > kSums || (started_ && summed_ != (kind == kSums))) in.fail("kind of message");
-  started_ = true;
-  summed_ = kind == kSums;
-  if (summed_) {
-    Sums sums{in.array<std::uint32_t>("shards"), in.array<std::int64_t>("sums")};
-    in.expect_end();
-    return add_sums(std::move(sums), name);
-  }
-  for (auto count = in.number<std::uint32_t>("pieces"); count > 0; --count) {
-    const auto shard = in.number<std::uint32_t>("shard");
-    pieces_.add(shard, in.text("piece"), name);
-  }
-  in.expect_end();
 }
 
 void KeyMerger::add_sums(Sums sums, const std::string& name) {
@@ -73,14 +72,9 @@ void KeyMerger::add_sums(Sums sums, const std::string& name) {
 
 std::string KeyMerger::message() const {
   if (summed_) return sums_message(sums_);
-  MessageWriter out;
-  out.number(kPieces);
-  out.number(static_cast<std::uint32_t>(pieces_.of_shards().size()));
-  for (const auto& [shard, piece] : pieces_.of_shards()) {
-    out.number(shard);
-    out.text(piece);
-  }
-  return std::move(out.bytes());
+  KeyMessage all;
+  for (const auto& [shard, piece] : pieces_) all.pieces.push_back({shard, piece});
+  return to_message(all);
 }
 
 }  // namespace vesalius

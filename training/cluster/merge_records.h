@@ -10,27 +10,17 @@
 #include <string_view>
 #include <vector>
 
-#include "cluster/message.h"
-
 namespace vesalius {
 
 /// Messages of several shards under one key, not added.
-class Pieces {
- public:
-  /// Adds a shard's message; one that is there already must be equal. Throws Error naming `name` otherwise.
-  void add(std::uint32_t shard, std::string_view message, const std::string& name);
-  const std::map<std::uint32_t, std::string>& of_shards() const { return of_shards_; }
-  std::size_t bytes() const { return bytes_; }
-
- private:
-  std::map<std::uint32_t, std::string> of_shards_;
-  std::size_t bytes_ = 0;
-};
+using Pieces = std::map<std::uint32_t, std::string>;
 
 /// Integers summed over shards.
 struct Sums {
   std::vector<std::uint32_t> shards;  ///< ascending
   std::vector<std::int64_t> numbers;
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("shards", of.shards...)("numbers", of.numbers...); }
 };
 
 std::string piece_message(std::uint32_t shard, std::string_view message);
@@ -47,13 +37,15 @@ class KeyMerger {
   const Pieces& pieces() const { return pieces_; }
   const Sums& sums() const { return sums_; }
   /// The size in bytes of what is held.
-  std::size_t bytes() const { return pieces_.bytes() + sums_.numbers.size() * sizeof(std::int64_t); }
+  std::size_t bytes() const { return piece_bytes_ + sums_.numbers.size() * sizeof(std::int64_t); }
 
  private:
+  void add_piece(std::uint32_t shard, std::string message, const std::string& name);
   void add_sums(Sums sums, const std::string& name);
 
   bool summed_ = false, started_ = false;
   Pieces pieces_;
+  std::size_t piece_bytes_ = 0;
   Sums sums_;
   std::vector<std::vector<std::uint32_t>> added_;  ///< lists of shards that were added
 };

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "cluster/message.h"
 #include "cluster/reduce_task.h"
 #include "vesalius/base/error.h"
 
@@ -53,7 +54,7 @@ TEST(KeyMerger, AddsSumsAndKeepsPiecesInAnyOrder) {
     }
     EXPECT_EQ(added.sums().shards, (std::vector<std::uint32_t>{0, 1, 2}));
     EXPECT_EQ(added.sums().numbers, (std::vector<std::int64_t>{11, 22, 33}));
-    EXPECT_THAT(kept.pieces().of_shards(), testing::ElementsAre(testing::Pair(1, "a"), testing::Pair(3, "c")));
+    EXPECT_THAT(kept.pieces(), testing::ElementsAre(testing::Pair(1, "a"), testing::Pair(3, "c")));
   }
 }
 
@@ -79,7 +80,7 @@ TEST(RunCombineTask, MergesNeighboursOfAKey) {
   ASSERT_TRUE(std::getline(lines, line));
   KeyMerger merger;
   merger.add(parse_record(line, "out").message, "a");
-  EXPECT_EQ(merger.pieces().of_shards().size(), 2U);
+  EXPECT_EQ(merger.pieces().size(), 2U);
   ASSERT_TRUE(std::getline(lines, line));
   EXPECT_EQ(parse_record(line, "out").message, sums_message({{0, 1}, {11}}));
   EXPECT_FALSE(std::getline(lines, line));

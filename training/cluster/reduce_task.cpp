@@ -65,9 +65,9 @@ class ReduceTask {
     const std::string name = job_.name + ": " + key;
     switch (job_.kind) {
       case JobKind::kRows:
-        return write(key, serialise(best_splits_of(key, merged.pieces(), name)));
+        return write(key, to_message(best_splits_of(key, merged.pieces(), name)));
       case JobKind::kCount:
-        return write(key, serialise(totals_of(key, merged.pieces(), name)));
+        return write(key, to_message(totals_of(key, merged.pieces(), name)));
       case JobKind::kLeafCounts:
       case JobKind::kGradient:
         return write(key, key == kLikelihoodKey ? likelihood(merged.pieces(), name) : sums(merged.sums(), name));
@@ -92,9 +92,9 @@ class ReduceTask {
     const NodeRange nodes = groups[numbers[1]];
     const auto block = static_cast<int>(numbers[2]);
     std::vector<Part> parts;
-    for (const auto& [shard, piece] : pieces.of_shards()) {
-      parts.push_back({parse_group_rows(piece, static_cast<std::size_t>(nodes.size()),
-                                        block_candidates(job_.options.grow.split, block), name)});
+    for (const auto& [shard, piece] : pieces) {
+      parts.push_back({from_message<GroupRows>(piece, name)});
+      check(parts.back().rows, nodes.size(), block_candidates(job_.options.grow.split, block), name);
     }
     std::vector<NodeReply> replies;
     for (std::int32_t n = nodes.begin; n < nodes.end; ++n) {
@@ -130,9 +130,10 @@ class ReduceTask {
       const std::size_t count = part.rows.rows[part.node], first = labels_.size();
       const auto labels = part.rows.labels.begin() + static_cast<std::ptrdiff_t>(part.begin);
       labels_.insert(labels_.end(), labels, labels + static_cast<std::ptrdiff_t>(count));
-      const std::int16_t* columns = part.rows.columns.data() + part.begin * candidates;
+      const std::size_t columns = part.begin * candidates;
       for (int c = 0; c < candidates; ++c) {
-        for (std::size_t r = 0; r < count; ++r) values_[(first + r) * width + c] = columns[c * count + r];
+        for (std::size_t r = 0; r < count; ++r)
+          values_[(first + r) * width + c] = part.rows.value(columns + c * count + r);
       }
       part.begin += count;
     }
@@ -165,13 +166,12 @@ class ReduceTask {
   CountReply totals_of(const std::string& key, const Pieces& pieces, const std::string& name) const {
     const TreeRequest& tree = tree_of(key_numbers(key, 1, name)[0], name);
     const std::size_t children = tree.large.size();
-    expect_all_shards(pieces.of_shards().size(), name);
+    expect_all_shards(pieces.size(), name);
     CountReply reply{std::vector<std::int64_t>(children * classes_, 0), {}};
     std::vector<std::int64_t> before(children, 0);
-    for (const auto& [shard, piece] : pieces.of_shards()) {
-      MessageReader in(piece, name);
-      const auto counts = in.array<std::int64_t>("counts");
-      if (counts.size() != reply.totals.size()) in.fail("number of children");
+    for (const auto& [shard, piece] : pieces) {
+      const auto counts = from_message<std::vector<std::int64_t>>(piece, name);
+      if (counts.size() != reply.totals.size()) throw Error(name + ": counts of other nodes than expected");
       reply.before.insert(reply.before.end(), before.begin(), before.end());
       for (std::size_t i = 0; i < counts.size(); ++i) {
         reply.totals[i] += counts[i];
@@ -183,24 +183,15 @@ class ReduceTask {
 
   std::string sums(const Sums& sums, const std::string& name) const {
     expect_all_shards(sums.shards.size(), name);
-    MessageWriter out;
-    out.array(sums.numbers);
-    return std::move(out.bytes());
+    return to_message(sums.numbers);
   }
 
   /// Sums in the order of shards, so that the text for the user is the same every time.
   std::string likelihood(const Pieces& pieces, const std::string& name) const {
-    expect_all_shards(pieces.of_shards().size(), name);
-    double sum = 0.0, weight = 0.0;
-    for (const auto& [shard, piece] : pieces.of_shards()) {
-      MessageReader in(piece, name);
-      sum += in.real64("likelihood");
-      weight += in.real64("weight");
-    }
-    MessageWriter out;
-    out.real(sum);
-    out.real(weight);
-    return std::move(out.bytes());
+    expect_all_shards(pieces.size(), name);
+    Likelihood all;
+    for (const auto& [shard, piece] : pieces) merge(all, from_message<Likelihood>(piece, name));
+    return to_message(all);
   }
 
   std::ostream& out_;

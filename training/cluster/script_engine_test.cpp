@@ -7,7 +7,7 @@
 #include "cluster/folder_store.h"
 #include "cluster/train_job.h"
 #include "io/files/test_files.h"
-#include "train/grow_tree.h"
+#include "train/messages/training_protocol.h"
 
 namespace vesalius {
 namespace {

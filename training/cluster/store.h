@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "train/huge_buffer.h"
+#include "train/samples/huge_buffer.h"
 
 namespace vesalius {
 

@@ -9,8 +9,8 @@
 
 #include "cluster/message.h"
 #include "train/growing_tree.h"
-#include "train/leaf_messages.h"
-#include "train/training_messages.h"
+#include "train/messages/leaf_messages.h"
+#include "train/messages/training_messages.h"
 
 namespace vesalius {
 
@@ -25,45 +25,60 @@ struct PreparedShard {
   LabelCounts labels;
   std::uint64_t frames = 0, bytes = 0, held_out = 0;
   std::uint64_t hard_negatives = 0;  ///< samples that were added
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("samples", of.samples...)("labels", of.labels...)("frames", of.frames...)("bytes", of.bytes...)(
+        "held out", of.held_out...)("hard negatives", of.hard_negatives...);
+  }
 };
-std::string serialise(const PreparedShard& shard);
-PreparedShard parse_prepared_shard(std::string_view message, const std::string& name);
 
 /// Values of the counted samples of neighbouring nodes for one block of candidates, in one shard; node by node.
 struct GroupRows {
-  std::vector<std::uint32_t> rows;    ///< [node]
-  std::vector<std::uint8_t> labels;   ///< [row of the node]
-  std::vector<std::int16_t> columns;  ///< [candidate * rows of the node + row of the node], mm
+  std::vector<std::uint32_t> rows;   ///< [node]
+  std::vector<std::uint8_t> labels;  ///< [row of the node]
+  /// Values, [candidate * rows of the node + row of the node], mm. High bytes repeat, low ones hardly: zstd makes less
+  /// of them when they lie apart.
+  std::vector<std::uint8_t> low, high;
+
+  std::int16_t value(std::size_t at) const { return static_cast<std::int16_t>(low[at] | high[at] << 8U); }
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("rows", of.rows...)("labels", of.labels...)("low", of.low...)("high", of.high...);
+  }
 };
-std::string serialise(const GroupRows& rows);
-/// Throws Error naming `name` as well if there are not `nodes` nodes and `candidates` values in a row.
-GroupRows parse_group_rows(std::string_view message, std::size_t nodes, int candidates, const std::string& name);
+/// Throws Error naming `name` unless there are `nodes` nodes and `candidates` values in a row.
+void check(const GroupRows& group, std::size_t nodes, int candidates, const std::string& name);
 
 /// The best split of a node among one block of candidates.
 struct NodeReply {
   double gain = 0.0;  ///< bits per sample; 0 if there is none
   TreeNode split;
   std::vector<std::int64_t> children;  ///< [side * classes + class]: its counted samples
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("gain", of.gain...)("split", of.split...)("children", of.children...);
+  }
 };
-std::string serialise(const std::vector<NodeReply>& replies);
-std::vector<NodeReply> parse_node_replies(std::string_view message, const std::string& name);
 
 /// Samples at the children of large nodes.
 struct CountReply {
   std::vector<std::int64_t> totals;  ///< [child * classes + class], all shards
   std::vector<std::int64_t> before;  ///< [shard * children + child]: in all shards before that one
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("totals", of.totals...)("before", of.before...); }
 };
-std::string serialise(const CountReply& reply);
-CountReply parse_count_reply(std::string_view message, const std::string& name);
 
-std::string serialise(const std::vector<GrownNode>& nodes);
+/// How well leaves in learning do.
+struct Likelihood {
+  double log_likelihood = 0.0, weight = 0.0;  ///< as in LeafGradient
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("log likelihood", of.log_likelihood...)("weight", of.weight...);
+  }
+};
+
+/// Returns the nodes of a subtree. Throws Error naming `name` as well if a child is beyond the last one.
 std::vector<GrownNode> parse_grown_nodes(std::string_view message, const std::string& name);
-
-std::string serialise(const HardCounts& counts);
-HardCounts parse_hard_counts(std::string_view message, const std::string& name);
-
-std::string serialise(const std::vector<FacingSample>& samples);
-std::vector<FacingSample> parse_facing_samples(std::string_view message, const std::string& name);
 
 /// Keys: numbers of fixed width, so that lines sort as numbers do.
 std::string shard_key(std::size_t shard);

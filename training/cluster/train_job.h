@@ -11,8 +11,8 @@
 
 #include "train/grow_forest.h"
 #include "train/growing_tree.h"
-#include "train/leaf_messages.h"
-#include "train/training_messages.h"
+#include "train/messages/leaf_messages.h"
+#include "train/messages/training_messages.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {
@@ -38,6 +38,11 @@ struct TreeRequest {
   std::vector<std::int32_t> large;  ///< for kCount the children to count; for kRows the nodes that have ranks
   /// For kRows: samples of each large node in all shards before one: [shard * large.size() + index in large].
   std::vector<std::int64_t> before;
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("number", of.number...)("open", of.open...)("nodes", of.nodes...)("large", of.large...)("before",
+                                                                                                  of.before...);
+  }
 };
 
 /// Returns which nodes of a level share a record of their rows: as many as a reducer can hold.
@@ -45,8 +50,13 @@ std::vector<NodeRange> row_groups(const std::vector<LevelNode>& nodes, const Spl
 
 /// Nodes of one tree whose subtrees one task grows.
 struct SubtreeRequest {
-  std::int32_t tree = 0;            ///< index among TrainJob::trees
-  std::vector<std::int32_t> nodes;  ///< of its level
+  std::int32_t tree = 0;                               ///< index among TrainJob::trees
+  std::vector<std::int32_t> nodes;                     ///< of its level
+  std::vector<std::vector<std::int64_t>> counts = {};  ///< [node][class]: its samples
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("tree", of.tree...)("nodes", of.nodes...)("counts", of.counts...);
+  }
 };
 
 struct TrainJob {
@@ -62,13 +72,20 @@ struct TrainJob {
   SampleCounts samples;                     ///< of all shards
   std::vector<TreeRequest> trees;
   std::vector<SubtreeRequest> subtrees;
-  std::vector<std::vector<std::vector<std::int64_t>>> root_counts;  ///< kSubtrees: [subtree][node][class]
-  std::vector<HardCut> cuts;                                        ///< kHarden: [shard]
+  std::vector<HardCut> cuts;  ///< kHarden: [shard]
   SampleWeights weights;
   LeafLogits logits;
   GradientTask gradient;
 
   std::size_t shards() const { return first_frames.size() - 1; }
+
+  /// All but what is text elsewhere too: the forest's body, and the options.
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("kind", of.kind...)("name", of.name...)("forest", of.forest...)("source", of.source...)("sets", of.sets...)(
+        "new sets", of.new_sets...)("first frames", of.first_frames...)("background frames", of.background_frames...)(
+        "samples", of.samples...)("trees", of.trees...)("subtrees", of.subtrees...)("cuts", of.cuts...)(
+        "weights", of.weights...)("logits", of.logits...)("gradient", of.gradient...);
+  }
 };
 
 std::string set_name(const std::string& sets, std::size_t shard);

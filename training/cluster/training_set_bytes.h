@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "train/huge_buffer.h"
-#include "train/training_set.h"
+#include "train/samples/huge_buffer.h"
+#include "train/samples/training_set.h"
 
 namespace vesalius {
 

@@ -6,19 +6,15 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include "cluster/store_name.h"
-#include "cluster/web_connection.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -28,20 +24,10 @@ using Json = nlohmann::json;
 
 constexpr std::string_view kPrefix = "webhdfs://";
 
-/// A request that failed.
-class Failure : public Error {
+/// A request about a file or folder that is not there.
+class Missing : public WebFailure {
  public:
-  Failure(const std::string& message, bool passing, bool missing = false)
-      : Error(message), passing_(passing), missing_(missing) {}
-
-  /// Whether the same may succeed a moment later.
-  bool is_passing() const { return passing_; }
-  /// Whether HDFS says that there is no such file or folder.
-  bool is_missing() const { return missing_; }
-
- private:
-  bool passing_;
-  bool missing_;
+  using WebFailure::WebFailure;
 };
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
@@ -57,36 +43,23 @@ bool is_passing(const std::string& exception) {
   return exception == "StandbyException" || exception == "RetriableException" || exception == "SafeModeException";
 }
 
-/// Throws Failure unless the request succeeded or is redirected. `shown` is the address for the message, `node` names a
-/// node that the address does not: "data node HOST:PORT: ".
+/// Throws WebFailure unless the request succeeded or is redirected. `shown` is the address for the message, `node`
+/// names a node that the address does not: "data node HOST:PORT: ".
 void check(const WebAnswer& answer, const std::string& shown, const std::string& node = "") {
-  if (!answer.problem.empty()) throw Failure(fmt::format("{}: {}{}", shown, node, answer.problem), answer.passing);
+  if (!answer.problem.empty()) throw WebFailure(fmt::format("{}: {}{}", shown, node, answer.problem), answer.passing);
   if (answer.status >= 200 && answer.status < 400) return;
-  const bool is_overload = answer.status >= 500;
   const Json json = Json::parse(answer.body, nullptr, false);
   if (json.is_object() && json.contains("RemoteException") && json["RemoteException"].is_object()) {
     const std::string exception = first_line(text_of(json["RemoteException"], "exception"));
     const std::string message = first_line(text_of(json["RemoteException"], "message"));
-    throw Failure(fmt::format("{}: {}: {}", shown, exception, message), is_overload || is_passing(exception),
-                  exception == "FileNotFoundException");
+    const std::string text = fmt::format("{}: {}: {}", shown, exception, message);
+    if (exception == "FileNotFoundException") throw Missing(text, answer.passing);
+    throw WebFailure(text, answer.passing || is_passing(exception));
   }
   const char* hint = answer.status == 401
                          ? ": it wants more than a user's name, such as Kerberos, which is not supported"
                          : ", expected an answer of WebHDFS";
-  throw Failure(fmt::format("{}: {}HTTP status {}{}", shown, node, answer.status, hint), is_overload);
-}
-
-/// Calls `f` until it throws no passing Failure, at most so many times.
-template <class F>
-auto repeated(const WebHdfsOptions& options, F&& f) -> decltype(f()) {
-  for (int attempt = 1;; ++attempt) {
-    try {
-      return f();
-    } catch (const Failure& failure) {
-      if (!failure.is_passing() || attempt >= options.tries) throw;
-    }
-    std::this_thread::sleep_for(std::chrono::duration<double>(std::ldexp(options.first_wait_s, attempt - 1)));
-  }
+  throw WebFailure(fmt::format("{}: {}HTTP status {}{}", shown, node, answer.status, hint), answer.passing);
 }
 
 std::string user_name() {
@@ -134,29 +107,29 @@ class WebHdfsStore::Call {
       : options_(store.options_),
         shown_(store.address_ + store.path_of(shown_name)),
         url_(fmt::format("http://{}/webhdfs/v1{}?user.name={}&op=", store.address_.substr(kPrefix.size()),
-                         url_encoded(store.path_of(name)), url_encoded(store.user_))),
-        connection_(options_.connect_s, options_.stall_s) {}
+                         store.path_of(name), url_encoded(store.user_))),
+        connection_(options_) {}
   Call(const WebHdfsStore& store, const std::string& name) : Call(store, name, name) {}
 
   /// Returns nullopt if there is no such file or folder.
   std::optional<FileStatus> status() {
     try {
-      return repeated(options_, [&] { return status_once(); });
-    } catch (const Failure& failure) {
-      if (failure.is_missing()) return std::nullopt;
-      throw;
+      return repeated(options_, shown_, [&] { return status_once(); });
+    } catch (const Missing&) {
+      return std::nullopt;
     }
   }
 
   std::string read() {
-    return repeated(options_, [&] {
+    return repeated(options_, shown_, [&] {
       const FileStatus status = status_once();
       if (status.is_folder) throw Error(shown_ + ": a folder, expected a file");
       WebAnswer answer = ask("GET", "OPEN");
       if (!answer.location.empty()) answer = ask_data_node("GET", answer.location);
       // A data node that ends early, or a file that was replaced in between.
       if (answer.body.size() != status.length) {
-        throw Failure(fmt::format("{}: {} bytes came, expected {}", shown_, answer.body.size(), status.length), true);
+        throw WebFailure(fmt::format("{}: {} bytes came, expected {}", shown_, answer.body.size(), status.length),
+                         true);
       }
       return std::move(answer.body);
     });
@@ -164,7 +137,7 @@ class WebHdfsStore::Call {
 
   /// Writes a file under this name itself. Sets `begun` once there may be a file.
   void create(const std::string& bytes, bool& begun) {
-    repeated(options_, [&] {
+    repeated(options_, shown_, [&] {
       // The name node makes no file: it only says which data node takes the bytes.
       const WebAnswer answer = ask("PUT", "CREATE&overwrite=true");
       if (answer.location.empty()) throw Error(shown_ + ": expected the address of a data node from WebHDFS");
@@ -177,16 +150,16 @@ class WebHdfsStore::Call {
   /// the name node of Hadoop 2 and 3 reads (NamenodeWebHdfsMethods: it calls rename2), the target is replaced in one
   /// step, and a failure is an exception.
   void rename(const WebHdfsStore& store, const std::string& name, std::uint64_t length) {
-    const std::string operation = "RENAME&renameoptions=OVERWRITE&destination=" + url_encoded(store.path_of(name));
+    const std::string operation = "RENAME&renameoptions=OVERWRITE&destination=" + store.path_of(name);
     bool is_first = true;
-    repeated(options_, [&] {
+    repeated(options_, shown_, [&] {
       const bool is_again = !std::exchange(is_first, false);
       try {
         // What does not know the option answers as to a plain one: with a truth value.
         const WebAnswer answer = ask("PUT", operation);
         if (!answer.body.empty() && !is_true(answer)) throw Error(shown_ + ": WebHDFS does not rename over a file");
-      } catch (const Failure& failure) {
-        if (!is_again || !failure.is_missing()) throw;
+      } catch (const Missing&) {
+        if (!is_again) throw;
         // Renamed by an earlier try whose answer was lost?
         const auto status = Call(store, name).status();
         if (!status || status->is_folder || status->length != length) throw;
@@ -195,7 +168,7 @@ class WebHdfsStore::Call {
   }
 
   std::vector<std::string> list() {
-    const WebAnswer answer = repeated(options_, [&] { return ask("GET", "LISTSTATUS"); });
+    const WebAnswer answer = repeated(options_, shown_, [&] { return ask("GET", "LISTSTATUS"); });
     std::vector<std::string> names;
     try {
       const Json json = Json::parse(answer.body);
@@ -214,7 +187,7 @@ class WebHdfsStore::Call {
   /// Removes this file or folder, if there is one.
   void remove() {
     // False says that there was none; anything but a truth value is an error.
-    repeated(options_, [&] { is_true(ask("DELETE", "DELETE&recursive=true")); });
+    repeated(options_, shown_, [&] { is_true(ask("DELETE", "DELETE&recursive=true")); });
   }
 
  private:
@@ -249,7 +222,7 @@ class WebHdfsStore::Call {
   }
   [[noreturn]] void not_webhdfs() const { throw Error(shown_ + ": the server's answer is not one of WebHDFS"); }
 
-  const WebHdfsOptions options_;
+  const WebOptions options_;
   const std::string shown_;
   const std::string url_;  ///< of the name node; an operation can be appended
   WebConnection connection_;
@@ -257,7 +230,7 @@ class WebHdfsStore::Call {
 
 bool WebHdfsStore::takes(const std::string& place) { return place.starts_with(kPrefix); }
 
-WebHdfsStore::WebHdfsStore(const std::string& address, const WebHdfsOptions& options) : options_(options) {
+WebHdfsStore::WebHdfsStore(const std::string& address, WebOptions options) : options_(std::move(options)) {
   const auto refuse = [&] {
     throw UsageError(address + ": expected webhdfs://HOST:PORT/PATH, the path of letters, digits, '.', '_' and '-'");
   };
@@ -313,9 +286,8 @@ std::vector<std::string> WebHdfsStore::list(const std::string& folder) const {
   check_store_folder(folder);
   try {
     return Call(*this, folder).list();
-  } catch (const Failure& failure) {
-    if (failure.is_missing()) return {};
-    throw;
+  } catch (const Missing&) {
+    return {};
   }
 }
 

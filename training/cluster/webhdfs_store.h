@@ -1,15 +1,12 @@
 #pragma once
 
 #include "cluster/store.h"
+#include "downloads/web_connection.h"
 
 namespace vesalius {
 
-struct WebHdfsOptions {
-  double connect_s = 20.0;    ///< time within which a node must answer
-  double stall_s = 60.0;      ///< time for which a transfer may stay below 100 bytes a second: HDFS's own read timeout
-  int tries = 5;              ///< attempts for each request if a node or the network fails
-  double first_wait_s = 1.0;  ///< pause before the second try; each later pause is twice as long
-};
+/// How HDFS is asked: its own read timeout is 60 s.
+inline WebOptions webhdfs_options() { return {.stall_s = 60.0, .tries = 5, .direct = true}; }
 
 /// A folder of HDFS, by WebHDFS of Hadoop 3. The user is HADOOP_USER_NAME of the environment, else USER, LOGNAME, or
 /// whom this process belongs to; clusters that ask for Kerberos or TLS are not supported. Nodes are asked directly,
@@ -22,7 +19,7 @@ class WebHdfsStore : public Store {
 
   /// Asks nobody yet. Throws UsageError unless the address is webhdfs://HOST:PORT/PATH, its path of the same characters
   /// as names.
-  explicit WebHdfsStore(const std::string& address, const WebHdfsOptions& options = {});
+  explicit WebHdfsStore(const std::string& address, WebOptions options = webhdfs_options());
 
   std::string place() const override { return address_ + path_of(""); }
   std::string read(const std::string& name) const override;
@@ -42,7 +39,7 @@ class WebHdfsStore : public Store {
   std::string address_;  ///< webhdfs://HOST:PORT
   std::string root_;     ///< absolute path; empty for HDFS's root
   std::string user_;
-  WebHdfsOptions options_;
+  WebOptions options_;
 };
 
 }  // namespace vesalius

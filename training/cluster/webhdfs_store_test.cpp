@@ -21,8 +21,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-WebHdfsOptions hasty() {
-  WebHdfsOptions options;
+WebOptions hasty() {
+  WebOptions options = webhdfs_options();
   options.connect_s = 1;
   options.stall_s = 1;
   options.tries = 3;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cuda/device_labeller.h"
-#include "train/leaf_shard.h"
+#include "train/leaves/leaf_shard.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::gpu {

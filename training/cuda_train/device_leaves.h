@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cuda_train/device_samples.h"
-#include "train/leaf_messages.h"
+#include "train/messages/leaf_messages.h"
 #include "train/sharded.h"
 #include "vesalius/forest/forest.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cuda/device.h"
-#include "train/training_set.h"
+#include "train/samples/training_set.h"
 
 namespace vesalius::gpu {
 

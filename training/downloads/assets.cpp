@@ -69,7 +69,7 @@ class Workplace {
 /// The installation of one package into a folder.
 class Installation {
  public:
-  Installation(const AssetPackage& package, const std::string& folder, const InstallWatch& watch, FetchOptions options)
+  Installation(const AssetPackage& package, const std::string& folder, const InstallWatch& watch, WebOptions options)
       : package_(package), folder_(folder), root_(folder + "/" + package.name), watch_(watch), options_(options) {
     options_.go_on = [this](std::uint64_t bytes) { return !watch_ || watch_(done_bytes_ + bytes, total_bytes_); };
     for (const AssetFile& file : package.files) {
@@ -181,7 +181,7 @@ class Installation {
   std::string root_;  ///< folder of the package
   std::optional<Workplace> workplace_;
   const InstallWatch& watch_;
-  FetchOptions options_;
+  WebOptions options_;
   std::vector<const AssetFile*> missing_;
   std::uint64_t done_bytes_ = 0;
   std::uint64_t total_bytes_ = 0;
@@ -219,7 +219,7 @@ std::function<std::string(const std::string& path)> asset_reader(const AssetPack
 }
 
 InstallReport install_assets(const AssetPackage& package, const std::string& folder, const std::string& mirror,
-                             const InstallWatch& watch, FetchOptions options) {
+                             const InstallWatch& watch, WebOptions options) {
   Installation installation(package, folder, watch, std::move(options));
   installation.run(mirror);
   return installation.report();

@@ -42,6 +42,6 @@ using InstallWatch = std::function<bool(std::uint64_t done_bytes, std::uint64_t 
 /// earlier installation completed are kept; its unfinished ones are removed. Throws Error if a file cannot be fetched
 /// or written, and if another process is writing in `folder`.
 InstallReport install_assets(const AssetPackage& package, const std::string& folder, const std::string& mirror,
-                             const InstallWatch& watch, FetchOptions options = {});
+                             const InstallWatch& watch, WebOptions options = {});
 
 }  // namespace vesalius

@@ -46,7 +46,7 @@ class Assets : public testing::Test {
     for (const auto& [path, content] : contents_) test::put(mirror() + "/p/" + path, content);
   }
   InstallReport install(const std::string& from) const {
-    FetchOptions options;
+    WebOptions options;
     options.tries = 2;
     options.first_wait_s = 0.01;
     return install_assets(package_, home(), from, {}, options);
@@ -159,7 +159,7 @@ TEST_F(Assets, RefuseWrongBytes) {
 TEST_F(Assets, LeaveNoEmptyFolderIfNothingWasFetched) {
   EXPECT_NE(error_from(folder_ / "nowhere"), "");
   EXPECT_FALSE(fs::exists(home()));
-  FetchOptions options;
+  WebOptions options;
   options.tries = 1;
   const std::string deep = folder_ / "a/b/c/";
   EXPECT_NE(test::error_of([&] { install_assets(package_, deep, folder_ / "nowhere", {}, options); }), "");

@@ -22,8 +22,8 @@ FileDigest digest_of(std::string_view bytes) {
   return {bytes.size(), sum.finish()};
 }
 
-FetchOptions hasty() {
-  FetchOptions options;
+WebOptions hasty() {
+  WebOptions options;
   options.tries = 3;
   options.first_wait_s = 0.01;
   options.stall_s = 1;
@@ -32,7 +32,7 @@ FetchOptions hasty() {
 
 /// Fetches a file from a place and returns its bytes, or nullopt if there is no such file.
 std::optional<std::string> fetched(const std::string& place, const std::string& path = "f",
-                                   const FetchOptions& options = hasty(), const std::string& expected = kText) {
+                                   const WebOptions& options = hasty(), const std::string& expected = kText) {
   const test::TemporaryFolder folder;
   Origin origin(place, options);
   VerifiedFile file(folder / "out", folder / "part", digest_of(expected));
@@ -105,7 +105,7 @@ TEST(Fetch, RetriesAfterPassingErrors) {
 
 TEST(Fetch, EndsStalledTransfers) {
   TestServer server([&](const std::string&) { return Reply{200, kText, "", 5, true}; });
-  FetchOptions options = hasty();
+  WebOptions options = hasty();
   options.tries = 1;
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_THAT(test::error_of([&] { fetched(server.address(), "f", options); }),
@@ -115,7 +115,7 @@ TEST(Fetch, EndsStalledTransfers) {
 
 TEST(Fetch, StopsWhenAsked) {
   TestServer server([&](const std::string&) { return Reply{200, kText, "", 5, true}; });
-  FetchOptions options = hasty();
+  WebOptions options = hasty();
   options.stall_s = 600;
   options.go_on = [](std::uint64_t bytes) { return bytes < 5; };
   EXPECT_THAT(test::error_of([&] { fetched(server.address(), "f", options); }), HasSubstr("/f: interrupted"));

@@ -6,9 +6,9 @@
 // clang-format on
 
 #include "train/feature_rows.h"
+#include "train/messages/training_messages.h"
+#include "train/samples/walk_samples.h"
 #include "train/split_candidates.h"
-#include "train/training_messages.h"
-#include "train/walk_samples.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vesalius::HWY_NAMESPACE {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "train/frame_store.h"
-#include "train/training_sample.h"
+#include "train/messages/training_sample.h"
+#include "train/samples/frame_store.h"
 
 namespace vesalius {
 

@@ -4,8 +4,8 @@
 
 #include <limits>
 
+#include "train/samples/walk_samples.h"
 #include "train/split_candidates.h"
-#include "train/walk_samples.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/for_each_target.h"
 #include "vesalius/base/random.h"

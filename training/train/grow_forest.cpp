@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "train/fit_facing.h"
+#include "train/leaves/fit_facing.h"
 #include "train/local_executor.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "train/grow_tree.h"
-#include "train/learn_leaves.h"
-#include "train/training_protocol.h"
-#include "train/tree_store.h"
+#include "train/leaves/learn_leaves.h"
+#include "train/leaves/tree_store.h"
+#include "train/messages/training_protocol.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/options.h"

@@ -4,20 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "train/grow_options.h"
 #include "train/growing_tree.h"
-#include "train/training_protocol.h"
-#include "train/training_set.h"
-#include "vesalius/base/error.h"
+#include "train/messages/grow_options.h"
+#include "train/messages/training_protocol.h"
+#include "train/samples/training_set.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {
-
-/// grow_tree throws this error when it is asked to stop.
-class Interrupted : public Error {
- public:
-  using Error::Error;
-};
 
 /// Grows tree number `tree`, which `shards` have begun with the same options, over all shards (section 4.2,
 /// training_protocol.h): each node takes the pair of offsets and the threshold of largest information gain over

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "capsule/capsule_person.h"
-#include "train/leaf_shares.h"
+#include "train/leaves/leaf_shares.h"
+#include "train/leaves/prune_tree.h"
 #include "train/local_shards.h"
-#include "train/prune_tree.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
 #include "vesalius/base/error.h"

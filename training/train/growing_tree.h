@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "train/grow_options.h"
-#include "train/leaf_shares.h"
-#include "train/prune_tree.h"
-#include "train/training_messages.h"
+#include "train/leaves/leaf_shares.h"
+#include "train/leaves/prune_tree.h"
+#include "train/messages/grow_options.h"
+#include "train/messages/training_messages.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {
@@ -32,6 +32,10 @@ struct OpenTree {
   Tree tree;  ///< nodes only
   std::vector<std::int32_t> child_of_leaf;
   std::size_t children = 0;
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("tree", of.tree...)("child of leaf", of.child_of_leaf...)("children", of.children...);
+  }
 };
 
 /// The driver's side of a growing tree: its nodes so far, and the level that is to be split.

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "train/grow_tree.h"
-#include "train/leaf_shard.h"
+#include "train/leaves/leaf_shard.h"
 #include "train/local_shards.h"
 #include "vesalius/base/parallel.h"
 

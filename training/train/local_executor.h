@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "train/training_protocol.h"
-#include "train/training_set.h"
+#include "train/messages/training_protocol.h"
+#include "train/samples/training_set.h"
 
 namespace vesalius {
 

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "train/growing_tree.h"
-#include "train/leaf_shard.h"
+#include "train/leaves/leaf_shard.h"
+#include "train/samples/training_set.h"
 #include "train/sharded.h"
-#include "train/training_set.h"
 #include "train/tree_shard.h"
 
 namespace vesalius {

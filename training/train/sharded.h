@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "train/training_protocol.h"
+#include "train/messages/training_protocol.h"
 #include "vesalius/base/parallel.h"
 
 namespace vesalius {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "train/training_messages.h"
+#include "train/messages/training_messages.h"
 
 namespace vesalius {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "train/grow_options.h"
+#include "train/messages/grow_options.h"
 #include "vesalius/base/random.h"
 #include "vesalius/forest/forest.h"
 

@@ -5,9 +5,9 @@
 
 #include <cstdint>
 
-#include "train/entropy_table.h"
 #include "train/feature_rows.h"
-#include "train/training_messages.h"
+#include "train/messages/entropy_table.h"
+#include "train/messages/training_messages.h"
 
 namespace vesalius {
 

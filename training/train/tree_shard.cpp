@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "train/find_leaves.h"
-#include "train/frame_prefetcher.h"
+#include "train/samples/find_leaves.h"
+#include "train/samples/frame_prefetcher.h"
+#include "train/samples/walk_samples.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
-#include "train/walk_samples.h"
 #include "vesalius/base/parallel.h"
 
 namespace vesalius {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "train/feature_rows.h"
-#include "train/grow_options.h"
 #include "train/growing_tree.h"
-#include "train/huge_buffer.h"
-#include "train/training_messages.h"
-#include "train/training_set.h"
+#include "train/messages/grow_options.h"
+#include "train/messages/training_messages.h"
+#include "train/samples/huge_buffer.h"
+#include "train/samples/training_set.h"
 
 namespace vesalius {
 

@@ -20,7 +20,7 @@
 #include "dataset/labelled_frame_codec.h"
 #include "io/files/atomic_file.h"
 #include "io/files/options_file.h"
-#include "train/grow_tree.h"
+#include "train/messages/training_protocol.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel_in_order.h"
 

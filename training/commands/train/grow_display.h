@@ -11,7 +11,7 @@
 
 #include "console/status_line.h"
 #include "train/grow_forest.h"
-#include "train/sample_accuracy.h"
+#include "train/samples/sample_accuracy.h"
 
 namespace vesalius::cli {
 

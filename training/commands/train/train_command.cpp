@@ -92,8 +92,11 @@ void run(const Arguments& arguments) {
   if (!arguments.quiet) {
     for (const std::string& note : inputs.notes()) say("note: " + note);
   }
-  const MemoryPlan plan = plan_memory(inputs, options, arguments.curves, memory_limit(arguments));
-  if (arguments.estimate) return print(estimate_text(inputs, options, plan));
+  const TrainPlan plan = plan_training(inputs, options, arguments.curves, memory_limit(arguments));
+  if (arguments.estimate) return print(plan.text);
+  if (!arguments.quiet) {
+    say(fmt::format("about {:.0f} s, at most {:.2f} GiB", plan.seconds, static_cast<double>(plan.bytes) / kGiB));
+  }
   watch_interrupts();
   train({.out = arguments.out,
          .trees_of = arguments.trees_of,

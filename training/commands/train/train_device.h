@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "train/training_protocol.h"
-#include "train/training_set.h"
+#include "train/messages/training_protocol.h"
+#include "train/samples/training_set.h"
 
 namespace vesalius::cli {
 

@@ -9,11 +9,9 @@
 #include <cmath>
 
 #include "commands/train/train_curves.h"
-#include "train/estimate_training.h"
-#include "train/training_memory.h"
+#include "train/local_executor.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
-#include "vesalius/base/parallel_in_order.h"
 
 namespace vesalius::cli {
 namespace {
@@ -21,106 +19,80 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
-constexpr double kUsedShare = 0.8;         ///< share of the machine's memory; other programs need some too
-constexpr int kMeasuredFrames = 64;        ///< frames of each input that are measured
-constexpr double kMostMeasuring_s = 5.0;   ///< longest time for measuring each input
+constexpr double kUsedShare = 0.8;  ///< share of the machine's memory; other programs need some too
+constexpr int kFewestMeasured = 4, kMostMeasured = 50, kOneOf = 30;  ///< frames
 constexpr int kUnknownBackgrounds = 1000;  ///< frames of a source that does not say how many it has
-constexpr int kPackedFrames = 32;          ///< frames of each input that are packed to see how much memory they take
-constexpr double kPackedMargin = 1.1;      ///< factor by which the other frames may take more
+constexpr int kEmptyPool = 4;              ///< times as many pixels to search for hard negatives (SampleOptions)
+constexpr int kPilotTree = 2000;           ///< its number
+constexpr double kMargin = 1.1;            ///< by which the other frames may take more
+constexpr double kGrowing = 2.0;           ///< largest ratio of a vector's capacity to its size
 
-double gib(std::uint64_t bytes) { return static_cast<double>(bytes) / kGiB; }
+// Bytes of a sample while a tree grows: its node, row, side, label and number; and the values of its candidates.
+constexpr double kGrowBytes = 14.0, kRowBytes = 2.0 * kBlockCandidates;
+// Bytes of a node while a tree grows; of a leaf's logit while it is learned: now, at first, gradient, and weight.
+constexpr double kNodeBytes = kGrowing * (sizeof(GrownNode) + sizeof(TreeNode)), kLogitBytes = 12.0;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-int class_count(const TrainInputs& inputs, const TrainOptions& options) {
-  return inputs.body().part_count() + (options.sample.background_share > 0.F ? 1 : 0);
-}
+/// What all frames of a training take, of which some were measured.
+struct Load {
+  double reading_s = 0.0, depth_bytes = 0.0, samples = 0.0, pool = 0.0;
+};
 
-std::vector<FrameGroup> groups_of(const TrainInputs& inputs) {
-  std::vector<FrameGroup> groups;
-  for (const TrainInput& input : inputs.inputs()) {
-    groups.push_back({static_cast<std::uint64_t>(input.frames), 0, false});
-  }
+/// Adds some frames to the set. A background counts with the most that its frames may take.
+Load measure(const TrainInputs& inputs, const SampleOptions& options, TrainingSet& set) {
+  const auto frames = static_cast<double>(inputs.frames());
+  const int step =
+      std::max(1, static_cast<int>(frames / std::clamp(frames / kOneOf, kFewestMeasured * 1.0, kMostMeasured * 1.0)));
+  const Clock::time_point start = Clock::now();
+  inputs.read({1.0, [&](int i) { return i % step == 0; }}, [&](const LabelledFrame& frame) { set.add(frame); });
+  const double times = frames / static_cast<double>(set.frames().size());
+  Load load{times * seconds_since(start), times * static_cast<double>(set.frames().bytes()),
+            times * static_cast<double>(set.samples().size()), times * static_cast<double>(set.contents().pool.size())};
   for (const TrainBackground& background : inputs.backgrounds()) {
-    const int frames = background.frames >= 0 ? background.frames : kUnknownBackgrounds;
-    groups.push_back({static_cast<std::uint64_t>(frames), 0, true});
+    const int count = background.frames >= 0 ? background.frames : kUnknownBackgrounds;
+    load.depth_bytes += static_cast<double>(FrameStore::most_frame_bytes(background.width, background.height)) * count;
+    load.samples += static_cast<double>(options.background_share) * options.pixels_per_frame * count;
+    load.pool += static_cast<double>(kEmptyPool * options.hard_pool) * count;
   }
-  return groups;
+  return load;
 }
 
-/// Estimates the memory of an input's frame from some of its frames, because the size of packed depth depends on its
-/// content.
-std::uint64_t measured_frame_bytes(const TrainInput& input) {
-  const int count = std::min(input.frames, kPackedFrames);
-  std::uint64_t bytes = 0;
-  parallel_in_order(
-      count,
-      [&](int i) {
-        const auto number = static_cast<std::int64_t>(i) * input.frames / count;
-        return FrameStore::frame_bytes(input.frame(static_cast<int>(number)).frame.depth);
-      },
-      [&](int /*i*/, std::uint64_t of_frame) {
-        bytes += of_frame;
-        return true;
-      });
-  return static_cast<std::uint64_t>(kPackedMargin * static_cast<double>(bytes) / count);
-}
+/// Times of a tree and of a round of learning its leaves, for as many samples as a training has.
+struct Pilot {
+  double tree_s = 0.0, leaves_s = 0.0, evaluations = 0.0, leaves = 0.0;
+};
 
-/// Returns groups_of() with the measured bytes. All frames are held `copies` times.
-std::vector<FrameGroup> measured_groups(const TrainInputs& inputs, double copies) {
-  std::vector<FrameGroup> groups = groups_of(inputs);
-  for (FrameGroup& group : groups) {
-    group.frames = static_cast<std::uint64_t>(std::ceil(copies * static_cast<double>(group.frames)));
-  }
-  const std::size_t input_count = inputs.inputs().size();
-  for (std::size_t i = 0; i < input_count; ++i) groups[i].frame_bytes = measured_frame_bytes(inputs.inputs()[i]);
-  for (std::size_t i = input_count; i < groups.size(); ++i) {
-    const TrainBackground& background = inputs.backgrounds()[i - input_count];
-    groups[i].frame_bytes = FrameStore::most_frame_bytes(background.width, background.height);
-  }
-  return groups;
+/// Grows a tree. A node looks at no more than `split_pixels` samples, so every sample is looked at about equally often
+/// however many there are.
+Pilot grow_pilot(TrainingSet& set, double samples, const TrainOptions& options) {
+  if (set.samples().empty()) return {};
+  const double times = samples / static_cast<double>(set.samples().size());
+  GrowProgress progress;
+  Clock::time_point start = Clock::now();
+  Forest forest = set.untrained_forest();
+  forest.trees = {grow_tree(set, options.grow, kPilotTree, &progress)};
+  Pilot pilot{.tree_s = times * seconds_since(start),
+              .evaluations = times * static_cast<double>(progress.evaluations),
+              .leaves = std::min(times * static_cast<double>(forest.trees[0].leaves.size()),
+                                 std::ldexp(1.0, options.grow.leaf.max_depth))};
+  if (options.leaves.rounds == 0 || !forest.has_background) return pilot;
+  start = Clock::now();
+  LeafLearningOptions one = options.leaves;
+  one.rounds = 1;
+  LocalExecutor executor({&set});
+  MemoryTreeStore store;
+  const LogitLayout layout(forest.body, forest.has_background, one.headings);
+  learn_leaves(*executor.begin_leaves(forest, layout), forest, layout, one, store, [](int, double) { return true; });
+  pilot.leaves_s = times * seconds_since(start);
+  return pilot;
 }
 
 /// Returns the peak memory in bytes that the program has taken so far, for its libraries and open sources.
-std::uint64_t own_memory() {
+double own_memory() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;
-}
-
-[[noreturn]] void refuse(const TrainInputs& inputs, const TrainOptions& options, std::span<const FrameGroup> groups,
-                         std::uint64_t needed, std::uint64_t own, std::uint64_t limit) {
-  const std::uint64_t left = limit > own ? limit - own : 0;
-  const TrainingFit fit = training_fit(groups, options, class_count(inputs, options), left);
-  const auto frames = static_cast<std::int64_t>(std::floor(static_cast<double>(inputs.frames()) * fit.frame_share));
-  throw Error(
-      fmt::format("training on {} frames with {} pixels each takes {:.2f} GiB, --memory allows {:.2f}: expected "
-                  "--memory {:.1f}{}{}",
-                  inputs.frames(), options.sample.pixels_per_frame, gib(needed), gib(limit),
-                  std::ceil(10.0 * gib(needed)) / 10.0, frames > 0 ? fmt::format(", or {} frames", frames) : "",
-                  fit.pixels > 0 ? fmt::format(", or --pixels {}", fit.pixels) : ""));
-}
-
-/// Measurements of an input: some frames that are made and dropped, and the time that all frames will take.
-struct Measured {
-  std::vector<LabelledFrame> frames;
-  double seconds = 0.0;
-};
-
-Measured measure(const TrainInput& input, const TrainInputs& inputs, const TrainOptions& options) {
-  Measured measured;
-  TrainingSet set(inputs.body(), training_convention(options), options.sample, 1);
-  const Clock::time_point start = Clock::now();
-  parallel_in_order(
-      std::min(input.frames, kMeasuredFrames), [&](int i) { return input.frame(i); },
-      [&](int /*i*/, LabelledFrame frame) {
-        set.add(frame);
-        frame.frame.colour = {};
-        measured.frames.push_back(std::move(frame));
-        return seconds_since(start) < kMostMeasuring_s;
-      });
-  measured.seconds = seconds_since(start) / static_cast<double>(measured.frames.size()) * input.frames;
-  return measured;
+  return static_cast<double>(usage.ru_maxrss) * 1024.0;
 }
 
 std::string duration(double seconds) {
@@ -136,42 +108,54 @@ std::uint64_t default_memory() {
   return static_cast<std::uint64_t>(kUsedShare * pages * page_bytes);
 }
 
-MemoryPlan plan_memory(const TrainInputs& inputs, const TrainOptions& options, bool curves, std::uint64_t limit) {
-  const std::vector<FrameGroup> groups = measured_groups(inputs, curves ? 1.0 + kCurveFrames : 1.0);
-  const TrainingMemory memory = training_memory(groups, options, class_count(inputs, options));
-  const std::uint64_t own = own_memory();
-  if (own + memory.total(1) > limit) refuse(inputs, options, groups, own + memory.total(1), own, limit);
-  MemoryPlan plan;
-  const int most = std::min(thread_count(), std::max(options.trees, 1));
-  while (plan.trees_at_once < most && own + memory.total(plan.trees_at_once + 1) <= limit) ++plan.trees_at_once;
-  plan.bytes = own + memory.total(plan.trees_at_once);
-  return plan;
-}
+TrainPlan plan_training(const TrainInputs& inputs, const TrainOptions& options, bool curves, std::uint64_t limit) {
+  SampleOptions drawn = options.sample;
+  drawn.held_out_share = 0.F;
+  TrainingSet set(inputs.body(), training_convention(options), drawn, static_cast<std::uint64_t>(options.grow.seed));
+  const Load load = measure(inputs, drawn, set);
+  const double own = own_memory();
+  const int hard_trees = set.has_background() ? options.hard_trees : 0;
+  const double hard = static_cast<double>(drawn.background_share * drawn.hard_share) * load.samples;
+  const double samples = load.samples + (hard_trees > 0 ? std::min(hard, load.pool) : 0.0);
+  const Pilot pilot = grow_pilot(set, samples, options);
 
-std::string estimate_text(const TrainInputs& inputs, const TrainOptions& options, const MemoryPlan& plan) {
-  std::vector<LabelledFrame> frames;
-  double reading_s = 0.0;
-  for (const TrainInput& input : inputs.inputs()) {
-    Measured measured = measure(input, inputs, options);
-    reading_s += measured.seconds;
-    std::ranges::move(measured.frames, std::back_inserter(frames));
+  const LogitLayout layout(inputs.body(), set.has_background(), options.leaves.headings);
+  const double set_bytes = load.depth_bytes + kGrowing * (samples + load.pool) * sizeof(TrainingSample);
+  const double tree_bytes = samples * kGrowBytes + pilot.leaves * kNodeBytes +
+                            std::min(samples * kRowBytes, static_cast<double>(options.grow.row_bytes));
+  const double leaf_bytes =
+      pilot.leaves_s > 0.0 ? options.trees * (4.0 * samples + pilot.leaves * layout.size() * kLogitBytes) : 0.0;
+  const auto bytes = [&](int trees) {
+    const double frames = set_bytes * (curves ? 1.0 + kCurveFrames : 1.0);
+    return static_cast<std::uint64_t>(own + kMargin * (frames + std::max(trees * tree_bytes, leaf_bytes)));
+  };
+  if (bytes(1) > limit) {
+    const double needed = static_cast<double>(bytes(1)) / kGiB;
+    throw Error(fmt::format(
+        "training on {} frames with {} pixels each takes about {:.2f} GiB, --memory allows {:.2f}: expected --memory "
+        "{:.1f}, fewer frames (--count), fewer --pixels, or --on, which divides them among machines",
+        inputs.frames(), drawn.pixels_per_frame, needed, static_cast<double>(limit) / kGiB,
+        std::ceil(10.0 * needed) / 10.0));
   }
-  const std::uint64_t samples = expected_samples(groups_of(inputs), options);
-  const GrowthEstimate growth = estimate_growth(frames, inputs.body(), samples, options, plan.trees_at_once);
-  std::string text;
-  text += fmt::format("frames        {} in {}, {:.1f} a second\n", inputs.frames(), duration(reading_s),
-                      static_cast<double>(inputs.frames()) / reading_s);
-  text += fmt::format("samples       {:.2f} million\n", static_cast<double>(samples) * 1e-6);
-  text += fmt::format("evaluations   {:.1f} thousand million, {:.0f} million a second on {} threads\n",
-                      growth.evaluations * 1e-9, growth.evaluations_per_s * 1e-6, thread_count());
-  text +=
-      fmt::format("trees         {} in {}, {} at a time\n",
-                  options.trees + (class_count(inputs, options) > inputs.body().part_count() ? options.hard_trees : 0),
-                  duration(growth.seconds()), plan.trees_at_once);
-  text += fmt::format("time          {:.0f} s in all ({})\n", reading_s + growth.seconds(),
-                      duration(reading_s + growth.seconds()));
-  text += fmt::format("memory        at most {:.2f} GiB\n", gib(plan.bytes));
-  return text;
+  TrainPlan plan;
+  const int most = std::min(thread_count(), std::max(options.trees, 1));
+  while (plan.trees_at_once < most && bytes(plan.trees_at_once + 1) <= limit) ++plan.trees_at_once;
+  plan.bytes = bytes(plan.trees_at_once);
+  const int trees = options.trees + hard_trees;
+  const double leaves_s = pilot.leaves_s * options.leaves.rounds * options.trees;
+  plan.seconds = load.reading_s + trees * pilot.tree_s + leaves_s;
+  plan.text =
+      fmt::format("frames        {} in {}, {:.1f} a second\n", inputs.frames(), duration(load.reading_s),
+                  static_cast<double>(inputs.frames()) / load.reading_s) +
+      fmt::format("samples       {:.2f} million\n", samples * 1e-6) +
+      fmt::format("evaluations   {:.1f} thousand million, {:.0f} million a second on {} threads\n",
+                  trees * pilot.evaluations * 1e-9, pilot.evaluations / std::max(pilot.tree_s, 1e-9) * 1e-6,
+                  thread_count()) +
+      fmt::format("trees         {} in {}, {} at a time{}\n", trees, duration(trees * pilot.tree_s), plan.trees_at_once,
+                  leaves_s > 0.0 ? fmt::format("; their leaves in {}", duration(leaves_s)) : "") +
+      fmt::format("time          {:.0f} s in all ({})\n", plan.seconds, duration(plan.seconds)) +
+      fmt::format("memory        at most {:.2f} GiB\n", static_cast<double>(plan.bytes) / kGiB);
+  return plan;
 }
 
 }  // namespace vesalius::cli

@@ -8,22 +8,19 @@
 
 namespace vesalius::cli {
 
-/// The memory that training uses.
-struct MemoryPlan {
-  std::uint64_t bytes = 0;  ///< peak memory of the program
-  int trees_at_once = 1;
+/// What a training will take, about: some of its frames were measured, the rest is multiplication.
+struct TrainPlan {
+  std::uint64_t bytes = 0;  ///< of the whole program
+  double seconds = 0.0;
+  int trees_at_once = 1;  ///< trees whose memory the limit allows, at most one for each thread
+  std::string text;       ///< lines for the user: time and memory, step by step
 };
 
 /// Returns 80 % of the machine's memory, in bytes.
 std::uint64_t default_memory();
 
-/// Plans the memory of a training on `inputs`: what the program has taken so far, plus frames, samples and trees.
-/// `curves` adds what train_curves() needs. Throws Error if the sum exceeds `limit` bytes; it names the sum and how
-/// many frames or pixels would fit.
-MemoryPlan plan_memory(const TrainInputs& inputs, const TrainOptions& options, bool curves, std::uint64_t limit);
-
-/// Returns lines of text that estimate the memory and time of a training, for each step and in total, from measurements
-/// on some frames.
-std::string estimate_text(const TrainInputs& inputs, const TrainOptions& options, const MemoryPlan& plan);
+/// Reads one frame of 30, at most 50, and grows a tree on them. `curves` adds what train_curves() needs.
+/// Throws Error if the training would take more than `limit` bytes, with what can be done about it.
+TrainPlan plan_training(const TrainInputs& inputs, const TrainOptions& options, bool curves, std::uint64_t limit);
 
 }  // namespace vesalius::cli

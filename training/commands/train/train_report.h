@@ -6,7 +6,7 @@
 
 #include "commands/train/grow_display.h"
 #include "report/document.h"
-#include "train/sample_accuracy.h"
+#include "train/samples/sample_accuracy.h"
 
 namespace vesalius::cli {
 

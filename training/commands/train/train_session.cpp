@@ -2,21 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "cluster/message.h"
 #include "commands/train/train_recipe.h"
 #include "io/files/atomic_file.h"
-#include "io/files/byte_stream.h"
-#include "io/files/packed.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
-#include "io/model/model_trees.h"
 #include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
 
 namespace vesalius::cli {
 namespace {
@@ -27,8 +23,6 @@ constexpr const char* kRecipeFile = "recipe.toml";
 
 constexpr const char* kLeavesFile = "leaves";
 constexpr const char* kClusterFolder = "cluster";  ///< of a training on a cluster (train_cluster.h)
-constexpr int kLeavesLevel = 1;                    ///< of compression: they are written every few rounds
-constexpr std::size_t kMostStride = 4096;
 
 bool is_ours(const std::string& name) {
   return name.starts_with("tree-") || name.starts_with(kRecipeFile) || name.starts_with(kLeavesFile) ||
@@ -112,38 +106,14 @@ std::optional<LeafState> TrainSession::load_leaves() {
   std::error_code ignored;
   if (!fs::exists(leaves_path(), ignored)) return std::nullopt;
   try {
-    const std::string bytes = read_file(leaves_path());
-    ByteReader in(bytes, leaves_path());
-    LeafState state;
-    state.rounds = static_cast<int>(in.number<std::uint32_t>("rounds"));
-    state.logits.stride = in.number<std::uint32_t>("stride");
-    const auto trees = in.number<std::uint32_t>("trees");
-    if (state.logits.stride > kMostStride) in.fail("stride");
-    for (std::uint32_t t = 0; t < trees; ++t) {
-      const std::string raw = read_packed(in, 0, kMaxModelNodes * kMostStride, "logits");
-      std::vector<std::int16_t>& logits = state.logits.of_trees.emplace_back(raw.size() / sizeof(std::int16_t));
-      std::memcpy(logits.data(), raw.data(), logits.size() * sizeof(std::int16_t));
-    }
-    in.expect_end();
-    return state;
+    return from_message<LeafState>(opened(read_file(leaves_path()), leaves_path()), leaves_path());
   } catch (const Error&) {
     return std::nullopt;  // damaged leaves are learned again
   }
 }
 
 void TrainSession::save_leaves(const LeafState& state) {
-  std::vector<std::string> packed(state.logits.of_trees.size());
-  parallel_for(static_cast<int>(packed.size()), [&](int t) {
-    const std::vector<std::int16_t>& logits = state.logits.of_trees[t];
-    packed[t] =
-        pack({reinterpret_cast<const char*>(logits.data()), logits.size() * sizeof(std::int16_t)}, kLeavesLevel);
-  });
-  ByteWriter out;
-  out.number(static_cast<std::uint32_t>(state.rounds));
-  out.number(static_cast<std::uint32_t>(state.logits.stride));
-  out.number(static_cast<std::uint32_t>(packed.size()));
-  for (const std::string& tree : packed) out.bytes() += tree;
-  write_file_atomically(leaves_path(), out.bytes());
+  write_file_atomically(leaves_path(), sealed(to_message(state)));
 }
 
 void TrainSession::remove() {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "io/files/folder_lock.h"
-#include "train/tree_store.h"
+#include "train/leaves/tree_store.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius::cli {
