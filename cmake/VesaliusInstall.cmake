@@ -57,20 +57,19 @@ if(TARGET vesalius OR TARGET vesalius_c)
           PATTERN "*.forest" PATTERN "README.md")
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${VESALIUS_DATA_DIR}/models)
 endif()
-# What else the program reads, what bash asks for commands and flags, and the manual.
+# What else the program reads, what bash asks for commands and flags, and the manual of packages.
 if(TARGET vesalius)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/bodies ${PROJECT_SOURCE_DIR}/data/demo DESTINATION ${VESALIUS_DATA_DIR})
   install(FILES ${PROJECT_SOURCE_DIR}/data/completion.bash RENAME vesalius
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
-
-  # The program writes its manual; -n leaves the time out.
-  set(pages ${PROJECT_BINARY_DIR}/man)
-  add_custom_command(OUTPUT ${pages}/vesalius.1.gz COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages} COMMAND vesalius man ${pages}
-                     COMMAND gzip -9nr ${pages} DEPENDS vesalius COMMENT "Writing the manual" VERBATIM)
-  add_custom_target(vesalius_manual DEPENDS ${pages}/vesalius.1.gz)
-  if(NOT VESALIUS_SANITIZE)  # nothing is installed of these
-    set_target_properties(vesalius_manual PROPERTIES EXCLUDE_FROM_ALL OFF)
+  if(VESALIUS_MANUAL)
+    find_program(HELP2MAN help2man REQUIRED)
+    set(pages ${PROJECT_BINARY_DIR}/man)
+    set(script ${PROJECT_SOURCE_DIR}/cmake/manual.sh)
+    add_custom_command(OUTPUT ${pages}/vesalius.1.gz COMMAND bash ${script} $<TARGET_FILE:vesalius> ${pages}
+                       DEPENDS vesalius ${script} COMMENT "Writing the manual" VERBATIM)
+    add_custom_target(vesalius_manual ALL DEPENDS ${pages}/vesalius.1.gz)
+    install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   endif()
-  install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.gz")
 endif()

@@ -13,8 +13,7 @@ import tempfile
 from pathlib import Path
 
 HOLDS = ["bin/vesalius", "share/vesalius/models/default.forest", "share/vesalius/bodies/paper25.toml",
-         "share/vesalius/demo/meta.json", "share/bash-completion/completions/vesalius", "share/man/man1/vesalius.1.gz",
-         "share/man/man1/vesalius-train-map.1.gz", "share/doc/vesalius/copyright"]
+         "share/vesalius/demo/meta.json", "share/bash-completion/completions/vesalius", "share/doc/vesalius/copyright"]
 PATTERN = {"DEB": "vesalius_*.deb", "TGZ": "*.tar.gz"}
 HELD_BY_DEBIAN = ["share/doc/vesalius/changelog.gz", "share/doc/vesalius/changelog.Debian.gz"]
 
