@@ -53,24 +53,23 @@ install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/v
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 set(VESALIUS_DATA_DIR ${CMAKE_INSTALL_DATADIR}/vesalius)
 if(TARGET vesalius OR TARGET vesalius_c)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/models DESTINATION ${VESALIUS_DATA_DIR} FILES_MATCHING
-          PATTERN "*.forest" PATTERN "README.md")
-  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${VESALIUS_DATA_DIR}/models)
+  # All but the tests' own.
+  install(FILES ${PROJECT_SOURCE_DIR}/data/models/default.forest ${PROJECT_SOURCE_DIR}/data/models/small.forest
+                ${PROJECT_SOURCE_DIR}/data/models/README.md ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${VESALIUS_DATA_DIR}/models)
 endif()
-# What else the program reads, what bash asks for commands and flags, and the manual.
+# What else the program reads, what bash asks for commands and flags, and the manual of packages.
 if(TARGET vesalius)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/bodies ${PROJECT_SOURCE_DIR}/data/demo DESTINATION ${VESALIUS_DATA_DIR})
   install(FILES ${PROJECT_SOURCE_DIR}/data/completion.bash RENAME vesalius
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
-
-  # The program writes its manual; -n leaves the time out.
-  set(pages ${PROJECT_BINARY_DIR}/man)
-  add_custom_command(OUTPUT ${pages}/vesalius.1.gz COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages} COMMAND vesalius man ${pages}
-                     COMMAND gzip -9nr ${pages} DEPENDS vesalius COMMENT "Writing the manual" VERBATIM)
-  add_custom_target(vesalius_manual DEPENDS ${pages}/vesalius.1.gz)
-  if(NOT VESALIUS_SANITIZE)  # nothing is installed of these
-    set_target_properties(vesalius_manual PROPERTIES EXCLUDE_FROM_ALL OFF)
+  if(VESALIUS_MANUAL)
+    find_program(HELP2MAN help2man REQUIRED)
+    set(pages ${PROJECT_BINARY_DIR}/man)
+    set(script ${PROJECT_SOURCE_DIR}/cmake/manual.sh)
+    add_custom_command(OUTPUT ${pages}/vesalius.1.gz COMMAND bash ${script} $<TARGET_FILE:vesalius> ${pages}
+                       DEPENDS vesalius ${script} COMMENT "Writing the manual" VERBATIM)
+    add_custom_target(vesalius_manual ALL DEPENDS ${pages}/vesalius.1.gz)
+    install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   endif()
-  install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.gz")
 endif()

@@ -38,6 +38,8 @@ function(vesalius_precompile target)
   endif()
 endfunction()
 
+add_custom_target(vesalius_tests)  # all programs of tests, and what they run
+
 # Labels that a test can have: a line `// Labels: threads slow` above it gives it to ctest (-L, -LE).
 #   threads     compares what several threads do with what one does: what the thread sanitizer runs
 #   real        needs the real frames, which are not part of the project
@@ -118,6 +120,7 @@ function(vesalius_test name)
     endif()
   endif()
   add_executable(${name} ${sources})
+  add_dependencies(vesalius_tests ${name})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} vesalius_settings GTest::gmock GTest::gtest_main vesalius_test_settings)
   if(VESALIUS_PCH AND NOT name STREQUAL core_test)
     target_precompile_headers(${name} REUSE_FROM core_test)

@@ -16,8 +16,6 @@ void add_bench(CLI::App& program);
 void add_record(CLI::App& program);
 void add_cameras(CLI::App& program);
 void add_options(CLI::App& program);
-void add_completion(CLI::App& program);
-void add_man(CLI::App& program);
 
 // The following commands belong to satellites (console/satellites.h); a build that leaves out a satellite lacks its
 // commands.

@@ -63,8 +63,6 @@ Exit codes: 0 done, 1 failed, 2 wrong usage.)");
     for (const auto add : satellite.commands) add(program);
   }
   add_options(program);
-  add_completion(program);
-  add_man(program);
   refuse_empty_values(program);
 }
 

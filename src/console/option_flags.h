@@ -15,8 +15,7 @@ namespace vesalius::cli {
 inline constexpr int kMaxThreads = 1024;
 
 /// A flag for every option that `visit` shows, e.g. --search.min-parts. `visit` and the options must live as long as
-/// the command. --help leaves these flags out because there are many (`vesalius options` lists them); completion knows
-/// them.
+/// the command. --help leaves these flags out because there are many (`vesalius options` lists them).
 class FlagSet {
  public:
   FlagSet(CLI::App& command, const VisitAll& visit);

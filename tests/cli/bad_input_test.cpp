@@ -105,7 +105,6 @@ TEST_F(BadInput, InvalidCommandLinesAreRefused) {
   detect(frames(), model(), " --jsno -", 2, "unknown argument --jsno, did you mean --json?");
   detect("", model(), "", 2, "SOURCE is required");
   expect_refused(run_program("detcet"), 2, "unknown argument detcet, did you mean detect?");
-  expect_refused(run_program("completion tcsh"), 2, "tcsh");
   expect_refused(run_program("convert one.txt two.txt"), 2, "two.txt: expected a name that ends in .forest");
   expect_refused(run_program("convert a b c --to tum"), 2, "--to expects a source and one folder");
 }

@@ -11,8 +11,10 @@ namespace vesalius {
 namespace {
 
 using nlohmann::json;
+using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 class Commands : public SmallWorld {};
@@ -31,8 +33,8 @@ TEST_F(Commands, PrintHelpAndVersion) {
 }
 
 TEST_F(Commands, AllHaveHelp) {
-  for (const char* command : {"detect", "record", "cameras", "view", "bench", "info", "convert", "export", "assets",
-                              "options", "completion", "man"}) {
+  for (const char* command :
+       {"detect", "record", "cameras", "view", "bench", "info", "convert", "export", "assets", "options"}) {
     const Outcome run = run_program(std::string(command) + " --help");
     EXPECT_EQ(run.exit_code, 0) << command;
     EXPECT_THAT(run.out, HasSubstr(std::string("Usage: vesalius ") + command));
@@ -180,10 +182,23 @@ TEST_F(Commands, ConvertRefusesTumWithoutTimes) {
   EXPECT_THAT(bytes_of(path("timed/depth.txt")), HasSubstr("\n0.100000 depth/0.100000.png\n"));
 }
 
-TEST_F(Commands, CompletionPrintsAScriptForBash) {
-  const Outcome run = run_program("completion bash");
-  EXPECT_EQ(run.exit_code, 0);
-  EXPECT_THAT(run.out, HasSubstr("complete -o filenames -F _vesalius vesalius"));
+/// Returns what bash would offer for the last of these words, each between spaces.
+std::string bash_offers(const std::string& words) {
+  const std::string script =
+      "source " VESALIUS_SOURCE_DIR
+      "/data/completion.bash; COMP_WORDS=(\"$0\" \"$@\"); COMP_CWORD=$#; _vesalius; echo \" ${COMPREPLY[*]} \"";
+  const Outcome run = run_program(words, "bash -c '" + script + "'");
+  return run.out + run.err;
+}
+
+TEST_F(Commands, CompletionOffersCommandsFlagsAndChoicesInBash) {
+  EXPECT_EQ(bash_offers("de"), " detect \n");
+  EXPECT_THAT(bash_offers("\"\""), AllOf(HasSubstr(" detect "), HasSubstr(" info "), HasSubstr(" --help ")));
+  EXPECT_EQ(bash_offers("detect --js"), " --json \n");
+  EXPECT_EQ(bash_offers("detect --search.min-p"), " --search.min-parts \n");
+  EXPECT_EQ(bash_offers("detect --save o"), " overlay \n");
+  EXPECT_THAT(bash_offers("info --"), AllOf(HasSubstr(" --json "), Not(HasSubstr("--save"))));
+  EXPECT_THAT(bash_offers("options s"), HasSubstr(" synth "));
 }
 
 }  // namespace

@@ -232,7 +232,7 @@ def like_a_clone(source, program, folder):
         if each.name not in (".git", "build", "out", "dev"):
             (folder / each.name).symlink_to(each)
     shutil.copy(source / "dev", folder / "dev")
-    for preset in ("demo", "dev", "release"):
+    for preset in ("dev", "release"):
         place = folder / "build" / preset / "src/cli"
         place.mkdir(parents=True)
         (place / "vesalius").write_text('#!/bin/sh\n[ "$1" != view ] || set -- "$@" --port 0 --no-browser\n'

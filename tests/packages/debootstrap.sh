@@ -85,8 +85,8 @@ for page in $(grep -o 'vesalius[a-z0-9-]*\.1\.gz' "$work/files"); do
   said="$(offline man --warnings -E UTF-8 -l -Tutf8 -Z "/usr/share/man/man1/$page" 2>&1 >/dev/null)"
   [ -z "$said" ] || fail "man says of $page: $said"
 done
-offline man vesalius-detect >"$work/page"
-grep -A 2 '^ *--search.min-parts' "$work/page"
+offline man vesalius-detect | grep -e --json
+offline man vesalius-options | grep 'min-parts ='
 offline bash -c '. /usr/share/bash-completion/completions/vesalius; COMP_WORDS=(vesalius det); COMP_CWORD=1; _vesalius
   [ "${COMPREPLY[*]}" = detect ]'
 

@@ -7,7 +7,6 @@ import json
 import re
 import subprocess
 import sys
-import tempfile
 import tomllib
 from pathlib import Path
 
@@ -23,10 +22,6 @@ def said(*command):
 def of_the_program(program):
     yield "vesalius --version", re.fullmatch(f"vesalius {NUMBER}\n", said(program, "--version"))[1]
     yield "vesalius info", json.loads(said(program, "info", "--json"))["version"]
-    with tempfile.TemporaryDirectory() as folder:
-        said(program, "man", folder)
-        for page in sorted(Path(folder).iterdir()):
-            yield page.name, re.search(f'^\\.TH .*"vesalius {NUMBER}"', page.read_text(encoding="utf-8"))[1]
 
 
 def of_the_wheel(source):

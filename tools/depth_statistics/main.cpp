@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "../run_tool.h"
 #include "depth_statistics.h"
 #include "io/sources/open_source.h"
 #include "vesalius/base/error.h"
@@ -71,10 +72,5 @@ int run(int argc, char** argv) {
 }  // namespace vesalius
 
 int main(int argc, char** argv) {
-  try {
-    return vesalius::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::cerr << "vesalius_depth_statistics: " << e.what() << '\n';
-    return 1;
-  }
+  return vesalius::run_tool("vesalius_depth_statistics", [&] { return vesalius::run(argc, argv); });
 }

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <optional>
 
+#include "../run_tool.h"
 #include "dataset/open_truth.h"
 #include "io/model/model_file.h"
 #include "link_lengths.h"
@@ -64,10 +65,5 @@ int run(int argc, char** argv) {
 }  // namespace vesalius
 
 int main(int argc, char** argv) {
-  try {
-    return vesalius::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::cerr << "vesalius_link_lengths: " << e.what() << '\n';
-    return 1;
-  }
+  return vesalius::run_tool("vesalius_link_lengths", [&] { return vesalius::run(argc, argv); });
 }

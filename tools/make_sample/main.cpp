@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "../run_tool.h"
 #include "io/files/atomic_file.h"
 #include "io/files/image_file.h"
 #include "io/model/model_file.h"
@@ -97,10 +98,5 @@ int run(int argc, char** argv) {
 }  // namespace vesalius
 
 int main(int argc, char** argv) {
-  try {
-    return vesalius::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::cerr << "vesalius_make_sample: " << e.what() << '\n';
-    return 1;
-  }
+  return vesalius::run_tool("vesalius_make_sample", [&] { return vesalius::run(argc, argv); });
 }

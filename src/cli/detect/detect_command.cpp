@@ -230,7 +230,7 @@ lists them.
 
 Examples:
   vesalius detect frames/
-  vesalius detect tum:walking -m capsule.forest --json - | jq .people
+  vesalius detect tum:walking -m small.forest --json - | jq .people
   vesalius detect session.mcap --track --json people.jsonl
   vesalius detect depth.png --fx 525 --out found/ --save overlay,mask)");
   command->callback([arguments] { run(*arguments); });

@@ -8,12 +8,6 @@
 
 namespace vesalius {
 
-#ifdef VESALIUS_FREENECT
-inline constexpr bool kHasFreenect = true;
-#else
-inline constexpr bool kHasFreenect = false;
-#endif
-
 /// Kinects of the first version.
 std::vector<SensorInfo> list_freenect();
 

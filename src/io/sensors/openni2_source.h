@@ -8,12 +8,6 @@
 
 namespace vesalius {
 
-#ifdef VESALIUS_OPENNI2
-inline constexpr bool kHasOpenni2 = true;
-#else
-inline constexpr bool kHasOpenni2 = false;
-#endif
-
 /// Cameras that OpenNI2's own drivers see.
 std::vector<SensorInfo> list_openni2();
 

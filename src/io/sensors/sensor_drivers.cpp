@@ -13,10 +13,11 @@
 namespace vesalius {
 namespace {
 
+// CMake says which libraries it found.
 constexpr std::array<SensorDriver, 4> kDrivers{
-    {{"openni2", "Xtion, Carmine, Structure and other PrimeSense cameras", "libopenni2-dev", kHasOpenni2, list_openni2,
-      open_openni2},
-     {"freenect", "Kinect v1", "libfreenect-dev", kHasFreenect, list_freenect, open_freenect},
+    {{"openni2", "Xtion, Carmine, Structure and other PrimeSense cameras", "libopenni2-dev", VESALIUS_OPENNI2 != 0,
+      list_openni2, open_openni2},
+     {"freenect", "Kinect v1", "libfreenect-dev", VESALIUS_FREENECT != 0, list_freenect, open_freenect},
      {"realsense", "RealSense", "librealsense2", true, list_realsense, open_realsense},
      {"orbbec", "Femto, Gemini, Astra 2", "libOrbbecSDK", true, list_orbbec, open_orbbec}}};
 
