@@ -106,7 +106,7 @@ void add_stages(const std::string& kind, const AssetsLater& assets, int width, i
 void add_body_steps(const std::string& kind, const AssetsLater& assets) {
   const auto bare = [assets](Random& random) {
     const BodiesAndMotions& a = **assets;
-    return a.makehuman == nullptr ? make_builtin_body(sample_builtin_shape({}, random), paper_body())
+    return a.makehuman == nullptr ? make_builtin_body(sample_factors({}, random), paper_body())
                                   : make_body(*a.makehuman, sample_factors({}, random), paper_body());
   };
   const auto dressed = [bare](std::uint64_t k) {

@@ -4,10 +4,36 @@
 
 #include <utility>
 
-#include "dataset/mapped_truth.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
+namespace {
+
+/// The frames of a source with headings of a table.
+class HeadedTruth final : public TruthSource {
+ public:
+  HeadedTruth(std::unique_ptr<TruthSource> frames, HeadingTable headings, std::string set)
+      : frames_(std::move(frames)), headings_(std::move(headings)), set_(std::move(set)) {}
+
+  std::optional<TrueFrame> next() override {
+    std::optional<TrueFrame> frame = frames_->next();
+    if (!frame) return frame;
+    if (const auto heading = headings_.of(set_, frame->frame.name)) frame->truth.heading = heading;
+    return frame;
+  }
+  void leave_sequence() override { frames_->leave_sequence(); }
+  int size() const override { return frames_->size(); }
+  std::vector<std::string> notes() const override { return frames_->notes(); }
+  std::vector<std::string> part_names() const override { return frames_->part_names(); }
+
+ private:
+  std::unique_ptr<TruthSource> frames_;
+  HeadingTable headings_;
+  std::string set_;
+};
+
+}  // namespace
+
 std::optional<Heading> heading_in(const CsvTable& table, std::size_t row, std::size_t column) {
   const std::string& word = table.cell(row, column);
   if (word.empty()) return std::nullopt;
@@ -38,10 +64,7 @@ std::optional<Heading> HeadingTable::of(const std::string& set, const std::strin
 
 std::unique_ptr<TruthSource> with_headings(std::unique_ptr<TruthSource> frames, HeadingTable headings,
                                            std::string set) {
-  return mapped(std::move(frames), [headings = std::move(headings), set = std::move(set)](TrueFrame frame) {
-    if (const auto heading = headings.of(set, frame.frame.name)) frame.truth.heading = heading;
-    return frame;
-  });
+  return std::make_unique<HeadedTruth>(std::move(frames), std::move(headings), std::move(set));
 }
 
 }  // namespace vesalius

@@ -49,8 +49,7 @@ Cast::Cast(const Recipe& recipe, std::shared_ptr<const MakeHumanModel> makehuman
 std::unique_ptr<Cast::Dressed> Cast::make_person(std::size_t k) const {
   Random random = random_for(seed_, Purpose::body, k);
   const Population& who = recipe_.body.people;
-  const BodyMesh naked = makehuman_ ? make_body(*makehuman_, sample_factors(who, random), body_)
-                                    : make_builtin_body(sample_builtin_shape(who, random), body_);
+  const BodyMesh naked = make_body(makehuman_ ? *makehuman_ : builtin_bodies(), sample_factors(who, random), body_);
   const Outfit outfit = sample_outfit(recipe_.outfit, random);
   return std::make_unique<Dressed>(Poser(std::make_shared<const BodyMesh>(dress(naked, outfit, body_, random)), body_),
                                    recipe_.scene.detail_px);

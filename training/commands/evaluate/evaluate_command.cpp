@@ -24,7 +24,6 @@
 #include "dataset/truth_folder.h"
 #include "dataset/truth_headings.h"
 #include "dataset/truth_sequences.h"
-#include "dataset/turned_truth.h"
 #include "evaluation/evaluate_sequences.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
@@ -63,7 +62,6 @@ struct Arguments {
   DeviceFlag device;
   OptionFlags<PeopleOptions> detector_flags;
   int step = 1;
-  double turn_deg = 0.0;
   int threads = 0;
   bool labels_only = false;
   bool track = false;
@@ -160,15 +158,14 @@ std::unique_ptr<TruthSource> open_frames(const std::string& source, const Argume
     const std::string set = whole_path(source).filename().string();
     frames = with_headings(std::move(frames), HeadingTable::read(arguments.headings_file), set);
   }
-  return arguments.turn_deg != 0.0 ? with_turn(std::move(frames), arguments.turn_deg) : std::move(frames);
+  return frames;
 }
 
 /// Opens the frames of a set. Where people are followed, the folders of a source are recordings of one set.
 std::unique_ptr<TruthSource> open_set(const Request& request, const Arguments& arguments, const BodyModel& body) {
   const std::string& source = request.set.source;
   if (request.is_recipe) {
-    auto frames = open_recipe_truth(source, rendered_truth(arguments), arguments.step, body);
-    return arguments.turn_deg != 0.0 ? with_turn(std::move(frames), arguments.turn_deg) : std::move(frames);
+    return open_recipe_truth(source, rendered_truth(arguments), arguments.step, body);
   }
   const std::vector<std::string> folders = arguments.track ? sequences_in(source) : std::vector{source};
   if (folders.size() == 1) return open_frames(folders.front(), arguments);
@@ -364,10 +361,6 @@ void add_evaluate(CLI::App& program) {
   command->add_option("--step", arguments->step, "Only the first of every N frames")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxStep));
-  command
-      ->add_option("--turn", arguments->turn_deg, "Turn every picture clockwise by so much, as a rolled camera sees it")
-      ->type_name("DEGREES")
-      ->check(CLI::Range(-180.0, 180.0));
   CLI::Option* labels_only = command->add_flag("--labels-only", arguments->labels_only,
                                                "Only the pixel labels of the first pass: much faster");
   command

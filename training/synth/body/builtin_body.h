@@ -1,14 +1,15 @@
 #pragma once
 
-#include "synth/body/body_mesh.h"
-#include "synth/body/builtin_shape.h"
+#include "synth/body/makehuman.h"
 
 namespace vesalius::synth {
 
-/// Returns a smooth parametric body of our own that needs no files. It is labelled by the surface rules of `body`, has
-/// about 14,000 triangles, and stands on y = 0. Left and right are exact mirror images. Values outside their range are
-/// clamped. Lengths follow Drillis and Contini (1966) as quoted by Winter (Biomechanics and Motor Control of Human
-/// Movement, fig. 4.1), girths follow ANSUR II (2012).
-BodyMesh make_builtin_body(const BuiltinShape& shape, const BodyModel& body);
+/// Returns bodies that need no files: MakeHuman's with a sixth of its vertices, of the mean of all peoples, muscles and
+/// limbs' lengths, so that gender, age, weight and stature alone change them. tools/make_builtin_body.py makes them.
+/// Left and right are exact mirror images.
+const MakeHumanModel& builtin_bodies();
+
+/// Returns one of them, as make_body() does.
+BodyMesh make_builtin_body(const MakeHumanFactors& factors, const BodyModel& body);
 
 }  // namespace vesalius::synth

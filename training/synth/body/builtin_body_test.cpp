@@ -13,33 +13,43 @@ namespace {
 
 using Eigen::Vector3f;
 
-std::vector<BuiltinShape> shapes() {
-  std::vector<BuiltinShape> all{{1.8F, 1.F, 0.F, 30.F},  {1.62F, 0.F, 0.F, 30.F}, {1.05F, 0.5F, 0.F, 5.F},
-                                {1.75F, 1.F, 1.F, 50.F}, {1.6F, 0.F, -1.F, 20.F}, {1.6F, 0.F, 1.F, 70.F}};
+MakeHumanFactors person(float gender, float age_years, float weight, float stature_m) {
+  MakeHumanFactors factors;
+  factors.gender = gender;
+  factors.age_years = age_years;
+  factors.weight = weight;
+  factors.stature_m = stature_m;
+  return factors;
+}
+
+std::vector<MakeHumanFactors> people() {
+  std::vector<MakeHumanFactors> all{person(1.F, 30.F, 0.5F, 1.8F),  person(0.F, 30.F, 0.5F, 1.62F),
+                                    person(0.5F, 5.F, 0.5F, 1.05F), person(1.F, 50.F, 1.F, 1.75F),
+                                    person(0.F, 20.F, 0.F, 1.6F),   person(0.F, 70.F, 1.F, 1.6F)};
   for (std::uint64_t i = 0; i < 14; ++i) {
     Random random(11, i);
-    all.push_back(sample_builtin_shape({}, random));
+    all.push_back(sample_factors({}, random));
   }
   return all;
 }
 
 TEST(BuiltinBody, HasTheGivenStatureAndStandsOnTheFloor) {
-  for (const BuiltinShape& shape : shapes()) {
-    const BodyMesh mesh = make_builtin_body(shape, paper_body());
+  for (const MakeHumanFactors& factors : people()) {
+    const BodyMesh mesh = make_builtin_body(factors, paper_body());
     const auto [low, high] = std::ranges::minmax(mesh.vertices, {}, [](const Vector3f& p) { return p.y(); });
     EXPECT_NEAR(low.y(), 0.F, 1e-5F);
-    EXPECT_NEAR(high.y(), shape.stature_m, 0.001F);
-    EXPECT_FLOAT_EQ(mesh.stature_m, shape.stature_m);
+    EXPECT_NEAR(high.y(), factors.stature_m, 0.001F);
+    EXPECT_FLOAT_EQ(mesh.stature_m, factors.stature_m);
     EXPECT_TRUE(is_closed(mesh.topology->triangles, mesh.topology->triangles.size()));
-    EXPECT_GT(mesh.topology->triangles.size(), 10000U);
-    EXPECT_LT(mesh.topology->triangles.size(), 20000U);
+    EXPECT_GT(mesh.topology->triangles.size(), 3000U);
+    EXPECT_LT(mesh.topology->triangles.size(), 6000U);
     EXPECT_EQ(std::set<int>(mesh.topology->part.begin(), mesh.topology->part.end()).size(), 25U);
   }
 }
 
 TEST(BuiltinBody, HasExactlyMirroredSides) {
-  for (const BuiltinShape& shape : shapes()) {
-    const BodyMesh mesh = make_builtin_body(shape, paper_body());
+  for (const MakeHumanFactors& factors : people()) {
+    const BodyMesh mesh = make_builtin_body(factors, paper_body());
     const BodyTopology& topology = *mesh.topology;
     std::map<std::array<float, 3>, std::uint32_t> by_place;
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -63,8 +73,8 @@ TEST(BuiltinBody, HasExactlyMirroredSides) {
 TEST(BuiltinBody, HasItsJointsInsideInAnyModeratePose) {
   int outside = 0;
   int all = 0;
-  for (const BuiltinShape& shape : shapes()) {
-    const auto mesh = std::make_shared<const BodyMesh>(make_builtin_body(shape, paper_body()));
+  for (const MakeHumanFactors& factors : people()) {
+    const auto mesh = std::make_shared<const BodyMesh>(make_builtin_body(factors, paper_body()));
     const Poser poser(mesh, paper_body());
     Random random(5);
     for (int i = 0; i < 3; ++i) {
@@ -80,8 +90,8 @@ TEST(BuiltinBody, HasItsJointsInsideInAnyModeratePose) {
 
 TEST(BuiltinBody, HasTheCentresOfPartsInside) {
   int outside = 0;
-  for (const BuiltinShape& shape : shapes()) {
-    const auto mesh = std::make_shared<const BodyMesh>(make_builtin_body(shape, paper_body()));
+  for (const MakeHumanFactors& factors : people()) {
+    const auto mesh = std::make_shared<const BodyMesh>(make_builtin_body(factors, paper_body()));
     const PosedBody body = Poser(mesh, paper_body()).pose({});
     for (const Vector3f& centre : body.parts) {
       ASSERT_TRUE(centre.allFinite());
@@ -104,28 +114,29 @@ TEST(BuiltinBody, FacesForwardsWithItsFeet) {
   EXPECT_GT(toe.z(), 0.12F);
 }
 
-TEST(BuiltinBody, FollowsItsShape) {
-  const auto width_at = [](const BodyMesh& mesh, float share) {
-    float width = 0.F;
+TEST(BuiltinBody, FollowsItsFactors) {
+  const auto depth_of_trunk = [](const BodyMesh& mesh) {
+    float front = 0.F, back = 0.F;
     for (const Vector3f& p : mesh.vertices) {
-      if (std::abs(p.y() - share * mesh.stature_m) < 0.01F && std::abs(p.x()) < 0.3F * mesh.stature_m / 1.7F) {
-        width = std::max(width, std::abs(p.z()));
-      }
+      if (std::abs(p.y() - 0.6F * mesh.stature_m) > 0.03F * mesh.stature_m) continue;
+      if (std::abs(p.x()) > 0.1F * mesh.stature_m) continue;
+      front = std::max(front, p.z());
+      back = std::min(back, p.z());
     }
-    return width;
+    return front - back;
   };
-  const BodyMesh thin = make_builtin_body({1.7F, 0.5F, -1.F, 30.F}, paper_body());
-  const BodyMesh heavy = make_builtin_body({1.7F, 0.5F, 1.F, 30.F}, paper_body());
-  EXPECT_GT(width_at(heavy, 0.6F), 1.4F * width_at(thin, 0.6F));
+  const BodyMesh thin = make_builtin_body(person(0.5F, 30.F, 0.F, 1.7F), paper_body());
+  const BodyMesh heavy = make_builtin_body(person(0.5F, 30.F, 1.F, 1.7F), paper_body());
+  EXPECT_GT(depth_of_trunk(heavy), 1.2F * depth_of_trunk(thin));
   const auto head_share = [](const BodyMesh& mesh) {
     const auto bones = rest_bones(mesh);
-    return (mesh.stature_m - bones[index(Bone::head)].head.y()) / mesh.stature_m;
+    return (mesh.stature_m - bones[index(Bone::neck)].head.y()) / mesh.stature_m;
   };
-  const BodyMesh child = make_builtin_body({1.F, 0.5F, 0.F, 4.F}, paper_body());
-  EXPECT_GT(head_share(child), 1.3F * head_share(thin));
+  const BodyMesh child = make_builtin_body(person(0.5F, 5.F, 0.5F, 1.F), paper_body());
+  EXPECT_GT(head_share(child), 1.08F * head_share(thin));
 }
 
-TEST(BuiltinBody, IsTheSameForTheSameShape) {
+TEST(BuiltinBody, IsTheSameForTheSameFactors) {
   const BodyMesh a = make_builtin_body({}, paper_body());
   const BodyMesh b = make_builtin_body({}, paper_body());
   EXPECT_EQ(a.vertices, b.vertices);
@@ -135,9 +146,9 @@ TEST(BuiltinBody, IsTheSameForTheSameShape) {
 TEST(BuiltinBody, SamplesPeopleOfHumanHeight) {
   for (std::uint64_t i = 0; i < 2000; ++i) {
     Random random(1, i);
-    const BuiltinShape shape = sample_builtin_shape({}, random);
-    EXPECT_GT(shape.stature_m, shape.age_years < 18.F ? 0.9F : 1.38F);
-    EXPECT_LT(shape.stature_m, shape.maleness > 0.5F ? 1.95F : 1.86F);
+    const MakeHumanFactors factors = sample_factors({}, random);
+    EXPECT_GT(factors.stature_m, factors.age_years < 18.F ? 0.9F : 1.38F);
+    EXPECT_LT(factors.stature_m, factors.gender > 0.5F ? 1.95F : 1.86F);
   }
 }
 

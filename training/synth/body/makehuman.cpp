@@ -133,12 +133,6 @@ MakeHumanModel::MakeHumanModel(const ReadText& read, const Files& files) {
 
 MakeHumanModel::~MakeHumanModel() = default;
 
-std::size_t MakeHumanModel::target_bytes() const {
-  std::size_t entries = 0;
-  for (const Target& target : state_->targets) entries += target.morph.vertex.size();
-  return entries * (sizeof(std::uint32_t) + sizeof(Eigen::Vector3f));
-}
-
 std::shared_ptr<const MakeHumanModel> load_makehuman(const ReadText& read, const MakeHumanModel::Files& files) {
   return std::make_shared<const MakeHumanModel>(read, files);
 }

@@ -29,9 +29,6 @@ class MakeHumanModel {
   MakeHumanModel(const MakeHumanModel&) = delete;
   MakeHumanModel& operator=(const MakeHumanModel&) = delete;
 
-  /// Returns the memory of the targets in bytes.
-  std::size_t target_bytes() const;
-
  private:
   friend BodyMesh make_body(const MakeHumanModel&, const MakeHumanFactors&, const BodyModel&);
   struct State;

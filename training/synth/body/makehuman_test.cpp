@@ -226,7 +226,6 @@ TEST(MakeHumanFilesTour, MakesManyValidBodies) {
   const auto data = unpacked_makehuman();
   if (!data) GTEST_SKIP() << "no MakeHuman files: set VESALIUS_SHARED to the folder with assets/makehuman.tar.xz";
   const auto model = load_makehuman(slurp, MakeHumanModel::files(data->string(), targets_below(*data / "targets")));
-  EXPECT_LT(model->target_bytes(), 64U << 20U);
   for (std::uint64_t i = 0; i < 12; ++i) {
     Random random(4, i);
     const MakeHumanFactors factors = sample_factors({}, random);

@@ -198,7 +198,7 @@ TEST(Dress, KeepsAPersonWithABagOnTheFloor) {
 TEST(Dress, FitsEverySampledOutfitToEverySampledBody) {
   for (std::uint64_t i = 0; i < 30; ++i) {
     Random random(12, i);
-    const BodyMesh body = make_builtin_body(sample_builtin_shape({}, random), paper_body());
+    const BodyMesh body = make_builtin_body(sample_factors({}, random), paper_body());
     OutfitOptions options;
     options.skirt = options.coat = options.hat = options.backpack = options.bag = options.held = 0.5F;
     const Outfit outfit = sample_outfit(options, random);

@@ -22,11 +22,6 @@ void visit_options(const std::string& prefix, PoseLibraryOptions& options, Optio
                  {"deg", 0.0, 180.0, "Angle by which a pose must differ in some joint from every other one kept."});
 }
 
-std::vector<Pose> load_motion(const MotionFile& file, const ReadText& read) {
-  const Motion motion = MotionReader(read).read(file);
-  return retarget(motion, find_convention(motion, builtin_conventions()));
-}
-
 PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText& read,
                               const PoseLibraryOptions& options) {
   PoseLibraryOptions checked = options;

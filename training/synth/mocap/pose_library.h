@@ -27,9 +27,6 @@ struct PoseLibrary {
   int twisted = 0;                   ///< frames left out because a hand is turned impossibly far
 };
 
-/// Reads one motion in the format of its extension. Throws Error naming the file, also for an .amc without a skeleton.
-std::vector<Pose> load_motion(const MotionFile& file, const ReadText& read);
-
 /// Loads a library of poses. Motions of 45 and more frames a second are reduced to about 30 by taking every nth frame,
 /// beginning with the first (CMU and HDM05 recorded 120, so every 4th). Impossible poses are left out: those in which
 /// the body intersects itself or a marker's error has turned a hand back to front. The others are thinned (section

@@ -86,9 +86,4 @@ Movement sit_down(const Pose& standing, const Pose& sitting, Random& random) {
                                  KeyPose{perched, 0.8F * seconds}, KeyPose{sitting, seconds, false, false}});
 }
 
-Movement reversed(Movement movement) {
-  std::ranges::reverse(movement.states);
-  return movement;
-}
-
 }  // namespace vesalius::synth

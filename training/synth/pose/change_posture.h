@@ -28,7 +28,4 @@ Movement fall_down(const Pose& standing, const Pose& lying, Random& random);
 /// forwards meanwhile, and then takes the legs to where the sitting pose has them.
 Movement sit_down(const Pose& standing, const Pose& sitting, Random& random);
 
-/// Returns the movement played backwards.
-Movement reversed(Movement movement);
-
 }  // namespace vesalius::synth

@@ -48,7 +48,9 @@ float distance(const Capsule& a, const Capsule& b) {
 }  // namespace
 
 BodyOutline outline_of(const PosedBody& body, float stature_m, std::size_t stride) {
+  constexpr std::size_t kFine = 12000;  // vertices of bodies so fine that some can be left out
   BodyOutline outline;
+  stride = std::max<std::size_t>(1, stride * std::min(body.vertices.size(), kFine) / kFine);
   outline.points.reserve(body.vertices.size() / stride + 1);
   for (std::size_t i = 0; i < body.vertices.size(); i += stride) outline.points.push_back(body.vertices[i]);
   for (const Vector3f& p : body.vertices) outline.bounds.extend(p);

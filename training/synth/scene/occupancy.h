@@ -28,7 +28,7 @@ struct BodyOutline {
   Eigen::AlignedBox3f bounds;
 };
 
-/// Returns the outline of a body in its own frame. It has every `stride`th vertex.
+/// Returns the outline of a body in its own frame. It has every `stride`th vertex, of coarse bodies more.
 BodyOutline outline_of(const PosedBody& body, float stature_m, std::size_t stride = 3);
 BodyOutline moved(BodyOutline outline, const Eigen::Isometry3f& motion);
 

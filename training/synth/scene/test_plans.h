@@ -18,8 +18,7 @@ inline const std::vector<std::unique_ptr<Poser>>& posers() {
     Random random(3);
     for (int i = 0; i < 4; ++i) {
       made.push_back(std::make_unique<Poser>(
-          std::make_shared<const BodyMesh>(make_builtin_body(sample_builtin_shape({}, random), paper_body())),
-          paper_body()));
+          std::make_shared<const BodyMesh>(make_builtin_body(sample_factors({}, random), paper_body())), paper_body()));
     }
     return made;
   }();
