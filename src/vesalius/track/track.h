@@ -55,7 +55,7 @@ struct Track {
     evidence = 0.F;
   }
   /// Takes the person found at a time.
-  void take(const Sighting& sighting, double time_s);
+  void take_sighting(const Sighting& sighting, double time_s);
 };
 
 }  // namespace vesalius

@@ -18,7 +18,7 @@ inline constexpr int kLeastLinks = 5;
 class TrackSize {
  public:
   /// Takes what body_scale says of a frame.
-  void add(float scale);
+  void add_scale(float scale);
   /// Takes how tall the fitted body is against the mean body (BodyHistory::size), in place of what was known of it;
   /// nothing if that is not known, or not any more.
   void fit(std::optional<float> size);
