@@ -33,7 +33,7 @@ class TrackSize {
   Estimate estimate() const;
 
   float mean_log_ = 0.F;
-  float frames_ = 0.F;               ///< at most kMostFrames
+  float frames_ = 0.F;               ///< frames that count, at most kMostFrames
   std::optional<float> fitted_log_;  ///< what body_scale would say of the fitted body
 };
 
