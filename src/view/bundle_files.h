@@ -7,7 +7,7 @@ namespace vesalius {
 
 /// A file of the page, compressed by gzip.
 struct BundleFile {
-  std::string_view path;  ///< as a browser asks for it, e.g. "/view.js"
+  std::string_view path;  ///< what a browser asks for, e.g. "/view.js"
   std::string_view type;  ///< MIME type
   std::string_view gzip;
 };

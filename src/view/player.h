@@ -29,14 +29,14 @@ struct PlayerState {
   bool at_end = false;  ///< whether the source ended and nobody has moved since
   bool repeat = true;   ///< whether the source starts again when it ends
   double speed = 1.0;
-  double at_s = 0.0;             ///< of the frame that was shown last
+  double at_s = 0.0;             ///< place of the frame that was shown last
   std::optional<TimeSpan> span;  ///< none where one cannot move
 };
 
 struct PlayerOptions {
   double rate = kUsualRate;  ///< frames a second of a source without times
   bool playing = true;       ///< otherwise it shows the first frame and waits
-  bool repeat = true;        ///< of a source in which one can move
+  bool repeat = true;        ///< whether a source in which one can move starts again
   double start_s = 0.0;      ///< where the source stands, in seconds from its first frame
 };
 
@@ -62,9 +62,9 @@ class Player {
 
   // What follows returns at once and is done in its order. What a source cannot do is left out. Nobody waits for moves
   // that are outdated: a seek replaces those before it that are not done yet, a pause too, and only so many steps wait.
-  void play();  ///< from the beginning, if the source has ended
+  void play();  ///< plays on, or from the beginning if the source has ended
   void pause();
-  void step(int by);             ///< above 0 shows the next frame, below 0 the one before; both pause
+  void step(int by);             ///< shows the next frame (above 0) or the one before (below 0), and pauses
   void seek(double time_s);      ///< shows the first frame not before this time, and goes on as before
   void set_speed(double times);  ///< 0.1 to 10
   void set_repeat(bool repeat);
@@ -103,7 +103,7 @@ class Player {
   const double rate_;
   const Outputs outputs_;
   // Of the player's thread alone:
-  std::int64_t index_;                        ///< of the next frame that is read, where frames have no times
+  std::int64_t index_;                        ///< number of the next frame that is read, where frames have no times
   std::optional<TimedFrame> waiting_;         ///< read, not due yet
   std::optional<Clock::time_point> planned_;  ///< when the frame that is shown was due; none after a move
   std::string shown_;                         ///< its name

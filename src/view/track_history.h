@@ -26,11 +26,11 @@ class TrackHistory {
 
  private:
   struct Known {
-    double at_s;  ///< of the frame that was added last
+    double at_s;  ///< place of the frame that was added last
     PeopleTracker tracker;
   };
 
-  std::deque<Known> known_;  ///< by time; never empty
+  std::deque<Known> known_;  ///< in order of time; never empty
 };
 
 }  // namespace vesalius

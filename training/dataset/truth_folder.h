@@ -39,10 +39,10 @@ class TruthFolder {
   std::string folder_;
   bool has_masks_ = false;
   bool one_person_ = false;             ///< there is somebody, and never two
-  std::map<std::string, Facts> facts_;  ///< by frame name
+  std::map<std::string, Facts> facts_;  ///< keys: names of frames
   std::optional<Trajectory> camera_;
   std::vector<std::string> joint_names_;
-  std::map<std::string, std::vector<Eigen::Vector3f>> joints_;  ///< by frame name
+  std::map<std::string, std::vector<Eigen::Vector3f>> joints_;  ///< keys: names of frames
 };
 
 /// Returns the sets of a collection: the folders of frames that the frames.csv of `folder` names or that have a

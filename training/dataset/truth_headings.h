@@ -25,7 +25,7 @@ class HeadingTable {
   std::optional<Heading> of(const std::string& set, const std::string& frame) const;
 
  private:
-  std::map<std::pair<std::string, std::string>, Heading> headings_;  ///< by set and frame
+  std::map<std::pair<std::string, std::string>, Heading> headings_;  ///< keys: set and frame
 };
 
 /// Returns the same frames with the headings that the table has for the set; others keep their own.

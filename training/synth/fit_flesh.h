@@ -8,7 +8,7 @@
 namespace vesalius::synth {
 
 struct FleshFitOptions {
-  int bodies = 200;    ///< of the generator's recipe
+  int bodies = 200;    ///< bodies drawn from the generator's recipe
   int poses = 30000;   ///< drawn as the generator does
   int shapes = 8;      ///< factors of the bodies' shapes
   int components = 5;  ///< Gaussians for each limb

@@ -207,7 +207,7 @@ float nominal_focal(const std::string& sensor, int width, int height, bool regis
 }
 
 template <class T>
-void take(std::optional<T>& mine, const std::optional<T>& theirs) {
+void fill(std::optional<T>& mine, const std::optional<T>& theirs) {
   if (!mine) mine = theirs;
 }
 
@@ -215,13 +215,13 @@ void take(std::optional<T>& mine, const std::optional<T>& theirs) {
 
 void CameraFacts::fill_from(const CameraFacts& other) {
   const bool needs_focal = !fx;
-  take(fx, other.fx);
+  fill(fx, other.fx);
   // A lone fx means square pixels, so fy comes from the same place as fx or not at all.
-  if (needs_focal) take(fy, other.fy);
-  take(cx, other.cx);
-  take(cy, other.cy);
-  take(depth_scale, other.depth_scale);
-  take(rate_hz, other.rate_hz);
+  if (needs_focal) fill(fy, other.fy);
+  fill(cx, other.cx);
+  fill(cy, other.cy);
+  fill(depth_scale, other.depth_scale);
+  fill(rate_hz, other.rate_hz);
   if (needs_focal && other.fx) {
     width = other.width;
     height = other.height;

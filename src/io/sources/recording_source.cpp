@@ -84,7 +84,7 @@ class RecordingSource final : public FrameSource {
   std::optional<Frame> next() override {
     while (!is_ready()) {
       try {
-        if (const auto message = next_message()) take(*message);
+        if (const auto message = next_message()) take_message(*message);
       } catch (const Error&) {
         if (!wanted_from_s_) throw;
         failed_ = std::current_exception();
@@ -203,7 +203,7 @@ class RecordingSource final : public FrameSource {
     return !colours_.empty() && colours_.back().time_ns >= waiting_.front().time_ns;
   }
 
-  void take(const RecordedMessage& message) {
+  void take_message(const RecordedMessage& message) {
     const RecordedTopic& topic = recordings_[at_]->topics()[message.topic];
     const std::string& place = files_[at_];
     if (acceleration_ && topic.name == acceleration_->topic && is_acceleration(topic))

@@ -10,7 +10,7 @@
 namespace vesalius {
 
 struct BlendOptions {
-  float least_share = 0.95F;  ///< of the reading behind it that a reading beside a hole needs; 0: all are kept
+  float least_share = 0.95F;  ///< share of the reading behind it that a reading beside a hole needs; 0: all are kept
 };
 void visit_options(const std::string& prefix, BlendOptions& options, OptionVisitor& visitor);
 

@@ -51,9 +51,9 @@ struct SurfaceRule {
   int part = -1;
   std::string bone;  ///< name in synth's skeleton, e.g. "l_thigh"; synth checks it
   float from = 0.F;  ///< 0 is the bone's head (nearer to the trunk), 1 its tail
-  float to = 1.F;    ///< above `from`
+  float to = 1.F;    ///< greater than `from`
   Side side = Side::both;
-  int line = 0;  ///< in the body's TOML, for messages
+  int line = 0;  ///< line of the body's TOML, for messages
 };
 
 /// How the centres of the visible surfaces of parts lie to each other in a population of bodies and poses: a point

@@ -47,7 +47,7 @@ struct LabelledFrame {
   std::vector<std::vector<Eigen::Vector3f>> joints;
   std::vector<std::string> postures;     ///< [person]: one word, e.g. "sitting"; empty where nobody knows
   std::optional<Eigen::Vector3f> up;     ///< unit vector away from the ground, optical frame
-  std::optional<float> camera_height_m;  ///< of the camera above the ground on which people stand
+  std::optional<float> camera_height_m;  ///< height of the camera above the ground on which people stand
   /// Pose of the camera in a world that stays the same over a recording: metres, y away from the ground, which is y =
   /// 0.
   std::optional<Eigen::Isometry3f> world_from_camera;

@@ -21,7 +21,7 @@ const char* to_string(Heading heading);
 struct FrameTruth {
   int people = -1;                                  ///< exact number in view, or -1 for at least one
   std::string posture;                              ///< one word for the posture of all
-  std::optional<Heading> heading;                   ///< of all
+  std::optional<Heading> heading;                   ///< heading of all people
   Mask mask;                                        ///< non-zero on the pixels of all people
   Image<std::uint8_t> person;                       ///< index of each pixel's person, kBackground elsewhere
   LabelImage labels;                                ///< part of each pixel, kBackground elsewhere
@@ -32,7 +32,7 @@ struct FrameTruth {
   std::vector<std::string> postures;                 ///< [person]: one word
   std::vector<float> statures_m;                     ///< [person]: height of the body standing upright; NaN = not known
   std::optional<Eigen::Vector3f> up;                 ///< unit vector away from the ground, optical frame
-  std::optional<float> camera_height_m;              ///< above the ground on which people stand
+  std::optional<float> camera_height_m;              ///< height above the ground on which people stand
   CameraMotion camera_motion = CameraMotion::unknown;
   /// Number of the recording in its set that the frame belongs to; frames of one recording come after each other in
   /// time. -1: the frame stands alone.

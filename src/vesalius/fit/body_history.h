@@ -39,15 +39,15 @@ class BodyHistory {
 
   struct Last {
     BodyState state;
-    Eigen::Vector3d velocity;              ///< of the root, metres a second
-    std::vector<Eigen::Vector3d> turning;  ///< of each bone about its own axes, radians a second
+    Eigen::Vector3d velocity;              ///< velocity of the root in metres a second
+    std::vector<Eigen::Vector3d> turning;  ///< turning of each bone about its own axes in radians a second
     double time_s;
   };
   std::optional<Last> last_;
   Eigen::VectorXd shape_;        ///< mean; empty before the first frame
   Eigen::MatrixXd information_;  ///< inverse covariance of the shape
   std::optional<float> stature_m_;
-  float misfit_ = 0.F;  ///< of the last body
+  float misfit_ = 0.F;  ///< misfit of the last body
   int frames_ = 0;
   int learned_ = 0;  ///< frames that told something of the shape
   std::optional<float> size_;

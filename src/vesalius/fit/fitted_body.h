@@ -11,13 +11,13 @@ namespace vesalius {
 
 /// A bone of a body that was fitted to a person, in the order of the flesh model's bones.
 struct FittedBone {
-  State state = State::none;                             ///< of its head; observed where the camera sees flesh about it
+  State state = State::none;                             ///< observed where the camera sees flesh about the head
   Eigen::Vector3f head = Eigen::Vector3f::Zero();        ///< joint about which it turns, metres, optical frame
   Eigen::Vector3f tail = Eigen::Vector3f::Zero();        ///< its other end
   Eigen::Quaternionf global{1.F, 0.F, 0.F, 0.F};         ///< optical frame from the bone's
   Eigen::Quaternionf local{1.F, 0.F, 0.F, 0.F};          ///< parent's frame from the bone's; of the root as `global`
-  float length_m = 0.F;                                  ///< from head to tail
-  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();  ///< of the head, square metres
+  float length_m = 0.F;                                  ///< length from head to tail
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();  ///< covariance of the head in square metres
   int support = 0;                                       ///< points of the person on the bone
   float confidence = 0.F;         ///< probability that the head lies within 10 cm of the truth, 0-1
   float tail_confidence = 0.F;    ///< the same of the tail

@@ -19,7 +19,7 @@ struct FleshJoint {
   std::string set, name;
   int bone = -1;
   float along = 0.F;                                   ///< 0 is the bone's head, 1 its tail
-  Eigen::Vector3f offset_m = Eigen::Vector3f::Zero();  ///< from there, in the bone's frame
+  Eigen::Vector3f offset_m = Eigen::Vector3f::Zero();  ///< offset from there, in the bone's frame
   std::optional<Eigen::Quaternionf> axes;              ///< bone's frame from the joint's, if the tracker turns joints
   bool x_on_bone = false;                              ///< whether the joint's x axis follows the bone's line exactly
 };

@@ -51,7 +51,7 @@ struct BodyTrust {
 
 struct NamedSource {
   JointSource source;
-  std::string_view name;  ///< in files
+  std::string_view name;  ///< name in files
   JointTrust BodyTrust::*trust;
 };
 inline constexpr std::array kJointSources{NamedSource{JointSource::observed, "observed", &BodyTrust::observed},

@@ -25,7 +25,7 @@ class Silhouette {
       covered   ///< something nearer than the point
     };
     Kind kind = Kind::unknown;
-    double depth_m = 0.0;                             ///< of the person at that place, for `on`
+    double depth_m = 0.0;                             ///< depth of the person at that place, for `on`
     Eigen::Vector2d aside = Eigen::Vector2d::Zero();  ///< pixels to the nearest place of the person, for `behind`
   };
   /// `margin_m` is how much nearer than the point something else must be to cover it.

@@ -38,7 +38,7 @@ float overlap_cost(float share) {
 
 TrackSize size_of(const Sighting& sighting) {
   TrackSize size;
-  if (sighting.scale) size.add(*sighting.scale);
+  if (sighting.scale) size.add_scale(*sighting.scale);
   return size;
 }
 

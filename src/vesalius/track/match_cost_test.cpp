@@ -29,7 +29,7 @@ Track walked_to_middle(int id, float speed_m_s) {
   Track track(id, at(0), 0.0);
   for (int frame = 1; frame <= 30; ++frame) {
     track.motion.predict(kFrame_s);
-    track.take(at(frame), frame * kFrame_s);
+    track.take_sighting(at(frame), frame * kFrame_s);
   }
   track.motion.predict(0.4);  // both are hidden behind something
   return track;

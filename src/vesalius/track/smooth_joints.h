@@ -8,8 +8,8 @@
 namespace vesalius {
 
 struct JointSmoothing {
-  float cutoff_hz = 2.F;       ///< of what a joint at rest does, only slower changes pass
-  float cutoff_per_m_s = 6.F;  ///< by which that rises with the joint's speed, in hertz for a metre a second
+  float cutoff_hz = 2.F;       ///< cutoff for a joint at rest: only slower changes pass
+  float cutoff_per_m_s = 6.F;  ///< rise of the cutoff with the joint's speed, in hertz for a metre a second
 };
 
 /// Smooths the joints of one person over time by the One-Euro filter (Casiez, Roussel and Vogel 2012): a low pass whose

@@ -12,7 +12,7 @@ namespace vesalius {
 /// What of a posture a rule looks at. Metres count in units of the person's stature, or of 1.7 m where that is not
 /// known.
 struct StanceSign {
-  std::string_view name;  ///< in files; with "no_" before it where it is not known
+  std::string_view name;  ///< name in files; with "no_" before it where it is not known
   std::optional<float> Posture::*value;
   bool metres = true;
 };
@@ -41,11 +41,11 @@ struct StanceRule {
 /// How probable each stance is by one frame, where all are equally frequent.
 struct StanceModel {
   StanceRule lying;     ///< lying rather than standing or sitting
-  StanceRule standing;  ///< of those who do not lie: standing rather than sitting
+  StanceRule standing;  ///< standing rather than sitting, for those who do not lie
 };
 
 struct NamedRule {
-  std::string_view name;  ///< in files
+  std::string_view name;  ///< name in files
   StanceRule StanceModel::*rule;
 };
 inline constexpr std::array kStanceRules{NamedRule{"lying", &StanceModel::lying},

@@ -31,13 +31,13 @@ struct Track {
   TrackMotion motion;
   TrackLook look;
   TrackSize size;
-  TrackPlace place;                ///< in the frame in which the person was found last
-  Eigen::Vector3f place_position;  ///< of the trunk in that frame, as filtered
-  Person person;                   ///< as found last, without mask, labels and points
+  TrackPlace place;                ///< place in the frame in which the person was found last
+  Eigen::Vector3f place_position;  ///< place of the trunk in that frame, filtered
+  Person person;                   ///< the person as found last, without mask, labels and points
   std::optional<FittedBody> body;
   BodyHistory history;   ///< what is learned of the person's body
-  Mask expected;         ///< where the person is expected in the frame that comes next; empty if that is unknown
-  float log_odds = 0.F;  ///< of being a person, by all frames so far
+  Mask expected;         ///< pixels at which the person is expected in the next frame; empty if that is unknown
+  float log_odds = 0.F;  ///< log odds of being a person, by all frames so far
   int found = 0;         ///< frames in which the person was found
   float evidence = 0.F;  ///< sum of what their scores tell, as long as the track is fresh
   TrackStance stance;
@@ -55,7 +55,7 @@ struct Track {
     evidence = 0.F;
   }
   /// Takes the person found at a time.
-  void take(const Sighting& sighting, double time_s);
+  void take_sighting(const Sighting& sighting, double time_s);
 };
 
 }  // namespace vesalius

@@ -6,7 +6,7 @@ namespace vesalius {
 
 /// How a frame follows in time on the one before.
 struct TrackStep {
-  double time_s = 0.0;    ///< of the frame
+  double time_s = 0.0;    ///< time of the frame
   double passed_s = 0.0;  ///< since the frame before; 0 after a jump
   bool jump = false;      ///< whether the frame does not go on from the one before
 };

@@ -32,11 +32,11 @@ class TrackFloor {
 
   std::optional<Plane> floor_;
   std::optional<Plane> rival_;  ///< a plane that may become the floor
-  double rival_s_ = 0.0;        ///< for how long it has been seen
+  double rival_s_ = 0.0;        ///< seconds for which the rival has been seen
   int rival_frames_ = 0;
-  double unseen_s_ = 0.0;      ///< since the floor was seen
+  double unseen_s_ = 0.0;      ///< seconds since the floor was seen
   std::vector<Plane> around_;  ///< planes that were seen with the floor
-  double elsewhere_s_ = 0.0;   ///< for how long none of them has been seen
+  double elsewhere_s_ = 0.0;   ///< seconds for which no plane of `around_` has been seen
 };
 
 /// Returns how the camera stands over a floor. The plane's normal points away from the camera.

@@ -37,7 +37,7 @@ AppearanceHistogram look_of(const Frame& frame, const Mask& mask, const Box& box
                    : learn_appearance(every_nth(cut, step), every_nth(inside, step), *appearance);
 }
 
-void TrackLook::add(const AppearanceHistogram& frame) {
+void TrackLook::add_histogram(const AppearanceHistogram& frame) {
   if (frame.samples() == 0) return;
   histogram_.scale(kKept);
   histogram_.add(frame);

@@ -17,7 +17,7 @@ AppearanceHistogram look_of(const Frame& frame, const Mask& mask, const Box& box
 /// less and less.
 class TrackLook {
  public:
-  void add(const AppearanceHistogram& frame);
+  void add_histogram(const AppearanceHistogram& frame);
   const AppearanceHistogram& histogram() const { return histogram_; }
 
  private:

@@ -31,7 +31,7 @@ class TrackMotion {
 
   Eigen::Vector3f position_;
   Eigen::Vector3f velocity_ = Eigen::Vector3f::Zero();
-  Eigen::Matrix2d covariance_;  ///< of position and velocity along an axis
+  Eigen::Matrix2d covariance_;  ///< covariance of position and velocity along an axis
   double unseen_s_ = 0.0;       ///< since the last measurement
 };
 

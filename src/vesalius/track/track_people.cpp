@@ -163,7 +163,7 @@ struct PeopleTracker::State {
   std::vector<int> match(const std::vector<Sighting>& sightings, double time_s) const;
   int who_came_back(const Sighting& sighting, double time_s) const;
   Track begin(const Sighting& sighting, double time_s);
-  void take(Track& track, const Sighting& sighting, double time_s) const;
+  void take_sighting(Track& track, const Sighting& sighting, double time_s) const;
   void count(Track& track, float score, double passed_s) const;
   void confirm(Track& track, float score) const;
   bool begun_at(const Track& stayed, const std::vector<Sighting>& sightings, const std::vector<int>& matched) const;
@@ -251,7 +251,7 @@ Track PeopleTracker::State::begin(const Sighting& sighting, double time_s) {
   if (back >= 0) {
     Track& known = lost[static_cast<std::size_t>(back)];
     track.look = known.look;
-    track.look.add(sighting.look);
+    track.look.add_histogram(sighting.look);
     track.size = known.size;
     track.since_s = known.since_s;
     track.body = std::move(known.body);
@@ -279,10 +279,10 @@ void PeopleTracker::State::confirm(Track& track, float score) const {
   track.state = TrackState::tracked;
 }
 
-void PeopleTracker::State::take(Track& track, const Sighting& sighting, double time_s) const {
+void PeopleTracker::State::take_sighting(Track& track, const Sighting& sighting, double time_s) const {
   const double passed_s = time_s - track.seen_s;
   if (!is_sure(track) && passed_s > static_cast<double>(options.confirm_s)) track.doubt();
-  track.take(sighting, time_s);
+  track.take_sighting(sighting, time_s);
   count(track, sighting.person.score, passed_s);
   confirm(track, sighting.person.score);
 }
@@ -344,7 +344,7 @@ std::vector<int> PeopleTracker::State::follow(const Frame& frame, const std::vec
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     Track& track = tracks[t];
     if (matched[t] >= 0) {
-      take(track, sightings[static_cast<std::size_t>(matched[t])], time_s);
+      take_sighting(track, sightings[static_cast<std::size_t>(matched[t])], time_s);
       taken[static_cast<std::size_t>(matched[t])] = true;
     } else if (time_s - track.seen_s > longest_unseen_s(track)) {
       lose(std::move(track), time_s, out);

@@ -34,10 +34,10 @@ class TrackPlace {
   Mask expected(const Frame& frame, const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
  private:
-  int width_ = 0, height_ = 0;  ///< of the whole picture
+  int width_ = 0, height_ = 0;  ///< size of the whole picture
   Box box_;
-  Mask mask_;         ///< of the box
-  DepthImage depth_;  ///< of the box
+  Mask mask_;         ///< the box's part of the mask
+  DepthImage depth_;  ///< the box's part of the picture
   long pixels_ = 0;
   bool at_border_ = false;
 };

@@ -32,7 +32,7 @@ std::optional<float> body_scale(const Skeleton& skeleton, const BodyModel& body)
   return *middle;
 }
 
-void TrackSize::add(float scale) {
+void TrackSize::add_scale(float scale) {
   frames_ = std::min(frames_ + 1.F, kMostFrames);
   mean_log_ += (std::log(scale) - mean_log_) / frames_;
 }

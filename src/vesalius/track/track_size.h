@@ -18,7 +18,7 @@ inline constexpr int kLeastLinks = 5;
 class TrackSize {
  public:
   /// Takes what body_scale says of a frame.
-  void add(float scale);
+  void add_scale(float scale);
   /// Takes how tall the fitted body is against the mean body (BodyHistory::size), in place of what was known of it;
   /// nothing if that is not known, or not any more.
   void fit(std::optional<float> size);
@@ -33,7 +33,7 @@ class TrackSize {
   Estimate estimate() const;
 
   float mean_log_ = 0.F;
-  float frames_ = 0.F;               ///< at most kMostFrames
+  float frames_ = 0.F;               ///< frames that count, at most kMostFrames
   std::optional<float> fitted_log_;  ///< what body_scale would say of the fitted body
 };
 

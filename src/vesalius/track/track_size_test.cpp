@@ -9,7 +9,7 @@ namespace {
 
 TrackSize seen(float scale, int frames = 1) {
   TrackSize size;
-  for (int i = 0; i < frames; ++i) size.add(scale);
+  for (int i = 0; i < frames; ++i) size.add_scale(scale);
   return size;
 }
 

@@ -32,7 +32,7 @@ class TrackStance {
   struct Path {
     double log_odds = 0.0;  ///< against the likeliest of all; 0 or below
     double since_s = 0.0;   ///< when its last stance began
-    int frames = 0;         ///< with evidence, since then
+    int frames = 0;         ///< frames with evidence since then
     double trunk_m = 0.0;   ///< sum of the trunk's heights over the floor in those in which they are known ...
     int heights = 0;        ///< ... and their number
     bool fell = false;      ///< whether the person had been upright shortly before, and did not sit down first
@@ -46,7 +46,7 @@ class TrackStance {
   std::array<Path, kStances.size()> paths_;
   Stance stance_ = Stance::unknown;
   std::optional<double> upright_s_;  ///< when the person was last seen upright, higher than on the floor
-  double near_floor_s_ = 0.0;        ///< for how long the person has been seen since
+  double near_floor_s_ = 0.0;        ///< seconds in which the person has been seen since
   std::optional<double> seen_s_;     ///< when there was evidence last
   std::optional<double> known_s_;    ///< when a stance was clear last
   bool down_ = false;

@@ -33,9 +33,9 @@ struct TrackedPerson {
   /// the labels are empty, and parts and joints are predicted.
   Person person;
   std::optional<FittedBody> body;
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< of the trunk, metres, optical frame
-  Eigen::Vector3f velocity = Eigen::Vector3f::Zero();  ///< of the trunk, metres a second
-  std::optional<Posture> posture;                      ///< in this frame, as far as it is known
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< place of the trunk in metres, optical frame
+  Eigen::Vector3f velocity = Eigen::Vector3f::Zero();  ///< velocity of the trunk in metres a second
+  std::optional<Posture> posture;                      ///< what is known of the posture in this frame
   Stance stance = Stance::unknown;
   bool leaving = false;  ///< seen last at the border of the view, where people leave it
   double since_s = 0.0;  ///< time of the first frame in which the person was found
@@ -47,9 +47,9 @@ struct TrackedPerson {
 /// The floor and how the camera stands over it.
 struct FloorView {
   Eigen::Vector3f up{0.F, -1.F, 0.F};  ///< unit vector away from the ground, optical frame
-  float height_m = 0.F;                ///< of the camera above the floor
-  float tilt_rad = 0.F;                ///< of the viewing direction below the horizon; negative looks up
-  float roll_rad = 0.F;                ///< about the viewing direction, clockwise as seen from the camera
+  float height_m = 0.F;                ///< height of the camera above the floor
+  float tilt_rad = 0.F;                ///< angle of the viewing direction below the horizon; negative looks up
+  float roll_rad = 0.F;                ///< turn about the viewing direction, clockwise as seen from the camera
 };
 
 /// Somebody's stance has changed.

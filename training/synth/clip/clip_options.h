@@ -15,8 +15,8 @@ struct ClipOptions {
   float falling_share = 0.F;    ///< share of people who stand, fall and remain lying, whatever else they would do
   float seating_share = 0.F;    ///< share of people on seats who sit down or get up in the clip
   float moving_share = 0.5F;    ///< share of clips whose camera moves
-  float speed_max_m_s = 0.3F;   ///< of the camera
-  float turn_max_deg_s = 20.F;  ///< of the camera
+  float speed_max_m_s = 0.3F;   ///< greatest speed of the camera
+  float turn_max_deg_s = 20.F;  ///< fastest turn of the camera
 };
 
 void visit_options(const std::string& prefix, ClipOptions& options, OptionVisitor& visitor);

@@ -8,21 +8,21 @@ namespace vesalius::synth {
 
 /// The angles of an arm in degrees. They are 0 if the arm hangs straight with its palm to the thigh.
 struct ArmAngles {
-  float elevation = 5.F;  ///< of the upper arm from the hanging position, 0 to 180
+  float elevation = 5.F;  ///< angle of the upper arm from hanging, 0 to 180
   float plane = 0.F;      ///< direction of elevation: 0 is to the side, 90 front, -90 back, over 90 across the body
   float external = 0.F;   ///< turn of the upper arm about its axis; turns the elbow's bend outwards
   float elbow = 0.F;      ///< bend
   float pronation = 0.F;  ///< turn of the hand about the forearm; the palm of a hanging arm turns backwards
   float wrist = 0.F;      ///< bend towards the palm
   float ulnar = 0.F;      ///< bend towards the little finger
-  float shrug = 0.F;      ///< of the clavicle, upwards
-  float forward = 0.F;    ///< of the clavicle, to the front
+  float shrug = 0.F;      ///< angle of the clavicle upwards
+  float forward = 0.F;    ///< angle of the clavicle to the front
 };
 
 /// The angles of a leg in degrees. They are 0 if the leg stands straight.
 struct LegAngles {
-  float flexion = 0.F;    ///< of the hip; moves the knee to the front
-  float abduction = 0.F;  ///< of the hip; moves the knee outwards
+  float flexion = 0.F;    ///< angle of the hip; moves the knee to the front
+  float abduction = 0.F;  ///< angle of the hip; moves the knee outwards
   float external = 0.F;   ///< turn of the thigh about its axis; turns the toes outwards
   float knee = 0.F;       ///< bend
   float ankle = 0.F;      ///< bend that lifts the toes
@@ -37,8 +37,8 @@ struct SpineAngles {
 
 /// A pose in the angles of anatomy. Of arms and legs, [0] is left and [1] right.
 struct BodyAngles {
-  float pitch = 0.F;  ///< of the pelvis to the front, degrees; a person at -90 lies on the back
-  float roll = 0.F;   ///< of the pelvis to the person's left, degrees; a person at 90 lies on the left side
+  float pitch = 0.F;  ///< angle of the pelvis to the front; at -90 a person lies on the back
+  float roll = 0.F;   ///< angle of the pelvis to the person's left; at 90 a person lies on the left side
   SpineAngles trunk;
   SpineAngles neck;
   std::array<ArmAngles, 2> arms;

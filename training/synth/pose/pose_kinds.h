@@ -27,10 +27,10 @@ Pose any(Random& random);
 
 /// How somebody walks; walking() draws it together with a moment of it.
 struct WalkStyle {
-  float length = 1.F;                ///< of the strides, 1 at natural cadence
+  float length = 1.F;                ///< length of the strides, 1 at natural cadence
   BodyAngles angles;                 ///< what is the same at all times
-  std::array<float, 2> swing_deg{};  ///< of the arms to front and back
-  std::array<float, 2> side_deg{};   ///< of the arms to their side
+  std::array<float, 2> swing_deg{};  ///< angles of the arms to front and back
+  std::array<float, 2> side_deg{};   ///< angles of the arms to their side
   std::array<float, 2> elbow_deg{};  ///< least bend
 };
 WalkStyle draw_walk(Random& random);
