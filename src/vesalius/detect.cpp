@@ -12,6 +12,7 @@
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/pool.h"
+#include "vesalius/default_judge.h"
 #include "vesalius/forest/label_scene.h"
 #include "vesalius/forest/make_labeller.h"
 #include "vesalius/known_people.h"
@@ -27,25 +28,16 @@ struct Method {
         options(given),
         appearance(looks != nullptr ? std::move(looks) : make_appearance(given.grow.appearance)),
         body(labeller.body()),
-        judge(pixels->judge()) {
-    if (!pixels->has_background()) options.score = options.score_without_background;
-    const std::size_t asked = judge_signs(body).size();
-    if (!judge.empty() && static_cast<std::size_t>(judge.features) != asked) {
-      throw Error("forest: its judge of people knows " + std::to_string(judge.features) +
-                  " kinds of evidence, expected " + std::to_string(asked) +
-                  "; fit it a new one (vesalius evaluate --fit-judge)");
-    }
-  }
+        judge(in_order(pixels->judge().empty() ? default_judge() : pixels->judge(), judge_names(body),
+                       "judge of people")) {}
 
-  float score(const Evidence& evidence) const {
-    return judge.empty() ? person_score(evidence, options.score) : judge.probability(judge_features(evidence));
-  }
+  float score(const Evidence& evidence) const { return judge.probability(judge_features(evidence)); }
 
   SceneLabeller labeller;
   DetectOptions options;
   std::shared_ptr<const Appearance> appearance;  ///< none if looks do not matter
   const BodyModel& body;
-  const BoostedTrees& judge;
+  BoostedTrees judge;  ///< asks for all evidence, in its order
   mutable Pool<SceneLabels> memory;
 };
 

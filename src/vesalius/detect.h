@@ -40,8 +40,6 @@ struct DetectOptions {
   SearchOptions search;
   GrowOptions grow;
   RefineOptions refine;
-  ScoreOptions score;  ///< for forests that have a background class but no judge
-  ScoreOptions score_without_background = vesalius::score_without_background();  ///< for other forests
 };
 void visit_options(const std::string& prefix, DetectOptions& options, OptionVisitor& visitor);
 

@@ -29,8 +29,6 @@ void visit_options(const std::string& prefix, DetectOptions& o, OptionVisitor& v
   visit_options(prefix + "search.", o.search, visitor);
   visit_options(prefix + "grow.", o.grow, visitor);
   visit_options(prefix + "refine.", o.refine, visitor);
-  visit_options(prefix + "score.", o.score, visitor);
-  visit_options(prefix + "score-without-background.", o.score_without_background, visitor);
 }
 
 }  // namespace vesalius

@@ -13,9 +13,6 @@
 namespace vesalius {
 namespace {
 
-/// Rounds a weight to hundredths, which changes no score by more than a quarter of a hundredth.
-float rounded(float weight) { return std::round(weight * 100.F) / 100.F; }
-
 /// Returns what the sets have of one kind, all together.
 template <class Kind>
 std::vector<Kind> of_all_sets(const Evaluation& evaluation, std::vector<Kind> SetResult::*kind) {
@@ -78,23 +75,11 @@ std::string fitted_distribution_toml(const Evaluation& evaluation) {
   return toml;
 }
 
-FittedOptions fit_score_options(const Evaluation& evaluation) {
-  std::vector<std::vector<ScoreSample>> sets;
-  for (const SetResult& set : evaluation.sets) sets.push_back(set.samples);
-  FittedOptions fitted{evaluation.options.detect, {}};
-  ScoreOptions& score = evaluation.has_background ? fitted.options.score : fitted.options.score_without_background;
-  fitted.fit = fit_score(sets, score);
-  score = fitted.fit.options;
-  for (const EvidenceWeight& piece : kEvidenceWeights) score.*piece.weight = rounded(score.*piece.weight);
-  score.bias = rounded(score.bias);
-  return fitted;
-}
-
 FittedJudge fit_judge(const Evaluation& evaluation) {
   FittedJudge fitted;
   std::vector<BoostSample> samples;
   for (const SetResult& set : evaluation.sets) {
-    for (const ScoreSample& sample : set.samples) {
+    for (const JudgeSample& sample : set.samples) {
       samples.push_back({judge_features(sample.evidence), sample.person});
       ++(sample.person ? fitted.people : fitted.nobodies);
     }

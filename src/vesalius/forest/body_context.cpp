@@ -53,6 +53,13 @@ struct BodySurroundings::Box4 {
 
   std::uint32_t operator[](std::size_t channel) const {
     return bottom_right[channel] - top_right[channel] - bottom_left[channel] + top_left[channel];
+std::vector<std::string> kind_names(const BodyModel& body) {
+  const std::vector<int> slots = part_slots(body);
+  std::vector<std::string> names(kind_count(slots));
+  for (std::size_t p = slots.size(); p-- > 0;) names[slots[p]] = body.parts[p].name;
+  return names;
+}
+
   }
 };
 

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "vesalius/base/body_model.h"
@@ -15,6 +16,9 @@
 #include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
+
+/// Returns the name of each kind of part (part_slots): that of its first part.
+std::vector<std::string> kind_names(const BodyModel& body);
 
 /// The surroundings of pixels as numbers: means over boxes of metric size of what the posteriors say. It looks at
 /// cells, every few pixels of every few rows.
