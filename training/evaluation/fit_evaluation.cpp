@@ -9,6 +9,7 @@
 #include "metrics/fit_distribution.h"
 #include "metrics/fit_joints.h"
 #include "vesalius/base/error.h"
+#include "vesalius/forest/body_context.h"
 
 namespace vesalius {
 namespace {
@@ -88,6 +89,7 @@ FittedJudge fit_judge(const Evaluation& evaluation) {
   if (fitted.people == 0) throw Error(none + "a person");
   if (fitted.nobodies == 0) throw Error(none + "nobody");
   fitted.judge = boost_trees(samples, judge_signs(evaluation.body));
+  fitted.judge.asks = judge_names(evaluation.body);
   return fitted;
 }
 
@@ -136,6 +138,7 @@ FittedContext fit_context(const Evaluation& evaluation) {
   if (fitted.others == 0) throw Error(none + "none");
   const std::vector<int> signs(samples.front().features.size(), 0);
   fitted.context = boost_trees(samples, signs, kContextOptions);
+  fitted.context.asks = BodySurroundings::feature_names(evaluation.body);
   fitted.context.bias += static_cast<float>(std::log(kContextOdds));
   return fitted;
 }

@@ -32,6 +32,9 @@ class BodySurroundings {
 
   /// Returns how many features a cell has with a body of these parts.
   static int feature_count(const BodyModel& body);
+  /// Returns the name of each in model files: "body", "part:neck", "about 0.3 m: body", "0.45 m right, -0.45 m down:
+  /// beyond".
+  static std::vector<std::string> feature_names(const BodyModel& body);
 
   int step() const { return step_; }  ///< pixels from one cell to the next
   int columns() const { return columns_; }
