@@ -12,6 +12,7 @@
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/pool.h"
+#include "vesalius/default_judge.h"
 #include "vesalius/forest/label_scene.h"
 #include "vesalius/forest/make_labeller.h"
 #include "vesalius/known_people.h"
@@ -27,25 +28,16 @@ struct Method {
         options(given),
         appearance(looks != nullptr ? std::move(looks) : make_appearance(given.grow.appearance)),
         body(labeller.body()),
-        judge(pixels->judge()) {
-    if (!pixels->has_background()) options.score = options.score_without_background;
-    const std::size_t asked = judge_signs(body).size();
-    if (!judge.empty() && static_cast<std::size_t>(judge.features) != asked) {
-      throw Error("forest: its judge of people knows " + std::to_string(judge.features) +
-                  " kinds of evidence, expected " + std::to_string(asked) +
-                  "; fit it a new one (vesalius evaluate --fit-judge)");
-    }
-  }
+        judge(in_order(pixels->judge().empty() ? default_judge() : pixels->judge(), judge_names(body),
+                       "judge of people")) {}
 
-  float score(const Evidence& evidence) const {
-    return judge.empty() ? person_score(evidence, options.score) : judge.probability(judge_features(evidence));
-  }
+  float score(const Evidence& evidence) const { return judge.probability(judge_features(evidence)); }
 
   SceneLabeller labeller;
   DetectOptions options;
   std::shared_ptr<const Appearance> appearance;  ///< none if looks do not matter
   const BodyModel& body;
-  const BoostedTrees& judge;
+  BoostedTrees judge;  ///< asks for all evidence, in its order
   mutable Pool<SceneLabels> memory;
 };
 
@@ -76,9 +68,11 @@ Scene first_pass(const Method& method, const Frame& frame, StageClock& clock) {
   return scene;
 }
 
+constexpr float kRivalLikelihood = 0.2F;  // per part: rough skeletons of at least this grow against each other
+
 /// Returns how many of the rough skeletons, which come best first, grow against each other.
 std::size_t count_rivals(const std::vector<Skeleton>& rough, const Method& method) {
-  const float least = method.options.refine.rival_likelihood * static_cast<float>(method.body.part_count());
+  const float least = kRivalLikelihood * static_cast<float>(method.body.part_count());
   const auto first_weak = std::ranges::find_if(rough, [&](const Skeleton& s) { return s.score < least; });
   const auto strong = static_cast<std::size_t>(first_weak - rough.begin());
   return std::min(strong, static_cast<std::size_t>(method.options.refine.max_candidates));
@@ -163,7 +157,7 @@ std::vector<Candidate> propose(const Method& method, const Frame& frame, const S
 /// `size` is that of the person (search_skeletons).
 Skeleton second_pass(const Method& method, const Frame& frame, const LabelImage& labels, const Box& box, float size) {
   ClusterOptions options = method.options.cluster;
-  const float scale = method.options.refine.area_scale;
+  constexpr float scale = 0.5F;  // of the smallest area of a part: in the second pass all pixels are a person's
   options.min_area_cm2 *= scale;
   options.min_pixels = std::max(1, static_cast<int>(static_cast<float>(options.min_pixels) * scale));
   const Clusters clusters =

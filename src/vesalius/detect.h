@@ -22,13 +22,11 @@ namespace vesalius {
 
 /// Second iteration and acceptance (section 7).
 struct RefineOptions {
-  bool second_pass = true;        ///< if false, the rough skeleton and its grown mask are the result
-  float area_scale = 0.5F;        ///< multiplies the smallest area of a part in the second pass
-  int max_candidates = 12;        ///< most rough skeletons refined in one frame
-  float rival_likelihood = 0.2F;  ///< rough skeletons of at least this likelihood per part grow against each other
-  int min_parts = 6;              ///< fewest parts of a person after the second pass
-  float min_score = 0.8F;         ///< lowest score of a person: a false one costs four missed ones
-  float max_overlap = 0.3F;       ///< share of the mask that a person may have in common with a more certain one
+  bool second_pass = true;   ///< if false, the rough skeleton and its grown mask are the result
+  int max_candidates = 12;   ///< most rough skeletons refined in one frame
+  int min_parts = 6;         ///< fewest parts of a person after the second pass
+  float min_score = 0.8F;    ///< lowest score of a person: a false one costs four missed ones
+  float max_overlap = 0.3F;  ///< share of the mask that a person may have in common with a more certain one
 };
 
 struct DetectOptions {
@@ -40,8 +38,6 @@ struct DetectOptions {
   SearchOptions search;
   GrowOptions grow;
   RefineOptions refine;
-  ScoreOptions score;  ///< for forests that have a background class but no judge
-  ScoreOptions score_without_background = vesalius::score_without_background();  ///< for other forests
 };
 void visit_options(const std::string& prefix, DetectOptions& options, OptionVisitor& visitor);
 

@@ -6,12 +6,8 @@ namespace {
 void visit_options(const std::string& prefix, RefineOptions& o, OptionVisitor& visitor) {
   visitor.option(prefix + "second-pass", o.second_pass,
                  {"", 0, 1, "Whether each person is labelled and searched again."});
-  visitor.option(prefix + "area-scale", o.area_scale,
-                 {"", 0.01, 10.0, "Factor on the smallest area of a part in the second pass."});
   visitor.option(prefix + "max-candidates", o.max_candidates,
                  {"", 1, 1000, "Most rough skeletons refined in one frame."});
-  visitor.option(prefix + "rival-likelihood", o.rival_likelihood,
-                 {"per part", 0.0, 1.0, "Rough skeletons at least this likely grow against each other."});
   visitor.option(prefix + "min-parts", o.min_parts, {"", 1, 200, "Fewest parts of a person after the second pass."});
   visitor.option(prefix + "min-score", o.min_score, {"", 0.0, 1.0, "Lowest score of a person."});
   visitor.option(prefix + "max-overlap", o.max_overlap,
@@ -29,8 +25,6 @@ void visit_options(const std::string& prefix, DetectOptions& o, OptionVisitor& v
   visit_options(prefix + "search.", o.search, visitor);
   visit_options(prefix + "grow.", o.grow, visitor);
   visit_options(prefix + "refine.", o.refine, visitor);
-  visit_options(prefix + "score.", o.score, visitor);
-  visit_options(prefix + "score-without-background.", o.score_without_background, visitor);
 }
 
 }  // namespace vesalius

@@ -56,6 +56,18 @@ class TruthLabeller : public PixelLabeller {
   BoostedTrees judge_;
 };
 
+/// A judge with these log odds for whatever has no more, and more, than `least` of a kind of evidence.
+BoostedTrees judge_by(int feature, float least, float below = -9.F, float above = 9.F) {
+  BoostedTrees judge{static_cast<int>(judge_signs(paper_body()).size()), 0.F, std::vector<BoostedTree>(1)};
+  BoostedTree& tree = judge.trees.front();
+  tree.threshold.fill(std::numeric_limits<float>::infinity());
+  tree.feature[0] = static_cast<std::uint16_t>(feature);
+  tree.threshold[0] = least;
+  tree.value.fill(below);
+  tree.value[BoostedTree::kLeaves / 2] = above;
+  return judge;
+}
+
 CapsuleScene one_person(float z_m) {
   CapsuleScene scene;
   scene.people.emplace_back();
@@ -319,7 +331,10 @@ TEST(Detector, RefusesOptionsOutOfRangeAndFramesOfTwoSizes) {
 class DoubtfulLabeller : public TruthLabeller {
  public:
   DoubtfulLabeller(const LabelledFrame& truth, int doubted)
-      : TruthLabeller(truth.labels, paper_body(), true), person_(truth.person), doubted_(doubted) {}
+      : TruthLabeller(truth.labels, paper_body(), true), person_(truth.person), doubted_(doubted) {
+    constexpr int kBody = 4;                     // in the order of kJudgedEvidence
+    set_judge(judge_by(kBody, 0.5F, 2.F, 3.F));  // lets pass whom the labeller doubts, with a lower score
+  }
 
   void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
     TruthLabeller::label_into(depth, camera, gate, out);
@@ -345,7 +360,6 @@ class DetectorWithPrior : public testing::Test {
     scene.people.push_back(scene.people[0]);
     scene.people[1].feet.x() = -0.8F;
     truth = render(scene, kCamera, paper_body());
-    options.score.bias = -10.F;  // lets pass whom the labeller doubts that much
     detector = std::make_unique<Detector>(std::make_shared<DoubtfulLabeller>(truth, 1), options);
   }
 
@@ -602,18 +616,6 @@ TEST(Detector, MeasuresTimesThatAddUp) {
   EXPECT_GT(times.total(), once);
 }
 
-/// A judge that calls people whatever has more than `least` of a kind of evidence.
-BoostedTrees judge_by(int feature, float least) {
-  BoostedTrees judge{static_cast<int>(judge_signs(paper_body()).size()), 0.F, std::vector<BoostedTree>(1)};
-  BoostedTree& tree = judge.trees.front();
-  tree.threshold.fill(std::numeric_limits<float>::infinity());
-  tree.feature[0] = static_cast<std::uint16_t>(feature);
-  tree.threshold[0] = least;
-  tree.value.fill(-9.F);
-  tree.value[BoostedTree::kLeaves / 2] = 9.F;
-  return judge;
-}
-
 TEST(Judge, DecidesWhoIsAPerson) {
   const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
   constexpr int kSize = 5;  // the likeness of the area, in the order of kJudgedEvidence
@@ -635,7 +637,13 @@ TEST(Judge, OfOtherEvidenceIsRefused) {
   judge.features -= 1;
   labeller->set_judge(judge);
   EXPECT_THAT([&] { Detector(labeller, {}); },
-              testing::ThrowsMessage<Error>(testing::HasSubstr("kinds of evidence, expected")));
+              testing::ThrowsMessage<Error>(testing::HasSubstr("judge of people knows 34 features, expected 35")));
+  judge = judge_by(0, 0.F);
+  judge.asks = judge_names(paper_body());
+  judge.asks.back() = "part:tail";
+  labeller->set_judge(judge);
+  EXPECT_THAT([&] { Detector(labeller, {}); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("judge of people asks for \"part:tail\"")));
 }
 
 /// A labeller whose pixels rather say that the person is seen from the front, while all of them together say from

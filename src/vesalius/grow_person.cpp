@@ -11,6 +11,7 @@ namespace {
 
 /// Smallest number of pixels from which an appearance is learned.
 constexpr int kLeastSamples = 200;
+constexpr float kVeto = 2.F;  // a look is refused if it is likelier elsewhere by this, as a log of the ratio
 
 /// Returns the distance to which the body extends around each part. It is larger if a neighbouring part was not seen.
 std::vector<float> reach_of_parts(const Skeleton& rough, const BodyModel& body, const GrowOptions& options) {
@@ -53,8 +54,6 @@ void visit_options(const std::string& prefix, GrowOptions& o, OptionVisitor& vis
                  {"", 0, 0,
                   "What a pixel looks like: its hue, hue and texture, or none where colour is badly registered (hue, "
                   "texture, none)."});
-  visitor.option(prefix + "look-veto", o.look_veto,
-                 {"log ratio", 0.0, 100.0, "A look this much likelier elsewhere than on the person stops the growth."});
   visitor.option(prefix + "own-look", o.own_look_m,
                  {"m", 0.0, 3.0, "This near to a part's centre any look is the person's."});
   visitor.option(
@@ -106,7 +105,7 @@ Mask PersonGrower::refused_looks(const Skeleton& rough, const Mask& seeds, const
   const float least = 1.F / static_cast<float>(looks_.appearance->classes());
   std::vector<std::uint8_t> refuses(here.size());
   for (std::size_t look = 0; look < here.size(); ++look) {
-    refuses[look] = std::log(std::max(elsewhere[look], least) / here[look]) > options_.look_veto ? 1 : 0;
+    refuses[look] = std::log(std::max(elsewhere[look], least) / here[look]) > kVeto ? 1 : 0;
   }
   const Mask any_look = around_parts(rough, any_look_radius(rough, body_, options_));
   for (std::size_t i = 0; i < seeds.size(); ++i) {

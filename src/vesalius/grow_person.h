@@ -20,7 +20,6 @@ struct GrowOptions {
   float reach_m = 0.3F;            ///< how far a person extends around the centre of a part
   float missing_reach_m = 0.2F;    ///< added once for each unseen part beyond
   std::string appearance = "hue";  ///< make_appearance
-  float look_veto = 2.F;           ///< a look is refused if it is likelier elsewhere by this, as a log of the ratio
   float own_look_m = 0.12F;        ///< any look this near to a part's centre is the person's
   float least_body = 0.25F;        ///< least body share of the posterior of pixels that a person grows over
   PlaneOptions plane;

@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/logistic.h"
-
+#include "vesalius/forest/body_context.h"
 namespace vesalius {
 namespace {
 
@@ -288,51 +287,6 @@ float body_beside(const Inside& inside, const Posteriors& posteriors, int parts)
 
 }  // namespace
 
-void visit_options(const std::string& prefix, ScoreOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "likelihood-weight", o.likelihood_weight,
-                 {"", -1000.0, 1000.0, "Weight of the skeleton's likelihood in a person's score."});
-  visitor.option(prefix + "explained-weight", o.explained_weight,
-                 {"", -1000.0, 1000.0, "Weight of the share of the mask that the skeleton explains."});
-  visitor.option(prefix + "open-weight", o.open_weight,
-                 {"", -1000.0, 1000.0, "Weight of the share of the outline that stands free."});
-  visitor.option(prefix + "core-weight", o.core_weight,
-                 {"", -1000.0, 1000.0, "Weight of the share of head, neck and chest parts found."});
-  visitor.option(prefix + "body-weight", o.body_weight,
-                 {"", -1000.0, 1000.0, "Weight of how sure the forest is that the mask is body."});
-  visitor.option(prefix + "size-weight", o.size_weight,
-                 {"", -1000.0, 1000.0, "Weight of how near the mask's area is to a person's."});
-  visitor.option(prefix + "occluded-weight", o.occluded_weight,
-                 {"", -1000.0, 1000.0, "Weight of the share of the outline that something nearer cuts off."});
-  visitor.option(prefix + "near-weight", o.near_weight, {"", -1000.0, 1000.0, "Weight of how near the camera it is."});
-  visitor.option(prefix + "certain-weight", o.certain_weight,
-                 {"", -1000.0, 1000.0, "Weight of how sure the second pass is which part each pixel is."});
-  visitor.option(prefix + "border-weight", o.border_weight,
-                 {"", -1000.0, 1000.0, "Weight of the share of the outline that the picture's border cuts off."});
-  visitor.option(prefix + "beside-weight", o.beside_weight,
-                 {"", -1000.0, 1000.0, "Weight of how much body the forest sees beside the mask."});
-  visitor.option(prefix + "resolution-weight", o.resolution_weight,
-                 {"", -1000.0, 1000.0, "Weight of the logarithm of the mask's number of pixels."});
-  visitor.option(prefix + "bias", o.bias, {"", -1000.0, 1000.0, "Constant of the score."});
-}
-
-ScoreOptions score_without_background() {
-  ScoreOptions options;
-  options.likelihood_weight = 8.6F;
-  options.explained_weight = 3.4F;
-  options.open_weight = 7.3F;
-  options.core_weight = 8.1F;
-  options.body_weight = 0.F;
-  options.size_weight = 0.F;
-  options.occluded_weight = 0.F;
-  options.near_weight = 0.F;
-  options.certain_weight = 0.F;
-  options.border_weight = 0.F;
-  options.beside_weight = 0.F;
-  options.resolution_weight = 0.F;
-  options.bias = -17.26F;
-  return options;
-}
-
 float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts) {
   constexpr int kEvery = 2;
   if (posteriors.classes == parts) return 0.F;
@@ -385,6 +339,13 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
   return evidence;
 }
 
+std::vector<std::string> judge_names(const BodyModel& body) {
+  std::vector<std::string> names;
+  for (const JudgedEvidence& kind : kJudgedEvidence) names.emplace_back(kind.name);
+  for (const std::string& name : kind_names(body)) names.push_back("part:" + name);
+  return names;
+}
+
 std::vector<int> judge_signs(const BodyModel& body) {
   std::vector<int> signs;
   for (const JudgedEvidence& kind : kJudgedEvidence) signs.push_back(kind.sign);
@@ -397,13 +358,6 @@ std::vector<float> judge_features(const Evidence& evidence) {
   for (const JudgedEvidence& kind : kJudgedEvidence) features.push_back(evidence.*kind.evidence);
   features.insert(features.end(), evidence.parts.begin(), evidence.parts.end());
   return features;
-}
-
-float person_score(const Evidence& e, const ScoreOptions& o) {
-  float sum = 0.F;
-  for (const EvidenceWeight& piece : kEvidenceWeights) sum += o.*piece.weight * e.*piece.evidence;
-  sum += o.bias;
-  return logistic(sum);
 }
 
 }  // namespace vesalius

@@ -2,38 +2,17 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
-#include "vesalius/base/options.h"
 #include "vesalius/forest/label_pixels.h"
 #include "vesalius/forest/person_labels.h"
 #include "vesalius/search_skeletons.h"
 
 namespace vesalius {
-
-struct ScoreOptions {
-  float likelihood_weight = 2.03F;   ///< of the skeleton's likelihood, as a share of all parts' (0-1)
-  float explained_weight = 0.F;      ///< of the share of the mask that the skeleton explains
-  float open_weight = 0.F;           ///< of the share of the outline that stands free
-  float core_weight = 0.24F;         ///< of the share of head, neck and chest parts found
-  float body_weight = 11.95F;        ///< of how sure the forest is that the mask is body
-  float size_weight = 0.58F;         ///< of how near the mask's area is to a person's
-  float occluded_weight = 3.67F;     ///< of the share of the outline that something nearer cuts off
-  float near_weight = -3.43F;        ///< of how near the camera it is
-  float certain_weight = 2.51F;      ///< of how sure the forest is which part each pixel is
-  float border_weight = 2.58F;       ///< of the share of the outline that the picture's border cuts off
-  float beside_weight = -0.79F;      ///< of how much body the forest sees beside the mask
-  float resolution_weight = 11.41F;  ///< of the number of pixels
-  float bias = -16.81F;
-};
-void visit_options(const std::string& prefix, ScoreOptions& options, OptionVisitor& visitor);
-
-/// Returns the defaults for forests without background class, fitted with the paper's released trees. Cut-out furniture
-/// looks like a body to them, so the outline matters more.
-ScoreOptions score_without_background();
 
 inline constexpr float kUsualArea_m2 = 0.45F;  ///< of a person's mask: a standing adult's front
 inline constexpr float kBendReach_m = 0.15F;   ///< a limb's radius and more
@@ -72,43 +51,42 @@ struct Scenery {
   int proposals = 0;           ///< rough skeletons of the first pass
 };
 
-/// A kind of evidence and the option with its weight.
-struct EvidenceWeight {
+/// A kind of evidence that a judge may ask for.
+struct JudgedEvidence {
+  std::string_view name;  ///< in model files
   float Evidence::*evidence;
-  float ScoreOptions::*weight;
   int sign = 0;  ///< 1 if more of it can only speak for a person, -1 if only against, 0 if that is open
 };
-inline constexpr std::array<EvidenceWeight, 12> kEvidenceWeights{
-    {{&Evidence::likelihood, &ScoreOptions::likelihood_weight, 1},
-     {&Evidence::explained, &ScoreOptions::explained_weight, 1},
-     {&Evidence::open, &ScoreOptions::open_weight, 1},
-     {&Evidence::core, &ScoreOptions::core_weight, 1},
-     {&Evidence::body, &ScoreOptions::body_weight, 1},
-     {&Evidence::size, &ScoreOptions::size_weight, 1},
-     {&Evidence::occluded, &ScoreOptions::occluded_weight},
-     {&Evidence::near, &ScoreOptions::near_weight},
-     {&Evidence::certain, &ScoreOptions::certain_weight, 1},
-     {&Evidence::border, &ScoreOptions::border_weight},
-     {&Evidence::beside, &ScoreOptions::beside_weight, -1},
-     {&Evidence::resolution, &ScoreOptions::resolution_weight}}};
+inline constexpr std::array<JudgedEvidence, 22> kJudgedEvidence{{{"likelihood", &Evidence::likelihood, 1},
+                                                                 {"explained", &Evidence::explained, 1},
+                                                                 {"open", &Evidence::open, 1},
+                                                                 {"core", &Evidence::core, 1},
+                                                                 {"body", &Evidence::body, 1},
+                                                                 {"size", &Evidence::size, 1},
+                                                                 {"occluded", &Evidence::occluded},
+                                                                 {"near", &Evidence::near},
+                                                                 {"certain", &Evidence::certain, 1},
+                                                                 {"border", &Evidence::border},
+                                                                 {"beside", &Evidence::beside, -1},
+                                                                 {"resolution", &Evidence::resolution},
+                                                                 {"surest", &Evidence::surest, 1},
+                                                                 {"facing", &Evidence::facing, 1},
+                                                                 {"depth", &Evidence::depth_m},
+                                                                 {"length", &Evidence::length_m},
+                                                                 {"slant", &Evidence::slant},
+                                                                 {"bend", &Evidence::bend_m},
+                                                                 {"ragged", &Evidence::ragged},
+                                                                 {"on_flat", &Evidence::on_flat},
+                                                                 {"elsewhere", &Evidence::elsewhere},
+                                                                 {"rivals", &Evidence::rivals}}};
 
-/// A kind of evidence that a BoostedTrees is given.
-struct JudgedEvidence {
-  float Evidence::*evidence;
-  int sign = 0;  ///< as EvidenceWeight's
-};
-inline constexpr std::array<JudgedEvidence, 22> kJudgedEvidence{
-    {{&Evidence::likelihood, 1}, {&Evidence::explained, 1}, {&Evidence::open, 1},    {&Evidence::core, 1},
-     {&Evidence::body, 1},       {&Evidence::size, 1},      {&Evidence::occluded},   {&Evidence::near},
-     {&Evidence::certain, 1},    {&Evidence::border},       {&Evidence::beside, -1}, {&Evidence::resolution},
-     {&Evidence::surest, 1},     {&Evidence::facing, 1},    {&Evidence::depth_m},    {&Evidence::length_m},
-     {&Evidence::slant},         {&Evidence::bend_m},       {&Evidence::ragged},     {&Evidence::on_flat},
-     {&Evidence::elsewhere},     {&Evidence::rivals}}};
+/// Returns the names of all evidence of a body: kJudgedEvidence, then "part:" and the name of each kind of part.
+std::vector<std::string> judge_names(const BodyModel& body);
 
-/// Returns the sign of each of judge_features (EvidenceWeight).
+/// Returns the sign of each.
 std::vector<int> judge_signs(const BodyModel& body);
 
-/// Returns what a BoostedTrees is asked: kJudgedEvidence, then the parts.
+/// Returns the value of each.
 std::vector<float> judge_features(const Evidence& evidence);
 
 /// Measures the evidence that a mask and a skeleton are a person. `labels` are those inside `mask`, `posteriors` those
@@ -119,9 +97,5 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
 /// Returns Scenery::body_elsewhere for the union of the candidates' masks, from every second pixel of every second row.
 /// It is 0 for a forest without background class.
 float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts);
-
-/// Returns the score of a person, 0-1, by a logistic function whose weights were fitted to frames with and without
-/// people. It is for forests without a BoostedTrees.
-float person_score(const Evidence& evidence, const ScoreOptions& options);
 
 }  // namespace vesalius

@@ -173,41 +173,6 @@ TEST(GatherEvidence, MeasuresSizeAsOneOnlyForTheUsualArea) {
   EXPECT_NEAR(at(usual_at_m * std::sqrt(2.0)), 0.5F, 1e-3F);
 }
 
-TEST(PersonScore, IsALogisticSum) {
-  ScoreOptions options;
-  options.likelihood_weight = 2.F;
-  options.explained_weight = 0.F;
-  options.open_weight = 1.F;
-  options.core_weight = 0.F;
-  options.body_weight = 0.F;
-  options.size_weight = 0.5F;
-  options.occluded_weight = 0.25F;
-  options.near_weight = 0.F;
-  options.certain_weight = 0.F;
-  options.border_weight = -0.5F;
-  options.beside_weight = 0.F;
-  options.resolution_weight = 0.F;
-  options.bias = -1.F;
-  EXPECT_FLOAT_EQ(person_score({0.5F, 0.9F, 0.F, 0.9F, 0.9F, 0.F}, options), 0.5F);
-  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 0.F}, options), 1.0 / (1.0 + std::exp(-1.0)), 1e-6);
-  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 1.F}, options), 1.0 / (1.0 + std::exp(-1.5)), 1e-6);
-  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 1.F, 1.F, 0.9F}, options), 1.0 / (1.0 + std::exp(-1.75)),
-              1e-6);
-  EXPECT_NEAR(person_score({0.5F, 0.9F, 1.F, 0.9F, 0.9F, 1.F, 1.F, 0.9F, 0.9F, 0.5F}, options),
-              1.0 / (1.0 + std::exp(-1.5)), 1e-6);
-}
-
-TEST(PersonScore, EachEvidenceSpeaksForAPerson) {
-  const Evidence some{0.5F, 0.6F, 0.6F, 0.7F, 0.8F, 0.5F, 0.F, 0.4F, 0.5F, 0.F, 0.1F, 0.8F};
-  const float before = person_score(some, {});
-  for (float Evidence::*field :
-       {&Evidence::likelihood, &Evidence::core, &Evidence::body, &Evidence::certain, &Evidence::resolution}) {
-    Evidence more = some;
-    more.*field += 0.1F;
-    EXPECT_GT(person_score(more, {}), before);
-  }
-}
-
 TEST(GatherEvidence, TellsWhatATenthOfThePixelsExceed) {
   Square s(3000);
   int n = 0;
@@ -286,7 +251,12 @@ TEST(GatherEvidence, SharesTheBodyAmongPartsOfBothSides) {
   ASSERT_EQ(evidence.parts.size(), 13U) << "12 pairs and the neck";
   EXPECT_FLOAT_EQ(evidence.parts[slots[left]], 0.5F);
   EXPECT_FLOAT_EQ(evidence.parts[slots[neck]], 0.5F);
-  EXPECT_EQ(judge_features(evidence).size(), judge_signs(body).size());
+  const std::vector<std::string> names = judge_names(body);
+  EXPECT_EQ(judge_features(evidence).size(), names.size());
+  EXPECT_EQ(judge_signs(body).size(), names.size());
+  const auto hands = std::ranges::find(names, "part:l_hand") - names.begin();
+  ASSERT_LT(hands, std::ssize(names));
+  EXPECT_EQ(judge_features(evidence)[hands], 0.5F) << "of both hands together";
 }
 
 /// A wall of 200 x 150 pixels whose depth is a function of the column and row.

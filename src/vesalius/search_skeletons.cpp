@@ -8,6 +8,7 @@ namespace {
 
 /// Share of a part's typical area above which its visible area costs no likelihood.
 constexpr float kLeastAreaShare = 0.25F;
+constexpr float kSizeTolerance = 0.7F;  // deviation of log(area) from the feasible range that halves a part's gain
 constexpr float kMostAreaShare = 2.5F;
 
 /// The kinematic tree as seen from one root; links are followed away from it.
@@ -130,7 +131,7 @@ class SkeletonSearch {
   float gain(const PartCluster& cluster) const {
     const float share = cluster.area_m2 / body_.parts[cluster.label].typical_area_m2;
     const float off = std::max({0.F, std::log(kLeastAreaShare / share), std::log(share / kMostAreaShare)});
-    return std::exp2(-off / options_.size_tolerance);
+    return std::exp2(-off / kSizeTolerance);
   }
 
   void find_consistent_pairs() {
@@ -290,12 +291,6 @@ void visit_options(const std::string& prefix, SearchOptions& o, OptionVisitor& v
                  {"", 0.0, 10.0, "Share of the proposals' own variance that excuses a deviation."});
   visitor.option(prefix + "gap-tolerance", o.gap_tolerance_m,
                  {"m", 0.001, 10.0, "Empty space between linked parts that counts as one unit of error."});
-  visitor.option(prefix + "grandparents", o.grandparents,
-                 {"", 0, 1, "Whether parts hang together past one that was not seen."});
-  visitor.option(prefix + "any-root", o.any_root,
-                 {"", 0, 1, "Whether a person may be found from any part, or only from the body's roots."});
-  visitor.option(prefix + "size-tolerance", o.size_tolerance,
-                 {"", 0.01, 100.0, "Deviation of log(area) from a part's range that halves its gain."});
 }
 
 std::vector<Skeleton> search_skeletons(const std::vector<PartCluster>& clusters, const BodyModel& body,

@@ -19,9 +19,8 @@ struct SearchOptions {
   float error_weight = 1.F;        ///< likelihood that a normalised distance of 1 costs; a full part gains 1
   float covariance_share = 0.25F;  ///< share of the parts' own variance along their line that excuses a deviation
   float gap_tolerance_m = 0.08F;   ///< empty space between two linked parts that counts as one unit of error
-  bool grandparents = true;        ///< whether an unseen part may be skipped (two degrees of separation)
-  bool any_root = true;            ///< whether a tree may start from any part, or only from the body's roots
-  float size_tolerance = 0.7F;     ///< deviation of log(area) from the part's range that halves its gain
+  bool grandparents = true;        ///< whether an unseen part may be skipped (two degrees of separation); for ablations
+  bool any_root = true;  ///< whether a tree may start from any part, or only from the body's roots; for ablations
 };
 void visit_options(const std::string& prefix, SearchOptions& options, OptionVisitor& visitor);
 

@@ -63,12 +63,12 @@ TEST(ViewerMessages, OptionsOfTrackingAreThoseOfWhoeverFollows) {
 TEST(ViewerMessages, OptionsAreSetAsTheyAreGiven) {
   PeopleOptions options;
   set_option(options, "refine.min-score", "0.25");
-  set_option(options, "refine.area-scale", "1");  // a whole number is a number too
+  set_option(options, "refine.max-overlap", "1");  // a whole number is a number too
   set_option(options, "search.min-parts", "7");
   set_option(options, "refine.second-pass", "false");
   set_option(options, "grow.appearance", "\"texture\"");
   EXPECT_FLOAT_EQ(options.detect.refine.min_score, 0.25F);
-  EXPECT_FLOAT_EQ(options.detect.refine.area_scale, 1.F);
+  EXPECT_FLOAT_EQ(options.detect.refine.max_overlap, 1.F);
   EXPECT_EQ(options.detect.search.min_parts, 7);
   EXPECT_FALSE(options.detect.refine.second_pass);
   EXPECT_EQ(options.detect.grow.appearance, "texture");

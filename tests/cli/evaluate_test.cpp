@@ -311,23 +311,6 @@ TEST_F(Evaluate, NeedsACountForARecipe) {
   EXPECT_EQ(run_program("evaluate -m " + model()).exit_code, 2);
 }
 
-TEST_F(Evaluate, FitsTheScoreToFramesWithAndWithoutPeople) {
-  say_that_only_the_first_frame_has_a_person();
-  const Outcome run = evaluate(" --search.min-parts 5 --fit-score " + path("fitted.toml"));
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, ContainsRegex("score fitted to [1-9][0-9]* candidates that were people and [1-9][0-9]* that "));
-  const std::string toml = bytes_of(path("fitted.toml"));
-  EXPECT_THAT(toml, HasSubstr("search.min-parts = 5\n"));
-  EXPECT_THAT(toml, HasSubstr("score.core-weight = "));
-  EXPECT_EQ(evaluate(" --options " + path("fitted.toml")).exit_code, 0);
-
-  write("frames/frames.csv", "frame,people,posture\na,0,\nb,0,\nc,0,\n");
-  const Outcome alone = evaluate(" --fit-score " + path("none.toml"));
-  EXPECT_EQ(alone.exit_code, 1);
-  EXPECT_THAT(alone.err, HasSubstr("have no candidate that is known to be a person"));
-  EXPECT_FALSE(fs::exists(path("none.toml")));
-}
-
 TEST_F(Evaluate, WritesTheModelWithAJudgeFittedToTheFrames) {
   say_that_only_the_first_frame_has_a_person();
   const Outcome run = evaluate(" --fit-judge " + path("judged.forest"));
@@ -336,6 +319,12 @@ TEST_F(Evaluate, WritesTheModelWithAJudgeFittedToTheFrames) {
   EXPECT_FALSE(load_model(path("judged.forest")).judge.empty());
   EXPECT_THAT(run_program("info " + path("judged.forest")).out, HasSubstr("judge_trees: 1600\n"));
   EXPECT_EQ(run_program("detect " + frames() + " -m " + path("judged.forest")).exit_code, 0);
+
+  write("frames/frames.csv", "frame,people,posture\na,0,\nb,0,\nc,0,\n");
+  const Outcome alone = evaluate(" --fit-judge " + path("none.forest"));
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.err, HasSubstr("have no candidate that is known to be a person"));
+  EXPECT_FALSE(fs::exists(path("none.forest")));
 
   const Outcome nowhere = evaluate(" --fit-judge " + path("missing/judged.forest"));
   EXPECT_EQ(nowhere.exit_code, 1);

@@ -7,9 +7,9 @@
 
 #include "metrics/detection_curve.h"
 #include "metrics/fit_samples.h"
-#include "metrics/fit_score.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/joint_precision.h"
+#include "metrics/judge_samples.h"
 #include "metrics/metric_table.h"
 #include "metrics/pixel_metrics.h"
 #include "metrics/score_frame.h"
@@ -41,7 +41,7 @@ struct SetResult {
   JointPrecision centre_precision;
   std::optional<PixelConfusion> confusion;
   std::vector<KnownPerson> known_people;          ///< for fitting joints
-  std::vector<ScoreSample> samples;               ///< for fitting the score
+  std::vector<JudgeSample> samples;               ///< for fitting a judge
   std::vector<BoostSample> context_samples = {};  ///< for fitting the context of bodies
   std::vector<TrustSample> trust_samples = {};    ///< for fitting the trust in fitted joints
   std::vector<StanceSample> stance_samples = {};  ///< for fitting the stances
@@ -58,8 +58,7 @@ struct Evaluation {
   PeopleOptions options;  ///< those of tracking and fitted bodies count only where people were followed
   BodyModel body;
   bool labels_only = false;
-  bool tracked = false;         ///< people were followed over recordings (evaluate_sequences)
-  bool has_background = false;  ///< the model has a background class
+  bool tracked = false;  ///< people were followed over recordings (evaluate_sequences)
   std::vector<SetResult> sets;
 };
 

@@ -9,12 +9,10 @@
 #include "learn/fit_distribution.h"
 #include "learn/fit_joints.h"
 #include "vesalius/base/error.h"
+#include "vesalius/forest/body_context.h"
 
 namespace vesalius {
 namespace {
-
-/// Rounds a weight to hundredths, which changes no score by more than a quarter of a hundredth.
-float rounded(float weight) { return std::round(weight * 100.F) / 100.F; }
 
 /// Returns what the sets have of one kind, all together.
 template <class Kind>
@@ -78,23 +76,11 @@ std::string fitted_distribution_toml(const Evaluation& evaluation) {
   return toml;
 }
 
-FittedOptions fit_score_options(const Evaluation& evaluation) {
-  std::vector<std::vector<ScoreSample>> sets;
-  for (const SetResult& set : evaluation.sets) sets.push_back(set.samples);
-  FittedOptions fitted{evaluation.options.detect, {}};
-  ScoreOptions& score = evaluation.has_background ? fitted.options.score : fitted.options.score_without_background;
-  fitted.fit = fit_score(sets, score);
-  score = fitted.fit.options;
-  for (const EvidenceWeight& piece : kEvidenceWeights) score.*piece.weight = rounded(score.*piece.weight);
-  score.bias = rounded(score.bias);
-  return fitted;
-}
-
 FittedJudge fit_judge(const Evaluation& evaluation) {
   FittedJudge fitted;
   std::vector<BoostSample> samples;
   for (const SetResult& set : evaluation.sets) {
-    for (const ScoreSample& sample : set.samples) {
+    for (const JudgeSample& sample : set.samples) {
       samples.push_back({judge_features(sample.evidence), sample.person});
       ++(sample.person ? fitted.people : fitted.nobodies);
     }
@@ -103,6 +89,7 @@ FittedJudge fit_judge(const Evaluation& evaluation) {
   if (fitted.people == 0) throw Error(none + "a person");
   if (fitted.nobodies == 0) throw Error(none + "nobody");
   fitted.judge = boost_trees(samples, judge_signs(evaluation.body));
+  fitted.judge.asks = judge_names(evaluation.body);
   return fitted;
 }
 
@@ -151,6 +138,7 @@ FittedContext fit_context(const Evaluation& evaluation) {
   if (fitted.others == 0) throw Error(none + "none");
   const std::vector<int> signs(samples.front().features.size(), 0);
   fitted.context = boost_trees(samples, signs, kContextOptions);
+  fitted.context.asks = BodySurroundings::feature_names(evaluation.body);
   fitted.context.bias += static_cast<float>(std::log(kContextOdds));
   return fitted;
 }

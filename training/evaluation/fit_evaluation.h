@@ -5,7 +5,7 @@
 #include "evaluation/evaluation.h"
 #include "learn/fit_stances.h"
 #include "learn/fit_trust.h"
-#include "metrics/fit_score.h"
+#include "metrics/judge_samples.h"
 #include "vesalius/forest/boosted_trees.h"
 
 namespace vesalius {
@@ -17,14 +17,6 @@ std::string fitted_joints_toml(const Evaluation& evaluation);
 /// Returns the distribution of parts fitted to those people (fit_distribution) as TOML of a body model. Throws Error if
 /// there are too few.
 std::string fitted_distribution_toml(const Evaluation& evaluation);
-
-/// The detector options of an evaluation with the person score fitted to all its sets.
-struct FittedOptions {
-  DetectOptions options;
-  ScoreFit fit;  ///< the fit, with weights not yet rounded to hundredths
-};
-/// Fits the score. Throws Error as fit_score does.
-FittedOptions fit_score_options(const Evaluation& evaluation);
 
 /// A judge fitted to the candidates of all sets, each of which counts the same.
 struct FittedJudge {

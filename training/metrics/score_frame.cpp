@@ -188,7 +188,7 @@ FrameScore FrameScorer::score_found(TrueFrame frame, std::vector<Person> people,
 }
 
 void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const {
-  score.samples = score_samples(trace, frame.truth, frame.frame.depth);
+  score.samples = judge_samples(trace, frame.truth, frame.frame.depth);
   const auto proposals = distinct_proposals(trace, options_.detect.refine.max_overlap);
   if (!fit_joints) {
     const auto joints = known_joints(frame.truth, body(), options_.joint_set), centres = known_centres(frame.truth);

@@ -7,9 +7,9 @@
 
 #include "metrics/detection_curve.h"
 #include "metrics/fit_samples.h"
-#include "metrics/fit_score.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/joint_precision.h"
+#include "metrics/judge_samples.h"
 #include "metrics/metric_table.h"
 #include "metrics/pixel_metrics.h"
 #include "vesalius/base/frame_truth.h"
@@ -22,7 +22,7 @@ struct FrameScore {
   MetricTerms terms;
   int expected = 0;  ///< true people
   std::vector<JudgedProposal> proposals;
-  std::vector<ScoreSample> samples;                 ///< for fitting the score
+  std::vector<JudgeSample> samples;                 ///< for fitting a judge
   std::vector<BoostSample> context_samples;         ///< for fitting the context of bodies, if asked for
   std::vector<std::vector<double>> joint_errors_m;  ///< joint_errors() of each true person
   JointPrecision joint_precision;                   ///< over all proposed people, whatever their score

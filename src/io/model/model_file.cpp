@@ -26,7 +26,8 @@ constexpr std::uint16_t kFlagBackground = 1;
 constexpr std::uint16_t kFlagLogits = 2;   ///< leaves were learned jointly and have logits
 constexpr std::uint16_t kFlagJudge = 4;    ///< has a judge of people
 constexpr std::uint16_t kFlagContext = 8;  ///< has a context of bodies
-constexpr std::uint16_t kAllFlags = kFlagBackground | kFlagLogits | kFlagJudge | kFlagContext;
+constexpr std::uint16_t kFlagNames = 16;   ///< judge and context name the features they ask for
+constexpr std::uint16_t kAllFlags = kFlagBackground | kFlagLogits | kFlagJudge | kFlagContext | kFlagNames;
 
 std::uint64_t checksum(std::string_view bytes) {
   XXH64_state_t state;
@@ -88,7 +89,11 @@ void read_facing(ByteReader& in, Forest& forest) {
   for (std::uint32_t i = 0; i < count; ++i) forest.facing.weights.push_back(in.real32("weights of headings"));
 }
 
-void write_boosted(ByteWriter& out, const BoostedTrees& boosted) {
+void write_boosted(ByteWriter& out, const BoostedTrees& boosted, bool names) {
+  if (names) {
+    out.number(static_cast<std::uint16_t>(boosted.asks.size()));
+    for (const std::string& name : boosted.asks) out.text(name);
+  }
   out.number(static_cast<std::uint16_t>(boosted.features));
   out.real(boosted.bias);
   out.number(static_cast<std::uint32_t>(boosted.trees.size()));
@@ -99,8 +104,10 @@ void write_boosted(ByteWriter& out, const BoostedTrees& boosted) {
   }
 }
 
-BoostedTrees read_boosted(ByteReader& in, const char* what) {
+BoostedTrees read_boosted(ByteReader& in, const char* what, bool names) {
   BoostedTrees boosted;
+  const int named = names ? in.number<std::uint16_t>(what) : 0;
+  for (int i = 0; i < named; ++i) boosted.asks.emplace_back(in.text(what));
   boosted.features = in.number<std::uint16_t>(what);
   boosted.bias = in.real32(what);
   const auto count = in.number<std::uint32_t>(what);
@@ -123,8 +130,10 @@ std::string serialise_model(const Forest& forest) {
   out.number(static_cast<std::uint16_t>(kModelVersion));
   const bool logits = forest.logit_unit != 0.F;
   const bool judge = !forest.judge.empty(), context = !forest.context.empty();
+  const bool names = !forest.judge.asks.empty() || !forest.context.asks.empty();
   out.number(static_cast<std::uint16_t>((forest.has_background ? kFlagBackground : 0) | (logits ? kFlagLogits : 0) |
-                                        (judge ? kFlagJudge : 0) | (context ? kFlagContext : 0)));
+                                        (judge ? kFlagJudge : 0) | (context ? kFlagContext : 0) |
+                                        (names ? kFlagNames : 0)));
   out.number(std::uint64_t{0});  // size and checksum, filled in at the end
   out.number(std::uint64_t{0});
   out.text(forest.body.toml);
@@ -142,8 +151,8 @@ std::string serialise_model(const Forest& forest) {
     out.number(static_cast<std::uint32_t>(forest.facing.weights.size()));
     for (const float weight : forest.facing.weights) out.real(weight);
   }
-  if (context) write_boosted(out, forest.context);
-  if (judge) write_boosted(out, forest.judge);
+  if (context) write_boosted(out, forest.context, names);
+  if (judge) write_boosted(out, forest.judge, names);
   overwrite(out.bytes(), kSizeAt, static_cast<std::uint64_t>(out.bytes().size()));
   overwrite(out.bytes(), kChecksumAt, checksum(out.bytes()));
   return std::move(out.bytes());
@@ -173,8 +182,9 @@ Forest parse_model(std::string_view bytes, const std::string& name) {
     read_logits(in, static_cast<std::size_t>(layout.size()), forest.trees);
     read_facing(in, forest);
   }
-  if ((flags & kFlagContext) != 0) forest.context = read_boosted(in, "context of bodies");
-  if ((flags & kFlagJudge) != 0) forest.judge = read_boosted(in, "judge of people");
+  const bool names = (flags & kFlagNames) != 0;
+  if ((flags & kFlagContext) != 0) forest.context = read_boosted(in, "context of bodies", names);
+  if ((flags & kFlagJudge) != 0) forest.judge = read_boosted(in, "judge of people", names);
   in.expect_end();
   with_context(name, [&] { check(forest); });
   return forest;

@@ -74,6 +74,23 @@ TEST(ModelFile, KeepsTheContext) {
   EXPECT_THAT([&] { serialise_model(without); }, ThrowsMessage<Error>(HasSubstr("without a background class")));
 }
 
+TEST(ModelFile, KeepsTheNamesOfWhatContextAndJudgeAskFor) {
+  Forest forest = random_forest(4);
+  forest.has_background = true;
+  Random random(6, 0);
+  test::add_judge(forest, 3, random);
+  forest.context = forest.judge;
+  const std::string without = serialise_model(forest);
+  for (int f = 0; f < forest.judge.features; ++f) forest.judge.asks.push_back("kind " + std::to_string(f));
+  const std::string bytes = serialise_model(forest);
+  const Forest again = parse_model(bytes, "m");
+  EXPECT_EQ(again.judge, forest.judge);
+  EXPECT_EQ(again.context, forest.context) << "which has no names";
+  EXPECT_EQ(serialise_model(parse_model(without, "m")), without) << "files without names stay as they are";
+  forest.judge.asks.pop_back();
+  EXPECT_THAT([&] { serialise_model(forest); }, ThrowsMessage<Error>(HasSubstr("29 names of 30 features")));
+}
+
 TEST(ModelFile, KeepsLogitsAndHeadings) {
   for (const int headings : {0, 8}) {
     Forest forest = random_forest(3);

@@ -15,7 +15,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr int kLeastCentres = 4;  // parts that a start needs
+constexpr double kRestartGain = 40.0;  // by which a fit afresh must cost less than the followed body to replace it
+constexpr int kLeastCentres = 4;       // parts that a start needs
 constexpr std::size_t kLeastPoints = 30;
 constexpr int kLeastSupport = 4;     // points on a bone that make its joint observed
 constexpr double kCovered_m = 0.15;  // by which something must be nearer than a joint to cover it
@@ -208,7 +209,7 @@ std::optional<BodyFit> BodyFitter::fit(const Frame& frame, const Person& person,
     // A body that lost its person stays near itself; without the expected pose both have the same chance. The shape may
     // have been learned from a wrong body, too.
     data.expected.pose.reset();
-    const double least = cost_anew(data, followed) - static_cast<double>(options_.restart_gain);
+    const double least = cost_anew(data, followed) - kRestartGain;
     forget_shape(data.expected);
     const std::optional<Solution> afresh = fit_afresh(data, expected.start, 1);
     if (afresh && cost(data, *afresh) < least) {

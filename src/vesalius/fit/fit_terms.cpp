@@ -14,6 +14,12 @@ using Eigen::Vector3d;
 // Of a point, in units of the flesh's half width: its direction is not defined at 0.
 constexpr double kLeastRadius = 0.1;
 constexpr double kLeastHalf_m = 0.008;
+constexpr float kAlong_m = 0.05F;    // standard deviation of a part's ends along its bone
+constexpr float kSide_m = 0.05F;     // and of its border on the middle line
+constexpr float kCentre_m = 0.08F;   // of the parts' centres, from which a fit starts
+constexpr float kBeyond_rad = 0.1F;  // of a turn beyond a joint's range
+constexpr float kFollow_rad = 0.1F;  // of a bone's turn from the expected one after a thirtieth second
+constexpr double kOutlier = 3.0;     // deviations beyond which a point counts less and less
 constexpr double kLimit = 3.0;  // deviations beyond which centres, outline, fast limbs and feet count less and less
 constexpr double kBelowLimit = 6.0;  // the same of flesh below the ground, where starts may be far down
 
@@ -118,33 +124,18 @@ double robust_weight(double squared, double limit, double weight, NormalEquation
 void visit_options(const std::string& prefix, FitOptions& o, OptionVisitor& visitor) {
   visitor.option(prefix + "iterations", o.iterations, {"", 1, 200, "Most steps to the parts' centres."});
   visitor.option(prefix + "rounds", o.rounds, {"", 1, 200, "Most assignments of points to bones."});
-  visitor.option(prefix + "point-weight", o.point_weight, {"", 0.0, 100.0, "Weight of a point."});
   visitor.option(prefix + "surface", o.surface_m, {"m", 0.001, 1.0, "Standard deviation of points about the flesh."});
-  visitor.option(prefix + "along", o.along_m, {"m", 0.001, 1.0, "Standard deviation of a part's ends on its bone."});
-  visitor.option(prefix + "side", o.side_m, {"m", 0.001, 1.0, "Standard deviation of the border of left and right."});
-  visitor.option(prefix + "outlier", o.outlier,
-                 {"", 0.1, 100.0, "Deviations beyond which points count less and less."});
-  visitor.option(prefix + "mirror-cost", o.mirror_cost,
-                 {"", 0.0, 1000.0, "Squared deviations that a label of the wrong side costs."});
-  visitor.option(prefix + "label-weight", o.label_weight, {"", 0.0, 100.0, "Weight of the labels' log probabilities."});
   visitor.option(prefix + "outline", o.outline_m, {"m", 0.001, 1.0, "Standard deviation of flesh off the outline."});
   visitor.option(prefix + "free", o.free_m, {"m", 0.001, 1.0, "Standard deviation of flesh in free space."});
   visitor.option(prefix + "outline-weight", o.outline_weight, {"", 0.0, 100.0, "Weight of outline and free space."});
   visitor.option(prefix + "pose-weight", o.pose_weight, {"", 0.0, 100.0, "Weight of how usual the pose is."});
-  visitor.option(prefix + "limit", o.limit_rad, {"rad", 0.001, 10.0, "Standard deviation beyond a joint's range."});
   visitor.option(prefix + "shape-weight", o.shape_weight, {"", 0.0, 100.0, "Weight of how usual the shape is."});
-  visitor.option(prefix + "centre", o.centre_m,
-                 {"m", 0.001, 1.0, "Standard deviation of parts' centres at the start."});
   visitor.option(prefix + "follow", o.follow_m,
                  {"m", 0.001, 10.0, "Standard deviation of a person's place from the expected one in 1/30 s."});
-  visitor.option(prefix + "follow-turn", o.follow_rad,
-                 {"rad", 0.001, 10.0, "Standard deviation of a bone's turn from the expected one in 1/30 s."});
   visitor.option(prefix + "ground", o.ground_m,
                  {"m", 0.001, 10.0, "Standard deviation of flesh below the ground, and of the lowest foot above it."});
   visitor.option(prefix + "walk-cost", o.walk_cost,
                  {"", 0.0, 10000.0, "Squared deviations that a body costs which walks backwards."});
-  visitor.option(prefix + "restart-gain", o.restart_gain,
-                 {"", 0.0, 10000.0, "Squared deviations that a fit afresh must gain to replace the followed body."});
 }
 
 PartSurface::PartSurface(const BodyModel& body, const FleshModel& flesh) : of_part(body.parts.size()) {
@@ -251,9 +242,9 @@ FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurfa
     const double deviations = value / static_cast<double>(sigma);
     return deviations * deviations;
   };
-  hit.squared = square(hit.distance, options_.surface_m) + square(hit.along, options_.along_m) +
-                square(hit.side, options_.side_m) + square(hit.behind, options_.surface_m);
-  hit.cost = geman_mcclure(hit.squared, static_cast<double>(options_.outlier));
+  hit.squared = square(hit.distance, options_.surface_m) + square(hit.along, kAlong_m) + square(hit.side, kSide_m) +
+                square(hit.behind, options_.surface_m);
+  hit.cost = geman_mcclure(hit.squared, kOutlier);
   return hit;
 }
 
@@ -274,10 +265,9 @@ std::vector<FitTerms::Assigned> FitTerms::assign(const FitData& data, const std:
     };
     for (int k = 0; k < PersonPoint::kParts && point.part[k] != kBackground && point.share[k] > 0.F; ++k) {
       const int part = point.part[k], mirror = body_.parts[part].mirror;
-      const double cost =
-          -2.0 * static_cast<double>(options_.label_weight) * std::log(static_cast<double>(point.share[k]));
+      const double cost = -2.0 * std::log(static_cast<double>(point.share[k]));
       offer(part, cost);
-      if (mirror >= 0 && mirror != part) offer(mirror, cost + static_cast<double>(options_.mirror_cost));
+      if (mirror >= 0 && mirror != part) offer(mirror, cost + static_cast<double>(kMirrorCost));
     }
   }
   return assigned;
@@ -285,12 +275,12 @@ std::vector<FitTerms::Assigned> FitTerms::assign(const FitData& data, const std:
 
 void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& placed,
                           const std::vector<Assigned>& assigned, NormalEquations& equations) const {
-  const auto point_weight = static_cast<double>(options_.point_weight);
+  const auto point_weight = static_cast<double>(kPointWeight);
   const auto inverse_square = [](float sigma) {
     return 1.0 / (static_cast<double>(sigma) * static_cast<double>(sigma));
   };
-  const double surface = inverse_square(options_.surface_m), along = inverse_square(options_.along_m),
-               side = inverse_square(options_.side_m);
+  const double surface = inverse_square(options_.surface_m), along = inverse_square(kAlong_m),
+               side = inverse_square(kSide_m);
   Eigen::VectorXd by_shape(flesh_.shapes);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
   for (std::size_t i = 0; i < data.points.size(); ++i) {
@@ -299,7 +289,7 @@ void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& pl
     const Vector3d at = data.points[i].at.cast<double>();
     const Hit hit = this->hit(placed[b], b, assigned[i].stretch, at);
     const FleshBone& bone = flesh_.bones[b];
-    const double weight = point_weight * geman_mcclure_weight(hit.squared, static_cast<double>(options_.outlier));
+    const double weight = point_weight * geman_mcclure_weight(hit.squared, kOutlier);
     // The rows' squares sum to weight * squared; what the robust cost and the label add is constant.
     equations.add_cost(point_weight * (hit.cost + assigned[i].label_cost) - weight * hit.squared);
     for (Index k = 0; k < by_shape.size(); ++k) {
@@ -333,7 +323,7 @@ void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& pl
 void FitTerms::add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                            NormalEquations& equations) const {
   constexpr double kAside = 0.5;  // a half's visible middle, in half widths from the middle line
-  const double sigma = static_cast<double>(options_.centre_m);
+  const double sigma = static_cast<double>(kCentre_m);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
   for (std::size_t p = 0; p < data.centres.size(); ++p) {
     if (!data.centres[p]) continue;
@@ -447,7 +437,7 @@ void FitTerms::add_poses(const BodyState& state, NormalEquations& equations) con
 }
 
 void FitTerms::add_limits(const BodyState& state, NormalEquations& equations) const {
-  const double sigma = static_cast<double>(options_.limit_rad);
+  const double sigma = static_cast<double>(kBeyond_rad);
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const FleshBone& bone = flesh_.bones[b];
     if (bone.parent < 0) continue;
@@ -468,7 +458,7 @@ void FitTerms::add_limits(const BodyState& state, NormalEquations& equations) co
 void FitTerms::add_followed(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const {
   if (!expected.pose) return;
   const double metres = static_cast<double>(options_.follow_m) * expected.loosened;
-  const double radians = static_cast<double>(options_.follow_rad) * expected.loosened;
+  const double radians = static_cast<double>(kFollow_rad) * expected.loosened;
   for (int axis = 0; axis < 3; ++axis) {
     equations.add_single(StateLayout::root() + axis, 1.0, state.root[axis] - expected.pose->root[axis],
                          1.0 / (metres * metres));
@@ -513,7 +503,7 @@ void FitTerms::evaluate_centres(const FitData& data, const BodyState& state, boo
 std::vector<FitTerms::Support> FitTerms::support(const FitData& data, const std::vector<PlacedBone>& placed,
                                                  const std::vector<Assigned>& assigned) const {
   std::vector<Support> support(flesh_.bones.size());
-  const double most = static_cast<double>(options_.outlier) * static_cast<double>(options_.outlier);
+  const double most = kOutlier * kOutlier;
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const int b = assigned[i].stretch.bone;
     if (b < 0) continue;

@@ -14,28 +14,21 @@
 
 namespace vesalius {
 
+inline constexpr float kPointWeight = 0.2F;  ///< of a point, since neighbours err alike
+inline constexpr float kMirrorCost = 3.F;    ///< squared deviations that a label on the wrong side costs
+
 struct FitOptions {
   int iterations = 8;           ///< most steps to the parts' centres, from which a fit starts
   int rounds = 3;               ///< most times that points are assigned to bones, with three steps after each
-  float point_weight = 0.2F;    ///< of a point, since neighbours err alike
   float surface_m = 0.025F;     ///< standard deviation of points about the flesh's surface
-  float along_m = 0.05F;        ///< of a part's ends along its bone
-  float side_m = 0.05F;         ///< of a part's border on the middle line
-  float outlier = 3.F;          ///< deviations beyond which a point counts less and less
-  float mirror_cost = 3.F;      ///< squared deviations that a label on the wrong side costs
-  float label_weight = 1.F;     ///< of the logarithms of the labels' probabilities
   float outline_m = 0.06F;      ///< standard deviation of flesh beyond the outline
-  float free_m = 0.06F;         ///< of flesh in space that the camera sees is free
+  float free_m = 0.06F;         ///< standard deviation of flesh in space that the camera sees is free
   float outline_weight = 0.3F;  ///< of those two, for each of three places of a bone
   float pose_weight = 0.5F;     ///< of the poses' distribution
-  float limit_rad = 0.1F;       ///< standard deviation beyond a joint's range
   float shape_weight = 1.F;     ///< of the bodies' distribution
-  float centre_m = 0.08F;       ///< of the parts' centres, from which a fit starts
   float follow_m = 0.02F;       ///< standard deviation of the root from its expected place after a thirtieth second
-  float follow_rad = 0.1F;      ///< of a bone's turn from its expected one
   float ground_m = 0.05F;       ///< standard deviation of flesh below the ground, and of the lowest foot above it
   float walk_cost = 200.F;      ///< squared deviations that walking backwards costs
-  float restart_gain = 40.F;    ///< by which a fit afresh must cost less than the followed body to replace it
 };
 void visit_options(const std::string& prefix, FitOptions& options, OptionVisitor& visitor);
 

@@ -198,9 +198,9 @@ TEST(FitTerms, ALabelOfTheWrongSideCosts) {
     ++swapped;
   }
   ASSERT_GT(swapped, 20);
-  EXPECT_NEAR(cost_of(), right + swapped * static_cast<double>(options.point_weight * options.mirror_cost), 1e-3);
+  EXPECT_NEAR(cost_of(), right + swapped * static_cast<double>(kPointWeight * kMirrorCost), 1e-3);
   for (const FitTerms::Assigned& assigned : terms.assign(data, seen.truth)) {
-    EXPECT_TRUE(assigned.label_cost == 0.0 || assigned.label_cost == static_cast<double>(options.mirror_cost));
+    EXPECT_TRUE(assigned.label_cost == 0.0 || assigned.label_cost == static_cast<double>(kMirrorCost));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
+#include <sstream>
 
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/pixel_grid.h"
@@ -44,7 +45,20 @@ constexpr int kOfPixel = 4;  ///< features of the pixel besides the kinds of par
 constexpr int kOfBox = 3;
 constexpr float kMostBeyond_m = 1.5F;
 
+std::string short_text(float number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
 }  // namespace
+
+std::vector<std::string> kind_names(const BodyModel& body) {
+  const std::vector<int> slots = part_slots(body);
+  std::vector<std::string> names(kind_count(slots));
+  for (std::size_t p = slots.size(); p-- > 0;) names[slots[p]] = body.parts[p].name;
+  return names;
+}
 
 /// The corners of a box of cells in the sums.
 struct BodySurroundings::Box4 {
@@ -107,6 +121,26 @@ int BodySurroundings::feature_count(const BodyModel& body) {
   const int kinds = kind_count(part_slots(body));
   return kOfPixel + kinds + static_cast<int>(kAbout.size()) * (kOfBox + kinds) +
          static_cast<int>(kBeside.size()) * kOfBox;
+}
+
+std::vector<std::string> BodySurroundings::feature_names(const BodyModel& body) {
+  std::vector<std::string> kinds = kind_names(body);
+  for (std::string& kind : kinds) kind = "part:" + kind;
+  std::vector<std::string> names{"body", "likeliest", "second", "depth"};
+  const auto add = [&](const std::string& where, const std::vector<std::string>& what) {
+    for (const std::string& name : what) names.push_back(where + name);
+  };
+  const std::vector<std::string> of_box{"body", "readings", "beyond"};
+  add("", kinds);
+  for (const float radius_m : kAbout) {
+    const std::string where = "about " + short_text(radius_m) + " m: ";
+    add(where, of_box);
+    add(where, kinds);
+  }
+  for (const Around& beside : kBeside) {
+    add(short_text(beside.right_m) + " m right, " + short_text(beside.down_m) + " m down: ", of_box);
+  }
+  return names;
 }
 
 bool BodySurroundings::is_open(int column, int row) const {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "vesalius/base/body_model.h"
@@ -15,6 +16,9 @@
 #include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
+
+/// Returns the name of each kind of part (part_slots): that of its first part.
+std::vector<std::string> kind_names(const BodyModel& body);
 
 /// The surroundings of pixels as numbers: means over boxes of metric size of what the posteriors say. It looks at
 /// cells, every few pixels of every few rows.
@@ -28,6 +32,9 @@ class BodySurroundings {
 
   /// Returns how many features a cell has with a body of these parts.
   static int feature_count(const BodyModel& body);
+  /// Returns the name of each in model files: "body", "part:neck", "about 0.3 m: body", "0.45 m right, -0.45 m down:
+  /// beyond".
+  static std::vector<std::string> feature_names(const BodyModel& body);
 
   int step() const { return step_; }  ///< pixels from one cell to the next
   int columns() const { return columns_; }

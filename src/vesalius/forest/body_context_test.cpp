@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "vesalius/base/random.h"
@@ -94,6 +96,8 @@ TEST(BodySurroundings, AreMeansOverBoxesOfMetricSize) {
   ASSERT_EQ(around.rows(), 45);
   const int kinds = 13, hand = part_slots(body())[body().find_part("l_hand")];
   ASSERT_EQ(BodySurroundings::feature_count(body()), 4 + kinds + 4 * (3 + kinds) + 14 * 3);
+  const std::vector<std::string> names = BodySurroundings::feature_names(body());
+  EXPECT_EQ(std::set(names.begin(), names.end()).size(), BodySurroundings::feature_count(body()));
   std::vector<float> features(BodySurroundings::feature_count(body()));
   int looked = 0;
   for (int row = 0; row < around.rows(); row += 4) {

@@ -33,7 +33,33 @@ float BoostedTrees::probability(const std::vector<float>& of) const {
   return logistic(sum);
 }
 
+BoostedTrees in_order(BoostedTrees trees, const std::vector<std::string>& names, const std::string& what) {
+  if (trees.asks.empty()) {
+    if (static_cast<std::size_t>(trees.features) == names.size()) return trees;
+    throw Error("forest: its " + what + " knows " + std::to_string(trees.features) + " features, expected " +
+                std::to_string(names.size()) + "; fit it a new one");
+  }
+  std::vector<std::uint16_t> place;
+  for (const std::string& asked : trees.asks) {
+    const auto found = std::ranges::find(names, asked);
+    if (found == names.end()) {
+      throw Error("forest: its " + what + " asks for \"" + asked + "\", which this program does not know");
+    }
+    place.push_back(static_cast<std::uint16_t>(found - names.begin()));
+  }
+  for (BoostedTree& tree : trees.trees) {
+    for (std::uint16_t& feature : tree.feature) feature = place[feature];
+  }
+  trees.features = static_cast<int>(names.size());
+  trees.asks = names;
+  return trees;
+}
+
 void check(const BoostedTrees& trees, const std::string& what) {
+  if (!trees.asks.empty() && trees.asks.size() != static_cast<std::size_t>(trees.features)) {
+    throw Error("forest: " + what + " has " + std::to_string(trees.asks.size()) + " names of " +
+                std::to_string(trees.features) + " features");
+  }
   bool finite = std::isfinite(trees.bias);
   for (const BoostedTree& tree : trees.trees) {
     if (std::ranges::any_of(tree.feature, [&](std::uint16_t f) { return f >= trees.features; })) {

@@ -26,6 +26,7 @@ struct BoostedTrees {
   int features = 0;  ///< how many numbers are known of what is asked about
   float bias = 0.F;  ///< log odds before any tree
   std::vector<BoostedTree> trees;
+  std::vector<std::string> asks = {};  ///< [feature]: its name; none in models of before they had names
 
   bool empty() const { return trees.empty(); }
   /// Writes the logarithm of the odds for each of `count` lists of `features` numbers, one list after the other.
@@ -37,5 +38,9 @@ struct BoostedTrees {
 
 /// Throws Error, which calls them `what`, if a tree asks for a feature that is not there or has a number that is none.
 void check(const BoostedTrees& trees, const std::string& what);
+
+/// Returns the same trees for features in the order of `names`. Trees without names have features in this order.
+/// Throws Error, which calls them `what`, if they ask for a feature that is not among the names.
+BoostedTrees in_order(BoostedTrees trees, const std::vector<std::string>& names, const std::string& what);
 
 }  // namespace vesalius

@@ -53,5 +53,27 @@ TEST(BoostedTrees, AreRefusedWhenInconsistent) {
   EXPECT_THROW(check(bad, "trees"), Error);
 }
 
+TEST(BoostedTrees, AreServedByName) {
+  BoostedTrees asked = two_questions();
+  asked.asks = {"first", "second"};
+  const BoostedTrees served = in_order(asked, {"other", "second", "first"}, "trees");
+  EXPECT_EQ(served.features, 3);
+  EXPECT_EQ(served.probability({-1.F, 9.F, 0.6F}), asked.probability({0.6F, 9.F}));
+  EXPECT_EQ(served.probability({9.F, 1.F, 0.6F}), asked.probability({0.6F, 1.F}));
+  EXPECT_EQ(in_order(asked, asked.asks, "trees"), asked);
+  try {
+    in_order(asked, {"first", "other"}, "judge");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), "forest: its judge asks for \"second\", which this program does not know");
+  }
+}
+
+TEST(BoostedTrees, WithoutNamesHaveTheUsualOrder) {
+  const BoostedTrees asked = two_questions();
+  EXPECT_EQ(in_order(asked, {"any", "names"}, "trees"), asked);
+  EXPECT_THROW(in_order(asked, {"any", "other", "names"}, "trees"), Error);
+}
+
 }  // namespace
 }  // namespace vesalius

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <string>
 #include <utility>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/forest/body_context.h"
@@ -72,10 +70,8 @@ SceneLabeller::SceneLabeller(std::shared_ptr<const PixelLabeller> labeller, Scen
       options_(options),
       sides_(LogitLayout(labeller_->body(), labeller_->has_background(), 0).side),
       by_mode_(options.smooth.mode || !labeller_->has_distributions()) {
-  const int asked = BodySurroundings::feature_count(body());
-  if (labeller_->context().empty() || labeller_->context().features == asked) return;
-  throw Error("forest: its context of bodies knows " + std::to_string(labeller_->context().features) +
-              " features, expected " + std::to_string(asked) + "; fit it a new one (vesalius evaluate --fit-context)");
+  if (labeller_->context().empty()) return;
+  context_ = in_order(labeller_->context(), BodySurroundings::feature_names(body()), "context of bodies");
 }
 
 SceneLabels SceneLabeller::label_scene(const Frame& frame, StageClock& clock, SceneLabels used) const {
@@ -110,9 +106,9 @@ SceneLabels SceneLabeller::label_scene(const Frame& frame, StageClock& clock, Sc
     mean_filter(scene.raw, depth, frame.camera, options_.smooth, scene.smooth);
   }
   clock.lap(Stage::smooth);
-  scene.in_context = scene.smoothed && !labeller_->context().empty();
+  scene.in_context = scene.smoothed && !context_.empty();
   if (scene.in_context) {
-    correct_bodies(labeller_->context(), frame.depth, frame.camera, body(), scene.smooth, scene.corrected);
+    correct_bodies(context_, frame.depth, frame.camera, body(), scene.smooth, scene.corrected);
   }
   clock.lap(Stage::context);
   return scene;

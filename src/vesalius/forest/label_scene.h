@@ -48,7 +48,7 @@ float mean_certainty(const Posteriors& posteriors, const Mask& inside, int parts
 /// smoothed posteriors are corrected by it (body_context.h). It may be used from several threads at once.
 class SceneLabeller {
  public:
-  /// Throws Error for a labeller whose context was fitted to other features.
+  /// Throws Error for a labeller whose context asks for features that are not known.
   SceneLabeller(std::shared_ptr<const PixelLabeller> labeller, SceneLabelOptions options);
 
   const BodyModel& body() const { return labeller_->body(); }
@@ -78,6 +78,7 @@ class SceneLabeller {
   SceneLabelOptions options_;
   std::vector<std::uint8_t> sides_;
   bool by_mode_;
+  BoostedTrees context_;
 };
 
 }  // namespace vesalius

@@ -145,7 +145,7 @@ TEST(SceneLabellerContext, CorrectsTheSmoothedPosteriors) {
 
   labeller->corrected.features -= 1;
   EXPECT_THAT([&] { SceneLabeller(labeller, {}); },
-              testing::ThrowsMessage<Error>(testing::HasSubstr("evaluate --fit-context")));
+              testing::ThrowsMessage<Error>(testing::HasSubstr("context of bodies knows")));
 }
 
 TEST(SceneLabellerFacing, LabelsAPersonsPixelsByTheHeadingOfTheWholePerson) {

@@ -32,7 +32,6 @@
 #include "evaluation/evaluation_summary.h"
 #include "evaluation/fit_evaluation.h"
 #include "io/files/atomic_file.h"
-#include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
 #include "report/document.h"
@@ -58,7 +57,7 @@ struct Arguments {
   std::optional<float> clip_s;
   std::optional<double> rate_hz;
   std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
-      fit_score, fit_judge, fit_context, fit_trust, fit_stances;
+      fit_judge, fit_context, fit_trust, fit_stances;
   DeviceFlag device;
   OptionFlags<PeopleOptions> detector_flags;
   int step = 1;
@@ -193,17 +192,6 @@ SetResult evaluate_shown(const Request& request, const Arguments& arguments, con
 /// Returns whether nothing but the JSON may go to standard output.
 bool prints_json(const Arguments& arguments) { return arguments.json == "-"; }
 
-/// Writes the detector options of this run with the score fitted to all sets, and prints how good the fit is.
-void write_fitted_score(const Evaluation& evaluation, const std::string& path, bool quiet) {
-  FittedOptions fitted = fit_score_options(evaluation);
-  write_options([&](OptionVisitor& visitor) { visit_options("", fitted.options, visitor); }, path);
-  if (quiet) return;
-  const ScoreFit& fit = fitted.fit;
-  print(fmt::format(
-      "score fitted to {} candidates that were people and {} that were not: area under the curve {:.3f}, was {:.3f}\n",
-      fit.people, fit.nobodies, fit.area_after, fit.area_before));
-}
-
 /// Writes the model with a judge fitted to all sets, and prints how many candidates it was fitted to.
 void write_fitted_judge(const Evaluation& evaluation, const std::string& path, bool quiet) {
   FittedJudge fitted = fit_judge(evaluation);
@@ -269,7 +257,6 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.fit_parts.empty()) {
     write_file_atomically(arguments.fit_parts, fitted_distribution_toml(evaluation));
   }
-  if (!arguments.fit_score.empty()) write_fitted_score(evaluation, arguments.fit_score, prints_json(arguments));
   if (!arguments.fit_judge.empty()) write_fitted_judge(evaluation, arguments.fit_judge, prints_json(arguments));
   if (!arguments.fit_context.empty()) write_fitted_context(evaluation, arguments.fit_context, prints_json(arguments));
   if (!arguments.fit_trust.empty()) write_fitted_trust(evaluation, arguments.fit_trust, prints_json(arguments));
@@ -278,9 +265,8 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
 
 /// Throws Error where a file that is to be fitted could not be written: that is known after the last frame otherwise.
 void check_writable(const Arguments& arguments) {
-  for (const std::string* path :
-       {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_score, &arguments.fit_judge, &arguments.fit_context,
-        &arguments.fit_trust, &arguments.fit_stances}) {
+  for (const std::string* path : {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_judge,
+                                  &arguments.fit_context, &arguments.fit_trust, &arguments.fit_stances}) {
     if (!path->empty()) vesalius::check_writable(*path);
   }
 }
@@ -302,7 +288,6 @@ void run(const Arguments& arguments, const std::string& command) {
   Evaluation evaluation;
   evaluation.options = people_options(arguments.options_file, arguments.detector_flags);
   evaluation.labels_only = labels_only;
-  evaluation.has_background = forest.has_background;
   evaluation.command = command;
   evaluation.model = arguments.model;
   evaluation.model_checksum = model_checksum(bytes);
@@ -392,13 +377,6 @@ void add_evaluate(CLI::App& program) {
       ->excludes(labels_only);
   command
       ->add_option(
-          "--fit-score", arguments->fit_score,
-          "Write the detector options used, with the weights of the person score fitted to these frames; it is "
-          "for models without a judge")
-      ->type_name("FILE")
-      ->excludes(labels_only);
-  command
-      ->add_option(
           "--fit-judge", arguments->fit_judge,
           "Write the model with a judge fitted to these frames, which tells people from what is taken for them")
       ->type_name("FOREST")
@@ -409,14 +387,14 @@ void add_evaluate(CLI::App& program) {
           "Write the model with a context fitted to these labelled frames, which corrects by what is around each "
           "pixel whether it is a body; measures nothing, and leaves out the judge, which is fitted afterwards")
       ->type_name("FOREST")
-      ->excludes("--fit-joints", "--fit-parts", "--fit-score", "--fit-judge");
+      ->excludes("--fit-joints", "--fit-parts", "--fit-judge");
   CLI::Option* track =
       command
           ->add_flag(
               "--track", arguments->track,
               "Follow the people over each recording, frame after frame, and measure ids and motion too; a folder "
               "of recordings is one set")
-          ->excludes("--labels-only", "--fit-joints", "--fit-parts", "--fit-score", "--fit-judge", "--fit-context");
+          ->excludes("--labels-only", "--fit-joints", "--fit-parts", "--fit-judge", "--fit-context");
   command
       ->add_option("--fit-trust", arguments->fit_trust,
                    "With --track: write how far the joints of fitted bodies can be trusted, fitted to these recordings")
@@ -446,7 +424,6 @@ Examples:
   vesalius evaluate --recipe data/protocol/cluttered.toml --count 5000 -m adult.forest
   vesalius evaluate real/room real/hall -m adult.forest --json a.json
   vesalius evaluate recordings/ -m adult.forest --track
-  vesalius evaluate held_out/ empty_rooms/ -m adult.forest --fit-score detector.toml
   vesalius evaluate rendered/ empty_rooms/ -m adult.forest --fit-judge judged.forest)");
   command->callback([arguments, command] { run(*arguments, command_line(*command)); });
 }
