@@ -7,7 +7,7 @@
 #include "evaluation/evaluate_set.h"
 #include "io/files/atomic_file.h"
 #include "io/model/model_file.h"
-#include "metrics/boost_trees.h"
+#include "learn/boost_trees.h"
 #include "vesalius/base/error.h"
 #include "vesalius/default_judge.h"
 #include "vesalius/forest/make_labeller.h"
