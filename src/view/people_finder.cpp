@@ -36,11 +36,11 @@ void PeopleFinder::take_over(const Settings& settings) {
                    std::make_shared<const BodyFitter>(detector.body(), options.fit));
 }
 
-void PeopleFinder::detect(const Frame& frame, const AskPrior& ask, ViewedFrame& viewed) const {
+std::vector<Person> PeopleFinder::detect(const Frame& frame, const AskPrior& ask, ViewedFrame& viewed) const {
   Trace* const trace = viewed.trace ? &*viewed.trace : nullptr;
   Detection found = settings_->detector.detect(frame, ask, trace, &viewed.times);
-  viewed.people = std::move(found.people);
   viewed.planes = std::move(found.planes);
+  return std::move(found.people);
 }
 
 void PeopleFinder::follow(ViewedFrame& viewed) {
@@ -57,9 +57,8 @@ void PeopleFinder::follow(ViewedFrame& viewed) {
     viewed.track_ms += elapsed_ms([&] { prior = tracker.expect(asked); });
     return prior;
   };
-  detect(frame, ask, viewed);
-  viewed.track_ms +=
-      elapsed_ms([&] { viewed.tracked = tracker.update(frame, std::exchange(viewed.people, {}), viewed.planes); });
+  std::vector<Person> people = detect(frame, ask, viewed);
+  viewed.track_ms += elapsed_ms([&] { viewed.tracked = tracker.update(frame, std::move(people), viewed.planes); });
 }
 
 ViewedFrame PeopleFinder::find(const std::shared_ptr<const PlayedFrame>& played, const Settings& settings,
@@ -72,7 +71,7 @@ ViewedFrame PeopleFinder::find(const std::shared_ptr<const PlayedFrame>& played,
   if (tracks_) {
     follow(viewed);
   } else {
-    detect(
+    viewed.people = detect(
         *viewed.frame, [](const Frame&) { return Prior{}; }, viewed);
   }
   viewed.number = ++frames_;

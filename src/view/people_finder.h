@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "vesalius/track/people_options.h"
 #include "view/frame_message.h"
@@ -31,7 +32,7 @@ class PeopleFinder {
 
  private:
   void take_over(const Settings& settings);
-  void detect(const Frame& frame, const AskPrior& ask, ViewedFrame& viewed) const;
+  std::vector<Person> detect(const Frame& frame, const AskPrior& ask, ViewedFrame& viewed) const;
   void follow(ViewedFrame& viewed);
 
   Settings settings_;
