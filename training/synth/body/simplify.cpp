@@ -3,9 +3,9 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <map>
-#include <utility>
+#include <numeric>
 
 namespace vesalius::synth {
 namespace {
@@ -23,50 +23,77 @@ struct SeamedSurface {
 
 SeamedSurface with_seams(const BodyTopology& topology, const std::vector<Eigen::Vector3f>& points) {
   SeamedSurface surface;
-  std::map<std::pair<std::uint32_t, int>, std::uint32_t> known;
+  std::vector<std::vector<std::uint32_t>> made_of(points.size());  // for each vertex of the topology
   for (std::uint32_t t = 0; t < topology.triangles.size(); ++t) {
-    const int look = topology.part[t] * kFabricCount + static_cast<int>(topology.fabric[t]);
+    const auto alike = [&](std::uint32_t made) {
+      const std::uint32_t other = surface.look_of[made];
+      return topology.part[other] == topology.part[t] && topology.fabric[other] == topology.fabric[t];
+    };
     for (const std::uint32_t v : topology.triangles[t]) {
-      const auto [at, is_new] = known.emplace(std::pair(v, look), static_cast<std::uint32_t>(surface.points.size()));
-      if (is_new) {
+      auto found = std::ranges::find_if(made_of[v], alike);
+      if (found == made_of[v].end()) {
+        found = made_of[v].insert(found, static_cast<std::uint32_t>(surface.points.size()));
         surface.original.push_back(v);
         surface.look_of.push_back(t);
         surface.points.push_back(points[v]);
       }
-      surface.corners.push_back(at->second);
+      surface.corners.push_back(*found);
     }
   }
   return surface;
 }
 
+std::uint32_t next_corner(std::uint32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
+
+/// The corners of triangles by the vertex at which they are.
+class CornersAt {
+ public:
+  CornersAt(const std::vector<std::uint32_t>& corners, std::size_t vertices)
+      : corners_(corners), first_(vertices + 1, 0), sorted_(corners.size()) {
+    for (const std::uint32_t v : corners) ++first_[v];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    for (std::size_t c = corners.size(); c-- > 0;) sorted_[--first_[corners[c]]] = static_cast<std::uint32_t>(c);
+  }
+  /// Returns the triangle with the edge from a to b, or kNone.
+  std::uint32_t triangle(std::uint32_t a, std::uint32_t b) const {
+    for (std::uint32_t i = first_[a]; i < first_[a + 1]; ++i) {
+      if (corners_[next_corner(sorted_[i])] == b) return sorted_[i] / 3;
+    }
+    return kNone;
+  }
+
+ private:
+  const std::vector<std::uint32_t>& corners_;
+  std::vector<std::uint32_t> first_, sorted_;
+};
+
 /// Returns triangles of those corners in an order in which neighbours across a long edge follow each other, since
 /// SceneGeometry joins them to quads. Triangles without a partner are last.
 std::vector<Triangle> paired(const std::vector<std::uint32_t>& corners, const std::vector<Eigen::Vector3f>& points) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> triangle_at;  // by directed edge
-  std::vector<Triangle> triangles;
-  for (std::uint32_t t = 0; 3 * t < corners.size(); ++t) {
-    triangles.push_back({corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]});
-    for (std::size_t k = 0; k < 3; ++k) triangle_at[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
-  }
+  const CornersAt at(corners, points.size());
+  const auto corners_of = [&](std::uint32_t t) {
+    return Triangle{corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]};
+  };
   std::vector<Triangle> order, alone;
-  std::vector<std::uint8_t> taken(triangles.size(), 0);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+  std::vector<std::uint8_t> taken(corners.size() / 3, 0);
+  for (std::uint32_t t = 0; t < taken.size(); ++t) {
     if (taken[t] != 0) continue;
     taken[t] = 1;
     std::uint32_t partner = kNone;
     float longest = 0.F;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+    for (std::uint32_t c = 3 * t; c < 3 * t + 3; ++c) {
+      const std::uint32_t a = corners[c], b = corners[next_corner(c)];
       const float length = (points[a] - points[b]).squaredNorm();
-      const auto other = triangle_at.find({b, a});
-      if (length <= longest || other == triangle_at.end() || taken[other->second] != 0) continue;
-      partner = other->second;
+      if (length <= longest) continue;
+      const std::uint32_t other = at.triangle(b, a);
+      if (other == kNone || taken[other] != 0) continue;
+      partner = other;
       longest = length;
     }
-    (partner == kNone ? alone : order).push_back(triangles[t]);
+    (partner == kNone ? alone : order).push_back(corners_of(t));
     if (partner == kNone) continue;
     taken[partner] = 1;
-    order.push_back(triangles[partner]);
+    order.push_back(corners_of(partner));
   }
   order.insert(order.end(), alone.begin(), alone.end());
   return order;
@@ -101,11 +128,15 @@ std::vector<CoarseSurface> simplify(const BodyTopology& topology, const std::vec
   const std::size_t count = surface.points.size();
   const float scale_m = meshopt_simplifyScale(places, count, sizeof(Eigen::Vector3f));
   std::vector<CoarseSurface> levels;
+  std::vector<std::uint32_t> corners = surface.corners;
+  float before_m = 0.F;  // errors of one level after the other add up by their squares
   for (const float error_m : errors_m) {
-    std::vector<std::uint32_t> corners(surface.corners.size());
-    corners.resize(meshopt_simplify(corners.data(), surface.corners.data(), surface.corners.size(), places, count,
-                                    sizeof(Eigen::Vector3f), 0, error_m / scale_m, 0, nullptr));
+    const float further_m = std::sqrt(std::max(0.F, error_m * error_m - before_m * before_m));
+    const std::vector<std::uint32_t> from = corners;
+    corners.resize(meshopt_simplify(corners.data(), from.data(), from.size(), places, count, sizeof(Eigen::Vector3f), 0,
+                                    further_m / scale_m, 0, nullptr));
     levels.push_back(coarse_surface(topology, surface, corners, error_m));
+    before_m = error_m;
   }
   return levels;
 }

@@ -18,11 +18,12 @@ struct CoarseSurface {
 };
 
 /// Simplifies a surface by moving vertices onto neighbours as long as the triangles around them stay within the error
-/// bound (meshopt_simplify). There is one result for each bound. The error is the root mean square distance from the
-/// planes of all triangles that a vertex has replaced (quadrics of Garland and Heckbert 1997). It is measured in
-/// `points`, the mesh's vertices in some pose. All joints should be half bent in it, because surfaces that are flat in
-/// `points` lose the vertices that they need to bend. Borders between parts and fabrics and open edges keep their
-/// course within the same bound. The same arguments give the same result.
+/// bound (meshopt_simplify). There is one result for each bound; each continues from the previous one, so `errors_m`
+/// must rise. The error is the root mean square distance from the planes of all triangles that a vertex has replaced
+/// (quadrics of Garland and Heckbert 1997). It is measured in `points`, the mesh's vertices in some pose. All joints
+/// should be half bent in it, because surfaces that are flat in `points` lose the vertices that they need to bend.
+/// Borders between parts and fabrics and open edges keep their course within the same bound. The same arguments give
+/// the same result.
 std::vector<CoarseSurface> simplify(const BodyTopology& topology, const std::vector<Eigen::Vector3f>& points,
                                     const std::vector<float>& errors_m);
 
