@@ -279,7 +279,7 @@ TEST(CLibrary, FollowsPeopleAsTheTrackerToTheBit) {
       expect_same(theirs.person, detector.body(), frame, people, static_cast<int>(i));
       const vesalius_person person = person_at(people, static_cast<int>(i));
       EXPECT_EQ(person.id, theirs.id);
-      EXPECT_EQ(person.state, 1 + static_cast<int>(theirs.state));
+      EXPECT_EQ(person.state, static_cast<int>(theirs.state));
       for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(same_float(person.velocity_m_s[axis], theirs.velocity[axis]));
       expect_same_body(theirs, detector.body(), people, static_cast<int>(i));
       fitted += theirs.body ? 1 : 0;
