@@ -5,6 +5,7 @@
 #include <string>
 
 #include "export/test_people.h"
+#include "stream/person_json.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -28,6 +29,35 @@ TEST(ParsePeople, ReadsFramesPeopleJointsAndBodies) {
   EXPECT_FALSE(person.rotations[0][0].has_value());
   EXPECT_EQ(record.find_set("coco17"), 1U);
   EXPECT_THAT([&] { (void)record.find_set("body25"); }, ThrowsMessage<UsageError>(HasSubstr("k4abt32, coco17")));
+}
+
+TEST(ParsePeople, GivesBackTheFieldsThatWereWritten) {
+  TrackedPerson person;
+  person.id = 7;
+  person.state = TrackState::hidden;
+  person.position = {0.25F, -0.5F, 2.F};
+  person.velocity = {0.5F, 0.F, -1.F};
+  person.stance = Stance::fallen;
+  person.leaving = true;
+  person.seen_s = 2.5;
+  person.person.score = 0.75F;
+  person.person.box = {1, 2, 3, 4};
+  const PeopleRecord record =
+      parse_people(frame_json({}, TrackedFrame{3.0, {person}, {}, {}}, BodyModel{}) + "\n" +
+                       R"({"frame":"old","camera":{"width":4,"height":3,"fx":1,"fy":1,"cx":1,"cy":1},"track_time_s":4,)"
+                       R"("people":[{"id":8,"joints":{}}]})",
+                   "x", {});
+  const RecordedPerson& read = record.frames.at(0).people.at(0);
+  EXPECT_EQ(read.id, 7);
+  EXPECT_EQ(read.state, TrackState::hidden);
+  EXPECT_EQ(read.position, person.position);
+  EXPECT_EQ(read.velocity, person.velocity);
+  EXPECT_EQ(read.stance, Stance::fallen);
+  EXPECT_TRUE(read.leaving);
+  EXPECT_EQ(read.seen_s, 2.5);
+  EXPECT_EQ(read.person.score, 0.75F);
+  EXPECT_EQ(read.person.box.height, 4);
+  EXPECT_EQ(record.frames.at(1).people.at(0).stance, Stance::unknown) << "a line of before that field";
 }
 
 TEST(ParsePeople, CountsFramesWithoutTimes) {
