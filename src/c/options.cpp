@@ -9,10 +9,9 @@
 namespace vesalius::c {
 namespace {
 
-static_assert(static_cast<int>(OptionKind::number) == VESALIUS_OPTION_NUMBER &&
-              static_cast<int>(OptionKind::whole_number) == VESALIUS_OPTION_WHOLE_NUMBER &&
-              static_cast<int>(OptionKind::truth) == VESALIUS_OPTION_TRUTH &&
-              static_cast<int>(OptionKind::word) == VESALIUS_OPTION_WORD);
+static_assert(int(OptionKind::number) == VESALIUS_OPTION_NUMBER &&
+              int(OptionKind::whole_number) == VESALIUS_OPTION_WHOLE_NUMBER &&
+              int(OptionKind::truth) == VESALIUS_OPTION_TRUTH && int(OptionKind::word) == VESALIUS_OPTION_WORD);
 
 VisitAll visit(PeopleOptions& options) {
   return [&options](OptionVisitor& visitor) { visit_options("", options, visitor); };

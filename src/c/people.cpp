@@ -13,21 +13,16 @@
 namespace vesalius::c {
 namespace {
 
-static_assert(static_cast<int>(State::none) == VESALIUS_STATE_NONE &&
-              static_cast<int>(State::predicted) == VESALIUS_STATE_PREDICTED &&
-              static_cast<int>(State::observed) == VESALIUS_STATE_OBSERVED);
+static_assert(int(State::none) == VESALIUS_STATE_NONE && int(State::predicted) == VESALIUS_STATE_PREDICTED &&
+              int(State::observed) == VESALIUS_STATE_OBSERVED);
 
-static_assert(static_cast<int>(TrackState::seen) == VESALIUS_PERSON_SEEN &&
-              static_cast<int>(TrackState::fresh) == VESALIUS_PERSON_NEW &&
-              static_cast<int>(TrackState::tracked) == VESALIUS_PERSON_TRACKED &&
-              static_cast<int>(TrackState::hidden) == VESALIUS_PERSON_HIDDEN &&
-              static_cast<int>(TrackState::lost) == VESALIUS_PERSON_LOST);
+static_assert(int(TrackState::seen) == VESALIUS_PERSON_SEEN && int(TrackState::fresh) == VESALIUS_PERSON_NEW &&
+              int(TrackState::tracked) == VESALIUS_PERSON_TRACKED &&
+              int(TrackState::hidden) == VESALIUS_PERSON_HIDDEN && int(TrackState::lost) == VESALIUS_PERSON_LOST);
 
-static_assert(static_cast<int>(Stance::unknown) == VESALIUS_STANCE_UNKNOWN &&
-              static_cast<int>(Stance::standing) == VESALIUS_STANCE_STANDING &&
-              static_cast<int>(Stance::sitting) == VESALIUS_STANCE_SITTING &&
-              static_cast<int>(Stance::lying) == VESALIUS_STANCE_LYING &&
-              static_cast<int>(Stance::fallen) == VESALIUS_STANCE_FALLEN);
+static_assert(int(Stance::unknown) == VESALIUS_STANCE_UNKNOWN && int(Stance::standing) == VESALIUS_STANCE_STANDING &&
+              int(Stance::sitting) == VESALIUS_STANCE_SITTING && int(Stance::lying) == VESALIUS_STANCE_LYING &&
+              int(Stance::fallen) == VESALIUS_STANCE_FALLEN);
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 

@@ -75,7 +75,7 @@ Json tree_facts(const Tree& tree) {
 /// Returns the bytes of the file per node, leaves included; null for a forest without nodes.
 Json bytes_per_node(std::size_t bytes, std::size_t nodes) {
   if (nodes == 0) return nullptr;
-  return std::round(100.0 * static_cast<double>(bytes) / static_cast<double>(nodes)) / 100.0;
+  return std::round(100.0 * double(bytes) / double(nodes)) / 100.0;
 }
 
 Json body_facts(const BodyModel& body) {

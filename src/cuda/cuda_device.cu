@@ -154,7 +154,7 @@ KernelFacts facts_of(const char* name, const std::string& device) {
   expect(cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, current), device,
          "cannot tell its threads");
   return {name, attributes.numRegs, attributes.sharedSizeBytes, attributes.localSizeBytes,
-          static_cast<float>(blocks * kThreads) / static_cast<float>(threads)};
+          float(blocks * kThreads) / float(threads)};
 }
 
 template <std::size_t... kIndex>
@@ -182,7 +182,7 @@ std::vector<CudaFacts> cuda_devices() {
 
 std::shared_ptr<Device> open_cuda_device(int number) {
   const std::vector<CudaFacts> found = cuda_devices();
-  if (number >= static_cast<int>(found.size())) {
+  if (number >= int(found.size())) {
     throw DeviceError(number_of(number) + ": is not there; this machine has " + std::to_string(found.size()));
   }
   const CudaFacts& facts = found[static_cast<std::size_t>(number)];

@@ -88,10 +88,10 @@ void DeviceForest::describe(LogitArguments& read) const {
   read.logits = logits_.data();
   read.leaf_bytes = leaf_bytes_;
   read.groups = groups_.data();
-  read.places = static_cast<int>(groups_.size());
+  read.places = int(groups_.size());
   read.headings = headings_;
   read.unit = logit_unit_;
-  read.whole = 255.F * static_cast<float>(trees());
+  read.whole = 255.F * float(trees());
 }
 
 /// Pictures of one size that are worked on together.
@@ -165,7 +165,7 @@ class DeviceLabeller::Workspace {
     mean.spacing = window.spacing;
     mean.gate_mm = window.gate_mm;
     mean.bits = excess_bits(forest_.trees(), window);
-    mean.pixels_in_block = static_cast<int>(pixels);
+    mean.pixels_in_block = int(pixels);
     mean.means = means_.data();
     stream_->launch(mean, {blocks_for(batch_.pixels(), pixels), 1, options_.threads});
   }
@@ -240,7 +240,7 @@ class DeviceLabeller::Workspace {
     read.turns = has_turns_ ? turns_.data() : nullptr;
     const unsigned pixels =
         pixels_in_block(options_.threads, kLogitLanes, static_cast<unsigned>(read.places), kSharedLogits);
-    read.pixels_in_block = static_cast<int>(pixels);
+    read.pixels_in_block = int(pixels);
     stream_->launch(read, {blocks_for(most, pixels), 1, options_.threads});
   }
 
@@ -267,7 +267,7 @@ DeviceLabeller::DeviceLabeller(const Forest& forest, std::shared_ptr<Device> dev
   if (options.threads < kLeastThreads || options.threads > kMostThreads) {
     throw Error(std::to_string(options.threads) + " threads a block, expected 32 to 1024");
   }
-  if (layout().size() > static_cast<int>(kSharedLogits)) {
+  if (layout().size() > int(kSharedLogits)) {
     throw DeviceError(device_->name() + ": leaves with " + std::to_string(layout().size()) +
                       " logits, expected at most 2048");
   }
@@ -378,12 +378,12 @@ std::vector<LabelImage> DeviceLabeller::label_pictures(const std::vector<DepthIm
     }
     if (slot.space == nullptr) slot.space = take();
     Workspace& space = *slot.space;
-    space.begin({pictures[first].width(), pictures[first].height(), static_cast<int>(count)}, classes, 0);
+    space.begin({pictures[first].width(), pictures[first].height(), int(count)}, classes, 0);
     std::uint16_t* to = space.pinned_depth();
     for (std::size_t i = 0; i < count; ++i) {
       const DepthImage& picture = pictures[first + i];
       std::copy_n(picture.data(), picture.size(), to);
-      space.send(static_cast<int>(i), to, cameras[first + i]);
+      space.send(int(i), to, cameras[first + i]);
       to += picture.size();
     }
     space.label(enough);

@@ -31,7 +31,7 @@ class DeviceForest {
   DeviceForest(const Forest& forest, const std::shared_ptr<Device>& device);
 
   const FeatureConvention& convention() const { return convention_; }
-  int trees() const { return static_cast<int>(places_.size()); }
+  int trees() const { return int(places_.size()); }
   bool has_logits() const { return logit_unit_ > 0.F; }
 
   /// These tell a kernel where the forest is.

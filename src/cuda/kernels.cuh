@@ -20,9 +20,9 @@ GPU_FUNCTION bool find_pixel(const Pictures& pictures, unsigned block, unsigned 
   at.index = block * threads + thread;
   if (at.index >= pixels * static_cast<std::uint32_t>(pictures.count)) return false;
   const std::uint32_t inside = at.index % pixels;
-  at.picture = static_cast<int>(at.index / pixels);
-  at.u = static_cast<int>(inside % static_cast<std::uint32_t>(pictures.width));
-  at.v = static_cast<int>(inside / static_cast<std::uint32_t>(pictures.width));
+  at.picture = int(at.index / pixels);
+  at.u = int(inside % static_cast<std::uint32_t>(pictures.width));
+  at.v = int(inside / static_cast<std::uint32_t>(pictures.width));
   return true;
 }
 
@@ -99,8 +99,8 @@ struct CompactNodes {
   static constexpr std::uint32_t kWords = 2;
   static GPU_FUNCTION WalkNode read(const std::uint32_t* words, std::uint32_t link_bits) {
     const auto w = *reinterpret_cast<const TwoWords*>(words);
-    return {static_cast<int>(w.word[0] & 255U) - 128,          static_cast<int>(w.word[0] >> 8U & 255U) - 128,
-            static_cast<int>(w.word[0] >> 16U & 255U) - 128,   static_cast<int>(w.word[0] >> 24U) - 128,
+    return {int(w.word[0] & 255U) - 128,          int(w.word[0] >> 8U & 255U) - 128,
+            int(w.word[0] >> 16U & 255U) - 128,   int(w.word[0] >> 24U) - 128,
             static_cast<std::int32_t>(w.word[1]) >> link_bits, w.word[1] & ((1U << link_bits) - 1U)};
   }
 };
@@ -118,7 +118,7 @@ struct WideNodes {
 
 template <class Nodes>
 GPU_FUNCTION std::uint32_t walk_tree(const WalkArguments& a, const AskedPixel& pixel, const TreePlace& tree) {
-  const std::uint16_t* depth = depth_of(a.pictures, static_cast<int>(pixel.picture));
+  const std::uint16_t* depth = depth_of(a.pictures, int(pixel.picture));
   const auto width = static_cast<unsigned>(a.pictures.width), height = static_cast<unsigned>(a.pictures.height);
   const auto read = [&](int u, int v) -> int {
     if (static_cast<unsigned>(u) >= width || static_cast<unsigned>(v) >= height) return a.outside_mm;
@@ -128,7 +128,7 @@ GPU_FUNCTION std::uint32_t walk_tree(const WalkArguments& a, const AskedPixel& p
   };
   const OffsetScale scale{pixel.scale_u, pixel.scale_v};
   const ProbeRange range =
-      probe_range(depth_at(a.pictures, static_cast<int>(pixel.picture), pixel.u, pixel.v), a.clip_mm);
+      probe_range(depth_at(a.pictures, int(pixel.picture), pixel.u, pixel.v), a.clip_mm);
   const std::uint32_t* root = a.words + tree.word;
   const std::uint32_t* words = root;
   for (WalkNode node = Nodes::read(words, tree.link_bits); node.link != 0; node = Nodes::read(words, tree.link_bits)) {
@@ -156,7 +156,7 @@ GPU_KERNEL void run_kernel(const AddArguments a) {
     const std::uint32_t i = block_x() * threads_in_block() + thread;
     if (i >= asked) continue;
     const AskedPixel pixel = a.asked.pixels[i];
-    std::uint16_t* sums = a.sums + place_of(a.pictures, static_cast<int>(pixel.picture), pixel.u, pixel.v) *
+    std::uint16_t* sums = a.sums + place_of(a.pictures, int(pixel.picture), pixel.u, pixel.v) *
                                        static_cast<std::size_t>(a.classes);
     for (int t = 0; t < a.trees; ++t) {
       const std::size_t leaf = a.reached[static_cast<std::size_t>(t) * a.most_asked + i];
@@ -173,7 +173,7 @@ GPU_KERNEL void run_kernel(const AddArguments a) {
 GPU_FUNCTION float exponential(float x) {
   const float scaled = x * 1.44269504F;
   const std::int32_t whole = nearest(scaled);
-  const float rest = (scaled - static_cast<float>(whole)) * 0.693147181F;
+  const float rest = (scaled - float(whole)) * 0.693147181F;
   float sum = 1.F / 120.F;
   sum = sum * rest + 1.F / 24.F;
   sum = sum * rest + 1.F / 6.F;
@@ -212,7 +212,7 @@ struct LogitGroups {
 GPU_FUNCTION void scale_groups(const float* tops, const std::int32_t* fixed, bool has_turns, float* scales) {
   using G = LogitGroups;
   float sum[G::kCount], together[G::kSides + 1];
-  for (int g = 0; g < G::kCount; ++g) sum[g] = static_cast<float>(fixed[g]) / G::kFixed;
+  for (int g = 0; g < G::kCount; ++g) sum[g] = float(fixed[g]) / G::kFixed;
   for (int s = 0; s < G::kSides; ++s) {
     if (!has_turns) sum[G::kFirstTurn + s] = 1.F;
     together[s] = tops[s] + (has_turns ? tops[G::kFirstTurn + s] : 0.F);
@@ -267,7 +267,7 @@ GPU_KERNEL void run_kernel(const LogitArguments a) {
         for (int k = 0; k < 4; ++k) sums[k] += static_cast<std::int8_t>(four >> (8 * k));
       }
       for (unsigned k = 0; k < 4 && p + k < places; ++k) {
-        const float value = static_cast<float>(sums[k]) * a.unit;
+        const float value = float(sums[k]) * a.unit;
         values[pixel * places + p + k] = value;
         raise(&tops[pixel * G::kCount + a.groups[p + k]], ordered(value));
       }
@@ -295,7 +295,7 @@ GPU_KERNEL void run_kernel(const LogitArguments a) {
     if (pixel >= here) continue;
     const AskedPixel at = a.asked.pixels[first + pixel];
     std::uint16_t* sums =
-        a.sums + place_of(a.pictures, static_cast<int>(at.picture), at.u, at.v) * static_cast<std::size_t>(a.classes);
+        a.sums + place_of(a.pictures, int(at.picture), at.u, at.v) * static_cast<std::size_t>(a.classes);
     for (unsigned p = thread % kLogitLanes; p < places; p += kLogitLanes) {
       const float share = values[pixel * places + p] * scales[pixel * G::kCount + a.groups[p]];
       values[pixel * places + p] = share;
@@ -315,7 +315,7 @@ GPU_KERNEL void run_kernel(const LogitArguments a) {
     if (pixel >= here) continue;
     const AskedPixel at = a.asked.pixels[first + pixel];
     const auto classes = static_cast<unsigned>(a.classes), turns = places - classes;
-    std::uint16_t* out = a.turns + place_of(a.pictures, static_cast<int>(at.picture), at.u, at.v) * turns;
+    std::uint16_t* out = a.turns + place_of(a.pictures, int(at.picture), at.u, at.v) * turns;
     for (unsigned i = thread % kLogitLanes; i < turns; i += kLogitLanes) {
       const float turn = values[pixel * places + classes + i] * turn_scale[pixel] + 0.5F;
       out[i] = static_cast<std::uint16_t>(turn < 65535.F ? turn : 65535.F);
@@ -459,8 +459,8 @@ GPU_KERNEL void run_kernel(const MeanArguments a) {
       std::int32_t place = -1;
       PixelAt at;
       if (find_pixel(a.pictures, block_x(), i / (side * side), pixels, at)) {
-        const int u = at.u + (static_cast<int>(neighbour % side) - a.each_way) * a.spacing;
-        const int v = at.v + (static_cast<int>(neighbour / side) - a.each_way) * a.spacing;
+        const int u = at.u + (int(neighbour % side) - a.each_way) * a.spacing;
+        const int v = at.v + (int(neighbour / side) - a.each_way) * a.spacing;
         if (u >= 0 && v >= 0 && u < a.pictures.width && v < a.pictures.height) {
           const int mm = depth_at(a.pictures, at.picture, u, v);
           const int apart = mm - depth_at(a.pictures, at.picture, at.u, at.v);

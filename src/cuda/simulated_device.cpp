@@ -146,7 +146,7 @@ void SimulatedDevice::count_operation() {
 
 void SimulatedDevice::run(const KernelCall& call, const LaunchShape& shape) const {
   SimulatorOptions simulator = options_.simulator;
-  if (options_.faulty_kernel >= 0 && static_cast<int>(call.index()) != options_.faulty_kernel) simulator.faults = {};
+  if (options_.faulty_kernel >= 0 && int(call.index()) != options_.faulty_kernel) simulator.faults = {};
   std::visit(
       [&](auto arguments) {
         if constexpr (std::is_same_v<decltype(arguments), WalkArguments>) {

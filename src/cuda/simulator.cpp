@@ -49,7 +49,7 @@ void run_block(Block& block, const std::function<void()>& kernel) {
   run_phases(block, 0, left_out - 1, -1, kernel);
   for (unsigned i = 0; i < block.threads; ++i) {
     const unsigned thread = block.backwards ? block.threads - 1 - i : i;
-    run_phases(block, left_out, left_out + 1, static_cast<int>(thread), kernel);
+    run_phases(block, left_out, left_out + 1, int(thread), kernel);
   }
   run_phases(block, left_out + 2, kAll, -1, kernel);
 }
@@ -61,7 +61,7 @@ void Simulator::run(const LaunchShape& shape, const SimulatorOptions& options, c
     throw std::logic_error("a kernel's shape that no card takes");
   }
   constexpr int kGrain = 4;
-  const auto blocks = static_cast<int>(shape.blocks_x * shape.blocks_y);
+  const auto blocks = int(shape.blocks_x * shape.blocks_y);
   parallel_ranges(blocks, kGrain, [&](int begin, int end) {
     Block block{.threads = shape.threads,
                 .backwards = options.backwards,
@@ -94,7 +94,7 @@ Simulator::Threads Simulator::phase() {
   const int phase = running->next_phase++;
   if (phase < block.first_phase || phase > block.last_phase) return {0, 0, false};
   if (block.only_thread >= 0) return {block.only_thread, 1, false};
-  return {0, static_cast<int>(block.threads), block.backwards};
+  return {0, int(block.threads), block.backwards};
 }
 
 std::size_t Simulator::shortened(std::size_t count) {

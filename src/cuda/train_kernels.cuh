@@ -22,7 +22,7 @@ GPU_FUNCTION int tiled_depth(const std::uint32_t* words, const FrameInfo& frame,
   std::uint32_t code = at[0];
   if (bits == 16) code |= static_cast<std::uint32_t>(at[1]) << 8U;
   code = code >> begin % 8 & ((1U << bits) - 1U);
-  return code != 0 ? static_cast<int>((header & 0xFFFFU) + code) : 0;
+  return code != 0 ? int((header & 0xFFFFU) + code) : 0;
 }
 
 template <class Offsets>
@@ -410,7 +410,7 @@ GPU_KERNEL void run_kernel(const GradientArguments a) {
         const std::size_t leaf = a.first_leaf[t] + a.leaves[static_cast<std::size_t>(t) * a.samples.count + first + i];
         sum += a.logits[leaf * static_cast<unsigned>(a.stride) + p];
       }
-      const float value = static_cast<float>(sum) * a.unit;
+      const float value = float(sum) * a.unit;
       values[i * places + p] = value;
       raise(&tops[i * G::kCount + a.labels.groups[p]], ordered(value));
     }
@@ -459,12 +459,12 @@ GPU_KERNEL void run_kernel(const GradientArguments a) {
     const unsigned i = thread / kLogitLanes;
     if (i >= samples || !is_in_portion(a, first + i)) continue;
     const SamplePixel sample = a.samples.pixels[first + i];
-    const float weight = static_cast<float>(weight_of(a.labels, sample)) * a.scale;
+    const float weight = float(weight_of(a.labels, sample)) * a.scale;
     const bool part = sample.label < a.labels.parts;
     const int turns = part ? first_turn(a.labels, sample.label) : -1;
     for (unsigned p = thread % kLogitLanes; p < places; p += kLogitLanes) {
       const float share = values[i * places + p];
-      const int heading = static_cast<int>(p) - turns;
+      const int heading = int(p) - turns;
       float truth = p == sample.label ? 1.F : 0.F;
       if (p >= static_cast<unsigned>(a.labels.classes)) {
         truth = 0.F;

@@ -20,8 +20,8 @@ int legible_scale(int width) { return width < kLegibleWidth ? 2 : 1; }
 
 Rgb mix(Rgb under, Rgb over, float weight) {
   const auto channel = [weight](std::uint8_t a, std::uint8_t b) {
-    const auto from = static_cast<float>(a);
-    return static_cast<std::uint8_t>(std::lround(from + (static_cast<float>(b) - from) * weight));
+    const auto from = float(a);
+    return static_cast<std::uint8_t>(std::lround(from + (float(b) - from) * weight));
   };
   return {channel(under.r, over.r), channel(under.g, over.g), channel(under.b, over.b)};
 }

@@ -45,10 +45,10 @@ ColourImage contact_sheet(const std::vector<LabelledFrame>& frames, const BodyMo
     across = std::max(across, cells.back().size());
     for (const ColourImage& tile : cells.back()) height = std::max(height, tile.height());
   }
-  const int count = static_cast<int>(frames.size());
+  const int count = int(frames.size());
   columns = std::clamp(columns, 1, std::max(1, count));
   const int rows = std::max(1, (count + columns - 1) / columns);
-  const int cell_width = static_cast<int>(across) * tile_width + kGap * 2;
+  const int cell_width = int(across) * tile_width + kGap * 2;
   const int cell_height = height + kTextRow + kGap * 2;
   ColourImage sheet(columns * cell_width, rows * cell_height, kPaper);
   for (int i = 0; i < count; ++i) {
@@ -56,7 +56,7 @@ ColourImage contact_sheet(const std::vector<LabelledFrame>& frames, const BodyMo
     const int top = i / columns * cell_height + kGap;
     draw_text(sheet, frames[i].frame.name, left, top + kTextRow - kGap, kInk);
     for (std::size_t t = 0; t < cells[i].size(); ++t) {
-      paste(cells[i][t], left + static_cast<int>(t) * tile_width, top + kTextRow, sheet);
+      paste(cells[i][t], left + int(t) * tile_width, top + kTextRow, sheet);
     }
   }
   return sheet;

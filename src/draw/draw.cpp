@@ -28,7 +28,7 @@ struct DepthRange {
   /// Returns 0 at the near end of the range and 1 at the far end.
   float place(int depth_mm) const {
     if (far_mm == near_mm) return 0.F;
-    const float t = static_cast<float>(depth_mm - near_mm) / static_cast<float>(far_mm - near_mm);
+    const float t = float(depth_mm - near_mm) / float(far_mm - near_mm);
     return std::clamp(t, 0.F, 1.F);
   }
 };
@@ -41,7 +41,7 @@ DepthRange depth_range(const DepthImage& depth) {
   const auto percentile = [&readings](std::size_t percent) {
     const auto at = readings.begin() + static_cast<std::ptrdiff_t>((readings.size() - 1) * percent / 100);
     std::nth_element(readings.begin(), at, readings.end());
-    return static_cast<int>(*at);
+    return int(*at);
   };
   return {percentile(1), percentile(99)};
 }
@@ -109,13 +109,11 @@ std::optional<cv::Point> place_on_canvas(const SkeletonPart& part, const Camera&
   if (part.state == State::none || !part.centre.allFinite() || part.centre.z() <= 0.F) return std::nullopt;
   const Eigen::Vector2f pixel = camera.pixel(part.centre);
   // Farther outside than the picture's size, no disc or plausible link would show, and integers would overflow.
-  const auto near = [](float at, int size) {
-    return at > -static_cast<float>(size) && at < 2.F * static_cast<float>(size);
-  };
+  const auto near = [](float at, int size) { return at > -float(size) && at < 2.F * float(size); };
   if (!near(pixel.x(), camera.width) || !near(pixel.y(), camera.height)) return std::nullopt;
   const auto fixed = [scale](float at) {
-    const float on_canvas = (at + 0.5F) * static_cast<float>(scale) - 0.5F;  // pixel centres are at integers
-    return static_cast<int>(std::lround(on_canvas * static_cast<float>(1 << kSubpixelBits)));
+    const float on_canvas = (at + 0.5F) * float(scale) - 0.5F;  // pixel centres are at integers
+    return int(std::lround(on_canvas * float(1 << kSubpixelBits)));
   };
   return cv::Point(fixed(pixel.x()), fixed(pixel.y()));
 }
@@ -159,7 +157,7 @@ void draw_skeleton(ColourImage& picture, const Skeleton& skeleton, const Camera&
 
 void draw_score(ColourImage& picture, const Person& person, std::size_t index, Rgb colour, int scale) {
   std::array<char, 48> text;
-  std::snprintf(text.data(), text.size(), "%zu: %.2f", index, static_cast<double>(person.score));
+  std::snprintf(text.data(), text.size(), "%zu: %.2f", index, double(person.score));
   draw_tag(picture, text.data(), person.box.u * scale, person.box.v * scale - 2, colour);
 }
 

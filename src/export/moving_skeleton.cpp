@@ -79,7 +79,7 @@ std::vector<MovingSkeleton::Bone> bones_of(const PeopleRecord& record, const Bod
       if (at - record.bones.begin() >= static_cast<std::ptrdiff_t>(b)) {
         throw Error(fmt::format("a body whose bone {} comes before {}", record.bones[b], flesh.bones[parent].name));
       }
-      bone.parent = static_cast<int>(at - record.bones.begin());
+      bone.parent = int(at - record.bones.begin());
       bones[bone.parent].ends = false;
     }
     std::vector<Eigen::Vector3d> offsets, tails;

@@ -70,7 +70,7 @@ class LineReader {
     if (read != std::floor(read) || std::abs(read) > std::numeric_limits<int>::max()) {
       fail(fmt::format("{}: expected a whole number", value.dump()));
     }
-    return static_cast<int>(read);
+    return int(read);
   }
   template <int kSize>
   Eigen::Matrix<double, kSize, 1> vector(const Json& value) const {
@@ -87,7 +87,7 @@ class LineReader {
 
   void read_value(const Json& json, int& to) const { to = whole_number(json); }
   void read_value(const Json& json, bool& to) const { to = json.get<bool>(); }
-  void read_value(const Json& json, float& to) const { to = static_cast<float>(number(json)); }
+  void read_value(const Json& json, float& to) const { to = float(number(json)); }
   void read_value(const Json& json, double& to) const { to = number(json); }
   void read_value(const Json& json, Eigen::Vector3f& to) const { to = vector<3>(json).cast<float>(); }
   void read_value(const Json& json, Eigen::Quaternionf& to) const { to.coeffs() = quaternion(json).cast<float>(); }
@@ -124,17 +124,14 @@ class LineReader {
     frame.name = json.at("frame").get<std::string>();
     const char* time = json.contains("track_time_s") ? "track_time_s" : "time_s";
     const bool has_time = json.contains(time) && !json.at(time).is_null();
-    frame.time_s = has_time ? number(json.at(time)) : static_cast<double>(record_.frames.size()) / options_.rate_hz;
+    frame.time_s = has_time ? number(json.at(time)) : double(record_.frames.size()) / options_.rate_hz;
     if (!record_.frames.empty() && frame.time_s < record_.frames.back().time_s) {
       fail("a time before that of the line before, expected rising times");
     }
     const Json& camera = json.at("camera");
-    frame.camera = {whole_number(camera.at("width")),
-                    whole_number(camera.at("height")),
-                    static_cast<float>(number(camera.at("fx"))),
-                    static_cast<float>(number(camera.at("fy"))),
-                    static_cast<float>(number(camera.at("cx"))),
-                    static_cast<float>(number(camera.at("cy")))};
+    frame.camera = {whole_number(camera.at("width")), whole_number(camera.at("height")),
+                    float(number(camera.at("fx"))),   float(number(camera.at("fy"))),
+                    float(number(camera.at("cx"))),   float(number(camera.at("cy")))};
     for (const Json& person : json.at("people")) frame.people.push_back(person_of(person));
     return frame;
   }

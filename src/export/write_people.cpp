@@ -248,7 +248,7 @@ void append_bone(const MovingSkeleton& skeleton, std::size_t bone, int depth, st
   out += indent + (b.parent < 0 ? "\tCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
                                 : "\tCHANNELS 3 Zrotation Xrotation Yrotation\n");
   for (std::size_t child = bone + 1; child < skeleton.bones.size(); ++child) {
-    if (skeleton.bones[child].parent == static_cast<int>(bone)) append_bone(skeleton, child, depth + 1, out, order);
+    if (skeleton.bones[child].parent == int(bone)) append_bone(skeleton, child, depth + 1, out, order);
   }
   if (b.ends) {
     out += indent + "\tEnd Site\n" + indent + "\t{\n";
@@ -328,9 +328,9 @@ std::string to_glb(const std::vector<MovingSkeleton>& skeletons) {
     std::vector<float> times, places;
     for (const MovingSkeleton::Pose& pose : skeleton.poses) {
       // Key frames must rise strictly; recordings may have two frames at one time.
-      const auto time = static_cast<float>(pose.time_s - begin_s);
+      const auto time = float(pose.time_s - begin_s);
       times.push_back(times.empty() || time > times.back() ? time : std::nextafter(times.back(), 1e9F));
-      for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(pose.root_m[axis]));
+      for (int axis = 0; axis < 3; ++axis) places.push_back(float(pose.root_m[axis]));
     }
     const std::size_t input = buffer.add(times, 1);
     const auto animate = [&](std::size_t node, const char* path, std::size_t output) {
@@ -344,19 +344,19 @@ std::string to_glb(const std::vector<MovingSkeleton>& skeletons) {
       if (bone.parent >= 0) node["translation"] = {bone.offset_m.x(), bone.offset_m.y(), bone.offset_m.z()};
       Json children = Json::array();
       for (std::size_t child = b + 1; child < skeleton.bones.size(); ++child) {
-        if (skeleton.bones[child].parent == static_cast<int>(b)) children.push_back(first + child);
+        if (skeleton.bones[child].parent == int(b)) children.push_back(first + child);
       }
       if (!children.empty()) node["children"] = std::move(children);
       nodes.push_back(std::move(node));
       std::vector<float> turns;
       for (const MovingSkeleton::Pose& pose : skeleton.poses) {
-        for (const double part : pose.local[b].coeffs()) turns.push_back(static_cast<float>(part));
+        for (const double part : pose.local[b].coeffs()) turns.push_back(float(part));
       }
       animate(first + b, "rotation", buffer.add(turns, 4));
       if (bone.parent < 0) continue;
       std::vector<float> offsets;
       for (const MovingSkeleton::Pose& pose : skeleton.poses) {
-        for (const double along : pose.offsets_m[b]) offsets.push_back(static_cast<float>(along));
+        for (const double along : pose.offsets_m[b]) offsets.push_back(float(along));
       }
       animate(first + b, "translation", buffer.add(offsets, 3));
     }

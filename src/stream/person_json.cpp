@@ -27,7 +27,7 @@ Json value_json(const Eigen::Matrix3f& c) {
   constexpr double kSquareMillimetres = 1e6;
   Json numbers = Json::array();
   for (const float number : {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}) {
-    numbers.push_back(rounded(static_cast<double>(number) * kSquareMillimetres, 10));
+    numbers.push_back(rounded(double(number) * kSquareMillimetres, 10));
   }
   return numbers;
 }
@@ -35,8 +35,7 @@ template <class Enum>
 requires std::is_enum_v<Enum> Json value_json(Enum value) { return to_string(value); }
 Json value_json(const std::optional<YawEstimate>& yaw) {
   if (!yaw) return {};
-  return {{"degrees", rounded(kDegrees * static_cast<double>(yaw->yaw_rad), 10)},
-          {"confidence", rounded(yaw->confidence)}};
+  return {{"degrees", rounded(kDegrees * double(yaw->yaw_rad), 10)}, {"confidence", rounded(yaw->confidence)}};
 }
 
 template <class Struct>
@@ -130,8 +129,8 @@ Json floor_json(const std::optional<FloorView>& floor) {
   if (!floor) return {};
   return {{"up", value_json(floor->up)},
           {"height_m", rounded(floor->height_m)},
-          {"tilt_degrees", rounded(kDegrees * static_cast<double>(floor->tilt_rad), 10)},
-          {"roll_degrees", rounded(kDegrees * static_cast<double>(floor->roll_rad), 10)}};
+          {"tilt_degrees", rounded(kDegrees * double(floor->tilt_rad), 10)},
+          {"roll_degrees", rounded(kDegrees * double(floor->roll_rad), 10)}};
 }
 
 Json events_json(const std::vector<StanceEvent>& events) {

@@ -76,18 +76,18 @@ int HueAppearance::class_of(Rgb c) {
   const int high = lightness(c);
   const int low = std::min({c.r, c.g, c.b});
   const int span = high - low;
-  if (high < 24 || static_cast<float>(span) < kMinSaturation * static_cast<float>(high)) {
+  if (high < 24 || float(span) < kMinSaturation * float(high)) {
     return kHues + std::min(kGreys - 1, high * kGreys / 256);
   }
   float sixth = 0.F;  // position on the colour circle, in sixths
   if (high == c.r) {
-    sixth = static_cast<float>(c.g - c.b) / static_cast<float>(span);
+    sixth = float(c.g - c.b) / float(span);
   } else if (high == c.g) {
-    sixth = 2.F + static_cast<float>(c.b - c.r) / static_cast<float>(span);
+    sixth = 2.F + float(c.b - c.r) / float(span);
   } else {
-    sixth = 4.F + static_cast<float>(c.r - c.g) / static_cast<float>(span);
+    sixth = 4.F + float(c.r - c.g) / float(span);
   }
-  const int hue = static_cast<int>(std::floor(sixth * static_cast<float>(kHues) / 6.F + 0.5F));
+  const int hue = int(std::floor(sixth * float(kHues) / 6.F + 0.5F));
   return (hue + kHues) % kHues;
 }
 
@@ -138,7 +138,7 @@ void AppearanceHistogram::add(const AppearanceHistogram& other) {
 void AppearanceHistogram::scale(float factor) {
   samples_ = 0;
   for (std::uint32_t& count : counts_) {
-    count = static_cast<std::uint32_t>(static_cast<double>(count) * static_cast<double>(factor));
+    count = static_cast<std::uint32_t>(double(count) * double(factor));
     samples_ += count;
   }
 }
@@ -151,7 +151,7 @@ std::vector<float> AppearanceHistogram::probabilities(const Appearance& appearan
   for (const float value : values) total += value;
   // A share for unseen looks keeps ratios finite.
   constexpr float kUnseen = 0.05F;
-  const float least = kUnseen / static_cast<float>(appearance.classes());
+  const float least = kUnseen / float(appearance.classes());
   for (float& value : values) value = (total > 0.F ? (1.F - kUnseen) * value / total : 0.F) + least;
   return values;
 }

@@ -65,7 +65,7 @@ BoostedTrees parse_boosted_trees(std::string_view toml, const std::string& sourc
   reader.expect_keys(root, {"asks", "bias", "tree"});
   BoostedTrees trees;
   for (const toml::node& name : reader.array(root, "asks")) trees.asks.push_back(reader.string(name, "asks"));
-  trees.features = static_cast<int>(trees.asks.size());
+  trees.features = int(trees.asks.size());
   if (trees.features > kMostFeatures) reader.fail(root, "asks: too many names");
   trees.bias = reader.number(root, "bias", -kMost, kMost);
   for (const toml::node& tree : reader.array(root, "tree")) {

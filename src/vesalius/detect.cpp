@@ -72,7 +72,7 @@ constexpr float kRivalLikelihood = 0.2F;  // per part: rough skeletons of at lea
 
 /// Returns how many of the rough skeletons, which come best first, grow against each other.
 std::size_t count_rivals(const std::vector<Skeleton>& rough, const Method& method) {
-  const float least = kRivalLikelihood * static_cast<float>(method.body.part_count());
+  const float least = kRivalLikelihood * float(method.body.part_count());
   const auto first_weak = std::ranges::find_if(rough, [&](const Skeleton& s) { return s.score < least; });
   const auto strong = static_cast<std::size_t>(first_weak - rough.begin());
   return std::min(strong, static_cast<std::size_t>(method.options.refine.max_candidates));
@@ -89,8 +89,7 @@ std::vector<Candidate> grow_rough(const Method& method, const Scene& scene, cons
     against = grower.grow(std::vector<Skeleton>(scene.rough.begin(), scene.rough.begin() + rivals), scene.clusters);
   }
   std::vector<Mask> alone(count);
-  parallel_for(static_cast<int>(count),
-               [&](int i) { alone[i] = std::move(grower.grow({scene.rough[i]}, scene.clusters)[0]); });
+  parallel_for(int(count), [&](int i) { alone[i] = std::move(grower.grow({scene.rough[i]}, scene.clusters)[0]); });
   for (std::size_t i = 0; i < against.size(); ++i) {
     if (alone[i] == against[i]) alone[i] = {};
   }
@@ -132,7 +131,7 @@ std::optional<Candidate> grow_known(const Method& method, const Frame& frame, co
 Mask barred(const Method& method, const SceneLabels& labels) {
   constexpr int kRowGrain = 8;
   Mask barred = labels.flat;
-  const auto least = static_cast<double>(method.options.grow.least_body);
+  const auto least = double(method.options.grow.least_body);
   const Posteriors& posteriors = labels.posteriors();
   const int parts = method.body.part_count();
   if (least == 0.0 || posteriors.classes == parts) return barred;
@@ -159,7 +158,7 @@ Skeleton second_pass(const Method& method, const Frame& frame, const LabelImage&
   ClusterOptions options = method.options.cluster;
   constexpr float scale = 0.5F;  // of the smallest area of a part: in the second pass all pixels are a person's
   options.min_area_cm2 *= scale;
-  options.min_pixels = std::max(1, static_cast<int>(static_cast<float>(options.min_pixels) * scale));
+  options.min_pixels = std::max(1, int(float(options.min_pixels) * scale));
   const Clusters clusters =
       find_clusters(crop(labels, box), crop(frame.depth, box), cropped(frame.camera, box), method.body, options);
   std::vector<Skeleton> found = search_skeletons(clusters.items, method.body, method.options.search, size);
@@ -223,7 +222,7 @@ float certainty_of(const Candidate& candidate, const Prior& prior) {
   for (std::size_t i = 0; i < prior.people.size(); ++i) {
     const Prior::KnownPerson& known = prior.people[i];
     if (known.mask.empty()) continue;
-    const bool own = candidate.known == static_cast<int>(i);
+    const bool own = candidate.known == int(i);
     if (own || shared_pixels(candidate.grown, known.mask) >= kKnownOverlap) {
       odds = std::max(odds.value_or(known.odds), known.odds);
     }
@@ -239,13 +238,13 @@ Scenery look_around(const Method& method, const Frame& frame, const Scene& scene
     for (std::size_t i = 0; i < anybody.size(); ++i) anybody[i] |= candidate.grown[i];
   }
   return {scene.labels.flat, mean_body_outside(anybody, frame.depth, scene.labels.alone(), method.body.part_count()),
-          static_cast<int>(scene.rough.size())};
+          int(scene.rough.size())};
 }
 
 /// Refines candidates, among all others whose masks are known so far.
 void refine_all(const Method& method, const Frame& frame, const Scene& scene, const Scenery& scenery,
                 const Prior& prior, std::span<Candidate> candidates) {
-  parallel_for(static_cast<int>(candidates.size()), [&](int i) {
+  parallel_for(int(candidates.size()), [&](int i) {
     candidates[i] = refine(method, frame, scene, scenery, prior, std::move(candidates[i]));
     candidates[i].certainty = certainty_of(candidates[i], prior);
   });
@@ -262,7 +261,7 @@ std::vector<int> missed_people(const Method& method, const Prior& prior, const s
       return candidate.score >= options.min_score && candidate.refined.found >= options.min_parts &&
              shared_pixels(candidate.grown, mask) >= kSurelyKnown;
     });
-    if (!found) missed.push_back(static_cast<int>(i));
+    if (!found) missed.push_back(int(i));
   }
   return missed;
 }
@@ -275,7 +274,7 @@ void add_known(const Method& method, const Frame& frame, const Scene& scene, con
   // The background's posterior does not hold back known people.
   const PersonGrower grower(frame, scene.labels.flat, method.body, method.options.grow, looks);
   std::vector<std::optional<Candidate>> grown(missed.size());
-  parallel_for(static_cast<int>(missed.size()),
+  parallel_for(int(missed.size()),
                [&](int i) { grown[i] = grow_known(method, frame, scene, prior, missed[i], grower); });
   const std::size_t others = candidates.size();
   for (std::optional<Candidate>& candidate : grown) {
@@ -293,7 +292,7 @@ bool repeats(const Mask& mask, const Mask& taken, float max_overlap) {
     pixels += mask[i] != 0 ? 1 : 0;
     shared += mask[i] != 0 && taken[i] != 0 ? 1 : 0;
   }
-  return static_cast<float>(shared) > max_overlap * static_cast<float>(pixels);
+  return float(shared) > max_overlap * float(pixels);
 }
 
 Person make_person(const BodyModel& body, const Candidate& candidate, const Mask& taken) {
@@ -379,7 +378,7 @@ Detection detect_everywhere(const Method& method, const Frame& frame, const std:
   Looks looks;
   if (!scene.rough.empty() || !prior.people.empty()) looks = look_at(frame, method.appearance.get());
   std::vector<Candidate> candidates = propose(method, frame, scene, looks);
-  parallel_for(static_cast<int>(candidates.size()), [&](int i) {
+  parallel_for(int(candidates.size()), [&](int i) {
     candidates[i].known = known.shown_by(candidates[i].grown);
     known.correct(candidates[i].known, candidates[i].grown);
   });

@@ -14,7 +14,7 @@ float shared_pixels(const Mask& a, const Mask& b) {
     both += a[i] != 0 && b[i] != 0 ? 1 : 0;
     either += a[i] != 0 || b[i] != 0 ? 1 : 0;
   }
-  return either > 0 ? static_cast<float>(both) / static_cast<float>(either) : 0.F;
+  return either > 0 ? float(both) / float(either) : 0.F;
 }
 
 void check(const Prior& prior, const Frame& frame) {

@@ -74,7 +74,7 @@ class ClusterFinder {
       const int pv = queue_[head] / labels_.width();
       const Eigen::Vector3f here = point(pu, pv);
       moments.add(here);
-      area += static_cast<double>(here.z()) * static_cast<double>(here.z());
+      area += double(here.z()) * double(here.z());
       for (int nv = std::max(0, pv - 1); nv <= std::min(labels_.height() - 1, pv + 1); ++nv) {
         for (int nu = std::max(0, pu - 1); nu <= std::min(labels_.width() - 1, pu + 1); ++nu) {
           if (index(nu, nv) != kNone || labels_(nu, nv) != cluster.label || !labelled(nu, nv)) continue;
@@ -84,8 +84,8 @@ class ClusterFinder {
         }
       }
     }
-    cluster.pixels = static_cast<int>(queue_.size());
-    cluster.area_m2 = static_cast<float>(area / (static_cast<double>(camera_.fx) * static_cast<double>(camera_.fy)));
+    cluster.pixels = int(queue_.size());
+    cluster.area_m2 = float(area / (double(camera_.fx) * double(camera_.fy)));
     summarise(moments, cluster);
     return cluster;
   }

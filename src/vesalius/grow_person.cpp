@@ -76,7 +76,7 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
     for (int v = box.v; v < box.v + box.height; ++v) {
       for (int u = box.u; u < box.u + box.width; ++u) {
         if (frame_.depth(u, v) == 0 || out(u, v) != 0) continue;
-        const float dz = static_cast<float>(frame_.depth(u, v)) * 1e-3F - centre.z();
+        const float dz = float(frame_.depth(u, v)) * 1e-3F - centre.z();
         if (dz * dz > reach[i] * reach[i]) continue;  // most of them, before x and y cost their divisions
         const Eigen::Vector3f p = point_at(frame_.camera, frame_.depth, u, v);
         if ((p - centre).squaredNorm() <= reach[i] * reach[i]) out(u, v) = 1;
@@ -102,7 +102,7 @@ Mask PersonGrower::refused_looks(const Skeleton& rough, const Mask& seeds, const
   const std::vector<float> here = person.probabilities(*looks_.appearance);
   const std::vector<float> elsewhere = rest.probabilities(*looks_.appearance);
   // Looks that are rare everywhere are as likely elsewhere as if all were equally common.
-  const float least = 1.F / static_cast<float>(looks_.appearance->classes());
+  const float least = 1.F / float(looks_.appearance->classes());
   std::vector<std::uint8_t> refuses(here.size());
   for (std::size_t look = 0; look < here.size(); ++look) {
     refuses[look] = std::log(std::max(elsewhere[look], least) / here[look]) > kVeto ? 1 : 0;
@@ -125,7 +125,7 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
   std::vector<int> owner_of(clusters.items.size(), -1);
   for (std::size_t i = 0; i < people.size(); ++i) {
     for (const SkeletonPart& part : people[i].parts) {
-      if (part.cluster >= 0) owner_of[part.cluster] = static_cast<int>(i);
+      if (part.cluster >= 0) owner_of[part.cluster] = int(i);
     }
   }
   struct Front {
@@ -140,7 +140,7 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
     if (owner < 0 || taken[i] != 0) continue;
     taken[i] = 1;
     grown[owner][i] = 1;
-    queue.push_back({static_cast<int>(i), owner});
+    queue.push_back({int(i), owner});
   }
   for (std::size_t i = 0; i < people.size(); ++i) {
     allowed.push_back(around_parts(people[i], reach_of_parts(people[i], body_, options_)));

@@ -26,7 +26,7 @@ float flesh_log_odds(float distance_m) {
 }
 
 float log_odds(double share) {
-  const auto least = std::clamp(static_cast<float>(share), 1e-4F, 1.F - 1e-4F);
+  const auto least = std::clamp(float(share), 1e-4F, 1.F - 1e-4F);
   return std::log(least / (1.F - least));
 }
 
@@ -44,7 +44,7 @@ Image<float> distance_from(const std::vector<Capsule>& capsules, const Frame& fr
     const Box box = box_around(around, frame.camera);
     for (int v = box.v; v < box.v + box.height; ++v) {
       for (int u = box.u; u < box.u + box.width; ++u) {
-        const float z = static_cast<float>(frame.depth(u, v)) * 1e-3F;
+        const float z = float(frame.depth(u, v)) * 1e-3F;
         if (z == 0.F || z < nearest || z > farthest) continue;
         const float d = capsule.distance(point_at(frame.camera, frame.depth, u, v));
         if (d < reach_m) distance(u, v) = std::min(distance(u, v), d);
@@ -57,7 +57,7 @@ Image<float> distance_from(const std::vector<Capsule>& capsules, const Frame& fr
 KnownPeople::KnownPeople(const Frame& frame, const Mask& flat, const Posteriors& posteriors, int parts, Prior& prior)
     : prior_(prior), posteriors_(posteriors), parts_(parts) {
   std::vector<Image<float>> distance(prior.people.size());
-  parallel_for(static_cast<int>(prior.people.size()), [&](int i) {
+  parallel_for(int(prior.people.size()), [&](int i) {
     if (!prior.people[i].flesh.empty()) distance[i] = distance_from(prior.people[i].flesh, frame, kFleshReach_m);
   });
   for (std::size_t i = 0; i < distance.size(); ++i) {
@@ -73,13 +73,13 @@ KnownPeople::KnownPeople(const Frame& frame, const Mask& flat, const Posteriors&
 void KnownPeople::give(std::size_t pixel, const std::vector<Image<float>>& distance, Prior& prior) {
   int nearest = -1, nearest_sure = -1;
   const auto away = [&](int person) { return person < 0 ? kFar : distance[static_cast<std::size_t>(person)][pixel]; };
-  for (int i = 0; i < static_cast<int>(distance.size()); ++i) {
+  for (int i = 0; i < int(distance.size()); ++i) {
     if (distance[static_cast<std::size_t>(i)].empty()) continue;
     if (away(i) < away(nearest)) nearest = i;
     if (prior.people[static_cast<std::size_t>(i)].odds > 1.F && away(i) < away(nearest_sure)) nearest_sure = i;
   }
   if (nearest < 0) return;
-  const int u = static_cast<int>(pixel) % owner_.width(), v = static_cast<int>(pixel) / owner_.width();
+  const int u = int(pixel) % owner_.width(), v = int(pixel) / owner_.width();
   const float body = log_odds(body_share(posteriors_, u, v, parts_).value_or(0.5));
   const auto likely = [&](int person) { return person >= 0 ? body + flesh_log_odds(away(person)) : -kFar; };
   // A guess takes nothing from people who are sure.
@@ -97,7 +97,7 @@ int KnownPeople::shown_by(const Mask& mask) const {
     const float share = known.empty() ? 0.F : shared_pixels(mask, known);
     if (share < most) continue;
     most = share;
-    best = static_cast<int>(i);
+    best = int(i);
   }
   return best;
 }

@@ -60,11 +60,11 @@ struct Gaussian {
       : mean(3, static_cast<Index>(d.parts.size())), basis(3 * mean.cols(), d.factors + 3), residual2(mean.cols()) {
     for (Index p = 0; p < mean.cols(); ++p) {
       const PartDistribution::Part& part = d.parts[p];
-      residual2[p] = static_cast<double>(part.residual_m) * static_cast<double>(part.residual_m);
+      residual2[p] = double(part.residual_m) * double(part.residual_m);
       for (Index axis = 0; axis < 3; ++axis) {
-        mean(axis, p) = static_cast<double>(part.mean_m[axis]);
+        mean(axis, p) = double(part.mean_m[axis]);
         for (int k = 0; k < d.factors; ++k)
-          basis(3 * p + axis, k) = static_cast<double>(part.factors_m[axis][static_cast<std::size_t>(k)]);
+          basis(3 * p + axis, k) = double(part.factors_m[axis][static_cast<std::size_t>(k)]);
         for (Index k = 0; k < 3; ++k) basis(3 * p + axis, d.factors + k) = axis == k ? kShift_m : 0.0;
       }
     }
@@ -102,7 +102,7 @@ std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
   const auto count = static_cast<Index>(known.size());
   if (count < kLeastKnownParts) return {};
   const Gaussian gaussian(distribution);
-  const double noise2 = static_cast<double>(distribution.noise_m) * static_cast<double>(distribution.noise_m);
+  const double noise2 = double(distribution.noise_m) * double(distribution.noise_m);
   Matrix3Xd seen(3, count), expected(3, count);
   MatrixXd basis(3 * count, gaussian.basis.cols());
   VectorXd noise(count), stiffness(count), trust = VectorXd::Ones(count);
@@ -144,7 +144,7 @@ std::vector<PredictedPart> predict_parts(const PartDistribution& distribution,
     const double variance =
         (gaussian.basis.middleRows(3 * p, 3) * spread.middleCols(3 * p, 3)).trace() / 3.0 + gaussian.residual2[p];
     const Eigen::Vector3d centre = turn.transpose() * (places.col(p) + shift);
-    predicted.push_back({centre.cast<float>(), static_cast<float>(std::sqrt(variance))});
+    predicted.push_back({centre.cast<float>(), float(std::sqrt(variance))});
   }
   return predicted;
 }

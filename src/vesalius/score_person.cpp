@@ -58,7 +58,7 @@ float share_explained(const Frame& frame, const Inside& inside, const LabelImage
     const int mirror = body.parts[label].mirror;
     if (near_part(skeleton, label, point) || near_part(skeleton, mirror, point)) ++explained;
   });
-  return pixels > 0 ? static_cast<float>(explained) / static_cast<float>(pixels) : 0.F;
+  return pixels > 0 ? float(explained) / float(pixels) : 0.F;
 }
 
 /// The surroundings of the outline: counts of the sides of a mask's pixels by what is beyond them.
@@ -74,7 +74,7 @@ struct Outline {
   float share_border() const { return share(border, open + closed + occluded + border); }
 
  private:
-  static float share(long some, long all) { return all > 0 ? static_cast<float>(some) / static_cast<float>(all) : 0.F; }
+  static float share(long some, long all) { return all > 0 ? float(some) / float(all) : 0.F; }
 };
 
 Outline look_around(const Frame& frame, const Inside& inside) {
@@ -112,10 +112,10 @@ constexpr int kShareSteps = 256;
 /// Returns the body share that the given share of the pixels exceed, from the number of pixels in each step of it.
 float share_exceeded(const std::array<long, kShareSteps>& of_step, long pixels, double share) {
   if (pixels == 0) return 0.F;
-  const double most = share * static_cast<double>(pixels);
+  const double most = share * double(pixels);
   int step = kShareSteps - 1;
-  for (long above = of_step[step]; step > 0 && static_cast<double>(above) <= most;) above += of_step[--step];
-  return (static_cast<float>(step) + 0.5F) / kShareSteps;
+  for (long above = of_step[step]; step > 0 && double(above) <= most;) above += of_step[--step];
+  return (float(step) + 0.5F) / kShareSteps;
 }
 
 /// What the forest says of the pixels of a mask.
@@ -137,7 +137,7 @@ Belief belief_of(const Inside& inside, const Posteriors& posteriors, const BodyM
     if (!share) return;
     sum += *share;
     ++pixels;
-    ++of_step[std::min(kShareSteps - 1, static_cast<int>(*share * kShareSteps))];
+    ++of_step[std::min(kShareSteps - 1, int(*share * kShareSteps))];
     const std::uint16_t* sums = posteriors.at(u, v);
     const int of_body = std::accumulate(sums, sums + parts, 0);
     if (of_body == 0) return;
@@ -145,10 +145,10 @@ Belief belief_of(const Inside& inside, const Posteriors& posteriors, const BodyM
     for (int p = 0; p < parts; ++p) of_part[p] += unit * sums[p];
   });
   Belief belief;
-  const auto count = static_cast<double>(std::max(1L, pixels));
-  belief.body = static_cast<float>(sum / count);
+  const auto count = double(std::max(1L, pixels));
+  belief.body = float(sum / count);
   belief.parts.resize(kind_count(slots), 0.F);
-  for (int p = 0; p < parts; ++p) belief.parts[slots[p]] += static_cast<float>(of_part[p] / count);
+  for (int p = 0; p < parts; ++p) belief.parts[slots[p]] += float(of_part[p] / count);
   belief.surest = share_exceeded(of_step, pixels, 0.1);
   return belief;
 }
@@ -166,18 +166,18 @@ float bend_of(const Frame& frame, const Inside& inside) {
   double sum = 0.0;
   long pairs = 0;
   inside.each([&](int u, int v) {
-    const auto z_mm = static_cast<float>(std::max<int>(1, frame.depth(u, v)));
-    const int reach = std::max(1, static_cast<int>(std::lround(kBendReach_m * frame.camera.fx / (1e-3F * z_mm))));
+    const auto z_mm = float(std::max<int>(1, frame.depth(u, v)));
+    const int reach = std::max(1, int(std::lround(kBendReach_m * frame.camera.fx / (1e-3F * z_mm))));
     for (const auto& [du, dv] : {std::array{reach, 0}, std::array{0, reach}}) {
       if (!holds(u + du, v + dv) || !holds(u - du, v - dv)) continue;
-      const auto middle = 0.5F * static_cast<float>(frame.depth(u + du, v + dv) + frame.depth(u - du, v - dv));
+      const auto middle = 0.5F * float(frame.depth(u + du, v + dv) + frame.depth(u - du, v - dv));
       const float off = 1e-3F * std::abs(middle - z_mm);
       if (off > kFarOff_m) continue;
-      sum += static_cast<double>(off);
+      sum += double(off);
       ++pairs;
     }
   });
-  return pairs > 0 ? static_cast<float>(sum / static_cast<double>(pairs)) : 0.F;
+  return pairs > 0 ? float(sum / double(pairs)) : 0.F;
 }
 
 Shape shape_of(const Frame& frame, const Inside& inside) {
@@ -191,12 +191,11 @@ Shape shape_of(const Frame& frame, const Inside& inside) {
     ++pixels;
   });
   if (pixels == 0) return {};
-  const auto count = static_cast<double>(pixels);
+  const auto count = double(pixels);
   const Eigen::Matrix3d covariance = squares / count - sum * sum.transpose() / (count * count);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
   const Eigen::Vector3d spread = axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  return {static_cast<float>(spread[0]), static_cast<float>(spread[2]),
-          static_cast<float>(std::abs(axes.eigenvectors().col(0).z())), bend_of(frame, inside)};
+  return {float(spread[0]), float(spread[2]), float(std::abs(axes.eigenvectors().col(0).z())), bend_of(frame, inside)};
 }
 
 /// Returns how many pixels of a mask have a flat surface close beside them, at about their depth.
@@ -227,24 +226,24 @@ Extent extent_of(const Frame& frame, const Inside& inside) {
   Extent extent;
   inside.each([&](int u, int v) {
     const double z = 1e-3 * frame.depth(u, v);
-    extent.area_m2 += z * z / (static_cast<double>(frame.camera.fx) * static_cast<double>(frame.camera.fy));
+    extent.area_m2 += z * z / (double(frame.camera.fx) * double(frame.camera.fy));
     extent.mean_depth_m += z;
     ++extent.pixels;
   });
-  if (extent.pixels > 0) extent.mean_depth_m /= static_cast<double>(extent.pixels);
+  if (extent.pixels > 0) extent.mean_depth_m /= double(extent.pixels);
   return extent;
 }
 
 float likeness_of_area(const Extent& extent) {
-  constexpr auto kUsual = static_cast<double>(kUsualArea_m2);
-  return static_cast<float>(std::min(extent.area_m2, kUsual) / std::max(extent.area_m2, kUsual));
+  constexpr auto kUsual = double(kUsualArea_m2);
+  return float(std::min(extent.area_m2, kUsual) / std::max(extent.area_m2, kUsual));
 }
 
-float nearness(const Extent& extent) { return static_cast<float>(1.0 / std::max(1.0, extent.mean_depth_m)); }
+float nearness(const Extent& extent) { return float(1.0 / std::max(1.0, extent.mean_depth_m)); }
 
 float resolution_of(const Extent& extent) {
   constexpr double kDecades = 5.0;
-  return static_cast<float>(std::log10(static_cast<double>(std::max(1L, extent.pixels))) / kDecades);
+  return float(std::log10(double(std::max(1L, extent.pixels))) / kDecades);
 }
 
 float share_of_core(const Skeleton& skeleton, const BodyModel& body) {
@@ -282,7 +281,7 @@ float body_beside(const Inside& inside, const Posteriors& posteriors, int parts)
       ++pixels;
     }
   });
-  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
+  return pixels > 0 ? float(sum / double(pixels)) : 0.F;
 }
 
 }  // namespace
@@ -301,7 +300,7 @@ float mean_body_outside(const Mask& candidates, const DepthImage& depth, const P
       ++pixels;
     }
   }
-  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
+  return pixels > 0 ? float(sum / double(pixels)) : 0.F;
 }
 
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
@@ -312,7 +311,7 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
   const Shape shape = shape_of(frame, inside);
   Belief belief = belief_of(inside, posteriors, body);
   Evidence evidence;
-  evidence.likelihood = skeleton.score / static_cast<float>(body.part_count());
+  evidence.likelihood = skeleton.score / float(body.part_count());
   evidence.explained = share_explained(frame, inside, labels.labels, skeleton, body);
   evidence.open = outline.share_open();
   evidence.core = share_of_core(skeleton, body);
@@ -330,11 +329,11 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
   evidence.length_m = shape.length_m;
   evidence.slant = shape.slant;
   evidence.bend_m = shape.bend_m;
-  const float side = std::sqrt(static_cast<float>(std::max(1L, extent.pixels)));
-  evidence.ragged = static_cast<float>(outline.sides) / side;
-  evidence.on_flat = static_cast<float>(count_on_flat(frame, inside, scenery.flat)) / side;
+  const float side = std::sqrt(float(std::max(1L, extent.pixels)));
+  evidence.ragged = float(outline.sides) / side;
+  evidence.on_flat = float(count_on_flat(frame, inside, scenery.flat)) / side;
   evidence.elsewhere = scenery.body_elsewhere;
-  evidence.rivals = static_cast<float>(scenery.proposals);
+  evidence.rivals = float(scenery.proposals);
   evidence.parts = std::move(belief.parts);
   return evidence;
 }

@@ -92,7 +92,7 @@ class SkeletonSearch {
         used_(clusters.size(), false),
         by_part_(body.parts.size()) {
     for (std::size_t i = 0; i < clusters.size(); ++i) {
-      by_part_[clusters[i].label].push_back(static_cast<int>(i));
+      by_part_[clusters[i].label].push_back(int(i));
       gains_.push_back(gain(clusters[i]));
     }
     for (const int root : body.roots) trees_.push_back(root_tree(body, root));
@@ -246,7 +246,7 @@ class SkeletonSearch {
         open.insert(open.end(), branch.partners.begin(), branch.partners.end());
       }
     }
-    out.mean_error = out.total_error / static_cast<float>(out.found);
+    out.mean_error = out.total_error / float(out.found);
     return out;
   }
 

@@ -48,7 +48,7 @@ void PeopleFinder::follow(ViewedFrame& viewed) {
   std::optional<Frame> timed;
   if (!viewed.frame->time_s) {
     timed = *viewed.frame;
-    timed->time_s = viewed.at_s * kUsualRate / static_cast<double>(settings_->options.track.rate);
+    timed->time_s = viewed.at_s * kUsualRate / double(settings_->options.track.rate);
   }
   const Frame& frame = timed ? *timed : *viewed.frame;
   PeopleTracker& tracker = tracks_->before(viewed.at_s);

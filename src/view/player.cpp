@@ -200,7 +200,7 @@ std::optional<Player::TimedFrame> Player::read() {
     try {
       std::optional<Frame> frame = source_.next();
       if (!frame) return std::nullopt;
-      const double at_s = frame->time_s.value_or(static_cast<double>(index) / kUsualRate);
+      const double at_s = frame->time_s.value_or(double(index) / kUsualRate);
       return TimedFrame{std::move(*frame), at_s};
     } catch (const Error& e) {
       if (state().live) {

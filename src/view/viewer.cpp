@@ -58,7 +58,7 @@ class RecentTimes {
   /// Returns how many there were in the last second.
   double per_s(Clock::time_point now) const {
     const auto is_recent = [&](const auto& one) { return one.first >= now - std::chrono::seconds(1); };
-    return static_cast<double>(std::ranges::count_if(last_, is_recent));
+    return double(std::ranges::count_if(last_, is_recent));
   }
 
  private:

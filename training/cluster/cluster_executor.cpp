@@ -192,7 +192,7 @@ class ClusterExecutor::Round {
           for (std::int32_t n = groups[g].begin; n < groups[g].end; ++n) {
             NodeReply& reply = replies[n - groups[g].begin];
             const auto counted = static_cast<std::uint64_t>(job.trees[t].nodes[n].counted);
-            progress_.evaluations += counted * block_candidates(options_.split, static_cast<int>(block));
+            progress_.evaluations += counted * block_candidates(options_.split, int(block));
             if (state.grown.offer(n, reply.split, reply.gain)) state.replies[n] = std::move(reply);
           }
         }
@@ -262,7 +262,7 @@ class ClusterExecutor::Round {
   std::vector<SubtreeRequest> subtree_tasks() const {
     if (all_.total().bytes > all_.plan_.task_memory) return {};
     const auto work_of = [&](const OpenNode& open) {
-      return static_cast<double>(open.node.size) * (options_.leaf.max_depth - depth_of(open.node.number));
+      return double(open.node.size) * (options_.leaf.max_depth - depth_of(open.node.number));
     };
     double work = 0.0, largest = 0.0;
     for (const State& state : states_) {

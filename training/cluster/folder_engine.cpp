@@ -112,7 +112,7 @@ FolderEngine::FolderEngine(std::unique_ptr<Store> store, EngineOptions options)
 void FolderEngine::run(const EngineJob& job) {
   const std::string folder = store_->place() + "/" + job_folder(job.name), results = folder + "/out";
   const std::vector<std::string> inputs = inputs_of(job, options_.map_tasks);
-  const auto maps = static_cast<int>(inputs.size());
+  const auto maps = int(inputs.size());
   std::string all;
   for (const std::string& input : inputs) all += input + "-\n";
   // Tasks of a killed driver that divided the work otherwise may still run: each division has a folder of its own.

@@ -96,7 +96,7 @@ class MapTask {
     const std::uint64_t first = job_.first_frames[shard], last = job_.first_frames[shard + 1];
     if (first < job_.background_frames || last - first > kFramesAtATime) throw Error("unexpected range of frames");
     parallel_in_order(
-        static_cast<int>(last - first), [&](int i) { return read_frame_(first + i - job_.background_frames); },
+        int(last - first), [&](int i) { return read_frame_(first + i - job_.background_frames); },
         [&](int /*i*/, const LabelledFrame& frame) {
           set.add(frame);
           tell("frames", 1);
@@ -162,7 +162,7 @@ class MapTask {
   void write_rows(std::size_t shard, const TreeShard& tree, std::size_t t, std::span<const NodeRange> groups, int first,
                   int block) {
     std::vector<std::string> lines(groups.size());
-    parallel_for(static_cast<int>(groups.size()), [&](int i) {
+    parallel_for(int(groups.size()), [&](int i) {
       const GroupRows rows = rows_of(tree, groups[i], block_candidates(job_.options.grow.split, block));
       if (rows.labels.empty()) return;
       lines[i] = record_line(
@@ -240,7 +240,7 @@ class MapTask {
     LeafShard leaves(set, job_.forest, layout_);
     leaves.set_weights(job_.weights);
     for (std::size_t t = 0; t < job_.forest.trees.size(); ++t) {
-      add_sums(t, leaves.leaf_counts(static_cast<int>(t)).weights);
+      add_sums(t, leaves.leaf_counts(int(t)).weights);
     }
     summed_shards_.push_back(static_cast<std::uint32_t>(shard));
   }

@@ -16,20 +16,18 @@ constexpr std::size_t kLargest = std::size_t{1} << 32U;
 
 std::string in_base64(const std::string& bytes) {
   std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int size =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                   reinterpret_cast<const unsigned char*>(bytes.data()), int(bytes.size()));
   text.resize(size);
   return text;
 }
 
 std::string from_base64(std::string_view text, const std::string& name) {
   std::string bytes(3 * (text.size() / 4) + 3, '\0');
-  const int size =
-      text.size() % 4 != 0 || text.empty()
-          ? -1
-          : EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
-                            reinterpret_cast<const unsigned char*>(text.data()), static_cast<int>(text.size()));
+  const int size = text.size() % 4 != 0 || text.empty()
+                       ? -1
+                       : EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
+                                         reinterpret_cast<const unsigned char*>(text.data()), int(text.size()));
   if (size < 0) throw Error(name + ": damaged, expected base 64 after the tab");
   bytes.resize(size - (text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0));
   return bytes;

@@ -90,7 +90,7 @@ class ReduceTask {
     const std::vector<NodeRange>& groups = groups_[numbers[0]];
     if (numbers[1] >= groups.size()) throw Error(name + ": no such nodes");
     const NodeRange nodes = groups[numbers[1]];
-    const auto block = static_cast<int>(numbers[2]);
+    const auto block = int(numbers[2]);
     std::vector<Part> parts;
     for (const auto& [shard, piece] : pieces) {
       parts.push_back({from_message<GroupRows>(piece, name)});
@@ -235,7 +235,7 @@ void run_partition_task(std::istream& in, const std::string& into, int parts, bo
 }
 
 int part_of(const std::string& key, int parts) {
-  return static_cast<int>(XXH64(key.data(), key.size(), 0) % static_cast<std::uint64_t>(parts));
+  return int(XXH64(key.data(), key.size(), 0) % static_cast<std::uint64_t>(parts));
 }
 
 void run_reduce_task(const TaskContext& context, std::istream& in, std::ostream& out) {

@@ -13,7 +13,7 @@ namespace vesalius::gpu {
 
 DeviceLeafShard::DeviceLeafShard(std::shared_ptr<const DeviceSamples> samples, const Forest& forest, LogitLayout layout)
     : samples_(std::move(samples)), layout_(std::move(layout)), stream_(samples_->device()) {
-  if (layout_.size() > static_cast<int>(kSharedLogits)) {
+  if (layout_.size() > int(kSharedLogits)) {
     throw DeviceError(stream_.device()->name() + ": leaves with " + std::to_string(layout_.size()) +
                       " logits, expected at most 2048");
   }
@@ -82,7 +82,7 @@ LeafGradient DeviceLeafShard::gradient(const LeafLogits& logits, const GradientT
   a.trees = static_cast<std::int32_t>(trees);
   a.stride = static_cast<std::int32_t>(logits.stride);
   a.unit = LeafLogits::kUnit;
-  a.scale = std::ldexp(1.F, task.shift) / static_cast<float>(SampleWeights::kOne);
+  a.scale = std::ldexp(1.F, task.shift) / float(SampleWeights::kOne);
   a.portion = static_cast<std::uint32_t>(task.portion);
   a.portions = static_cast<std::uint32_t>(task.portions);
   a.first_frame = static_cast<std::uint32_t>(samples_->set().first_frame());
@@ -99,8 +99,8 @@ LeafGradient DeviceLeafShard::gradient(const LeafLogits& logits, const GradientT
                           of_tree.size() * sizeof(std::int32_t));
   }
   const std::vector<std::uint64_t> sums = stream_.fetch(likelihood_, 2);
-  gradient.log_likelihood = static_cast<double>(static_cast<std::int64_t>(sums[0])) / 4096.0 / SampleWeights::kOne;
-  gradient.weight = static_cast<double>(sums[1]) / SampleWeights::kOne;
+  gradient.log_likelihood = double(static_cast<std::int64_t>(sums[0])) / 4096.0 / SampleWeights::kOne;
+  gradient.weight = double(sums[1]) / SampleWeights::kOne;
   return gradient;
 }
 

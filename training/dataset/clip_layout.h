@@ -13,9 +13,7 @@ struct ClipLayout {
   double rate_hz = 0.0;               ///< frames a second, up to kHighestRate_hz; 0 if frames stand alone
 
   /// Returns the number of the clip to which a frame belongs, or -1 if it stands alone.
-  int clip_of(std::uint64_t index) const {
-    return frames_per_clip == 0 ? -1 : static_cast<int>(index / frames_per_clip);
-  }
+  int clip_of(std::uint64_t index) const { return frames_per_clip == 0 ? -1 : int(index / frames_per_clip); }
   friend bool operator==(const ClipLayout&, const ClipLayout&) = default;
 };
 

@@ -62,7 +62,7 @@ std::string truth_json(const LabelledFrame& labelled, const BodyModel& body, con
 /// Of clips the rate is written, which gives times to whoever reads the folder as mere pictures.
 WriteOptions options_for(const ClipLayout& clips) {
   WriteOptions options;
-  if (clips.rate_hz > 0.0) options.frame_rate = static_cast<float>(clips.rate_hz);
+  if (clips.rate_hz > 0.0) options.frame_rate = float(clips.rate_hz);
   return options;
 }
 

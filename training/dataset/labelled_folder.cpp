@@ -85,9 +85,8 @@ void read_circumstances(const Json& json, LabelledFrame& labelled) {
   };
   with("up", [&](const Json& up) { labelled.up = point_of(up, false, "up"); });
   with("time_s", [&](const Json& time) { labelled.frame.time_s = number_of(time, "time_s"); });
-  with("camera_height_m", [&](const Json& height) {
-    labelled.camera_height_m = static_cast<float>(number_of(height, "camera_height_m"));
-  });
+  with("camera_height_m",
+       [&](const Json& height) { labelled.camera_height_m = float(number_of(height, "camera_height_m")); });
   with("world_from_camera", [&](const Json& pose) { labelled.world_from_camera = pose_of(pose); });
 }
 

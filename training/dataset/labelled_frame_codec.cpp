@@ -33,8 +33,8 @@ Camera read_camera(ByteReader& in) {
   const bool usable = width > 0 && height > 0 && width <= kMaxPixels && height <= kMaxPixels &&
                       std::int64_t{width} * std::int64_t{height} <= kMaxPixels;
   if (!usable) in.fail(fmt::format("picture of {}x{}, expected 1 to {} pixels", width, height, kMaxPixels));
-  camera.width = static_cast<int>(width);
-  camera.height = static_cast<int>(height);
+  camera.width = int(width);
+  camera.height = int(height);
   for (float* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *value = in.real32("camera");
   return camera;
 }

@@ -49,7 +49,7 @@ int clip_in(const LabelledFolder& folder, std::uint64_t index) { return folder.c
 int people_seen(const Image<std::uint8_t>& person, std::size_t people) {
   std::vector<bool> seen(kBackground + 1, false);
   for (const std::uint8_t who : person) seen[who] = true;
-  return static_cast<int>(std::count(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(people), true));
+  return int(std::count(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(people), true));
 }
 
 /// Gives the frames of a DatasetReader or LabelledFolder as truth.
@@ -65,7 +65,7 @@ class LabelledTruth final : public TruthSource {
     const std::uint64_t index = std::exchange(next_, next_ + step_);
     return as_true_frame(reader_.read(index), joints_of(reader_), clip_in(reader_, index));
   }
-  int size() const override { return static_cast<int>((reader_.size() + step_ - 1) / step_); }
+  int size() const override { return int((reader_.size() + step_ - 1) / step_); }
   std::vector<std::string> part_names() const override { return part_names_of(reader_.body()); }
 
  private:
@@ -79,7 +79,7 @@ class LabelledTruth final : public TruthSource {
 TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& joint_names, int clip) {
   TrueFrame result;
   FrameTruth& truth = result.truth;
-  truth.people = static_cast<int>(labelled.parts.size());
+  truth.people = int(labelled.parts.size());
   truth.sequence = clip;
   if (clip >= 0) {
     truth.ids.resize(labelled.parts.size());

@@ -55,7 +55,7 @@ class JoinedTruth final : public TruthSource {
   TrueFrame renamed(TrueFrame frame) const {
     constexpr int kMostInAFolder = 1 << 20;
     frame.frame.name = fs::path(folders_[at_]).filename().string() + "/" + frame.frame.name;
-    if (frame.truth.sequence >= 0) frame.truth.sequence += static_cast<int>(at_) * kMostInAFolder;
+    if (frame.truth.sequence >= 0) frame.truth.sequence += int(at_) * kMostInAFolder;
     return frame;
   }
 

@@ -127,7 +127,7 @@ class WebConnection::Transfer {
       answer.interrupted = code == CURLE_ABORTED_BY_CALLBACK;
       return answer;
     }
-    answer.status = static_cast<int>(status_of(handle_.get()));
+    answer.status = int(status_of(handle_.get()));
     answer.passing = answer.status == 408 || answer.status == 429 || answer.status >= 500;
     const char* location = info<char*>(CURLINFO_REDIRECT_URL);
     if (location != nullptr) answer.location = location;
@@ -157,7 +157,7 @@ class WebConnection::Transfer {
     // libcurl's own words for this one name host and port, which the caller shows anyway, and not the reason.
     const long error = info<long>(CURLINFO_OS_ERRNO);
     if (code == CURLE_COULDNT_CONNECT && error != 0) {
-      return "nobody answers: " + std::generic_category().message(static_cast<int>(error));
+      return "nobody answers: " + std::generic_category().message(int(error));
     }
     const bool is_connected = info<double>(CURLINFO_CONNECT_TIME) > 0.0;
     const bool is_about_connecting = code == CURLE_COULDNT_RESOLVE_HOST || code == CURLE_COULDNT_CONNECT ||
@@ -190,8 +190,8 @@ void wait_to_repeat(const WebOptions& options, int tries, const std::string& sho
 }
 
 std::string url_encoded(const std::string& text) {
-  const std::unique_ptr<char, decltype(&curl_free)> encoded(
-      curl_easy_escape(nullptr, text.data(), static_cast<int>(text.size())), &curl_free);
+  const std::unique_ptr<char, decltype(&curl_free)> encoded(curl_easy_escape(nullptr, text.data(), int(text.size())),
+                                                            &curl_free);
   return encoded.get();
 }
 

@@ -70,7 +70,7 @@ class SequenceEvaluation {
       terms.insert(terms.end(), of_frames_[i].begin(), of_frames_[i].end());
       terms.insert(terms.end(), more[i].begin(), more[i].end());
     }
-    result_.frames = static_cast<int>(of_frames_.size());
+    result_.frames = int(of_frames_.size());
     result_.trust_samples = scorer_.take_trust_samples();
     result_.stance_samples = scorer_.take_stance_samples();
     return std::move(result_);
@@ -112,7 +112,7 @@ class SequencesEvaluation {
       }
     });
     for (auto& [index, sequence] : results_) take(std::move(sequence), result);
-    result.failed = static_cast<int>(failures_.size());
+    result.failed = int(failures_.size());
     for (const std::string& why : failures_) {
       if (result.failures.size() < kFailuresKept) result.failures.push_back(why);
     }

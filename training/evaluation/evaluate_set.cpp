@@ -38,7 +38,7 @@ class SetEvaluation {
     const auto start = std::chrono::steady_clock::now();
     const std::size_t batch = kFramesPerThread * std::max(1, thread_count());
     for (std::vector<Item> items = read(batch); !items.empty(); items = read(batch)) {
-      parallel_for(static_cast<int>(items.size()), [&](int i) { score(items[i]); });
+      parallel_for(int(items.size()), [&](int i) { score(items[i]); });
       for (Item& item : items) take(std::move(item));
       if (hooks_.stop && hooks_.stop())
         throw Error(fmt::format("{}: interrupted after {} frames", result_.name, index_));

@@ -78,8 +78,7 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
                {"figures", std::move(metrics)}};
   if (!evaluation.labels_only && !evaluation.tracked) {
     const RefineOptions& refine = evaluation.options.detect.refine;
-    json["curve_over_parts"] =
-        curve_json(sweep_parts(set.log, evaluation.body.part_count(), static_cast<double>(refine.min_score)));
+    json["curve_over_parts"] = curve_json(sweep_parts(set.log, evaluation.body.part_count(), double(refine.min_score)));
     json["curve_over_score"] = curve_json(sweep_score(set.log, kScoreSteps, refine.min_parts));
   }
   if (set.joint_curve.joints > 0) json["joints_within_cm"] = joint_curve_json(set.joint_curve);

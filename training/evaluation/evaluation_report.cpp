@@ -101,7 +101,7 @@ void add_detection_curves(const SetResult& set, const Evaluation& evaluation, Do
   const RefineOptions& refine = evaluation.options.detect.refine;
   using P = DetectionPoint;
   const int parts = evaluation.body.part_count();
-  const auto over_parts = sweep_parts(set.log, parts, static_cast<double>(refine.min_score));
+  const auto over_parts = sweep_parts(set.log, parts, double(refine.min_score));
   document.plot({"Share of people found, and of their parts, by fewest parts of a person",
                  "fewest parts",
                  "rate",
@@ -109,7 +109,7 @@ void add_detection_curves(const SetResult& set, const Evaluation& evaluation, Do
                   series("parts", over_parts, &P::threshold, &P::part_rate),
                   series("upper parts", over_parts, &P::threshold, &P::upper_part_rate),
                   series("false a frame", over_parts, &P::threshold, &P::false_per_frame)},
-                 std::pair{0.0, static_cast<double>(parts)},
+                 std::pair{0.0, double(parts)},
                  kShares});
   const auto over_score = sweep_score(set.log, kScoreSteps, refine.min_parts);
   document.plot({"People found against false people a frame, over the score",
@@ -128,7 +128,7 @@ void add_joint_curve(const SetResult& set, Document& document) {
                  "distance, cm",
                  "share of joints",
                  {line},
-                 std::pair{0.0, static_cast<double>(kJointCurve_cm)},
+                 std::pair{0.0, double(kJointCurve_cm)},
                  kShares});
 }
 
@@ -165,7 +165,7 @@ void add_precision(const JointPrecision& precision, const std::string& what, Doc
     rows.push_back({name, fmt::format("{:.1f} %", 100.0 * average)});
     sum += average;
   }
-  rows.push_back({"mean", fmt::format("{:.1f} %", 100.0 * sum / static_cast<double>(averages.size()))});
+  rows.push_back({"mean", fmt::format("{:.1f} %", 100.0 * sum / double(averages.size()))});
   document.paragraph(fmt::format("Average precision of the {}s of all people proposed, within 10 cm:", what));
   document.table({what, "average precision"}, rows);
 }
@@ -176,10 +176,10 @@ void add_confusion(const PixelConfusion& confusion, const BodyModel& body, Docum
   for (const BodyPart& part : body.parts) matrix.names.push_back(part.name);
   matrix.names.emplace_back("background");
   for (int truth = 0; truth <= body.part_count(); ++truth) {
-    const auto all = static_cast<double>(std::max(confusion.of_truth(truth), std::uint64_t{1}));
+    const auto all = double(std::max(confusion.of_truth(truth), std::uint64_t{1}));
     std::vector<double>& row = matrix.shares.emplace_back();
     for (int given = 0; given <= body.part_count(); ++given) {
-      row.push_back(static_cast<double>(confusion.count(truth, given)) / all);
+      row.push_back(double(confusion.count(truth, given)) / all);
     }
   }
   document.matrix(matrix);

@@ -139,7 +139,7 @@ FittedContext fit_context(const Evaluation& evaluation) {
   const std::vector<int> signs(samples.front().features.size(), 0);
   fitted.context = boost_trees(samples, signs, kContextOptions);
   fitted.context.asks = BodySurroundings::feature_names(evaluation.body);
-  fitted.context.bias += static_cast<float>(std::log(kContextOdds));
+  fitted.context.bias += float(std::log(kContextOdds));
   return fitted;
 }
 

@@ -77,14 +77,14 @@ class Booster {
         options_(options),
         columns_(signs_.size()),
         slopes_(samples.size()) {
-    parallel_for(static_cast<int>(columns_.size()), [&](int f) { columns_[f] = column(samples, f); });
-    const auto people = static_cast<double>(std::ranges::count(samples, true, &BoostSample::positive));
-    bias_ = std::log(people / (static_cast<double>(samples.size()) - people));
+    parallel_for(int(columns_.size()), [&](int f) { columns_[f] = column(samples, f); });
+    const auto people = double(std::ranges::count(samples, true, &BoostSample::positive));
+    bias_ = std::log(people / (double(samples.size()) - people));
     log_odds_.assign(samples.size(), bias_);
   }
 
   BoostedTrees grow() {
-    BoostedTrees grown{static_cast<int>(columns_.size()), static_cast<float>(bias_), {}};
+    BoostedTrees grown{int(columns_.size()), float(bias_), {}};
     for (int t = 0; t < options_.trees; ++t) grown.trees.push_back(tree());
     return grown;
   }
@@ -108,7 +108,7 @@ class Booster {
       drawn_.push_back(static_cast<std::uint32_t>(i));
     }
     asked_.clear();
-    for (int f = 0; f < static_cast<int>(columns_.size()); ++f) {
+    for (int f = 0; f < int(columns_.size()); ++f) {
       if (random_.uniform() < options_.feature_share) asked_.push_back(f);
     }
   }
@@ -133,7 +133,7 @@ class Booster {
         const double below = value(left, bounds[n]), above = value(right, bounds[n]);
         if (signs_[feature] * (above - below) < 0.0) continue;
         const double better = gain(left, below) + gain(right, above) - whole;
-        if (better > best[n].gain) best[n] = {better, feature, static_cast<int>(b)};
+        if (better > best[n].gain) best[n] = {better, feature, int(b)};
       }
     }
     return best;
@@ -162,7 +162,7 @@ class Booster {
     std::vector<Bounds> bounds(1);
     for (int level = 0; level < BoostedTree::kDepth; ++level) {
       std::vector<std::vector<Split>> of_feature(asked_.size());
-      parallel_for(static_cast<int>(asked_.size()), [&](int i) { of_feature[i] = splits(asked_[i], node, bounds); });
+      parallel_for(int(asked_.size()), [&](int i) { of_feature[i] = splits(asked_[i], node, bounds); });
       std::vector<Split> best(bounds.size());
       for (const std::vector<Split>& found : of_feature) {
         for (std::size_t n = 0; n < best.size(); ++n) {
@@ -193,9 +193,9 @@ class Booster {
     std::vector<Slope> of_leaf(BoostedTree::kLeaves);
     for (const std::uint32_t i : drawn_) of_leaf[leaf[i]] += slopes_[i];
     for (int l = 0; l < BoostedTree::kLeaves; ++l) {
-      tree.value[l] = static_cast<float>(options_.rate * value(of_leaf[l], bounds[l]));
+      tree.value[l] = float(options_.rate * value(of_leaf[l], bounds[l]));
     }
-    for (std::size_t i = 0; i < samples_.size(); ++i) log_odds_[i] += static_cast<double>(tree.value[leaf[i]]);
+    for (std::size_t i = 0; i < samples_.size(); ++i) log_odds_[i] += double(tree.value[leaf[i]]);
   }
 
   const std::vector<BoostSample>& samples_;

@@ -39,13 +39,13 @@ std::vector<float> depths_of(const std::vector<KnownPerson>& people, const BodyM
       const SkeletonPart& part = person.skeleton.parts[p];
       const Vector3f off = person.part_centres[p] - part.centre;
       if (part.state != State::observed || !off.allFinite() || off.norm() > kOnPart_m) continue;
-      const auto behind_m = static_cast<double>(off.dot(part.centre.normalized()));
+      const auto behind_m = double(off.dot(part.centre.normalized()));
       samples[p].push_back(behind_m);
-      if (body.parts[p].mirror != static_cast<int>(p)) samples[body.parts[p].mirror].push_back(behind_m);
+      if (body.parts[p].mirror != int(p)) samples[body.parts[p].mirror].push_back(behind_m);
     }
   }
   std::vector<float> depths;
-  for (std::vector<double>& of_part : samples) depths.push_back(static_cast<float>(median(std::move(of_part))));
+  for (std::vector<double>& of_part : samples) depths.push_back(float(median(std::move(of_part))));
   return depths;
 }
 
@@ -89,7 +89,7 @@ Matrix3Xd align(std::vector<Matrix3Xd>& bodies) {
       one = ((turn * one).colwise() - shift).eval();
       sum += one;
     }
-    mean = sum / static_cast<double>(bodies.size());
+    mean = sum / double(bodies.size());
     const Eigen::Vector3d middle = mean.rowwise().mean();
     mean.colwise() -= middle;
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(mean.cols());
@@ -98,8 +98,8 @@ Matrix3Xd align(std::vector<Matrix3Xd>& bodies) {
       squares += (one - mean).colwise().squaredNorm().transpose();
     }
     // What moves little tells best how a body is turned.
-    const double noise2 = static_cast<double>(kNoise_m) * static_cast<double>(kNoise_m);
-    weights = (squares.array() / (3.0 * static_cast<double>(bodies.size())) + noise2).inverse();
+    const double noise2 = double(kNoise_m) * double(kNoise_m);
+    weights = (squares.array() / (3.0 * double(bodies.size())) + noise2).inverse();
   }
   return mean;
 }
@@ -112,27 +112,27 @@ PartDistribution distribution_of(const std::vector<Matrix3Xd>& bodies, const Mat
     const Eigen::Map<const Eigen::VectorXd> offsets(off.data(), rows);
     covariance.selfadjointView<Eigen::Lower>().rankUpdate(offsets);
   }
-  covariance /= static_cast<double>(bodies.size());
+  covariance /= double(bodies.size());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
   PartDistribution distribution;
-  distribution.factors = static_cast<int>(std::min<Index>(kDistributionFactors, rows));
+  distribution.factors = int(std::min<Index>(kDistributionFactors, rows));
   distribution.noise_m = kNoise_m;
   for (Index p = 0; p < mean.cols(); ++p) {
     PartDistribution::Part& part = distribution.parts.emplace_back();
     double rest = 0.0;
     for (Index axis = 0; axis < 3; ++axis) {
       const Index row = 3 * p + axis;
-      part.mean_m[axis] = static_cast<float>(mean(axis, p));
+      part.mean_m[axis] = float(mean(axis, p));
       rest += covariance(row, row);
       for (int k = 0; k < distribution.factors; ++k) {
         const Index column = rows - 1 - k;  // the largest come last
         const double factor =
             solver.eigenvectors()(row, column) * std::sqrt(std::max(0.0, solver.eigenvalues()[column]));
-        part.factors_m[axis].push_back(static_cast<float>(factor));
+        part.factors_m[axis].push_back(float(factor));
         rest -= factor * factor;
       }
     }
-    part.residual_m = static_cast<float>(std::sqrt(std::max(0.0, rest / 3.0)));
+    part.residual_m = float(std::sqrt(std::max(0.0, rest / 3.0)));
   }
   return distribution;
 }
@@ -156,8 +156,8 @@ std::vector<Outcome> outcomes_of(const std::vector<KnownPerson>& people, const s
     const std::vector<PredictedPart> predicted = predict_parts(distribution, given_centres(observed));
     for (std::size_t p = 0; p < predicted.size(); ++p) {
       if (observed.parts[p].state != State::none || !surfaces[p].allFinite()) continue;
-      const double error_m = static_cast<double>((predicted[p].centre - surfaces[p]).norm());
-      outcomes.push_back({std::log(static_cast<double>(predicted[p].sigma_m)), error_m < kJointTolerance_m});
+      const double error_m = double((predicted[p].centre - surfaces[p]).norm());
+      outcomes.push_back({std::log(double(predicted[p].sigma_m)), error_m < kJointTolerance_m});
     }
   }
   return outcomes;
@@ -177,8 +177,8 @@ void fit_confidence(const std::vector<Outcome>& outcomes, PartDistribution& dist
     }
     x += curvature.ldlt().solve(slope);
   }
-  distribution.confidence_bias = static_cast<float>(x[0]);
-  distribution.confidence_slope = static_cast<float>(x[1]);
+  distribution.confidence_bias = float(x[0]);
+  distribution.confidence_slope = float(x[1]);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ std::optional<Eigen::Vector3d> middle(const Skeleton& skeleton, const Term& term
     if (skeleton.parts[part].state == State::none) return std::nullopt;
     sum += skeleton.parts[part].centre.cast<double>();
   }
-  return sum / static_cast<double>(term.size());
+  return sum / double(term.size());
 }
 
 /// A robust linear fit of points: each sample is three rows.
@@ -137,15 +137,15 @@ void set_weights(JointDefinition& joint, const std::vector<Term>& terms, const s
   double sum = 0.0;
   std::vector<double> each;  // hundredths of each part of a term
   for (std::size_t t = 0; t < terms.size(); ++t) {
-    each.push_back(std::round(100.0 * weights[t] / static_cast<double>(terms[t].size())));
-    sum += each[t] * static_cast<double>(terms[t].size());
+    each.push_back(std::round(100.0 * weights[t] / double(terms[t].size())));
+    sum += each[t] * double(terms[t].size());
     if (weights[t] > weights[largest]) largest = t;
   }
-  each[largest] += (100.0 - sum) / static_cast<double>(terms[largest].size());
+  each[largest] += (100.0 - sum) / double(terms[largest].size());
   for (std::size_t t = 0; t < terms.size(); ++t) {
     for (const int part : terms[t]) {
       joint.parts.push_back(part);
-      joint.weights.push_back(static_cast<float>(each[t] / 100.0));
+      joint.weights.push_back(float(each[t] / 100.0));
     }
   }
 }
@@ -165,15 +165,15 @@ void fit_offsets(JointDefinition& joint, const std::vector<Prepared>& samples) {
   }
   if (fit.size() == 0) return;
   const Eigen::VectorXd offsets = fit.solve();
-  joint.depth_offset_m = static_cast<float>(to_millimetres(offsets[0]));
-  joint.up_offset_m = static_cast<float>(to_millimetres(offsets[1]));
+  joint.depth_offset_m = float(to_millimetres(offsets[0]));
+  joint.up_offset_m = float(to_millimetres(offsets[1]));
 }
 
 /// Fits a joint to these terms. Returns nothing if a weight would be negative or too few samples have all terms.
 std::optional<JointDefinition> fit_terms(const JointDefinition& joint, const std::vector<Term>& terms,
                                          const std::vector<Prepared>& samples) {
   const auto others = static_cast<Eigen::Index>(terms.size()) - 1;
-  PointFit fit(static_cast<int>(others) + 2);
+  PointFit fit(int(others) + 2);
   for (const Prepared& one : samples) {
     const std::optional<Eigen::Vector3d> first = middle(one.skeleton, terms[0]);
     if (!first) continue;
@@ -205,9 +205,9 @@ double mean_loss(const JointDefinition& joint, const std::vector<Prepared>& samp
   for (const Prepared& one : samples) {
     const Joint derived = derive_joint(joint, one.skeleton, one.up);
     const bool has = derived.state != State::none;
-    sum += loss(has ? static_cast<double>((derived.position - one.truth).norm()) : kPlacedJoint_m);
+    sum += loss(has ? double((derived.position - one.truth).norm()) : kPlacedJoint_m);
   }
-  return sum / static_cast<double>(samples.size());
+  return sum / double(samples.size());
 }
 
 bool is_set_of_parts(const JointSet& set, const BodyModel& body) {

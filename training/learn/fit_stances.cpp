@@ -46,7 +46,7 @@ StanceRule fitted(const std::vector<StanceSample>& samples, Stance stance) {
     for (Eigen::Index k = 0; k < kSigns; ++k) {
       const std::optional<float> value = value_of(kStanceSigns[static_cast<std::size_t>(k)], sample.posture);
       if (value) {
-        features(k, i) = static_cast<double>(*value);
+        features(k, i) = double(*value);
       } else {
         features(kSigns + k, i) = 1.0;
       }
@@ -56,10 +56,10 @@ StanceRule fitted(const std::vector<StanceSample>& samples, Stance stance) {
   }
   const LogisticFit fit = fit_logistic(features, is, weight, kLeastSpread);
   StanceRule rule;
-  rule.bias = static_cast<float>(fit.bias);
+  rule.bias = float(fit.bias);
   for (Eigen::Index k = 0; k < kSigns; ++k) {
-    rule.weights[static_cast<std::size_t>(k)] = static_cast<float>(fit.weights[k]);
-    rule.unknown[static_cast<std::size_t>(k)] = static_cast<float>(fit.weights[kSigns + k]);
+    rule.weights[static_cast<std::size_t>(k)] = float(fit.weights[k]);
+    rule.unknown[static_cast<std::size_t>(k)] = float(fit.weights[kSigns + k]);
   }
   return rule;
 }

@@ -21,15 +21,15 @@ JointTrust fitted(const std::vector<const TrustSample*>& samples) {
   for (Eigen::Index i = 0; i < count; ++i) {
     const TrustSample& sample = *samples[static_cast<std::size_t>(i)];
     for (std::size_t k = 0; k < kTrustSignals.size(); ++k) {
-      features(static_cast<Eigen::Index>(k), i) = static_cast<double>(sample.signals.*kTrustSignals[k].value);
+      features(static_cast<Eigen::Index>(k), i) = double(sample.signals.*kTrustSignals[k].value);
     }
     right[i] = sample.right ? 1.0 : 0.0;
   }
   const LogisticFit fit = fit_logistic(features, right, Eigen::VectorXd::Ones(count), kLeastSpread);
   JointTrust trust;
-  trust.bias = static_cast<float>(fit.bias);
+  trust.bias = float(fit.bias);
   for (std::size_t k = 0; k < kTrustSignals.size(); ++k) {
-    trust.weights.*kTrustSignals[k].value = static_cast<float>(fit.weights[static_cast<Eigen::Index>(k)]);
+    trust.weights.*kTrustSignals[k].value = float(fit.weights[static_cast<Eigen::Index>(k)]);
   }
   return trust;
 }
@@ -41,13 +41,13 @@ double disagreement(const std::vector<const TrustSample*>& samples, const JointT
   std::array<Tenth, 10> tenths{};
   for (const TrustSample* sample : samples) {
     const float confidence = trusted(trust, sample->signals);
-    Tenth& tenth = tenths[static_cast<std::size_t>(std::clamp(static_cast<int>(10.F * confidence), 0, 9))];
-    tenth.confidence += static_cast<double>(confidence);
+    Tenth& tenth = tenths[static_cast<std::size_t>(std::clamp(int(10.F * confidence), 0, 9))];
+    tenth.confidence += double(confidence);
     tenth.right += sample->right ? 1.0 : 0.0;
   }
   double sum = 0.0;
   for (const Tenth& tenth : tenths) sum += std::abs(tenth.right - tenth.confidence);
-  return samples.empty() ? 0.0 : sum / static_cast<double>(samples.size());
+  return samples.empty() ? 0.0 : sum / double(samples.size());
 }
 
 }  // namespace

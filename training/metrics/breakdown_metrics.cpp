@@ -28,20 +28,20 @@ constexpr double kLeastAcrossView = 0.342;  // sine of 20 degrees
 template <std::size_t N>
 int range_of(const std::array<float, N>& ends, float value) {
   const auto end = std::ranges::find_if(ends, [&](float e) { return value < e; });
-  return static_cast<int>(std::min<std::ptrdiff_t>(end - ends.begin(), N - 1));
+  return int(std::min<std::ptrdiff_t>(end - ends.begin(), N - 1));
 }
 
 float share_visible(const TrueFrame& frame, int person, const BodyModel& body) {
   const std::vector<Vector3f> parts = visible_parts(frame, person, body);
   const auto visible = std::ranges::count_if(parts, [](const Vector3f& p) { return !p.hasNaN(); });
-  return static_cast<float>(visible) / static_cast<float>(body.part_count());
+  return float(visible) / float(body.part_count());
 }
 
 }  // namespace
 
 std::optional<double> camera_roll_deg(const FrameTruth& truth) {
   if (!truth.up) return std::nullopt;
-  const Eigen::Vector2d up(static_cast<double>(truth.up->x()), static_cast<double>(truth.up->y()));
+  const Eigen::Vector2d up(double(truth.up->x()), double(truth.up->y()));
   if (up.norm() < kLeastAcrossView) return std::nullopt;
   return std::abs(std::atan2(up.x(), -up.y())) * 180.0 / std::numbers::pi;
 }
@@ -64,16 +64,16 @@ MetricTerms breakdown_terms(const TrueFrame& frame, const std::vector<const Pers
       add_range(Metric::distance, kDistances_m, kDistanceNames, mean_known(truth.parts[who]).norm());
     }
     if (const auto heading = heading_of(truth, who, body)) {
-      add(Metric::heading, static_cast<int>(*heading), to_string(*heading));
+      add(Metric::heading, int(*heading), to_string(*heading));
     }
     if (!truth.labels.empty()) {
-      add_range(Metric::visible, kShares, kShareNames, share_visible(frame, static_cast<int>(who), body));
+      add_range(Metric::visible, kShares, kShareNames, share_visible(frame, int(who), body));
     }
     if (who < truth.postures.size()) add(Metric::posture, 0, truth.postures[who].c_str());
     if (who < truth.statures_m.size() && std::isfinite(truth.statures_m[who])) {
       add_range(Metric::stature, kStatures_m, kStatureNames, truth.statures_m[who]);
     }
-    if (roll_deg) add_range(Metric::roll, kRolls_deg, kRollNames, static_cast<float>(*roll_deg));
+    if (roll_deg) add_range(Metric::roll, kRolls_deg, kRollNames, float(*roll_deg));
   }
   return terms;
 }

@@ -14,7 +14,7 @@ DetectionPoint point_at(const DetectionLog& log, double threshold, double min_sc
   long wrong = 0;
   PartCounts sum;
   for (const JudgedProposal& proposal : log.proposals) {
-    if (static_cast<double>(proposal.score) < min_score || proposal.parts < min_parts) continue;
+    if (double(proposal.score) < min_score || proposal.parts < min_parts) continue;
     if (!proposal.person) {
       ++wrong;
       continue;
@@ -25,9 +25,8 @@ DetectionPoint point_at(const DetectionLog& log, double threshold, double min_sc
     sum.visible_upper += proposal.counts.visible_upper;
     sum.right_upper += proposal.counts.right_upper;
   }
-  return {threshold, share(static_cast<double>(found), static_cast<double>(log.expected)),
-          share(static_cast<double>(wrong), static_cast<double>(log.frames)), share(sum.right, sum.visible),
-          share(sum.right_upper, sum.visible_upper)};
+  return {threshold, share(double(found), double(log.expected)), share(double(wrong), double(log.frames)),
+          share(sum.right, sum.visible), share(sum.right_upper, sum.visible_upper)};
 }
 
 }  // namespace
@@ -41,7 +40,7 @@ std::vector<DetectionPoint> sweep_parts(const DetectionLog& log, int max_parts, 
 std::vector<DetectionPoint> sweep_score(const DetectionLog& log, int steps, int min_parts) {
   std::vector<DetectionPoint> curve;
   for (int step = 0; step <= steps; ++step) {
-    const double score = static_cast<double>(step) / steps;
+    const double score = double(step) / steps;
     curve.push_back(point_at(log, score, score, min_parts));
   }
   return curve;

@@ -17,7 +17,7 @@ constexpr double kSmallestStep = 1e-10;
 LogisticFit fit_logistic(const Eigen::MatrixXd& features, const Eigen::VectorXd& positive,
                          const Eigen::VectorXd& weight, double least_spread) {
   const Eigen::Index count = features.rows(), samples = features.cols();
-  const auto all = static_cast<double>(samples);
+  const auto all = double(samples);
   const Eigen::VectorXd mean = features.rowwise().sum() / all;
   Eigen::VectorXd spread = Eigen::VectorXd::Zero(count);
   for (Eigen::Index s = 0; s < samples; ++s) spread += (features.col(s) - mean).cwiseAbs2();

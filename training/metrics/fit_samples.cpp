@@ -62,7 +62,7 @@ void add_trust_samples(const TrackedPerson& found, const std::vector<JointSet>& 
     const Joint& joint = joints.at(static_cast<std::size_t>(defined - set.joints.begin()));
     if (joint.state == State::none) continue;
     const FittedBone& bone = found.body->bones.at(static_cast<std::size_t>(place->bone));
-    const double error_m = static_cast<double>((joint.position - truth[n]).norm());
+    const double error_m = double((joint.position - truth[n]).norm());
     samples.push_back({source_of(*found.body, bone), signals_of(*place, *found.body), error_m < kJointTolerance_m});
   }
 }

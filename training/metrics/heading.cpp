@@ -59,7 +59,7 @@ SidedNames sided(const std::vector<std::string>& names) {
     if (name.starts_with("r_")) other[0] = 'l';
     const auto found = std::ranges::find(names, other);
     const bool has = other != name && found != names.end();
-    sided.partner.push_back(has ? static_cast<int>(found - names.begin()) : -1);
+    sided.partner.push_back(has ? int(found - names.begin()) : -1);
   }
   return sided;
 }

@@ -28,7 +28,7 @@ void add_right(const std::vector<double>& errors, const std::vector<std::string>
     const bool is_right = errors[j] < kJointTolerance_m;
     known += 1.0;
     right += is_right ? 1.0 : 0.0;
-    terms.push_back({{each, static_cast<int>(j), names[j]}, is_right ? 1.0 : 0.0, 1.0});
+    terms.push_back({{each, int(j), names[j]}, is_right ? 1.0 : 0.0, 1.0});
   }
   if (known > 0.0) terms.push_back({all, right, known});
 }
@@ -51,7 +51,7 @@ std::optional<Eigen::Vector3d> middle_of(const std::vector<Eigen::Vector3f>& tru
     sum += truth[j].cast<double>();
     count += 1.0;
   }
-  return count == static_cast<double>(joints.size()) ? std::optional(Eigen::Vector3d(sum / count)) : std::nullopt;
+  return count == double(joints.size()) ? std::optional(Eigen::Vector3d(sum / count)) : std::nullopt;
 }
 
 /// Returns the unit vector from the hips to the neck.
@@ -144,7 +144,7 @@ MetricTerms joint_terms(const JointPair& pair, const std::vector<std::string>& n
   double found = 0.0;
   for (std::size_t j = 0; j < errors.size(); ++j) {
     if (!std::isfinite(errors[j])) continue;
-    terms.push_back({{Metric::joint_error, static_cast<int>(j), names[j]}, errors[j], 1.0});
+    terms.push_back({{Metric::joint_error, int(j), names[j]}, errors[j], 1.0});
     sum += errors[j];
     found += 1.0;
   }
@@ -178,7 +178,7 @@ MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::strin
   for (std::size_t j = 0; j < pair.truth.size(); ++j) {
     if (!pair.truth[j].allFinite() || !pair.found[j].allFinite() || is_swapped(pair, j, sides.partner[j])) continue;
     const Eigen::Vector3d off_mm = kMillimetres * (pair.found[j].cast<double>() - pair.truth[j].cast<double>());
-    const auto id = [&](Metric metric) { return MetricId(metric, static_cast<int>(j), names[j]); };
+    const auto id = [&](Metric metric) { return MetricId(metric, int(j), names[j]); };
     terms.push_back({id(Metric::joint_up), off_mm.dot(*up), 1.0});
     if (off_mm.norm() < kMillimetres * kPlacedJoint_m) {
       terms.push_back({id(Metric::joint_up_placed), off_mm.dot(*up), 1.0});
@@ -202,8 +202,6 @@ void JointCurve::merge(const JointCurve& other) {
   for (std::size_t cm = 0; cm < within.size(); ++cm) within[cm] += other.within[cm];
 }
 
-double JointCurve::share(int cm) const {
-  return joints > 0 ? static_cast<double>(within.at(cm - 1)) / static_cast<double>(joints) : kNaN;
-}
+double JointCurve::share(int cm) const { return joints > 0 ? double(within.at(cm - 1)) / double(joints) : kNaN; }
 
 }  // namespace vesalius

@@ -14,10 +14,10 @@ int nearest_free(const Eigen::Vector3f& at, std::size_t joint, const std::vector
   int nearest = -1;
   double least = kJointTolerance_m;
   for (std::size_t person = 0; person < truth.size(); ++person) {
-    const auto distance = static_cast<double>((truth[person][joint] - at).norm());
+    const auto distance = double((truth[person][joint] - at).norm());
     if (taken[person] != 0 || distance > least) continue;
     least = distance;
-    nearest = static_cast<int>(person);
+    nearest = int(person);
   }
   return nearest;
 }
@@ -41,7 +41,7 @@ void JointPrecision::add(const std::vector<std::string>& names, std::vector<Join
       if (proposal.joints[joint].hasNaN()) continue;
       const int person = nearest_free(proposal.joints[joint], joint, truth, taken);
       if (person >= 0) taken[person] = 1;
-      if (person >= static_cast<int>(counted)) continue;
+      if (person >= int(counted)) continue;
       sums.proposals.push_back({proposal.score, person >= 0});
     }
   }
@@ -66,14 +66,14 @@ std::vector<std::pair<std::string, double>> JointPrecision::averages() const {
     for (std::size_t i = 0; i < surest.size(); ++i) {
       right += surest[i].right ? 1.0 : 0.0;
       if (i + 1 < surest.size() && surest[i + 1].score == surest[i].score) continue;
-      curve.emplace_back(right, right / static_cast<double>(i + 1));
+      curve.emplace_back(right, right / double(i + 1));
     }
     double area = 0.0, best = 0.0;  // from the right: the best precision at this recall or more
     for (std::size_t i = curve.size(); i-- > 0;) {
       best = std::max(best, curve[i].second);
       area += best * (curve[i].first - (i > 0 ? curve[i - 1].first : 0.0));
     }
-    out.emplace_back(joint.name, area / static_cast<double>(joint.known));
+    out.emplace_back(joint.name, area / double(joint.known));
   }
   return out;
 }

@@ -22,7 +22,7 @@ constexpr SightMetrics metrics_of(Sight sight) {
 }
 
 MetricTerm by_confidence(Metric metric, float confidence, double right) {
-  const int tenth = std::clamp(static_cast<int>(10.F * confidence), 0, 9);
+  const int tenth = std::clamp(int(10.F * confidence), 0, 9);
   return {{metric, tenth, fmt::format("{}_to_{}", 10 * tenth, 10 * tenth + 10)}, right, 1.0};
 }
 
@@ -33,15 +33,15 @@ std::vector<Sight> joint_sight(const TrueFrame& frame, std::size_t person, const
   constexpr double kCm2PerM2 = 1e4;
   const Camera& camera = frame.frame.camera;
   const DepthImage& depth = frame.frame.depth;
-  const double scale = kCm2PerM2 / (static_cast<double>(camera.fx) * static_cast<double>(camera.fy));
+  const double scale = kCm2PerM2 / (double(camera.fx) * double(camera.fy));
   std::vector<double> area_cm2(joints.size(), 0.0);
   for (int v = 0; v < depth.height(); ++v) {
     for (int u = 0; u < depth.width(); ++u) {
       if (depth(u, v) == 0 || frame.truth.person(u, v) != person) continue;
       const Eigen::Vector3f point = point_at(camera, depth, u, v);
-      const double pixel_cm2 = static_cast<double>(point.z()) * static_cast<double>(point.z()) * scale;
+      const double pixel_cm2 = double(point.z()) * double(point.z()) * scale;
       for (std::size_t j = 0; j < joints.size(); ++j) {
-        if (static_cast<double>((point - joints[j]).norm()) <= kSightRadius_m) area_cm2[j] += pixel_cm2;
+        if (double((point - joints[j]).norm()) <= kSightRadius_m) area_cm2[j] += pixel_cm2;
       }
     }
   }

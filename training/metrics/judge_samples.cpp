@@ -27,16 +27,15 @@ Likeness likeness(const Mask& mask, const FrameTruth& truth, const DepthImage& d
     ++pixels;
   }
   if (pixels == 0) return {};
-  const double on_people =
-      static_cast<double>(pixels - shared[kBackground]) / static_cast<double>(pixels) / kShareOnMask;
+  const double on_people = double(pixels - shared[kBackground]) / double(pixels) / kShareOnMask;
   if (truth.person.empty()) {
-    const double smaller = static_cast<double>(std::max(1L, std::min(pixels, of_person[0])));
-    return {static_cast<double>(shared[0]) / smaller / kShareOnMask, on_people};
+    const double smaller = double(std::max(1L, std::min(pixels, of_person[0])));
+    return {double(shared[0]) / smaller / kShareOnMask, on_people};
   }
   double best = 0.0;
   for (std::size_t who = 0; who < kBackground; ++who) {
-    const auto either = static_cast<double>(of_person[who] + pixels - shared[who]);
-    best = std::max(best, static_cast<double>(shared[who]) / either);
+    const auto either = double(of_person[who] + pixels - shared[who]);
+    best = std::max(best, double(shared[who]) / either);
   }
   return {best / kMatchIou, on_people};
 }

@@ -33,10 +33,10 @@ Match match_by_iou(const Proposal& proposal, const FrameTruth& truth, const Dept
   double best = kMatchIou;
   for (std::size_t who = 0; who < taken.size(); ++who) {
     const long either = a.of_mask + a.of_person[who] - a.shared[who];
-    const double iou = either > 0 ? static_cast<double>(a.shared[who]) / static_cast<double>(either) : 0.0;
+    const double iou = either > 0 ? double(a.shared[who]) / double(either) : 0.0;
     if (taken[who] || iou < best) continue;
     best = iou;
-    best_person = static_cast<int>(who);
+    best_person = int(who);
   }
   if (best_person < 0) return {};
   taken[best_person] = true;
@@ -53,7 +53,7 @@ bool lies_on(const Mask& found, const Mask& truth, const DepthImage& depth) {
     true_pixels += truth[i] != 0 ? 1 : 0;
     inside += found[i] != 0 && truth[i] != 0 ? 1 : 0;
   }
-  return inside > 0 && static_cast<double>(inside) >= kShareOnMask * static_cast<double>(std::min(pixels, true_pixels));
+  return inside > 0 && double(inside) >= kShareOnMask * double(std::min(pixels, true_pixels));
 }
 
 /// Returns the number of people of whom more is known than their pixels.
@@ -71,7 +71,7 @@ void reorder(std::vector<T>& list, const std::vector<std::size_t>& order) {
 /// Returns the visible area, perpendicular to the viewing direction, of each person.
 std::vector<double> visible_areas_cm2(const TrueFrame& frame) {
   const Camera& camera = frame.frame.camera;
-  const double scale = 1e-2 / (static_cast<double>(camera.fx) * static_cast<double>(camera.fy));  // mm^2 to cm^2
+  const double scale = 1e-2 / (double(camera.fx) * double(camera.fy));  // mm^2 to cm^2
   std::vector<double> areas(person_count(frame.truth), 0.0);
   for (std::size_t i = 0; i < frame.frame.depth.size(); ++i) {
     const std::size_t who = frame.truth.person[i];
@@ -91,7 +91,7 @@ void put_visible_people_first(TrueFrame& frame) {
   for (std::size_t who = 0; who < area_cm2.size(); ++who) {
     if (area_cm2[who] >= kVisiblePerson_cm2) order.push_back(who);
   }
-  truth.people = static_cast<int>(order.size());
+  truth.people = int(order.size());
   for (std::size_t who = 0; who < area_cm2.size(); ++who) {
     if (area_cm2[who] < kVisiblePerson_cm2) order.push_back(who);
   }
@@ -140,7 +140,7 @@ std::vector<Proposal> distinct_proposals(const Trace& trace, float max_overlap) 
       pixels += candidate.grown[i] != 0 ? 1 : 0;
       shared += candidate.grown[i] != 0 && taken[i] != 0 ? 1 : 0;
     }
-    if (static_cast<float>(shared) > max_overlap * static_cast<float>(pixels)) continue;
+    if (float(shared) > max_overlap * float(pixels)) continue;
     for (std::size_t i = 0; i < taken.size(); ++i) taken[i] |= candidate.grown[i];
     proposals.push_back({&candidate.grown, &candidate.refined, candidate.score});
   }

@@ -33,7 +33,7 @@ double known_mean(const std::vector<double>& values) {
 Estimate mean_of(Metric metric, const std::vector<Estimate>& members) {
   Estimate mean{metric};
   for (const Estimate& member : members) mean.numerator += member.value;
-  mean.denominator = static_cast<double>(members.size());
+  mean.denominator = double(members.size());
   mean.value = mean.numerator / mean.denominator;
   std::vector<double> values;
   for (std::size_t r = 0; r < kReplicates; ++r) {

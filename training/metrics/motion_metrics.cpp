@@ -90,9 +90,9 @@ BoneLengths true_lengths(const PersonMotion& person) {
 double standard_deviation(const std::vector<double>& values) {
   double sum = 0.0, squares = 0.0;
   for (const double value : values) sum += value;
-  const double mean = sum / static_cast<double>(values.size());
+  const double mean = sum / double(values.size());
   for (const double value : values) squares += (value - mean) * (value - mean);
-  return std::sqrt(squares / static_cast<double>(values.size()));
+  return std::sqrt(squares / double(values.size()));
 }
 
 void add_bones(const PersonMotion& person, std::vector<MetricTerms>& frames) {
@@ -130,7 +130,7 @@ BoneLengths bone_lengths(const std::vector<std::string>& names, const std::vecto
     const auto from = std::ranges::find(names, bone_joint(b, limb_bone(b).from));
     const auto to = std::ranges::find(names, bone_joint(b, limb_bone(b).to));
     const bool known = from != names.end() && to != names.end();
-    lengths[b] = known ? static_cast<double>((joints[from - names.begin()] - joints[to - names.begin()]).norm()) : kNaN;
+    lengths[b] = known ? double((joints[from - names.begin()] - joints[to - names.begin()]).norm()) : kNaN;
   }
   return lengths;
 }
@@ -151,7 +151,7 @@ BoneLengths bone_lengths(const BodyModel& body, const std::string& preferred,
     lengths[b] = kNaN;
     if (set == sets.end()) continue;
     const std::vector<Eigen::Vector3f> places = joints_by_name(ends, *set, joints.at(set - sets.begin()));
-    lengths[b] = static_cast<double>((places[0] - places[1]).norm());
+    lengths[b] = double((places[0] - places[1]).norm());
   }
   return lengths;
 }

@@ -73,7 +73,7 @@ PartCounts count_parts(const Skeleton& skeleton, const std::vector<Eigen::Vector
     if (known && visible[p].hasNaN()) continue;
     const bool observed = skeleton.parts[p].state == State::observed;
     const bool right =
-        observed && (!known || static_cast<double>((skeleton.parts[p].centre - visible[p]).norm()) <= kPartTolerance_m);
+        observed && (!known || double((skeleton.parts[p].centre - visible[p]).norm()) <= kPartTolerance_m);
     ++counts.visible;
     counts.right += right ? 1 : 0;
     if (!body.parts[p].upper_body) continue;
@@ -91,7 +91,7 @@ MetricTerms visible_part_terms(const TrueFrame& frame, const std::vector<const P
   MetricTerms terms;
   for (std::size_t who = 0; who < of_person.size(); ++who) {
     const Skeleton& skeleton = of_person[who] != nullptr ? of_person[who]->skeleton : nothing;
-    const PartCounts counts = count_parts(skeleton, visible_parts(frame, static_cast<int>(who), body), body);
+    const PartCounts counts = count_parts(skeleton, visible_parts(frame, int(who), body), body);
     terms.push_back({Metric::parts_right, 1.0 * counts.right, 1.0 * counts.visible});
     terms.push_back({Metric::parts_right_upper, 1.0 * counts.right_upper, 1.0 * counts.visible_upper});
   }
@@ -102,9 +102,7 @@ MetricTerms people_terms(const TrueFrame& frame, const std::vector<Person>& peop
                          const BodyModel& body) {
   MetricTerms terms;
   const double expected = expected_people(frame.truth);
-  const auto count = [&](Match::Kind kind) {
-    return static_cast<double>(std::ranges::count(matches, kind, &Match::kind));
-  };
+  const auto count = [&](Match::Kind kind) { return double(std::ranges::count(matches, kind, &Match::kind)); };
   const double found = count(Match::Kind::person);
   terms.push_back({Metric::people_false, count(Match::Kind::nobody), 1.0});
   if (expected == 0.0) {

@@ -9,7 +9,7 @@ namespace {
 
 void add_term(MetricTerms& terms, MetricId id, std::uint64_t numerator, std::uint64_t denominator) {
   if (denominator == 0) return;
-  terms.push_back({std::move(id), static_cast<double>(numerator), static_cast<double>(denominator)});
+  terms.push_back({std::move(id), double(numerator), double(denominator)});
 }
 
 /// The numbers of pixels of both and of either, for all parts together.
@@ -54,7 +54,7 @@ void PixelConfusion::add(const LabelImage& truth, const LabelImage& given, const
   const auto class_of = [this](std::uint8_t label) {
     if (label == kBackground) return parts_;
     if (label >= parts_) throw Error(fmt::format("label {}, expected one of {} parts", label, parts_));
-    return static_cast<int>(label);
+    return int(label);
   };
   for (std::size_t i = 0; i < depth.size(); ++i) {
     if (depth[i] != 0) ++counts_[index(class_of(truth[i]), class_of(given[i]))];
@@ -80,7 +80,7 @@ double mask_iou(const Mask& a, const Mask& b, const DepthImage& depth) {
     both += a[i] != 0 && b[i] != 0 ? 1U : 0U;
     either += a[i] != 0 || b[i] != 0 ? 1U : 0U;
   }
-  return either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 0.0;
+  return either > 0 ? double(both) / double(either) : 0.0;
 }
 
 MetricTerms pixel_terms(const PixelConfusion& with_background, const PixelConfusion& inside, const BodyModel& body) {

@@ -103,7 +103,7 @@ std::vector<const Person*> found_of_each(const std::vector<Person>& people, cons
 
 /// Whether a proposal is a person, by the tenth in which its score lies.
 MetricTerm score_term(float score, bool person) {
-  const int tenth = std::clamp(static_cast<int>(10.F * score), 0, 9);
+  const int tenth = std::clamp(int(10.F * score), 0, 9);
   return {{Metric::score_right, tenth, fmt::format("{}_to_{}", 10 * tenth, 10 * tenth + 10)}, person ? 1.0 : 0.0, 1.0};
 }
 

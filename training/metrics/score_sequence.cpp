@@ -64,7 +64,7 @@ FrameScore SequenceScorer::add(TrueFrame frame, TrackedFrame tracked) {
   if (people && ids_known_) {
     sample = people->sample;
     const std::vector<int> match = matcher_.match(sample);
-    follow(frame, *people, match, frame.frame.time_s.value_or(static_cast<double>(index) / kUsualRate));
+    follow(frame, *people, match, frame.frame.time_s.value_or(double(index) / kUsualRate));
     if (options_.hidden) unseen.resize(people->truth.size(), nullptr);
     for (std::size_t t = 0; t < unseen.size(); ++t) {
       if (match[t] >= 0 && !has_pixels(*people->found[match[t]])) {
@@ -107,7 +107,7 @@ void SequenceScorer::follow(const TrueFrame& frame, const TrackPeople& people, c
       if (options_.trust) {
         add_trust_samples(*found, body.joint_sets, *known->set, known->names, known->of_person[who], trust_samples_);
       }
-      step.track_age = static_cast<int>(step.frame - first_frame_.at(found->id));
+      step.track_age = int(step.frame - first_frame_.at(found->id));
     }
     step.found = joints_by_name(known->names, *known->set, joints);
     people_[people.sample.truth[t]].push_back(std::move(step));
@@ -125,7 +125,7 @@ void SequenceScorer::judge_stance(const FrameTruth& truth, std::size_t person, c
   MetricTerms& terms = terms_.back();
   terms.push_back({Metric::stance_right, right ? 1.0 : 0.0, 1.0});
   for (const Stance given : kStances) {
-    const int place = static_cast<int>(kStances.size()) * static_cast<int>(*stance) + static_cast<int>(given);
+    const int place = int(kStances.size()) * int(*stance) + int(given);
     terms.push_back({{Metric::stance_given, place, fmt::format("{}_as_{}", to_string(*stance), to_string(given))},
                      given == found.stance ? 1.0 : 0.0,
                      1.0});

@@ -28,7 +28,7 @@ constexpr std::array kYawConfidences{ConfidenceRange{0.6F, "below_60"}, Confiden
                                      ConfidenceRange{2.F, "over_97"}};
 constexpr std::array kArmWords{"elbow", "forearm", "hand"};
 
-double distance_m(const Vector3f& a, const Vector3f& b) { return static_cast<double>((a - b).norm()); }
+double distance_m(const Vector3f& a, const Vector3f& b) { return double((a - b).norm()); }
 
 /// Returns the centres of the observed parts; NaN for others.
 std::vector<Vector3f> observed_parts(const Skeleton& skeleton) {
@@ -45,7 +45,7 @@ std::vector<Vector3f> observed_parts(const Skeleton& skeleton) {
 std::vector<Vector3f> true_places(const TrueFrame& frame, std::size_t who, const BodyModel& body) {
   std::vector<Vector3f> places = frame.truth.parts[who];
   if (frame.truth.labels.empty()) return places;
-  const std::vector<Vector3f> visible = visible_parts(frame, static_cast<int>(who), body);
+  const std::vector<Vector3f> visible = visible_parts(frame, int(who), body);
   for (std::size_t p = 0; p < places.size(); ++p) {
     if (!visible[p].hasNaN()) places[p] = visible[p];
   }
@@ -56,7 +56,7 @@ std::vector<Vector3f> true_places(const TrueFrame& frame, std::size_t who, const
 void add_by_heading(Metric metric, Metric family, std::optional<Heading> heading, int count, int of,
                     MetricTerms& terms) {
   terms.push_back({metric, 1.0 * count, 1.0 * of});
-  if (heading) terms.push_back({{family, static_cast<int>(*heading), to_string(*heading)}, 1.0 * count, 1.0 * of});
+  if (heading) terms.push_back({{family, int(*heading), to_string(*heading)}, 1.0 * count, 1.0 * of});
 }
 
 bool is_arm(const std::string& part) {
@@ -159,8 +159,7 @@ MetricTerms yaw_terms(const TrueFrame& frame, const std::vector<const Person*>& 
     const int right = off <= kYawTolerance_rad ? 1 : 0;
     add_by_heading(Metric::yaw_right, Metric::yaw_right_heading, heading_of(frame.truth, who, body), right, 1, terms);
     const auto bin = std::ranges::find_if(kYawConfidences, [&](const auto& b) { return found.confidence < b.below; });
-    terms.push_back(
-        {{Metric::yaw_right_confidence, static_cast<int>(bin - kYawConfidences.begin()), bin->name}, 1.0 * right, 1.0});
+    terms.push_back({{Metric::yaw_right_confidence, int(bin - kYawConfidences.begin()), bin->name}, 1.0 * right, 1.0});
   }
   return terms;
 }

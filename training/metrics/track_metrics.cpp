@@ -21,7 +21,7 @@ constexpr int kThresholds = 19;
 
 double threshold_of(int place) { return 0.05 * (place + 1); }
 
-double count(const std::vector<int>& ids) { return static_cast<double>(ids.size()); }
+double count(const std::vector<int>& ids) { return double(ids.size()); }
 
 /// Indices of a sequence's ids, in the order of the ids.
 class IdIndex {
@@ -34,7 +34,7 @@ class IdIndex {
     for (auto& [id, index] : index_) index = next++;
   }
 
-  int size() const { return static_cast<int>(index_.size()); }
+  int size() const { return int(index_.size()); }
   int of(int id) const { return index_.at(id); }
 
  private:
@@ -231,11 +231,11 @@ std::vector<int> TrackMatcher::match(const TrackSample& sample) {
     if (last == last_.end()) continue;
     const std::size_t f = std::ranges::find(sample.found, last->second) - sample.found.begin();
     if (f == taken.size() || taken[f] || !fits(t, f)) continue;
-    match[t] = static_cast<int>(f);
+    match[t] = int(f);
     taken[f] = true;
   }
   // A pair that does not fit costs more than all that do.
-  const double no_pair = 1.0 + static_cast<double>(std::max(match.size(), taken.size()));
+  const double no_pair = 1.0 + double(std::max(match.size(), taken.size()));
   Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(sample.similarity.rows(), sample.similarity.cols(), no_pair);
   for (std::size_t t = 0; t < match.size(); ++t) {
     for (std::size_t f = 0; f < taken.size(); ++f) {

@@ -26,7 +26,7 @@ std::optional<Eigen::Vector3f> known_mean(const std::vector<Eigen::Vector3f>& po
 double trunk_similarity(const FrameTruth& truth, std::size_t person, const TrackedPerson& found) {
   const auto trunk = true_trunk(truth, person);
   if (!trunk || !found.position.allFinite()) return 0.0;
-  return std::max(0.0, 1.0 - static_cast<double>((*trunk - found.position).norm()) / kTrunkReach_m);
+  return std::max(0.0, 1.0 - double((*trunk - found.position).norm()) / kTrunkReach_m);
 }
 
 /// Returns what is known of one found person by itself.

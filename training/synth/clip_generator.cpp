@@ -63,7 +63,7 @@ class ClipStore {
 
 }  // namespace
 
-int ClipTiming::frames() const { return std::max(1, static_cast<int>(std::lround(seconds * rate_hz))); }
+int ClipTiming::frames() const { return std::max(1, int(std::lround(seconds * rate_hz))); }
 
 void check(const ClipTiming& timing) {
   if (!(timing.seconds > 0.F && timing.seconds <= kMaxClip_s)) {
@@ -136,7 +136,7 @@ struct ClipGenerator::State {
   std::vector<Pose> draw_poses(Posture posture, int count, Random& random) const {
     constexpr int kTries = 40;
     std::vector<Pose> poses;
-    for (int i = 0; i < kTries && static_cast<int>(poses.size()) < count; ++i) {
+    for (int i = 0; i < kTries && int(poses.size()) < count; ++i) {
       const SampledPose drawn = sample_pose(recipe.pose.sampler, random);
       if (drawn.posture == posture) poses.push_back(mirrors(random) ? mirrored(drawn.pose) : drawn.pose);
     }
@@ -146,7 +146,7 @@ struct ClipGenerator::State {
   Movement draw_stay(Random& random) const {
     if (captured(random) && !assets.movements.stays.empty()) return drawn_from(assets.movements.stays, random);
     const std::vector<Pose> others = draw_poses(Posture::standing, 4, random);
-    const auto seconds = static_cast<float>(random.uniform(3.0, 7.0));
+    const auto seconds = float(random.uniform(3.0, 7.0));
     return fidget(draw_kind(&PoseSamplerOptions::idle, random), others, seconds, random);
   }
 
@@ -220,8 +220,7 @@ LabelledFrame ClipGenerator::frame(std::uint64_t clip_number, int k) const {
   }
   const std::shared_ptr<const ClipScene> scene = clip(clip_number);
   const double time_s = k / s.timing.rate_hz;
-  const BuiltScene built =
-      scene_at(*scene, s.photographer.camera(), s.recipe.scene.detail_px, static_cast<float>(time_s));
+  const BuiltScene built = scene_at(*scene, s.photographer.camera(), s.recipe.scene.detail_px, float(time_s));
   const PictureStreams streams{.frame = clip_stream(clip_number, static_cast<std::uint32_t>(k)),
                                .camera = clip_stream(clip_number, kWholeClip),
                                .is_clip = true};
@@ -232,7 +231,7 @@ LabelledFrame ClipGenerator::frame(std::uint64_t clip_number, int k) const {
 
 LabelledFrame ClipGenerator::frame(std::uint64_t index) const {
   const auto count = static_cast<std::uint64_t>(frames_per_clip());
-  return frame(index / count, static_cast<int>(index % count));
+  return frame(index / count, int(index % count));
 }
 
 }  // namespace vesalius::synth

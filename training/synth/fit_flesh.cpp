@@ -34,7 +34,7 @@ struct SurfacePoint {
 int axis_of(Bone bone) {
   Index axis = 0;
   rest_direction(bone).cwiseAbs().maxCoeff(&axis);
-  return static_cast<int>(axis);
+  return int(axis);
 }
 
 bool is_right(Bone bone) { return bone_name(bone).starts_with("r_"); }
@@ -173,11 +173,10 @@ FleshPopulation population_of(const std::vector<RestBody>& bodies, int factors) 
   FleshPopulation population;
   for (const Bone bone : bones) population.stations.push_back(stations_of(bodies, bone));
   MatrixXd numbers(static_cast<Index>(bones.size() * kNumbers), static_cast<Index>(bodies.size()));
-  parallel_for(static_cast<int>(bodies.size()), [&](int i) {
+  parallel_for(int(bodies.size()), [&](int i) {
     for (std::size_t b = 0; b < bones.size(); ++b) {
       const FleshBone::Numbers of_bone = symmetric(bodies[i], bones[b], population.stations[b]);
-      for (int k = 0; k < kNumbers; ++k)
-        numbers(static_cast<Index>(b * kNumbers + k), i) = static_cast<double>(of_bone[k]);
+      for (int k = 0; k < kNumbers; ++k) numbers(static_cast<Index>(b * kNumbers + k), i) = double(of_bone[k]);
     }
   });
   VectorXd weights(numbers.rows());
@@ -185,12 +184,11 @@ FleshPopulation population_of(const std::vector<RestBody>& bodies, int factors) 
   population.mean = numbers.rowwise().mean();
   const MatrixXd centred = weights.asDiagonal() * (numbers.colwise() - population.mean);
   // The bodies are fewer than the numbers: the factors follow from the bodies' inner products.
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(centred.transpose() * centred /
-                                                       static_cast<double>(bodies.size()));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(centred.transpose() * centred / double(bodies.size()));
   population.factors.resize(numbers.rows(), factors);
   for (int k = 0; k < factors; ++k) {
     const Index column = solver.eigenvalues().size() - 1 - k;
-    VectorXd factor = centred * solver.eigenvectors().col(column) / std::sqrt(static_cast<double>(bodies.size()));
+    VectorXd factor = centred * solver.eigenvectors().col(column) / std::sqrt(double(bodies.size()));
     factor = weights.cwiseInverse().asDiagonal() * factor;
     if (factor.sum() < 0.0) factor = -factor;  // larger coefficients are larger bodies
     population.factors.col(k) = factor;
@@ -227,7 +225,7 @@ std::vector<Gaussian> fit_mixture(const MatrixXd& samples, int components, Rando
   const MatrixXd floor = kLeastDeviation * kLeastDeviation * MatrixXd::Identity(size, size);
   const VectorXd mean = samples.rowwise().mean();
   const MatrixXd centred = samples.colwise() - mean;
-  const MatrixXd all = centred * centred.transpose() / static_cast<double>(samples.cols());
+  const MatrixXd all = centred * centred.transpose() / double(samples.cols());
   std::vector<Gaussian> mixture;
   for (int k = 0; k < components; ++k) {
     const auto drawn = static_cast<Index>(random.below(static_cast<std::uint32_t>(samples.cols())));
@@ -248,7 +246,7 @@ std::vector<Gaussian> fit_mixture(const MatrixXd& samples, int components, Rando
     }
     for (int k = 0; k < components; ++k) {
       const double total = std::max(shares.row(k).sum(), 1.0);
-      mixture[k].weight = total / static_cast<double>(samples.cols());
+      mixture[k].weight = total / double(samples.cols());
       const VectorXd share = shares.row(k).transpose() / total;
       mixture[k].mean.noalias() = samples * share;
       const MatrixXd off = samples.colwise() - mixture[k].mean;
@@ -313,9 +311,9 @@ std::string bones_toml(const FleshPopulation& population, const std::vector<Pose
     std::array<double, 3> low{}, high{};
     for (int i = 0; i < 3; ++i) {
       std::vector<Weighted> values;
-      for (Index c = 0; c < turns.cols(); ++c) values.push_back({static_cast<float>(turns(i, c)), 1.F});
-      low[i] = static_cast<double>(quantile(values, kRare));
-      high[i] = static_cast<double>(quantile(values, 1.F - kRare));
+      for (Index c = 0; c < turns.cols(); ++c) values.push_back({float(turns(i, c)), 1.F});
+      low[i] = double(quantile(values, kRare));
+      high[i] = double(quantile(values, 1.F - kRare));
     }
     text += "low = " + list(low) + "\nhigh = " + list(high) + "\n";
   }
@@ -323,7 +321,7 @@ std::string bones_toml(const FleshPopulation& population, const std::vector<Pose
 }
 
 std::string limbs_toml(const std::vector<Pose>& poses, const FleshFitOptions& options) {
-  const auto count = static_cast<int>(limbs().size());
+  const auto count = int(limbs().size());
   std::vector<std::vector<Gaussian>> mixtures(count);
   parallel_for(count, [&](int i) {
     mixtures[i] = fit_mixture(limb_samples(poses, limbs()[i]), options.components, Random(options.seed, 100 + i));

@@ -79,7 +79,7 @@ struct Photographer::State {
     Sensor drawn = sensor;
     if (recipe.sensor.matching_max > 1.F) {
       const double share = random_for(seed, Purpose::matching, streams.camera).uniform();
-      drawn.matching_px *= static_cast<float>(std::pow(recipe.sensor.matching_max, share));
+      drawn.matching_px *= float(std::pow(recipe.sensor.matching_max, share));
     }
     if (streams.is_clip) settle_border(drawn, random_for(seed, Purpose::noise, streams.camera));
     return drawn;

@@ -28,7 +28,7 @@ std::vector<Tree> grow_round(Executor& executor, const Forest& forest, const Tra
     trees.push_back(store.load(round.first + t));
     if (!trees.back()) missing.push_back(round.first + t);
   }
-  round.missing = static_cast<int>(missing.size());
+  round.missing = int(missing.size());
   GrowProgress progress;
   observer.begin_round(round, progress);
   const auto take = [&](int number, Tree tree) {
@@ -82,7 +82,7 @@ FeatureConvention training_convention(const TrainOptions& options) {
 
 std::size_t add_hard_negatives(Executor& executor, const Forest& forest, const SampleOptions& options) {
   const HardCounts hard = executor.count_hard_negatives(forest);
-  const double most = static_cast<double>(options.hard_share) * static_cast<double>(hard.background);
+  const double most = double(options.hard_share) * double(hard.background);
   return executor.add_hard_negatives(hard_cut(hard, static_cast<std::uint64_t>(most)));
 }
 

@@ -81,7 +81,7 @@ class TreeDriver {
     for (int block = 0; block < candidate_blocks(options_.split); ++block) {
       if (progress_.stop) throw Interrupted("training: interrupted");
       shards_.evaluate(group, block);
-      parallel_for(static_cast<int>(all.size()), [&](int i) { choose_splits(all[i], block); });
+      parallel_for(int(all.size()), [&](int i) { choose_splits(all[i], block); });
       progress_.evaluations += static_cast<std::uint64_t>(counted * block_candidates(options_.split, block));
     }
   }

@@ -8,7 +8,7 @@
 namespace vesalius {
 
 int least_samples(const LevelNode& node, const LeafOptions& options) {
-  return static_cast<int>((options.min_samples * node.counted + node.size - 1) / node.size);
+  return int((options.min_samples * node.counted + node.size - 1) / node.size);
 }
 
 int depth_of(std::uint32_t number) { return std::bit_width(number) - 1; }
@@ -28,7 +28,7 @@ std::vector<std::int32_t> GrowingTree::begin(std::span<const TreeRoot> roots) {
 /// Makes a node of the next level, or a leaf if no split is possible. Returns the node's index or kSettled.
 std::int32_t GrowingTree::open_or_settle(std::uint32_t number, std::size_t at, const std::int64_t* counts) {
   const std::int64_t size = std::accumulate(counts, counts + classes_, std::int64_t{0});
-  const auto present = static_cast<int>(std::count_if(counts, counts + classes_, [](auto n) { return n > 0; }));
+  const auto present = int(std::count_if(counts, counts + classes_, [](auto n) { return n > 0; }));
   nodes_[at].leaf = leaves_.leaf(counts);
   const int depth = depth_of(number);
   if (depth >= options_.leaf.max_depth || present < 2 || size < 2 * options_.leaf.min_samples) {
@@ -45,7 +45,7 @@ std::int32_t GrowingTree::open_or_settle(std::uint32_t number, std::size_t at, c
 
 bool GrowingTree::offer(std::int32_t node, const TreeNode& split, double gain) {
   OpenNode& open = level_[node];
-  if (gain < static_cast<double>(options_.split.min_gain) || gain <= open.gain) return false;
+  if (gain < double(options_.split.min_gain) || gain <= open.gain) return false;
   open.gain = gain;
   open.split = split;
   return true;

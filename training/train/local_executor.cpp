@@ -15,7 +15,7 @@ LocalExecutor::LocalExecutor(std::vector<TrainingSet*> sets, int trees_at_once)
     : sets_(std::move(sets)), trees_at_once_(trees_at_once) {}
 
 void for_trees(const std::vector<int>& numbers, int at_once, const std::function<void(int)>& grow) {
-  const auto count = static_cast<int>(numbers.size());
+  const auto count = int(numbers.size());
   for (int begin = 0; begin < count; begin += at_once) {
     parallel_for(std::min(count - begin, at_once), [&](int i) { grow(numbers[begin + i]); });
   }

@@ -61,7 +61,7 @@ class ShardedTree : public TreeExecutor {
  private:
   template <class Work>
   void for_all(const Work& work) {
-    parallel_for(static_cast<int>(shards_.size()), work);
+    parallel_for(int(shards_.size()), work);
   }
 };
 

@@ -21,7 +21,7 @@ struct Probe {
 
 Probe draw_probe(const FeatureConvention& convention, const SplitOptions& options, Random& random) {
   const double furthest = std::min<double>(
-      static_cast<double>(options.max_offset_m) * convention.reference_focal_px / convention.offset_unit, kMaxOffset);
+      double(options.max_offset_m) * convention.reference_focal_px / convention.offset_unit, kMaxOffset);
   const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
   const double share = options.half_normal ? std::min(std::abs(random.normal(0.0, 1.0 / 3.0)), 1.0) : random.uniform();
   return {static_cast<std::int16_t>(std::lround(furthest * share * std::cos(angle))),
@@ -60,7 +60,7 @@ CandidateTable draw_candidates(const FeatureConvention& convention, const SplitO
     node.du1 = first.du;
     node.dv1 = first.dv;
     // A probe at the pixel itself shows what is in front of it or behind it (Shotton et al. 2011).
-    if (random.uniform() >= static_cast<double>(options.one_sided)) {
+    if (random.uniform() >= double(options.one_sided)) {
       const Probe second = draw_probe(convention, options, random);
       node.du2 = second.du;
       node.dv2 = second.dv;

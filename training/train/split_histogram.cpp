@@ -109,7 +109,7 @@ ThresholdSplit refine_split(IntervalValues values, const BinChoice& choice, cons
   }
   if (best == std::numeric_limits<std::int64_t>::min()) return result;
   const std::int64_t samples = std::accumulate(classes.totals.begin(), classes.totals.end(), std::int64_t{0});
-  result.gain = static_cast<double>(best - before) / (EntropyTable::kUnitsPerBit * static_cast<double>(samples));
+  result.gain = double(best - before) / (EntropyTable::kUnitsPerBit * double(samples));
   return result;
 }
 

@@ -20,7 +20,7 @@ using Lanes32 = hn::CappedTag<std::int32_t, 16>;
 
 void UpdateRanges(const FeatureRows& rows, std::int16_t* HWY_RESTRICT low, std::int16_t* HWY_RESTRICT high) {
   const Lanes16 d;
-  for (int c = 0; c < rows.width; c += static_cast<int>(hn::Lanes(d))) {
+  for (int c = 0; c < rows.width; c += int(hn::Lanes(d))) {
     auto least = hn::LoadU(d, low + c);
     auto most = hn::LoadU(d, high + c);
     const std::int16_t* value = rows.values + c;

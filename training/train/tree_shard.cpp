@@ -101,7 +101,7 @@ void TreeShard::draw_tables(int block) {
 void TreeShard::evaluate_rows(std::size_t rows) {
   const FrameStore& frames = set_.frames();
   const std::size_t first_row = level_[group_.begin].row_begin;
-  const bool few = static_cast<double>(rows) < kFewEvaluated * static_cast<double>(frames.size());
+  const bool few = double(rows) < kFewEvaluated * double(frames.size());
   const auto has_row = [&](std::size_t s) {
     return row_of_[s] != kNoRow && row_of_[s] >= first_row && row_of_[s] < first_row + rows;
   };
@@ -110,7 +110,7 @@ void TreeShard::evaluate_rows(std::size_t rows) {
   const auto table_at = [&](std::size_t s) {
     return tables_.offsets.data() + (node_of_[s] - group_.begin) * tables_.length();
   };
-  parallel_ranges(static_cast<int>(samples_.size()), kGrain, [&](int begin, int end) {
+  parallel_ranges(int(samples_.size()), kGrain, [&](int begin, int end) {
     FramePrefetcher prefetcher(frames, samples_);
     FrameUnpacker unpack(frames);
     for (auto s = static_cast<std::size_t>(begin); s < static_cast<std::size_t>(end); ++s) {
@@ -197,8 +197,8 @@ void TreeShard::route_the_rest() {
   for (const Node& node : level_) samples += unrouted(node) ? node.size : 0;
   if (samples == 0) return;
   const FrameStore& frames = set_.frames();
-  const bool few = static_cast<double>(samples) < kFewRouted * static_cast<double>(frames.size());
-  parallel_ranges(static_cast<int>(samples_.size()), kGrain, [&](int begin, int end) {
+  const bool few = double(samples) < kFewRouted * double(frames.size());
+  parallel_ranges(int(samples_.size()), kGrain, [&](int begin, int end) {
     FrameUnpacker unpack(frames);
     for (int s = begin; s < end; ++s) {
       if (node_of_[s] == kSettled || !unrouted(level_[node_of_[s]])) continue;

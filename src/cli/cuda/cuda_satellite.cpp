@@ -20,10 +20,10 @@ std::vector<std::pair<std::string, std::string>> facts() {
   try {
     int number = 0;
     for (const gpu::CudaFacts& card : gpu::cuda_devices()) {
-      found.emplace_back(fmt::format("cuda:{}", number++),
-                         fmt::format("{}, {:.0f} GiB, {} multiprocessors, compute capability {}.{}", card.name,
-                                     static_cast<double>(card.memory_bytes) / (1U << 30U), card.multiprocessors,
-                                     card.major, card.minor));
+      found.emplace_back(
+          fmt::format("cuda:{}", number++),
+          fmt::format("{}, {:.0f} GiB, {} multiprocessors, compute capability {}.{}", card.name,
+                      double(card.memory_bytes) / (1U << 30U), card.multiprocessors, card.major, card.minor));
     }
   } catch (const DeviceError& e) {
     found.emplace_back("cards", e.what());

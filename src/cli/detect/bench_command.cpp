@@ -45,7 +45,7 @@ struct Run {
   double processor_ms = 0.0;  ///< over all threads and frames
 
   double frames_per_s() const { return times.frames() == 0 ? 0.0 : 1000.0 / times.detect().mean; }
-  double processor_ms_a_frame() const { return processor_ms / static_cast<double>(times.frames()); }
+  double processor_ms_a_frame() const { return processor_ms / double(times.frames()); }
 };
 
 struct Bench {
@@ -60,7 +60,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 double peak_memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024e-6;
+  return double(usage.ru_maxrss) * 1024e-6;
 }
 
 std::vector<Run> runs_for(const std::string& threads) {
@@ -84,7 +84,7 @@ void measure(const Detector& detector, const Frame& frame, double read_ms, Run& 
   StageTimes stages;
   const std::clock_t before = std::clock();
   detector.detect(frame, nullptr, &stages);
-  run.processor_ms += static_cast<double>(std::clock() - before) * 1e3 / CLOCKS_PER_SEC;
+  run.processor_ms += double(std::clock() - before) * 1e3 / CLOCKS_PER_SEC;
   run.times.add(stages, read_ms, -1.0);
 }
 

@@ -58,7 +58,7 @@ void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals
   for (const TrackedPerson& person : people) {
     if (person.state == TrackState::tracked) totals.ids.insert(person.id);
   }
-  totals.people += static_cast<int>(std::ranges::count_if(people, is_found));
+  totals.people += int(std::ranges::count_if(people, is_found));
   totals.frames_with_people += std::ranges::any_of(people, is_found) ? 1 : 0;
 }
 

@@ -26,7 +26,7 @@ double distance_m(const Skeleton& skeleton) {
   int count = 0;
   for (const SkeletonPart& part : skeleton.parts) {
     if (part.state != State::observed) continue;
-    sum += static_cast<double>(part.centre.z());
+    sum += double(part.centre.z());
     ++count;
   }
   return count == 0 ? 0.0 : sum / count;

@@ -11,7 +11,7 @@ namespace vesalius::cli {
 Latency summarise(std::vector<double> ms) {
   if (ms.empty()) return {};
   std::ranges::sort(ms);
-  const auto count = static_cast<double>(ms.size());
+  const auto count = double(ms.size());
   const auto rank = [&](double share) {
     return ms[static_cast<std::size_t>(std::max(1.0, std::ceil(share * count))) - 1];
   };

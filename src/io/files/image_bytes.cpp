@@ -65,10 +65,10 @@ PngBytes parse_png_header(const Chunk& chunk, const std::string& name) {
   }
   check_size(big_endian(chunk.data, 0, 4), big_endian(chunk.data, 4, 4), name);
   PngBytes png;
-  png.width = static_cast<int>(big_endian(chunk.data, 0, 4));
-  png.height = static_cast<int>(big_endian(chunk.data, 4, 4));
-  png.bit_depth = static_cast<int>(byte_at(chunk.data, 8));
-  png.colour_type = static_cast<int>(byte_at(chunk.data, 9));
+  png.width = int(big_endian(chunk.data, 0, 4));
+  png.height = int(big_endian(chunk.data, 4, 4));
+  png.bit_depth = int(byte_at(chunk.data, 8));
+  png.colour_type = int(byte_at(chunk.data, 9));
   return png;
 }
 

@@ -39,7 +39,7 @@ Image<T> decode_png(const PngBytes& png, spng_format format, const std::string& 
 template <class T>
 Image<T> decode_grey_png(std::string_view bytes, const std::string& name, const char* expected) {
   const PngBytes png = check_png(bytes, name);
-  if (png.colour_type != 0 || png.bit_depth != 8 * static_cast<int>(sizeof(T))) {
+  if (png.colour_type != 0 || png.bit_depth != 8 * int(sizeof(T))) {
     const char* kind = png.colour_type == 0 ? "grey" : png.colour_type == 4 ? "grey and alpha" : "colour";
     throw Error(fmt::format("{}: {}-bit {} PNG, expected {}", name, png.bit_depth, kind, expected));
   }

@@ -102,7 +102,7 @@ class TextSetter : public OptionVisitor {
     if (!wanted(name)) return;
     const auto read = number_in<double>(text_);
     if (!read) fail("a number");
-    set(value, static_cast<float>(*read), info);
+    set(value, float(*read), info);
   }
   void option(const std::string& name, int& value, const OptionInfo& info) override {
     if (!wanted(name)) return;
@@ -150,14 +150,14 @@ class Setter : public OptionVisitor {
     if (node == nullptr) return;
     const auto read = node->is_number() ? node->value<double>() : std::nullopt;
     if (!read) values_.fail(*node, name + ": expected a number");
-    set(*node, name, value, static_cast<float>(*read), info);
+    set(*node, name, value, float(*read), info);
   }
   void option(const std::string& name, int& value, const OptionInfo& info) override {
     const toml::node* node = values_.find(name);
     if (node == nullptr) return;
     const auto read = node->value_exact<std::int64_t>();
-    if (!read || *read != static_cast<int>(*read)) values_.fail(*node, name + ": expected a whole number");
-    set(*node, name, value, static_cast<int>(*read), info);
+    if (!read || *read != int(*read)) values_.fail(*node, name + ": expected a whole number");
+    set(*node, name, value, int(*read), info);
   }
   void option(const std::string& name, bool& value, const OptionInfo& /*info*/) override {
     const toml::node* node = values_.find(name);

@@ -49,8 +49,7 @@ std::string serialise_cloud(const Frame& frame, const LabelImage& labels, const 
   for (int v = 0; v < frame.depth.height(); ++v) {
     for (int u = 0; u < frame.depth.width(); ++u) {
       if (frame.depth(u, v) == 0) continue;
-      const Eigen::Vector3f p = frame.camera.point(static_cast<float>(u), static_cast<float>(v),
-                                                   static_cast<float>(frame.depth(u, v)) / 1000.F);
+      const Eigen::Vector3f p = frame.camera.point(float(u), float(v), float(frame.depth(u, v)) / 1000.F);
       const std::uint8_t label = labels(u, v);
       const Rgb unlabelled = frame.colour.empty() ? kPlain : frame.colour(u, v);
       const Rgb colour = label == kBackground ? unlabelled : body.parts[label].colour;

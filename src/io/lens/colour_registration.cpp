@@ -51,16 +51,16 @@ ColourRegistration::ColourRegistration(const Camera& depth, const LensCamera& co
     : depth_(depth), colour_(colour), colour_from_depth_(colour_from_depth.cast<float>()) {
   check(depth);
   check(colour.camera);
-  std::ranges::transform(colour_.lens.k, k_.begin(), [](double k) { return static_cast<float>(k); });
+  std::ranges::transform(colour_.lens.k, k_.begin(), [](double k) { return float(k); });
   // At any distance, one pixel of depth covers so many of colour.
-  while (static_cast<float>(1 << cell_bits_) < colour.camera.fx / depth.fx && cell_bits_ < kMostCellBits) ++cell_bits_;
+  while (float(1 << cell_bits_) < colour.camera.fx / depth.fx && cell_bits_ < kMostCellBits) ++cell_bits_;
 }
 
 ColourImage ColourRegistration::operator()(const DepthImage& depth, const ColourImage& colour) const {
   expect_size(depth_, depth, "depth");
   expect_size(colour_.camera, colour, "colour");
   const Camera& to = colour_.camera;
-  const auto reach = static_cast<float>(colour_.lens.reach);
+  const auto reach = float(colour_.lens.reach);
   const float reach2 = reach * reach;
   Image<std::uint16_t> nearest(((to.width - 1) >> cell_bits_) + 1, ((to.height - 1) >> cell_bits_) + 1, kFar);
   Image<Landing> landings(depth.width(), depth.height());
@@ -69,12 +69,12 @@ ColourImage ColourRegistration::operator()(const DepthImage& depth, const Colour
 
   parallel_ranges(depth.height(), kRowsAtOnce, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
-      const Eigen::Vector3f row = turn.col(1) * ((static_cast<float>(v) - depth_.cy) / depth_.fy) + turn.col(2);
+      const Eigen::Vector3f row = turn.col(1) * ((float(v) - depth_.cy) / depth_.fy) + turn.col(2);
       for (int u = 0; u < depth.width(); ++u) {
         if (depth(u, v) == 0) continue;
-        const Eigen::Vector3f ray = turn.col(0) * ((static_cast<float>(u) - depth_.cx) / depth_.fx) + row;
-        const Eigen::Vector3f point_mm = static_cast<float>(depth(u, v)) * ray + shift_mm;
-        if (!(point_mm.z() >= 1.F && point_mm.z() < static_cast<float>(kFar))) continue;
+        const Eigen::Vector3f ray = turn.col(0) * ((float(u) - depth_.cx) / depth_.fx) + row;
+        const Eigen::Vector3f point_mm = float(depth(u, v)) * ray + shift_mm;
+        if (!(point_mm.z() >= 1.F && point_mm.z() < float(kFar))) continue;
         float x = point_mm.x() / point_mm.z(), y = point_mm.y() / point_mm.z();
         if (!(x * x + y * y <= reach2)) continue;
         if (colour_.lens.model == LensModel::brown_conrady) bend_brown_conrady(k_, x, y);

@@ -27,13 +27,13 @@ Rectification::Rectification(const LensCamera& from, const Camera& to)
   parallel_ranges(to.height, kRowsAtOnce, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < to.width; ++u) {
-        const Eigen::Vector3d ray = to.point(static_cast<float>(u), static_cast<float>(v), 1.F).cast<double>();
+        const Eigen::Vector3d ray = to.point(float(u), float(v), 1.F).cast<double>();
         Place& place =
             places_[static_cast<std::size_t>(v) * static_cast<std::size_t>(to.width) + static_cast<std::size_t>(u)];
         place = {kNoPlace, kNoPlace};
         if (const auto bent = distort(from.lens, ray.head<2>())) {
-          place = {to_place(bent->x() * static_cast<double>(from.camera.fx) + static_cast<double>(from.camera.cx)),
-                   to_place(bent->y() * static_cast<double>(from.camera.fy) + static_cast<double>(from.camera.cy))};
+          place = {to_place(bent->x() * double(from.camera.fx) + double(from.camera.cx)),
+                   to_place(bent->y() * double(from.camera.fy) + double(from.camera.cy))};
         }
       }
     }

@@ -280,7 +280,7 @@ void write_trees(ByteWriter& out, const std::vector<Tree>& trees) {
   for (const Tree& tree : trees) total.add(tree.nodes.size(), tree.leaves.size());
   if (total.too_many()) throw Error("forest: " + total.message());
   std::vector<std::string> packed(trees.size());
-  parallel_for(static_cast<int>(trees.size()), [&](int t) { packed[t] = pack_tree(trees[t]); });
+  parallel_for(int(trees.size()), [&](int t) { packed[t] = pack_tree(trees[t]); });
   out.number(static_cast<std::uint32_t>(trees.size()));
   for (std::size_t t = 0; t < trees.size(); ++t) {
     out.number(static_cast<std::uint32_t>(trees[t].nodes.size()));
@@ -292,21 +292,21 @@ void write_trees(ByteWriter& out, const std::vector<Tree>& trees) {
 std::vector<Tree> read_trees(ByteReader& in) {
   const std::vector<PackedTree> packed = read_packed_trees(in);
   std::vector<Tree> trees(packed.size());
-  parallel_for(static_cast<int>(trees.size()),
+  parallel_for(int(trees.size()),
                [&](int t) { trees[t] = unpack_tree(packed[t], fmt::format("{}: tree {}", in.name(), t)); });
   return trees;
 }
 
 void write_logits(ByteWriter& out, const std::vector<Tree>& trees) {
   std::vector<std::string> packed(trees.size());
-  parallel_for(static_cast<int>(trees.size()), [&](int t) { packed[t] = pack(by_columns(trees[t]), kLevel); });
+  parallel_for(int(trees.size()), [&](int t) { packed[t] = pack(by_columns(trees[t]), kLevel); });
   for (const std::string& tree : packed) out.text(tree);
 }
 
 void read_logits(ByteReader& in, std::size_t size, std::vector<Tree>& trees) {
   std::vector<std::string_view> packed;
   for (std::size_t t = 0; t < trees.size(); ++t) packed.push_back(in.text("logits"));
-  parallel_for(static_cast<int>(trees.size()), [&](int t) {
+  parallel_for(int(trees.size()), [&](int t) {
     const std::size_t count = trees[t].leaves.size();
     const std::string name = fmt::format("{}: logits of tree {}", in.name(), t);
     ByteReader bytes(packed[t], name);

@@ -40,7 +40,7 @@ int side(std::uint64_t value, const std::string& name) {
   if (value > static_cast<std::uint64_t>(kMaxPixels)) {
     throw Error(fmt::format("{}: a picture {} pixels long, expected at most {}", name, value, kMaxPixels));
   }
-  return static_cast<int>(value);
+  return int(value);
 }
 
 /// google.protobuf.Timestamp
@@ -91,7 +91,7 @@ Calibration parse_realsense_text(std::string_view text, const std::string& name)
   };
   const auto whole = [&](const char* key) {
     const double value = number(key);
-    return value >= 0.0 && value <= static_cast<double>(kMaxPixels) ? side(static_cast<std::uint64_t>(value), name) : 0;
+    return value >= 0.0 && value <= double(kMaxPixels) ? side(static_cast<std::uint64_t>(value), name) : 0;
   };
   Calibration calibration;
   calibration.width = whole("width");
@@ -255,7 +255,7 @@ bool is_depth(const PictureMessage& picture) {
 }
 
 DepthImage depth_of(const PictureMessage& picture, float units_per_m, const std::string& name) {
-  const double to_mm = 1e3 / static_cast<double>(units_per_m);
+  const double to_mm = 1e3 / double(units_per_m);
   const bool is_float = picture.encoding.starts_with("32FC1");
   if (picture.compressed) {
     Image<std::uint16_t> stored = unpack_compressed_depth(picture.data, picture.encoding, name);
@@ -269,7 +269,7 @@ DepthImage depth_of(const PictureMessage& picture, float units_per_m, const std:
   for (int v = 0; v < picture.height; ++v) {
     for (int u = 0; u < picture.width; ++u) {
       if (is_float) {
-        depth(u, v) = depth_reading_of_mm(1e3 * static_cast<double>(value_at<float>(picture, u, v)));
+        depth(u, v) = depth_reading_of_mm(1e3 * double(value_at<float>(picture, u, v)));
       } else {
         const auto stored = value_at<std::uint16_t>(picture, u, v);
         depth(u, v) = to_mm == 1.0 ? stored : depth_reading_of_mm(stored * to_mm);

@@ -132,14 +132,14 @@ Image<std::uint16_t> unpack_compressed_depth(std::string_view data, std::string_
     const auto width = in.number<std::uint32_t>("width of RVL");
     const auto height = in.number<std::uint32_t>("height of RVL");
     check_size(width, height, name);
-    stored = unpack_rvl(in.take(in.left(), "RVL"), static_cast<int>(width), static_cast<int>(height), name);
+    stored = unpack_rvl(in.take(in.left(), "RVL"), int(width), int(height), name);
   } else {
     stored = decode_depth_png(in.take(in.left(), "PNG"), name);
   }
   if (!is_float) return stored;
   for (std::uint16_t& value : stored) {
     if (value == 0) continue;
-    value = depth_reading_of_mm(1e3 * scale / (static_cast<double>(value) - offset));
+    value = depth_reading_of_mm(1e3 * scale / (double(value) - offset));
   }
   return stored;
 }

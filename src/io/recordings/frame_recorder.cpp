@@ -28,7 +28,7 @@ std::uint16_t FrameRecorder::topic(std::optional<std::uint16_t>& known, const ch
 
 void FrameRecorder::write(const Frame& frame) {
   check(frame);
-  time_ns_ = std::llround(kNanoseconds * frame.time_s.value_or(static_cast<double>(frames_) / rate_));
+  time_ns_ = std::llround(kNanoseconds * frame.time_s.value_or(double(frames_) / rate_));
   log_ns_ = frame.arrived_s ? std::llround(kNanoseconds * *frame.arrived_s) : time_ns_;
   ++frames_;
   out_.write(topic(camera_, "/camera/depth/camera_info", "sensor_msgs/CameraInfo"), log_ns_,

@@ -42,7 +42,7 @@ int side(const json& object, const char* key, const std::string& name) {
   if (!value.is_number() || !(value.get<double>() >= 1.0 && value.get<double>() <= kMost)) {
     throw Error(fmt::format("{}: \"{}\": expected a number of pixels", name, key));
   }
-  return static_cast<int>(value.get<double>());
+  return int(value.get<double>());
 }
 
 /// What takes points of the depth camera to a sensor.
@@ -153,7 +153,7 @@ std::optional<Calibration> k4a_colour_calibration(const K4aCalibration& calibrat
   if (!calibration.colour) return std::nullopt;
   const K4aCalibration::Sensor& sensor = *calibration.colour;
   // Pictures have the sensor's width and the middle of its height; old calibrations are those of such a band.
-  const double scale = static_cast<double>(width) / sensor.width;
+  const double scale = double(width) / sensor.width;
   const double sensor_height = scale * sensor.height;
   Calibration found = of_pictures(sensor, width, sensor_height, 0.0, (sensor_height - height) / 2.0, width, height);
   found.frame = kK4aColourFrame;
@@ -168,7 +168,7 @@ K4aAcceleration parse_k4a_acceleration(std::string_view bytes, const std::string
   ByteReader in(bytes, name);
   K4aAcceleration sample;
   sample.time_ns = static_cast<std::int64_t>(in.number<std::uint64_t>("time of an acceleration"));
-  for (double& axis : sample.m_s2) axis = static_cast<double>(in.real32("acceleration"));
+  for (double& axis : sample.m_s2) axis = double(in.real32("acceleration"));
   return sample;
 }
 

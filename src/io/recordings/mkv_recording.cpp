@@ -166,7 +166,7 @@ class MkvRecording final : public Recording {
     if (context_->duration > 0) {
       duration_ns_ = std::min(kMostTime_ns, av_rescale_q(context_->duration, {1, AV_TIME_BASE}, kNanosecond));
     }
-    for (unsigned i = 0; i < context_->nb_streams; ++i) look_at(static_cast<int>(i));
+    for (unsigned i = 0; i < context_->nb_streams; ++i) look_at(int(i));
     if (depth_ < 0) throw Error(path_ + ": no depth, expected a track of the codec b16g that is named DEPTH");
     add_topic(depth_, "/depth/image", "sensor_msgs/Image");
     if (colour_ >= 0) {

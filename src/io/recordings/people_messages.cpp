@@ -120,12 +120,12 @@ struct MarkerStyle {
 
 void write_colour(CdrWriter& out, Rgb colour, float opacity) {
   constexpr float kFull = 255.F;
-  for (const std::uint8_t value : {colour.r, colour.g, colour.b}) out.real32(static_cast<float>(value) / kFull);
+  for (const std::uint8_t value : {colour.r, colour.g, colour.b}) out.real32(float(value) / kFull);
   out.real32(opacity);
 }
 
 void write_point(CdrWriter& out, const Eigen::Vector3f& point) {
-  for (int i = 0; i < 3; ++i) out.real64(static_cast<double>(point[i]));
+  for (int i = 0; i < 3; ++i) out.real64(double(point[i]));
 }
 
 /// Writes one marker. Its colours are those of the balls.

@@ -10,7 +10,7 @@ constexpr std::size_t kMostSamples = 10'000;
 constexpr double kLeast_m_s2 = 9.3, kMost_m_s2 = 10.3;
 
 /// Times of damaged files may be any number.
-double difference_ns(std::int64_t a, std::int64_t b) { return static_cast<double>(a) - static_cast<double>(b); }
+double difference_ns(std::int64_t a, std::int64_t b) { return double(a) - double(b); }
 
 }  // namespace
 

@@ -146,7 +146,7 @@ class FreenectSource final : public LiveSource {
     if (!wait_for_frame(has_frame)) return std::nullopt;
     missed_ += taken_ > 0 ? depth_.count - taken_ - 1 : 0;
     taken_ = depth_.count;
-    Frame frame = arrived(static_cast<double>(depth_.time) / kTicks_s);
+    Frame frame = arrived(double(depth_.time) / kTicks_s);
     frame.arrived_s = depth_.arrived_s;
     if (tilt_) frame.up = tilt_->up();
     frame.camera = {kWidth, kHeight, kFocal_px, kFocal_px, (kWidth - 1) / 2.F, (kHeight - 1) / 2.F};
@@ -211,7 +211,7 @@ class FreenectSource final : public LiveSource {
     depth_.time = whole(time);
     // Packets that were lost on the way are frames too.
     const std::int64_t periods = depth_.count == 0 ? 1 : (depth_.time - before + kBetweenFrames / 2) / kBetweenFrames;
-    depth_.count += static_cast<int>(std::max<std::int64_t>(1, periods));
+    depth_.count += int(std::max<std::int64_t>(1, periods));
     came_.notify_all();
   }
 

@@ -48,7 +48,7 @@ void start_library() {
 
 std::string serial_of(const openni::Device& device) {
   std::array<char, 256> text{};
-  int size = static_cast<int>(text.size() - 1);
+  int size = int(text.size() - 1);
   if (device.getProperty(openni::DEVICE_PROPERTY_SERIAL_NUMBER, text.data(), &size) != openni::STATUS_OK) return "";
   return text.data();
 }
@@ -114,8 +114,7 @@ class Openni2Source final : public LiveSource {
     const openni::VideoMode mode = depth_.getVideoMode();
     if (mode.getPixelFormat() != openni::PIXEL_FORMAT_DEPTH_1_MM &&
         mode.getPixelFormat() != openni::PIXEL_FORMAT_DEPTH_100_UM) {
-      throw Error(
-          fmt::format("{}: depth of format {}, expected millimetres", place_, static_cast<int>(mode.getPixelFormat())));
+      throw Error(fmt::format("{}: depth of format {}, expected millimetres", place_, int(mode.getPixelFormat())));
     }
     per_mm_ = mode.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_100_UM ? 10 : 1;
     depth_.setMirroringEnabled(false);
@@ -136,13 +135,13 @@ class Openni2Source final : public LiveSource {
   std::optional<Frame> next() override {
     openni::VideoFrameRef read;
     const auto has_frame = [&](std::chrono::milliseconds patience) {
-      read = wait_for(depth_, static_cast<int>(patience.count()));
+      read = wait_for(depth_, int(patience.count()));
       return read.isValid();
     };
     if (!wait_for_frame(has_frame)) return std::nullopt;
     if (last_index_ > 0 && read.getFrameIndex() > last_index_ + 1) missed_ += read.getFrameIndex() - last_index_ - 1;
     last_index_ = read.getFrameIndex();
-    Frame frame = arrived(static_cast<double>(read.getTimestamp()) / kMicroseconds);
+    Frame frame = arrived(double(read.getTimestamp()) / kMicroseconds);
     frame.camera = camera_;
     frame.depth = copy_depth(read);
     if (colour_.isValid()) frame.colour = colour_near(static_cast<std::int64_t>(read.getTimestamp()));
@@ -190,16 +189,16 @@ class Openni2Source final : public LiveSource {
     camera_.width = width;
     camera_.height = height;
     if (across > 0.0 && down > 0.0) {
-      camera_.fx = static_cast<float>(width / (2.0 * std::tan(across / 2.0)));
-      camera_.fy = static_cast<float>(height / (2.0 * std::tan(down / 2.0)));
+      camera_.fx = float(width / (2.0 * std::tan(across / 2.0)));
+      camera_.fy = float(height / (2.0 * std::tan(down / 2.0)));
     } else {
       constexpr float kUsual = 525.F / kWidth;  // of PrimeSense cameras
-      camera_.fx = camera_.fy = kUsual * static_cast<float>(width);
+      camera_.fx = camera_.fy = kUsual * float(width);
       notes_.push_back(
           fmt::format("{}: no field of view given; a focal length of {:.4g} pixels assumed", place_, camera_.fx));
     }
-    camera_.cx = static_cast<float>(width - 1) / 2.F;
-    camera_.cy = static_cast<float>(height - 1) / 2.F;
+    camera_.cx = float(width - 1) / 2.F;
+    camera_.cy = float(height - 1) / 2.F;
   }
 
   DepthImage copy_depth(const openni::VideoFrameRef& read) const {

@@ -86,8 +86,7 @@ std::vector<Mode> modes_of(const Held<ob::StreamProfileList>& list, const std::s
   const std::uint32_t count = call(place, api().stream_profile_list_get_count, all);
   for (std::uint32_t i = 0; i < count; ++i) {
     Mode mode;
-    mode.profile =
-        hold(call(place, api().stream_profile_list_get_profile, all, static_cast<int>(i)), api().delete_stream_profile);
+    mode.profile = hold(call(place, api().stream_profile_list_get_profile, all, int(i)), api().delete_stream_profile);
     const auto* const one = static_cast<const ob::StreamProfile*>(mode.profile.get());
     mode.format = call(place, api().stream_profile_get_format, one);
     mode.width = call(place, api().video_stream_profile_get_width, one);
@@ -112,9 +111,7 @@ Mode* choose_depth(std::vector<Mode>& modes) {
 /// Returns the mode of colour whose shape is most like depth's, so that little of depth lies outside; of these the
 /// smallest that has as many rows; null if there is none.
 Mode* choose_colour(std::vector<Mode>& modes, const Mode& depth) {
-  const auto shape = [](const Mode& mode) {
-    return std::log(static_cast<double>(mode.width) / static_cast<double>(mode.height));
-  };
+  const auto shape = [](const Mode& mode) { return std::log(double(mode.width) / double(mode.height)); };
   Mode* best = nullptr;
   const auto rank = [&](const Mode& mode) {
     const double unlike = std::round(100.0 * std::abs(shape(mode) - shape(depth)));
@@ -214,15 +211,14 @@ class OrbbecSource final : public LiveSource {
     };
     if (!wait_for_frame(has_frame)) return std::nullopt;
     const auto index = static_cast<std::int64_t>(call(place_, api().frame_get_index, pictures.measured()));
-    if (last_index_ >= 0 && index > last_index_ + 1) missed_ += static_cast<int>(index - last_index_ - 1);
+    if (last_index_ >= 0 && index > last_index_ + 1) missed_ += int(index - last_index_ - 1);
     last_index_ = index;
     const auto time_us = call(place_, api().frame_get_timestamp_us, pictures.measured());
-    Frame frame = arrived(static_cast<double>(time_us) / kMicroseconds);
+    Frame frame = arrived(double(time_us) / kMicroseconds);
     frame.camera = camera_;
     frame.depth = DepthImage(camera_.width, camera_.height);
     copy(pictures.depth.get(), frame.depth, "depth");
-    to_millimetres(frame.depth,
-                   static_cast<double>(call(place_, api().depth_frame_get_value_scale, pictures.measured())));
+    to_millimetres(frame.depth, double(call(place_, api().depth_frame_get_value_scale, pictures.measured())));
     if (rectification_ && !is_registered_without_lens_) frame.depth = rectification_->depth(frame.depth);
     if (pictures.colour) {
       frame.colour = ColourImage(camera_.width, camera_.height);
@@ -291,7 +287,7 @@ class OrbbecSource final : public LiveSource {
   LensCamera lens_of(const ob::StreamProfile* stream) {
     const ob::Intrinsics pinhole = call(place_, api().video_stream_profile_get_intrinsic, stream);
     const ob::Distortion lens = call(place_, api().video_stream_profile_get_distortion, stream);
-    const bool known = lens.model >= 0 && lens.model < static_cast<int>(kLensModels.size());
+    const bool known = lens.model >= 0 && lens.model < int(kLensModels.size());
     const std::string_view model = known ? kLensModels[static_cast<std::size_t>(lens.model)] : "of a later version";
     return with_lens({pinhole.width, pinhole.height, pinhole.fx, pinhole.fy, pinhole.cx, pinhole.cy}, model,
                      coefficients_of(lens));
@@ -365,7 +361,7 @@ class OrbbecSource final : public LiveSource {
     const auto width = call(place_, api().video_frame_get_width, from);
     const auto height = call(place_, api().video_frame_get_height, from);
     const std::size_t row = sizeof(T) * static_cast<std::size_t>(to.width());
-    if (static_cast<int>(width) != to.width() || static_cast<int>(height) != to.height() ||
+    if (int(width) != to.width() || int(height) != to.height() ||
         call(place_, api().frame_get_data_size, from) < row * static_cast<std::size_t>(to.height())) {
       throw Error(fmt::format("{}: {} of {}x{}, expected {}x{} with {} bytes a pixel", place_, what, width, height,
                               to.width(), to.height(), sizeof(T)));

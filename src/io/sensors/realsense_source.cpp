@@ -154,7 +154,7 @@ class RealsenseSource final : public LiveSource {
       const auto number = static_cast<std::int64_t>(call(place_, api().get_frame_number, of));
       // Where colour comes late, the library gives the same depth once more.
       if (number == last_number_) continue;
-      if (last_number_ >= 0 && number > last_number_ + 1) missed_ += static_cast<int>(number - last_number_ - 1);
+      if (last_number_ >= 0 && number > last_number_ + 1) missed_ += int(number - last_number_ - 1);
       last_number_ = number;
       Frame frame = arrived(1e-3 * call(place_, api().get_frame_timestamp, of));
       frame.arrived_s = arrived_s;
@@ -236,7 +236,7 @@ class RealsenseSource final : public LiveSource {
     constexpr int kMostOfFisheye = 4;
     rs2::Intrinsics lens{};
     call(place_, api().get_video_stream_intrinsics, stream, &lens);
-    const bool known = lens.model >= 0 && lens.model < static_cast<int>(kLensModels.size());
+    const bool known = lens.model >= 0 && lens.model < int(kLensModels.size());
     const std::string_view model = known ? kLensModels[static_cast<std::size_t>(lens.model)] : "of a later version";
     std::vector<double> coefficients(std::begin(lens.coefficients), std::end(lens.coefficients));
     if (lens.model == rs2::kNoDistortion) coefficients.clear();
@@ -283,7 +283,7 @@ class RealsenseSource final : public LiveSource {
       throw Error(fmt::format("{}: depth of {}x{}, expected {}x{} of its calibration", place_, depth.width(),
                               depth.height(), camera_.width, camera_.height));
     }
-    to_millimetres(depth, 1e3 * static_cast<double>(call(place_, api().depth_frame_get_units, frame)));
+    to_millimetres(depth, 1e3 * double(call(place_, api().depth_frame_get_units, frame)));
     return rectification_ ? rectification_->depth(depth) : std::move(depth);
   }
 

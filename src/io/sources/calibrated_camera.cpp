@@ -16,12 +16,7 @@ bool keeps_direction(const Calibration& c) {
 
 CalibratedCamera calibrated(const Calibration& c, bool is_rectified) {
   const auto camera = [&](double fx, double fy, double cx, double cy) {
-    return Camera{c.width,
-                  c.height,
-                  static_cast<float>(fx),
-                  static_cast<float>(fy),
-                  static_cast<float>(cx),
-                  static_cast<float>(cy)};
+    return Camera{c.width, c.height, float(fx), float(fy), float(cx), float(cy)};
   };
   const Camera of_matrix = camera(c.matrix[0], c.matrix[4], c.matrix[2], c.matrix[5]);
   const std::optional<Lens> lens = make_lens(c.model, c.distortion);

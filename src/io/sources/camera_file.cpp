@@ -34,17 +34,17 @@ std::string one_line(std::string text) {
 
 float checked_focal(double value, const std::string& name, const std::string& key) {
   if (!(value > 0.0 && value < 1e6)) fail(name, key, "a positive number of pixels");
-  return static_cast<float>(value);
+  return float(value);
 }
 
 float checked_centre(double value, const std::string& name, const std::string& key) {
   if (!(std::abs(value) < 1e6)) fail(name, key, "a number of pixels");
-  return static_cast<float>(value);
+  return float(value);
 }
 
 float checked_scale(double value, const std::string& name, const std::string& key) {
   if (!(value >= 1.0 && value <= 1e6)) fail(name, key, "stored units per metre, 1 to 1000000");
-  return static_cast<float>(value);
+  return float(value);
 }
 
 std::optional<double> number(const json& object, const std::string& key, const std::string& name) {
@@ -58,7 +58,7 @@ std::optional<int> side(const json& object, const std::string& key, const std::s
   const std::optional<double> value = number(object, key, name);
   if (!value) return std::nullopt;
   if (!(*value >= 1.0 && *value <= kMaxSide) || std::floor(*value) != *value) fail(name, key, "a number of pixels");
-  return static_cast<int>(*value);
+  return int(*value);
 }
 
 /// Returns the units per metre that "mm", "mm (checked)" and so on name.
@@ -201,7 +201,7 @@ float nominal_focal(const std::string& sensor, int width, int height, bool regis
     if (!named) continue;
     const bool same_format = std::int64_t{width} * known.height == std::int64_t{height} * known.width;
     if (!same_format && !known.crops) return 0.F;
-    return (registered ? known.registered : known.own) * static_cast<float>(height) / static_cast<float>(known.height);
+    return (registered ? known.registered : known.own) * float(height) / float(known.height);
   }
   return 0.F;
 }
@@ -323,8 +323,8 @@ Camera resolve_camera(const CameraFacts& facts, int width, int height, bool regi
                                 facts.odd_lens));
   }
   camera.fy = facts.fy.value_or(camera.fx);
-  camera.cx = facts.cx.value_or(static_cast<float>(width - 1) / 2.F);
-  camera.cy = facts.cy.value_or(static_cast<float>(height - 1) / 2.F);
+  camera.cx = facts.cx.value_or(float(width - 1) / 2.F);
+  camera.cy = facts.cy.value_or(float(height - 1) / 2.F);
   check(camera);
   return camera;
 }

@@ -76,7 +76,7 @@ void add_times(FrameList& list, double rate_hz) {
   }
   const bool named = numbers.size() == list.frames.size();
   for (std::size_t i = 0; i < list.frames.size(); ++i) {
-    list.frames[i].time_s = (named ? numbers[i] : static_cast<double>(i)) / rate_hz;
+    list.frames[i].time_s = (named ? numbers[i] : double(i)) / rate_hz;
   }
 }
 

@@ -7,7 +7,7 @@
 namespace vesalius {
 
 /// Returns when frame `index` counts as taken where the frames have no times.
-inline double usual_time_s(std::size_t index) { return static_cast<double>(index) / kUsualRate; }
+inline double usual_time_s(std::size_t index) { return double(index) / kUsualRate; }
 
 /// Returns the index of the first of `count` frames that is not before `time_s`, or `count`. `time_of` gives the time
 /// of the frame with an index; times must not fall.

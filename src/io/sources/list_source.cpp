@@ -28,7 +28,7 @@ class ListSource final : public FrameSource {
     if (next_ == reader_.size()) return std::nullopt;
     return reader_.read(next_++);
   }
-  int size() const override { return static_cast<int>(reader_.size()); }
+  int size() const override { return int(reader_.size()); }
   std::optional<TimeSpan> span() const override { return TimeSpan{time_of(0), time_of(reader_.size() - 1)}; }
   void seek(double time_s) override {
     next_ = first_not_before(time_s, reader_.size(), [this](std::size_t i) { return time_of(i); });

@@ -60,8 +60,8 @@ Grid grid_of(const OniStream& stream, const std::string& place) {
     throw Error(
         fmt::format("{}: {} of {}x{} pixels, expected at most {}", place, stream.name, width, height, kMaxPixels));
   }
-  grid.full_width = grid.width = static_cast<int>(width);
-  grid.full_height = grid.height = static_cast<int>(height);
+  grid.full_width = grid.width = int(width);
+  grid.full_height = grid.height = int(height);
   const auto cropping = stream.properties.find("xnCropping");
   if (cropping == stream.properties.end()) return grid;
   ByteReader part(cropping->second, place);
@@ -135,7 +135,7 @@ class OniSource final : public FrameSource {
     if (colour_ != nullptr) frame.colour = colour_near(picture.time_us, place);
     return frame;
   }
-  int size() const override { return static_cast<int>(times_s_.size()); }
+  int size() const override { return int(times_s_.size()); }
   std::optional<TimeSpan> span() const override {
     return TimeSpan{times_s_.front(), std::max(times_s_.front(), times_s_.back())};
   }
@@ -150,7 +150,7 @@ class OniSource final : public FrameSource {
   void name_frames() {
     constexpr double kMicroseconds = 1e6;
     for (const OniPicture& picture : depth_->pictures) {
-      times_s_.push_back(static_cast<double>(picture.time_us) / kMicroseconds);
+      times_s_.push_back(double(picture.time_us) / kMicroseconds);
       std::string name = fmt::format("{:.6f}", times_s_.back());
       while (!names_.empty() && names_.back().starts_with(name)) name += "_again";
       names_.push_back(std::move(name));
@@ -252,11 +252,11 @@ class OniSource final : public FrameSource {
     }
     if (!facts.fx) {
       CameraFacts own;
-      own.fx = static_cast<float>(focal[0]);
-      own.fy = static_cast<float>(focal[1]);
-      own.cx = static_cast<float>(grid_.full_width - 1) / 2.F - static_cast<float>(grid_.left);
-      own.cy = static_cast<float>(grid_.full_height - 1) / 2.F - static_cast<float>(grid_.top);
-      if (depth_->pictures.front().mirrored) own.cx = static_cast<float>(grid_.width - 1) - *own.cx;
+      own.fx = float(focal[0]);
+      own.fy = float(focal[1]);
+      own.cx = float(grid_.full_width - 1) / 2.F - float(grid_.left);
+      own.cy = float(grid_.full_height - 1) / 2.F - float(grid_.top);
+      if (depth_->pictures.front().mirrored) own.cx = float(grid_.width - 1) - *own.cx;
       facts.fill_from(own);
     }
     camera_ = resolve_camera(facts, grid_.width, grid_.height, colour_ != nullptr, path_, notes_);
@@ -296,7 +296,7 @@ class OniSource final : public FrameSource {
 
   ColourImage colour_near(std::int64_t time_us, const std::string& place) const {
     const auto apart = [time_us](const OniPicture& picture) {
-      return std::abs(static_cast<double>(picture.time_us) - static_cast<double>(time_us));
+      return std::abs(double(picture.time_us) - double(time_us));
     };
     const OniPicture& nearest = *std::ranges::min_element(colour_->pictures, {}, apart);
     if (apart(nearest) > kMostApart_us) return {};

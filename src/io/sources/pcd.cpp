@@ -35,7 +35,7 @@ Rgb unpack(std::uint32_t packed) {
 }
 
 float load_coordinate(const PcdField& field, const char* at) {
-  return field.size == 8 ? static_cast<float>(load<double>(at)) : load<float>(at);
+  return field.size == 8 ? float(load<double>(at)) : load<float>(at);
 }
 
 /// Where a field's values lie in decoded bytes: the offset of the first one and the distance to the next point's.
@@ -131,7 +131,7 @@ bool store_word(const PcdHeader& header, int field, std::string_view word, std::
     if (field != header.xyz[axis]) continue;
     double value = 0.0;
     if (!parse_word(word, value)) return false;
-    grid.points_m[i][axis] = static_cast<float>(value);
+    grid.points_m[i][axis] = float(value);
   }
   return true;
 }
@@ -143,7 +143,7 @@ PointGrid decode_ascii(const PcdHeader& header, std::string_view data, const std
   PointGrid grid{Image<Eigen::Vector3f>(header.width, header.height, Eigen::Vector3f::Zero()), {}};
   if (header.rgb >= 0) grid.colour = ColourImage(header.width, header.height);
   for (std::size_t i = 0; i < header.points(); ++i) {
-    for (int field = 0; field < static_cast<int>(header.fields.size()); ++field) {
+    for (int field = 0; field < int(header.fields.size()); ++field) {
       for (std::uint32_t k = 0; k < header.fields[field].count; ++k) {
         const std::string_view word = next_word(data);
         if (word.empty()) throw Error(fmt::format("{}: truncated: ends at point {} of {}", name, i, header.points()));
@@ -241,10 +241,10 @@ CameraFacts estimate_camera(const PointGrid& grid, const std::string& name) {
   }
   CameraFacts facts;
   facts.origin = name;
-  facts.fx = static_cast<float>(focal[0]);
-  facts.fy = static_cast<float>(focal[1]);
-  facts.cx = static_cast<float>(fit.u.centre());
-  facts.cy = static_cast<float>(fit.v.centre());
+  facts.fx = float(focal[0]);
+  facts.fy = float(focal[1]);
+  facts.cx = float(fit.u.centre());
+  facts.cy = float(fit.v.centre());
   return facts;
 }
 

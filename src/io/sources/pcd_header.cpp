@@ -115,7 +115,7 @@ class HeaderReader {
   }
 
   void find_fields() {
-    for (int i = 0; i < static_cast<int>(header_.fields.size()); ++i) {
+    for (int i = 0; i < int(header_.fields.size()); ++i) {
       PcdField& field = header_.fields[i];
       field.offset = header_.point_bytes;
       header_.point_bytes += std::size_t{field.size} * field.count;
@@ -143,8 +143,8 @@ class HeaderReader {
     if (points_ && *points_ != std::uint64_t{width_} * height_) {
       throw Error(fmt::format("{}: POINTS {}, expected WIDTH x HEIGHT, {}x{}", name_, *points_, width_, height_));
     }
-    header_.width = static_cast<int>(width_);
-    header_.height = static_cast<int>(height_);
+    header_.width = int(width_);
+    header_.height = int(height_);
     header_.encoding = *encoding_;
     header_.data_begin = at_;
     return std::move(header_);

@@ -23,7 +23,7 @@ std::uint32_t pack(Rgb colour) {
 Eigen::Vector3f point_at(const Frame& frame, int u, int v) {
   const std::uint16_t depth_mm = frame.depth(u, v);
   if (depth_mm == 0) return {kNan, kNan, kNan};
-  return frame.camera.point(static_cast<float>(u), static_cast<float>(v), static_cast<float>(depth_mm) / 1000.F);
+  return frame.camera.point(float(u), float(v), float(depth_mm) / 1000.F);
 }
 
 std::string header(const Frame& frame, const char* encoding) {

@@ -64,8 +64,8 @@ PictureTopic look_at(const RecordedTopic& topic, const RecordedMessage& message,
                     is_depth(picture),
                     picture.width,
                     picture.height,
-                    static_cast<double>(time_ns) / kNanoseconds,
-                    static_cast<double>(message.time_ns) / kNanoseconds};
+                    double(time_ns) / kNanoseconds,
+                    double(message.time_ns) / kNanoseconds};
   // Infrared pictures are of 16 bits too.
   if (picture.encoding == "mono16" && !has_word(topic.name, "depth")) seen.depth = false;
   try {
@@ -101,7 +101,7 @@ float depth_unit(const RecordedTopic& topic, const RecordedMessage& message, con
 
 /// Returns whether a time is more than `by_ns` after another. Times of damaged files may be any number.
 bool is_later(std::int64_t time_ns, std::int64_t than_ns, std::int64_t by_ns) {
-  return static_cast<double>(time_ns) - static_cast<double>(than_ns) > static_cast<double>(by_ns);
+  return double(time_ns) - double(than_ns) > double(by_ns);
 }
 
 /// Reads until every topic that matters has shown itself, and transforms had their time.

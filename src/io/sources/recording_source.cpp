@@ -38,14 +38,14 @@ constexpr double kLead_s = 0.5;
 /// By how much more, where that was not early enough.
 constexpr double kFurther = 4.0;
 
-double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) / static_cast<double>(kNanoseconds); }
+double seconds(std::int64_t time_ns) { return double(time_ns) / double(kNanoseconds); }
 
 /// Returns the nearest time that there is.
 std::int64_t nanoseconds(double time_s) {
   constexpr double kMost_s = 9.2e9;
   if (time_s < -kMost_s) return std::numeric_limits<std::int64_t>::min();
   if (time_s > kMost_s) return std::numeric_limits<std::int64_t>::max();
-  return static_cast<std::int64_t>(time_s * static_cast<double>(kNanoseconds));
+  return static_cast<std::int64_t>(time_s * double(kNanoseconds));
 }
 
 /// Returns when a picture was taken by its header, or recorded where that does not say.
@@ -120,7 +120,7 @@ class RecordingSource final : public FrameSource {
         frames += topic.messages;
       }
     }
-    return static_cast<int>(frames);
+    return int(frames);
   }
   std::vector<std::string> notes() const override { return notes_; }
 

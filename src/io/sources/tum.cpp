@@ -55,11 +55,10 @@ struct Merged {
   std::vector<Item> items;
 
   Merged(const std::vector<TumEntry>& depth, const std::vector<TumEntry>& colour) {
-    for (int i = 0; i < static_cast<int>(depth.size()); ++i) items.push_back({depth[i].time_s, i, true, 0, 0, false});
-    for (int i = 0; i < static_cast<int>(colour.size()); ++i)
-      items.push_back({colour[i].time_s, i, false, 0, 0, false});
+    for (int i = 0; i < int(depth.size()); ++i) items.push_back({depth[i].time_s, i, true, 0, 0, false});
+    for (int i = 0; i < int(colour.size()); ++i) items.push_back({colour[i].time_s, i, false, 0, 0, false});
     std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.time_s < b.time_s; });
-    const int count = static_cast<int>(items.size());
+    const int count = int(items.size());
     for (int i = 0; i < count; ++i) {
       items[i].before = i - 1;
       items[i].after = i + 1 < count ? i + 1 : -1;
@@ -106,7 +105,7 @@ std::vector<int> associate(const std::vector<TumEntry>& depth, const std::vector
     const auto& c = merged.items[merged.items[a].is_depth ? b : a];
     candidates.emplace(difference, d.time_s, c.time_s, a, b);
   };
-  for (int i = 0; i + 1 < static_cast<int>(merged.items.size()); ++i) consider(i, i + 1);
+  for (int i = 0; i + 1 < int(merged.items.size()); ++i) consider(i, i + 1);
 
   std::vector<int> partner(depth.size(), -1);
   while (!candidates.empty()) {

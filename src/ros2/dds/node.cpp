@@ -269,7 +269,7 @@ void Publisher::publish(std::string_view message) {
 int Publisher::readers() const {
   dds_publication_matched_status_t status;
   expect(dds_get_publication_matched_status(writer_, &status), "a topic's readers");
-  return static_cast<int>(status.current_count);
+  return int(status.current_count);
 }
 
 bool Publisher::wait_until_read(std::chrono::milliseconds most) const {

@@ -16,8 +16,8 @@ constexpr std::array<std::string_view, 18> kSkeleton{
 Eigen::Vector3f in_picture(const std::optional<Joint>& joint, const Camera& camera) {
   if (!joint || joint->position.z() <= 0.F) return Eigen::Vector3f::Zero();
   const Eigen::Vector2f pixel = camera.pixel(joint->position);
-  const float x = (pixel.x() + 0.5F) / static_cast<float>(camera.width);
-  const float y = (pixel.y() + 0.5F) / static_cast<float>(camera.height);
+  const float x = (pixel.x() + 0.5F) / float(camera.width);
+  const float y = (pixel.y() + 0.5F) / float(camera.height);
   // Written so that not-a-number is refused too.
   if (!(x >= 0.F && x <= 1.F && y >= 0.F && y <= 1.F)) return Eigen::Vector3f::Zero();
   return {x, y, joint->confidence};
@@ -37,13 +37,13 @@ std::optional<std::string> region_message(const TrackedPerson& person, const Cam
                                           std::string_view frame) {
   const Box& box = person.person.box;
   if (box.width <= 0 || box.height <= 0) return std::nullopt;
-  const auto width = static_cast<float>(camera.width), height = static_cast<float>(camera.height);
+  const auto width = float(camera.width), height = float(camera.height);
   CdrWriter out;
   out.header(time_ns, frame);
-  out.real32(static_cast<float>(box.u) / width);
-  out.real32(static_cast<float>(box.v) / height);
-  out.real32(static_cast<float>(box.u + box.width) / width);
-  out.real32(static_cast<float>(box.v + box.height) / height);
+  out.real32(float(box.u) / width);
+  out.real32(float(box.v) / height);
+  out.real32(float(box.u + box.width) / width);
+  out.real32(float(box.v + box.height) / height);
   out.real32(person.person.score);
   return out.message();
 }

@@ -159,7 +159,7 @@ std::optional<TopicFrame> TopicFrames::next(double now_s) {
   TopicFrame made;
   const std::int64_t time_ns = depth.picture.time_ns;
   made.stamp = {time_ns, depth.picture.frame};
-  made.frame.time_s = static_cast<double>(time_ns) / static_cast<double>(kNanoseconds);
+  made.frame.time_s = double(time_ns) / double(kNanoseconds);
   made.frame.name = fmt::format("{}.{:09}", time_ns / kNanoseconds, std::abs(time_ns % kNanoseconds));
   made.frame.arrived_s = depth.arrived_s;
   made.frame.camera = *camera_;

@@ -26,7 +26,7 @@ class Assignment {
  private:
   /// Pairs a free row along the shortest path of reduced costs to a free column; the pairs on it move by one.
   void augment(int free_row) {
-    const auto columns = static_cast<int>(cost_.cols());
+    const auto columns = int(cost_.cols());
     std::vector<double> distance(columns, std::numeric_limits<double>::infinity());
     std::vector<int> before(columns, -1);  // column before this one on the path, or -1 for the free row
     std::vector<bool> reached(columns, false);
@@ -72,7 +72,7 @@ std::vector<int> assign_pairs(const Eigen::MatrixXd& cost) {
   const Eigen::MatrixXd turned = cost.transpose();
   const std::vector<int> row_of = Assignment(turned).run();
   std::vector<int> column_of(cost.rows(), -1);
-  for (std::size_t column = 0; column < row_of.size(); ++column) column_of[row_of[column]] = static_cast<int>(column);
+  for (std::size_t column = 0; column < row_of.size(); ++column) column_of[row_of[column]] = int(column);
   return column_of;
 }
 

@@ -25,7 +25,7 @@ void add_blended(const DepthImage& depth, Pixel hole, float least_share, std::ve
     const Pixel beside{hole.u + du, hole.v + dv}, behind{hole.u + 2 * du, hole.v + 2 * dv};
     if (!depth.contains(behind.u, behind.v)) continue;
     const int near = depth(beside.u, beside.v), far = depth(behind.u, behind.v);
-    if (near != 0 && static_cast<float>(near) < least_share * static_cast<float>(far)) blended.push_back(beside);
+    if (near != 0 && float(near) < least_share * float(far)) blended.push_back(beside);
   }
 }
 

@@ -61,7 +61,7 @@ std::optional<float> body_yaw(const std::vector<Vector3f>& centres, const BodyMo
 
 int heading_of_yaw(float yaw_rad, int headings) {
   constexpr float kTurn = 2.F * std::numbers::pi_v<float>;
-  const auto nearest = static_cast<int>(std::lround(yaw_rad / kTurn * static_cast<float>(headings)));
+  const auto nearest = int(std::lround(yaw_rad / kTurn * float(headings)));
   return (nearest % headings + headings) % headings;
 }
 

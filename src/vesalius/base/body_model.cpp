@@ -80,7 +80,7 @@ void read_parts(const Reader& reader, const toml::table& root, BodyModel& body) 
   }
   for (std::size_t i = 0; i < array.size(); ++i) {
     const BodyPart& partner = body.parts[body.parts[i].mirror];
-    if (partner.mirror != static_cast<int>(i)) {
+    if (partner.mirror != int(i)) {
       reader.fail(*array.get(i), "part " + in_quotes(body.parts[i].name) + ": its mirror " + in_quotes(partner.name) +
                                      " does not name it in return");
     }
@@ -159,7 +159,7 @@ JointDefinition read_joint(const Reader& reader, const toml::node& node, const B
   double sum = 0.0;
   for (const toml::node& weight : weights) {
     joint.weights.push_back(reader.number(weight, "weights", -10.0, 10.0));
-    sum += static_cast<double>(joint.weights.back());
+    sum += double(joint.weights.back());
   }
   if (std::abs(sum - 1.0) > 1e-3) reader.fail(weights, "weights: expected a sum of 1, found " + std::to_string(sum));
   joint.depth_offset_m = reader.number(table, "depth_offset", -1.0, 1.0);
@@ -193,7 +193,7 @@ constexpr int kMaxFactors = 64;
 /// Reads an array of as many numbers, each at most 10 m from 0.
 std::vector<float> read_lengths(const Reader& reader, const toml::table& table, std::string_view key, int count) {
   const toml::array& values = reader.array(table, key);
-  if (static_cast<int>(values.size()) != count) {
+  if (int(values.size()) != count) {
     reader.fail(values, std::string(key) + ": expected " + std::to_string(count) + " numbers, found " +
                             std::to_string(values.size()));
   }
@@ -207,7 +207,7 @@ void read_distribution(const Reader& reader, const toml::table& root, BodyModel&
   const toml::table& table = reader.table(reader.need(root, "distribution"), "distribution");
   reader.expect_keys(table, {"factors", "noise", "confidence", "part"});
   PartDistribution& distribution = body.distribution;
-  distribution.factors = static_cast<int>(reader.integer(reader.need(table, "factors"), "factors", 0, kMaxFactors));
+  distribution.factors = int(reader.integer(reader.need(table, "factors"), "factors", 0, kMaxFactors));
   distribution.noise_m = reader.number(table, "noise", 1e-3, 1.0);
   const std::vector<float> confidence = read_lengths(reader, table, "confidence", 2);
   distribution.confidence_bias = confidence[0];
@@ -260,7 +260,7 @@ void read_surface(const Reader& reader, const toml::table& root, BodyModel& body
     rule.to = reader.number(table, "to", 0.0, 1.0);
     if (rule.to <= rule.from) reader.fail(table, "surface: expected \"to\" to be larger than \"from\"");
     rule.side = read_side(reader, table);
-    rule.line = static_cast<int>(table.source().begin.line);
+    rule.line = int(table.source().begin.line);
     body.surface.push_back(std::move(rule));
   }
 }
@@ -269,7 +269,7 @@ void read_surface(const Reader& reader, const toml::table& root, BodyModel& body
 
 int BodyModel::find_part(std::string_view part_name) const {
   const auto found = std::ranges::find(parts, part_name, &BodyPart::name);
-  return found == parts.end() ? -1 : static_cast<int>(found - parts.begin());
+  return found == parts.end() ? -1 : int(found - parts.begin());
 }
 
 BodyModel parse_body_model(std::string_view toml, const std::string& source) {

@@ -85,7 +85,7 @@ struct BodyModel {
   std::vector<SurfaceRule> surface;  ///< for training on synthetic people; may be empty: detection needs none
   std::string toml;                  ///< the text this was read from, embedded in model files
 
-  int part_count() const { return static_cast<int>(parts.size()); }
+  int part_count() const { return int(parts.size()); }
   /// Returns the index of the part of that name, or -1 if there is none.
   int find_part(std::string_view part_name) const;
 };

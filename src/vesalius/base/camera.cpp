@@ -7,8 +7,8 @@
 namespace vesalius {
 
 Camera Camera::resized(int new_width, int new_height) const {
-  const float sx = static_cast<float>(new_width) / static_cast<float>(width);
-  const float sy = static_cast<float>(new_height) / static_cast<float>(height);
+  const float sx = float(new_width) / float(width);
+  const float sy = float(new_height) / float(height);
   // Pixel centres are integers, so the picture spans [-0.5, width - 0.5].
   return {new_width, new_height, fx * sx, fy * sy, (cx + 0.5F) * sx - 0.5F, (cy + 0.5F) * sy - 0.5F};
 }

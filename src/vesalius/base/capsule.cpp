@@ -22,9 +22,7 @@ Box box_around(const Capsule& capsule, const Camera& camera) {
     top = std::min(top, v - rv);
     bottom = std::max(bottom, v + rv);
   }
-  const auto inside = [](float at, int size) {
-    return static_cast<int>(std::clamp(at, 0.F, static_cast<float>(size)));
-  };
+  const auto inside = [](float at, int size) { return int(std::clamp(at, 0.F, float(size))); };
   Box box;
   box.u = inside(left, camera.width);
   box.v = inside(top, camera.height);

@@ -26,7 +26,7 @@ struct Frame {
 
 /// Returns the point that pixel (u, v) of a depth image sees; its z is 0 where there is no reading.
 inline Eigen::Vector3f point_at(const Camera& camera, const DepthImage& depth, int u, int v) {
-  return camera.point(static_cast<float>(u), static_cast<float>(v), static_cast<float>(depth(u, v)) * 1e-3F);
+  return camera.point(float(u), float(v), float(depth(u, v)) * 1e-3F);
 }
 
 /// Throws Error unless depth has the camera's size and colour is empty or has it too.

@@ -94,7 +94,7 @@ inline Box bounding_box(const Mask& mask) {
   const auto inside = [](std::uint8_t value) { return value != 0; };
   for (int v = 0; v < mask.height(); ++v) {
     const std::uint8_t* row = mask.row(v);
-    const auto first = static_cast<int>(std::find_if(row, row + mask.width(), inside) - row);
+    const auto first = int(std::find_if(row, row + mask.width(), inside) - row);
     if (first == mask.width()) continue;
     int last = mask.width() - 1;
     while (row[last] == 0) --last;

@@ -11,8 +11,7 @@ namespace {
 /// Converts `low` and `high` to the value's own precision, so that the ends of the range are included.
 template <class T>
 void check_range(const std::string& name, T value, const OptionInfo& info) {
-  if (std::isfinite(static_cast<double>(value)) && value >= static_cast<T>(info.low) &&
-      value <= static_cast<T>(info.high)) {
+  if (std::isfinite(double(value)) && value >= static_cast<T>(info.low) && value <= static_cast<T>(info.high)) {
     return;
   }
   std::ostringstream message;

@@ -32,8 +32,6 @@ ThreadLimit::ThreadLimit(int threads)
 
 ThreadLimit::~ThreadLimit() = default;
 
-int thread_count() {
-  return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-}
+int thread_count() { return int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)); }
 
 }  // namespace vesalius

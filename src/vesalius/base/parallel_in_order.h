@@ -19,7 +19,7 @@ void parallel_in_order(int count, const Make& make, const Take& take) {
   using Item = decltype(make(0));
   const auto make_batch = [&](int begin) {
     std::vector<Item> items(static_cast<std::size_t>(std::min(batch, count - begin)));
-    parallel_for(static_cast<int>(items.size()), [&](int i) { items[i] = make(begin + i); });
+    parallel_for(int(items.size()), [&](int i) { items[i] = make(begin + i); });
     return items;
   };
   // If only one thread is allowed, the next batch waits for the caller.
@@ -29,7 +29,7 @@ void parallel_in_order(int count, const Make& make, const Take& take) {
     std::vector<Item> items = next.get();
     if (begin + batch < count) next = std::async(policy, make_batch, begin + batch);
     for (std::size_t i = 0; i < items.size(); ++i) {
-      if (!take(begin + static_cast<int>(i), std::move(items[i]))) return;
+      if (!take(begin + int(i), std::move(items[i]))) return;
     }
   }
 }

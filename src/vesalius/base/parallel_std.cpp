@@ -60,7 +60,7 @@ ThreadLimit::~ThreadLimit() { thread_limit = state_->before; }
 
 int thread_count() {
   const int limit = thread_limit;
-  return limit != kNoLimit ? limit : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return limit != kNoLimit ? limit : int(std::max(1U, std::thread::hardware_concurrency()));
 }
 
 }  // namespace vesalius

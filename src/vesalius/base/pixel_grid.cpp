@@ -21,7 +21,7 @@ int grid_step(const Camera& camera, const GridOptions& options) {
 
 Frame every_nth(const Frame& frame, int step) {
   const Camera& c = frame.camera;
-  const auto by = static_cast<float>(step);
+  const auto by = float(step);
   Frame coarse;
   coarse.name = frame.name;
   coarse.time_s = frame.time_s;
@@ -35,8 +35,8 @@ Frame every_nth(const Frame& frame, int step) {
 Camera cropped(Camera camera, const Box& box) {
   camera.width = box.width;
   camera.height = box.height;
-  camera.cx -= static_cast<float>(box.u);
-  camera.cy -= static_cast<float>(box.v);
+  camera.cx -= float(box.u);
+  camera.cy -= float(box.v);
   return camera;
 }
 

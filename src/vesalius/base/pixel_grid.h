@@ -72,9 +72,7 @@ inline GridPixel nearest_on_grid(const DepthImage& depth, int step, int u, int v
 
 /// Returns by how much a pixel's depth may differ from that of the grid pixel which speaks for it: 5 cm and 3 mm more
 /// for every square metre of the pixel's own depth, in millimetres.
-inline int grid_within_mm(int z_mm) {
-  return 50 + static_cast<int>(static_cast<std::int64_t>(z_mm) * z_mm * 3 / 1'000'000);
-}
+inline int grid_within_mm(int z_mm) { return 50 + int(static_cast<std::int64_t>(z_mm) * z_mm * 3 / 1'000'000); }
 
 /// Transfers results on a grid to all pixels. Each pixel takes the value of the surrounding grid pixel that is nearest
 /// in depth, if that is near enough (grid_within_mm).

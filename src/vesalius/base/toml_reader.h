@@ -92,7 +92,7 @@ class TomlReader {
       message << what << ": expected a number from " << low << " to " << high;
       fail(node, message.str());
     }
-    return static_cast<float>(*value);
+    return float(*value);
   }
   float number(const toml::table& table, std::string_view key, double low, double high) const {
     return number(need(table, key), key, low, high);

@@ -69,7 +69,7 @@ void BodyHistory::learn(const FleshModel& flesh, const BodyFit& fit, const Expec
   information_ = usual + kKept * (information - usual);
   ++learned_;
   const double size = stature(flesh, shape_) / stature(flesh, Eigen::VectorXd::Zero(shape_.size()));
-  if (std::isfinite(size) && size > 0.0) size_ = static_cast<float>(size);
+  if (std::isfinite(size) && size > 0.0) size_ = float(size);
 }
 
 std::optional<FittedBody> BodyHistory::fit(const BodyFitter& fitter, const Frame& frame, const Person& person,

@@ -43,8 +43,7 @@ BodyState moved(const BodyState& state, const Eigen::VectorXd& step) {
   BodyState next = state;
   next.root += step.segment<3>(StateLayout::root());
   for (std::size_t b = 0; b < next.local.size(); ++b) {
-    next.local[b] =
-        (next.local[b] * exp_rotation(step.segment<3>(StateLayout::turn(static_cast<int>(b))))).normalized();
+    next.local[b] = (next.local[b] * exp_rotation(step.segment<3>(StateLayout::turn(int(b))))).normalized();
   }
   next.shape += step.tail(next.shape.size());
   return next;
@@ -59,7 +58,7 @@ std::vector<PlacedBone> place_bones(const FleshModel& flesh, const BodyState& st
     std::copy(bone.mean.begin(), bone.mean.end(), out.numbers.begin());
     for (Eigen::Index k = 0; k < shapes; ++k) {
       for (std::size_t i = 0; i < out.numbers.size(); ++i) {
-        out.numbers[i] += state.shape[k] * static_cast<double>(bone.shapes[k][i]);
+        out.numbers[i] += state.shape[k] * double(bone.shapes[k][i]);
       }
     }
     const Eigen::Matrix3d local = state.local[b].toRotationMatrix();

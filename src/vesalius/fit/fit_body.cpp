@@ -51,8 +51,7 @@ void BodyFitter::forget_shape(ExpectedBody& expected) const {
 
 bool BodyFitter::walks_backwards(const ExpectedBody& expected) const {
   constexpr double kSurely = 0.3;  // share of the full cost
-  return expected.pose &&
-         terms_.walk_cost(expected, *expected.pose) > kSurely * static_cast<double>(options_.walk_cost);
+  return expected.pose && terms_.walk_cost(expected, *expected.pose) > kSurely * double(options_.walk_cost);
 }
 
 BodyFitter::Solution BodyFitter::descend(BodyState start, int steps, const Evaluate& evaluate) const {
@@ -125,7 +124,7 @@ std::optional<BodyState> BodyFitter::first_state(const FitData& data, bool mirro
   std::vector<double> weights;
   for (std::size_t p = 0; p < data.centres.size(); ++p) {
     if (!data.centres[p]) continue;
-    const int part = mirrored ? body_.parts[p].mirror : static_cast<int>(p);
+    const int part = mirrored ? body_.parts[p].mirror : int(p);
     if (part < 0 || terms_.surface().of_part[part].empty()) continue;
     const PartSurface::Stretch& stretch = terms_.surface().of_part[part].front();
     const FleshBone& bone = flesh_.bones[stretch.bone];
@@ -138,7 +137,7 @@ std::optional<BodyState> BodyFitter::first_state(const FitData& data, bool mirro
     const bool is_trunk = bone.mirror == stretch.bone || bone.parent == 0;
     weights.push_back(is_trunk ? 1.0 : 0.1);
   }
-  if (static_cast<int>(model.size()) < kLeastCentres) return std::nullopt;
+  if (int(model.size()) < kLeastCentres) return std::nullopt;
   Eigen::Matrix3Xd from(3, model.size()), onto(3, model.size());
   Eigen::VectorXd weight(model.size());
   for (std::size_t i = 0; i < model.size(); ++i) {
@@ -235,12 +234,11 @@ BodyFit BodyFitter::report(const FitData& data, float score, const Solution& sol
   const Eigen::MatrixXd shape_covariance = solver.solve(shape_columns).bottomRows(layout.shapes);
   fit.shape_information = shape_covariance.inverse() - data.expected.shape_information;
   FittedBody& body = fit.body;
-  body.misfit = static_cast<float>(solution.cost / static_cast<double>(data.points.size()));
-  for (Index k = 0; k < solution.state.shape.size(); ++k)
-    body.shape.push_back(static_cast<float>(solution.state.shape[k]));
+  body.misfit = float(solution.cost / double(data.points.size()));
+  for (Index k = 0; k < solution.state.shape.size(); ++k) body.shape.push_back(float(solution.state.shape[k]));
   TrustSignals of_all;
   of_all.misfit = body.misfit;
-  of_all.shape = static_cast<float>(solution.state.shape.norm());
+  of_all.shape = float(solution.state.shape.norm());
   of_all.score = score_log_odds(score);
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const PlacedBone& placed = solution.placed[b];
@@ -249,7 +247,7 @@ BodyFit BodyFitter::report(const FitData& data, float score, const Solution& sol
     bone.tail = placed.tail.cast<float>();
     bone.global = Eigen::Quaternionf(Eigen::Quaterniond(placed.global).cast<float>());
     bone.local = solution.state.local[b].cast<float>();
-    bone.length_m = static_cast<float>((placed.tail - placed.head).norm());
+    bone.length_m = float((placed.tail - placed.head).norm());
     bone.support = support[b].on;
     const int parent = flesh_.bones[b].parent;
     const int about = support[b].on + (parent >= 0 ? support[parent].on : 0);
@@ -260,8 +258,8 @@ BodyFit BodyFitter::report(const FitData& data, float score, const Solution& sol
     };
     const auto signals_of = [&](const Vector3d& at, const Eigen::Matrix3d& covariance) {
       TrustSignals signals = of_all;
-      signals.log_sigma = static_cast<float>(0.5 * std::log(std::max(covariance.trace() / 3.0, 1e-8)));
-      signals.bone_misfit = static_cast<float>(support[b].misfit);
+      signals.log_sigma = float(0.5 * std::log(std::max(covariance.trace() / 3.0, 1e-8)));
+      signals.bone_misfit = float(support[b].misfit);
       const Silhouette::Sight sight = data.silhouette->look(at, kCovered_m);
       signals.free = sight.kind == Silhouette::Sight::Kind::behind ? 1.F : 0.F;
       return signals;
@@ -273,7 +271,7 @@ BodyFit BodyFitter::report(const FitData& data, float score, const Solution& sol
     bone.confidence = trusted(trust_, source_of(body, bone), bone.of_head);
     bone.tail_confidence = trusted(trust_, source_of(body, bone), bone.of_tail);
   }
-  body.stature_m = static_cast<float>(stature(flesh_, solution.state.shape));
+  body.stature_m = float(stature(flesh_, solution.state.shape));
   return fit;
 }
 

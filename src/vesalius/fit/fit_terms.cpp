@@ -33,8 +33,8 @@ CrossSection section_at(const PlacedBone& placed, const FleshBone& bone, double 
   constexpr int kLast = FleshBone::kStations - 1;
   CrossSection section{};
   int below = 0;
-  while (below < kLast - 1 && along > static_cast<double>(bone.stations[below + 1])) ++below;
-  const double from = static_cast<double>(bone.stations[below]), to = static_cast<double>(bone.stations[below + 1]);
+  while (below < kLast - 1 && along > double(bone.stations[below + 1])) ++below;
+  const double from = double(bone.stations[below]), to = double(bone.stations[below + 1]);
   const double above = std::clamp((along - from) / (to - from), 0.0, 1.0);
   section.share[below] = 1.0 - above;
   section.share[below + 1] = above;
@@ -99,7 +99,7 @@ Eigen::VectorXd height_by_shape(const Ground& ground, const LowPlace& place, con
     const FleshEllipse<float> change = ellipse_of(bone, bone.shapes[k], place.station);
     by_shape[k] = change.centre.cast<double>().dot(up);
     for (int i = 0; i < 2; ++i) {
-      by_shape[k] -= static_cast<double>(change.half[i]) * rise[i] * up[ellipse.across[i]] / reach;
+      by_shape[k] -= double(change.half[i]) * rise[i] * up[ellipse.across[i]] / reach;
     }
   }
   return by_shape;
@@ -145,8 +145,8 @@ PartSurface::PartSurface(const BodyModel& body, const FleshModel& flesh) : of_pa
     if (bone < 0) continue;
     Stretch stretch;
     stretch.bone = bone;
-    stretch.from = rule.from <= 0.F ? -kBeyond : static_cast<double>(rule.from);
-    stretch.to = rule.to >= 1.F ? kBeyond : static_cast<double>(rule.to);
+    stretch.from = rule.from <= 0.F ? -kBeyond : double(rule.from);
+    stretch.to = rule.to >= 1.F ? kBeyond : double(rule.to);
     stretch.side = rule.side == SurfaceRule::Side::left ? 1 : rule.side == SurfaceRule::Side::right ? -1 : 0;
     of_part[rule.part].push_back(stretch);
   }
@@ -189,7 +189,7 @@ double FitTerms::walk_cost(const ExpectedBody& expected, const BodyState& state)
   if (forward >= 0.0 || speed <= kStands_m_s) return 0.0;
   const double walks = share(speed, kStands_m_s, kWalks_m_s) * share(std::abs(rise) / speed, kSteep, kLevel) *
                        share(turn.col(1).dot(up), kBent, kUpright);
-  return static_cast<double>(options_.walk_cost) * walks * -forward / speed;
+  return double(options_.walk_cost) * walks * -forward / speed;
 }
 
 FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurface::Stretch& stretch,
@@ -199,7 +199,7 @@ FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurfa
   const Vector3d q = placed.global.transpose() * (at - placed.head);
   const double length = placed.numbers[3 + bone.axis];
   const double along = q[bone.axis] / length;
-  const double first = static_cast<double>(bone.stations.front()), last = static_cast<double>(bone.stations.back());
+  const double first = double(bone.stations.front()), last = double(bone.stations.back());
   const double inside = std::clamp(along, first, last);
   hit.section = section_at(placed, bone, inside);
   const std::array<int, 2> across = axes_across(bone.axis);
@@ -239,7 +239,7 @@ FitTerms::Hit FitTerms::hit(const PlacedBone& placed, int index, const PartSurfa
   hit.along = (along - hit.end) * length;
   if (stretch.side != 0) hit.side = std::max(0.0, -stretch.side * q.x());
   const auto square = [](double value, float sigma) {
-    const double deviations = value / static_cast<double>(sigma);
+    const double deviations = value / double(sigma);
     return deviations * deviations;
   };
   hit.squared = square(hit.distance, options_.surface_m) + square(hit.along, kAlong_m) + square(hit.side, kSide_m) +
@@ -265,9 +265,9 @@ std::vector<FitTerms::Assigned> FitTerms::assign(const FitData& data, const std:
     };
     for (int k = 0; k < PersonPoint::kParts && point.part[k] != kBackground && point.share[k] > 0.F; ++k) {
       const int part = point.part[k], mirror = body_.parts[part].mirror;
-      const double cost = -2.0 * std::log(static_cast<double>(point.share[k]));
+      const double cost = -2.0 * std::log(double(point.share[k]));
       offer(part, cost);
-      if (mirror >= 0 && mirror != part) offer(mirror, cost + static_cast<double>(kMirrorCost));
+      if (mirror >= 0 && mirror != part) offer(mirror, cost + double(kMirrorCost));
     }
   }
   return assigned;
@@ -275,10 +275,8 @@ std::vector<FitTerms::Assigned> FitTerms::assign(const FitData& data, const std:
 
 void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& placed,
                           const std::vector<Assigned>& assigned, NormalEquations& equations) const {
-  const auto point_weight = static_cast<double>(kPointWeight);
-  const auto inverse_square = [](float sigma) {
-    return 1.0 / (static_cast<double>(sigma) * static_cast<double>(sigma));
-  };
+  const auto point_weight = double(kPointWeight);
+  const auto inverse_square = [](float sigma) { return 1.0 / (double(sigma) * double(sigma)); };
   const double surface = inverse_square(options_.surface_m), along = inverse_square(kAlong_m),
                side = inverse_square(kSide_m);
   Eigen::VectorXd by_shape(flesh_.shapes);
@@ -298,7 +296,7 @@ void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& pl
       for (int s = 0; s < FleshBone::kStations; ++s) {
         for (int c = 0; c < 2; ++c) {
           change -= hit.section.share[s] * hit.across_normal[c] *
-                    (static_cast<double>(by[6 + 4 * s + c]) + hit.unit[c] * static_cast<double>(by[6 + 4 * s + 2 + c]));
+                    (double(by[6 + 4 * s + c]) + hit.unit[c] * double(by[6 + 4 * s + 2 + c]));
         }
       }
       by_shape[k] = change;
@@ -308,7 +306,7 @@ void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& pl
       const Vector3d axis = placed[b].global.col(bone.axis) * (placed[b].numbers[3 + bone.axis] > 0.0 ? 1.0 : -1.0);
       const double sign = placed[b].numbers[3 + bone.axis] > 0.0 ? 1.0 : -1.0;
       for (Index k = 0; k < by_shape.size(); ++k) {
-        by_shape[k] = -hit.end * sign * static_cast<double>(bone.shapes[k][3 + bone.axis]);
+        by_shape[k] = -hit.end * sign * double(bone.shapes[k][3 + bone.axis]);
       }
       equations.add_point(b, at, -axis, by_shape, sign * hit.along, weight * along);
     }
@@ -323,11 +321,11 @@ void FitTerms::add_points(const FitData& data, const std::vector<PlacedBone>& pl
 void FitTerms::add_centres(const FitData& data, const std::vector<PlacedBone>& placed, bool mirrored,
                            NormalEquations& equations) const {
   constexpr double kAside = 0.5;  // a half's visible middle, in half widths from the middle line
-  const double sigma = static_cast<double>(kCentre_m);
+  const double sigma = double(kCentre_m);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
   for (std::size_t p = 0; p < data.centres.size(); ++p) {
     if (!data.centres[p]) continue;
-    const int part = mirrored ? body_.parts[p].mirror : static_cast<int>(p);
+    const int part = mirrored ? body_.parts[p].mirror : int(p);
     if (part < 0 || surface_.of_part[part].empty()) continue;
     // The longest of its stretches stands for the part.
     const auto length = [&](const PartSurface::Stretch& s) {
@@ -357,14 +355,13 @@ void FitTerms::add_outline(const FitData& data, const std::vector<PlacedBone>& p
                            NormalEquations& equations) const {
   constexpr std::array kPlaces{0.15, 0.5, 0.85};
   if (!data.silhouette) return;
-  const double weight = static_cast<double>(options_.outline_weight);
-  const double outline = static_cast<double>(options_.outline_m), free = static_cast<double>(options_.free_m);
+  const double weight = double(options_.outline_weight);
+  const double outline = double(options_.outline_m), free = double(options_.free_m);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(flesh_.shapes);
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const FleshBone& bone = flesh_.bones[b];
     for (const double share : kPlaces) {
-      const double along = static_cast<double>(bone.stations.front()) +
-                           share * static_cast<double>(bone.stations.back() - bone.stations.front());
+      const double along = double(bone.stations.front()) + share * double(bone.stations.back() - bone.stations.front());
       const CrossSection section = section_at(placed[b], bone, along);
       const Vector3d point = placed[b].head + placed[b].global * middle_at(placed[b], bone, section, along);
       const double half = std::min(section.half[0], section.half[1]);
@@ -376,7 +373,7 @@ void FitTerms::add_outline(const FitData& data, const std::vector<PlacedBone>& p
         const double robust = robust_weight(squared, kLimit, weight, equations);
         equations.add_point(b, point, -Vector3d::UnitZ(), none, violation, robust / (free * free));
       } else if (sight.kind == Silhouette::Sight::Kind::behind) {
-        const double scale = point.z() / static_cast<double>(data.silhouette->focal_px());
+        const double scale = point.z() / double(data.silhouette->focal_px());
         const Eigen::Vector2d aside = scale * sight.aside;
         const double squared = aside.squaredNorm() / (outline * outline);
         const double robust = robust_weight(squared, kLimit, weight, equations);
@@ -390,7 +387,7 @@ void FitTerms::add_outline(const FitData& data, const std::vector<PlacedBone>& p
 
 void FitTerms::add_ground(const Ground& ground, const std::vector<PlacedBone>& placed,
                           NormalEquations& equations) const {
-  const double information = 1.0 / (static_cast<double>(options_.ground_m) * static_cast<double>(options_.ground_m));
+  const double information = 1.0 / (double(options_.ground_m) * double(options_.ground_m));
   const auto pull = [&](const LowPlace& place, double limit) {
     const Eigen::VectorXd by_shape = height_by_shape(ground, place, placed[place.bone], flesh_.bones[place.bone]);
     const double squared = information * place.height_m * place.height_m;
@@ -430,21 +427,21 @@ void FitTerms::add_poses(const BodyState& state, NormalEquations& equations) con
       const auto at = static_cast<Index>(3 * i);
       derivative.middleCols<3>(at) = (derivative.middleCols<3>(at) * log_by_turn(turns.segment<3>(at))).eval();
     }
-    const auto weight = static_cast<double>(options_.pose_weight);
+    const auto weight = double(options_.pose_weight);
     equations.add_turns(limb.bones, derivative, of_best, weight);
     equations.add_cost(-2.0 * weight * best->log_density);
   }
 }
 
 void FitTerms::add_limits(const BodyState& state, NormalEquations& equations) const {
-  const double sigma = static_cast<double>(kBeyond_rad);
+  const double sigma = double(kBeyond_rad);
   for (int b = 0; b < flesh_.bone_count(); ++b) {
     const FleshBone& bone = flesh_.bones[b];
     if (bone.parent < 0) continue;
     const Vector3d turn = log_rotation(state.local[b]);
     Vector3d beyond = Vector3d::Zero();
     for (int i = 0; i < 3; ++i) {
-      beyond[i] = turn[i] - std::clamp(turn[i], static_cast<double>(bone.low[i]), static_cast<double>(bone.high[i]));
+      beyond[i] = turn[i] - std::clamp(turn[i], double(bone.low[i]), double(bone.high[i]));
     }
     if (beyond.isZero()) continue;
     Eigen::Matrix3d derivative = log_by_turn(turn);
@@ -457,8 +454,8 @@ void FitTerms::add_limits(const BodyState& state, NormalEquations& equations) co
 
 void FitTerms::add_followed(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const {
   if (!expected.pose) return;
-  const double metres = static_cast<double>(options_.follow_m) * expected.loosened;
-  const double radians = static_cast<double>(kFollow_rad) * expected.loosened;
+  const double metres = double(options_.follow_m) * expected.loosened;
+  const double radians = double(kFollow_rad) * expected.loosened;
   for (int axis = 0; axis < 3; ++axis) {
     equations.add_single(StateLayout::root() + axis, 1.0, state.root[axis] - expected.pose->root[axis],
                          1.0 / (metres * metres));
@@ -474,8 +471,7 @@ void FitTerms::add_followed(const ExpectedBody& expected, const BodyState& state
 void FitTerms::add_priors(const ExpectedBody& expected, const BodyState& state, NormalEquations& equations) const {
   add_poses(state, equations);
   add_limits(state, equations);
-  equations.add_shape(static_cast<double>(options_.shape_weight) * expected.shape_information,
-                      state.shape - expected.shape);
+  equations.add_shape(double(options_.shape_weight) * expected.shape_information, state.shape - expected.shape);
 }
 
 void FitTerms::evaluate_points(const FitData& data, const BodyState& state, const std::vector<Assigned>& assigned,

@@ -38,7 +38,7 @@ std::vector<Capsule> flesh_capsules(const FleshModel& flesh, const BodyState& st
       const auto at = [&](const End& end) -> Eigen::Vector3f {
         return (placed[b].head + placed[b].global * (end.centre + side * end.aside)).cast<float>();
       };
-      capsules.push_back({at(head), at(tail), static_cast<float>(head.radius), static_cast<float>(tail.radius)});
+      capsules.push_back({at(head), at(tail), float(head.radius), float(tail.radius)});
     }
   }
   return capsules;

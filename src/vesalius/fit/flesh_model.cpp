@@ -38,7 +38,7 @@ std::array<float, kCount> read_array(const TomlReader& reader, const toml::table
                                      double most) {
   std::array<float, kCount> out{};
   const std::vector<double> numbers = read_numbers(reader, table, key, kCount, most);
-  std::ranges::transform(numbers, out.begin(), [](double number) { return static_cast<float>(number); });
+  std::ranges::transform(numbers, out.begin(), [](double number) { return float(number); });
   return out;
 }
 
@@ -81,7 +81,7 @@ void read_bone(const TomlReader& reader, const toml::table& table, FleshModel& m
   if (axis.size() != 1 || kAxes.find(axis) == std::string_view::npos) {
     reader.fail(table, "axis " + in_quotes(axis) + ": expected x, y or z");
   }
-  bone.axis = static_cast<int>(kAxes.find(axis));
+  bone.axis = int(kAxes.find(axis));
   bone.stations = read_array<FleshBone::kStations>(reader, table, "stations", kMostLength_m);
   if (!std::ranges::is_sorted(bone.stations, std::less_equal<>())) {
     reader.fail(table, "stations: expected rising numbers");
@@ -135,7 +135,7 @@ LimbPrior::Component read_component(const TomlReader& reader, const toml::table&
   const Eigen::MatrixXd lower = covariance.matrixL();
   // covariance = L L^T, so that L^-1 (x - mean) has length 1 at one standard deviation.
   component.whitening = lower.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(size, size)).eval();
-  component.log_density = std::log(static_cast<double>(component.weight)) - lower.diagonal().array().log().sum();
+  component.log_density = std::log(double(component.weight)) - lower.diagonal().array().log().sum();
   return component;
 }
 
@@ -176,7 +176,7 @@ void read_limb(const TomlReader& reader, const toml::table& table, FleshModel& m
 
 int FleshModel::find_bone(std::string_view name) const {
   const auto found = std::ranges::find(bones, name, &FleshBone::name);
-  return found == bones.end() ? -1 : static_cast<int>(found - bones.begin());
+  return found == bones.end() ? -1 : int(found - bones.begin());
 }
 
 FleshModel parse_flesh_model(std::string_view toml, const std::string& source) {
@@ -184,7 +184,7 @@ FleshModel parse_flesh_model(std::string_view toml, const std::string& source) {
   const toml::table root = reader.parse(toml);
   reader.expect_keys(root, {"shapes", "bone", "limb"});
   FleshModel model;
-  model.shapes = static_cast<int>(reader.integer(reader.need(root, "shapes"), "shapes", 1, kMaxShapes));
+  model.shapes = int(reader.integer(reader.need(root, "shapes"), "shapes", 1, kMaxShapes));
   const toml::array& bones = reader.array(root, "bone");
   if (bones.empty() || bones.size() > kMaxBones) {
     reader.fail(bones, "bone: expected 1 to " + std::to_string(kMaxBones));
@@ -208,7 +208,7 @@ FleshBone::Numbers numbers_of(const FleshBone& bone, const Eigen::VectorXd& shap
   FleshBone::Numbers numbers = bone.mean;
   for (std::size_t k = 0; k < bone.shapes.size(); ++k) {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      numbers[i] += static_cast<float>(shape[static_cast<Eigen::Index>(k)]) * bone.shapes[k][i];
+      numbers[i] += float(shape[static_cast<Eigen::Index>(k)]) * bone.shapes[k][i];
     }
   }
   return numbers;
@@ -219,13 +219,13 @@ double stature(const FleshModel& flesh, const Eigen::VectorXd& shape) {
   std::vector<double> heads;
   for (const FleshBone& bone : flesh.bones) {
     const FleshBone::Numbers numbers = numbers_of(bone, shape);
-    const double head = (bone.parent < 0 ? 0.0 : heads[bone.parent]) + static_cast<double>(numbers[1]);
+    const double head = (bone.parent < 0 ? 0.0 : heads[bone.parent]) + double(numbers[1]);
     heads.push_back(head);
     if (bone.axis == 0) continue;  // arms are stretched to the sides
     for (int s = 0; s < FleshBone::kStations; ++s) {
       const FleshEllipse<float> ellipse = ellipse_of(bone, numbers, s);
-      const double at = head + static_cast<double>(ellipse.centre.y());
-      const double half = bone.axis == 1 ? 0.0 : static_cast<double>(ellipse.half[ellipse.across[0] == 1 ? 0 : 1]);
+      const double at = head + double(ellipse.centre.y());
+      const double half = bone.axis == 1 ? 0.0 : double(ellipse.half[ellipse.across[0] == 1 ? 0 : 1]);
       low = std::min({low, at - half, at + half});
       high = std::max({high, at - half, at + half});
     }

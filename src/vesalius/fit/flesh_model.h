@@ -72,7 +72,7 @@ struct FleshModel {
   std::vector<FleshBone> bones;
   std::vector<LimbPrior> limbs;
 
-  int bone_count() const { return static_cast<int>(bones.size()); }
+  int bone_count() const { return int(bones.size()); }
   /// Returns the index of the bone of that name, or -1 if there is none.
   int find_bone(std::string_view name) const;
 };

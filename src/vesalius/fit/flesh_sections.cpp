@@ -7,7 +7,7 @@ namespace vesalius {
 std::vector<BoneSections> flesh_sections(const FleshModel& flesh, const FittedBody& fitted) {
   Eigen::VectorXd shape = Eigen::VectorXd::Zero(flesh.shapes);
   for (Eigen::Index k = 0; k < shape.size() && k < static_cast<Eigen::Index>(fitted.shape.size()); ++k) {
-    shape[k] = static_cast<double>(fitted.shape[static_cast<std::size_t>(k)]);
+    shape[k] = double(fitted.shape[static_cast<std::size_t>(k)]);
   }
   std::vector<BoneSections> all;
   for (std::size_t b = 0; b < std::min(flesh.bones.size(), fitted.bones.size()); ++b) {
@@ -16,7 +16,7 @@ std::vector<BoneSections> flesh_sections(const FleshModel& flesh, const FittedBo
     const FleshBone::Numbers numbers = numbers_of(bone, shape);
     BoneSections& sections = all.emplace_back();
     for (std::size_t s = 0; s < sections.size(); ++s) {
-      const FleshEllipse<float> ellipse = ellipse_of(bone, numbers, static_cast<int>(s));
+      const FleshEllipse<float> ellipse = ellipse_of(bone, numbers, int(s));
       const auto side = [&](int i) -> Eigen::Vector3f {
         return placed.global * (ellipse.half[i] * Eigen::Vector3f::Unit(ellipse.across[i]));
       };

@@ -31,11 +31,11 @@ JointTrust read_trust(const TomlReader& reader, const toml::table& table) {
 }  // namespace
 
 float trusted(const JointTrust& trust, const TrustSignals& signals) {
-  double logit = static_cast<double>(trust.bias);
+  double logit = double(trust.bias);
   for (const TrustSignal& signal : kTrustSignals) {
-    logit += static_cast<double>(trust.weights.*signal.value) * static_cast<double>(signals.*signal.value);
+    logit += double(trust.weights.*signal.value) * double(signals.*signal.value);
   }
-  return static_cast<float>(logistic(logit));
+  return float(logistic(logit));
 }
 
 float trusted(const BodyTrust& trust, JointSource source, const TrustSignals& signals) {

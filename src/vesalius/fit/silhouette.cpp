@@ -14,7 +14,7 @@ constexpr double kBeyond = 0.35;  // how far around the box the grid reaches, as
 
 Silhouette::Silhouette(const Frame& frame, const Mask& mask, const Box& box) : frame_(frame), mask_(mask) {
   const int longer = std::max(box.width, box.height);
-  const int beyond = static_cast<int>(kBeyond * longer) + 1;
+  const int beyond = int(kBeyond * longer) + 1;
   step_ = std::max(1, (longer + 2 * beyond) / kGrid);
   box_.u = std::max(0, box.u - beyond);
   box_.v = std::max(0, box.v - beyond);
@@ -59,10 +59,10 @@ Silhouette::Sight Silhouette::look(const Eigen::Vector3d& point, double margin_m
   Sight sight;
   if (point.z() <= 0.05) return sight;
   const Camera& camera = frame_.camera;
-  const double u = point.x() / point.z() * static_cast<double>(camera.fx) + static_cast<double>(camera.cx);
-  const double v = point.y() / point.z() * static_cast<double>(camera.fy) + static_cast<double>(camera.cy);
+  const double u = point.x() / point.z() * double(camera.fx) + double(camera.cx);
+  const double v = point.y() / point.z() * double(camera.fy) + double(camera.cy);
   if (!(u >= 0.0 && v >= 0.0 && u <= camera.width - 1 && v <= camera.height - 1)) return sight;
-  const int pixel_u = static_cast<int>(std::lround(u)), pixel_v = static_cast<int>(std::lround(v));
+  const int pixel_u = int(std::lround(u)), pixel_v = int(std::lround(v));
   const double depth_m = 1e-3 * frame_.depth(pixel_u, pixel_v);
   if (mask_(pixel_u, pixel_v) != 0) {
     sight.depth_m = depth_m;

@@ -13,7 +13,7 @@ bool take_from_grid(const DepthImage& depth, int step, int u, int v, Posteriors&
 }
 
 long BackgroundGate::enough(float least, int trees) {
-  return static_cast<long>(std::ceil(least * 255.F * static_cast<float>(trees)));
+  return static_cast<long>(std::ceil(least * 255.F * float(trees)));
 }
 
 BackgroundGate::BackgroundGate(const DepthImage& depth, const Posteriors& posteriors, float least)

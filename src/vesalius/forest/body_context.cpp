@@ -86,7 +86,7 @@ BodySurroundings::BodySurroundings(const Posteriors& posteriors, const DepthImag
   std::vector<std::array<int, 2>> parts_of(kinds_, {-1, -1});
   for (std::size_t p = 0; p < slots_.size(); ++p) {
     std::array<int, 2>& parts = parts_of[slots_[p]];
-    parts[parts[0] < 0 ? 0 : 1] = static_cast<int>(p);
+    parts[parts[0] < 0 ? 0 : 1] = int(p);
   }
   parallel_ranges(rows_, kRowGrain, [&](int begin, int end) {
     std::vector<std::uint32_t> run(channels_);
@@ -119,8 +119,7 @@ BodySurroundings::BodySurroundings(const Posteriors& posteriors, const DepthImag
 
 int BodySurroundings::feature_count(const BodyModel& body) {
   const int kinds = kind_count(part_slots(body));
-  return kOfPixel + kinds + static_cast<int>(kAbout.size()) * (kOfBox + kinds) +
-         static_cast<int>(kBeside.size()) * kOfBox;
+  return kOfPixel + kinds + int(kAbout.size()) * (kOfBox + kinds) + int(kBeside.size()) * kOfBox;
 }
 
 std::vector<std::string> BodySurroundings::feature_names(const BodyModel& body) {
@@ -146,56 +145,56 @@ std::vector<std::string> BodySurroundings::feature_names(const BodyModel& body) 
 bool BodySurroundings::is_open(int column, int row) const {
   const int u = column * step_, v = row * step_;
   if (depth_(u, v) == 0 || (!posteriors_.settled.empty() && posteriors_.settled(u, v) != 0)) return false;
-  const auto share = body_share(posteriors_, u, v, static_cast<int>(slots_.size()));
+  const auto share = body_share(posteriors_, u, v, int(slots_.size()));
   return share && *share >= kLeastBody;
 }
 
 BodySurroundings::Box4 BodySurroundings::box(int column, int row, float du_m, float dv_m, float radius_m,
                                              float cells_per_m) const {
-  const int u = column + static_cast<int>(std::lround(du_m * cells_per_m));
-  const int v = row + static_cast<int>(std::lround(dv_m * cells_per_m));
-  const int radius = std::max(1, static_cast<int>(std::lround(radius_m * cells_per_m)));
+  const int u = column + int(std::lround(du_m * cells_per_m));
+  const int v = row + int(std::lround(dv_m * cells_per_m));
+  const int radius = std::max(1, int(std::lround(radius_m * cells_per_m)));
   const int left = std::clamp(u - radius, 0, columns_), right = std::clamp(u + radius + 1, 0, columns_);
   const int top = std::clamp(v - radius, 0, rows_), bottom = std::clamp(v + radius + 1, 0, rows_);
   return {sums(left, top), sums(right, top), sums(left, bottom), sums(right, bottom),
-          static_cast<float>(std::max(1, (right - left) * (bottom - top)))};
+          float(std::max(1, (right - left) * (bottom - top)))};
 }
 
 void BodySurroundings::features(int column, int row, float* out) const {
   const int u = column * step_, v = row * step_;
-  const auto parts = static_cast<int>(slots_.size());
+  const auto parts = int(slots_.size());
   const std::uint16_t* of = posteriors_.at(u, v);
-  const auto whole = static_cast<float>(std::accumulate(of, of + posteriors_.classes, 0));
-  const float z_m = 1e-3F * static_cast<float>(depth_(u, v));
+  const auto whole = float(std::accumulate(of, of + posteriors_.classes, 0));
+  const float z_m = 1e-3F * float(depth_(u, v));
   float* kind = out + kOfPixel;
   std::fill_n(kind, kinds_, 0.F);
   int body = 0, first = 0, second = 0;
   for (int p = 0; p < parts; ++p) {
     body += of[p];
-    kind[slots_[p]] += static_cast<float>(of[p]);
+    kind[slots_[p]] += float(of[p]);
     second = std::max(second, std::min<int>(first, of[p]));
     first = std::max<int>(first, of[p]);
   }
   for (int k = 0; k < kinds_; ++k) kind[k] /= whole;
-  out[0] = static_cast<float>(body) / whole;
-  out[1] = static_cast<float>(first) / whole;
-  out[2] = static_cast<float>(second) / whole;
+  out[0] = float(body) / whole;
+  out[1] = float(first) / whole;
+  out[2] = float(second) / whole;
   out[3] = z_m;
   out += kOfPixel + kinds_;
   // What a box's sum of posteriors must be divided by besides its cells.
-  const float unit = 255.F * static_cast<float>(posteriors_.trees);
-  const float cells_per_m = camera_.fx / (z_m * static_cast<float>(step_));
+  const float unit = 255.F * float(posteriors_.trees);
+  const float cells_per_m = camera_.fx / (z_m * float(step_));
   const auto of_box = [&](const Box4& box) {
-    *out++ = static_cast<float>(box[kBody]) / (unit * box.cells);
-    const auto readings = static_cast<float>(box[kReadings]);
+    *out++ = float(box[kBody]) / (unit * box.cells);
+    const auto readings = float(box[kReadings]);
     *out++ = readings / box.cells;
-    const float beyond_m = readings > 0.F ? 1e-3F * static_cast<float>(box[kDepth_mm]) / readings - z_m : 0.F;
+    const float beyond_m = readings > 0.F ? 1e-3F * float(box[kDepth_mm]) / readings - z_m : 0.F;
     *out++ = std::clamp(beyond_m, -kMostBeyond_m, kMostBeyond_m);
   };
   for (const float radius_m : kAbout) {
     const Box4 about = box(column, row, 0.F, 0.F, radius_m, cells_per_m);
     of_box(about);
-    for (int k = 0; k < kinds_; ++k) *out++ = static_cast<float>(about[kFirstKind + k]) / (unit * about.cells);
+    for (int k = 0; k < kinds_; ++k) *out++ = float(about[kFirstKind + k]) / (unit * about.cells);
   }
   for (const Around& beside : kBeside) {
     of_box(box(column, row, beside.right_m, beside.down_m, beside.radius_m, cells_per_m));
@@ -223,7 +222,7 @@ Image<float> ask(const BoostedTrees& context, const BodySurroundings& around, co
       context.log_odds(features.data(), open.size(), odds.data());
       for (std::size_t i = 0; i < open.size(); ++i) {
         const double share = *body_share(posteriors, open[i] * around.step(), row * around.step(), body.part_count());
-        const auto before = static_cast<float>(std::max(share, 1e-3) / std::max(1.0 - share, 1e-3));
+        const auto before = float(std::max(share, 1e-3) / std::max(1.0 - share, 1e-3));
         change(open[i], row) = odds[i] - std::log(before);
       }
     }
@@ -245,17 +244,17 @@ float change_at(const Image<float>& change, const DepthImage& depth, int step, i
       ++count;
     }
   }
-  return count > 0 ? sum / static_cast<float>(count) : 0.F;
+  return count > 0 ? sum / float(count) : 0.F;
 }
 
 /// Makes the odds of a body so many times as large. The sum of all classes stays.
 void multiply_odds(std::uint16_t* of, int parts, int body, int all, float factor) {
-  const auto had = static_cast<float>(body);
-  const float rest = static_cast<float>(all) - had;
-  const float scale = static_cast<float>(all) * factor / (had * factor + rest);
+  const auto had = float(body);
+  const float rest = float(all) - had;
+  const float scale = float(all) * factor / (had * factor + rest);
   int left = all;
   for (int p = 0; p < parts; ++p) {
-    const int share = std::min(left, static_cast<int>(static_cast<float>(of[p]) * scale + 0.5F));
+    const int share = std::min(left, int(float(of[p]) * scale + 0.5F));
     of[p] = static_cast<std::uint16_t>(share);
     left -= share;
   }

@@ -50,7 +50,7 @@ BoostedTrees in_order(BoostedTrees trees, const std::vector<std::string>& names,
   for (BoostedTree& tree : trees.trees) {
     for (std::uint16_t& feature : tree.feature) feature = place[feature];
   }
-  trees.features = static_cast<int>(names.size());
+  trees.features = int(names.size());
   trees.asks = names;
   return trees;
 }

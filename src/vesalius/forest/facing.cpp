@@ -25,7 +25,7 @@ const std::vector<float>& logs_of_shares() {
   static const std::vector<float> kLogs = [] {
     std::vector<float> logs(65536);
     for (std::size_t i = 0; i < logs.size(); ++i) {
-      logs[i] = std::log(std::max(static_cast<float>(i) / 65535.F, kLeastShare));
+      logs[i] = std::log(std::max(float(i) / 65535.F, kLeastShare));
     }
     return logs;
   }();
@@ -53,15 +53,15 @@ void FacingEvidence::add(const std::uint16_t* posteriors, const std::uint16_t* t
   for (int h = 0; h < headings_; ++h) {
     const int share = turns[h] + turns[headings_ + h] + turns[2 * headings_ + h];
     of_pixel_[h] = logs[std::min(share, 65535)];
-    mean += of_pixel_[h] / static_cast<float>(headings_);
+    mean += of_pixel_[h] / float(headings_);
   }
-  const auto least = static_cast<int>(std::ceil(kLeastShareOfPart * body));
+  const auto least = int(std::ceil(kLeastShareOfPart * body));
   for (int p = 0; p < parts_; ++p) {
     if (posteriors[p] < least) continue;
-    const double share = static_cast<double>(posteriors[p]) / body;
+    const double share = double(posteriors[p]) / body;
     shares_[p] += share;
     for (int h = 0; h < headings_; ++h) {
-      logs_[p * headings_ + h] += share * static_cast<double>(of_pixel_[h] - mean);
+      logs_[p * headings_ + h] += share * double(of_pixel_[h] - mean);
     }
   }
   pixels_ += 1.0;
@@ -72,10 +72,10 @@ Eigen::VectorXf FacingEvidence::features() const {
   features[features.size() - 1] = 1.F;
   if (pixels_ == 0.0) return features;
   for (int p = 0; p < parts_; ++p) {
-    features[parts_ * headings_ + p] = static_cast<float>(shares_[p] / pixels_);
+    features[parts_ * headings_ + p] = float(shares_[p] / pixels_);
     if (shares_[p] < kLeastPart * pixels_) continue;
     for (int h = 0; h < headings_; ++h) {
-      features[p * headings_ + h] = static_cast<float>(logs_[p * headings_ + h] / shares_[p]);
+      features[p * headings_ + h] = float(logs_[p * headings_ + h] / shares_[p]);
     }
   }
   return features;
@@ -94,7 +94,7 @@ Eigen::VectorXf facing_features(const Posteriors& posteriors, int parts, const M
 
 Eigen::VectorXf facing(const FacingModel& model, const Eigen::VectorXf& features) {
   const int headings = model.headings;
-  if (model.empty()) return Eigen::VectorXf::Constant(headings, 1.F / static_cast<float>(headings));
+  if (model.empty()) return Eigen::VectorXf::Constant(headings, 1.F / float(headings));
   const Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> weights(
       model.weights.data(), headings, static_cast<Eigen::Index>(model.features()));
   Eigen::VectorXf logits = weights * features;
@@ -103,14 +103,14 @@ Eigen::VectorXf facing(const FacingModel& model, const Eigen::VectorXf& features
 }
 
 YawEstimate estimate_yaw(const Eigen::VectorXf& facing) {
-  const auto headings = static_cast<int>(facing.size());
+  const auto headings = int(facing.size());
   int best = 0;
   facing.maxCoeff(&best);
   YawEstimate estimate;
   float ahead = 0.F, aside = 0.F;
   for (const int h : {best - 1, best, best + 1}) {
     const float share = facing[(h + headings) % headings];
-    const float yaw = 2.F * std::numbers::pi_v<float> * static_cast<float>(h) / static_cast<float>(headings);
+    const float yaw = 2.F * std::numbers::pi_v<float> * float(h) / float(headings);
     ahead += share * std::cos(yaw);
     aside += share * std::sin(yaw);
     estimate.confidence += share;
@@ -121,7 +121,7 @@ YawEstimate estimate_yaw(const Eigen::VectorXf& facing) {
 
 void turn_posteriors(const Posteriors& posteriors, const std::vector<std::uint8_t>& sides,
                      const Eigen::VectorXf& facing, const Box& box, Posteriors& out) {
-  const auto parts = static_cast<int>(sides.size());
+  const auto parts = int(sides.size());
   const int headings = posteriors.headings;
   out.width = box.width;
   out.height = box.height;
@@ -140,10 +140,10 @@ void turn_posteriors(const Posteriors& posteriors, const std::vector<std::uint8_
         std::array<float, kSides> before{}, after{};
         for (int h = 0; h < headings; ++h) {
           float all = 0.F;
-          for (int s = 0; s < kSides; ++s) all += static_cast<float>(turns[s * headings + h]);
+          for (int s = 0; s < kSides; ++s) all += float(turns[s * headings + h]);
           if (all == 0.F) continue;
           for (int s = 0; s < kSides; ++s) {
-            const auto share = static_cast<float>(turns[s * headings + h]);
+            const auto share = float(turns[s * headings + h]);
             before[s] += share;
             after[s] += facing[h] * share / all;
           }
@@ -152,7 +152,7 @@ void turn_posteriors(const Posteriors& posteriors, const std::vector<std::uint8_
         std::array<float, kSides> scale{};
         for (int s = 0; s < kSides; ++s) scale[s] = before[s] > 0.F ? after[s] * total / before[s] : 0.F;
         for (int p = 0; p < parts; ++p) {
-          to[p] = static_cast<std::uint16_t>(std::min(65535.F, static_cast<float>(from[p]) * scale[sides[p]] + 0.5F));
+          to[p] = static_cast<std::uint16_t>(std::min(65535.F, float(from[p]) * scale[sides[p]] + 0.5F));
         }
       }
     }

@@ -94,13 +94,13 @@ class Chooser {
       skip[i] = depth[i] == 0 || (prior != nullptr && prior[i] == 0) ? 1 : 0;
       if (settled == nullptr || settled[i] == 0) continue;
       skip[i] = 1;
-      first_(box_.u + static_cast<int>(i), v) = static_cast<std::uint8_t>(choice_.part_count);
+      first_(box_.u + int(i), v) = static_cast<std::uint8_t>(choice_.part_count);
     }
     find_top_two(posteriors_.at(box_.u, v), static_cast<std::size_t>(posteriors_.classes), choice_.part_count,
                  skip.data(), box_.width, parts.data());
     for (std::size_t i = 0; i < skip.size(); ++i) {
       if (skip[i] != 0) continue;
-      const int u = box_.u + static_cast<int>(i);
+      const int u = box_.u + int(i);
       choose_between(parts[i], rivalled ? posteriors_.at(u, v)[choice_.part_count] : std::uint16_t{0}, first_(u, v),
                      unsure_(u, v));
     }
@@ -169,7 +169,7 @@ void read_logits(const PackedForest& forest, const WalkPixels& pixels, const std
   constexpr std::size_t kAhead = 4;  // leaves are all over the memory: they are on their way before they are read
   const std::vector<PackedTree>& trees = forest.trees;
   const std::size_t stride = pixels.padded_size();
-  LogitReader reader(forest.layout, forest.logit_unit, static_cast<int>(trees.size()));
+  LogitReader reader(forest.layout, forest.logit_unit, int(trees.size()));
   std::vector<const std::int8_t*> of_pixel(trees.size() * (kAhead + 1));
   for (std::size_t i = 0; i < pixels.size() + kAhead; ++i) {
     if (i < pixels.size()) {
@@ -300,7 +300,7 @@ TrainedLabeller::TrainedLabeller(const Forest& forest)
       has_background_(forest.has_background),
       has_distributions_(vesalius::has_distributions(forest)),
       classes_(forest.class_count()),
-      trees_(static_cast<int>(forest.trees.size())),
+      trees_(int(forest.trees.size())),
       layout_(forest.body, forest.has_background, forest.headings),
       facing_(forest.facing),
       context_(forest.context),
@@ -328,7 +328,7 @@ ForestLabeller::ForestLabeller(Forest forest) : TrainedLabeller(forest) {
   packed.logit_unit = forest.logit_unit;
   packed.layout = layout();
   packed.trees.resize(forest.trees.size());
-  parallel_for(static_cast<int>(packed.trees.size()), [&](int t) {
+  parallel_for(int(packed.trees.size()), [&](int t) {
     packed.trees[t] = pack(forest.trees[t], forest.convention);
     forest.trees[t] = {};
   });
@@ -353,10 +353,9 @@ void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, f
 
 ChoiceWeights choice_weights(const LabelOptions& options, int trees) {
   ChoiceWeights weights;
-  const auto one = static_cast<float>(weights.part);
+  const auto one = float(weights.part);
   weights.background = std::lround(options.background_weight * one);
-  weights.margin =
-      static_cast<std::int64_t>(std::ceil(static_cast<double>(options.unsure_margin) * 255.0 * trees * one));
+  weights.margin = static_cast<std::int64_t>(std::ceil(double(options.unsure_margin) * 255.0 * trees * one));
   return weights;
 }
 

@@ -62,7 +62,7 @@ float mean_certainty(const Posteriors& posteriors, const Mask& inside, int parts
       ++pixels;
     }
   }
-  return pixels > 0 ? static_cast<float>(sum / static_cast<double>(pixels)) : 0.F;
+  return pixels > 0 ? float(sum / double(pixels)) : 0.F;
 }
 
 SceneLabeller::SceneLabeller(std::shared_ptr<const PixelLabeller> labeller, SceneLabelOptions options)

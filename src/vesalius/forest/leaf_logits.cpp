@@ -90,7 +90,7 @@ void Softmax(const std::int32_t* group, std::size_t padded, bool has_turns, floa
     }
   }
   float sum[kGroups];
-  for (int k = 0; k < kGroups; ++k) sum[k] = static_cast<float>(hn::GetLane(hn::SumOfLanes(di, sums[k]))) / kFixed;
+  for (int k = 0; k < kGroups; ++k) sum[k] = float(hn::GetLane(hn::SumOfLanes(di, sums[k]))) / kFixed;
   // What each side and the background weigh: their largest logits together, relative to the largest of all.
   float together[LogitSoftmax::kLanes] = {};
   for (int s = 0; s < kSides; ++s) {
@@ -163,7 +163,7 @@ LogitReader::LogitReader(const LogitLayout& layout, float unit, int trees)
     : softmax_(layout),
       unit_(unit),
       trees_(static_cast<std::size_t>(trees)),
-      whole_(255.F * static_cast<float>(trees)),
+      whole_(255.F * float(trees)),
       shares_(softmax_.padded()) {}
 
 void LogitReader::read(const std::int8_t* const* leaves, std::uint16_t* posteriors, std::uint16_t* turns) {

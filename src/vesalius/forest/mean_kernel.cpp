@@ -209,7 +209,7 @@ void MeanRows(const Posteriors& posteriors, const DepthImage& depth, const Smoot
     for (int v = begin; v < end; ++v) mean.Run(v);
   };
   const hn::CappedTag<std::uint16_t, 16> many;  // capped, so that the classes of the paper's body fill it
-  if (posteriors.classes >= static_cast<int>(hn::Lanes(many))) {
+  if (posteriors.classes >= int(hn::Lanes(many))) {
     run(many);
   } else {
     run(hn::CappedTag<std::uint16_t, 1>());

@@ -23,7 +23,7 @@ void add_parts(const std::uint16_t* sums, int parts, PersonPoint& point) {
     point.part[at] = static_cast<std::uint8_t>(p);
   }
   for (int i = 0; i < PersonPoint::kParts; ++i) {
-    point.share[i] = all > 0 ? static_cast<float>(best[i]) / static_cast<float>(all) : 0.F;
+    point.share[i] = all > 0 ? float(best[i]) / float(all) : 0.F;
   }
 }
 
@@ -50,8 +50,8 @@ std::vector<PersonPoint> sample_points(const DepthImage& depth, const Camera& ca
     const std::int64_t k = seen[part]++;
     if ((k + 1) * wanted / counts[part] == k * wanted / counts[part]) return;
     PersonPoint& point = points.emplace_back();
-    const float z_m = static_cast<float>(depth(u, v)) * 1e-3F;
-    point.at = camera.point(static_cast<float>(u), static_cast<float>(v), z_m);
+    const float z_m = float(depth(u, v)) * 1e-3F;
+    point.at = camera.point(float(u), float(v), z_m);
     add_parts(posteriors.at(u - of.u, v - of.v), parts, point);
     if (point.part.front() == kBackground) {
       point.part.front() = part;

@@ -58,7 +58,7 @@ inline std::optional<double> body_share(const Posteriors& posteriors, int u, int
   const std::uint16_t* sums = posteriors.at(u, v);
   const int body = std::accumulate(sums, sums + parts, 0);
   const int all = std::accumulate(sums + parts, sums + posteriors.classes, body);
-  return all > 0 ? std::optional(static_cast<double>(body) / all) : std::nullopt;
+  return all > 0 ? std::optional(double(body) / all) : std::nullopt;
 }
 
 }  // namespace vesalius

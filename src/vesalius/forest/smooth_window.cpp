@@ -27,7 +27,7 @@ void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& v
 
 SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
   constexpr float kSpacings = 140.F;  // number of spacings in the focal length
-  if (options.spacing == 0) options.spacing = std::max(1, static_cast<int>(std::lround(camera.fx / kSpacings)));
+  if (options.spacing == 0) options.spacing = std::max(1, int(std::lround(camera.fx / kSpacings)));
   return options;
 }
 

@@ -34,7 +34,7 @@ Node Read(const PackedTree& tree, const std::uint32_t* words) {
     const auto high = [&](int w) { return static_cast<std::int16_t>(words[w] >> 16U); };
     return {low(0), high(0), low(1), high(1), static_cast<std::int32_t>(words[2]), words[3]};
   }
-  const auto byte = [&](unsigned i) { return static_cast<int>(words[0] >> (8 * i) & 255U) - 128; };
+  const auto byte = [&](unsigned i) { return int(words[0] >> (8 * i) & 255U) - 128; };
   return {byte(0),
           byte(1),
           byte(2),

@@ -50,8 +50,8 @@ class Surface {
   /// Normal from neighbours so far apart that the sensor's depth step tilts it by a quarter at most; zero where the
   /// surface ends or bends within that.
   Eigen::Vector3f normal(int u, int v) const {
-    const float z = static_cast<float>(depth_(u, v)) * 1e-3F;
-    const int reach = std::clamp(static_cast<int>(kNormalReach * z * camera_.fx), 2, 24);
+    const float z = float(depth_(u, v)) * 1e-3F;
+    const int reach = std::clamp(int(kNormalReach * z * camera_.fx), 2, 24);
     if (!known(u - reach, v) || !known(u + reach, v) || !known(u, v - reach) || !known(u, v + reach)) {
       return Eigen::Vector3f::Zero();
     }
@@ -73,13 +73,13 @@ class Surface {
 std::vector<Sample> take_samples(const DepthImage& depth, const Camera& camera) {
   std::vector<Sample> samples;
   const Surface surface(depth, camera);
-  const float pixel_area = static_cast<float>(kStep * kStep) / (camera.fx * camera.fy);
+  const float pixel_area = float(kStep * kStep) / (camera.fx * camera.fy);
   for (int v = kStep / 2; v < depth.height(); v += kStep) {
     for (int u = kStep / 2; u < depth.width(); u += kStep) {
       if (depth(u, v) == 0) continue;
       const Eigen::Vector3f normal = surface.normal(u, v);
       if (normal.isZero()) continue;
-      const float z = static_cast<float>(depth(u, v)) * 1e-3F;
+      const float z = float(depth(u, v)) * 1e-3F;
       samples.push_back({surface.point(u, v), normal, pixel_area * z * z, u, v});
     }
   }
@@ -103,8 +103,8 @@ Plane oriented(const Eigen::Vector3f& normal, const Eigen::Vector3f& through) {
 Plane hypothesis(const std::vector<Sample>& samples, const Surface& surface, int reach, Random& random) {
   const Sample& first = samples[random.below(static_cast<std::uint32_t>(samples.size()))];
   const auto near = [&]() -> Eigen::Vector3f {
-    const int u = first.u + static_cast<int>(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach;
-    const int v = first.v + static_cast<int>(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach;
+    const int u = first.u + int(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach;
+    const int v = first.v + int(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach;
     return surface.known(u, v) ? surface.point(u, v) : first.point;
   };
   const Eigen::Vector3f a = near() - first.point;
@@ -153,7 +153,7 @@ Plane best_hypothesis(const std::vector<Sample>& samples, const SurfaceColumns& 
     const Plane plane = hypothesis(samples, surface, reach, random);
     if (plane.area_m2 >= 0.F) tried.push_back(plane);
   }
-  parallel_for(static_cast<int>(tried.size()), [&](int i) {
+  parallel_for(int(tried.size()), [&](int i) {
     Plane& plane = tried[i];
     plane.area_m2 = columns.support(plane.normal, plane.offset, kAligned, kMostSlant);
   });
@@ -170,7 +170,7 @@ std::vector<Plane> planes_of(std::vector<Sample> samples, const DepthImage& dept
   const Surface surface(depth, camera);
   const int reach = std::max(6, depth.width() / 12);
   Random random(1);
-  while (static_cast<int>(planes.size()) < kMaxPlanes && samples.size() >= 3) {
+  while (int(planes.size()) < kMaxPlanes && samples.size() >= 3) {
     const SurfaceColumns columns = columns_of(samples, options);
     Plane best = best_hypothesis(samples, columns, surface, reach, random);
     if (best.area_m2 < options.min_area_m2) break;
@@ -240,11 +240,11 @@ Mask pixels_on(const std::vector<Plane>& planes, const std::vector<Sample>& samp
       const int u = pixel % depth.width(), v = pixel / depth.width();
       const Eigen::Vector3f p = surface.point(u, v);
       const float slant = std::abs(planes[plane_of(u, v)].normal.dot(p)) / p.norm();
-      area += static_cast<double>(p.z() * p.z() / std::max(slant, kMostSlant));
+      area += double(p.z() * p.z() / std::max(slant, kMostSlant));
     }
-    return static_cast<float>(area / static_cast<double>(camera.fx * camera.fy));
+    return float(area / double(camera.fx * camera.fy));
   };
-  const double surely_large_mm2 = 1e6 * static_cast<double>(kMinPiece_m2 * camera.fx * camera.fy);
+  const double surely_large_mm2 = 1e6 * double(kMinPiece_m2 * camera.fx * camera.fy);
   return without_body_pieces(depth, out, surely_large_mm2,
                              [&](const std::vector<int>& pixels) { return area_m2(pixels) >= kMinPiece_m2; });
 }

@@ -84,7 +84,7 @@ std::vector<std::vector<int>> small_pieces(const DepthImage& depth, const Mask& 
   for (const Run& run : runs) squares_mm2[run.piece] += run.squares_mm2;
   std::vector<std::vector<int>> pieces(runs.size());
   for (const Run& run : runs) {
-    if (static_cast<double>(squares_mm2[run.piece]) >= surely_large_mm2) continue;
+    if (double(squares_mm2[run.piece]) >= surely_large_mm2) continue;
     for (int u = run.begin; u < run.end; ++u) pieces[run.piece].push_back(run.v * flat.width() + u);
   }
   std::erase_if(pieces, [](const std::vector<int>& pixels) { return pixels.empty(); });

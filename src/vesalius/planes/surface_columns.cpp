@@ -72,7 +72,7 @@ void SurfaceColumns::add(const Eigen::Vector3f& point, const Eigen::Vector3f& no
 float SurfaceColumns::support(const Eigen::Vector3f& normal, float offset, float aligned, float most_slant) const {
   const std::int64_t units =
       HWY_DYNAMIC_DISPATCH(SumAreas)(*this, {normal.x(), normal.y(), normal.z(), offset, aligned, most_slant});
-  return static_cast<float>(units) / kUnitsPerM2;
+  return float(units) / kUnitsPerM2;
 }
 
 }  // namespace vesalius

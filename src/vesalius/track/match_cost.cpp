@@ -21,7 +21,7 @@ constexpr float kMostSizeCost = 3.F;
 constexpr float kSizeGate = 9.F;
 
 bool within_reach(const Track& track, const Sighting& sighting, double time_s) {
-  const auto passed_s = static_cast<float>(std::clamp(time_s - track.seen_s, 0.0, 1e6));
+  const auto passed_s = float(std::clamp(time_s - track.seen_s, 0.0, 1e6));
   return (sighting.trunk.position - track.place_position).norm() <= kReach_m + kRun_m_s * passed_s;
 }
 

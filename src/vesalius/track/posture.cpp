@@ -29,7 +29,7 @@ struct Place {
   }
   std::optional<Vector3f> mean() const {
     if (count == 0) return std::nullopt;
-    return sum / static_cast<float>(count);
+    return sum / float(count);
   }
 };
 
@@ -79,7 +79,7 @@ Cut cut_by_border(const Box& box, int width, int height, const Vector3f& up) {
 }
 
 float quantile(std::vector<float>& values, double share) {
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(share * double(values.size() - 1));
   std::nth_element(values.begin(), nth, values.end());
   return *nth;
 }

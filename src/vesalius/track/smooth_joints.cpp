@@ -17,7 +17,7 @@ float share(float cutoff_hz, float passed_s) {
 
 std::vector<std::vector<Joint>> JointSmoother::smooth(const std::vector<std::vector<Joint>>& joints, double passed_s,
                                                       const JointSmoothing& options) {
-  const auto step_s = static_cast<float>(passed_s);
+  const auto step_s = float(passed_s);
   std::vector<std::vector<Joint>> smoothed = joints;
   filters_.resize(joints.size());
   for (std::size_t set = 0; set < joints.size(); ++set) {

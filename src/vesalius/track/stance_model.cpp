@@ -41,12 +41,12 @@ std::optional<float> value_of(const StanceSign& sign, const Posture& posture) {
 }
 
 float StanceRule::probability(const Posture& posture) const {
-  double logit = static_cast<double>(bias);
+  double logit = double(bias);
   for (std::size_t i = 0; i < kStanceSigns.size(); ++i) {
     const std::optional<float> value = value_of(kStanceSigns[i], posture);
-    logit += static_cast<double>(value ? weights[i] * *value : unknown[i]);
+    logit += double(value ? weights[i] * *value : unknown[i]);
   }
-  return static_cast<float>(logistic(logit));
+  return float(logistic(logit));
 }
 
 StanceProbabilities stance_probabilities(const StanceModel& model, const Posture& posture) {

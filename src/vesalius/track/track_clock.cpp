@@ -11,7 +11,7 @@ bool has_time(const Frame& frame) { return frame.time_s && std::isfinite(*frame.
 
 TrackStep TrackClock::step_to(const Frame& frame) const {
   if (frames_ == 0) return {has_time(frame) ? *frame.time_s : 0.0, 0.0, false};
-  const double untimed_s = timed_ ? last_s_ + period_s_ : static_cast<double>(frames_) * period_s_;
+  const double untimed_s = timed_ ? last_s_ + period_s_ : double(frames_) * period_s_;
   const double time_s = has_time(frame) ? *frame.time_s : untimed_s;
   const double passed_s = time_s - last_s_;
   const bool goes_on = passed_s >= 0.0 && passed_s <= gap_s_;

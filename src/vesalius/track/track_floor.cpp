@@ -60,7 +60,7 @@ void TrackFloor::forget_if_moved(const std::vector<Plane>& planes, double passed
 
 void TrackFloor::follow(const Plane& seen, double passed_s) {
   const bool still = same(seen, *floor_, kStillCosine, kStillHeight_m);
-  approach(*floor_, seen, static_cast<float>(1.0 - std::exp(-passed_s / (still ? kStill_s : kMoving_s))));
+  approach(*floor_, seen, float(1.0 - std::exp(-passed_s / (still ? kStill_s : kMoving_s))));
   rival_.reset();
   unseen_s_ = 0.0;
 }

@@ -48,8 +48,8 @@ std::optional<float> look_distance(const AppearanceHistogram& a, const Appearanc
   if (appearance == nullptr || std::min(a.samples(), b.samples()) < kLeastSamples) return std::nullopt;
   const std::vector<float> p = a.probabilities(*appearance), q = b.probabilities(*appearance);
   double shared = 0.0;
-  for (std::size_t i = 0; i < std::min(p.size(), q.size()); ++i) shared += std::sqrt(static_cast<double>(p[i] * q[i]));
-  return static_cast<float>(-std::log(std::clamp(shared, 1e-6, 1.0)));
+  for (std::size_t i = 0; i < std::min(p.size(), q.size()); ++i) shared += std::sqrt(double(p[i] * q[i]));
+  return float(-std::log(std::clamp(shared, 1e-6, 1.0)));
 }
 
 }  // namespace vesalius

@@ -16,7 +16,7 @@ double square(double x) { return x * x; }
 }  // namespace
 
 TrackMotion::TrackMotion(const Eigen::Vector3f& position, float sigma_m) : position_(position) {
-  covariance_ << square(static_cast<double>(sigma_m)), 0.0, 0.0, square(kUsualSpeed_m_s);
+  covariance_ << square(double(sigma_m)), 0.0, 0.0, square(kUsualSpeed_m_s);
 }
 
 // Both kinds of step are exact solutions, so that two half steps are one whole step.
@@ -29,7 +29,7 @@ void TrackMotion::predict(double step_s) {
 
 /// A constant velocity with white acceleration.
 void TrackMotion::go_on(double step_s) {
-  position_ += static_cast<float>(step_s) * velocity_;
+  position_ += float(step_s) * velocity_;
   Eigen::Matrix2d transition, noise;
   transition << 1.0, step_s, 0.0, 1.0;
   noise << step_s * step_s * step_s / 3.0, step_s * step_s / 2.0, step_s * step_s / 2.0, step_s;
@@ -41,8 +41,8 @@ void TrackMotion::go_on(double step_s) {
 void TrackMotion::fade(double step_s) {
   const double left = std::exp(-step_s / kFade_s);
   const double travel = kFade_s * (1.0 - left);
-  position_ += static_cast<float>(travel) * velocity_;
-  velocity_ *= static_cast<float>(left);
+  position_ += float(travel) * velocity_;
+  velocity_ *= float(left);
   Eigen::Matrix2d transition, noise;
   transition << 1.0, travel, 0.0, left;
   const double variance = square(kUsualSpeed_m_s);
@@ -53,19 +53,19 @@ void TrackMotion::fade(double step_s) {
 }
 
 void TrackMotion::update(const Eigen::Vector3f& position, float sigma_m) {
-  const double measured = covariance_(0, 0) + square(static_cast<double>(sigma_m));
+  const double measured = covariance_(0, 0) + square(double(sigma_m));
   const Eigen::Vector2d gain = covariance_.col(0) / measured;
   const Eigen::Vector3f off = position - position_;
-  position_ += static_cast<float>(gain(0)) * off;
-  velocity_ += static_cast<float>(gain(1)) * off;
+  position_ += float(gain(0)) * off;
+  velocity_ += float(gain(1)) * off;
   covariance_ = (covariance_ - gain * covariance_.row(0)).eval();
   unseen_s_ = 0.0;
 }
 
-float TrackMotion::sigma_m() const { return static_cast<float>(std::sqrt(covariance_(0, 0))); }
+float TrackMotion::sigma_m() const { return float(std::sqrt(covariance_(0, 0))); }
 
 float TrackMotion::distance2(const Eigen::Vector3f& position, float sigma_m) const {
-  const auto variance = static_cast<float>(covariance_(0, 0)) + sigma_m * sigma_m;
+  const auto variance = float(covariance_(0, 0)) + sigma_m * sigma_m;
   return (position - position_).squaredNorm() / variance;
 }
 

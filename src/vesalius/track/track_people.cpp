@@ -107,7 +107,7 @@ TrackedPerson describe(const Track& track) {
 TrackedPerson describe_unseen(const Track& track, const BodyModel& body, const BodyFitter* fitter, double time_s) {
   TrackedPerson out = describe(track);
   const Eigen::Vector3f by = track.motion.position() - track.place_position;
-  const auto unseen_s = static_cast<float>(std::clamp(time_s - track.seen_s, 0.0, 1e6));
+  const auto unseen_s = float(std::clamp(time_s - track.seen_s, 0.0, 1e6));
   const float faded = std::exp(-kFadePerS * unseen_s);
   out.person = track.person;
   move(out.person, by, faded);
@@ -156,7 +156,7 @@ struct PeopleTracker::State {
         options(given),
         appearance(std::move(looks)),
         fitter(std::move(bodies)),
-        clock(static_cast<double>(given.rate), static_cast<double>(given.gap_s)) {}
+        clock(double(given.rate), double(given.gap_s)) {}
 
   std::optional<Sighting> look_at(const Frame& frame, Person person) const;
   std::vector<Sighting> look_at_all(const Frame& frame, std::vector<Person> people) const;
@@ -209,7 +209,7 @@ std::optional<Sighting> PeopleTracker::State::look_at(const Frame& frame, Person
 
 std::vector<Sighting> PeopleTracker::State::look_at_all(const Frame& frame, std::vector<Person> people) const {
   std::vector<std::optional<Sighting>> seen(people.size());
-  parallel_for(static_cast<int>(people.size()), [&](int i) { seen[i] = look_at(frame, std::move(people[i])); });
+  parallel_for(int(people.size()), [&](int i) { seen[i] = look_at(frame, std::move(people[i])); });
   std::vector<Sighting> sightings;
   for (std::optional<Sighting>& sighting : seen) {
     if (sighting) sightings.push_back(std::move(*sighting));
@@ -221,7 +221,7 @@ std::vector<Sighting> PeopleTracker::State::look_at_all(const Frame& frame, std:
 /// Returns for each track the index of its sighting, or -1.
 std::vector<int> PeopleTracker::State::match(const std::vector<Sighting>& sightings, double time_s) const {
   Eigen::MatrixXf costs(static_cast<Eigen::Index>(tracks.size()), static_cast<Eigen::Index>(sightings.size()));
-  parallel_for(static_cast<int>(tracks.size()), [&](int t) {
+  parallel_for(int(tracks.size()), [&](int t) {
     for (std::size_t s = 0; s < sightings.size(); ++s) {
       costs(t, static_cast<Eigen::Index>(s)) =
           match_cost(tracks[t], sightings[s], appearance.get(), time_s, options.same_look);
@@ -237,7 +237,7 @@ int PeopleTracker::State::who_came_back(const Sighting& sighting, double time_s)
     // Others are rivals even where they look a little too different themselves.
     const std::optional<float> cost =
         return_cost(lost[i], sighting, appearance.get(), time_s, options.same_look + kClearlyBetter);
-    if (cost) alike.emplace_back(*cost, static_cast<int>(i));
+    if (cost) alike.emplace_back(*cost, int(i));
   }
   std::ranges::sort(alike);
   if (alike.empty() || alike[0].first > options.same_look) return -1;
@@ -265,7 +265,7 @@ Track PeopleTracker::State::begin(const Sighting& sighting, double time_s) {
 }
 
 void PeopleTracker::State::count(Track& track, float score, double passed_s) const {
-  const auto evidence = static_cast<float>(std::min(passed_s, kMostEvidence_s)) * kFramesASecond;
+  const auto evidence = float(std::min(passed_s, kMostEvidence_s)) * kFramesASecond;
   track.log_odds = std::clamp(track.log_odds + evidence * score_log_odds(score), 0.F, std::log(options.odds));
 }
 
@@ -273,7 +273,7 @@ void PeopleTracker::State::count(Track& track, float score, double passed_s) con
 void PeopleTracker::State::confirm(Track& track, float score) const {
   if (!is_sure(track)) {
     track.evidence += score_log_odds(score);
-    const float enough = static_cast<float>(options.confirm) * score_log_odds(kClearScore);
+    const float enough = float(options.confirm) * score_log_odds(kClearScore);
     if (track.found < options.confirm || track.evidence < enough) return;
   }
   track.state = TrackState::tracked;
@@ -281,7 +281,7 @@ void PeopleTracker::State::confirm(Track& track, float score) const {
 
 void PeopleTracker::State::take_sighting(Track& track, const Sighting& sighting, double time_s) const {
   const double passed_s = time_s - track.seen_s;
-  if (!is_sure(track) && passed_s > static_cast<double>(options.confirm_s)) track.doubt();
+  if (!is_sure(track) && passed_s > double(options.confirm_s)) track.doubt();
   track.take_sighting(sighting, time_s);
   count(track, sighting.person.score, passed_s);
   confirm(track, sighting.person.score);
@@ -302,8 +302,8 @@ bool PeopleTracker::State::begun_at(const Track& stayed, const std::vector<Sight
 
 /// Returns the time after which somebody who is not found is given up.
 double PeopleTracker::State::longest_unseen_s(const Track& track) const {
-  if (!is_sure(track)) return static_cast<double>(options.confirm_s);
-  return static_cast<double>(track.stays ? std::max(options.down_s, options.hidden_s) : options.hidden_s);
+  if (!is_sure(track)) return double(options.confirm_s);
+  return double(track.stays ? std::max(options.down_s, options.hidden_s) : options.hidden_s);
 }
 
 /// Gives a track up. Nobody is told of a guess.
@@ -323,7 +323,7 @@ void PeopleTracker::State::lose_all(double time_s, TrackedFrame& out) {
 }
 
 void PeopleTracker::State::predict(const Frame& frame, double passed_s) {
-  parallel_for(static_cast<int>(tracks.size()), [&](int t) {
+  parallel_for(int(tracks.size()), [&](int t) {
     Track& track = tracks[t];
     track.motion.predict(passed_s);
     track.expected = track.place.expected(frame, track.place_position, track.motion.position());
@@ -359,7 +359,7 @@ std::vector<int> PeopleTracker::State::follow(const Frame& frame, const std::vec
   for (std::size_t s = 0; s < sightings.size() && tracks.size() < kMostTracks; ++s) {
     if (taken[s]) continue;
     tracks.push_back(begin(sightings[s], time_s));
-    sighting_of.push_back(static_cast<int>(s));
+    sighting_of.push_back(int(s));
   }
   return sighting_of;
 }
@@ -368,8 +368,8 @@ void PeopleTracker::State::fit_bodies(const Frame& frame, const std::vector<int>
                                       std::vector<Sighting>& sightings) {
   if (!fitter || !fitter->can_fit()) return;
   std::optional<Ground> ground;
-  if (out.floor) ground = {out.floor->up.cast<double>(), static_cast<double>(out.floor->height_m)};
-  parallel_for(static_cast<int>(tracks.size()), [&](int t) {
+  if (out.floor) ground = {out.floor->up.cast<double>(), double(out.floor->height_m)};
+  parallel_for(int(tracks.size()), [&](int t) {
     if (sighting_of[t] < 0) return;
     Track& track = tracks[t];
     Person& person = sightings[static_cast<std::size_t>(sighting_of[t])].person;

@@ -12,7 +12,7 @@ constexpr long kLeastPixels = 40;
 
 /// Returns by how many millimetres a moved person's surface may lie elsewhere: a limb's swing between frames, the
 /// error of a prediction, and the sensor's noise.
-int tolerance_mm(int z_mm) { return 150 + static_cast<int>(static_cast<std::int64_t>(z_mm) * z_mm * 6 / 1'000'000); }
+int tolerance_mm(int z_mm) { return 150 + int(static_cast<std::int64_t>(z_mm) * z_mm * 6 / 1'000'000); }
 
 }  // namespace
 
@@ -33,17 +33,16 @@ float TrackPlace::unchanged(const Frame& frame) const {
       if (mask_(u, v) != 0 && now != 0 && std::abs(now - depth_(u, v)) <= tolerance_mm(now)) ++same;
     }
   }
-  return static_cast<float>(same) / static_cast<float>(pixels_);
+  return float(same) / float(pixels_);
 }
 
 Mask TrackPlace::expected(const Frame& frame, const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
   if (empty() || frame.depth.width() != width_ || frame.depth.height() != height_) return {};
   if (!(from.z() > 0.F) || !(to.z() > 0.F)) return {};
   const Eigen::Vector2f moved = frame.camera.pixel(to) - frame.camera.pixel(from);
-  if (!(std::abs(moved.x()) < static_cast<float>(width_)) || !(std::abs(moved.y()) < static_cast<float>(height_)))
-    return {};
-  const int du = static_cast<int>(std::lround(moved.x())), dv = static_cast<int>(std::lround(moved.y()));
-  const int dz_mm = static_cast<int>(std::lround(1e3F * (to.z() - from.z())));
+  if (!(std::abs(moved.x()) < float(width_)) || !(std::abs(moved.y()) < float(height_))) return {};
+  const int du = int(std::lround(moved.x())), dv = int(std::lround(moved.y()));
+  const int dz_mm = int(std::lround(1e3F * (to.z() - from.z())));
   Mask out(width_, height_, 0);
   long left = 0;
   for (int v = 0; v < box_.height; ++v) {
@@ -56,7 +55,7 @@ Mask TrackPlace::expected(const Frame& frame, const Eigen::Vector3f& from, const
       ++left;
     }
   }
-  if (left < kLeastPixels || static_cast<float>(left) < kLeastShare * static_cast<float>(pixels_)) return {};
+  if (left < kLeastPixels || float(left) < kLeastShare * float(pixels_)) return {};
   return out;
 }
 

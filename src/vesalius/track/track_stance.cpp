@@ -54,11 +54,11 @@ void TrackStance::advance(const Posture& posture, double time_s) {
     if (begins || changes > path.log_odds) {
       path = {begins ? 0.0 : changes, time_s, 0, 0.0, 0, falls};
     }
-    const double probable = (1.0 - kWrong) * static_cast<double>(probabilities[i]) + kWrong / kStances.size();
+    const double probable = (1.0 - kWrong) * double(probabilities[i]) + kWrong / kStances.size();
     path.log_odds += evidence * std::log(probable);
     ++path.frames;
     if (const std::optional<float> height_m = trunk_height_m(posture)) {
-      path.trunk_m += static_cast<double>(*height_m);
+      path.trunk_m += double(*height_m);
       ++path.heights;
     }
   }
@@ -77,7 +77,7 @@ void TrackStance::advance(const Posture& posture, double time_s) {
 std::optional<Stance> TrackStance::told(const Path& best, double margin, Stance stance, double time_s) const {
   if (margin < kClear || best.frames < kLeastFrames) return std::nullopt;
   if (stance != Stance::lying || best.heights == 0) return stance;
-  if (best.trunk_m / best.heights > static_cast<double>(kOnFloor_m)) return stance;
+  if (best.trunk_m / best.heights > double(kOnFloor_m)) return stance;
   if (!best.fell && time_s - best.since_s < kLong_s && stance_ != Stance::fallen) return stance;
   if (margin < kAlarm) return std::nullopt;
   return Stance::fallen;

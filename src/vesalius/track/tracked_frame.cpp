@@ -41,7 +41,7 @@ TrackedFrame seen_people(std::vector<Person> people) {
   TrackedFrame seen;
   seen.followed = false;
   for (Person& person : people) {
-    const auto index = static_cast<int>(seen.people.size());
+    const auto index = int(seen.people.size());
     TrackedPerson& one = seen.people.emplace_back();
     one.id = index;
     one.state = TrackState::seen;

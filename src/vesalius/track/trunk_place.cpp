@@ -20,7 +20,7 @@ struct Mean {
     sum += point.cast<double>();
     ++count;
   }
-  Eigen::Vector3f value() const { return (sum / static_cast<double>(count)).cast<float>(); }
+  Eigen::Vector3f value() const { return (sum / double(count)).cast<float>(); }
 };
 
 TrunkPlace placed(const Eigen::Vector3f& position, float sigma_m) {

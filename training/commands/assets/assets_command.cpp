@@ -25,7 +25,7 @@ struct Arguments {
   bool quiet = false;
 };
 
-std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6); }
+std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.1f} MB", double(bytes) / 1e6); }
 
 void print_list(const std::string& folder) {
   for (const AssetPackage& package : asset_packages()) {
@@ -38,7 +38,7 @@ void print_list(const std::string& folder) {
 void install(const AssetPackage& package, const std::string& folder, const Arguments& arguments) {
   Progress progress(-1, !arguments.quiet, "kB");
   const InstallWatch watch = [&](std::uint64_t done, std::uint64_t total) {
-    if (total > 0) progress.set(static_cast<int>(done / kKilobyte), static_cast<int>(total / kKilobyte));
+    if (total > 0) progress.set(int(done / kKilobyte), int(total / kKilobyte));
     return !interrupted();
   };
   const InstallReport report = install_assets(package, folder, arguments.mirror, watch);

@@ -148,7 +148,7 @@ std::function<void(const JobProgress&)> show_jobs(bool shown) {
     }
     if (!state->line.due()) return;
     const double seconds = std::chrono::duration<double>(now - state->start).count();
-    const double done = static_cast<double>(progress.done) / std::max(1, progress.tasks);
+    const double done = double(progress.done) / std::max(1, progress.tasks);
     std::string text = fmt::format("{}: {}, {} of {} tasks{}, {:.0f} s", progress.job, progress.phase, progress.done,
                                    progress.tasks, counters_of(progress), seconds);
     if (done > 0.0 && done < 1.0) text += fmt::format(", {:.0f} s left", seconds / done * (1.0 - done));

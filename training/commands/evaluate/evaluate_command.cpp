@@ -238,11 +238,10 @@ void write_fitted_stances(const Evaluation& evaluation, const std::string& path,
   write_file_atomically(path, fitted.toml);
   if (quiet) return;
   for (const StanceAgreement& agreement : fitted.fit.agreement) {
-    const double share = 100.0 / static_cast<double>(agreement.samples);
+    const double share = 100.0 / double(agreement.samples);
     print(fmt::format("stances fitted to {} frames of people {}: {:.1f} % right by one frame, were {:.1f} %\n",
-                      agreement.samples, to_string(agreement.stance),
-                      share * static_cast<double>(agreement.right_after),
-                      share * static_cast<double>(agreement.right_before)));
+                      agreement.samples, to_string(agreement.stance), share * double(agreement.right_after),
+                      share * double(agreement.right_before)));
   }
 }
 

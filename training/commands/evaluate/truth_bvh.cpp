@@ -156,8 +156,8 @@ class BvhTruth final : public TruthSource {
     if (!frame.time_s) {
       throw Error(fmt::format("{}: frame {} has no time, expected a table as frames", path_, frame.name));
     }
-    const double at = std::round((*frame.time_s - start_s_) * static_cast<double>(motion_.fps));
-    return at >= 0.0 && at < motion_.frame_count() ? static_cast<int>(at) : -1;
+    const double at = std::round((*frame.time_s - start_s_) * double(motion_.fps));
+    return at >= 0.0 && at < motion_.frame_count() ? int(at) : -1;
   }
 
   FrameTruth truth_of(const Frame& frame, int index) const {
@@ -175,7 +175,7 @@ class BvhTruth final : public TruthSource {
     const int at = motion_frame(frame, index);
     if (at < 0 || !camera_from_world) return truth;  // there is a person whose joints are unknown
     const std::vector<Eigen::Vector3d> world = joint_positions(motion_, at);
-    const auto unit_m = static_cast<double>(options_.unit_m);
+    const auto unit_m = double(options_.unit_m);
     std::vector<Eigen::Vector3f>& joints = truth.joints.emplace_back();
     for (const NamedJoint& joint : joints_) {
       const Eigen::Vector3d metres = unit_m * world[joint.joint];

@@ -44,7 +44,7 @@ class RecipeTruth final : public TruthSource {
     }
     const std::int64_t all = std::int64_t{rendered.count} * std::max<std::int64_t>(1, clips_.frames_per_clip);
     if (all > std::numeric_limits<int>::max()) throw UsageError(fmt::format("{} frames of clips are too many", all));
-    count_ = static_cast<int>((all + step - 1) / step);
+    count_ = int((all + step - 1) / step);
   }
 
   std::optional<TrueFrame> next() override {
@@ -61,8 +61,7 @@ class RecipeTruth final : public TruthSource {
   void render() {
     ready_ = std::vector<LabelledFrame>(std::min(count_ - next_, kFramesPerThread * std::max(1, thread_count())));
     taken_ = 0;
-    parallel_for(static_cast<int>(ready_.size()),
-                 [&](int i) { ready_[i] = frame_(static_cast<std::uint64_t>(next_ + i) * step_); });
+    parallel_for(int(ready_.size()), [&](int i) { ready_[i] = frame_(static_cast<std::uint64_t>(next_ + i) * step_); });
   }
 
   std::vector<std::string> names_;

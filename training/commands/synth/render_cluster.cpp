@@ -90,7 +90,7 @@ void run_render_task(const TaskContext& context, std::istream& in, std::ostream&
     const FrameRange range = frames_of_shard(job.info, shard);
     std::vector<std::string> frames;
     parallel_in_order(
-        static_cast<int>(range.count),
+        int(range.count),
         [&](int i) {
           const std::uint64_t index = range.first + static_cast<std::uint64_t>(i);
           return encode_frame({index, job.info.seed, job.maker.frame(index)}, job.part_count);

@@ -81,13 +81,13 @@ void write_shards(const Arguments& arguments, const FrameMaker& maker, const Dat
   if (missing < info.frames && !arguments.quiet) {
     say(fmt::format("{}: {} of {} frames are there", arguments.out, info.frames - missing, info.frames));
   }
-  Progress progress(static_cast<int>(missing), !arguments.quiet);
+  Progress progress(int(missing), !arguments.quiet);
   const auto encode = [&](std::uint64_t index, LabelledFrame frame) {
     return encode_frame({index, info.seed, std::move(frame)}, part_count);
   };
   const std::vector<FrameRange> ranges = writer.missing();
   for (const FrameRange& range : ranges) {
-    make_frames(maker, range.first, static_cast<int>(range.count), progress, encode,
+    make_frames(maker, range.first, int(range.count), progress, encode,
                 [&](std::uint64_t index, std::string bytes) { writer.write_encoded(index, std::move(bytes)); });
   }
   progress.clear();
@@ -99,7 +99,7 @@ void write_shards(const Arguments& arguments, const FrameMaker& maker, const Dat
 
 void write_folder(const Arguments& arguments, const FrameMaker& maker, const BodyModel& body) {
   LabelledExporter exporter(arguments.out, body, synth::joint_names(), maker.clips);
-  const auto count = static_cast<int>(maker.frames_in(arguments.count));
+  const auto count = int(maker.frames_in(arguments.count));
   Progress progress(count, !arguments.quiet);
   make_frames(maker, maker.frames_in(arguments.first), count, progress, as_it_is,
               [&](std::uint64_t /*index*/, const LabelledFrame& frame) { exporter.write(frame); });
@@ -124,8 +124,8 @@ void write_preview(const Arguments& arguments, const FrameMaker& maker, const Bo
   const std::vector<std::uint64_t> numbers = preview_frames(arguments, maker);
   const FrameMaker shown{[&](std::uint64_t i) { return maker.frame(numbers[i]); }, {}};
   std::vector<LabelledFrame> frames;
-  Progress progress(static_cast<int>(numbers.size()), !arguments.quiet);
-  make_frames(shown, 0, static_cast<int>(numbers.size()), progress, as_it_is,
+  Progress progress(int(numbers.size()), !arguments.quiet);
+  make_frames(shown, 0, int(numbers.size()), progress, as_it_is,
               [&](std::uint64_t /*index*/, LabelledFrame frame) { frames.push_back(std::move(frame)); });
   progress.clear();
   const std::string path = arguments.out.empty() ? "preview.png" : arguments.out;

@@ -18,7 +18,7 @@ GrowDisplay::GrowDisplay(const std::string& round, const TrainingSet& set, int t
                          GrowProgress& progress, bool shown)
     : round_(round),
       trees_(trees),
-      work_(static_cast<double>(set.samples().size()) * max_depth * trees),
+      work_(double(set.samples().size()) * max_depth * trees),
       progress_(progress),
       status_(shown),
       judged_(!set.held_out().empty()),
@@ -63,12 +63,12 @@ void GrowDisplay::measure(const std::vector<Tree>& trees) {
 }
 
 std::string GrowDisplay::line() const {
-  const double share = work_ > 0.0 ? static_cast<double>(progress_.settled) / work_ : 0.0;
+  const double share = work_ > 0.0 ? double(progress_.settled) / work_ : 0.0;
   const double spent_s = seconds();
   const double left_s = share > 0.0 ? spent_s / share * (1.0 - share) : 0.0;
   return fmt::format("{}: {} of {} trees, {:.0f} %, {:.2f} M nodes, {:.0f} M evaluations/s, {:.0f} s left{}", round_,
-                     votes_.trees(), trees_, 100.0 * share, static_cast<double>(progress_.nodes) * 1e-6,
-                     static_cast<double>(progress_.evaluations) / spent_s * 1e-6, left_s, accuracy_);
+                     votes_.trees(), trees_, 100.0 * share, double(progress_.nodes) * 1e-6,
+                     double(progress_.evaluations) / spent_s * 1e-6, left_s, accuracy_);
 }
 
 TrainDisplay::TrainDisplay(const TrainingSet& set, int max_depth, bool shown)

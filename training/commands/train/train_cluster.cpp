@@ -103,7 +103,7 @@ class ClusterRun {
     session_->remove();
     if (!run_.shown) return;
     say(fmt::format("{}: {} trees, {:.2f} MiB, trained in {:.1f} s", run_.out, forest.trees.size(),
-                    static_cast<double>(std::filesystem::file_size(run_.out)) / kMiB,
+                    double(std::filesystem::file_size(run_.out)) / kMiB,
                     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
   }
 
@@ -118,7 +118,7 @@ class ClusterRun {
     std::int64_t samples = 0;
     for (const std::int64_t of_class : total.samples.samples) samples += of_class;
     say(fmt::format("{} frames in {} shards, {:.2f} million samples, {:.2f} GiB", total.frames, executor.shards(),
-                    static_cast<double>(samples) * 1e-6, static_cast<double>(total.bytes) / kGiB));
+                    double(samples) * 1e-6, double(total.bytes) / kGiB));
   }
 
   const TrainRun& run_;

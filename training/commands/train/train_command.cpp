@@ -95,7 +95,7 @@ void run(const Arguments& arguments) {
   const TrainPlan plan = plan_training(inputs, options, arguments.curves, memory_limit(arguments));
   if (arguments.estimate) return print(plan.text);
   if (!arguments.quiet) {
-    say(fmt::format("about {:.0f} s, at most {:.2f} GiB", plan.seconds, static_cast<double>(plan.bytes) / kGiB));
+    say(fmt::format("about {:.0f} s, at most {:.2f} GiB", plan.seconds, double(plan.bytes) / kGiB));
   }
   watch_interrupts();
   train({.out = arguments.out,

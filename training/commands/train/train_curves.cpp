@@ -30,7 +30,7 @@ TrainingSet smaller_set(const TrainInputs& inputs, const TrainingSet& set, std::
   const std::vector<bool> held_out = held_out_frames(set);
   std::size_t index = 0;
   inputs.read_backgrounds([&](const LabelledFrame& frame) {
-    const bool early = static_cast<double>(index) < share * static_cast<double>(backgrounds);
+    const bool early = double(index) < share * double(backgrounds);
     if (early && !held_out[index]) fewer.add(frame);
     ++index;
   });
@@ -76,7 +76,7 @@ std::vector<CurvePoint> train_curves(const TrainInputs& inputs, const TrainingSe
   add(set, options, 1.0);
   for (const double factor : {0.25, 4.0}) {
     TrainOptions other = options;
-    other.grow.split.candidates = std::max(1, static_cast<int>(options.grow.split.candidates * factor));
+    other.grow.split.candidates = std::max(1, int(options.grow.split.candidates * factor));
     add(set, other, 1.0);
   }
   return points;

@@ -81,8 +81,7 @@ TaskContext::ReadFrame open_frames(const std::string& text) {
     std::uint64_t left = number;
     for (const TrainInput& input : inputs->inputs()) {
       if (left < static_cast<std::uint64_t>(input.frames)) {
-        return with_context(fmt::format("{}: frame {}", input.name, left),
-                            [&] { return input.frame(static_cast<int>(left)); });
+        return with_context(fmt::format("{}: frame {}", input.name, left), [&] { return input.frame(int(left)); });
       }
       left -= static_cast<std::uint64_t>(input.frames);
     }

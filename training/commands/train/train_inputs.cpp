@@ -83,7 +83,7 @@ void TrainInputs::open_labelled(std::shared_ptr<const Reader> reader, int count,
   expect_same_parts(reader->body(), input.name, body_, body_from_);
   const auto most = static_cast<std::uint64_t>(count > 0 ? count : kMostFrames);
   const Camera camera = reader->read(0, false).frame.camera;
-  input.frames = static_cast<int>(std::min(reader->size(), most));
+  input.frames = int(std::min(reader->size(), most));
   input.width = camera.width;
   input.height = camera.height;
   input.frame = [reader](int i) { return reader->read(i, false); };
@@ -161,13 +161,13 @@ void TrainInputs::read(const Selection& selection, const TakeFrame& take) const 
   int before = 0;
   for (const TrainInput& input : inputs_) {
     std::vector<int> chosen;
-    const auto first = static_cast<int>(std::ceil(input.frames * selection.share));
+    const auto first = int(std::ceil(input.frames * selection.share));
     for (int i = 0; i < first; ++i) {
       if (!selection.wanted || selection.wanted(before + i)) chosen.push_back(i);
     }
     before += input.frames;
     parallel_in_order(
-        static_cast<int>(chosen.size()), [&](int i) { return input.frame(chosen[i]); },
+        int(chosen.size()), [&](int i) { return input.frame(chosen[i]); },
         [&](int i, const LabelledFrame& frame) {
           stop_if_interrupted();
           with_context(fmt::format("{}: frame {}", input.name, chosen[i]), [&] { take(frame); });

@@ -41,19 +41,18 @@ struct Load {
 
 /// Adds some frames to the set. A background counts with the most that its frames may take.
 Load measure(const TrainInputs& inputs, const SampleOptions& options, TrainingSet& set) {
-  const auto frames = static_cast<double>(inputs.frames());
-  const int step =
-      std::max(1, static_cast<int>(frames / std::clamp(frames / kOneOf, kFewestMeasured * 1.0, kMostMeasured * 1.0)));
+  const auto frames = double(inputs.frames());
+  const int step = std::max(1, int(frames / std::clamp(frames / kOneOf, kFewestMeasured * 1.0, kMostMeasured * 1.0)));
   const Clock::time_point start = Clock::now();
   inputs.read({1.0, [&](int i) { return i % step == 0; }}, [&](const LabelledFrame& frame) { set.add(frame); });
-  const double times = frames / static_cast<double>(set.frames().size());
-  Load load{times * seconds_since(start), times * static_cast<double>(set.frames().bytes()),
-            times * static_cast<double>(set.samples().size()), times * static_cast<double>(set.contents().pool.size())};
+  const double times = frames / double(set.frames().size());
+  Load load{times * seconds_since(start), times * double(set.frames().bytes()), times * double(set.samples().size()),
+            times * double(set.contents().pool.size())};
   for (const TrainBackground& background : inputs.backgrounds()) {
     const int count = background.frames >= 0 ? background.frames : kUnknownBackgrounds;
-    load.depth_bytes += static_cast<double>(FrameStore::most_frame_bytes(background.width, background.height)) * count;
-    load.samples += static_cast<double>(options.background_share) * options.pixels_per_frame * count;
-    load.pool += static_cast<double>(kEmptyPool * options.hard_pool) * count;
+    load.depth_bytes += double(FrameStore::most_frame_bytes(background.width, background.height)) * count;
+    load.samples += double(options.background_share) * options.pixels_per_frame * count;
+    load.pool += double(kEmptyPool * options.hard_pool) * count;
   }
   return load;
 }
@@ -67,15 +66,15 @@ struct Pilot {
 /// however many there are.
 Pilot grow_pilot(TrainingSet& set, double samples, const TrainOptions& options) {
   if (set.samples().empty()) return {};
-  const double times = samples / static_cast<double>(set.samples().size());
+  const double times = samples / double(set.samples().size());
   GrowProgress progress;
   Clock::time_point start = Clock::now();
   Forest forest = set.untrained_forest();
   forest.trees = {grow_tree(set, options.grow, kPilotTree, &progress)};
-  Pilot pilot{.tree_s = times * seconds_since(start),
-              .evaluations = times * static_cast<double>(progress.evaluations),
-              .leaves = std::min(times * static_cast<double>(forest.trees[0].leaves.size()),
-                                 std::ldexp(1.0, options.grow.leaf.max_depth))};
+  Pilot pilot{
+      .tree_s = times * seconds_since(start),
+      .evaluations = times * double(progress.evaluations),
+      .leaves = std::min(times * double(forest.trees[0].leaves.size()), std::ldexp(1.0, options.grow.leaf.max_depth))};
   if (options.leaves.rounds == 0 || !forest.has_background) return pilot;
   start = Clock::now();
   LeafLearningOptions one = options.leaves;
@@ -92,7 +91,7 @@ Pilot grow_pilot(TrainingSet& set, double samples, const TrainOptions& options) 
 double own_memory() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024.0;
+  return double(usage.ru_maxrss) * 1024.0;
 }
 
 std::string duration(double seconds) {
@@ -103,8 +102,8 @@ std::string duration(double seconds) {
 }  // namespace
 
 std::uint64_t default_memory() {
-  const auto pages = static_cast<double>(::sysconf(_SC_PHYS_PAGES));
-  const auto page_bytes = static_cast<double>(::sysconf(_SC_PAGESIZE));
+  const auto pages = double(::sysconf(_SC_PHYS_PAGES));
+  const auto page_bytes = double(::sysconf(_SC_PAGESIZE));
   return static_cast<std::uint64_t>(kUsedShare * pages * page_bytes);
 }
 
@@ -115,14 +114,14 @@ TrainPlan plan_training(const TrainInputs& inputs, const TrainOptions& options, 
   const Load load = measure(inputs, drawn, set);
   const double own = own_memory();
   const int hard_trees = set.has_background() ? options.hard_trees : 0;
-  const double hard = static_cast<double>(drawn.background_share * drawn.hard_share) * load.samples;
+  const double hard = double(drawn.background_share * drawn.hard_share) * load.samples;
   const double samples = load.samples + (hard_trees > 0 ? std::min(hard, load.pool) : 0.0);
   const Pilot pilot = grow_pilot(set, samples, options);
 
   const LogitLayout layout(inputs.body(), set.has_background(), options.leaves.headings);
   const double set_bytes = load.depth_bytes + kGrowing * (samples + load.pool) * sizeof(TrainingSample);
-  const double tree_bytes = samples * kGrowBytes + pilot.leaves * kNodeBytes +
-                            std::min(samples * kRowBytes, static_cast<double>(options.grow.row_bytes));
+  const double tree_bytes =
+      samples * kGrowBytes + pilot.leaves * kNodeBytes + std::min(samples * kRowBytes, double(options.grow.row_bytes));
   const double leaf_bytes =
       pilot.leaves_s > 0.0 ? options.trees * (4.0 * samples + pilot.leaves * layout.size() * kLogitBytes) : 0.0;
   const auto bytes = [&](int trees) {
@@ -130,12 +129,11 @@ TrainPlan plan_training(const TrainInputs& inputs, const TrainOptions& options, 
     return static_cast<std::uint64_t>(own + kMargin * (frames + std::max(trees * tree_bytes, leaf_bytes)));
   };
   if (bytes(1) > limit) {
-    const double needed = static_cast<double>(bytes(1)) / kGiB;
+    const double needed = double(bytes(1)) / kGiB;
     throw Error(fmt::format(
         "training on {} frames with {} pixels each takes about {:.2f} GiB, --memory allows {:.2f}: expected --memory "
         "{:.1f}, fewer frames (--count), fewer --pixels, or --on, which divides them among machines",
-        inputs.frames(), drawn.pixels_per_frame, needed, static_cast<double>(limit) / kGiB,
-        std::ceil(10.0 * needed) / 10.0));
+        inputs.frames(), drawn.pixels_per_frame, needed, double(limit) / kGiB, std::ceil(10.0 * needed) / 10.0));
   }
   TrainPlan plan;
   const int most = std::min(thread_count(), std::max(options.trees, 1));
@@ -146,7 +144,7 @@ TrainPlan plan_training(const TrainInputs& inputs, const TrainOptions& options, 
   plan.seconds = load.reading_s + trees * pilot.tree_s + leaves_s;
   plan.text =
       fmt::format("frames        {} in {}, {:.1f} a second\n", inputs.frames(), duration(load.reading_s),
-                  static_cast<double>(inputs.frames()) / load.reading_s) +
+                  double(inputs.frames()) / load.reading_s) +
       fmt::format("samples       {:.2f} million\n", samples * 1e-6) +
       fmt::format("evaluations   {:.1f} thousand million, {:.0f} million a second on {} threads\n",
                   trees * pilot.evaluations * 1e-9, pilot.evaluations / std::max(pilot.tree_s, 1e-9) * 1e-6,
@@ -154,7 +152,7 @@ TrainPlan plan_training(const TrainInputs& inputs, const TrainOptions& options, 
       fmt::format("trees         {} in {}, {} at a time{}\n", trees, duration(trees * pilot.tree_s), plan.trees_at_once,
                   leaves_s > 0.0 ? fmt::format("; their leaves in {}", duration(leaves_s)) : "") +
       fmt::format("time          {:.0f} s in all ({})\n", plan.seconds, duration(plan.seconds)) +
-      fmt::format("memory        at most {:.2f} GiB\n", static_cast<double>(plan.bytes) / kGiB);
+      fmt::format("memory        at most {:.2f} GiB\n", double(plan.bytes) / kGiB);
   return plan;
 }
 

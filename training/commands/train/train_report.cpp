@@ -23,19 +23,19 @@ LinePlot accuracy_plot(const std::string& caption, const std::string& x_label, c
                        int first) {
   LinePlot plot{caption, x_label, "mean recall of the parts", {{"among parts", {}}, {"background a rival", {}}}};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double x = static_cast<double>(i) + first;
+    const double x = double(i) + first;
     plot.series[0].points.emplace_back(x, points[i].parts_only);
     plot.series[1].points.emplace_back(x, points[i].with_background);
   }
   // The range is given because a single point would span none.
-  plot.x_range = {static_cast<double>(first), std::max(static_cast<double>(points.size()) - 1, 1.0) + first};
+  plot.x_range = {double(first), std::max(double(points.size()) - 1, 1.0) + first};
   plot.y_range = {0.0, 1.0};
   return plot;
 }
 
 void add_summary(Document& document, const Forest& forest, const TrainingSet& set, const TrainFigures& figures) {
   const double core_s = figures.grown.seconds * figures.threads;
-  const auto evaluations = static_cast<double>(figures.grown.evaluations);
+  const auto evaluations = double(figures.grown.evaluations);
   std::vector<std::vector<std::string>> rows = {
       {"Accuracy among parts", share_text(figures.accuracy.parts_only())},
       {"Accuracy, background a rival", share_text(figures.accuracy.with_background())},
@@ -43,12 +43,12 @@ void add_summary(Document& document, const Forest& forest, const TrainingSet& se
       {"Samples learned from", fmt::format("{}", set.samples().size())},
       {"of them hard negatives", fmt::format("{}", figures.grown.hard_negatives)},
       {"Samples held out", fmt::format("{}", set.held_out().size())},
-      {"Frames and samples in memory, MiB", fmt::format("{:.0f}", static_cast<double>(set.bytes()) / kMiB)},
+      {"Frames and samples in memory, MiB", fmt::format("{:.0f}", double(set.bytes()) / kMiB)},
       {"Reading or rendering, s", fmt::format("{:.1f}", figures.reading_s)},
       {"Growing, s", fmt::format("{:.1f}", figures.grown.seconds)},
       {"Threads", fmt::format("{}", figures.threads)},
       {"Million evaluations per core-second", core_s > 0.0 ? fmt::format("{:.1f}", evaluations / core_s * 1e-6) : ""},
-      {"Model, MiB", fmt::format("{:.2f}", static_cast<double>(figures.model_bytes) / kMiB)},
+      {"Model, MiB", fmt::format("{:.2f}", double(figures.model_bytes) / kMiB)},
       {"Trees", fmt::format("{}", forest.trees.size())}};
   document.table({"", ""}, rows);
   if (figures.grown.resumed > 0) {
@@ -95,9 +95,9 @@ MatrixPlot confusion_plot(const Confusion& confusion, const std::vector<std::str
   MatrixPlot plot{"Confusion matrix: percent of a true class (row) that were given a class (column)", names, {}};
   for (int truth = 0; truth < confusion.classes; ++truth) {
     std::vector<double>& row = plot.shares.emplace_back();
-    const auto sum = static_cast<double>(std::max(confusion.row_sum(truth), std::uint64_t{1}));
+    const auto sum = double(std::max(confusion.row_sum(truth), std::uint64_t{1}));
     for (int given = 0; given < confusion.classes; ++given) {
-      row.push_back(static_cast<double>(confusion.at(truth, given)) / sum);
+      row.push_back(double(confusion.at(truth, given)) / sum);
     }
   }
   return plot;
@@ -111,7 +111,7 @@ void add_classes(Document& document, const TrainingSet& set, const TrainFigures&
   for (const TrainingSample& sample : set.samples()) ++samples[sample.label];
   std::vector<std::vector<std::string>> rows;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    const int index = static_cast<int>(c);
+    const int index = int(c);
     const bool part = index < set.body().part_count();
     rows.push_back({names[c], fmt::format("{}", set.class_pixels()[c]), fmt::format("{}", samples[c]),
                     fmt::format("{}", figures.accuracy.all.row_sum(index)),
@@ -129,7 +129,7 @@ LinePlot curve_plot(const std::string& caption, const std::string& x_label, cons
   plot.log_x = true;
   plot.y_range = {0.0, 1.0};
   for (const CurvePoint& point : curve) {
-    const auto x = static_cast<double>(x_of(point));
+    const auto x = double(x_of(point));
     plot.series[0].points.emplace_back(x, point.accuracy.parts_only);
     plot.series[1].points.emplace_back(x, point.accuracy.with_background);
   }

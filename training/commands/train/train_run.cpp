@@ -61,7 +61,7 @@ class Training {
       if (set_.bytes() <= run_.max_bytes) return;
       throw Error(fmt::format(
           "{} frames take {:.2f} GiB, --memory allows {:.2f}: expected frames like those measured beforehand",
-          progress.done(), static_cast<double>(set_.bytes()) / kGiB, static_cast<double>(run_.max_bytes) / kGiB));
+          progress.done(), double(set_.bytes()) / kGiB, double(run_.max_bytes) / kGiB));
     };
     const std::vector<BackgroundFacts> backgrounds = inputs_.read_backgrounds(add);
     background_frames_ = set_.frames().size();
@@ -71,7 +71,7 @@ class Training {
     figures_.reading_s = progress.seconds();
     progress.clear();
     tell(fmt::format("{} frames, {:.2f} million samples, {:.1f} s", set_.frames().size(),
-                     static_cast<double>(set_.samples().size()) * 1e-6, figures_.reading_s));
+                     double(set_.samples().size()) * 1e-6, figures_.reading_s));
   }
 
   void expect_enough() {
@@ -92,7 +92,7 @@ class Training {
       if (background.frames < 0) return -1;
       frames += background.frames;
     }
-    return static_cast<int>(frames);
+    return int(frames);
   }
 
   Forest untrained_forest() const {
@@ -132,7 +132,7 @@ class Training {
     figures_.model_bytes = std::filesystem::file_size(run_.out);
     figures_.threads = thread_count();
     tell(fmt::format("{}: {} trees, {:.2f} MiB, grown in {:.1f} s", run_.out, forest.trees.size(),
-                     static_cast<double>(figures_.model_bytes) / kMiB, figures_.grown.seconds));
+                     double(figures_.model_bytes) / kMiB, figures_.grown.seconds));
     if (set_.held_out().empty()) return;
     tell(fmt::format("accuracy {:.3f} ({:.3f} among parts) on {} held-out samples", figures_.accuracy.with_background(),
                      figures_.accuracy.parts_only(), set_.held_out().size()));

@@ -44,7 +44,7 @@ void check_surface(const BodyMesh& mesh, const BodyModel& body) {
       fail(fmt::format("triangle {} has part {}, expected one below {}", t, part, body.part_count()));
     }
     grounded = grounded || part != kBackground;
-    if (static_cast<int>(topology.fabric[t]) >= kFabricCount) fail(fmt::format("triangle {} has no fabric", t));
+    if (int(topology.fabric[t]) >= kFabricCount) fail(fmt::format("triangle {} has no fabric", t));
   }
   if (!grounded) fail("no triangle has a part, expected a person");
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -79,7 +79,7 @@ void check_rig(const BodyMesh& mesh) {
     const auto expect = [&](bool good, const char* what) {
       if (!good) fail(fmt::format("rig bone {} (\"{}\"): expected {}", b, bone.name, what));
     };
-    expect(bone.parent >= -1 && bone.parent < static_cast<int>(b), "its parent before it");
+    expect(bone.parent >= -1 && bone.parent < int(b), "its parent before it");
     expect(usable(bone.head) && usable(bone.tail), "finite ends within 100 m");
     expect(index(bone.from) < kBoneCount && index(bone.to) < kBoneCount, "bones of the pose");
     expect(bone.blend >= 0.F && bone.blend <= 1.F, "a blend from 0 to 1");
@@ -88,7 +88,7 @@ void check_rig(const BodyMesh& mesh) {
     expect(std::isfinite(bone.curl_rad), "a finite angle");
   }
   for (const int bone : mesh.rig_of) {
-    if (bone < 0 || bone >= static_cast<int>(mesh.rig.size())) {
+    if (bone < 0 || bone >= int(mesh.rig.size())) {
       fail(fmt::format("a joint is the head of rig bone {}, expected 0 to {}", bone, mesh.rig.size() - 1));
     }
   }

@@ -15,7 +15,7 @@ int find(const std::vector<SkeletonBone>& skeleton, const std::string& name, con
   if (found == skeleton.end()) {
     throw Error(fmt::format("{}: the skeleton has no bone \"{}\"", map.name, shown(name)));
   }
-  return static_cast<int>(found - skeleton.begin());
+  return int(found - skeleton.begin());
 }
 
 void map_follows(const std::vector<SkeletonBone>& skeleton, const RigMap& map, std::vector<RigBone>& bones) {

@@ -69,7 +69,7 @@ MorphTarget chosen_of(const MorphTarget& all, const Selection& selection) {
 Eigen::Vector3f mean(const std::vector<Eigen::Vector3f>& points, const std::vector<std::uint32_t>& of) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (const std::uint32_t v : of) sum += points[v];
-  return sum / static_cast<float>(of.size());
+  return sum / float(of.size());
 }
 
 }  // namespace

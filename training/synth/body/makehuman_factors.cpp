@@ -91,22 +91,22 @@ std::vector<std::uint8_t> factors_of_name(const std::string& path) {
 }
 
 MakeHumanFactors sample_factors(const Population& population, Random& random) {
-  const auto uniform = [&](double from, double to) { return static_cast<float>(random.uniform(from, to)); };
+  const auto uniform = [&](double from, double to) { return float(random.uniform(from, to)); };
   const auto between = [&](double mean, double sigma) {
-    return std::clamp(static_cast<float>(random.normal(mean, sigma)), 0.F, 1.F);
+    return std::clamp(float(random.normal(mean, sigma)), 0.F, 1.F);
   };
   return draw_within<MakeHumanFactors>(population, random, [&] {
     MakeHumanFactors f;
     f.gender = draw_woman(population, random) ? uniform(0.0, 0.2) : uniform(0.8, 1.0);
     f.age_years = draw_age(population, 5.F, random);
     f.muscle = between(0.5, 0.2);
-    f.weight = between(0.55 + 0.35 * static_cast<double>(population.build), 0.22);
+    f.weight = between(0.55 + 0.35 * double(population.build), 0.22);
     f.proportions = uniform(0.4, 1.0);
     f.african = uniform(0.0, 1.0);
     f.asian = uniform(0.0, 1.0);
     f.caucasian = uniform(0.05, 1.0);
     const Stature stature = stature_at(f.age_years, f.gender);
-    const auto deviation = static_cast<float>(std::clamp(random.normal(), -2.5, 2.5));
+    const auto deviation = float(std::clamp(random.normal(), -2.5, 2.5));
     f.stature_m = stature.mean_m + deviation * stature.sigma_m;
     f.height = 0.5F + 0.11F * deviation;  // 0.22 to 0.78; limbs outside this range do not look human
     return f;

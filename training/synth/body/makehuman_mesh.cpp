@@ -33,7 +33,7 @@ Eigen::Vector3f point(TextScanner& scan, bool more) {
     if (scan.at_line_end()) scan.fail("expected three coordinates, found the end of the line");
     const double value = scan.number("a coordinate");
     if (!(std::abs(value) < kFarthest)) scan.fail(fmt::format("expected a coordinate below {} in size", kFarthest));
-    x = static_cast<float>(value);
+    x = float(value);
   }
   if (!more && !scan.at_line_end()) scan.fail("expected the end of the line after three coordinates");
   return p;
@@ -95,7 +95,7 @@ MorphTarget parse_target(std::string_view text, const std::string& name, std::si
       scan.skip_line();
       continue;
     }
-    target.vertex.push_back(static_cast<std::uint32_t>(scan.whole("a vertex", 0, static_cast<int>(vertex_count) - 1)));
+    target.vertex.push_back(static_cast<std::uint32_t>(scan.whole("a vertex", 0, int(vertex_count) - 1)));
     target.offset.push_back(point(scan, false));
   }
   return target;

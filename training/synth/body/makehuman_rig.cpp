@@ -61,7 +61,7 @@ std::vector<SkeletonBone> parents_first(const std::vector<SkeletonBone>& bones,
     for (std::size_t b = 0; b < bones.size(); ++b) {
       const auto parent = std::ranges::find(ordered, parent_names[b], &SkeletonBone::name);
       if (placed[b] || (parent == ordered.end() && !parent_names[b].empty())) continue;
-      const int parent_index = parent_names[b].empty() ? -1 : static_cast<int>(parent - ordered.begin());
+      const int parent_index = parent_names[b].empty() ? -1 : int(parent - ordered.begin());
       ordered.push_back(bones[b]);
       ordered.back().parent = parent_index;
       placed[b] = moved = true;

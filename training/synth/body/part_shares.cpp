@@ -33,7 +33,7 @@ class Moments {
       if (volume_[bone] == 0.0 && first_[bone].isZero(0.0)) continue;
       const double share = volume_[bone] / total;
       const Eigen::Vector3d moment = first_[bone] / total + share * origin;
-      out.push_back({part, static_cast<int>(bone), static_cast<float>(share), moment.cast<float>()});
+      out.push_back({part, int(bone), float(share), moment.cast<float>()});
     }
   }
 
@@ -45,7 +45,7 @@ class Moments {
 /// Returns the mean weights of some vertices.
 Skin mean_skin(const BodyMesh& mesh, std::span<const std::uint32_t> vertices) {
   Skin skin;
-  const float scale = 1.F / static_cast<float>(vertices.size());
+  const float scale = 1.F / float(vertices.size());
   for (const std::uint32_t v : vertices) {
     const SkinWeights& weights = mesh.topology->skin[v];
     for (std::size_t k = 0; k < 4; ++k) {
@@ -118,7 +118,7 @@ void add_part(const BodyMesh& mesh, int part, const std::vector<std::uint32_t>& 
   for (const std::uint32_t t : triangles) {
     for (const std::uint32_t v : mesh.topology->triangles[t]) origin += point(v);
   }
-  origin /= 3.0 * static_cast<double>(triangles.size());
+  origin /= 3.0 * double(triangles.size());
   Moments moments(mesh.rig.size());
   for (const std::uint32_t t : triangles) {
     const Triangle& tri = mesh.topology->triangles[t];

@@ -28,16 +28,16 @@ void check(const Population& p) {
 }
 
 bool draw_woman(const Population& population, Random& random) {
-  return random.uniform() < 1.0 - static_cast<double>(population.men);
+  return random.uniform() < 1.0 - double(population.men);
 }
 
 float draw_age(const Population& population, float youngest, Random& random) {
   constexpr int kTries = 200;
-  const auto uniform = [&](double from, double to) { return static_cast<float>(random.uniform(from, to)); };
+  const auto uniform = [&](double from, double to) { return float(random.uniform(from, to)); };
   for (int i = 0; i < kTries; ++i) {
     const double group = random.uniform();
-    const bool child = group < static_cast<double>(population.children);
-    const bool old = group >= 1.0 - static_cast<double>(population.old);
+    const bool child = group < double(population.children);
+    const bool old = group >= 1.0 - double(population.old);
     const float age = child ? uniform(youngest, 18.0) : old ? uniform(60.0, 85.0) : uniform(18.0, 60.0);
     if (age >= population.age_min_years && age <= population.age_max_years) return age;
   }

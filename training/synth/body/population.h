@@ -41,7 +41,7 @@ Shape draw_within(const Population& population, Random& random, Draw draw) {
     shape = draw();
     if (shape.stature_m >= population.stature_min_m && shape.stature_m <= population.stature_max_m) return shape;
   }
-  shape.stature_m = static_cast<float>(random.uniform(population.stature_min_m, population.stature_max_m));
+  shape.stature_m = float(random.uniform(population.stature_min_m, population.stature_max_m));
   return shape;
 }
 

@@ -48,8 +48,8 @@ std::array<int, kBoneCount> bone_weights(const BodyMesh& mesh, const Triangle& t
     const SkinWeights& skin = mesh.topology->skin[v];
     for (std::size_t k = 0; k < 4; ++k) {
       const RigBone& bone = mesh.rig[skin.bone[k]];
-      weights[index(bone.from)] += static_cast<int>(std::lround(skin.weight[k] * (1.F - bone.blend) * kSteps));
-      weights[index(bone.to)] += static_cast<int>(std::lround(skin.weight[k] * bone.blend * kSteps));
+      weights[index(bone.from)] += int(std::lround(skin.weight[k] * (1.F - bone.blend) * kSteps));
+      weights[index(bone.to)] += int(std::lround(skin.weight[k] * bone.blend * kSteps));
     }
   }
   return weights;
@@ -79,7 +79,7 @@ float place_along(const BoneSegment& bone, const Eigen::Vector3d& p) {
   const Eigen::Vector3d head = bone.head.cast<double>();
   const Eigen::Vector3d axis = bone.tail.cast<double>() - head;
   const double length2 = axis.squaredNorm();
-  return length2 > 0.0 ? static_cast<float>((p - head).dot(axis) / length2) : 0.F;
+  return length2 > 0.0 ? float((p - head).dot(axis) / length2) : 0.F;
 }
 
 }  // namespace

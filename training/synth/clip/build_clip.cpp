@@ -39,7 +39,7 @@ PersonTrack track_of(const Movement& movement, float leg_m, const Vector2f& at, 
   const float about = heading_rad - first.heading_rad;
   PersonTrack track;
   for (int i = 0; i < track_length(seconds); ++i) {
-    const BodyState state = state_at(movement, std::max(0.F, static_cast<float>(i) / kTrackRate_hz - delay_s));
+    const BodyState state = state_at(movement, std::max(0.F, float(i) / kTrackRate_hz - delay_s));
     const Vector2f way = leg_m * (state.root - first.root);
     track.states.push_back({state.pose, at + way.x() * left_of(about) + way.y() * front_of(about),
                             heading_rad + state.heading_rad - first.heading_rad});
@@ -114,8 +114,8 @@ class Builder {
       const Vector3f p = camera_from_world * Vector3f(0.F, y, -along);
       if (p.z() < 0.1F) return false;
       const Vector2f pixel = camera.pixel(p);
-      if (pixel.x() < 0.F || pixel.x() > static_cast<float>(camera.width)) return false;
-      if (pixel.y() < 0.F || pixel.y() > static_cast<float>(camera.height)) return false;
+      if (pixel.x() < 0.F || pixel.x() > float(camera.width)) return false;
+      if (pixel.y() < 0.F || pixel.y() > float(camera.height)) return false;
     }
     return true;
   }
@@ -166,7 +166,7 @@ class Builder {
     const Vector2f way = movement.states.back().root;
     PersonTrack track = seated;
     for (std::size_t i = 0; i < track.states.size(); ++i) {
-      const float since_s = static_cast<float>(i) / kTrackRate_hz - begins_s;
+      const float since_s = float(i) / kTrackRate_hz - begins_s;
       const float time_s = rises ? movement.seconds() - since_s : since_s;
       if (time_s >= movement.seconds()) continue;  // on the seat
       const BodyState state = state_at(movement, std::max(0.F, time_s));
@@ -215,7 +215,7 @@ class Builder {
     const float rise = stage_.camera.height_m - 0.5F, far = sample_distance(placement_, random_);
     const float along = std::sqrt(std::max(0.F, far * far - rise * rise)) + 0.3F;
     const Camera& camera = ground_.view.camera;
-    const float half_fan = std::atan(0.5F * static_cast<float>(camera.width) / camera.fx);
+    const float half_fan = std::atan(0.5F * float(camera.width) / camera.fx);
     const float bearing = between(-0.7, 0.7, random_) * half_fan, heading = between(-kPi, kPi, random_);
     const float delay = between(0.0, 0.3, random_) * seconds_;
     return track_of(*plan.lies_down, plan.can.leg_m, {along * std::sin(bearing), -along * std::cos(bearing)}, heading,
@@ -341,11 +341,11 @@ BuiltScene scene_at(const ClipScene& clip, const Camera& intrinsics, float detai
     const ClipPerson& person = clip.people[i];
     PlacedPerson placed;
     placed.body = body_at(*person.person.poser, person.track, time_s);
-    placed.plan = static_cast<int>(i);
+    placed.plan = int(i);
     placed.posture = classify_posture(person.track.at(time_s).pose);
-    placed.mesh = static_cast<int>(built.scene.meshes.size());
+    placed.mesh = int(built.scene.meshes.size());
     SceneMesh mesh = person_mesh(person.person, placed.body, built.view, detail_px);
-    mesh.person = static_cast<int>(i);
+    mesh.person = int(i);
     built.scene.meshes.push_back(std::move(mesh));
     built.people.push_back(std::move(placed));
   }

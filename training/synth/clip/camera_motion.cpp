@@ -69,9 +69,9 @@ class Follower {
 }  // namespace
 
 Isometry3f CameraTrack::at(float time_s) const {
-  const float place = std::clamp(time_s * kTrackRate_hz, 0.F, static_cast<float>(poses.size() - 1));
+  const float place = std::clamp(time_s * kTrackRate_hz, 0.F, float(poses.size() - 1));
   const auto first = static_cast<std::size_t>(place);
-  const float share = place - static_cast<float>(first);
+  const float share = place - float(first);
   const Isometry3f& a = poses[first];
   if (share == 0.F) return a;
   const Isometry3f& b = poses[first + 1];
@@ -99,7 +99,7 @@ CameraTrack move_camera(const ClipOptions& options, const CameraPose& base, floa
   Follower follower(0.55F * turn);
   CameraTrack track;
   for (int i = 0; i < track_length(seconds); ++i) {
-    const float t = static_cast<float>(i) * kStep_s;
+    const float t = float(i) * kStep_s;
     const float yaw = follower.next(people.empty() ? 0.F : bearing_of(people, i)) + wander.at(t) + shake_yaw.at(t);
     CameraPose now = base;
     now.height_m += y.at(t) - y.at(0.F);

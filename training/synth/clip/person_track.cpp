@@ -8,9 +8,9 @@
 namespace vesalius::synth {
 
 TrackState PersonTrack::at(float time_s) const {
-  const float place = std::clamp(time_s * kTrackRate_hz, 0.F, static_cast<float>(states.size() - 1));
+  const float place = std::clamp(time_s * kTrackRate_hz, 0.F, float(states.size() - 1));
   const auto first = static_cast<std::size_t>(place);
-  const float share = place - static_cast<float>(first);
+  const float share = place - float(first);
   const TrackState& a = states[first];
   if (share == 0.F) return a;
   const TrackState& b = states[first + 1];
@@ -18,7 +18,7 @@ TrackState PersonTrack::at(float time_s) const {
           a.heading_rad + share * (b.heading_rad - a.heading_rad), a.seated + share * (b.seated - a.seated)};
 }
 
-int track_length(float seconds) { return static_cast<int>(std::ceil(seconds * kTrackRate_hz)) + 1; }
+int track_length(float seconds) { return int(std::ceil(seconds * kTrackRate_hz)) + 1; }
 
 PosedBody body_at(const Poser& poser, const PersonTrack& track, float time_s) {
   const TrackState state = track.at(time_s);

@@ -23,7 +23,7 @@ std::optional<float> column_of(const View& view, const Vector2f& at) {
   const Vector3f p = view.camera_from_world * Vector3f(at.x(), kPelvis_m, at.y());
   if (p.z() < 0.3F) return std::nullopt;
   const Vector2f pixel = view.camera.pixel(p);
-  const bool inside = pixel.x() > 0.F && pixel.x() < static_cast<float>(view.camera.width);
+  const bool inside = pixel.x() > 0.F && pixel.x() < float(view.camera.width);
   return inside ? std::optional(pixel.x()) : std::nullopt;
 }
 
@@ -54,7 +54,7 @@ class Planner {
         length_(static_cast<std::size_t>(track_length(seconds))),
         random_(random) {
     const Camera& camera = ground.view.camera;
-    half_fan_ = std::atan(0.5F * static_cast<float>(camera.width) / camera.fx);
+    half_fan_ = std::atan(0.5F * float(camera.width) / camera.fx);
     eye_ = ground.view.camera_from_world.inverse().translation();
     const Vector3f axis = ground.view.camera_from_world.linear().transpose() * Vector3f::UnitZ();
     looks_down_ = axis.y() < -0.8F;
@@ -128,8 +128,7 @@ class Planner {
     const bool paused = states_.back().go == 0.F;
     const bool stays = !wish_.walks || (!paused && chance(options_.pause_share, random_));
     if (!stays) return {draw_place(chance(options_.leaving_share, random_)), 0};
-    return {std::nullopt,
-            wish_.walks ? static_cast<int>(between(1.5, 4.5, random_) * kTrackRate_hz) : static_cast<int>(length_)};
+    return {std::nullopt, wish_.walks ? int(between(1.5, 4.5, random_) * kTrackRate_hz) : int(length_)};
   }
 
   /// Adds the next deed for which there is room, with a crossing if that is still wanted.
@@ -165,7 +164,7 @@ class Planner {
   /// Returns the states of a deed up to its end or that of the clip; none if something is in the way.
   std::vector<StrollState> states_of(const Deed& deed, std::vector<CrossingWatch>& watches, bool& crosses) {
     constexpr float kThere_m = 0.35F;
-    constexpr int kLongest = static_cast<int>(12.F * kTrackRate_hz);
+    constexpr int kLongest = int(12.F * kTrackRate_hz);
     std::vector<StrollState> part;
     StrollState state = states_.back();
     for (int i = 0; states_.size() + part.size() < length_ && i < kLongest; ++i) {

@@ -35,19 +35,19 @@ class Folds {
  public:
   explicit Folds(Random& random) {
     for (Wave& wave : waves_) {
-      const auto length_m = static_cast<float>(random.uniform(0.08, 0.25));
-      const auto direction = static_cast<float>(random.uniform(-1.0, 1.0));
-      const auto round = static_cast<float>(random.uniform(0.0, 2.0 * std::numbers::pi));
+      const auto length_m = float(random.uniform(0.08, 0.25));
+      const auto direction = float(random.uniform(-1.0, 1.0));
+      const auto round = float(random.uniform(0.0, 2.0 * std::numbers::pi));
       const float level = std::sqrt(1.F - direction * direction);
       const float number = 2.F * std::numbers::pi_v<float> / length_m;
       wave.k = number * Vector3f(level * std::cos(round), direction, level * std::sin(round));
-      wave.phase = static_cast<float>(random.uniform(0.0, 2.0 * std::numbers::pi));
+      wave.phase = float(random.uniform(0.0, 2.0 * std::numbers::pi));
     }
   }
   float operator()(const Vector3f& p) const {
     float sum = 0.F;
     for (const Wave& wave : waves_) sum += std::sin(wave.k.dot(p) + wave.phase);
-    return sum / static_cast<float>(waves_.size());
+    return sum / float(waves_.size());
   }
 
  private:

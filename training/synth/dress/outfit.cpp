@@ -6,15 +6,13 @@
 namespace vesalius::synth {
 namespace {
 
-float uniform(Random& random, float low, float high) {
-  return low + (high - low) * static_cast<float>(random.uniform());
-}
+float uniform(Random& random, float low, float high) { return low + (high - low) * float(random.uniform()); }
 
-bool chance(Random& random, float probability) { return static_cast<float>(random.uniform()) < probability; }
+bool chance(Random& random, float probability) { return float(random.uniform()) < probability; }
 
 Rgb mix(const Rgb& a, const Rgb& b, float share) {
   const auto channel = [&](std::uint8_t from, std::uint8_t to) {
-    return static_cast<std::uint8_t>(std::lround(std::lerp(static_cast<float>(from), static_cast<float>(to), share)));
+    return static_cast<std::uint8_t>(std::lround(std::lerp(float(from), float(to), share)));
   };
   return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
 }

@@ -14,7 +14,7 @@ using Eigen::Vector3f;
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kRound = 32;  // number of points of a ring
 
-float uniform(Random& random, double low, double high) { return static_cast<float>(random.uniform(low, high)); }
+float uniform(Random& random, double low, double high) { return float(random.uniform(low, high)); }
 
 Matrix3f diagonal(float x, float y, float z) { return Vector3f(x, y, z).asDiagonal(); }
 
@@ -28,7 +28,7 @@ std::vector<Vector3f> ring(float y, float half_width, float front, float back) {
   std::vector<Vector3f> points;
   const float depth = (front - back) / 2.F;
   for (int k = 0; k < kRound; ++k) {
-    const float turn = 2.F * kPi * static_cast<float>(k) / kRound;
+    const float turn = 2.F * kPi * float(k) / kRound;
     points.emplace_back(half_width * std::sin(turn), y, (front + back) / 2.F + depth * std::cos(turn));
   }
   return points;
@@ -62,14 +62,13 @@ void Wardrobe::add_long_hair(float thickness_m, Random& random) {
   Sheet sheet;
   constexpr int kRows = 8;
   for (int r = 0; r < kRows; ++r) {
-    const float y = std::lerp(top, bottom, static_cast<float>(r) / (kRows - 1));
+    const float y = std::lerp(top, bottom, float(r) / (kRows - 1));
     const Extent body = extent(y, 0.1F * size, {Bone::head, Bone::neck, Bone::chest});
-    const float back =
-        std::min(body.back, skull.back + 0.2F * size * static_cast<float>(r) / kRows) - thickness_m * 0.3F;
-    const float wide = skull.half_width * std::lerp(0.98F, 0.8F, static_cast<float>(r) / (kRows - 1));
+    const float back = std::min(body.back, skull.back + 0.2F * size * float(r) / kRows) - thickness_m * 0.3F;
+    const float wide = skull.half_width * std::lerp(0.98F, 0.8F, float(r) / (kRows - 1));
     std::vector<Vector3f> row;
     for (int k = 0; k <= 16; ++k) {
-      const float turn = (static_cast<float>(k) / 16.F - 0.5F) * kPi;  // 0 is at the back; the ends are at the ears
+      const float turn = (float(k) / 16.F - 0.5F) * kPi;  // 0 is at the back; the ends are at the ears
       row.emplace_back(-wide * std::sin(turn), y, middle - (middle - back) * std::cos(turn));
     }
     sheet.rows.push_back(std::move(row));
@@ -96,7 +95,7 @@ void Wardrobe::add_skirts(float legs, Fabric fabric, Random& random) {
   constexpr int kRows = 12;
   Extent widest;
   for (int r = 0; r < kRows; ++r) {
-    const float y = std::lerp(waist, hem, static_cast<float>(r) / (kRows - 1));
+    const float y = std::lerp(waist, hem, float(r) / (kRows - 1));
     const Extent here = extent(y, 0.02F * mesh_.stature_m,
                                {Bone::pelvis, Bone::spine, Bone::l_thigh, Bone::r_thigh, Bone::l_shin, Bone::r_shin});
     widest.half_width = std::max(widest.half_width, here.half_width);
@@ -156,7 +155,7 @@ void Wardrobe::add_hat(Hat hat, Random& random) {
         ring(base - 0.01F, skull.half_width + room + brim, skull.front + room + brim, skull.back - room - brim);
     for (std::size_t k = 0; hat == Hat::cap && k < edge.size(); ++k) {
       // The brim of a cap is only at the front; elsewhere it has no width.
-      const float in_front = smooth_step(0.4F, 0.8F, std::cos(2.F * kPi * static_cast<float>(k) / kRound));
+      const float in_front = smooth_step(0.4F, 0.8F, std::cos(2.F * kPi * float(k) / kRound));
       edge[k] = sheet.rows.back()[k] + in_front * (edge[k] - sheet.rows.back()[k]);
     }
     sheet.rows.push_back(std::move(edge));
@@ -318,7 +317,7 @@ void Wardrobe::add_cylinder(const Vector3f& centre, const Vector3f& half_axis, f
   for (const auto& [along, wide] : {std::pair{1.F, 0.F}, {1.F, 1.F}, {-1.F, 1.F}, {-1.F, 0.F}}) {
     std::vector<Vector3f> row;
     for (int k = 0; k < kSides; ++k) {
-      const Eigen::AngleAxisf turn(2.F * kPi * static_cast<float>(k) / kSides, axis);
+      const Eigen::AngleAxisf turn(2.F * kPi * float(k) / kSides, axis);
       row.push_back(centre + along * half_axis + wide * radius_m * (turn * side));
     }
     sheet.rows.push_back(std::move(row));

@@ -28,7 +28,7 @@ void hang_garment(FurnitureBuilder& piece, const Vector3f& from, float length_m,
                                      Ring{at(0.35F), shoulder * between(0.9, 1.1, random), thick},
                                      Ring{at(0.65F), shoulder * hem * 0.95F, thick},
                                      Ring{at(1.F), shoulder * hem, thick * between(0.9, 1.2, random)}};
-  add_garment(piece.piece.mesh, rings, 4 + static_cast<int>(random.below(6)), between(0.01, 0.04, random), cloth);
+  add_garment(piece.piece.mesh, rings, 4 + int(random.below(6)), between(0.01, 0.04, random), cloth);
   if (chance(0.8, random)) {
     for (const float side : {-1.F, 1.F}) {
       hang_sleeve(piece, at(0.12F) + Vector3f(side * 0.9F * shoulder, 0.F, 0.F), side, cloth, random);
@@ -45,7 +45,7 @@ void cover_chair_back(FurnitureBuilder& chair, const Vector3f& top, float width_
   const std::array<Ring, 4> rings = {Ring{at(0.F), 0.5F * half, 0.4F * thick}, Ring{at(0.08F), half, 0.8F * thick},
                                      Ring{at(0.5F), half * between(0.95, 1.1, random), thick},
                                      Ring{at(1.F), half * between(0.9, 1.1, random), 1.1F * thick}};
-  add_garment(chair.piece.mesh, rings, 4 + static_cast<int>(random.below(5)), between(0.01, 0.03, random), cloth);
+  add_garment(chair.piece.mesh, rings, 4 + int(random.below(5)), between(0.01, 0.03, random), cloth);
   for (const float side : {-1.F, 1.F}) {
     hang_sleeve(chair, at(0.1F) + Vector3f(side * half, 0.F, 0.F), side, cloth, random);
   }
@@ -53,7 +53,7 @@ void cover_chair_back(FurnitureBuilder& chair, const Vector3f& top, float width_
 
 void crumple_blanket(FurnitureBuilder& piece, const Vector3f& centre, const Vector3f& half, Random& random) {
   const std::uint8_t cloth = piece.stuff(Stuff::cloth);
-  const int lumps = 4 + static_cast<int>(random.below(5));
+  const int lumps = 4 + int(random.below(5));
   for (int i = 0; i < lumps; ++i) {
     const Vector3f aside{between(-0.6, 0.6, random), 0.F, between(-0.6, 0.6, random)};
     const Vector3f size{between(0.3, 0.6, random), between(0.4, 1.0, random), between(0.3, 0.6, random)};

@@ -36,11 +36,11 @@ Furniture make_coat_stand(Random& random) {
   stand.post(0.F, 0.F, 0.F, height, 0.02F, wood);
   stand.post(0.F, 0.F, 0.F, 0.03F, between(0.15, 0.22, random), wood);
   for (int i = 0; i < 4; ++i) {
-    const float turn = 1.5708F * static_cast<float>(i);
+    const float turn = 1.5708F * float(i);
     add_cone(stand.piece.mesh, {0.F, height - 0.15F, 0.F},
              {0.15F * std::cos(turn), height - 0.05F, 0.15F * std::sin(turn)}, 0.012F, 0.01F, wood, 6);
   }
-  const int coats = 1 + static_cast<int>(random.below(2));
+  const int coats = 1 + int(random.below(2));
   for (int i = 0; i < coats; ++i) {
     const float top = height - between(0.1, 0.25, random), length = between(0.6, 1.1, random);
     add_coat(stand, {0.F, top, i == 0 ? 0.1F : -0.1F}, length, random);

@@ -23,13 +23,12 @@ Furniture make_desk_before(float height_m, Random& random) {
     desk.box({-0.5F * width, 0.05F, 0.5F * depth}, {0.5F * width, top, 0.5F * depth + 0.02F}, front);
   }
   const std::uint8_t black = desk.stuff(Stuff::plastic);
-  const int screens = static_cast<int>(random.below(3));
+  const int screens = int(random.below(3));
   for (int i = 0; i < screens; ++i) {
     const float wide = between(0.35, 0.65, random), tall = wide * between(0.55, 0.75, random);
     Isometry3f pose(AngleAxisf(between(-0.4, 0.4, random), Vector3f::UnitY()));
     pose.rotate(AngleAxisf(between(-0.05, 0.25, random), Vector3f::UnitX()));
-    const float x =
-        0.5F * (static_cast<float>(i) - 0.5F * static_cast<float>(screens - 1)) + between(-0.1, 0.1, random);
+    const float x = 0.5F * (float(i) - 0.5F * float(screens - 1)) + between(-0.1, 0.1, random);
     pose.translation() = Vector3f{x, height_m + 0.5F * tall + between(0.03, 0.12, random), between(0.05, 0.2, random)};
     desk.box(pose, {wide, tall, between(0.02, 0.06, random)}, black);
     add_cone(desk.piece.mesh, {x, height_m, pose.translation().z()}, pose.translation(), 0.06F, 0.03F, black, 8);

@@ -14,7 +14,7 @@ using Eigen::Vector3f;
 /// the floor.
 void add_arm(FurnitureBuilder& machine, const Vector3f& shoulder, Vector3f way, float radius, std::uint8_t shell,
              std::uint8_t joint, Random& random) {
-  const int links = 2 + static_cast<int>(random.below(3));
+  const int links = 2 + int(random.below(3));
   Vector3f from = shoulder;
   for (int i = 0; i < links; ++i) {
     const Vector3f bend{between(-0.8, 0.8, random), between(-0.8, 0.8, random), between(-0.3, 0.9, random)};

@@ -48,9 +48,9 @@ Furniture make_shelf(Random& random) {
   constexpr float kBoard = 0.02F;
   for (const float x : {-half, half - kBoard}) shelf.box({x, 0.F, 0.F}, {x + kBoard, height, depth}, wood);
   if (chance(0.6, random)) shelf.box({-half, 0.F, -0.01F}, {half, height, 0.F}, wood);
-  const int boards = 3 + static_cast<int>(random.below(3));
+  const int boards = 3 + int(random.below(3));
   for (int i = 0; i < boards; ++i) {
-    const float y = 0.05F + (height - 0.07F) * static_cast<float>(i) / static_cast<float>(boards - 1);
+    const float y = 0.05F + (height - 0.07F) * float(i) / float(boards - 1);
     shelf.box({-half, y, 0.F}, {half, y + kBoard, depth}, wood);
     if (i + 1 == boards) break;
     for (float x = -half + 0.03F; x < half - 0.12F;) {  // books and boxes
@@ -73,10 +73,10 @@ Furniture make_wardrobe(Random& random) {
   const std::uint8_t knob = wardrobe.stuff(Stuff::metal);
   const float half = between(0.25, 0.9, random), depth = between(0.4, 0.65, random), height = between(0.7, 2.2, random);
   wardrobe.box({-half, 0.F, -depth / 2}, {half, height, depth / 2}, body);
-  const int doors = std::max(1, static_cast<int>(half * 2.F / 0.45F));
-  const float wide = 2.F * half / static_cast<float>(doors);
+  const int doors = std::max(1, int(half * 2.F / 0.45F));
+  const float wide = 2.F * half / float(doors);
   for (int i = 0; i < doors; ++i) {
-    const float x = -half + wide * static_cast<float>(i);
+    const float x = -half + wide * float(i);
     add_box(wardrobe.piece.mesh, Vector3f(x + 0.004F, 0.08F, depth / 2),
             Vector3f(x + wide - 0.004F, height - 0.01F, depth / 2 + 0.018F), body);
     add_cone(wardrobe.piece.mesh, {x + 0.04F, height * 0.5F, depth / 2 + 0.018F},
@@ -103,7 +103,7 @@ Furniture make_plant(Random& random) {
   plant.cone({0.F, 0.F, 0.F}, {0.F, pot_height, 0.F}, pot_radius * 0.8F, pot_radius, pot);
   plant.post(0.F, 0.F, pot_height - 0.02F, height * 0.8F, 0.012F, stem);
   const float spread = between(0.15, 0.4, random), length = between(0.12, 0.35, random);
-  const int leaves = 14 + static_cast<int>(random.below(26));
+  const int leaves = 14 + int(random.below(26));
   for (int i = 0; i < leaves; ++i) {
     const float turn = between(0.0, 6.2832, random), y = between(pot_height, height - 0.05, random);
     const Vector3f out(std::cos(turn), 0.F, std::sin(turn)), side(-out.z(), 0.F, out.x());

@@ -61,7 +61,7 @@ Furniture make_office_chair(Random& random) {
   const std::uint8_t frame = chair.stuff(chance(0.5, random) ? Stuff::plastic : Stuff::metal);
   const float seat = between(0.4, 0.55, random), half = between(0.2, 0.27, random), back = between(0.45, 0.8, random);
   for (int i = 0; i < 5; ++i) {
-    const float turn = 1.2566F * static_cast<float>(i);
+    const float turn = 1.2566F * float(i);
     add_cone(chair.piece.mesh, {0.F, 0.1F, 0.F}, {0.3F * std::cos(turn), 0.03F, 0.3F * std::sin(turn)}, 0.025F, 0.03F,
              frame, 6);
   }
@@ -131,9 +131,9 @@ Furniture make_screens(Random& random) {
   const float height = between(0.65, 1.0, random);
   FurnitureBuilder table = builder_of(make_table(2.F * half_x, 2.F * half_z, height, random), random);
   const std::uint8_t black = table.stuff(Stuff::plastic), glass = table.stuff(Stuff::glass);
-  const int screens = 1 + static_cast<int>(random.below(3));
+  const int screens = 1 + int(random.below(3));
   for (int i = 0; i < screens; ++i) {
-    const float x = half_x * (-0.7F + 1.4F * (static_cast<float>(i) + 0.5F) / static_cast<float>(screens));
+    const float x = half_x * (-0.7F + 1.4F * (float(i) + 0.5F) / float(screens));
     const float wide = between(0.3, 0.7, random), tall = wide * between(0.55, 0.8, random);
     Isometry3f pose(AngleAxisf(between(-3.2, 3.2, random), Vector3f::UnitY()));
     pose.rotate(AngleAxisf(between(-0.6, 0.3, random), Vector3f::UnitX()));
@@ -178,7 +178,7 @@ Furniture make_bag(Random& random) {
       };
       const std::array<Ring, 6> rings = {ring(2.F, 0.3F), ring(1.8F, 0.15F), ring(1.5F, 0.7F),
                                          ring(0.9F, 1.F), ring(0.3F, 0.95F), ring(0.F, 0.7F)};
-      add_garment(bag.piece.mesh, rings, 5 + static_cast<int>(random.below(5)), 0.05F, cloth);
+      add_garment(bag.piece.mesh, rings, 5 + int(random.below(5)), 0.05F, cloth);
       bag.solid({-0.8F * half.x(), 0.F, -0.8F * half.x()}, {0.8F * half.x(), 1.7F * half.y(), 0.8F * half.x()});
     }
   }
@@ -205,7 +205,7 @@ Furniture make_cushions(Random& random) {
     add_cushion(heap.piece.mesh, placed_at({0.F, 0.09F, 0.F}), {0.9F * half_x, 0.09F, 0.9F * half_z},
                 heap.stuff(Stuff::cloth));
   }
-  const int cushions = 1 + static_cast<int>(random.below(6));
+  const int cushions = 1 + int(random.below(6));
   for (int i = 0; i < cushions; ++i) {
     const Vector3f half{between(0.15, 0.28, random), between(0.13, 0.25, random), between(0.05, 0.1, random)};
     Isometry3f pose(AngleAxisf(between(-0.6, 0.6, random), Vector3f::UnitY()));
@@ -232,7 +232,7 @@ Furniture make_sleeping_place(Random& random) {
   const float along = between(0.5, 0.9, random), thick = between(0.05, 0.15, random);
   const float x = between(-0.2, 0.2, random) * width;
   for (int i = 0; i < 5; ++i) {  // lumps in a row, as a rolled duvet
-    const float share = static_cast<float>(i) / 4.F;
+    const float share = float(i) / 4.F;
     const Vector3f middle{x + between(-0.08, 0.08, random), height, length * 0.45F * along * (1.F - 2.F * share)};
     const Vector3f half{between(0.15, 0.35, random), thick * between(0.7, 1.3, random), 0.22F * along * length};
     add_cushion(bed.piece.mesh, placed_at(middle), half, cloth);

@@ -78,10 +78,10 @@ void upholstered(const SeatShape& shape, FurnitureBuilder& seat, Random& random)
   const float clear = std::min(0.5F * shape.height_m, between(0.02, 0.12, random));
   const float back_end = -thickness - std::sin(shape.lean_rad) * 0.1F;
   seat.box({-half, clear, back_end}, {half, shape.height_m - 0.1F, shape.depth_m - 0.01F}, cloth);
-  const int cushions = std::max(1, static_cast<int>(shape.width_m / 0.6F));
-  const float wide = shape.width_m / static_cast<float>(cushions);
+  const int cushions = std::max(1, int(shape.width_m / 0.6F));
+  const float wide = shape.width_m / float(cushions);
   for (int i = 0; i < cushions; ++i) {
-    const float x = -half + wide * static_cast<float>(i);
+    const float x = -half + wide * float(i);
     seat.box({x + 0.003F, shape.height_m - 0.1F, 0.F}, {x + wide - 0.003F, shape.height_m, shape.depth_m}, cloth);
   }
   seat.box(back_pose(shape, thickness, 0.F), {shape.width_m + 2.F * arm, shape.back_m, thickness}, cloth);

@@ -7,7 +7,7 @@ using Eigen::Isometry3f;
 using Eigen::Vector3f;
 
 void add_small_things(FurnitureBuilder& table, float half_x, float half_z, float height_m, Random& random) {
-  const int count = static_cast<int>(random.below(9));
+  const int count = int(random.below(9));
   for (int i = 0; i < count; ++i) {
     const Vector3f foot{between(-0.9, 0.9, random) * half_x, height_m, between(-0.9, 0.9, random) * half_z};
     const float wide = between(0.03, 0.1, random), tall = between(0.04, 0.3, random);

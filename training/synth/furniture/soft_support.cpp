@@ -19,8 +19,8 @@ class Cloth {
  public:
   Cloth(const BlanketPlace& place, float hem_m) : place_(place) {
     const Eigen::Vector2f size = place.high - place.low;
-    columns_ = std::max(2, static_cast<int>(size.x() / kCell_m) + 1);
-    rows_ = std::max(2, static_cast<int>(size.y() / kCell_m) + 1);
+    columns_ = std::max(2, int(size.x() / kCell_m) + 1);
+    rows_ = std::max(2, int(size.y() / kCell_m) + 1);
     for (int j = 0; j < rows_; ++j) {
       const float ground = z_of(j) < place.edge_z ? place.ground_m : hem_m;
       height_.insert(height_.end(), static_cast<std::size_t>(columns_), ground);
@@ -29,8 +29,8 @@ class Cloth {
 
   void cover(const Vector3f& p) {
     constexpr float kAbove_m = 0.01F;
-    const auto i = static_cast<int>(std::lround((p.x() - place_.low.x()) / kCell_m));
-    const auto j = static_cast<int>(std::lround((p.z() - place_.low.y()) / kCell_m));
+    const auto i = int(std::lround((p.x() - place_.low.x()) / kCell_m));
+    const auto j = int(std::lround((p.z() - place_.low.y()) / kCell_m));
     if (i < 0 || j < 0 || i >= columns_ || j >= rows_ || p.y() > place_.top_m) return;
     at(i, j) = std::max(at(i, j), p.y() + kAbove_m);
   }
@@ -90,8 +90,8 @@ class Cloth {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i);
   }
   float& at(int i, int j) { return height_[index(i, j)]; }
-  float x_of(int i) const { return place_.low.x() + kCell_m * static_cast<float>(i); }
-  float z_of(int j) const { return place_.low.y() + kCell_m * static_cast<float>(j); }
+  float x_of(int i) const { return place_.low.x() + kCell_m * float(i); }
+  float z_of(int j) const { return place_.low.y() + kCell_m * float(j); }
   template <class Use>
   void for_each(Use use) {
     for (int j = 0; j < rows_; ++j) {
@@ -115,20 +115,20 @@ class Cloth {
 void add_seat_cushions(const SeatShape& shape, float swell_m, Furniture& seat, Random& random) {
   SceneMesh& mesh = seat.mesh;
   const std::uint8_t cloth = add_material(mesh, sample_material(Stuff::cloth, random));
-  const int count = std::max(1, static_cast<int>(shape.width_m / 0.6F));
-  const float half = 0.5F * shape.width_m / static_cast<float>(count);
+  const int count = std::max(1, int(shape.width_m / 0.6F));
+  const float half = 0.5F * shape.width_m / float(count);
   const float thick = between(0.08, 0.13, random), high = 0.5F * shape.back_m * between(0.8, 1.1, random);
   const Isometry3f back(Eigen::Translation3f(0.F, shape.height_m, 0.F) *
                         AngleAxisf(-shape.lean_rad, Vector3f::UnitX()));
   for (int i = 0; i < count; ++i) {
-    const float x = -0.5F * shape.width_m + half * static_cast<float>(2 * i + 1);
+    const float x = -0.5F * shape.width_m + half * float(2 * i + 1);
     const float rise = swell_m * between(0.7, 1.0, random);
     add_cushion(mesh, placed_at({x, shape.height_m + rise - 0.08F, 0.5F * shape.depth_m}),
                 {1.02F * half, 0.08F, 0.5F * shape.depth_m + 0.02F}, cloth);
     add_cushion(mesh, back * Eigen::Translation3f(x, high + 0.3F * swell_m, swell_m - thick),
                 {1.02F * half, high, thick}, cloth);
   }
-  const int pillows = static_cast<int>(random.below(4));
+  const int pillows = int(random.below(4));
   for (int i = 0; i < pillows; ++i) {
     const Vector3f size{between(0.16, 0.25, random), between(0.13, 0.22, random), between(0.05, 0.08, random)};
     Isometry3f pose = placed_at(

@@ -64,7 +64,7 @@ Material sample_material(Stuff stuff, Random& random) {
   material.infrared = between(range.infrared_low, range.infrared_high, random);
   // Some cloth is leather or black, since whole sofas lack depth in real frames.
   if (stuff == Stuff::cloth && chance(0.2, random)) {
-    material.infrared = static_cast<float>(std::exp(random.uniform(std::log(0.01), std::log(0.2))));
+    material.infrared = float(std::exp(random.uniform(std::log(0.01), std::log(0.2))));
   }
   material.period_m = between(range.period_low_m, range.period_high_m, random);
   if (!chance(range.pattern, random)) return material;

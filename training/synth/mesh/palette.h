@@ -14,7 +14,7 @@ Material sample_material(Stuff stuff, Random& random);
 
 /// Draws a float uniformly from [low, high). Calls stand in declarations or braces and never as two arguments of one
 /// call, because compilers choose the order of arguments.
-inline float between(double low, double high, Random& random) { return static_cast<float>(random.uniform(low, high)); }
+inline float between(double low, double high, Random& random) { return float(random.uniform(low, high)); }
 
 inline bool chance(double probability, Random& random) { return random.uniform() < probability; }
 

@@ -39,9 +39,9 @@ void add_round(SceneMesh& mesh, const Eigen::Isometry3f& pose, const Vector3f& h
   const std::uint32_t base = vertex_count(mesh);
   const int columns = rings + rings / 2;
   for (int i = 0; i <= rings; ++i) {
-    const float polar = kPi * static_cast<float>(i) / static_cast<float>(rings);
+    const float polar = kPi * float(i) / float(rings);
     for (int j = 0; j < columns; ++j) {
-      const float turn = -2.F * kPi * static_cast<float>(j) / static_cast<float>(columns);
+      const float turn = -2.F * kPi * float(j) / float(columns);
       const Vector3f unit(std::sin(polar) * std::cos(turn), std::cos(polar), std::sin(polar) * std::sin(turn));
       mesh.vertices.emplace_back(pose * half.cwiseProduct(unit.unaryExpr(shape)));
     }
@@ -90,7 +90,7 @@ void add_cone(SceneMesh& mesh, const Vector3f& from, const Vector3f& to, float f
   for (int end = 0; end < 2; ++end) {
     const float radius = end == 0 ? from_radius : to_radius;
     for (int j = 0; j < sides; ++j) {
-      const float turn = 2.F * kPi * static_cast<float>(j) / static_cast<float>(sides);
+      const float turn = 2.F * kPi * float(j) / float(sides);
       mesh.vertices.emplace_back((end == 0 ? from : to) + radius * (std::cos(turn) * side + std::sin(turn) * other));
     }
   }
@@ -116,15 +116,15 @@ void add_garment(SceneMesh& mesh, std::span<const Ring> rings, int folds, float 
   constexpr int kColumns = 24;
   const std::uint32_t base = vertex_count(mesh);
   for (std::size_t i = 0; i < rings.size(); ++i) {
-    const float depth = 0.5F * fold_m * static_cast<float>(i) / static_cast<float>(rings.size() - 1);
+    const float depth = 0.5F * fold_m * float(i) / float(rings.size() - 1);
     for (int j = 0; j < kColumns; ++j) {
-      const float turn = -2.F * kPi * static_cast<float>(j) / static_cast<float>(kColumns);
-      const float wave = depth * std::cos(turn * static_cast<float>(folds));
+      const float turn = -2.F * kPi * float(j) / float(kColumns);
+      const float wave = depth * std::cos(turn * float(folds));
       const Vector3f out((rings[i].half_x + wave) * std::cos(turn), 0.F, (rings[i].half_z + wave) * std::sin(turn));
       mesh.vertices.emplace_back(rings[i].centre + out);
     }
   }
-  join_rings(mesh, base, static_cast<int>(rings.size()), kColumns, true, material);
+  join_rings(mesh, base, int(rings.size()), kColumns, true, material);
   for (std::uint32_t j = 1; j + 1 < kColumns; ++j) add_triangle(mesh, base, base + j + 1, base + j, material);
 }
 
@@ -144,8 +144,8 @@ void add_curtain(SceneMesh& mesh, const Vector3f& left, const Vector3f& right, f
   const int steps = folds * kStepsPerFold + 1;
   for (int end = 0; end < 2; ++end) {
     for (int j = 0; j < steps; ++j) {
-      const float share = static_cast<float>(j) / static_cast<float>(steps - 1);
-      const float wave = 0.5F * fold_m * std::sin(2.F * kPi * share * static_cast<float>(folds));
+      const float share = float(j) / float(steps - 1);
+      const float wave = 0.5F * fold_m * std::sin(2.F * kPi * share * float(folds));
       mesh.vertices.emplace_back(left + share * (right - left) + wave * out -
                                  (end == 0 ? 0.F : drop_m) * Vector3f::UnitY());
     }

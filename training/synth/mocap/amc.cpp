@@ -123,7 +123,7 @@ void AmcParser::finish_frame() {
     motion_.world.push_back(world.normalized());
   }
   const auto& root = values_[0].by_dof;
-  motion_.root.emplace_back(static_cast<float>(root[0]), static_cast<float>(root[1]), static_cast<float>(root[2]));
+  motion_.root.emplace_back(float(root[0]), float(root[1]), float(root[2]));
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ void AsfParser::bone_value(std::string_view key, AsfBone& bone) {
     if (read.norm() < 1e-6) scan_.fail("direction: expected a vector other than 0");
     bone.direction = read.normalized().cast<float>();
   } else if (key == "length") {
-    bone.length = static_cast<float>(scan_.number("the bone's length"));
+    bone.length = float(scan_.number("the bone's length"));
   } else if (key == "axis") {
     const Eigen::Vector3d angles = triple("the bone's axis");
     bone.turn_order = turn_order();
@@ -167,7 +167,7 @@ void AsfParser::bone_value(std::string_view key, AsfBone& bone) {
 int AsfParser::dof(std::string_view word) const {
   const auto* found = std::ranges::find_if(kDofs, [&](auto known) { return same_word(word, known); });
   if (found == kDofs.end()) scan_.fail(fmt::format("expected tx, ty, tz, rx, ry, rz or l, found {}", in_quotes(word)));
-  return static_cast<int>(found - kDofs.begin());
+  return int(found - kDofs.begin());
 }
 
 std::array<int, 3> AsfParser::turn_order() {
@@ -196,7 +196,7 @@ Eigen::Quaterniond AsfParser::turned(const Eigen::Vector3d& angles, const std::a
 
 int AsfParser::find(std::string_view name) const {
   const auto found = std::ranges::find(skeleton_.bones, name, &AsfBone::name);
-  return found == skeleton_.bones.end() ? -1 : static_cast<int>(found - skeleton_.bones.begin());
+  return found == skeleton_.bones.end() ? -1 : int(found - skeleton_.bones.begin());
 }
 
 void AsfParser::hierarchy() {
@@ -228,7 +228,7 @@ void AsfParser::sort_parents_first() {
   for (std::vector<int> open = {0}; !open.empty();) {
     const auto i = static_cast<std::size_t>(open.back());
     open.pop_back();
-    new_index[i] = static_cast<int>(sorted.size());
+    new_index[i] = int(sorted.size());
     AsfBone& bone = skeleton_.bones[i];
     if (bone.parent >= 0) bone.parent = new_index[bone.parent];
     sorted.push_back(bone);

@@ -94,7 +94,7 @@ void BvhParser::end_site(int parent) {
 Eigen::Vector3f BvhParser::offset() {
   scan_.expect("OFFSET");
   Eigen::Vector3f read;
-  for (float& value : read) value = static_cast<float>(scan_.number("an offset"));
+  for (float& value : read) value = float(scan_.number("an offset"));
   return read;
 }
 
@@ -109,7 +109,7 @@ void BvhParser::channels() {
       scan_.fail(
           fmt::format("channel {} of {}: expected Xposition ... Zrotation, found {}", i + 1, count, in_quotes(word)));
     }
-    const int channel = static_cast<int>(found - kChannelNames.begin());
+    const int channel = int(found - kChannelNames.begin());
     if (std::ranges::find(read, channel) != read.end()) scan_.fail(fmt::format("channel {} stands twice", word));
     read.push_back(channel);
   }
@@ -145,7 +145,7 @@ void BvhParser::frames() {
   scan_.expect("Time:");
   const double seconds = scan_.number("the time of a frame");
   if (!(seconds > 1e-5)) scan_.fail("the time of a frame: expected more than 0 seconds");
-  motion_.fps = static_cast<float>(1.0 / seconds);
+  motion_.fps = float(1.0 / seconds);
   motion_.world.resize(total * motion_.joints.size());
   motion_.root.resize(total);
   for (std::size_t f = 0; f < total; ++f) frame(f);
@@ -167,13 +167,13 @@ void BvhParser::frame(std::size_t f) {
       if (channel >= kFirstRotation) {
         local = local * axis_rotation(channel - kFirstRotation, value * kDegree);
       } else if (j == 0) {
-        motion_.root[f][channel] = static_cast<float>(value);
+        motion_.root[f][channel] = float(value);
       }
     }
     const int parent = motion_.joints[j].parent;
     Eigen::Quaternionf& world = motion_.world[f * motion_.joints.size() + j];
     world = local.cast<float>();
-    if (parent >= 0) world = (motion_.rotation(static_cast<int>(f), parent) * world).normalized();
+    if (parent >= 0) world = (motion_.rotation(int(f), parent) * world).normalized();
   }
   if (!scan_.at_line_end()) scan_.fail(fmt::format("frame {}: expected {} numbers, found more", f + 1, channel_count_));
 }

@@ -6,7 +6,7 @@ namespace vesalius::synth {
 
 int Motion::find_joint(std::string_view joint_name) const {
   const auto found = std::ranges::find(joints, joint_name, &MotionJoint::name);
-  return found == joints.end() ? -1 : static_cast<int>(found - joints.begin());
+  return found == joints.end() ? -1 : int(found - joints.begin());
 }
 
 Eigen::Quaterniond axis_rotation(int axis, double angle_rad) {

@@ -23,8 +23,8 @@ struct Motion {
   std::vector<Eigen::Quaternionf> world;  ///< [frame * joints + joint]: world_from_joint
   std::vector<Eigen::Vector3f> root;      ///< [frame]: position of the root, in the file's unit of length
 
-  int joint_count() const { return static_cast<int>(joints.size()); }
-  int frame_count() const { return static_cast<int>(root.size()); }
+  int joint_count() const { return int(joints.size()); }
+  int frame_count() const { return int(root.size()); }
   const Eigen::Quaternionf& rotation(int frame, int joint) const { return world[frame * joints.size() + joint]; }
   /// Returns the index of the joint of that name, or -1 if there is none.
   int find_joint(std::string_view joint_name) const;

@@ -73,7 +73,7 @@ MotionConvention parse_convention(std::string_view toml, const std::string& name
   reader.expect_keys(root, {"name", "skip_frames", "bones"});
   MotionConvention out;
   out.name = name_in(reader, reader.need(root, "name"), "name");
-  out.skip_frames = static_cast<int>(reader.integer(reader.need(root, "skip_frames"), "skip_frames", 0, 1000));
+  out.skip_frames = int(reader.integer(reader.need(root, "skip_frames"), "skip_frames", 0, 1000));
   const toml::table& bones = reader.table(reader.need(root, "bones"), "bones");
   for (const auto& [key, node] : bones) {
     out.bones[bone_of(reader, node, key.str())] = read_source(reader, node, key.str());

@@ -23,7 +23,7 @@ Movement thinned(Movement movement) {
   std::vector<BodyState> kept;
   for (std::size_t i = 0; i < movement.states.size(); i += step) kept.push_back(movement.states[i]);
   movement.states = std::move(kept);
-  movement.fps /= static_cast<float>(step);
+  movement.fps /= float(step);
   return movement;
 }
 
@@ -66,7 +66,7 @@ float intersecting_share(const Movement& movement) {
     ++looked;
     intersecting += intersects_itself(movement.states[i].pose) ? 1 : 0;
   }
-  return static_cast<float>(intersecting) / static_cast<float>(looked);
+  return float(intersecting) / float(looked);
 }
 
 bool stands_throughout(const Movement& movement) {

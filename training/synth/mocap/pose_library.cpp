@@ -44,7 +44,7 @@ PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText&
         library.intersecting += intersects ? 1 : 0;
         if (twisted || intersects) continue;
         poses.push_back(all[i]);
-        motion.push_back(static_cast<int>(f));
+        motion.push_back(int(f));
       }
     } catch (const Error& e) {
       library.skipped.emplace_back(e.what());

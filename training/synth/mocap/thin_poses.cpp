@@ -59,7 +59,7 @@ std::array<int, kLevels> telling_entries(std::span<const Pose> poses) {
   for (int& entry : chosen) {
     Eigen::Index pivot = 0;
     const double variance = rest.diagonal().maxCoeff(&pivot);
-    entry = static_cast<int>(pivot);
+    entry = int(pivot);
     if (variance < 1e-9) continue;  // the chosen entries determine the others
     const Eigen::VectorXd column = rest.col(pivot);
     rest -= column * column.transpose() / variance;
@@ -87,7 +87,7 @@ class NearPoses {
     for (std::size_t l = 0; l < kLevels; ++l) at[l] = all[entries_[l]];
     if (near(rotations, at)) return false;
     kept_.push_back({rotations, at});
-    insert(static_cast<int>(kept_.size()) - 1);
+    insert(int(kept_.size()) - 1);
     return true;
   }
 
@@ -110,7 +110,7 @@ class NearPoses {
     std::size_t level;
   };
 
-  int cell_of(float coordinate) const { return static_cast<int>(std::floor(coordinate / cell_)); }
+  int cell_of(float coordinate) const { return int(std::floor(coordinate / cell_)); }
 
   bool near(const Rotations& pose, const Coordinates& at) {
     open_.assign(1, {0, 0});
@@ -159,7 +159,7 @@ class NearPoses {
     std::vector<Child>& children = nodes_[place.node].children;
     auto child = std::ranges::lower_bound(children, cell, {}, &Child::cell);
     if (child == children.end() || child->cell != cell) {
-      child = children.insert(child, {cell, static_cast<int>(nodes_.size())});
+      child = children.insert(child, {cell, int(nodes_.size())});
       const int made = child->node;
       nodes_.emplace_back();  // invalidates `children`
       return {made, place.level + 1};
@@ -186,7 +186,7 @@ std::vector<int> thin_poses(std::span<const Pose> poses, float min_angle_rad) {
   if (poses.empty()) return kept;
   NearPoses near(telling_entries(poses), min_angle_rad);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (min_angle_rad == 0.F || near.add_if_far(poses[i])) kept.push_back(static_cast<int>(i));
+    if (min_angle_rad == 0.F || near.add_if_far(poses[i])) kept.push_back(int(i));
   }
   return kept;
 }

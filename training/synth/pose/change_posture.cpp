@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 
 constexpr float kFps = 30.F;
 
-float between(float low, float high, Random& random) { return static_cast<float>(random.uniform(low, high)); }
+float between(float low, float high, Random& random) { return float(random.uniform(low, high)); }
 
 /// Returns where the middle of the ankles is from that of the hips, in lengths of the leg: x and z.
 Vector2f ankles_of(const Pose& pose) {
@@ -41,7 +41,7 @@ Movement move_through(std::span<const KeyPose> keys) {
   movement.name = "change of posture";
   movement.fps = kFps;
   const float seconds = keys.back().at_s - keys.front().at_s;
-  const int last = static_cast<int>(std::ceil(seconds * kFps));
+  const int last = int(std::ceil(seconds * kFps));
   std::size_t next = 1;
   Vector2f root = Vector2f::Zero();  // at the pose before
   const auto root_on_the_way = [&](const Pose& pose) -> Vector2f {
@@ -49,7 +49,7 @@ Movement move_through(std::span<const KeyPose> keys) {
     return root + ankles_of(keys[next - 1].pose) - ankles_of(pose);
   };
   for (int i = 0; i <= last; ++i) {
-    const float time_s = keys.front().at_s + std::min(seconds, static_cast<float>(i) / kFps);
+    const float time_s = keys.front().at_s + std::min(seconds, float(i) / kFps);
     while (next + 1 < keys.size() && time_s >= keys[next].at_s) {
       root = root_on_the_way(keys[next].pose);
       ++next;

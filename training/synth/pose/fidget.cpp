@@ -13,7 +13,7 @@ namespace {
 constexpr float kFps = 30.F;
 constexpr float kMeanSpeed_rad_s = 1.7F;  ///< the fastest moment of a move has half as much more
 
-float between(float low, float high, Random& random) { return static_cast<float>(random.uniform(low, high)); }
+float between(float low, float high, Random& random) { return float(random.uniform(low, high)); }
 
 float smooth(float share) { return share * share * (3.F - 2.F * share); }
 
@@ -41,14 +41,14 @@ Movement fidget(const Pose& base, std::span<const Pose> others, float seconds, R
   const auto count = static_cast<std::size_t>(std::ceil(seconds * kFps)) + 1;
   Pose from = base;
   while (movement.states.size() < count) {
-    const auto rest = static_cast<int>(between(0.3F, 2.F, random) * kFps);
+    const auto rest = int(between(0.3F, 2.F, random) * kFps);
     for (int i = 0; i < rest; ++i) movement.states.push_back({from, 0.F, Eigen::Vector2f::Zero()});
     const Pose to = draw_other(base, others, random);
     if (passes_through(from, to)) continue;
     const float least_s = largest_angle(from, to) / kMeanSpeed_rad_s;
-    const int steps = static_cast<int>(std::max(0.4F, least_s * between(1.F, 1.6F, random)) * kFps);
+    const int steps = int(std::max(0.4F, least_s * between(1.F, 1.6F, random)) * kFps);
     for (int i = 1; i <= steps; ++i) {
-      const float share = smooth(static_cast<float>(i) / static_cast<float>(steps));
+      const float share = smooth(float(i) / float(steps));
       movement.states.push_back({interpolated(from, to, share), 0.F, Eigen::Vector2f::Zero()});
     }
     from = to;

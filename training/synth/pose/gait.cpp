@@ -30,7 +30,7 @@ bool walks(const Movement& movement, std::size_t first, std::size_t last) {
   constexpr float kSlowest = 0.35F, kFastest = 2.3F, kMostAside = 25.F * kDegree, kStraight = 0.9F;
   const auto& states = movement.states;
   const Vector2f way = states[last].root - states[first].root;
-  const float speed = way.norm() * movement.fps / static_cast<float>(last - first);
+  const float speed = way.norm() * movement.fps / float(last - first);
   if (speed < kSlowest || speed > kFastest) return false;
   const float ahead = std::atan2(way.x(), way.y());
   float length = 0.F, turned = 0.F;
@@ -39,7 +39,7 @@ bool walks(const Movement& movement, std::size_t first, std::size_t last) {
     turned += wrapped(states[i].heading_rad - ahead);
     if (std::abs(wrapped(states[i].heading_rad - ahead)) > 2.F * kMostAside) return false;
   }
-  return way.norm() > kStraight * length && std::abs(turned) < kMostAside * static_cast<float>(last - first);
+  return way.norm() > kStraight * length && std::abs(turned) < kMostAside * float(last - first);
 }
 
 std::optional<Stretch> best_stretch(const Movement& movement) {
@@ -75,12 +75,12 @@ Gait gait_of(const Movement& movement, const Stretch& stretch) {
   const Vector2f way = end.root - begin.root, ahead = way.normalized();
   const float direction = std::atan2(way.x(), way.y());
   const float turned = end.heading_rad - begin.heading_rad;
-  const auto count = static_cast<float>(stretch.last - stretch.first);
+  const auto count = float(stretch.last - stretch.first);
   Gait gait;
   gait.period_s = count / movement.fps;
   gait.stride = way.norm();
   for (std::size_t i = stretch.first; i < stretch.last; ++i) {
-    const float share = static_cast<float>(i - stretch.first) / count;
+    const float share = float(i - stretch.first) / count;
     const Vector2f gone = states[i].root - begin.root;
     gait.states.push_back({adjusted(states[i].pose, end.pose, begin.pose, share),
                            wrapped(states[i].heading_rad - direction) - (share - 0.5F) * turned,
@@ -112,9 +112,9 @@ struct Place {
 Place place_in(const Gait& gait, float time_s) {
   const float periods = time_s / gait.period_s, whole = std::floor(periods);
   const std::size_t count = gait.states.size();
-  const float place = (periods - whole) * static_cast<float>(count);
+  const float place = (periods - whole) * float(count);
   const std::size_t first = std::min(static_cast<std::size_t>(place), count - 1);
-  return {first, (first + 1) % count, place - static_cast<float>(first), whole};
+  return {first, (first + 1) % count, place - float(first), whole};
 }
 
 }  // namespace
@@ -153,7 +153,7 @@ Gait sample_gait(Random& random) {
   Gait gait;
   gait.period_s = 1.12F / std::sqrt(std::max(style.length, 0.5F)) * kinds::between(random, 0.92F, 1.1F);
   for (int i = 0; i < kStates; ++i) {
-    gait.states.push_back({kinds::walking_at(style, static_cast<float>(i) / kStates), 0.F, Vector2f::Zero()});
+    gait.states.push_back({kinds::walking_at(style, float(i) / kStates), 0.F, Vector2f::Zero()});
   }
   const float leg_m = bone_length_m(Bone::l_thigh) + bone_length_m(Bone::l_shin);
   for (int i = 0; i < kStates; ++i) {

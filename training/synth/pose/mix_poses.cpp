@@ -55,8 +55,8 @@ SampledPose draw_pose(std::span<const SampledPose> poses, float mixed, float mir
   if (poses.empty()) throw UsageError("draw_pose: expected at least one pose");
   const SampledPose& base = poses[random.below(static_cast<std::uint32_t>(poses.size()))];
   SampledPose drawn = random.uniform() < mixed ? draw_mixed(poses, base, random) : base;
-  drawn.pose.l_grip = static_cast<float>(random.uniform(0.0, 0.9));
-  drawn.pose.r_grip = static_cast<float>(random.uniform(0.0, 0.9));
+  drawn.pose.l_grip = float(random.uniform(0.0, 0.9));
+  drawn.pose.r_grip = float(random.uniform(0.0, 0.9));
   if (random.uniform() < mirrored_share) drawn.pose = mirrored(drawn.pose);
   return drawn;
 }

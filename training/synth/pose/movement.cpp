@@ -15,9 +15,9 @@ struct Neighbours {
 
 Neighbours neighbours(const Movement& movement, float time_s) {
   const std::size_t last = movement.states.size() - 1;
-  const float place = std::clamp(time_s * movement.fps, 0.F, static_cast<float>(last));
+  const float place = std::clamp(time_s * movement.fps, 0.F, float(last));
   const std::size_t first = std::min(static_cast<std::size_t>(place), last);
-  return {&movement.states[first], &movement.states[std::min(first + 1, last)], place - static_cast<float>(first)};
+  return {&movement.states[first], &movement.states[std::min(first + 1, last)], place - float(first)};
 }
 
 }  // namespace

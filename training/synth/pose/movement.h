@@ -22,7 +22,7 @@ struct Movement {
   float fps = 30.F;
   std::vector<BodyState> states;
 
-  float seconds() const { return static_cast<float>(states.size() - 1) / fps; }
+  float seconds() const { return float(states.size() - 1) / fps; }
 };
 
 /// Returns the pose between two: 0 gives `a`, 1 gives `b`. Each joint turns the shorter way.

@@ -43,7 +43,7 @@ std::string_view bone_name(Bone bone) { return info(bone).name; }
 
 int find_bone(std::string_view name) {
   const auto found = std::ranges::find(kBones, name, &BoneInfo::name);
-  return found == kBones.end() ? -1 : static_cast<int>(found - kBones.begin());
+  return found == kBones.end() ? -1 : int(found - kBones.begin());
 }
 
 Bone parent(Bone bone) { return info(bone).parent; }

@@ -45,7 +45,7 @@ Bone mirror(Bone bone);
 Eigen::Vector3f rest_direction(Bone bone);
 
 /// Returns the bone as an index.
-constexpr int index(Bone bone) { return static_cast<int>(bone); }
+constexpr int index(Bone bone) { return int(bone); }
 
 /// Joint rotations without the body's size. In the body frame x points to the person's left, y up and z to the front.
 /// In the rest pose, where every rotation is the identity, the person stands as a T.

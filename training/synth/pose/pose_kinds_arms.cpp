@@ -5,7 +5,7 @@ namespace vesalius::synth::kinds {
 
 using Eigen::Vector3f;
 
-float between(Random& random, float low, float high) { return static_cast<float>(random.uniform(low, high)); }
+float between(Random& random, float low, float high) { return float(random.uniform(low, high)); }
 
 bool chance(Random& random, float probability) { return random.uniform() < probability; }
 

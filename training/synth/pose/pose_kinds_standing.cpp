@@ -63,7 +63,7 @@ ArmAngles hanging_arm(Random& random, float front, float side) {
 BodyAngles standing_angles(Random& random) {
   BodyAngles angles;
   angles.pitch = between(random, -4.F, 6.F);
-  const int bent_leg = static_cast<int>(random.below(4));  // for 0 and 1 the weight is on the other leg
+  const int bent_leg = int(random.below(4));  // for 0 and 1 the weight is on the other leg
   for (int side = 0; side < 2; ++side) {
     LegAngles& leg = angles.legs[side];
     leg.abduction = between(random, 0.F, 12.F);
@@ -114,7 +114,7 @@ Pose walking_at(const WalkStyle& style, float phase) {
   BodyAngles angles = style.angles;
   angles.trunk.turn = style.length * 8.F * std::cos(2.F * kPi * phase);
   for (std::size_t side = 0; side < 2; ++side) {
-    const float own = std::fmod(phase + 0.5F * static_cast<float>(side), 1.F);
+    const float own = std::fmod(phase + 0.5F * float(side), 1.F);
     LegAngles& leg = angles.legs[side];
     const LegAngles swung = stride(own, style.length);
     leg.flexion = swung.flexion + angles.pitch;

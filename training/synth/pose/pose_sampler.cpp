@@ -58,7 +58,7 @@ const Kind& draw_kind(const PoseSamplerOptions& options, Random& random) {
     total += weight;
   }
   if (!(total > 0.F)) throw UsageError("pose sampler: expected at least one weight above 0");
-  float left = static_cast<float>(random.uniform()) * total;
+  float left = float(random.uniform()) * total;
   const Kind* last = nullptr;
   for (const Kind& kind : kKinds) {
     if (options.*kind.weight <= 0.F) continue;

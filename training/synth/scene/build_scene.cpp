@@ -47,10 +47,10 @@ void add_people(const std::vector<PersonPlan>& plans, float detail_px, std::vect
       person.body = moved(std::move(member.body), person.world_from_body);
       person.plan = member.plan;
       person.posture = plans[member.plan].posture;
-      person.mesh = static_cast<int>(built.scene.meshes.size());
+      person.mesh = int(built.scene.meshes.size());
       const PersonPlan& plan = plans[member.plan];
       SceneMesh mesh = person_mesh(plan, person.body, built.view, detail_px);
-      mesh.person = static_cast<int>(built.people.size());
+      mesh.person = int(built.people.size());
       built.scene.meshes.push_back(std::move(mesh));
       built.people.push_back(std::move(person));
     }

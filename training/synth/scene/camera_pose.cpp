@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kRadPerDeg = std::numbers::pi_v<float> / 180.F;
 
-float between(float low, float high, Random& random) { return static_cast<float>(random.uniform(low, high)); }
+float between(float low, float high, Random& random) { return float(random.uniform(low, high)); }
 
 void check_order(const char* low_name, float low, const char* high_name, float high) {
   if (low > high) throw UsageError(fmt::format("option {} is {}, above {} {}", low_name, low, high_name, high));
@@ -90,7 +90,7 @@ CameraPose sample_camera(const CameraPlacement& options, float target_height_m, 
   CameraPose pose;
   pose.height_m = between(options.height_min_m, options.height_max_m, random);
   const float drop = std::clamp((pose.height_m - target_height_m) / std::max(distance_m, 0.1F), -1.F, 1.F);
-  const float aim_deg = std::asin(drop) / kRadPerDeg + static_cast<float>(random.normal(0.0, options.aim_error_deg));
+  const float aim_deg = std::asin(drop) / kRadPerDeg + float(random.normal(0.0, options.aim_error_deg));
   pose.pitch_rad = std::clamp(aim_deg, options.pitch_min_deg, options.pitch_max_deg) * kRadPerDeg;
   pose.roll_rad = between(-options.roll_max_deg, options.roll_max_deg, random) * kRadPerDeg;
   if (options.rolled_share > 0.F && random.uniform() < options.rolled_share) {  // off: draws no random numbers

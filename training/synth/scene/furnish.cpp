@@ -32,8 +32,8 @@ class Furnisher {
     Furniture piece = make_furniture(kKinds[random_.below(kKinds.size())], random_);
     for (int i = 0; i < kTries; ++i) {
       const Vector3f on_way = eye_ + between(0.3, 0.85, random_) * (person - eye_);
-      const float x = on_way.x() + static_cast<float>(random_.normal(0.0, 0.3));
-      const float z = on_way.z() + static_cast<float>(random_.normal(0.0, 0.3));
+      const float x = on_way.x() + float(random_.normal(0.0, 0.3));
+      const float z = on_way.z() + float(random_.normal(0.0, 0.3));
       if (put(piece, standing_at(x, 0.F, z, any_turn()), kMostHidden)) return;
     }
   }
@@ -157,7 +157,7 @@ std::vector<Furniture> furnish(const SceneOptions& options, const RoomShape& roo
     if (chance(options.occluder_probability, random)) furnisher.occlude(person);
   }
   const int span = options.furniture_max - options.furniture_min + 1;
-  const int count = options.furniture_min + static_cast<int>(random.below(span));
+  const int count = options.furniture_min + int(random.below(span));
   for (int i = 0; i < count; ++i) furnisher.add_piece();
   if (chance(options.near_probability, random)) furnisher.loom();
   return furnisher.take();

@@ -131,7 +131,7 @@ float Occupancy::hidden_share(const std::vector<OrientedBox>& solids) const {
         hidden += std::ranges::any_of(solids, [&](const OrientedBox& box) { return blocks(box, eye, middle); }) ? 1 : 0;
       }
     }
-    largest = std::max(largest, static_cast<float>(hidden) / static_cast<float>(kBoneCount * person.size()));
+    largest = std::max(largest, float(hidden) / float(kBoneCount * person.size()));
   }
   return largest;
 }

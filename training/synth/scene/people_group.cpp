@@ -71,7 +71,7 @@ void add_desk(const Isometry3f& group_from_front, float near_m, float low_m, flo
   constexpr int kTries = 4;
   for (int i = 0; i < kTries; ++i) {
     const float height = between(low_m, high_m, random), aside = between(-0.3, 0.3, random);
-    const float near = near_m + 0.12F * static_cast<float>(i) * between(0.5, 1.0, random);
+    const float near = near_m + 0.12F * float(i) * between(0.5, 1.0, random);
     Furniture desk = make(height, random);
     move(desk, group_from_front * Translation3f(aside, 0.F, near));
     if (!keeps_clear(group, desk)) continue;
@@ -261,7 +261,7 @@ int partner_of(const std::vector<std::optional<Posed>>& people, std::size_t firs
   const Posed& one = *people[first];
   for (std::size_t i = first + 1; i < people.size(); ++i) {
     if (!people[i]) continue;
-    if (one.seat ? people[i]->seat.has_value() : people[i]->posture == one.posture) return static_cast<int>(i);
+    if (one.seat ? people[i]->seat.has_value() : people[i]->posture == one.posture) return int(i);
   }
   return -1;
 }
@@ -279,7 +279,7 @@ std::optional<double> probability_of_company(const SceneOptions& options, const 
 std::vector<PeopleGroup> make_groups(const SceneOptions& options, const std::vector<PersonPlan>& plans,
                                      Random& random) {
   std::vector<std::optional<Posed>> people;
-  for (std::size_t i = 0; i < plans.size(); ++i) people.emplace_back(pose_of(plans[i], static_cast<int>(i)));
+  for (std::size_t i = 0; i < plans.size(); ++i) people.emplace_back(pose_of(plans[i], int(i)));
   std::vector<PeopleGroup> groups;
   for (std::size_t i = 0; i < people.size(); ++i) {
     if (!people[i]) continue;

@@ -17,8 +17,8 @@ constexpr float kPi = std::numbers::pi_v<float>;
 /// Returns half the angle about the vertical within which a camera sees the floor, with a margin for people at the
 /// border.
 float half_fan(const Camera& camera, float pitch_rad) {
-  const float half_u = std::atan(0.5F * static_cast<float>(camera.width) / camera.fx);
-  const float half_v = std::atan(0.5F * static_cast<float>(camera.height) / camera.fy);
+  const float half_u = std::atan(0.5F * float(camera.width) / camera.fx);
+  const float half_v = std::atan(0.5F * float(camera.height) / camera.fy);
   if (std::abs(pitch_rad) + half_v > 0.48F * kPi) return kPi;
   return std::min(kPi, 1.15F * std::atan2(std::tan(half_u), std::cos(std::abs(pitch_rad) + half_v)));
 }
@@ -35,15 +35,15 @@ Visible visible_share(const BodyOutline& body, const View& view) {
       const Vector3f p = view.camera_from_world * end;
       if (p.z() < 0.1F) continue;
       const Eigen::Vector2f pixel = view.camera.pixel(p);
-      beside += pixel.x() < 0.F || pixel.x() > static_cast<float>(view.camera.width - 1) ? 1 : 0;
-      seen += pixel.x() > 0.F && pixel.y() > 0.F && pixel.x() < static_cast<float>(view.camera.width - 1) &&
-                      pixel.y() < static_cast<float>(view.camera.height - 1)
+      beside += pixel.x() < 0.F || pixel.x() > float(view.camera.width - 1) ? 1 : 0;
+      seen += pixel.x() > 0.F && pixel.y() > 0.F && pixel.x() < float(view.camera.width - 1) &&
+                      pixel.y() < float(view.camera.height - 1)
                   ? 1
                   : 0;
     }
   }
-  constexpr float kEnds = 2.F * static_cast<float>(kBoneCount);
-  return {static_cast<float>(seen) / kEnds, static_cast<float>(beside) / kEnds};
+  constexpr float kEnds = 2.F * float(kBoneCount);
+  return {float(seen) / kEnds, float(beside) / kEnds};
 }
 
 Vector3f middle_of(const PeopleGroup& group) {
@@ -65,10 +65,10 @@ class Placer {
     hold_camera(groups_.empty() ? usual_height : middle_of(groups_[0]).y());
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       constexpr int kCameras = 5;
-      bool placed = place(static_cast<int>(g));
+      bool placed = place(int(g));
       for (int i = 1; i < kCameras && !placed && stage_.groups.empty(); ++i) {
         hold_camera(middle_of(groups_[g]).y());  // nobody is in view yet, so the camera is drawn anew
-        placed = place(static_cast<int>(g));
+        placed = place(int(g));
       }
     }
     return std::move(stage_);
@@ -107,7 +107,7 @@ class Placer {
   float draw_bearing(bool at_border) {
     const float fan = half_fan(view_.camera, stage_.camera.pitch_rad);
     if (!at_border) return between(-fan, fan, random_);
-    const float half_u = std::atan(0.5F * static_cast<float>(view_.camera.width) / view_.camera.fx);
+    const float half_u = std::atan(0.5F * float(view_.camera.width) / view_.camera.fx);
     return (chance(0.5, random_) ? 1.F : -1.F) * std::min(fan, half_u * between(0.75, 1.25, random_));
   }
 

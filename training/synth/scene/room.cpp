@@ -89,16 +89,16 @@ class Wall {
   void window(const Opening& o, Random& random) {
     frame(o);
     bar({o.left - 0.06F, o.bottom - 0.03F, -0.05F}, {o.right + 0.06F, o.bottom, 0.06F}, looks_.frame);
-    const int panes = 1 + static_cast<int>((o.right - o.left) / 0.8F);
+    const int panes = 1 + int((o.right - o.left) / 0.8F);
     for (int i = 1; i < panes; ++i) {
-      const float x = o.left + (o.right - o.left) * static_cast<float>(i) / static_cast<float>(panes);
+      const float x = o.left + (o.right - o.left) * float(i) / float(panes);
       bar({x - 0.025F, o.bottom, -0.05F}, {x + 0.025F, o.top, -0.01F}, looks_.frame);
     }
     if (!chance(0.6, random)) return;
     const float drop = chance(0.5, random) ? o.top + 0.08F : o.top - o.bottom + 0.2F;
     const float share = chance(0.2, random) ? 0.5F : between(0.1, 0.3, random);
     const float wide = share * (o.right - o.left) + 0.1F, fold = between(0.03, 0.08, random);
-    const int folds = std::max(2, static_cast<int>(wide / 0.12F));
+    const int folds = std::max(2, int(wide / 0.12F));
     for (const float left : {o.left - 0.1F, o.right + 0.1F - wide}) {
       add_curtain(mesh_, at(left, o.top + 0.1F, 0.09F), at(left + wide, o.top + 0.1F, 0.09F), drop, fold, folds,
                   looks_.curtain);

@@ -48,8 +48,8 @@ RoomShape draw_room(const SceneOptions& options, const PlacedGroup* first, const
 void add_lights(const RoomShape& room, Scene& scene, Random& random) {
   constexpr float kFromWall_m = 0.5F;
   scene.ambient = between(0.3, 0.6, random);
-  const int count = 1 + static_cast<int>(random.below(3));
-  const float each = between(2.5, 5.0, random) / static_cast<float>(count);
+  const int count = 1 + int(random.below(3));
+  const float each = between(2.5, 5.0, random) / float(count);
   for (int i = 0; i < count; ++i) {
     Vector3f at{between(-3.0, 3.0, random), room.height_m - between(0.1, 0.5, random), between(-4.5, 0.5, random)};
     if (!room.open) {
@@ -74,7 +74,7 @@ void darken_furniture(float share, Scene& scene, Random& random) {
   for (std::size_t i = kRoom + 1; i < scene.meshes.size(); ++i) {
     SceneMesh& mesh = scene.meshes[i];
     if (mesh.person >= 0 || !chance(share, random)) continue;
-    const auto factor = static_cast<float>(std::exp(random.uniform(std::log(0.015), std::log(0.15))));
+    const auto factor = float(std::exp(random.uniform(std::log(0.015), std::log(0.15))));
     for (Material& material : mesh.materials) material.infrared *= factor;
   }
 }

@@ -15,8 +15,8 @@ class CameraRays {
   explicit CameraRays(const Camera& camera) {
     x_.reserve(camera.width + kBeyond);
     y_.reserve(camera.height + kBeyond);
-    for (int u = 0; u < camera.width + kBeyond; ++u) x_.push_back(camera.point(static_cast<float>(u), 0.F, 1.F).x());
-    for (int v = 0; v < camera.height + kBeyond; ++v) y_.push_back(camera.point(0.F, static_cast<float>(v), 1.F).y());
+    for (int u = 0; u < camera.width + kBeyond; ++u) x_.push_back(camera.point(float(u), 0.F, 1.F).x());
+    for (int v = 0; v < camera.height + kBeyond; ++v) y_.push_back(camera.point(0.F, float(v), 1.F).y());
   }
 
   const float* x() const { return x_.data(); }

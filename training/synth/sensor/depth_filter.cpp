@@ -82,7 +82,7 @@ void draw_towards(float neighbour, float weight, float step, float& pixel) {
 void smooth(const DepthFilter& filter, DepthImage& depth) {
   Image<float> inverse(depth.width(), depth.height());
   std::transform(depth.begin(), depth.end(), inverse.begin(),
-                 [](std::uint16_t z) { return z == 0 ? 0.F : kPerMetre / static_cast<float>(z); });
+                 [](std::uint16_t z) { return z == 0 ? 0.F : kPerMetre / float(z); });
   const int width = depth.width(), height = depth.height();
   const auto towards = [&](float neighbour, float& pixel) {
     draw_towards(neighbour, filter.smoothing, filter.step_per_m, pixel);
@@ -154,10 +154,10 @@ void blur(const DepthFilter& filter, DepthImage& depth) {
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
         if (depth(u, v) == 0) continue;
-        const float z_m = static_cast<float>(depth(u, v)) / kPerMetre;
+        const float z_m = float(depth(u, v)) / kPerMetre;
         const float far = std::clamp((z_m - kFrom_m) / (kTo_m - kFrom_m), 0.F, 1.F);
         const float reach_px = filter.blur_px + far * filter.far_blur_px;
-        depth(u, v) = sums.mean(u, v, static_cast<int>(reach_px / kTimes));
+        depth(u, v) = sums.mean(u, v, int(reach_px / kTimes));
       }
     }
   }
@@ -186,11 +186,11 @@ DepthFilter draw_filter(const DepthFilterOptions& options, Random& random) {
   const auto from = static_cast<HoleFill>(random.below(3));
   if (fill) filter.fill = from;
   filter.fill_px = options.fill_px;
-  filter.smoothing = options.smoothing * static_cast<float>(random.uniform(0.5, 1.0));
-  filter.passes = 1 + static_cast<int>(random.below(kMostPasses));
+  filter.smoothing = options.smoothing * float(random.uniform(0.5, 1.0));
+  filter.passes = 1 + int(random.below(kMostPasses));
   filter.step_per_m = options.step_per_m;
-  filter.blur_px = options.blur_px * static_cast<float>(random.uniform());
-  filter.far_blur_px = options.far_blur_px * static_cast<float>(random.uniform());
+  filter.blur_px = options.blur_px * float(random.uniform());
+  filter.far_blur_px = options.far_blur_px * float(random.uniform());
   return filter;
 }
 

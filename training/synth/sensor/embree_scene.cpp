@@ -20,8 +20,7 @@ static_assert(kTile - 1 == CameraRays::kBeyond && kTile * kTile == kPacket);
 void check(RTCDevice device) {
   const RTCError code = rtcGetDeviceError(device);
   if (code == RTC_ERROR_NONE) return;
-  throw Error(fmt::format("Embree: error {}{}", static_cast<int>(code),
-                          code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : ""));
+  throw Error(fmt::format("Embree: error {}{}", int(code), code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : ""));
 }
 
 /// Rays from one point. Only what differs between packets is written for each.
@@ -122,7 +121,7 @@ void EmbreeScene::cast(const Camera& camera, Image<std::uint32_t>& hits) {
 void EmbreeScene::light(const std::vector<ShadowRay>& rays, const Eigen::Vector3f& projector, Mask& lit) {
   Packet packet(projector);
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
-    const int count = static_cast<int>(std::min<std::size_t>(kPacket, rays.size() - first));
+    const int count = int(std::min<std::size_t>(kPacket, rays.size() - first));
     for (int i = 0; i < kPacket; ++i) {
       packet.valid[i] = i < count ? -1 : 0;
       const Eigen::Vector3f& from = rays[first + static_cast<std::size_t>(i < count ? i : 0)].from;

@@ -30,7 +30,7 @@ float exceeded_by(float p) {
 }
 
 /// Rounds halves away from zero, as std::lround() does. A call of that would cost more than everything else here.
-int whole_px(float pixels) { return static_cast<int>(pixels + std::copysign(0.5F, pixels)); }
+int whole_px(float pixels) { return int(pixels + std::copysign(0.5F, pixels)); }
 
 float angle_of(float c) {
   const auto& a = kAngleSeries;
@@ -39,7 +39,7 @@ float angle_of(float c) {
 
 /// Returns the distance at which a silhouette has an effect.
 int influence_px(const Sensor& sensor, int reach_px) {
-  return std::max({1, reach_px, static_cast<int>(std::ceil(kFurthestJitter * sensor.lateral_px))});
+  return std::max({1, reach_px, int(std::ceil(kFurthestJitter * sensor.lateral_px))});
 }
 
 /// Returns the depth of the surfaces that both the sensor's light and its eye reach; 0 elsewhere.
@@ -118,15 +118,14 @@ Aim::Spot Aim::displaced(const Spot& spot) const {
   const int dv = whole_px(sigma_px * shift_v_.at(spot.u, spot.v));
   if ((du == 0 && dv == 0) || !in_.depth_m.contains(spot.u + du, spot.v + dv)) return spot;
   const float z = in_.depth_m(spot.u + du, spot.v + dv);
-  const float furthest_px = static_cast<float>(std::abs(du) + std::abs(dv));
+  const float furthest_px = float(std::abs(du) + std::abs(dv));
   const bool goes_on = z > 0.F && spot.z > 0.F && std::abs(z - spot.z) < slope_m(spot, furthest_px);
   return goes_on ? spot : look(spot.u + du, spot.v + dv);
 }
 
 /// Returns whether a surface within reach is nearer than the slope of this one explains.
 bool Aim::beyond_silhouette(const Spot& spot) const {
-  const float limit =
-      spot.z > 0.F ? spot.z - slope_m(spot, static_cast<float>(reach_px_)) : std::numeric_limits<float>::max();
+  const float limit = spot.z > 0.F ? spot.z - slope_m(spot, float(reach_px_)) : std::numeric_limits<float>::max();
   return nearest_m_[spot.at] < limit;
 }
 
@@ -176,7 +175,7 @@ Aim::Spot Aim::across_silhouette(const Spot& spot) const {
 Aim::Spot Aim::mixed(const Spot& spot) {
   const Spot other = across_silhouette(spot);
   // The silhouette is anywhere within one pixel, and the mixture extends half its width to this side.
-  const auto offset = static_cast<float>(random_.uniform());
+  const auto offset = float(random_.uniform());
   if (other.z == 0.F || offset >= 0.5F * sensor_.mixed_px) return spot;
   if (random_.uniform() < sensor_.mixed_loss) return {};
   const float share = 0.5F - offset / sensor_.mixed_px;

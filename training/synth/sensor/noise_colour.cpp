@@ -24,14 +24,14 @@ Gains draw_gains(Random& random) {
   for (auto& channel : gained) {
     const double gain = std::exp(exposure + random.normal(0.0, kBalance));
     for (std::size_t i = 0; i < channel.size(); ++i) {
-      channel[i] = static_cast<int>(std::min(255.0, std::round(gain * static_cast<double>(i))));
+      channel[i] = int(std::min(255.0, std::round(gain * double(i))));
     }
   }
   return gained;
 }
 
 void apply(const Gains& gained, float sigma, ColourImage& colour, Random& random) {
-  const auto noise = [&] { return static_cast<int>(std::lround(sigma * quick_normal(random))); };
+  const auto noise = [&] { return int(std::lround(sigma * quick_normal(random))); };
   for (Rgb& pixel : colour) {
     pixel.r = clipped(gained[0][pixel.r] + noise());
     pixel.g = clipped(gained[1][pixel.g] + noise());
@@ -43,13 +43,13 @@ void apply(const Gains& gained, float sigma, ColourImage& colour, Random& random
 
 void add_colour_noise(ColourImage& colour, Random random) {
   const Gains gained = draw_gains(random);
-  const auto sigma = static_cast<float>(random.uniform(kQuietest, kLoudest));
+  const auto sigma = float(random.uniform(kQuietest, kLoudest));
   apply(gained, sigma, colour, random);
 }
 
 void add_colour_noise(ColourImage& colour, Random look, Random noise) {
   const Gains gained = draw_gains(look);
-  const auto sigma = static_cast<float>(look.uniform(kQuietest, kLoudest));
+  const auto sigma = float(look.uniform(kQuietest, kLoudest));
   apply(gained, sigma, colour, noise);
 }
 

@@ -12,7 +12,7 @@ namespace vesalius::synth {
 std::vector<NoiseField::Tap> NoiseField::taps(int count, float spacing) {
   std::vector<Tap> taps(count);
   for (std::size_t i = 0; i < taps.size(); ++i) {
-    const float x = static_cast<float>(i) / spacing;
+    const float x = float(i) / spacing;
     const float f = x - std::floor(x);
     const float g = 1.F - f;
     Tap& tap = taps[i];

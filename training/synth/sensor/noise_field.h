@@ -12,9 +12,9 @@ namespace vesalius::synth {
 /// draw.
 inline float quick_normal(Random& random) {
   const std::uint32_t bits = random.next();
-  const auto sum = static_cast<int>((bits & 0xFFU) + ((bits >> 8U) & 0xFFU) + ((bits >> 16U) & 0xFFU) + (bits >> 24U));
+  const auto sum = int((bits & 0xFFU) + ((bits >> 8U) & 0xFFU) + ((bits >> 16U) & 0xFFU) + (bits >> 24U));
   constexpr float kSigma = 147.8F;  // sqrt(4 (256^2 - 1) / 12)
-  return static_cast<float>(sum - 510) / kSigma;
+  return float(sum - 510) / kSigma;
 }
 
 /// Standard normal noise over a picture with correlated neighbours: cubic B-splines over a lattice of normal numbers,

@@ -50,7 +50,7 @@ Mask hidden_from_eye(const Image<float>& depth_m, const Camera& camera, float ey
     for (int i = 0; i < depth_m.width(); ++i) {
       const int u = to_right ? depth_m.width() - 1 - i : i;
       if (row[u] <= 0.F) continue;
-      const float column = static_cast<float>(u) - shift / row[u];
+      const float column = float(u) - shift / row[u];
       out[u] = (to_right ? column > front + kSlack_px : column < front - kSlack_px) ? 1 : 0;
       front = to_right ? std::min(front, column) : std::max(front, column);
     }

@@ -45,7 +45,7 @@ inline Statistics statistics_of(const Sensor& sensor, float z_m, const std::func
   int read = 0;
   int all = 0;
   for (std::uint64_t i = 0; i < 16; ++i) {
-    Rendering r = wall(sensor.camera, z_m * (1.F + 0.0011F * static_cast<float>(i)));
+    Rendering r = wall(sensor.camera, z_m * (1.F + 0.0011F * float(i)));
     if (change) change(r);
     for (const std::uint16_t depth_mm : sense(r, sensor, Random(1, i))) {
       ++all;
@@ -55,14 +55,14 @@ inline Statistics statistics_of(const Sensor& sensor, float z_m, const std::func
       ++read;
     }
   }
-  return {std::sqrt(square / std::max(1, read)), 1.0 - static_cast<double>(read) / all};
+  return {std::sqrt(square / std::max(1, read)), 1.0 - double(read) / all};
 }
 
 /// Turns every pixel's normal such that its ray meets the surface at this angle.
 inline void tilt(Rendering& r, float angle_rad) {
   for (int v = 0; v < r.normal.height(); ++v) {
     for (int u = 0; u < r.normal.width(); ++u) {
-      const Eigen::Vector3f ray = r.view.camera.point(static_cast<float>(u), static_cast<float>(v), 1.F).normalized();
+      const Eigen::Vector3f ray = r.view.camera.point(float(u), float(v), 1.F).normalized();
       const Eigen::Vector3f aside = ray.cross(Eigen::Vector3f::UnitY()).normalized();
       r.normal(u, v) = -std::cos(angle_rad) * ray + std::sin(angle_rad) * aside;
     }

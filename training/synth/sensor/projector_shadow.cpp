@@ -31,8 +31,8 @@ class RowScan {
       const bool step = std::abs(before - here) > kStepPx;
       before = here;
       if (!(depth_m[u] > 0.F)) continue;
-      const float value = here + static_cast<float>(i);
-      const bool leaves = static_cast<float>(i) < scale_px_m_ / kNearestBlocker_m - here;
+      const float value = here + float(i);
+      const bool leaves = float(i) < scale_px_m_ / kNearestBlocker_m - here;
       maybe[u] = static_cast<std::uint8_t>(static_cast<unsigned>(leaves) | static_cast<unsigned>(step) |
                                            static_cast<unsigned>(highest >= value - kSlackPx));
       highest = std::max(highest, value);

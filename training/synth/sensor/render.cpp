@@ -69,7 +69,7 @@ struct Met {
   /// Returns the depth at which the ray (x, y, 1) meets the plane.
   float depth_of(float ray_x, float ray_y) const {
     const double along = normal.x() * ray_x + normal.y() * ray_y + normal.z();
-    return std::clamp(static_cast<float>(offset / along), near_m, far_m);
+    return std::clamp(float(offset / along), near_m, far_m);
   }
 };
 
@@ -120,8 +120,7 @@ void Renderer::State::fill_colour(const Scene& scene, Rendering& out) const {
       if (out.depth_m(u, v) == 0.F) continue;
       const std::uint32_t hit = hits(u, v);
       const Material& material = geometry.materials[geometry.faces[hit / 2][hit & 1U].material];
-      const Eigen::Vector3f at =
-          world_from_camera * camera.point(static_cast<float>(u), static_cast<float>(v), out.depth_m(u, v));
+      const Eigen::Vector3f at = world_from_camera * camera.point(float(u), float(v), out.depth_m(u, v));
       const Eigen::Vector3f normal = world_from_camera.linear() * out.normal(u, v);
       out.colour(u, v) =
           synth::lit(colour_at(material, at, normal), brightness(at, normal, scene.lights, scene.ambient));

@@ -122,9 +122,9 @@ void SceneGeometry::set_planes(const Camera& camera, const std::optional<Eigen::
   // These are the sides of the view, a pixel wider, and moved outwards such that shadow rays to the projector stay
   // inside.
   const float left = (-1.F - camera.cx) / camera.fx;
-  const float right = (static_cast<float>(camera.width) - camera.cx) / camera.fx;
+  const float right = (float(camera.width) - camera.cx) / camera.fx;
   const float top = (-1.F - camera.cy) / camera.fy;
-  const float bottom = (static_cast<float>(camera.height) - camera.cy) / camera.fy;
+  const float bottom = (float(camera.height) - camera.cy) / camera.fy;
   const std::array<Eigen::Vector3f, 5> normals = {Eigen::Vector3f(1.F, 0.F, -left), Eigen::Vector3f(-1.F, 0.F, right),
                                                   Eigen::Vector3f(0.F, 1.F, -top), Eigen::Vector3f(0.F, -1.F, bottom),
                                                   Eigen::Vector3f(0.F, 0.F, 1.F)};

@@ -143,7 +143,7 @@ Sensor perfect() {
   return s;
 }
 
-int scaled(int pixels, float scale) { return static_cast<int>(std::lround(static_cast<float>(pixels) * scale)); }
+int scaled(int pixels, float scale) { return int(std::lround(float(pixels) * scale)); }
 
 Border scaled(const Border& border, float scale) {
   return {scaled(border.left, scale), scaled(border.right, scale), scaled(border.top, scale),
@@ -191,11 +191,11 @@ Sensor reframed(const Sensor& sensor, int width, int height) {
     throw UsageError(fmt::format("sensor {}: picture of {}x{}, expected sides of {} to {}", sensor.name, width, height,
                                  kSmallest, kLargest));
   }
-  const float scale = static_cast<float>(width) / static_cast<float>(sensor.camera.width);
+  const float scale = float(width) / float(sensor.camera.width);
   const int full = scaled(sensor.camera.height, scale);
   Camera camera = sensor.camera.resized(width, full);
   camera.fy = sensor.camera.fy * scale;  // square pixels stay square although the full height was rounded
-  camera.cy -= static_cast<float>(full - height) * 0.5F;
+  camera.cy -= float(full - height) * 0.5F;
   camera.height = height;
   Sensor other = with_camera(sensor, camera);
   const int cut = std::max(0, full - height) / 2;
@@ -205,7 +205,7 @@ Sensor reframed(const Sensor& sensor, int width, int height) {
 }
 
 Sensor resized(const Sensor& sensor, int width, int height) {
-  const float scale = static_cast<float>(width) / static_cast<float>(sensor.camera.width);
+  const float scale = float(width) / float(sensor.camera.width);
   const int full = scaled(sensor.camera.height, scale);
   if (width < kSmallest || width > kLargest || height < kSmallest || height > full) {
     throw UsageError(fmt::format("sensor {}: picture of {}x{}, expected a width of {} to {} and a height of {} to {}",

@@ -22,9 +22,7 @@ constexpr float kLossGrain = 0.08F;
 constexpr float kLossWindows = 2.F;
 
 Border draw_border(const Sensor& sensor, Random& random) {
-  const auto draw = [&](int low, int high) {
-    return low + static_cast<int>(random.below(std::max(0, high - low) + 1));
-  };
+  const auto draw = [&](int low, int high) { return low + int(random.below(std::max(0, high - low) + 1)); };
   const Border& a = sensor.border_low;
   const Border& b = sensor.border_high;
   Border border;

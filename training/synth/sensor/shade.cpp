@@ -10,7 +10,7 @@ namespace {
 /// often at round coordinates.
 std::int64_t cell(float at, float period_m) {
   constexpr double kShift = 0.3719;
-  return static_cast<std::int64_t>(std::floor(static_cast<double>(at) / static_cast<double>(period_m) + kShift));
+  return static_cast<std::int64_t>(std::floor(double(at) / double(period_m) + kShift));
 }
 
 /// Returns 0-255, the same within a cell.
@@ -66,7 +66,7 @@ float brightness(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, co
 
 Rgb lit(Rgb colour, float brightness) {
   const auto scaled = [&](std::uint8_t c) {
-    return static_cast<std::uint8_t>(std::clamp(static_cast<float>(c) * brightness + 0.5F, 0.F, 255.F));
+    return static_cast<std::uint8_t>(std::clamp(float(c) * brightness + 0.5F, 0.F, 255.F));
   };
   return {scaled(colour.r), scaled(colour.g), scaled(colour.b)};
 }

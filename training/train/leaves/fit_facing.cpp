@@ -41,7 +41,7 @@ FacingModel fit_facing(const std::vector<FacingSample>& samples, int parts, int 
     weight[i] = 1.0 / std::sqrt(count[samples[i].heading]);
   }
   weight /= weight.sum();
-  VectorXd scale = (x.array().square().colwise().sum() / static_cast<double>(people)).sqrt().transpose();
+  VectorXd scale = (x.array().square().colwise().sum() / double(people)).sqrt().transpose();
   for (Index f = 0; f < features; ++f) scale[f] = scale[f] > 1e-6 ? 1.0 / scale[f] : 0.0;
   x = x * scale.asDiagonal();
   // Gradient descent with Nesterov's momentum; a softmax's curvature is at most half of the features' largest variance.
@@ -53,13 +53,13 @@ FacingModel fit_facing(const std::vector<FacingSample>& samples, int parts, int 
     softmax(error);
     error = weight.asDiagonal() * (error - truth);
     const MatrixXd next = ahead - (x.transpose() * error + kPrior * ahead) / curvature;
-    ahead = next + (static_cast<double>(step) / (step + 3.0)) * (next - w);
+    ahead = next + (double(step) / (step + 3.0)) * (next - w);
     w = next;
   }
   w = scale.asDiagonal() * w;
   model.weights.resize(static_cast<std::size_t>(features) * headings);
   for (int h = 0; h < headings; ++h) {
-    for (Index f = 0; f < features; ++f) model.weights[h * features + f] = static_cast<float>(w(f, h));
+    for (Index f = 0; f < features; ++f) model.weights[h * features + f] = float(w(f, h));
   }
   return model;
 }

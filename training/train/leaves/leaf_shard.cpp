@@ -63,7 +63,7 @@ class LeafShard::Gradients {
         logits_(logits),
         task_(task),
         softmax_(shard.layout_),
-        scale_(std::ldexp(1.F, task.shift) / static_cast<float>(SampleWeights::kOne)),
+        scale_(std::ldexp(1.F, task.shift) / float(SampleWeights::kOne)),
         rows_(kBatch * logits.stride),
         likelihood_(kBatch) {
     for (const std::size_t leaves : shard.leaf_counts_) out_.of_trees.emplace_back(leaves * logits.stride, 0);
@@ -81,7 +81,7 @@ class LeafShard::Gradients {
 
  private:
   void flush() {
-    parallel_ranges(static_cast<int>(batch_.size()), 512, [&](int begin, int end) {
+    parallel_ranges(int(batch_.size()), 512, [&](int begin, int end) {
       std::vector<float> shares(logits_.stride);
       for (int k = begin; k < end; ++k) row_of(k, shares);
     });
@@ -90,7 +90,7 @@ class LeafShard::Gradients {
       out_.log_likelihood += weight * likelihood_[k];
       out_.weight += weight;
     }
-    parallel_for(static_cast<int>(out_.of_trees.size()), [&](int t) { add_to_leaves(t); });
+    parallel_for(int(out_.of_trees.size()), [&](int t) { add_to_leaves(t); });
     batch_.clear();
   }
 
@@ -104,9 +104,9 @@ class LeafShard::Gradients {
       const std::int16_t* leaf = logits_.of_trees[t].data() + shard_.leaves_[t][i] * logits_.stride;
       for (std::size_t c = 0; c < logits_.stride; ++c) row[c] += leaf[c];
     }
-    for (std::size_t c = 0; c < logits_.stride; ++c) shares[c] = static_cast<float>(row[c]) * LeafLogits::kUnit;
+    for (std::size_t c = 0; c < logits_.stride; ++c) shares[c] = float(row[c]) * LeafLogits::kUnit;
     softmax_(shares.data());
-    const float weight = static_cast<float>(shard_.weights_.of(sample)) * scale_;
+    const float weight = float(shard_.weights_.of(sample)) * scale_;
     likelihood_[k] = std::log(std::max(shares[sample.label], 1e-9F));
     const bool part = sample.label < layout.parts;
     const int side = part ? layout.side[sample.label] : 0;
@@ -154,7 +154,7 @@ LeafGradient LeafShard::gradient(const LeafLogits& logits, const GradientTask& t
 
 std::vector<FacingSample> facing_samples(const TrainingSet& set, const Forest& forest) {
   std::vector<FacingSample> all(set.held_out_people().size());
-  parallel_for(static_cast<int>(all.size()), [&](int i) {
+  parallel_for(int(all.size()), [&](int i) {
     const PersonSamples& person = set.held_out_people()[i];
     SampleLogits logits(forest);
     FacingEvidence evidence(logits.layout().parts, logits.layout().headings);

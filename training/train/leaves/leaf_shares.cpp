@@ -25,15 +25,15 @@ LeafShares::LeafShares(const SampleCounts& counts, int parts, const LeafOptions&
   std::vector<double> factors(sampled.size(), 0.0);
   for (std::size_t c = 0; c < factors.size(); ++c) {
     if (sampled[c] == 0) continue;
-    const double pixels = std::max<double>(static_cast<double>(counts.pixels[c]), 1.0);
-    factors[c] = std::pow(pixels / static_cast<double>(sampled[c]), static_cast<double>(options.prior_correction));
+    const double pixels = std::max<double>(double(counts.pixels[c]), 1.0);
+    factors[c] = std::pow(pixels / double(sampled[c]), double(options.prior_correction));
   }
   weights_ = fixed_point(factors);
   if (options.part_balance == 0.F) return;
   factors.resize(parts);
   for (std::size_t c = 0; c < factors.size(); ++c) {
     if (sampled[c] == 0) continue;
-    factors[c] *= std::pow(static_cast<double>(sampled[c]), -static_cast<double>(options.part_balance));
+    factors[c] *= std::pow(double(sampled[c]), -double(options.part_balance));
   }
   balance_ = fixed_point(factors);
 }
@@ -47,9 +47,9 @@ void LeafShares::balance_parts(const std::int64_t* counts, std::vector<std::uint
     after += static_cast<std::uint64_t>(counts[c]) * balance_[c];
   }
   if (after == 0) return;
-  const double scale = static_cast<double>(before) / static_cast<double>(after);
+  const double scale = double(before) / double(after);
   for (std::size_t c = 0; c < balance_.size(); ++c) {
-    shares[c] = static_cast<std::uint64_t>(scale * static_cast<double>(counts[c]) * static_cast<double>(balance_[c]));
+    shares[c] = static_cast<std::uint64_t>(scale * double(counts[c]) * double(balance_[c]));
   }
 }
 

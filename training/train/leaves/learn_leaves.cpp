@@ -26,8 +26,8 @@ std::vector<double> balanced(const std::int64_t* counts, std::size_t size, float
   double all = 0.0;
   for (std::size_t i = 0; i < size; ++i) {
     if (counts[i] == 0) continue;
-    const auto count = static_cast<double>(counts[i]);
-    weights[i] = std::pow(count, -static_cast<double>(balance));
+    const auto count = double(counts[i]);
+    weights[i] = std::pow(count, -double(balance));
     sum += count * weights[i];
     all += count;
   }
@@ -44,7 +44,7 @@ SampleWeights weights_of(const LabelCounts& counts, const LogitLayout& layout, c
   for (const double w : balanced(counts.classes.data(), layout.parts, options.part_balance)) {
     weights.of_class.push_back(std::max(1, in_units(w)));
   }
-  if (layout.background) weights.of_class.push_back(in_units(static_cast<double>(options.background_weight)));
+  if (layout.background) weights.of_class.push_back(in_units(double(options.background_weight)));
   for (const double w : balanced(counts.headings.data(), counts.headings.size(), options.heading_balance)) {
     weights.of_heading.push_back(std::max(1, in_units(w)));
   }
@@ -93,7 +93,7 @@ class LeafLearner {
   void start() {
     double largest = 1.0;
     for (std::size_t t = 0; t < trees_; ++t) {
-      const LeafCounts counts = shards_.leaf_counts(static_cast<int>(t));
+      const LeafCounts counts = shards_.leaf_counts(int(t));
       const std::size_t size = layout_.size();
       const std::size_t leaves = counts.weights.size() / size;
       if (t == 0) set_prior(counts, leaves);
@@ -102,20 +102,20 @@ class LeafLearner {
       for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
         float* row = counts_[t].data() + leaf * size;
         for (std::size_t c = 0; c < size; ++c) {
-          row[c] = static_cast<float>(static_cast<double>(counts.weights[leaf * size + c]) / SampleWeights::kOne);
+          row[c] = float(double(counts.weights[leaf * size + c]) / SampleWeights::kOne);
         }
-        largest = std::max(largest, static_cast<double>(weight_of(row)));
+        largest = std::max(largest, double(weight_of(row)));
         std::int16_t* logits = logits_.of_trees[t].data() + leaf * logits_.stride;
         std::vector<float> begin_with(row, row + size);
         for (std::size_t k = 0; k < TreeLeaf::kClasses; ++k) {
           const TreeLeaf& own = forest_.trees[t].leaves[leaf];
-          begin_with[own.label[k]] += kOwnSamples * static_cast<float>(own.probability[k]) / 255.F;
+          begin_with[own.label[k]] += kOwnSamples * float(own.probability[k]) / 255.F;
         }
         for_groups([&](std::size_t begin, std::size_t end) { start_group(begin_with.data(), logits, begin, end); });
       }
       start_.push_back(logits_.of_trees[t]);
     }
-    shift_ = std::clamp(30 - static_cast<int>(std::ceil(std::log2(2.0 * largest))), 0, 14);
+    shift_ = std::clamp(30 - int(std::ceil(std::log2(2.0 * largest))), 0, 14);
   }
 
   /// Calls `use(begin, end)` for the classes and for the headings of each side.
@@ -132,8 +132,7 @@ class LeafLearner {
     const std::size_t size = layout_.size();
     prior_.assign(size, 0.0);
     for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
-      for (std::size_t c = 0; c < size; ++c)
-        prior_[c] += static_cast<double>(counts.weights[leaf * size + c]) / SampleWeights::kOne;
+      for (std::size_t c = 0; c < size; ++c) prior_[c] += double(counts.weights[leaf * size + c]) / SampleWeights::kOne;
     }
     for_groups([&](std::size_t begin, std::size_t end) {
       double sum = 0.0;
@@ -145,12 +144,11 @@ class LeafLearner {
   void start_group(const float* counts, std::int16_t* logits, std::size_t begin, std::size_t end) const {
     constexpr double kStrength = 4.0;  // of the prior in the leaf's shares, in samples
     double sum = kStrength;
-    for (std::size_t c = begin; c < end; ++c) sum += static_cast<double>(counts[c]);
+    for (std::size_t c = begin; c < end; ++c) sum += double(counts[c]);
     for (std::size_t c = begin; c < end; ++c) {
-      const double share = (static_cast<double>(counts[c]) + kStrength * prior_[c]) / sum;
-      const double logit = std::log(prior_[c]) / static_cast<double>(trees_) +
-                           static_cast<double>(options_.lift) * std::log(share / prior_[c]);
-      logits[c] = stored(static_cast<float>(logit));
+      const double share = (double(counts[c]) + kStrength * prior_[c]) / sum;
+      const double logit = std::log(prior_[c]) / double(trees_) + double(options_.lift) * std::log(share / prior_[c]);
+      logits[c] = stored(float(logit));
     }
   }
 
@@ -167,21 +165,21 @@ class LeafLearner {
   void step(std::size_t t, const std::vector<std::int32_t>& gradient) {
     const std::size_t size = layout_.size();
     const float unit = std::ldexp(1.F, -shift_);
-    const float share = 1.F / static_cast<float>(options_.portions);
+    const float share = 1.F / float(options_.portions);
     const float prior = options_.prior * share;
-    const float together = static_cast<float>(trees_) * (layout_.headings > 0 ? 2.F : 1.F);
+    const float together = float(trees_) * (layout_.headings > 0 ? 2.F : 1.F);
     const float part = options_.step / together;
-    const auto leaves = static_cast<int>(gradient.size() / logits_.stride);
+    const auto leaves = int(gradient.size() / logits_.stride);
     parallel_ranges(leaves, kLeafGrain, [&](int begin, int end) {
       for (int leaf = begin; leaf < end; ++leaf) {
         const float* counts = counts_[t].data() + leaf * size;
         const float all = std::max(weight_of(counts) * share, 1e-6F);
         for (std::size_t c = 0; c < size; ++c) {
           const std::size_t at = leaf * logits_.stride + c;
-          const float g = static_cast<float>(gradient[at]) * unit;
+          const float g = float(gradient[at]) * unit;
           const float expected = std::clamp(counts[c] * share - g, 0.F, all);
-          const float now = static_cast<float>(logits_.of_trees[t][at]) * LeafLogits::kUnit;
-          const float from_start = now - static_cast<float>(start_[t][at]) * LeafLogits::kUnit;
+          const float now = float(logits_.of_trees[t][at]) * LeafLogits::kUnit;
+          const float from_start = now - float(start_[t][at]) * LeafLogits::kUnit;
           const float curvature = expected * (1.F - expected / all) + prior;
           const float change = part * (g - prior * from_start) / curvature;
           logits_.of_trees[t][at] = stored(now + std::clamp(change, -kLargestStep, kLargestStep));
@@ -235,14 +233,14 @@ void set_logits(Forest& forest, const LogitLayout& layout, const LeafLogits& log
     for (const std::int16_t logit : tree) largest = std::max<int>(largest, std::abs(logit));
   }
   forest.headings = layout.headings;
-  forest.logit_unit = std::max(static_cast<float>(largest) * LeafLogits::kUnit / 127.F, kLeastUnit);
+  forest.logit_unit = std::max(float(largest) * LeafLogits::kUnit / 127.F, kLeastUnit);
   const std::size_t size = layout.size();
   for (std::size_t t = 0; t < forest.trees.size(); ++t) {
     Tree& tree = forest.trees[t];
     tree.logits.resize(tree.leaves.size() * size);
     for (std::size_t leaf = 0; leaf < tree.leaves.size(); ++leaf) {
       for (std::size_t c = 0; c < size; ++c) {
-        const float nats = static_cast<float>(logits.of_trees[t][leaf * logits.stride + c]) * LeafLogits::kUnit;
+        const float nats = float(logits.of_trees[t][leaf * logits.stride + c]) * LeafLogits::kUnit;
         tree.logits[leaf * size + c] = static_cast<std::int8_t>(std::lround(nats / forest.logit_unit));
       }
     }

@@ -64,7 +64,7 @@ std::vector<std::vector<std::uint32_t>> find_leaves(const std::vector<const Tree
   }
   if (walked.empty()) return leaves;
   const std::vector<Run> runs = runs_of(samples, wanted);
-  parallel_ranges(static_cast<int>(runs.size()), kGrain, [&](int first, int last) {
+  parallel_ranges(int(runs.size()), kGrain, [&](int first, int last) {
     std::vector<std::uint16_t> tiles;
     std::vector<std::uint32_t> found;
     for (int r = first; r < last; ++r) {

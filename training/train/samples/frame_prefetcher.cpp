@@ -20,12 +20,12 @@ void FramePrefetcher::enter_frame(std::size_t index) {
   frame_end_ = index + (end - rest.begin());
   next_ = end_ = nullptr;
   bytes_per_sample_ = 0;
-  const auto count = static_cast<double>(frame_end_ - index);
+  const auto count = double(frame_end_ - index);
   if (end == rest.end()) return;
   const FrameStore::View& view = frames_[end->frame];
   next_ = reinterpret_cast<const char*>(view.depth.row_starts);
   end_ = next_ + view.bytes;
-  const std::size_t bytes = static_cast<std::size_t>(static_cast<double>(end_ - next_) / count);
+  const std::size_t bytes = static_cast<std::size_t>(double(end_ - next_) / count);
   bytes_per_sample_ = (bytes / kLineBytes + 1) * kLineBytes;
 }
 

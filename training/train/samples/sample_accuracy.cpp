@@ -28,7 +28,7 @@ template <class Work>
 void for_sample_ranges(std::size_t count, const Work& work) {
   constexpr std::size_t kSamplesPerRange = 2048;
   const std::size_t ranges = (count + kSamplesPerRange - 1) / kSamplesPerRange;
-  parallel_for(static_cast<int>(ranges), [&](int r) {
+  parallel_for(int(ranges), [&](int r) {
     const std::size_t begin = r * kSamplesPerRange;
     work(begin, std::min(begin + kSamplesPerRange, count));
   });
@@ -50,8 +50,8 @@ SampleAccuracy accuracy_of_votes(const TrainingSet& set, std::span<const Trainin
       const int truth = samples[i].label;
       const auto best_part = std::max_element(votes, votes + parts);
       const auto best = std::max_element(votes, votes + classes);
-      ++here.all.at(truth, static_cast<int>(best - votes));
-      if (truth < parts) ++here.parts.at(truth, static_cast<int>(best_part - votes));
+      ++here.all.at(truth, int(best - votes));
+      if (truth < parts) ++here.parts.at(truth, int(best_part - votes));
     }
     const std::scoped_lock lock(mutex);
     for (std::size_t c = 0; c < here.all.counts.size(); ++c) total.all.counts[c] += here.all.counts[c];
@@ -149,7 +149,7 @@ class LevelVotes {
     for (std::size_t c = 0; c < classes_; ++c) total += counts[c];
     if (total == 0) return;
     for (std::size_t c = 0; c < classes_; ++c) {
-      shares[c] = static_cast<float>(static_cast<double>(counts[c]) / static_cast<double>(total));
+      shares[c] = float(double(counts[c]) / double(total));
     }
   }
 
@@ -169,7 +169,7 @@ std::uint64_t Confusion::row_sum(int truth) const {
 
 double Confusion::recall(int truth) const {
   const std::uint64_t sum = row_sum(truth);
-  return sum > 0 ? static_cast<double>(at(truth, truth)) / static_cast<double>(sum) : 0.0;
+  return sum > 0 ? double(at(truth, truth)) / double(sum) : 0.0;
 }
 
 // `parts` has one class for each part, so its size says how many of `all` are parts.

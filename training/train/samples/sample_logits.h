@@ -17,7 +17,7 @@ class SampleLogits {
   explicit SampleLogits(const Forest& forest)
       : forest_(forest),
         layout_(forest.body, forest.has_background, forest.headings),
-        reader_(layout_, forest.logit_unit, static_cast<int>(forest.trees.size())),
+        reader_(layout_, forest.logit_unit, int(forest.trees.size())),
         logits_(forest.trees.size() * reader_.padded(), 0),
         turns_(static_cast<std::size_t>(kSides) * layout_.headings) {
     for (std::size_t t = 0; t < forest.trees.size(); ++t) leaves_.push_back(logits_.data() + t * reader_.padded());

@@ -33,14 +33,13 @@ PixelPools make_pools(const LabelledFrame& labelled, int part_count, std::vector
     if (labelled.frame.depth[i] == 0) continue;
     const std::uint8_t label = labelled.labels[i];
     if (label == kBackground) {
-      pools.background.push_back(static_cast<int>(i));
+      pools.background.push_back(int(i));
     } else if (label < part_count) {
-      by_part[label].push_back(static_cast<int>(i));
-      pools.body.push_back(static_cast<int>(i));
+      by_part[label].push_back(int(i));
+      pools.body.push_back(int(i));
     } else {
       throw Error(fmt::format("{}: label {} at pixel ({}, {}), the body has {} parts", where, label,
-                              static_cast<int>(i) % labelled.labels.width(),
-                              static_cast<int>(i) / labelled.labels.width(), part_count));
+                              int(i) % labelled.labels.width(), int(i) / labelled.labels.width(), part_count));
     }
   }
   for (std::size_t part = 0; part < by_part.size(); ++part) class_pixels[part] = by_part[part].size();
@@ -73,8 +72,7 @@ class Drawer {
         random_(random) {}
 
   std::vector<TrainingSample> ordinary() {
-    const auto background =
-        static_cast<int>(std::lround(static_cast<double>(options_.background_share) * options_.pixels_per_frame));
+    const auto background = int(std::lround(double(options_.background_share) * options_.pixels_per_frame));
     std::vector<TrainingSample> samples;
     for (int i = 0; i < options_.pixels_per_frame; ++i) {
       const bool behind = i < background;
@@ -96,12 +94,12 @@ class Drawer {
   int draw(const std::vector<int>& from) { return from[random_.below(static_cast<std::uint32_t>(from.size()))]; }
 
   int draw_body() {
-    if (random_.uniform() >= static_cast<double>(options_.balanced_share)) return draw(pools_.body);
+    if (random_.uniform() >= double(options_.balanced_share)) return draw(pools_.body);
     return draw(pools_.parts[random_.below(static_cast<std::uint32_t>(pools_.parts.size()))]);
   }
 
   int draw_background() {
-    const bool near = random_.uniform() < static_cast<double>(options_.near_share) && !pools_.body.empty();
+    const bool near = random_.uniform() < double(options_.near_share) && !pools_.body.empty();
     return near ? draw_near() : draw(pools_.background);
   }
 
@@ -112,8 +110,8 @@ class Drawer {
     const int width = labelled_.labels.width();
     for (int i = 0; i < kTries; ++i) {
       const int at = draw(pools_.body);
-      const int u = at % width + static_cast<int>(std::lround(random_.uniform(-options_.near_px, options_.near_px)));
-      const int v = at / width + static_cast<int>(std::lround(random_.uniform(-options_.near_px, options_.near_px)));
+      const int u = at % width + int(std::lround(random_.uniform(-options_.near_px, options_.near_px)));
+      const int v = at / width + int(std::lround(random_.uniform(-options_.near_px, options_.near_px)));
       if (labelled_.labels.contains(u, v) && labelled_.labels(u, v) == kBackground &&
           labelled_.frame.depth(u, v) != 0) {
         return v * width + u;

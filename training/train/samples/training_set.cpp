@@ -107,7 +107,7 @@ HardCounts TrainingSet::count_hard_negatives(const Forest& forest) {
   constexpr int kGrain = 4096;
   const std::uint32_t most = static_cast<std::uint32_t>(forest.trees.size()) * 255U;
   pool_shares_.assign(contents_.pool.size(), 0);
-  parallel_ranges(static_cast<int>(contents_.pool.size()), kGrain, [&](int begin, int end) {
+  parallel_ranges(int(contents_.pool.size()), kGrain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const std::uint32_t share = body_share(forest, contents_.frames, contents_.pool[i]);
       if (share > most / 2U) pool_shares_[i] = share;
