@@ -22,7 +22,7 @@ namespace vesalius {
 
 /// The data that all frames share, and memory that they reuse.
 struct Method {
-  Method(std::shared_ptr<const PixelLabeller> pixels, const DetectOptions& given,
+  Method(const std::shared_ptr<const PixelLabeller>& pixels, const DetectOptions& given,
          std::shared_ptr<const Appearance> looks)
       : labeller(pixels, {given.label, given.smooth, given.grow.plane}),
         options(given),
@@ -195,7 +195,7 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
     const float size = candidate.known < 0 ? 1.F : prior.people[static_cast<std::size_t>(candidate.known)].size;
     candidate.refined = second_pass(method, frame, person.labels, box, size);
   } else {
-    person.labels = candidate.labels.empty() ? scene.proposals : std::move(candidate.labels);
+    person.labels = candidate.labels.empty() ? scene.proposals : candidate.labels;
     person.certain = mean_certainty(scene.labels.posteriors(), candidate.grown, method.body.part_count());
   }
   const auto contradicted = [&] {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "metrics/fit_logistic.h"
+#include "learn/fit_logistic.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {

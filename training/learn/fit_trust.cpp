@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "metrics/fit_logistic.h"
+#include "learn/fit_logistic.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {

@@ -1,4 +1,4 @@
-#include "metrics/fit_logistic.h"
+#include "learn/fit_logistic.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
