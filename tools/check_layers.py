@@ -96,6 +96,13 @@ def unit_of(target):
     return target.rsplit(".", 1)[0]
 
 
+def units_of(paths):
+    """The units of a folder: its headers, and sources that go with none of them by name ('parallel_std' goes with 'parallel')."""
+    headers = {path.stem for path in paths if path.suffix == ".h"}
+    sources = {path.stem for path in paths if path.suffix == ".cpp"}
+    return headers | {name for name in sources if not any(name.startswith(header + "_") for header in headers)}
+
+
 def circles(graph):
     """Groups of units that include each other, each sorted (Tarjan's strongly connected components)."""
     index, low, on_stack, stack, found = {}, {}, set(), [], []
@@ -209,7 +216,7 @@ class Checker:
             by_folder.setdefault(path.parent, []).append(path)
         for folder, paths in sorted(by_folder.items()):
             name = str(folder.relative_to(self.root))
-            units = {path.stem for path in paths if path.suffix in (".h", ".cpp")}
+            units = units_of(paths)
             if len(units) > MOST_UNITS:
                 self.violations.append(f"{name}: {len(units)} units, expected at most {MOST_UNITS}")
             lines = sum(len(path.read_text().splitlines()) for path in paths)
