@@ -1,5 +1,6 @@
 #include "vesalius/default_judge.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -9,7 +10,7 @@
 namespace vesalius {
 namespace {
 
-constexpr const char* kDefaultJudge =
+constexpr std::array<const char*, 2> kDefaultJudges
 #include "default_judge.inc"
     ;
 
@@ -91,9 +92,10 @@ std::string to_toml(const BoostedTrees& trees) {
   return out.str();
 }
 
-const BoostedTrees& default_judge() {
-  static const BoostedTrees judge = parse_boosted_trees(kDefaultJudge, "default judge");
-  return judge;
+const BoostedTrees& default_judge(bool background) {
+  static const BoostedTrees judge = parse_boosted_trees(kDefaultJudges[0], "default judge");
+  static const BoostedTrees alone = parse_boosted_trees(kDefaultJudges[1], "default judge without background");
+  return background ? judge : alone;
 }
 
 }  // namespace vesalius

@@ -28,8 +28,8 @@ struct Method {
         options(given),
         appearance(looks != nullptr ? std::move(looks) : make_appearance(given.grow.appearance)),
         body(labeller.body()),
-        judge(in_order(pixels->judge().empty() ? default_judge() : pixels->judge(), judge_names(body),
-                       "judge of people")) {}
+        judge(in_order(pixels->judge().empty() ? default_judge(pixels->has_background()) : pixels->judge(),
+                       judge_names(body), "judge of people")) {}
 
   float score(const Evidence& evidence) const { return judge.probability(judge_features(evidence)); }
 

@@ -254,7 +254,7 @@ TEST(GatherEvidence, SharesTheBodyAmongPartsOfBothSides) {
   const std::vector<std::string> names = judge_names(body);
   EXPECT_EQ(judge_features(evidence).size(), names.size());
   EXPECT_EQ(judge_signs(body).size(), names.size());
-  const auto hands = std::ranges::find(names, "part:l_hand") - names.begin();
+  const auto hands = std::ranges::find(names, "part:" + body.parts[std::min(left, right)].name) - names.begin();
   ASSERT_LT(hands, std::ssize(names));
   EXPECT_EQ(judge_features(evidence)[hands], 0.5F) << "of both hands together";
 }
