@@ -61,6 +61,7 @@ GPU_FUNCTION std::int32_t float_as_bits(float x) { return __float_as_int(x); }
 #define GPU_FUNCTION inline
 #define GPU_SHARED(type, name, count) \
   const ::vesalius::gpu::SharedArray<type> name = ::vesalius::gpu::Simulator::shared<type>(__LINE__, count)
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a name
 #define GPU_PHASE(thread) for (const unsigned thread : ::vesalius::gpu::Simulator::phase())
 #define GPU_LAST_PHASE(thread) GPU_PHASE(thread)
 

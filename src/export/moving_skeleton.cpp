@@ -46,6 +46,7 @@ Eigen::Vector3d median(const std::vector<Eigen::Vector3d>& values) {
   Eigen::Vector3d result;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> along;
+    along.reserve(values.size());
     for (const Eigen::Vector3d& value : values) along.push_back(value[axis]);
     result[axis] = median(std::move(along));
   }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <type_traits>
+#include <utility>
 
 #include "stream/json_numbers.h"
 #include "stream/person_fields.h"
@@ -20,7 +21,7 @@ using Json = nlohmann::ordered_json;
 /// Reads one line after the other. What is not as it should be is said with its path in the line.
 class LineReader {
  public:
-  LineReader(const std::string& source, const RecordOptions& options) : source_(source), options_(options) {}
+  LineReader(std::string source, const RecordOptions& options) : source_(std::move(source)), options_(options) {}
 
   void read(std::string_view line) {
     ++line_;
@@ -80,7 +81,7 @@ class LineReader {
     return read;
   }
   Eigen::Vector4d quaternion(const Json& xyzw) const {
-    const Eigen::Vector4d read = vector<4>(xyzw);
+    Eigen::Vector4d read = vector<4>(xyzw);
     if (read.norm() < 0.5) fail(fmt::format("{}: expected a quaternion of length 1", xyzw.dump()));
     return read;
   }

@@ -22,22 +22,22 @@ namespace vesalius {
 
 /// The data that all frames share, and memory that they reuse.
 struct Method {
-  Method(const std::shared_ptr<const PixelLabeller>& pixels, const DetectOptions& given,
+  Method(std::shared_ptr<const PixelLabeller> pixels, const DetectOptions& given,
          std::shared_ptr<const Appearance> looks)
-      : labeller(pixels, {given.label, given.smooth, given.grow.plane}),
+      : judge(in_order(pixels->judge().empty() ? default_judge(pixels->has_background()) : pixels->judge(),
+                       judge_names(pixels->body()), "judge of people")),
+        labeller(std::move(pixels), {given.label, given.smooth, given.grow.plane}),
         options(given),
         appearance(looks != nullptr ? std::move(looks) : make_appearance(given.grow.appearance)),
-        body(labeller.body()),
-        judge(in_order(pixels->judge().empty() ? default_judge(pixels->has_background()) : pixels->judge(),
-                       judge_names(body), "judge of people")) {}
+        body(labeller.body()) {}
 
   float score(const Evidence& evidence) const { return judge.probability(judge_features(evidence)); }
 
+  BoostedTrees judge;  ///< asks for all evidence, in its order
   SceneLabeller labeller;
   DetectOptions options;
   std::shared_ptr<const Appearance> appearance;  ///< none if looks do not matter
   const BodyModel& body;
-  BoostedTrees judge;  ///< asks for all evidence, in its order
   mutable Pool<SceneLabels> memory;
 };
 

@@ -20,7 +20,7 @@ CPLUSPLUS = """#include <vesalius.h>
 #include <vesalius.h>
 int main() {
   vesalius_options* options = nullptr;
-  const bool made = vesalius_options_create(&options) == VESALIUS_OK && vesalius_options_count(options) > 100;
+  const bool made = vesalius_options_create(&options) == VESALIUS_OK && vesalius_options_count(options) > 50;
   vesalius_options_destroy(options);
   return made && vesalius_abi_version() == VESALIUS_ABI_VERSION ? 0 : 1;
 }

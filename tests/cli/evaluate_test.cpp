@@ -126,7 +126,7 @@ TEST_F(Evaluate, WritesTheTrustFittedToTheJointsOfClips) {
   ASSERT_EQ(run_program(
                 "synth -q --sensor.width 160 --sensor.height 120 --body.kind builtin --body.count 2 --pose.captured 0 "
                 "--people.none 0 --people.one 0 --people.two 1 --people.three 0 --people.four 0 --people.cut-out 0 "
-                "--clip 2 --count 1 --seed 3 --out " +
+                "--clip 3 --count 1 --seed 3 --out " +
                 clips)
                 .exit_code,
             0);
@@ -264,7 +264,7 @@ TEST_F(Evaluate, FitsJointsOnFramesThatAreNotMeasured) {
   EXPECT_THAT(toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
   const BodyModel body = parse_body_model(
       paper_body().toml + "\n" + bytes_of(VESALIUS_SOURCE_DIR "/data/joints/evaluation.toml"), "joints");
-  EXPECT_EQ(body.joint_sets.size(), paper_body().joint_sets.size() + 3);
+  EXPECT_EQ(body.joint_sets.size(), paper_body().joint_sets.size() + 2);
 }
 
 TEST_F(Evaluate, RendersTheFramesThatSynthWrites) {

@@ -92,11 +92,8 @@ void run(const Arguments& arguments) {
   if (!arguments.quiet) {
     for (const std::string& note : inputs.notes()) say("note: " + note);
   }
-  const TrainPlan plan = plan_training(inputs, options, arguments.curves, memory_limit(arguments));
-  if (arguments.estimate) return print(plan.text);
-  if (!arguments.quiet) {
-    say(fmt::format("about {:.0f} s, at most {:.2f} GiB", plan.seconds, double(plan.bytes) / kGiB));
-  }
+  const auto plan = [&] { return plan_training(inputs, options, arguments.curves, memory_limit(arguments)); };
+  if (arguments.estimate) return print(plan().text);
   watch_interrupts();
   train({.out = arguments.out,
          .trees_of = arguments.trees_of,
@@ -105,9 +102,8 @@ void run(const Arguments& arguments) {
          .restart = arguments.restart,
          .shown = !arguments.quiet,
          .device = arguments.device,
-         .trees_at_once = plan.trees_at_once,
          .max_bytes = memory_limit(arguments)},
-        options, inputs);
+        options, inputs, plan);
 }
 
 void add_source_flags(CLI::App& command, TrainSources& sources) {

@@ -36,7 +36,10 @@ class Training {
         set_(inputs.body(), trees_of_ ? trees_of_->convention : training_convention(options), options.sample,
              static_cast<std::uint64_t>(options.grow.seed)) {}
 
-  void run() {
+  void run(const std::function<TrainPlan()>& plan) {
+    const TrainPlan planned = plan();
+    trees_at_once_ = planned.trees_at_once;
+    tell(fmt::format("about {:.0f} s, at most {:.2f} GiB", planned.seconds, double(planned.bytes) / kGiB));
     if (!run_.report.empty()) make_report_folder(run_.report);
     fill();
     expect_enough();
@@ -103,7 +106,7 @@ class Training {
 
   Forest grow() {
     Forest forest;
-    device_.run({&set_}, run_.trees_at_once, [&](Executor& executor) {
+    device_.run({&set_}, trees_at_once_, [&](Executor& executor) {
       TrainDisplay display(set_, options_.grow.leaf.max_depth, run_.shown);
       try {
         forest = trees_of_ ? learn_again(executor, display)
@@ -155,6 +158,7 @@ class Training {
   TrainDevice device_;
   std::optional<Forest> trees_of_;
   TrainingSet set_;
+  int trees_at_once_ = 1;
   std::size_t background_frames_ = 0;
   std::string recipe_;
   std::optional<TrainSession> session_;
@@ -173,8 +177,9 @@ Forest kept_trees(const TrainRun& run, const TrainInputs& inputs) {
   return forest;
 }
 
-void train(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs) {
-  Training(run, options, inputs).run();
+void train(const TrainRun& run, const TrainOptions& options, const TrainInputs& inputs,
+           const std::function<TrainPlan()>& plan) {
+  Training(run, options, inputs).run(plan);
 }
 
 }  // namespace vesalius::cli
