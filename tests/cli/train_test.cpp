@@ -18,8 +18,8 @@ namespace vesalius {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ContainsRegex;
 using testing::AnyOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
