@@ -54,7 +54,7 @@ WARN_LOGFILE = {out}/warnings
 def libraries(source):
     """Libraries with headers that are installed: the core first, the others by name."""
     folder = source / "src"
-    found = [check_layers.read_library(path, folder) for path in sorted(folder.rglob("CMakeLists.txt"))]
+    found = [check_layers.read_library(path, source) for path in sorted(folder.rglob("CMakeLists.txt"))]
     found = [library for library in found if library and library.public]
     return sorted(found, key=lambda library: (library.name != "core", library.name))
 
