@@ -13,7 +13,7 @@
 #include "vesalius/base/error.h"
 #include "vesalius/fit/body_history.h"
 #include "vesalius/fit/fit_body.h"
-#include "vesalius/track/people_options.h"
+#include "vesalius/track/track_people.h"
 
 namespace vesalius {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "vesalius/base/frame.h"
 #include "vesalius/detect.h"
+#include "vesalius/find_clusters.h"
 #include "vesalius/forest/forest.h"
 
 namespace vesalius {

@@ -13,6 +13,7 @@
 #include "bench/bench_scenes.h"
 #include "bench/bench_synth.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/forest/posteriors.h"
 #include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {

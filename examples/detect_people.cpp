@@ -1,10 +1,10 @@
-// People in the frames of a folder: detect_people MODEL SOURCE. The program of vesalius/vesalius.h.
+// People in the frames of a folder: detect_people MODEL SOURCE.
 
 #include <iostream>
 
 #include "io/model/model_file.h"
 #include "io/sources/open_source.h"
-#include "vesalius/vesalius.h"
+#include "vesalius/detect.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;

@@ -7,7 +7,7 @@
 #include "io/files/image_file.h"
 #include "io/model/model_file.h"
 #include "io/sources/open_source.h"
-#include "vesalius/vesalius.h"
+#include "vesalius/detect.h"
 
 int main(int argc, char** argv) {
   if (argc != 4) return 2;

@@ -8,7 +8,8 @@
 
 #include "io/model/model_file.h"
 #include "io/sources/open_source.h"
-#include "vesalius/vesalius.h"
+#include "vesalius/appearance.h"
+#include "vesalius/detect.h"
 
 namespace {
 

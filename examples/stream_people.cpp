@@ -11,7 +11,7 @@
 #include "io/sources/open_source.h"
 #include "stream/detect_stream.h"
 #include "stream/person_json.h"
-#include "vesalius/vesalius.h"
+#include "vesalius/detect.h"
 
 namespace {
 

@@ -17,11 +17,11 @@
 #include "io/model/model_file.h"
 #include "options_from_keywords.h"
 #include "people.h"
+#include "vesalius/base/body_model.h"
 #include "vesalius/base/error.h"
-#include "vesalius/base/find_joint_set.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/detect.h"
-#include "vesalius/track/people_options.h"
+#include "vesalius/track/track_people.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

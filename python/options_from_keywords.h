@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "vesalius/track/people_options.h"
+#include "vesalius/track/track_people.h"
 
 namespace vesalius {
 

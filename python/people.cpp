@@ -20,7 +20,8 @@
 #include "arrays.h"
 #include "stream/person_fields.h"
 #include "stream/person_json.h"
-#include "vesalius/base/find_joint_set.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"
 
 namespace nb = nanobind;

@@ -8,9 +8,11 @@ its FOLDERS bottom to top, the libraries it USES, and those that its TESTS_USE b
    Unit tests include all of their library, `capsule` and TESTS_USE as well.
 2. No unit (a header with its sources) includes another that includes it, over however many steps.
 3. A library that OPENS_NO_FILES includes no <fstream>, <iostream> or <filesystem>.
-4. A header that is installed (PUBLIC) includes only headers that are.
+4. A header that is installed (PUBLIC) includes only headers that are. There are at most 25, those of the table of
+   docs/library.md.
 5. Every include is written from its wing's folder and names a file that is there; every source belongs to a library.
-6. No library of the product uses one of the workshop. The program has the workshop's commands by its build alone.
+6. No library of the product uses one of the workshop. The program has the workshop's commands by its build alone. The workshop
+   includes of the product what is PUBLIC, and what tools/private_headers.txt lists with a reason; unit tests include all.
 7. A folder has at most 25 units besides tests, and at most the lines of C++ that tools/line_budget.txt grants it.
 
 Usage: check_layers.py [ROOT]. Prints one line for each violation; exit code 1 if there are any.
@@ -25,6 +27,9 @@ CORE = "core"
 FOR_TESTS = "capsule"
 WINGS = ("src", "training", "tests/capsule")  # includes are written from src/, training/ and tests/
 MOST_UNITS = 25
+MOST_PUBLIC = 25
+TABLE = "docs/library.md"
+PRIVATE = "tools/private_headers.txt"
 BUDGET = "tools/line_budget.txt"
 FILE_HEADERS = {"fstream", "iostream", "filesystem"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
@@ -144,6 +149,7 @@ class Checker:
         self.public = {header for library in self.libraries.values() for header in library.public}
         self.owner = {folder: library for library in self.libraries.values() for folder in library.folders}
         self.graph = {}
+        self.private = self.read_private()  # headers and folders, each with whether somebody includes it
 
     def complain(self, path, number, what):
         self.violations.append(f"{path.relative_to(self.root)}:{number}: {what}")
@@ -196,8 +202,41 @@ class Checker:
                     self.complain(path, number, reason)
                 if str(self.place_of(path)) in library.public and target not in self.public:
                     self.complain(path, number, f"is installed and includes {target}, which is not")
+                of_product = self.owner.get(str(Path(target).parent), library).wing == "src"
+                if library.wing == "training" and of_product and target not in self.public and not is_for_tests(path):
+                    self.check_private(path, number, target)
                 if unit_of(target) != unit:
                     edges.add(unit_of(target))
+
+    def read_private(self):
+        """What the workshop may include besides public headers: each line is headers and folders, a colon, and why."""
+        path = self.root / PRIVATE
+        lines = path.read_text().splitlines() if path.is_file() else []
+        reasons = [line.partition(":") for line in lines if line and not line.startswith("#")]
+        for names, _, why in reasons:
+            if not why.strip():
+                self.violations.append(f"{PRIVATE}: {names} has no reason")
+        return {name: False for names, _, _ in reasons for name in names.split()}
+
+    def check_private(self, path, number, target):
+        """The workshop's includes of the product."""
+        listed = [name for name in self.private if target == name or name.endswith("/") and target.startswith(name)]
+        for name in listed:
+            self.private[name] = True
+        if not listed:
+            self.complain(path, number, f"includes {target}, which is not public; {PRIVATE} has those that may be, and why")
+
+    def check_public(self):
+        """How many public headers there are, and whether they are those that the documentation has."""
+        if len(self.public) > MOST_PUBLIC:
+            self.violations.append(f"{len(self.public)} public headers, expected at most {MOST_PUBLIC}")
+        path = self.root / TABLE
+        table = set(re.findall(r"^\| `([^`]+\.h)` \|", path.read_text() if path.is_file() else "", re.MULTILINE))
+        for header in sorted(self.public ^ table):
+            known = "is public and not in the table" if header in self.public else "is in the table and not public"
+            self.violations.append(f"{TABLE}: {header} {known}")
+        for name in sorted(name for name, used in self.private.items() if not used):
+            self.violations.append(f"{PRIVATE}: nobody includes {name}")
 
     def read_budget(self):
         """The folders' lines: each line of the file is a folder, a number, and for whom it was last raised."""
@@ -240,6 +279,7 @@ class Checker:
         for group in circles(self.graph):
             self.violations.append(f"src/{group[0]}.h:1: units include each other: {', '.join(group)}")
         self.check_amounts(sources)
+        self.check_public()
         return self.violations
 
 

@@ -30,8 +30,13 @@ GOOD = {
     "src/io/sources/open.h": '#include "io/files/png.h"\n',
     "src/draw/draw.h": '#include "vesalius/base/image.h"\n',
     "src/draw/draw_test.cpp": '#include "io/files/png.h"\n',
-    "training/train/CMakeLists.txt": "vesalius_library(train USES io)\n",
+    "training/train/CMakeLists.txt": "vesalius_library(train USES io draw)\n",
     "training/train/grow.h": '#include "io/files/png.h"\n#include "vesalius/detect.h"\n',
+    "training/train/recipe.h": '#include "vesalius/base/image.h"\n#include "draw/draw.h"\n',
+    "training/train/recipe_test.cpp": '#include "vesalius/forest/forest.h"\n',
+    "tools/private_headers.txt": "# headers: why\nio/files/: files\nvesalius/detect.h: what is measured\n",
+    "docs/library.md": "| header | what |\n|---|---|\n| `vesalius/base/error.h` | errors |\n| `vesalius/base/image.h` | pictures |\n"
+                       "| `draw/draw.h` | drawings |\n",
     "src/cli/flags.h": '#include "io/sources/open.h"\n',
     "src/cli/pictures/pictures.cpp": '#include "draw/draw.h"\n#include "cli/flags.h"\n',
 }
@@ -122,12 +127,48 @@ class CheckLayers(unittest.TestCase):
         self.expect_violation({"src/io/files/png.cpp": '#include "io/files/gone.h"\n'}, "src/io/files/png.cpp:1:")
 
     def test_product_uses_workshop(self):
-        changes = {"src/draw/CMakeLists.txt": "vesalius_library(draw USES train TESTS_USE io)\n",
+        changes = {"src/draw/CMakeLists.txt": "vesalius_library(draw USES train TESTS_USE io PUBLIC draw.h)\n",
                    "src/draw/canvas.h": '#include "train/grow.h"\n'}
         self.expect_violation(changes, "src/draw/canvas.h:1:")
 
     def test_workshop_uses_what_it_does_not_name(self):
-        self.expect_violation({"training/train/grow.h": '#include "draw/draw.h"\n'}, "training/train/grow.h:1:")
+        changes = {"training/train/CMakeLists.txt": "vesalius_library(train USES io)\n", "training/train/recipe.h": "",
+                   "training/train/split.h": '#include "draw/draw.h"\n'}
+        self.expect_violation(changes, "training/train/split.h:1: includes draw/draw.h: train may not include draw")
+
+    def test_workshop_uses_private_header_without_a_reason(self):
+        changes = {"training/train/split.h": '#include "vesalius/forest/forest.h"\n'}
+        self.expect_violation(changes, "training/train/split.h:1: includes vesalius/forest/forest.h, which is not public")
+        private = GOOD["tools/private_headers.txt"]
+        changes["tools/private_headers.txt"] = private + "vesalius/forest/:\n"
+        self.expect_violation(changes, "tools/private_headers.txt: vesalius/forest/ has no reason")
+        changes["tools/private_headers.txt"] = private + "vesalius/forest/: so are trees\n"
+        self.assertEqual(run(changes)[0], 0)
+
+    def test_private_header_that_nobody_includes_any_more(self):
+        changes = {"tools/private_headers.txt": GOOD["tools/private_headers.txt"] + "cuda/ vesalius/base/size.h: once\n"}
+        code, output = run(changes)
+        self.assertEqual(code, 1)
+        self.assertEqual(output.splitlines(), ["tools/private_headers.txt: nobody includes cuda/",
+                                               "tools/private_headers.txt: nobody includes vesalius/base/size.h"])
+
+    def test_many_public_headers(self):
+        def surface(count):
+            names = [f"base/public{i}.h" for i in range(count)]
+            rows = "".join(f"| `vesalius/{name}` | one |\n" for name in names)
+            library = "vesalius_library(core FOLDERS base forest . PUBLIC base/error.h base/image.h " + " ".join(names) + ")\n"
+            return {**{f"src/vesalius/{name}": "" for name in names}, "src/vesalius/CMakeLists.txt": library,
+                    "docs/library.md": GOOD["docs/library.md"] + rows}
+
+        self.assertEqual(run(surface(22))[0], 0)
+        self.expect_violation(surface(23), "26 public headers, expected at most 25")
+
+    def test_public_header_is_documented(self):
+        table = GOOD["docs/library.md"]
+        self.expect_violation({"docs/library.md": table.replace("| `draw/draw.h` | drawings |\n", "")},
+                              "docs/library.md: draw/draw.h is public and not in the table")
+        self.expect_violation({"docs/library.md": table + "| `io/files/png.h` | pictures |\n"},
+                              "docs/library.md: io/files/png.h is in the table and not public")
 
     def test_folder_grows_past_its_budget(self):
         grown = {"src/draw/draw.cpp": "//\n" * 5}

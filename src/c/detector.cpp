@@ -12,7 +12,7 @@
 #include "cuda/cuda_labeller.h"
 #include "io/model/default_model.h"
 #include "io/model/model_file.h"
-#include "vesalius/base/find_joint_set.h"
+#include "vesalius/base/body_model.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/fit/flesh_model.h"
 #include "vesalius/forest/make_labeller.h"

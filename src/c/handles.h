@@ -8,8 +8,7 @@
 #include "c/read_frame.h"
 #include "c/vesalius.h"
 #include "io/files/options_file.h"
-#include "vesalius/detect.h"
-#include "vesalius/track/people_options.h"
+#include "vesalius/track/track_people.h"
 
 namespace vesalius::c {
 

@@ -8,7 +8,8 @@
 #include "c/handles.h"
 #include "c/sized_struct.h"
 #include "c/vesalius.h"
-#include "vesalius/base/find_joint_set.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/fit/flesh_joints.h"
 
 namespace vesalius::c {
 namespace {

@@ -7,7 +7,7 @@
 #include "console/option_flags.h"
 #include "vesalius/detect.h"
 #include "vesalius/forest/forest.h"
-#include "vesalius/track/people_options.h"
+#include "vesalius/track/track_people.h"
 
 namespace CLI {
 class App;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vesalius/base/camera.h"
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

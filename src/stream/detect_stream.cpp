@@ -12,6 +12,7 @@
 #include "stream/frame_queue.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/quiet_thread.h"
+#include "vesalius/prior.h"
 
 namespace vesalius {
 namespace {

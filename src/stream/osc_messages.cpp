@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "vesalius/base/find_joint_set.h"
+#include "vesalius/base/body_model.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <tuple>
 
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

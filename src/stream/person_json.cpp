@@ -5,6 +5,7 @@
 
 #include "stream/json_numbers.h"
 #include "stream/person_fields.h"
+#include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"
 
 namespace vesalius {

@@ -4,17 +4,9 @@
 #include <vector>
 
 #include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/search_skeletons.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
-
-/// A joint of one of the body model's joint sets.
-struct Joint {
-  State state = State::none;
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< metres, optical frame; NaN where state is none
-  float confidence = 0.F;                              ///< 0-1
-};
 
 /// Returns the centres of the parts that were observed or predicted, NaN for the others.
 std::vector<Eigen::Vector3f> given_centres(const Skeleton& skeleton);

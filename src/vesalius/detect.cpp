@@ -9,14 +9,25 @@
 #include <string>
 #include <utility>
 
+#include "vesalius/base/blended_depth.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/options.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/base/pixel_grid.h"
 #include "vesalius/base/pool.h"
 #include "vesalius/default_judge.h"
+#include "vesalius/derive_joints.h"
+#include "vesalius/find_clusters.h"
+#include "vesalius/forest/facing.h"
 #include "vesalius/forest/label_scene.h"
 #include "vesalius/forest/make_labeller.h"
+#include "vesalius/grow_person.h"
 #include "vesalius/known_people.h"
 #include "vesalius/predict_parts.h"
+#include "vesalius/prior.h"
+#include "vesalius/score_person.h"
+#include "vesalius/search_skeletons.h"
+#include "vesalius/trace.h"
 
 namespace vesalius {
 

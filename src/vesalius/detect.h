@@ -2,44 +2,18 @@
 
 #include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "vesalius/appearance.h"
 #include "vesalius/base/frame.h"
-#include "vesalius/base/pixel_grid.h"
+#include "vesalius/base/people_options.h"
+#include "vesalius/base/person.h"
 #include "vesalius/base/stage_times.h"
-#include "vesalius/detection.h"
-#include "vesalius/find_clusters.h"
 #include "vesalius/forest/forest.h"
-#include "vesalius/forest/label_pixels.h"
-#include "vesalius/forest/smooth_labels.h"
-#include "vesalius/grow_person.h"
-#include "vesalius/score_person.h"
-#include "vesalius/search_skeletons.h"
+#include "vesalius/forest/labeller.h"
+#include "vesalius/prior.h"
 
 namespace vesalius {
-
-/// Second iteration and acceptance (section 7).
-struct RefineOptions {
-  bool second_pass = true;   ///< if false, the rough skeleton and its grown mask are the result
-  int max_candidates = 12;   ///< most rough skeletons refined in one frame
-  int min_parts = 6;         ///< fewest parts of a person after the second pass
-  float min_score = 0.8F;    ///< lowest score of a person: a false one costs four missed ones
-  float max_overlap = 0.3F;  ///< share of the mask that a person may have in common with a more certain one
-};
-
-struct DetectOptions {
-  BlendOptions blend;
-  GridOptions grid;
-  LabelOptions label;
-  SmoothOptions smooth;
-  ClusterOptions cluster;
-  SearchOptions search;
-  GrowOptions grow;
-  RefineOptions refine;
-};
-void visit_options(const std::string& prefix, DetectOptions& options, OptionVisitor& visitor);
 
 /// The labels of one frame's pixels, in its size.
 struct FrameLabels {
@@ -48,6 +22,7 @@ struct FrameLabels {
 };
 
 struct Method;
+struct Trace;
 
 /// Tells what is known of the people of a frame, when it is asked.
 using AskPrior = std::function<Prior(const Frame&)>;

@@ -9,10 +9,15 @@
 
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/pixel_grid.h"
 #include "vesalius/base/test_threads.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/test_headings.h"
+#include "vesalius/planes/find_planes.h"
+#include "vesalius/prior.h"
+#include "vesalius/score_person.h"
+#include "vesalius/trace.h"
 
 namespace vesalius {
 namespace {

@@ -134,17 +134,6 @@ class ClusterFinder {
 
 }  // namespace
 
-void visit_options(const std::string& prefix, ClusterOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "max-gap", o.max_gap_m,
-                 {"m", 0.0, 1.0, "3-D distance that neighbouring pixels of a part may have."});
-  visitor.option(prefix + "max-gap-per-z2", o.max_gap_per_z2,
-                 {"m per m^2", 0.0, 0.1, "Added to the gap times depth squared: the sensor's depth step."});
-  visitor.option(prefix + "min-area", o.min_area_cm2, {"cm^2", 0.0, 10000.0, "Smallest visible area of a part."});
-  visitor.option(prefix + "min-pixels", o.min_pixels, {"px", 1, 1000000, "Smallest part at any distance."});
-  visitor.option(prefix + "max-extent-scale", o.max_extent_scale,
-                 {"", 0.1, 10.0, "Factor on each part's largest feasible length."});
-}
-
 Clusters find_clusters(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
                        const ClusterOptions& options) {
   return ClusterFinder(labels, depth, camera, body, options).run();

@@ -8,18 +8,9 @@
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
-#include "vesalius/base/options.h"
+#include "vesalius/base/people_options.h"
 
 namespace vesalius {
-
-struct ClusterOptions {
-  float max_gap_m = 0.05F;        ///< 3-D distance that neighbouring pixels may have
-  float max_gap_per_z2 = 0.003F;  ///< added per square metre of depth: a structured-light sensor's depth step
-  float min_area_cm2 = 20.F;      ///< smallest visible area of a part
-  int min_pixels = 20;            ///< smallest cluster at any distance
-  float max_extent_scale = 1.F;   ///< multiplies each part's largest feasible length
-};
-void visit_options(const std::string& prefix, ClusterOptions& options, OptionVisitor& visitor);
 
 /// A part proposal: a connected set of pixels of one label (section 5). Metres, optical frame.
 struct PartCluster {

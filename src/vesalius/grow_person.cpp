@@ -42,27 +42,6 @@ std::vector<float> any_look_radius(const Skeleton& rough, const BodyModel& body,
 
 }  // namespace
 
-void visit_options(const std::string& prefix, GrowOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "radius", o.radius_m,
-                 {"m", 0.0, 1.0, "3-D distance that neighbouring pixels of a person may have."});
-  visitor.option(prefix + "radius-per-z2", o.radius_per_z2,
-                 {"m per m^2", 0.0, 0.1, "Added to the radius times depth squared: the sensor's depth step."});
-  visitor.option(prefix + "reach", o.reach_m, {"m", 0.0, 3.0, "How far a person extends around a part's centre."});
-  visitor.option(prefix + "missing-reach", o.missing_reach_m,
-                 {"m", 0.0, 3.0, "Added to the reach of a part next to one that was not seen."});
-  visitor.option(prefix + "appearance", o.appearance,
-                 {"", 0, 0,
-                  "What a pixel looks like: its hue, hue and texture, or none where colour is badly registered (hue, "
-                  "texture, none)."});
-  visitor.option(prefix + "own-look", o.own_look_m,
-                 {"m", 0.0, 3.0, "This near to a part's centre any look is the person's."});
-  visitor.option(
-      prefix + "least-body", o.least_body,
-      {"", 0.0, 1.0,
-       "A person does not grow over pixels that the forest takes for body with less than this probability."});
-  visit_options(prefix + "plane-", o.plane, visitor);
-}
-
 PersonGrower::PersonGrower(const Frame& frame, const Mask& flat, const BodyModel& body, const GrowOptions& options,
                            const Looks& looks)
     : frame_(frame), flat_(flat), body_(body), options_(options), looks_(looks) {}

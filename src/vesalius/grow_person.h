@@ -7,24 +7,11 @@
 #include "vesalius/appearance.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
-#include "vesalius/base/options.h"
+#include "vesalius/base/people_options.h"
+#include "vesalius/base/person.h"
 #include "vesalius/find_clusters.h"
-#include "vesalius/planes/find_planes.h"
-#include "vesalius/search_skeletons.h"
 
 namespace vesalius {
-
-struct GrowOptions {
-  float radius_m = 0.05F;          ///< 3-D distance that neighbouring pixels of a person may have
-  float radius_per_z2 = 0.003F;    ///< added per square metre of depth: a structured-light sensor's depth step
-  float reach_m = 0.3F;            ///< how far a person extends around the centre of a part
-  float missing_reach_m = 0.2F;    ///< added once for each unseen part beyond
-  std::string appearance = "hue";  ///< make_appearance
-  float own_look_m = 0.12F;        ///< any look this near to a part's centre is the person's
-  float least_body = 0.25F;        ///< least body share of the posterior of pixels that a person grows over
-  PlaneOptions plane;
-};
-void visit_options(const std::string& prefix, GrowOptions& options, OptionVisitor& visitor);
 
 /// Grows people from rough skeletons in one frame (section 7). It clusters pixels by place and look, beginning with
 /// the pixels of the skeleton's proposals, within the body's reach, and never along floor, walls or other people.

@@ -5,8 +5,8 @@
 #include "vesalius/base/capsule.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
-#include "vesalius/detection.h"
 #include "vesalius/forest/posteriors.h"
+#include "vesalius/prior.h"
 
 namespace vesalius {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "vesalius/base/body_model.h"
-#include "vesalius/search_skeletons.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

@@ -8,9 +8,9 @@
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
-#include "vesalius/forest/label_pixels.h"
+#include "vesalius/base/person.h"
 #include "vesalius/forest/person_labels.h"
-#include "vesalius/search_skeletons.h"
+#include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
 

@@ -277,22 +277,6 @@ class SkeletonSearch {
 
 }  // namespace
 
-void visit_options(const std::string& prefix, SearchOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "max-total-error", o.max_total_error,
-                 {"", 0.0, 1000.0, "Largest sum of normalised distances over a person's parts."});
-  visitor.option(prefix + "max-mean-error", o.max_mean_error,
-                 {"", 0.0, 100.0, "Largest mean normalised distance a part."});
-  visitor.option(prefix + "min-parts", o.min_parts, {"", 1, 200, "Fewest parts that make a person."});
-  visitor.option(prefix + "max-error", o.max_error,
-                 {"", 0.0, 100.0, "Two proposals of a larger normalised distance are not linked."});
-  visitor.option(prefix + "error-weight", o.error_weight,
-                 {"", 0.0, 100.0, "Likelihood lost by a normalised distance of 1; a full part gains 1."});
-  visitor.option(prefix + "covariance-share", o.covariance_share,
-                 {"", 0.0, 10.0, "Share of the proposals' own variance that excuses a deviation."});
-  visitor.option(prefix + "gap-tolerance", o.gap_tolerance_m,
-                 {"m", 0.001, 10.0, "Empty space between linked parts that counts as one unit of error."});
-}
-
 std::vector<Skeleton> search_skeletons(const std::vector<PartCluster>& clusters, const BodyModel& body,
                                        const SearchOptions& options, float size) {
   return SkeletonSearch(clusters, body, options, size).run();

@@ -9,6 +9,7 @@
 #include "io/recordings/depth_codecs.h"
 #include "stream/json_numbers.h"
 #include "stream/person_json.h"
+#include "vesalius/find_clusters.h"
 #include "vesalius/fit/flesh_sections.h"
 #include "vesalius/planes/find_floor.h"
 #include "view/run_lengths.h"

@@ -7,9 +7,9 @@
 
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
+#include "vesalius/base/person.h"
 #include "vesalius/base/stage_times.h"
-#include "vesalius/planes/find_planes.h"
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/trace.h"
 
 namespace vesalius {
 

@@ -10,6 +10,8 @@
 #include "stream/person_json.h"
 #include "vesalius/fit/flesh_sections.h"
 #include "vesalius/fit/test_flesh.h"
+#include "vesalius/planes/find_planes.h"
+#include "vesalius/trace.h"
 #include "view/test_runs.h"
 
 namespace vesalius {

@@ -6,6 +6,7 @@
 #include "io/files/options_file.h"
 #include "vesalius/base/stage_times.h"
 #include "vesalius/fit/fit_body.h"
+#include "vesalius/trace.h"
 
 namespace vesalius {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "vesalius/base/frame_source.h"
 #include "vesalius/forest/label_pixels.h"
-#include "vesalius/track/people_options.h"
+#include "vesalius/track/track_people.h"
 #include "view/player.h"
 #include "view/web_server.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "vesalius/base/body_model.h"
-#include "vesalius/track/people_options.h"
+#include "vesalius/track/track_people.h"
 #include "view/player.h"
 
 namespace vesalius {

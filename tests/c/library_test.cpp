@@ -22,7 +22,7 @@
 #include "vesalius/detect.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"
-#include "vesalius/track/people_options.h"
+#include "vesalius/track/track_people.h"
 
 namespace vesalius {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "io/model/model_file.h"
 #include "io/sources/open_source.h"
-#include "vesalius/base/find_joint_set.h"
+#include "vesalius/base/body_model.h"
 #include "vesalius/detect.h"
 
 namespace {

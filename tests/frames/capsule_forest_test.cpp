@@ -10,6 +10,7 @@
 #include "io/model/model_file.h"
 #include "vesalius/base/random.h"
 #include "vesalius/detect.h"
+#include "vesalius/find_clusters.h"
 
 namespace vesalius {
 namespace {

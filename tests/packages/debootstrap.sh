@@ -99,7 +99,7 @@ step "libraries"
 install $(cd "$packages" && printf '/root/%s ' libvesalius[0-9]*.deb libvesalius-dev_*.deb) g++ gcc cmake make pkg-config
 inside bash -c 'dpkg --verify $(dpkg-query --show --showformat "${Package} " "libvesalius*")'
 cp -r "$source/tests/consumer" "$source/examples" "$root/root/"
-offline bash -c 'cd /root && cmake -S consumer -B build -DMAIN_SOURCE=/root/examples/detect_people.cpp -DEXAMPLES=/root/examples \
+offline bash -c 'cd /root && cmake -S consumer -B build -DEXAMPLES=/root/examples \
   -DVESALIUS_HEADERS="$(echo /usr/include/vesalius-*)" >/dev/null && cmake --build build --target detect_people >/dev/null &&
   build/detect_people/detect_people /usr/share/vesalius/models/default.forest /usr/share/vesalius/demo'
 

@@ -15,7 +15,7 @@
 #include "metrics/score_frame.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
-#include "vesalius/track/people_options.h"
+#include "vesalius/track/track_people.h"
 
 namespace vesalius {
 

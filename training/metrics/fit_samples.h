@@ -7,9 +7,9 @@
 
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame_truth.h"
+#include "vesalius/base/person.h"
 #include "vesalius/detect.h"
 #include "vesalius/fit/joint_trust.h"
-#include "vesalius/track/tracked_frame.h"
 
 namespace vesalius {
 

@@ -5,6 +5,7 @@
 #include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
 #include "vesalius/score_person.h"
+#include "vesalius/trace.h"
 
 namespace vesalius {
 

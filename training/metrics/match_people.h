@@ -5,6 +5,7 @@
 #include "vesalius/base/frame_truth.h"
 #include "vesalius/base/image.h"
 #include "vesalius/detect.h"
+#include "vesalius/trace.h"
 
 namespace vesalius {
 

@@ -14,6 +14,7 @@
 #include "metrics/pixel_metrics.h"
 #include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
+#include "vesalius/trace.h"
 
 namespace vesalius {
 

@@ -10,6 +10,7 @@
 #include "metrics/match_people.h"
 #include "metrics/test_terms.h"
 #include "vesalius/base/error.h"
+#include "vesalius/base/pixel_grid.h"
 
 namespace vesalius {
 namespace {

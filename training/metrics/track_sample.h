@@ -5,7 +5,7 @@
 
 #include "metrics/track_metrics.h"
 #include "vesalius/base/frame_truth.h"
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/files/image_file.h"
+#include "vesalius/derive_joints.h"
 
 namespace vesalius::cli {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "io/sources/source_options.h"
 #include "ros2/dds/node.h"
 #include "ros2/dds/topic_source.h"
 #include "ros2/messages/people_topics.h"
+#include "vesalius/base/frame_source.h"
 
 namespace CLI {
 class App;

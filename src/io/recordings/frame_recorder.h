@@ -7,7 +7,7 @@
 #include "io/recordings/mcap_writer.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "vesalius/base/body_model.h"
-#include "vesalius/detection.h"
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "io/lens/lens.h"
-#include "io/sources/source_options.h"
 #include "vesalius/base/camera.h"
+#include "vesalius/base/frame_source.h"
 
 namespace vesalius {
 

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "io/sources/source_options.h"
 #include "vesalius/base/frame_source.h"
 
 namespace vesalius {

@@ -4,7 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/body_model.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius::ros2 {
 

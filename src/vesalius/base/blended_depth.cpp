@@ -62,14 +62,6 @@ std::vector<Pixel> blended_beside_holes(const DepthImage& depth, float least_sha
 
 }  // namespace
 
-void visit_options(const std::string& prefix, BlendOptions& o, OptionVisitor& visitor) {
-  visitor.option(
-      prefix + "least-share", o.least_share,
-      {"", 0.0, 1.0,
-       "Readings beside a hole with less than this share of the one on their other side are dropped: resizing "
-       "blended them with the hole; 0: none."});
-}
-
 std::optional<DepthImage> without_blended(const DepthImage& depth, const BlendOptions& options) {
   std::vector<Pixel> blended = blended_beside_holes(depth, options.least_share);
   if (blended.empty()) return std::nullopt;

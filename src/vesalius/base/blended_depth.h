@@ -5,14 +5,9 @@
 
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
-#include "vesalius/base/options.h"
+#include "vesalius/base/people_options.h"
 
 namespace vesalius {
-
-struct BlendOptions {
-  float least_share = 0.95F;  ///< share of the reading behind it that a reading beside a hole needs; 0: all are kept
-};
-void visit_options(const std::string& prefix, BlendOptions& options, OptionVisitor& visitor);
 
 /// Removes the ramps that pictures have around holes where somebody resized them by interpolation: a hole reads 0, so
 /// readings beside it came out too near. A reading goes if it is beside a hole and has less than `least_share` of the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -100,5 +101,9 @@ const BodyModel& paper_body();
 std::vector<int> part_slots(const BodyModel& body);
 /// Returns how many kinds these are of.
 int kind_count(const std::vector<int>& slots);
+
+/// Returns the index of the joint set of that name. Throws UsageError, which names those that there are, if there is
+/// none.
+std::size_t find_joint_set(const BodyModel& body, std::string_view name);
 
 }  // namespace vesalius

@@ -4,13 +4,6 @@
 
 namespace vesalius {
 
-void visit_options(const std::string& prefix, GridOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "step", o.step,
-                 {"px", 0, 16,
-                  "Look at every so many pixels of every so many rows and bring what is found back to all by their "
-                  "depth; 0: the least that leaves at most 250,000 pixels."});
-}
-
 int grid_step(const Camera& camera, const GridOptions& options) {
   if (options.step > 0) return options.step;
   const auto left = [&](long step) { return ((camera.width + step - 1) / step) * ((camera.height + step - 1) / step); };

@@ -7,19 +7,11 @@
 
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
-#include "vesalius/base/options.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/base/people_options.h"
 #include "vesalius/base/stage_times.h"
 
 namespace vesalius {
-
-/// Options of the grid of pixels at which the method looks.
-struct GridOptions {
-  /// Columns and rows from one pixel of the grid to the next; 0 takes the smallest step that leaves at most
-  /// kMostPixels.
-  int step = 0;
-};
-void visit_options(const std::string& prefix, GridOptions& options, OptionVisitor& visitor);
 
 /// The method looks at every pixel of pictures of up to this size, e.g. 512x424, and at every second pixel of 640x480
 /// and 848x480.

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "vesalius/detection.h"
+#include "vesalius/base/person.h"
 #include "vesalius/fit/fit_body.h"
 
 namespace vesalius {

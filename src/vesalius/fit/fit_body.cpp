@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "vesalius/base/options.h"
 #include "vesalius/predict_parts.h"
 
 namespace vesalius {

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "vesalius/base/body_model.h"
-#include "vesalius/detection.h"
+#include "vesalius/base/person.h"
 #include "vesalius/fit/body_state.h"
 #include "vesalius/fit/fit_terms.h"
-#include "vesalius/fit/fitted_body.h"
 #include "vesalius/fit/flesh_model.h"
+#include "vesalius/fit/joint_trust.h"
 
 namespace vesalius {
 

@@ -121,23 +121,6 @@ double robust_weight(double squared, double limit, double weight, NormalEquation
 
 }  // namespace
 
-void visit_options(const std::string& prefix, FitOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "iterations", o.iterations, {"", 1, 200, "Most steps to the parts' centres."});
-  visitor.option(prefix + "rounds", o.rounds, {"", 1, 200, "Most assignments of points to bones."});
-  visitor.option(prefix + "surface", o.surface_m, {"m", 0.001, 1.0, "Standard deviation of points about the flesh."});
-  visitor.option(prefix + "outline", o.outline_m, {"m", 0.001, 1.0, "Standard deviation of flesh off the outline."});
-  visitor.option(prefix + "free", o.free_m, {"m", 0.001, 1.0, "Standard deviation of flesh in free space."});
-  visitor.option(prefix + "outline-weight", o.outline_weight, {"", 0.0, 100.0, "Weight of outline and free space."});
-  visitor.option(prefix + "pose-weight", o.pose_weight, {"", 0.0, 100.0, "Weight of how usual the pose is."});
-  visitor.option(prefix + "shape-weight", o.shape_weight, {"", 0.0, 100.0, "Weight of how usual the shape is."});
-  visitor.option(prefix + "follow", o.follow_m,
-                 {"m", 0.001, 10.0, "Standard deviation of a person's place from the expected one in 1/30 s."});
-  visitor.option(prefix + "ground", o.ground_m,
-                 {"m", 0.001, 10.0, "Standard deviation of flesh below the ground, and of the lowest foot above it."});
-  visitor.option(prefix + "walk-cost", o.walk_cost,
-                 {"", 0.0, 10000.0, "Squared deviations that a body costs which walks backwards."});
-}
-
 PartSurface::PartSurface(const BodyModel& body, const FleshModel& flesh) : of_part(body.parts.size()) {
   constexpr double kBeyond = 10.0;
   for (const SurfaceRule& rule : body.surface) {

@@ -6,31 +6,16 @@
 #include <vector>
 
 #include "vesalius/base/body_model.h"
-#include "vesalius/base/options.h"
+#include "vesalius/base/people_options.h"
+#include "vesalius/base/person.h"
 #include "vesalius/fit/body_state.h"
 #include "vesalius/fit/normal_equations.h"
 #include "vesalius/fit/silhouette.h"
-#include "vesalius/forest/person_points.h"
 
 namespace vesalius {
 
 inline constexpr float kPointWeight = 0.2F;  ///< of a point, since neighbours err alike
 inline constexpr float kMirrorCost = 3.F;    ///< squared deviations that a label on the wrong side costs
-
-struct FitOptions {
-  int iterations = 8;           ///< most steps to the parts' centres, from which a fit starts
-  int rounds = 3;               ///< most times that points are assigned to bones, with three steps after each
-  float surface_m = 0.025F;     ///< standard deviation of points about the flesh's surface
-  float outline_m = 0.06F;      ///< standard deviation of flesh beyond the outline
-  float free_m = 0.06F;         ///< standard deviation of flesh in space that the camera sees is free
-  float outline_weight = 0.3F;  ///< of those two, for each of three places of a bone
-  float pose_weight = 0.5F;     ///< of the poses' distribution
-  float shape_weight = 1.F;     ///< of the bodies' distribution
-  float follow_m = 0.02F;       ///< standard deviation of the root from its expected place after a thirtieth second
-  float ground_m = 0.05F;       ///< standard deviation of flesh below the ground, and of the lowest foot above it
-  float walk_cost = 200.F;      ///< squared deviations that walking backwards costs
-};
-void visit_options(const std::string& prefix, FitOptions& options, OptionVisitor& visitor);
 
 /// The bones whose surface belongs to each part.
 struct PartSurface {

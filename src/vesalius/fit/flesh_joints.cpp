@@ -134,4 +134,9 @@ std::vector<std::optional<Eigen::Quaternionf>> joint_rotations(const FittedBody&
   return rotations;
 }
 
+std::vector<std::optional<Eigen::Quaternionf>> rotations_of(const TrackedPerson& person, const JointSet& set) {
+  if (!person.body) return std::vector<std::optional<Eigen::Quaternionf>>(set.joints.size());
+  return joint_rotations(*person.body, builtin_flesh_joints(), set);
+}
+
 }  // namespace vesalius

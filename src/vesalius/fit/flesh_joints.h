@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "vesalius/base/body_model.h"
-#include "vesalius/derive_joints.h"
-#include "vesalius/fit/fitted_body.h"
+#include "vesalius/base/person.h"
 #include "vesalius/fit/flesh_model.h"
+#include "vesalius/fit/joint_trust.h"
 
 namespace vesalius {
 
@@ -46,5 +46,8 @@ void place_joints(const FittedBody& fitted, const std::vector<FleshJoint>& place
 std::vector<std::optional<Eigen::Quaternionf>> joint_rotations(const FittedBody& fitted,
                                                                const std::vector<FleshJoint>& places,
                                                                const JointSet& set);
+
+/// Returns the same by the person's body; without one nothing for every joint.
+std::vector<std::optional<Eigen::Quaternionf>> rotations_of(const TrackedPerson& person, const JointSet& set);
 
 }  // namespace vesalius

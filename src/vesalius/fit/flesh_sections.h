@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "vesalius/fit/fitted_body.h"
+#include "vesalius/base/person.h"
 #include "vesalius/fit/flesh_model.h"
 
 namespace vesalius {

@@ -4,18 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace vesalius {
+#include "vesalius/base/person.h"
 
-/// What the confidence of a joint of a fitted body follows from.
-struct TrustSignals {
-  float log_sigma = 0.F;    ///< logarithm of the standard deviation of its place along an axis, metres
-  float misfit = 0.F;       ///< FittedBody::misfit
-  float bone_misfit = 0.F;  ///< mean squared deviations of the points on its bone, robustly; 0 without points
-  float free = 0.F;         ///< 1 where the camera sees past its place, so that nobody is there; 0 elsewhere
-  float shape = 0.F;        ///< how unusual the body is: the length of its shape, standard deviations
-  float score = 0.F;        ///< log odds of the person's score, -4 to 4
-  float unseen_s = 0.F;     ///< time since the person was found, seconds
-};
+namespace vesalius {
 
 /// A signal and its name in files.
 struct TrustSignal {
@@ -73,5 +64,11 @@ BodyTrust parse_body_trust(std::string_view toml, const std::string& source);
 
 /// Returns the trust that comes with the program (data/bodies/flesh_trust.toml).
 const BodyTrust& builtin_trust();
+
+/// Returns how the place of a bone of a body is known.
+inline JointSource source_of(const FittedBody& body, const FittedBone& bone) {
+  if (body.hidden) return JointSource::hidden;
+  return bone.state == State::observed ? JointSource::observed : JointSource::predicted;
+}
 
 }  // namespace vesalius

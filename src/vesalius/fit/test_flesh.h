@@ -10,8 +10,8 @@
 
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
+#include "vesalius/base/person.h"
 #include "vesalius/base/random.h"
-#include "vesalius/detection.h"
 #include "vesalius/fit/body_state.h"
 #include "vesalius/fit/flesh_model.h"
 #include "vesalius/forest/person_points.h"

@@ -9,21 +9,11 @@
 #include <vector>
 
 #include "vesalius/base/image.h"
+#include "vesalius/base/person.h"
+#include "vesalius/forest/forest.h"
 #include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
-
-/// The regression's weights, which belong to a forest. Without weights nothing is decided.
-struct FacingModel {
-  int headings = 0;
-  int parts = 0;
-  std::vector<float> weights;  ///< [heading][feature]
-
-  bool empty() const { return weights.empty(); }
-  /// Returns the number of features: for each part how likely each heading is, the part's share, and a constant.
-  std::size_t features() const { return std::size_t{1} * parts * headings + parts + 1; }
-  friend bool operator==(const FacingModel&, const FacingModel&) = default;
-};
 
 /// Gathers what a person's pixels tell of the heading.
 class FacingEvidence {
@@ -51,12 +41,6 @@ Eigen::VectorXf facing_features(const Posteriors& posteriors, int parts, const M
 
 /// Returns the probability of each heading; even ones without a model.
 Eigen::VectorXf facing(const FacingModel& model, const Eigen::VectorXf& features);
-
-/// Which way a person faces (body_yaw), and how sure that is.
-struct YawEstimate {
-  float yaw_rad = 0.F;     ///< 0 faces the camera, positive is turned to the person's own left; -pi to pi
-  float confidence = 0.F;  ///< probability of the likeliest heading and its two neighbours, 0-1
-};
 
 /// Returns the mean direction of the likeliest heading and its two neighbours. `facing` is not empty.
 YawEstimate estimate_yaw(const Eigen::VectorXf& facing);

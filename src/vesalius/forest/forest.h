@@ -1,13 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "vesalius/base/body_model.h"
 #include "vesalius/forest/boosted_trees.h"
-#include "vesalius/forest/facing.h"
 
 namespace vesalius {
 
@@ -51,6 +51,19 @@ struct Tree {
   /// Where leaves were learned jointly, their logits (leaf_logits.h) in the forest's unit: [leaf][LogitLayout].
   std::vector<std::int8_t> logits = {};
   friend bool operator==(const Tree&, const Tree&) = default;
+};
+
+/// A softmax regression of a person's heading over what leaves say of it (facing.h). Without weights nothing is
+/// decided.
+struct FacingModel {
+  int headings = 0;
+  int parts = 0;
+  std::vector<float> weights;  ///< [heading][feature]
+
+  bool empty() const { return weights.empty(); }
+  /// Returns the number of features: for each part how likely each heading is, the part's share, and a constant.
+  std::size_t features() const { return std::size_t{1} * parts * headings + parts + 1; }
+  friend bool operator==(const FacingModel&, const FacingModel&) = default;
 };
 
 /// A trained labeller: what `load_model` returns and a Detector takes.

@@ -272,20 +272,6 @@ class GatedLabels {
 
 }  // namespace
 
-void visit_options(const std::string& prefix, LabelOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "background-weight", o.background_weight,
-                 {"", 0.0, 100.0, "Factor on the background's posterior; above 1 finds fewer and thinner people."});
-  visitor.option(
-      prefix + "proposal-weight", o.proposal_weight,
-      {"", 0.0, 100.0, "The same where part proposals are looked for: less finds more of what may be people."});
-  visitor.option(prefix + "unsure-margin", o.unsure_margin,
-                 {"", 0.0, 1.0, "Where the two best labels' probabilities differ by less, neighbours decide."});
-  visitor.option(prefix + "gate", o.gate,
-                 {"", 0.5, 2.0,
-                  "Where the forest, asked at every fourth pixel of every fourth row, gives the background this "
-                  "probability all around, it is not asked about pixels between; above 1 it is asked about all."});
-}
-
 namespace {
 
 const Forest& checked(const Forest& forest) {

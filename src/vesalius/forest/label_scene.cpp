@@ -8,6 +8,7 @@
 #include "vesalius/base/parallel.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/forest/body_context.h"
+#include "vesalius/forest/facing.h"
 #include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {

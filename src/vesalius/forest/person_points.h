@@ -7,17 +7,10 @@
 
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
+#include "vesalius/base/person.h"
 #include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
-
-/// A point that the camera sees on a person, and which parts it may belong to.
-struct PersonPoint {
-  static constexpr int kParts = 3;
-  Eigen::Vector3f at;                       ///< metres, optical frame
-  std::array<std::uint8_t, kParts> part{};  ///< the likeliest first; kBackground where there are fewer
-  std::array<float, kParts> share{};        ///< probability of each among all parts, 0-1
-};
 
 /// Most points of a part.
 inline constexpr int kPointsOfPart = 16;

@@ -11,20 +11,6 @@ int excess_bits(int trees, const SmoothWindow& window) {
   return bits;
 }
 
-void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& visitor) {
-  visitor.option(
-      prefix + "window", o.window,
-      {"", 1, 31,
-       "Neighbours along a side of the smoothing window, 1 = none; an even number counts as the next odd one."});
-  visitor.option(
-      prefix + "spacing", o.spacing,
-      {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length; smoothing by mode takes 1."});
-  visitor.option(prefix + "depth-gate", o.depth_gate_mm,
-                 {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
-  visitor.option(prefix + "mode", o.mode,
-                 {"", 0, 1, "Smooth labels by their mode even if the forest has distributions."});
-}
-
 SmoothOptions spaced(SmoothOptions options, const Camera& camera) {
   constexpr float kSpacings = 140.F;  // number of spacings in the focal length
   if (options.spacing == 0) options.spacing = std::max(1, int(std::lround(camera.fx / kSpacings)));

@@ -3,17 +3,9 @@
 #include <string>
 
 #include "vesalius/base/camera.h"
-#include "vesalius/base/options.h"
+#include "vesalius/base/people_options.h"
 
 namespace vesalius {
-
-struct SmoothOptions {
-  int window = 5;   ///< neighbours along a side of the square; an even number counts as the next odd one; 1 = none
-  int spacing = 0;  ///< pixels from one neighbour to the next when smoothing posteriors; 0: see `spaced`
-  int depth_gate_mm = 60;  ///< posteriors of neighbours further away than this in depth do not count
-  bool mode = false;       ///< smooth labels by their mode even where the forest has distributions
-};
-void visit_options(const std::string& prefix, SmoothOptions& options, OptionVisitor& visitor);
 
 /// Returns the options with a spacing. If it is 0, it becomes 1/140 of the focal length in pixels, rounded, at least 1,
 /// which is a step of 18 mm at 2.5 m.

@@ -134,15 +134,6 @@ Plane refit(const std::vector<Sample>& samples, const Plane& plane, const PlaneO
 
 }  // namespace
 
-void visit_options(const std::string& prefix, PlaneOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "min-area", o.min_area_m2,
-                 {"m^2", 0.01, 1000.0, "Smallest flat surface that counts as floor, wall or table."});
-  visitor.option(prefix + "thickness", o.thickness_m,
-                 {"m", 0.0, 1.0, "Distance from such a surface that still is it."});
-  visitor.option(prefix + "thickness-per-z2", o.thickness_per_z2,
-                 {"m per m^2", 0.0, 0.1, "Added to the thickness times depth squared: sensor noise."});
-}
-
 namespace {
 
 /// The plane with the largest support of those that seeded sampling comes upon.

@@ -7,26 +7,10 @@
 
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
-#include "vesalius/base/options.h"
+#include "vesalius/base/people_options.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
-
-struct PlaneOptions {
-  float min_area_m2 = 1.F;          ///< smallest surface that counts: no person shows this much flat
-  float thickness_m = 0.02F;        ///< distance from the plane that still belongs to it
-  float thickness_per_z2 = 0.003F;  ///< added per square metre of depth: sensor noise
-};
-void visit_options(const std::string& prefix, PlaneOptions& options, OptionVisitor& visitor);
-
-/// The points p with normal . p = offset, in metres, optical frame. The normal has length 1, the offset is not
-/// negative.
-struct Plane {
-  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
-  float offset = 0.F;
-  float area_m2 = 0.F;  ///< visible surface on it
-
-  float distance(const Eigen::Vector3f& p) const { return std::abs(normal.dot(p) - offset); }
-};
 
 /// Returns the largest flat surfaces of one picture, largest first: floor, walls, ceilings, large table-tops. They are
 /// what a growing person leaks into. Sampling is seeded, so that the same picture has the same planes.

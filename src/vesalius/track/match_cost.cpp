@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vesalius/prior.h"
+
 namespace vesalius {
 namespace {
 

@@ -3,14 +3,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "vesalius/derive_joints.h"
+#include "vesalius/base/people_options.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
-
-struct JointSmoothing {
-  float cutoff_hz = 2.F;       ///< cutoff for a joint at rest: only slower changes pass
-  float cutoff_per_m_s = 6.F;  ///< rise of the cutoff with the joint's speed, in hertz for a metre a second
-};
 
 /// Smooths the joints of one person over time by the One-Euro filter (Casiez, Roussel and Vogel 2012): a low pass whose
 /// cutoff rises with the speed, so that joints at rest do not tremble and fast ones are not late. A joint that moves

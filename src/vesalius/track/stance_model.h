@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "vesalius/track/posture.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "vesalius/detection.h"
+#include "vesalius/base/person.h"
 #include "vesalius/fit/body_history.h"
 #include "vesalius/track/smooth_joints.h"
 #include "vesalius/track/track_look.h"
@@ -10,7 +10,6 @@
 #include "vesalius/track/track_place.h"
 #include "vesalius/track/track_size.h"
 #include "vesalius/track/track_stance.h"
-#include "vesalius/track/tracked_frame.h"
 #include "vesalius/track/trunk_place.h"
 
 namespace vesalius {

@@ -5,8 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "vesalius/planes/find_planes.h"
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

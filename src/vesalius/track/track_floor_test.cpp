@@ -7,6 +7,7 @@
 
 #include "capsule/capsule_person.h"
 #include "vesalius/base/random.h"
+#include "vesalius/planes/find_planes.h"
 
 namespace vesalius {
 namespace {

@@ -7,12 +7,15 @@
 #include <utility>
 
 #include "vesalius/base/error.h"
+#include "vesalius/base/options.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/fit/fit_body.h"
 #include "vesalius/fit/flesh_capsules.h"
 #include "vesalius/fit/flesh_joints.h"
+#include "vesalius/prior.h"
 #include "vesalius/track/match_cost.h"
 #include "vesalius/track/match_tracks.h"
+#include "vesalius/track/posture.h"
 #include "vesalius/track/track.h"
 #include "vesalius/track/track_clock.h"
 #include "vesalius/track/track_floor.h"
@@ -126,28 +129,6 @@ bool stays_down(const Track& track, const Frame& frame) {
 bool is_sure(const Track& track) { return track.state != TrackState::fresh; }
 
 }  // namespace
-
-void visit_options(const std::string& prefix, TrackOptions& o, OptionVisitor& visitor) {
-  visitor.option(prefix + "rate", o.rate, {"1/s", 0.01, 10000.0, "Frames a second of a source without times."});
-  visitor.option(prefix + "confirm", o.confirm,
-                 {"", 1, 1000, "Frames in which somebody must be found to be more than a guess."});
-  visitor.option(prefix + "confirm-within", o.confirm_s,
-                 {"s", 0.0, 60.0, "Longest time from one of these to the next."});
-  visitor.option(prefix + "hidden", o.hidden_s, {"s", 0.0, 3600.0, "Time after which somebody not found is lost."});
-  visitor.option(prefix + "down", o.down_s,
-                 {"s", 0.0, 3600.0, "The same for somebody near the floor, as long as something is still there."});
-  visitor.option(prefix + "gap", o.gap_s, {"s", 0.0, 3600.0, "A longer step in time loses everybody."});
-  visitor.option(prefix + "remembered", o.remembered, {"", 0, 10000, "Most lost people who are known again."});
-  visitor.option(prefix + "same-look", o.same_look,
-                 {"", 0.0, 10.0, "Greatest difference of looks of somebody who comes back."});
-  visitor.option(prefix + "odds", o.odds,
-                 {"", 1.0, 1000.0, "Most by which having been found multiplies the odds of being found again."});
-  visitor.option(prefix + "smooth", o.smooth, {"", 0, 1, "Whether joints are smoothed over time as well."});
-  visitor.option(prefix + "smooth-cutoff", o.smoothing.cutoff_hz,
-                 {"Hz", 0.01, 1000.0, "Cutoff of the smoothing of joints at rest."});
-  visitor.option(prefix + "smooth-speed", o.smoothing.cutoff_per_m_s,
-                 {"Hz per m/s", 0.0, 1000.0, "Added to the cutoff times a joint's speed."});
-}
 
 struct PeopleTracker::State {
   State(const BodyModel& model, const TrackOptions& given, std::shared_ptr<const Appearance> looks,
@@ -500,6 +481,16 @@ TrackedFrame PeopleTracker::update(const Frame& frame, std::vector<Person> peopl
   s.fit_bodies(frame, sighting_of, out, sightings);
   s.tell(frame, sighting_of, std::move(sightings), out);
   return out;
+}
+
+PeopleTracker make_tracker(const Detector& detector, const PeopleOptions& options) {
+  return PeopleTracker(detector.body(), options.track, detector.appearance(),
+                       std::make_shared<const BodyFitter>(detector.body(), options.fit));
+}
+
+TrackedFrame follow(const Detector& detector, PeopleTracker& tracker, const Frame& frame) {
+  Detection found = detector.detect(frame, [&](const Frame& asked) { return tracker.expect(asked); });
+  return tracker.update(frame, std::move(found.people), found.planes);
 }
 
 }  // namespace vesalius

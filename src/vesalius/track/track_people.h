@@ -5,33 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/appearance.h"
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
-#include "vesalius/base/options.h"
-#include "vesalius/detection.h"
-#include "vesalius/planes/find_planes.h"
-#include "vesalius/track/smooth_joints.h"
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/people_options.h"
+#include "vesalius/base/person.h"
+#include "vesalius/detect.h"
 
 namespace vesalius {
 
 class BodyFitter;
-
-struct TrackOptions {
-  float rate = 30.F;       ///< frames a second of sources without times
-  int confirm = 3;         ///< frames in which somebody must be found to be more than a guess ...
-  float confirm_s = 1.F;   ///< ... with at most this much time from one to the next
-  float hidden_s = 3.F;    ///< time after which somebody who is not found is lost
-  float down_s = 30.F;     ///< the same of somebody near the floor, as long as something is there
-  float gap_s = 5.F;       ///< a longer step in time, or one backwards, loses everybody
-  int remembered = 32;     ///< most lost people who are known again
-  float same_look = 0.1F;  ///< most difference of looks (look_distance) of one person who comes back
-  float odds = 40.F;       ///< most by which having been found before multiplies the odds of being found again
-  bool smooth = true;      ///< whether TrackedPerson::smoothed is filled
-  JointSmoothing smoothing;
-};
-void visit_options(const std::string& prefix, TrackOptions& options, OptionVisitor& visitor);
 
 /// Follows people over the frames of one source. Everything is in the optical frame; a camera that moves evenly only
 /// adds to the people's own motion. The people of a frame may come in any order. How fast frames are worked at does not
@@ -67,5 +49,13 @@ class PeopleTracker {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Returns a tracker of the people whom the detector finds, with a body fitted to each. The body model of the
+/// detector's forest must outlive it.
+/// Throws UsageError for an option outside its range.
+PeopleTracker make_tracker(const Detector& detector, const PeopleOptions& options);
+
+/// Finds the people of the frame that comes next, and follows them.
+TrackedFrame follow(const Detector& detector, PeopleTracker& tracker, const Frame& frame);
 
 }  // namespace vesalius

@@ -14,8 +14,10 @@
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/derive_joints.h"
 #include "vesalius/fit/body_history.h"
 #include "vesalius/fit/fit_body.h"
+#include "vesalius/prior.h"
 
 namespace vesalius {
 namespace {

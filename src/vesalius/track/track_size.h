@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "vesalius/base/body_model.h"
-#include "vesalius/search_skeletons.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

@@ -4,8 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "vesalius/track/posture.h"
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

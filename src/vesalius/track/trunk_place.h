@@ -5,7 +5,7 @@
 
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/frame.h"
-#include "vesalius/detection.h"
+#include "vesalius/base/person.h"
 
 namespace vesalius {
 

@@ -1,11 +1,31 @@
-#include "vesalius/track/tracked_frame.h"
+#include "vesalius/base/person.h"
 
 #include <limits>
 #include <utility>
 
-#include "vesalius/fit/flesh_joints.h"
-
 namespace vesalius {
+
+Image<std::uint8_t> body_index_map(const std::vector<Person>& people, int width, int height) {
+  Image<std::uint8_t> map(width, height, kBackground);
+  for (std::size_t p = 0; p < people.size() && p < kBackground; ++p) {
+    if (people[p].mask.empty()) continue;
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      if (people[p].mask[i] != 0) map[i] = static_cast<std::uint8_t>(p);
+    }
+  }
+  return map;
+}
+
+LabelImage part_label_map(const std::vector<Person>& people, int width, int height) {
+  LabelImage map(width, height, kBackground);
+  for (const Person& person : people) {
+    if (person.mask.empty()) continue;
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      if (person.mask[i] != 0) map[i] = person.labels[i];
+    }
+  }
+  return map;
+}
 
 const char* to_string(TrackState state) {
   switch (state) {
@@ -56,11 +76,6 @@ std::vector<Person> people_of(const TrackedFrame& tracked) {
   people.reserve(tracked.people.size());
   for (const TrackedPerson& person : tracked.people) people.push_back(person.person);
   return people;
-}
-
-std::vector<std::optional<Eigen::Quaternionf>> rotations_of(const TrackedPerson& person, const JointSet& set) {
-  if (!person.body) return std::vector<std::optional<Eigen::Quaternionf>>(set.joints.size());
-  return joint_rotations(*person.body, builtin_flesh_joints(), set);
 }
 
 }  // namespace vesalius
