@@ -11,10 +11,10 @@
 #include "vesalius/base/stage_times.h"
 #include "vesalius/detection.h"
 #include "vesalius/find_clusters.h"
-#include "vesalius/forest/forest.h"
 #include "vesalius/forest/label_pixels.h"
 #include "vesalius/forest/smooth_labels.h"
 #include "vesalius/grow_person.h"
+#include "vesalius/model.h"
 #include "vesalius/score_person.h"
 #include "vesalius/search_skeletons.h"
 
@@ -56,11 +56,10 @@ using AskPrior = std::function<Prior(const Frame&)>;
 /// may be called from several threads.
 class Detector {
  public:
-  /// `appearance` tells what pixels look like, in place of the one that the options name. Throws Error for an
-  /// inconsistent forest, and UsageError for an option outside its range.
-  explicit Detector(Forest forest, DetectOptions options = {}, std::shared_ptr<const Appearance> appearance = nullptr);
-  explicit Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options = {},
-                    std::shared_ptr<const Appearance> appearance = nullptr);
+  /// A model without a labeller (on_device) labels on the processor. `appearance` tells what pixels look like, in place
+  /// of the one that the options name. Throws Error for an inconsistent model, and UsageError for an option outside its
+  /// range.
+  explicit Detector(Model model, DetectOptions options = {}, std::shared_ptr<const Appearance> appearance = nullptr);
 
   /// Returns the people in the frame, the most certain first (Trace::Candidate::certainty); none if nobody is in view.
   /// `prior` says what earlier frames tell about them. Adds the time of each stage to `times`. Throws Error for a frame

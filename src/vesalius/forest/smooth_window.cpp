@@ -5,9 +5,9 @@
 
 namespace vesalius {
 
-int excess_bits(int trees, const SmoothWindow& window) {
+int excess_bits(int whole, const SmoothWindow& window) {
   int bits = 0;
-  while ((255 * trees >> bits) * window.most() > 65535) ++bits;
+  while ((whole >> bits) * window.most() > 65535) ++bits;
   return bits;
 }
 
@@ -16,13 +16,10 @@ void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& v
       prefix + "window", o.window,
       {"", 1, 31,
        "Neighbours along a side of the smoothing window, 1 = none; an even number counts as the next odd one."});
-  visitor.option(
-      prefix + "spacing", o.spacing,
-      {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length; smoothing by mode takes 1."});
+  visitor.option(prefix + "spacing", o.spacing,
+                 {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length."});
   visitor.option(prefix + "depth-gate", o.depth_gate_mm,
                  {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
-  visitor.option(prefix + "mode", o.mode,
-                 {"", 0, 1, "Smooth labels by their mode even if the forest has distributions."});
 }
 
 SmoothOptions spaced(SmoothOptions options, const Camera& camera) {

@@ -11,7 +11,6 @@ struct SmoothOptions {
   int window = 5;   ///< neighbours along a side of the square; an even number counts as the next odd one; 1 = none
   int spacing = 0;  ///< pixels from one neighbour to the next when smoothing posteriors; 0: see `spaced`
   int depth_gate_mm = 60;  ///< posteriors of neighbours further away than this in depth do not count
-  bool mode = false;       ///< smooth labels by their mode even where the forest has distributions
 };
 void visit_options(const std::string& prefix, SmoothOptions& options, OptionVisitor& visitor);
 
@@ -33,7 +32,7 @@ struct SmoothWindow {
 /// Returns the window of mean_filter.
 SmoothWindow smooth_window(const SmoothOptions& options, const Camera& camera);
 
-/// Returns how many bits a sum over `trees` trees must lose so that the sum over a window takes at most 16.
-int excess_bits(int trees, const SmoothWindow& window);
+/// Returns how many bits probabilities (Posteriors::whole) must lose so that the sum over a window takes at most 16.
+int excess_bits(int whole, const SmoothWindow& window);
 
 }  // namespace vesalius
