@@ -32,7 +32,7 @@ BenchScene run_stages(std::string name, Frame frame, Forest forest) {
   scene.name = std::move(name);
   scene.frame = std::move(frame);
   scene.forest = std::move(forest);
-  scene.posteriors = ForestLabeller(scene.forest).label(scene.frame.depth, scene.frame.camera);
+  scene.posteriors = ForestLabeller(scene.forest).label(scene.frame);
   Trace trace;
   DetectOptions options;
   options.grid.step = 1;
@@ -60,7 +60,7 @@ Frame alina_frame(const std::filesystem::path& depth_file) {
 std::vector<BenchScene> bench_scenes() {
   std::vector<BenchScene> scenes;
   scenes.push_back(
-      run_stages("capsule", capsule_frame(), load_model(VESALIUS_SOURCE_DIR "/data/models/capsule.forest")));
+      run_stages("capsule", capsule_frame(), load_model(VESALIUS_SOURCE_DIR "/data/models/capsule.forest").forest));
   const std::filesystem::path shared = shared_folder();
   const std::filesystem::path depth_file = shared / "real/alina_wave/depth/0255.png";
   if (!std::filesystem::exists(depth_file)) {
@@ -72,7 +72,7 @@ std::vector<BenchScene> bench_scenes() {
     trees.push_back((shared / "reference/pcl_tree_").string() + number + ".txt.bz2");
   scenes.push_back(run_stages("alina_wave", alina_frame(depth_file), import_text_trees(trees)));
   if (const char* model = std::getenv("VESALIUS_BENCH_MODEL")) {
-    scenes.push_back(run_stages("model", alina_frame(depth_file), load_model(model)));
+    scenes.push_back(run_stages("model", alina_frame(depth_file), load_model(model).forest));
   }
   return scenes;
 }

@@ -65,8 +65,7 @@ void add_targets(const BenchScene& s, const std::shared_ptr<const ForestLabeller
       hwy::SetSupportedTargetsForTest(0);
     };
     const std::string name = hwy::TargetName(target);
-    add("label_pixels:" + name, s,
-        [=, &s] { on_target([&] { keep(labeller->label(s.frame.depth, s.frame.camera)); }); });
+    add("label_pixels:" + name, s, [=, &s] { on_target([&] { keep(labeller->label(s.frame)); }); });
     add("mean_filter:" + name, s,
         [=, &s] { on_target([&] { keep(mean_filter(s.posteriors, s.frame.depth, s.frame.camera, {})); }); });
   }
@@ -74,9 +73,9 @@ void add_targets(const BenchScene& s, const std::shared_ptr<const ForestLabeller
 
 void add_labelling(const BenchScene& s) {
   const auto labeller = std::make_shared<ForestLabeller>(s.forest);
-  add("label_pixels", s, [&s, labeller] { keep(labeller->label(s.frame.depth, s.frame.camera)); });
+  add("label_pixels", s, [&s, labeller] { keep(labeller->label(s.frame)); });
   add_targets(s, labeller);
-  const LabelChoice choice{.part_count = s.forest.body.part_count(), .has_background = s.forest.has_background};
+  const LabelChoice choice{.part_count = s.forest.body.part_count()};
   add("choose_labels", s, [&s, choice] { keep(choose_labels(s.posteriors, s.frame.depth, choice, LabelOptions())); });
   add("mode_filter", s, [&s] { keep(mode_filter(s.labels, s.frame.depth, SmoothOptions())); });
   add("mean_filter", s, [&s] { keep(mean_filter(s.posteriors, s.frame.depth, s.frame.camera, {})); });

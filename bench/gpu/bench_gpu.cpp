@@ -59,7 +59,7 @@ std::vector<Frame> read_frames(const std::string& from) {
 
 Json count(const Forest& forest, const Frame& frame, float gate) {
   Posteriors posteriors;
-  ForestLabeller(forest).label_into(frame.depth, frame.camera, gate, posteriors);
+  ForestLabeller(forest).label_into(frame, gate, posteriors);
   const WalkReads reads = count_reads(forest, frame.depth, frame.camera, posteriors.settled);
   return {{"width", frame.camera.width},
           {"height", frame.camera.height},
@@ -101,7 +101,7 @@ Json kernel_times(const Forest& forest, const std::shared_ptr<gpu::Device>& devi
   return medians;
 }
 
-Json measure(const Arguments& arguments, const Forest& forest, const std::vector<Frame>& frames,
+Json measure(const Arguments& arguments, const Model& model, const std::vector<Frame>& frames,
              const std::shared_ptr<gpu::Device>& device) {
   Json figures{{"device", device->name()}, {"processor_threads", thread_count()}};
   if (!arguments.simulated) {
@@ -110,6 +110,7 @@ Json measure(const Arguments& arguments, const Forest& forest, const std::vector
     }
   }
   const Frame& frame = frames.front();
+  const Forest& forest = model.forest;
   const auto on_device = std::make_shared<gpu::DeviceLabeller>(forest, device);
   const auto on_processor = std::make_shared<ForestLabeller>(forest);
   figures["kernel_ms"] = kernel_times(forest, device, frame, arguments.rounds);
@@ -129,17 +130,19 @@ Json measure(const Arguments& arguments, const Forest& forest, const std::vector
   const double gated_ms = median_ms(std::max(1, arguments.rounds / 4),
                                     [&] { on_device->label_pictures(pictures, cameras, LabelOptions{}, {}); });
   const double processor_ms = median_ms(arguments.rounds, [&] {
-    const Posteriors posteriors = on_processor->label(frame.depth, frame.camera);
-    choose_labels(mean_filter(posteriors, frame.depth, frame.camera, {}), frame.depth,
-                  {forest.body.part_count(), forest.has_background}, every);
+    const Posteriors posteriors = on_processor->label(frame);
+    choose_labels(mean_filter(posteriors, frame.depth, frame.camera, {}), frame.depth, {forest.body.part_count()},
+                  every);
   });
   figures["labels_ms"] = {{"device, one picture", one_ms},
                           {"device, a picture of a batch", batch_ms / arguments.batch},
                           {"device, a picture of a batch, gated", gated_ms / arguments.batch},
                           {"processor", processor_ms}};
-  const auto detect_ms = [&](const std::shared_ptr<const PixelLabeller>& labeller, int threads) {
+  const auto detect_ms = [&](const std::shared_ptr<const Labeller>& labeller, int threads) {
     const ThreadLimit limit(threads);
-    const Detector detector(labeller, DetectOptions{});
+    Model placed = model;
+    placed.labeller = labeller;
+    const Detector detector(std::move(placed));
     return median_ms(std::max(1, arguments.rounds / 4),
                      [&] {
                        for (const Frame& each : frames) detector.detect(each);
@@ -154,11 +157,11 @@ Json measure(const Arguments& arguments, const Forest& forest, const std::vector
 
 void run(const Arguments& arguments) {
   keep_freed_memory();
-  const Forest forest = load_model(VESALIUS_SOURCE_DIR "/data/models/default.forest");
+  const Model model = load_model(VESALIUS_SOURCE_DIR "/data/models/default.forest");
   const std::vector<Frame> frames = read_frames(arguments.frames);
   constexpr float kNoGate = 2.F;
-  Json figures{{"counts", count(forest, frames.front(), kNoGate)},
-               {"gated_counts", count(forest, frames.front(), LabelOptions{}.gate)}};
+  Json figures{{"counts", count(model.forest, frames.front(), kNoGate)},
+               {"gated_counts", count(model.forest, frames.front(), LabelOptions{}.gate)}};
   if (!arguments.count_only) {
     std::shared_ptr<gpu::Device> device;
     if (arguments.simulated) {
@@ -166,7 +169,7 @@ void run(const Arguments& arguments) {
     } else {
       device = gpu::open_cuda_device(arguments.device);
     }
-    figures["measured"] = measure(arguments, forest, frames, device);
+    figures["measured"] = measure(arguments, model, frames, device);
   }
   const std::string text = figures.dump(1) + "\n";
   if (arguments.json.empty()) {

@@ -15,7 +15,7 @@
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/fit/flesh_model.h"
-#include "vesalius/forest/make_labeller.h"
+#include "vesalius/model.h"
 
 namespace vesalius::c {
 namespace {
@@ -43,10 +43,10 @@ std::shared_ptr<const SharedDetector> make_detector(const char* model, const ves
   }
   const ThreadLimit limit(threads);
   const PeopleOptions values = options != nullptr ? options->values : PeopleOptions{};
-  auto labeller = make_labeller(load_model(model != nullptr ? model : default_model()),
-                                device != nullptr ? device : "cpu", {{gpu::cuda_labeller()}, {}});
+  Model loaded = on_device(load_model(model != nullptr ? model : default_model()), device != nullptr ? device : "cpu",
+                           {{gpu::cuda_labeller()}, {}});
   return std::shared_ptr<const SharedDetector>(
-      new SharedDetector{values, threads, Detector(std::move(labeller), values.detect)});
+      new SharedDetector{values, threads, Detector(std::move(loaded), values.detect)});
 }
 
 const BodyModel& body_of(const vesalius_detector* detector) {

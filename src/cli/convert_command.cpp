@@ -38,10 +38,10 @@ void convert_model(std::vector<std::string> paths, const std::string& body, bool
   if (is_model && (paths.size() > 1 || body.empty())) {
     throw UsageError(fmt::format("{}: expected --body and one other name, since it is a model", paths.front()));
   }
-  Forest forest = is_model ? load_model(paths.front()) : import_text_trees(paths);
-  if (!body.empty()) replace_body(forest, body);
-  save_model(forest, out);
-  if (!quiet) say(fmt::format("{}: {} trees", out, forest.trees.size()));
+  Model model = is_model ? load_model(paths.front()) : Model(import_text_trees(paths));
+  if (!body.empty()) replace_body(model, body);
+  save_model(model, out);
+  if (!quiet) say(fmt::format("{}: {} trees", out, model.forest.trees.size()));
 }
 
 void convert_frames(const Arguments& arguments) {

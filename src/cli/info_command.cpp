@@ -88,7 +88,8 @@ Json body_facts(const BodyModel& body) {
 
 Json model_facts(const std::string& path) {
   const std::string bytes = read_file(path);
-  const Forest forest = parse_model(bytes, path);
+  const Model model = parse_model(bytes, path);
+  const Forest& forest = model.forest;
   Json trees = Json::array();
   std::size_t nodes = 0, leaves = 0;
   for (const Tree& tree : forest.trees) {
@@ -101,12 +102,12 @@ Json model_facts(const std::string& path) {
           {"size_bytes", bytes.size()},
           {"checksum", model_checksum(bytes)},
           {"recipe", forest.recipe},
-          {"body", body_facts(forest.body)},
+          {"body", body_facts(model.body)},
           {"background_class", forest.has_background},
           {"distributions", has_distributions(forest)},
           {"headings", forest.headings},
-          {"context_trees", forest.context.trees.size()},
-          {"judge_trees", forest.judge.trees.size()},
+          {"context_trees", model.context.trees.size()},
+          {"judge_trees", model.judge.trees.size()},
           {"features",
            {{"offset_unit_px_m", c.offset_unit},
             {"reference_focal_px", c.reference_focal_px},

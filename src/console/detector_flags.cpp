@@ -13,9 +13,9 @@
 #include "vesalius/base/error.h"
 
 namespace vesalius::cli {
-void replace_body(Forest& forest, const std::string& path) {
+void replace_body(Model& model, const std::string& path) {
   BodyModel body = parse_body_model(read_file(path), path);
-  const auto& trained = forest.body.parts;
+  const auto& trained = model.body.parts;
   for (std::size_t p = 0; p < std::max(body.parts.size(), trained.size()); ++p) {
     const std::string ours = p < body.parts.size() ? body.parts[p].name : "missing";
     const std::string theirs = p < trained.size() ? trained[p].name : "missing";
@@ -23,7 +23,7 @@ void replace_body(Forest& forest, const std::string& path) {
     throw Error(fmt::format("{}: part {} is {}, in the model {}; a body must have the model's parts in its order", path,
                             p, ours, theirs));
   }
-  forest.body = std::move(body);
+  model.body = std::move(body);
 }
 
 PeopleOptions people_options(const std::string& options_file, const OptionFlags<PeopleOptions>& flags) {
@@ -52,15 +52,15 @@ std::string DetectorFlags::model() const { return model_.empty() ? default_model
 
 PeopleOptions DetectorFlags::options() const { return people_options(options_file_, options_); }
 
-std::shared_ptr<const PixelLabeller> DetectorFlags::labeller() const {
-  Forest forest = load_model(model());
-  if (!body_.empty()) replace_body(forest, body_);
-  return device_.make(std::move(forest));
+Model DetectorFlags::loaded() const {
+  Model loaded = load_model(model());
+  if (!body_.empty()) replace_body(loaded, body_);
+  return device_.make(std::move(loaded));
 }
 
 Detector DetectorFlags::make() const {
   const DetectOptions detect = options().detect;
-  return Detector(labeller(), detect);
+  return Detector(loaded(), detect);
 }
 
 }  // namespace vesalius::cli

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "console/device_flag.h"
 #include "console/option_flags.h"
 #include "vesalius/detect.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/model.h"
 #include "vesalius/track/track_people.h"
 
 namespace CLI {
@@ -19,9 +18,9 @@ namespace vesalius::cli {
 /// Error for a file that cannot be used and UsageError for options outside their range.
 PeopleOptions people_options(const std::string& options_file, const OptionFlags<PeopleOptions>& flags);
 
-/// Replaces the forest's body by that of a file with the same parts but another kinematic tree or other joints. Throws
+/// Replaces the model's body by that of a file with the same parts but another kinematic tree or other joints. Throws
 /// Error for a file that cannot be used or has other parts.
-void replace_body(Forest& forest, const std::string& path);
+void replace_body(Model& model, const std::string& path);
 
 /// The flags that define a detector: --model, --body, --device, --options and one for every option of detector,
 /// tracking and fitted bodies.
@@ -35,8 +34,8 @@ class DetectorFlags {
   Detector make() const;
   /// The parts of which `make` makes it, with the options of tracking and of fitted bodies.
   PeopleOptions options() const;
-  /// Throws DeviceError if there is no such device.
-  std::shared_ptr<const PixelLabeller> labeller() const;
+  /// Returns the model with its labeller. Throws DeviceError if there is no such device.
+  Model loaded() const;
   /// Returns the path of the model. Throws Error if none is given and there is no default model.
   std::string model() const;
 

@@ -5,7 +5,6 @@
 
 #include "console/satellites.h"
 #include "console/text_sink.h"
-#include "vesalius/forest/make_labeller.h"
 
 namespace vesalius::cli {
 
@@ -18,12 +17,12 @@ DeviceFlag::DeviceFlag(CLI::App& command, const std::string& group) {
   if (!group.empty()) option->group(group);
 }
 
-std::shared_ptr<const PixelLabeller> DeviceFlag::make(Forest forest) const {
+Model DeviceFlag::make(Model model) const {
   LabellerDevices devices{{}, [](const std::string& note) { say("note: " + note); }};
   for (const Satellite& satellite : satellites()) {
     for (const LabellerDevice& kind : satellite.devices) devices.kinds.push_back(kind);
   }
-  return make_labeller(std::move(forest), device_, devices);
+  return on_device(std::move(model), device_, devices);
 }
 
 }  // namespace vesalius::cli

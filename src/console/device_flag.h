@@ -1,10 +1,8 @@
 #pragma once
 
-#include <memory>
 #include <string>
 
-#include "vesalius/forest/forest.h"
-#include "vesalius/forest/label_pixels.h"
+#include "vesalius/model.h"
 
 namespace CLI {
 class App;
@@ -18,9 +16,9 @@ class DeviceFlag {
   /// This object must live as long as the command. `group` is where its help stands; empty: among the others.
   explicit DeviceFlag(CLI::App& command, const std::string& group = {});
 
-  /// Returns a labeller on that device (make_labeller), one of those that this build knows. What "auto" decided is said
-  /// on standard error.
-  std::shared_ptr<const PixelLabeller> make(Forest forest) const;
+  /// Returns the model with a labeller on that device (on_device), one of those that this build knows. What "auto"
+  /// decided is said on standard error.
+  Model make(Model model) const;
 
  private:
   std::string device_ = "cpu";

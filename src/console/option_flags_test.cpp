@@ -12,25 +12,25 @@ namespace {
 TEST(OptionFlags, OverwriteOnlyOptionsOfTheCommandLine) {
   CLI::App app;
   const OptionFlags<DetectOptions> flags(app);
-  app.parse("--search.min-parts 9 --smooth.mode");
+  app.parse("--search.min-parts 9 --no-search.any-root");
   DetectOptions options;
   options.search.max_mean_error = 0.25F;  // as if read from a file
   options.search.min_parts = 5;
   flags.apply(options);
   EXPECT_EQ(options.search.min_parts, 9);
-  EXPECT_TRUE(options.smooth.mode);
+  EXPECT_FALSE(options.search.any_root);
   EXPECT_EQ(options.search.max_mean_error, 0.25F);
   EXPECT_EQ(options.cluster.max_gap_m, DetectOptions{}.cluster.max_gap_m);
 }
 
-TEST(OptionFlags, SwitchesCanBeTurnedOff) {
+TEST(OptionFlags, SwitchesCanBeTurnedOnAgain) {
   CLI::App app;
   const OptionFlags<DetectOptions> flags(app);
-  app.parse("--no-smooth.mode");
+  app.parse("--search.any-root");
   DetectOptions options;
-  options.smooth.mode = true;
+  options.search.any_root = false;
   flags.apply(options);
-  EXPECT_FALSE(options.smooth.mode);
+  EXPECT_TRUE(options.search.any_root);
 }
 
 TEST(OptionFlags, RefuseInvalidValues) {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/forest/make_labeller.h"
+#include "vesalius/model.h"
 
 namespace CLI {
 class App;

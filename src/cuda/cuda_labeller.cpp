@@ -8,7 +8,7 @@
 namespace vesalius::gpu {
 
 LabellerDevice cuda_labeller() {
-  return {"cuda", [](const Forest& forest, int number) -> std::shared_ptr<const PixelLabeller> {
+  return {"cuda", [](const Forest& forest, int number) -> std::shared_ptr<const Labeller> {
             return std::make_shared<DeviceLabeller>(forest, open_cuda_device(number));
           }};
 }

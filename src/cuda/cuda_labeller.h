@@ -1,10 +1,10 @@
 #pragma once
 
-#include "vesalius/forest/make_labeller.h"
+#include "vesalius/model.h"
 
 namespace vesalius::gpu {
 
-/// Returns the kind of device "cuda" for make_labeller: this machine's cards. Its labellers throw DeviceError where
+/// Returns the kind of device "cuda" for on_device: this machine's cards. Its labellers throw DeviceError where
 /// this build has no kernels for cards.
 LabellerDevice cuda_labeller();
 

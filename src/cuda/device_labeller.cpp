@@ -164,7 +164,7 @@ class DeviceLabeller::Workspace {
     mean.each_way = window.each_way;
     mean.spacing = window.spacing;
     mean.gate_mm = window.gate_mm;
-    mean.bits = excess_bits(forest_.trees(), window);
+    mean.bits = excess_bits(255 * forest_.trees(), window);
     mean.pixels_in_block = int(pixels);
     mean.means = means_.data();
     stream_->launch(mean, {blocks_for(batch_.pixels(), pixels), 1, options_.threads});
@@ -283,41 +283,42 @@ std::unique_ptr<DeviceLabeller::Workspace> DeviceLabeller::take() const {
 namespace {
 
 /// Returns the sum from which on the background is certain; nothing where no gate is asked for.
-std::optional<long> gate_sum(const PixelLabeller& labeller, float gate, int trees) {
-  if (gate > 1.F || !labeller.has_background()) return std::nullopt;
-  return std::max(0L, BackgroundGate::enough(gate, trees));
+std::optional<long> gate_sum(const TrainedLabeller& labeller, float gate, int whole) {
+  if (gate > 1.F || !labeller.layout().background) return std::nullopt;
+  return std::max(0L, BackgroundGate::enough(gate, whole));
 }
 
 }  // namespace
 
 /// Makes room in `out` and starts finding the posteriors. Returns where that is done; null for an empty picture.
-std::unique_ptr<DeviceLabeller::Workspace> DeviceLabeller::start(const DepthImage& depth, const Camera& camera,
-                                                                 float gate, Posteriors& out) const {
+std::unique_ptr<DeviceLabeller::Workspace> DeviceLabeller::start(const Frame& frame, float gate,
+                                                                 Posteriors& out) const {
+  const DepthImage& depth = frame.depth;
   prepare(depth, out);
-  const std::optional<long> enough = gate_sum(*this, gate, tree_count());
+  const std::optional<long> enough = gate_sum(*this, gate, whole());
   if (enough) out.settled = Mask(depth.width(), depth.height(), 0);
   if (depth.empty()) return nullptr;
   std::unique_ptr<Workspace> space = take();
   space->begin({depth.width(), depth.height(), 1}, out.classes, out.headings);
-  space->send(0, depth.data(), camera);
+  space->send(0, depth.data(), frame.camera);
   space->label(enough);
   return space;
 }
 
-void DeviceLabeller::label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const {
-  std::unique_ptr<Workspace> space = start(depth, camera, gate, out);
+void DeviceLabeller::label_into(const Frame& frame, float gate, Posteriors& out) const {
+  std::unique_ptr<Workspace> space = start(frame, gate, out);
   if (space == nullptr) return;
   space->fetch_posteriors(out);
   space->stream().wait();
   free_.give_back(std::move(space));
 }
 
-bool DeviceLabeller::label_and_smooth_into(const DepthImage& depth, const Camera& camera, float gate,
-                                           const SmoothOptions& options, Posteriors& out, Posteriors& smooth) const {
-  std::unique_ptr<Workspace> space = start(depth, camera, gate, out);
+bool DeviceLabeller::label_and_smooth_into(const Frame& frame, float gate, const SmoothOptions& options,
+                                           Posteriors& out, Posteriors& smooth) const {
+  std::unique_ptr<Workspace> space = start(frame, gate, out);
   smooth.resize_like(out);
   if (space == nullptr) return true;
-  space->smooth(smooth_window(options, camera));
+  space->smooth(smooth_window(options, frame.camera));
   space->fetch_posteriors(out);
   space->fetch_means(smooth);
   space->stream().wait();
@@ -329,13 +330,12 @@ bool DeviceLabeller::label_and_smooth_into(const DepthImage& depth, const Camera
 std::vector<LabelImage> DeviceLabeller::label_pictures(const std::vector<DepthImage>& pictures,
                                                        const std::vector<Camera>& cameras, const LabelOptions& label,
                                                        const SmoothOptions& smooth) const {
-  if (!has_distributions()) throw Error("forest: one vote for each tree, expected distributions");
   if (pictures.size() != cameras.size()) {
     throw Error(std::to_string(pictures.size()) + " pictures with " + std::to_string(cameras.size()) + " cameras");
   }
   const int classes = layout().classes();
-  const std::optional<long> enough = gate_sum(*this, label.gate, tree_count());
-  const ChoiceWeights weights = choice_weights(label, tree_count());
+  const std::optional<long> enough = gate_sum(*this, label.gate, whole());
+  const ChoiceWeights weights = choice_weights(label, whole());
   std::vector<LabelImage> labels(pictures.size());
   for (const DepthImage& picture : pictures) check_size(picture);
 
@@ -388,7 +388,7 @@ std::vector<LabelImage> DeviceLabeller::label_pictures(const std::vector<DepthIm
     }
     space.label(enough);
     space.smooth(smooth_window(smooth, cameras[first]));
-    space.choose(body().part_count(), weights);
+    space.choose(layout().parts, weights);
     space.fetch_labels(space.pinned_labels());
     slot.first = first;
     slot.count = count;

@@ -61,14 +61,14 @@ class DeviceLabeller : public TrainedLabeller {
 
   /// Throws Error for a picture of more than 16,000 pixels a side and DeviceError if the device fails; `out` is then
   /// undefined.
-  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override;
-  bool label_and_smooth_into(const DepthImage& depth, const Camera& camera, float gate, const SmoothOptions& options,
-                             Posteriors& out, Posteriors& smooth) const override;
+  void label_into(const Frame& frame, float gate, Posteriors& out) const override;
+  bool label_and_smooth_into(const Frame& frame, float gate, const SmoothOptions& options, Posteriors& out,
+                             Posteriors& smooth) const override;
 
   /// Returns the labels of pictures, which may differ in size, as choose_labels chooses them from the mean_filter of
   /// their posteriors. Only depth goes to the device and only labels come back. Pictures of one size are worked on in
   /// batches, and while one batch is worked on, the one before comes back and the next goes there. `cameras` has one
-  /// for each picture. Throws Error for a forest that has no distributions, whose labels are smoothed by their mode.
+  /// for each picture. Throws Error for another number of cameras.
   std::vector<LabelImage> label_pictures(const std::vector<DepthImage>& pictures, const std::vector<Camera>& cameras,
                                          const LabelOptions& label, const SmoothOptions& smooth) const;
 
@@ -77,7 +77,7 @@ class DeviceLabeller : public TrainedLabeller {
   struct Batch;
 
   std::unique_ptr<Workspace> take() const;
-  std::unique_ptr<Workspace> start(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const;
+  std::unique_ptr<Workspace> start(const Frame& frame, float gate, Posteriors& out) const;
 
   DeviceLabellerOptions options_;
   std::shared_ptr<Device> device_;

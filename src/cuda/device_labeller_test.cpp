@@ -38,8 +38,8 @@ long expect_same_labels(const Forest& forest, const DeviceLabeller& device, cons
   const ForestLabeller processor(forest);
   const Camera camera = camera_of(depth);
   Posteriors expected, found, mean;
-  processor.label_into(depth, camera, gate, expected);
-  device.label_into(depth, camera, gate, found);
+  processor.label_into(depth_frame(depth, camera), gate, expected);
+  device.label_into(depth_frame(depth, camera), gate, found);
   expect_same(found, expected, depth);
   EXPECT_TRUE(device.label_and_smooth_into(depth, camera, gate, {}, found, mean));
   expect_same(found, expected, depth);
@@ -100,7 +100,7 @@ TEST(DeviceLabeller, GivesTheSameBitsForPicturesOfEverySize) {
     }
   }
   expect_same_labels(forest, device, DepthImage(20, 20, 0), kGate);
-  EXPECT_THROW(device.label(DepthImage(16001, 1, 1000), camera_of(DepthImage(16001, 1))), Error);
+  EXPECT_THROW(device.label(depth_frame(DepthImage(16001, 1, 1000), camera_of(DepthImage(16001, 1)))), Error);
 }
 
 TEST(DeviceLabeller, GivesTheSameBitsForBlocksOfEveryShapeAndOrder) {
@@ -149,12 +149,13 @@ TEST(DeviceLabeller, GivesTheSameBitsFromSeveralThreads) {
   for_threads({1, 2, 4}, [&] {
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < pictures.size(); ++i) {
-      threads.emplace_back([&, i] { device.label_into(pictures[i], camera_of(pictures[i]), kGate, found[i]); });
+      threads.emplace_back(
+          [&, i] { device.label_into(depth_frame(pictures[i], camera_of(pictures[i])), kGate, found[i]); });
     }
     for (std::thread& thread : threads) thread.join();
     for (std::size_t i = 0; i < pictures.size(); ++i) {
       Posteriors expected;
-      processor.label_into(pictures[i], camera_of(pictures[i]), kGate, expected);
+      processor.label_into(depth_frame(pictures[i], camera_of(pictures[i])), kGate, expected);
       expect_same(found[i], expected, pictures[i]);
     }
   });
@@ -164,9 +165,8 @@ TEST(DeviceLabeller, GivesTheSameBitsFromSeveralThreads) {
 LabelImage chosen(const ForestLabeller& processor, const DepthImage& depth, const Camera& camera,
                   const LabelOptions& label) {
   Posteriors posteriors;
-  processor.label_into(depth, camera, label.gate, posteriors);
-  return choose_labels(mean_filter(posteriors, depth, camera, {}), depth,
-                       {processor.body().part_count(), processor.has_background()}, label);
+  processor.label_into(depth_frame(depth, camera), label.gate, posteriors);
+  return choose_labels(mean_filter(posteriors, depth, camera, {}), depth, {processor.layout().parts}, label);
 }
 
 TEST(LabelPictures, ChoosesTheProcessorsLabelsForAnyBatches) {
@@ -211,8 +211,6 @@ TEST(LabelPictures, MovesDepthUpAndLabelsDown) {
 TEST(LabelPictures, RefusesWhatItCannotLabel) {
   Random random(12);
   const DepthImage depth(8, 8, 1000);
-  const DeviceLabeller votes(random_forest(random, {.leaves = LeafKind::votes}), simulated());
-  EXPECT_THROW(votes.label_pictures({depth}, {camera_of(depth)}, {}, {}), Error);
   const DeviceLabeller device(random_forest(random, {}), simulated());
   EXPECT_THROW(device.label_pictures({depth}, {}, {}, {}), Error);
   EXPECT_THAT(device.label_pictures({}, {}, {}, {}), testing::IsEmpty());
@@ -223,9 +221,9 @@ TEST(DeviceLabeller, KeepsItsMemoryForTheNextPicture) {
   const auto device = simulated();
   const DeviceLabeller labeller(random_forest(random, {}), device);
   const DepthImage depth = random_scene(random, 40, 40);
-  labeller.label(depth, camera_of(depth));
+  labeller.label(depth_frame(depth, camera_of(depth)));
   const std::size_t used = device->allocated_bytes();
-  for (int i = 0; i < 3; ++i) labeller.label(random_scene(random, 40, 39), camera_of(depth));
+  for (int i = 0; i < 3; ++i) labeller.label(depth_frame(random_scene(random, 40, 39), camera_of(depth)));
   EXPECT_EQ(device->allocated_bytes(), used);
 }
 
@@ -237,7 +235,7 @@ TEST(DeviceLabeller, SaysWhenADeviceIsTooSmallOrLost) {
               testing::ThrowsMessage<DeviceError>(testing::HasSubstr("simulated card: no room for")));
   const auto small = simulated({.memory_bytes = 200'000});
   const DeviceLabeller crowded(forest, small);
-  EXPECT_THROW(crowded.label(depth, camera_of(depth)), DeviceError);
+  EXPECT_THROW(crowded.label(depth_frame(depth, camera_of(depth))), DeviceError);
   const DepthImage part = random_scene(random, 12, 12);
   expect_same_labels(forest, crowded, part, kGate);  // a smaller picture still fits
 
@@ -246,9 +244,9 @@ TEST(DeviceLabeller, SaysWhenADeviceIsTooSmallOrLost) {
     try {
       const DeviceLabeller labeller(forest, simulated({.lost_after = after}));
       Posteriors out;
-      labeller.label_into(depth, camera_of(depth), kGate, out);
+      labeller.label_into(depth_frame(depth, camera_of(depth)), kGate, out);
       Posteriors expected;
-      ForestLabeller(forest).label_into(depth, camera_of(depth), kGate, expected);
+      ForestLabeller(forest).label_into(depth_frame(depth, camera_of(depth)), kGate, expected);
       expect_same(out, expected, depth);
     } catch (const DeviceError& e) {
       EXPECT_THAT(e.what(), testing::HasSubstr("the device was lost"));
@@ -266,7 +264,7 @@ bool is_found(const Forest& forest, const DepthImage& depth, SimulatedDeviceOpti
     options.simulator.backwards = backwards;
     const Camera camera = camera_of(depth);
     Posteriors expected, found, mean;
-    ForestLabeller(forest).label_into(depth, camera, kGate, expected);
+    ForestLabeller(forest).label_into(depth_frame(depth, camera), kGate, expected);
     try {
       const DeviceLabeller device(forest, simulated(options));
       device.label_and_smooth_into(depth, camera, kGate, {}, found, mean);
@@ -321,7 +319,7 @@ TEST_F(PlantedFaults, AProbeOneColumnBeyondTheBorderIsFound) {
 TEST_F(PlantedFaults, SharedMemoryThatIsTooSmallIsFound) {
   // One element less goes unnoticed unless blocks use all that they have, as those of 1024 threads do.
   const DeviceLabeller device(forest_, simulated({.simulator = {.faults = {.missing_shared = 1}}}), {kMostThreads});
-  EXPECT_THROW(device.label(depth_, camera_of(depth_)), std::logic_error);
+  EXPECT_THROW(device.label(depth_frame(depth_, camera_of(depth_))), std::logic_error);
 }
 
 }  // namespace

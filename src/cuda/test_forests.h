@@ -95,7 +95,7 @@ inline void expect_same(const Posteriors& found, const Posteriors& expected, con
   ASSERT_EQ(found.width, expected.width);
   ASSERT_EQ(found.height, expected.height);
   ASSERT_EQ(found.classes, expected.classes);
-  ASSERT_EQ(found.trees, expected.trees);
+  ASSERT_EQ(found.whole, expected.whole);
   ASSERT_EQ(found.headings, expected.headings);
   ASSERT_EQ(found.settled, expected.settled);
   ASSERT_EQ(found.sums, expected.sums);

@@ -115,9 +115,9 @@ TEST(PassedFramesThreads, PassOnWhatTheWriterThrows) {
 /// A labeller that finds nobody, and takes its time for it.
 class Slow : public test::BlindLabeller {
  public:
-  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
+  void label_into(const Frame& frame, float gate, Posteriors& out) const override {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    test::BlindLabeller::label_into(depth, camera, gate, out);
+    test::BlindLabeller::label_into(frame, gate, out);
   }
 };
 

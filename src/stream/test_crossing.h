@@ -58,8 +58,9 @@ class Knowing : public BlindLabeller {
  public:
   explicit Knowing(const Crossing& source, int fails_at = -1) : source_(source), fails_at_(fails_at) {}
 
-  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
-    BlindLabeller::label_into(depth, camera, gate, out);
+  void label_into(const Frame& frame, float gate, Posteriors& out) const override {
+    BlindLabeller::label_into(frame, gate, out);
+    const DepthImage& depth = frame.depth;
     const auto& frames = source_.frames();
     const auto truth = std::ranges::find_if(frames, [&](const LabelledFrame& f) { return f.frame.depth == depth; });
     if (truth == frames.end()) throw Error("an unknown frame");

@@ -92,10 +92,14 @@ std::string to_toml(const BoostedTrees& trees) {
   return out.str();
 }
 
-const BoostedTrees& default_judge(bool background) {
-  static const BoostedTrees judge = parse_boosted_trees(kDefaultJudges[0], "default judge");
-  static const BoostedTrees alone = parse_boosted_trees(kDefaultJudges[1], "default judge without background");
-  return background ? judge : alone;
+const BoostedTrees& default_judge() {
+  static const BoostedTrees kJudge = parse_boosted_trees(kDefaultJudges[0], "default judge");
+  return kJudge;
+}
+
+const BoostedTrees& default_judge_of_cut_outs() {
+  static const BoostedTrees kJudge = parse_boosted_trees(kDefaultJudges[1], "default judge of cut-outs");
+  return kJudge;
 }
 
 }  // namespace vesalius

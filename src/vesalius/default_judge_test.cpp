@@ -14,8 +14,8 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Returns what the default judge says of evidence of the given strength, 0-1.
-float score_of(float strength, bool background) {
+/// Returns what a judge says of evidence of the given strength, 0-1.
+float score_of(const BoostedTrees& judge, float strength) {
   Evidence evidence;
   for (const JudgedEvidence& kind : kJudgedEvidence) {
     if (kind.sign != 0) evidence.*kind.evidence = kind.sign > 0 ? strength : 1.F - strength;
@@ -29,28 +29,28 @@ float score_of(float strength, bool background) {
   evidence.ragged = 8.F;
   evidence.rivals = 2.F;
   evidence.parts.resize(kind_count(part_slots(paper_body())), 0.F);
-  return in_order(default_judge(background), judge_names(paper_body()), "judge").probability(judge_features(evidence));
+  return in_order(judge, judge_names(paper_body()), "judge").probability(judge_features(evidence));
 }
 
 TEST(DefaultJudge, TellsSomebodyFromNobody) {
-  for (const bool background : {false, true}) {
-    EXPECT_GT(score_of(0.95F, background), 0.7F);
-    EXPECT_LT(score_of(0.1F, background), 0.2F);
-    EXPECT_LE(score_of(0.3F, background), score_of(0.6F, background));
+  for (const BoostedTrees& judge : {default_judge(), default_judge_of_cut_outs()}) {
+    EXPECT_GT(score_of(judge, 0.95F), 0.7F);
+    EXPECT_LT(score_of(judge, 0.1F), 0.2F);
+    EXPECT_LE(score_of(judge, 0.3F), score_of(judge, 0.6F));
   }
 }
 
 TEST(DefaultJudge, AsksForNothingThatABodyLacks) {
-  for (const bool background : {false, true}) {
-    check(default_judge(background), "judge");
-    for (const std::string& name : default_judge(background).asks) {
+  for (const BoostedTrees& judge : {default_judge(), default_judge_of_cut_outs()}) {
+    check(judge, "judge");
+    for (const std::string& name : judge.asks) {
       EXPECT_TRUE(std::ranges::any_of(kJudgedEvidence, [&](const JudgedEvidence& kind) { return kind.name == name; }));
     }
   }
 }
 
 TEST(ParseBoostedTrees, ReadsWhatIsWritten) {
-  EXPECT_EQ(parse_boosted_trees(to_toml(default_judge(true)), "again"), default_judge(true));
+  EXPECT_EQ(parse_boosted_trees(to_toml(default_judge()), "again"), default_judge());
   BoostedTrees trees{2, 0.1F, {{}}, {"a", "b"}};
   trees.trees[0].threshold.fill(std::numeric_limits<float>::infinity());
   trees.trees[0].threshold[0] = 1.F / 3.F;

@@ -19,10 +19,9 @@
 #include "vesalius/derive_joints.h"
 #include "vesalius/find_clusters.h"
 #include "vesalius/forest/facing.h"
-#include "vesalius/forest/label_scene.h"
-#include "vesalius/forest/make_labeller.h"
 #include "vesalius/grow_person.h"
 #include "vesalius/known_people.h"
+#include "vesalius/label_scene.h"
 #include "vesalius/predict_parts.h"
 #include "vesalius/prior.h"
 #include "vesalius/score_person.h"
@@ -33,11 +32,11 @@ namespace vesalius {
 
 /// The data that all frames share, and memory that they reuse.
 struct Method {
-  Method(std::shared_ptr<const PixelLabeller> pixels, const DetectOptions& given,
-         std::shared_ptr<const Appearance> looks)
-      : judge(in_order(pixels->judge().empty() ? default_judge(pixels->has_background()) : pixels->judge(),
-                       judge_names(pixels->body()), "judge of people")),
-        labeller(std::move(pixels), {given.label, given.smooth, given.grow.plane}),
+  /// `model` has a labeller.
+  Method(Model model, const DetectOptions& given, std::shared_ptr<const Appearance> looks)
+      : judge(in_order(model.judge.empty() ? default_judge() : std::move(model.judge), judge_names(model.body),
+                       "judge of people")),
+        labeller(std::move(model), {given.label, given.smooth, given.grow.plane}),
         options(given),
         appearance(looks != nullptr ? std::move(looks) : make_appearance(given.grow.appearance)),
         body(labeller.body()) {}
@@ -138,14 +137,14 @@ std::optional<Candidate> grow_known(const Method& method, const Frame& frame, co
   return candidate;
 }
 
-/// Returns where nobody grows: on flat surfaces and where the forest is sure enough of the background.
+/// Returns where nobody grows: on flat surfaces and where the background is sure enough.
 Mask barred(const Method& method, const SceneLabels& labels) {
   constexpr int kRowGrain = 8;
   Mask barred = labels.flat;
   const auto least = double(method.options.grow.least_body);
   const Posteriors& posteriors = labels.posteriors();
   const int parts = method.body.part_count();
-  if (least == 0.0 || posteriors.classes == parts) return barred;
+  if (least == 0.0) return barred;
   parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < posteriors.width; ++u) {
@@ -216,7 +215,7 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
     candidate.refined = candidate.rough;
   }
   candidate.evidence =
-      gather_evidence(frame, candidate.grown, person, scene.labels.alone(), scenery, candidate.refined, method.body);
+      gather_evidence(frame, candidate.grown, person, scene.labels.smooth, scenery, candidate.refined, method.body);
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
   candidate.score = method.score(candidate.evidence);
   candidate.labels = std::move(person.labels);
@@ -248,7 +247,7 @@ Scenery look_around(const Method& method, const Frame& frame, const Scene& scene
   for (const Candidate& candidate : candidates) {
     for (std::size_t i = 0; i < anybody.size(); ++i) anybody[i] |= candidate.grown[i];
   }
-  return {scene.labels.flat, mean_body_outside(anybody, frame.depth, scene.labels.alone(), method.body.part_count()),
+  return {scene.labels.flat, mean_body_outside(anybody, frame.depth, scene.labels.smooth, method.body.part_count()),
           int(scene.rough.size())};
 }
 
@@ -385,7 +384,7 @@ Detection detect_everywhere(const Method& method, const Frame& frame, const std:
   Scene scene = first_pass(method, frame, clock);
   Prior prior = ask();
   clock.skip();  // the time that others took
-  const KnownPeople known(frame, scene.labels.flat, scene.labels.alone(), method.body.part_count(), prior);
+  const KnownPeople known(frame, scene.labels.flat, scene.labels.smooth, method.body.part_count(), prior);
   Looks looks;
   if (!scene.rough.empty() || !prior.people.empty()) looks = look_at(frame, method.appearance.get());
   std::vector<Candidate> candidates = propose(method, frame, scene, looks);
@@ -418,14 +417,10 @@ FrameLabels label_everywhere(const Method& method, const Frame& frame, const Mas
 
 }  // namespace
 
-Detector::Detector(Forest forest, DetectOptions options, std::shared_ptr<const Appearance> appearance)
-    : Detector(make_labeller(std::move(forest)), std::move(options), std::move(appearance)) {}
-
-Detector::Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options,
-                   std::shared_ptr<const Appearance> appearance) {
+Detector::Detector(Model model, DetectOptions options, std::shared_ptr<const Appearance> appearance) {
   RangeCheck check;
   visit_options("", options, check);
-  method_ = std::make_shared<const Method>(std::move(labeller), options, std::move(appearance));
+  method_ = std::make_shared<const Method>(on_device(std::move(model)), options, std::move(appearance));
 }
 
 Detection Detector::detect(const Frame& given, const AskPrior& ask, Trace* trace, StageTimes* times) const {

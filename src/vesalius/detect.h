@@ -9,8 +9,7 @@
 #include "vesalius/base/people_options.h"
 #include "vesalius/base/person.h"
 #include "vesalius/base/stage_times.h"
-#include "vesalius/forest/forest.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/model.h"
 #include "vesalius/prior.h"
 
 namespace vesalius {
@@ -31,11 +30,10 @@ using AskPrior = std::function<Prior(const Frame&)>;
 /// may be called from several threads.
 class Detector {
  public:
-  /// `appearance` tells what pixels look like, in place of the one that the options name. Throws Error for an
-  /// inconsistent forest, and UsageError for an option outside its range.
-  explicit Detector(Forest forest, DetectOptions options = {}, std::shared_ptr<const Appearance> appearance = nullptr);
-  explicit Detector(std::shared_ptr<const PixelLabeller> labeller, DetectOptions options = {},
-                    std::shared_ptr<const Appearance> appearance = nullptr);
+  /// A model without a labeller (on_device) labels on the processor. `appearance` tells what pixels look like, in place
+  /// of the one that the options name. Throws Error for an inconsistent model, and UsageError for an option outside its
+  /// range.
+  explicit Detector(Model model, DetectOptions options = {}, std::shared_ptr<const Appearance> appearance = nullptr);
 
   /// Returns the people in the frame, the most certain first (Trace::Candidate::certainty); none if nobody is in view.
   /// `prior` says what earlier frames tell about them. Adds the time of each stage to `times`. Throws Error for a frame

@@ -11,6 +11,8 @@
 #include "vesalius/base/error.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/cut_out_labeller.h"
+#include "vesalius/default_judge.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/test_headings.h"
@@ -25,13 +27,15 @@ namespace {
 const Camera kCamera{320, 240, 262.5F, 262.5F, 159.5F, 119.5F};
 
 /// A labeller that knows the truth. It shows what the stages after labelling make of perfect labels.
-class TruthLabeller : public PixelLabeller {
+class TruthLabeller : public Labeller {
  public:
   TruthLabeller(LabelImage truth, BodyModel body, bool background)
       : truth_(std::move(truth)), body_(std::move(body)), background_(background) {}
 
-  void label_into(const DepthImage& depth, const Camera& camera, float /*gate*/, Posteriors& out) const override {
-    out = {depth.width(), depth.height(), body_.part_count() + (background_ ? 1 : 0), 1, {}};
+  void label_into(const Frame& frame, float /*gate*/, Posteriors& out) const override {
+    const DepthImage& depth = frame.depth;
+    const Camera& camera = frame.camera;
+    out = {depth.width(), depth.height(), body_.part_count() + (background_ ? 1 : 0), 255, {}};
     out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
     // The second pass shows a part of the picture. Its principal point tells which one.
     const int left = static_cast<int>(std::lround(kCamera.cx - camera.cx));
@@ -48,18 +52,21 @@ class TruthLabeller : public PixelLabeller {
       }
     }
   }
-  const BodyModel& body() const override { return body_; }
-  bool has_background() const override { return background_; }
-  bool has_distributions() const override { return false; }
-  const BoostedTrees& judge() const override { return judge_; }
-  void set_judge(BoostedTrees judge) { judge_ = std::move(judge); }
 
  private:
   LabelImage truth_;
   BodyModel body_;
   bool background_;
-  BoostedTrees judge_;
 };
+
+/// Returns a model that knows the truth, with a background class or of cut-outs.
+Model truth_model(const LabelImage& truth, const BodyModel& body, bool background) {
+  std::shared_ptr<const Labeller> labeller = std::make_shared<TruthLabeller>(truth, body, background);
+  if (background) return {labeller, body};
+  Model model(std::make_shared<CutOutLabeller>(labeller, true), body);
+  model.judge = default_judge_of_cut_outs();
+  return model;
+}
 
 /// A judge with these log odds for whatever has no more, and more, than `least` of a kind of evidence.
 BoostedTrees judge_by(int feature, float least, float below = -9.F, float above = 9.F) {
@@ -87,7 +94,7 @@ CapsuleScene one_person(float z_m) {
 
 std::vector<Person> detect_truth(const LabelledFrame& truth, bool background, const BodyModel& body = paper_body(),
                                  const DetectOptions& options = {}, Trace* trace = nullptr) {
-  const Detector detector(std::make_shared<TruthLabeller>(truth.labels, body, background), options);
+  const Detector detector(truth_model(truth.labels, body, background), options);
   return detector.detect(truth.frame, trace);
 }
 
@@ -336,13 +343,11 @@ TEST(Detector, RefusesOptionsOutOfRangeAndFramesOfTwoSizes) {
 class DoubtfulLabeller : public TruthLabeller {
  public:
   DoubtfulLabeller(const LabelledFrame& truth, int doubted)
-      : TruthLabeller(truth.labels, paper_body(), true), person_(truth.person), doubted_(doubted) {
-    constexpr int kBody = 4;                     // in the order of kJudgedEvidence
-    set_judge(judge_by(kBody, 0.5F, 2.F, 3.F));  // lets pass whom the labeller doubts, with a lower score
-  }
+      : TruthLabeller(truth.labels, paper_body(), true), person_(truth.person), doubted_(doubted) {}
 
-  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
-    TruthLabeller::label_into(depth, camera, gate, out);
+  void label_into(const Frame& frame, float gate, Posteriors& out) const override {
+    TruthLabeller::label_into(frame, gate, out);
+    const DepthImage& depth = frame.depth;
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
         if (person_(u, v) != doubted_ || depth(u, v) == 0) continue;
@@ -357,6 +362,14 @@ class DoubtfulLabeller : public TruthLabeller {
   int doubted_;
 };
 
+/// A judge lets pass whom the labeller doubts, with a lower score.
+Model lenient(std::shared_ptr<const Labeller> labeller) {
+  constexpr int kBody = 4;  // in the order of kJudgedEvidence
+  Model model(std::move(labeller));
+  model.judge = judge_by(kBody, 0.5F, 2.F, 3.F);
+  return model;
+}
+
 /// Two people. The labeller doubts the second one.
 class DetectorWithPrior : public testing::Test {
  protected:
@@ -365,7 +378,7 @@ class DetectorWithPrior : public testing::Test {
     scene.people.push_back(scene.people[0]);
     scene.people[1].feet.x() = -0.8F;
     truth = render(scene, kCamera, paper_body());
-    detector = std::make_unique<Detector>(std::make_shared<DoubtfulLabeller>(truth, 1), options);
+    detector = std::make_unique<Detector>(lenient(std::make_shared<DoubtfulLabeller>(truth, 1)), options);
   }
 
   /// Returns the pixels of a person, moved to the right by some pixels.
@@ -417,7 +430,7 @@ TEST_F(DetectorWithPrior, FindsByItsFleshAPersonOfWhomLabelsFindNoParts) {
     }
   }
   options.refine.min_parts = 26;  // more than there are
-  const Detector strict(std::make_shared<DoubtfulLabeller>(truth, 1), options);
+  const Detector strict(lenient(std::make_shared<DoubtfulLabeller>(truth, 1)), options);
   ASSERT_TRUE(strict.detect(truth.frame, {{{mask_of(1), {}, 20.F}}}).empty()) << "a mask alone needs its parts";
   const std::vector<Person> people = strict.detect(truth.frame, {{known}});
   ASSERT_EQ(people.size(), 1U);
@@ -428,7 +441,7 @@ TEST_F(DetectorWithPrior, FindsByItsFleshAPersonOfWhomLabelsFindNoParts) {
 
 TEST_F(DetectorWithPrior, FindsPeopleOfAForestWithoutBackgroundToo) {
   options.refine.min_score = 1.F;  // nobody is sure enough without the prior
-  const Detector without(std::make_shared<TruthLabeller>(truth.labels, paper_body(), false), options);
+  const Detector without(truth_model(truth.labels, paper_body(), false), options);
   Trace trace;
   EXPECT_TRUE(without.detect(truth.frame, {{{mask_of(0), {}}}}, &trace).empty());
   EXPECT_TRUE(std::ranges::any_of(trace.candidates, [](const auto& c) { return c.known == 0 && c.score > 0.5F; }));
@@ -448,7 +461,7 @@ TEST_F(DetectorWithPrior, OddsLetALowerScoreSufficeForTheKnownPersonAlone) {
   const float sure = trace.candidates[0].score, doubted = trace.candidates[1].score;
   ASSERT_LT(doubted, sure);
   options.refine.min_score = 0.5F * (doubted + sure);
-  const Detector strict(std::make_shared<DoubtfulLabeller>(truth, 1), options);
+  const Detector strict(lenient(std::make_shared<DoubtfulLabeller>(truth, 1)), options);
   const auto odds = [](float p) { return p / (1.F - p); };
   const float needed = odds(options.refine.min_score) / odds(doubted);
   EXPECT_EQ(strict.detect(truth.frame, {{{mask_of(1), {}, 0.99F * needed}}}).size(), 1U);
@@ -546,7 +559,7 @@ TEST_F(DetectorWithPrior, AsksTheGivenAppearance) {
     mutable int times = 0;
   };
   const auto appearance = std::make_shared<Asked>();
-  const auto labeller = std::make_shared<DoubtfulLabeller>(truth, 1);
+  const Model labeller = lenient(std::make_shared<DoubtfulLabeller>(truth, 1));
   const std::vector<Person> expected = detector->detect(truth.frame);
   options.grow.appearance = "none";
   expect_same(Detector(labeller, options, appearance).detect(truth.frame), expected);
@@ -572,14 +585,14 @@ TEST_F(DetectorWithPrior, TakesMasksOfTheFramesSizeOnAGridToo) {
   coarse.person = every_nth(truth.person, 2);
   class Half : public DoubtfulLabeller {
     using DoubtfulLabeller::DoubtfulLabeller;
-    void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
-      Camera as_whole = camera;  // TruthLabeller tells by the principal point which part of its picture is shown
-      as_whole.cx = kCamera.cx;
-      as_whole.cy = kCamera.cy;
-      DoubtfulLabeller::label_into(depth, as_whole, gate, out);
+    void label_into(const Frame& frame, float gate, Posteriors& out) const override {
+      Frame as_whole = frame;  // TruthLabeller tells by the principal point which part of its picture is shown
+      as_whole.camera.cx = kCamera.cx;
+      as_whole.camera.cy = kCamera.cy;
+      DoubtfulLabeller::label_into(as_whole, gate, out);
     }
   };
-  const Detector half(std::make_shared<Half>(coarse, 1), options);
+  const Detector half(lenient(std::make_shared<Half>(coarse, 1)), options);
   EXPECT_EQ(half.detect(truth.frame).size(), 1U);
   const std::vector<Person> people = half.detect(truth.frame, {{{mask_of(1), {}}}});
   ASSERT_EQ(people.size(), 2U);
@@ -597,7 +610,7 @@ TEST_F(DetectorWithPrior, RefusesAMaskOfAnotherSize) {
 
 TEST_F(DetectorWithPrior, LabelsAsDetectionDoes) {
   for (const bool background : {false, true}) {
-    const Detector plain(std::make_shared<TruthLabeller>(truth.labels, paper_body(), background));
+    const Detector plain(truth_model(truth.labels, paper_body(), background));
     Trace trace;
     ASSERT_EQ(plain.detect(truth.frame, &trace).size(), 2U);
     const Trace::Candidate& candidate = trace.candidates.front();
@@ -625,9 +638,9 @@ TEST(Judge, DecidesWhoIsAPerson) {
   const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
   constexpr int kSize = 5;  // the likeness of the area, in the order of kJudgedEvidence
   for (const float least : {0.F, 1.F}) {
-    auto labeller = std::make_shared<TruthLabeller>(truth.labels, paper_body(), true);
-    labeller->set_judge(judge_by(kSize, least));
-    const std::vector<Person> people = Detector(labeller, {}).detect(truth.frame);
+    Model model(std::make_shared<TruthLabeller>(truth.labels, paper_body(), true));
+    model.judge = judge_by(kSize, least);
+    const std::vector<Person> people = Detector(model).detect(truth.frame);
     ASSERT_EQ(people.size(), least == 0.F ? 1U : 0U);
     if (least == 0.F) {
       EXPECT_GT(people[0].score, 0.99F);
@@ -636,27 +649,25 @@ TEST(Judge, DecidesWhoIsAPerson) {
 }
 
 TEST(Judge, OfOtherEvidenceIsRefused) {
-  const LabelledFrame truth = render(one_person(2.F), kCamera, paper_body());
-  auto labeller = std::make_shared<TruthLabeller>(truth.labels, paper_body(), true);
-  BoostedTrees judge = judge_by(0, 0.F);
-  judge.features -= 1;
-  labeller->set_judge(judge);
-  EXPECT_THAT([&] { Detector(labeller, {}); },
+  Model model(std::make_shared<TruthLabeller>(LabelImage(), paper_body(), true));
+  model.judge = judge_by(0, 0.F);
+  model.judge.features -= 1;
+  EXPECT_THAT([&] { Detector{model}; },
               testing::ThrowsMessage<Error>(testing::HasSubstr("judge of people knows 34 features, expected 35")));
-  judge = judge_by(0, 0.F);
-  judge.asks = judge_names(paper_body());
-  judge.asks.back() = "part:tail";
-  labeller->set_judge(judge);
-  EXPECT_THAT([&] { Detector(labeller, {}); },
+  model.judge = judge_by(0, 0.F);
+  model.judge.asks = judge_names(paper_body());
+  model.judge.asks.back() = "part:tail";
+  EXPECT_THAT([&] { Detector{model}; },
               testing::ThrowsMessage<Error>(testing::HasSubstr("judge of people asks for \"part:tail\"")));
 }
 
 /// A labeller whose pixels rather say that the person is seen from the front, while all of them together say from
 /// behind, which is true. The pixels of the left hand can only be those of a right one.
-class RatherFromTheFront : public PixelLabeller {
+class RatherFromTheFront : public Labeller {
  public:
   explicit RatherFromTheFront(LabelImage truth) : truth_(std::move(truth)) {}
-  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+  void label_into(const Frame& frame, float /*gate*/, Posteriors& out) const override {
+    const DepthImage& depth = frame.depth;
     const LogitLayout layout(paper_body(), true, 8);
     out = test::headed_posteriors(depth);
     for (int v = 0; v < depth.height(); ++v) {
@@ -676,14 +687,9 @@ class RatherFromTheFront : public PixelLabeller {
       }
     }
   }
-  const BodyModel& body() const override { return paper_body(); }
-  bool has_background() const override { return true; }
-  bool has_distributions() const override { return true; }
-  const FacingModel& facing_model() const override { return model_; }
 
  private:
   LabelImage truth_;
-  FacingModel model_ = test::seen_from_behind();
 };
 
 TEST(Facing, NoLikelierSkeletonWithTheSidesSwappedIsKept) {
@@ -693,8 +699,9 @@ TEST(Facing, NoLikelierSkeletonWithTheSidesSwappedIsKept) {
   DetectOptions options;
   options.refine.min_score = 0.F;
   Trace trace;
-  const std::vector<Person> people =
-      Detector(std::make_shared<RatherFromTheFront>(truth.labels), options).detect(truth.frame, &trace);
+  Model model(std::make_shared<RatherFromTheFront>(truth.labels));
+  model.headings = test::seen_from_behind();
+  const std::vector<Person> people = Detector(model, options).detect(truth.frame, &trace);
   ASSERT_EQ(people.size(), 1U);
   const Skeleton& skeleton = people[0].skeleton;
   ASSERT_GT(trace.rough.front().score, skeleton.score) << "the first pass alone would be preferred";
@@ -711,11 +718,12 @@ TEST(Facing, NoLikelierSkeletonWithTheSidesSwappedIsKept) {
 }
 
 /// A labeller that sees true parts and is 40 percent sure that they are a body.
-class Doubtful : public PixelLabeller {
+class Doubtful : public Labeller {
  public:
   explicit Doubtful(LabelImage truth) : truth_(std::move(truth)) {}
-  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
-    out = {depth.width(), depth.height(), 26, 1, {}};
+  void label_into(const Frame& frame, float /*gate*/, Posteriors& out) const override {
+    const DepthImage& depth = frame.depth;
+    out = {depth.width(), depth.height(), 26, 255, {}};
     out.sums.assign(depth.size() * 26, 0);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
@@ -726,12 +734,6 @@ class Doubtful : public PixelLabeller {
       }
     }
   }
-  const BodyModel& body() const override { return paper_body(); }
-  bool has_background() const override { return true; }
-  bool has_distributions() const override { return true; }
-  const BoostedTrees& context() const override { return corrected; }
-
-  BoostedTrees corrected;
 
  private:
   LabelImage truth_;
@@ -742,11 +744,11 @@ TEST(Context, LabelsFollowItAndPeopleAreJudgedByTheForestAlone) {
   DetectOptions options;
   options.refine.min_score = 0.F;
   options.label.background_weight = options.label.proposal_weight = 1.F;
-  const auto labeller = std::make_shared<Doubtful>(truth.labels);
-  EXPECT_TRUE(Detector(labeller, options).detect(truth.frame).empty()) << "everything is rather the background";
-  labeller->corrected = {BodySurroundings::feature_count(paper_body()), 2.F, {BoostedTree{}}};
+  Model model(std::make_shared<Doubtful>(truth.labels));
+  EXPECT_TRUE(Detector(model, options).detect(truth.frame).empty()) << "everything is rather the background";
+  model.context = {BodySurroundings::feature_count(paper_body()), 2.F, {BoostedTree{}}};
   Trace trace;
-  ASSERT_EQ(Detector(labeller, options).detect(truth.frame, &trace).size(), 1U);
+  ASSERT_EQ(Detector(model, options).detect(truth.frame, &trace).size(), 1U);
   EXPECT_NEAR(trace.candidates.front().evidence.body, 0.4F, 0.05F);
   EXPECT_GT(trace.candidates.front().refined.found, 20);
 }

@@ -22,7 +22,7 @@ Frame wall(std::uint16_t depth_mm) {
 
 /// Posteriors of one part and the background that give every pixel this probability of body.
 Posteriors everywhere(double body) {
-  Posteriors posteriors{kWidth, kHeight, 2, 1, {}};
+  Posteriors posteriors{kWidth, kHeight, 2, 255, {}};
   for (int i = 0; i < kWidth * kHeight; ++i) {
     const auto part = static_cast<std::uint16_t>(std::lround(255.0 * body));
     posteriors.sums.push_back(part);

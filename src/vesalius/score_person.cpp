@@ -120,7 +120,7 @@ float share_exceeded(const std::array<long, kShareSteps>& of_step, long pixels, 
 
 /// What the forest says of the pixels of a mask.
 struct Belief {
-  float body = 1.F;          ///< mean body share; 1 if there is no background class, 0 without pixels
+  float body = 1.F;          ///< mean body share; 0 without pixels
   float surest = 0.F;        ///< body share that a tenth exceed
   std::vector<float> parts;  ///< shares of the parts in the body, by slot
 };
@@ -288,7 +288,6 @@ float body_beside(const Inside& inside, const Posteriors& posteriors, int parts)
 
 float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts) {
   constexpr int kEvery = 2;
-  if (posteriors.classes == parts) return 0.F;
   double sum = 0.0;
   long pixels = 0;
   for (int v = 0; v < depth.height(); v += kEvery) {

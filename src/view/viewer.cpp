@@ -118,10 +118,9 @@ struct Figures {
 /// people pass from one to the next in queues.
 class Viewer::Session {
  public:
-  Session(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options,
-          const ViewerOptions& viewer)
+  Session(FrameSource& source, Model model, const PeopleOptions& options, const ViewerOptions& viewer)
       : source_(source),
-        labeller_(std::move(labeller)),
+        model_(std::move(model)),
         first_options_(options),
         facts_{viewer.source, viewer.model, viewer.folder, viewer.track},
         rate_(viewer.player.rate),
@@ -150,7 +149,7 @@ class Viewer::Session {
     std::string failure;
     const auto record = [&](const std::optional<Found>& found, bool wanted) {
       try {
-        if (recording && found && !found->again) recording->add_frame(found->viewed, labeller_->body());
+        if (recording && found && !found->again) recording->add_frame(found->viewed, model_.body);
         if (recording && !wanted) {
           recording->close();
           recording.reset();
@@ -218,7 +217,7 @@ class Viewer::Session {
 
   std::vector<std::string> greet() {
     look_again();
-    return {hello_message(facts_, labeller_->body()), options_now(), state()};
+    return {hello_message(facts_, model_.body), options_now(), state()};
   }
 
   /// Does what a page asks for.
@@ -270,7 +269,7 @@ class Viewer::Session {
 
   /// Throws UsageError for options that the detector cannot use.
   Settings settings(const PeopleOptions& options) const {
-    return std::make_shared<const FinderSettings>(FinderSettings{options, Detector(labeller_, options.detect)});
+    return std::make_shared<const FinderSettings>(FinderSettings{options, Detector(model_, options.detect)});
   }
 
   void look_at(PlayedFrame played) {
@@ -319,7 +318,7 @@ class Viewer::Session {
 
   void publish(const Found& found) {
     if (server_.clients() == 0) return;
-    FrameMessages messages = frame_messages(found.viewed, labeller_->body());
+    FrameMessages messages = frame_messages(found.viewed, model_.body);
     server_.publish_frame(std::move(messages.plain), std::move(messages.with_stages), found.arrived);
   }
 
@@ -339,7 +338,7 @@ class Viewer::Session {
   }
 
   FrameSource& source_;
-  const std::shared_ptr<const PixelLabeller> labeller_;
+  const Model model_;
   const PeopleOptions first_options_;
   const ViewerFacts facts_;
   const double rate_;
@@ -356,9 +355,8 @@ class Viewer::Session {
   std::jthread worker_;
 };
 
-Viewer::Viewer(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options,
-               const ViewerOptions& viewer)
-    : session_(std::make_unique<Session>(source, std::move(labeller), options, viewer)) {}
+Viewer::Viewer(FrameSource& source, Model model, const PeopleOptions& options, const ViewerOptions& viewer)
+    : session_(std::make_unique<Session>(source, std::move(model), options, viewer)) {}
 
 Viewer::~Viewer() = default;
 

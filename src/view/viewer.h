@@ -5,7 +5,7 @@
 #include <string>
 
 #include "vesalius/base/frame_source.h"
-#include "vesalius/forest/label_pixels.h"
+#include "vesalius/model.h"
 #include "vesalius/track/track_people.h"
 #include "view/player.h"
 #include "view/web_server.h"
@@ -29,8 +29,7 @@ struct ViewerOptions {
 class Viewer {
  public:
   /// Listens and begins to play. Throws Error if it cannot listen, UsageError for an option outside its range.
-  Viewer(FrameSource& source, std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options,
-         const ViewerOptions& viewer);
+  Viewer(FrameSource& source, Model model, const PeopleOptions& options, const ViewerOptions& viewer);
   ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;

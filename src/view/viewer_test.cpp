@@ -63,9 +63,8 @@ class Running {
   explicit Running(bool paused, const std::string& folder = ".", int width = 80)
       : Running(std::make_unique<Room>(width), std::make_shared<test::BlindLabeller>(),
                 viewer_options(paused, folder)) {}
-  Running(std::unique_ptr<FrameSource> source, std::shared_ptr<const PixelLabeller> labeller,
-          const ViewerOptions& options)
-      : source_(std::move(source)), viewer_(*source_, std::move(labeller), {}, options), thread_([this] {
+  Running(std::unique_ptr<FrameSource> source, Model model, const ViewerOptions& options)
+      : source_(std::move(source)), viewer_(*source_, std::move(model), {}, options), thread_([this] {
           try {
             viewer_.run([this] { return stop_.load(); });
           } catch (const Error& e) {

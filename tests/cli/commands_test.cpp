@@ -74,13 +74,14 @@ TEST_F(Commands, InfoDescribesAModel) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json facts = json::parse(run.out);
   const std::string bytes = bytes_of(model());
-  const Forest forest = parse_model(bytes, "m");
+  const Model described = parse_model(bytes, "m");
+  const Forest& forest = described.forest;
   EXPECT_EQ(facts.at("size_bytes"), bytes.size());
   EXPECT_EQ(facts.at("checksum"), model_checksum(bytes));
   EXPECT_EQ(facts.at("recipe"), forest.recipe);
   EXPECT_EQ(facts.at("background_class"), forest.has_background);
   EXPECT_EQ(facts.at("headings"), forest.headings);
-  EXPECT_EQ(facts.at("judge_trees"), forest.judge.trees.size());
+  EXPECT_EQ(facts.at("judge_trees"), described.judge.trees.size());
   EXPECT_EQ(facts.at("body").at("parts").size(), 25U);
   ASSERT_EQ(facts.at("trees").size(), forest.trees.size());
   EXPECT_EQ(facts.at("trees").at(1).at("nodes"), forest.trees[1].nodes.size());
@@ -94,15 +95,15 @@ TEST_F(Commands, InfoDescribesAModel) {
 }
 
 TEST_F(Commands, InfoKeepsAModelsTextFromTheTerminal) {
-  Forest forest = load_model(model());
-  forest.recipe =
+  Model rude = load_model(model());
+  rude.forest.recipe =
       "honest\n\x1b[2Jgone \xc2\x9b"
       "31m";
-  save_model(forest, path("rude.forest"));
+  save_model(rude, path("rude.forest"));
   const Outcome text = run_program("info " + path("rude.forest"));
   EXPECT_THAT(text.out, HasSubstr("honest\n\\x1b[2Jgone \\xc2\\x9b31m"));
   const Outcome as_json = run_program("info --json " + path("rude.forest"));
-  EXPECT_EQ(json::parse(as_json.out).at("recipe"), forest.recipe);
+  EXPECT_EQ(json::parse(as_json.out).at("recipe"), rude.forest.recipe);
   for (const std::string& out : {text.out, as_json.out}) {
     EXPECT_EQ(out.find('\x1b'), std::string::npos);
     EXPECT_EQ(out.find("\xc2\x9b"), std::string::npos);
@@ -125,7 +126,7 @@ TEST_F(Commands, ConvertTurnsTextTreesIntoAModel) {
   write("two.txt", "0\n24\n");
   const Outcome run = run_program("convert -q " + path("one.txt") + " " + path("two.txt") + " " + path("text.forest"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Forest forest = load_model(path("text.forest"));
+  const Forest forest = load_model(path("text.forest")).forest;
   EXPECT_EQ(forest.trees, import_text_trees({path("one.txt"), path("two.txt")}).trees);
   const Outcome bad = run_program("convert " + frames() + "/meta.json " + path("bad.forest"));
   EXPECT_EQ(bad.exit_code, 1);
@@ -140,9 +141,9 @@ TEST_F(Commands, ConvertPutsAnotherBodyIntoAModel) {
   const Outcome run =
       run_program("convert -q " + model() + " " + path("longer.forest") + " --body " + path("longer.toml"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Forest forest = load_model(path("longer.forest"));
+  const Forest forest = load_model(path("longer.forest")).forest;
   EXPECT_EQ(forest.body.toml, text);
-  EXPECT_EQ(forest.trees, load_model(model()).trees);
+  EXPECT_EQ(forest.trees, load_model(model()).forest.trees);
   const Outcome refused = run_program("convert " + model() + " " + path("same.forest"));
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("expected --body and one other name"));

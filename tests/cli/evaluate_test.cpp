@@ -334,7 +334,7 @@ TEST_F(Evaluate, WritesTheModelWithAJudgeFittedToTheFrames) {
 
 TEST_F(Evaluate, FitsAJudgeToAForestWhoseOwnIsOfAnotherVersion) {
   say_that_only_the_first_frame_has_a_person();
-  Forest other = load_model(model());
+  Model other = load_model(model());
   other.judge = {3, 0.F, std::vector<BoostedTree>(1)};
   save_model(other, path("other.forest"));
   const Outcome refused = run_program("detect " + frames() + " -m " + path("other.forest"));
@@ -356,7 +356,7 @@ TEST_F(Evaluate, WritesTheModelWithAContextFittedToTheFrames) {
   const Outcome run = run_program(fit + path("context.forest"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, ContainsRegex("context fitted to [1-9][0-9]* pixels of people and [1-9][0-9]* of other things"));
-  const Forest fitted = load_model(path("context.forest"));
+  const Model fitted = load_model(path("context.forest"));
   EXPECT_EQ(fitted.context.trees.size(), 120U);
   EXPECT_TRUE(fitted.judge.empty());
   EXPECT_THAT(run_program("info " + path("context.forest")).out, HasSubstr("context_trees: 120\n"));
@@ -367,7 +367,7 @@ TEST_F(Evaluate, WritesTheModelWithAContextFittedToTheFrames) {
             0);
   EXPECT_EQ(load_model(path("again.forest")).context, fitted.context) << "fitted to what the forest alone says";
 
-  Forest other = load_model(model());
+  Model other = load_model(model());
   other.judge = {3, 0.F, std::vector<BoostedTree>(1)};
   save_model(other, path("other.forest"));
   EXPECT_EQ(run_program("evaluate " + path("labelled") + " -m " + path("other.forest") + " --fit-context " +

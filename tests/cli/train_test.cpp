@@ -107,7 +107,7 @@ TEST_F(TrainProgram, WritesAModelThatDetectLoads) {
       run_program(train("--data " + data() + " --background " + backgrounds() + " --out " + path("m.forest")));
   expect_done(run);
   EXPECT_GT(accuracy_in(run.err), 0.2) << "chance is 0.04; " << run.err;
-  const Forest forest = load_model(path("m.forest"));
+  const Forest forest = load_model(path("m.forest")).forest;
   EXPECT_EQ(forest.trees.size(), 3U);
   EXPECT_TRUE(forest.has_background);
   EXPECT_THAT(forest.recipe, HasSubstr("candidates = 20\n"));
@@ -122,7 +122,7 @@ TEST_F(TrainProgram, WritesAModelThatDetectLoads) {
 
 TEST_F(TrainProgram, TrainsTheSameModelFromItsRecipe) {
   expect_done(run_program(train("-q --data " + data() + " --out " + path("a.forest"))));
-  write_file_atomically(path("again.toml"), load_model(path("a.forest")).recipe);
+  write_file_atomically(path("again.toml"), load_model(path("a.forest")).forest.recipe);
   expect_done(
       run_program("train -q --options " + path("again.toml") + " --data " + data() + " --out " + path("b.forest")));
   EXPECT_EQ(bytes_of(path("a.forest")), bytes_of(path("b.forest")));
@@ -247,7 +247,8 @@ TEST_F(TrainProgram, LearnsTheLeavesOfItsTreesOrOfAModels) {
   const Outcome run = run_program(train(more + " --trees-of " + trees + " --out " + again));
   expect_done(run);
   EXPECT_THAT(run.err, HasSubstr("leaves: 3 of 3 rounds"));
-  const Forest learned = load_model(all), relearned = load_model(again), grown = load_model(trees);
+  const Forest learned = load_model(all).forest, relearned = load_model(again).forest;
+  const Forest grown = load_model(trees).forest;
   EXPECT_GT(learned.logit_unit, 0.F);
   ASSERT_EQ(relearned.trees.size(), grown.trees.size());
   for (std::size_t t = 0; t < grown.trees.size(); ++t) {

@@ -13,7 +13,7 @@
 #include "metrics/score_frame.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
-#include "vesalius/forest/make_labeller.h"
+#include "vesalius/model.h"
 
 namespace vesalius {
 namespace {
@@ -105,9 +105,9 @@ std::vector<AcceptedSet> parse_accuracy(std::string_view text, const std::string
 }
 
 MeasuredSet measure(const AcceptedSet& set, const std::string& project, const std::string& source) {
-  Forest forest = load_model(project + "/" + set.model);
-  forest.body = with_evaluation_joints(forest.body);
-  const FrameScorer scorer(make_labeller(std::move(forest)), {});
+  Model model = load_model(project + "/" + set.model);
+  model.body = with_evaluation_joints(model.body);
+  const FrameScorer scorer(std::move(model), {});
   const auto truth = open_truth(source, set.step);
   std::vector<TrueFrame> frames;
   while (auto frame = truth->next()) frames.push_back(std::move(*frame));

@@ -20,16 +20,16 @@
 namespace vesalius {
 namespace {
 
-Forest default_forest() { return load_model(VESALIUS_SOURCE_DIR "/data/models/default.forest"); }
+Model default_model() { return load_model(VESALIUS_SOURCE_DIR "/data/models/default.forest"); }
 
 /// Expects a device's posteriors, smoothed ones and people to be the processor's in every `step`-th frame of all real
 /// sets, which are looked at on the grid that the detector takes.
-void expect_same_on_real_frames(const std::filesystem::path& shared, const Forest& forest,
+void expect_same_on_real_frames(const std::filesystem::path& shared, const Model& model,
                                 const std::shared_ptr<gpu::Device>& device, std::size_t step) {
-  const ForestLabeller processor(forest);
-  const auto on_device = std::make_shared<gpu::DeviceLabeller>(forest, device);
-  const Detector detector(forest);
-  const Detector device_detector(on_device);
+  const ForestLabeller processor(model.forest);
+  const auto labeller = std::make_shared<gpu::DeviceLabeller>(model.forest, device);
+  const Detector detector(model);
+  const Detector device_detector(on_device(model, "this", {{{"this", [&](const Forest&, int) { return labeller; }}}}));
   int frames = 0, people = 0;
   for (const std::string set :
        {"alina_wave", "fallseq", "jointvosf", "neg_7scenes_kitchen", "neg_aims", "neg_leezl_tabletop", "neg_pcl", "pcl",
@@ -41,8 +41,8 @@ void expect_same_on_real_frames(const std::filesystem::path& shared, const Fores
       const Frame grid = every_nth(frame, grid_step(frame.camera, {}));
       for (const float gate : {LabelOptions{}.gate, 2.F}) {
         Posteriors expected, found, mean;
-        processor.label_into(grid.depth, grid.camera, gate, expected);
-        ASSERT_TRUE(on_device->label_and_smooth_into(grid.depth, grid.camera, gate, {}, found, mean));
+        processor.label_into(grid, gate, expected);
+        ASSERT_TRUE(labeller->label_and_smooth_into(grid, gate, {}, found, mean));
         ASSERT_NO_FATAL_FAILURE(test::expect_same(found, expected, grid.depth));
         ASSERT_EQ(mean.sums, mean_filter(expected, grid.depth, grid.camera, {}).sums);
       }
@@ -68,7 +68,7 @@ std::size_t frame_step() {
 // Labels: real slow
 TEST(RealFramesOnADevice, GiveTheSameInTheSimulator) {
   VESALIUS_NEEDS_SHARED();
-  expect_same_on_real_frames(shared, default_forest(), std::make_shared<gpu::SimulatedDevice>(), frame_step());
+  expect_same_on_real_frames(shared, default_model(), std::make_shared<gpu::SimulatedDevice>(), frame_step());
 }
 
 // Labels: real slow
@@ -87,7 +87,7 @@ TEST(RealFramesOnADevice, GiveTheSameOnACard) {
   } catch (const DeviceError& e) {
     GTEST_SKIP() << e.what();
   }
-  expect_same_on_real_frames(shared, default_forest(), card, 1);
+  expect_same_on_real_frames(shared, default_model(), card, 1);
   expect_same_on_real_frames(shared, load_released_trees(shared), card, 1);
 }
 

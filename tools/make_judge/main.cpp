@@ -10,16 +10,16 @@
 #include "learn/boost_trees.h"
 #include "vesalius/base/error.h"
 #include "vesalius/default_judge.h"
-#include "vesalius/forest/make_labeller.h"
+#include "vesalius/model.h"
 
 namespace vesalius {
 namespace {
 
 /// Returns the candidates of a forest without its judge in the frames of a source, with the evidence of any body.
 std::vector<BoostSample> samples_of(const std::string& model, const std::string& source) {
-  Forest forest = load_model(model);
-  forest.judge = {};
-  const FrameScorer scorer(make_labeller(std::move(forest)), {});
+  Model loaded = load_model(model);
+  loaded.judge = {};
+  const FrameScorer scorer(std::move(loaded), {});
   const SetResult set = evaluate_set(*open_truth(source), {source, source}, scorer);
   std::vector<BoostSample> samples;
   long people = 0;

@@ -41,7 +41,7 @@ PixelScore score_pixels(const Forest& forest, const std::vector<LabelledFrame>& 
   const auto parts = static_cast<std::size_t>(forest.body.part_count());
   Tally tally{std::vector<std::int64_t>(parts, 0), std::vector<std::int64_t>(parts, 0)};
   for (const LabelledFrame& frame : frames) {
-    count(labeller.label(frame.frame.depth, frame.frame.camera), frame, forest.body.part_count(), tally);
+    count(labeller.label(frame.frame), frame, forest.body.part_count(), tally);
   }
   PixelScore score;
   int in_view = 0;

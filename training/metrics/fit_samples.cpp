@@ -10,7 +10,7 @@
 #include "vesalius/base/random.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/forest/body_context.h"
-#include "vesalius/forest/label_scene.h"
+#include "vesalius/label_scene.h"
 
 namespace vesalius {
 namespace {
@@ -23,16 +23,15 @@ std::uint64_t seed_of(const std::string& name) {
 
 }  // namespace
 
-std::vector<BoostSample> context_samples(const TrueFrame& frame, const std::shared_ptr<const PixelLabeller>& labeller,
-                                         const DetectOptions& options) {
-  if (frame.truth.labels.empty() || !labeller->has_background()) return {};
-  const SceneLabeller scenes(labeller, {options.label, options.smooth, options.grow.plane});
+std::vector<BoostSample> context_samples(const TrueFrame& frame, const Model& model, const DetectOptions& options) {
+  if (frame.truth.labels.empty()) return {};
+  const SceneLabeller scenes(model, {options.label, options.smooth, options.grow.plane});
   Frame memory;
   const Frame& seen = without_blended(frame.frame, options.blend, memory);
   const auto sample = [&](const Frame& grid, int step) {
     StageClock clock(nullptr);
     const SceneLabels scene = scenes.label_scene(grid, clock);
-    const BodySurroundings around(scene.posteriors(), grid.depth, grid.camera, labeller->body());
+    const BodySurroundings around(scene.posteriors(), grid.depth, grid.camera, model.body);
     const int apart = step * around.step();
     Random random(seed_of(frame.frame.name));
     std::vector<BoostSample> samples;
@@ -40,7 +39,7 @@ std::vector<BoostSample> context_samples(const TrueFrame& frame, const std::shar
       for (int column = 0; column < around.columns(); ++column) {
         if (!around.is_open(column, row) || random.below(kContextEvery) != 0) continue;
         BoostSample& cell = samples.emplace_back();
-        cell.features.resize(BodySurroundings::feature_count(labeller->body()));
+        cell.features.resize(BodySurroundings::feature_count(model.body));
         around.features(column, row, cell.features.data());
         cell.positive = frame.truth.labels(column * apart, row * apart) != kBackground;
       }

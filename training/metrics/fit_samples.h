@@ -42,10 +42,9 @@ struct StanceSample {
 };
 
 /// Returns one of every kContextEvery cells of a frame that may be bodies (body_context.h), as the detector sees them,
-/// and whether they are. The labeller has a background class. Frames whose labels are not known have none. The same
+/// and whether they are. `model` has a labeller. Frames whose labels are not known have none. The same
 /// frame gives the same cells.
-std::vector<BoostSample> context_samples(const TrueFrame& frame, const std::shared_ptr<const PixelLabeller>& labeller,
-                                         const DetectOptions& options);
+std::vector<BoostSample> context_samples(const TrueFrame& frame, const Model& model, const DetectOptions& options);
 inline constexpr unsigned kContextEvery = 48;
 
 /// Adds a sample for each joint of a person that comes from the fitted body (builtin_flesh_joints) and whose truth is

@@ -9,12 +9,12 @@ namespace vesalius {
 namespace {
 
 /// A labeller that finds half a neck everywhere.
-class Unsure : public PixelLabeller {
+class Unsure : public Labeller {
  public:
-  explicit Unsure(bool background = true) : background_(background) {}
-  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
-    const int classes = paper_body().part_count() + (background_ ? 1 : 0);
-    out = {depth.width(), depth.height(), classes, 1, {}};
+  void label_into(const Frame& frame, float /*gate*/, Posteriors& out) const override {
+    const DepthImage& depth = frame.depth;
+    const int classes = paper_body().part_count() + 1;
+    out = {depth.width(), depth.height(), classes, 255, {}};
     out.sums.assign(depth.size() * static_cast<std::size_t>(classes), 0);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
@@ -24,12 +24,6 @@ class Unsure : public PixelLabeller {
       }
     }
   }
-  const BodyModel& body() const override { return paper_body(); }
-  bool has_background() const override { return background_; }
-  bool has_distributions() const override { return true; }
-
- private:
-  bool background_;
 };
 
 TEST(ContextSamples, AreCellsWithTheirTruth) {
@@ -70,9 +64,8 @@ TEST(ContextSamples, AreTheSameForTheSameFrame) {
   EXPECT_NE(of("a"), of("b")) << "other cells of other frames";
 }
 
-TEST(ContextSamples, NeedLabelsAndABackground) {
+TEST(ContextSamples, NeedLabels) {
   TrueFrame frame = test::capsule_frame(1.8F, 0.F);
-  EXPECT_TRUE(context_samples(frame, std::make_shared<Unsure>(false), {}).empty());
   frame.truth.labels = {};
   EXPECT_TRUE(context_samples(frame, std::make_shared<Unsure>(), {}).empty());
 }

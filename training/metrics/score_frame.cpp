@@ -109,8 +109,8 @@ MetricTerm score_term(float score, bool person) {
 
 }  // namespace
 
-FrameScorer::FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options)
-    : options_(std::move(options)), labeller_(std::move(labeller)), detector_(labeller_, options_.detect) {
+FrameScorer::FrameScorer(Model model, Options options)
+    : options_(std::move(options)), model_(on_device(std::move(model))), detector_(model_, options_.detect) {
   const std::vector<JointSet>& sets = body().joint_sets;
   if (options_.joint_set.empty() || std::ranges::find(sets, options_.joint_set, &JointSet::name) != sets.end()) return;
   std::string names;
@@ -129,7 +129,7 @@ FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
   FrameScore score;
   score.expected = expected_people(frame.truth);
   if (options_.fit_context) {
-    score.context_samples = context_samples(frame, labeller_, options_.detect);
+    score.context_samples = context_samples(frame, model_, options_.detect);
     return score;
   }
   const Mask people = labelled_people(frame.truth);

@@ -48,7 +48,7 @@ class FrameScorer {
   };
 
   /// Throws the errors of Detector, and UsageError if the body has no such joint set.
-  FrameScorer(std::shared_ptr<const PixelLabeller> labeller, Options options);
+  FrameScorer(Model model, Options options);
 
   /// Judges one frame. With `fit_joints` the score has the people found with their truth instead of joint metrics.
   /// Throws Error if truth and frame do not fit together.
@@ -83,7 +83,7 @@ class FrameScorer {
   void judge_labels(const TrueFrame& frame, const FrameLabels& labels, FrameScore& score) const;
 
   Options options_;
-  std::shared_ptr<const PixelLabeller> labeller_;
+  Model model_;
   Detector detector_;
 };
 

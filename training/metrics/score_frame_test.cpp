@@ -27,13 +27,14 @@ const Camera kCamera{160, 120, 131.25F, 131.25F, 79.5F, 59.5F};
 
 /// A labeller that gives every pixel its true label. With its mistake, the people's pixels in the picture's left half
 /// become background.
-class Labeller : public PixelLabeller {
+class Labeller : public vesalius::Labeller {
  public:
   Labeller(LabelImage truth, bool half_blind) : truth_(std::move(truth)), half_blind_(half_blind) {}
 
-  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+  void label_into(const Frame& frame, float /*gate*/, Posteriors& out) const override {
+    const DepthImage& depth = frame.depth;
     ++asked;
-    out = {depth.width(), depth.height(), paper_body().part_count() + 1, 1, {}};
+    out = {depth.width(), depth.height(), paper_body().part_count() + 1, 255, {}};
     out.sums.assign(depth.size() * out.classes, 0);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
@@ -45,9 +46,6 @@ class Labeller : public PixelLabeller {
       }
     }
   }
-  const BodyModel& body() const override { return paper_body(); }
-  bool has_background() const override { return true; }
-  bool has_distributions() const override { return true; }
 
   mutable std::atomic<int> asked = 0;  ///< number of calls
 

@@ -93,7 +93,7 @@ void run(const Arguments& arguments) {
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
   const PeopleOptions people = arguments.detector.options();
-  const auto labeller = arguments.detector.labeller();
+  const Model model = arguments.detector.loaded();
   SourceOptions camera = arguments.camera;
   std::atomic<Viewer*> page = nullptr;  // cameras speak in the player's thread
   camera.say = [&page](const std::string& line) {
@@ -105,7 +105,7 @@ void run(const Arguments& arguments) {
     for (const std::string& note : source->notes()) say("note: " + note);
   }
   const ViewerOptions options = viewer_options(arguments);
-  Viewer viewer(*source, labeller, people, options);
+  Viewer viewer(*source, model, people, options);
   page = &viewer;
   watch_interrupts();
   const std::string& token = options.web.access.token;

@@ -81,12 +81,13 @@ void check_body_text(const BodyModel& body) {
   }
 }
 
-void read_facing(ByteReader& in, Forest& forest) {
-  forest.facing = {forest.headings, forest.body.part_count(), {}};
+FacingModel read_facing(ByteReader& in, const Forest& forest) {
+  FacingModel facing{forest.headings, forest.body.part_count(), {}};
   const auto count = in.number<std::uint32_t>("weights of headings");
-  const std::size_t expected = forest.facing.features() * static_cast<std::size_t>(forest.headings);
+  const std::size_t expected = facing.features() * static_cast<std::size_t>(forest.headings);
   if (count != 0 && count != expected) in.fail(fmt::format("{} weights of headings, expected {}", count, expected));
-  for (std::uint32_t i = 0; i < count; ++i) forest.facing.weights.push_back(in.real32("weights of headings"));
+  for (std::uint32_t i = 0; i < count; ++i) facing.weights.push_back(in.real32("weights of headings"));
+  return facing;
 }
 
 void write_boosted(ByteWriter& out, const BoostedTrees& boosted, bool names) {
@@ -122,21 +123,22 @@ BoostedTrees read_boosted(ByteReader& in, const char* what, bool names) {
 
 }  // namespace
 
-std::string serialise_model(const Forest& forest) {
-  check(forest);
-  check_body_text(forest.body);
+std::string serialise_model(const Model& model) {
+  check(model);
+  check_body_text(model.body);
+  const Forest& forest = model.forest;
   ByteWriter out;
   out.bytes() += kMagic;
   out.number(static_cast<std::uint16_t>(kModelVersion));
   const bool logits = forest.logit_unit != 0.F;
-  const bool judge = !forest.judge.empty(), context = !forest.context.empty();
-  const bool names = !forest.judge.asks.empty() || !forest.context.asks.empty();
+  const bool judge = !model.judge.empty(), context = !model.context.empty();
+  const bool names = !model.judge.asks.empty() || !model.context.asks.empty();
   out.number(static_cast<std::uint16_t>((forest.has_background ? kFlagBackground : 0) | (logits ? kFlagLogits : 0) |
                                         (judge ? kFlagJudge : 0) | (context ? kFlagContext : 0) |
                                         (names ? kFlagNames : 0)));
   out.number(std::uint64_t{0});  // size and checksum, filled in at the end
   out.number(std::uint64_t{0});
-  out.text(forest.body.toml);
+  out.text(model.body.toml);
   out.text(forest.recipe);
   out.real(forest.convention.offset_unit);
   out.real(forest.convention.reference_focal_px);
@@ -148,26 +150,28 @@ std::string serialise_model(const Forest& forest) {
     out.real(forest.logit_unit);
     out.number(static_cast<std::uint16_t>(forest.headings));
     write_logits(out, forest.trees);
-    out.number(static_cast<std::uint32_t>(forest.facing.weights.size()));
-    for (const float weight : forest.facing.weights) out.real(weight);
+    out.number(static_cast<std::uint32_t>(model.headings.weights.size()));
+    for (const float weight : model.headings.weights) out.real(weight);
   }
-  if (context) write_boosted(out, forest.context, names);
-  if (judge) write_boosted(out, forest.judge, names);
+  if (context) write_boosted(out, model.context, names);
+  if (judge) write_boosted(out, model.judge, names);
   overwrite(out.bytes(), kSizeAt, static_cast<std::uint64_t>(out.bytes().size()));
   overwrite(out.bytes(), kChecksumAt, checksum(out.bytes()));
   return std::move(out.bytes());
 }
 
-Forest parse_model(std::string_view bytes, const std::string& name) {
+Model parse_model(std::string_view bytes, const std::string& name) {
   check_header(bytes, name);
   ByteReader in(bytes, name);
   in.take(kMagic.size() + sizeof(std::uint16_t), "header");
   const auto flags = in.number<std::uint16_t>("flags");
   if (flags > kAllFlags) in.fail(fmt::format("unknown flags {}", flags));
   in.take(kHeaderBytes - kSizeAt, "header");
-  Forest forest;
+  Model model;
+  Forest& forest = model.forest;
   forest.has_background = (flags & kFlagBackground) != 0;
   forest.body = parse_body_model(in.text("body model"), name + ": body model");
+  model.body = forest.body;
   forest.recipe = in.text("recipe");
   forest.convention.offset_unit = in.real32("convention");
   forest.convention.reference_focal_px = in.real32("convention");
@@ -180,24 +184,24 @@ Forest parse_model(std::string_view bytes, const std::string& name) {
     forest.headings = in.number<std::uint16_t>("headings");
     const LogitLayout layout(forest.body, forest.has_background, forest.headings);
     read_logits(in, static_cast<std::size_t>(layout.size()), forest.trees);
-    read_facing(in, forest);
+    model.headings = read_facing(in, forest);
   }
   const bool names = (flags & kFlagNames) != 0;
-  if ((flags & kFlagContext) != 0) forest.context = read_boosted(in, "context of bodies", names);
-  if ((flags & kFlagJudge) != 0) forest.judge = read_boosted(in, "judge of people", names);
+  if ((flags & kFlagContext) != 0) model.context = read_boosted(in, "context of bodies", names);
+  if ((flags & kFlagJudge) != 0) model.judge = read_boosted(in, "judge of people", names);
   in.expect_end();
-  with_context(name, [&] { check(forest); });
-  return forest;
+  with_context(name, [&] { check(model); });
+  return model;
 }
 
 std::string model_checksum(std::string_view bytes) {
   return bytes.size() < kHeaderBytes ? std::string() : fmt::format("{:016x}", checksum(bytes));
 }
 
-Forest load_model(const std::string& path) { return parse_model(read_file(path), path); }
+Model load_model(const std::string& path) { return parse_model(read_file(path), path); }
 
-void save_model(const Forest& forest, const std::string& path) {
-  write_file_atomically(path, with_context(path, [&] { return serialise_model(forest); }));
+void save_model(const Model& model, const std::string& path) {
+  write_file_atomically(path, with_context(path, [&] { return serialise_model(model); }));
 }
 
 }  // namespace vesalius

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "vesalius/forest/forest.h"
+#include "vesalius/model.h"
 
 namespace vesalius {
 
@@ -12,18 +12,18 @@ inline constexpr int kModelVersion = 2;
 
 /// Reads a model file (docs/formats.md). Throws Error if the file is truncated, damaged (by its checksum), not a model,
 /// or of another version. Trees are unpacked in parallel.
-Forest load_model(const std::string& path);
+Model load_model(const std::string& path);
 
 /// Reads a model from bytes; `name` is used as the path in errors.
-Forest parse_model(std::string_view bytes, const std::string& name);
+Model parse_model(std::string_view bytes, const std::string& name);
 
 /// Writes a model file atomically, so a half-written model is never seen. Throws Error if it cannot be written.
-void save_model(const Forest& forest, const std::string& path);
+void save_model(const Model& model, const std::string& path);
 
-/// Returns the bytes of a model file. One version of zstd always gives the same bytes for the same forest. A node and a
+/// Returns the bytes of a model file. One version of zstd always gives the same bytes for the same model. A node and a
 /// leaf take about 8 bytes together if the trees are in depth-first order (model_trees.h). Throws Error for an
-/// inconsistent forest, for more than kMaxModelNodes nodes or leaves, and for a body whose text does not describe it.
-std::string serialise_model(const Forest& forest);
+/// inconsistent model, for more than kMaxModelNodes nodes or leaves, and for a body whose text does not describe it.
+std::string serialise_model(const Model& model);
 
 /// Returns the checksum of a whole model file as 16 hexadecimal digits. It identifies a model whatever its file is
 /// called.

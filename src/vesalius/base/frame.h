@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vesalius/base/camera.h"
@@ -23,6 +24,9 @@ struct Frame {
   /// Unit vector away from the ground in the optical frame, as a sensor of acceleration measured it; none without one.
   std::optional<Eigen::Vector3f> up = std::nullopt;
 };
+
+/// Returns a frame of nothing but depth.
+inline Frame depth_frame(DepthImage depth, const Camera& camera) { return {{}, {}, camera, std::move(depth), {}}; }
 
 /// Returns the point that pixel (u, v) of a depth image sees; its z is 0 where there is no reading.
 inline Eigen::Vector3f point_at(const Camera& camera, const DepthImage& depth, int u, int v) {

@@ -44,8 +44,6 @@ void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& v
       {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length; smoothing by mode takes 1."});
   visitor.option(prefix + "depth-gate", o.depth_gate_mm,
                  {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
-  visitor.option(prefix + "mode", o.mode,
-                 {"", 0, 1, "Smooth labels by their mode even if the forest has distributions."});
 }
 
 void visit_options(const std::string& prefix, ClusterOptions& o, OptionVisitor& visitor) {

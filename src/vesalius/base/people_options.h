@@ -36,7 +36,6 @@ struct SmoothOptions {
   int window = 5;   ///< neighbours along a side of the square; an even number counts as the next odd one; 1 = none
   int spacing = 0;  ///< pixels from one neighbour to the next when smoothing posteriors; 0: see `spaced`
   int depth_gate_mm = 60;  ///< posteriors of neighbours further away than this in depth do not count
-  bool mode = false;       ///< smooth labels by their mode even where the forest has distributions
 };
 
 /// Part proposals (section 5).

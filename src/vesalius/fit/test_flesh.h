@@ -127,7 +127,7 @@ inline void describe(const BodyModel& body, const Frame& frame, Person& person) 
   const int parts = body.part_count();
   person.mask = Mask(frame.depth.width(), frame.depth.height());
   Posteriors posteriors{
-      .width = frame.depth.width(), .height = frame.depth.height(), .classes = parts, .trees = 1, .sums = {}};
+      .width = frame.depth.width(), .height = frame.depth.height(), .classes = parts, .whole = 255, .sums = {}};
   posteriors.sums.assign(frame.depth.size() * static_cast<std::size_t>(parts), 0);
   std::vector<Eigen::Vector3f> sums(parts, Eigen::Vector3f::Zero());
   std::vector<int> counts(parts, 0);

@@ -12,14 +12,12 @@ bool take_from_grid(const DepthImage& depth, int step, int u, int v, Posteriors&
   return nearest.found;
 }
 
-long BackgroundGate::enough(float least, int trees) {
-  return static_cast<long>(std::ceil(least * 255.F * float(trees)));
-}
+long BackgroundGate::enough(float least, int whole) { return static_cast<long>(std::ceil(least * float(whole))); }
 
 BackgroundGate::BackgroundGate(const DepthImage& depth, const Posteriors& posteriors, float least)
     : width_(depth.width()),
       states_((depth.width() + kStep - 1) / kStep, (depth.height() + kStep - 1) / kStep, kNoReading) {
-  const long certain = enough(least, posteriors.trees);
+  const long certain = enough(least, posteriors.whole);
   for (int j = 0; j < states_.height(); ++j) {
     for (int i = 0; i < states_.width(); ++i) {
       const int u = i * kStep, v = j * kStep;

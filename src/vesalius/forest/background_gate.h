@@ -20,8 +20,8 @@ class BackgroundGate {
   /// hand's breadth apart are not one surface.
   static constexpr int kGuideMm = 50;
 
-  /// Returns the sum over `trees` trees from which on the background is certain.
-  static long enough(float least, int trees);
+  /// Returns the sum of probabilities (Posteriors::whole) from which on the background is certain.
+  static long enough(float least, int whole);
 
   /// `posteriors` have at least the pixels of the grid; their last class is the background. The forest is certain if
   /// that class has a probability of at least `least`.

@@ -11,7 +11,7 @@ constexpr int kStep = BackgroundGate::kStep;
 
 /// Returns posteriors of one tree with two classes, the second of which is the background.
 Posteriors even(const DepthImage& depth, std::uint16_t background) {
-  Posteriors p{depth.width(), depth.height(), 2, 1, {}};
+  Posteriors p{depth.width(), depth.height(), 2, 255, {}};
   for (std::size_t i = 0; i < depth.size(); ++i) p.sums.insert(p.sums.end(), {std::uint16_t{0}, background});
   return p;
 }

@@ -182,7 +182,7 @@ void BodySurroundings::features(int column, int row, float* out) const {
   out[3] = z_m;
   out += kOfPixel + kinds_;
   // What a box's sum of posteriors must be divided by besides its cells.
-  const float unit = 255.F * float(posteriors_.trees);
+  const auto unit = float(posteriors_.whole);
   const float cells_per_m = camera_.fx / (z_m * float(step_));
   const auto of_box = [&](const Box4& box) {
     *out++ = float(box[kBody]) / (unit * box.cells);

@@ -26,7 +26,7 @@ const BodyModel& body() { return paper_body(); }
 
 struct Picture {
   DepthImage depth{kCamera.width, kCamera.height, 2000};
-  Posteriors posteriors{kCamera.width, kCamera.height, body().part_count() + 1, kTrees, {}};
+  Posteriors posteriors{kCamera.width, kCamera.height, body().part_count() + 1, kWhole, {}};
 
   Picture() {
     posteriors.sums.assign(depth.size() * posteriors.classes, 0);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/forest/leaf_logits.h"
 
@@ -37,6 +38,15 @@ bool has_turns(const Posteriors& posteriors, int u, int v) {
 }
 
 }  // namespace
+
+void check(const FacingModel& model, int parts, int headings) {
+  const bool fits = model.headings == headings && model.parts == parts &&
+                    model.weights.size() == model.features() * static_cast<std::size_t>(headings);
+  if (!model.empty() && !fits) throw Error("regression of headings for other parts or headings");
+  if (std::ranges::any_of(model.weights, [](float w) { return !std::isfinite(w); })) {
+    throw Error("regression of headings has a weight that is no number");
+  }
+}
 
 FacingEvidence::FacingEvidence(int parts, int headings)
     : parts_(parts),
@@ -126,7 +136,7 @@ void turn_posteriors(const Posteriors& posteriors, const std::vector<std::uint8_
   out.width = box.width;
   out.height = box.height;
   out.classes = posteriors.classes;
-  out.trees = posteriors.trees;
+  out.whole = posteriors.whole;
   out.settled = posteriors.settled.empty() ? Mask{} : crop(posteriors.settled, box);
   out.sums.resize(static_cast<std::size_t>(box.width) * box.height * out.classes);
   parallel_ranges(box.height, kRowGrain, [&](int begin, int end) {

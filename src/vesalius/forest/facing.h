@@ -15,6 +15,9 @@
 
 namespace vesalius {
 
+/// Throws Error if a regression that is not empty is for other parts or headings or has a weight that is no number.
+void check(const FacingModel& model, int parts, int headings);
+
 /// Gathers what a person's pixels tell of the heading.
 class FacingEvidence {
  public:

@@ -15,7 +15,7 @@ const std::vector<std::uint8_t> kSidesOfParts = {0, 1, 2};
 /// Returns a picture of 2x1 pixels with two headings. The first pixel is a left part seen from the front or a right one
 /// seen from behind, as likely; the second was settled as background.
 Posteriors ambiguous() {
-  Posteriors p{2, 1, 4, 1, {0, 100, 100, 55, 0, 0, 0, 255}};
+  Posteriors p{2, 1, 4, 255, {0, 100, 100, 55, 0, 0, 0, 255}};
   p.settled = Mask(2, 1, 0);
   p.settled(1, 0) = 1;
   p.headings = 2;

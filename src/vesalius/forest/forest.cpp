@@ -61,13 +61,7 @@ void check_logits(const Forest& forest) {
   if (forest.headings < 0 || forest.headings > kMostHeadings || (!has && forest.headings != 0)) {
     throw Error("forest: " + std::to_string(forest.headings) + " headings, expected 0 to 64");
   }
-  const FacingModel& facing = forest.facing;
-  const bool fits = facing.headings == forest.headings && facing.parts == forest.body.part_count() &&
-                    facing.weights.size() == facing.features() * static_cast<std::size_t>(facing.headings);
-  if (!facing.empty() && !fits) throw Error("forest: regression of headings for other parts or headings");
-  if (std::ranges::any_of(facing.weights, [](float w) { return !std::isfinite(w); })) {
-    throw Error("forest: regression of headings has a weight that is no number");
-  }
+  check(forest.facing, forest.body.part_count(), forest.headings);
   const std::size_t size = LogitLayout(forest.body, forest.has_background, forest.headings).size();
   for (std::size_t t = 0; t < forest.trees.size(); ++t) {
     const std::size_t expected = has ? forest.trees[t].leaves.size() * size : 0;
@@ -91,11 +85,6 @@ void check(const Forest& forest) {
   }
   for (std::size_t t = 0; t < forest.trees.size(); ++t) check_tree(forest.trees[t], t, forest.class_count());
   check_logits(forest);
-  check(forest.context, "context of bodies");
-  check(forest.judge, "judge of people");
-  if (!forest.context.empty() && !forest.has_background) {
-    throw Error("forest: a context of bodies without a background class");
-  }
 }
 
 int depth(const Tree& tree) {

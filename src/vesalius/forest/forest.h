@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "vesalius/base/body_model.h"
-#include "vesalius/forest/boosted_trees.h"
 
 namespace vesalius {
 
@@ -66,7 +65,7 @@ struct FacingModel {
   friend bool operator==(const FacingModel&, const FacingModel&) = default;
 };
 
-/// A trained labeller: what `load_model` returns and a Detector takes.
+/// Trees that label pixels, as training returns them (vesalius/model.h).
 struct Forest {
   BodyModel body;
   FeatureConvention convention;
@@ -75,8 +74,6 @@ struct Forest {
   float logit_unit = 0.F;  ///< of the leaves' logits in nats; 0 where leaves have distributions instead
   int headings = 0;        ///< headings that the leaves' logits tell apart
   FacingModel facing;      ///< how a person's heading follows from them; may be empty
-  BoostedTrees context;    ///< which pixels are bodies, given what is around them (body_context.h); may be empty
-  BoostedTrees judge;      ///< which proposals are people; may be empty
   std::string recipe;      ///< free text on how it was made
 
   int class_count() const { return body.part_count() + (has_background ? 1 : 0); }
@@ -88,8 +85,7 @@ void check(const Forest& forest);
 /// Returns the number of edges from the root to the deepest leaf.
 int depth(const Tree& tree);
 
-/// Returns whether any leaf has more than one class. Otherwise each tree gives a single vote, and the labels are
-/// smoothed instead of the posteriors.
+/// Returns whether any leaf has more than one class. Otherwise each tree gives a single vote.
 bool has_distributions(const Forest& forest);
 
 }  // namespace vesalius

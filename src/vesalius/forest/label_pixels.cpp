@@ -58,8 +58,8 @@ class Chooser {
       : posteriors_(posteriors),
         depth_(depth),
         choice_(choice),
-        weight_(choice, choice_weights(options, posteriors.trees)),
-        classes_(choice.part_count + (choice.has_background && choice.prior == nullptr ? 1 : 0)),
+        weight_(choice, choice_weights(options, posteriors.whole)),
+        classes_(choice.prior == nullptr ? posteriors.classes : choice.part_count),
         box_(choice.box != nullptr ? *choice.box : Box{0, 0, depth.width(), depth.height()}),
         first_(depth.width(), depth.height(), kBackground),
         unsure_(depth.width(), depth.height(), 0) {}
@@ -282,15 +282,7 @@ const Forest& checked(const Forest& forest) {
 }  // namespace
 
 TrainedLabeller::TrainedLabeller(const Forest& forest)
-    : body_(checked(forest).body),
-      has_background_(forest.has_background),
-      has_distributions_(vesalius::has_distributions(forest)),
-      classes_(forest.class_count()),
-      trees_(int(forest.trees.size())),
-      layout_(forest.body, forest.has_background, forest.headings),
-      facing_(forest.facing),
-      context_(forest.context),
-      judge_(forest.judge) {}
+    : trees_(int(checked(forest).trees.size())), layout_(forest.body, forest.has_background, forest.headings) {}
 
 void TrainedLabeller::check_size(const DepthImage& depth) {
   if (std::max(depth.width(), depth.height()) > PaddedDepth::kMaxSide) {
@@ -301,7 +293,8 @@ void TrainedLabeller::check_size(const DepthImage& depth) {
 
 void TrainedLabeller::prepare(const DepthImage& depth, Posteriors& out) const {
   check_size(depth);
-  out.resize_like({.width = depth.width(), .height = depth.height(), .classes = classes_, .trees = trees_, .sums = {}});
+  out.resize_like(
+      {.width = depth.width(), .height = depth.height(), .classes = layout_.classes(), .whole = whole(), .sums = {}});
   out.headings = layout_.headings;
   out.turns.resize(depth.size() * out.turn_count());
 }
@@ -323,11 +316,12 @@ ForestLabeller::ForestLabeller(Forest forest) : TrainedLabeller(forest) {
 
 ForestLabeller::~ForestLabeller() = default;
 
-void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const {
+void ForestLabeller::label_into(const Frame& frame, float gate, Posteriors& out) const {
+  const DepthImage& depth = frame.depth;
   prepare(depth, out);
-  const OffsetScaler scaler(packed_->convention, camera);
+  const OffsetScaler scaler(packed_->convention, frame.camera);
   const PaddedDepth padded(depth, packed_->convention);
-  if (gate <= 1.F && has_background()) {
+  if (gate <= 1.F && layout().background) {
     GatedLabels(*packed_, depth, padded, scaler, out).run(gate);
     return;
   }
@@ -337,11 +331,11 @@ void ForestLabeller::label_into(const DepthImage& depth, const Camera& camera, f
   });
 }
 
-ChoiceWeights choice_weights(const LabelOptions& options, int trees) {
+ChoiceWeights choice_weights(const LabelOptions& options, int whole) {
   ChoiceWeights weights;
   const auto one = float(weights.part);
   weights.background = std::lround(options.background_weight * one);
-  weights.margin = static_cast<std::int64_t>(std::ceil(double(options.unsure_margin) * 255.0 * trees * one));
+  weights.margin = static_cast<std::int64_t>(std::ceil(double(options.unsure_margin) * whole * one));
   return weights;
 }
 

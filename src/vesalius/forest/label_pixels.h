@@ -6,28 +6,26 @@
 
 #include "vesalius/base/image.h"
 #include "vesalius/base/people_options.h"
+#include "vesalius/forest/forest.h"
 #include "vesalius/forest/labeller.h"
 #include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {
 
-/// What the labellers of a trained forest have in common, on whatever device they walk it.
-class TrainedLabeller : public PixelLabeller {
+/// What the labellers of a trained forest have in common, on whatever device they walk it. They look at depth alone.
+/// The posteriors of a forest without a background class have parts only; CutOutLabeller (cut_out_labeller.h) makes a
+/// detector's of them.
+class TrainedLabeller : public Labeller {
  public:
-  const BodyModel& body() const override { return body_; }
-  bool has_background() const override { return has_background_; }
-  bool has_distributions() const override { return has_distributions_; }
-  const FacingModel& facing_model() const override { return facing_; }
-  const BoostedTrees& context() const override { return context_; }
-  const BoostedTrees& judge() const override { return judge_; }
+  /// Returns where leaves have their logits, if they have some.
+  const LogitLayout& layout() const { return layout_; }
 
  protected:
   /// Throws Error for an inconsistent forest (check(Forest)).
   explicit TrainedLabeller(const Forest& forest);
 
-  int tree_count() const { return trees_; }
-  /// Returns where leaves have their logits, if they have some.
-  const LogitLayout& layout() const { return layout_; }
+  /// Returns Posteriors::whole.
+  int whole() const { return 255 * trees_; }
 
   /// Throws Error for a picture of more than 16,000 pixels a side.
   static void check_size(const DepthImage& depth);
@@ -35,13 +33,8 @@ class TrainedLabeller : public PixelLabeller {
   void prepare(const DepthImage& depth, Posteriors& out) const;
 
  private:
-  BodyModel body_;
-  bool has_background_, has_distributions_;
-  int classes_, trees_;
+  int trees_;
   LogitLayout layout_;
-  FacingModel facing_;
-  BoostedTrees context_;
-  BoostedTrees judge_;
 };
 
 /// Labels on the processor (section 4.3, eq. 2): the posteriors of a pixel are the mean over the trees of the
@@ -53,7 +46,7 @@ class ForestLabeller : public TrainedLabeller {
   ~ForestLabeller() override;
 
   /// Throws Error for a picture of more than 16,000 pixels a side.
-  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override;
+  void label_into(const Frame& frame, float gate, Posteriors& out) const override;
 
  private:
   struct Packed;
@@ -63,7 +56,6 @@ class ForestLabeller : public TrainedLabeller {
 /// Restrictions on the classes of pixels.
 struct LabelChoice {
   int part_count = 0;
-  bool has_background = false;
   /// Optional. Pixels outside it are background; inside it the best part is taken whatever the background's posterior
   /// is.
   const Mask* prior = nullptr;
@@ -78,7 +70,7 @@ struct ChoiceWeights {
   std::int64_t background = 0;
   std::int64_t margin = 0;  ///< weight by which a class must exceed the others to be sure
 };
-ChoiceWeights choice_weights(const LabelOptions& options, int trees);
+ChoiceWeights choice_weights(const LabelOptions& options, int whole);
 
 /// Returns the most likely class of each pixel, with the background written as kBackground. If the two best classes of
 /// a pixel differ by less than `unsure_margin` in probability, it takes that one of the nearly best classes which most

@@ -94,7 +94,7 @@ TEST(ForestLabeller, AgreesWithThePlainDefinition) {
   for (int t = 0; t < 3; ++t) forest.trees.push_back(random_tree(random, 7, forest.class_count()));
   const ForestLabeller labeller(forest);
   const DepthImage depth = random_depth(random);
-  const Posteriors posteriors = labeller.label(depth, kCamera);
+  const Posteriors posteriors = labeller.label(depth_frame(depth, kCamera));
   long differing = 0;
   for (int v = 0; v < depth.height(); ++v) {
     for (int u = 0; u < depth.width(); ++u) {
@@ -144,7 +144,7 @@ TEST(ForestLabeller, SumsTheLeavesOfThePlainWalkForAnySizeAndThreads) {
       const Camera camera{width, height, 60.F, 50.F, 0.F, 0.F};
       const std::vector<std::uint16_t> expected = walked_sums(forest, depth, camera);
       for_threads({1, 3}, [&] {
-        EXPECT_EQ(labeller.label(depth, camera).sums, expected) << camera.width << 'x' << camera.height;
+        EXPECT_EQ(labeller.label(depth_frame(depth, camera)).sums, expected) << camera.width << 'x' << camera.height;
       });
     }
   }
@@ -154,8 +154,8 @@ TEST(ForestLabeller, AveragesTheTrees) {
   Forest forest = empty_forest(false);
   forest.trees.push_back(leaf_tree({{4, 9, 0, 0}, {155, 100, 0, 0}}));
   forest.trees.push_back(leaf_tree({{9, 0, 0, 0}, {255, 0, 0, 0}}));
-  const Posteriors p = ForestLabeller(forest).label(DepthImage(64, 48, 2000), kCamera);
-  EXPECT_EQ(p.trees, 2);
+  const Posteriors p = ForestLabeller(forest).label(depth_frame(DepthImage(64, 48, 2000), kCamera));
+  EXPECT_EQ(p.whole, 2 * 255);
   EXPECT_EQ(p.at(5, 5)[4], 155);
   EXPECT_EQ(p.at(5, 5)[9], 355);
   EXPECT_EQ(p.at(5, 5)[0], 0);
@@ -169,7 +169,7 @@ TEST(ForestLabeller, GivesTheSameBytesForAnyNumberOfThreads) {
   const ForestLabeller labeller(forest);
   const DepthImage depth = random_depth(random);
   std::vector<std::vector<std::uint16_t>> results;
-  for_threads({1, 2, 8}, [&] { results.push_back(labeller.label(depth, kCamera).sums); });
+  for_threads({1, 2, 8}, [&] { results.push_back(labeller.label(depth_frame(depth, kCamera)).sums); });
   EXPECT_THAT(results, testing::Each(results[0]));
 }
 
@@ -203,12 +203,12 @@ TEST(ForestLabeller, LeavesOutOnlyCertainBackgroundByItsGate) {
     }
   }
   const Camera camera{97, 61, 60.F, 60.F, 48.F, 30.F};
-  const Posteriors whole = labeller.label(depth, camera);
+  const Posteriors whole = labeller.label(depth_frame(depth, camera));
   int taken = 0;
   for_threads({1, 3}, [&] {
     Posteriors gated = whole;
     std::ranges::fill(gated.sums, std::uint16_t{7});  // whatever was there before
-    labeller.label_into(depth, camera, 1.F, gated);
+    labeller.label_into(depth_frame(depth, camera), 1.F, gated);
     const BackgroundGate gate(depth, whole, 1.F);
     std::vector<std::uint8_t> shut(97);
     for (int v = 0; v < depth.height(); ++v) {
@@ -230,7 +230,7 @@ TEST(ForestLabeller, RefusesPicturesOfMoreThan16000PixelsASide) {
   forest.trees.push_back(leaf_tree({{1, 0, 0, 0}, {255, 0, 0, 0}}));
   const ForestLabeller labeller(forest);
   for (const auto& [width, height] : {std::pair{16001, 1}, std::pair{1, 16001}}) {
-    EXPECT_THROW(labeller.label(DepthImage(width, height), {width, height, 60.F, 50.F, 0.F, 0.F}), Error);
+    EXPECT_THROW(labeller.label(depth_frame(DepthImage(width, height), {width, height, 60.F, 50.F, 0.F, 0.F})), Error);
   }
 }
 
@@ -243,7 +243,7 @@ TEST(ForestLabeller, RefusesAnInconsistentForest) {
 /// The posteriors of a 3x3 picture with three parts and background, from one tree.
 class ChooseLabels : public testing::Test {
  protected:
-  Posteriors posteriors{3, 3, 4, 1, std::vector<std::uint16_t>(36, 0)};
+  Posteriors posteriors{3, 3, 4, 255, std::vector<std::uint16_t>(36, 0)};
   DepthImage depth{3, 3, 1000};
   LabelOptions options;
 
@@ -253,9 +253,7 @@ class ChooseLabels : public testing::Test {
       for (int u = 0; u < 3; ++u) set(u, v, sums);
     }
   }
-  LabelImage choose(const Mask* prior = nullptr) const {
-    return choose_labels(posteriors, depth, {3, true, prior}, options);
-  }
+  LabelImage choose(const Mask* prior = nullptr) const { return choose_labels(posteriors, depth, {3, prior}, options); }
 };
 
 TEST_F(ChooseLabels, TakesTheLikeliest) {
@@ -290,7 +288,7 @@ TEST_F(ChooseLabels, GivesBackgroundOnlyOutsideItsBox) {
   set(1, 2, {100, 99, 0, 0});  // uncertain, so its neighbours decide, except those outside the box
   const LabelImage whole = choose();
   const Box box{1, 1, 2, 2};
-  const LabelImage labels = choose_labels(posteriors, depth, {3, true, nullptr, &box}, options);
+  const LabelImage labels = choose_labels(posteriors, depth, {3, nullptr, &box}, options);
   for (int v = 0; v < 3; ++v) {
     for (int u = 0; u < 3; ++u) {
       EXPECT_EQ(labels(u, v), u >= 1 && v >= 1 ? whole(u, v) : kBackground) << u << ' ' << v;
@@ -340,8 +338,7 @@ TEST(ForestLabeller, ReadsTheLogitsOfTheLeavesThatPixelsReach) {
   const LogitLayout layout(forest.body, true, 8);
   const DepthImage depth = random_depth(random);
   const ForestLabeller labeller(forest);
-  EXPECT_TRUE(labeller.has_distributions());
-  const Posteriors posteriors = labeller.label(depth, kCamera);
+  const Posteriors posteriors = labeller.label(depth_frame(depth, kCamera));
   ASSERT_EQ(posteriors.headings, 8);
   const OffsetScaler scaler(forest.convention, kCamera);
   LogitReader reader(layout, forest.logit_unit, 3);

@@ -18,7 +18,7 @@ struct Labelled {
   Box box{6, 5, 20, 20};
   Posteriors posteriors;
 
-  Labelled() : posteriors{.width = of.width, .height = of.height, .classes = kClasses, .trees = 1, .sums = {}} {
+  Labelled() : posteriors{.width = of.width, .height = of.height, .classes = kClasses, .whole = 255, .sums = {}} {
     for (int v = 5; v < 20; ++v) {
       for (int u = 6; u < 26; ++u) labels(u, v) = 0;
     }

@@ -11,17 +11,19 @@
 
 namespace vesalius {
 
-/// P(c | x) of every pixel, as sums over the trees of probabilities in 1/255: `classes` values for each pixel, pixel
-/// after pixel. Body parts come first, then the background if the forest has one. All are zero if depth has no reading.
+/// What a labeller knows of a picture: P(c | x) of every pixel, `classes` values for each pixel, pixel after pixel.
+/// Body parts come first, then the background. All are zero if depth has no reading. What else a labeller may know is
+/// empty where it does not, and who wants it asks for that: headings today. A new kind of answer (a person's middle as
+/// seen from a pixel, places of parts) is a member beside `turns`.
 struct Posteriors {
   int width = 0;
   int height = 0;
   int classes = 0;
-  int trees = 0;  ///< sums / (255 * trees) are probabilities
+  int whole = 0;  ///< sums / whole are probabilities; at most 65535. A forest's is 255 for each tree
   std::vector<std::uint16_t> sums;
   int headings = 0;  ///< headings that `turns` tells apart; 0: none
-  /// P(side, heading | x, body) in 1/65535 of every pixel about which the forest was asked: for each pixel the headings
-  /// of the middle parts, of the left ones and of the right ones (leaf_logits.h). Others are undefined.
+  /// P(side, heading | x, body) in 1/65535 of every pixel about which the labeller was asked: for each pixel the
+  /// headings of the middle parts, of the left ones and of the right ones (leaf_logits.h). Others are undefined.
   std::vector<std::uint16_t> turns = {};
   /// 1 on settled pixels, around which the labeller was so certain of the background that it gave them a neighbour's
   /// posteriors. They are background, and smoothing leaves them as they are. Empty if the labeller looked at every
@@ -46,7 +48,7 @@ struct Posteriors {
     width = other.width;
     height = other.height;
     classes = other.classes;
-    trees = other.trees;
+    whole = other.whole;
     settled = other.settled;
     sums.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(classes));
   }

@@ -99,7 +99,7 @@ void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Ca
                  const SmoothOptions& options, Posteriors& out) {
   out.resize_like(posteriors);
   const SmoothWindow window = smooth_window(options, camera);
-  const int bits = excess_bits(posteriors.trees, window);
+  const int bits = excess_bits(posteriors.whole, window);
   if (bits > 0) {
     coarse_mean(posteriors, depth, window, bits, out);
     return;

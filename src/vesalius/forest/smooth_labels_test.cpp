@@ -68,7 +68,7 @@ std::uint8_t slow_mode(const Picture& p, int u, int v, const SmoothOptions& o) {
 class Windows : public testing::TestWithParam<int> {};
 
 TEST_P(Windows, GiveTheModeThatCountingGives) {
-  const SmoothOptions options{.window = GetParam(), .mode = true};
+  const SmoothOptions options{.window = GetParam()};
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const Picture p = seed < 3 ? random_picture(seed) : patchy_picture(seed);
     const LabelImage fast = mode_filter(p.labels, p.depth, options);
@@ -82,13 +82,13 @@ TEST_P(Windows, GiveTheModeThatCountingGives) {
 
 void expect_plain_mean(const SmoothOptions& options) {
   const Picture p = random_picture(9);
-  Posteriors in{37, 23, 6, 3, {}};
+  Posteriors in{37, 23, 6, 3 * 255, {}};
   Random random(1);
   for (std::size_t i = 0; i < p.depth.size() * 6; ++i) {
     in.sums.push_back(p.depth[i / 6] == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(random.below(766)));
   }
   const Posteriors out = mean_filter(in, p.depth, kSmallCamera, options);
-  EXPECT_EQ(out.trees, 3);
+  EXPECT_EQ(out.whole, 3 * 255);
   for (int v = 0; v < p.depth.height(); ++v) {
     for (int u = 0; u < p.depth.width(); ++u) {
       for (int c = 0; c < 6; ++c) {
@@ -115,7 +115,7 @@ TEST_P(Windows, GiveTheMeanThatSummingGives) {
 
 TEST(MeanFilter, KeepsSettledPixels) {
   const DepthImage depth(9, 9, 1000);
-  Posteriors in{9, 9, 6, 1, std::vector<std::uint16_t>(9 * 9 * 6, 0)};
+  Posteriors in{9, 9, 6, 255, std::vector<std::uint16_t>(9 * 9 * 6, 0)};
   in.settled = Mask(9, 9, 0);
   in.settled(4, 4) = 1;
   in.at(4, 4)[5] = in.at(1, 4)[5] = 250;
@@ -130,7 +130,7 @@ TEST(MeanFilter, LosesTheLowestBitsIfSumsExceed16Bits) {
   const Picture p = random_picture(9);
   for (const auto& [trees, lost] : {std::pair{10, 0}, std::pair{11, 1}, std::pair{20, 1}, std::pair{40, 2}}) {
     const int bits = lost;
-    Posteriors in{37, 23, 26, trees, {}};
+    Posteriors in{37, 23, 26, 255 * trees, {}};
     in.settled = Mask(37, 23, 0);
     Random random(2);
     for (std::size_t i = 0; i < p.depth.size() * 26; ++i) {

@@ -5,9 +5,9 @@
 
 namespace vesalius {
 
-int excess_bits(int trees, const SmoothWindow& window) {
+int excess_bits(int whole, const SmoothWindow& window) {
   int bits = 0;
-  while ((255 * trees >> bits) * window.most() > 65535) ++bits;
+  while ((whole >> bits) * window.most() > 65535) ++bits;
   return bits;
 }
 

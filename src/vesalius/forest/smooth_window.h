@@ -25,7 +25,7 @@ struct SmoothWindow {
 /// Returns the window of mean_filter.
 SmoothWindow smooth_window(const SmoothOptions& options, const Camera& camera);
 
-/// Returns how many bits a sum over `trees` trees must lose so that the sum over a window takes at most 16.
-int excess_bits(int trees, const SmoothWindow& window);
+/// Returns how many bits probabilities (Posteriors::whole) must lose so that the sum over a window takes at most 16.
+int excess_bits(int whole, const SmoothWindow& window);
 
 }  // namespace vesalius

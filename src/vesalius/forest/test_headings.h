@@ -14,7 +14,7 @@ inline constexpr int kTestHeadings = 8;
 /// Returns posteriors of a picture of this size for the paper's parts and a background, with headings, all zero.
 inline Posteriors headed_posteriors(const DepthImage& depth) {
   const int classes = paper_body().part_count() + 1;
-  Posteriors out{.width = depth.width(), .height = depth.height(), .classes = classes, .trees = 1, .sums = {}};
+  Posteriors out{.width = depth.width(), .height = depth.height(), .classes = classes, .whole = 255, .sums = {}};
   out.headings = kTestHeadings;
   out.sums.assign(depth.size() * static_cast<std::size_t>(classes), 0);
   out.turns.assign(depth.size() * out.turn_count(), 0);

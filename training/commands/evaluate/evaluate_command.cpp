@@ -195,9 +195,9 @@ bool prints_json(const Arguments& arguments) { return arguments.json == "-"; }
 /// Writes the model with a judge fitted to all sets, and prints how many candidates it was fitted to.
 void write_fitted_judge(const Evaluation& evaluation, const std::string& path, bool quiet) {
   FittedJudge fitted = fit_judge(evaluation);
-  Forest forest = load_model(evaluation.model);
-  forest.judge = std::move(fitted.judge);
-  save_model(forest, path);
+  Model model = load_model(evaluation.model);
+  model.judge = std::move(fitted.judge);
+  save_model(model, path);
   if (quiet) return;
   print(fmt::format("judge fitted to {} candidates that were people and {} that were not\n", fitted.people,
                     fitted.nobodies));
@@ -206,10 +206,10 @@ void write_fitted_judge(const Evaluation& evaluation, const std::string& path, b
 /// Writes the model with a context of bodies fitted to all sets, and prints how many pixels it was fitted to.
 void write_fitted_context(const Evaluation& evaluation, const std::string& path, bool quiet) {
   FittedContext fitted = fit_context(evaluation);
-  Forest forest = load_model(evaluation.model);
-  forest.context = std::move(fitted.context);
-  forest.judge = {};
-  save_model(forest, path);
+  Model model = load_model(evaluation.model);
+  model.context = std::move(fitted.context);
+  model.judge = {};
+  save_model(model, path);
   if (quiet) return;
   print(fmt::format(
       "context fitted to {} pixels of people and {} of other things; the judge, if there was one, is left out\n",
@@ -276,13 +276,13 @@ void run(const Arguments& arguments, const std::string& command) {
   const std::vector<Request> requests = set_requests(arguments);
   (void)rendered_truth(arguments);  // before anything is read
   const std::string bytes = read_file(arguments.model);
-  Forest forest = parse_model(bytes, arguments.model);
-  forest.body = arguments.joints_file.empty() ? with_evaluation_joints(forest.body)
-                                              : with_joints_of(forest.body, arguments.joints_file);
+  Model model = parse_model(bytes, arguments.model);
+  model.body = arguments.joints_file.empty() ? with_evaluation_joints(model.body)
+                                             : with_joints_of(model.body, arguments.joints_file);
   // Candidates are the same with any judge, and one of an earlier version would not be understood.
   const bool fits_context = !arguments.fit_context.empty();
-  if (!arguments.fit_judge.empty() || fits_context) forest.judge = {};
-  if (fits_context) forest.context = {};
+  if (!arguments.fit_judge.empty() || fits_context) model.judge = {};
+  if (fits_context) model.context = {};
   const bool labels_only = arguments.labels_only || fits_context;
   Evaluation evaluation;
   evaluation.options = people_options(arguments.options_file, arguments.detector_flags);
@@ -293,10 +293,10 @@ void run(const Arguments& arguments, const std::string& command) {
   evaluation.version = VESALIUS_VERSION;
   evaluation.machine = machine_facts();
   const FrameScorer::Options scored{evaluation.options.detect, labels_only, arguments.joint_set, fits_context};
-  const std::shared_ptr<const PixelLabeller> labeller = arguments.device.make(std::move(forest));
-  const FrameScorer scorer(labeller, scored);
+  model = arguments.device.make(std::move(model));
+  const FrameScorer scorer(model, scored);
   SequenceTrackerFactory trackers;
-  if (arguments.track) trackers = sequence_trackers(labeller, evaluation.options);
+  if (arguments.track) trackers = sequence_trackers(model, evaluation.options);
   evaluation.tracked = arguments.track;
   evaluation.body = scorer.body();
   if (!arguments.report.empty()) make_report_folder(arguments.report);

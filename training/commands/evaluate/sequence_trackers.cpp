@@ -4,8 +4,8 @@
 
 namespace vesalius::cli {
 
-SequenceTrackerFactory sequence_trackers(std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options) {
-  const auto detector = std::make_shared<const Detector>(std::move(labeller), options.detect);
+SequenceTrackerFactory sequence_trackers(Model model, const PeopleOptions& options) {
+  const auto detector = std::make_shared<const Detector>(std::move(model), options.detect);
   return [detector, options] {
     // A tracker refers to the detector's body, so that both live as long as this function.
     const auto tracker = std::make_shared<PeopleTracker>(make_tracker(*detector, options));

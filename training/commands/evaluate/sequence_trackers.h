@@ -10,6 +10,6 @@ namespace vesalius::cli {
 
 /// Returns what makes the trackers that `evaluate --track` measures, each for one sequence, as `detect --track` does
 /// it.
-SequenceTrackerFactory sequence_trackers(std::shared_ptr<const PixelLabeller> labeller, const PeopleOptions& options);
+SequenceTrackerFactory sequence_trackers(Model model, const PeopleOptions& options);
 
 }  // namespace vesalius::cli

@@ -8,7 +8,7 @@
 #include "cuda_train/device_executor.h"
 #include "train/local_executor.h"
 #include "vesalius/base/error.h"
-#include "vesalius/forest/make_labeller.h"
+#include "vesalius/model.h"
 
 namespace vesalius::cli {
 

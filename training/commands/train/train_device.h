@@ -16,7 +16,7 @@ using MakeExecutor = std::function<std::unique_ptr<Executor>(const std::vector<T
 /// What trains: the processor, or one or more cards (`vesalius train --device`).
 class TrainDevice {
  public:
-  /// Takes a name as make_labeller does, or several of one kind with commas between. Throws UsageError for a device
+  /// Takes a name as on_device does, or several of one kind with commas between. Throws UsageError for a device
   /// that this build does not know and DeviceError for one that this machine does not have. What "auto" decides is said
   /// on standard error.
   explicit TrainDevice(const std::string& names);

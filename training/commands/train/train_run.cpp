@@ -168,7 +168,7 @@ class Training {
 }  // namespace
 
 Forest kept_trees(const TrainRun& run, const TrainInputs& inputs) {
-  Forest forest = load_model(run.trees_of);
+  Forest forest = load_model(run.trees_of).forest;
   if (!std::ranges::equal(forest.body.parts, inputs.body().parts, {}, &BodyPart::name, &BodyPart::name)) {
     throw Error(run.trees_of + ": has other body parts than the frames, expected the same");
   }

@@ -86,7 +86,7 @@ std::optional<Tree> TrainSession::load(int number) {
   std::error_code ignored;
   if (!fs::exists(path(number), ignored)) return std::nullopt;
   try {
-    Forest forest = load_model(path(number));
+    Forest forest = load_model(path(number)).forest;
     if (forest.recipe != forest_.recipe || forest.trees.size() != 1) return std::nullopt;
     return std::move(forest.trees.front());
   } catch (const Error&) {

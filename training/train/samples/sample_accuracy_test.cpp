@@ -54,7 +54,7 @@ TEST_F(SampleAccuracyTest, AgreesWithTheDetectorsLabeller) {
   std::map<std::uint32_t, Posteriors> of_frame;
   for (const TrainingSample& sample : set_->held_out()) {
     const Frame& frame = frames_[sample.frame].frame;
-    if (!of_frame.contains(sample.frame)) of_frame[sample.frame] = labeller.label(frame.depth, frame.camera);
+    if (!of_frame.contains(sample.frame)) of_frame[sample.frame] = labeller.label(frame);
     const Posteriors& posteriors = of_frame[sample.frame];
     const std::uint16_t* sums = posteriors.at(sample.u, sample.v);
     ++all.at(sample.label, static_cast<int>(std::max_element(sums, sums + 26) - sums));

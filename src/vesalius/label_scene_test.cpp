@@ -1,4 +1,4 @@
-#include "vesalius/forest/label_scene.h"
+#include "vesalius/label_scene.h"
 
 #include <gmock/gmock.h>
 
@@ -6,6 +6,7 @@
 
 #include "capsule/capsule_person.h"
 #include "vesalius/base/error.h"
+#include "vesalius/cut_out_labeller.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/forest/test_headings.h"
 
@@ -14,21 +15,19 @@ namespace {
 
 const Camera kCamera{160, 120, 131.25F, 131.25F, 79.5F, 59.5F};
 
-/// A labeller that takes every reading for part 3, as a forest without background class may. It remembers the last
+/// A labeller that takes every reading for part 3, as a forest without a background class may. It remembers the last
 /// picture that it was shown.
-class EverythingIsBody : public PixelLabeller {
+class EverythingIsBody : public Labeller {
  public:
-  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+  void label_into(const Frame& frame, float /*gate*/, Posteriors& out) const override {
+    const DepthImage& depth = frame.depth;
     shown = depth;
-    out = {depth.width(), depth.height(), paper_body().part_count(), 1, {}};
+    out = {depth.width(), depth.height(), paper_body().part_count(), 255, {}};
     out.sums.assign(depth.size() * static_cast<std::size_t>(out.classes), 0);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) out.at(u, v)[3] = depth(u, v) != 0 ? 255 : 0;
     }
   }
-  const BodyModel& body() const override { return paper_body(); }
-  bool has_background() const override { return false; }
-  bool has_distributions() const override { return true; }
 
   mutable DepthImage shown;
 };
@@ -45,7 +44,7 @@ class SceneLabellerTest : public testing::Test {
 
   LabelledFrame truth;
   std::shared_ptr<EverythingIsBody> everything = std::make_shared<EverythingIsBody>();
-  SceneLabeller labeller{everything, {}};
+  SceneLabeller labeller{std::make_shared<CutOutLabeller>(everything, false), {}};
   StageClock clock{nullptr};
   SceneLabels labels;
 };
@@ -73,15 +72,24 @@ TEST_F(SceneLabellerTest, ShowsAPersonAloneToALabellerWithoutBackground) {
   for (std::size_t i = 0; i < chosen.size(); ++i) ASSERT_EQ(chosen[i], person[i] != 0 ? 3 : kBackground);
 }
 
+TEST_F(SceneLabellerTest, KnowsTheFlatSurfacesOfCutOutsForBackground) {
+  for (std::size_t i = 0; i < truth.frame.depth.size(); ++i) {
+    const int u = static_cast<int>(i) % kCamera.width, v = static_cast<int>(i) / kCamera.width;
+    const std::optional<double> share = body_share(labels.smooth, u, v, 25);
+    ASSERT_EQ(share.has_value(), truth.frame.depth[i] != 0);
+    if (share) {
+      ASSERT_EQ(*share, labels.flat[i] != 0 ? 0.0 : 1.0);
+    }
+  }
+}
+
 TEST_F(SceneLabellerTest, GivesTheSameInReusedMemory) {
   SceneLabels other;
   other.flat = Mask(3, 3, 1);
-  other.shown = DepthImage(5, 5, 9);
-  other.smooth = {.width = 7, .height = 7, .classes = 3, .trees = 2, .sums = std::vector<std::uint16_t>(147, 8)};
+  other.smooth = {.width = 7, .height = 7, .classes = 3, .whole = 510, .sums = std::vector<std::uint16_t>(147, 8)};
   other.smooth.settled = Mask(7, 7, 1);
   const SceneLabels again = labeller.label_scene(truth.frame, clock, std::move(other));
   EXPECT_EQ(again.flat, labels.flat);
-  EXPECT_EQ(again.shown, labels.shown);
   EXPECT_EQ(again.raw.sums, labels.raw.sums);
   EXPECT_EQ(again.smooth.sums, labels.smooth.sums);
 }
@@ -94,9 +102,10 @@ TEST_F(SceneLabellerTest, LabelsNobodyInAnEmptyMask) {
 /// A labeller that finds left and right hands equally likely everywhere: left ones of people seen from the front, right
 /// ones of people seen from behind. Its regression takes everybody with a reading at the first pixel for seen from
 /// behind.
-class CannotTellSides : public PixelLabeller {
+class CannotTellSides : public Labeller {
  public:
-  void label_into(const DepthImage& depth, const Camera& /*camera*/, float /*gate*/, Posteriors& out) const override {
+  void label_into(const Frame& frame, float /*gate*/, Posteriors& out) const override {
+    const DepthImage& depth = frame.depth;
     out = test::headed_posteriors(depth);
     for (int v = 0; v < depth.height(); ++v) {
       for (int u = 0; u < depth.width(); ++u) {
@@ -109,48 +118,41 @@ class CannotTellSides : public PixelLabeller {
       }
     }
   }
-  const BodyModel& body() const override { return paper_body(); }
-  bool has_background() const override { return true; }
-  bool has_distributions() const override { return true; }
-  const FacingModel& facing_model() const override { return model_; }
-  const BoostedTrees& context() const override { return corrected; }
 
-  BoostedTrees corrected;
   bool sure = true;  ///< whether it is surely a body
   int l_hand = paper_body().find_part("l_hand");
   int r_hand = paper_body().find_part("r_hand");
-
- private:
-  FacingModel model_ = test::seen_from_behind();
 };
+
+Model headed(std::shared_ptr<CannotTellSides> labeller) {
+  Model model(std::move(labeller));
+  model.headings = test::seen_from_behind();
+  return model;
+}
 
 TEST(SceneLabellerContext, CorrectsTheSmoothedPosteriors) {
   const auto labeller = std::make_shared<CannotTellSides>();
+  Model model = headed(labeller);
   Frame frame;
   frame.camera = kCamera;
   frame.depth = DepthImage(kCamera.width, kCamera.height, 2000);
   StageClock clock(nullptr);
-  EXPECT_EQ(SceneLabeller(labeller, {}).label_scene(frame, clock).posteriors().at(50, 50)[25], 0);
+  EXPECT_EQ(SceneLabeller(model, {}).label_scene(frame, clock).posteriors().at(50, 50)[25], 0);
   constexpr float kUnlikely = -3.F;
   labeller->sure = false;
-  labeller->corrected = {BodySurroundings::feature_count(paper_body()), kUnlikely, {BoostedTree{}}};
-  const SceneLabels labels = SceneLabeller(labeller, {}).label_scene(frame, clock);
+  model.context = {BodySurroundings::feature_count(paper_body()), kUnlikely, {BoostedTree{}}};
+  const SceneLabels labels = SceneLabeller(model, {}).label_scene(frame, clock);
   EXPECT_NEAR(*body_share(labels.posteriors(), 50, 50, 25), 1.0 / (1.0 + std::exp(3.0)), 0.01);
   EXPECT_NEAR(*body_share(labels.raw, 50, 50, 25), 0.5, 0.01) << "what the forest itself said stays known";
 
-  SceneLabelOptions by_mode;
-  by_mode.smooth.mode = true;
-  const SceneLabels uncorrected = SceneLabeller(labeller, by_mode).label_scene(frame, clock);
-  EXPECT_NEAR(*body_share(uncorrected.posteriors(), 50, 50, 25), 0.5, 0.01) << "it was fitted to smoothed posteriors";
-
-  labeller->corrected.features -= 1;
-  EXPECT_THAT([&] { SceneLabeller(labeller, {}); },
+  model.context.features -= 1;
+  EXPECT_THAT([&] { SceneLabeller(model, {}); },
               testing::ThrowsMessage<Error>(testing::HasSubstr("context of bodies knows")));
 }
 
 TEST(SceneLabellerFacing, LabelsAPersonsPixelsByTheHeadingOfTheWholePerson) {
   const auto labeller = std::make_shared<CannotTellSides>();
-  const SceneLabeller scene_labeller(labeller, {});
+  const SceneLabeller scene_labeller(headed(labeller), {});
   Frame frame;
   frame.camera = kCamera;
   frame.depth = DepthImage(kCamera.width, kCamera.height, 2000);
@@ -171,7 +173,7 @@ TEST(SceneLabellerFacing, LabelsAPersonsPixelsByTheHeadingOfTheWholePerson) {
 }
 
 TEST(MeanCertainty, IsTheLikeliestPartsShareOfAllParts) {
-  Posteriors posteriors{4, 1, 26, 1, std::vector<std::uint16_t>(std::size_t{4} * 26, 0)};
+  Posteriors posteriors{4, 1, 26, 255, std::vector<std::uint16_t>(std::size_t{4} * 26, 0)};
   for (int u = 0; u < 4; ++u) {
     posteriors.at(u, 0)[3] = 50;
     posteriors.at(u, 0)[7] = u < 2 ? 150 : 50;  // 0.75 and 0.5

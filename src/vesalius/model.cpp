@@ -1,46 +1,41 @@
-#include "vesalius/forest/make_labeller.h"
+#include "vesalius/model.h"
 
+#include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <mutex>
 #include <utility>
 
 #include "vesalius/base/error.h"
+#include "vesalius/cut_out_labeller.h"
+#include "vesalius/default_judge.h"
+#include "vesalius/forest/label_pixels.h"
 
 namespace vesalius {
 namespace {
 
-using Labeller = std::shared_ptr<const PixelLabeller>;
+using SharedLabeller = std::shared_ptr<const Labeller>;
 
 /// Labels on a device until it fails, from then on on the processor.
-class RescuedLabeller : public PixelLabeller {
+class RescuedLabeller : public Labeller {
  public:
-  RescuedLabeller(Labeller device, Forest forest, std::function<void(const std::string&)> note)
+  RescuedLabeller(SharedLabeller device, Forest forest, std::function<void(const std::string&)> note)
       : device_(std::move(device)), forest_(std::move(forest)), note_(std::move(note)) {}
 
-  void label_into(const DepthImage& depth, const Camera& camera, float gate, Posteriors& out) const override {
-    if (!on_device([&] { device_->label_into(depth, camera, gate, out); })) {
-      processor().label_into(depth, camera, gate, out);
-    }
+  void label_into(const Frame& frame, float gate, Posteriors& out) const override {
+    if (!done([&] { device_->label_into(frame, gate, out); })) processor().label_into(frame, gate, out);
   }
-  bool label_and_smooth_into(const DepthImage& depth, const Camera& camera, float gate, const SmoothOptions& options,
-                             Posteriors& out, Posteriors& smooth) const override {
-    bool done = false;
-    on_device([&] { done = device_->label_and_smooth_into(depth, camera, gate, options, out, smooth); });
-    return done;
+  bool label_and_smooth_into(const Frame& frame, float gate, const SmoothOptions& options, Posteriors& out,
+                             Posteriors& smooth) const override {
+    bool smoothed = false;
+    done([&] { smoothed = device_->label_and_smooth_into(frame, gate, options, out, smooth); });
+    return smoothed;
   }
-  // What the forest says is known without the device.
-  const BodyModel& body() const override { return device_->body(); }
-  bool has_background() const override { return device_->has_background(); }
-  bool has_distributions() const override { return device_->has_distributions(); }
-  const FacingModel& facing_model() const override { return device_->facing_model(); }
-  const BoostedTrees& context() const override { return device_->context(); }
-  const BoostedTrees& judge() const override { return device_->judge(); }
 
  private:
   /// Returns whether the device did the work.
   template <class Work>
-  bool on_device(const Work& work) const {
+  bool done(const Work& work) const {
     if (lost_) return false;
     try {
       work();
@@ -51,12 +46,12 @@ class RescuedLabeller : public PixelLabeller {
     }
   }
 
-  const PixelLabeller& processor() const {
+  const Labeller& processor() const {
     std::call_once(once_, [&] { processor_ = std::make_unique<ForestLabeller>(std::move(forest_)); });
     return *processor_;
   }
 
-  Labeller device_;
+  SharedLabeller device_;
   mutable Forest forest_;  ///< until the processor takes it
   std::function<void(const std::string&)> note_;
   mutable std::atomic<bool> lost_ = false;
@@ -64,14 +59,14 @@ class RescuedLabeller : public PixelLabeller {
   mutable std::unique_ptr<const ForestLabeller> processor_;
 };
 
-Labeller make_on_any(Forest forest, const LabellerDevices& devices) {
+SharedLabeller make_on_any(Forest forest, const LabellerDevices& devices) {
   const auto note = [&](const std::string& text) {
     if (devices.note) devices.note(text);
   };
   if (devices.kinds.empty()) note("this build knows no device but the processor, which labels");
   for (const LabellerDevice& kind : devices.kinds) {
     try {
-      Labeller labeller = kind.make(forest, 0);
+      SharedLabeller labeller = kind.make(forest, 0);
       return std::make_shared<RescuedLabeller>(std::move(labeller), std::move(forest), devices.note);
     } catch (const DeviceError& e) {
       note(std::string(e.what()) + "; the processor labels");
@@ -97,7 +92,9 @@ DeviceName parse_device(const std::string& name) {
   return error == std::errc{} && read == end && parsed.number >= 0 ? parsed : DeviceName{};
 }
 
-Labeller make_labeller(Forest forest, const std::string& device, const LabellerDevices& devices) {
+namespace {
+
+SharedLabeller make_labeller(Forest forest, const std::string& device, const LabellerDevices& devices) {
   if (device == "cpu") return std::make_shared<ForestLabeller>(std::move(forest));
   if (device == "auto") return make_on_any(std::move(forest), devices);
   const DeviceName wanted = parse_device(device);
@@ -105,6 +102,35 @@ Labeller make_labeller(Forest forest, const std::string& device, const LabellerD
     if (kind.name == wanted.kind) return kind.make(std::move(forest), wanted.number);
   }
   throw_unknown_device(device, devices);
+}
+
+}  // namespace
+
+Model::Model(Forest trained) : body(trained.body), forest(std::move(trained)), headings(std::move(forest.facing)) {
+  forest.facing = {};
+}
+
+void check(const Model& model) {
+  if (model.labeller == nullptr) {
+    check(model.forest);
+    if (!std::ranges::equal(model.body.parts, model.forest.body.parts, {}, &BodyPart::name, &BodyPart::name)) {
+      throw Error("body: other parts than the forest's");
+    }
+    check(model.headings, model.body.part_count(), model.forest.headings);
+  }
+  check(model.context, "context of bodies");
+  check(model.judge, "judge of people");
+}
+
+Model on_device(Model model, const std::string& device, const LabellerDevices& devices) {
+  check(model);
+  if (model.labeller != nullptr) return model;
+  const bool background = model.forest.has_background, votes = !has_distributions(model.forest);
+  model.labeller = make_labeller(std::exchange(model.forest, {}), device, devices);
+  if (background) return model;
+  model.labeller = std::make_shared<CutOutLabeller>(std::move(model.labeller), votes);
+  if (model.judge.empty()) model.judge = default_judge_of_cut_outs();
+  return model;
 }
 
 }  // namespace vesalius
