@@ -39,9 +39,8 @@ void visit_options(const std::string& prefix, SmoothOptions& o, OptionVisitor& v
       prefix + "window", o.window,
       {"", 1, 31,
        "Neighbours along a side of the smoothing window, 1 = none; an even number counts as the next odd one."});
-  visitor.option(
-      prefix + "spacing", o.spacing,
-      {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length; smoothing by mode takes 1."});
+  visitor.option(prefix + "spacing", o.spacing,
+                 {"px", 0, 31, "From one neighbour to the next, 0: about 1/140 of the focal length."});
   visitor.option(prefix + "depth-gate", o.depth_gate_mm,
                  {"mm", 0, 10000, "Neighbours further away than this in depth do not count."});
 }

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "vesalius/base/error.h"
+#include "vesalius/forest/facing.h"
 #include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {
