@@ -13,7 +13,7 @@
 #include "cuda/kernels.cuh"
 #include "vesalius/base/error.h"
 // Behind the kernels.
-#include "cuda/compiled_kernels.cuh"
+#include "cuda/card_kernels.cuh"
 
 namespace vesalius::gpu {
 namespace {
@@ -185,7 +185,7 @@ std::vector<CudaFacts> cuda_devices() {
   return found;
 }
 
-std::vector<CardKernel> label_kernels_on_cards() { return compiled(LabelKernels{}); }
+std::vector<CardKernel> label_kernels_on_cards() { return card_kernels(LabelKernels{}); }
 
 std::shared_ptr<Device> open_cuda_device(int number, std::vector<CardKernel> kernels) {
   const std::vector<CudaFacts> found = cuda_devices();

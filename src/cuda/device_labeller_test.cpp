@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cuda/kernels.h"
-#include "cuda/simulated_device.h"
 #include "cuda/test_forests.h"
+#include "simulator/simulated_device.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/test_threads.h"
 

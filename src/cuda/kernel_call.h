@@ -35,10 +35,4 @@ struct CardKernel {
   const void* code = nullptr;  ///< by which the runtime knows it
 };
 
-/// A kernel that is compiled for the simulator.
-struct SimulatedKernel {
-  const char* name = nullptr;
-  void (*run_block)(const void* arguments) = nullptr;
-};
-
 }  // namespace vesalius::gpu

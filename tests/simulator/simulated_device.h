@@ -10,11 +10,23 @@
 #include <vector>
 
 #include "cuda/device.h"
-#include "cuda/simulator.h"
+#include "simulator/simulator.h"
 
 namespace vesalius::gpu {
 
-/// Returns the kernels of labelling for the simulator.
+/// A kernel that is compiled for the simulator.
+struct SimulatedKernel {
+  const char* name = nullptr;
+  void (*run_block)(const void* arguments) = nullptr;
+};
+
+/// Returns the kernels of a list; their text is read (gpu_words.h) where this is called.
+template <class... Arguments>
+std::vector<SimulatedKernel> simulated_kernels(KernelList<Arguments...> /*which*/) {
+  return {{Arguments::kName, [](const void* told) { run_kernel(*static_cast<const Arguments*>(told)); }}...};
+}
+
+/// Returns the kernels of labelling.
 std::vector<SimulatedKernel> simulated_label_kernels();
 
 struct SimulatedDeviceOptions {

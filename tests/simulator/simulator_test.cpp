@@ -1,4 +1,4 @@
-#include "cuda/simulator.h"
+#include "simulator/simulator.h"
 
 #include <gmock/gmock.h>
 
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "cuda/gpu.h"
 #include "cuda/kernels.h"
-#include "cuda/simulated_device.h"
+#include "simulator/gpu_words.h"
+#include "simulator/simulated_device.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::gpu {

@@ -1,4 +1,4 @@
-#include "cuda/simulated_device.h"
+#include "simulator/simulated_device.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,10 +9,10 @@
 #include <string_view>
 #include <utility>
 
-#include "cuda/kernels.cuh"
+#include "simulator/gpu_words.h"
 #include "vesalius/base/error.h"
-// Behind the kernels.
-#include "cuda/compiled_kernels.cuh"
+// Behind their words.
+#include "cuda/kernels.cuh"
 
 namespace vesalius::gpu {
 namespace {
@@ -161,6 +161,6 @@ void SimulatedDevice::run(KernelCall call, const LaunchShape& shape) const {
   Simulator::run(shape, simulator, [&] { kernel->run_block(call.arguments()); });
 }
 
-std::vector<SimulatedKernel> simulated_label_kernels() { return compiled(LabelKernels{}); }
+std::vector<SimulatedKernel> simulated_label_kernels() { return simulated_kernels(LabelKernels{}); }
 
 }  // namespace vesalius::gpu
