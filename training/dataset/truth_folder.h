@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/sources/tum_trajectory.h"
+#include "dataset/tum_trajectory.h"
 #include "vesalius/base/frame_truth.h"
 
 namespace vesalius {
