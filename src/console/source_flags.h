@@ -21,7 +21,7 @@ void add_reconnect_flag(CLI::App& command, SourceOptions& options);
 /// The text of --help on what SOURCE may be.
 inline constexpr const char* kSourceHelp =
     "Frames: a folder (depth/*.png with meta.json or camera_info.yaml, TUM RGB-D, PNG or PCD files), a 16-bit depth "
-    "PNG, an organised PCD file, a recording (MCAP, ROS 1 .bag, ROS 2 .db3, .oni, .mkv), or a camera that "
+    "PNG, an organised PCD file, a recording (MCAP, ROS 1 .bag, ROS 2 .db3, .mkv), or a camera that "
     "`vesalius cameras` lists; tum:FOLDER:SCALE and similar prefixes state the kind";
 
 }  // namespace vesalius::cli
