@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dataset/tum_trajectory.h"
-#include "vesalius/base/frame_truth.h"
+#include "metrics/frame_truth.h"
 
 namespace vesalius {
 

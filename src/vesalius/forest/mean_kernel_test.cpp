@@ -4,8 +4,8 @@
 
 #include <cstdlib>
 
-#include "vesalius/base/for_each_target.h"
 #include "vesalius/base/random.h"
+#include "vesalius/base/test_targets.h"
 
 namespace vesalius {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "vesalius/base/for_each_target.h"
 #include "vesalius/base/random.h"
+#include "vesalius/base/test_targets.h"
 
 namespace vesalius {
 namespace {
