@@ -20,3 +20,11 @@ if(VESALIUS_CUDA AND NOT VESALIUS_SANITIZE)
     message(FATAL_ERROR "VESALIUS_CUDA=${VESALIUS_CUDA}: no nvcc; say where it is by -DCMAKE_CUDA_COMPILER=PATH")
   endif()
 endif()
+
+# vesalius_kernels(LIBRARY SOURCE): kernels for cards in a library.
+function(vesalius_kernels library source)
+  target_sources(vesalius_${library} PRIVATE ${source})
+  # No fused multiply-add, as everywhere: the same bits as on the processor.
+  target_compile_options(vesalius_${library} PRIVATE "$<$<COMPILE_LANGUAGE:CUDA>:-fmad=false;--expt-relaxed-constexpr>")
+  set_target_properties(vesalius_${library} PROPERTIES CUDA_STANDARD 20 CUDA_RUNTIME_LIBRARY Static)
+endfunction()

@@ -25,7 +25,7 @@ from pathlib import Path
 
 CORE = "core"
 FOR_TESTS = "capsule"
-WINGS = ("src", "training", "tests/capsule")  # includes are written from src/, training/ and tests/
+WINGS = ("src", "training", "tests/capsule", "tests/simulator")  # includes are written from src/, training/ and tests/
 MOST_UNITS = 25
 MOST_PUBLIC = 25
 TABLE = "docs/library.md"

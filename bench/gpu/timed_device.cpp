@@ -20,7 +20,7 @@ class TimedDevice::TimedStream : public Stream {
     timed("clear", [&] { stream_->clear(at, bytes); });
   }
   void launch(const KernelCall& call, const LaunchShape& shape) override {
-    timed(kKernelNames[call.index()], [&] { stream_->launch(call, shape); });
+    timed(call.name(), [&] { stream_->launch(call, shape); });
   }
   void record(Event& event) override { stream_->record(event); }
   void wait() override {

@@ -80,7 +80,7 @@ void add_convert(CLI::App& program) {
   command->add_option("--body", arguments->body, "Body model to put into the .forest, for the same parts")
       ->type_name("FILE");
   command->add_option("--to", arguments->format, "Write frames in this layout")
-      ->check(CLI::IsMember({"folder", "tum", "pcd"}))
+      ->check(CLI::IsMember({"folder", "tum"}))
       ->excludes("--body");
   command
       ->add_option("--rate", arguments->write.frame_rate,

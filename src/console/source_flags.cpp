@@ -1,33 +1,27 @@
 #include "console/source_flags.h"
 
 #include <CLI/CLI.hpp>
+#include <utility>
+
+#include "console/detector_flags.h"
+#include "console/text_sink.h"
 
 namespace vesalius::cli {
 
 void add_camera_flags(CLI::App& command, SourceOptions& options) {
-  const std::string group = "Camera, where the files do not say";
-  const auto add = [&](const char* name, std::optional<float>& value, const char* unit, const char* help) {
-    return command.add_option(name, value, help)->type_name(unit)->group(group);
+  const auto add = [&](const char* name, auto& value, const char* type, const char* help) {
+    command.add_option(name, value, help)->type_name(type)->group("Camera, where the files do not say");
   };
   add("--fx", options.fx, "PX", "Focal length, horizontal");
   add("--fy", options.fy, "PX", "Focal length, vertical (default: fx)");
   add("--cx", options.cx, "PX", "Principal point, column (default: centre)");
   add("--cy", options.cy, "PX", "Principal point, row (default: centre)");
   add("--depth-scale", options.depth_scale, "N", "Stored depth units per metre: 1000 = millimetres, 5000 = TUM");
-  command.add_option("--camera", options.camera_file, "meta.json or ROS camera_info YAML, whose distortion is undone")
-      ->type_name("FILE")
-      ->group(group);
-  command.add_option("--colour,--color", options.colour_file, "Colour picture of a single depth PNG")
-      ->type_name("FILE")
-      ->group(group);
-  command.add_option("--depth-topic", options.depth_topic, "Topic or stream of a recording that depth comes from")
-      ->type_name("TOPIC")
-      ->group(group);
-  command
-      .add_option("--colour-topic,--color-topic", options.colour_topic,
-                  "Topic or stream of a recording with colour registered to depth")
-      ->type_name("TOPIC")
-      ->group(group);
+  add("--camera", options.camera_file, "FILE", "meta.json or ROS camera_info YAML, whose distortion is undone");
+  add("--colour,--color", options.colour_file, "FILE", "Colour picture of a single depth PNG");
+  add("--depth-topic", options.depth_topic, "TOPIC", "Topic or stream of a recording that depth comes from");
+  add("--colour-topic,--color-topic", options.colour_topic, "TOPIC",
+      "Topic or stream of a recording with colour registered to depth");
 }
 
 void add_start_flag(CLI::App& command, SourceOptions& options) {
@@ -36,11 +30,44 @@ void add_start_flag(CLI::App& command, SourceOptions& options) {
       ->check(CLI::NonNegativeNumber);
 }
 
-void add_reconnect_flag(CLI::App& command, SourceOptions& options) {
+void SourceFlags::add_to(CLI::App& command, bool required) {
+  command.add_option("SOURCE", name_, kSourceHelp)->required(required);
+  add_camera_flags(command, options_);
+  add_start_flag(command, options_);
   command
-      .add_flag("--reconnect", options.reconnect,
+      .add_flag("--reconnect", options_.reconnect,
                 "Wait for a camera that is unplugged or gives nothing, and go on when it is back")
       ->group("Camera that is plugged in");
+}
+
+std::unique_ptr<FrameSource> SourceFlags::open(bool quiet, std::function<void(const std::string&)> say) const {
+  SourceOptions options = options_;
+  options.say = std::move(say);
+  auto source = open_source(name_, options);
+  if (!quiet) {
+    for (const std::string& note : source->notes()) cli::say("note: " + note);
+  }
+  return source;
+}
+
+void add_frames_flag(CLI::App& command, int& frames) {
+  command.add_option("--frames", frames, "End after so many frames; 0 = all")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+}
+
+CLI::Option* add_rate_flag(CLI::App& command, double& rate, const std::string& what) {
+  return command.add_option("--rate", rate, what)
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+}
+
+void add_threads_flag(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "Threads to use; 0 = all. The result is the same")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxThreads))
+      ->group(kDetectorGroup);
 }
 
 }  // namespace vesalius::cli

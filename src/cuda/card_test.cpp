@@ -7,8 +7,8 @@
 
 #include "cuda/cuda_device.h"
 #include "cuda/device_labeller.h"
-#include "cuda/simulated_device.h"
 #include "cuda/test_forests.h"
+#include "simulator/simulated_device.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::gpu {

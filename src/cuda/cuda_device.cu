@@ -6,12 +6,14 @@
 #include <cuda_runtime.h>
 #endif
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
-#include <variant>
 
 #include "cuda/kernels.cuh"
-#include "cuda/train_kernels.cuh"
 #include "vesalius/base/error.h"
+// Behind the kernels.
+#include "cuda/card_kernels.cuh"
 
 namespace vesalius::gpu {
 namespace {
@@ -53,7 +55,8 @@ class CudaEvent : public Event {
 
 class CudaStream : public Stream {
  public:
-  CudaStream(std::string device, int number) : device_(std::move(device)), number_(number) {
+  CudaStream(std::string device, int number, std::vector<CardKernel> kernels)
+      : device_(std::move(device)), number_(number), kernels_(std::move(kernels)) {
     select();
     expect(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), device_, "cannot make a stream");
   }
@@ -80,8 +83,8 @@ class CudaStream : public Stream {
   void launch(const KernelCall& call, const LaunchShape& shape) override {
     select();
     const dim3 blocks(shape.blocks_x, shape.blocks_y), threads(shape.threads);
-    std::visit([&](const auto& arguments) { run_kernel<<<blocks, threads, 0, stream_>>>(arguments); }, call);
-    expect(cudaGetLastError(), device_, "cannot start a kernel");
+    auto* arguments = const_cast<void*>(call.arguments());
+    expect(cudaLaunchKernel(code_of(call), blocks, threads, &arguments, 0, stream_), device_, "cannot start a kernel");
   }
   void record(Event& event) override {
     select();
@@ -96,14 +99,23 @@ class CudaStream : public Stream {
   /// A thread's card is its own affair, and streams are used from any thread.
   void select() const { expect(cudaSetDevice(number_), device_, "cannot be used"); }
 
+  const void* code_of(const KernelCall& call) const {
+    const std::string_view name = call.name();
+    const auto found = std::ranges::find(kernels_, name, &CardKernel::name);
+    if (found == kernels_.end()) throw std::logic_error(device_ + ": was not opened for the kernel " + call.name());
+    return found->code;
+  }
+
   std::string device_;
   int number_;
+  std::vector<CardKernel> kernels_;
   cudaStream_t stream_ = nullptr;
 };
 
 class CudaDevice : public Device {
  public:
-  CudaDevice(int number, const std::string& name) : number_(number), name_(number_of(number) + " (" + name + ")") {}
+  CudaDevice(int number, const std::string& name, std::vector<CardKernel> kernels)
+      : number_(number), name_(number_of(number) + " (" + name + ")"), kernels_(std::move(kernels)) {}
 
   std::string name() const override { return name_; }
   void* allocate(std::size_t bytes) override {
@@ -119,14 +131,15 @@ class CudaDevice : public Device {
   void* allocate_pinned(std::size_t bytes) override {
     select();
     void* at = nullptr;
-    expect(cudaMallocHost(&at, bytes), name_, "cannot pin " + std::to_string(bytes) + " bytes of this machine's memory");
+    expect(cudaMallocHost(&at, bytes), name_,
+           "cannot pin " + std::to_string(bytes) + " bytes of this machine's memory");
     return at;
   }
   void release_pinned(void* at) noexcept override {
     ignore(cudaSetDevice(number_));
     ignore(cudaFreeHost(at));
   }
-  std::unique_ptr<Stream> make_stream() override { return std::make_unique<CudaStream>(name_, number_); }
+  std::unique_ptr<Stream> make_stream() override { return std::make_unique<CudaStream>(name_, number_, kernels_); }
   std::unique_ptr<Event> make_event() override {
     select();
     return std::make_unique<CudaEvent>(name_);
@@ -137,29 +150,21 @@ class CudaDevice : public Device {
 
   int number_;
   std::string name_;
+  std::vector<CardKernel> kernels_;
 };
 
-/// One line for each kernel, by a type of arguments each.
-template <class Arguments>
-KernelFacts facts_of(const char* name, const std::string& device) {
+KernelFacts facts_of(const CardKernel& kernel, const std::string& device) {
   constexpr int kThreads = 256;
-  const auto kernel = static_cast<void (*)(Arguments)>(run_kernel);
   cudaFuncAttributes attributes{};
-  expect(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernel)), device,
-         "this build has no kernels for it");
+  expect(cudaFuncGetAttributes(&attributes, kernel.code), device, "this build has no kernels for it");
   int blocks = 0, threads = 0, current = 0;
-  expect(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, reinterpret_cast<const void*>(kernel), kThreads, 0),
-         device, "cannot tell its occupancy");
+  expect(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel.code, kThreads, 0), device,
+         "cannot tell its occupancy");
   expect(cudaGetDevice(&current), device, "cannot be asked");
   expect(cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, current), device,
          "cannot tell its threads");
-  return {name, attributes.numRegs, attributes.sharedSizeBytes, attributes.localSizeBytes,
+  return {kernel.name, attributes.numRegs, attributes.sharedSizeBytes, attributes.localSizeBytes,
           float(blocks * kThreads) / float(threads)};
-}
-
-template <std::size_t... kIndex>
-std::vector<KernelFacts> facts_of_all(const std::string& device, std::index_sequence<kIndex...> /*all*/) {
-  return {facts_of<std::variant_alternative_t<kIndex, KernelCall>>(kKernelNames[kIndex], device)...};
 }
 
 }  // namespace
@@ -180,20 +185,24 @@ std::vector<CudaFacts> cuda_devices() {
   return found;
 }
 
-std::shared_ptr<Device> open_cuda_device(int number) {
+std::vector<CardKernel> label_kernels_on_cards() { return card_kernels(LabelKernels{}); }
+
+std::shared_ptr<Device> open_cuda_device(int number, std::vector<CardKernel> kernels) {
   const std::vector<CudaFacts> found = cuda_devices();
   if (number >= int(found.size())) {
     throw DeviceError(number_of(number) + ": is not there; this machine has " + std::to_string(found.size()));
   }
   const CudaFacts& facts = found[static_cast<std::size_t>(number)];
-  kernel_facts(number);  // says if there is no kernel for this card
-  return std::make_shared<CudaDevice>(number, facts.name);
+  kernel_facts(number, kernels);  // says if there is no kernel for this card
+  return std::make_shared<CudaDevice>(number, facts.name, std::move(kernels));
 }
 
-std::vector<KernelFacts> kernel_facts(int number) {
+std::vector<KernelFacts> kernel_facts(int number, const std::vector<CardKernel>& kernels) {
   const std::string device = number_of(number);
   expect(cudaSetDevice(number), device, "cannot be used");
-  return facts_of_all(device, std::make_index_sequence<std::variant_size_v<KernelCall>>{});
+  std::vector<KernelFacts> facts;
+  for (const CardKernel& kernel : kernels) facts.push_back(facts_of(kernel, device));
+  return facts;
 }
 
 }  // namespace vesalius::gpu

@@ -23,8 +23,11 @@ bool has_cuda();
 /// Returns this machine's cards. Throws DeviceError, which says why, if there is none or the driver is too old.
 std::vector<CudaFacts> cuda_devices();
 
-/// Returns card `number`, from 0 on. Throws DeviceError if it is not there or too old for the kernels of this build.
-std::shared_ptr<Device> open_cuda_device(int number);
+/// Returns the kernels of labelling that are compiled for cards: none in a build without nvcc.
+std::vector<CardKernel> label_kernels_on_cards();
+
+/// Returns card `number`, from 0 on, for these kernels. Throws DeviceError if it is not there or too old for them.
+std::shared_ptr<Device> open_cuda_device(int number, std::vector<CardKernel> kernels = label_kernels_on_cards());
 
 /// What a kernel needs of a card, and how much of a multiprocessor it fills.
 struct KernelFacts {
@@ -34,7 +37,7 @@ struct KernelFacts {
   float occupancy = 0.F;  ///< of blocks of 256 threads, 0-1
 };
 
-/// Returns this for every kernel on card `number`. Throws DeviceError as open_cuda_device.
-std::vector<KernelFacts> kernel_facts(int number);
+/// Returns this for kernels on card `number`. Throws DeviceError as open_cuda_device.
+std::vector<KernelFacts> kernel_facts(int number, const std::vector<CardKernel>& kernels = label_kernels_on_cards());
 
 }  // namespace vesalius::gpu

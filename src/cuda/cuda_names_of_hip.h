@@ -22,6 +22,7 @@
 #define cudaGetDeviceProperties hipGetDeviceProperties
 #define cudaGetErrorString hipGetErrorString
 #define cudaGetLastError hipGetLastError
+#define cudaLaunchKernel hipLaunchKernel
 #define cudaMalloc hipMalloc
 #define cudaMallocHost(at, bytes) hipHostMalloc(at, bytes, hipHostMallocDefault)
 #define cudaMemcpyAsync hipMemcpyAsync

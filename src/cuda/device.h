@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "cuda/kernels.h"
+#include "cuda/kernel_call.h"
 #include "cuda/launch_shape.h"
 
 namespace vesalius::gpu {
@@ -27,6 +27,7 @@ class Stream {
   virtual void copy_to_host(void* to, const void* from, std::size_t bytes) = 0;
   /// Sets bytes of the device's memory to 0.
   virtual void clear(void* at, std::size_t bytes) = 0;
+  /// The device was opened for this kernel.
   virtual void launch(const KernelCall& call, const LaunchShape& shape) = 0;
   virtual void record(Event& event) = 0;
   /// Returns when all is done.

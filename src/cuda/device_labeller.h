@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cuda/device.h"
+#include "cuda/kernels.h"
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
 #include "vesalius/base/pool.h"

@@ -8,8 +8,9 @@
 #include <thread>
 #include <vector>
 
-#include "cuda/simulated_device.h"
+#include "cuda/kernels.h"
 #include "cuda/test_forests.h"
+#include "simulator/simulated_device.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/test_threads.h"
 
@@ -296,16 +297,13 @@ class PlantedFaults : public testing::Test {
 TEST_F(PlantedFaults, NothingIsFoundWithoutOne) { EXPECT_FALSE(is_found(forest_, depth_, {})); }
 
 TEST_F(PlantedFaults, EveryBarrierThatIsLeftOutIsFound) {
-  const auto number_of = [](const KernelCall& call) { return static_cast<int>(call.index()); };
-  const std::vector<std::pair<int, int>> barriers{{number_of(SelectArguments{}), 3},
-                                                  {number_of(LogitArguments{}), 6},
-                                                  {number_of(SettleArguments{}), 1},
-                                                  {number_of(MeanArguments{}), 1}};
+  const std::vector<std::pair<std::string, int>> barriers{
+      {SelectArguments::kName, 3}, {LogitArguments::kName, 6}, {SettleArguments::kName, 1}, {MeanArguments::kName, 1}};
   for (const auto& [kernel, count] : barriers) {
     for (int barrier = 0; barrier < count; ++barrier) {
       const SimulatorOptions simulator{.zeroed = true, .faults = {.left_out_barrier = barrier}};
       EXPECT_TRUE(is_found(forest_, depth_, {.simulator = simulator, .faulty_kernel = kernel}))
-          << "kernel " << kernel << ", barrier " << barrier;
+          << kernel << ", barrier " << barrier;
     }
   }
 }

@@ -5,6 +5,8 @@
 
 #include "cuda/gpu.h"
 #include "cuda/kernels.h"
+#include "cuda/launch_shape.h"
+#include "cuda/logit_shares.cuh"
 #include "vesalius/forest/feature.h"
 
 namespace vesalius::gpu {
@@ -99,9 +101,12 @@ struct CompactNodes {
   static constexpr std::uint32_t kWords = 2;
   static GPU_FUNCTION WalkNode read(const std::uint32_t* words, std::uint32_t link_bits) {
     const auto w = *reinterpret_cast<const TwoWords*>(words);
-    return {int(w.word[0] & 255U) - 128,          int(w.word[0] >> 8U & 255U) - 128,
-            int(w.word[0] >> 16U & 255U) - 128,   int(w.word[0] >> 24U) - 128,
-            static_cast<std::int32_t>(w.word[1]) >> link_bits, w.word[1] & ((1U << link_bits) - 1U)};
+    return {int(w.word[0] & 255U) - 128,
+            int(w.word[0] >> 8U & 255U) - 128,
+            int(w.word[0] >> 16U & 255U) - 128,
+            int(w.word[0] >> 24U) - 128,
+            static_cast<std::int32_t>(w.word[1]) >> link_bits,
+            w.word[1] & ((1U << link_bits) - 1U)};
   }
 };
 
@@ -127,8 +132,7 @@ GPU_FUNCTION std::uint32_t walk_tree(const WalkArguments& a, const AskedPixel& p
     return mm != 0 ? mm : a.hole_mm;
   };
   const OffsetScale scale{pixel.scale_u, pixel.scale_v};
-  const ProbeRange range =
-      probe_range(depth_at(a.pictures, int(pixel.picture), pixel.u, pixel.v), a.clip_mm);
+  const ProbeRange range = probe_range(depth_at(a.pictures, int(pixel.picture), pixel.u, pixel.v), a.clip_mm);
   const std::uint32_t* root = a.words + tree.word;
   const std::uint32_t* words = root;
   for (WalkNode node = Nodes::read(words, tree.link_bits); node.link != 0; node = Nodes::read(words, tree.link_bits)) {
@@ -156,8 +160,8 @@ GPU_KERNEL void run_kernel(const AddArguments a) {
     const std::uint32_t i = block_x() * threads_in_block() + thread;
     if (i >= asked) continue;
     const AskedPixel pixel = a.asked.pixels[i];
-    std::uint16_t* sums = a.sums + place_of(a.pictures, int(pixel.picture), pixel.u, pixel.v) *
-                                       static_cast<std::size_t>(a.classes);
+    std::uint16_t* sums =
+        a.sums + place_of(a.pictures, int(pixel.picture), pixel.u, pixel.v) * static_cast<std::size_t>(a.classes);
     for (int t = 0; t < a.trees; ++t) {
       const std::size_t leaf = a.reached[static_cast<std::size_t>(t) * a.most_asked + i];
       const std::uint8_t* label = a.leaves + leaf * 2 * kLeafClasses;
@@ -166,70 +170,6 @@ GPU_KERNEL void run_kernel(const AddArguments a) {
         sum = static_cast<std::uint16_t>(sum + label[kLeafClasses + k]);
       }
     }
-  }
-}
-
-/// exp of x in [-80, 80], by the operations of leaf_logits.cpp.
-GPU_FUNCTION float exponential(float x) {
-  const float scaled = x * 1.44269504F;
-  const std::int32_t whole = nearest(scaled);
-  const float rest = (scaled - float(whole)) * 0.693147181F;
-  float sum = 1.F / 120.F;
-  sum = sum * rest + 1.F / 24.F;
-  sum = sum * rest + 1.F / 6.F;
-  sum = sum * rest + 0.5F;
-  sum = sum * rest + 1.F;
-  sum = sum * rest + 1.F;
-  return sum * bits_as_float((whole + 127) << 23);
-}
-
-/// Numbers in the order of the floats that they stand for, so that integers can be compared, and back.
-GPU_FUNCTION std::int32_t ordered(float x) {
-  const std::int32_t bits = float_as_bits(x);
-  return bits >= 0 ? bits : bits ^ 0x7FFFFFFF;
-}
-GPU_FUNCTION float unordered(std::int32_t bits) { return bits_as_float(bits >= 0 ? bits : bits ^ 0x7FFFFFFF); }
-
-/// Returns the power of a logit relative to the largest of its group.
-GPU_FUNCTION float power_below(float logit, std::int32_t ordered_top) {
-  float x = logit - unordered(ordered_top);
-  x = x > -80.F ? x : -80.F;
-  return exponential(x < 0.F ? x : 0.F);
-}
-
-/// What the groups of a pixel's places have in common: the parts of each side, the background, the headings of each
-/// side (leaf_logits.cpp).
-struct LogitGroups {
-  static constexpr int kCount = 8;  // one is not used
-  static constexpr int kBackground = 3;
-  static constexpr int kFirstTurn = 4;
-  static constexpr int kSides = 3;
-  static constexpr float kFixed = 8388608.F;
-  static constexpr float kAbsent = -1e30F;
-};
-
-/// Writes by what the powers of each group are multiplied to become posteriors.
-GPU_FUNCTION void scale_groups(const float* tops, const std::int32_t* fixed, bool has_turns, float* scales) {
-  using G = LogitGroups;
-  float sum[G::kCount], together[G::kSides + 1];
-  for (int g = 0; g < G::kCount; ++g) sum[g] = float(fixed[g]) / G::kFixed;
-  for (int s = 0; s < G::kSides; ++s) {
-    if (!has_turns) sum[G::kFirstTurn + s] = 1.F;
-    together[s] = tops[s] + (has_turns ? tops[G::kFirstTurn + s] : 0.F);
-  }
-  together[G::kBackground] = tops[G::kBackground];
-  float top = together[0];
-  for (int k = 1; k <= G::kBackground; ++k) top = together[k] > top ? together[k] : top;
-  for (int k = 0; k <= G::kBackground; ++k) {
-    const float below = together[k] - top;
-    together[k] = exponential(below > -80.F ? below : -80.F);
-  }
-  float all = together[G::kBackground] * sum[G::kBackground];
-  for (int s = 0; s < G::kSides; ++s) all += together[s] * sum[s] * sum[G::kFirstTurn + s];
-  scales[G::kBackground] = together[G::kBackground] / all;
-  for (int s = 0; s < G::kSides; ++s) {
-    scales[s] = together[s] * sum[G::kFirstTurn + s] / all;
-    scales[G::kFirstTurn + s] = together[s] * sum[s] / all;
   }
 }
 

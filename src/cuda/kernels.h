@@ -3,11 +3,9 @@
 // What kernels (kernels.cuh) are told. Pictures of one size are worked on together, a camera each: a kernel's threads
 // go over the pixels of all of them. All pointers are to the device's memory.
 
-#include <array>
 #include <cstdint>
-#include <variant>
 
-#include "cuda/train_kernels.h"
+#include "cuda/kernel_call.h"
 
 namespace vesalius::gpu {
 
@@ -49,6 +47,7 @@ struct TreePlace {
 /// Lists pixels with a reading on every `step`-th column and row that are not yet done, and marks them as done. The
 /// order differs from run to run. One thread for each pixel of the grid.
 struct SelectArguments {
+  static constexpr const char* kName = "select";
   Pictures pictures;
   const OffsetUnits* units = nullptr;  ///< [picture]
   int step = 1;
@@ -59,6 +58,7 @@ struct SelectArguments {
 /// Finds the leaf that each asked pixel reaches in each tree, counted from the first leaf of the first tree. One thread
 /// for each asked pixel there may be, blocks_y: trees.
 struct WalkArguments {
+  static constexpr const char* kName = "walk";
   Pictures pictures;
   AskedPixels asked;
   const TreePlace* trees = nullptr;
@@ -70,6 +70,7 @@ struct WalkArguments {
 
 /// Adds up the distributions of the leaves that pixels reached (eq. 2); `sums` were 0. One thread for each asked pixel.
 struct AddArguments {
+  static constexpr const char* kName = "add";
   Pictures pictures;
   AskedPixels asked;
   const std::uint32_t* reached = nullptr;  ///< [tree][asked]
@@ -83,6 +84,7 @@ struct AddArguments {
 /// Reads posteriors and headings from the logits of the leaves that pixels reached, as LogitReader does. A block has
 /// `pixels_in_block` asked pixels with kLogitLanes threads each.
 struct LogitArguments {
+  static constexpr const char* kName = "logits";
   Pictures pictures;
   AskedPixels asked;
   const std::uint32_t* reached = nullptr;
@@ -105,6 +107,7 @@ constexpr int kGuideMm = 50;
 
 /// Tells for every fourth pixel of every fourth row whether the background is certain there. One thread for each.
 struct GateArguments {
+  static constexpr const char* kName = "gate";
   Pictures pictures;
   const std::uint16_t* sums = nullptr;
   int classes = 0;
@@ -114,6 +117,7 @@ struct GateArguments {
 
 /// Gives pixels that are shut in by certain ones their nearest neighbour's sums. One thread for each pixel.
 struct SettleArguments {
+  static constexpr const char* kName = "settle";
   Pictures pictures;
   const std::uint8_t* states = nullptr;
   std::uint16_t* sums = nullptr;
@@ -125,6 +129,7 @@ struct SettleArguments {
 /// Writes the means over near neighbours of similar depth (mean_filter). A block has `pixels_in_block` pixels with
 /// kMeanLanes threads each.
 struct MeanArguments {
+  static constexpr const char* kName = "mean";
   Pictures pictures;
   const std::uint16_t* sums = nullptr;
   const std::uint8_t* settled = nullptr;  ///< may be null
@@ -146,28 +151,22 @@ struct ChoiceArguments {
 
 /// Chooses for every pixel by itself. One thread for each.
 struct ChooseAloneArguments {
+  static constexpr const char* kName = "choose";
   ChoiceArguments choice;
   std::uint8_t* unsure = nullptr;
 };
 
 /// Lets the neighbours decide about unsure pixels. One thread for each pixel.
 struct AskNeighboursArguments {
+  static constexpr const char* kName = "neighbours";
   ChoiceArguments choice;
   const std::uint8_t* unsure = nullptr;
   std::uint8_t* labels = nullptr;  ///< kBackground where there is no part
 };
 
-using KernelCall =
-    std::variant<SelectArguments, WalkArguments, AddArguments, LogitArguments, GateArguments, SettleArguments,
-                 MeanArguments, ChooseAloneArguments, AskNeighboursArguments, ScaleArguments, RelabelArguments,
-                 RowsArguments, EvaluateArguments, RangesArguments, FillArguments, CountArguments, BestArguments,
-                 CollectArguments, RouteArguments, CountRightArguments, MoveArguments, FindLeavesArguments,
-                 LeafWeightsArguments, GradientArguments>;
-/// [KernelCall::index()]: how figures and messages call a kernel.
-inline constexpr std::array<const char*, std::variant_size_v<KernelCall>> kKernelNames{
-    "select",     "walk",    "add",     "logits",      "gate",     "settle",      "mean",         "choose",
-    "neighbours", "scale",   "relabel", "rows",        "evaluate", "ranges",      "fill",         "count",
-    "best",       "collect", "route",   "count right", "move",     "find leaves", "leaf weights", "gradient"};
+/// All kernels of labelling.
+using LabelKernels = KernelList<SelectArguments, WalkArguments, AddArguments, LogitArguments, GateArguments,
+                                SettleArguments, MeanArguments, ChooseAloneArguments, AskNeighboursArguments>;
 
 /// Threads that share a pixel, neighbours so that they read a leaf's logits or a pixel's sums together: four logits
 /// each, two classes each.

@@ -12,7 +12,8 @@ namespace {
 
 bool has_cuda() { return false; }
 std::vector<CudaFacts> cuda_devices() { refuse(); }
-std::shared_ptr<Device> open_cuda_device(int /*number*/) { refuse(); }
-std::vector<KernelFacts> kernel_facts(int /*number*/) { refuse(); }
+std::vector<CardKernel> label_kernels_on_cards() { return {}; }
+std::shared_ptr<Device> open_cuda_device(int /*number*/, std::vector<CardKernel> /*kernels*/) { refuse(); }
+std::vector<KernelFacts> kernel_facts(int /*number*/, const std::vector<CardKernel>& /*kernels*/) { refuse(); }
 
 }  // namespace vesalius::gpu

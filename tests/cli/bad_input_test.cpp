@@ -171,7 +171,7 @@ TEST_F(BadInput, InterruptsKeepFinishedFramesOnly) {
     EXPECT_EQ(std::distance(fs::directory_iterator(path("stopped")), {}), 1) << "nothing half written";
     fs::remove(path("stopped/p.jsonl"));
   }
-  interrupted("TERM", "convert " + path("long") + " " + path("converted") + " --fx 262 --to pcd", path("converted"));
+  interrupted("TERM", "convert " + path("long") + " " + path("converted") + " --fx 262 --to folder", path("converted"));
 }
 
 TEST_F(BadInput, AClosedPipeEndsTheProgramQuietly) {

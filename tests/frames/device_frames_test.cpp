@@ -9,10 +9,10 @@
 
 #include "cuda/cuda_device.h"
 #include "cuda/device_labeller.h"
-#include "cuda/simulated_device.h"
 #include "cuda/test_forests.h"
 #include "io/model/model_file.h"
 #include "shared_frames.h"
+#include "simulator/simulated_device.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/detect.h"

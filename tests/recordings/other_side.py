@@ -2,12 +2,12 @@
 """Recordings between vesalius and other programs, both ways.
 
 Writes the frames of FOLDER (depth/*.png, rgb/*, meta.json) into recordings with rosbags and mcap, in every layout, compression
-and encoding of depth, and with OpenNI2's recorder, and has vesalius turn each back into a folder: its
+and encoding of depth, and has vesalius turn each back into a folder: its
 depth must be the same, pixel by pixel, and its colour, where nothing was lost. Recordings begun in the middle must give the
 same frames. Then has vesalius record FOLDER, and rosbags, mcap and rerun read that.
 
 Needs a Python with: rosbags mcap mcap-ros2-support numpy opencv-python-headless; optionally rerun-sdk,
-foxglove-schemas-protobuf, pyrealsense2 (2.55 records .bag, later ones .db3); for OpenNI2 a C++ compiler and libopenni2-dev.
+foxglove-schemas-protobuf, pyrealsense2 (2.55 records .bag, later ones .db3).
 
 usage: other_side.py VESALIUS FOLDER
        other_side.py --fixtures SEEDS   writes, into folders of fuzz/seeds, the small recordings that the tests of io and the fuzzer start from
@@ -316,90 +316,6 @@ def seek_in_theirs(vesalius, folder, work):
     for chunked in (True, False):
         write_mcap(work / f"many{chunked}.mcap", many, "NONE", chunked, "16UC1", "bgr8")
         expect_late_frames(vesalius, work / f"many{chunked}.mcap", many, work, f"MCAP, chunks {chunked}")
-
-
-def raw_pictures(folder):
-    """The file that the driver of OpenNI2 plays (openni_driver.cpp)."""
-    meta = json.loads((folder / "meta.json").read_text())
-    pictures = [(depth, colour[:, :, ::-1]) for _, depth, colour in frames(folder)]
-    height, width = pictures[0][0].shape
-    head = struct.pack("<iiiff", width, height, len(pictures), meta["fx"], meta["fy"])
-    return head + b"".join(depth.astype("<u2").tobytes() + np.ascontiguousarray(colour).tobytes() for depth, colour in pictures)
-
-
-def openni_recorder(work):
-    """Builds OpenNI2's recorder with a camera that plays files. Drivers lie beside the library, so that is copied."""
-    here = Path(__file__).resolve().parent
-    library = next(Path("/usr/lib").glob("*/libOpenNI2.so.0"), None)
-    if library is None or not Path("/usr/include/openni2").exists() or not shutil.which("g++"):
-        print("left out: OpenNI2")
-        return None
-    place = work / "openni2"
-    (place / "OpenNI2" / "Drivers").mkdir(parents=True)
-    shutil.copy(library, place)
-    compile_with = ["g++", "-std=c++20", "-O1", "-w", "-I/usr/include/openni2"]
-    subprocess.run([*compile_with, "-fPIC", "-shared", here / "openni_driver.cpp", "-o",
-                    place / "OpenNI2" / "Drivers" / "libFileCamera.so.0"], check=True)
-    subprocess.run([*compile_with, here / "openni_record.cpp", place / library.name, "-o", place / "record"], check=True)
-
-    def record(folder, path, lossy):
-        (place / "pictures").write_bytes(raw_pictures(folder))
-        count = len(list(frames(folder)))
-        subprocess.run([place / "record", place / "pictures", path, str(1 + 0.03 * count), str(int(lossy))], check=True,
-                       env={**os.environ, "LD_LIBRARY_PATH": str(place)}, cwd=place)
-
-    return record
-
-
-def people(vesalius, source, camera):
-    done = subprocess.run([vesalius, "detect", source, "--json", "-", "-q", "--camera", camera,
-                           *(("--colour-topic", "Image") if str(source).endswith(".oni") else ())],
-                          check=True, capture_output=True, text=True)
-    return [frame["people"] for frame in map(json.loads, done.stdout.splitlines()) if "people" in frame]
-
-
-def read_openni(vesalius, folder, work):
-    wanted = [(depth, colour) for _, depth, colour in frames(folder)]
-    camera = folder / "meta.json"
-
-    def expect(path, same_colour, *flags):
-        found = read_back(vesalius, path, work / "back", *flags)
-        assert len(found) == len(wanted), f"{path.name}: {len(found)} frames, expected {len(wanted)}"
-        for (depth, colour), (true_depth, true_colour) in zip(found, wanted):
-            assert np.array_equal(depth, true_depth), f"{path.name}: depth differs"
-            if same_colour:
-                assert np.array_equal(colour, true_colour), f"{path.name}: colour differs"
-                continue
-            difference = np.abs(colour.astype(int) - true_colour)
-            assert difference.mean() < 6, f"{path.name}: colour is {difference.mean()} away"
-        print("same:", path.name, flush=True)
-
-    truth = people(vesalius, folder, camera)
-    assert sum(map(len, truth)) > 0
-    record = openni_recorder(work)
-    if record:
-        for name, lossy in (("lossless.oni", False), ("jpeg.oni", True)):
-            record(folder, work / name, lossy)
-            expect(work / name, not lossy, "--colour-topic", "Image")
-        own = json.loads((work / "back" / "meta.json").read_text())
-        meta = json.loads(camera.read_text())
-        assert abs(own["fx"] - meta["fx"]) < 0.01 and abs(own["fy"] - meta["fy"]) < 0.01, f"jpeg.oni: {own}"
-        assert people(vesalius, work / "lossless.oni", camera) == truth, "lossless.oni: other people"
-        cut_oni(vesalius, work, len(wanted))
-    print("same people in all", flush=True)
-
-
-def cut_oni(vesalius, work, whole):
-    data = (work / "lossless.oni").read_bytes()
-    data = data[: data.rindex(b"NIR\0")]  # the recorder leaves zeros behind its last record
-    for share in (0.4, 0.8):
-        (work / "cut.oni").write_bytes(data[: int(share * len(data))])
-        done = subprocess.run([vesalius, "convert", work / "cut.oni", work / "cut_oni", "--to", "folder"], capture_output=True, text=True)
-        assert done.returncode == 0 and "cut short" in done.stderr, f"cut.oni: {done.stderr}"
-        count = len(list((work / "cut_oni" / "depth").glob("*.png")))
-        assert 0 < count < whole, f"cut.oni: {count} of {whole} frames"
-        shutil.rmtree(work / "cut_oni")
-    print("cut short: lossless.oni", flush=True)
 
 
 def read_theirs(vesalius, folder, work):
@@ -798,9 +714,8 @@ def matroska(vesalius, folder, work):
 
 def write_fixtures(out):
     """Three pictures of 16x12 whose every pixel follows from its place (recording_source_test.cpp); out is fuzz/seeds."""
-    oni, out = out / "fuzz_oni", out / "fuzz_recording"
-    for place in (oni, out):
-        place.mkdir(parents=True, exist_ok=True)
+    out = out / "fuzz_recording"
+    out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as work:
         folder = Path(work) / "small"
         (folder / "depth").mkdir(parents=True)
@@ -826,10 +741,6 @@ def write_fixtures(out):
         write_foxglove(out / "foxglove.mcap", folder)
         (out / "rig.bag").unlink(missing_ok=True)
         write_rig(out / "rig.bag", folder)
-        record = openni_recorder(Path(work))
-        if record:
-            record(folder, oni / "raw.oni", False)
-            record(folder, oni / "jpeg.oni", True)
 
 
 def main():
@@ -841,7 +752,6 @@ def main():
         cut_short(vesalius, folder, Path(work))
         give_ours(vesalius, folder, Path(work))
         realsense(vesalius, Path(work))
-        read_openni(vesalius, folder, Path(work))
         seek_in_theirs(vesalius, folder, Path(work))
         matroska(vesalius, folder, Path(work))
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compiles the kernels of src/cuda for each kind of card and says what they need of it.
+"""Compiles the kernels for each kind of card and says what they need of it.
 
 Prints a table: registers, shared memory and occupancy (the share of a multiprocessor's threads that can run at once, in
 blocks of 256) of every kernel on every architecture. Exit code 1 if a kernel spills registers or fills less than half
@@ -17,6 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+SOURCES = ("src/cuda/cuda_device.cu", "training/cuda_train/train_kernels.cu")
 BLOCK = 256
 LEAST_OCCUPANCY = 0.5
 # Limits of a multiprocessor (CUDA C++ Programming Guide, table of compute capabilities): threads, blocks, bytes of shared
@@ -64,9 +65,9 @@ def parse(text, arch):
     return found
 
 
-def compile_for(nvcc, arch):
-    flags = ["-std=c++20", "-O3", "-fmad=false", "--expt-relaxed-constexpr", f"-I{ROOT / 'src'}"]
-    command = [nvcc, *flags, f"-arch={arch}", "-Xptxas", "-v", "-cubin", "-o", "/dev/null", ROOT / "src/cuda/cuda_device.cu"]
+def compile_for(nvcc, source, arch):
+    flags = ["-std=c++20", "-O3", "-fmad=false", "--expt-relaxed-constexpr", f"-I{ROOT / 'src'}", f"-I{ROOT / 'training'}"]
+    command = [nvcc, *flags, f"-arch={arch}", "-Xptxas", "-v", "-cubin", "-o", "/dev/null", ROOT / source]
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
     if done.returncode != 0:
         raise ValueError(f"{arch}: nvcc failed:\n{done.stderr}")
@@ -79,7 +80,8 @@ def main():
     parser.add_argument("--json", type=Path, metavar="FILE")
     arguments = parser.parse_args()
     with ThreadPoolExecutor(2) as pool:
-        kernels = sum(pool.map(lambda arch: compile_for(arguments.nvcc, arch), LIMITS), [])
+        compilations = [(arguments.nvcc, source, arch) for source in SOURCES for arch in LIMITS]
+        kernels = sum(pool.map(lambda one: compile_for(*one), compilations), [])
     if arguments.json:
         arguments.json.write_text(json.dumps(kernels, indent=1) + "\n")
     print("| kernel | " + " | ".join(LIMITS) + " |\n|---|" + "---|" * len(LIMITS))

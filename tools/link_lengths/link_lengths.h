@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "metrics/frame_truth.h"
 #include "vesalius/base/body_model.h"
-#include "vesalius/base/frame_truth.h"
 
 namespace vesalius {
 
@@ -17,10 +17,10 @@ inline constexpr std::array<float, 4> kStatureBands_m = {1.2F, 1.4F, 1.6F, 1.8F}
 /// The distances between the centres of two linked parts, metres. Left and right are taken together. NaN where nothing
 /// was measured.
 struct LinkFigures {
-  long pairs = 0;                ///< people with both parts in view
-  float length_m = 0.F;          ///< median
-  float spread_m = 0.F;          ///< deviation from it that 90 % do not exceed
-  float scaled_spread_m = 0.F;   ///< the same after scaling everybody to the reference stature
+  long pairs = 0;               ///< people with both parts in view
+  float length_m = 0.F;         ///< median
+  float spread_m = 0.F;         ///< deviation from it that 90 % do not exceed
+  float scaled_spread_m = 0.F;  ///< the same after scaling everybody to the reference stature
   std::array<float, kStatureBands_m.size() + 1> band_m{};  ///< median of each band
 };
 

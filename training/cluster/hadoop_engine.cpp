@@ -12,8 +12,8 @@
 #include "cluster/folder_engine.h"
 #include "cluster/process.h"
 #include "cluster/train_job.h"
+#include "folders/temporary_folder.h"
 #include "io/files/read_file.h"
-#include "io/files/temporary_folder.h"
 #include "train/messages/training_protocol.h"
 
 namespace vesalius {

@@ -15,10 +15,10 @@
 #include "train/grow_tree.h"
 #include "train/leaves/leaf_shard.h"
 #include "train/local_shards.h"
+#include "train/parallel_in_order.h"
 #include "train/samples/find_leaves.h"
 #include "train/split_candidates.h"
 #include "train/tree_shard.h"
-#include "vesalius/base/parallel_in_order.h"
 #include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {

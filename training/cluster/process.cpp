@@ -11,8 +11,8 @@
 #include <thread>
 #include <utility>
 
+#include "folders/temporary_folder.h"
 #include "io/files/read_file.h"
-#include "io/files/temporary_folder.h"
 #include "vesalius/base/error.h"
 
 extern char** environ;

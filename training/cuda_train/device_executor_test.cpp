@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cuda/cuda_device.h"
-#include "cuda/simulated_device.h"
+#include "cuda_train/test_simulated_training.h"
 #include "train/grow_forest.h"
 #include "train/test_training.h"
 #include "vesalius/base/error.h"
@@ -19,6 +19,7 @@ namespace {
 
 using test::pointers_to;
 using test::shards_of;
+using test::simulated_training;
 
 /// With hard negatives, several counted samples a node and joint leaves.
 TrainOptions small_options() {
@@ -30,10 +31,6 @@ TrainOptions small_options() {
   options.leaves.rounds = 3;
   options.leaves.portions = 2;
   return options;
-}
-
-std::shared_ptr<SimulatedDevice> simulated(SimulatedDeviceOptions options = {}) {
-  return std::make_shared<SimulatedDevice>(options);
 }
 
 Forest train_on(const std::vector<std::shared_ptr<Device>>& devices, const std::vector<int>& ends,
@@ -76,7 +73,8 @@ TEST(DeviceExecutor, GrowsTheForestOfTheProcessor) {
   ASSERT_GT(expected.trees[0].nodes.size(), 20U);
   ASSERT_FALSE(expected.trees[0].logits.empty());
   for (const bool backwards : {false, true}) {
-    expect_same(train_on({simulated({.simulator = {.backwards = backwards}})}, {24}, frames, options), expected);
+    expect_same(train_on({simulated_training({.simulator = {.backwards = backwards}})}, {24}, frames, options),
+                expected);
   }
 }
 
@@ -84,11 +82,11 @@ TEST(DeviceExecutor, GrowsTheSameForestFromShardsOnSeveralDevices) {
   const std::vector<LabelledFrame> frames = frames_of(24);
   const TrainOptions options = small_options();
   const Forest expected = train_on_processor(frames, options);
-  expect_same(train_on({simulated()}, {11, 24}, frames, options), expected);
-  expect_same(train_on({simulated(), simulated()}, {3, 4, 4, 15, 24}, frames, options), expected);
+  expect_same(train_on({simulated_training()}, {11, 24}, frames, options), expected);
+  expect_same(train_on({simulated_training(), simulated_training()}, {3, 4, 4, 15, 24}, frames, options), expected);
   for (const std::size_t devices : {2, 3, 30}) {  // which divide a set among them, the last in part with nothing
     std::vector<std::shared_ptr<Device>> all;
-    for (std::size_t i = 0; i < devices; ++i) all.push_back(simulated());
+    for (std::size_t i = 0; i < devices; ++i) all.push_back(simulated_training());
     expect_same(train_on(all, {24}, frames, options), expected);
   }
 }
@@ -108,7 +106,7 @@ TEST(DeviceExecutor, GrowsTheSameForestWithOtherOptions) {
   all[4].grow.split.candidates = 5;
   for (std::size_t i = 0; i < all.size(); ++i) {
     SCOPED_TRACE("options " + std::to_string(i));
-    expect_same(train_on({simulated()}, {12}, frames, all[i]), train_on_processor(frames, all[i]));
+    expect_same(train_on({simulated_training()}, {12}, frames, all[i]), train_on_processor(frames, all[i]));
   }
 }
 
@@ -121,16 +119,16 @@ TEST(DeviceExecutor, GrowsTheSameForestForAnyNumberOfTreesAtOnce) {
   options.grow.leaf.max_depth = 4;
   options.grow.split.candidates = 16;
   const Forest expected = train_on_processor(frames, options);
-  for_threads({4}, [&] { expect_same(train_on({simulated()}, {3, 6}, frames, options, 3), expected); });
+  for_threads({4}, [&] { expect_same(train_on({simulated_training()}, {3, 6}, frames, options, 3), expected); });
 }
 
 TEST(DeviceExecutor, SaysWhenADeviceIsTooSmallOrLost) {
   const std::vector<LabelledFrame> frames = frames_of(6);
   const TrainOptions options = small_options();
-  EXPECT_THAT([&] { train_on({simulated({.memory_bytes = 5000})}, {6}, frames, options); },
+  EXPECT_THAT([&] { train_on({simulated_training({.memory_bytes = 5000})}, {6}, frames, options); },
               testing::ThrowsMessage<DeviceError>(testing::HasSubstr("no room for")));
   for (const int after : {10, 40, 200}) {
-    EXPECT_THAT([&] { train_on({simulated({.lost_after = after})}, {6}, frames, options); },
+    EXPECT_THAT([&] { train_on({simulated_training({.lost_after = after})}, {6}, frames, options); },
                 testing::ThrowsMessage<DeviceError>(testing::HasSubstr("the device was lost")));
   }
 }
@@ -138,12 +136,11 @@ TEST(DeviceExecutor, SaysWhenADeviceIsTooSmallOrLost) {
 TEST(DeviceExecutor, NeedsEveryBarrierOfTheGradient) {
   const std::vector<LabelledFrame> frames = frames_of(8);
   const Forest expected = train_on_processor(frames, small_options());
-  const int gradient = static_cast<int>(KernelCall(GradientArguments{}).index());
   for (int barrier = 0; barrier < 6; ++barrier) {
     bool found = false;
     for (const bool backwards : {false, true}) {
       const SimulatorOptions simulator{.backwards = backwards, .zeroed = true, .faults = {.left_out_barrier = barrier}};
-      const auto device = simulated({.simulator = simulator, .faulty_kernel = gradient});
+      const auto device = simulated_training({.simulator = simulator, .faulty_kernel = GradientArguments::kName});
       found = found || train_on({device}, {8}, frames, small_options()).trees != expected.trees;
     }
     EXPECT_TRUE(found) << "barrier " << barrier;
@@ -163,15 +160,16 @@ TEST(DeviceExecutor, GrowsTheForestOfTheProcessorFromManyFrames) {
   options.sample.pixels_per_frame = 100;
   const Forest expected = train_on_processor(frames, options);
   ASSERT_GT(expected.trees[0].nodes.size(), 100U);
-  expect_same(train_on({simulated(), simulated()}, {2 * count / 3, count}, frames, options), expected);
-  expect_same(train_on({simulated()}, {count}, frames, options), expected);
+  expect_same(train_on({simulated_training(), simulated_training()}, {2 * count / 3, count}, frames, options),
+              expected);
+  expect_same(train_on({simulated_training()}, {count}, frames, options), expected);
 }
 
 // Labels: gpu
 TEST(DeviceExecutor, GrowsTheForestOfTheProcessorOnACard) {
   std::shared_ptr<Device> card;
   try {
-    card = open_cuda_device(0);
+    card = open_cuda_device(0, train_kernels_on_cards());
   } catch (const DeviceError& e) {
     GTEST_SKIP() << e.what();
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cuda/device_labeller.h"
+#include "cuda/kernels.h"
 #include "train/leaves/leaf_shard.h"
 #include "vesalius/base/error.h"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cuda/device.h"
+#include "cuda_train/train_kernels.h"
 #include "train/samples/training_set.h"
 
 namespace vesalius::gpu {

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "cuda/simulated_device.h"
+#include "cuda_train/test_simulated_training.h"
 #include "train/growing_tree.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
@@ -31,7 +31,7 @@ class BothShards {
         convention_(set.convention()),
         processor_(set, options, 0),
         grown_(set.sample_counts(), set.body().part_count(), options) {
-    const auto device = std::make_shared<SimulatedDevice>(simulated);
+    const auto device = test::simulated_training(simulated);
     const auto count = static_cast<std::uint32_t>(set.frames().size());
     const auto frames = std::make_shared<const DeviceFrames>(set.frames(), 0, count, device);
     device_.emplace(std::make_shared<const DeviceSamples>(set, frames), options, 0);
@@ -153,11 +153,8 @@ TEST_F(DeviceTreeShardTest, AnswersAsAShardOnTheProcessor) {
 }
 
 TEST_F(DeviceTreeShardTest, NeedsEveryBarrier) {
-  const auto number_of = [](const KernelCall& call) { return static_cast<int>(call.index()); };
-  for (const auto& [kernel, barriers] :
-       {std::pair{number_of(RangesArguments{}), 2}, std::pair{number_of(CountArguments{}), 2},
-        std::pair{number_of(BestArguments{}), 2}}) {
-    for (int barrier = 0; barrier < barriers; ++barrier) {
+  for (const char* kernel : {RangesArguments::kName, CountArguments::kName, BestArguments::kName}) {
+    for (const int barrier : {0, 1}) {
       bool found = false;
       for (const bool backwards : {false, true}) {
         const SimulatorOptions simulator{
@@ -165,7 +162,7 @@ TEST_F(DeviceTreeShardTest, NeedsEveryBarrier) {
         BothShards both(sets_.front(), options_.grow, {.simulator = simulator, .faulty_kernel = kernel});
         found = found || !both.grow().empty();
       }
-      EXPECT_TRUE(found) << "kernel " << kernel << ", barrier " << barrier;
+      EXPECT_TRUE(found) << kernel << ", barrier " << barrier;
     }
   }
 }
@@ -187,7 +184,7 @@ struct ManyClasses {
 
   /// Counts them on a device, in two chunks.
   std::vector<std::uint16_t> counts(const CountTask& task, const SimulatedDeviceOptions& options) const {
-    const TrainStream stream(std::make_shared<SimulatedDevice>(options));
+    const TrainStream stream(test::simulated_training(options));
     DeviceArray<std::int16_t> device_values, low;
     DeviceArray<std::uint8_t> device_labels, class_of;
     DeviceArray<std::uint16_t> factor;
@@ -242,10 +239,8 @@ TEST(CountRows, CountsMoreClassesThanABlockHasRoomForAndNeedsEveryBarrier) {
 
 /// Moves the samples of one node by the parity of their child, on a device with these options.
 std::vector<std::uint32_t> moved(const std::vector<std::int32_t>& node_of, const SimulatorOptions& simulator,
-                                 int faulty_kernel) {
-  const auto device =
-      std::make_shared<SimulatedDevice>(SimulatedDeviceOptions{.simulator = simulator, .faulty_kernel = faulty_kernel});
-  const TrainStream stream(device);
+                                 const std::string& faulty_kernel = {}) {
+  const TrainStream stream(test::simulated_training({.simulator = simulator, .faulty_kernel = faulty_kernel}));
   const auto count = static_cast<std::uint32_t>(node_of.size());
   const auto left = static_cast<std::uint32_t>(std::ranges::count_if(node_of, [](int n) { return n % 2 == 0; }));
   const std::vector<MoveNode> nodes{{0, 0, 0, left, 0}};
@@ -280,7 +275,7 @@ class MoveSamples : public testing::Test {
   }
 
   /// Returns whether a barrier that is left out shows in either order of threads.
-  bool shows(int kernel, int barrier) const {
+  bool shows(const std::string& kernel, int barrier) const {
     const Faults fault{.left_out_barrier = barrier};
     try {
       return moved(node_of_, {.zeroed = true, .faults = fault}, kernel) != expected_ ||
@@ -295,16 +290,15 @@ class MoveSamples : public testing::Test {
 };
 
 TEST_F(MoveSamples, KeepsTheirOrderInBothChildren) {
-  for (const bool backwards : {false, true}) EXPECT_EQ(moved(node_of_, {.backwards = backwards}, -1), expected_);
+  for (const bool backwards : {false, true}) EXPECT_EQ(moved(node_of_, {.backwards = backwards}), expected_);
 }
 
 TEST_F(MoveSamples, NeedsEveryBarrier) {
   // Samples may be moved anywhere, so each try has a process of its own: one that dies has shown the fault too.
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto ends_badly = [](int status) { return !WIFEXITED(status) || WEXITSTATUS(status) != 0; };
-  const auto number_of = [](const KernelCall& call) { return static_cast<int>(call.index()); };
   for (const auto& [kernel, barriers] :
-       {std::pair{number_of(CountRightArguments{}), 2}, std::pair{number_of(MoveArguments{}), 9}}) {
+       {std::pair{CountRightArguments::kName, 2}, std::pair{MoveArguments::kName, 9}}) {
     for (int barrier = 0; barrier < barriers; ++barrier) {
       EXPECT_EXIT(std::_Exit(shows(kernel, barrier) ? 1 : 0), ends_badly, "") << kernel << ", barrier " << barrier;
     }

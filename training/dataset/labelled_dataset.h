@@ -7,7 +7,7 @@
 
 #include "dataset/dataset_folder.h"
 #include "dataset/labelled_frame_codec.h"
-#include "io/files/folder_lock.h"
+#include "folders/folder_lock.h"
 #include "vesalius/base/body_model.h"
 
 namespace vesalius {

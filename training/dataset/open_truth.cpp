@@ -8,9 +8,9 @@
 #include "dataset/labelled_dataset.h"
 #include "dataset/labelled_folder.h"
 #include "dataset/skeleton_truth.h"
+#include "dataset/stepped_source.h"
 #include "dataset/truth_folder.h"
 #include "io/sources/open_source.h"
-#include "io/sources/stepped_source.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/frame_truth.h"
+#include "metrics/frame_truth.h"
 
 namespace vesalius {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "io/sources/tum_trajectory.h"
-#include "vesalius/base/frame_truth.h"
+#include "dataset/tum_trajectory.h"
+#include "metrics/frame_truth.h"
 
 namespace vesalius {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/frame_truth.h"
+#include "metrics/frame_truth.h"
 
 namespace vesalius {
 

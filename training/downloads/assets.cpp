@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "downloads/unpack.h"
-#include "io/files/folder_lock.h"
+#include "folders/folder_lock.h"
 #include "io/files/read_file.h"
 #include "vesalius/base/error.h"
 

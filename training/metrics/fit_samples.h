@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "metrics/frame_truth.h"
 #include "vesalius/base/body_model.h"
-#include "vesalius/base/frame_truth.h"
 #include "vesalius/base/person.h"
 #include "vesalius/detect.h"
 #include "vesalius/fit/joint_trust.h"

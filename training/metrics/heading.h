@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "metrics/frame_truth.h"
 #include "vesalius/base/body_model.h"
-#include "vesalius/base/frame_truth.h"
 
 namespace vesalius {
 

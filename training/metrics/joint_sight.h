@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "metrics/frame_truth.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/metric_table.h"
-#include "vesalius/base/frame_truth.h"
 
 namespace vesalius {
 

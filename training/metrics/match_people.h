@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "vesalius/base/frame_truth.h"
+#include "metrics/frame_truth.h"
 #include "vesalius/base/image.h"
 #include "vesalius/detect.h"
 #include "vesalius/trace.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "metrics/frame_truth.h"
 #include "metrics/metric_table.h"
-#include "vesalius/base/frame_truth.h"
 #include "vesalius/derive_joints.h"
 
 namespace vesalius {

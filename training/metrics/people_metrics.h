@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "metrics/frame_truth.h"
 #include "metrics/match_people.h"
 #include "metrics/metric_table.h"
 #include "vesalius/base/body_model.h"
-#include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
 
 namespace vesalius {

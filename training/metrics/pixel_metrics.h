@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "metrics/frame_truth.h"
 #include "metrics/metric_table.h"
 #include "vesalius/base/body_model.h"
-#include "vesalius/base/frame_truth.h"
 #include "vesalius/base/image.h"
 
 namespace vesalius {

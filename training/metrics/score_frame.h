@@ -7,12 +7,12 @@
 
 #include "metrics/detection_curve.h"
 #include "metrics/fit_samples.h"
+#include "metrics/frame_truth.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/joint_precision.h"
 #include "metrics/judge_samples.h"
 #include "metrics/metric_table.h"
 #include "metrics/pixel_metrics.h"
-#include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
 #include "vesalius/trace.h"
 

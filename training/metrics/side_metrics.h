@@ -3,10 +3,10 @@
 #include <optional>
 #include <vector>
 
+#include "metrics/frame_truth.h"
 #include "metrics/heading.h"
 #include "metrics/metric_table.h"
 #include "vesalius/base/body_model.h"
-#include "vesalius/base/frame_truth.h"
 #include "vesalius/detect.h"
 
 namespace vesalius {

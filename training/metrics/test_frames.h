@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "capsule/capsule_person.h"
+#include "metrics/frame_truth.h"
 #include "vesalius/base/body_model.h"
-#include "vesalius/base/frame_truth.h"
 
 namespace vesalius::test {
 

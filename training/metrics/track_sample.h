@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "metrics/frame_truth.h"
 #include "metrics/track_metrics.h"
-#include "vesalius/base/frame_truth.h"
 #include "vesalius/base/person.h"
 
 namespace vesalius {

@@ -26,8 +26,7 @@ namespace {
 struct Arguments {
   explicit Arguments(CLI::App& command) : detector(command) {}
 
-  std::string source;
-  SourceOptions camera;
+  SourceFlags source;
   OutputRequest outputs;
   DetectorFlags detector;
   StreamOptions stream;
@@ -119,12 +118,8 @@ void run(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   const Detector detector = arguments.detector.make();
   LateLines late;
-  SourceOptions camera = arguments.camera;
-  camera.say = [&late](const std::string& line) { late.add(line); };
-  const auto source = open_source(arguments.source, camera);
-  if (!arguments.outputs.quiet) {
-    for (const std::string& note : source->notes()) say("note: " + note);
-  }
+  const auto source =
+      arguments.source.open(arguments.outputs.quiet, [&late](const std::string& line) { late.add(line); });
   watch_interrupts();
   DetectOutputs outputs(arguments.outputs, detector.body());
   const int all = source->size();
@@ -153,40 +148,26 @@ void run(const Arguments& arguments) {
 }
 
 void add_output_flags(CLI::App& command, OutputRequest& outputs) {
-  const std::string group = "Output (without any of these: a line per frame)";
-  command.add_option("--json", outputs.json, "People as JSON, one line a frame; - is standard output")
-      ->type_name("FILE")
-      ->group(group);
-  command
-      .add_option("--udp", outputs.udp,
-                  "Send each frame's JSON there as datagrams, of more than 64 kB one for each person")
-      ->type_name("HOST:PORT")
-      ->group(group);
-  command.add_option("--osc", outputs.osc, "Send people there as OSC messages, for TouchDesigner, Max and others")
-      ->type_name("HOST:PORT")
-      ->group(group);
-  command.add_option("--osc-joints", outputs.osc_options.joints, "Joint set of these messages")
-      ->type_name("SET")
-      ->capture_default_str()
-      ->group(group);
-  command.add_option("--out", outputs.folder, "Folder for pictures, created if missing")
-      ->type_name("DIR")
-      ->group(group);
-  command
-      .add_option(
-          "--save", outputs.save,
-          "What to put into --out, separated by commas: overlay (default) and parts, pictures of skeletons and of "
-          "body parts; labels (part of each pixel) and mask (person of each pixel) as numbers; cloud (labelled "
-          "PLY); video")
+  const auto add = [&](const char* name, auto& value, const char* type, const char* help) {
+    return command.add_option(name, value, help)
+        ->type_name(type)
+        ->group("Output (without any of these: a line per frame)");
+  };
+  add("--json", outputs.json, "FILE", "People as JSON, one line a frame; - is standard output");
+  add("--udp", outputs.udp, "HOST:PORT",
+      "Send each frame's JSON there as datagrams, of more than 64 kB one for each person");
+  add("--osc", outputs.osc, "HOST:PORT", "Send people there as OSC messages, for TouchDesigner, Max and others");
+  add("--osc-joints", outputs.osc_options.joints, "SET", "Joint set of these messages")->capture_default_str();
+  add("--out", outputs.folder, "DIR", "Folder for pictures, created if missing");
+  add("--save", outputs.save, "WHAT",
+      "What to put into --out, separated by commas: overlay (default) and parts, pictures of skeletons and of body "
+      "parts; labels (part of each pixel) and mask (person of each pixel) as numbers; cloud (labelled PLY); video")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember(kSaveKinds))
-      ->group(group);
-  command.add_option("--video-rate", outputs.video_rate, "Frames per second of the video")
-      ->type_name("N")
+      ->check(CLI::IsMember(kSaveKinds));
+  add("--video-rate", outputs.video_rate, "N", "Frames per second of the video")
       ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
 }
 
 void add_time_flags(CLI::App& command, Arguments& arguments) {
@@ -196,10 +177,7 @@ void add_time_flags(CLI::App& command, Arguments& arguments) {
       .add_flag("--realtime", arguments.stream.realtime,
                 "Process frames at the pace of the camera; drop and count those that come too fast")
       ->group(group);
-  command.add_option("--rate", arguments.stream.rate, "Frames per second with --realtime if the source has no times")
-      ->type_name("N")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str()
+  add_rate_flag(command, arguments.stream.rate, "Frames per second with --realtime if the source has no times")
       ->group(group);
 }
 
@@ -208,20 +186,12 @@ void add_time_flags(CLI::App& command, Arguments& arguments) {
 void add_detect(CLI::App& program) {
   CLI::App* command = program.add_subcommand("detect", "Find people in frames");
   const auto arguments = std::make_shared<Arguments>(*command);
-  command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
   add_output_flags(*command, arguments->outputs);
-  add_camera_flags(*command, arguments->camera);
-  add_start_flag(*command, arguments->camera);
-  add_reconnect_flag(*command, arguments->camera);
-  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all. The result is the same")
-      ->type_name("N")
-      ->check(CLI::Range(0, kMaxThreads))
-      ->group(kDetectorGroup);
+  arguments->source.add_to(*command);
+  add_threads_flag(*command, arguments->threads);
   add_time_flags(*command, *arguments);
   command->add_flag("--track", arguments->track, "Follow people over the frames: ids, states, velocities");
-  command->add_option("--frames", arguments->frames, "End after so many frames; 0 = all")
-      ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+  add_frames_flag(*command, arguments->frames);
   command->add_flag("--keep-going", arguments->keep_going, "Skip frames that fail; the exit code is then 1");
   command->add_flag("-q,--quiet", arguments->outputs.quiet, "Print errors only");
   command->footer(R"(

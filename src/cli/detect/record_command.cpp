@@ -22,9 +22,9 @@ namespace {
 struct Arguments {
   explicit Arguments(CLI::App& command) : detector(command) {}
 
-  std::string source, out;
-  SourceOptions camera;
+  SourceFlags source;
   DetectorFlags detector;
+  std::string out;
   double rate = kUsualRate;
   int frames = 0;  ///< 0 = all
   bool people = false;
@@ -71,12 +71,7 @@ void run(const Arguments& arguments) {
   std::optional<Detector> detector;
   if (arguments.people || arguments.track) detector.emplace(arguments.detector.make());
   LateLines late;
-  SourceOptions camera = arguments.camera;
-  camera.say = [&late](const std::string& line) { late.add(line); };
-  const auto source = open_source(arguments.source, camera);
-  if (!arguments.quiet) {
-    for (const std::string& note : source->notes()) say("note: " + note);
-  }
+  const auto source = arguments.source.open(arguments.quiet, [&late](const std::string& line) { late.add(line); });
   FrameRecorder recorder(arguments.out, arguments.rate);
   watch_interrupts();
   Progress progress(arguments.frames > 0 ? arguments.frames : source->size(), !arguments.quiet);
@@ -112,20 +107,12 @@ void run(const Arguments& arguments) {
 void add_record(CLI::App& program) {
   CLI::App* command = program.add_subcommand("record", "Record frames, and people if wanted, into an MCAP file");
   const auto arguments = std::make_shared<Arguments>(*command);
-  command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
   command->add_option("--out", arguments->out, "MCAP file to write; must not exist")->type_name("FILE")->required();
   command->add_flag("--people", arguments->people, "Find people and record them too: body index, parts, markers, JSON");
   command->add_flag("--track", arguments->track, "Record people with ids, states and fitted bodies, as detect --track");
-  command->add_option("--rate", arguments->rate, "Frames per second of a source that does not know its frames' times")
-      ->type_name("N")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str();
-  command->add_option("--frames", arguments->frames, "End after so many frames; 0 = all")
-      ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
-  add_camera_flags(*command, arguments->camera);
-  add_start_flag(*command, arguments->camera);
-  add_reconnect_flag(*command, arguments->camera);
+  add_rate_flag(*command, arguments->rate, "Frames per second of a source that does not know its frames' times");
+  add_frames_flag(*command, arguments->frames);
+  arguments->source.add_to(*command);
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
 The file holds depth without loss and opens in Foxglove, Rerun and rosbag2 (docs/recordings.md). One whose recording was

@@ -30,9 +30,9 @@ constexpr const char* kUsualFrame = "camera_optical_frame";
 struct Arguments {
   explicit Arguments(CLI::App& command) : detector(command) {}
 
-  std::string source, record;
-  SourceOptions camera;
+  SourceFlags source;
   DetectorFlags detector;
+  std::string record;
   Ros2Flags ros2;
   double rate = kUsualRate;
   int threads = 0;
@@ -77,14 +77,14 @@ class Stamps {
 /// Throws UsageError for flags that do not go together, or say what cannot be meant.
 void check(const Arguments& arguments) {
   const Ros2Flags& flags = arguments.ros2;
-  if (arguments.source.empty() == flags.subscribe.empty()) {
+  if (arguments.source.name().empty() == flags.subscribe.empty()) {
     throw UsageError("expected either SOURCE or --subscribe NAMESPACE (see vesalius ros2 --help)");
   }
   if (!flags.subscribe.empty()) {
-    if (arguments.camera.start_s) throw UsageError("--start goes with a SOURCE only");
+    if (arguments.source.options().start_s) throw UsageError("--start goes with a SOURCE only");
     if (!flags.stamps.empty()) throw UsageError("--stamps: subscribed pictures have times of their own");
     if (arguments.every_frame) throw UsageError("--every-frame goes with a SOURCE only");
-    subscribe_options(flags, arguments.camera);
+    subscribe_options(flags, arguments.source.options());
   } else {
     if (!flags.camera_info_topic.empty()) throw UsageError("--camera-info-topic goes with --subscribe only");
     if (flags.reliable) throw UsageError("--reliable goes with --subscribe only");
@@ -125,16 +125,8 @@ int publish(const Arguments& arguments, FrameSource& source, const Detector& det
 std::unique_ptr<FrameSource> open_frames(const Arguments& arguments, ros2::Node& node, LateLines& late,
                                          const ros2::TopicSource*& topics) {
   const auto say_late = [&late](const std::string& line) { late.add(line); };
-  if (arguments.ros2.subscribe.empty()) {
-    SourceOptions camera = arguments.camera;
-    camera.say = say_late;
-    auto source = open_source(arguments.source, camera);
-    if (!arguments.quiet) {
-      for (const std::string& note : source->notes()) say("note: " + note);
-    }
-    return source;
-  }
-  ros2::TopicSourceOptions wanted = subscribe_options(arguments.ros2, arguments.camera);
+  if (arguments.ros2.subscribe.empty()) return arguments.source.open(arguments.quiet, say_late);
+  ros2::TopicSourceOptions wanted = subscribe_options(arguments.ros2, arguments.source.options());
   wanted.say = say_late;
   auto source = std::make_unique<ros2::TopicSource>(node, wanted);
   topics = source.get();
@@ -185,26 +177,15 @@ void add_ros2(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("ros2", "Publish the people in a source, or in topics, as a node of ROS 2");
   const auto arguments = std::make_shared<Arguments>(*command);
-  command->add_option("SOURCE", arguments->source, kSourceHelp);
   add_ros2_flags(*command, arguments->ros2);
   command->add_option("--record", arguments->record, "Write the same messages to an MCAP file too; must not exist")
       ->type_name("FILE");
-  command->add_option("--frames", arguments->frames, "End after so many frames; 0 = all")
-      ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+  add_frames_flag(*command, arguments->frames);
   command->add_flag("--every-frame", arguments->every_frame,
                     "Take all frames of a file one after the other, not at the pace at which they were taken");
-  command->add_option("--rate", arguments->rate, "Frames per second of a source without times")
-      ->type_name("N")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str();
-  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all")
-      ->type_name("N")
-      ->check(CLI::Range(0, kMaxThreads))
-      ->group(kDetectorGroup);
-  add_camera_flags(*command, arguments->camera);
-  add_start_flag(*command, arguments->camera);
-  add_reconnect_flag(*command, arguments->camera);
+  add_rate_flag(*command, arguments->rate, "Frames per second of a source without times");
+  add_threads_flag(*command, arguments->threads);
+  arguments->source.add_to(*command, false);
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
 People are followed over the frames, so that names of bodies hold. docs/ros2.md has the topics. No installation of

@@ -42,65 +42,42 @@ std::map<std::string, std::string> parse_remaps(const Ros2Flags& flags) {
 }  // namespace
 
 void add_ros2_flags(CLI::App& command, Ros2Flags& flags) {
-  const std::string node = "Node", topics = "Topics", subscription = "Frames from topics";
-  command.add_option("--node", flags.node, "Name of the node")->type_name("NAME")->capture_default_str()->group(node);
-  command.add_option("--namespace", flags.name_space, "Namespace of the node")
-      ->type_name("NAME")
-      ->capture_default_str()
-      ->group(node);
-  command.add_option("--domain", flags.domain, "Domain of ROS 2 (default: ROS_DOMAIN_ID, otherwise 0)")
-      ->type_name("N")
+  std::string group = "Node";
+  const auto add = [&](const char* name, auto& value, const char* type, const char* help) {
+    return command.add_option(name, value, help)->type_name(type)->group(group);
+  };
+  add("--node", flags.node, "NAME", "Name of the node")->capture_default_str();
+  add("--namespace", flags.name_space, "NAME", "Namespace of the node")->capture_default_str();
+  add("--domain", flags.domain, "N", "Domain of ROS 2 (default: ROS_DOMAIN_ID, otherwise 0)")
       ->check(CLI::Range(0, ros2::kMostDomain))
-      ->envname("ROS_DOMAIN_ID")
-      ->group(node);
-  command.add_flag("--localhost", flags.localhost, "Speak to this machine alone, as ROS_LOCALHOST_ONLY=1")->group(node);
-  command
-      .add_option("--ros-distro", flags.distribution,
-                  "Distribution of the others (default: ROS_DISTRO, otherwise jazzy): up to humble, `ros2 node list` "
-                  "wants to be told otherwise than after it")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(kDistributions))
-      ->group(node);
-  command.add_option("--remap", flags.remaps, "Publish under another name, e.g. /tf:=/robot/tf; as often as needed")
-      ->type_name("FROM:=TO")
-      ->allow_extra_args(false)
-      ->group(node);
-  command
-      .add_option("--frame-id", flags.frame_id,
-                  "Coordinate frame of the pictures, optical (default: camera_optical_frame, or as subscribed "
-                  "pictures say)")
-      ->type_name("NAME")
-      ->group(topics);
-  command
-      .add_option("--camera-pose", flags.camera_pose,
-                  "Publish in /tf_static where the camera stands: metres and radians, of a camera that looks along x")
-      ->type_name("FRAME,X,Y,Z,ROLL,PITCH,YAW")
-      ->group(topics);
-  command
-      .add_option("--stamps", flags.stamps,
-                  "Times of messages: frame, those of the frames (default, but for cameras), or now")
-      ->type_name("WHAT")
-      ->check(CLI::IsMember({"frame", "now"}))
-      ->group(topics);
-  command.add_option("--id-prefix", flags.id_prefix, "Before the number in the names of bodies")
-      ->type_name("TEXT")
-      ->capture_default_str()
-      ->group(topics);
+      ->envname("ROS_DOMAIN_ID");
+  command.add_flag("--localhost", flags.localhost, "Speak to this machine alone, as ROS_LOCALHOST_ONLY=1")
+      ->group(group);
+  add("--ros-distro", flags.distribution, "NAME",
+      "Distribution of the others (default: ROS_DISTRO, otherwise jazzy): up to humble, `ros2 node list` wants to be "
+      "told otherwise than after it")
+      ->check(CLI::IsMember(kDistributions));
+  add("--remap", flags.remaps, "FROM:=TO", "Publish under another name, e.g. /tf:=/robot/tf; as often as needed")
+      ->allow_extra_args(false);
+  group = "Topics";
+  add("--frame-id", flags.frame_id, "NAME",
+      "Coordinate frame of the pictures, optical (default: camera_optical_frame, or as subscribed pictures say)");
+  add("--camera-pose", flags.camera_pose, "FRAME,X,Y,Z,ROLL,PITCH,YAW",
+      "Publish in /tf_static where the camera stands: metres and radians, of a camera that looks along x");
+  add("--stamps", flags.stamps, "WHAT",
+      "Times of messages: frame, those of the frames (default, but for cameras), or now")
+      ->check(CLI::IsMember({"frame", "now"}));
+  add("--id-prefix", flags.id_prefix, "TEXT", "Before the number in the names of bodies")->capture_default_str();
   command.add_flag("--whole-cloud", flags.whole_cloud, "All pixels in ~/points, not those of people alone")
-      ->group(topics);
-  command
-      .add_option("--subscribe", flags.subscribe,
-                  "Take frames from the topics of a camera's driver below this namespace instead of SOURCE; "
-                  "--depth-topic and --colour-topic name others")
-      ->type_name("NAMESPACE")
-      ->group(subscription);
-  command
-      .add_option("--camera-info-topic", flags.camera_info_topic,
-                  "Topic of the calibration (default: camera_info beside depth)")
-      ->type_name("TOPIC")
-      ->group(subscription);
+      ->group(group);
+  group = "Frames from topics";
+  add("--subscribe", flags.subscribe, "NAMESPACE",
+      "Take frames from the topics of a camera's driver below this namespace instead of SOURCE; --depth-topic and "
+      "--colour-topic name others");
+  add("--camera-info-topic", flags.camera_info_topic, "TOPIC",
+      "Topic of the calibration (default: camera_info beside depth)");
   command.add_flag("--reliable", flags.reliable, "Ask again for pictures that get lost; the driver must be reliable")
-      ->group(subscription);
+      ->group(group);
 }
 
 ros2::NodeOptions node_options(const Ros2Flags& flags) {

@@ -29,8 +29,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   explicit Arguments(CLI::App& command) : detector(command) {}
 
-  std::string source;
-  SourceOptions camera;
+  SourceFlags source;
   DetectorFlags detector;
   std::string host = "127.0.0.1";
   int port = 8080;
@@ -78,12 +77,12 @@ ViewerOptions viewer_options(const Arguments& arguments) {
   options.web.port = static_cast<std::uint16_t>(arguments.port);
   options.web.access = web_access(arguments.host, is_loopback(arguments.host) ? "" : random_token());
   options.player.rate = arguments.rate;
-  options.player.start_s = arguments.camera.start_s.value_or(0.0);
+  options.player.start_s = arguments.source.options().start_s.value_or(0.0);
   options.player.playing = !arguments.paused;
   options.say = [](const std::string& line) { say("vesalius: " + line); };
   options.track = !arguments.no_track;
   options.folder = arguments.folder;
-  options.source = arguments.source;
+  options.source = arguments.source.name();
   options.model = fs::path(arguments.detector.model()).filename().string();
   return options;
 }
@@ -94,16 +93,11 @@ void run(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   const PeopleOptions people = arguments.detector.options();
   const Model model = arguments.detector.loaded();
-  SourceOptions camera = arguments.camera;
   std::atomic<Viewer*> page = nullptr;  // cameras speak in the player's thread
-  camera.say = [&page](const std::string& line) {
+  const auto source = arguments.source.open(arguments.quiet, [&page](const std::string& line) {
     say(line);
     if (Viewer* const shown = page) shown->say(line);
-  };
-  const auto source = open_source(arguments.source, camera);
-  if (!arguments.quiet) {
-    for (const std::string& note : source->notes()) say("note: " + note);
-  }
+  });
   const ViewerOptions options = viewer_options(arguments);
   Viewer viewer(*source, model, people, options);
   page = &viewer;
@@ -123,22 +117,14 @@ void run(const Arguments& arguments) {
 
 void add_page_flags(CLI::App& command, Arguments& arguments) {
   const std::string group = "Page";
-  command
-      .add_option("--host", arguments.host,
-                  "Address to listen at. Any but this machine's own lets others in who have the printed address with "
-                  "its token; 0.0.0.0 is all")
-      ->type_name("ADDRESS")
-      ->capture_default_str()
-      ->group(group);
-  command.add_option("--port", arguments.port, "Port to listen at; 0 = any that is free")
-      ->type_name("N")
-      ->check(CLI::Range(0, 65535))
-      ->capture_default_str()
-      ->group(group);
-  command.add_option("--folder", arguments.folder, "Folder for what the page records")
-      ->type_name("DIR")
-      ->capture_default_str()
-      ->group(group);
+  const auto add = [&](const char* name, auto& value, const char* type, const char* help) {
+    return command.add_option(name, value, help)->type_name(type)->capture_default_str()->group(group);
+  };
+  add("--host", arguments.host, "ADDRESS",
+      "Address to listen at. Any but this machine's own lets others in who have the printed address with its token; "
+      "0.0.0.0 is all");
+  add("--port", arguments.port, "N", "Port to listen at; 0 = any that is free")->check(CLI::Range(0, 65535));
+  add("--folder", arguments.folder, "DIR", "Folder for what the page records");
   command.add_flag("--paused", arguments.paused, "Begin with the first frame and wait")->group(group);
   command.add_flag("--no-browser", arguments.no_browser, "Do not open a browser")->group(group);
 }
@@ -148,20 +134,11 @@ void add_page_flags(CLI::App& command, Arguments& arguments) {
 void add_view(CLI::App& program) {
   CLI::App* command = program.add_subcommand("view", "Show the people in a source, live, on a page in a browser");
   const auto arguments = std::make_shared<Arguments>(*command);
-  command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
   add_page_flags(*command, *arguments);
-  add_camera_flags(*command, arguments->camera);
-  add_start_flag(*command, arguments->camera);
-  add_reconnect_flag(*command, arguments->camera);
-  command->add_option("--threads", arguments->threads, "Threads to use; 0 = all")
-      ->type_name("N")
-      ->check(CLI::Range(0, kMaxThreads))
-      ->group(kDetectorGroup);
+  arguments->source.add_to(*command);
+  add_threads_flag(*command, arguments->threads);
   command->add_flag("--no-track", arguments->no_track, "Find people in each frame alone, without ids");
-  command->add_option("--rate", arguments->rate, "Frames per second of a source without times")
-      ->type_name("N")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str();
+  add_rate_flag(*command, arguments->rate, "Frames per second of a source without times");
   command->add_flag("-q,--quiet", arguments->quiet, "Print the address and errors only");
   command->footer(R"(
 People are followed over the frames. The page shows the point cloud with skeletons, bodies and trails, the people and

@@ -19,7 +19,6 @@
 #include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
 #include "io/sources/list_source.h"
-#include "io/sources/oni_source.h"
 #include "io/sources/pcd_source.h"
 #include "io/sources/recording_source.h"
 #include "io/sources/tum.h"
@@ -52,7 +51,7 @@ constexpr const char* kFolder = "a folder with depth/*.png or depth PNG files";
 constexpr const char* kTum = "a folder with depth.txt (TUM RGB-D)";
 constexpr const char* kPcd = "an organised PCD file or a folder of them";
 constexpr const char* kPng = "a depth PNG or a folder of them";
-constexpr const char* kRecording = "an MCAP file, a ROS bag, a folder of rosbag2, an .oni or an .mkv";
+constexpr const char* kRecording = "an MCAP file, a ROS bag, a folder of rosbag2 or an .mkv";
 constexpr const char* kAnything = "a folder, a depth PNG, a PCD file or a recording";
 
 void refuse_colour_file(const std::string& path, const SourceOptions& options) {
@@ -107,9 +106,8 @@ std::unique_ptr<FrameSource> open_png(const std::string& path, const SourceOptio
 }
 
 std::unique_ptr<FrameSource> open_recording_file(const std::string& path, const SourceOptions& options) {
-  const bool folder = is_folder(path, kRecording);
+  is_folder(path, kRecording);
   refuse_colour_file(path, options);
-  if (!folder && is_oni(path)) return open_oni(path, options);
   return open_recorded(path, options);
 }
 
@@ -201,7 +199,7 @@ std::string_view scheme_of_file(const std::string& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".png") return "png";
   if (extension == ".pcd") return "pcd";
-  for (const char* recorded : {".mcap", ".bag", ".db3", ".oni", ".mkv"}) {
+  for (const char* recorded : {".mcap", ".bag", ".db3", ".mkv"}) {
     if (extension == recorded) return "recording";
   }
   throw Error(fmt::format("{}: unknown kind of file, expected {}", path, kAnything));

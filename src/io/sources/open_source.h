@@ -15,8 +15,7 @@ namespace vesalius {
 ///   tum:FOLDER        the layout of the TUM RGB-D benchmark (depth.txt); "tum:walking:1000" gives a depth scale too
 ///   pcd:PATH          an organised PCD file or a folder of them
 ///   png:PATH          a 16-bit depth PNG or a folder of them
-///   recording:PATH    an MCAP file, a ROS 1 or ROS 2 bag, a folder of rosbag2, OpenNI's .oni, Azure
-///                     Kinect's .mkv
+///   recording:PATH    an MCAP file, a ROS 1 or ROS 2 bag, a folder of rosbag2, Azure Kinect's .mkv
 ///   openni2:ID, freenect:ID, realsense:ID, orbbec:ID
 ///                     a camera that is plugged in, by its serial number; "openni2:" if there is one alone
 /// With `start_s` the frames begin so many seconds after the source's first, and their number is not known. Throws

@@ -14,7 +14,7 @@
 
 #include "io/files/image_file.h"
 #include "io/files/test_files.h"
-#include "io/sources/pcd_write.h"
+#include "io/sources/test_pcd_write.h"
 
 namespace vesalius {
 namespace {
@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 using test::error_of;
 using test::put;
 using test::random_frame;
+using test::serialise_pcd;
 using test::TemporaryFolder;
 using testing::ElementsAre;
 using testing::HasSubstr;

@@ -7,13 +7,14 @@
 #include <limits>
 
 #include "io/files/test_files.h"
-#include "io/sources/pcd_write.h"
+#include "io/sources/test_pcd_write.h"
 
 namespace vesalius {
 namespace {
 
 using test::error_of;
 using test::random_frame;
+using test::serialise_pcd;
 using testing::HasSubstr;
 
 constexpr PcdEncoding kAll[] = {PcdEncoding::ascii, PcdEncoding::binary, PcdEncoding::binary_compressed};

@@ -12,7 +12,6 @@
 #include "io/files/atomic_file.h"
 #include "io/files/image_file.h"
 #include "io/sources/camera_file.h"
-#include "io/sources/pcd_write.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius {
@@ -93,18 +92,6 @@ class PngWriter final : public FolderWriter {
   }
 };
 
-class PcdWriter final : public FolderWriter {
- public:
-  PcdWriter(const fs::path& root, PcdEncoding encoding) : FolderWriter(root, 1000.F), encoding_(encoding) {}
-
- private:
-  void write_pictures(const Frame& frame, const std::string& name) override {
-    write_file_atomically((root() / (name + ".pcd")).string(), serialise_pcd(frame, encoding_));
-  }
-
-  PcdEncoding encoding_;
-};
-
 class TumWriter final : public FolderWriter {
  public:
   TumWriter(const fs::path& root, const WriteOptions& options)
@@ -159,8 +146,7 @@ class TumWriter final : public FolderWriter {
 FrameFormat parse_frame_format(std::string_view word) {
   if (word == "folder") return FrameFormat::folder;
   if (word == "tum") return FrameFormat::tum;
-  if (word == "pcd") return FrameFormat::pcd;
-  throw UsageError(fmt::format("format \"{}\", expected folder, tum or pcd", word));
+  throw UsageError(fmt::format("format \"{}\", expected folder or tum", word));
 }
 
 std::unique_ptr<FrameWriter> make_frame_writer(FrameFormat format, const std::string& folder,
@@ -172,14 +158,8 @@ std::unique_ptr<FrameWriter> make_frame_writer(FrameFormat format, const std::st
   if (!(rate > 0.F && rate <= 1000.F)) {
     throw UsageError("frame rate: expected more than 0 to 1000 frames per second");
   }
-  switch (format) {
-    case FrameFormat::tum:
-      return std::make_unique<TumWriter>(folder, options);
-    case FrameFormat::pcd:
-      return std::make_unique<PcdWriter>(folder, options.pcd_encoding);
-    default:
-      return std::make_unique<PngWriter>(folder, options.frame_rate);
-  }
+  if (format == FrameFormat::tum) return std::make_unique<TumWriter>(folder, options);
+  return std::make_unique<PngWriter>(folder, options.frame_rate);
 }
 
 }  // namespace vesalius

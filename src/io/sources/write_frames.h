@@ -5,23 +5,20 @@
 #include <string>
 #include <string_view>
 
-#include "io/sources/pcd_header.h"
 #include "vesalius/base/frame.h"
 
 namespace vesalius {
 
-/// Layouts of frames on disk. `open_source` reads all of them.
+/// Layouts of frames on disk, which `open_source` reads.
 enum class FrameFormat {
   folder,  ///< depth/NAME.png (16-bit, millimetres), rgb/NAME.png, meta.json
-  tum,     ///< depth.txt, rgb.txt, depth/TIME.png, rgb/TIME.png, and meta.json for the camera; TIME names a frame
-  pcd      ///< NAME.pcd, organised, and meta.json
+  tum      ///< depth.txt, rgb.txt, depth/TIME.png, rgb/TIME.png, and meta.json for the camera; TIME names a frame
 };
 
-/// Returns the format that "folder", "tum" or "pcd" names. Throws UsageError for any other word.
+/// Returns the format that "folder" or "tum" names. Throws UsageError for any other word.
 FrameFormat parse_frame_format(std::string_view word);
 
 struct WriteOptions {
-  PcdEncoding pcd_encoding = PcdEncoding::binary_compressed;
   float tum_units_per_m = 5000.F;  ///< at the benchmark's 5000, 16 bits reach 13.1 m
   /// Frames per second; gives times to frames without, which `tum` needs. `folder` has it in meta.json.
   std::optional<float> frame_rate;

@@ -49,7 +49,7 @@ void expect_same_pictures(const std::vector<Frame>& got, const std::vector<Frame
 TEST(WriteFrames, ConvertsEveryFormatToEveryOtherWithoutLoss) {
   const TemporaryFolder folder;
   const std::vector<Frame> frames = sample_frames();
-  constexpr FrameFormat kFormats[] = {FrameFormat::folder, FrameFormat::tum, FrameFormat::pcd};
+  constexpr FrameFormat kFormats[] = {FrameFormat::folder, FrameFormat::tum};
   for (const FrameFormat from : kFormats) {
     for (const FrameFormat to : kFormats) {
       const std::string base = folder / (std::to_string(static_cast<int>(from)) + std::to_string(static_cast<int>(to)));
@@ -64,21 +64,10 @@ TEST(WriteFrames, ConvertsEveryFormatToEveryOtherWithoutLoss) {
   }
 }
 
-TEST(WriteFrames, WritesEveryPcdEncoding) {
-  const TemporaryFolder folder;
-  for (const PcdEncoding encoding : {PcdEncoding::ascii, PcdEncoding::binary, PcdEncoding::binary_compressed}) {
-    WriteOptions options;
-    options.pcd_encoding = encoding;
-    const std::string out = folder / std::to_string(static_cast<int>(encoding));
-    write_all(FrameFormat::pcd, out, sample_frames(), options);
-    expect_same_pictures(read_all(out), sample_frames());
-  }
-}
-
 TEST(WriteFrames, WritesFramesWithoutColour) {
   const TemporaryFolder folder;
   const std::vector<Frame> frames = {random_frame("a", 1, 20, 10, false)};
-  for (const FrameFormat format : {FrameFormat::folder, FrameFormat::tum, FrameFormat::pcd}) {
+  for (const FrameFormat format : {FrameFormat::folder, FrameFormat::tum}) {
     const std::string out = folder / std::to_string(static_cast<int>(format));
     write_all(format, out, frames);
     expect_same_pictures(read_all(out), frames);

@@ -9,11 +9,11 @@
 #include <optional>
 
 #include "dataset/open_truth.h"
+#include "dataset/stepped_source.h"
+#include "dataset/tum_trajectory.h"
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "io/sources/open_source.h"
-#include "io/sources/stepped_source.h"
-#include "io/sources/tum_trajectory.h"
 #include "synth/mocap/bvh.h"
 #include "synth/text/text_scanner.h"
 #include "vesalius/base/error.h"

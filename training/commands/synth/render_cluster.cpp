@@ -21,8 +21,8 @@
 #include "io/files/atomic_file.h"
 #include "io/files/options_file.h"
 #include "train/messages/training_protocol.h"
+#include "train/parallel_in_order.h"
 #include "vesalius/base/error.h"
-#include "vesalius/base/parallel_in_order.h"
 
 namespace vesalius::cli {
 namespace {

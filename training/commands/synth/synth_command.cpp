@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "commands/cluster/cluster_flags.h"
+#include "commands/synth/contact_sheet.h"
 #include "commands/synth/frame_maker.h"
 #include "commands/synth/render_cluster.h"
 #include "commands/synth/synth_assets.h"
@@ -19,15 +20,14 @@
 #include "dataset/labelled_dataset.h"
 #include "dataset/labelled_export.h"
 #include "dataset/labelled_frame_codec.h"
-#include "draw/contact_sheet.h"
 #include "io/files/atomic_file.h"
 #include "io/files/image_file.h"
 #include "io/files/read_file.h"
 #include "synth/fit_flesh.h"
 #include "synth/generate.h"
 #include "synth/skeleton_joints.h"
+#include "train/parallel_in_order.h"
 #include "vesalius/base/parallel.h"
-#include "vesalius/base/parallel_in_order.h"
 #include "vesalius/fit/flesh_model.h"
 
 namespace vesalius::cli {

@@ -6,6 +6,7 @@
 #include "console/text_sink.h"
 #include "cuda/cuda_device.h"
 #include "cuda_train/device_executor.h"
+#include "cuda_train/train_kernels.h"
 #include "train/local_executor.h"
 #include "vesalius/base/error.h"
 #include "vesalius/model.h"
@@ -36,7 +37,7 @@ constexpr const char* kCards = "cuda";
 
 MakeExecutor open_cards(const std::vector<int>& numbers) {
   std::vector<std::shared_ptr<gpu::Device>> cards;
-  for (const int number : numbers) cards.push_back(gpu::open_cuda_device(number));
+  for (const int number : numbers) cards.push_back(gpu::open_cuda_device(number, gpu::train_kernels_on_cards()));
   return [cards](const std::vector<TrainingSet*>& sets, int trees_at_once) {
     return std::make_unique<gpu::DeviceExecutor>(sets, cards, trees_at_once);
   };

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "commands/cluster/cluster_task.h"
+#include "folders/temporary_folder.h"
 #include "io/files/atomic_file.h"
 #include "io/files/read_file.h"
-#include "io/files/temporary_folder.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::cli {

@@ -14,7 +14,7 @@
 #include "io/files/byte_stream.h"
 #include "io/files/read_file.h"
 #include "io/sources/open_source.h"
-#include "vesalius/base/parallel_in_order.h"
+#include "train/parallel_in_order.h"
 
 namespace vesalius::cli {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "io/files/folder_lock.h"
+#include "folders/folder_lock.h"
 #include "train/leaves/tree_store.h"
 #include "vesalius/forest/forest.h"
 

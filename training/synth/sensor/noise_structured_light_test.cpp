@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "synth/sensor/noise_test_scene.h"
 #include "synth/sensor/sensor_noise.h"
+#include "synth/sensor/test_noise_scene.h"
 
 namespace vesalius::synth {
 namespace {

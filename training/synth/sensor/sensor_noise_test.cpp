@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "synth/sensor/noise_test_scene.h"
+#include "synth/sensor/test_noise_scene.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::synth {

@@ -6,26 +6,44 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cuda/device.h"
-#include "cuda/simulator.h"
+#include "simulator/simulator.h"
 
 namespace vesalius::gpu {
+
+/// A kernel that is compiled for the simulator.
+struct SimulatedKernel {
+  const char* name = nullptr;
+  void (*run_block)(const void* arguments) = nullptr;
+};
+
+/// Returns the kernels of a list; their text is read (gpu_words.h) where this is called.
+template <class... Arguments>
+std::vector<SimulatedKernel> simulated_kernels(KernelList<Arguments...> /*which*/) {
+  return {{Arguments::kName, [](const void* told) { run_kernel(*static_cast<const Arguments*>(told)); }}...};
+}
+
+/// Returns the kernels of labelling.
+std::vector<SimulatedKernel> simulated_label_kernels();
 
 struct SimulatedDeviceOptions {
   SimulatorOptions simulator = {};
   std::size_t memory_bytes = std::size_t{8} << 30U;
-  int lost_after = -1;       ///< operations of streams after which the device fails for good; below 0 never
-  int faulty_kernel = -1;    ///< where the simulator's faults are planted, as KernelCall counts; below 0 everywhere
-  int columns_too_many = 0;  ///< planted fault: by how much probes may leave the picture to the right
+  int lost_after = -1;             ///< operations of streams after which the device fails for good; below 0 never
+  std::string faulty_kernel = {};  ///< where the simulator's faults are planted; empty: everywhere
+  int columns_too_many = 0;        ///< planted fault: by how much probes may leave the picture to the right
 };
 
 /// The host's twin of a card: kernels run in the simulator. A stream does nothing before it is waited for, so that a
 /// forgotten wait shows; memory starts as garbage, and what is written around it is noticed.
 class SimulatedDevice : public Device, public std::enable_shared_from_this<SimulatedDevice> {
  public:
-  explicit SimulatedDevice(SimulatedDeviceOptions options = {}) : options_(options) {}
+  explicit SimulatedDevice(SimulatedDeviceOptions options = {},
+                           std::vector<SimulatedKernel> kernels = simulated_label_kernels())
+      : options_(std::move(options)), kernels_(std::move(kernels)) {}
 
   std::string name() const override { return "simulated card"; }
   void* allocate(std::size_t bytes) override;
@@ -52,9 +70,10 @@ class SimulatedDevice : public Device, public std::enable_shared_from_this<Simul
   /// Throws std::logic_error if something was written before or behind a piece of memory.
   void check_fences() const;
   void count_operation();
-  void run(const KernelCall& call, const LaunchShape& shape) const;
+  void run(KernelCall call, const LaunchShape& shape) const;
 
   SimulatedDeviceOptions options_;
+  std::vector<SimulatedKernel> kernels_;
   mutable std::mutex mutex_;
   std::map<const std::byte*, Piece> memory_;  ///< by the first byte that is used
   std::size_t allocated_ = 0;

@@ -1,4 +1,4 @@
-#include "io/sources/tum_trajectory.h"
+#include "dataset/tum_trajectory.h"
 
 #include <fmt/format.h>
 

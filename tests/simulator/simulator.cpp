@@ -1,4 +1,4 @@
-#include "cuda/simulator.h"
+#include "simulator/simulator.h"
 
 #include <algorithm>
 #include <limits>

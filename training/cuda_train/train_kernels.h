@@ -5,6 +5,9 @@
 // thread for each of what it counts, unless it says otherwise.
 
 #include <cstdint>
+#include <vector>
+
+#include "cuda/kernel_call.h"
 
 namespace vesalius::gpu {
 
@@ -43,6 +46,7 @@ struct Samples {
 
 /// Finds the scale of every sample.
 struct ScaleArguments {
+  static constexpr const char* kName = "scale";
   TiledFrames frames;
   Samples samples;
   SampleScale* scales = nullptr;
@@ -50,6 +54,7 @@ struct ScaleArguments {
 
 /// Moves samples from children of the last level to nodes of this one; kSettled (-1) stays.
 struct RelabelArguments {
+  static constexpr const char* kName = "relabel";
   std::int32_t* node_of = nullptr;
   const std::int32_t* node_of_child = nullptr;
   std::uint32_t samples = 0;
@@ -64,6 +69,7 @@ struct RowNode {
 
 /// Finds the sample of each row: `row_of` gets the row + 1, labels the sample's class. One thread for each row.
 struct RowsArguments {
+  static constexpr const char* kName = "rows";
   const RowNode* nodes = nullptr;
   std::int32_t node_count = 0;
   std::uint32_t rows = 0;
@@ -76,6 +82,7 @@ struct RowsArguments {
 /// Computes eq. 1 of all candidates at the samples with a row. A block has `samples_in_block` samples after each other,
 /// `padded` threads for each at a time.
 struct EvaluateArguments {
+  static constexpr const char* kName = "evaluate";
   TiledFrames frames;
   Samples samples;
   const std::uint32_t* row_of = nullptr;
@@ -103,6 +110,7 @@ struct Rows {
 
 /// Finds class counts and ranges of values (NodeValues). `negated_low` and `high` were -32768, counts 0.
 struct RangesArguments {
+  static constexpr const char* kName = "ranges";
   Rows rows;
   std::int32_t classes = 0;
   std::int32_t* negated_low = nullptr;   ///< [node][candidate]: the smallest value, negated
@@ -112,6 +120,7 @@ struct RangesArguments {
 
 /// Sets numbers.
 struct FillArguments {
+  static constexpr const char* kName = "fill";
   std::int32_t* values = nullptr;
   std::int32_t value = 0;
   std::uint32_t count = 0;
@@ -134,6 +143,7 @@ struct Histograms {
 
 /// Counts rows by class, candidate and bin; `counts` were 0. blocks_y: eights of candidates.
 struct CountArguments {
+  static constexpr const char* kName = "count";
   Rows rows;
   Histograms histograms;
   const std::int16_t* low = nullptr;       ///< [node][candidate]
@@ -150,6 +160,7 @@ struct BestOfNode {
 /// Finds the best split of each node, and how many samples of each class lie in bins below it. A block for each node,
 /// 64 threads or more.
 struct BestArguments {
+  static constexpr const char* kName = "best";
   Histograms histograms;
   const std::int32_t* totals = nullptr;
   const std::int32_t* entropy = nullptr;  ///< EntropyTable
@@ -171,6 +182,7 @@ struct CollectedValue {
 
 /// Lists the values in intervals, in any order. The chunks' nodes are intervals.
 struct CollectArguments {
+  static constexpr const char* kName = "collect";
   Rows rows;
   const Interval* intervals = nullptr;
   CollectedValue* found = nullptr;
@@ -187,6 +199,7 @@ struct PlainNode {
 
 /// Sends every sample of a level to a child, those of nodes without a split to the left one, and counts them there.
 struct RouteArguments {
+  static constexpr const char* kName = "route";
   TiledFrames frames;
   Samples samples;
   const PlainNode* splits = nullptr;  ///< [node]
@@ -216,12 +229,14 @@ inline constexpr unsigned kMoveRun = 8;
 
 /// Counts in each block how many samples go right. A thread for each kMoveRun samples.
 struct CountRightArguments {
+  static constexpr const char* kName = "count right";
   Moves moves;
   std::uint32_t* of_block = nullptr;
 };
 
 /// Moves the samples; their order within a child stays. A thread for each kMoveRun samples.
 struct MoveArguments {
+  static constexpr const char* kName = "move";
   Moves moves;
   const std::uint32_t* before_block = nullptr;  ///< samples of the blocks before that go right
   std::uint32_t* order = nullptr;
@@ -229,6 +244,7 @@ struct MoveArguments {
 
 /// Finds the leaf that each sample reaches in a tree.
 struct FindLeavesArguments {
+  static constexpr const char* kName = "find leaves";
   TiledFrames frames;
   Samples samples;
   const PlainNode* nodes = nullptr;
@@ -247,6 +263,7 @@ struct LeafLabels {
 
 /// Adds up the weights of each leaf's samples by class and by side and heading.
 struct LeafWeightsArguments {
+  static constexpr const char* kName = "leaf weights";
   Samples samples;
   LeafLabels labels;
   const std::uint32_t* leaves = nullptr;
@@ -256,6 +273,7 @@ struct LeafWeightsArguments {
 /// Adds up the gradients of the samples of one portion of the frames. A block has `samples_in_block` samples with
 /// kLogitLanes threads each.
 struct GradientArguments {
+  static constexpr const char* kName = "gradient";
   Samples samples;
   LeafLabels labels;
   const std::uint32_t* leaves = nullptr;      ///< [tree][sample]
@@ -270,10 +288,19 @@ struct GradientArguments {
   std::uint64_t* weight = nullptr;
 };
 
+/// All kernels of training.
+using TrainKernels =
+    KernelList<ScaleArguments, RelabelArguments, RowsArguments, EvaluateArguments, RangesArguments, FillArguments,
+               CountArguments, BestArguments, CollectArguments, RouteArguments, CountRightArguments, MoveArguments,
+               FindLeavesArguments, LeafWeightsArguments, GradientArguments>;
+
 /// What a block has room for in shared memory.
 inline constexpr unsigned kSharedCounts = 4096;
 inline constexpr unsigned kMostCandidates = 64;  ///< of a block of candidates (kBlockCandidates)
 inline constexpr unsigned kMostBins = 32;
 inline constexpr unsigned kMostClasses = 256;
+
+/// Returns those that are compiled for cards: none in a build without nvcc.
+std::vector<CardKernel> train_kernels_on_cards();
 
 }  // namespace vesalius::gpu

@@ -1,4 +1,4 @@
-#include "io/sources/pcd_write.h"
+#pragma once
 
 #include <fmt/format.h>
 #include <lzf.h>
@@ -7,26 +7,27 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <string>
 #include <vector>
 
-#include "vesalius/base/error.h"
+#include "io/sources/pcd_header.h"
+#include "vesalius/base/frame.h"
 
-namespace vesalius {
-namespace {
+namespace vesalius::test {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-std::uint32_t pack(Rgb colour) {
+inline std::uint32_t pack(Rgb colour) {
   return std::uint32_t{colour.r} << 16U | std::uint32_t{colour.g} << 8U | std::uint32_t{colour.b};
 }
 
-Eigen::Vector3f point_at(const Frame& frame, int u, int v) {
+inline Eigen::Vector3f point_at(const Frame& frame, int u, int v) {
   const std::uint16_t depth_mm = frame.depth(u, v);
   if (depth_mm == 0) return {kNan, kNan, kNan};
   return frame.camera.point(float(u), float(v), float(depth_mm) / 1000.F);
 }
 
-std::string header(const Frame& frame, const char* encoding) {
+inline std::string header(const Frame& frame, const char* encoding) {
   const bool colour = !frame.colour.empty();
   const char* fields = colour ? "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n"
                               : "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
@@ -36,7 +37,7 @@ std::string header(const Frame& frame, const char* encoding) {
       fields, frame.depth.width(), frame.depth.height(), frame.depth.size(), encoding);
 }
 
-std::string ascii_points(const Frame& frame) {
+inline std::string ascii_points(const Frame& frame) {
   std::string text;
   auto out = std::back_inserter(text);
   for (int v = 0; v < frame.depth.height(); ++v) {
@@ -52,7 +53,7 @@ std::string ascii_points(const Frame& frame) {
 
 /// Returns the points' numbers as bytes. `point_step` is the distance in words from one point to the next, `field_step`
 /// that from one field to the next.
-std::string binary_points(const Frame& frame, std::size_t point_step, std::size_t field_step) {
+inline std::string binary_points(const Frame& frame, std::size_t point_step, std::size_t field_step) {
   const std::size_t fields = frame.colour.empty() ? 3 : 4;
   std::vector<std::uint32_t> words(frame.depth.size() * fields);
   std::size_t at = 0;
@@ -70,13 +71,12 @@ std::string binary_points(const Frame& frame, std::size_t point_step, std::size_
   return bytes;
 }
 
-std::string compressed_points(const Frame& frame) {
+inline std::string compressed_points(const Frame& frame) {
   const std::string plain = binary_points(frame, 1, frame.depth.size());
   // Data that cannot be compressed grows by one byte in 32.
   std::string packed(plain.size() + plain.size() / 16 + 64, '\0');
   const unsigned int packed_bytes = lzf_compress(plain.data(), static_cast<unsigned int>(plain.size()), packed.data(),
                                                  static_cast<unsigned int>(packed.size()));
-  if (packed_bytes == 0) throw Error("frame " + frame.name + ": its points cannot be compressed");
   packed.resize(packed_bytes);
   const auto word = [](std::size_t value) {
     const auto narrow = static_cast<std::uint32_t>(value);
@@ -87,10 +87,9 @@ std::string compressed_points(const Frame& frame) {
   return word(packed_bytes) + word(plain.size()) + packed;
 }
 
-}  // namespace
-
-std::string serialise_pcd(const Frame& frame, PcdEncoding encoding) {
-  check(frame);
+/// Returns the frame as an organised PCD file with x y z, and rgb if the frame has colour, as PCL writes it. Pixels
+/// without depth become NaN points.
+inline std::string serialise_pcd(const Frame& frame, PcdEncoding encoding) {
   switch (encoding) {
     case PcdEncoding::ascii:
       return header(frame, "ascii") + ascii_points(frame);
@@ -101,4 +100,4 @@ std::string serialise_pcd(const Frame& frame, PcdEncoding encoding) {
   }
 }
 
-}  // namespace vesalius
+}  // namespace vesalius::test

@@ -4,8 +4,10 @@
 // floats that one thread computes as the processor does.
 
 #include "cuda/gpu.h"
-#include "cuda/kernels.cuh"
-#include "cuda/train_kernels.h"
+#include "cuda/kernels.h"
+#include "cuda/launch_shape.h"
+#include "cuda/logit_shares.cuh"
+#include "cuda_train/train_kernels.h"
 #include "vesalius/forest/feature.h"
 
 namespace vesalius::gpu {
@@ -14,7 +16,8 @@ namespace vesalius::gpu {
 GPU_FUNCTION int tiled_depth(const std::uint32_t* words, const FrameInfo& frame, int u, int v) {
   const auto per_row = static_cast<std::uint32_t>((frame.width + 7) / 8);
   const auto rows = static_cast<std::uint32_t>((frame.height + 3) / 4);
-  const std::uint32_t header = words[rows + static_cast<std::uint32_t>(v / 4) * per_row + static_cast<std::uint32_t>(u / 8)];
+  const std::uint32_t header =
+      words[rows + static_cast<std::uint32_t>(v / 4) * per_row + static_cast<std::uint32_t>(u / 8)];
   const auto* chunks = reinterpret_cast<const std::uint8_t*>(words + (rows + per_row * rows + 3) / 4 * 4);
   const std::uint32_t bits = 4U << (header >> 16U & 3U);
   const std::uint32_t begin = static_cast<std::uint32_t>(v % 4 * 8 + u % 8) * bits;
@@ -26,7 +29,8 @@ GPU_FUNCTION int tiled_depth(const std::uint32_t* words, const FrameInfo& frame,
 }
 
 template <class Offsets>
-GPU_FUNCTION int feature_at(const TiledFrames& frames, const SamplePixel& sample, SampleScale scale, const Offsets& offsets) {
+GPU_FUNCTION int feature_at(const TiledFrames& frames, const SamplePixel& sample, SampleScale scale,
+                            const Offsets& offsets) {
   const FrameInfo frame = frames.frames[sample.frame - frames.first];
   const std::uint32_t* words = frames.words + frame.word;
   const auto read = [&](int u, int v) -> int {
@@ -34,7 +38,8 @@ GPU_FUNCTION int feature_at(const TiledFrames& frames, const SamplePixel& sample
     const int mm = tiled_depth(words, frame, u, v);
     return mm != 0 ? mm : frames.hole_mm;
   };
-  return feature(sample.u, sample.v, OffsetScale{scale.u, scale.v}, probe_range(sample.depth_mm, frames.clip_mm), offsets, read);
+  return feature(sample.u, sample.v, OffsetScale{scale.u, scale.v}, probe_range(sample.depth_mm, frames.clip_mm),
+                 offsets, read);
 }
 
 GPU_FUNCTION std::uint32_t global_thread(unsigned thread) { return block_x() * threads_in_block() + thread; }
@@ -78,8 +83,8 @@ GPU_FUNCTION std::int32_t node_at(std::int32_t nodes, std::uint32_t at, const Be
   return low;
 }
 
-/// Of a node's samples the one with rank r is counted if r * counted / size is less than that of r + 1 (tree_shard.cpp):
-/// the j-th counted one is the first whose next rank times counted reaches (j + 1) * size.
+/// Of a node's samples the one with rank r is counted if r * counted / size is less than that of r + 1
+/// (tree_shard.cpp): the j-th counted one is the first whose next rank times counted reaches (j + 1) * size.
 GPU_KERNEL void run_kernel(const RowsArguments a) {
   GPU_LAST_PHASE(thread) {
     const std::uint32_t row = global_thread(thread);
@@ -114,7 +119,8 @@ GPU_KERNEL void run_kernel(const EvaluateArguments a) {
     for (auto i = thread / padded; i < static_cast<unsigned>(a.samples_in_block); i += side_by_side) {
       const std::uint32_t s = block_x() * static_cast<unsigned>(a.samples_in_block) + i;
       if (s >= a.samples.count || a.row_of[s] == 0) continue;
-      const std::int16_t* column = a.offsets + static_cast<std::size_t>(a.node_of[s] - a.group_begin) * 4 * padded + candidate;
+      const std::int16_t* column =
+          a.offsets + static_cast<std::size_t>(a.node_of[s] - a.group_begin) * 4 * padded + candidate;
       const CandidateOffsets offsets{column[0], column[padded], column[2 * padded], column[3 * padded]};
       int value = feature_at(a.frames, a.samples.pixels[s], a.samples.scales[s], offsets);
       value = value < -32768 ? -32768 : value > 32767 ? 32767 : value;
@@ -158,8 +164,8 @@ GPU_KERNEL void run_kernel(const RangesArguments a) {
   }
 }
 
-/// Two candidates' counts are the halves of a number: none exceeds 16 bits, so neither runs over into the other. Where a
-/// block's shared memory has no room for all classes it counts some of them after the others.
+/// Two candidates' counts are the halves of a number: none exceeds 16 bits, so neither runs over into the other. Where
+/// a block's shared memory has no room for all classes it counts some of them after the others.
 GPU_KERNEL void run_kernel(const CountArguments a) {
   constexpr unsigned kPairs = 4;
   GPU_SHARED(std::uint32_t, counts, kSharedCounts);
@@ -179,7 +185,8 @@ GPU_KERNEL void run_kernel(const CountArguments a) {
       for (unsigned i = thread; i < chunk.rows * 2 * kPairs; i += threads_in_block()) {
         const unsigned candidate = first + i % (2 * kPairs);
         const std::size_t row = chunk.first_row + i / (2 * kPairs);
-        const unsigned label = a.class_of[static_cast<std::size_t>(chunk.node) * static_cast<unsigned>(a.classes) + a.rows.labels[row]];
+        const unsigned label =
+            a.class_of[static_cast<std::size_t>(chunk.node) * static_cast<unsigned>(a.classes) + a.rows.labels[row]];
         if (label < begin || label >= end) continue;
         const int above = a.rows.values[row * padded + candidate] - a.low[of_node + candidate];
         const unsigned twice = 2U * static_cast<unsigned>(above < 32767 ? above : 32767);
@@ -191,7 +198,8 @@ GPU_KERNEL void run_kernel(const CountArguments a) {
     GPU_LAST_PHASE(thread) {
       for (unsigned i = thread; i < cells; i += threads_in_block()) {
         if (counts[i] == 0) continue;
-        const std::size_t to = node.first + (static_cast<std::size_t>(begin) * bins + i / kPairs) * (kMostCandidates / 2) +
+        const std::size_t to = node.first +
+                               (static_cast<std::size_t>(begin) * bins + i / kPairs) * (kMostCandidates / 2) +
                                first / 2 + i % kPairs;
         add(a.histograms.counts + to, counts[i]);
       }
@@ -204,8 +212,8 @@ GPU_FUNCTION std::int32_t count_of(const std::uint32_t* counts, std::size_t cell
   return static_cast<std::int32_t>(candidate % 2 == 0 ? pair & 0xFFFFU : pair >> 16U);
 }
 
-/// A thread for each candidate adds up the entropies of all classes for every bin, which are integers; then it looks for
-/// the largest gain (scan_bins).
+/// A thread for each candidate adds up the entropies of all classes for every bin, which are integers; then it looks
+/// for the largest gain (scan_bins).
 GPU_KERNEL void run_kernel(const BestArguments a) {
   constexpr std::int32_t kNothing = -2147483647 - 1;
   GPU_SHARED(std::int32_t, sums, kMostBins * kMostCandidates);
@@ -256,7 +264,8 @@ GPU_KERNEL void run_kernel(const BestArguments a) {
     for (unsigned k = thread; k < classes; k += threads_in_block()) {
       std::int32_t below = 0;
       for (std::int32_t b = 0; best[0] >= 0 && b < best[1]; ++b) {
-        below += count_of(counts, static_cast<std::size_t>(k) * bins + static_cast<unsigned>(b), static_cast<unsigned>(best[0]));
+        below += count_of(counts, static_cast<std::size_t>(k) * bins + static_cast<unsigned>(b),
+                          static_cast<unsigned>(best[0]));
       }
       a.below[node.totals + k] = below;
     }
@@ -269,7 +278,8 @@ GPU_KERNEL void run_kernel(const CollectArguments a) {
   GPU_LAST_PHASE(thread) {
     for (unsigned r = thread; r < chunk.rows; r += threads_in_block()) {
       const std::size_t row = chunk.first_row + r;
-      const std::int16_t value = a.rows.values[row * static_cast<unsigned>(a.rows.padded) + static_cast<unsigned>(interval.candidate)];
+      const std::int16_t value =
+          a.rows.values[row * static_cast<unsigned>(a.rows.padded) + static_cast<unsigned>(interval.candidate)];
       if (value <= interval.above || value > interval.last) continue;
       a.found[add(a.count, std::uint32_t{1})] = {chunk.node, value, a.rows.labels[row], 0};
     }
@@ -282,7 +292,8 @@ GPU_KERNEL void run_kernel(const RouteArguments a) {
     if (s >= a.samples.count || a.node_of[s] < 0) continue;
     const PlainNode split = a.splits[a.node_of[s]];
     const SamplePixel sample = a.samples.pixels[s];
-    const bool right = split.divided != 0 && feature_at(a.frames, sample, a.samples.scales[s], split) > split.threshold_mm;
+    const bool right =
+        split.divided != 0 && feature_at(a.frames, sample, a.samples.scales[s], split) > split.threshold_mm;
     const std::int32_t child = 2 * a.node_of[s] + (right ? 1 : 0);
     a.node_of[s] = child;
     add(a.counts + static_cast<std::size_t>(child) * static_cast<unsigned>(a.classes) + sample.label, std::uint32_t{1});
@@ -307,7 +318,8 @@ GPU_KERNEL void run_kernel(const CountRightArguments a) {
   }
   GPU_PHASE(thread) {
     std::uint32_t right = 0;
-    for_moves(a.moves, thread, [&](const MoveNode&, std::uint32_t, std::uint32_t, bool goes_right) { right += goes_right ? 1 : 0; });
+    for_moves(a.moves, thread,
+              [&](const MoveNode&, std::uint32_t, std::uint32_t, bool goes_right) { right += goes_right ? 1 : 0; });
     if (right > 0) add(&sum[0], right);
   }
   GPU_LAST_PHASE(thread) {
@@ -315,14 +327,16 @@ GPU_KERNEL void run_kernel(const CountRightArguments a) {
   }
 }
 
-/// How many samples before one go right is a sum over the blocks before, the block's threads before and the thread's own
-/// before; those of the threads by doubling distances.
+/// How many samples before one go right is a sum over the blocks before, the block's threads before and the thread's
+/// own before; those of the threads by doubling distances.
 GPU_KERNEL void run_kernel(const MoveArguments a) {
-  GPU_SHARED(std::uint32_t, sums, 2 * kMostThreads);  // of the threads up to one; read from one half, written to the other
+  GPU_SHARED(std::uint32_t, sums,
+             2 * kMostThreads);  // of the threads up to one; read from one half, written to the other
   const unsigned threads = threads_in_block();
   GPU_PHASE(thread) {
     std::uint32_t right = 0;
-    for_moves(a.moves, thread, [&](const MoveNode&, std::uint32_t, std::uint32_t, bool goes_right) { right += goes_right ? 1 : 0; });
+    for_moves(a.moves, thread,
+              [&](const MoveNode&, std::uint32_t, std::uint32_t, bool goes_right) { right += goes_right ? 1 : 0; });
     sums[thread] = right;
   }
   unsigned from = 0;
@@ -383,15 +397,15 @@ GPU_FUNCTION bool is_in_portion(const GradientArguments& a, std::uint32_t s) {
   return s < a.samples.count && (a.samples.pixels[s].frame + a.first_frame) % a.portions == a.portion;
 }
 
-/// As leaf_shard.cpp computes it: the softmax of a sample's logits as in the kernel of labelling, then for each logit the
-/// weight of the truth minus that of its share.
+/// As leaf_shard.cpp computes it: the softmax of a sample's logits as in the kernel of labelling, then for each logit
+/// the weight of the truth minus that of its share.
 GPU_KERNEL void run_kernel(const GradientArguments a) {
   using G = LogitGroups;
   constexpr unsigned kMostSamples = kMostThreads / kLogitLanes;
   GPU_SHARED(float, values, kSharedLogits);
   GPU_SHARED(std::int32_t, tops, kMostSamples * G::kCount);
   GPU_SHARED(std::int32_t, fixed, kMostSamples * G::kCount);
-  GPU_SHARED(float, scales, kMostSamples * G::kCount);
+  GPU_SHARED(float, scales, kMostSamples* G::kCount);
   GPU_SHARED(float, of_side, kMostSamples);
   const auto samples = static_cast<unsigned>(a.samples_in_block), places = static_cast<unsigned>(a.labels.places);
   const std::uint32_t first = block_x() * samples;

@@ -1,4 +1,4 @@
-#include "io/files/temporary_folder.h"
+#include "folders/temporary_folder.h"
 
 #include <stdlib.h>
 

@@ -1,15 +1,17 @@
-#include "cuda/simulator.h"
+#include "simulator/simulator.h"
 
 #include <gmock/gmock.h>
 
 #include <cstdint>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "cuda/gpu.h"
-#include "cuda/simulated_device.h"
+#include "cuda/kernels.h"
+#include "simulator/gpu_words.h"
+#include "simulator/simulated_device.h"
 #include "vesalius/base/error.h"
 
 namespace vesalius::gpu {
@@ -102,15 +104,19 @@ TEST(SimulatedDevice, NoticesKernelsThatWriteBesideTheirMemory) {
   EXPECT_THROW(stream->wait(), std::logic_error);
 }
 
-TEST(KernelNames, AreAsManyAsKernelsAndInTheirOrder) {
-  for (const char* name : kKernelNames) EXPECT_NE(name, nullptr);
-  const auto name_of = [](const KernelCall& call) { return std::string(kKernelNames[call.index()]); };
-  EXPECT_EQ(name_of(WalkArguments{}), "walk");
-  EXPECT_EQ(name_of(AskNeighboursArguments{}), "neighbours");
-  EXPECT_EQ(name_of(EvaluateArguments{}), "evaluate");
-  EXPECT_EQ(name_of(CollectArguments{}), "collect");
-  EXPECT_EQ(name_of(MoveArguments{}), "move");
-  EXPECT_EQ(name_of(GradientArguments{}), "gradient");
+TEST(SimulatedDevice, HasKernelsThatAreToldApartByTheirNames) {
+  std::set<std::string> names;
+  for (const SimulatedKernel& kernel : simulated_label_kernels()) {
+    EXPECT_TRUE(names.insert(kernel.name).second) << kernel.name;
+  }
+  EXPECT_EQ(names.size(), 9U);
+}
+
+TEST(SimulatedDevice, RefusesKernelsThatItWasNotMadeFor) {
+  const auto device = std::make_shared<SimulatedDevice>(SimulatedDeviceOptions{}, std::vector<SimulatedKernel>{});
+  const auto stream = device->make_stream();
+  stream->launch(GateArguments{}, {1, 1, 32});
+  EXPECT_THROW(stream->wait(), std::logic_error);
 }
 
 TEST(SimulatedDevice, HasNoMoreMemoryThanItWasGiven) {

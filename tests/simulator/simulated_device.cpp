@@ -1,4 +1,4 @@
-#include "cuda/simulated_device.h"
+#include "simulator/simulated_device.h"
 
 #include <algorithm>
 #include <chrono>
@@ -6,11 +6,13 @@
 #include <cstring>
 #include <functional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
-#include "cuda/kernels.cuh"
-#include "cuda/train_kernels.cuh"
+#include "simulator/gpu_words.h"
 #include "vesalius/base/error.h"
+// Behind their words.
+#include "cuda/kernels.cuh"
 
 namespace vesalius::gpu {
 namespace {
@@ -144,17 +146,21 @@ void SimulatedDevice::count_operation() {
   if (options_.lost_after >= 0 && count > options_.lost_after) throw DeviceError(name() + ": the device was lost");
 }
 
-void SimulatedDevice::run(const KernelCall& call, const LaunchShape& shape) const {
+void SimulatedDevice::run(KernelCall call, const LaunchShape& shape) const {
+  const std::string_view name = call.name();
+  const auto kernel = std::ranges::find(kernels_, name, &SimulatedKernel::name);
+  if (kernel == kernels_.end())
+    throw std::logic_error("a kernel that the device was not made for: " + std::string(name));
   SimulatorOptions simulator = options_.simulator;
-  if (options_.faulty_kernel >= 0 && int(call.index()) != options_.faulty_kernel) simulator.faults = {};
-  std::visit(
-      [&](auto arguments) {
-        if constexpr (std::is_same_v<decltype(arguments), WalkArguments>) {
-          arguments.pictures.width += options_.columns_too_many;
-        }
-        Simulator::run(shape, simulator, [&] { run_kernel(arguments); });
-      },
-      call);
+  if (!options_.faulty_kernel.empty() && name != options_.faulty_kernel) simulator.faults = {};
+  if (name == WalkArguments::kName) {
+    WalkArguments walk = *static_cast<const WalkArguments*>(call.arguments());
+    walk.pictures.width += options_.columns_too_many;
+    call = walk;
+  }
+  Simulator::run(shape, simulator, [&] { kernel->run_block(call.arguments()); });
 }
+
+std::vector<SimulatedKernel> simulated_label_kernels() { return simulated_kernels(LabelKernels{}); }
 
 }  // namespace vesalius::gpu

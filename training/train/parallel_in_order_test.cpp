@@ -1,4 +1,4 @@
-#include "vesalius/base/parallel_in_order.h"
+#include "train/parallel_in_order.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "draw/contact_sheet.h"
+#include "commands/synth/contact_sheet.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/files/folder_lock.h"
+#include "folders/folder_lock.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "draw/contact_sheet.h"
+#include "commands/synth/contact_sheet.h"
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>

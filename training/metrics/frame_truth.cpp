@@ -1,4 +1,4 @@
-#include "vesalius/base/frame_truth.h"
+#include "metrics/frame_truth.h"
 
 namespace vesalius {
 

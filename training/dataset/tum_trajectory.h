@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/frame_truth.h"
+#include "metrics/frame_truth.h"
 
 namespace vesalius {
 
