@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "vesalius/base/image.h"
@@ -18,6 +19,7 @@ struct FacingModel {
   int headings = 0;
   int parts = 0;
   std::vector<float> weights;  ///< [heading][feature]
+  std::string made_from = {};  ///< free text
 
   bool empty() const { return weights.empty(); }
   /// Returns the number of features: for each part how likely each heading is, the part's share, and a constant.
