@@ -9,7 +9,10 @@
 #include "console/progress.h"
 #include "console/source_flags.h"
 #include "console/text_sink.h"
+#include "io/files/read_file.h"
 #include "io/model/model_file.h"
+#include "io/model/model_sections.h"
+#include "io/model/old_model.h"
 #include "io/model/text_trees.h"
 #include "io/sources/write_frames.h"
 #include "vesalius/base/error.h"
@@ -27,6 +30,12 @@ struct Arguments {
   bool quiet = false;
 };
 
+/// Reads a model of this version or of the one before.
+Model load_any_model(const std::string& path) {
+  const std::string bytes = read_file(path);
+  return model_version(bytes) == kOldModelVersion ? parse_old_model(bytes, path) : parse_model(bytes, path);
+}
+
 void convert_model(std::vector<std::string> paths, const std::string& body, bool quiet) {
   const std::string out = paths.back();
   paths.pop_back();
@@ -35,10 +44,10 @@ void convert_model(std::vector<std::string> paths, const std::string& body, bool
         fmt::format("{}: expected a name that ends in {} (frames are converted with --to)", out, kModelExtension));
   }
   const bool is_model = paths.front().ends_with(kModelExtension);
-  if (is_model && (paths.size() > 1 || body.empty())) {
-    throw UsageError(fmt::format("{}: expected --body and one other name, since it is a model", paths.front()));
+  if (is_model && paths.size() > 1) {
+    throw UsageError(fmt::format("{}: expected one other name, since it is a model", paths.front()));
   }
-  Model model = is_model ? load_model(paths.front()) : Model(import_text_trees(paths));
+  Model model = is_model ? load_any_model(paths.front()) : Model(import_text_trees(paths));
   if (!body.empty()) replace_body(model, body);
   save_model(model, out);
   if (!quiet) say(fmt::format("{}: {} trees", out, model.forest.trees.size()));
@@ -68,8 +77,9 @@ void convert_frames(const Arguments& arguments) {
 }  // namespace
 
 void add_convert(CLI::App& program) {
-  CLI::App* command = program.add_subcommand(
-      "convert", "Turn text trees into a model, change a model's body, or turn frames into another layout");
+  CLI::App* command = program.add_subcommand("convert",
+                                             "Turn text trees or a model of an older format into a model, change a "
+                                             "model's body, or turn frames into another layout");
   const auto arguments = std::make_shared<Arguments>();
   command
       ->add_option(

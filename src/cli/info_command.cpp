@@ -10,6 +10,7 @@
 #include "console/text_sink.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
+#include "io/model/model_sections.h"
 #include "io/recordings/mkv_recording.h"
 #include "io/sensors/sensor_drivers.h"
 #include "vesalius/base/parallel.h"
@@ -86,6 +87,19 @@ Json body_facts(const BodyModel& body) {
   return {{"name", body.name}, {"parts", std::move(parts)}, {"joint_sets", std::move(sets)}};
 }
 
+/// Returns the sections of a model file. What the forest was made from is its recipe, which stands alone.
+Json section_facts(const std::vector<ModelSection>& sections) {
+  Json facts = Json::array();
+  for (const ModelSection& section : sections) {
+    Json& one = facts.emplace_back(Json{{"name", section.name},
+                                        {"version", section.version},
+                                        {"bytes", section.bytes.size()},
+                                        {"checksum", fmt::format("{:016x}", section.checksum)}});
+    if (section.name != "forest" && !section.made_from.empty()) one["made_from"] = section.made_from;
+  }
+  return facts;
+}
+
 Json model_facts(const std::string& path) {
   const std::string bytes = read_file(path);
   const Model model = parse_model(bytes, path);
@@ -101,6 +115,8 @@ Json model_facts(const std::string& path) {
   return {{"model", path},
           {"size_bytes", bytes.size()},
           {"checksum", model_checksum(bytes)},
+          {"sections", section_facts(model_version(bytes) == kModelVersion ? split_sections(bytes, path)
+                                                                           : std::vector<ModelSection>())},
           {"recipe", forest.recipe},
           {"body", body_facts(model.body)},
           {"background_class", forest.has_background},

@@ -9,7 +9,6 @@
 #include "vesalius/base/error.h"
 #include "vesalius/cut_out_labeller.h"
 #include "vesalius/default_judge.h"
-#include "vesalius/forest/facing.h"
 #include "vesalius/forest/label_pixels.h"
 
 namespace vesalius {

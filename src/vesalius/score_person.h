@@ -23,7 +23,7 @@ struct Evidence {
   float explained = 0.F;   ///< share of the mask whose label's part, or its mirror partner, was found nearby
   float open = 0.F;        ///< share of the free outline (not occluded or cut off) with nothing close behind
   float core = 0.F;        ///< share found of the search's roots and the parts next to them
-  float body = 0.F;        ///< mean over the mask of the parts' share of the posterior; 1 without background class
+  float body = 0.F;        ///< mean over the mask of the parts' share of the posterior
   float size = 0.F;        ///< ratio of the mask's area and kUsualArea_m2, or its inverse if that is smaller
   float occluded = 0.F;    ///< share of the outline beside something nearer, which excuses missing parts
   float near = 0.F;        ///< one metre divided by the mean depth, at most 1, since distant people are less certain
@@ -95,7 +95,6 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
                          const Scenery& scenery, const Skeleton& skeleton, const BodyModel& body);
 
 /// Returns Scenery::body_elsewhere for the union of the candidates' masks, from every second pixel of every second row.
-/// It is 0 for a forest without background class.
 float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts);
 
 }  // namespace vesalius

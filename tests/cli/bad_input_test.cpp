@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "io/files/image_file.h"
-#include "io/model/model_file.h"
+#include "io/model/model_sections.h"
 #include "run_program.h"
 #include "small_world.h"
 
@@ -44,8 +44,8 @@ TEST_F(BadInput, DamagedModelsAreRefused) {
   write("text.forest", "20\n 1 2 3 4 5\n");
   detect(frames(), path("none.forest"), "", 1, "none.forest");
   detect(frames(), path(""), "", 1, "");
-  detect(frames(), path("cut.forest"), "", 1, "truncated model");
-  detect(frames(), path("newer.forest"), "", 1, "written by a newer version: format 3, this program reads 2");
+  detect(frames(), path("cut.forest"), "", 1, "truncated, ");
+  detect(frames(), path("newer.forest"), "", 1, "written by a newer version: format 4, this program reads 3");
   detect(frames(), path("damaged.forest"), "", 1, "checksum does not match");
   detect(frames(), path("empty.forest"), "", 1, "empty file");
   detect(frames(), path("text.forest"), "", 1, "not a vesalius model");

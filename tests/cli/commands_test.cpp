@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/model/model_file.h"
+#include "io/model/model_sections.h"
 #include "io/model/text_trees.h"
 #include "run_program.h"
 #include "small_world.h"
@@ -79,6 +80,9 @@ TEST_F(Commands, InfoDescribesAModel) {
   EXPECT_EQ(facts.at("size_bytes"), bytes.size());
   EXPECT_EQ(facts.at("checksum"), model_checksum(bytes));
   EXPECT_EQ(facts.at("recipe"), forest.recipe);
+  std::vector<std::string> sections;
+  for (const json& section : facts.at("sections")) sections.push_back(section.at("name"));
+  EXPECT_THAT(sections, testing::ElementsAre("body", "forest"));
   EXPECT_EQ(facts.at("background_class"), forest.has_background);
   EXPECT_EQ(facts.at("headings"), forest.headings);
   EXPECT_EQ(facts.at("judge_trees"), described.judge.trees.size());
@@ -144,9 +148,9 @@ TEST_F(Commands, ConvertPutsAnotherBodyIntoAModel) {
   const Forest forest = load_model(path("longer.forest")).forest;
   EXPECT_EQ(forest.body.toml, text);
   EXPECT_EQ(forest.trees, load_model(model()).forest.trees);
-  const Outcome refused = run_program("convert " + model() + " " + path("same.forest"));
+  const Outcome refused = run_program("convert " + model() + " " + model() + " " + path("same.forest"));
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("expected --body and one other name"));
+  EXPECT_THAT(refused.err, HasSubstr("expected one other name"));
 }
 
 TEST_F(Commands, ConvertKeepsThePeopleInFrames) {

@@ -1,77 +1,82 @@
 #include "io/model/model_file.h"
 
-#define XXH_INLINE_ALL
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include "io/files/atomic_file.h"
 #include "io/files/byte_stream.h"
 #include "io/files/read_file.h"
-#include "io/model/model_trees.h"
+#include "io/model/model_contents.h"
+#include "io/model/model_sections.h"
+#include "io/model/old_model.h"
 #include "vesalius/base/error.h"
-#include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {
 namespace {
 
-// The line ends in it serve the same purpose as PNG's: a text-mode transfer changes them, so this kind of damage can be
-// named.
-constexpr std::string_view kMagic("\x89VSL\r\n\x1a\n", 8);
-constexpr std::size_t kSizeAt = 12;
-constexpr std::size_t kChecksumAt = 20;
-constexpr std::size_t kHeaderBytes = 28;
-constexpr std::uint16_t kFlagBackground = 1;
-constexpr std::uint16_t kFlagLogits = 2;   ///< leaves were learned jointly and have logits
-constexpr std::uint16_t kFlagJudge = 4;    ///< has a judge of people
-constexpr std::uint16_t kFlagContext = 8;  ///< has a context of bodies
-constexpr std::uint16_t kFlagNames = 16;   ///< judge and context name the features they ask for
-constexpr std::uint16_t kAllFlags = kFlagBackground | kFlagLogits | kFlagJudge | kFlagContext | kFlagNames;
+/// Until the models of the tree are of version 3, those of version 2 are read wherever a model is. Afterwards this is
+/// false, and only `vesalius convert` reads them.
+constexpr bool kOldModelsToo = true;
 
-std::uint64_t checksum(std::string_view bytes) {
-  XXH64_state_t state;
-  XXH64_reset(&state, 0);
-  XXH64_update(&state, bytes.data(), kChecksumAt);
-  XXH64_update(&state, bytes.data() + kHeaderBytes, bytes.size() - kHeaderBytes);
-  return XXH64_digest(&state);
+/// A kind of section. A new one is a row of kContents.
+struct Content {
+  const char* name;
+  int version;
+  bool needed;  ///< in every model
+  bool (*is_there)(const Model& model);
+  std::string (*made_from)(const Model& model);
+  void (*write)(ByteWriter& out, const Model& model);
+  /// What comes before it in the list is read already.
+  void (*read)(ByteReader& in, const std::string& made_from, Model& model);
+};
+
+void read_body(ByteReader& in, const std::string& /*made_from*/, Model& model) {
+  model.body = parse_body_model(in.take(in.left(), "body model"), in.name());
+  model.forest.body = model.body;
 }
 
-template <class T>
-void overwrite(std::string& bytes, std::size_t at, T value) {
-  ByteWriter field;
-  field.number(value);
-  bytes.replace(at, sizeof(T), field.bytes());
+void read_forest_section(ByteReader& in, const std::string& made_from, Model& model) {
+  read_forest(in, in.number<std::uint16_t>("flags"), model.forest);
+  model.forest.recipe = made_from;
 }
 
-/// Checks magic number, version, length and checksum, in the order in which a user can act on them.
-void check_header(std::string_view bytes, const std::string& name) {
-  if (bytes.empty()) throw Error(name + ": empty file, expected a vesalius model");
-  if (bytes.substr(0, kMagic.size()) != kMagic.substr(0, bytes.size())) {
-    throw Error(name + ": not a vesalius model (text trees are read by `vesalius convert`)");
-  }
-  if (bytes.size() < kHeaderBytes) {
-    throw Error(fmt::format("{}: truncated model, {} bytes of the {} of its header", name, bytes.size(), kHeaderBytes));
-  }
-  ByteReader in(bytes, name);
-  in.take(kMagic.size(), "header");
-  const auto version = in.number<std::uint16_t>("version");
-  if (version != kModelVersion) {
-    throw Error(fmt::format("{}: written by {} version: format {}, this program reads {}", name,
-                            version > kModelVersion ? "a newer" : "another", version, kModelVersion));
-  }
-  in.take(2, "flags");
-  const auto size = in.number<std::uint64_t>("size");
-  if (bytes.size() < size) {
-    throw Error(fmt::format("{}: truncated model, {} of {} bytes", name, bytes.size(), size));
-  }
-  if (bytes.size() > size) {
-    throw Error(fmt::format("{}: damaged model, {} bytes where its header says {}", name, bytes.size(), size));
-  }
-  if (in.number<std::uint64_t>("checksum") != checksum(bytes)) {
-    throw Error(name + ": damaged model, the checksum does not match");
-  }
+void write_headings_section(ByteWriter& out, const Model& model) {
+  out.number(static_cast<std::uint16_t>(model.headings.headings));
+  write_headings(out, model.headings);
 }
+
+void read_headings_section(ByteReader& in, const std::string& made_from, Model& model) {
+  const int headings = in.number<std::uint16_t>("headings");
+  model.headings = read_headings(in, headings, model.body.part_count());
+  model.headings.made_from = made_from;
+}
+
+template <BoostedTrees Model::*trees>
+constexpr Content boosted(const char* name) {
+  return {name,
+          1,
+          false,
+          [](const Model& model) { return !(model.*trees).empty(); },
+          [](const Model& model) { return (model.*trees).made_from; },
+          [](ByteWriter& out, const Model& model) { write_boosted(out, model.*trees); },
+          [](ByteReader& in, const std::string& made_from, Model& model) {
+            model.*trees = read_boosted(in, "boosted trees");
+            (model.*trees).made_from = made_from;
+          }};
+}
+
+constexpr std::array<Content, 5> kContents{
+    {{"body", 1, true, [](const Model&) { return true; }, [](const Model&) { return std::string(); },
+      [](ByteWriter& out, const Model& model) { out.bytes() += model.body.toml; }, read_body},
+     {"forest", 1, true, [](const Model&) { return true; }, [](const Model& model) { return model.forest.recipe; },
+      [](ByteWriter& out, const Model& model) { write_forest(out, model.forest); }, read_forest_section},
+     {"headings", 1, false, [](const Model& model) { return !model.headings.empty(); },
+      [](const Model& model) { return model.headings.made_from; }, write_headings_section, read_headings_section},
+     boosted<&Model::context>("context"),
+     boosted<&Model::judge>("judge")}};
 
 /// Throws unless the body's text describes this body. Only the text is written to the file.
 void check_body_text(const BodyModel& body) {
@@ -81,122 +86,60 @@ void check_body_text(const BodyModel& body) {
   }
 }
 
-FacingModel read_facing(ByteReader& in, const Forest& forest) {
-  FacingModel facing{forest.headings, forest.body.part_count(), {}};
-  const auto count = in.number<std::uint32_t>("weights of headings");
-  const std::size_t expected = facing.features() * static_cast<std::size_t>(forest.headings);
-  if (count != 0 && count != expected) in.fail(fmt::format("{} weights of headings, expected {}", count, expected));
-  for (std::uint32_t i = 0; i < count; ++i) facing.weights.push_back(in.real32("weights of headings"));
-  return facing;
-}
-
-void write_boosted(ByteWriter& out, const BoostedTrees& boosted, bool names) {
-  if (names) {
-    out.number(static_cast<std::uint16_t>(boosted.asks.size()));
-    for (const std::string& name : boosted.asks) out.text(name);
+/// Throws where this program does not know a section and may not skip it.
+void check_known(const ModelSection& section, const std::string& name) {
+  const auto kind = std::ranges::find(kContents, section.name, &Content::name);
+  const bool known = kind != kContents.end();
+  if (section.skippable && (!known || kind->version != section.version)) return;
+  if (!known) {
+    throw Error(
+        fmt::format("{}: section \"{}\" is not known to this version, which cannot go without it", name, section.name));
   }
-  out.number(static_cast<std::uint16_t>(boosted.features));
-  out.real(boosted.bias);
-  out.number(static_cast<std::uint32_t>(boosted.trees.size()));
-  for (const BoostedTree& tree : boosted.trees) {
-    for (const std::uint16_t feature : tree.feature) out.number(feature);
-    for (const float threshold : tree.threshold) out.real(threshold);
-    for (const float value : tree.value) out.real(value);
+  if (kind->version != section.version) {
+    throw Error(fmt::format("{}: section \"{}\" is of version {}, this program reads {}", name, section.name,
+                            section.version, kind->version));
   }
-}
-
-BoostedTrees read_boosted(ByteReader& in, const char* what, bool names) {
-  BoostedTrees boosted;
-  const int named = names ? in.number<std::uint16_t>(what) : 0;
-  for (int i = 0; i < named; ++i) boosted.asks.emplace_back(in.text(what));
-  boosted.features = in.number<std::uint16_t>(what);
-  boosted.bias = in.real32(what);
-  const auto count = in.number<std::uint32_t>(what);
-  for (std::uint32_t t = 0; t < count; ++t) {
-    BoostedTree& tree = boosted.trees.emplace_back();
-    for (std::uint16_t& feature : tree.feature) feature = in.number<std::uint16_t>(what);
-    for (float& threshold : tree.threshold) threshold = in.real32(what);
-    for (float& value : tree.value) value = in.real32(what);
-  }
-  return boosted;
 }
 
 }  // namespace
 
 std::string serialise_model(const Model& model) {
+  if (model.labeller != nullptr) throw Error("model: a labeller in place of its forest, which alone can be written");
   check(model);
   check_body_text(model.body);
-  const Forest& forest = model.forest;
-  ByteWriter out;
-  out.bytes() += kMagic;
-  out.number(static_cast<std::uint16_t>(kModelVersion));
-  const bool logits = forest.logit_unit != 0.F;
-  const bool judge = !model.judge.empty(), context = !model.context.empty();
-  const bool names = !model.judge.asks.empty() || !model.context.asks.empty();
-  out.number(static_cast<std::uint16_t>((forest.has_background ? kFlagBackground : 0) | (logits ? kFlagLogits : 0) |
-                                        (judge ? kFlagJudge : 0) | (context ? kFlagContext : 0) |
-                                        (names ? kFlagNames : 0)));
-  out.number(std::uint64_t{0});  // size and checksum, filled in at the end
-  out.number(std::uint64_t{0});
-  out.text(model.body.toml);
-  out.text(forest.recipe);
-  out.real(forest.convention.offset_unit);
-  out.real(forest.convention.reference_focal_px);
-  out.number(forest.convention.hole_mm);
-  out.number(forest.convention.outside_mm);
-  out.number(forest.convention.clip_mm);
-  write_trees(out, forest.trees);
-  if (logits) {
-    out.real(forest.logit_unit);
-    out.number(static_cast<std::uint16_t>(forest.headings));
-    write_logits(out, forest.trees);
-    out.number(static_cast<std::uint32_t>(model.headings.weights.size()));
-    for (const float weight : model.headings.weights) out.real(weight);
+  std::vector<ModelSection> sections;
+  std::vector<ByteWriter> contents(kContents.size());
+  for (std::size_t i = 0; i < kContents.size(); ++i) {
+    const Content& kind = kContents[i];
+    if (!kind.is_there(model)) continue;
+    kind.write(contents[i], model);
+    sections.push_back({kind.name, kind.version, false, kind.made_from(model), contents[i].bytes()});
   }
-  if (context) write_boosted(out, model.context, names);
-  if (judge) write_boosted(out, model.judge, names);
-  overwrite(out.bytes(), kSizeAt, static_cast<std::uint64_t>(out.bytes().size()));
-  overwrite(out.bytes(), kChecksumAt, checksum(out.bytes()));
-  return std::move(out.bytes());
+  return join_sections(sections);
 }
 
 Model parse_model(std::string_view bytes, const std::string& name) {
-  check_header(bytes, name);
-  ByteReader in(bytes, name);
-  in.take(kMagic.size() + sizeof(std::uint16_t), "header");
-  const auto flags = in.number<std::uint16_t>("flags");
-  if (flags > kAllFlags) in.fail(fmt::format("unknown flags {}", flags));
-  in.take(kHeaderBytes - kSizeAt, "header");
+  if (kOldModelsToo && model_version(bytes) == kOldModelVersion) return parse_old_model(bytes, name);
+  const std::vector<ModelSection> sections = split_sections(bytes, name);
+  for (const ModelSection& section : sections) check_known(section, name);
   Model model;
-  Forest& forest = model.forest;
-  forest.has_background = (flags & kFlagBackground) != 0;
-  forest.body = parse_body_model(in.text("body model"), name + ": body model");
-  model.body = forest.body;
-  forest.recipe = in.text("recipe");
-  forest.convention.offset_unit = in.real32("convention");
-  forest.convention.reference_focal_px = in.real32("convention");
-  forest.convention.hole_mm = in.number<std::uint16_t>("convention");
-  forest.convention.outside_mm = in.number<std::uint16_t>("convention");
-  forest.convention.clip_mm = in.number<std::uint16_t>("convention");
-  forest.trees = read_trees(in);
-  if ((flags & kFlagLogits) != 0) {
-    forest.logit_unit = in.real32("unit of logits");
-    forest.headings = in.number<std::uint16_t>("headings");
-    const LogitLayout layout(forest.body, forest.has_background, forest.headings);
-    read_logits(in, static_cast<std::size_t>(layout.size()), forest.trees);
-    model.headings = read_facing(in, forest);
+  for (const Content& kind : kContents) {
+    const auto section = std::ranges::find_if(
+        sections, [&](const ModelSection& each) { return each.name == kind.name && each.version == kind.version; });
+    if (section == sections.end() && kind.needed) {
+      throw Error(fmt::format("{}: no section \"{}\", expected one in every model", name, kind.name));
+    }
+    if (section == sections.end()) continue;
+    const std::string place = fmt::format("{}: section \"{}\"", name, kind.name);
+    ByteReader in(section->bytes, place);
+    kind.read(in, section->made_from, model);
+    in.expect_end();
   }
-  const bool names = (flags & kFlagNames) != 0;
-  if ((flags & kFlagContext) != 0) model.context = read_boosted(in, "context of bodies", names);
-  if ((flags & kFlagJudge) != 0) model.judge = read_boosted(in, "judge of people", names);
-  in.expect_end();
   with_context(name, [&] { check(model); });
   return model;
 }
 
-std::string model_checksum(std::string_view bytes) {
-  return bytes.size() < kHeaderBytes ? std::string() : fmt::format("{:016x}", checksum(bytes));
-}
+std::string model_checksum(std::string_view bytes) { return fmt::format("{:016x}", xxh64(bytes)); }
 
 Model load_model(const std::string& path) { return parse_model(read_file(path), path); }
 

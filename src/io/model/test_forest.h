@@ -7,6 +7,7 @@
 #include "vesalius/base/random.h"
 #include "vesalius/forest/forest.h"
 #include "vesalius/forest/leaf_logits.h"
+#include "vesalius/model.h"
 
 // Forests that the tests of model files share.
 namespace vesalius::test {
@@ -117,11 +118,11 @@ inline void add_logits(Forest& forest, int headings, Random& random) {
   for (float& weight : forest.facing.weights) weight = static_cast<float>(random.uniform(-1.0, 1.0));
 }
 
-/// Gives the forest a random judge of people.
-inline void add_judge(Forest& forest, int trees, Random& random) {
+/// Gives the model a random judge of people.
+inline void add_judge(Model& model, int trees, Random& random) {
   constexpr int kFeatures = 30;
-  forest.judge = {kFeatures, 0.25F, std::vector<BoostedTree>(trees)};
-  for (BoostedTree& tree : forest.judge.trees) {
+  model.judge = {kFeatures, 0.25F, std::vector<BoostedTree>(trees)};
+  for (BoostedTree& tree : model.judge.trees) {
     for (std::uint16_t& feature : tree.feature) feature = static_cast<std::uint16_t>(random.below(kFeatures));
     for (float& threshold : tree.threshold) threshold = static_cast<float>(random.uniform());
     for (float& value : tree.value) value = static_cast<float>(random.uniform(-1.0, 1.0));

@@ -20,13 +20,14 @@ struct BoostedTree {
 };
 
 /// How probably something is so: the sum of boosted trees over its features (Friedman, Greedy function approximation,
-/// 2001). A forest has them for two questions: whether a pixel is a body, given what the forest says around it
+/// 2001). A model has them for two questions: whether a pixel is a body, given what the labeller says around it
 /// (body_context.h), and whether a proposal is a person, given the evidence (score_person.h).
 struct BoostedTrees {
   int features = 0;  ///< how many numbers are known of what is asked about
   float bias = 0.F;  ///< log odds before any tree
   std::vector<BoostedTree> trees;
   std::vector<std::string> asks = {};  ///< [feature]: its name; none in models of before they had names
+  std::string made_from = {};          ///< free text
 
   bool empty() const { return trees.empty(); }
   /// Writes the logarithm of the odds for each of `count` lists of `features` numbers, one list after the other.

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/forest/leaf_logits.h"
 
@@ -38,15 +37,6 @@ bool has_turns(const Posteriors& posteriors, int u, int v) {
 }
 
 }  // namespace
-
-void check(const FacingModel& model, int parts, int headings) {
-  const bool fits = model.headings == headings && model.parts == parts &&
-                    model.weights.size() == model.features() * static_cast<std::size_t>(headings);
-  if (!model.empty() && !fits) throw Error("regression of headings for other parts or headings");
-  if (std::ranges::any_of(model.weights, [](float w) { return !std::isfinite(w); })) {
-    throw Error("regression of headings has a weight that is no number");
-  }
-}
 
 FacingEvidence::FacingEvidence(int parts, int headings)
     : parts_(parts),

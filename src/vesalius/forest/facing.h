@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "vesalius/base/image.h"
@@ -14,9 +15,6 @@
 #include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
-
-/// Throws Error if a regression that is not empty is for other parts or headings or has a weight that is no number.
-void check(const FacingModel& model, int parts, int headings);
 
 /// Gathers what a person's pixels tell of the heading.
 class FacingEvidence {

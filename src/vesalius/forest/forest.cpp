@@ -5,7 +5,6 @@
 #include <cstdlib>
 
 #include "vesalius/base/error.h"
-#include "vesalius/forest/facing.h"
 #include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {
@@ -73,6 +72,15 @@ void check_logits(const Forest& forest) {
 }
 
 }  // namespace
+
+void check(const FacingModel& model, int parts, int headings) {
+  const bool fits = model.headings == headings && model.parts == parts &&
+                    model.weights.size() == model.features() * static_cast<std::size_t>(headings);
+  if (!model.empty() && !fits) throw Error("regression of headings for other parts or headings");
+  if (std::ranges::any_of(model.weights, [](float w) { return !std::isfinite(w); })) {
+    throw Error("regression of headings has a weight that is no number");
+  }
+}
 
 void check(const Forest& forest) {
   if (forest.body.parts.empty()) throw Error("forest: body model without parts");

@@ -58,12 +58,16 @@ struct FacingModel {
   int headings = 0;
   int parts = 0;
   std::vector<float> weights;  ///< [heading][feature]
+  std::string made_from = {};  ///< free text
 
   bool empty() const { return weights.empty(); }
   /// Returns the number of features: for each part how likely each heading is, the part's share, and a constant.
   std::size_t features() const { return std::size_t{1} * parts * headings + parts + 1; }
   friend bool operator==(const FacingModel&, const FacingModel&) = default;
 };
+
+/// Throws Error if a regression that is not empty is for other parts or headings or has a weight that is no number.
+void check(const FacingModel& model, int parts, int headings);
 
 /// Trees that label pixels, as training returns them (vesalius/model.h).
 struct Forest {
