@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Puts what `vesalius evaluate` fitted into body models.
+"""Puts what tools/fit_body fitted into body models.
 
-FITTED is what --fit-joints or --fit-parts wrote. In each FILE (a body model, or joint sets for evaluation) every joint
+FITTED is what `vesalius_fit_body joints` or `parts` wrote. In each FILE (a body model, or joint sets for evaluation) every joint
 set that FITTED has as well is replaced by it; comments, order and everything else stay. A distribution of parts
 replaces the file's, or is put at its end.
 

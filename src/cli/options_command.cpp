@@ -37,7 +37,8 @@ void add_options(CLI::App& program) {
       ->capture_default_str();
   command->footer(R"(
 The output is a file for `vesalius detect --options FILE`, `vesalius synth --recipe FILE` or
-`vesalius train --options FILE`; each name is a flag of that command as well.
+`vesalius train --options FILE`; each name is a flag of that command as well. Recipes of models (docs/retrain.md) have
+those of synth and train in tables.
 
 Examples:
   vesalius options > mine.toml

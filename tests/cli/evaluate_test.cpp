@@ -6,10 +6,8 @@
 #include "capsule/capsule_person.h"
 #include "dataset/labelled_dataset.h"
 #include "io/files/image_file.h"
-#include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_world.h"
-#include "vesalius/fit/joint_trust.h"
 
 namespace vesalius {
 namespace {
@@ -32,13 +30,6 @@ class Evaluate : public SmallWorld {
 
   static Outcome evaluate(const std::string& more) {
     return run_program("evaluate " + frames() + " -q -m " + model() + more);
-  }
-
-  /// Writes the truth of `frames()` for fitting. Frame b shows a person too, but the table says that it shows nobody.
-  static void say_that_only_the_first_frame_has_a_person() {
-    write("frames/frames.csv", "frame,people,posture\na,1,\nb,0,\nc,0,\n");
-    fs::create_directories(path("frames/mask"));
-    write_png(Image<std::uint8_t>(320, 240, 255), path("frames/mask/a.png"));
   }
 
   /// Returns a dataset of one frame with a person and one without.
@@ -118,39 +109,6 @@ TEST_F(Evaluate, FollowsWithTheOptionsOfTrackingAndFittedBodies) {
   EXPECT_THAT(tracked, HasSubstr("\nfit.surface = 0.04\n"));
   EXPECT_THAT(options(""), Not(HasSubstr("track."))) << "nobody was followed";
   EXPECT_EQ(evaluate(" --track --fit.surface 0").exit_code, 2);
-}
-
-/// Clips of recipes that the built-in bodies suffice for.
-TEST_F(Evaluate, WritesTheTrustFittedToTheJointsOfClips) {
-  const std::string clips = path("clips"), forest = VESALIUS_SOURCE_DIR "/data/models/small.forest";
-  ASSERT_EQ(run_program(
-                "synth -q --sensor.width 160 --sensor.height 120 --body.kind builtin --body.count 2 --pose.captured 0 "
-                "--people.none 0 --people.one 0 --people.two 1 --people.three 0 --people.four 0 --people.cut-out 0 "
-                "--clip 3 --count 1 --seed 3 --out " +
-                clips)
-                .exit_code,
-            0);
-  const std::string fit = "evaluate " + clips + " -q -m " + forest + " --track --fit-trust ";
-  const Outcome run = run_program(fit + path("trust.toml"));
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out,
-              ContainsRegex("trust in observed joints: [1-9][0-9]* of [1-9][0-9]* right; confidence and share"));
-  const BodyTrust trust = parse_body_trust(bytes_of(path("trust.toml")), "trust.toml");
-  EXPECT_NE(trust.observed.bias, builtin_trust().observed.bias);
-  EXPECT_NEAR(trust.hidden.bias, builtin_trust().hidden.bias, 1e-3F) << "nobody is hidden without --hidden";
-
-  const Outcome single = evaluate(" --track --fit-trust " + path("none.toml"));
-  EXPECT_EQ(single.exit_code, 1);
-  EXPECT_THAT(single.err, HasSubstr("fitting the trust: expected fitted bodies"));
-  EXPECT_FALSE(fs::exists(path("none.toml")));
-  EXPECT_EQ(evaluate(" --fit-trust " + path("none.toml")).exit_code, 2) << "without --track";
-  const Outcome few = evaluate(" --track --fit-stances " + path("none.toml"));
-  EXPECT_EQ(few.exit_code, 1);
-  EXPECT_THAT(few.err, HasSubstr("fitting the stances: "));
-  EXPECT_FALSE(fs::exists(path("none.toml")));
-  const Outcome nowhere = run_program(fit + path("missing/trust.toml"));
-  EXPECT_EQ(nowhere.exit_code, 1);
-  EXPECT_EQ(nowhere.out, "") << "before any frame is looked at";
 }
 
 // Labels: threads
@@ -246,22 +204,15 @@ TEST_F(Evaluate, RefusesTruthThatCannotBeUsed) {
   EXPECT_THAT(run_program("evaluate /nowhere -m " + model()).err, HasSubstr("/nowhere: "));
 }
 
-TEST_F(Evaluate, FitsJointsOnFramesThatAreNotMeasured) {
+TEST_F(Evaluate, MeasuresJointsOfFramesThatAreNotForFitting) {
   write("frames/joints.csv",
         "frame,joint,x_m,y_m,z_m\na,head,0,-0.6,2.5\na,l_knee,0.1,0.5,2.5\nb,head,0,-0.6,2.5\nb,l_knee,0.1,0.5,2.5\n");
-  const auto measured = [&](const std::string& more) {
-    const Outcome run = evaluate(" --json " + path("j.json") + more);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    return json::parse(bytes_of(path("j.json"))).at("sets").at(0);
-  };
-  const json set = measured("");
-  const json fitted = measured(" --fit-joints " + path("j.toml"));
+  const Outcome run = evaluate(" --json " + path("j.json"));
   fs::remove(path("frames/joints.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json set = json::parse(bytes_of(path("j.json"))).at("sets").at(0);
   EXPECT_EQ(set.at("figures").at("joints.at_10cm").at("denominator"), 2.0);  // the joints of frame b
   EXPECT_EQ(set.at("joint_precision").size(), 2U);
-  EXPECT_FALSE(fitted.at("figures").contains("joints.at_10cm"));
-  const std::string toml = bytes_of(path("j.toml"));
-  EXPECT_THAT(toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
   const BodyModel body = parse_body_model(
       paper_body().toml + "\n" + bytes_of(VESALIUS_SOURCE_DIR "/data/joints/evaluation.toml"), "joints");
   EXPECT_EQ(body.joint_sets.size(), paper_body().joint_sets.size() + 2);
@@ -309,77 +260,6 @@ TEST_F(Evaluate, NeedsACountForARecipe) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("--recipe expects --count"));
   EXPECT_EQ(run_program("evaluate -m " + model()).exit_code, 2);
-}
-
-TEST_F(Evaluate, WritesTheModelWithAJudgeFittedToTheFrames) {
-  say_that_only_the_first_frame_has_a_person();
-  const Outcome run = evaluate(" --fit-judge " + path("judged.forest"));
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, ContainsRegex("judge fitted to [1-9][0-9]* candidates that were people and [1-9][0-9]* that "));
-  EXPECT_FALSE(load_model(path("judged.forest")).judge.empty());
-  EXPECT_THAT(run_program("info " + path("judged.forest")).out, HasSubstr("judge_trees: 1600\n"));
-  EXPECT_EQ(run_program("detect " + frames() + " -m " + path("judged.forest")).exit_code, 0);
-
-  const Outcome nowhere = evaluate(" --fit-judge " + path("missing/judged.forest"));
-  EXPECT_EQ(nowhere.exit_code, 1);
-  EXPECT_THAT(nowhere.err, HasSubstr("missing/judged.forest"));
-  EXPECT_EQ(nowhere.out, "") << "before any frame is looked at";
-
-  write("frames/frames.csv", "frame,people,posture\na,0,\nb,0,\nc,0,\n");
-  const Outcome alone = evaluate(" --fit-judge " + path("none.forest"));
-  EXPECT_EQ(alone.exit_code, 1);
-  EXPECT_THAT(alone.err, HasSubstr("have no candidate that is known to be a person"));
-  EXPECT_FALSE(fs::exists(path("none.forest")));
-}
-
-TEST_F(Evaluate, FitsAJudgeToAForestWhoseOwnIsOfAnotherVersion) {
-  say_that_only_the_first_frame_has_a_person();
-  Model other = load_model(model());
-  other.judge = {3, 0.F, std::vector<BoostedTree>(1)};
-  save_model(other, path("other.forest"));
-  const Outcome refused = run_program("detect " + frames() + " -m " + path("other.forest"));
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("judge of people knows 3 features"));
-  ASSERT_EQ(run_program("evaluate " + frames() + " -m " + path("other.forest") + " --fit-judge " + path("own.forest"))
-                .exit_code,
-            0);
-  ASSERT_EQ(evaluate(" --fit-judge " + path("fresh.forest")).exit_code, 0);
-  EXPECT_EQ(load_model(path("own.forest")).judge, load_model(path("fresh.forest")).judge);
-}
-
-/// Frames whose labels are known, of a recipe that the built-in bodies suffice for.
-TEST_F(Evaluate, WritesTheModelWithAContextFittedToTheFrames) {
-  ASSERT_EQ(run_program("synth --count 12 --seed 3 --sensor.width 160 --sensor.height 120 -q --out " + path("labelled"))
-                .exit_code,
-            0);
-  const std::string fit = "evaluate " + path("labelled") + " -m " + model() + " --fit-context ";
-  const Outcome run = run_program(fit + path("context.forest"));
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, ContainsRegex("context fitted to [1-9][0-9]* pixels of people and [1-9][0-9]* of other things"));
-  const Model fitted = load_model(path("context.forest"));
-  EXPECT_EQ(fitted.context.trees.size(), 120U);
-  EXPECT_TRUE(fitted.judge.empty());
-  EXPECT_THAT(run_program("info " + path("context.forest")).out, HasSubstr("context_trees: 120\n"));
-  EXPECT_EQ(run_program("detect " + frames() + " -m " + path("context.forest")).exit_code, 0);
-  ASSERT_EQ(run_program("evaluate " + path("labelled") + " -m " + path("context.forest") +
-                        " --threads 1 --fit-context " + path("again.forest"))
-                .exit_code,
-            0);
-  EXPECT_EQ(load_model(path("again.forest")).context, fitted.context) << "fitted to what the forest alone says";
-
-  Model other = load_model(model());
-  other.judge = {3, 0.F, std::vector<BoostedTree>(1)};
-  save_model(other, path("other.forest"));
-  EXPECT_EQ(run_program("evaluate " + path("labelled") + " -m " + path("other.forest") + " --fit-context " +
-                        path("third.forest"))
-                .exit_code,
-            0)
-      << "a judge of another version does not matter";
-
-  const Outcome unlabelled = evaluate(" --fit-context " + path("none.forest"));
-  EXPECT_EQ(unlabelled.exit_code, 1);
-  EXPECT_THAT(unlabelled.err, HasSubstr("no pixel that may be a body and is known to be one"));
-  EXPECT_FALSE(fs::exists(path("none.forest")));
 }
 
 class Compare : public Evaluate {};

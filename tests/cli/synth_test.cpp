@@ -162,7 +162,6 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
   refused(synth("--clip 1 --rate -5 --count 1 --out " + path("x")), 2, "-5 frames a second");
   refused(synth("--rate 30 --count 1 --out " + path("x")), 2, "--rate expects --clip");
   refused(synth("--clip 1 --first 2 --count 1 --out " + path("x")), 2, "--first expects");
-  refused(synth("--clip 1 --fit-flesh " + path("x")), 2, "--clip expects --count or --preview");
   refused(synth("--clip 600 --count 100000000 --out " + path("x")), 2, "frames in all");
   refused(synth("--clip 1 --clip.moving-share 2 --count 1 --out " + path("x")), 2, "clip.moving-share");
   refused("evaluate -m none.forest --clip 1 " + path("d"), 2, "--clip expects --recipe");
@@ -172,7 +171,6 @@ TEST_F(SynthProgram, ReportsBadInputInOneLine) {
   for (int i = 0; i < 200000; ++i) deep += ".a";
   write_file_atomically(path("deep.toml"), deep + " = 1\n");
   refused(synth("--count 3 --recipe " + path("deep.toml") + " --out " + path("x")), 1, "deep.toml");
-  refused(synth("--fit-flesh " + path("none/flesh.toml")), 1, path("none/flesh.toml") + ": cannot be written");
   refused("synth -q --body.kind makehuman --count 1 --assets " + path("nowhere") + " --out " + path("x"), 1,
           "vesalius assets makehuman");
   EXPECT_FALSE(fs::exists(path("x")));

@@ -122,7 +122,7 @@ class Wrapper:
         for name in self.values(words, "--background"):
             self.place(name, "rooms")
         for name in self.values(words, "--recipe"):
-            self.place(name, "recipe.toml")
+            self.place(name, "recipe.toml" if words[0] != "train" or "--count" in words else "model.toml")
 
     def shrink(self, words):
         command = words[0]
@@ -161,10 +161,15 @@ class Wrapper:
             return 0
         words = self.without_camera(self.without_motions(words))
         self.provide(words)
-        # A recipe of the reader's own, or one of the project's, at the size of a test.
+        # A recipe of the reader's own, or one of the project's, at the size of a test. That of a whole model has no --count.
+        whole = words[0] == "train" and "--count" not in words
         for i, word in enumerate(words):
-            if word == "--recipe" and words[0] in ("train", "evaluate"):
+            if word == "--recipe" and whole:
+                words[i + 1] = str(self.stand_ins / "model.toml")
+            elif word == "--recipe" and words[0] in ("train", "evaluate"):
                 words[i + 1] = self.small_recipe(words[i + 1])
+        if "--scale" in words:
+            del words[words.index("--scale"):words.index("--scale") + 2]
         words = self.shrink(words)
         if words[0] == "view":
             code = self.look(words)
@@ -226,7 +231,11 @@ def make_stand_ins(program, source, folder):
         section, name = flag[2:].split(".", 1)
         quoted = value if re.fullmatch(r"[0-9.]+", value) else f'"{value}"'
         sections.setdefault(section, []).append(f"{name} = {quoted}\n")
-    (folder / "recipe.toml").write_text("".join(f"[{name}]\n" + "".join(each) for name, each in sections.items()))
+    tables = {name: f"[{name}]\n" + "".join(each) for name, each in sections.items()}
+    (folder / "recipe.toml").write_text("".join(tables.values()))
+    (folder / "model.toml").write_text('[synth]\nrecipe = "recipe.toml"\n[forest]\nframes = "a"\n[context]\nframes = "b"\n'
+                                       '[judge]\nframes = "b"\n[frames.a]\ncount = 24\n[frames.b]\ncount = 16\nseed = 2\n'
+                                       'people.none = 0.5\nscene.furniture-max = 8\n')
 
 
 def blocks_of(document):

@@ -1,4 +1,4 @@
-"""Renders the frames of data/models/small.forest anew, trains it, and checks the result against the shipped one.
+"""Makes a trial of data/models/default.forest and data/models/small.forest anew, and checks the result against the shipped one.
 
 usage: small_model.py VESALIUS SOURCE_DIR WORK_DIR; exit code 77 where bodies and motions are missing.
 """
@@ -26,7 +26,7 @@ def main():
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
     models = source / "data/models"
-    frames, forest, assets = work / "clean", work / "small.forest", work / "assets"
+    forest, assets = work / "small.forest", work / "assets"
 
     def run(*arguments):
         command = [vesalius, *map(str, arguments)]
@@ -34,9 +34,8 @@ def main():
         subprocess.run(command, check=True)
 
     run("assets", "--quiet", "--mirror", shared / "assets", "--dir", assets)
-    run("synth", "--recipe", models / "recipe.toml", "--assets", assets, "--no-sensor.noise", "--count", 12000,
-        "--seed", 35, "--out", frames)
-    run("train", "--data", frames, "--options", models / "small.toml", "--out", forest)
+    run("train", "--recipe", models / "default.toml", "--assets", assets, "--scale", 0.001, "--out", work / "trial.forest")
+    run("train", "--recipe", models / "small.toml", "--assets", assets, "--out", forest)
     failures = []
     if forest.stat().st_size > MOST_BYTES:
         failures.append(f"{forest}: {forest.stat().st_size} bytes, expected at most {MOST_BYTES}")

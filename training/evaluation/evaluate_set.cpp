@@ -91,8 +91,6 @@ class SetEvaluation {
     ++result_.log.frames;
     result_.log.expected += score.expected;
     result_.log.proposals.insert(result_.log.proposals.end(), score.proposals.begin(), score.proposals.end());
-    result_.samples.insert(result_.samples.end(), score.samples.begin(), score.samples.end());
-    std::ranges::move(score.context_samples, std::back_inserter(result_.context_samples));
     for (const auto& errors_m : score.joint_errors_m) result_.joint_curve.add(errors_m);
     result_.joint_precision.add(score.joint_precision);
     result_.centre_precision.add(score.centre_precision);

@@ -37,7 +37,7 @@ void check_parts(const std::vector<std::string>& names, const BodyModel& body, c
 void keep_if_worst(WorstFrame frame, std::size_t most, std::vector<WorstFrame>& worst);
 
 /// Scores all frames of a source on all allowed threads. Its memory grows by 28 bytes for each proposal, 8 for each
-/// joint of one and 20 for each sample, for fitting joints by 4 kB for each person found, but not with the frames
+/// joint of one, for fitting joints by 4 kB for each person found, but not with the frames
 /// themselves. Throws Error for labels of other parts than the model's, a source without frames, the first frame that
 /// fails (unless it is to keep going), and when it is stopped.
 SetResult evaluate_set(TruthSource& frames, const SetOptions& options, const FrameScorer& scorer,

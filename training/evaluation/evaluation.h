@@ -9,7 +9,6 @@
 #include "metrics/fit_samples.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/joint_precision.h"
-#include "metrics/judge_samples.h"
 #include "metrics/metric_table.h"
 #include "metrics/pixel_metrics.h"
 #include "metrics/score_frame.h"
@@ -41,8 +40,6 @@ struct SetResult {
   JointPrecision centre_precision;
   std::optional<PixelConfusion> confusion;
   std::vector<KnownPerson> known_people;          ///< for fitting joints
-  std::vector<JudgeSample> samples;               ///< for fitting a judge
-  std::vector<BoostSample> context_samples = {};  ///< for fitting the context of bodies
   std::vector<TrustSample> trust_samples = {};    ///< for fitting the trust in fitted joints
   std::vector<StanceSample> stance_samples = {};  ///< for fitting the stances
   std::vector<WorstFrame> worst;                  ///< the worst first

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "metrics/match_people.h"
+#include "vesalius/score_person.h"
 
 namespace vesalius {
 namespace {
@@ -42,15 +43,17 @@ Likeness likeness(const Mask& mask, const FrameTruth& truth, const DepthImage& d
 
 }  // namespace
 
-std::vector<JudgeSample> judge_samples(const Trace& trace, const FrameTruth& truth, const DepthImage& depth) {
-  std::vector<JudgeSample> samples;
+std::vector<BoostSample> judge_samples(const Trace& trace, const FrameTruth& truth, const DepthImage& depth) {
+  std::vector<BoostSample> samples;
   const bool known = !truth.person.empty() || !truth.mask.empty();
   if (truth.people != 0 && !known) return samples;
   for (const Trace::Candidate& candidate : trace.candidates) {
     if (candidate.refined.found == 0) continue;
     const Likeness like = truth.people == 0 ? Likeness{} : likeness(candidate.grown, truth, depth);
     const bool person = like.as_person >= 1.0;
-    if (person || std::max(like.as_person, like.on_people) < 0.5) samples.push_back({candidate.evidence, person});
+    if (person || std::max(like.as_person, like.on_people) < 0.5) {
+      samples.push_back({judge_features(candidate.evidence), person});
+    }
   }
   return samples;
 }

@@ -24,7 +24,7 @@ TEST(JudgeSamples, AreJudgedByTheirOverlap) {
   for (int u = 0; u < 4; ++u) truth.person(u, 0) = 0;
   const auto kinds = [&](const FrameTruth& known, int from, int to) {
     std::vector<int> all;
-    for (const JudgeSample& s : judge_samples(trace_of(from, to), known, depth)) all.push_back(s.person ? 1 : 0);
+    for (const BoostSample& s : judge_samples(trace_of(from, to), known, depth)) all.push_back(s.positive ? 1 : 0);
     return all;
   };
   EXPECT_THAT(kinds(truth, 0, 4), testing::ElementsAre(1));

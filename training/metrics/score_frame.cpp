@@ -110,7 +110,7 @@ MetricTerm score_term(float score, bool person) {
 }  // namespace
 
 FrameScorer::FrameScorer(Model model, Options options)
-    : options_(std::move(options)), model_(on_device(std::move(model))), detector_(model_, options_.detect) {
+    : options_(std::move(options)), detector_(std::move(model), options_.detect) {
   const std::vector<JointSet>& sets = body().joint_sets;
   if (options_.joint_set.empty() || std::ranges::find(sets, options_.joint_set, &JointSet::name) != sets.end()) return;
   std::string names;
@@ -128,10 +128,6 @@ FrameScore FrameScorer::score(TrueFrame frame, bool fit_joints) const {
   put_visible_people_first(frame);
   FrameScore score;
   score.expected = expected_people(frame.truth);
-  if (options_.fit_context) {
-    score.context_samples = context_samples(frame, model_, options_.detect);
-    return score;
-  }
   const Mask people = labelled_people(frame.truth);
   const Mask* asked = people.empty() ? nullptr : &people;
   FrameLabels labels =
@@ -188,7 +184,6 @@ FrameScore FrameScorer::score_found(TrueFrame frame, std::vector<Person> people,
 }
 
 void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool fit_joints, FrameScore& score) const {
-  score.samples = judge_samples(trace, frame.truth, frame.frame.depth);
   const auto proposals = distinct_proposals(trace, options_.detect.refine.max_overlap);
   if (!fit_joints) {
     const auto joints = known_joints(frame.truth, body(), options_.joint_set), centres = known_centres(frame.truth);

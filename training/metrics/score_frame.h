@@ -10,7 +10,6 @@
 #include "metrics/frame_truth.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/joint_precision.h"
-#include "metrics/judge_samples.h"
 #include "metrics/metric_table.h"
 #include "metrics/pixel_metrics.h"
 #include "vesalius/detect.h"
@@ -23,8 +22,6 @@ struct FrameScore {
   MetricTerms terms;
   int expected = 0;  ///< true people
   std::vector<JudgedProposal> proposals;
-  std::vector<JudgeSample> samples;                 ///< for fitting a judge
-  std::vector<BoostSample> context_samples;         ///< for fitting the context of bodies, if asked for
   std::vector<std::vector<double>> joint_errors_m;  ///< joint_errors() of each true person
   JointPrecision joint_precision;                   ///< over all proposed people, whatever their score
   JointPrecision centre_precision;                  ///< the same of the parts' centres
@@ -44,7 +41,6 @@ class FrameScorer {
     DetectOptions detect;
     bool labels_only = false;  ///< only the pixel metrics of the first pass: much faster
     std::string joint_set{};   ///< joint set to compare joints with and to fit; empty means the truth's own choice
-    bool fit_context = false;  ///< only keeps context_samples of labelled frames and measures nothing
   };
 
   /// Throws the errors of Detector, and UsageError if the body has no such joint set.
@@ -83,7 +79,6 @@ class FrameScorer {
   void judge_labels(const TrueFrame& frame, const FrameLabels& labels, FrameScore& score) const;
 
   Options options_;
-  Model model_;
   Detector detector_;
 };
 

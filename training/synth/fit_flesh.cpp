@@ -352,7 +352,7 @@ std::string fitted_flesh_toml(const Generator& generator, const FleshFitOptions&
   Random random(options.seed);
   for (int i = 0; i < options.poses; ++i) poses.push_back(generator.draw_pose(random).pose);
   return fmt::format(
-             "# Bones, flesh and poses of a population (docs/tracking.md), by `vesalius synth --fit-flesh`.\n"
+             "# Bones, flesh and poses of a population (docs/tracking.md), by tools/fit_body.\n"
              "# Metres and radians; the right side mirrors the left one.\nshapes = {}\n",
              options.shapes) +
          bones_toml(population_of(bodies, options.shapes), poses) + limbs_toml(poses, options);

@@ -30,8 +30,6 @@
 #include "evaluation/evaluation_json.h"
 #include "evaluation/evaluation_report.h"
 #include "evaluation/evaluation_summary.h"
-#include "evaluation/fit_evaluation.h"
-#include "io/files/atomic_file.h"
 #include "io/files/read_file.h"
 #include "io/model/model_file.h"
 #include "report/document.h"
@@ -56,8 +54,7 @@ struct Arguments {
   RenderedTruth rendered;
   std::optional<float> clip_s;
   std::optional<double> rate_hz;
-  std::string model, options_file, report, json, joints_file, joint_set, headings_file, fit_joints, fit_parts,
-      fit_judge, fit_context, fit_trust, fit_stances;
+  std::string model, options_file, report, json, joints_file, joint_set, headings_file;
   DeviceFlag device;
   OptionFlags<PeopleOptions> detector_flags;
   int step = 1;
@@ -99,9 +96,7 @@ std::vector<Request> set_requests(const Arguments& arguments) {
   const auto add = [&](const std::string& source, const std::filesystem::path& path, std::string name, bool is_recipe) {
     if (!paths.insert(path.string()).second) throw UsageError(fmt::format("{}: given twice", source));
     if (!names.insert(name).second) name = clean(path.string());
-    requests.push_back(
-        {{name, source, arguments.keep_going, !arguments.fit_joints.empty() || !arguments.fit_parts.empty()},
-         is_recipe});
+    requests.push_back({{name, source, arguments.keep_going}, is_recipe});
   };
   for (const std::string& source : arguments.sources) {
     for (const std::string& set : arguments.track ? std::vector{source} : sets_in(source)) {
@@ -185,65 +180,11 @@ SetResult evaluate_shown(const Request& request, const Arguments& arguments, con
   };
   hooks.stop = interrupted;
   if (!arguments.track) return evaluate_set(*frames, request.set, scorer, hooks);
-  return evaluate_sequences(open, request.set, scorer, trackers,
-                            {arguments.hidden, !arguments.fit_trust.empty(), !arguments.fit_stances.empty()}, hooks);
+  return evaluate_sequences(open, request.set, scorer, trackers, {.hidden = arguments.hidden}, hooks);
 }
 
 /// Returns whether nothing but the JSON may go to standard output.
 bool prints_json(const Arguments& arguments) { return arguments.json == "-"; }
-
-/// Writes the model with a judge fitted to all sets, and prints how many candidates it was fitted to.
-void write_fitted_judge(const Evaluation& evaluation, const std::string& path, bool quiet) {
-  FittedJudge fitted = fit_judge(evaluation);
-  Model model = load_model(evaluation.model);
-  model.judge = std::move(fitted.judge);
-  save_model(model, path);
-  if (quiet) return;
-  print(fmt::format("judge fitted to {} candidates that were people and {} that were not\n", fitted.people,
-                    fitted.nobodies));
-}
-
-/// Writes the model with a context of bodies fitted to all sets, and prints how many pixels it was fitted to.
-void write_fitted_context(const Evaluation& evaluation, const std::string& path, bool quiet) {
-  FittedContext fitted = fit_context(evaluation);
-  Model model = load_model(evaluation.model);
-  model.context = std::move(fitted.context);
-  model.judge = {};
-  save_model(model, path);
-  if (quiet) return;
-  print(fmt::format(
-      "context fitted to {} pixels of people and {} of other things; the judge, if there was one, is left out\n",
-      fitted.bodies, fitted.others));
-}
-
-/// Writes the trust in fitted joints fitted to all sets, and prints for each kind of joints how well confidence agrees
-/// with the share that is right, before and after.
-void write_fitted_trust(const Evaluation& evaluation, const std::string& path, bool quiet) {
-  const FittedTrust fitted = fit_evaluation_trust(evaluation);
-  write_file_atomically(path, fitted.toml);
-  if (quiet) return;
-  for (const NamedSource& source : kJointSources) {
-    const TrustAgreement& agreement = fitted.fit.agreement[static_cast<std::size_t>(source.source)];
-    if (agreement.samples == 0) continue;
-    print(fmt::format(
-        "trust in {} joints: {} of {} right; confidence and share right differ by {:.1f} %, were {:.1f} %{}\n",
-        source.name, agreement.right, agreement.samples, 100.0 * agreement.after, 100.0 * agreement.before,
-        agreement.fitted ? "" : " (too few to fit, left as it was)"));
-  }
-}
-
-/// Writes the model of stances fitted to all sets, and prints how often one frame alone tells each, before and after.
-void write_fitted_stances(const Evaluation& evaluation, const std::string& path, bool quiet) {
-  const FittedStances fitted = fit_evaluation_stances(evaluation);
-  write_file_atomically(path, fitted.toml);
-  if (quiet) return;
-  for (const StanceAgreement& agreement : fitted.fit.agreement) {
-    const double share = 100.0 / double(agreement.samples);
-    print(fmt::format("stances fitted to {} frames of people {}: {:.1f} % right by one frame, were {:.1f} %\n",
-                      agreement.samples, to_string(agreement.stance), share * double(agreement.right_after),
-                      share * double(agreement.right_before)));
-  }
-}
 
 void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
   if (!arguments.json.empty()) {
@@ -252,47 +193,25 @@ void write_outputs(const Arguments& arguments, const Evaluation& evaluation) {
     sink.finish();
   }
   if (!arguments.report.empty()) write_report(evaluation, arguments.report);
-  if (!arguments.fit_joints.empty()) write_file_atomically(arguments.fit_joints, fitted_joints_toml(evaluation));
-  if (!arguments.fit_parts.empty()) {
-    write_file_atomically(arguments.fit_parts, fitted_distribution_toml(evaluation));
-  }
-  if (!arguments.fit_judge.empty()) write_fitted_judge(evaluation, arguments.fit_judge, prints_json(arguments));
-  if (!arguments.fit_context.empty()) write_fitted_context(evaluation, arguments.fit_context, prints_json(arguments));
-  if (!arguments.fit_trust.empty()) write_fitted_trust(evaluation, arguments.fit_trust, prints_json(arguments));
-  if (!arguments.fit_stances.empty()) write_fitted_stances(evaluation, arguments.fit_stances, prints_json(arguments));
-}
-
-/// Throws Error where a file that is to be fitted could not be written: that is known after the last frame otherwise.
-void check_writable(const Arguments& arguments) {
-  for (const std::string* path : {&arguments.fit_joints, &arguments.fit_parts, &arguments.fit_judge,
-                                  &arguments.fit_context, &arguments.fit_trust, &arguments.fit_stances}) {
-    if (!path->empty()) vesalius::check_writable(*path);
-  }
 }
 
 void run(const Arguments& arguments, const std::string& command) {
   const ThreadLimit limit(arguments.threads);
-  check_writable(arguments);
   const std::vector<Request> requests = set_requests(arguments);
   (void)rendered_truth(arguments);  // before anything is read
   const std::string bytes = read_file(arguments.model);
   Model model = parse_model(bytes, arguments.model);
   model.body = arguments.joints_file.empty() ? with_evaluation_joints(model.body)
                                              : with_joints_of(model.body, arguments.joints_file);
-  // Candidates are the same with any judge, and one of an earlier version would not be understood.
-  const bool fits_context = !arguments.fit_context.empty();
-  if (!arguments.fit_judge.empty() || fits_context) model.judge = {};
-  if (fits_context) model.context = {};
-  const bool labels_only = arguments.labels_only || fits_context;
   Evaluation evaluation;
   evaluation.options = people_options(arguments.options_file, arguments.detector_flags);
-  evaluation.labels_only = labels_only;
+  evaluation.labels_only = arguments.labels_only;
   evaluation.command = command;
   evaluation.model = arguments.model;
   evaluation.model_checksum = model_checksum(bytes);
   evaluation.version = VESALIUS_VERSION;
   evaluation.machine = machine_facts();
-  const FrameScorer::Options scored{evaluation.options.detect, labels_only, arguments.joint_set, fits_context};
+  const FrameScorer::Options scored{evaluation.options.detect, arguments.labels_only, arguments.joint_set};
   model = arguments.device.make(std::move(model));
   const FrameScorer scorer(model, scored);
   SequenceTrackerFactory trackers;
@@ -345,65 +264,27 @@ void add_evaluate(CLI::App& program) {
   command->add_option("--step", arguments->step, "Only the first of every N frames")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxStep));
-  CLI::Option* labels_only = command->add_flag("--labels-only", arguments->labels_only,
-                                               "Only the pixel labels of the first pass: much faster");
+  command->add_flag("--labels-only", arguments->labels_only, "Only the pixel labels of the first pass: much faster");
   command
       ->add_option("--joints", arguments->joints_file,
                    "TOML with joint sets named as the truth names its joints, instead of those built in")
       ->type_name("FILE");
   command
-      ->add_option(
-          "--joint-set", arguments->joint_set,
-          "Joint set to compare the truth's joints with and to fit, e.g. kinect20; by default the truth's choice")
+      ->add_option("--joint-set", arguments->joint_set,
+                   "Joint set to compare the truth's joints with, e.g. kinect20; by default the truth's choice")
       ->type_name("NAME");
   command
       ->add_option("--headings", arguments->headings_file,
                    "Table of the side that people turn to the camera: columns set (the last folder of the source), "
                    "frame, heading (front, side, back)")
       ->type_name("FILE");
-  command
-      ->add_option(
-          "--fit-joints", arguments->fit_joints,
-          "Write the joint sets of the model's body fitted to the people found in these frames, whose joints are then "
-          "not measured")
-      ->type_name("FILE")
-      ->excludes(labels_only);
-  command
-      ->add_option("--fit-parts", arguments->fit_parts,
-                   "Write how the parts of the people found lie to each other, from which a body model predicts hidden "
-                   "parts; rendered people only, whose joints are then not measured")
-      ->type_name("FILE")
-      ->excludes(labels_only);
-  command
-      ->add_option(
-          "--fit-judge", arguments->fit_judge,
-          "Write the model with a judge fitted to these frames, which tells people from what is taken for them")
-      ->type_name("FOREST")
-      ->excludes(labels_only);
-  command
-      ->add_option(
-          "--fit-context", arguments->fit_context,
-          "Write the model with a context fitted to these labelled frames, which corrects by what is around each "
-          "pixel whether it is a body; measures nothing, and leaves out the judge, which is fitted afterwards")
-      ->type_name("FOREST")
-      ->excludes("--fit-joints", "--fit-parts", "--fit-judge");
   CLI::Option* track =
       command
           ->add_flag(
               "--track", arguments->track,
               "Follow the people over each recording, frame after frame, and measure ids and motion too; a folder "
               "of recordings is one set")
-          ->excludes("--labels-only", "--fit-joints", "--fit-parts", "--fit-judge", "--fit-context");
-  command
-      ->add_option("--fit-trust", arguments->fit_trust,
-                   "With --track: write how far the joints of fitted bodies can be trusted, fitted to these recordings")
-      ->type_name("FILE")
-      ->needs(track);
-  command
-      ->add_option("--fit-stances", arguments->fit_stances,
-                   "With --track: write how probable stances are by one frame, fitted to these recordings")
-      ->type_name("FILE")
-      ->needs(track);
+          ->excludes("--labels-only");
   command
       ->add_flag(
           "--hidden", arguments->hidden,
@@ -422,8 +303,7 @@ Examples:
   vesalius evaluate held_out/ -m adult.forest --report out/
   vesalius evaluate --recipe data/protocol/cluttered.toml --count 5000 -m adult.forest
   vesalius evaluate real/room real/hall -m adult.forest --json a.json
-  vesalius evaluate recordings/ -m adult.forest --track
-  vesalius evaluate rendered/ empty_rooms/ -m adult.forest --fit-judge judged.forest)");
+  vesalius evaluate recordings/ -m adult.forest --track)");
   command->callback([arguments, command] { run(*arguments, command_line(*command)); });
 }
 

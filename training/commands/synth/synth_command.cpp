@@ -12,23 +12,18 @@
 #include "commands/synth/render_cluster.h"
 #include "commands/synth/synth_assets.h"
 #include "commands/synth/synth_recipe.h"
+#include "commands/synth/write_dataset.h"
 #include "commands/training_commands.h"
 #include "console/interrupts.h"
 #include "console/option_flags.h"
 #include "console/progress.h"
 #include "console/text_sink.h"
-#include "dataset/labelled_dataset.h"
 #include "dataset/labelled_export.h"
-#include "dataset/labelled_frame_codec.h"
-#include "io/files/atomic_file.h"
 #include "io/files/image_file.h"
 #include "io/files/read_file.h"
-#include "synth/fit_flesh.h"
-#include "synth/generate.h"
 #include "synth/skeleton_joints.h"
 #include "train/parallel_in_order.h"
 #include "vesalius/base/parallel.h"
-#include "vesalius/fit/flesh_model.h"
 
 namespace vesalius::cli {
 namespace {
@@ -40,7 +35,7 @@ constexpr int kPreviewColumns = 3;
 struct Arguments {
   explicit Arguments(CLI::App& command) : recipe_flags(command) {}
 
-  std::string recipe, sensor, camera, body, assets, motions, out, fit_flesh, format = "shards";
+  std::string recipe, sensor, camera, body, assets, motions, out, format = "shards";
   OptionFlags<synth::Recipe> recipe_flags;
   ClipRequest clip;
   ClusterFlags cluster;
@@ -53,49 +48,7 @@ BodyModel body_of(const Arguments& arguments) {
   return arguments.body.empty() ? paper_body() : parse_body_model(read_file(arguments.body), arguments.body);
 }
 
-/// Makes the frames of a range in order. `prepare` runs on all threads, `take` in the calling one.
-template <class Prepare, class Take>
-void make_frames(const FrameMaker& maker, std::uint64_t first, int count, Progress& progress, const Prepare& prepare,
-                 const Take& take) {
-  parallel_in_order(
-      count,
-      [&](int i) {
-        const std::uint64_t index = first + i;
-        return prepare(index, maker.frame(index));
-      },
-      [&](int i, auto item) {
-        if (interrupted()) return false;
-        take(first + i, std::move(item));
-        progress.step();
-        return true;
-      });
-  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
-}
-
 LabelledFrame as_it_is(std::uint64_t /*index*/, LabelledFrame frame) { return frame; }
-
-void write_shards(const Arguments& arguments, const FrameMaker& maker, const DatasetInfo& info, int part_count) {
-  DatasetWriter writer(arguments.out, info);
-  std::uint64_t missing = 0;
-  for (const FrameRange& range : writer.missing()) missing += range.count;
-  if (missing < info.frames && !arguments.quiet) {
-    say(fmt::format("{}: {} of {} frames are there", arguments.out, info.frames - missing, info.frames));
-  }
-  Progress progress(int(missing), !arguments.quiet);
-  const auto encode = [&](std::uint64_t index, LabelledFrame frame) {
-    return encode_frame({index, info.seed, std::move(frame)}, part_count);
-  };
-  const std::vector<FrameRange> ranges = writer.missing();
-  for (const FrameRange& range : ranges) {
-    make_frames(maker, range.first, int(range.count), progress, encode,
-                [&](std::uint64_t index, std::string bytes) { writer.write_encoded(index, std::move(bytes)); });
-  }
-  progress.clear();
-  if (!arguments.quiet) {
-    say(fmt::format("{}: {} frames, {:.1f} frames/s", arguments.out, info.frames,
-                    progress.done() / progress.seconds()));
-  }
-}
 
 void write_folder(const Arguments& arguments, const FrameMaker& maker, const BodyModel& body) {
   LabelledExporter exporter(arguments.out, body, synth::joint_names(), maker.clips);
@@ -133,18 +86,8 @@ void write_preview(const Arguments& arguments, const FrameMaker& maker, const Bo
   if (!arguments.quiet) say(fmt::format("{}: {} frames", path, frames.size()));
 }
 
-/// Writes the bodies and poses of the recipe as a flesh model.
-void write_flesh(const Arguments& arguments, const synth::Recipe& recipe, const synth::Generator& generator) {
-  synth::FleshFitOptions options;
-  options.bodies = std::min(options.bodies, recipe.body.count);
-  options.seed = arguments.seed;
-  write_file_atomically(arguments.fit_flesh, synth::fitted_flesh_toml(generator, options));
-}
-
 void check(const Arguments& arguments) {
-  if ((arguments.count > 0) + (arguments.preview > 0) + !arguments.fit_flesh.empty() != 1) {
-    throw UsageError("expected one of --count, --preview and --fit-flesh");
-  }
+  if ((arguments.count > 0) == (arguments.preview > 0)) throw UsageError("expected one of --count and --preview");
   if (arguments.count > 0 && arguments.out.empty()) throw UsageError("--count expects --out, the folder to write");
   if (arguments.first > 0 && arguments.count > 0 && arguments.format == "shards") {
     throw UsageError("a dataset begins with frame 0: --first expects --preview or --format folder");
@@ -155,7 +98,6 @@ void check(const Arguments& arguments) {
   if (arguments.clip.rate_hz && !arguments.clip.clip_s)
     throw UsageError("--rate expects --clip, the seconds of each clip");
   if (!arguments.clip.clip_s) return;
-  if (!arguments.fit_flesh.empty()) throw UsageError("--clip expects --count or --preview");
   const auto clips = static_cast<std::int64_t>(arguments.first) + std::max(1, arguments.count);
   if (clips * timing_of(arguments.clip).frames() > kMaxFrames) {
     throw UsageError(fmt::format("{} clips of {} frames, expected at most {} frames in all", clips,
@@ -165,12 +107,12 @@ void check(const Arguments& arguments) {
 
 void run(const Arguments& arguments) {
   check(arguments);
-  if (!arguments.fit_flesh.empty()) check_writable(arguments.fit_flesh);
   const ThreadLimit limit(arguments.threads);
-  const synth::Recipe recipe = make_recipe({.file = arguments.recipe,
-                                            .sensor = arguments.sensor,
-                                            .camera = arguments.camera,
-                                            .flags = &arguments.recipe_flags});
+  const synth::Recipe recipe =
+      make_recipe({.file = arguments.recipe,
+                   .sensor = arguments.sensor,
+                   .camera = arguments.camera,
+                   .change = [&](synth::Recipe& asked) { arguments.recipe_flags.apply(asked); }});
   const BodyModel body = body_of(arguments);
   const LoadedAssets loaded = load_assets(
       recipe,
@@ -180,24 +122,16 @@ void run(const Arguments& arguments) {
   }
   const FrameMaker maker = make_frame_maker(recipe, loaded.assets, body, arguments.seed, arguments.clip);
   watch_interrupts();
-  if (!arguments.fit_flesh.empty()) {
-    return write_flesh(arguments, recipe, synth::Generator(recipe, loaded.assets, body, arguments.seed));
-  }
   if (arguments.preview > 0) return write_preview(arguments, maker, body);
   if (arguments.format == "folder") return write_folder(arguments, maker, body);
-  DatasetInfo info;
-  info.body_toml = body.toml;
-  info.recipe = full_recipe(recipe, loaded);
-  info.seed = arguments.seed;
-  info.frames = maker.frames_in(arguments.count);
+  DatasetInfo info = rendered_info(recipe, loaded, body, arguments.seed, maker.frames_in(arguments.count));
   info.clips = maker.clips;
-  info.joints = synth::joint_names();
   info.frames_per_shard = arguments.shard;
   if (!arguments.cluster.on.empty()) {
     const RenderRequest request{recipe, body, {arguments.assets, arguments.motions, false}, arguments.clip};
     return render_on_cluster(request, info, arguments.out, arguments.cluster, !arguments.quiet);
   }
-  write_shards(arguments, maker, info, body.part_count());
+  write_dataset(arguments.out, maker, info, !arguments.quiet);
 }
 
 void add_output_flags(CLI::App& command, Arguments& arguments) {
@@ -217,11 +151,6 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
                   "Folder for the frames, created if missing; an interrupted run continues. With --preview the "
                   "picture (default: preview.png)")
       ->type_name("PATH")
-      ->group(group);
-  command
-      .add_option("--fit-flesh", arguments.fit_flesh,
-                  "Instead of frames, the bodies and poses of the recipe as the model that people are fitted with")
-      ->type_name("FILE")
       ->group(group);
   command.add_option("--format", arguments.format, "shards: compact, for training; folder: PNG and JSON")
       ->check(CLI::IsMember({"shards", "folder"}))

@@ -31,8 +31,8 @@ void apply_file(const RecipeRequest& request, synth::Recipe& recipe) {
   if (!request.file.empty()) read_options(request.file, all_options(recipe));
 }
 
-void apply_flags(const RecipeRequest& request, synth::Recipe& recipe) {
-  if (request.flags != nullptr) request.flags->apply(recipe);
+void apply_change(const RecipeRequest& request, synth::Recipe& recipe) {
+  if (request.change) request.change(recipe);
 }
 
 }  // namespace
@@ -40,13 +40,13 @@ void apply_flags(const RecipeRequest& request, synth::Recipe& recipe) {
 synth::Recipe make_recipe(const RecipeRequest& request) {
   synth::Recipe asked;
   apply_file(request, asked);
-  apply_flags(request, asked);
+  apply_change(request, asked);
   synth::Recipe recipe;
   recipe.camera = synth::camera_placement(asked.mounting);
   apply_file(request, recipe);
   if (!request.sensor.empty()) recipe.sensor.preset = request.sensor;
   if (!request.camera.empty()) set_camera(recipe.sensor, request.camera);
-  apply_flags(request, recipe);
+  apply_change(request, recipe);
   check(recipe);
   return recipe;
 }

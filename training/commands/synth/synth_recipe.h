@@ -1,20 +1,20 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "commands/synth/synth_assets.h"
-#include "console/option_flags.h"
 #include "synth/recipe.h"
 
 namespace vesalius::cli {
 
 /// The sources of a recipe. Later ones override earlier ones: the defaults, the defaults of the mounting, the file,
-/// `sensor`, `camera`, the flags.
+/// `sensor`, `camera`, `change`.
 struct RecipeRequest {
-  std::string file{};                                 ///< path of a TOML file; empty for none
-  std::string sensor{};                               ///< name of a preset; empty for that of the file
-  std::string camera{};                               ///< path of a file with intrinsics; empty for those of the preset
-  const OptionFlags<synth::Recipe>* flags = nullptr;  ///< may be null
+  std::string file{};                            ///< path of a TOML file; empty for none
+  std::string sensor{};                          ///< name of a preset; empty for that of the file
+  std::string camera{};                          ///< path of a file with intrinsics; empty for those of the preset
+  std::function<void(synth::Recipe&)> change{};  ///< overrides options of the file; may be empty
 };
 
 /// Composes a recipe. Throws Error naming a file that cannot be used, and UsageError for options out of range.

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "commands/train/make_model.h"
+#include "commands/train/model_recipe.h"
 #include "commands/train/task_commands.h"
 #include "commands/train/train_cluster.h"
 #include "commands/train/train_inputs.h"
@@ -30,7 +32,7 @@ struct Arguments {
   TrainSources sources;
   std::string out, options_file, report, trees_of, device = "cpu";
   OptionFlags<TrainOptions> train_flags;
-  double memory_gib = 0.0;
+  double memory_gib = 0.0, scale = 1.0;
   int threads = 0;
   TrainClusterFlags cluster;
   bool estimate = false, restart = false, curves = false, quiet = false;
@@ -75,35 +77,57 @@ std::uint64_t memory_limit(const Arguments& arguments) {
   return arguments.memory_gib > 0.0 ? static_cast<std::uint64_t>(arguments.memory_gib * kGiB) : default_memory();
 }
 
+TrainRun run_of(const Arguments& arguments) {
+  return {.out = arguments.out,
+          .trees_of = arguments.trees_of,
+          .report = arguments.report,
+          .curves = arguments.curves,
+          .restart = arguments.restart,
+          .shown = !arguments.quiet,
+          .device = arguments.device,
+          .max_bytes = memory_limit(arguments)};
+}
+
+/// Returns whether the recipe is one of a whole model. Recipes of synth come with a number of frames.
+bool makes_model(const Arguments& arguments) {
+  return arguments.sources.recipes.size() == 1 && arguments.sources.count == 0;
+}
+
+void make_model(const Arguments& arguments) {
+  if (!arguments.sources.data.empty() || !arguments.options_file.empty() || !arguments.sources.body.empty()) {
+    throw UsageError("the recipe of a model says what --data, --options and --body say otherwise");
+  }
+  ModelRecipe recipe = read_model_recipe(arguments.sources.recipes.front());
+  arguments.train_flags.apply(recipe.forest);
+  check(arguments, recipe.forest);
+  recipe.backgrounds.insert(recipe.backgrounds.end(), arguments.sources.backgrounds.begin(),
+                            arguments.sources.backgrounds.end());
+  scale(recipe, arguments.scale);
+  ModelMaker maker({run_of(arguments), arguments.sources.assets, arguments.sources.camera, arguments.cluster},
+                   std::move(recipe));
+  if (arguments.estimate) return print(maker.estimate());
+  watch_interrupts();
+  maker.make();
+}
+
 void run(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
+  if (makes_model(arguments)) return make_model(arguments);
+  if (arguments.scale != 1.0) throw UsageError("--scale expects --recipe, the recipe of a model");
   const TrainOptions options = make_options(arguments);
   check(arguments, options);
   if (!arguments.cluster.engine.on.empty()) {
     watch_interrupts();
-    return train_on_cluster({.out = arguments.out,
-                             .trees_of = arguments.trees_of,
-                             .report = "",
-                             .restart = arguments.restart,
-                             .shown = !arguments.quiet},
-                            options, arguments.sources, arguments.cluster);
+    return train_on_cluster(run_of(arguments), options, arguments.sources, arguments.cluster);
   }
   const TrainInputs inputs(arguments.sources);
   if (!arguments.quiet) {
     for (const std::string& note : inputs.notes()) say("note: " + note);
   }
   const auto plan = [&] { return plan_training(inputs, options, arguments.curves, memory_limit(arguments)); };
-  if (arguments.estimate) return print(plan().text);
+  if (arguments.estimate) return print(plan().text());
   watch_interrupts();
-  train({.out = arguments.out,
-         .trees_of = arguments.trees_of,
-         .report = arguments.report,
-         .curves = arguments.curves,
-         .restart = arguments.restart,
-         .shown = !arguments.quiet,
-         .device = arguments.device,
-         .max_bytes = memory_limit(arguments)},
-        options, inputs, plan);
+  train(run_of(arguments), options, inputs, plan);
 }
 
 void add_source_flags(CLI::App& command, TrainSources& sources) {
@@ -112,8 +136,11 @@ void add_source_flags(CLI::App& command, TrainSources& sources) {
     return command.add_option(name, value, help)->type_name(type)->group(group);
   };
   add("--data", sources.data, "Folders that `vesalius synth` wrote", "DIR");
-  add("--recipe", sources.recipes, "TOML files of synth: frames are rendered and not kept", "FILE");
-  add("--count", sources.count, "Frames to render of each recipe; most frames to take of each dataset", "N")
+  add("--recipe", sources.recipes,
+      "Recipe of a whole model: frames, forest, context and judge (docs/retrain.md). With --count, recipes of synth, "
+      "whose frames are rendered and not kept",
+      "FILE");
+  add("--count", sources.count, "Frames to render of each recipe of synth; most frames to take of each dataset", "N")
       ->check(CLI::Range(1, kMaxFrames));
   add("--recipe-seed", sources.render_seed, "Seed of the rendered frames, as in `vesalius synth --seed`", "N")
       ->capture_default_str();
@@ -128,12 +155,17 @@ void add_source_flags(CLI::App& command, TrainSources& sources) {
 
 void add_run_flags(CLI::App& command, Arguments& arguments) {
   const std::string group = "Run";
+  command
+      .add_option("--scale", arguments.scale, "A trial of a model's recipe: so large a share of the frames of each set")
+      ->type_name("SHARE")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->group(group);
   command.add_flag("--estimate", arguments.estimate, "Only estimate time and memory")->group(group);
   command.add_option("--memory", arguments.memory_gib, "GiB it may take (default: 80 % of what the machine has)")
       ->type_name("GIB")
       ->check(CLI::Range(0.01, 1e6))
       ->group(group);
-  command.add_flag("--restart", arguments.restart, "Discard the trees of an interrupted run")->group(group);
+  command.add_flag("--restart", arguments.restart, "Discard what an interrupted run has done")->group(group);
   command.add_option("--report", arguments.report, "Folder for a report, a web page")->type_name("DIR")->group(group);
   command.add_flag("--curves", arguments.curves, "With --report: accuracy against frames and candidates as well")
       ->group(group);
@@ -154,11 +186,11 @@ void add_run_flags(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void add_train(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("train", "Train a forest from labelled frames");
+  CLI::App* command = program.add_subcommand("train", "Make a model: frames, forest, context, judge");
   const auto arguments = std::make_shared<Arguments>(*command);
   add_source_flags(*command, arguments->sources);
   const std::string group = "Forest";
-  command->add_option("--out", arguments->out, "Model to write; OUT.work keeps trees until all are grown")
+  command->add_option("--out", arguments->out, "Model to write; OUT.work keeps what is done until then")
       ->type_name("FILE")
       ->group(group);
   command->add_option("--options", arguments->options_file, "TOML file of options; `vesalius options train` prints one")
@@ -187,10 +219,15 @@ void add_train(CLI::App& program) {
       ->group(machines);
   add_train_tasks(*command);
   command->footer(R"(
+A model's recipe is made step by step; OUT.work keeps the frames and what else is done, also afterwards, so that a
+changed recipe makes again only what depends on the change. It may be removed.
+
 The options that decide how a forest is trained are flags too, e.g. --min-samples 20; `vesalius options train` lists
 them. An interrupted run continues when the same command is given again, and ends with the same model.
 
 Examples:
+  vesalius train --recipe data/models/quick.toml --out quick.forest
+  vesalius train --recipe data/models/default.toml --scale 0.001 --out trial.forest
   vesalius train --data train/ --out my.forest --report report/
   vesalius train --data kinect/ d435/ --background office/ --trees 4 --estimate
   vesalius train --recipe ceiling.toml --count 20000 --out ceiling.forest)");

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "commands/synth/synth_recipe.h"
+#include "commands/synth/write_dataset.h"
 #include "console/interrupts.h"
 #include "dataset/labelled_dataset.h"
 #include "dataset/labelled_folder.h"
@@ -53,7 +54,46 @@ void add_to_sum(Sha256& sum, const Frame& frame) {
   sum.update(bytes.bytes());
 }
 
+/// Takes the frames of a DatasetReader or a LabelledFolder.
+template <class Reader>
+TrainInput labelled_input(std::shared_ptr<const Reader> reader, int count, TrainInput input, BodyModel& body,
+                          std::string& body_from) {
+  if (reader->size() == 0) throw Error(input.name + ": no frames in it, expected some to train from");
+  if (body_from.empty()) {
+    body = reader->body();
+    body_from = input.name;
+  }
+  expect_same_parts(reader->body(), input.name, body, body_from);
+  const auto most = static_cast<std::uint64_t>(count > 0 ? count : kMostFrames);
+  const Camera camera = reader->read(0, false).frame.camera;
+  input.frames = int(std::min(reader->size(), most));
+  input.width = camera.width;
+  input.height = camera.height;
+  input.frame = [reader](int i) { return reader->read(i, false); };
+  return input;
+}
+
 }  // namespace
+
+TrainInput open_labelled(const std::string& folder, int count, BodyModel& body, std::string& body_from) {
+  if (is_labelled_folder(folder)) {
+    const auto reader = std::make_shared<const LabelledFolder>(folder);
+    return labelled_input(reader, count, {.name = folder, .made_by = "", .hash = reader->content_hash(), .frame = {}},
+                          body, body_from);
+  }
+  const auto reader = std::make_shared<const DatasetReader>(folder);
+  const DatasetInfo& info = reader->info();
+  return labelled_input(
+      reader, count,
+      {.name = folder, .made_by = info.recipe, .seed = info.seed, .hash = dataset_hash(info), .frame = {}}, body,
+      body_from);
+}
+
+TrainInputs::TrainInputs(BodyModel body, std::vector<TrainInput> inputs, const std::vector<std::string>& backgrounds,
+                         const SourceOptions& camera)
+    : background_camera_(camera), body_(std::move(body)), inputs_(std::move(inputs)) {
+  for (const std::string& source : backgrounds) open_background(source);
+}
 
 TrainInputs::TrainInputs(const TrainSources& sources) : background_camera_(sources.camera) {
   if (sources.data.empty() && sources.recipes.empty()) throw UsageError("expected --data or --recipe to train from");
@@ -62,7 +102,9 @@ TrainInputs::TrainInputs(const TrainSources& sources) : background_camera_(sourc
     body_ = parse_body_model(read_file(sources.body), sources.body);
     body_from_ = sources.body;
   }
-  for (const std::string& folder : sources.data) open_dataset(folder, sources.count);
+  for (const std::string& folder : sources.data) {
+    inputs_.push_back(open_labelled(folder, sources.count, body_, body_from_));
+  }
   if (body_from_.empty()) {
     body_ = paper_body();
     body_from_ = "the paper's body";
@@ -72,46 +114,14 @@ TrainInputs::TrainInputs(const TrainSources& sources) : background_camera_(sourc
   for (const std::string& source : sources.backgrounds) open_background(source);
 }
 
-/// Adds the frames of a DatasetReader or a LabelledFolder.
-template <class Reader>
-void TrainInputs::open_labelled(std::shared_ptr<const Reader> reader, int count, TrainInput input) {
-  if (reader->size() == 0) throw Error(input.name + ": no frames in it, expected some to train from");
-  if (body_from_.empty()) {
-    body_ = reader->body();
-    body_from_ = input.name;
-  }
-  expect_same_parts(reader->body(), input.name, body_, body_from_);
-  const auto most = static_cast<std::uint64_t>(count > 0 ? count : kMostFrames);
-  const Camera camera = reader->read(0, false).frame.camera;
-  input.frames = int(std::min(reader->size(), most));
-  input.width = camera.width;
-  input.height = camera.height;
-  input.frame = [reader](int i) { return reader->read(i, false); };
-  inputs_.push_back(std::move(input));
-}
-
-void TrainInputs::open_dataset(const std::string& folder, int count) {
-  if (is_labelled_folder(folder)) {
-    const auto reader = std::make_shared<const LabelledFolder>(folder);
-    open_labelled(reader, count, {.name = folder, .made_by = "", .hash = reader->content_hash(), .frame = {}});
-    return;
-  }
-  const auto reader = std::make_shared<const DatasetReader>(folder);
-  const DatasetInfo& info = reader->info();
-  open_labelled(reader, count,
-                {.name = folder, .made_by = info.recipe, .seed = info.seed, .hash = dataset_hash(info), .frame = {}});
-}
-
 void TrainInputs::open_recipe(const std::string& file, const TrainSources& sources) {
   const synth::Recipe recipe = make_recipe({.file = file});
   LoadedAssets loaded = load_assets(recipe, sources.assets);
   for (const std::string& note : loaded.notes) {
     if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(note);
   }
-  DatasetInfo info;
-  info.body_toml = body_.toml;
-  info.recipe = full_recipe(recipe, loaded);
-  info.seed = sources.render_seed;
+  const DatasetInfo info =
+      rendered_info(recipe, loaded, body_, sources.render_seed, static_cast<std::uint64_t>(sources.count));
   const Camera camera = sensor_of(recipe.sensor).camera;
   const auto generator =
       std::make_shared<const synth::Generator>(recipe, std::move(loaded.assets), body_, sources.render_seed);

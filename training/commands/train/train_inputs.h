@@ -36,6 +36,11 @@ struct TrainInput {
   std::function<LabelledFrame(int)> frame;  ///< returns a frame by its number; any thread may call it
 };
 
+/// Opens a dataset or a folder of labelled frames, at most `count` of them if that is not 0. Where `body` is said to be
+/// from nowhere, it becomes that of the frames. Throws Error for a folder that cannot be read, has no frames, or has
+/// another body.
+TrainInput open_labelled(const std::string& folder, int count, BodyModel& body, std::string& body_from);
+
 /// A source of frames without people.
 struct TrainBackground {
   std::string source;
@@ -52,6 +57,9 @@ struct BackgroundFacts {
 /// All sources of a training. They are open but not yet read.
 class TrainInputs {
  public:
+  /// Takes labelled frames that are open; `backgrounds` are opened. Throws Error as below.
+  TrainInputs(BodyModel body, std::vector<TrainInput> inputs, const std::vector<std::string>& backgrounds,
+              const SourceOptions& camera);
   /// Throws UsageError if neither data nor recipes are given or recipes lack a count. Throws Error for a source that
   /// cannot be opened, has no frame, or has another body than the others.
   explicit TrainInputs(const TrainSources& sources);
@@ -79,9 +87,6 @@ class TrainInputs {
   void read(const Selection& selection, const TakeFrame& take) const;
 
  private:
-  template <class Reader>
-  void open_labelled(std::shared_ptr<const Reader> reader, int count, TrainInput input);
-  void open_dataset(const std::string& folder, int count);
   void open_recipe(const std::string& file, const TrainSources& sources);
   void open_background(const std::string& source);
 

@@ -59,6 +59,7 @@ Load measure(const TrainInputs& inputs, const SampleOptions& options, TrainingSe
 
 /// Times of a tree and of a round of learning its leaves, for as many samples as a training has.
 struct Pilot {
+  Forest forest;
   double tree_s = 0.0, leaves_s = 0.0, evaluations = 0.0, leaves = 0.0;
 };
 
@@ -72,6 +73,7 @@ Pilot grow_pilot(TrainingSet& set, double samples, const TrainOptions& options) 
   Forest forest = set.untrained_forest();
   forest.trees = {grow_tree(set, options.grow, kPilotTree, &progress)};
   Pilot pilot{
+      .forest = forest,
       .tree_s = times * seconds_since(start),
       .evaluations = times * double(progress.evaluations),
       .leaves = std::min(times * double(forest.trees[0].leaves.size()), std::ldexp(1.0, options.grow.leaf.max_depth))};
@@ -94,12 +96,17 @@ double own_memory() {
   return double(usage.ru_maxrss) * 1024.0;
 }
 
+}  // namespace
+
 std::string duration(double seconds) {
   if (seconds < 120.0) return fmt::format("{:.0f} s", seconds);
   return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0) : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
-}  // namespace
+std::string TrainPlan::text() const {
+  return steps + fmt::format("time          {:.0f} s in all ({})\nmemory        at most {:.2f} GiB\n", seconds,
+                             duration(seconds), double(bytes) / kGiB);
+}
 
 std::uint64_t default_memory() {
   const auto pages = double(::sysconf(_SC_PHYS_PAGES));
@@ -142,7 +149,9 @@ TrainPlan plan_training(const TrainInputs& inputs, const TrainOptions& options, 
   const int trees = options.trees + hard_trees;
   const double leaves_s = pilot.leaves_s * options.leaves.rounds * options.trees;
   plan.seconds = load.reading_s + trees * pilot.tree_s + leaves_s;
-  plan.text =
+  plan.reading_s = load.reading_s;
+  plan.pilot = pilot.forest;
+  plan.steps =
       fmt::format("frames        {} in {}, {:.1f} a second\n", inputs.frames(), duration(load.reading_s),
                   double(inputs.frames()) / load.reading_s) +
       fmt::format("samples       {:.2f} million\n", samples * 1e-6) +
@@ -150,9 +159,7 @@ TrainPlan plan_training(const TrainInputs& inputs, const TrainOptions& options, 
                   trees * pilot.evaluations * 1e-9, pilot.evaluations / std::max(pilot.tree_s, 1e-9) * 1e-6,
                   thread_count()) +
       fmt::format("trees         {} in {}, {} at a time{}\n", trees, duration(trees * pilot.tree_s), plan.trees_at_once,
-                  leaves_s > 0.0 ? fmt::format("; their leaves in {}", duration(leaves_s)) : "") +
-      fmt::format("time          {:.0f} s in all ({})\n", plan.seconds, duration(plan.seconds)) +
-      fmt::format("memory        at most {:.2f} GiB\n", double(plan.bytes) / kGiB);
+                  leaves_s > 0.0 ? fmt::format("; their leaves in {}", duration(leaves_s)) : "");
   return plan;
 }
 

@@ -5,6 +5,7 @@
 
 #include "commands/train/train_inputs.h"
 #include "train/grow_forest.h"
+#include "vesalius/forest/forest.h"
 
 namespace vesalius::cli {
 
@@ -12,9 +13,17 @@ namespace vesalius::cli {
 struct TrainPlan {
   std::uint64_t bytes = 0;  ///< of the whole program
   double seconds = 0.0;
-  int trees_at_once = 1;  ///< trees whose memory the limit allows, at most one for each thread
-  std::string text;       ///< lines for the user: time and memory, step by step
+  int trees_at_once = 1;   ///< trees whose memory the limit allows, at most one for each thread
+  double reading_s = 0.0;  ///< of `seconds`: reading the frames
+  std::string steps;       ///< lines for the user, a step each
+  Forest pilot;            ///< of one tree, which was grown on the frames that were measured
+
+  /// Returns all lines for the user: steps, time, memory.
+  std::string text() const;
 };
+
+/// Returns seconds as text: "47 s", "89 min", "3.2 h".
+std::string duration(double seconds);
 
 /// Returns 80 % of the machine's memory, in bytes.
 std::uint64_t default_memory();

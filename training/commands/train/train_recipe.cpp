@@ -48,6 +48,18 @@ std::string sha256_of(const std::string& text) {
   return sum.finish();
 }
 
+/// Returns the text under two lines that name the program and a sum of the text.
+std::string with_key(const std::string& text) {
+  return fmt::format("# vesalius train {}\n# key {}\n{}", VESALIUS_VERSION, sha256_of(text), text);
+}
+
+constexpr const char* kFitted = "# then ";  ///< begins what was fitted besides the forest
+
+std::string source_text(const std::string& what, const TrainInput& input) {
+  return fmt::format("# {}: {} frames, seed {}, hash {:016x}, made by\n", what, input.frames, input.seed, input.hash) +
+         without_help(input.made_by, "#   ");
+}
+
 }  // namespace
 
 std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
@@ -59,16 +71,28 @@ std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
     text += fmt::format("# background {}: {} frames, sha256 {}\n", i + 1, backgrounds[i].frames, backgrounds[i].sha256);
   }
   for (std::size_t i = 0; i < inputs.inputs().size(); ++i) {
-    const TrainInput& input = inputs.inputs()[i];
-    text += fmt::format("# data {}: {} frames, seed {}, hash {:016x}, made by\n", i + 1, input.frames, input.seed,
-                        input.hash);
-    text += without_help(input.made_by, "#   ");
+    text += source_text(fmt::format("data {}", i + 1), inputs.inputs()[i]);
   }
   if (trees_of != nullptr) {
     text += fmt::format("# trees of a model of checksum {}, made by\n{}", model_checksum(serialise_model(*trees_of)),
                         commented(trees_of->recipe));
   }
-  return fmt::format("# vesalius train {}\n# key {}\n{}", VESALIUS_VERSION, sha256_of(text), text);
+  return with_key(text);
+}
+
+std::string with_fitted(const std::string& recipe, const std::vector<FittedLines>& fitted) {
+  std::string text;
+  for (const std::string& line : lines_of(recipe)) {
+    if (line.starts_with(kFitted)) break;
+    if (!line.starts_with("# vesalius train ") && !line.starts_with("# key ")) text += line + "\n";
+  }
+  for (const FittedLines& each : fitted) {
+    text += fmt::format("{}a {}, fitted to the first of every {} frames\n", kFitted, each.what, each.step);
+    for (std::size_t i = 0; i < each.inputs.size(); ++i) {
+      text += source_text(fmt::format("{} {}", each.what, i + 1), each.inputs[i]);
+    }
+  }
+  return with_key(text);
 }
 
 std::string first_difference(const std::string& before, const std::string& now) {

@@ -14,6 +14,15 @@ namespace vesalius::cli {
 std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
                          const std::vector<BackgroundFacts>& backgrounds, const Forest* trees_of = nullptr);
 
+/// Returns the text with lines that say what was fitted to which sources besides, in place of those that it has: one
+/// for each source of frames, behind the line `what`.
+struct FittedLines {
+  std::string what;  ///< "context of bodies", "judge of people"
+  int step = 1;
+  std::vector<TrainInput> inputs;
+};
+std::string with_fitted(const std::string& recipe, const std::vector<FittedLines>& fitted);
+
 /// Returns the first line in which two such texts differ, as "`candidates = 50` before, now `candidates = 60`"; empty
 /// if they are equal.
 std::string first_difference(const std::string& before, const std::string& now);

@@ -1,0 +1,99 @@
+#include "fit_body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "commands/evaluate/sequence_trackers.h"
+#include "commands/evaluate/truth_bvh.h"
+#include "commands/synth/synth_recipe.h"
+#include "dataset/truth_sequences.h"
+#include "evaluation/evaluate_sequences.h"
+#include "evaluation/evaluate_set.h"
+#include "evaluation/evaluation_joints.h"
+#include "fitted_toml.h"
+#include "io/model/model_file.h"
+#include "learn/fit_stances.h"
+#include "learn/fit_trust.h"
+#include "synth/fit_flesh.h"
+#include "vesalius/forest/make_labeller.h"
+
+namespace vesalius {
+namespace {
+
+std::shared_ptr<const PixelLabeller> labeller_of(const BodyFit& fit) {
+  Forest forest = load_model(fit.model);
+  forest.body = with_evaluation_joints(forest.body);
+  return make_labeller(std::move(forest));
+}
+
+FittedBodyFile fit_people(const BodyFit& fit) {
+  const FrameScorer scorer(labeller_of(fit), {.detect = {}, .joint_set = fit.joint_set});
+  std::vector<KnownPerson> people;
+  for (const std::string& source : fit.sources) {
+    const auto frames = cli::open_evaluation_truth(source, fit.step);
+    std::ranges::move(evaluate_set(*frames, {source, source, false, true}, scorer).known_people,
+                      std::back_inserter(people));
+  }
+  const std::string told = fmt::format("{} fitted to {} people\n", fit.what, people.size());
+  return {fit.what == "joints" ? joints_toml(people, scorer.body()) : parts_toml(people, scorer.body()), told};
+}
+
+FittedBodyFile fit_tracks(const BodyFit& fit) {
+  const auto labeller = labeller_of(fit);
+  const FrameScorer scorer(labeller, {});
+  const SequenceTrackerFactory trackers = cli::sequence_trackers(labeller, {});
+  std::vector<TrustSample> joints;
+  std::vector<StanceSample> postures;
+  for (const std::string& source : fit.sources) {
+    const auto open = [&]() -> std::unique_ptr<TruthSource> {
+      const auto one = [&](const std::string& folder) { return cli::open_evaluation_truth(folder, fit.step); };
+      const std::vector<std::string> folders = sequences_in(source);
+      return folders.size() == 1 ? one(folders.front()) : joined_truth(folders, one);
+    };
+    SetResult set = evaluate_sequences(open, {source, source}, scorer, trackers,
+                                       {fit.hidden, fit.what == "trust", fit.what == "stances"});
+    std::ranges::move(set.trust_samples, std::back_inserter(joints));
+    std::ranges::move(set.stance_samples, std::back_inserter(postures));
+  }
+  std::string told;
+  if (fit.what == "trust") {
+    const TrustFit fitted = fit_trust(joints, builtin_trust());
+    for (const NamedSource& source : kJointSources) {
+      const TrustAgreement& agreement = fitted.agreement[static_cast<std::size_t>(source.source)];
+      if (agreement.samples == 0) continue;
+      told += fmt::format(
+          "trust in {} joints: {} of {} right; confidence and share right differ by {:.1f} %, were {:.1f} %{}\n",
+          source.name, agreement.right, agreement.samples, 100.0 * agreement.after, 100.0 * agreement.before,
+          agreement.fitted ? "" : " (too few to fit, left as it was)");
+    }
+    return {trust_toml(fitted.trust), told};
+  }
+  const StanceFit fitted = fit_stances(postures, builtin_stances());
+  for (const StanceAgreement& agreement : fitted.agreement) {
+    const double share = 100.0 / double(agreement.samples);
+    told += fmt::format("stances fitted to {} frames of people {}: {:.1f} % right by one frame, were {:.1f} %\n",
+                        agreement.samples, to_string(agreement.stance), share * double(agreement.right_after),
+                        share * double(agreement.right_before));
+  }
+  return {stances_toml(fitted.model), told};
+}
+
+FittedBodyFile fit_flesh(const BodyFit& fit) {
+  const synth::Recipe recipe = cli::make_recipe({.file = fit.recipe});
+  cli::LoadedAssets loaded = cli::load_assets(recipe, fit.assets);
+  synth::FleshFitOptions options;
+  options.bodies = std::min(options.bodies, recipe.body.count);
+  const synth::Generator generator(recipe, std::move(loaded.assets), paper_body(), options.seed);
+  return {synth::fitted_flesh_toml(generator, options), ""};
+}
+
+}  // namespace
+
+FittedBodyFile fit_body(const BodyFit& fit) {
+  if (fit.what == "flesh") return fit_flesh(fit);
+  return fit.what == "joints" || fit.what == "parts" ? fit_people(fit) : fit_tracks(fit);
+}
+
+}  // namespace vesalius
