@@ -9,12 +9,12 @@ namespace vesalius {
 
 /// What is fitted, and to what.
 struct BodyFit {
-  std::string what;                  ///< joints, parts, trust, stances or flesh
-  std::vector<std::string> sources;  ///< frames with their truth; for trust and stances recordings
-  std::string model;                 ///< finds the people in them
-  std::string joint_set;             ///< joints: the only set to fit; empty: those of the truth
-  std::string recipe;                ///< flesh: whose bodies and poses are taken
-  cli::AssetPlaces assets;
+  std::string what;                    ///< joints, parts, trust, stances or flesh
+  std::vector<std::string> sources{};  ///< frames with their truth; for trust and stances recordings
+  std::string model{};                 ///< finds the people in them
+  std::string joint_set{};             ///< joints: the only set to fit; empty: those of the truth
+  std::string recipe{};                ///< flesh: whose bodies and poses are taken
+  cli::AssetPlaces assets{};
   int step = 1;         ///< the first of every so many frames
   bool hidden = false;  ///< trust and stances: also people whom nobody sees
 };

@@ -185,11 +185,11 @@ class ModelMaker::Work {
     const auto start = Clock::now();
     Forest forest = grow();
     if (!recipe_.context.frames.empty()) {
-      forest.context = fit_context(samples_of(context_, forest), forest.body);
+      forest.context = fitted(context_, forest, fit_context);
       forest.recipe = context_.recipe;
     }
     if (!recipe_.judge.frames.empty()) {
-      forest.judge = fit_judge(samples_of(judge_, forest), forest.body);
+      forest.judge = fitted(judge_, forest, fit_judge);
       forest.recipe = judge_.recipe;
     }
     save_model(forest, run_.train.out);
@@ -321,6 +321,19 @@ class ModelMaker::Work {
   std::string samples_key(const Step& step, const Source& source) const {
     return fmt::format("{} of {:016x}, {} frames by {}, by a model made by {}\n", step.name, source.input.hash,
                        source.input.frames, step.sets->step, sha256_of(step.before));
+  }
+
+  /// Returns what a step adds. A trial goes on without it where its few frames have samples of one kind alone.
+  BoostedTrees fitted(const Step& step, const Forest& forest,
+                      BoostedTrees (*fit)(const std::vector<BoostSample>&, const BodyModel&)) {
+    const std::vector<BoostSample> samples = samples_of(step, forest);
+    try {
+      return fit(samples, forest.body);
+    } catch (const Error& e) {
+      if (!run_.trial) throw;
+      tell(fmt::format("note: {}; this trial goes on without", e.what()));
+      return {};
+    }
   }
 
   std::vector<BoostSample> samples_of(const Step& step, const Forest& forest) {

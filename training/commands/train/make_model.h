@@ -20,6 +20,7 @@ class ModelMaker {
     AssetPlaces assets;
     SourceOptions camera;       ///< of backgrounds
     TrainClusterFlags cluster;  ///< grows the forest on an engine if it names one
+    bool trial = false;         ///< whether a step may be left out where frames are too few for it
   };
 
   /// Opens what the recipe names. Throws Error for what cannot be opened.

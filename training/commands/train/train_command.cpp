@@ -103,8 +103,9 @@ void make_model(const Arguments& arguments) {
   recipe.backgrounds.insert(recipe.backgrounds.end(), arguments.sources.backgrounds.begin(),
                             arguments.sources.backgrounds.end());
   scale(recipe, arguments.scale);
-  ModelMaker maker({run_of(arguments), arguments.sources.assets, arguments.sources.camera, arguments.cluster},
-                   std::move(recipe));
+  ModelMaker maker(
+      {run_of(arguments), arguments.sources.assets, arguments.sources.camera, arguments.cluster, arguments.scale < 1.0},
+      std::move(recipe));
   if (arguments.estimate) return print(maker.estimate());
   watch_interrupts();
   maker.make();
