@@ -94,14 +94,14 @@ TEST_F(ModelRecipe, MakesAModelWithContextAndJudge) {
         "time +about ", "disk +0.00 GiB", "judge: [1-9][0-9]* samples of people, [1-9]"}) {
     EXPECT_THAT(run.err, ContainsRegex(line));
   }
-  const Forest model = load_model(in("m.forest"));
-  EXPECT_EQ(model.trees.size(), 3U);
+  const Model model = load_model(in("m.forest"));
+  EXPECT_EQ(model.forest.trees.size(), 3U);
   EXPECT_EQ(model.context.trees.size(), 120U);
   EXPECT_EQ(model.judge.trees.size(), 1600U);
-  EXPECT_GT(model.logit_unit, 0.F) << "leaves learned together";
-  EXPECT_THAT(model.recipe, HasSubstr("# then a context of bodies, fitted to the first of every 2 frames\n"));
-  EXPECT_THAT(model.recipe, HasSubstr("# judge of people 2: 8 frames, seed 7, hash "));
-  EXPECT_THAT(model.recipe, Not(HasSubstr(testing::TempDir()))) << "folders are the user's own";
+  EXPECT_GT(model.forest.logit_unit, 0.F) << "leaves learned together";
+  EXPECT_THAT(model.context.made_from, HasSubstr("# context of bodies, fitted to the first of every 2 frames, "));
+  EXPECT_THAT(model.judge.made_from, HasSubstr("# data 2: 8 frames, seed 7, hash "));
+  EXPECT_THAT(model.judge.made_from, Not(HasSubstr(testing::TempDir()))) << "folders are the user's own";
   EXPECT_EQ(run_program("detect " + frames() + " -m " + in("m.forest")).exit_code, 0);
   EXPECT_THAT(make(recipe(), "m.forest").err, HasSubstr("made by this recipe already"));
 }
@@ -142,7 +142,7 @@ TEST_F(ModelRecipe, MakesAgainOnlyWhatDependsOnAChange) {
 
 TEST_F(ModelRecipe, FitsAJudgeToTheForestOfAModelAtHand) {
   const std::string all = made(recipe(), "all.forest");
-  Forest other = load_model(in("all.forest"));
+  Model other = load_model(in("all.forest"));
   other.judge = {3, 0.F, std::vector<BoostedTree>(1)};  // of another version
   save_model(other, in("other.forest"));
   std::string text =
@@ -159,7 +159,7 @@ TEST_F(ModelRecipe, TakesADatasetAtHandAndBackgrounds) {
                                 "trees = 3", "background = \"" + frames() + "\"\ntrees = 3");
   const Outcome run = make(recipe(text), "data.forest");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(load_model(in("data.forest")).recipe, HasSubstr("# background 1: 3 frames, sha256 "));
+  EXPECT_THAT(load_model(in("data.forest")).forest.recipe, HasSubstr("# background 1: 3 frames, sha256 "));
   EXPECT_FALSE(fs::exists(in("data.forest.work/frames/train")));
 }
 

@@ -17,19 +17,19 @@
 #include "learn/fit_stances.h"
 #include "learn/fit_trust.h"
 #include "synth/fit_flesh.h"
-#include "vesalius/forest/make_labeller.h"
+#include "vesalius/model.h"
 
 namespace vesalius {
 namespace {
 
-std::shared_ptr<const PixelLabeller> labeller_of(const BodyFit& fit) {
-  Forest forest = load_model(fit.model);
-  forest.body = with_evaluation_joints(forest.body);
-  return make_labeller(std::move(forest));
+Model model_of(const BodyFit& fit) {
+  Model model = load_model(fit.model);
+  model.body = with_evaluation_joints(model.body);
+  return on_device(std::move(model));
 }
 
 FittedBodyFile fit_people(const BodyFit& fit) {
-  const FrameScorer scorer(labeller_of(fit), {.detect = {}, .joint_set = fit.joint_set});
+  const FrameScorer scorer(model_of(fit), {.detect = {}, .joint_set = fit.joint_set});
   std::vector<KnownPerson> people;
   for (const std::string& source : fit.sources) {
     const auto frames = cli::open_evaluation_truth(source, fit.step);
@@ -41,9 +41,9 @@ FittedBodyFile fit_people(const BodyFit& fit) {
 }
 
 FittedBodyFile fit_tracks(const BodyFit& fit) {
-  const auto labeller = labeller_of(fit);
-  const FrameScorer scorer(labeller, {});
-  const SequenceTrackerFactory trackers = cli::sequence_trackers(labeller, {});
+  const Model model = model_of(fit);
+  const FrameScorer scorer(model, {});
+  const SequenceTrackerFactory trackers = cli::sequence_trackers(model, {});
   std::vector<TrustSample> joints;
   std::vector<StanceSample> postures;
   for (const std::string& source : fit.sources) {

@@ -30,7 +30,6 @@
 #include "io/model/model_file.h"
 #include "learn/fit_boosted.h"
 #include "vesalius/base/parallel.h"
-#include "vesalius/forest/make_labeller.h"
 
 namespace vesalius::cli {
 namespace {
@@ -151,10 +150,10 @@ class ModelMaker::Work {
   Work(Run run, ModelRecipe recipe)
       : run_(std::move(run)), recipe_(std::move(recipe)), folder_(run_.train.out + ".work"), assets_(run_.assets) {
     if (!recipe_.model.empty()) {
-      forest_ = load_model(recipe_.model);
-      forest_->context = {};
-      forest_->judge = {};
-      body_ = forest_->body;
+      at_hand_ = load_model(recipe_.model);
+      at_hand_->context = {};
+      at_hand_->judge = {};
+      body_ = at_hand_->body;
       body_from_ = recipe_.model;
     }
     if (!recipe_.body.empty()) {
@@ -183,19 +182,13 @@ class ModelMaker::Work {
     if (run_.train.restart) remove_work();
     tell(plan());
     const auto start = Clock::now();
-    Forest forest = grow();
-    if (!recipe_.context.frames.empty()) {
-      forest.context = fitted(context_, forest, fit_context);
-      forest.recipe = context_.recipe;
-    }
-    if (!recipe_.judge.frames.empty()) {
-      forest.judge = fitted(judge_, forest, fit_judge);
-      forest.recipe = judge_.recipe;
-    }
-    save_model(forest, run_.train.out);
+    Model model = grow();
+    if (!recipe_.context.frames.empty()) model.context = fitted(context_, model, fit_context);
+    if (!recipe_.judge.frames.empty()) model.judge = fitted(judge_, model, fit_judge);
+    save_model(model, run_.train.out);
     tell(fmt::format("{}: {} trees{}{}, {:.2f} MiB, made in {}; {} keeps frames and steps for a changed recipe",
-                     run_.train.out, forest.trees.size(), forest.context.empty() ? "" : ", a context",
-                     forest.judge.empty() ? "" : ", a judge", double(fs::file_size(run_.train.out)) / 1024.0 / 1024.0,
+                     run_.train.out, model.forest.trees.size(), model.context.empty() ? "" : ", a context",
+                     model.judge.empty() ? "" : ", a judge", double(fs::file_size(run_.train.out)) / 1024.0 / 1024.0,
                      duration(seconds_since(start)), folder_));
   }
 
@@ -205,8 +198,8 @@ class ModelMaker::Work {
     std::string name;
     const FitSets* sets = nullptr;
     std::string before;  ///< how the model was made that the samples are taken with
-    std::string recipe;  ///< how the model is made with what this step adds
-    SampleFrame (*sampler)(std::shared_ptr<const PixelLabeller>) = nullptr;
+    std::string recipe;  ///< how what this step adds is made; empty for a step that the recipe lacks
+    SampleFrame (*sampler)(const Model&) = nullptr;
   };
 
   void open_data(const FrameSet& set) {
@@ -237,42 +230,44 @@ class ModelMaker::Work {
     return inputs;
   }
 
-  /// Says how the model is made after each step. Equal texts mean equal models.
+  /// Says how each section of the model is made. Equal texts mean equal sections.
   void name_steps() {
-    if (!forest_) {
+    if (!at_hand_) {
       const TrainInputs inputs(body_, inputs_of(recipe_.forest_frames), recipe_.backgrounds, run_.camera);
       const auto facts = inputs.read_backgrounds([](const LabelledFrame&) {});
       std::optional<Forest> kept;
       if (!run_.train.trees_of.empty()) kept = kept_trees(run_.train, inputs);
       forest_recipe_ = train_recipe(recipe_.forest, inputs, facts, kept ? &*kept : nullptr);
     } else {
-      forest_recipe_ = with_fitted(forest_->recipe, {});
-      forest_->recipe = forest_recipe_;
+      forest_recipe_ = at_hand_->forest.recipe;
     }
-    std::vector<FittedLines> fitted;
     std::string made = forest_recipe_;
     const auto name = [&](const char* kind, const char* what, const FitSets& sets, auto sampler) {
       Step step{kind, &sets, made, {}, sampler};
-      if (!sets.frames.empty()) fitted.push_back({what, sets.step, inputs_of(sets.frames)});
-      step.recipe = made = fitted.empty() ? made : with_fitted(forest_recipe_, fitted);
+      if (!sets.frames.empty()) step.recipe = fitted_recipe(what, sets.step, inputs_of(sets.frames), made);
+      made += step.recipe;
       return step;
     };
     context_ = name("context", "context of bodies", recipe_.context, context_sampler);
     judge_ = name("judge", "judge of people", recipe_.judge, judge_sampler);
   }
 
-  static std::optional<Forest> model_made_by(const std::string& path, const std::string& recipe) {
+  /// Returns the model in a file if its forest was made as this one is to be.
+  std::optional<Model> model_with_this_forest(const std::string& path) const {
     if (!fs::exists(path)) return std::nullopt;
     try {
-      Forest forest = load_model(path);
-      if (forest.recipe == recipe) return forest;
+      Model model = load_model(path);
+      if (model.forest.recipe == forest_recipe_) return model;
     } catch (const Error&) {  // a damaged model is made again
     }
     return std::nullopt;
   }
-  bool is_made() const { return model_made_by(run_.train.out, judge_.recipe).has_value(); }
+  bool is_made() const {
+    const std::optional<Model> model = model_with_this_forest(run_.train.out);
+    return model && model->context.made_from == context_.recipe && model->judge.made_from == judge_.recipe;
+  }
   std::string grown_path() const { return folder_ + "/grown.forest"; }
-  std::optional<Forest> grown() const { return forest_ ? forest_ : model_made_by(grown_path(), forest_recipe_); }
+  std::optional<Model> grown() const { return at_hand_ ? at_hand_ : model_with_this_forest(grown_path()); }
 
   void remove_work() const {
     for (const char* name : {"frames", "samples", "grown.forest", "grown.forest.work"}) {
@@ -287,8 +282,8 @@ class ModelMaker::Work {
     write_dataset(source.folder, source.maker(), source.info, run_.train.shown);
   }
 
-  Forest grow() {
-    if (std::optional<Forest> forest = grown()) return std::move(*forest);
+  Model grow() {
+    if (std::optional<Model> model = grown()) return std::move(*model);
     TrainSources sources;
     sources.backgrounds = recipe_.backgrounds;
     sources.camera = run_.camera;
@@ -324,11 +319,13 @@ class ModelMaker::Work {
   }
 
   /// Returns what a step adds. A trial goes on without it where its few frames have samples of one kind alone.
-  BoostedTrees fitted(const Step& step, const Forest& forest,
+  BoostedTrees fitted(const Step& step, const Model& model,
                       BoostedTrees (*fit)(const std::vector<BoostSample>&, const BodyModel&)) {
-    const std::vector<BoostSample> samples = samples_of(step, forest);
+    const std::vector<BoostSample> samples = samples_of(step, model);
     try {
-      return fit(samples, forest.body);
+      BoostedTrees trees = fit(samples, model.body);
+      trees.made_from = step.recipe;
+      return trees;
     } catch (const Error& e) {
       if (!run_.trial) throw;
       tell(fmt::format("note: {}; this trial goes on without", e.what()));
@@ -336,8 +333,8 @@ class ModelMaker::Work {
     }
   }
 
-  std::vector<BoostSample> samples_of(const Step& step, const Forest& forest) {
-    const SampleFrame sample = step.sampler(make_labeller(forest));
+  std::vector<BoostSample> samples_of(const Step& step, const Model& model) {
+    const SampleFrame sample = step.sampler(model);
     std::vector<BoostSample> all;
     for (const std::string& name : step.sets->frames) {
       std::ranges::move(samples_of(step, sources_.at(name), sample), std::back_inserter(all));
@@ -371,9 +368,9 @@ class ModelMaker::Work {
   }
 
   std::string plan() {
-    std::optional<Forest> forest = grown();
+    std::optional<Model> model = grown();
     std::map<std::string, std::vector<std::string>> needed;  // sets by their steps
-    if (!forest) needed["forest"] = recipe_.forest_frames;
+    if (!model) needed["forest"] = recipe_.forest_frames;
     for (const Step* step : {&context_, &judge_}) needed[step->name] = pending(*step);
     std::map<std::string, Measured> measured;
     for (const auto& [step, names] : needed) {
@@ -392,19 +389,19 @@ class ModelMaker::Work {
                             source.input.frames, duration(set.seconds), set.bytes / kGiB);
       }
     }
-    if (!forest) {
+    if (!model) {
       const bool alone = run_.cluster.engine.on.empty();  // engines divide the frames among machines
       plan_ = plan_training(cycling(measured), recipe_.forest, run_.train.curves,
                             alone ? run_.train.max_bytes : std::numeric_limits<std::uint64_t>::max());
       seconds += plan_->seconds - plan_->reading_s;
       text += plan_->steps.substr(plan_->steps.find('\n') + 1);
-      forest = plan_->pilot;
-      if (!forest->trees.empty())
-        forest->trees.resize(static_cast<std::size_t>(recipe_.forest.trees), forest->trees[0]);
+      Forest pilot = plan_->pilot;
+      if (!pilot.trees.empty()) pilot.trees.resize(static_cast<std::size_t>(recipe_.forest.trees), pilot.trees[0]);
+      model = std::move(pilot);
     }
     for (const Step* step : {&context_, &judge_}) {
-      if (needed[step->name].empty() || forest->trees.empty()) continue;
-      const Sampling sampling = sampling_of(*step, needed[step->name], measured, *forest);
+      if (needed[step->name].empty() || model->forest.trees.empty()) continue;
+      const Sampling sampling = sampling_of(*step, needed[step->name], measured, *model);
       expect_memory(*step, sampling.bytes);
       const double step_s = sampling.seconds;
       seconds += step_s;
@@ -435,8 +432,8 @@ class ModelMaker::Work {
     double seconds = 0.0, bytes = 0.0;
   };
   Sampling sampling_of(const Step& step, const std::vector<std::string>& names,
-                       const std::map<std::string, Measured>& measured, const Forest& forest) const {
-    const SampleFrame sample = step.sampler(make_labeller(forest));
+                       const std::map<std::string, Measured>& measured, const Model& model) const {
+    const SampleFrame sample = step.sampler(model);
     Sampling sampling;
     for (const std::string& name : names) {
       const std::vector<LabelledFrame>& frames = measured.at(name).frames;
@@ -487,7 +484,7 @@ class ModelMaker::Work {
   AssetCache assets_;
   BodyModel body_;
   std::string body_from_;
-  std::optional<Forest> forest_;  ///< of a model at hand, without context and judge
+  std::optional<Model> at_hand_;  ///< a model at hand, without context and judge
   std::map<std::string, Source> sources_;
   std::set<std::string> rendered_;  ///< sets that this run has completed
   std::string forest_recipe_;

@@ -14,6 +14,7 @@
 #include "vesalius/base/error.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/detect.h"
+#include "vesalius/trace.h"
 
 namespace vesalius::cli {
 namespace {
@@ -44,12 +45,12 @@ std::vector<TrueFrame> next_frames(TruthSource& source, std::size_t most) {
 
 }  // namespace
 
-SampleFrame context_sampler(std::shared_ptr<const PixelLabeller> labeller) {
-  return [labeller = std::move(labeller)](const TrueFrame& frame) { return context_samples(frame, labeller, {}); };
+SampleFrame context_sampler(const Model& model) {
+  return [model = on_device(model)](const TrueFrame& frame) { return context_samples(frame, model, {}); };
 }
 
-SampleFrame judge_sampler(std::shared_ptr<const PixelLabeller> labeller) {
-  return [detector = Detector(std::move(labeller))](const TrueFrame& frame) {
+SampleFrame judge_sampler(const Model& model) {
+  return [detector = Detector(model)](const TrueFrame& frame) {
     Trace trace;
     detector.detect(frame.frame, &trace);
     return judge_samples(trace, frame.truth, frame.frame.depth);

@@ -1,24 +1,23 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "dataset/truth_source.h"
 #include "metrics/fit_samples.h"
-#include "vesalius/forest/label_pixels.h"
+#include "vesalius/model.h"
 
 namespace vesalius::cli {
 
 /// Returns the samples of a frame. Any thread may call it.
 using SampleFrame = std::function<std::vector<BoostSample>(const TrueFrame&)>;
 
-/// Samples for a context of bodies, by what the labeller says before there is one (context_samples).
-SampleFrame context_sampler(std::shared_ptr<const PixelLabeller> labeller);
+/// Samples for a context of bodies, by what the model says before there is one (context_samples).
+SampleFrame context_sampler(const Model& model);
 /// Samples for a judge: what the detector proposes with its default options (judge_samples).
-SampleFrame judge_sampler(std::shared_ptr<const PixelLabeller> labeller);
+SampleFrame judge_sampler(const Model& model);
 
 /// Returns the samples of all frames in their order, found on all allowed threads; `done` hears of each frame. Throws
 /// Error as the source does, and when the user interrupts.

@@ -53,8 +53,6 @@ std::string with_key(const std::string& text) {
   return fmt::format("# vesalius train {}\n# key {}\n{}", VESALIUS_VERSION, sha256_of(text), text);
 }
 
-constexpr const char* kFitted = "# then ";  ///< begins what was fitted besides the forest
-
 std::string source_text(const std::string& what, const TrainInput& input) {
   return fmt::format("# {}: {} frames, seed {}, hash {:016x}, made by\n", what, input.frames, input.seed, input.hash) +
          without_help(input.made_by, "#   ");
@@ -80,18 +78,11 @@ std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
   return with_key(text);
 }
 
-std::string with_fitted(const std::string& recipe, const std::vector<FittedLines>& fitted) {
-  std::string text;
-  for (const std::string& line : lines_of(recipe)) {
-    if (line.starts_with(kFitted)) break;
-    if (!line.starts_with("# vesalius train ") && !line.starts_with("# key ")) text += line + "\n";
-  }
-  for (const FittedLines& each : fitted) {
-    text += fmt::format("{}a {}, fitted to the first of every {} frames\n", kFitted, each.what, each.step);
-    for (std::size_t i = 0; i < each.inputs.size(); ++i) {
-      text += source_text(fmt::format("{} {}", each.what, i + 1), each.inputs[i]);
-    }
-  }
+std::string fitted_recipe(const std::string& what, int step, const std::vector<TrainInput>& inputs,
+                          const std::string& before) {
+  std::string text = fmt::format("# {}, fitted to the first of every {} frames, with a model made by {}\n", what, step,
+                                 sha256_of(before));
+  for (std::size_t i = 0; i < inputs.size(); ++i) text += source_text(fmt::format("data {}", i + 1), inputs[i]);
   return with_key(text);
 }
 

@@ -14,14 +14,10 @@ namespace vesalius::cli {
 std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
                          const std::vector<BackgroundFacts>& backgrounds, const Forest* trees_of = nullptr);
 
-/// Returns the text with lines that say what was fitted to which sources besides, in place of those that it has: one
-/// for each source of frames, behind the line `what`.
-struct FittedLines {
-  std::string what;  ///< "context of bodies", "judge of people"
-  int step = 1;
-  std::vector<TrainInput> inputs;
-};
-std::string with_fitted(const std::string& recipe, const std::vector<FittedLines>& fitted);
+/// Returns how what a model has besides its forest is made, likewise: `what` ("judge of people") fitted to the first of
+/// every `step` frames of the sources, with a model made by `before`.
+std::string fitted_recipe(const std::string& what, int step, const std::vector<TrainInput>& inputs,
+                          const std::string& before);
 
 /// Returns the first line in which two such texts differ, as "`candidates = 50` before, now `candidates = 60`"; empty
 /// if they are equal.
