@@ -106,7 +106,7 @@ TEST_F(Retrain, RunsTheTutorialsCommands) {
     ++trained;
   }
   EXPECT_EQ(trained, 3);
-  const Forest ceiling = load_model(path("ceiling.forest"));
+  const Model ceiling = load_model(path("ceiling.forest"));
   EXPECT_EQ(ceiling.body.name, "paper25");
   EXPECT_FALSE(ceiling.context.empty() || ceiling.judge.empty());
   EXPECT_EQ(load_model(path("upper.forest")).body.name, "upper_body");
