@@ -12,13 +12,13 @@ namespace {
 TEST(OptionFlags, OverwriteOnlyOptionsOfTheCommandLine) {
   CLI::App app;
   const OptionFlags<DetectOptions> flags(app);
-  app.parse("--search.min-parts 9 --no-search.any-root");
+  app.parse("--search.min-parts 9 --no-refine.second-pass");
   DetectOptions options;
   options.search.max_mean_error = 0.25F;  // as if read from a file
   options.search.min_parts = 5;
   flags.apply(options);
   EXPECT_EQ(options.search.min_parts, 9);
-  EXPECT_FALSE(options.search.any_root);
+  EXPECT_FALSE(options.refine.second_pass);
   EXPECT_EQ(options.search.max_mean_error, 0.25F);
   EXPECT_EQ(options.cluster.max_gap_m, DetectOptions{}.cluster.max_gap_m);
 }
@@ -26,11 +26,11 @@ TEST(OptionFlags, OverwriteOnlyOptionsOfTheCommandLine) {
 TEST(OptionFlags, SwitchesCanBeTurnedOnAgain) {
   CLI::App app;
   const OptionFlags<DetectOptions> flags(app);
-  app.parse("--search.any-root");
+  app.parse("--refine.second-pass");
   DetectOptions options;
-  options.search.any_root = false;
+  options.refine.second_pass = false;
   flags.apply(options);
-  EXPECT_TRUE(options.search.any_root);
+  EXPECT_TRUE(options.refine.second_pass);
 }
 
 TEST(OptionFlags, RefuseInvalidValues) {

@@ -47,7 +47,7 @@ TEST(Card, GivesTheProcessorsBitsForEveryKindOfForest) {
         for (const float gate : {0.5F, 2.F}) {
           Posteriors expected, found, mean;
           processor.label_into(depth_frame(depth, camera), gate, expected);
-          ASSERT_TRUE(card.label_and_smooth_into(depth, camera, gate, {}, found, mean));
+          ASSERT_TRUE(card.label_and_smooth_into(depth_frame(depth, camera), gate, {}, found, mean));
           expect_same(found, expected, depth);
           EXPECT_EQ(mean.sums, mean_filter(expected, depth, camera, {}).sums);
         }

@@ -42,7 +42,7 @@ long expect_same_labels(const Forest& forest, const DeviceLabeller& device, cons
   processor.label_into(depth_frame(depth, camera), gate, expected);
   device.label_into(depth_frame(depth, camera), gate, found);
   expect_same(found, expected, depth);
-  EXPECT_TRUE(device.label_and_smooth_into(depth, camera, gate, {}, found, mean));
+  EXPECT_TRUE(device.label_and_smooth_into(depth_frame(depth, camera), gate, {}, found, mean));
   expect_same(found, expected, depth);
   const Posteriors smooth = mean_filter(expected, depth, camera, {});
   EXPECT_EQ(mean.sums, smooth.sums);
@@ -133,7 +133,7 @@ TEST(DeviceLabeller, SmoothsWithEveryWindow) {
         SmoothOptions{.window = 7, .spacing = 3, .depth_gate_mm = 0},
         SmoothOptions{.window = 3, .depth_gate_mm = 10000}}) {
     Posteriors found, mean;
-    device.label_and_smooth_into(depth, camera, kGate, options, found, mean);
+    device.label_and_smooth_into(depth_frame(depth, camera), kGate, options, found, mean);
     EXPECT_EQ(mean.sums, mean_filter(found, depth, camera, options).sums) << "window " << options.window;
   }
 }
@@ -268,7 +268,7 @@ bool is_found(const Forest& forest, const DepthImage& depth, SimulatedDeviceOpti
     ForestLabeller(forest).label_into(depth_frame(depth, camera), kGate, expected);
     try {
       const DeviceLabeller device(forest, simulated(options));
-      device.label_and_smooth_into(depth, camera, kGate, {}, found, mean);
+      device.label_and_smooth_into(depth_frame(depth, camera), kGate, {}, found, mean);
     } catch (const std::logic_error&) {
       return true;
     }
