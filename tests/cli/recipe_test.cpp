@@ -16,7 +16,7 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A recipe whose model is made in two seconds.
+/// A recipe whose model is made in three seconds.
 constexpr const char* kRecipe = R"([synth]
 sensor.width = 96
 sensor.height = 72
@@ -28,7 +28,7 @@ pose.captured = 0.0
 frames = "train"
 trees = 3
 hard-trees = 1
-depth = 8
+depth = 12
 candidates = 20
 pixels = 200
 leaf-rounds = 3
@@ -38,14 +38,14 @@ step = 2
 [judge]
 frames = "one, two"
 [frames.train]
-count = 24
+count = 80
 seed = 5
 [frames.one]
-count = 12
+count = 30
 seed = 6
 [frames.two]
 looks = "empty"
-count = 8
+count = 20
 seed = 7
 [look.empty]
 people.none = 0.5
@@ -90,7 +90,7 @@ TEST_F(ModelRecipe, MakesAModelWithContextAndJudge) {
   const Outcome run = make(recipe(), "m.forest");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const char* line :
-       {"frames train +24 of 24 in ", "trees +4 in ", "context +samples of one, two in ", "judge +samples",
+       {"frames train +80 of 80 in ", "trees +4 in ", "context +samples of one, two in ", "judge +samples",
         "time +about ", "disk +0.00 GiB", "judge: [1-9][0-9]* samples of people, [1-9]"}) {
     EXPECT_THAT(run.err, ContainsRegex(line));
   }
@@ -100,7 +100,7 @@ TEST_F(ModelRecipe, MakesAModelWithContextAndJudge) {
   EXPECT_EQ(model.judge.trees.size(), 1600U);
   EXPECT_GT(model.forest.logit_unit, 0.F) << "leaves learned together";
   EXPECT_THAT(model.context.made_from, HasSubstr("# context of bodies, fitted to the first of every 2 frames, "));
-  EXPECT_THAT(model.judge.made_from, HasSubstr("# data 2: 8 frames, seed 7, hash "));
+  EXPECT_THAT(model.judge.made_from, HasSubstr("# data 2: 20 frames, seed 7, hash "));
   EXPECT_THAT(model.judge.made_from, Not(HasSubstr(testing::TempDir()))) << "folders are the user's own";
   EXPECT_EQ(run_program("detect " + frames() + " -m " + in("m.forest")).exit_code, 0);
   EXPECT_THAT(make(recipe(), "m.forest").err, HasSubstr("made by this recipe already"));
@@ -147,15 +147,15 @@ TEST_F(ModelRecipe, FitsAJudgeToTheForestOfAModelAtHand) {
   save_model(other, in("other.forest"));
   std::string text =
       with(kRecipe,
-           "frames = \"train\"\ntrees = 3\nhard-trees = 1\ndepth = 8\ncandidates = 20\npixels = 200\nleaf-rounds = 3\n",
+           "frames = \"train\"\ntrees = 3\nhard-trees = 1\ndepth = 12\ncandidates = 20\npixels = 200\nleaf-rounds = 3\n",
            "model = \"other.forest\"\n");
-  text = with(text, "[frames.train]\ncount = 24\nseed = 5\n", "");
+  text = with(text, "[frames.train]\ncount = 80\nseed = 5\n", "");
   EXPECT_EQ(made(recipe(text), "again.forest"), all) << "the model says what it was made from, whatever it had before";
 }
 
 TEST_F(ModelRecipe, TakesADatasetAtHandAndBackgrounds) {
   made(recipe(), "m.forest");
-  const std::string text = with(with(kRecipe, "count = 24\nseed = 5", "data = \"m.forest.work/frames/train\""),
+  const std::string text = with(with(kRecipe, "count = 80\nseed = 5", "data = \"m.forest.work/frames/train\""),
                                 "trees = 3", "background = \"" + frames() + "\"\ntrees = 3");
   const Outcome run = make(recipe(text), "data.forest");
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -166,7 +166,7 @@ TEST_F(ModelRecipe, TakesADatasetAtHandAndBackgrounds) {
 TEST_F(ModelRecipe, EstimatesAndScalesWithoutMaking) {
   const Outcome run = make(recipe(), "m.forest", " --estimate --scale 0.5");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, ContainsRegex("frames train +12 of 12 in "));
+  EXPECT_THAT(run.out, ContainsRegex("frames train +40 of 40 in "));
   EXPECT_THAT(run.out, ContainsRegex("\ntime +about .*\nmemory +at most .*\ndisk "));
   EXPECT_FALSE(fs::exists(in("m.forest")));
   EXPECT_FALSE(fs::exists(in("m.forest.work")));
@@ -189,7 +189,7 @@ TEST_F(ModelRecipe, RefusesWhatCannotWork) {
   refused(run_program("train --scale 0.5 --count 3 --recipe " + recipe() + " --out " + in("m.forest")), 2, "--scale");
   std::string nobody = "[synth]\npeople.none = 1.0\n";
   for (const char* some : {"one", "two", "three", "four"}) nobody += std::string("people.") + some + " = 0.0\n";
-  refused(make(recipe(with(kRecipe, "[synth]\n", nobody)), "m.forest"), 1, "no person in any of 24 frames");
+  refused(make(recipe(with(kRecipe, "[synth]\n", nobody)), "m.forest"), 1, "no person in any of 80 frames");
 }
 
 }  // namespace
