@@ -11,7 +11,7 @@
 #include "io/model/model_file.h"
 #include "metrics/pixel_metrics.h"
 #include "shared_frames.h"
-#include "vesalius/base/test_for_each_target.h"
+#include "vesalius/base/test_targets.h"
 #include "vesalius/base/test_threads.h"
 #include "vesalius/detect.h"
 

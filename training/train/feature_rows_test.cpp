@@ -8,7 +8,7 @@
 #include "train/split_candidates.h"
 #include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
-#include "vesalius/base/test_for_each_target.h"
+#include "vesalius/base/test_targets.h"
 #include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {

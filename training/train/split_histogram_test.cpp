@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "vesalius/base/random.h"
-#include "vesalius/base/test_for_each_target.h"
+#include "vesalius/base/test_targets.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "vesalius/base/random.h"
-#include "vesalius/base/test_for_each_target.h"
+#include "vesalius/base/test_targets.h"
 
 namespace vesalius {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vesalius/base/random.h"
-#include "vesalius/base/test_for_each_target.h"
+#include "vesalius/base/test_targets.h"
 
 namespace vesalius {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "vesalius/base/random.h"
-#include "vesalius/base/test_for_each_target.h"
+#include "vesalius/base/test_targets.h"
 #include "vesalius/forest/test_trees.h"
 
 namespace vesalius {
