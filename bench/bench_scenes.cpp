@@ -10,6 +10,8 @@
 #include "io/model/text_trees.h"
 #include "io/sources/open_source.h"
 #include "vesalius/base/error.h"
+#include "vesalius/forest/label_pixels.h"
+#include "vesalius/trace.h"
 
 namespace vesalius {
 namespace {

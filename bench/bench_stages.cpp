@@ -13,8 +13,13 @@
 #include "bench/bench_scenes.h"
 #include "bench/bench_synth.h"
 #include "vesalius/base/parallel.h"
+#include "vesalius/forest/label_pixels.h"
 #include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/smooth_labels.h"
 #include "vesalius/forest/tree_walk.h"
+#include "vesalius/grow_person.h"
+#include "vesalius/planes/find_planes.h"
+#include "vesalius/search_skeletons.h"
 
 namespace vesalius {
 namespace {

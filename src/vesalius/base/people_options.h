@@ -9,15 +9,15 @@ namespace vesalius {
 
 class OptionVisitor;
 
-/// Readings beside holes, which resizing blends with them (base/blended_depth.h).
+/// Readings beside holes, which resizing blends with them.
 struct BlendOptions {
   float least_share = 0.95F;  ///< share of the reading behind it that a reading beside a hole needs; 0: all are kept
 };
 
 /// Options of the grid of pixels at which the method looks.
 struct GridOptions {
-  /// Columns and rows from one pixel of the grid to the next; 0 takes the smallest step that leaves at most
-  /// kMostPixels.
+  /// Columns and rows from one pixel of the grid to the next; 0 takes the smallest step that leaves at most 250,000
+  /// pixels.
   int step = 0;
 };
 
@@ -34,7 +34,7 @@ struct LabelOptions {
 /// How posteriors are smoothed (section 4.2.1).
 struct SmoothOptions {
   int window = 5;   ///< neighbours along a side of the square; an even number counts as the next odd one; 1 = none
-  int spacing = 0;  ///< pixels from one neighbour to the next when smoothing posteriors; 0: see `spaced`
+  int spacing = 0;  ///< pixels from one neighbour to the next when smoothing posteriors; 0: 1/140 of the focal length
   int depth_gate_mm = 60;  ///< posteriors of neighbours further away than this in depth do not count
 };
 
