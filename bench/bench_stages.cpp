@@ -14,7 +14,7 @@
 #include "bench/bench_synth.h"
 #include "vesalius/base/parallel.h"
 #include "vesalius/forest/label_pixels.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 #include "vesalius/forest/smooth_labels.h"
 #include "vesalius/forest/tree_walk.h"
 #include "vesalius/grow_person.h"

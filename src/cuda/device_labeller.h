@@ -11,7 +11,7 @@
 #include "vesalius/base/pool.h"
 #include "vesalius/forest/forest.h"
 #include "vesalius/forest/label_pixels.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 #include "vesalius/forest/smooth_labels.h"
 
 namespace vesalius::gpu {

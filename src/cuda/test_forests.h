@@ -13,8 +13,8 @@
 #include "vesalius/base/image.h"
 #include "vesalius/base/random.h"
 #include "vesalius/forest/forest.h"
+#include "vesalius/forest/labeller.h"
 #include "vesalius/forest/leaf_logits.h"
-#include "vesalius/forest/posteriors.h"
 #include "vesalius/forest/test_trees.h"
 
 namespace vesalius::test {

@@ -5,7 +5,7 @@
 #include "vesalius/base/capsule.h"
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 #include "vesalius/prior.h"
 
 namespace vesalius {

@@ -9,8 +9,8 @@
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
 #include "vesalius/base/person.h"
+#include "vesalius/forest/labeller.h"
 #include "vesalius/forest/person_labels.h"
-#include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "vesalius/base/image.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 
 namespace vesalius {
 

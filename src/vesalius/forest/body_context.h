@@ -13,7 +13,7 @@
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
 #include "vesalius/forest/boosted_trees.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 
 namespace vesalius {
 

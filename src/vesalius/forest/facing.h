@@ -12,7 +12,7 @@
 #include "vesalius/base/image.h"
 #include "vesalius/base/person.h"
 #include "vesalius/forest/forest.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 
 namespace vesalius {
 

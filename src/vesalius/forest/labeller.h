@@ -1,12 +1,70 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "vesalius/base/frame.h"
 #include "vesalius/base/image.h"
-#include "vesalius/forest/posteriors.h"
 
 namespace vesalius {
 
 struct SmoothOptions;
+
+/// What a labeller knows of a picture: P(c | x) of every pixel, `classes` values for each pixel, pixel after pixel.
+/// Body parts come first, then the background. All are zero if depth has no reading. What else a labeller may know is
+/// empty where it does not, and who wants it asks for that: headings today. A new kind of answer (a person's middle as
+/// seen from a pixel, places of parts) is a member beside `turns`.
+struct Posteriors {
+  int width = 0;
+  int height = 0;
+  int classes = 0;
+  int whole = 0;  ///< sums / whole are probabilities; at most 65535. A forest's is 255 for each tree
+  std::vector<std::uint16_t> sums;
+  int headings = 0;  ///< headings that `turns` tells apart; 0: none
+  /// P(side, heading | x, body) in 1/65535 of every pixel about which the labeller was asked: for each pixel the
+  /// headings of the middle parts, of the left ones and of the right ones (leaf_logits.h). Others are undefined.
+  std::vector<std::uint16_t> turns = {};
+  /// 1 on settled pixels, around which the labeller was so certain of the background that it gave them a neighbour's
+  /// posteriors. They are background, and smoothing leaves them as they are. Empty if the labeller looked at every
+  /// pixel.
+  Mask settled = {};
+
+  const std::uint16_t* at(int u, int v) const {
+    return sums.data() + (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)) *
+                             static_cast<std::size_t>(classes);
+  }
+  std::uint16_t* at(int u, int v) { return const_cast<std::uint16_t*>(std::as_const(*this).at(u, v)); }
+
+  std::size_t turn_count() const { return 3U * static_cast<std::size_t>(headings); }
+  const std::uint16_t* turns_at(int u, int v) const {
+    return turns.data() +
+           (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)) * turn_count();
+  }
+  std::uint16_t* turns_at(int u, int v) { return const_cast<std::uint16_t*>(std::as_const(*this).turns_at(u, v)); }
+
+  /// Takes the size and the settled pixels of `other`. The numbers are undefined.
+  void resize_like(const Posteriors& other) {
+    width = other.width;
+    height = other.height;
+    classes = other.classes;
+    whole = other.whole;
+    settled = other.settled;
+    sums.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(classes));
+  }
+};
+
+/// Returns the share of the first `parts` classes in all of a pixel's, 0-1: how probably it is a body. Returns nothing
+/// where depth has no reading.
+inline std::optional<double> body_share(const Posteriors& posteriors, int u, int v, int parts) {
+  const std::uint16_t* sums = posteriors.at(u, v);
+  const int body = std::accumulate(sums, sums + parts, 0);
+  const int all = std::accumulate(sums + parts, sums + posteriors.classes, body);
+  return all > 0 ? std::optional(double(body) / all) : std::nullopt;
+}
 
 /// Gives every pixel of a frame its posteriors: those of the parts of a body and, last, that of the background. A model
 /// (vesalius/model.h) has one; tests and experiments provide others (the truth, a network).

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vesalius/base/image.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 #include "vesalius/forest/smooth_window.h"
 
 namespace vesalius {

@@ -8,7 +8,7 @@
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
 #include "vesalius/base/person.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 
 namespace vesalius {
 

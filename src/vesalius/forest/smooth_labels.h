@@ -2,7 +2,7 @@
 
 #include "vesalius/base/camera.h"
 #include "vesalius/base/image.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 #include "vesalius/forest/smooth_window.h"
 
 namespace vesalius {

@@ -5,7 +5,7 @@
 #include "vesalius/base/body_model.h"
 #include "vesalius/base/image.h"
 #include "vesalius/forest/facing.h"
-#include "vesalius/forest/posteriors.h"
+#include "vesalius/forest/labeller.h"
 
 namespace vesalius::test {
 
