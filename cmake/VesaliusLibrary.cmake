@@ -75,9 +75,13 @@ function(vesalius_generate target template)
 endfunction()
 
 # vesalius_words(LIBRARY): for libraries of words and flags, where nothing is worth the compiler's time, half of which goes into
-# CLI11's header.
+# the templates of CLI11 and of JSON. Whoever builds the program once compiles a dozen files together, which instantiates them
+# once; whoever develops compiles single files.
 function(vesalius_words library)
   target_compile_options(vesalius_${library} PRIVATE -O1)
+  if(CMAKE_BUILD_TYPE STREQUAL Release)
+    set_target_properties(vesalius_${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+  endif()
   if(VESALIUS_PCH)
     target_precompile_headers(vesalius_${library} PRIVATE <CLI/CLI.hpp> <Eigen/Geometry> <algorithm> <filesystem> <functional>
                               <map> <memory> <optional> <ranges> <string> <vector>)
