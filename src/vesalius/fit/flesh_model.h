@@ -66,7 +66,7 @@ struct LimbPrior {
 };
 
 /// A population of bodies and their poses, to which fit_body fits people. It comes from rendered people
-/// (`vesalius synth --fit-flesh`) and is the same for all body models with surface rules.
+/// (`vesalius_fit_body flesh`) and is the same for all body models with surface rules.
 struct FleshModel {
   int shapes = 0;  ///< coefficients of a body's shape, each of mean 0 and standard deviation 1
   std::vector<FleshBone> bones;
