@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "io/model/model_file.h"
-#include "io/sources/open_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/body_history.h"
 #include "vesalius/fit/fit_body.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
+#include "vesalius/track_people.h"
 
 namespace vesalius {
 namespace {

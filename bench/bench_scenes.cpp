@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "capsule/capsule_person.h"
-#include "io/model/model_file.h"
 #include "io/model/text_trees.h"
-#include "io/sources/open_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/label_pixels.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
 #include "vesalius/trace.h"
 
 namespace vesalius {

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/frame.h"
 #include "vesalius/detect.h"
 #include "vesalius/find_clusters.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

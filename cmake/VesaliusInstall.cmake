@@ -8,6 +8,7 @@ set(VESALIUS_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/vesalius)
 
 # Libraries that name public headers are components. Bottom to top: a component's uses stand before it.
 get_property(VESALIUS_COMPONENTS GLOBAL PROPERTY VESALIUS_COMPONENTS)
+list(REMOVE_ITEM VESALIUS_COMPONENTS c_interface)  # stands inside of libvesalius.so, below
 set(VESALIUS_USES_LINES)
 foreach(component IN LISTS VESALIUS_COMPONENTS)
   get_target_property(uses vesalius_${component} VESALIUS_USES)
@@ -17,10 +18,8 @@ foreach(component IN LISTS VESALIUS_COMPONENTS)
   string(APPEND VESALIUS_USES_LINES "set(vesalius_${component}_uses ${uses})\n")
   install(TARGETS vesalius_${component} EXPORT vesalius_${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT vesalius_${component} NAMESPACE vesalius:: FILE vesalius-${component}.cmake DESTINATION ${VESALIUS_CMAKE_DIR})
-  foreach(header IN LISTS headers)
-    get_filename_component(folder ${header} DIRECTORY)
-    install(FILES ${PROJECT_SOURCE_DIR}/src/${header} DESTINATION ${VESALIUS_INCLUDE_DIR}/${folder})
-  endforeach()
+  list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/include/vesalius/)
+  install(FILES ${headers} DESTINATION ${VESALIUS_INCLUDE_DIR}/vesalius)
 endforeach()
 
 # The C library, with all that it needs inside: the component c stands on no other.
@@ -30,7 +29,7 @@ if(TARGET vesalius_c)
   install(TARGETS vesalius_c EXPORT vesalius_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library
           NAMELINK_COMPONENT development INCLUDES DESTINATION ${VESALIUS_INCLUDE_DIR})
   install(EXPORT vesalius_c NAMESPACE vesalius:: FILE vesalius-c.cmake DESTINATION ${VESALIUS_CMAKE_DIR})
-  install(FILES ${PROJECT_SOURCE_DIR}/src/c/vesalius.h DESTINATION ${VESALIUS_INCLUDE_DIR})
+  install(FILES ${PROJECT_SOURCE_DIR}/include/vesalius/vesalius.h DESTINATION ${VESALIUS_INCLUDE_DIR}/vesalius)
   file(RELATIVE_PATH VESALIUS_PREFIX_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
   string(REGEX REPLACE "/$" "" VESALIUS_PREFIX_FROM_PC ${VESALIUS_PREFIX_FROM_PC})
   configure_file(${PROJECT_SOURCE_DIR}/cmake/vesalius.pc.in ${PROJECT_BINARY_DIR}/vesalius.pc @ONLY)

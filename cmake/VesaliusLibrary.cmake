@@ -4,8 +4,8 @@
 # The library vesalius_NAME out of all sources in FOLDERS (below the current folder; "." is that folder itself, the
 # default), and the test NAME_test out of their *_test.cpp. tools/check_layers.py reads these calls: FOLDERS stand bottom to
 # top, a file includes only folders up to its own, the core, and the libraries it USES; tests also capsule and TESTS_USE.
-# PUBLIC: headers that are installed (below the current folder), all that they include among them; a library with some is a
-# component of the installed package.
+# PUBLIC: its headers in include/vesalius, which are installed: `base/image.h` is include/vesalius/image.h and belongs to the
+# folder base. A library with some is a component of the installed package.
 # PRECOMPILED: with the core's precompiled header, for libraries that it makes quicker to build.
 # OPENS_NO_FILES: no <fstream>, <iostream> or <filesystem> outside of tests.
 function(vesalius_library name)
@@ -39,16 +39,16 @@ function(vesalius_library name)
   if(NOT name STREQUAL core)
     target_link_libraries(${target} PUBLIC vesalius_core)
   endif()
-  # Includes are written from the wing's folder: src/, training/ or tests/.
+  # Includes are written from include/ and from the wing's folder: src/, training/ or tests/.
   string(REGEX REPLACE "^${PROJECT_SOURCE_DIR}/([a-z]+)/.*" "\\1" wing ${CMAKE_CURRENT_SOURCE_DIR})
-  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/${wing}>)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                              $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/${wing}>)
   foreach(library IN LISTS ARG_USES)
     target_link_libraries(${target} PUBLIC vesalius_${library})
   endforeach()
 
   if(ARG_PUBLIC)
-    file(RELATIVE_PATH here ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
-    list(TRANSFORM ARG_PUBLIC PREPEND ${here}/)
+    list(TRANSFORM ARG_PUBLIC REPLACE "^.*/" "")
     set_property(GLOBAL APPEND PROPERTY VESALIUS_COMPONENTS ${name})
     set_target_properties(${target} PROPERTIES VESALIUS_USES "core;${ARG_USES}" VESALIUS_PUBLIC_HEADERS "${ARG_PUBLIC}")
   endif()

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <vesalius.h>
+#include <vesalius/vesalius.h>
 
 // Ends the program unless a call went well.
 static void expect(vesalius_status status) {

@@ -2,9 +2,9 @@
 
 #include <iostream>
 
-#include "io/model/model_file.h"
-#include "io/sources/open_source.h"
 #include "vesalius/detect.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <iostream>
 
-#include "draw/draw.h"
-#include "io/files/image_file.h"
-#include "io/model/model_file.h"
-#include "io/sources/open_source.h"
 #include "vesalius/detect.h"
+#include "vesalius/draw.h"
+#include "vesalius/image_file.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
 
 int main(int argc, char** argv) {
   if (argc != 4) return 2;

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "io/model/model_file.h"
-#include "io/sources/open_source.h"
 #include "vesalius/appearance.h"
 #include "vesalius/detect.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
 
 namespace {
 

@@ -7,11 +7,11 @@
 #include <optional>
 #include <utility>
 
-#include "io/model/model_file.h"
-#include "io/sources/open_source.h"
-#include "stream/detect_stream.h"
-#include "stream/person_json.h"
 #include "vesalius/detect.h"
+#include "vesalius/detect_stream.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
+#include "vesalius/person_json.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include "synth/mocap/amc.h"
 #include "synth/mocap/retarget.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 /// The input is a skeleton, a byte 0, and a motion of the skeleton.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,8 +1,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/error.h"
+#include "vesalius/body_model.h"
+#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -4,7 +4,7 @@
 
 #include "synth/mocap/bvh.h"
 #include "synth/mocap/retarget.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

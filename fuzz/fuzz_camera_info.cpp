@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "io/sources/camera_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

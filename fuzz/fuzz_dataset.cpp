@@ -6,7 +6,7 @@
 #include "dataset/dataset_folder.h"
 #include "dataset/dataset_shard.h"
 #include "dataset/labelled_frame_codec.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace {
 

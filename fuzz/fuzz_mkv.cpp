@@ -8,7 +8,7 @@
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/k4a_messages.h"
 #include "io/recordings/matroska_end.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace {
 

@@ -3,10 +3,10 @@
 #include <string>
 
 #include "io/files/packed.h"
-#include "io/model/model_file.h"
 #include "io/model/model_sections.h"
 #include "io/model/model_trees.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "synth/body/makehuman_mesh.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -2,8 +2,8 @@
 #include <cstdint>
 
 #include "io/files/options_file.h"
-#include "vesalius/base/error.h"
 #include "vesalius/detect.h"
+#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   vesalius::DetectOptions options;

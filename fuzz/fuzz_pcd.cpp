@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "io/sources/pcd.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -6,7 +6,7 @@
 #include "export/moving_skeleton.h"
 #include "export/people_record.h"
 #include "export/write_people.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

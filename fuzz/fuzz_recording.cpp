@@ -1,5 +1,5 @@
-#include "io/sources/open_source.h"
 #include "read_source.h"
+#include "vesalius/open_source.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vesalius;

@@ -6,7 +6,7 @@
 #include "synth/body/fit_rig.h"
 #include "synth/body/makehuman_rig.h"
 #include "synth/body/rig_map.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vesalius::synth;

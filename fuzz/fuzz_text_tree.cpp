@@ -3,7 +3,7 @@
 #include <exception>
 
 #include "io/model/text_trees.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   vesalius::Forest forest;

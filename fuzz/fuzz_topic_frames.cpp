@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "ros2/messages/topic_frames.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace {
 

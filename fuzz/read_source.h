@@ -9,8 +9,8 @@
 #include <string>
 
 #include "io/files/descriptor.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/error.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "vesalius/base/depth_reading.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace nb = nanobind;
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

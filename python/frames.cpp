@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "arrays.h"
-#include "io/sources/open_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/open_source.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

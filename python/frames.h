@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

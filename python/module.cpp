@@ -14,14 +14,14 @@
 
 #include "arrays.h"
 #include "frames.h"
-#include "io/model/model_file.h"
 #include "options_from_keywords.h"
 #include "people.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/body_model.h"
 #include "vesalius/detect.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
+#include "vesalius/parallel.h"
+#include "vesalius/track_people.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

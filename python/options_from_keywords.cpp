@@ -8,7 +8,7 @@
 #include <set>
 
 #include "io/files/options_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace nb = nanobind;
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "vesalius/track/track_people.h"
+#include "vesalius/track_people.h"
 
 namespace vesalius {
 

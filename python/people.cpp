@@ -19,10 +19,10 @@
 
 #include "arrays.h"
 #include "stream/person_fields.h"
-#include "stream/person_json.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"
+#include "vesalius/person_json.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;

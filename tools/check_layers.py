@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 """Checks who includes whom, and how much there is (ARCHITECTURE.md, "Folders").
 
-The product stands in src/, the workshop in training/. Each library is a call of vesalius_library in a CMakeLists.txt there:
-its FOLDERS bottom to top, the libraries it USES, and those that its TESTS_USE besides.
+The product stands in src/, what its users include in include/vesalius/, the workshop in training/. Each library is a call of
+vesalius_library in a CMakeLists.txt there: its FOLDERS bottom to top, the libraries it USES, and those that its TESTS_USE
+besides. PUBLIC says whose a header of include/vesalius/ is: `base/image.h` belongs to the folder base.
 
 1. A file includes its own folder, folders of its library that stand before its own, the core, and what its library USES.
    Unit tests include all of their library, `capsule` and TESTS_USE as well.
 2. No unit (a header with its sources) includes another that includes it, over however many steps.
 3. A library that OPENS_NO_FILES includes no <fstream>, <iostream> or <filesystem>.
-4. A header that is installed (PUBLIC) includes only headers that are. There are at most 25, those of the table of
-   docs/library.md.
-5. Every include is written from its wing's folder and names a file that is there; every source belongs to a library.
+4. A public header includes only public headers. There are at most 25, those of the table of docs/library.md.
+5. Every include is written from include/ or its wing's folder and names a file that is there; every source belongs to a library.
 6. No library of the product uses one of the workshop. The program has the workshop's commands by its build alone. The workshop
    includes of the product what is PUBLIC, and what tools/private_headers.txt lists with a reason; unit tests include all.
 7. A folder has at most 25 units besides tests, and at most the lines of C++ that tools/line_budget.txt grants it.
@@ -25,7 +25,8 @@ from pathlib import Path
 
 CORE = "core"
 FOR_TESTS = "capsule"
-WINGS = ("src", "training", "tests/capsule", "tests/simulator")  # includes are written from src/, training/ and tests/
+INCLUDE_DIR = "include"
+WINGS = (INCLUDE_DIR, "src", "training", "tests/capsule", "tests/simulator")
 MOST_UNITS = 25
 MOST_PUBLIC = 25
 TABLE = "docs/library.md"
@@ -147,6 +148,7 @@ class Checker:
         found = [read_library(path, root) for wing in WINGS for path in sorted((root / wing).rglob("CMakeLists.txt"))]
         self.libraries = {library.name: library for library in found if library}
         self.public = {header for library in self.libraries.values() for header in library.public}
+        self.places = {f"vesalius/{Path(header).name}": header for header in self.public}
         self.owner = {folder: library for library in self.libraries.values() for folder in library.folders}
         self.graph = {}
         self.private = self.read_private()  # headers and folders, each with whether somebody includes it
@@ -158,8 +160,9 @@ class Checker:
         return path.relative_to(self.root).parts[0]
 
     def place_of(self, path):
-        """The file's path from its wing's folder, as includes name it."""
-        return path.relative_to(self.root / self.wing_of(path))
+        """The file's path from its wing's folder; of a public header the one that it would have beside its source."""
+        place = path.relative_to(self.root / self.wing_of(path))
+        return Path(self.places.get(str(place), place)) if self.wing_of(path) == INCLUDE_DIR else place
 
     def why_not(self, path, library, folder, target):
         """Why the file may not include the target, or None."""
@@ -181,6 +184,9 @@ class Checker:
     def check_file(self, path):
         folder = str(self.place_of(path).parent)
         library = self.owner.get(folder)
+        if self.wing_of(path) == INCLUDE_DIR and str(self.place_of(path)) not in self.public:
+            self.complain(path, 1, "is on no PUBLIC list")
+            return
         if library is None:
             self.complain(path, 1, "belongs to no vesalius_library")
             return
@@ -193,15 +199,16 @@ class Checker:
             elif target.endswith(".inc"):
                 continue
             elif "/" not in target:
-                self.complain(path, number, f'includes "{target}", expected a path from src/ or training/')
-            elif not any((self.root / wing / target).is_file() for wing in ("src", "training", "tests")):
+                self.complain(path, number, f'includes "{target}", expected a path from include/, src/ or training/')
+            elif not any((self.root / wing / target).is_file() for wing in (INCLUDE_DIR, "src", "training", "tests")):
                 self.complain(path, number, f'includes "{target}", which is not there')
             else:
+                target = self.places.get(target, target)
                 reason = self.why_not(path, library, folder, target)
                 if reason:
                     self.complain(path, number, reason)
                 if str(self.place_of(path)) in library.public and target not in self.public:
-                    self.complain(path, number, f"is installed and includes {target}, which is not")
+                    self.complain(path, number, f"is public and includes {target}, which is not")
                 of_product = self.owner.get(str(Path(target).parent), library).wing == "src"
                 if library.wing == "training" and of_product and target not in self.public and not is_for_tests(path):
                     self.check_private(path, number, target)
@@ -230,10 +237,12 @@ class Checker:
         """How many public headers there are, and whether they are those that the documentation has."""
         if len(self.public) > MOST_PUBLIC:
             self.violations.append(f"{len(self.public)} public headers, expected at most {MOST_PUBLIC}")
+        for header in sorted(header for header in self.places if not (self.root / INCLUDE_DIR / header).is_file()):
+            self.violations.append(f"{INCLUDE_DIR}/{header}: is not there, and {self.places[header]} is PUBLIC")
         path = self.root / TABLE
         table = set(re.findall(r"^\| `([^`]+\.h)` \|", path.read_text() if path.is_file() else "", re.MULTILINE))
-        for header in sorted(self.public ^ table):
-            known = "is public and not in the table" if header in self.public else "is in the table and not public"
+        for header in sorted(set(self.places) ^ table):
+            known = "is public and not in the table" if header in self.places else "is in the table and not public"
             self.violations.append(f"{TABLE}: {header} {known}")
         for name in sorted(name for name, used in self.private.items() if not used):
             self.violations.append(f"{PRIVATE}: nobody includes {name}")
@@ -255,7 +264,8 @@ class Checker:
             by_folder.setdefault(path.parent, []).append(path)
         for folder, paths in sorted(by_folder.items()):
             name = str(folder.relative_to(self.root))
-            units = units_of(paths)
+            own = [Path(header) for header in self.public if str(Path(header).parent) == name.partition("/")[2]]
+            units = units_of(paths + own)
             if len(units) > MOST_UNITS:
                 self.violations.append(f"{name}: {len(units)} units, expected at most {MOST_UNITS}")
             lines = sum(len(path.read_text().splitlines()) for path in paths)

@@ -18,13 +18,13 @@
 #include "bench/gpu/timed_device.h"
 #include "cuda/cuda_device.h"
 #include "cuda/device_labeller.h"
-#include "io/model/model_file.h"
-#include "io/sources/open_source.h"
 #include "simulator/simulated_device.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/keep_memory.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/detect.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -8,14 +8,14 @@
 
 #include "c/guard.h"
 #include "c/handles.h"
-#include "c/vesalius.h"
 #include "cuda/cuda_labeller.h"
 #include "io/model/default_model.h"
-#include "io/model/model_file.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/body_model.h"
 #include "vesalius/fit/flesh_model.h"
 #include "vesalius/model.h"
+#include "vesalius/model_file.h"
+#include "vesalius/parallel.h"
+#include "vesalius/vesalius.h"
 
 namespace vesalius::c {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "c/vesalius.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/vesalius.h"
 
 namespace vesalius::c {
 

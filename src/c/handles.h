@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "c/read_frame.h"
-#include "c/vesalius.h"
 #include "io/files/options_file.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/track_people.h"
+#include "vesalius/vesalius.h"
 
 namespace vesalius::c {
 

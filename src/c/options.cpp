@@ -4,7 +4,7 @@
 #include "c/guard.h"
 #include "c/handles.h"
 #include "c/sized_struct.h"
-#include "c/vesalius.h"
+#include "vesalius/vesalius.h"
 
 namespace vesalius::c {
 namespace {

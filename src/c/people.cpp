@@ -7,9 +7,9 @@
 #include "c/guard.h"
 #include "c/handles.h"
 #include "c/sized_struct.h"
-#include "c/vesalius.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 #include "vesalius/fit/flesh_joints.h"
+#include "vesalius/vesalius.h"
 
 namespace vesalius::c {
 namespace {

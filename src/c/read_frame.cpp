@@ -11,7 +11,7 @@
 
 #include "c/sized_struct.h"
 #include "vesalius/base/depth_reading.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::c {
 namespace {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "c/vesalius.h"
 #include "io/lens/lens.h"
 #include "io/lens/rectification.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
+#include "vesalius/vesalius.h"
 
 namespace vesalius::c {
 

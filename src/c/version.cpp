@@ -1,5 +1,5 @@
 #include "c/guard.h"
-#include "c/vesalius.h"
+#include "vesalius/vesalius.h"
 
 static_assert(VESALIUS_VERSION_MAJOR == VESALIUS_PROJECT_MAJOR && VESALIUS_VERSION_MINOR == VESALIUS_PROJECT_MINOR &&
                   VESALIUS_VERSION_PATCH == VESALIUS_PROJECT_PATCH,

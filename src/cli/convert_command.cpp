@@ -10,12 +10,12 @@
 #include "console/source_flags.h"
 #include "console/text_sink.h"
 #include "io/files/read_file.h"
-#include "io/model/model_file.h"
 #include "io/model/model_sections.h"
 #include "io/model/old_model.h"
 #include "io/model/text_trees.h"
 #include "io/sources/write_frames.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius::cli {
 namespace {

@@ -16,7 +16,7 @@
 #include "io/files/read_file.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/open_recording.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

@@ -9,11 +9,11 @@
 #include "console/satellites.h"
 #include "console/text_sink.h"
 #include "io/files/read_file.h"
-#include "io/model/model_file.h"
 #include "io/model/model_sections.h"
 #include "io/recordings/mkv_recording.h"
 #include "io/sensors/sensor_drivers.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/model_file.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "console/satellites.h"
 #include "console/text_sink.h"
 #include "io/files/options_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

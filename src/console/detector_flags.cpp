@@ -9,8 +9,8 @@
 #include "console/default_model.h"
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
-#include "io/model/model_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius::cli {
 void replace_body(Model& model, const std::string& path) {

@@ -6,7 +6,7 @@
 #include "console/option_flags.h"
 #include "vesalius/detect.h"
 #include "vesalius/model.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/track_people.h"
 
 namespace CLI {
 class App;

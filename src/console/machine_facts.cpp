@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "console/text_sink.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "io/sources/open_source.h"
+#include "vesalius/open_source.h"
 
 namespace CLI {
 class App;

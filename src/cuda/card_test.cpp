@@ -9,7 +9,7 @@
 #include "cuda/device_labeller.h"
 #include "cuda/test_forests.h"
 #include "simulator/simulated_device.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::gpu {
 namespace {

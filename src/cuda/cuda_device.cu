@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "cuda/kernels.cuh"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 // Behind the kernels.
 #include "cuda/card_kernels.cuh"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/background_gate.h"
 #include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/packed_tree.h"

@@ -6,13 +6,13 @@
 
 #include "cuda/device.h"
 #include "cuda/kernels.h"
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
 #include "vesalius/base/pool.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/camera.h"
+#include "vesalius/forest.h"
 #include "vesalius/forest/label_pixels.h"
-#include "vesalius/forest/labeller.h"
 #include "vesalius/forest/smooth_labels.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius::gpu {
 

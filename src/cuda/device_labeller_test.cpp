@@ -11,8 +11,8 @@
 #include "cuda/kernels.h"
 #include "cuda/test_forests.h"
 #include "simulator/simulated_device.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/error.h"
 
 namespace vesalius::gpu {
 namespace {

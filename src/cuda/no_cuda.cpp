@@ -1,7 +1,7 @@
 // What a build without a CUDA compiler says when it is asked for cards.
 
 #include "cuda/cuda_device.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::gpu {
 namespace {

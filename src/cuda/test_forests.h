@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/image.h"
 #include "vesalius/base/random.h"
-#include "vesalius/forest/forest.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/forest.h"
 #include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/test_trees.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius::test {
 

@@ -1,4 +1,4 @@
-#include "draw/draw.h"
+#include "vesalius/draw.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "draw/canvas.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

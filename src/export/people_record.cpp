@@ -11,7 +11,7 @@
 
 #include "stream/json_numbers.h"
 #include "stream/person_fields.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/camera.h"
-#include "vesalius/base/person.h"
+#include "vesalius/camera.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

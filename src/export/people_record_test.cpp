@@ -5,8 +5,8 @@
 #include <string>
 
 #include "export/test_people.h"
-#include "stream/person_json.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/person_json.h"
 
 namespace vesalius {
 namespace {

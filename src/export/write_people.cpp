@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "stream/json_numbers.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "export/test_people.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

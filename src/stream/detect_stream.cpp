@@ -1,4 +1,4 @@
-#include "stream/detect_stream.h"
+#include "vesalius/detect_stream.h"
 
 #include <atomic>
 #include <chrono>
@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "stream/frame_queue.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/quiet_thread.h"
+#include "vesalius/parallel.h"
 #include "vesalius/prior.h"
 
 namespace vesalius {

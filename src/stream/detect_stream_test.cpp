@@ -1,4 +1,4 @@
-#include "stream/detect_stream.h"
+#include "vesalius/detect_stream.h"
 
 #include <gmock/gmock.h>
 
@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "stream/test_crossing.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/test_blind_labeller.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius {
 namespace {

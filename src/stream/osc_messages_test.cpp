@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/error.h"
+#include "vesalius/body_model.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <tuple>
 
-#include "vesalius/base/person.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

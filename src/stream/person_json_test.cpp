@@ -1,4 +1,4 @@
-#include "stream/person_json.h"
+#include "vesalius/person_json.h"
 
 #include <gmock/gmock.h>
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/test_blind_labeller.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius::test {
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "vesalius/forest/labeller.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius {
 

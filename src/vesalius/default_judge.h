@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "vesalius/forest/boosted_trees.h"
+#include "vesalius/boosted_trees.h"
 
 namespace vesalius {
 

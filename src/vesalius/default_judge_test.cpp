@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/score_person.h"
 
 namespace vesalius {

@@ -8,11 +8,11 @@
 #include <sstream>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/base/test_threads.h"
 #include "vesalius/cut_out_labeller.h"
 #include "vesalius/default_judge.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/test_headings.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 namespace {

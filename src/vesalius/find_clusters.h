@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
-#include "vesalius/base/people_options.h"
+#include "vesalius/body_model.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
+#include "vesalius/people_options.h"
 
 namespace vesalius {
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "vesalius/appearance.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
-#include "vesalius/base/people_options.h"
-#include "vesalius/base/person.h"
 #include "vesalius/find_clusters.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
+#include "vesalius/people_options.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

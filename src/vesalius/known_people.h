@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "vesalius/base/capsule.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
 #include "vesalius/prior.h"
 
 namespace vesalius {

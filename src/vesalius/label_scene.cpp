@@ -5,11 +5,11 @@
 #include <numeric>
 #include <utility>
 
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/forest/facing.h"
 #include "vesalius/forest/leaf_logits.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/stage_times.h"
 #include "vesalius/forest/label_pixels.h"
 #include "vesalius/forest/person_labels.h"
 #include "vesalius/forest/smooth_labels.h"
+#include "vesalius/frame.h"
 #include "vesalius/model.h"
 #include "vesalius/planes/find_planes.h"
+#include "vesalius/stage_times.h"
 
 namespace vesalius {
 

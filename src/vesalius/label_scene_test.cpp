@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/error.h"
 #include "vesalius/cut_out_labeller.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/forest/test_headings.h"
 

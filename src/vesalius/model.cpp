@@ -6,9 +6,9 @@
 #include <mutex>
 #include <utility>
 
-#include "vesalius/base/error.h"
 #include "vesalius/cut_out_labeller.h"
 #include "vesalius/default_judge.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/label_pixels.h"
 
 namespace vesalius {

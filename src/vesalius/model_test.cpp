@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/error.h"
 #include "vesalius/default_judge.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/label_pixels.h"
 #include "vesalius/forest/test_blind_labeller.h"
 

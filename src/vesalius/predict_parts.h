@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

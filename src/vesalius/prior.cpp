@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/pixel_grid.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

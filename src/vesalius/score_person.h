@@ -5,12 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
-#include "vesalius/base/person.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/body_model.h"
 #include "vesalius/forest/person_labels.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/people_options.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
 #include "vesalius/find_clusters.h"
+#include "vesalius/people_options.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

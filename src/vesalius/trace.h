@@ -3,10 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "vesalius/base/image.h"
-#include "vesalius/base/person.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/find_clusters.h"
+#include "vesalius/image.h"
+#include "vesalius/person.h"
 #include "vesalius/score_person.h"
 
 namespace vesalius {

@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "io/files/image_file.h"
 #include "io/recordings/depth_codecs.h"
 #include "stream/json_numbers.h"
-#include "stream/person_json.h"
 #include "vesalius/find_clusters.h"
 #include "vesalius/fit/flesh_sections.h"
+#include "vesalius/image_file.h"
+#include "vesalius/person_json.h"
 #include "vesalius/planes/find_floor.h"
 #include "view/run_lengths.h"
 

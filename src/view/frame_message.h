@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/person.h"
-#include "vesalius/base/stage_times.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+#include "vesalius/person.h"
+#include "vesalius/stage_times.h"
 #include "vesalius/trace.h"
 
 namespace vesalius {

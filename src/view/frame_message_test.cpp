@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "capsule/capsule_person.h"
-#include "io/files/image_file.h"
 #include "io/recordings/depth_codecs.h"
-#include "stream/person_json.h"
 #include "vesalius/fit/flesh_sections.h"
 #include "vesalius/fit/test_flesh.h"
+#include "vesalius/image_file.h"
+#include "vesalius/person_json.h"
 #include "vesalius/planes/find_planes.h"
 #include "vesalius/trace.h"
 #include "view/test_runs.h"

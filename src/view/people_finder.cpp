@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "io/files/options_file.h"
-#include "vesalius/base/stage_times.h"
 #include "vesalius/fit/fit_body.h"
+#include "vesalius/stage_times.h"
 #include "vesalius/trace.h"
 
 namespace vesalius {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "vesalius/track/track_people.h"
+#include "vesalius/track_people.h"
 #include "view/frame_message.h"
 #include "view/player.h"
 #include "view/track_history.h"

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/quiet_thread.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

@@ -5,8 +5,8 @@
 #include <ctime>
 #include <filesystem>
 
-#include "stream/person_json.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
+#include "vesalius/person_json.h"
 
 namespace vesalius {
 namespace {

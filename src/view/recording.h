@@ -4,7 +4,7 @@
 #include <string>
 
 #include "io/recordings/frame_recorder.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 #include "view/frame_message.h"
 
 namespace vesalius {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius::test {
 

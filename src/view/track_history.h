@@ -3,7 +3,7 @@
 #include <deque>
 #include <memory>
 
-#include "vesalius/track/track_people.h"
+#include "vesalius/track_people.h"
 
 namespace vesalius {
 

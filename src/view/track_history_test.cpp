@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "stream/test_crossing.h"
-#include "vesalius/base/error.h"
 #include "vesalius/detect.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

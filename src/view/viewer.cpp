@@ -17,8 +17,8 @@
 
 #include "io/files/options_file.h"
 #include "stream/frame_queue.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/quiet_thread.h"
+#include "vesalius/error.h"
 #include "view/bundle_files.h"
 #include "view/frame_message.h"
 #include "view/people_finder.h"

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 #include "vesalius/model.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/track_people.h"
 #include "view/player.h"
 #include "view/web_server.h"
 

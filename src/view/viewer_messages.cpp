@@ -6,10 +6,10 @@
 
 #include "io/files/options_file.h"
 #include "stream/json_numbers.h"
-#include "stream/person_json.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/options.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/flesh_model.h"
+#include "vesalius/person_json.h"
 
 namespace vesalius {
 namespace {

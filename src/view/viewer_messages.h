@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/body_model.h"
+#include "vesalius/track_people.h"
 #include "view/player.h"
 
 namespace vesalius {

@@ -9,10 +9,10 @@
 
 #include "io/files/test_files.h"
 #include "io/recordings/test_recorded.h"
-#include "io/sources/open_source.h"
 #include "stream/test_crossing.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/test_blind_labeller.h"
+#include "vesalius/open_source.h"
 #include "view/test_page.h"
 
 namespace vesalius {

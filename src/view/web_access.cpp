@@ -9,7 +9,7 @@
 #include <boost/asio/ip/address.hpp>
 #include <cctype>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

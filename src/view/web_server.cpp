@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/quiet_thread.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <thread>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "view/test_page.h"
 
 namespace vesalius {

@@ -16,8 +16,8 @@ from expected import expect_example, expect_same, expected_frames, run
 
 C99 = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
 # The header in C++ of any age that has <cstdint>, included twice, and beside the C++ headers of vesalius.
-CPLUSPLUS = """#include <vesalius.h>
-#include <vesalius.h>
+CPLUSPLUS = """#include <vesalius/vesalius.h>
+#include <vesalius/vesalius.h>
 int main() {
   vesalius_options* options = nullptr;
   const bool made = vesalius_options_create(&options) == VESALIUS_OK && vesalius_options_count(options) > 50;

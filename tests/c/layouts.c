@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 #include <stdio.h>
-#include <vesalius.h>
+#include <vesalius/vesalius.h>
 
 #define AT(type, member) printf(" %zu", offsetof(type, member))
 #define BEGIN(name, type) printf("%s %zu:", name, sizeof(type))

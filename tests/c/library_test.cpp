@@ -16,13 +16,13 @@
 
 #include "io/files/options_file.h"
 #include "io/lens/rectification.h"
-#include "io/model/model_file.h"
-#include "io/sources/open_source.h"
-#include "vesalius.h"
 #include "vesalius/detect.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
+#include "vesalius/track_people.h"
+#include "vesalius/vesalius.h"
 
 namespace vesalius {
 namespace {

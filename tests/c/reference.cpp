@@ -8,10 +8,10 @@
 #include <fstream>
 #include <string>
 
-#include "io/model/model_file.h"
-#include "io/sources/open_source.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 #include "vesalius/detect.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

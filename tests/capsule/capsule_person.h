@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "capsule/capsule_shape.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

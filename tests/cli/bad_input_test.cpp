@@ -2,10 +2,10 @@
 
 #include <cstdlib>
 
-#include "io/files/image_file.h"
 #include "io/model/model_sections.h"
 #include "run_program.h"
 #include "small_world.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

@@ -12,9 +12,9 @@
 #include <thread>
 
 #include "io/sensors/sensor_drivers.h"
-#include "io/sources/open_source.h"
 #include "run_program.h"
 #include "small_world.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/model/model_file.h"
 #include "io/model/model_sections.h"
 #include "io/model/text_trees.h"
 #include "run_program.h"
 #include "small_world.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {

@@ -10,9 +10,9 @@
 #include <sstream>
 #include <thread>
 
-#include "io/files/image_file.h"
 #include "run_program.h"
 #include "small_world.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "capsule/capsule_person.h"
 #include "dataset/labelled_dataset.h"
-#include "io/files/image_file.h"
 #include "run_program.h"
 #include "small_world.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "io/files/atomic_file.h"
-#include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_world.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {
@@ -145,10 +145,10 @@ TEST_F(ModelRecipe, FitsAJudgeToTheForestOfAModelAtHand) {
   Model other = load_model(in("all.forest"));
   other.judge = {3, 0.F, std::vector<BoostedTree>(1)};  // of another version
   save_model(other, in("other.forest"));
-  std::string text =
-      with(kRecipe,
-           "frames = \"train\"\ntrees = 3\nhard-trees = 1\ndepth = 12\ncandidates = 20\npixels = 200\nleaf-rounds = 3\n",
-           "model = \"other.forest\"\n");
+  std::string text = with(
+      kRecipe,
+      "frames = \"train\"\ntrees = 3\nhard-trees = 1\ndepth = 12\ncandidates = 20\npixels = 200\nleaf-rounds = 3\n",
+      "model = \"other.forest\"\n");
   text = with(text, "[frames.train]\ncount = 80\nseed = 5\n", "");
   EXPECT_EQ(made(recipe(text), "again.forest"), all) << "the model says what it was made from, whatever it had before";
 }

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_frames.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {

@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include "capsule/capsule_person.h"
-#include "io/model/model_file.h"
 #include "io/sources/write_frames.h"
 #include "train/grow_forest.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {

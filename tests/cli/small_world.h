@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

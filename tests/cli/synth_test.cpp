@@ -8,10 +8,10 @@
 
 #include "dataset/labelled_dataset.h"
 #include "io/files/atomic_file.h"
-#include "io/files/image_file.h"
 #include "io/files/test_files.h"
-#include "io/sources/open_source.h"
 #include "run_program.h"
+#include "vesalius/image_file.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "io/files/atomic_file.h"
 #include "io/files/read_file.h"
-#include "io/model/model_file.h"
 #include "run_program.h"
 #include "small_frames.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {

@@ -9,11 +9,11 @@
 
 #include "dataset/open_truth.h"
 #include "evaluation/evaluation_joints.h"
-#include "io/model/model_file.h"
 #include "metrics/score_frame.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
 #include "vesalius/model.h"
+#include "vesalius/model_file.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -7,7 +7,7 @@
 #include "accuracy_guard.h"
 #include "io/files/read_file.h"
 #include "shared_frames.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

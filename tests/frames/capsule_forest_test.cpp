@@ -7,10 +7,10 @@
 #include <iostream>
 
 #include "capsule/capsule_person.h"
-#include "io/model/model_file.h"
 #include "vesalius/base/random.h"
 #include "vesalius/detect.h"
 #include "vesalius/find_clusters.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {

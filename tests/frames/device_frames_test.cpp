@@ -10,12 +10,12 @@
 #include "cuda/cuda_device.h"
 #include "cuda/device_labeller.h"
 #include "cuda/test_forests.h"
-#include "io/model/model_file.h"
 #include "shared_frames.h"
 #include "simulator/simulated_device.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/detect.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {

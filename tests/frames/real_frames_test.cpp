@@ -8,12 +8,12 @@
 #include <map>
 #include <set>
 
-#include "io/model/model_file.h"
 #include "metrics/pixel_metrics.h"
 #include "shared_frames.h"
 #include "vesalius/base/test_targets.h"
 #include "vesalius/base/test_threads.h"
 #include "vesalius/detect.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {

@@ -5,10 +5,10 @@
 #include <map>
 #include <sstream>
 
-#include "io/files/image_file.h"
-#include "io/model/model_file.h"
 #include "io/model/text_trees.h"
-#include "io/sources/open_source.h"
+#include "vesalius/image_file.h"
+#include "vesalius/model_file.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

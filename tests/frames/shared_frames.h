@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -18,7 +18,7 @@
 #include "ros2/dds/node_sink.h"
 #include "ros2/messages/people_topics.h"
 #include "ros2/messages/test_people.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "simulator/gpu_words.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 // Behind their words.
 #include "cuda/kernels.cuh"
 

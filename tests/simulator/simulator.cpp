@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::gpu {
 namespace {

@@ -67,8 +67,8 @@ class Simulator {
     Iterator begin_, end_;
   };
 
-  /// Runs `kernel` for every block of `shape`, on all allowed threads of the processor (base/parallel.h). Rethrows what
-  /// it throws.
+  /// Runs `kernel` for every block of `shape`, on all allowed threads of the processor (vesalius/parallel.h). Rethrows
+  /// what it throws.
   static void run(const LaunchShape& shape, const SimulatorOptions& options, const std::function<void()>& kernel);
 
   static unsigned block_x();

@@ -12,7 +12,7 @@
 #include "cuda/kernels.h"
 #include "simulator/gpu_words.h"
 #include "simulator/simulated_device.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::gpu {
 namespace {

@@ -66,7 +66,8 @@ def parse(text, arch):
 
 
 def compile_for(nvcc, source, arch):
-    flags = ["-std=c++20", "-O3", "-fmad=false", "--expt-relaxed-constexpr", f"-I{ROOT / 'src'}", f"-I{ROOT / 'training'}"]
+    flags = ["-std=c++20", "-O3", "-fmad=false", "--expt-relaxed-constexpr", f"-I{ROOT / 'include'}",
+             f"-I{ROOT / 'src'}", f"-I{ROOT / 'training'}"]
     command = [nvcc, *flags, f"-arch={arch}", "-Xptxas", "-v", "-cubin", "-o", "/dev/null", ROOT / source]
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
     if done.returncode != 0:

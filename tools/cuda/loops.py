@@ -21,7 +21,8 @@ def main():
     nvcc, nvdisasm, arch = (*sys.argv[1:], "sm_90")[:3]
     with tempfile.TemporaryDirectory() as folder:
         binary = Path(folder) / "kernels.cubin"
-        flags = ["-std=c++20", "-O3", "-fmad=false", "--expt-relaxed-constexpr", f"-I{ROOT / 'src'}", f"-arch={arch}", "-cubin"]
+        flags = ["-std=c++20", "-O3", "-fmad=false", "--expt-relaxed-constexpr", f"-I{ROOT / 'include'}",
+                 f"-I{ROOT / 'src'}", f"-arch={arch}", "-cubin"]
         subprocess.run([nvcc, *flags, "-o", binary, ROOT / "src/cuda/cuda_device.cu"], check=True)
         text = subprocess.run([nvdisasm, "-c", binary], check=True, capture_output=True, text=True).stdout
     for part in re.split(r"\n\s*\.section\s+\.text\.", text)[1:]:

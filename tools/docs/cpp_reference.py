@@ -52,18 +52,18 @@ WARN_LOGFILE = {out}/warnings
 
 
 def libraries(source):
-    """Libraries with headers that are installed: the core first, the others by name."""
+    """Libraries with C++ headers that are installed: the core first, the others by name."""
     folder = source / "src"
     found = [check_layers.read_library(path, source) for path in sorted(folder.rglob("CMakeLists.txt"))]
-    found = [library for library in found if library and library.public]
+    found = [library for library in found if library and library.public and library.name != "c_interface"]
     return sorted(found, key=lambda library: (library.name != "core", library.name))
 
 
 def run_doxygen(headers, source, out):
     out.mkdir(parents=True, exist_ok=True)
-    inputs = " ".join(f'"{source / "src" / header}"' for header in headers)
+    inputs = " ".join(f'"{source / "include" / header}"' for header in headers)
     doxyfile = out / "Doxyfile"
-    doxyfile.write_text(DOXYFILE.format(inputs=inputs, source=source / "src", out=out))
+    doxyfile.write_text(DOXYFILE.format(inputs=inputs, source=source / "include", out=out))
     done = subprocess.run(["doxygen", str(doxyfile)], check=False, stdout=subprocess.DEVNULL)
     warnings = (out / "warnings").read_text() if (out / "warnings").exists() else ""
     if done.returncode != 0 or warnings:
@@ -74,12 +74,9 @@ def heading(text, mark="="):
     return f"{text}\n{mark * len(text)}\n\n"
 
 
-def folders(library):
-    """A library's headers by the folder that they stand in."""
-    found = {}
-    for header in sorted(library.public):
-        found.setdefault(str(Path(header).parent), []).append(header)
-    return found
+def headers_of(library):
+    """A library's headers as programs include them."""
+    return sorted(f"vesalius/{Path(header).name}" for header in library.public)
 
 
 def header_section(header):
@@ -93,9 +90,10 @@ def component(library):
     return ".. code-block:: cmake\n\n" + textwrap.indent(text, "   ") + "\n\n"
 
 
-def folder_page(folder, headers, library):
+def page_of(library):
+    headers = headers_of(library)
     first = f".. code-block:: cpp\n\n   #include \"{headers[0]}\"\n\n"
-    return heading(folder) + component(library) + first + "Everything is in the namespace ``vesalius``.\n\n" + \
+    return heading(library.name) + component(library) + first + "Everything is in the namespace ``vesalius``.\n\n" + \
         "".join(map(header_section, headers))
 
 
@@ -103,16 +101,13 @@ def write(source, staged, work):
     """Writes the pages below staged/reference/cpp. Returns the folder of Doxygen's XML."""
     folder = staged / "reference/cpp"
     found = libraries(source)
-    run_doxygen([header for library in found for header in sorted(library.public)], source, work / "doxygen")
+    run_doxygen([header for library in found for header in headers_of(library)], source, work / "doxygen")
     folder.mkdir(parents=True, exist_ok=True)
     index = heading("C++ reference") + \
         "From the headers that ``cmake --install`` puts in place. The guide :doc:`/library` has a program to begin with.\n\n"
     for library in found:
         index += heading(library.name, "-") + ABOUT.get(library.name, "") + "\n\n.. toctree::\n   :maxdepth: 1\n\n"
-        for name, headers in folders(library).items():
-            page = name.replace("/", "-")
-            (folder / f"{page}.rst").write_text(folder_page(name, headers, library))
-            index += f"   {page}\n"
-        index += "\n"
+        (folder / f"{library.name}.rst").write_text(page_of(library))
+        index += f"   {library.name}\n\n"
     (folder / "index.rst").write_text(index)
     return work / "doxygen/xml"

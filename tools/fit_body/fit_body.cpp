@@ -13,7 +13,7 @@
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
 #include "fitted_toml.h"
-#include "io/model/model_file.h"
+#include "vesalius/model_file.h"
 #include "learn/fit_stances.h"
 #include "learn/fit_trust.h"
 #include "synth/fit_flesh.h"

@@ -10,8 +10,8 @@
 #include "commands/synth/frame_maker.h"
 #include "commands/synth/synth_recipe.h"
 #include "commands/synth/write_dataset.h"
-#include "io/files/image_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/image_file.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/joint_trust.h"
 
 namespace vesalius {

@@ -4,7 +4,7 @@
 
 #include "learn/fit_distribution.h"
 #include "learn/fit_joints.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "../run_tool.h"
 #include "dataset/open_truth.h"
-#include "io/model/model_file.h"
+#include "vesalius/model_file.h"
 #include "link_lengths.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/detect.h"
 
 namespace vesalius {

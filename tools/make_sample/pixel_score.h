@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/frame.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

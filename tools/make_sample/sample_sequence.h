@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

@@ -12,7 +12,7 @@
 #include "train/leaves/leaf_shard.h"
 #include "train/sharded.h"
 #include "train/split_candidates.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -11,7 +11,7 @@
 #include "io/files/atomic_file.h"
 #include "io/files/data_file.h"
 #include "io/files/read_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

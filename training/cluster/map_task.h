@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cluster/store.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

@@ -6,7 +6,7 @@
 
 #include "cluster/message.h"
 #include "cluster/reduce_task.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "io/files/byte_stream.h"
 #include "train/messages/training_messages.h"
-#include "vesalius/base/camera.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/camera.h"
+#include "vesalius/forest.h"
 
 // What tasks and driver of a cluster send each other (docs/formats.md): bytes in an envelope with version and checksum.
 namespace vesalius {

@@ -1,7 +1,7 @@
 #include "cluster/folder_store.h"
 #include "cluster/store.h"
 #include "cluster/webhdfs_store.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

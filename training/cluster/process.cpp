@@ -13,7 +13,7 @@
 
 #include "folders/temporary_folder.h"
 #include "io/files/read_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 extern char** environ;
 

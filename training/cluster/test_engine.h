@@ -10,7 +10,7 @@
 #include "cluster/engine.h"
 #include "cluster/map_task.h"
 #include "cluster/reduce_task.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::test {
 

@@ -13,7 +13,7 @@
 #include "train/growing_tree.h"
 #include "train/messages/leaf_messages.h"
 #include "train/messages/training_messages.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

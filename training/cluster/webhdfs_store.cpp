@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "cluster/store_name.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -11,8 +11,8 @@
 #include "cuda_train/test_simulated_training.h"
 #include "train/grow_forest.h"
 #include "train/test_training.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/error.h"
 
 namespace vesalius::gpu {
 namespace {

@@ -8,7 +8,7 @@
 #include "cuda/device_labeller.h"
 #include "cuda/kernels.h"
 #include "train/leaves/leaf_shard.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::gpu {
 

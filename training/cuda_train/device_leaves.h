@@ -7,7 +7,7 @@
 #include "cuda_train/device_samples.h"
 #include "train/messages/leaf_messages.h"
 #include "train/sharded.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius::gpu {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "train/split_candidates.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::gpu {
 namespace {

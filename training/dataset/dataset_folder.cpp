@@ -9,8 +9,8 @@
 
 #include "dataset/labelled_frame_codec.h"
 #include "io/files/byte_stream.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/error.h"
+#include "vesalius/body_model.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "dataset/clip_layout.h"
 #include "dataset/dataset_shard.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 // The folder of a labelled dataset: dataset.json describes it, and NNNNNN.shard files hold its frames
 // (docs/formats.md).

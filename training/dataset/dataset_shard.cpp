@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "io/files/byte_stream.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -9,7 +9,7 @@
 #include "io/files/atomic_file.h"
 #include "io/files/byte_stream.h"
 #include "io/files/read_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -8,7 +8,7 @@
 #include "dataset/dataset_folder.h"
 #include "dataset/labelled_frame_codec.h"
 #include "folders/folder_lock.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius {
 

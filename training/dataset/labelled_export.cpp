@@ -9,8 +9,8 @@
 
 #include "dataset/labelled_frame_codec.h"
 #include "io/files/atomic_file.h"
-#include "io/files/image_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

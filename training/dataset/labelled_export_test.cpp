@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "dataset/test_dataset.h"
-#include "io/files/image_file.h"
-#include "io/sources/open_source.h"
+#include "vesalius/image_file.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

@@ -12,10 +12,10 @@
 #include "dataset/dataset_shard.h"
 #include "dataset/labelled_frame_codec.h"
 #include "io/files/byte_stream.h"
-#include "io/files/image_file.h"
 #include "io/files/read_file.h"
 #include "io/sources/folder_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "dataset/clip_layout.h"
 #include "io/sources/list_source.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

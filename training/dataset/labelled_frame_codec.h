@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

@@ -10,8 +10,8 @@
 #include "dataset/skeleton_truth.h"
 #include "dataset/stepped_source.h"
 #include "dataset/truth_folder.h"
-#include "io/sources/open_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "dataset/truth_source.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "io/files/byte_stream.h"
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 // Lossless compression of pictures in labelled datasets (docs/formats.md). Reading needs the size of the picture,
 // allocates no more memory than that size needs, and throws Error for bytes that do not decode to it.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

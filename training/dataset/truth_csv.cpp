@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "io/files/read_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "dataset/truth_csv.h"
 #include "dataset/truth_headings.h"
-#include "io/files/image_file.h"
 #include "io/sources/folder_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

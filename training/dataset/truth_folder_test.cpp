@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "io/files/image_file.h"
 #include "io/files/test_files.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

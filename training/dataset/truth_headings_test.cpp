@@ -1,8 +1,8 @@
 #include "dataset/truth_headings.h"
 
 #include "dataset/open_truth.h"
-#include "io/files/image_file.h"
 #include "io/files/test_files.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

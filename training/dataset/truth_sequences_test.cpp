@@ -2,7 +2,7 @@
 
 #include "dataset/open_truth.h"
 #include "dataset/test_dataset.h"
-#include "io/files/image_file.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

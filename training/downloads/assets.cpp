@@ -14,7 +14,7 @@
 #include "downloads/unpack.h"
 #include "folders/folder_lock.h"
 #include "io/files/read_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

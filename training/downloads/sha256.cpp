@@ -10,7 +10,7 @@
 #include <system_error>
 #include <vector>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

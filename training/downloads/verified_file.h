@@ -6,7 +6,7 @@
 
 #include "downloads/sha256.h"
 #include "io/files/descriptor.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

@@ -9,11 +9,11 @@
 
 #include "evaluation/evaluation_json.h"
 #include "evaluation/evaluation_summary.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/flesh_model.h"
 #include "vesalius/forest/test_blind_labeller.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -10,7 +10,7 @@
 #include "evaluation/evaluation_json.h"
 #include "evaluation/evaluation_summary.h"
 #include "io/files/test_files.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/test_blind_labeller.h"
 
 namespace vesalius {

@@ -12,9 +12,9 @@
 #include "metrics/metric_table.h"
 #include "metrics/pixel_metrics.h"
 #include "metrics/score_frame.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+#include "vesalius/track_people.h"
 
 namespace vesalius {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius {
 

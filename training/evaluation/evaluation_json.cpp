@@ -10,7 +10,7 @@
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "metrics/compare_metrics.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

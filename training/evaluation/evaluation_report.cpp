@@ -8,12 +8,12 @@
 #include <span>
 #include <utility>
 
-#include "draw/draw.h"
 #include "evaluation/evaluation_json.h"
 #include "evaluation/evaluation_summary.h"
 #include "io/files/atomic_file.h"
-#include "io/files/image_file.h"
 #include "report/document.h"
+#include "vesalius/draw.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

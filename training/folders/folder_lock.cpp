@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/logistic.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "metrics/fit_samples.h"
-#include "vesalius/forest/boosted_trees.h"
+#include "vesalius/boosted_trees.h"
 
 namespace vesalius {
 

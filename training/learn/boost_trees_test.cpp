@@ -7,9 +7,9 @@
 #include <functional>
 #include <vector>
 
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

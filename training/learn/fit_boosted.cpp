@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/score_person.h"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "learn/boost_trees.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius {
 

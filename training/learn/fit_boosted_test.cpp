@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/body_context.h"
 #include "vesalius/score_person.h"
 

@@ -8,8 +8,8 @@
 
 #include "metrics/joint_metrics.h"
 #include "metrics/median.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/logistic.h"
+#include "vesalius/error.h"
 #include "vesalius/predict_parts.h"
 
 namespace vesalius {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "learn/fit_joints.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius {
 

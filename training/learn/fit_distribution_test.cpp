@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "metrics/joint_metrics.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 #include "vesalius/predict_parts.h"
 
 namespace vesalius {

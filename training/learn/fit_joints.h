@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "metrics/fit_samples.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 #include "vesalius/derive_joints.h"
 
 namespace vesalius {

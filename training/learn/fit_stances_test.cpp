@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

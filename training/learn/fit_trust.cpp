@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "learn/fit_logistic.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

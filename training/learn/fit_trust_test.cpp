@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/flesh_joints.h"
 
 namespace vesalius {

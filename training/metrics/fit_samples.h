@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "metrics/frame_truth.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
 #include "vesalius/detect.h"
 #include "vesalius/fit/joint_trust.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

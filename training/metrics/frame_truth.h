@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "metrics/heading.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

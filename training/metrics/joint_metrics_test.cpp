@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "metrics/test_terms.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

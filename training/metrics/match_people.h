@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "metrics/frame_truth.h"
-#include "vesalius/base/image.h"
 #include "vesalius/detect.h"
+#include "vesalius/image.h"
 #include "vesalius/trace.h"
 
 namespace vesalius {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

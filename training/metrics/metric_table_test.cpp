@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "metrics/frame_truth.h"
 #include "metrics/metric_table.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/image.h"
+#include "vesalius/body_model.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "metrics/test_terms.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -12,7 +12,7 @@
 #include "metrics/joint_sight.h"
 #include "metrics/match_people.h"
 #include "metrics/side_metrics.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/predict_parts.h"
 
 namespace vesalius {

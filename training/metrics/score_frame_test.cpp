@@ -9,8 +9,8 @@
 #include "capsule/capsule_person.h"
 #include "metrics/match_people.h"
 #include "metrics/test_terms.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/pixel_grid.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

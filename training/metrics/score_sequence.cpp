@@ -10,8 +10,8 @@
 
 #include "metrics/joint_metrics.h"
 #include "metrics/match_people.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/error.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 namespace {

@@ -10,7 +10,7 @@
 #include "metrics/score_frame.h"
 #include "metrics/track_metrics.h"
 #include "metrics/track_sample.h"
-#include "vesalius/base/person.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

@@ -6,7 +6,7 @@
 #include "metrics/frame_truth.h"
 #include "metrics/heading.h"
 #include "metrics/metric_table.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 #include "vesalius/detect.h"
 
 namespace vesalius {

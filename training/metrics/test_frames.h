@@ -4,7 +4,7 @@
 
 #include "capsule/capsule_person.h"
 #include "metrics/frame_truth.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius::test {
 

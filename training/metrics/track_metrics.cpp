@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "vesalius/base/assign_pairs.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "metrics/frame_truth.h"
 #include "metrics/track_metrics.h"
-#include "vesalius/base/person.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

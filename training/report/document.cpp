@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "io/files/atomic_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

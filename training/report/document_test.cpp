@@ -7,7 +7,7 @@
 
 #include "io/files/read_file.h"
 #include "io/files/test_files.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

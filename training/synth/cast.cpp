@@ -6,7 +6,7 @@
 #include "synth/dress/dress.h"
 #include "synth/pose/mix_poses.h"
 #include "synth/random_streams.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

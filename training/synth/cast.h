@@ -9,8 +9,8 @@
 #include "synth/body/makehuman.h"
 #include "synth/recipe.h"
 #include "synth/scene/person_plan.h"
-#include "vesalius/base/body_model.h"
 #include "vesalius/base/random.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius::synth {
 

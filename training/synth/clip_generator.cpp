@@ -13,7 +13,7 @@
 #include "synth/pose/change_posture.h"
 #include "synth/pose/fidget.h"
 #include "synth/random_streams.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

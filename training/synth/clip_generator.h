@@ -6,7 +6,7 @@
 #include "synth/bodies_and_motions.h"
 #include "synth/clip/build_clip.h"
 #include "synth/recipe.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius::synth {
 

@@ -8,8 +8,8 @@
 
 #include "synth/clip/plan_stroll.h"
 #include "synth/skeleton_joints.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::synth {
 namespace {

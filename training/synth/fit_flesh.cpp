@@ -11,8 +11,8 @@
 #include <numeric>
 
 #include "synth/body/surface_parts.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/fit/flesh_model.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::synth {
 namespace {

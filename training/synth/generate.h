@@ -6,8 +6,8 @@
 #include "synth/bodies_and_motions.h"
 #include "synth/recipe.h"
 #include "synth/scene/build_scene.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
 
 namespace vesalius::synth {
 

@@ -6,7 +6,7 @@
 
 #include "synth/recipe.h"
 #include "synth/scene/build_scene.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius::synth {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

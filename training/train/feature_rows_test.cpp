@@ -6,9 +6,9 @@
 
 #include "train/samples/walk_samples.h"
 #include "train/split_candidates.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
 #include "vesalius/base/test_targets.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {

@@ -10,8 +10,8 @@
 
 #include "train/leaves/fit_facing.h"
 #include "train/local_executor.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

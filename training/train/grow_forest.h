@@ -7,10 +7,10 @@
 #include "train/leaves/learn_leaves.h"
 #include "train/leaves/tree_store.h"
 #include "train/messages/training_protocol.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
 #include "vesalius/base/options.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/body_model.h"
+#include "vesalius/forest.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

@@ -6,9 +6,9 @@
 
 #include "capsule/capsule_person.h"
 #include "train/split_candidates.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/tree_walk.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -11,7 +11,7 @@
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
 #include "vesalius/base/options.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -8,7 +8,7 @@
 #include "train/messages/grow_options.h"
 #include "train/messages/training_protocol.h"
 #include "train/samples/training_set.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

@@ -13,8 +13,8 @@
 #include "train/local_shards.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/tree_walk.h"
 
 namespace vesalius {

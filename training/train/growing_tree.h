@@ -8,7 +8,7 @@
 #include "train/leaves/prune_tree.h"
 #include "train/messages/grow_options.h"
 #include "train/messages/training_messages.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

@@ -7,7 +7,7 @@
 #include "train/grow_tree.h"
 #include "train/leaves/leaf_shard.h"
 #include "train/local_shards.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 

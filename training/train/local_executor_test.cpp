@@ -6,7 +6,7 @@
 
 #include "train/grow_forest.h"
 #include "train/test_training.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -4,7 +4,7 @@
 #include <future>
 #include <vector>
 
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 

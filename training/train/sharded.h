@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "train/messages/training_protocol.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 

@@ -8,7 +8,7 @@
 #include "train/samples/walk_samples.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -8,7 +8,7 @@
 #include "console/satellites.h"
 #include "cuda/cuda_device.h"
 #include "cuda/cuda_labeller.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

@@ -17,9 +17,9 @@
 #include "console/progress.h"
 #include "console/source_flags.h"
 #include "console/text_sink.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/keep_memory.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "console/text_sink.h"
 #include "io/sensors/sensor_drivers.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

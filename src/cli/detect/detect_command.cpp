@@ -15,10 +15,10 @@
 #include "console/progress.h"
 #include "console/source_flags.h"
 #include "console/text_sink.h"
-#include "stream/detect_stream.h"
 #include "vesalius/base/keep_memory.h"
-#include "vesalius/base/parallel.h"
-#include "vesalius/base/stage_times.h"
+#include "vesalius/detect_stream.h"
+#include "vesalius/parallel.h"
+#include "vesalius/stage_times.h"
 
 namespace vesalius::cli {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-#include "draw/draw.h"
-#include "io/files/image_file.h"
 #include "io/files/ply.h"
-#include "stream/person_json.h"
+#include "vesalius/draw.h"
+#include "vesalius/image_file.h"
+#include "vesalius/person_json.h"
 
 namespace vesalius::cli {
 namespace {

@@ -8,9 +8,9 @@
 #include "console/text_sink.h"
 #include "draw/video.h"
 #include "io/net/udp_sender.h"
-#include "stream/detect_stream.h"
 #include "stream/osc_messages.h"
 #include "vesalius/detect.h"
+#include "vesalius/detect_stream.h"
 
 namespace vesalius::cli {
 

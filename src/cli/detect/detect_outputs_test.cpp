@@ -7,8 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "io/files/image_file.h"
 #include "vesalius/derive_joints.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/stage_times.h"
+#include "vesalius/stage_times.h"
 
 namespace vesalius::cli {
 

@@ -12,9 +12,9 @@
 #include "console/source_flags.h"
 #include "console/text_sink.h"
 #include "io/recordings/frame_recorder.h"
-#include "stream/detect_stream.h"
-#include "stream/person_json.h"
 #include "vesalius/base/keep_memory.h"
+#include "vesalius/detect_stream.h"
+#include "vesalius/person_json.h"
 
 namespace vesalius::cli {
 namespace {

@@ -17,10 +17,10 @@
 #include "io/sensors/live_source.h"
 #include "ros2/dds/node_sink.h"
 #include "ros2/messages/record_sink.h"
-#include "stream/detect_stream.h"
-#include "stream/person_json.h"
 #include "vesalius/base/keep_memory.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/detect_stream.h"
+#include "vesalius/parallel.h"
+#include "vesalius/person_json.h"
 
 namespace vesalius::cli {
 namespace {

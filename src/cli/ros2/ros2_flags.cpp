@@ -10,7 +10,7 @@
 #include <set>
 
 #include "ros2/messages/names.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "ros2/dds/node.h"
 #include "ros2/dds/topic_source.h"
 #include "ros2/messages/people_topics.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace CLI {
 class App;

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

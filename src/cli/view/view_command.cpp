@@ -18,7 +18,7 @@
 #include "console/source_flags.h"
 #include "console/text_sink.h"
 #include "vesalius/base/keep_memory.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 #include "view/viewer.h"
 
 namespace vesalius::cli {

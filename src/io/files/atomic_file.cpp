@@ -16,7 +16,7 @@
 #include <optional>
 #include <system_error>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

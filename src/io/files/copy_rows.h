@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

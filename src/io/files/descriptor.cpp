@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

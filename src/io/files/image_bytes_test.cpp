@@ -6,8 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
-#include "io/files/image_file.h"
 #include "io/files/test_files.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

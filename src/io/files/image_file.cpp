@@ -1,4 +1,4 @@
-#include "io/files/image_file.h"
+#include "vesalius/image_file.h"
 
 #include <fmt/format.h>
 #include <spng.h>
@@ -12,7 +12,7 @@
 #include "io/files/atomic_file.h"
 #include "io/files/image_bytes.h"
 #include "io/files/read_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

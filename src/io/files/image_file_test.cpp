@@ -1,4 +1,4 @@
-#include "io/files/image_file.h"
+#include "vesalius/image_file.h"
 
 #include <gmock/gmock.h>
 #include <turbojpeg.h>

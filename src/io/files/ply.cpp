@@ -7,7 +7,7 @@
 #include <bit>
 
 #include "io/files/atomic_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "io/files/data_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

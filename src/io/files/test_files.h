@@ -11,9 +11,9 @@
 #include <string>
 #include <string_view>
 
-#include "vesalius/base/error.h"
-#include "vesalius/base/frame.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
+#include "vesalius/frame.h"
 
 // Helpers that the tests of io share.
 namespace vesalius::test {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "io/lens/fixed_point.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "io/lens/lens.h"
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

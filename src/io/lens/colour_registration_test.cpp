@@ -4,7 +4,7 @@
 
 #include "io/files/test_files.h"
 #include "io/lens/test_scenes.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/camera.h"
+#include "vesalius/camera.h"
 
 namespace vesalius {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "io/lens/fixed_point.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/lens/lens.h"
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

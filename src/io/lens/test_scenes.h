@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "io/lens/lens.h"
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius::test {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "io/files/test_files.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "io/files/byte_stream.h"
-#include "vesalius/forest/boosted_trees.h"
+#include "vesalius/boosted_trees.h"
+#include "vesalius/forest.h"
 #include "vesalius/forest/facing.h"
-#include "vesalius/forest/forest.h"
 
 // What the sections of a model file hold (docs/formats.md). Reading throws Error for bytes that cannot be decoded;
 // whether they make sense is left to check(Model).

@@ -1,4 +1,4 @@
-#include "io/model/model_file.h"
+#include "vesalius/model_file.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "io/model/model_contents.h"
 #include "io/model/model_sections.h"
 #include "io/model/old_model.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

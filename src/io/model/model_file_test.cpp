@@ -1,4 +1,4 @@
-#include "io/model/model_file.h"
+#include "vesalius/model_file.h"
 
 #include <gmock/gmock.h>
 
@@ -7,8 +7,8 @@
 #include "io/files/test_files.h"
 #include "io/model/model_sections.h"
 #include "io/model/test_forest.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

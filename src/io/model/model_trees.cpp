@@ -7,7 +7,7 @@
 #include <string>
 
 #include "io/files/packed.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 // Trees are stored by columns: all first offsets, then all second ones and so on, since numbers of one kind compress
 // best together. A column may be sorted by a context, which is something read before it that tells which values to

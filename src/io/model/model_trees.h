@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "io/files/byte_stream.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 // The trees of a model file (docs/formats.md). Reading throws Error for bytes that cannot be decoded. Whether the trees
 // make sense is left to check(Forest).

@@ -4,10 +4,10 @@
 
 #include "io/files/byte_stream.h"
 #include "io/model/model_contents.h"
-#include "io/model/model_file.h"
 #include "io/model/model_sections.h"
 #include "io/model/test_forest.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {

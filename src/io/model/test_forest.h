@@ -5,7 +5,7 @@
 
 #include "io/files/byte_stream.h"
 #include "vesalius/base/random.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 #include "vesalius/forest/leaf_logits.h"
 #include "vesalius/model.h"
 

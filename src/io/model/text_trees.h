@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

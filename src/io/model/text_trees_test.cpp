@@ -11,10 +11,10 @@
 
 #include "io/files/read_file.h"
 #include "io/files/test_files.h"
-#include "io/sources/open_source.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/tree_walk.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

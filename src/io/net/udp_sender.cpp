@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

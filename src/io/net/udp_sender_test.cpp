@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

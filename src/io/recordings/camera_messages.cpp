@@ -7,12 +7,12 @@
 #include <cstring>
 
 #include "io/files/image_bytes.h"
-#include "io/files/image_file.h"
 #include "io/recordings/depth_codecs.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/realsense_topics.h"
 #include "vesalius/base/depth_reading.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "io/recordings/recording.h"
-#include "vesalius/base/camera.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/camera.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

@@ -6,9 +6,9 @@
 
 #include "io/files/byte_stream.h"
 #include "io/files/image_bytes.h"
-#include "io/files/image_file.h"
 #include "vesalius/base/depth_reading.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "io/files/byte_stream.h"
-#include "io/files/image_file.h"
 #include "io/files/test_files.h"
 #include "vesalius/base/random.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/files/byte_stream.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -12,7 +12,7 @@
 #include "io/files/byte_stream.h"
 #include "io/recordings/mcap_records.h"
 #include "io/recordings/time_difference.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -1,6 +1,6 @@
 // In place of mkv_recording.cpp where libavformat was not found.
 #include "io/recordings/mkv_recording.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

@@ -16,7 +16,7 @@
 #include "io/recordings/matroska_end.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/transform_messages.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

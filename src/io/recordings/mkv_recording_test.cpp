@@ -7,7 +7,7 @@
 #include "io/lens/colour_registration.h"
 #include "io/lens/rectification.h"
 #include "io/recordings/test_k4a.h"
-#include "io/sources/open_source.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

@@ -8,7 +8,7 @@
 #include "io/recordings/mcap_records.h"
 #include "io/recordings/mkv_recording.h"
 #include "io/recordings/sqlite_recording.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "io/recordings/decompress.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

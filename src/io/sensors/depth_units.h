@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

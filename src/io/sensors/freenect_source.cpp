@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "io/sensors/live_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "io/sensors/sensor.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

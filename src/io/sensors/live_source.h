@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io/lens/lens.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

@@ -14,7 +14,7 @@
 
 #include "io/files/copy_rows.h"
 #include "io/sensors/live_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

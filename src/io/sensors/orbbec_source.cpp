@@ -18,7 +18,7 @@
 #include "io/sensors/live_source.h"
 #include "io/sensors/orbbec_api.h"
 #include "io/sensors/run_time_library.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io/sensors/live_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

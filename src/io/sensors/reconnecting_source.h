@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "io/sensors/live_source.h"
-#include "io/sources/open_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

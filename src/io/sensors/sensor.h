@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

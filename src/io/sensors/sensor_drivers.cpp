@@ -8,7 +8,7 @@
 #include "io/sensors/openni2_source.h"
 #include "io/sensors/orbbec_source.h"
 #include "io/sensors/realsense_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "io/lens/lens.h"
-#include "vesalius/base/camera.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/camera.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 
-#include "io/files/image_file.h"
 #include "io/files/test_files.h"
 #include "io/lens/rectification.h"
-#include "io/sources/open_source.h"
+#include "vesalius/image_file.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

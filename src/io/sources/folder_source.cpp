@@ -9,7 +9,7 @@
 #include <string>
 #include <system_error>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

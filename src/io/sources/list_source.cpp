@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "io/files/image_file.h"
 #include "io/sources/frame_times.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

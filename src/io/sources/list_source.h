@@ -9,7 +9,7 @@
 
 #include "io/lens/rectification.h"
 #include "io/sources/camera_file.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

@@ -1,4 +1,4 @@
-#include "io/sources/open_source.h"
+#include "vesalius/open_source.h"
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@
 #include "io/sources/pcd_source.h"
 #include "io/sources/recording_source.h"
 #include "io/sources/tum.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

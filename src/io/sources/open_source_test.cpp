@@ -1,4 +1,4 @@
-#include "io/sources/open_source.h"
+#include "vesalius/open_source.h"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>
@@ -12,9 +12,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "io/files/image_file.h"
 #include "io/files/test_files.h"
 #include "io/sources/test_pcd_write.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

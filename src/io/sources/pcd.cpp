@@ -13,7 +13,7 @@
 
 #include "io/files/image_bytes.h"
 #include "io/sources/pcd_header.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "io/sources/camera_file.h"
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

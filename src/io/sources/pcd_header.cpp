@@ -5,7 +5,7 @@
 #include <charconv>
 #include <optional>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -10,7 +10,7 @@
 #include "io/sources/folder_source.h"
 #include "io/sources/frame_times.h"
 #include "io/sources/pcd.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

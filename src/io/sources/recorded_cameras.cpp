@@ -14,7 +14,7 @@
 #include "io/recordings/realsense_topics.h"
 #include "io/recordings/transform_messages.h"
 #include "io/sources/calibrated_camera.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -8,7 +8,7 @@
 #include "io/lens/lens.h"
 #include "io/recordings/recording.h"
 #include "io/sources/camera_file.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius {
 

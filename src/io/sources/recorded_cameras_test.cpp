@@ -5,8 +5,8 @@
 #include "io/files/test_files.h"
 #include "io/lens/colour_registration.h"
 #include "io/lens/rectification.h"
-#include "io/sources/open_source.h"
 #include "io/sources/test_messages.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

@@ -22,7 +22,7 @@
 #include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
 #include "io/sources/recorded_cameras.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

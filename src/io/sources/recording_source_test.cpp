@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "io/files/image_file.h"
 #include "io/files/test_files.h"
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/frame_recorder.h"
-#include "io/sources/open_source.h"
 #include "io/sources/test_messages.h"
+#include "vesalius/image_file.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

@@ -10,7 +10,7 @@
 #include "io/recordings/imu_messages.h"
 #include "io/recordings/mcap_writer.h"
 #include "io/recordings/transform_messages.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius::test {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "io/sources/pcd_header.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius::test {
 

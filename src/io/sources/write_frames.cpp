@@ -10,9 +10,9 @@
 #include <system_error>
 
 #include "io/files/atomic_file.h"
-#include "io/files/image_file.h"
 #include "io/sources/camera_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

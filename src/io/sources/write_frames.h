@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

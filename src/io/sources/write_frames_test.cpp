@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "io/files/test_files.h"
-#include "io/sources/open_source.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

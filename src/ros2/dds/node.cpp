@@ -14,7 +14,7 @@
 
 #include "ros2/dds/byte_type.h"
 #include "ros2/messages/names.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::ros2 {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "io/recordings/message_fields.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::ros2 {
 namespace {

@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "io/sensors/live_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::ros2 {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "ros2/dds/node.h"
 #include "ros2/messages/topic_frames.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius::ros2 {
 

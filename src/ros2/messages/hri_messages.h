@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ros2/messages/named_joints.h"
-#include "vesalius/base/camera.h"
+#include "vesalius/camera.h"
 
 namespace vesalius::ros2 {
 

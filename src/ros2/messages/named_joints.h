@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
+#include "vesalius/person.h"
 
 namespace vesalius::ros2 {
 

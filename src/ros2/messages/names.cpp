@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::ros2 {
 namespace {

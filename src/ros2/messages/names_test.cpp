@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::ros2 {
 namespace {

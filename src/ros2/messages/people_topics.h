@@ -12,7 +12,7 @@
 #include "ros2/messages/cloud_message.h"
 #include "ros2/messages/message_sink.h"
 #include "ros2/messages/named_joints.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius::ros2 {
 

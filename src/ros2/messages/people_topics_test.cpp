@@ -10,7 +10,7 @@
 #include "io/recordings/people_messages.h"
 #include "ros2/messages/hri_messages.h"
 #include "ros2/messages/test_people.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::ros2 {
 namespace {

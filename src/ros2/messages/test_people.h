@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/person.h"
 #include "vesalius/derive_joints.h"
+#include "vesalius/person.h"
 
 namespace vesalius::ros2::test {
 

@@ -8,7 +8,7 @@
 
 #include "io/recordings/time_difference.h"
 #include "io/sources/calibrated_camera.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::ros2 {
 namespace {

@@ -14,7 +14,7 @@
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/recording.h"
 #include "ros2/messages/people_topics.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius::ros2 {
 

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "ros2/messages/test_people.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::ros2 {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

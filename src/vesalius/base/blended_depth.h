@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
-#include "vesalius/base/people_options.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
+#include "vesalius/people_options.h"
 
 namespace vesalius {
 

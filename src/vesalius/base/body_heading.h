@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius {
 

@@ -1,4 +1,4 @@
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -1,8 +1,8 @@
-#include "vesalius/base/camera.h"
+#include "vesalius/camera.h"
 
 #include <cmath>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
-#include "vesalius/base/person.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

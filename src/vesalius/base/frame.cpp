@@ -1,6 +1,6 @@
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

@@ -1,4 +1,4 @@
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 #include <gtest/gtest.h>
 

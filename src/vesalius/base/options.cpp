@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

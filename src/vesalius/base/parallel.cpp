@@ -1,4 +1,4 @@
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -1,4 +1,4 @@
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "vesalius/base/people_options.h"
+#include "vesalius/people_options.h"
 
 #include "vesalius/base/options.h"
 

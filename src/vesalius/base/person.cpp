@@ -1,4 +1,4 @@
-#include "vesalius/base/person.h"
+#include "vesalius/person.h"
 
 #include <limits>
 #include <utility>

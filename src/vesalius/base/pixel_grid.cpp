@@ -1,6 +1,6 @@
 #include "vesalius/base/pixel_grid.h"
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <string>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
-#include "vesalius/base/parallel.h"
-#include "vesalius/base/people_options.h"
-#include "vesalius/base/stage_times.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
+#include "vesalius/parallel.h"
+#include "vesalius/people_options.h"
+#include "vesalius/stage_times.h"
 
 namespace vesalius {
 

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 // This header is for sources that read TOML. Headers must not include it, because it is slow to compile.
 namespace vesalius {

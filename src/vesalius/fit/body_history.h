@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "vesalius/base/person.h"
 #include "vesalius/fit/fit_body.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

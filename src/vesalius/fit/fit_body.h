@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
 #include "vesalius/fit/body_state.h"
 #include "vesalius/fit/fit_terms.h"
 #include "vesalius/fit/flesh_model.h"
 #include "vesalius/fit/joint_trust.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/test_flesh.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/people_options.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
 #include "vesalius/fit/body_state.h"
 #include "vesalius/fit/normal_equations.h"
 #include "vesalius/fit/silhouette.h"
+#include "vesalius/people_options.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/test_flesh.h"
 
 namespace vesalius {

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
 #include "vesalius/fit/flesh_model.h"
 #include "vesalius/fit/joint_trust.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

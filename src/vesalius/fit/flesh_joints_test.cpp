@@ -10,7 +10,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/test_bad_toml.h"
 #include "vesalius/fit/test_flesh.h"
 

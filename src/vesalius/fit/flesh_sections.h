@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "vesalius/base/person.h"
 #include "vesalius/fit/flesh_model.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

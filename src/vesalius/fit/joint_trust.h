@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "vesalius/base/person.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

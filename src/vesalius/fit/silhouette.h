@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 // For tests of what is read from TOML: texts with one fault each, and the errors that name it.
 namespace vesalius::test {

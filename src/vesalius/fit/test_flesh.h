@@ -8,13 +8,13 @@
 #include <numbers>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/person.h"
 #include "vesalius/base/random.h"
+#include "vesalius/body_model.h"
 #include "vesalius/fit/body_state.h"
 #include "vesalius/fit/flesh_model.h"
 #include "vesalius/forest/person_points.h"
+#include "vesalius/frame.h"
+#include "vesalius/person.h"
 
 namespace vesalius::test {
 

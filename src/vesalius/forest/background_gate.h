@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "vesalius/base/image.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius {
 

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <sstream>
 
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/forest/smooth_labels.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
-#include "vesalius/forest/boosted_trees.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/body_model.h"
+#include "vesalius/boosted_trees.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius {
 

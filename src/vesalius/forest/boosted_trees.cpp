@@ -1,10 +1,10 @@
-#include "vesalius/forest/boosted_trees.h"
+#include "vesalius/boosted_trees.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/logistic.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

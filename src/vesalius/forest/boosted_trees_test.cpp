@@ -1,11 +1,11 @@
-#include "vesalius/forest/boosted_trees.h"
+#include "vesalius/boosted_trees.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

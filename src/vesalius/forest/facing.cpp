@@ -6,8 +6,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "vesalius/base/parallel.h"
 #include "vesalius/forest/leaf_logits.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/image.h"
-#include "vesalius/base/person.h"
-#include "vesalius/forest/forest.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/forest.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

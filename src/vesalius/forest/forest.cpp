@@ -1,10 +1,10 @@
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {

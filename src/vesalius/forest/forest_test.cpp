@@ -1,10 +1,10 @@
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 #include <gmock/gmock.h>
 
 #include <limits>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -8,14 +8,14 @@
 #include <string>
 #include <utility>
 
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/background_gate.h"
 #include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/packed_tree.h"
 #include "vesalius/forest/top_two.h"
 #include "vesalius/forest/tree_walk.h"
 #include "vesalius/forest/walk_kernels.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -4,11 +4,11 @@
 #include <memory>
 #include <string>
 
-#include "vesalius/base/image.h"
-#include "vesalius/base/people_options.h"
-#include "vesalius/forest/forest.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/forest.h"
 #include "vesalius/forest/leaf_logits.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
+#include "vesalius/people_options.h"
 
 namespace vesalius {
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
 #include "vesalius/base/test_threads.h"
+#include "vesalius/error.h"
 #include "vesalius/forest/background_gate.h"
 #include "vesalius/forest/leaf_logits.h"
 #include "vesalius/forest/tree_walk.h"

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius {
 

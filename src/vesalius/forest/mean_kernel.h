@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <vector>
 
-#include "vesalius/base/image.h"
-#include "vesalius/forest/labeller.h"
 #include "vesalius/forest/smooth_window.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius {
 

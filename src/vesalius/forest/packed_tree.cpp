@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

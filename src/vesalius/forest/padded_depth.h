@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "vesalius/base/image.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "vesalius/base/image.h"
 #include "vesalius/forest/person_points.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

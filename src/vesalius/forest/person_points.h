@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
-#include "vesalius/base/person.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

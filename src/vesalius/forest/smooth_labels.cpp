@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "vesalius/base/parallel.h"
 #include "vesalius/forest/mean_kernel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/camera.h"
 #include "vesalius/forest/smooth_window.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius {
 

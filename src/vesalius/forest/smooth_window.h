@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "vesalius/base/camera.h"
-#include "vesalius/base/people_options.h"
+#include "vesalius/camera.h"
+#include "vesalius/people_options.h"
 
 namespace vesalius {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/body_model.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius::test {
 

@@ -2,10 +2,10 @@
 
 // What labellers of tests whose pixels have headings share.
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/image.h"
+#include "vesalius/body_model.h"
 #include "vesalius/forest/facing.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/image.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius::test {
 

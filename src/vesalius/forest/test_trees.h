@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "vesalius/base/image.h"
 #include "vesalius/base/random.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
+#include "vesalius/image.h"
 
 namespace vesalius::test {
 

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-#include "vesalius/base/image.h"
 #include "vesalius/forest/top_two.h"
+#include "vesalius/image.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vesalius::HWY_NAMESPACE {

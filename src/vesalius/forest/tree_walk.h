@@ -8,10 +8,10 @@
 
 #include <cstdint>
 
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
+#include "vesalius/camera.h"
+#include "vesalius/forest.h"
 #include "vesalius/forest/feature.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

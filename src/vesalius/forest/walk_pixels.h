@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "vesalius/base/image.h"
 #include "vesalius/forest/tree_walk.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
+#include "vesalius/frame.h"
+#include "vesalius/parallel.h"
 #include "vesalius/planes/flat_pieces.h"
 #include "vesalius/planes/surface_columns.h"
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
-#include "vesalius/base/people_options.h"
-#include "vesalius/base/person.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
+#include "vesalius/people_options.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

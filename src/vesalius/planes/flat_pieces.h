@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "vesalius/base/people_options.h"
-#include "vesalius/base/person.h"
+#include "vesalius/people_options.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

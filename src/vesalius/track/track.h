@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "vesalius/base/person.h"
 #include "vesalius/fit/body_history.h"
+#include "vesalius/person.h"
 #include "vesalius/track/smooth_joints.h"
 #include "vesalius/track/track_look.h"
 #include "vesalius/track/track_motion.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vesalius/base/frame.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "vesalius/base/person.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "vesalius/appearance.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

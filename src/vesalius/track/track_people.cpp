@@ -1,4 +1,4 @@
-#include "vesalius/track/track_people.h"
+#include "vesalius/track_people.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,12 @@
 #include <tuple>
 #include <utility>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/options.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/fit_body.h"
 #include "vesalius/fit/flesh_capsules.h"
 #include "vesalius/fit/flesh_joints.h"
+#include "vesalius/parallel.h"
 #include "vesalius/prior.h"
 #include "vesalius/track/match_cost.h"
 #include "vesalius/track/match_tracks.h"

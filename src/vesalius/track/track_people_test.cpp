@@ -1,4 +1,4 @@
-#include "vesalius/track/track_people.h"
+#include "vesalius/track_people.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -12,9 +12,9 @@
 #include <set>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
 #include "vesalius/derive_joints.h"
+#include "vesalius/error.h"
 #include "vesalius/fit/body_history.h"
 #include "vesalius/fit/fit_body.h"
 #include "vesalius/prior.h"

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

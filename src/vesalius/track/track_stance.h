@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "vesalius/base/person.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

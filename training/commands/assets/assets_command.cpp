@@ -10,7 +10,7 @@
 #include "console/progress.h"
 #include "console/text_sink.h"
 #include "downloads/assets.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

@@ -1,7 +1,7 @@
 #include "commands/training_commands.h"
 #include "console/satellites.h"
 #include "downloads/assets.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

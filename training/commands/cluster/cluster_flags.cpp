@@ -15,8 +15,8 @@
 #include "console/option_flags.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

@@ -14,9 +14,9 @@
 #include "cluster/train_job.h"
 #include "console/option_flags.h"
 #include "downloads/assets.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/keep_memory.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

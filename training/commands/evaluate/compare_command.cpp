@@ -8,7 +8,7 @@
 #include "commands/training_commands.h"
 #include "console/text_sink.h"
 #include "evaluation/compare_evaluations.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

@@ -31,9 +31,9 @@
 #include "evaluation/evaluation_report.h"
 #include "evaluation/evaluation_summary.h"
 #include "io/files/read_file.h"
-#include "io/model/model_file.h"
 #include "report/document.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/model_file.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

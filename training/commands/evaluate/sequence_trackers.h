@@ -4,7 +4,7 @@
 
 #include "metrics/score_sequence.h"
 #include "vesalius/detect.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/track_people.h"
 
 namespace vesalius::cli {
 

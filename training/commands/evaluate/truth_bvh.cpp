@@ -13,10 +13,10 @@
 #include "dataset/tum_trajectory.h"
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
-#include "io/sources/open_source.h"
 #include "synth/mocap/bvh.h"
 #include "synth/text/text_scanner.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "io/files/image_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius::cli {
 namespace {

@@ -12,8 +12,8 @@
 #include "dataset/open_truth.h"
 #include "synth/generate.h"
 #include "synth/skeleton_joints.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "commands/synth/synth_assets.h"
 #include "dataset/truth_source.h"
 #include "synth/clip_generator.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius::cli {
 

@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "draw/canvas.h"
-#include "draw/draw.h"
+#include "vesalius/draw.h"
 
 namespace vesalius {
 namespace {

@@ -8,8 +8,8 @@
 #include "dataset/clip_layout.h"
 #include "synth/clip_generator.h"
 #include "synth/recipe.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
 
 namespace vesalius::cli {
 

@@ -22,7 +22,7 @@
 #include "io/files/options_file.h"
 #include "train/messages/training_protocol.h"
 #include "train/parallel_in_order.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include "downloads/assets.h"
 #include "downloads/sha256.h"
 #include "io/files/read_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

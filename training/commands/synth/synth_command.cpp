@@ -19,11 +19,11 @@
 #include "console/progress.h"
 #include "console/text_sink.h"
 #include "dataset/labelled_export.h"
-#include "io/files/image_file.h"
 #include "io/files/read_file.h"
 #include "synth/skeleton_joints.h"
 #include "train/parallel_in_order.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/image_file.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "io/files/options_file.h"
 #include "io/sources/camera_file.h"
-#include "io/sources/open_source.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius::cli {
 namespace {

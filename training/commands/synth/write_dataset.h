@@ -11,8 +11,8 @@
 #include "console/interrupts.h"
 #include "console/progress.h"
 #include "dataset/dataset_folder.h"
-#include "vesalius/base/error.h"
 #include "train/parallel_in_order.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 

@@ -27,9 +27,9 @@
 #include "folders/folder_lock.h"
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
-#include "io/model/model_file.h"
 #include "learn/fit_boosted.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/model_file.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

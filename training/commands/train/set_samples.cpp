@@ -11,9 +11,9 @@
 #include "io/files/atomic_file.h"
 #include "io/files/read_file.h"
 #include "metrics/judge_samples.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/detect.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 #include "vesalius/trace.h"
 
 namespace vesalius::cli {

@@ -13,8 +13,8 @@
 #include "commands/train/train_session.h"
 #include "console/interrupts.h"
 #include "console/text_sink.h"
-#include "io/model/model_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius::cli {
 namespace {

@@ -18,7 +18,7 @@
 #include "console/text_sink.h"
 #include "io/files/atomic_file.h"
 #include "io/files/options_file.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "commands/train/grow_display.h"
 #include "console/interrupts.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "cuda_train/device_executor.h"
 #include "cuda_train/train_kernels.h"
 #include "train/local_executor.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 #include "vesalius/model.h"
 
 namespace vesalius::cli {

@@ -12,7 +12,7 @@
 #include "folders/temporary_folder.h"
 #include "io/files/atomic_file.h"
 #include "io/files/read_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 namespace {

@@ -14,8 +14,8 @@
 #include "downloads/sha256.h"
 #include "io/files/byte_stream.h"
 #include "io/files/read_file.h"
-#include "io/sources/open_source.h"
 #include "train/parallel_in_order.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius::cli {
 namespace {

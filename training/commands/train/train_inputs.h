@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "commands/synth/synth_assets.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/frame_source.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius::cli {
 

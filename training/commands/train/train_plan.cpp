@@ -10,8 +10,8 @@
 
 #include "commands/train/train_curves.h"
 #include "train/local_executor.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

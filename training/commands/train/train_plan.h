@@ -5,7 +5,7 @@
 
 #include "commands/train/train_inputs.h"
 #include "train/grow_forest.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius::cli {
 

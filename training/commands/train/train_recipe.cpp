@@ -6,7 +6,7 @@
 
 #include "downloads/sha256.h"
 #include "io/files/options_file.h"
-#include "io/model/model_file.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius::cli {
 namespace {

@@ -14,9 +14,9 @@
 #include "commands/train/train_session.h"
 #include "console/progress.h"
 #include "console/text_sink.h"
-#include "io/model/model_file.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::cli {
 namespace {

@@ -11,8 +11,8 @@
 #include "commands/train/train_recipe.h"
 #include "io/files/atomic_file.h"
 #include "io/files/read_file.h"
-#include "io/model/model_file.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius::cli {
 namespace {

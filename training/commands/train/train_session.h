@@ -5,7 +5,7 @@
 
 #include "folders/folder_lock.h"
 #include "train/leaves/tree_store.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius::cli {
 

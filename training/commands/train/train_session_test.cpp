@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "commands/train/train_recipe.h"
-#include "io/model/model_file.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/error.h"
+#include "vesalius/body_model.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "synth/pose/pose.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius::synth {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "synth/text/text_scanner.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -10,7 +10,7 @@
 #include "synth/body/makehuman_mesh.h"
 #include "synth/body/makehuman_rig.h"
 #include "synth/body/surface_parts.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

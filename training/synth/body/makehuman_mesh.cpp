@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "synth/text/text_scanner.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

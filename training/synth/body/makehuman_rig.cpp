@@ -8,7 +8,7 @@
 
 #include "synth/text/parse_json.h"
 #include "synth/text/text_scanner.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -15,7 +15,7 @@
 #include "synth/body/rig_map.h"
 #include "synth/body/stature.h"
 #include "synth/body/test_bodies.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "synth/body/builtin_body.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "synth/body/check_body.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -8,7 +8,7 @@
 #include "synth/body/builtin_body.h"
 #include "synth/body/check_body.h"
 #include "synth/body/test_bodies.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

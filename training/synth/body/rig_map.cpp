@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "synth/text/text_scanner.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/toml_reader.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

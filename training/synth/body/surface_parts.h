@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "synth/body/body_mesh.h"
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius::synth {
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "synth/body/builtin_body.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -7,7 +7,7 @@
 #include "synth/body/check_body.h"
 #include "synth/body/surface_parts.h"
 #include "synth/dress/wardrobe.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

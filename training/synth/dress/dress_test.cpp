@@ -9,7 +9,7 @@
 #include "synth/body/check_body.h"
 #include "synth/body/poser.h"
 #include "synth/body/test_bodies.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "synth/body/body_mesh.h"
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius::synth {
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "synth/mocap/amc.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "synth/text/text_scanner.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

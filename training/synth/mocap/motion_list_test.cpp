@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

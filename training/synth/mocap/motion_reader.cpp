@@ -8,7 +8,7 @@
 #include "synth/mocap/amc.h"
 #include "synth/mocap/bvh.h"
 #include "synth/pose/joint_angles.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 

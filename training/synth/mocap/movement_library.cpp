@@ -9,7 +9,7 @@
 #include "synth/pose/posture.h"
 #include "synth/pose/self_contact.h"
 #include "synth/pose/stick_figure.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -16,7 +16,7 @@
 #include "synth/mocap/thin_poses.h"
 #include "synth/pose/mix_poses.h"
 #include "synth/pose/posture.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "synth/text/test_text.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "synth/pose/pose_sampler.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "synth/pose/posture.h"
 #include "synth/pose/self_contact.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

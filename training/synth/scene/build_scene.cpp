@@ -7,7 +7,7 @@
 #include "synth/scene/person_mesh.h"
 #include "synth/scene/place_people.h"
 #include "synth/scene/surroundings.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

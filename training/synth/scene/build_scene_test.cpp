@@ -8,7 +8,7 @@
 
 #include "synth/scene/test_plans.h"
 #include "synth/sensor/render.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "synth/mesh/scene_mesh.h"
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
 
 namespace vesalius::synth {
 

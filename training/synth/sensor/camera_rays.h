@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "vesalius/base/camera.h"
+#include "vesalius/camera.h"
 
 namespace vesalius::synth {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "vesalius/base/frame.h"
 #include "vesalius/base/options.h"
 #include "vesalius/base/random.h"
+#include "vesalius/frame.h"
 
 namespace vesalius::synth {
 

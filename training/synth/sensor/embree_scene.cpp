@@ -8,7 +8,7 @@
 
 #include "synth/sensor/camera_rays.h"
 #include "synth/sensor/embree_api.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

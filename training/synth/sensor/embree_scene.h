@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "synth/sensor/scene_geometry.h"
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
 
 namespace vesalius::synth {
 

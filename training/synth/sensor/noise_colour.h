@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vesalius/base/image.h"
 #include "vesalius/base/random.h"
+#include "vesalius/image.h"
 
 namespace vesalius::synth {
 

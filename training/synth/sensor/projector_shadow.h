@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
 
 namespace vesalius::synth {
 

@@ -10,7 +10,7 @@
 #include "synth/sensor/projector_shadow.h"
 #include "synth/sensor/scene_geometry.h"
 #include "synth/sensor/shade.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

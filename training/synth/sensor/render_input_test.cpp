@@ -4,7 +4,7 @@
 
 #include "synth/sensor/render.h"
 #include "synth/sensor/test_scenes.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

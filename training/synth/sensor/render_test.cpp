@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "synth/sensor/test_scenes.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius::synth {
 namespace {

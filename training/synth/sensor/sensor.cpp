@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/camera.h"
+#include "vesalius/camera.h"
 
 namespace vesalius::synth {
 

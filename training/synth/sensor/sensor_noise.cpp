@@ -9,7 +9,7 @@
 #include "synth/sensor/noise_aim.h"
 #include "synth/sensor/noise_field.h"
 #include "synth/sensor/noise_kernel.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "synth/sensor/test_noise_scene.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

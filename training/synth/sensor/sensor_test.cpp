@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
 namespace {

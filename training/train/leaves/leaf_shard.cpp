@@ -6,8 +6,8 @@
 
 #include "train/samples/find_leaves.h"
 #include "train/samples/sample_logits.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/forest/facing.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "train/messages/leaf_messages.h"
 #include "train/samples/training_set.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

@@ -5,7 +5,7 @@
 
 #include "train/messages/grow_options.h"
 #include "train/messages/training_messages.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

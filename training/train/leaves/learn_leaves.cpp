@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

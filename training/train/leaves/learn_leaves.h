@@ -10,7 +10,7 @@
 #include "train/messages/leaf_messages.h"
 #include "train/messages/training_protocol.h"
 #include "vesalius/base/options.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

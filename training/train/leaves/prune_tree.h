@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

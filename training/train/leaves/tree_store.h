@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "train/messages/leaf_messages.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "train/split_histogram.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -54,8 +54,8 @@
 #include "train/messages/grow_options.h"
 #include "train/messages/leaf_messages.h"
 #include "train/messages/training_messages.h"
-#include "vesalius/base/error.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/error.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

@@ -4,11 +4,11 @@
 #include <cstddef>
 
 #include "train/samples/walk_samples.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/forest/packed_tree.h"
 #include "vesalius/forest/padded_depth.h"
 #include "vesalius/forest/walk_kernels.h"
 #include "vesalius/forest/walk_pixels.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "train/messages/training_sample.h"
 #include "train/samples/frame_store.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

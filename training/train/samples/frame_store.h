@@ -8,10 +8,10 @@
 
 #include "train/samples/depth_tiles.h"
 #include "train/samples/huge_buffer.h"
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/camera.h"
+#include "vesalius/forest.h"
 #include "vesalius/forest/tree_walk.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

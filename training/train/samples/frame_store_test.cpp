@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/error.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

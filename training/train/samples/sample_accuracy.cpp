@@ -7,7 +7,7 @@
 
 #include "train/samples/sample_logits.h"
 #include "train/samples/walk_samples.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "train/samples/training_set.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 
 namespace vesalius {
 

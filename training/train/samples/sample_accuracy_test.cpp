@@ -8,9 +8,9 @@
 
 #include "capsule/capsule_person.h"
 #include "train/grow_forest.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
 #include "vesalius/forest/label_pixels.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "train/samples/walk_samples.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/forest.h"
 #include "vesalius/forest/leaf_logits.h"
 
 namespace vesalius {

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "vesalius/base/body_heading.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

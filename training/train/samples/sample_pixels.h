@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "train/messages/training_sample.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
 #include "vesalius/base/options.h"
 #include "vesalius/base/random.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

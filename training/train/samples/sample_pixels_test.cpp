@@ -6,7 +6,7 @@
 #include <map>
 
 #include "capsule/capsule_person.h"
-#include "vesalius/base/error.h"
+#include "vesalius/error.h"
 
 namespace vesalius {
 namespace {

@@ -7,10 +7,10 @@
 #include <tuple>
 
 #include "train/samples/walk_samples.h"
-#include "vesalius/base/error.h"
 #include "vesalius/base/options.h"
-#include "vesalius/base/parallel.h"
 #include "vesalius/base/random.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

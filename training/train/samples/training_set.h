@@ -8,9 +8,9 @@
 #include "train/messages/training_sample.h"
 #include "train/samples/frame_store.h"
 #include "train/samples/sample_pixels.h"
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/forest/forest.h"
+#include "vesalius/body_model.h"
+#include "vesalius/forest.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 

@@ -6,8 +6,8 @@
 
 #include "capsule/capsule_person.h"
 #include "train/samples/walk_samples.h"
-#include "vesalius/base/error.h"
-#include "vesalius/base/parallel.h"
+#include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "train/messages/training_sample.h"
 #include "train/samples/frame_store.h"
+#include "vesalius/forest.h"
 #include "vesalius/forest/feature.h"
-#include "vesalius/forest/forest.h"
 
 namespace vesalius {
 

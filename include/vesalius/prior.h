@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "vesalius/appearance.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
-#include "vesalius/base/person.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

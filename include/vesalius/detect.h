@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "vesalius/appearance.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/people_options.h"
-#include "vesalius/base/person.h"
-#include "vesalius/base/stage_times.h"
+#include "vesalius/frame.h"
 #include "vesalius/model.h"
+#include "vesalius/people_options.h"
+#include "vesalius/person.h"
 #include "vesalius/prior.h"
+#include "vesalius/stage_times.h"
 
 namespace vesalius {
 

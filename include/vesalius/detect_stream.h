@@ -5,10 +5,10 @@
 #include <functional>
 #include <optional>
 
-#include "vesalius/base/frame_source.h"
-#include "vesalius/base/stage_times.h"
 #include "vesalius/detect.h"
-#include "vesalius/track/track_people.h"
+#include "vesalius/frame_source.h"
+#include "vesalius/stage_times.h"
+#include "vesalius/track_people.h"
 
 namespace vesalius {
 

@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/forest/boosted_trees.h"
-#include "vesalius/forest/forest.h"
-#include "vesalius/forest/labeller.h"
+#include "vesalius/body_model.h"
+#include "vesalius/boosted_trees.h"
+#include "vesalius/forest.h"
+#include "vesalius/labeller.h"
 
 namespace vesalius {
 
-/// What a model file holds (io/model/model_file.h) and a Detector takes: a body, what labels pixels with its parts, and
+/// What a model file holds (vesalius/model_file.h) and a Detector takes: a body, what labels pixels with its parts, and
 /// what makes more of the labels.
 struct Model {
   Model() = default;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
+#include "vesalius/body_model.h"
 
 namespace vesalius {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/camera.h"
-#include "vesalius/base/image.h"
+#include "vesalius/camera.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 

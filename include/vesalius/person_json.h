@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
+#include "vesalius/frame.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "vesalius/base/frame.h"
-#include "vesalius/base/image.h"
+#include "vesalius/frame.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 
@@ -70,7 +70,7 @@ inline std::optional<double> body_share(const Posteriors& posteriors, int u, int
 /// (vesalius/model.h) has one; tests and experiments provide others (the truth, a network).
 ///
 /// All member functions are called from several threads at once, also for different frames: a labeller keeps nothing
-/// between calls that could change a result. It may run work in parallel itself (base/parallel.h).
+/// between calls that could change a result. It may run work in parallel itself (vesalius/parallel.h).
 class Labeller {
  public:
   virtual ~Labeller() = default;

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "vesalius/base/body_model.h"
-#include "vesalius/base/frame.h"
-#include "vesalius/base/people_options.h"
-#include "vesalius/base/person.h"
+#include "vesalius/body_model.h"
 #include "vesalius/detect.h"
+#include "vesalius/frame.h"
+#include "vesalius/people_options.h"
+#include "vesalius/person.h"
 
 namespace vesalius {
 

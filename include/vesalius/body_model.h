@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vesalius/base/image.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 
