@@ -28,7 +28,8 @@ std::string absent_command(const std::string& command) {
   if (std::ranges::find(workshop, command) != workshop.end()) {
     return command + " is not in this build, which was made without training (VESALIUS_TRAINING=OFF)";
   }
-  if (command == "view") return "view is not in this build, which was made without the viewer (VESALIUS_VIEW=OFF, or no Boost)";
+  if (command == "view")
+    return "view is not in this build, which was made without the viewer (VESALIUS_VIEW=OFF, or no Boost)";
   if (command == "ros2") return "ros2 is not in this build, which was made without Cyclone DDS";
   return "";
 }

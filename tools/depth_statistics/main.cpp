@@ -7,8 +7,8 @@
 
 #include "../run_tool.h"
 #include "depth_statistics.h"
-#include "vesalius/open_source.h"
 #include "vesalius/error.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {

@@ -13,11 +13,11 @@
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
 #include "fitted_toml.h"
-#include "vesalius/model_file.h"
 #include "learn/fit_stances.h"
 #include "learn/fit_trust.h"
 #include "synth/fit_flesh.h"
 #include "vesalius/model.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {

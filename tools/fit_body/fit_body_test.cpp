@@ -10,9 +10,9 @@
 #include "commands/synth/frame_maker.h"
 #include "commands/synth/synth_recipe.h"
 #include "commands/synth/write_dataset.h"
-#include "vesalius/image_file.h"
 #include "vesalius/error.h"
 #include "vesalius/fit/joint_trust.h"
+#include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {

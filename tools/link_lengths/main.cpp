@@ -8,10 +8,10 @@
 
 #include "../run_tool.h"
 #include "dataset/open_truth.h"
-#include "vesalius/model_file.h"
 #include "link_lengths.h"
-#include "vesalius/error.h"
 #include "vesalius/detect.h"
+#include "vesalius/error.h"
+#include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {
@@ -35,7 +35,8 @@ void print(const BodyModel& body, const std::vector<LinkFigures>& figures) {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "Distances between the visible centres of linked parts: their median for a stature of 1.7 m, what 90 % are within "
+      "Distances between the visible centres of linked parts: their median for a stature of 1.7 m, what 90 % are "
+      "within "
       "of it, with and without scaling by stature, and the median by stature");
   std::vector<std::string> sources;
   std::string model;

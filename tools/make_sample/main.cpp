@@ -7,14 +7,14 @@
 
 #include "../run_tool.h"
 #include "io/files/atomic_file.h"
-#include "vesalius/image_file.h"
-#include "vesalius/model_file.h"
 #include "io/sources/write_frames.h"
 #include "pixel_score.h"
 #include "random_scene.h"
 #include "sample_sequence.h"
 #include "train/grow_forest.h"
 #include "vesalius/error.h"
+#include "vesalius/image_file.h"
+#include "vesalius/model_file.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius {

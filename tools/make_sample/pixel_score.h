@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "vesalius/frame.h"
 #include "vesalius/forest.h"
+#include "vesalius/frame.h"
 
 namespace vesalius {
 
