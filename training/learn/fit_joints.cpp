@@ -211,7 +211,7 @@ double mean_loss(const JointDefinition& joint, const std::vector<Prepared>& samp
 }
 
 bool is_set_of_parts(const JointSet& set, const BodyModel& body) {
-  const JointSet* centres = find_joint_set(body, sided(body).names);
+  const JointSet* centres = joint_set_with_names(body, sided(body).names);
   return centres != nullptr && centres->name == set.name;
 }
 

@@ -97,7 +97,8 @@ std::vector<float> confidences_by_name(const std::vector<std::string>& names, co
   return confidences;
 }
 
-const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names, std::string_view wanted) {
+const JointSet* joint_set_with_names(const BodyModel& body, const std::vector<std::string>& names,
+                                     std::string_view wanted) {
   const JointSet* first = nullptr;
   for (const JointSet& set : body.joint_sets) {
     const auto has = [&](const std::string& name) {
@@ -111,7 +112,7 @@ const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::str
 
 std::optional<KnownPoints> known_joints(const FrameTruth& truth, const BodyModel& body, const std::string& joint_set) {
   if (truth.joint_names.empty()) return std::nullopt;
-  const JointSet* set = find_joint_set(body, truth.joint_names, joint_set.empty() ? truth.joint_set : joint_set);
+  const JointSet* set = joint_set_with_names(body, truth.joint_names, joint_set.empty() ? truth.joint_set : joint_set);
   if (set == nullptr) return std::nullopt;
   KnownPoints known{set, {}, std::vector<std::vector<Eigen::Vector3f>>(truth.joints.size())};
   for (std::size_t j = 0; j < truth.joint_names.size(); ++j) {

@@ -38,8 +38,8 @@ std::vector<float> confidences_by_name(const std::vector<std::string>& names, co
 
 /// Returns the joint set called `wanted` if the body has it and it has any of these joints, otherwise the first one
 /// that has all of them, or null.
-const JointSet* find_joint_set(const BodyModel& body, const std::vector<std::string>& names,
-                               std::string_view wanted = "");
+const JointSet* joint_set_with_names(const BodyModel& body, const std::vector<std::string>& names,
+                                     std::string_view wanted = "");
 
 /// Points of the true people that a joint set of the body predicts.
 struct KnownPoints {

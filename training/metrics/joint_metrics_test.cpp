@@ -133,11 +133,11 @@ TEST(JointsByName, AreInTheOrderOfTheTruth) {
   EXPECT_TRUE(found[2].hasNaN());
   EXPECT_TRUE(joints_by_name({"head"}, set, {})[0].hasNaN());
   EXPECT_THROW(joints_by_name({"tail"}, set, joints), Error);
-  EXPECT_EQ(find_joint_set(paper_body(), {"head", "torso"})->name, "nite15");
-  EXPECT_EQ(find_joint_set(paper_body(), {"nose"})->name, "k4abt32");
-  EXPECT_EQ(find_joint_set(paper_body(), {"head"}, "k4abt32")->name, "k4abt32");
-  EXPECT_EQ(find_joint_set(paper_body(), {"torso"}, "k4abt32")->name, "nite15");  // which has no torso
-  EXPECT_EQ(find_joint_set(paper_body(), {"tail"}), nullptr);
+  EXPECT_EQ(joint_set_with_names(paper_body(), {"head", "torso"})->name, "nite15");
+  EXPECT_EQ(joint_set_with_names(paper_body(), {"nose"})->name, "k4abt32");
+  EXPECT_EQ(joint_set_with_names(paper_body(), {"head"}, "k4abt32")->name, "k4abt32");
+  EXPECT_EQ(joint_set_with_names(paper_body(), {"torso"}, "k4abt32")->name, "nite15");  // which has no torso
+  EXPECT_EQ(joint_set_with_names(paper_body(), {"tail"}), nullptr);
 }
 
 }  // namespace

@@ -209,7 +209,7 @@ void FrameScorer::log_proposals(const TrueFrame& frame, const Trace& trace, bool
 std::optional<KnownPoints> FrameScorer::known_centres(const FrameTruth& truth) const {
   if (truth.parts.empty()) return std::nullopt;
   KnownPoints known{nullptr, sided(body()).names, truth.parts};
-  known.set = find_joint_set(body(), known.names);
+  known.set = joint_set_with_names(body(), known.names);
   return known.set != nullptr ? std::optional(std::move(known)) : std::nullopt;
 }
 
