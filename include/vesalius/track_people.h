@@ -20,9 +20,8 @@ class BodyFitter;
 /// matter, only their times.
 class PeopleTracker {
  public:
-  /// `body` is that of the people, such as Detector::body, and must outlive this object. `appearance` is the
-  /// detector's; without one looks do not matter. Without `fitter` nobody has a fitted body. Throws UsageError for an
-  /// option outside its range.
+  /// `body` is that of the people, such as Detector::body. `appearance` is the detector's; without one looks do not
+  /// matter. Without `fitter` nobody has a fitted body. Throws UsageError for an option outside its range.
   explicit PeopleTracker(const BodyModel& body, TrackOptions options = {},
                          std::shared_ptr<const Appearance> appearance = nullptr,
                          std::shared_ptr<const BodyFitter> fitter = nullptr);
@@ -50,9 +49,8 @@ class PeopleTracker {
   std::unique_ptr<State> state_;
 };
 
-/// Returns a tracker of the people whom the detector finds, with a body fitted to each. The body model of the
-/// detector's forest must outlive it.
-/// Throws UsageError for an option outside its range.
+/// Returns a tracker of the people whom the detector finds, with a body fitted to each. Throws UsageError for an option
+/// outside its range.
 PeopleTracker make_tracker(const Detector& detector, const PeopleOptions& options);
 
 /// Finds the people of the frame that comes next, and follows them.

@@ -133,7 +133,8 @@ bool is_sure(const Track& track) { return track.state != TrackState::fresh; }
 struct PeopleTracker::State {
   State(const BodyModel& model, const TrackOptions& given, std::shared_ptr<const Appearance> looks,
         std::shared_ptr<const BodyFitter> bodies)
-      : body(model),
+      : kept(std::make_shared<const BodyModel>(model)),
+        body(*kept),
         options(given),
         appearance(std::move(looks)),
         fitter(std::move(bodies)),
@@ -160,6 +161,7 @@ struct PeopleTracker::State {
   std::optional<Posture> take_stance(const Frame& frame, Track& track, const Person* found, TrackedFrame& out) const;
   void smooth(Track& track, TrackedPerson& person, double time_s) const;
 
+  const std::shared_ptr<const BodyModel> kept;  ///< shared by copies
   const BodyModel& body;
   const TrackOptions options;
   const std::shared_ptr<const Appearance> appearance;
