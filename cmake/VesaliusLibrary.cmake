@@ -74,12 +74,12 @@ function(vesalius_generate target template)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated)
 endfunction()
 
-# vesalius_words(LIBRARY): for libraries of words and flags, where nothing is worth the compiler's time, half of which goes into
-# the templates of CLI11 and of JSON. Whoever builds the program once compiles a dozen files together, which instantiates them
-# once; whoever develops compiles single files.
+# vesalius_words(LIBRARY [TOGETHER]): for libraries of words and flags, where nothing is worth the compiler's time, half of which
+# goes into the templates of CLI11 and of JSON. TOGETHER: whoever builds the program once compiles a dozen files together, which
+# instantiates them once (no two files have one name for two things); whoever develops compiles single files.
 function(vesalius_words library)
   target_compile_options(vesalius_${library} PRIVATE -O1)
-  if(CMAKE_BUILD_TYPE STREQUAL Release)
+  if("TOGETHER" IN_LIST ARGN AND CMAKE_BUILD_TYPE STREQUAL Release)
     set_target_properties(vesalius_${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
   endif()
   if(VESALIUS_PCH)

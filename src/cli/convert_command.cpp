@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kModelExtension = ".forest";
 
-struct Arguments {
+struct ConvertArguments {
   std::vector<std::string> paths;
   std::string format, body;
   SourceOptions camera;
@@ -53,7 +53,7 @@ void convert_model(std::vector<std::string> paths, const std::string& body, bool
   if (!quiet) say(fmt::format("{}: {} trees", out, model.forest.trees.size()));
 }
 
-void convert_frames(const Arguments& arguments) {
+void convert_frames(const ConvertArguments& arguments) {
   if (arguments.paths.size() != 2) throw UsageError("--to expects a source and one folder to write");
   const FrameFormat format = parse_frame_format(arguments.format);
   const auto source = open_source(arguments.paths[0], arguments.camera);
@@ -80,7 +80,7 @@ void add_convert(CLI::App& program) {
   CLI::App* command = program.add_subcommand("convert",
                                              "Turn text trees or a model of an older format into a model, change a "
                                              "model's body, or turn frames into another layout");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ConvertArguments>();
   command
       ->add_option(
           "PATH", arguments->paths,

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ExportArguments {
   std::string people, to, format, joints;
   std::optional<int> person;
   RecordOptions record;
@@ -55,7 +55,7 @@ std::string lines_of_mcap(const std::string& path, bool quiet) {
 }
 
 /// Returns the format that is asked for, or that the file's name tells.
-const ExportFormat& format_of(const Arguments& arguments) {
+const ExportFormat& format_of(const ExportArguments& arguments) {
   if (arguments.to == "-") throw UsageError("--to expects the name of a file; /dev/stdout is standard output");
   const std::string extension = fs::path(arguments.to).extension().string();
   std::vector<std::string> endings;
@@ -82,13 +82,13 @@ struct File {
 };
 
 /// Returns the set that is asked for, or the format's usual one, or without that the first.
-std::size_t find_set(const PeopleRecord& record, const Arguments& arguments, const ExportFormat& format) {
+std::size_t find_set(const PeopleRecord& record, const ExportArguments& arguments, const ExportFormat& format) {
   if (record.sets.empty()) throw Error(arguments.people + ": nobody in any frame");
   if (!arguments.joints.empty()) return record.find_set(arguments.joints);
   return std::ranges::count(record.sets, format.joints) > 0 ? record.find_set(format.joints) : 0;
 }
 
-std::vector<File> make_files(const Arguments& arguments, const ExportFormat& format) {
+std::vector<File> make_files(const ExportArguments& arguments, const ExportFormat& format) {
   const bool is_mcap = arguments.people.ends_with(".mcap");
   const std::string lines = is_mcap ? lines_of_mcap(arguments.people, arguments.quiet) : read_file(arguments.people);
   const PeopleRecord record = parse_people(lines, arguments.people, arguments.record);
@@ -111,7 +111,7 @@ std::vector<File> make_files(const Arguments& arguments, const ExportFormat& for
   });
 }
 
-void run(const Arguments& arguments) {
+void run_export(const ExportArguments& arguments) {
   const ExportFormat& format = format_of(arguments);
   if (arguments.person && !format.of_one)
     throw UsageError("--person goes with trc, bvh and glb: the others have all people");
@@ -125,7 +125,7 @@ void run(const Arguments& arguments) {
 
 void add_export(CLI::App& program) {
   CLI::App* command = program.add_subcommand("export", "Write people in the formats of other programs");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ExportArguments>();
   std::vector<std::string> names;
   for (const ExportFormat& format : export_formats()) names.push_back(format.name);
   command
@@ -163,7 +163,7 @@ Examples:
   vesalius export people.jsonl --to people.csv
   vesalius export people.jsonl --to walk.bvh --person 1
   vesalius export session.mcap --to keypoints.json --format coco)");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_export(*arguments); });
 }
 
 }  // namespace vesalius::cli

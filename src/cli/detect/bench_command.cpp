@@ -27,8 +27,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-struct Arguments {
-  explicit Arguments(CLI::App& command) : detector(command) {}
+struct BenchArguments {
+  explicit BenchArguments(CLI::App& command) : detector(command) {}
 
   std::string source, json;
   std::string threads = "both";
@@ -90,7 +90,7 @@ void measure(const Detector& detector, const Frame& frame, double read_ms, Run& 
 
 /// Measures every frame with each number of threads in turn, so that other load on the machine affects all of them
 /// alike.
-void measure_all(const Arguments& arguments, const Detector& detector, Bench& bench) {
+void measure_all(const BenchArguments& arguments, const Detector& detector, Bench& bench) {
   auto source = open_source(arguments.source, arguments.camera);
   const bool live = source->is_live();
   const int wanted = arguments.frames > 0 ? arguments.frames : source->size();
@@ -129,7 +129,7 @@ Json run_json(const Run& run) {
           {"stages", std::move(stages)}};
 }
 
-void report(const Arguments& arguments, const Bench& bench) {
+void report(const BenchArguments& arguments, const Bench& bench) {
   const double memory = peak_memory_mb();
   const std::size_t frames = bench.runs.front().times.frames();
   Json runs = Json::array();
@@ -157,7 +157,7 @@ void report(const Arguments& arguments, const Bench& bench) {
   if (!arguments.quiet && arguments.json != "-") print(text);
 }
 
-void run(const Arguments& arguments) {
+void run_bench(const BenchArguments& arguments) {
   if (is_camera(arguments.source) && arguments.frames == 0) {
     throw UsageError(arguments.source + ": expected --frames N, since a camera has no last frame");
   }
@@ -176,7 +176,7 @@ void run(const Arguments& arguments) {
 
 void add_bench(CLI::App& program) {
   CLI::App* command = program.add_subcommand("bench", "Measure the detector's time and memory, stage by stage");
-  const auto arguments = std::make_shared<Arguments>(*command);
+  const auto arguments = std::make_shared<BenchArguments>(*command);
   command->add_option("SOURCE", arguments->source, kSourceHelp)->required();
   add_camera_flags(*command, arguments->camera);
   add_start_flag(*command, arguments->camera);
@@ -197,7 +197,7 @@ detection after the other. Ctrl-C ends the measurement of a camera with the figu
 
 Example:
   vesalius bench frames/ --frames 300 --json bench.json)");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_bench(*arguments); });
 }
 
 }  // namespace vesalius::cli

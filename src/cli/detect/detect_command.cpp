@@ -23,8 +23,8 @@
 namespace vesalius::cli {
 namespace {
 
-struct Arguments {
-  explicit Arguments(CLI::App& command) : detector(command) {}
+struct DetectArguments {
+  explicit DetectArguments(CLI::App& command) : detector(command) {}
 
   SourceFlags source;
   OutputRequest outputs;
@@ -61,7 +61,7 @@ void write_found(const FoundFrame& found, DetectOutputs& outputs, Totals& totals
   totals.frames_with_people += std::ranges::any_of(people, is_found) ? 1 : 0;
 }
 
-void detect_all(const Arguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,
+void detect_all(const DetectArguments& arguments, FrameSource& source, const Detector& detector, DetectOutputs& outputs,
                 LateLines& late, Progress& progress, Totals& totals) {
   StreamOptions options = arguments.stream;
   options.stop = [&] {
@@ -99,7 +99,7 @@ void detect_all(const Arguments& arguments, FrameSource& source, const Detector&
   if (totals.failed > 0) throw Error(fmt::format("{} of {} frames failed", totals.failed, progress.done()));
 }
 
-void say_totals(const Arguments& arguments, const Totals& totals, const Progress& progress) {
+void say_totals(const DetectArguments& arguments, const Totals& totals, const Progress& progress) {
   const std::string in_all =
       arguments.track ? fmt::format("{} followed", totals.ids.size()) : fmt::format("{} in all", totals.people);
   say(fmt::format("{} frames, people in {} of them ({}), {:.1f} s, {:.1f} frames/s{}", progress.done(),
@@ -112,7 +112,7 @@ void say_times(const FrameTimes& times) {
   for (std::string line; std::getline(lines, line);) say(line);
 }
 
-void run(const Arguments& arguments) {
+void run_detect(const DetectArguments& arguments) {
   check(arguments.outputs);
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
@@ -170,7 +170,7 @@ void add_output_flags(CLI::App& command, OutputRequest& outputs) {
       ->capture_default_str();
 }
 
-void add_time_flags(CLI::App& command, Arguments& arguments) {
+void add_time_flags(CLI::App& command, DetectArguments& arguments) {
   const std::string group = "Time";
   command.add_flag("--timing", arguments.timing, "Print at the end how long each stage took")->group(group);
   command
@@ -185,7 +185,7 @@ void add_time_flags(CLI::App& command, Arguments& arguments) {
 
 void add_detect(CLI::App& program) {
   CLI::App* command = program.add_subcommand("detect", "Find people in frames");
-  const auto arguments = std::make_shared<Arguments>(*command);
+  const auto arguments = std::make_shared<DetectArguments>(*command);
   add_output_flags(*command, arguments->outputs);
   arguments->source.add_to(*command);
   add_threads_flag(*command, arguments->threads);
@@ -203,7 +203,7 @@ Examples:
   vesalius detect tum:walking -m small.forest --json - | jq .people
   vesalius detect session.mcap --track --json people.jsonl
   vesalius detect depth.png --fx 525 --out found/ --save overlay,mask)");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_detect(*arguments); });
 }
 
 }  // namespace vesalius::cli

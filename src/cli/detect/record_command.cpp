@@ -19,8 +19,8 @@
 namespace vesalius::cli {
 namespace {
 
-struct Arguments {
-  explicit Arguments(CLI::App& command) : detector(command) {}
+struct RecordArguments {
+  explicit RecordArguments(CLI::App& command) : detector(command) {}
 
   SourceFlags source;
   DetectorFlags detector;
@@ -33,12 +33,12 @@ struct Arguments {
 };
 
 /// Returns whether all frames that are wanted were recorded.
-bool is_enough(const Arguments& arguments, const Progress& progress) {
+bool is_enough(const RecordArguments& arguments, const Progress& progress) {
   return arguments.frames > 0 && progress.done() >= arguments.frames;
 }
 
 /// Returns the number of frames that were dropped.
-int record_frames(const Arguments& arguments, FrameSource& source, FrameRecorder& recorder,
+int record_frames(const RecordArguments& arguments, FrameSource& source, FrameRecorder& recorder,
                   const StreamOptions& options, Progress& progress) {
   constexpr std::size_t kAhead = 30;  // a second: discs pause for less, and 640x480 takes 46 MB
   return stream_frames(source, options, kAhead, [&](const FoundFrame& found) {
@@ -50,8 +50,8 @@ int record_frames(const Arguments& arguments, FrameSource& source, FrameRecorder
 }
 
 /// Returns the number of frames that were dropped.
-int record_people(const Arguments& arguments, FrameSource& source, const Detector& detector, FrameRecorder& recorder,
-                  const StreamOptions& options, Progress& progress) {
+int record_people(const RecordArguments& arguments, FrameSource& source, const Detector& detector,
+                  FrameRecorder& recorder, const StreamOptions& options, Progress& progress) {
   const BodyModel& body = detector.body();
   const auto take = [&](const FoundFrame& found) {
     if (found.error) std::rethrow_exception(found.error);
@@ -66,7 +66,7 @@ int record_people(const Arguments& arguments, FrameSource& source, const Detecto
   return stream_frames(source, detector, tracker, options, take);
 }
 
-void run(const Arguments& arguments) {
+void run_record(const RecordArguments& arguments) {
   keep_freed_memory();
   std::optional<Detector> detector;
   if (arguments.people || arguments.track) detector.emplace(arguments.detector.make());
@@ -106,7 +106,7 @@ void run(const Arguments& arguments) {
 
 void add_record(CLI::App& program) {
   CLI::App* command = program.add_subcommand("record", "Record frames, and people if wanted, into an MCAP file");
-  const auto arguments = std::make_shared<Arguments>(*command);
+  const auto arguments = std::make_shared<RecordArguments>(*command);
   command->add_option("--out", arguments->out, "MCAP file to write; must not exist")->type_name("FILE")->required();
   command->add_flag("--people", arguments->people, "Find people and record them too: body index, parts, markers, JSON");
   command->add_flag("--track", arguments->track, "Record people with ids, states and fitted bodies, as detect --track");
@@ -123,7 +123,7 @@ Examples:
   vesalius record session.bag --out found.mcap --people
   vesalius record session.bag --out followed.mcap --track
   vesalius detect found.mcap)");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_record(*arguments); });
 }
 
 }  // namespace vesalius::cli

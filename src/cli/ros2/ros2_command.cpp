@@ -27,8 +27,8 @@ namespace {
 
 constexpr const char* kUsualFrame = "camera_optical_frame";
 
-struct Arguments {
-  explicit Arguments(CLI::App& command) : detector(command) {}
+struct Ros2Arguments {
+  explicit Ros2Arguments(CLI::App& command) : detector(command) {}
 
   SourceFlags source;
   DetectorFlags detector;
@@ -44,7 +44,7 @@ struct Arguments {
 /// Tells when and where frames were taken.
 class Stamps {
  public:
-  Stamps(const Arguments& arguments, bool is_live, const ros2::TopicSource* topics)
+  Stamps(const Ros2Arguments& arguments, bool is_live, const ros2::TopicSource* topics)
       : arguments_(arguments), is_live_(is_live), topics_(topics) {}
 
   ros2::Stamp of(const Frame& frame) {
@@ -67,7 +67,7 @@ class Stamps {
     return nanoseconds(own_s + *later_s_);
   }
 
-  const Arguments& arguments_;
+  const Ros2Arguments& arguments_;
   bool is_live_;
   const ros2::TopicSource* topics_;  ///< null where frames come from a source
   int frames_ = 0;
@@ -75,7 +75,7 @@ class Stamps {
 };
 
 /// Throws UsageError for flags that do not go together, or say what cannot be meant.
-void check(const Arguments& arguments) {
+void check(const Ros2Arguments& arguments) {
   const Ros2Flags& flags = arguments.ros2;
   if (arguments.source.name().empty() == flags.subscribe.empty()) {
     throw UsageError("expected either SOURCE or --subscribe NAMESPACE (see vesalius ros2 --help)");
@@ -94,7 +94,7 @@ void check(const Arguments& arguments) {
 }
 
 /// Follows people in a source and writes their messages. Returns how many frames were dropped.
-int publish(const Arguments& arguments, FrameSource& source, const Detector& detector, Stamps& stamps,
+int publish(const Ros2Arguments& arguments, FrameSource& source, const Detector& detector, Stamps& stamps,
             ros2::MessageSink& sink, LateLines& late, Progress& progress) {
   const BodyModel& body = detector.body();
   ros2::PeopleTopics topics(body, topic_options(arguments.ros2), sink);
@@ -122,7 +122,7 @@ int publish(const Arguments& arguments, FrameSource& source, const Detector& det
 }
 
 /// Returns the frames; `topics` receives their source if they come from topics.
-std::unique_ptr<FrameSource> open_frames(const Arguments& arguments, ros2::Node& node, LateLines& late,
+std::unique_ptr<FrameSource> open_frames(const Ros2Arguments& arguments, ros2::Node& node, LateLines& late,
                                          const ros2::TopicSource*& topics) {
   const auto say_late = [&late](const std::string& line) { late.add(line); };
   if (arguments.ros2.subscribe.empty()) return arguments.source.open(arguments.quiet, say_late);
@@ -133,7 +133,7 @@ std::unique_ptr<FrameSource> open_frames(const Arguments& arguments, ros2::Node&
   return source;
 }
 
-void run(const Arguments& arguments) {
+void run_ros2(const Ros2Arguments& arguments) {
   check(arguments);
   LateLines late;
   ros2::NodeOptions node_settings = node_options(arguments.ros2);
@@ -176,7 +176,7 @@ void run(const Arguments& arguments) {
 void add_ros2(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("ros2", "Publish the people in a source, or in topics, as a node of ROS 2");
-  const auto arguments = std::make_shared<Arguments>(*command);
+  const auto arguments = std::make_shared<Ros2Arguments>(*command);
   add_ros2_flags(*command, arguments->ros2);
   command->add_option("--record", arguments->record, "Write the same messages to an MCAP file too; must not exist")
       ->type_name("FILE");
@@ -196,7 +196,7 @@ Examples:
   vesalius ros2 session.mcap --frame-id camera_depth_optical_frame --record people.mcap
   vesalius ros2 --subscribe /camera --namespace /robot
   vesalius ros2 realsense: --camera-pose base_link,0.1,0,1.2,0,0.2,0)");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_ros2(*arguments); });
 }
 
 }  // namespace vesalius::cli

@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
-  explicit Arguments(CLI::App& command) : detector(command) {}
+struct ViewArguments {
+  explicit ViewArguments(CLI::App& command) : detector(command) {}
 
   SourceFlags source;
   DetectorFlags detector;
@@ -71,7 +71,7 @@ void check_folder(const std::string& folder) {
   if (!fs::is_directory(folder, error)) throw Error(folder + ": no such folder, expected one for recordings");
 }
 
-ViewerOptions viewer_options(const Arguments& arguments) {
+ViewerOptions viewer_options(const ViewArguments& arguments) {
   ViewerOptions options;
   options.web.host = arguments.host;
   options.web.port = static_cast<std::uint16_t>(arguments.port);
@@ -87,7 +87,7 @@ ViewerOptions viewer_options(const Arguments& arguments) {
   return options;
 }
 
-void run(const Arguments& arguments) {
+void run_view(const ViewArguments& arguments) {
   check_folder(arguments.folder);
   keep_freed_memory();
   const ThreadLimit limit(arguments.threads);
@@ -115,7 +115,7 @@ void run(const Arguments& arguments) {
   viewer.run(interrupted);
 }
 
-void add_page_flags(CLI::App& command, Arguments& arguments) {
+void add_page_flags(CLI::App& command, ViewArguments& arguments) {
   const std::string group = "Page";
   const auto add = [&](const char* name, auto& value, const char* type, const char* help) {
     return command.add_option(name, value, help)->type_name(type)->capture_default_str()->group(group);
@@ -133,7 +133,7 @@ void add_page_flags(CLI::App& command, Arguments& arguments) {
 
 void add_view(CLI::App& program) {
   CLI::App* command = program.add_subcommand("view", "Show the people in a source, live, on a page in a browser");
-  const auto arguments = std::make_shared<Arguments>(*command);
+  const auto arguments = std::make_shared<ViewArguments>(*command);
   add_page_flags(*command, *arguments);
   arguments->source.add_to(*command);
   add_threads_flag(*command, arguments->threads);
@@ -149,7 +149,7 @@ Examples:
   vesalius view realsense: --port 8081
   vesalius view session.mcap --host 0.0.0.0
   vesalius view frames/ --no-track)");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { run_view(*arguments); });
 }
 
 }  // namespace vesalius::cli
