@@ -58,7 +58,13 @@ Table read_header(std::string_view bytes, const std::string& name, bool checked)
 
 }  // namespace
 
-std::uint64_t xxh64(std::string_view bytes) { return XXH64(bytes.data(), bytes.size(), 0); }
+std::uint64_t xxh64(std::string_view bytes, std::string_view rest) {
+  XXH64_state_t state;
+  XXH64_reset(&state, 0);
+  XXH64_update(&state, bytes.data(), bytes.size());
+  XXH64_update(&state, rest.data(), rest.size());
+  return XXH64_digest(&state);
+}
 
 int model_version(std::string_view bytes) {
   if (bytes.size() < kMagic.size() + sizeof(std::uint16_t) || !bytes.starts_with(kMagic)) return 0;

@@ -32,7 +32,7 @@ std::vector<ModelSection> split_sections(std::string_view bytes, const std::stri
 /// Returns the version that a model file states; 0 for what is no model.
 int model_version(std::string_view bytes);
 
-/// Returns XXH64 of bytes, seed 0.
-std::uint64_t xxh64(std::string_view bytes);
+/// Returns XXH64, seed 0, of bytes and those that follow them.
+std::uint64_t xxh64(std::string_view bytes, std::string_view rest = {});
 
 }  // namespace vesalius

@@ -23,8 +23,7 @@ Model parse_old_model(std::string_view bytes, const std::string& name) {
   const auto flags = in.number<std::uint16_t>("flags");
   const auto size = in.number<std::uint64_t>("size");
   if (bytes.size() != size) throw Error(fmt::format("{}: damaged model, {} of {} bytes", name, bytes.size(), size));
-  if (in.number<std::uint64_t>("checksum") !=
-      xxh64(std::string(bytes.substr(0, kChecksumAt)).append(bytes.substr(kHeaderBytes)))) {
+  if (in.number<std::uint64_t>("checksum") != xxh64(bytes.substr(0, kChecksumAt), bytes.substr(kHeaderBytes))) {
     throw Error(name + ": damaged model, the checksum does not match");
   }
   Model model;
