@@ -19,9 +19,7 @@ using test::TestServer;
 using testing::HasSubstr;
 
 FileDigest digest_of(std::string_view bytes) {
-  Sha256 sum;
-  sum.update(bytes);
-  return {bytes.size(), sum.finish()};
+  return {bytes.size(), sha256_of(bytes)};
 }
 
 /// An invented package, a folder that mirrors it and a folder in which to install it.

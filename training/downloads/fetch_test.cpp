@@ -17,9 +17,7 @@ using testing::StartsWith;
 const std::string kText = "some bytes that are fetched";
 
 FileDigest digest_of(std::string_view bytes) {
-  Sha256 sum;
-  sum.update(bytes);
-  return {bytes.size(), sum.finish()};
+  return {bytes.size(), sha256_of(bytes)};
 }
 
 WebOptions hasty() {

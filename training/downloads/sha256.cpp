@@ -50,6 +50,12 @@ std::string Sha256::finish() {
   return text;
 }
 
+std::string sha256_of(std::string_view bytes) {
+  Sha256 sum;
+  sum.update(bytes);
+  return sum.finish();
+}
+
 std::string sha256_of_file(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);

@@ -23,6 +23,9 @@ class Sha256 {
   std::unique_ptr<State> state_;
 };
 
+/// Returns the SHA-256 of bytes.
+std::string sha256_of(std::string_view bytes);
+
 /// Returns the SHA-256 of a regular file. Throws Error with the path and the system's reason.
 std::string sha256_of_file(const std::string& path);
 

@@ -13,9 +13,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 FileDigest digest_of(std::string_view bytes) {
-  Sha256 sum;
-  sum.update(bytes);
-  return {bytes.size(), sum.finish()};
+  return {bytes.size(), sha256_of(bytes)};
 }
 
 TEST(VerifiedFile, AppearsOnlyWhenComplete) {

@@ -45,12 +45,6 @@ constexpr double kSampleBytes = sizeof(BoostSample) + 16.0, kFeatureBytes = 2 * 
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-std::string sha256_of(const std::string& text) {
-  Sha256 sum;
-  sum.update(text);
-  return sum.finish();
-}
-
 /// Loads what recipes use, once for all that use the same.
 class AssetCache {
  public:

@@ -42,12 +42,6 @@ std::string commented(const std::string& text) {
   return all;
 }
 
-std::string sha256_of(const std::string& text) {
-  Sha256 sum;
-  sum.update(text);
-  return sum.finish();
-}
-
 /// Returns the text under two lines that name the program and a sum of the text.
 std::string with_key(const std::string& text) {
   return fmt::format("# vesalius train {}\n# key {}\n{}", VESALIUS_VERSION, sha256_of(text), text);
