@@ -47,11 +47,8 @@ FittedBodyFile fit_tracks(const BodyFit& fit) {
   std::vector<TrustSample> joints;
   std::vector<StanceSample> postures;
   for (const std::string& source : fit.sources) {
-    const auto open = [&]() -> std::unique_ptr<TruthSource> {
-      const auto one = [&](const std::string& folder) { return cli::open_evaluation_truth(folder, fit.step); };
-      const std::vector<std::string> folders = sequences_in(source);
-      return folders.size() == 1 ? one(folders.front()) : joined_truth(folders, one);
-    };
+    const auto one = [&](const std::string& folder) { return cli::open_evaluation_truth(folder, fit.step); };
+    const auto open = [&] { return open_sequences(source, one); };
     SetResult set = evaluate_sequences(open, {source, source}, scorer, trackers,
                                        {fit.hidden, fit.what == "trust", fit.what == "stances"});
     std::ranges::move(set.trust_samples, std::back_inserter(joints));

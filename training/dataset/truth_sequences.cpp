@@ -87,4 +87,10 @@ std::unique_ptr<TruthSource> joined_truth(std::vector<std::string> folders,
   return std::make_unique<JoinedTruth>(std::move(folders), std::move(open));
 }
 
+std::unique_ptr<TruthSource> open_sequences(
+    const std::string& folder, const std::function<std::unique_ptr<TruthSource>(const std::string&)>& open) {
+  const std::vector<std::string> folders = sequences_in(folder);
+  return folders.size() == 1 ? open(folders.front()) : joined_truth(folders, open);
+}
+
 }  // namespace vesalius

@@ -20,4 +20,8 @@ std::vector<std::string> sequences_in(const std::string& folder);
 std::unique_ptr<TruthSource> joined_truth(std::vector<std::string> folders,
                                           std::function<std::unique_ptr<TruthSource>(const std::string&)> open);
 
+/// Returns the frames of all sequences_in a folder; where that is one, it is opened as it is.
+std::unique_ptr<TruthSource> open_sequences(
+    const std::string& folder, const std::function<std::unique_ptr<TruthSource>(const std::string&)>& open);
+
 }  // namespace vesalius

@@ -161,9 +161,8 @@ std::unique_ptr<TruthSource> open_set(const Request& request, const Arguments& a
   if (request.is_recipe) {
     return open_recipe_truth(source, rendered_truth(arguments), arguments.step, body);
   }
-  const std::vector<std::string> folders = arguments.track ? sequences_in(source) : std::vector{source};
-  if (folders.size() == 1) return open_frames(folders.front(), arguments);
-  return joined_truth(folders, [&arguments](const std::string& folder) { return open_frames(folder, arguments); });
+  if (!arguments.track) return open_frames(source, arguments);
+  return open_sequences(source, [&arguments](const std::string& folder) { return open_frames(folder, arguments); });
 }
 
 SetResult evaluate_shown(const Request& request, const Arguments& arguments, const FrameScorer& scorer,
