@@ -18,9 +18,7 @@ using test::Reply;
 using test::TestServer;
 using testing::HasSubstr;
 
-FileDigest digest_of(std::string_view bytes) {
-  return {bytes.size(), sha256_of(bytes)};
-}
+FileDigest digest_of(std::string_view bytes) { return {bytes.size(), sha256_of(bytes)}; }
 
 /// An invented package, a folder that mirrors it and a folder in which to install it.
 class Assets : public testing::Test {

@@ -16,9 +16,7 @@ using testing::StartsWith;
 
 const std::string kText = "some bytes that are fetched";
 
-FileDigest digest_of(std::string_view bytes) {
-  return {bytes.size(), sha256_of(bytes)};
-}
+FileDigest digest_of(std::string_view bytes) { return {bytes.size(), sha256_of(bytes)}; }
 
 WebOptions hasty() {
   WebOptions options;

@@ -12,9 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-FileDigest digest_of(std::string_view bytes) {
-  return {bytes.size(), sha256_of(bytes)};
-}
+FileDigest digest_of(std::string_view bytes) { return {bytes.size(), sha256_of(bytes)}; }
 
 TEST(VerifiedFile, AppearsOnlyWhenComplete) {
   const test::TemporaryFolder folder;
