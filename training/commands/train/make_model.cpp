@@ -220,6 +220,7 @@ class ModelMaker::Work {
 
   std::vector<TrainInput> inputs_of(const std::vector<std::string>& names) const {
     std::vector<TrainInput> inputs;
+    inputs.reserve(names.size());
     for (const std::string& name : names) inputs.push_back(sources_.at(name).input);
     return inputs;
   }
