@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "io/sources/tum.h"
+#include "io/sources/list_source.h"
 #include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

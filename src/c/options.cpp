@@ -3,7 +3,6 @@
 
 #include "c/guard.h"
 #include "c/handles.h"
-#include "c/sized_struct.h"
 #include "vesalius/vesalius.h"
 
 namespace vesalius::c {

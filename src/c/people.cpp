@@ -6,7 +6,6 @@
 
 #include "c/guard.h"
 #include "c/handles.h"
-#include "c/sized_struct.h"
 #include "vesalius/body_model.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/vesalius.h"

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "c/sized_struct.h"
+#include "c/guard.h"
 #include "vesalius/base/depth_reading.h"
 #include "vesalius/error.h"
 

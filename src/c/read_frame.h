@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/lens/lens.h"
-#include "io/lens/rectification.h"
+#include "io/lens/lens.h"
 #include "vesalius/frame.h"
 #include "vesalius/vesalius.h"
 

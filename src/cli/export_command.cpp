@@ -13,7 +13,7 @@
 #include "export/people_record.h"
 #include "export/write_people.h"
 #include "io/files/atomic_file.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/open_recording.h"
 #include "vesalius/error.h"

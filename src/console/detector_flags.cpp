@@ -7,12 +7,15 @@
 #include <utility>
 
 #include "console/default_model.h"
+#include "console/satellites.h"
+#include "console/text_sink.h"
+#include "io/files/data_file.h"
 #include "io/files/options_file.h"
-#include "io/files/read_file.h"
 #include "vesalius/error.h"
 #include "vesalius/model_file.h"
 
 namespace vesalius::cli {
+
 void replace_body(Model& model, const std::string& path) {
   BodyModel body = parse_body_model(read_file(path), path);
   const auto& trained = model.body.parts;
@@ -61,6 +64,23 @@ Model DetectorFlags::loaded() const {
 Detector DetectorFlags::make() const {
   const DetectOptions detect = options().detect;
   return Detector(loaded(), detect);
+}
+
+DeviceFlag::DeviceFlag(CLI::App& command, const std::string& group) {
+  CLI::Option* option =
+      command.add_option("--device", device_,
+                         "What labels pixels: cpu, cuda or cuda:N (a card), or auto, a card where one "
+                         "works and otherwise the processor. The labels are the same");
+  option->type_name("NAME")->capture_default_str();
+  if (!group.empty()) option->group(group);
+}
+
+Model DeviceFlag::make(Model model) const {
+  LabellerDevices devices{{}, [](const std::string& note) { say("note: " + note); }};
+  for (const Satellite& satellite : satellites()) {
+    for (const LabellerDevice& kind : satellite.devices) devices.kinds.push_back(kind);
+  }
+  return on_device(std::move(model), device_, devices);
 }
 
 }  // namespace vesalius::cli

@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cstddef>
+#include <mutex>
 #include <string>
+#include <vector>
 
 namespace vesalius::cli {
 
@@ -32,6 +34,45 @@ class StatusLine {
   bool terminal_;
   std::size_t width_ = 0;  ///< length of the line that the terminal shows
   Clock::time_point last_shown_ = Clock::now();
+};
+
+/// Shows the number of finished items, the rate and the time left on a StatusLine.
+class Progress {
+ public:
+  /// A negative `total` means that it is not known. Nothing is shown if `shown` is false. `unit` names the items.
+  Progress(int total, bool shown, std::string unit = "frames");
+
+  void step();
+  /// Sets both numbers, for work whose items are not counted one by one or whose total becomes known later.
+  void set(int done, int total);
+  /// Removes the changing line so that another text can be written.
+  void clear() { line_.clear(); }
+
+  int done() const { return done_; }
+  double seconds() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  int total_;
+  StatusLine line_;
+  std::string unit_;
+  int done_ = 0;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// Lines for standard error that another thread has, kept until the one that shows the progress prints them: on a
+/// terminal both would get into one row.
+class LateLines {
+ public:
+  /// May be called from any thread.
+  void add(const std::string& line);
+  /// Prints what has come.
+  void print(Progress& progress);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::string> lines_;
 };
 
 }  // namespace vesalius::cli

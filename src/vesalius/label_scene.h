@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "vesalius/forest/label_pixels.h"
-#include "vesalius/forest/person_labels.h"
+#include "vesalius/forest/person_points.h"
 #include "vesalius/forest/smooth_labels.h"
 #include "vesalius/frame.h"
 #include "vesalius/model.h"

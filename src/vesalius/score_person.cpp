@@ -77,7 +77,7 @@ struct Outline {
   static float share(long some, long all) { return all > 0 ? float(some) / float(all) : 0.F; }
 };
 
-Outline look_around(const Frame& frame, const Inside& inside) {
+Outline outline_of(const Frame& frame, const Inside& inside) {
   const Mask& mask = inside.mask();
   constexpr std::array<std::array<int, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
   Outline outline;
@@ -305,7 +305,7 @@ float mean_body_outside(const Mask& candidates, const DepthImage& depth, const P
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
                          const Scenery& scenery, const Skeleton& skeleton, const BodyModel& body) {
   const Inside inside(mask);
-  const Outline outline = look_around(frame, inside);
+  const Outline outline = outline_of(frame, inside);
   const Extent extent = extent_of(frame, inside);
   const Shape shape = shape_of(frame, inside);
   Belief belief = belief_of(inside, posteriors, body);

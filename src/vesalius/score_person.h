@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vesalius/body_model.h"
-#include "vesalius/forest/person_labels.h"
+#include "vesalius/forest/person_points.h"
 #include "vesalius/frame.h"
 #include "vesalius/image.h"
 #include "vesalius/labeller.h"

@@ -11,8 +11,7 @@
 #include "vesalius/fit/flesh_sections.h"
 #include "vesalius/image_file.h"
 #include "vesalius/person_json.h"
-#include "vesalius/planes/find_floor.h"
-#include "view/run_lengths.h"
+#include "vesalius/planes/find_planes.h"
 
 namespace vesalius {
 namespace {
@@ -154,6 +153,9 @@ std::string message_of(Json head, const std::string& found, const Pictures& pict
   return message + text + pictures.bytes();
 }
 
+constexpr int kDigitBits = 7;
+constexpr unsigned kMore = 1U << kDigitBits;
+
 }  // namespace
 
 FrameMessages frame_messages(const ViewedFrame& viewed, const BodyModel& body) {
@@ -179,6 +181,21 @@ FrameMessages frame_messages(const ViewedFrame& viewed, const BodyModel& body) {
     messages.with_stages = message_of(head, found, pictures);
   }
   return messages;
+}
+
+std::string pack_runs(const Image<std::uint8_t>& image) {
+  std::string packed;
+  const std::uint8_t* const end = image.data() + image.size();
+  for (const std::uint8_t* at = image.data(); at != end;) {
+    const std::uint8_t value = *at;
+    const std::uint8_t* const next = std::find_if(at, end, [value](std::uint8_t v) { return v != value; });
+    packed += static_cast<char>(value);
+    auto length = static_cast<std::size_t>(next - at);
+    for (; length >= kMore; length >>= kDigitBits) packed += static_cast<char>(length % kMore + kMore);
+    packed += static_cast<char>(length);
+    at = next;
+  }
+  return packed;
 }
 
 }  // namespace vesalius

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "vesalius/body_model.h"
 #include "vesalius/frame.h"
+#include "vesalius/image.h"
 #include "vesalius/person.h"
 #include "vesalius/stage_times.h"
 #include "vesalius/trace.h"
@@ -35,5 +37,10 @@ struct FrameMessages {
 /// Returns the binary messages of a frame (docs/formats.md): the length of a JSON text in four bytes, low ones first,
 /// the text, and the pictures that the text lists, each packed: depth by RVL, colour as JPEG, labels as runs.
 FrameMessages frame_messages(const ViewedFrame& viewed, const BodyModel& body);
+
+/// Packs a picture as runs of equal values in row-major order: each is the value in one byte and the number of pixels
+/// in base 128, low digits first, the highest bit set in all bytes but the last. Label pictures get a hundred times
+/// smaller.
+std::string pack_runs(const Image<std::uint8_t>& image);
 
 }  // namespace vesalius

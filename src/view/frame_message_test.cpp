@@ -6,6 +6,7 @@
 
 #include "capsule/capsule_person.h"
 #include "io/recordings/depth_codecs.h"
+#include "vesalius/base/random.h"
 #include "vesalius/fit/flesh_sections.h"
 #include "vesalius/fit/test_flesh.h"
 #include "vesalius/image_file.h"
@@ -171,5 +172,28 @@ TEST(FrameMessage, HoldsTheStagesOfATrace) {
   EXPECT_EQ(stages.at("candidates").at(1).at("accepted"), false);
 }
 
+TEST(RunLengths, ArePairsOfValueAndLength) {
+  Image<std::uint8_t> image(100, 3, 255);
+  image(0, 0) = 7;
+  // 1 pixel of 7; 299 = 2 * 128 + 43 of 255
+  EXPECT_EQ(pack_runs(image), "\x07\x01\xff\xab\x02");
+  EXPECT_EQ(pack_runs({}), "");
+}
+
+TEST(RunLengths, ComeBackAsTheyWere) {
+  Random random(1);
+  for (int i = 0; i < 50; ++i) {
+    Image<std::uint8_t> image(1 + static_cast<int>(random.below(300)), 1 + static_cast<int>(random.below(200)));
+    const std::uint32_t change = 1 + random.below(400);
+    std::uint8_t value = 0;
+    for (std::uint8_t& pixel : image) {
+      if (random.below(change) == 0) value = static_cast<std::uint8_t>(random.below(256));
+      pixel = value;
+    }
+    EXPECT_EQ(test::unpack_runs(pack_runs(image), image.width(), image.height()), image);
+  }
+}
+
 }  // namespace
+
 }  // namespace vesalius

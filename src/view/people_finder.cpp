@@ -1,10 +1,18 @@
 #include "view/people_finder.h"
 
+#include <fmt/chrono.h>
+
+#include <ctime>
+#include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "io/files/options_file.h"
 #include "vesalius/fit/fit_body.h"
+#include "vesalius/frame_source.h"
+#include "vesalius/person_json.h"
 #include "vesalius/stage_times.h"
 #include "vesalius/trace.h"
 
@@ -20,6 +28,18 @@ bool are_tracks_others(const PeopleOptions& a, const PeopleOptions& b) {
     });
   };
   return a.detect.grow.appearance != b.detect.grow.appearance || text(a.track, a.fit) != text(b.track, b.fit);
+}
+
+constexpr std::size_t kMostKnown = 60;
+constexpr double kBefore = -std::numeric_limits<double>::infinity();
+
+std::string new_path(const std::string& folder) {
+  const std::string stem = fmt::format("vesalius-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
+  std::error_code ignored;
+  for (int i = 1;; ++i) {
+    const auto path = std::filesystem::path(folder) / (i == 1 ? stem + ".mcap" : fmt::format("{}-{}.mcap", stem, i));
+    if (!std::filesystem::exists(path, ignored)) return path.string();
+  }
 }
 
 }  // namespace
@@ -77,6 +97,43 @@ ViewedFrame PeopleFinder::find(const std::shared_ptr<const PlayedFrame>& played,
   }
   viewed.number = ++frames_;
   return viewed;
+}
+
+TrackHistory::TrackHistory(PeopleTracker first) { known_.push_back({kBefore, std::move(first)}); }
+
+PeopleTracker& TrackHistory::before(double at_s) {
+  std::optional<PeopleTracker> newest;
+  bool again = false;  // whether this very frame was there
+  while (known_.size() > 1 && known_.back().at_s >= at_s) {
+    again = known_.back().at_s == at_s;
+    if (!newest) newest = std::move(known_.back().tracker);
+    known_.pop_back();
+  }
+  // What came before this frame is not known any more. The newest tracker takes that as the jump it is.
+  if (known_.size() == 1 && newest && !again) known_.front().tracker = std::move(*newest);
+  known_.push_back({at_s, known_.back().tracker});
+  if (known_.size() > kMostKnown) known_.pop_front();
+  return known_.back().tracker;
+}
+
+void TrackHistory::restart(const TrackOptions& options, const std::shared_ptr<const Appearance>& appearance,
+                           const std::shared_ptr<const BodyFitter>& fitter) {
+  PeopleTracker anew = known_.back().tracker.restarted(options, appearance, fitter);
+  known_.clear();
+  known_.push_back({kBefore, std::move(anew)});
+}
+
+Recording::Recording(const std::string& folder, double rate)
+    : path_(new_path(folder)), file_(path_, rate), rate_(rate) {}
+
+void Recording::add_frame(const ViewedFrame& viewed, const BodyModel& body) {
+  if (viewed.at_s <= up_to_s_) return;
+  Frame frame = *viewed.frame;
+  if (!frame.time_s) frame.time_s = viewed.at_s * kUsualRate / rate_;
+  file_.write(frame);
+  file_.write_people(frame, viewed.people, body, frame_json(frame, viewed.people, body, viewed.latency_ms));
+  up_to_s_ = viewed.at_s;
+  ++frames_;
 }
 
 }  // namespace vesalius

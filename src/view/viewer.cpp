@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -19,14 +21,35 @@
 #include "stream/frame_queue.h"
 #include "vesalius/base/quiet_thread.h"
 #include "vesalius/error.h"
-#include "view/bundle_files.h"
 #include "view/frame_message.h"
 #include "view/people_finder.h"
-#include "view/recording.h"
 #include "view/viewer_messages.h"
 
 namespace vesalius {
 namespace {
+
+// CMake writes the bytes of bundle/*.gz.
+#include "bundle_bytes.inc"
+
+template <std::size_t size>
+std::string_view text(const unsigned char (&bytes)[size]) {
+  return {reinterpret_cast<const char*>(bytes), size};
+}
+
+/// A file of the page, compressed by gzip.
+struct BundleFile {
+  std::string_view path;  ///< what a browser asks for, e.g. "/view.js"
+  std::string_view type;  ///< MIME type
+  std::string_view gzip;
+};
+
+/// Returns the files of the page.
+const std::vector<BundleFile>& bundle_files() {
+  static const std::vector<BundleFile> files{{"/", "text/html; charset=utf-8", text(k_index_html)},
+                                             {"/view.css", "text/css; charset=utf-8", text(k_view_css)},
+                                             {"/view.js", "text/javascript; charset=utf-8", text(k_view_js)}};
+  return files;
+}
 
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "io/files/options_file.h"
-#include "io/lens/rectification.h"
+#include "io/lens/lens.h"
 #include "vesalius/detect.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"

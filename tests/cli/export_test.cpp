@@ -4,7 +4,7 @@
 #include <string>
 
 #include "io/files/atomic_file.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "run_program.h"
 #include "small_world.h"
 

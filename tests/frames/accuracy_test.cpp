@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "accuracy_guard.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "shared_frames.h"
 #include "vesalius/error.h"
 

@@ -10,7 +10,7 @@
 
 #include "cluster/train_job.h"
 #include "io/files/atomic_file.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "train/messages/training_protocol.h"
 
 namespace vesalius {

@@ -10,7 +10,6 @@
 #include "cluster/store_name.h"
 #include "io/files/atomic_file.h"
 #include "io/files/data_file.h"
-#include "io/files/read_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

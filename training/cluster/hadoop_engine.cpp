@@ -13,7 +13,7 @@
 #include "cluster/process.h"
 #include "cluster/train_job.h"
 #include "folders/temporary_folder.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "train/messages/training_protocol.h"
 
 namespace vesalius {

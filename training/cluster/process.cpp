@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "folders/temporary_folder.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 extern char** environ;

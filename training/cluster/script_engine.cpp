@@ -11,7 +11,7 @@
 #include "cluster/folder_engine.h"
 #include "cluster/process.h"
 #include "cluster/train_job.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "train/messages/training_protocol.h"
 
 namespace vesalius {

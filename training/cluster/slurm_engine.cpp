@@ -9,7 +9,7 @@
 #include "cluster/folder_engine.h"
 #include "cluster/process.h"
 #include "io/files/atomic_file.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

@@ -8,7 +8,7 @@
 
 #include "io/files/atomic_file.h"
 #include "io/files/byte_stream.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

@@ -12,7 +12,7 @@
 #include "dataset/dataset_shard.h"
 #include "dataset/labelled_frame_codec.h"
 #include "io/files/byte_stream.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "io/sources/folder_source.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"

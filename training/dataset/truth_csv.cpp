@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

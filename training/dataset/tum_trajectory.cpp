@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

@@ -13,7 +13,7 @@
 
 #include "downloads/unpack.h"
 #include "folders/folder_lock.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 
 namespace vesalius {
 namespace {

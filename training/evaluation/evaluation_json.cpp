@@ -7,8 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/files/data_file.h"
 #include "io/files/options_file.h"
-#include "io/files/read_file.h"
 #include "metrics/compare_metrics.h"
 #include "vesalius/error.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "io/files/test_files.h"
 #include "vesalius/error.h"
 

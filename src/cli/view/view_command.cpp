@@ -1,18 +1,23 @@
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <ifaddrs.h>
 #include <net/if.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
 #include <atomic>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/view/open_browser.h"
 #include "console/detector_flags.h"
 #include "console/interrupts.h"
 #include "console/source_flags.h"
@@ -21,7 +26,10 @@
 #include "vesalius/parallel.h"
 #include "view/viewer.h"
 
+extern char** environ;
+
 namespace vesalius::cli {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,6 +72,28 @@ std::vector<std::string> names_of(const std::string& host) {
   std::vector<std::string> names = network_addresses();
   if (names.empty()) names.emplace_back("127.0.0.1");
   return names;
+}
+
+/// Opens the address in the user's browser if this is a desktop with one, and does not wait for it.
+void open_browser(const std::string& address) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
+  }
+  // In a session of its own: Ctrl-C here must not end the user's browser.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
+  std::string program = "xdg-open", argument = address;
+  std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
+  pid_t pid = -1;
+  const int error = ::posix_spawnp(&pid, program.c_str(), &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  // It may take as long as the browser runs.
+  if (error == 0) std::thread([pid] { ::waitpid(pid, nullptr, 0); }).detach();
 }
 
 void check_folder(const std::string& folder) {

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const std::string& path, int error) {
+[[noreturn]] void fail_writing(const std::string& path, int error) {
   throw Error(fmt::format("{}: cannot be written: {}", path, std::generic_category().message(error)));
 }
 
@@ -100,7 +100,7 @@ TemporaryFile::TemporaryFile(std::string final_path, const std::string& extensio
   remove_leftovers(target.has_parent_path() ? target.parent_path() : ".", target.filename().string());
   path_ = fmt::format("{}{}{}-{}{}", target.string(), kMark, ::getpid(), counter++, extension);
   descriptor_ = Descriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!descriptor_.is_open()) fail(final_path_, errno);
+  if (!descriptor_.is_open()) fail_writing(final_path_, errno);
   ::flock(descriptor_.get(), LOCK_EX | LOCK_NB);  // failure is ignored: some file systems have no locks
 }
 
@@ -110,21 +110,21 @@ TemporaryFile::~TemporaryFile() {
 
 void TemporaryFile::commit() {
   // Some file systems report a full disk only here.
-  if (const int error = descriptor_.close()) fail(final_path_, error);
-  if (std::rename(path_.c_str(), behind_links(final_path_).c_str()) != 0) fail(final_path_, errno);
+  if (const int error = descriptor_.close()) fail_writing(final_path_, error);
+  if (std::rename(path_.c_str(), behind_links(final_path_).c_str()) != 0) fail_writing(final_path_, errno);
   committed_ = true;
 }
 
 void write_file_atomically(const std::string& path, std::string_view bytes) {
   if (written_directly(path)) {
     Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-    if (!file.is_open()) fail(path, errno);
-    if (const int error = write_all(file, bytes)) fail(path, error);
-    if (const int error = file.close()) fail(path, error);
+    if (!file.is_open()) fail_writing(path, errno);
+    if (const int error = write_all(file, bytes)) fail_writing(path, error);
+    if (const int error = file.close()) fail_writing(path, error);
     return;
   }
   TemporaryFile file(path);
-  if (const int error = write_all(file.descriptor(), bytes)) fail(path, error);
+  if (const int error = write_all(file.descriptor(), bytes)) fail_writing(path, error);
   file.commit();
 }
 
@@ -135,8 +135,8 @@ void check_writable(const std::string& path) {
   }
   // A pipe is not opened: whoever reads from it would see it closed again.
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) fail(path, EISDIR);
-  if (::access(path.c_str(), W_OK) != 0) fail(path, errno);
+  if (fs::is_directory(path, ignored)) fail_writing(path, EISDIR);
+  if (::access(path.c_str(), W_OK) != 0) fail_writing(path, errno);
 }
 
 }  // namespace vesalius

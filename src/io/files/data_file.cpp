@@ -33,4 +33,12 @@ std::size_t DataFile::read_into(std::uint64_t at, std::span<std::byte> memory) c
   return done;
 }
 
+std::string read_file(const std::string& path, std::size_t max_bytes) {
+  const DataFile file(path);
+  if (file.size() > max_bytes) {
+    throw Error(fmt::format("{}: {} bytes, expected at most {}", path, file.size(), max_bytes));
+  }
+  return file.read(0, file.size());
+}
+
 }  // namespace vesalius

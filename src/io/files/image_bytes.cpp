@@ -36,7 +36,7 @@ std::uint32_t crc32(std::string_view bytes) {
   return ~crc;
 }
 
-void check_size(std::int64_t width, std::int64_t height, const std::string& name) {
+void check_image_size(std::int64_t width, std::int64_t height, const std::string& name) {
   if (width < 1 || height < 1 || width > kMaxPixels / height) {
     throw Error(fmt::format("{}: picture of {}x{} pixels, expected 1 to {} in all", name, width, height, kMaxPixels));
   }
@@ -63,7 +63,7 @@ PngBytes parse_png_header(const Chunk& chunk, const std::string& name) {
   if (chunk.type != "IHDR" || chunk.data.size() != 13) {
     throw Error(name + ": damaged PNG: expected the header chunk at byte 8");
   }
-  check_size(big_endian(chunk.data, 0, 4), big_endian(chunk.data, 4, 4), name);
+  check_image_size(big_endian(chunk.data, 0, 4), big_endian(chunk.data, 4, 4), name);
   PngBytes png;
   png.width = int(big_endian(chunk.data, 0, 4));
   png.height = int(big_endian(chunk.data, 4, 4));
@@ -135,7 +135,7 @@ void check_jpeg(std::string_view bytes, const std::string& name) {
     const std::size_t length = big_endian(bytes, at + 2, 2);
     if (length < 2 || length > bytes.size() - at - 2) break;
     if (has_size(marker)) {
-      check_size(big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2), name);
+      check_image_size(big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2), name);
       sized = true;
     }
     if (marker == 0xDA && ++scans > kMaxJpegScans) {

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <string_view>
+
+#include "vesalius/image.h"
 
 namespace vesalius {
 
@@ -29,5 +33,14 @@ void check_jpeg(std::string_view bytes, const std::string& name);
 
 bool is_png(std::string_view bytes);
 bool is_jpeg(std::string_view bytes);
+
+/// Fills a picture from rows in memory whose beginnings lie `stride` bytes apart.
+template <class T>
+void copy_rows(const void* data, std::size_t stride, Image<T>& to) {
+  const auto* row = static_cast<const char*>(data);
+  for (int v = 0; v < to.height(); ++v, row += stride) {
+    std::memcpy(static_cast<void*>(to.row(v)), row, static_cast<std::size_t>(to.width()) * sizeof(T));
+  }
+}
 
 }  // namespace vesalius

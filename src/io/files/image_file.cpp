@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "io/files/atomic_file.h"
+#include "io/files/data_file.h"
 #include "io/files/image_bytes.h"
-#include "io/files/read_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "io/files/atomic_file.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/base/toml_reader.h"
 
 namespace vesalius {

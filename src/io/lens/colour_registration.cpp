@@ -15,7 +15,7 @@
 namespace vesalius {
 namespace {
 
-constexpr int kRowsAtOnce = 16;
+constexpr int kRegisteredRows = 16;
 constexpr int kMostCellBits = 8;
 constexpr std::uint16_t kFar = std::numeric_limits<std::uint16_t>::max();
 
@@ -31,7 +31,7 @@ struct Landing {
 };
 
 template <class T>
-void expect_size(const Camera& camera, const Image<T>& picture, const char* what) {
+void expect_camera_size(const Camera& camera, const Image<T>& picture, const char* what) {
   if (picture.width() == camera.width && picture.height() == camera.height) return;
   throw Error(fmt::format("{} of {}x{} pixels, expected {}x{} of its calibration", what, picture.width(),
                           picture.height(), camera.width, camera.height));
@@ -57,8 +57,8 @@ ColourRegistration::ColourRegistration(const Camera& depth, const LensCamera& co
 }
 
 ColourImage ColourRegistration::operator()(const DepthImage& depth, const ColourImage& colour) const {
-  expect_size(depth_, depth, "depth");
-  expect_size(colour_.camera, colour, "colour");
+  expect_camera_size(depth_, depth, "depth");
+  expect_camera_size(colour_.camera, colour, "colour");
   const Camera& to = colour_.camera;
   const auto reach = float(colour_.lens.reach);
   const float reach2 = reach * reach;
@@ -67,7 +67,7 @@ ColourImage ColourRegistration::operator()(const DepthImage& depth, const Colour
   const Eigen::Matrix3f turn = colour_from_depth_.linear();
   const Eigen::Vector3f shift_mm = 1000.F * colour_from_depth_.translation();
 
-  parallel_ranges(depth.height(), kRowsAtOnce, [&](int begin, int end) {
+  parallel_ranges(depth.height(), kRegisteredRows, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       const Eigen::Vector3f row = turn.col(1) * ((float(v) - depth_.cy) / depth_.fy) + turn.col(2);
       for (int u = 0; u < depth.width(); ++u) {
@@ -91,7 +91,7 @@ ColourImage ColourRegistration::operator()(const DepthImage& depth, const Colour
   });
 
   ColourImage registered(depth.width(), depth.height());
-  parallel_ranges(depth.height(), kRowsAtOnce, [&](int begin, int end) {
+  parallel_ranges(depth.height(), kRegisteredRows, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < depth.width(); ++u) {
         const Landing& landing = landings(u, v);

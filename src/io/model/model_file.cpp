@@ -8,7 +8,7 @@
 
 #include "io/files/atomic_file.h"
 #include "io/files/byte_stream.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "io/model/model_contents.h"
 #include "io/model/model_sections.h"
 #include "io/model/old_model.h"

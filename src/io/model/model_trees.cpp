@@ -18,7 +18,7 @@ namespace {
 
 // This is the lowest level at which zstd divides a column where its distribution changes. Level 9 takes 3 to 4 % more
 // bytes, level 22 takes 0.1 % less.
-constexpr int kLevel = 16;
+constexpr int kColumnLevel = 16;
 constexpr std::size_t kMaxTrees = 256;
 constexpr std::size_t kWidestIndex = 5;  // bytes of a varint
 
@@ -180,7 +180,7 @@ std::vector<std::string> columns_of(const Tree& tree) {
 
 std::string pack_tree(const Tree& tree) {
   std::string packed;
-  for (const std::string& column : columns_of(tree)) packed += pack(column, kLevel);
+  for (const std::string& column : columns_of(tree)) packed += pack(column, kColumnLevel);
   return packed;
 }
 
@@ -299,7 +299,7 @@ std::vector<Tree> read_trees(ByteReader& in) {
 
 void write_logits(ByteWriter& out, const std::vector<Tree>& trees) {
   std::vector<std::string> packed(trees.size());
-  parallel_for(int(trees.size()), [&](int t) { packed[t] = pack(by_columns(trees[t]), kLevel); });
+  parallel_for(int(trees.size()), [&](int t) { packed[t] = pack(by_columns(trees[t]), kColumnLevel); });
   for (const std::string& tree : packed) out.text(tree);
 }
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

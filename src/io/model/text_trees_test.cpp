@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "io/files/test_files.h"
 #include "vesalius/base/random.h"
 #include "vesalius/error.h"

@@ -1,5 +1,3 @@
-#include "io/recordings/bag_recording.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 
 #include "io/files/byte_stream.h"
 #include "io/recordings/chunked_recording.h"
-#include "io/recordings/decompress.h"
+#include "io/recordings/recording_formats.h"
 
 namespace vesalius {
 namespace {

@@ -17,8 +17,6 @@
 namespace vesalius {
 namespace {
 
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
-
 /// Encodings of colour and where red, green and blue stand in a pixel.
 struct ColourEncoding {
   std::string_view name;
@@ -32,11 +30,7 @@ constexpr std::array<ColourEncoding, 7> kColourEncodings{{{"rgb8", 3, 0, 1, 2},
                                                           {"mono8", 1, 0, 0, 0},
                                                           {"8UC1", 1, 0, 0, 0}}};
 
-bool is_ros(const RecordedTopic& topic) {
-  return topic.layout == MessageLayout::ros1 || topic.layout == MessageLayout::cdr;
-}
-
-int side(std::uint64_t value, const std::string& name) {
+int picture_side(std::uint64_t value, const std::string& name) {
   if (value > static_cast<std::uint64_t>(kMaxPixels)) {
     throw Error(fmt::format("{}: a picture {} pixels long, expected at most {}", name, value, kMaxPixels));
   }
@@ -91,7 +85,7 @@ Calibration parse_realsense_text(std::string_view text, const std::string& name)
   };
   const auto whole = [&](const char* key) {
     const double value = number(key);
-    return value >= 0.0 && value <= double(kMaxPixels) ? side(static_cast<std::uint64_t>(value), name) : 0;
+    return value >= 0.0 && value <= double(kMaxPixels) ? picture_side(static_cast<std::uint64_t>(value), name) : 0;
   };
   Calibration calibration;
   calibration.width = whole("width");
@@ -193,8 +187,8 @@ PictureMessage parse_picture(const RecordedTopic& topic, std::string_view messag
       picture.data = fields.text(2);
     } else {
       picture.frame = fields.text(7);
-      picture.width = side(fields.number(2), name);
-      picture.height = side(fields.number(3), name);
+      picture.width = picture_side(fields.number(2), name);
+      picture.height = picture_side(fields.number(3), name);
       picture.encoding = fields.text(4);
       picture.row_bytes = static_cast<std::uint32_t>(fields.number(5));
       picture.data = fields.text(6);
@@ -207,8 +201,8 @@ PictureMessage parse_picture(const RecordedTopic& topic, std::string_view messag
   if (picture.compressed) {
     picture.encoding = fields.text("the format");
   } else {
-    picture.height = side(fields.u32("the height"), name);
-    picture.width = side(fields.u32("the width"), name);
+    picture.height = picture_side(fields.u32("the height"), name);
+    picture.width = picture_side(fields.u32("the width"), name);
     picture.encoding = fields.text("the encoding");
     picture.big_endian = fields.u8("the byte order") != 0;
     picture.row_bytes = fields.u32("the length of a row");
@@ -222,8 +216,8 @@ Calibration parse_calibration(const RecordedTopic& topic, std::string_view messa
   if (topic.layout == MessageLayout::protobuf) {
     const ProtobufFields fields = parse_protobuf(message, name);
     calibration.frame = fields.text(9);
-    calibration.width = side(fields.number(2), name);
-    calibration.height = side(fields.number(3), name);
+    calibration.width = picture_side(fields.number(2), name);
+    calibration.height = picture_side(fields.number(3), name);
     calibration.model = fields.text(4);
     calibration.distortion = fields.list64(5);
     calibration.matrix = exactly<9>(fields.list64(6));
@@ -239,8 +233,8 @@ Calibration parse_calibration(const RecordedTopic& topic, std::string_view messa
   }
   fields.header(calibration.frame);
   if (std::string stream = realsense_stream(topic.name); !stream.empty()) calibration.frame = std::move(stream);
-  calibration.height = side(fields.u32("the height"), name);
-  calibration.width = side(fields.u32("the width"), name);
+  calibration.height = picture_side(fields.u32("the height"), name);
+  calibration.width = picture_side(fields.u32("the width"), name);
   calibration.model = fields.text("the distortion model");
   calibration.distortion = fields.list64("the distortion");
   calibration.matrix = exactly<9>(fields.reals64(9, "the camera matrix"));

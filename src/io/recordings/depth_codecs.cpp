@@ -69,7 +69,7 @@ class NibbleWriter {
   unsigned count_ = 0;
 };
 
-void check_size(std::int64_t width, std::int64_t height, const std::string& name) {
+void check_depth_size(std::int64_t width, std::int64_t height, const std::string& name) {
   if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels || width * height > kMaxPixels) {
     throw Error(
         fmt::format("{}: a depth picture of {}x{}, expected at most {} pixels", name, width, height, kMaxPixels));
@@ -79,7 +79,7 @@ void check_size(std::int64_t width, std::int64_t height, const std::string& name
 }  // namespace
 
 Image<std::uint16_t> unpack_rvl(std::string_view packed, int width, int height, const std::string& name) {
-  check_size(width, height, name);
+  check_depth_size(width, height, name);
   Image<std::uint16_t> depth(width, height, 0);
   Nibbles in(packed, name);
   std::uint16_t* at = depth.data();
@@ -131,7 +131,7 @@ Image<std::uint16_t> unpack_compressed_depth(std::string_view data, std::string_
   if (format.ends_with("rvl")) {
     const auto width = in.number<std::uint32_t>("width of RVL");
     const auto height = in.number<std::uint32_t>("height of RVL");
-    check_size(width, height, name);
+    check_depth_size(width, height, name);
     stored = unpack_rvl(in.take(in.left(), "RVL"), int(width), int(height), name);
   } else {
     stored = decode_depth_png(in.take(in.left(), "PNG"), name);

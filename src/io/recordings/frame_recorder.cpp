@@ -10,7 +10,6 @@
 namespace vesalius {
 namespace {
 
-constexpr double kNanoseconds = 1e9;
 constexpr const char* kFrame = "camera_optical_frame";
 
 }  // namespace
@@ -28,8 +27,8 @@ std::uint16_t FrameRecorder::topic(std::optional<std::uint16_t>& known, const ch
 
 void FrameRecorder::write(const Frame& frame) {
   check(frame);
-  time_ns_ = std::llround(kNanoseconds * frame.time_s.value_or(double(frames_) / rate_));
-  log_ns_ = frame.arrived_s ? std::llround(kNanoseconds * *frame.arrived_s) : time_ns_;
+  time_ns_ = std::llround(double(kNanoseconds) * frame.time_s.value_or(double(frames_) / rate_));
+  log_ns_ = frame.arrived_s ? std::llround(double(kNanoseconds) * *frame.arrived_s) : time_ns_;
   ++frames_;
   out_.write(topic(camera_, "/camera/depth/camera_info", "sensor_msgs/CameraInfo"), log_ns_,
              calibration_message(frame.camera, time_ns_, kFrame));

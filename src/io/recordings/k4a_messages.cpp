@@ -36,7 +36,7 @@ std::vector<double> numbers(const json& object, const char* key, std::size_t cou
   return values;
 }
 
-int side(const json& object, const char* key, const std::string& name) {
+int sensor_side(const json& object, const char* key, const std::string& name) {
   const json& value = member(object, key, name);
   constexpr double kMost = 1 << 16;
   if (!value.is_number() || !(value.get<double>() >= 1.0 && value.get<double>() <= kMost)) {
@@ -72,8 +72,8 @@ K4aCalibration::Sensor camera_of(const json& camera, const std::string& name) {
           p[1],
           p[2],
           p[3],
-          side(camera, "SensorWidth", name),
-          side(camera, "SensorHeight", name),
+          sensor_side(camera, "SensorWidth", name),
+          sensor_side(camera, "SensorHeight", name),
           {p[4], p[5], p[13], p[12], p[6], p[7], p[8], p[9]},
           transform_of(camera, name)};
 }

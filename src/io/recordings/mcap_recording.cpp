@@ -1,5 +1,3 @@
-#include "io/recordings/mcap_recording.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +6,8 @@
 
 #include "io/files/byte_stream.h"
 #include "io/recordings/chunked_recording.h"
-#include "io/recordings/decompress.h"
-#include "io/recordings/mcap_records.h"
+#include "io/recordings/mcap_writer.h"
+#include "io/recordings/recording_formats.h"
 
 namespace vesalius {
 namespace {

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "io/files/byte_stream.h"
-#include "io/recordings/mcap_records.h"
 #include "io/recordings/time_difference.h"
 #include "vesalius/error.h"
 
@@ -20,7 +19,7 @@ namespace {
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20U;
 constexpr std::uint64_t kChunkTime_ns = 1'000'000'000;
 /// Level 1 packs depth nearly as well as higher ones, at several hundred MB a second.
-constexpr int kLevel = 1;
+constexpr int kChunkLevel = 1;
 
 std::string record(McapRecord kind, std::string_view content) {
   ByteWriter out;
@@ -101,7 +100,7 @@ void McapWriter::write(std::uint16_t topic, std::int64_t time_ns, std::string_vi
 void McapWriter::finish_chunk() {
   if (chunk_.empty()) return;
   std::string packed(ZSTD_compressBound(chunk_.size()), '\0');
-  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), chunk_.data(), chunk_.size(), kLevel);
+  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), chunk_.data(), chunk_.size(), kChunkLevel);
   if (ZSTD_isError(size) != 0) throw Error(fmt::format("{}: zstd: {}", path_, ZSTD_getErrorName(size)));
   ByteWriter content;
   content.number(static_cast<std::uint64_t>(chunk_first_ns_));

@@ -9,7 +9,6 @@
 namespace vesalius {
 namespace {
 
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
 /// Bytes before a CDR message that say how it is written.
 constexpr std::size_t kCdrHead = 4;
 

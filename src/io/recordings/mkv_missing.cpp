@@ -1,5 +1,5 @@
 // In place of mkv_recording.cpp where libavformat was not found.
-#include "io/recordings/mkv_recording.h"
+#include "io/recordings/recording_formats.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

@@ -1,5 +1,3 @@
-#include "io/recordings/mkv_recording.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "io/recordings/k4a_messages.h"
 #include "io/recordings/matroska_end.h"
 #include "io/recordings/message_fields.h"
+#include "io/recordings/recording_formats.h"
 #include "io/recordings/transform_messages.h"
 #include "vesalius/error.h"
 

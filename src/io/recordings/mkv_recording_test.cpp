@@ -1,11 +1,10 @@
-#include "io/recordings/mkv_recording.h"
-
 #include <gmock/gmock.h>
 
 #include "io/files/byte_stream.h"
 #include "io/files/test_files.h"
 #include "io/lens/colour_registration.h"
-#include "io/lens/rectification.h"
+#include "io/lens/lens.h"
+#include "io/recordings/recording_formats.h"
 #include "io/recordings/test_k4a.h"
 #include "vesalius/open_source.h"
 

@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include "io/files/data_file.h"
-#include "io/recordings/bag_recording.h"
-#include "io/recordings/mcap_recording.h"
-#include "io/recordings/mcap_records.h"
-#include "io/recordings/mkv_recording.h"
-#include "io/recordings/sqlite_recording.h"
+#include "io/recordings/mcap_writer.h"
+#include "io/recordings/recording_formats.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

@@ -25,6 +25,14 @@ struct RecordedTopic {
   std::int64_t messages = -1;
 };
 
+/// Returns whether the fields of its messages are laid out as in ROS 1 or 2.
+inline bool is_ros(const RecordedTopic& topic) {
+  return topic.layout == MessageLayout::ros1 || topic.layout == MessageLayout::cdr;
+}
+
+/// Nanoseconds of a second.
+inline constexpr std::int64_t kNanoseconds = 1'000'000'000;
+
 struct RecordedMessage {
   std::size_t topic = 0;     ///< index in Recording::topics()
   std::int64_t time_ns = 0;  ///< when it was recorded

@@ -1,12 +1,11 @@
-#include "io/recordings/sqlite_recording.h"
-
 #include <fmt/format.h>
 #include <sqlite3.h>
 
 #include <limits>
 #include <map>
 
-#include "io/recordings/decompress.h"
+#include "io/recordings/chunked_recording.h"
+#include "io/recordings/recording_formats.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

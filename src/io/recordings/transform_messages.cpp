@@ -12,10 +12,6 @@ namespace {
 /// More frames above each other than any robot has.
 constexpr std::size_t kMostAncestors = 1000;
 
-bool is_ros(const RecordedTopic& topic) {
-  return topic.layout == MessageLayout::ros1 || topic.layout == MessageLayout::cdr;
-}
-
 bool is_realsense(const RecordedTopic& topic) {
   const std::string stream = realsense_stream(topic.name);
   return !stream.empty() && topic.name.starts_with(stream + "/tf/") &&

@@ -1,5 +1,5 @@
 // In place of freenect_source.cpp where libfreenect was not found.
-#include "io/sensors/freenect_source.h"
+#include "io/sensors/sensor_drivers.h"
 
 namespace vesalius {
 

@@ -1,5 +1,3 @@
-#include "io/sensors/freenect_source.h"
-
 #include <fmt/format.h>
 #include <libfreenect.h>
 #include <sys/time.h>
@@ -15,12 +13,12 @@
 #include <utility>
 
 #include "io/sensors/live_source.h"
+#include "io/sensors/sensor_drivers.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
 namespace {
 
-constexpr int kWidth = 640, kHeight = 480;
 /// Of the colour camera, on whose grid registered depth lies; cameras differ by a few pixels.
 constexpr float kFocal_px = 525.F;
 constexpr double kTicks_s = 60e6;
@@ -149,7 +147,8 @@ class FreenectSource final : public LiveSource {
     Frame frame = arrived(double(depth_.time) / kTicks_s);
     frame.arrived_s = depth_.arrived_s;
     if (tilt_) frame.up = tilt_->up();
-    frame.camera = {kWidth, kHeight, kFocal_px, kFocal_px, (kWidth - 1) / 2.F, (kHeight - 1) / 2.F};
+    frame.camera = {
+        kCameraWidth, kCameraHeight, kFocal_px, kFocal_px, (kCameraWidth - 1) / 2.F, (kCameraHeight - 1) / 2.F};
     frame.depth = depth_.picture;
     const std::int64_t time = depth_.time;
     came_.wait_for(lock, kColourPatience, [&] { return colour_.time >= time - kMostApart && colour_.count > 0; });
@@ -205,7 +204,7 @@ class FreenectSource final : public LiveSource {
   void take_depth(const void* data, std::uint32_t time) {
     const std::scoped_lock lock(mutex_);
     depth_.arrived_s = now_s();
-    depth_.picture = DepthImage(kWidth, kHeight);
+    depth_.picture = DepthImage(kCameraWidth, kCameraHeight);
     std::memcpy(depth_.picture.data(), data, depth_.picture.size() * sizeof(std::uint16_t));
     const std::int64_t before = depth_.time;
     depth_.time = whole(time);
@@ -217,7 +216,7 @@ class FreenectSource final : public LiveSource {
 
   void take_colour(const void* data, std::uint32_t time) {
     const std::scoped_lock lock(mutex_);
-    colour_.picture = ColourImage(kWidth, kHeight);
+    colour_.picture = ColourImage(kCameraWidth, kCameraHeight);
     std::memcpy(static_cast<void*>(colour_.picture.data()), data, colour_.picture.size() * sizeof(Rgb));
     colour_.time = whole(time);
     ++colour_.count;

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,8 +14,15 @@
 
 #include "io/lens/lens.h"
 #include "vesalius/frame_source.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
+
+/// The mode of cameras that have several: pictures of this size, so many a second.
+inline constexpr int kCameraWidth = 640, kCameraHeight = 480, kCameraRate = 30;
+
+/// Microseconds of a second.
+inline constexpr double kMicroseconds = 1e6;
 
 /// Time without a frame after which a camera counts as lost.
 inline constexpr std::chrono::milliseconds kSensorPatience(3000);
@@ -68,5 +78,16 @@ class LiveSource : public FrameSource {
  private:
   std::atomic<bool> stopped_ = false;
 };
+
+/// Turns depth in other units into millimetres, each of them `to_mm` long. What is beyond 65.5 m becomes no reading.
+inline void to_millimetres(DepthImage& depth, double to_mm) {
+  constexpr double kSame = 1e-6;
+  if (std::abs(to_mm - 1.0) < kSame) return;
+  for (std::uint16_t& z : depth) {
+    const double z_mm = to_mm * z;
+    z = z_mm < std::numeric_limits<std::uint16_t>::max() ? static_cast<std::uint16_t>(std::lround(z_mm))
+                                                         : std::uint16_t{0};
+  }
+}
 
 }  // namespace vesalius

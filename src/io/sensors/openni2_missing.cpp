@@ -1,5 +1,5 @@
 // In place of openni2_source.cpp where OpenNI2 was not found.
-#include "io/sensors/openni2_source.h"
+#include "io/sensors/sensor_drivers.h"
 
 namespace vesalius {
 

@@ -1,5 +1,3 @@
-#include "io/sensors/openni2_source.h"
-
 #include <OpenNI.h>
 #include <fmt/format.h>
 
@@ -12,18 +10,17 @@
 #include <thread>
 #include <utility>
 
-#include "io/files/copy_rows.h"
+#include "io/files/image_bytes.h"
 #include "io/sensors/live_source.h"
+#include "io/sensors/sensor_drivers.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
 namespace {
 
-constexpr int kWidth = 640, kHeight = 480, kRate = 30;
 /// How far a colour picture's time may lie from depth's: half the time between two frames.
 constexpr std::int64_t kMostApart_us = 17'000;
 constexpr int kColourPatience_ms = 20;
-constexpr double kMicroseconds = 1e6;
 /// How long a stopped stream is kept. Some drivers (OpenNI2's own Dummy) do not wait in `stop` for the thread that
 /// makes their frames; it goes on with the stream until the next one, 33 ms away.
 constexpr std::chrono::milliseconds kUntilThreadsEnd(200);
@@ -98,7 +95,7 @@ void choose_mode(openni::VideoStream& stream, openni::PixelFormat format, int wi
   for (int i = 0; i < modes.getSize(); ++i) {
     const openni::VideoMode& mode = modes[i];
     if (mode.getPixelFormat() == format && mode.getResolutionX() == width && mode.getResolutionY() == height &&
-        mode.getFps() == kRate) {
+        mode.getFps() == kCameraRate) {
       stream.setVideoMode(mode);
       return;
     }
@@ -110,7 +107,7 @@ class Openni2Source final : public LiveSource {
   explicit Openni2Source(const std::string& id) : LiveSource("openni2", id) {
     open_device(device_, id, place_);
     expect(depth_.create(device_, openni::SENSOR_DEPTH), place_ + " has no depth");
-    choose_mode(depth_, openni::PIXEL_FORMAT_DEPTH_1_MM, kWidth, kHeight);
+    choose_mode(depth_, openni::PIXEL_FORMAT_DEPTH_1_MM, kCameraWidth, kCameraHeight);
     const openni::VideoMode mode = depth_.getVideoMode();
     if (mode.getPixelFormat() != openni::PIXEL_FORMAT_DEPTH_1_MM &&
         mode.getPixelFormat() != openni::PIXEL_FORMAT_DEPTH_100_UM) {
@@ -192,7 +189,7 @@ class Openni2Source final : public LiveSource {
       camera_.fx = float(width / (2.0 * std::tan(across / 2.0)));
       camera_.fy = float(height / (2.0 * std::tan(down / 2.0)));
     } else {
-      constexpr float kUsual = 525.F / kWidth;  // of PrimeSense cameras
+      constexpr float kUsual = 525.F / kCameraWidth;  // of PrimeSense cameras
       camera_.fx = camera_.fy = kUsual * float(width);
       notes_.push_back(
           fmt::format("{}: no field of view given; a focal length of {:.4g} pixels assumed", place_, camera_.fx));

@@ -1,5 +1,3 @@
-#include "io/sensors/orbbec_source.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -12,12 +10,12 @@
 #include <tuple>
 #include <utility>
 
-#include "io/files/copy_rows.h"
-#include "io/lens/rectification.h"
-#include "io/sensors/depth_units.h"
+#include "io/files/image_bytes.h"
+#include "io/lens/lens.h"
 #include "io/sensors/live_source.h"
 #include "io/sensors/orbbec_api.h"
 #include "io/sensors/run_time_library.h"
+#include "io/sensors/sensor_drivers.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -25,8 +23,6 @@ namespace {
 
 using ob::api;
 
-constexpr std::uint32_t kWidth = 640, kHeight = 480, kRate = 30;
-constexpr double kMicroseconds = 1e6;
 /// Of ob_camera_distortion_model, in its order.
 constexpr std::array<std::string_view, 6> kLensModels{
     "none",          "modified Brown-Conrady", "inverse Brown-Conrady",
@@ -76,7 +72,7 @@ struct Mode {
   std::uint32_t width = 0, height = 0, rate = 0;
   int format = 0;
 
-  bool is_usual() const { return width == kWidth && height == kHeight && rate == kRate; }
+  bool is_usual() const { return width == kCameraWidth && height == kCameraHeight && rate == kCameraRate; }
 };
 
 /// Returns the modes of a list, which it takes over; that of the camera's choice is the first.
@@ -98,7 +94,7 @@ std::vector<Mode> modes_of(const Held<ob::StreamProfileList>& list, const std::s
 }
 
 /// Depth that is packed is unpacked by the SDK, so any format will do.
-Mode* choose_depth(std::vector<Mode>& modes) {
+Mode* choose_depth_mode(std::vector<Mode>& modes) {
   for (Mode& mode : modes) {
     if (mode.is_usual() && (mode.format == ob::kY16 || mode.format == ob::kZ16)) return &mode;
   }
@@ -116,7 +112,7 @@ Mode* choose_colour(std::vector<Mode>& modes, const Mode& depth) {
   const auto rank = [&](const Mode& mode) {
     const double unlike = std::round(100.0 * std::abs(shape(mode) - shape(depth)));
     const std::uint32_t size = mode.width * mode.height;
-    return std::tuple(mode.rate != depth.rate, unlike, mode.height < kHeight, size);
+    return std::tuple(mode.rate != depth.rate, unlike, mode.height < kCameraHeight, size);
   };
   for (Mode& mode : modes) {
     if (mode.format != ob::kRgb || mode.width == 0 || mode.height == 0) continue;
@@ -135,9 +131,9 @@ std::vector<double> coefficients_of(const ob::Distortion& lens) {
 
 /// The sensor of acceleration of a camera, apart from the pictures, which must not wait for it. A camera without one,
 /// or whose one does not start, has no `up`.
-class Accelerometer {
+class OrbbecAccelerometer {
  public:
-  Accelerometer(ob::Device* device, const std::string& place) : place_(place) {
+  OrbbecAccelerometer(ob::Device* device, const std::string& place) : place_(place) {
     sensor_ = hold(call(place, api().device_get_sensor, device, ob::kAccel), api().delete_sensor);
     const auto list =
         hold(call(place, api().sensor_get_stream_profile_list, static_cast<const ob::Sensor*>(sensor_.get())),
@@ -148,12 +144,12 @@ class Accelerometer {
     call(place, api().sensor_start, sensor_.get(), static_cast<const ob::StreamProfile*>(profile_.get()), take,
          static_cast<void*>(this));
   }
-  ~Accelerometer() {
+  ~OrbbecAccelerometer() {
     Outcome<ob::Failure> ignored(place_);
     api().sensor_stop(sensor_.get(), ignored.out());
   }
-  Accelerometer(const Accelerometer&) = delete;
-  Accelerometer& operator=(const Accelerometer&) = delete;
+  OrbbecAccelerometer(const OrbbecAccelerometer&) = delete;
+  OrbbecAccelerometer& operator=(const OrbbecAccelerometer&) = delete;
 
   /// Returns the direction away from the ground in the optical frame of a stream, by the newest measurement.
   std::optional<Eigen::Vector3f> up(ob::StreamProfile* in) const {
@@ -173,7 +169,7 @@ class Accelerometer {
  private:
   static void take(ob::Frame* frame, void* user) {
     const auto held = hold(frame, api().delete_frame);
-    auto* const self = static_cast<Accelerometer*>(user);
+    auto* const self = static_cast<OrbbecAccelerometer*>(user);
     Outcome<ob::Failure> outcome(self->place_);
     const ob::Acceleration value = api().accel_frame_get_value(frame, outcome.out());
     if (outcome.failed()) return;
@@ -272,7 +268,7 @@ class OrbbecSource final : public LiveSource {
 
   void choose_modes() {
     std::vector<Mode> depths = modes(ob::kDepth), colours = modes(ob::kColour);
-    Mode* depth = choose_depth(depths);
+    Mode* depth = choose_depth_mode(depths);
     if (depth == nullptr) throw Error(place_ + ": it has no depth, expected a depth camera");
     Mode* colour = choose_colour(colours, *depth);
     has_colour_ = colour != nullptr;
@@ -375,7 +371,7 @@ class OrbbecSource final : public LiveSource {
   Held<ob::StreamProfile> grid_;        ///< of the stream on whose grid frames lie
   Held<ob::StreamProfile> depth_mode_;  ///< where that is colour's
   Held<ob::Filter> align_;
-  std::optional<Accelerometer> acceleration_;
+  std::optional<OrbbecAccelerometer> acceleration_;
   Camera camera_;
   std::optional<Rectification> rectification_;  ///< of the stream on whose grid frames lie, where its lens distorts
   bool is_registered_without_lens_ = false;     ///< whether depth lies on that grid with the lens undone already

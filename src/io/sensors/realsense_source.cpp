@@ -1,5 +1,3 @@
-#include "io/sensors/realsense_source.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -14,13 +12,13 @@
 #include <utility>
 #include <vector>
 
-#include "io/files/copy_rows.h"
+#include "io/files/image_bytes.h"
 #include "io/lens/colour_registration.h"
-#include "io/lens/rectification.h"
-#include "io/sensors/depth_units.h"
+#include "io/lens/lens.h"
 #include "io/sensors/live_source.h"
 #include "io/sensors/realsense_api.h"
 #include "io/sensors/run_time_library.h"
+#include "io/sensors/sensor_drivers.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -28,7 +26,6 @@ namespace {
 
 using rs2::api;
 
-constexpr int kWidth = 640, kHeight = 480, kRate = 30;
 /// Of rs2_distortion, in its order.
 constexpr std::array<std::string_view, 6> kLensModels{"none",    "modified Brown-Conrady", "inverse Brown-Conrady",
                                                       "F-theta", "Brown-Conrady",          "Kannala-Brandt4"};
@@ -67,9 +64,9 @@ const rs2::StreamProfile* find_stream(const rs2::StreamProfileList* list, int st
 
 /// The sensor of acceleration of a camera, apart from the pictures, which must not wait for it. A camera without one,
 /// or whose one does not start, has no `up`.
-class Accelerometer {
+class RealSenseAccelerometer {
  public:
-  Accelerometer(const rs2::Device* device, std::string place)
+  RealSenseAccelerometer(const rs2::Device* device, std::string place)
       : place_(std::move(place)), queue_(call(place_, api().create_frame_queue, 1), api().delete_frame_queue) {
     const Owned<rs2::SensorList> all(call(place_, api().query_sensors, device), api().delete_sensor_list);
     const auto* const list = static_cast<const rs2::SensorList*>(all.get());
@@ -81,13 +78,13 @@ class Accelerometer {
     }
     if (profile_ != nullptr) start();
   }
-  ~Accelerometer() {
+  ~RealSenseAccelerometer() {
     Outcome<rs2::Failure> stopping(place_), closing(place_);  // what fails now is of no interest
     if (started_) api().stop(sensor_.get(), stopping.out());
     if (started_) api().close(sensor_.get(), closing.out());
   }
-  Accelerometer(const Accelerometer&) = delete;
-  Accelerometer& operator=(const Accelerometer&) = delete;
+  RealSenseAccelerometer(const RealSenseAccelerometer&) = delete;
+  RealSenseAccelerometer& operator=(const RealSenseAccelerometer&) = delete;
 
   /// Returns the direction away from the ground in the optical frame of a stream, by the newest measurement.
   std::optional<Eigen::Vector3f> up(const rs2::StreamProfile* in) {
@@ -194,7 +191,8 @@ class RealsenseSource final : public LiveSource {
       } else if (!id.empty()) {
         call(place_, api().config_enable_device, config.get(), id.c_str());
       }
-      const int width = is_file ? 0 : kWidth, height = is_file ? 0 : kHeight, rate = is_file ? 0 : kRate;
+      const int width = is_file ? 0 : kCameraWidth, height = is_file ? 0 : kCameraHeight,
+                rate = is_file ? 0 : kCameraRate;
       call(place_, api().config_enable_stream, config.get(), rs2::kDepth, -1, width, height, rs2::kZ16, rate);
       if (colour)
         call(place_, api().config_enable_stream, config.get(), rs2::kColour, -1, width, height, rs2::kRgb8, rate);
@@ -290,7 +288,7 @@ class RealsenseSource final : public LiveSource {
   Owned<rs2::Context> context_;
   Owned<rs2::Pipeline> pipeline_;
   Owned<rs2::PipelineProfile> profile_{nullptr, nullptr};
-  std::optional<Accelerometer> acceleration_;
+  std::optional<RealSenseAccelerometer> acceleration_;
   Camera camera_;  ///< of frames: the depth camera without its lens
   std::optional<Rectification> rectification_;
   std::optional<ColourRegistration> registration_;

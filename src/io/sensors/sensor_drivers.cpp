@@ -4,10 +4,6 @@
 
 #include <array>
 
-#include "io/sensors/freenect_source.h"
-#include "io/sensors/openni2_source.h"
-#include "io/sensors/orbbec_source.h"
-#include "io/sensors/realsense_source.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

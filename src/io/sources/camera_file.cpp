@@ -4,12 +4,14 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -28,36 +30,36 @@ std::string one_line(std::string text) {
   return text;
 }
 
-[[noreturn]] void fail(const std::string& name, const std::string& key, const std::string& expected) {
+[[noreturn]] void fail_at(const std::string& name, const std::string& key, const std::string& expected) {
   throw Error(fmt::format("{}: \"{}\": expected {}", name, key, expected));
 }
 
 float checked_focal(double value, const std::string& name, const std::string& key) {
-  if (!(value > 0.0 && value < 1e6)) fail(name, key, "a positive number of pixels");
+  if (!(value > 0.0 && value < 1e6)) fail_at(name, key, "a positive number of pixels");
   return float(value);
 }
 
 float checked_centre(double value, const std::string& name, const std::string& key) {
-  if (!(std::abs(value) < 1e6)) fail(name, key, "a number of pixels");
+  if (!(std::abs(value) < 1e6)) fail_at(name, key, "a number of pixels");
   return float(value);
 }
 
 float checked_scale(double value, const std::string& name, const std::string& key) {
-  if (!(value >= 1.0 && value <= 1e6)) fail(name, key, "stored units per metre, 1 to 1000000");
+  if (!(value >= 1.0 && value <= 1e6)) fail_at(name, key, "stored units per metre, 1 to 1000000");
   return float(value);
 }
 
 std::optional<double> number(const json& object, const std::string& key, const std::string& name) {
   const auto found = object.find(key);
   if (found == object.end()) return std::nullopt;
-  if (!found->is_number()) fail(name, key, "a number");
+  if (!found->is_number()) fail_at(name, key, "a number");
   return found->get<double>();
 }
 
-std::optional<int> side(const json& object, const std::string& key, const std::string& name) {
+std::optional<int> side_if_given(const json& object, const std::string& key, const std::string& name) {
   const std::optional<double> value = number(object, key, name);
   if (!value) return std::nullopt;
-  if (!(*value >= 1.0 && *value <= kMaxSide) || std::floor(*value) != *value) fail(name, key, "a number of pixels");
+  if (!(*value >= 1.0 && *value <= kMaxSide) || std::floor(*value) != *value) fail_at(name, key, "a number of pixels");
   return int(*value);
 }
 
@@ -69,14 +71,14 @@ float scale_of_units(const json& units, const std::string& name) {
   if (word == "mm") return 1000.F;
   if (word == "cm") return 100.F;
   if (word == "m") return 1.F;
-  fail(name, "units", R"("mm", "cm" or "m", or else "depth_scale" in units per metre)");
+  fail_at(name, "units", R"("mm", "cm" or "m", or else "depth_scale" in units per metre)");
 }
 
 std::vector<double> numbers(const YAML::Node& node, std::size_t count, const std::string& name,
                             const std::string& key) {
   const YAML::Node list = node.IsMap() ? node["data"] : node;
   if (!list.IsDefined() || !list.IsSequence() || (count != 0 && list.size() != count)) {
-    fail(name, key, count != 0 ? fmt::format("a list of {} numbers", count) : "a list of numbers");
+    fail_at(name, key, count != 0 ? fmt::format("a list of {} numbers", count) : "a list of numbers");
   }
   std::vector<double> values;
   for (const YAML::Node& value : list) values.push_back(value.as<double>());
@@ -114,7 +116,7 @@ CameraFacts camera_info_facts(const YAML::Node& root, const std::string& name) {
   if (!root.IsMap()) throw Error(name + ": expected a map with camera_matrix (or K), image_width, image_height");
   const YAML::Node k = either(root, "camera_matrix", "K");
   const YAML::Node p = either(root, "projection_matrix", "P");
-  if (!k.IsDefined()) fail(name, "camera_matrix", "3x3 numbers (or K)");
+  if (!k.IsDefined()) fail_at(name, "camera_matrix", "3x3 numbers (or K)");
   std::vector<double> matrix = numbers(k, 9, name, "camera_matrix");
   facts.distorted = distorted_camera(root, matrix, name, facts.odd_lens);
   std::size_t stride = 3;
@@ -211,6 +213,12 @@ void fill(std::optional<T>& mine, const std::optional<T>& theirs) {
   if (!mine) mine = theirs;
 }
 
+/// Returns whether rectified pictures are seen from the same place in the same direction, as those of one camera are.
+bool keeps_direction(const Calibration& c) {
+  const std::array<double, 9> same{1, 0, 0, 0, 1, 0, 0, 0, 1}, none{};
+  return (c.rotation == same || c.rotation == none) && c.projection[3] == 0.0 && c.projection[7] == 0.0;
+}
+
 }  // namespace
 
 void CameraFacts::fill_from(const CameraFacts& other) {
@@ -246,8 +254,8 @@ CameraFacts parse_meta(std::string_view text, const std::string& name) {
   if (const auto v = number(root, "fy", name)) facts.fy = checked_focal(*v, name, "fy");
   if (const auto v = number(root, "cx", name)) facts.cx = checked_centre(*v, name, "cx");
   if (const auto v = number(root, "cy", name)) facts.cy = checked_centre(*v, name, "cy");
-  facts.width = side(root, "width", name);
-  facts.height = side(root, "height", name);
+  facts.width = side_if_given(root, "width", name);
+  facts.height = side_if_given(root, "height", name);
   if (const auto v = number(root, "depth_scale", name)) {
     facts.depth_scale = checked_scale(*v, name, "depth_scale");
   } else if (const auto units = root.find("units"); units != root.end()) {
@@ -255,7 +263,7 @@ CameraFacts parse_meta(std::string_view text, const std::string& name) {
   }
   if (const auto v = number(root, "rate_hz", name)) {
     if (!(*v >= kLowestRate_hz && *v <= kHighestRate_hz)) {
-      fail(name, "rate_hz", fmt::format("frames a second, {} to {}", kLowestRate_hz, kHighestRate_hz));
+      fail_at(name, "rate_hz", fmt::format("frames a second, {} to {}", kLowestRate_hz, kHighestRate_hz));
     }
     facts.rate_hz = *v;
   }
@@ -327,6 +335,31 @@ Camera resolve_camera(const CameraFacts& facts, int width, int height, bool regi
   camera.cy = facts.cy.value_or(float(height - 1) / 2.F);
   check(camera);
   return camera;
+}
+
+CalibratedCamera calibrated(const Calibration& c, bool is_rectified) {
+  const auto camera = [&](double fx, double fy, double cx, double cy) {
+    return Camera{c.width, c.height, float(fx), float(fy), float(cx), float(cy)};
+  };
+  const Camera of_matrix = camera(c.matrix[0], c.matrix[4], c.matrix[2], c.matrix[5]);
+  const std::optional<Lens> lens = make_lens(c.model, c.distortion);
+  const bool distorted = lens != Lens{};
+  const bool has_projection = c.projection[0] > 0.0 && c.projection[5] > 0.0;
+  CalibratedCamera all{of_matrix, {of_matrix, {}}, {}};
+  if (!distorted) return all;
+  // What image_proc turns the pictures into.
+  if (has_projection && (is_rectified || keeps_direction(c))) {
+    all.pinhole = camera(c.projection[0], c.projection[5], c.projection[2], c.projection[6]);
+  }
+  if (is_rectified && has_projection) {
+    all.lens.camera = all.pinhole;
+  } else if (lens) {
+    all.lens.lens = *lens;
+  } else {
+    all.pinhole = of_matrix;
+    all.odd_model = c.model;
+  }
+  return all;
 }
 
 }  // namespace vesalius

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/lens/lens.h"
+#include "io/recordings/camera_messages.h"
 #include "vesalius/camera.h"
 #include "vesalius/frame_source.h"
 
@@ -53,5 +54,16 @@ CameraFacts find_camera_facts(const SourceOptions& options, const std::vector<st
 /// length is known or the facts are for pictures of another size.
 Camera resolve_camera(const CameraFacts& facts, int width, int height, bool registered, const std::string& place,
                       std::vector<std::string>& notes);
+
+/// A calibration as cameras are made of it.
+struct CalibratedCamera {
+  Camera pinhole;  ///< that the pictures are of once nothing distorts them
+  LensCamera lens;
+  std::string odd_model;  ///< of distortion, where that is not known
+};
+
+/// Returns the camera of a calibration. `is_rectified` says that its pictures are those that the calibration turns
+/// others into. Numbers are as calibrated: `check` says whether they are those of a camera.
+CalibratedCamera calibrated(const Calibration& calibration, bool is_rectified);
 
 }  // namespace vesalius

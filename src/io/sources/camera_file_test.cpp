@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "io/files/test_files.h"
-#include "io/lens/rectification.h"
+#include "io/lens/lens.h"
 #include "vesalius/image_file.h"
 #include "vesalius/open_source.h"
 

@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "io/lens/rectification.h"
+#include "io/lens/lens.h"
 #include "io/sources/camera_file.h"
 #include "vesalius/frame_source.h"
 
@@ -60,5 +62,46 @@ std::unique_ptr<FrameSource> open_list(FrameList list);
 
 /// Converts stored depth to millimetres. A result over 65535 mm does not fit and becomes 0, no reading.
 DepthImage to_millimetres(const Image<std::uint16_t>& stored, float units_per_m);
+
+/// One line of a TUM list (depth.txt, rgb.txt).
+struct TumEntry {
+  double time_s = 0.0;
+  std::string stamp;  ///< the time as written
+  std::string file;   ///< relative to the list's folder
+};
+
+/// Reads lines of the form "timestamp file". Empty lines and those that begin with # are skipped. The entries are
+/// sorted by time. Throws Error naming `name` and the line if a line has another form or repeats the time of an earlier
+/// one.
+std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& name);
+
+/// Pairs depth with colour as the benchmark's associate tool does: of all pairs less than `max_difference_s` apart the
+/// closest is taken first, and each entry is in one pair only. Both lists must be sorted by time. Returns for each
+/// entry of `depth` the index in `colour`, or -1. Takes O(n log n) time.
+std::vector<int> associate(const std::vector<TumEntry>& depth, const std::vector<TumEntry>& colour,
+                           double max_difference_s);
+
+/// Lists a folder in the layout of the TUM RGB-D benchmark: depth.txt and, if there is colour, rgb.txt.
+FrameList list_tum(const std::string& folder, const SourceOptions& options);
+
+/// Returns when frame `index` counts as taken where the frames have no times.
+inline double usual_time_s(std::size_t index) { return double(index) / kUsualRate; }
+
+/// Returns the index of the first of `count` frames that is not before `time_s`, or `count`. `time_of` gives the time
+/// of the frame with an index; times must not fall.
+template <class TimeOf>
+std::size_t first_not_before(double time_s, std::size_t count, const TimeOf& time_of) {
+  std::size_t first = 0;
+  while (count > 0) {
+    const std::size_t half = count / 2;
+    if (time_of(first + half) < time_s) {
+      first += half + 1;
+      count -= half + 1;
+    } else {
+      count = half;
+    }
+  }
+  return first;
+}
 
 }  // namespace vesalius

@@ -11,17 +11,15 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/files/copy_rows.h"
 #include "io/files/image_bytes.h"
-#include "io/lens/rectification.h"
+#include "io/lens/lens.h"
 #include "io/sensors/reconnecting_source.h"
 #include "io/sensors/sensor_drivers.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
 #include "io/sources/list_source.h"
-#include "io/sources/pcd_source.h"
+#include "io/sources/pcd.h"
 #include "io/sources/recording_source.h"
-#include "io/sources/tum.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

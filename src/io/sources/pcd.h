@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "io/sources/camera_file.h"
+#include "vesalius/frame_source.h"
 #include "vesalius/image.h"
 
 namespace vesalius {
@@ -26,5 +28,9 @@ DepthImage depth_of(const PointGrid& grid);
 /// Estimates the pinhole camera whose pixel grid the points lie on, by least squares. Throws Error naming `name` if
 /// there are too few points or they lie on no such grid.
 CameraFacts estimate_camera(const PointGrid& grid, const std::string& name);
+
+/// Opens an organised PCD file, or all such files in a folder, as a source of frames. The camera comes from `options`
+/// or from a camera file beside the clouds; otherwise it is estimated for each cloud from its points.
+std::unique_ptr<FrameSource> open_pcd(const std::string& path, const SourceOptions& options);
 
 }  // namespace vesalius

@@ -13,7 +13,7 @@
 #include "io/recordings/message_fields.h"
 #include "io/recordings/realsense_topics.h"
 #include "io/recordings/transform_messages.h"
-#include "io/sources/calibrated_camera.h"
+#include "io/sources/camera_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -25,7 +25,6 @@ constexpr int kMostProbed = 5000;
 constexpr std::int64_t kForTransforms_ns = 1'000'000'000;
 /// So long topics are waited for that may have no message at all.
 constexpr std::int64_t kForOthers_ns = 20'000'000'000;
-constexpr double kNanoseconds = 1e9;
 
 bool has_word(const std::string& text, std::string_view word) {
   const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == b; };
@@ -64,8 +63,8 @@ PictureTopic look_at(const RecordedTopic& topic, const RecordedMessage& message,
                     is_depth(picture),
                     picture.width,
                     picture.height,
-                    double(time_ns) / kNanoseconds,
-                    double(message.time_ns) / kNanoseconds};
+                    double(time_ns) / double(kNanoseconds),
+                    double(message.time_ns) / double(kNanoseconds)};
   // Infrared pictures are of 16 bits too.
   if (picture.encoding == "mono16" && !has_word(topic.name, "depth")) seen.depth = false;
   try {
@@ -150,8 +149,8 @@ std::string names_of(const std::vector<const PictureTopic*>& topics) {
   return text;
 }
 
-const PictureTopic& choose_depth(const Contents& contents, const SourceOptions& options, const std::string& place,
-                                 std::vector<std::string>& notes) {
+const PictureTopic& choose_depth_topic(const Contents& contents, const SourceOptions& options, const std::string& place,
+                                       std::vector<std::string>& notes) {
   std::vector<const PictureTopic*> depths;
   for (const PictureTopic& picture : contents.pictures) {
     if (picture.depth) depths.push_back(&picture);
@@ -325,7 +324,7 @@ std::optional<RecordedCameras::Acceleration> choose_acceleration(const Contents&
 RecordedCameras choose_cameras(Recording& recording, const SourceOptions& options, const std::string& place,
                                std::vector<std::string>& notes) {
   const Contents contents = look_into(recording, place);
-  const PictureTopic& depth = choose_depth(contents, options, place, notes);
+  const PictureTopic& depth = choose_depth_topic(contents, options, place, notes);
   RecordedCameras cameras;
   cameras.depth = {depth.topic.name, depth.width,      depth.height,
                    depth.time_s,     depth.recorded_s, facts_of(contents, depth, place)};

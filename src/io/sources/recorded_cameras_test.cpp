@@ -4,7 +4,7 @@
 
 #include "io/files/test_files.h"
 #include "io/lens/colour_registration.h"
-#include "io/lens/rectification.h"
+#include "io/lens/lens.h"
 #include "io/sources/test_messages.h"
 #include "vesalius/open_source.h"
 

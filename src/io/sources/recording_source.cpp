@@ -13,12 +13,11 @@
 #include <vector>
 
 #include "io/lens/colour_registration.h"
-#include "io/lens/rectification.h"
+#include "io/lens/lens.h"
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/imu_messages.h"
 #include "io/recordings/open_recording.h"
 #include "io/recordings/time_difference.h"
-#include "io/recordings/up_history.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
 #include "io/sources/recorded_cameras.h"
@@ -32,7 +31,6 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMostApart_ns = 50'000'000;
 /// Frames that wait for their colour: half a second at 30 a second.
 constexpr std::size_t kMostWaiting = 15;
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
 /// How long before the time of a seek reading begins: what two streams may lie apart in the file.
 constexpr double kLead_s = 0.5;
 /// By how much more, where that was not early enough.

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
+
+#include "io/recordings/mcap_writer.h"
 
 namespace vesalius::ros2 {
 
@@ -23,6 +26,24 @@ class MessageSink {
   virtual void put(const Topic& topic, std::int64_t time_ns, std::string_view message) = 0;
   /// Ends a topic.
   virtual void end(const std::string& topic) = 0;
+};
+
+/// Writes all messages to an MCAP file, and passes on those that another sink wants.
+class RecordSink final : public MessageSink {
+ public:
+  /// Creates the file. Throws Error as McapWriter does. `other` must outlive this object.
+  RecordSink(const std::string& path, MessageSink& other) : out_(path), other_(other) {}
+
+  bool wants(const Topic&) override { return true; }
+  void put(const Topic& topic, std::int64_t time_ns, std::string_view message) override;
+  void end(const std::string& topic) override { other_.end(topic); }
+  /// Completes the file.
+  void close() { out_.close(); }
+
+ private:
+  McapWriter out_;
+  MessageSink& other_;
+  std::map<std::string, std::uint16_t> topics_;
 };
 
 }  // namespace vesalius::ros2

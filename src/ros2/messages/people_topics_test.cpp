@@ -8,7 +8,6 @@
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/people_messages.h"
-#include "ros2/messages/hri_messages.h"
 #include "ros2/messages/test_people.h"
 #include "vesalius/error.h"
 

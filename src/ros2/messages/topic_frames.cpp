@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "io/recordings/time_difference.h"
-#include "io/sources/calibrated_camera.h"
+#include "io/sources/camera_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius::ros2 {

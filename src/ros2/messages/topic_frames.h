@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/lens/rectification.h"
+#include "io/lens/lens.h"
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/recording.h"
 #include "ros2/messages/people_topics.h"

@@ -10,7 +10,7 @@
 namespace vesalius {
 namespace {
 
-constexpr int kRowGrain = 16;
+constexpr int kBlendRows = 16;
 constexpr int kWidest = 3;  ///< pixels of a ramp: as far as cubic interpolation reaches, and a pixel more
 constexpr std::array<std::array<int, 2>, 8> kSides{
     {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
@@ -47,7 +47,7 @@ std::vector<std::uint8_t> holes_beside_readings(const DepthImage& depth, int v) 
 /// Returns the blended readings beside all holes of a picture.
 std::vector<Pixel> blended_beside_holes(const DepthImage& depth, float least_share) {
   std::vector<std::vector<Pixel>> of_row(depth.height());
-  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
+  parallel_ranges(depth.height(), kBlendRows, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       const std::vector<std::uint8_t> holes = holes_beside_readings(depth, v);
       for (int u = 0; u < depth.width(); ++u) {

@@ -132,6 +132,11 @@ Plane refit(const std::vector<Sample>& samples, const Plane& plane, const PlaneO
   return oriented(solver.eigenvectors().col(0).cast<float>(), mean.cast<float>());
 }
 
+constexpr float kLevel = 0.97F;        // cosine: a floor is level within 14 degrees, as up is known
+constexpr float kLevelGuessed = 0.5F;  // the same where up is a guess
+constexpr float kLeastHeight_m = 0.1F;
+constexpr float kMostHeight_m = 6.F;
+
 }  // namespace
 
 namespace {
@@ -255,6 +260,18 @@ FlatSurfaces find_flat_surfaces(const DepthImage& depth, const Camera& camera, c
 
 Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options) {
   return find_flat_surfaces(depth, camera, options).pixels;
+}
+
+std::optional<Plane> find_floor(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up) {
+  const Eigen::Vector3f down = up ? Eigen::Vector3f(-*up) : Eigen::Vector3f(Eigen::Vector3f::UnitY());
+  const float least = up ? kLevel : kLevelGuessed;
+  std::optional<Plane> floor;
+  for (const Plane& plane : planes) {
+    const bool level = plane.normal.dot(down) >= least;  // normals point away from the camera
+    const bool below = plane.offset >= kLeastHeight_m && plane.offset <= kMostHeight_m;
+    if (level && below && (!floor || plane.offset > floor->offset)) floor = plane;
+  }
+  return floor;
 }
 
 }  // namespace vesalius

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,10 @@ FlatSurfaces find_flat_surfaces(const DepthImage& depth, const Camera& camera, c
 /// Returns 1 on the pixels of those surfaces. A pixel is on one if it lies in it and the surface about it is turned the
 /// same way. Where a plane runs on through a person, the person is not on it.
 Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);
+
+/// Returns the floor among the planes of a picture: the lowest that is level and below the camera; nothing if none is.
+/// `up` is the unit vector away from the ground in the optical frame. Without it the camera is taken to be held upright
+/// and tilted by less than 60 degrees.
+std::optional<Plane> find_floor(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up);
 
 }  // namespace vesalius

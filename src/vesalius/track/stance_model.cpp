@@ -12,7 +12,7 @@ constexpr const char* kStances =
 #include "stances.inc"
     ;
 
-constexpr double kMostWeight = 1000.0;
+constexpr double kMostStanceWeight = 1000.0;
 constexpr float kUsual_m = 1.7F;  // stature of people without a fitted body
 constexpr float kBent_m = 0.7F;   // no bed is as high as hips that are higher: whose are bends over
 
@@ -23,11 +23,11 @@ StanceRule read_rule(const TomlReader& reader, const toml::table& table) {
   std::vector<std::string> keys{"bias"};
   for (const StanceSign& sign : kStanceSigns) keys.insert(keys.end(), {std::string(sign.name), unknown_key(sign)});
   reader.expect_keys(table, keys);
-  rule.bias = reader.number(table, "bias", -kMostWeight, kMostWeight);
+  rule.bias = reader.number(table, "bias", -kMostStanceWeight, kMostStanceWeight);
   for (std::size_t i = 0; i < kStanceSigns.size(); ++i) {
     const StanceSign& sign = kStanceSigns[i];
-    rule.weights[i] = reader.number_or_zero(table, sign.name, -kMostWeight, kMostWeight);
-    rule.unknown[i] = reader.number_or_zero(table, unknown_key(sign), -kMostWeight, kMostWeight);
+    rule.weights[i] = reader.number_or_zero(table, sign.name, -kMostStanceWeight, kMostStanceWeight);
+    rule.unknown[i] = reader.number_or_zero(table, unknown_key(sign), -kMostStanceWeight, kMostStanceWeight);
   }
   return rule;
 }

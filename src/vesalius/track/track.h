@@ -4,13 +4,10 @@
 
 #include "vesalius/fit/body_history.h"
 #include "vesalius/person.h"
-#include "vesalius/track/smooth_joints.h"
 #include "vesalius/track/track_look.h"
 #include "vesalius/track/track_motion.h"
 #include "vesalius/track/track_place.h"
-#include "vesalius/track/track_size.h"
 #include "vesalius/track/track_stance.h"
-#include "vesalius/track/trunk_place.h"
 
 namespace vesalius {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vesalius/planes/find_floor.h"
+#include "vesalius/planes/find_planes.h"
 
 namespace vesalius {
 namespace {
@@ -16,9 +16,9 @@ constexpr double kStill_s = 2.0;  // over which the floor of a still camera is a
 constexpr double kMoving_s = 0.1;
 constexpr double kLasting_s = 0.3;  // for which a plane must be seen to become the floor ...
 constexpr int kLastingFrames = 5;
-constexpr double kTable_s = 5.0;       // ... or above the floor so far, which may only be hidden
-constexpr double kMoved_s = 1.0;       // without the floor and with no plane that was seen with it
-constexpr double kForgotten_s = 20.0;  // without any floor
+constexpr double kTable_s = 5.0;            // ... or above the floor so far, which may only be hidden
+constexpr double kMoved_s = 1.0;            // without the floor and with no plane that was seen with it
+constexpr double kFloorForgotten_s = 20.0;  // without any floor
 
 bool same(const Plane& a, const Plane& b, float cosine, float height_m) {
   return a.normal.dot(b.normal) >= cosine && std::abs(a.offset - b.offset) <= height_m;
@@ -45,7 +45,7 @@ void TrackFloor::update(const std::vector<Plane>& planes, const std::optional<Ei
     doubt(*seen, passed_s);
   }
   forget_if_moved(planes, passed_s);
-  if (unseen_s_ > kForgotten_s) floor_.reset();
+  if (unseen_s_ > kFloorForgotten_s) floor_.reset();
 }
 
 /// A camera that is turned away from the floor no longer sees the walls that it saw with it either.

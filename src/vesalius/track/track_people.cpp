@@ -9,16 +9,15 @@
 #include "vesalius/base/options.h"
 #include "vesalius/error.h"
 #include "vesalius/fit/fit_body.h"
-#include "vesalius/fit/flesh_capsules.h"
 #include "vesalius/fit/flesh_joints.h"
+#include "vesalius/fit/flesh_sections.h"
 #include "vesalius/parallel.h"
 #include "vesalius/prior.h"
-#include "vesalius/track/match_cost.h"
 #include "vesalius/track/match_tracks.h"
-#include "vesalius/track/posture.h"
 #include "vesalius/track/track.h"
 #include "vesalius/track/track_clock.h"
 #include "vesalius/track/track_floor.h"
+#include "vesalius/track/track_stance.h"
 
 namespace vesalius {
 namespace {
@@ -31,11 +30,8 @@ constexpr float kSamePlace_m = 1.F;        // of somebody new who is the one who
 constexpr float kClearlyBetter = 0.1F;     // by which another lost person must look more different
 constexpr float kFadePerS = 1.F;           // of the confidence of what is predicted of hidden people, per second
 
-// The score of each frame counts as evidence; frames of one second are as much alike as kFramesASecond independent
-// ones.
-constexpr float kFramesASecond = 5.F;
-constexpr double kMostEvidence_s = 0.2;  // time for which one frame speaks
-constexpr float kClearScore = 0.8F;      // that the frames in which somebody new is found have on average, at least
+// The score of each frame counts as evidence.
+constexpr float kClearScore = 0.8F;  // that the frames in which somebody new is found have on average, at least
 
 /// People are taken in an order of their own, so that ids do not depend on the list's.
 bool comes_before(const Sighting& a, const Sighting& b) {

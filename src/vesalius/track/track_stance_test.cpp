@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 namespace vesalius {
@@ -201,5 +203,121 @@ TEST_F(StanceOverTime, AChildStandsAsAnAdultDoes) {
   EXPECT_EQ(stance.stance(), Stance::standing);
 }
 
+using Eigen::Vector3f;
+
+constexpr int kWidth = 64, kHeight = 48;
+const Vector3f kUp = -Vector3f::UnitY();
+
+Frame frame_at(float z_m) {
+  Frame frame;
+  frame.camera = {kWidth, kHeight, 50.F, 50.F, 31.5F, 23.5F};
+  frame.depth = DepthImage(kWidth, kHeight, static_cast<std::uint16_t>(1000.F * z_m));
+  return frame;
+}
+
+/// A person of whom these parts are seen.
+Person person_with(const std::vector<std::pair<const char*, Vector3f>>& parts) {
+  Person person;
+  person.skeleton.parts.resize(paper_body().parts.size());
+  for (const auto& [name, centre] : parts) {
+    SkeletonPart& part = person.skeleton.parts[static_cast<std::size_t>(paper_body().find_part(name))];
+    part.state = State::observed;
+    part.centre = centre;
+  }
+  return person;
+}
+
+/// The person with the pixels of a box as mask.
+Person covering(Person person, const Box& box) {
+  person.mask = Mask(kWidth, kHeight, 0);
+  for (int v = box.v; v < box.v + box.height; ++v) {
+    for (int u = box.u; u < box.u + box.width; ++u) person.mask(u, v) = 1;
+  }
+  person.box = bounding_box(person.mask);
+  return person;
+}
+
+TEST(PostureOf, MeasuresHeightsOverTheFloor) {
+  // The camera is 1.4 m high and tilted down by 30 degrees.
+  constexpr float kTilt = 30.F * std::numbers::pi_v<float> / 180.F;
+  const Vector3f up(0.F, -std::cos(kTilt), -std::sin(kTilt));
+  const Vector3f hips = 2.5F * Vector3f::UnitZ(), chest = hips + 0.4F * up, head = hips + 0.7F * up;
+  const Vector3f knee = hips - 0.3F * Vector3f::UnitX();
+  const Person person = person_with({{"l_hips", hips}, {"r_chest", chest}, {"l_face_top", head}, {"l_knee", knee}});
+  const std::optional<Posture> found = posture_of(person, frame_at(2.F), paper_body(), up, 1.4F);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(*found->hips_m, 1.4F - 1.25F, 1e-5F);
+  EXPECT_NEAR(*found->chest_m, 1.4F - 1.25F + 0.4F, 1e-5F);
+  EXPECT_NEAR(*found->pitch_m, 0.3F, 1e-5F);
+  EXPECT_NEAR(*found->trunk_up, 1.F, 1e-5F);
+  EXPECT_NEAR(*found->thighs_up, 0.F, 1e-5F);
+  EXPECT_FALSE(found->top_m) << "nobody knows which pixels are the person's";
+  const std::optional<Posture> without = posture_of(person, frame_at(2.F), paper_body(), up, std::nullopt);
+  ASSERT_TRUE(without);
+  EXPECT_FALSE(without->hips_m || without->chest_m);
+  EXPECT_NEAR(*without->trunk_up, 1.F, 1e-5F);
+}
+
+TEST(PostureOf, MeasuresThePixelsUnlessTheBorderCutsThemOff) {
+  // At 2 m a pixel is 4 cm high, and row 23.5 is level with the camera, 1 m above the floor.
+  const Person person = person_with({{"l_chest", {0.F, 0.F, 2.F}}});
+  const auto posture = [&](const Box& box, const Vector3f& up) {
+    return posture_of(covering(person, box), frame_at(2.F), paper_body(), up, 1.F).value();
+  };
+  const Posture inside = posture({20, 10, 8, 26}, kUp);
+  EXPECT_NEAR(*inside.top_m, 1.F + 0.04F * 13.5F, 0.05F);
+  EXPECT_NEAR(*inside.vertical_m, 0.8F * 0.04F * 26.F, 0.06F);
+  const Posture no_head = posture({20, 0, 8, 26}, kUp);
+  EXPECT_FALSE(no_head.top_m || no_head.vertical_m);
+  const Posture no_feet = posture({20, 22, 8, 26}, kUp);
+  EXPECT_TRUE(no_feet.top_m);
+  EXPECT_FALSE(no_feet.vertical_m);
+  const Posture rolled = posture({0, 10, 26, 8}, Vector3f::UnitX());
+  EXPECT_TRUE(rolled.top_m) << "up is to the right";
+  EXPECT_FALSE(rolled.vertical_m);
+}
+
+TEST(PostureOf, TakesHipsAndKneesOfTheFittedBodyWhereItIsTrusted) {
+  const FleshModel& flesh = builtin_flesh();
+  FittedBody fitted;
+  fitted.stature_m = 1.55F;
+  fitted.bones.resize(flesh.bones.size());
+  const auto place = [&](const char* bone, const Vector3f& tail, float confidence) {
+    FittedBone& placed = fitted.bones[static_cast<std::size_t>(flesh.find_bone(bone))];
+    placed.state = State::predicted;
+    placed.tail = tail;
+    placed.tail_confidence = confidence;
+  };
+  place("pelvis", {0.F, 0.2F, 2.F}, 0.6F);
+  place("l_thigh", {0.F, 0.6F, 2.F}, 0.7F);
+  place("r_thigh", {0.F, 0.2F, 1.6F}, 0.4F);
+  const Person trunk = person_with({{"l_chest", {0.F, -0.2F, 2.F}}, {"l_face_top", {0.F, -0.5F, 2.F}}});
+  const Frame frame = frame_at(2.F);
+  EXPECT_FALSE(posture_of(trunk, frame, paper_body(), kUp, 0.6F)->hips_m);
+  const PosedBody posed{fitted, flesh};
+  const Posture found = posture_of(trunk, frame, paper_body(), kUp, 0.6F, posed).value();
+  EXPECT_EQ(found.stature_m, 1.55F);
+  EXPECT_NEAR(*found.hips_m, 0.4F, 1e-5F);
+  EXPECT_NEAR(*found.thighs_up, 1.F, 1e-5F) << "of the trusted knee alone";
+  const Person hips = person_with({{"l_hips", {0.F, 0.1F, 2.F}}, {"l_face_top", {0.F, -0.5F, 2.F}}});
+  EXPECT_NEAR(*posture_of(hips, frame, paper_body(), kUp, 0.6F, posed)->hips_m, 0.5F, 1e-5F) << "what is seen counts";
+  place("pelvis", {0.F, 0.2F, 2.F}, 0.4F);
+  EXPECT_FALSE(posture_of(trunk, frame, paper_body(), kUp, 0.6F, posed)->hips_m);
+}
+
+TEST(PostureOf, NeedsSeenPartsOfTheUpperBody) {
+  const Frame frame = frame_at(2.F);
+  const Vector3f at(0.F, 0.F, 2.F);
+  EXPECT_TRUE(posture_of(person_with({{"neck", at}}), frame, paper_body(), kUp, 1.F));
+  EXPECT_FALSE(posture_of(person_with({{"l_hips", at}, {"l_knee", at}}), frame, paper_body(), kUp, 1.F));
+  Person guessed = person_with({{"neck", at}});
+  for (SkeletonPart& part : guessed.skeleton.parts) {
+    if (part.state == State::observed) part.state = State::predicted;
+  }
+  EXPECT_FALSE(posture_of(guessed, frame, paper_body(), kUp, 1.F));
+  EXPECT_FALSE(posture_of({}, frame, paper_body(), kUp, 1.F));
+}
+
 }  // namespace
+
 }  // namespace vesalius

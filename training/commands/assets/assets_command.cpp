@@ -7,7 +7,7 @@
 
 #include "commands/training_commands.h"
 #include "console/interrupts.h"
-#include "console/progress.h"
+#include "console/status_line.h"
 #include "console/text_sink.h"
 #include "downloads/assets.h"
 #include "vesalius/error.h"

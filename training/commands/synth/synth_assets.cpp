@@ -8,7 +8,7 @@
 #include "downloads/asset_list.h"
 #include "downloads/assets.h"
 #include "downloads/sha256.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius::cli {

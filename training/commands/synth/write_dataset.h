@@ -9,7 +9,7 @@
 #include "commands/synth/frame_maker.h"
 #include "commands/synth/synth_assets.h"
 #include "console/interrupts.h"
-#include "console/progress.h"
+#include "console/status_line.h"
 #include "dataset/dataset_folder.h"
 #include "train/parallel_in_order.h"
 #include "vesalius/error.h"

@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "commands/synth/synth_recipe.h"
+#include "io/files/data_file.h"
 #include "io/files/options_file.h"
-#include "io/files/read_file.h"
 #include "vesalius/base/toml_reader.h"
 
 namespace vesalius::cli {

@@ -9,7 +9,7 @@
 #include "cluster/message.h"
 #include "console/interrupts.h"
 #include "io/files/atomic_file.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "metrics/judge_samples.h"
 #include "vesalius/detect.h"
 #include "vesalius/error.h"

@@ -11,7 +11,7 @@
 #include "commands/cluster/cluster_task.h"
 #include "folders/temporary_folder.h"
 #include "io/files/atomic_file.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 
 namespace vesalius::cli {

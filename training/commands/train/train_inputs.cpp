@@ -13,7 +13,7 @@
 #include "dataset/labelled_folder.h"
 #include "downloads/sha256.h"
 #include "io/files/byte_stream.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "train/parallel_in_order.h"
 #include "vesalius/open_source.h"
 

@@ -12,7 +12,7 @@
 #include "commands/train/train_recipe.h"
 #include "commands/train/train_report.h"
 #include "commands/train/train_session.h"
-#include "console/progress.h"
+#include "console/status_line.h"
 #include "console/text_sink.h"
 #include "vesalius/error.h"
 #include "vesalius/model_file.h"

@@ -10,7 +10,7 @@
 #include "cluster/message.h"
 #include "commands/train/train_recipe.h"
 #include "io/files/atomic_file.h"
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 #include "vesalius/model_file.h"
 

@@ -1,4 +1,4 @@
-#include "io/recordings/decompress.h"
+#include "io/recordings/chunked_recording.h"
 
 #include <bzlib.h>
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kFirstStep = std::size_t{1} << 16;
 
-[[noreturn]] void fail(const std::string& name, std::string_view method) {
+[[noreturn]] void fail_unpacking(const std::string& name, std::string_view method) {
   throw Error(fmt::format("{}: damaged: its {} data cannot be decompressed", name, method));
 }
 
@@ -30,9 +30,9 @@ std::string collect(std::size_t size, const std::string& name, std::string_view 
     const std::size_t got = more(out.data() + had, out.size() - had);
     out.resize(had + got);
     if (got == 0) break;
-    if (out.size() > size) fail(name, method);
+    if (out.size() > size) fail_unpacking(name, method);
   }
-  if (out.size() != size) fail(name, method);
+  if (out.size() != size) fail_unpacking(name, method);
   return out;
 }
 
@@ -44,7 +44,7 @@ std::string of_zstd(std::string_view packed, std::size_t size, const std::string
     while (out.pos == 0) {
       const std::size_t before = in.pos;
       const std::size_t status = ZSTD_decompressStream(stream.get(), &out, &in);
-      if (ZSTD_isError(status) != 0) fail(name, "zstd");
+      if (ZSTD_isError(status) != 0) fail_unpacking(name, "zstd");
       if (out.pos == 0 && in.pos == before) return 0;
     }
     return out.pos;
@@ -53,7 +53,7 @@ std::string of_zstd(std::string_view packed, std::size_t size, const std::string
 
 std::string of_lz4(std::string_view packed, std::size_t size, const std::string& name) {
   LZ4F_dctx* made = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&made, LZ4F_VERSION)) != 0) fail(name, "lz4");
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&made, LZ4F_VERSION)) != 0) fail_unpacking(name, "lz4");
   const std::unique_ptr<LZ4F_dctx, std::size_t (*)(LZ4F_dctx*)> context(made, LZ4F_freeDecompressionContext);
   std::size_t at = 0;
   return collect(size, name, "lz4", [&](char* to, std::size_t room) -> std::size_t {
@@ -61,7 +61,7 @@ std::string of_lz4(std::string_view packed, std::size_t size, const std::string&
       std::size_t written = room;
       std::size_t taken = packed.size() - at;
       const std::size_t status = LZ4F_decompress(context.get(), to, &written, packed.data() + at, &taken, nullptr);
-      if (LZ4F_isError(status) != 0) fail(name, "lz4");
+      if (LZ4F_isError(status) != 0) fail_unpacking(name, "lz4");
       at += taken;
       if (written > 0 || taken == 0) return written;
     }
@@ -70,7 +70,7 @@ std::string of_lz4(std::string_view packed, std::size_t size, const std::string&
 
 std::string of_bzip2(std::string_view packed, std::size_t size, const std::string& name) {
   bz_stream stream{};
-  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) fail(name, "bzip2");
+  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) fail_unpacking(name, "bzip2");
   const std::unique_ptr<bz_stream, int (*)(bz_stream*)> end(&stream, BZ2_bzDecompressEnd);
   stream.next_in = const_cast<char*>(packed.data());  // bzlib reads only
   stream.avail_in = static_cast<unsigned>(packed.size());
@@ -80,7 +80,7 @@ std::string of_bzip2(std::string_view packed, std::size_t size, const std::strin
     stream.next_out = to;
     stream.avail_out = static_cast<unsigned>(room);
     const int status = BZ2_bzDecompress(&stream);
-    if (status != BZ_OK && status != BZ_STREAM_END) fail(name, "bzip2");
+    if (status != BZ_OK && status != BZ_STREAM_END) fail_unpacking(name, "bzip2");
     ended = status == BZ_STREAM_END;
     return room - stream.avail_out;
   });
@@ -94,7 +94,7 @@ std::string decompress(std::string_view packed, std::string_view method, std::si
                             kMaxPieceBytes));
   }
   if (method.empty() || method == "none") {
-    if (packed.size() != size) fail(name, "stored");
+    if (packed.size() != size) fail_unpacking(name, "stored");
     return std::string(packed);
   }
   if (method == "zstd") return of_zstd(packed, size, name);
@@ -105,7 +105,7 @@ std::string decompress(std::string_view packed, std::string_view method, std::si
 
 std::size_t stated_zstd_size(std::string_view packed, const std::string& name) {
   const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
-  if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR) fail(name, "zstd");
+  if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR) fail_unpacking(name, "zstd");
   return size;
 }
 

@@ -1,4 +1,4 @@
-#include "ros2/messages/record_sink.h"
+#include "ros2/messages/message_sink.h"
 
 #include "io/recordings/people_messages.h"
 #include "ros2/messages/names.h"

@@ -1,4 +1,4 @@
-#include "view/track_history.h"
+#include "view/people_finder.h"
 
 #include <gmock/gmock.h>
 

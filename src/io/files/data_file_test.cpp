@@ -1,4 +1,4 @@
-#include "io/files/read_file.h"
+#include "io/files/data_file.h"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "vesalius/track/track_size.h"
+#include "vesalius/track/track_look.h"
 
 #include <gtest/gtest.h>
 
