@@ -74,14 +74,21 @@ function(vesalius_generate target template)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/generated)
 endfunction()
 
-# vesalius_words(LIBRARY [TOGETHER]): for libraries of words and flags, where nothing is worth the compiler's time, half of which
-# goes into the templates of CLI11 and of JSON. TOGETHER: whoever builds the program once compiles a dozen files together, which
-# instantiates them once (no two files have one name for two things); whoever develops compiles single files.
+# vesalius_together(LIBRARY [APART SOURCE...]): whoever builds the program once compiles a dozen files together, since the headers
+# cost more time than what is in a file (no two files have one name for two things); whoever develops compiles single files.
+# APART: files that are compiled for several processors, which include themselves.
+function(vesalius_together library)
+  cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
+  if(CMAKE_BUILD_TYPE STREQUAL Release)
+    set_target_properties(vesalius_${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
+endfunction()
+
+# vesalius_words(LIBRARY): for libraries of words and flags, where nothing is worth the compiler's time, half of which goes into
+# the templates of CLI11 and of JSON.
 function(vesalius_words library)
   target_compile_options(vesalius_${library} PRIVATE -O1)
-  if("TOGETHER" IN_LIST ARGN AND CMAKE_BUILD_TYPE STREQUAL Release)
-    set_target_properties(vesalius_${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
-  endif()
   if(VESALIUS_PCH)
     target_precompile_headers(vesalius_${library} PRIVATE <CLI/CLI.hpp> <Eigen/Geometry> <algorithm> <filesystem> <functional>
                               <map> <memory> <optional> <ranges> <string> <vector>)
