@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "synth/body/makehuman.h"
-#include "synth/mocap/movement_library.h"
+#include "synth/mocap/motion_library.h"
 #include "synth/pose/pose_sampler.h"
 
 namespace vesalius::synth {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "synth/mocap/motion_list.h"
+#include "synth/pose/gait.h"
+#include "synth/pose/movement.h"
 #include "synth/pose/pose_sampler.h"
 #include "synth/text/read_text.h"
 
@@ -20,11 +22,7 @@ void visit_options(const std::string& prefix, PoseLibraryOptions& options, Optio
 /// Poses of recorded motions that differ from each other.
 struct PoseLibrary {
   std::vector<SampledPose> poses;
-  std::vector<int> motion;           ///< for each pose the index of its file
   std::vector<std::string> skipped;  ///< one line for each file that could not be used, with the reason
-  int frames = 0;                    ///< frames taken from the motions before any was left out
-  int intersecting = 0;              ///< frames left out because the body intersects itself
-  int twisted = 0;                   ///< frames left out because a hand is turned impossibly far
 };
 
 /// Loads a library of poses. Motions of 45 and more frames a second are reduced to about 30 by taking every nth frame,
@@ -34,5 +32,18 @@ struct PoseLibrary {
 /// UsageError for options out of range.
 PoseLibrary load_pose_library(std::span<const MotionFile> files, const ReadText& read,
                               const PoseLibraryOptions& options = {});
+
+/// What people do in clips, taken from recorded motions at about 30 frames a second. Recordings without any of it, such
+/// as jumps, and those with a marker's error are in none of the lists.
+struct MovementLibrary {
+  std::vector<Gait> gaits;          ///< walks
+  std::vector<Movement> stays;      ///< what somebody does standing at one place
+  std::vector<Movement> lie_downs;  ///< from standing to lying on the floor
+
+  bool empty() const { return gaits.empty() && stays.empty() && lie_downs.empty(); }
+};
+
+/// Loads a library of movements. Files that cannot be used are skipped.
+MovementLibrary load_movements(std::span<const MotionFile> files, const ReadText& read);
 
 }  // namespace vesalius::synth
