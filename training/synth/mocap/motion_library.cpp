@@ -11,9 +11,8 @@
 #include "synth/mocap/retarget.h"
 #include "synth/mocap/thin_poses.h"
 #include "synth/pose/joint_angles.h"
-#include "synth/pose/posture.h"
-#include "synth/pose/self_contact.h"
-#include "synth/pose/stick_figure.h"
+#include "synth/pose/judge_pose.h"
+#include "synth/pose/pose.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "synth/mocap/motion_list.h"
-#include "synth/pose/gait.h"
 #include "synth/pose/movement.h"
 #include "synth/pose/pose_sampler.h"
 #include "synth/text/read_text.h"

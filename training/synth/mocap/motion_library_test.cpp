@@ -11,8 +11,8 @@
 
 #include "synth/mocap/retarget.h"
 #include "synth/mocap/thin_poses.h"
-#include "synth/pose/mix_poses.h"
-#include "synth/pose/posture.h"
+#include "synth/pose/judge_pose.h"
+#include "synth/pose/pose_sampler.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {
