@@ -10,12 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "commands/synth/synth_assets.h"
+#include "commands/synth/synth_recipe.h"
 #include "dataset/labelled_frame_codec.h"
-#include "downloads/asset_list.h"
 #include "downloads/assets.h"
 #include "synth/body/body_detail.h"
-#include "synth/body/builtin_body.h"
+#include "synth/body/makehuman.h"
 #include "synth/dress/dress.h"
 #include "synth/generate.h"
 #include "synth/mocap/thin_poses.h"
@@ -106,7 +105,7 @@ void add_stages(const std::string& kind, const AssetsLater& assets, int width, i
 void add_body_steps(const std::string& kind, const AssetsLater& assets) {
   const auto bare = [assets](Random& random) {
     const BodiesAndMotions& a = **assets;
-    return a.makehuman == nullptr ? make_builtin_body(sample_factors({}, random), paper_body())
+    return a.makehuman == nullptr ? make_body(builtin_bodies(), sample_factors({}, random), paper_body())
                                   : make_body(*a.makehuman, sample_factors({}, random), paper_body());
   };
   const auto dressed = [bare](std::uint64_t k) {

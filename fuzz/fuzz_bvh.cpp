@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "synth/mocap/bvh.h"
+#include "synth/mocap/motion.h"
 #include "synth/mocap/retarget.h"
 #include "vesalius/error.h"
 

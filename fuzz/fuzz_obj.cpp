@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "synth/body/makehuman_mesh.h"
+#include "synth/body/makehuman_files.h"
 #include "vesalius/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

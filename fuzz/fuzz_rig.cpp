@@ -3,8 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "synth/body/fit_rig.h"
-#include "synth/body/makehuman_rig.h"
+#include "synth/body/makehuman_files.h"
 #include "synth/body/rig_map.h"
 #include "vesalius/error.h"
 

@@ -47,7 +47,7 @@ struct LabelledFrame {
   Image<std::uint8_t> person;                       ///< true person index of every pixel; kBackground elsewhere
   std::vector<std::vector<Eigen::Vector3f>> parts;  ///< [person][part]: centre of the part's volume, metres
   /// [person][joint]: where joints of the skeleton are, metres, optical frame; empty where nobody knows. Whoever makes
-  /// the frames names them, the same ones in all (synth/skeleton_joints.h; DatasetInfo::joints).
+  /// the frames names them, the same ones in all (synth/body/poser.h; DatasetInfo::joints).
   std::vector<std::vector<Eigen::Vector3f>> joints;
   std::vector<std::string> postures;     ///< [person]: one word, e.g. "sitting"; empty where nobody knows
   std::optional<Eigen::Vector3f> up;     ///< unit vector away from the ground, optical frame

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "io/lens/lens.h"
-#include "io/lens/lens.h"
 #include "vesalius/frame.h"
 #include "vesalius/vesalius.h"
 

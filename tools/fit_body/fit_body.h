@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/synth/synth_assets.h"
+#include "commands/synth/synth_recipe.h"
 
 namespace vesalius {
 

@@ -9,7 +9,6 @@
 #include "capsule/capsule_person.h"
 #include "commands/synth/frame_maker.h"
 #include "commands/synth/synth_recipe.h"
-#include "commands/synth/write_dataset.h"
 #include "vesalius/error.h"
 #include "vesalius/fit/joint_trust.h"
 #include "vesalius/image_file.h"

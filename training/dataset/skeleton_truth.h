@@ -7,7 +7,7 @@
 
 namespace vesalius {
 
-/// Adds to `truth` what follows from the joints of the people's skeletons (synth/skeleton_joints.h): the joints of
+/// Adds to `truth` what follows from the joints of the people's skeletons (synth/body/poser.h): the joints of
 /// other trackers under their names, each a joint of the skeleton or the middle between two, and the people's statures.
 /// `names` names the skeletons' joints, `skeletons` is [person][joint] in metres, optical frame. Adds nothing if the
 /// names are those of another skeleton or there is none.

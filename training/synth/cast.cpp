@@ -2,10 +2,10 @@
 
 #include <numeric>
 
-#include "synth/body/builtin_body.h"
+#include "synth/body/makehuman.h"
 #include "synth/dress/dress.h"
-#include "synth/pose/mix_poses.h"
-#include "synth/random_streams.h"
+#include "synth/pose/pose_sampler.h"
+#include "synth/recipe.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {

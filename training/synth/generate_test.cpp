@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "synth/skeleton_joints.h"
+#include "synth/body/poser.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
 

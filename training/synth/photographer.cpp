@@ -4,11 +4,10 @@
 #include <mutex>
 #include <vector>
 
-#include "synth/random_streams.h"
-#include "synth/sensor/noise_colour.h"
+#include "synth/body/poser.h"
+#include "synth/recipe.h"
 #include "synth/sensor/render.h"
 #include "synth/sensor/sensor_noise.h"
-#include "synth/skeleton_joints.h"
 
 namespace vesalius::synth {
 namespace {

@@ -10,7 +10,7 @@
 
 namespace vesalius::synth {
 
-/// Which streams of random numbers the picture of a scene uses (streams.h).
+/// Which streams of random numbers the picture of a scene uses (recipe.h).
 struct PictureStreams {
   std::uint64_t frame = 0;   ///< noise of the picture
   std::uint64_t camera = 0;  ///< what a camera keeps over a recording: filter, strength of errors, exposure

@@ -1,17 +1,18 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
-#include "synth/body/population.h"
+#include "synth/body/makehuman.h"
 #include "synth/clip/clip_options.h"
 #include "synth/dress/outfit.h"
-#include "synth/mocap/motion_list.h"
-#include "synth/mocap/pose_library.h"
-#include "synth/pose/pose_sampler.h"
+#include "synth/mocap/motion_library.h"
 #include "synth/scene/build_scene.h"
-#include "synth/scene/camera_pose.h"
 #include "synth/sensor/depth_filter.h"
 #include "synth/sensor/sensor.h"
+#include "vesalius/base/random.h"
 
 namespace vesalius::synth {
 
@@ -49,6 +50,13 @@ struct SensorOptions {
   DepthFilterOptions filter;  ///< applied with and without noise
 };
 
+/// Data from files. All of it is optional.
+struct BodiesAndMotions {
+  std::shared_ptr<const MakeHumanModel> makehuman;
+  std::vector<SampledPose> captured;  ///< poses from motion capture
+  MovementLibrary movements;          ///< movements from motion capture, which only clips use
+};
+
 /// Everything that decides how synthetic frames look (section 4.1). Together with a seed and the files of
 /// `BodiesAndMotions` it determines every byte of every frame.
 struct Recipe {
@@ -79,5 +87,20 @@ MotionChoice motion_choice(const PoseOptions& options);
 
 /// Returns the sensor of a recipe: its preset at the requested size and with the requested intrinsics.
 Sensor sensor_of(const SensorOptions& options);
+
+/// The purpose of a stream of random numbers. Each purpose has a stream of its own, so that a change of one leaves the
+/// others unchanged.
+enum class Purpose : std::uint64_t { body, plan, scene, noise, colour_noise, cut_out, filter, matching };
+inline constexpr std::uint64_t kPurposes = 8;
+
+inline Random random_for(std::uint64_t seed, Purpose purpose, std::uint64_t index) {
+  return Random(seed * kPurposes + static_cast<std::uint64_t>(purpose), index);
+}
+
+/// Returns the index of the streams of frame k of a clip, which no single frame has.
+inline std::uint64_t clip_stream(std::uint64_t clip, std::uint32_t k) { return ((clip + 1) << 32U) | k; }
+
+/// The place of k for what is the same in a whole clip; the numbers from here on are no frames.
+inline constexpr std::uint32_t kWholeClip = 0xFFFFFF00U;
 
 }  // namespace vesalius::synth

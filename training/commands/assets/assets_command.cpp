@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "commands/training_commands.h"
 #include "console/interrupts.h"
+#include "console/satellites.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
 #include "downloads/assets.h"
@@ -69,8 +69,6 @@ void run(const Arguments& arguments) {
   for (const AssetPackage* package : wanted) install(*package, folder, arguments);
 }
 
-}  // namespace
-
 void add_assets(CLI::App& program) {
   CLI::App* command = program.add_subcommand("assets", "Fetch the bodies and motions that `vesalius synth` can use");
   const auto arguments = std::make_shared<Arguments>();
@@ -91,5 +89,18 @@ Examples:
   vesalius assets --mirror /media/usb/assets --dir ~/vesalius-assets)");
   command->callback([arguments] { run(*arguments); });
 }
+
+/// Returns for each package whether it is in the folder of `vesalius assets`.
+std::vector<std::pair<std::string, std::string>> packages() {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (const AssetPackage& package : asset_packages()) {
+    found.emplace_back(package.name, has_assets(package, default_assets_folder()) ? "present" : "absent");
+  }
+  return found;
+}
+
+}  // namespace
+
+Satellite assets_satellite() { return {.name = "assets", .commands = {add_assets}, .facts = packages}; }
 
 }  // namespace vesalius::cli

@@ -13,7 +13,7 @@
 #include "dataset/tum_trajectory.h"
 #include "io/files/data_file.h"
 #include "io/files/options_file.h"
-#include "synth/mocap/bvh.h"
+#include "synth/mocap/motion.h"
 #include "synth/text/text_scanner.h"
 #include "vesalius/error.h"
 #include "vesalius/open_source.h"

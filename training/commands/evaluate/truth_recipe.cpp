@@ -10,8 +10,8 @@
 #include "commands/synth/synth_recipe.h"
 #include "dataset/clip_layout.h"
 #include "dataset/open_truth.h"
+#include "synth/body/poser.h"
 #include "synth/generate.h"
-#include "synth/skeleton_joints.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "commands/synth/synth_assets.h"
+#include "commands/synth/synth_recipe.h"
 #include "dataset/truth_source.h"
-#include "synth/clip_generator.h"
+#include "synth/generate.h"
 #include "vesalius/body_model.h"
 
 namespace vesalius::cli {

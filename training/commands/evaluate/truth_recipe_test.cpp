@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "dataset/skeleton_truth.h"
-#include "synth/body/builtin_body.h"
-#include "synth/skeleton_joints.h"
+#include "synth/body/makehuman.h"
+#include "synth/body/poser.h"
 
 namespace vesalius::cli {
 namespace {
@@ -14,7 +14,7 @@ TEST(TruthRecipe, KnowsTheStatureOfABody) {
   for (std::uint64_t i = 0; i < 12; ++i) {
     Random random(i);
     const auto mesh = std::make_shared<const synth::BodyMesh>(
-        synth::make_builtin_body(synth::sample_factors({}, random), paper_body()));
+        synth::make_body(synth::builtin_bodies(), synth::sample_factors({}, random), paper_body()));
     const synth::Poser poser(mesh, paper_body());
     synth::Pose pose;
     pose[synth::Bone::l_thigh] = Eigen::AngleAxisf(1.2F, Eigen::Vector3f::UnitX());

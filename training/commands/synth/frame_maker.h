@@ -1,15 +1,18 @@
 #pragma once
 
-#include <cstdint>
+#include <fmt/format.h>
+
 #include <functional>
 #include <optional>
+#include <utility>
 
-#include "commands/synth/synth_assets.h"
+#include "commands/synth/synth_recipe.h"
+#include "console/interrupts.h"
+#include "console/status_line.h"
 #include "dataset/clip_layout.h"
-#include "synth/clip_generator.h"
-#include "synth/recipe.h"
-#include "vesalius/body_model.h"
-#include "vesalius/frame.h"
+#include "dataset/dataset_folder.h"
+#include "train/parallel_in_order.h"
+#include "vesalius/error.h"
 
 namespace vesalius::cli {
 
@@ -36,5 +39,33 @@ struct FrameMaker {
 /// Throws UsageError as timing_of does.
 FrameMaker make_frame_maker(const synth::Recipe& recipe, synth::BodiesAndMotions assets, const BodyModel& body,
                             std::uint64_t seed, const ClipRequest& clips);
+
+/// Makes the frames of a range in order. `prepare` runs on all threads, `take` in the calling one. Throws Error when
+/// the user interrupts.
+template <class Prepare, class Take>
+void make_frames(const FrameMaker& maker, std::uint64_t first, int count, Progress& progress, const Prepare& prepare,
+                 const Take& take) {
+  parallel_in_order(
+      count,
+      [&](int i) {
+        const std::uint64_t index = first + i;
+        return prepare(index, maker.frame(index));
+      },
+      [&](int i, auto item) {
+        if (interrupted()) return false;
+        take(first + i, std::move(item));
+        progress.step();
+        return true;
+      });
+  if (interrupted()) throw Error(fmt::format("interrupted after {} frames", progress.done()));
+}
+
+/// Describes the dataset of so many frames of a recipe; they stand alone.
+DatasetInfo rendered_info(const synth::Recipe& recipe, const LoadedAssets& loaded, const BodyModel& body,
+                          std::uint64_t seed, std::uint64_t frames);
+
+/// Renders the shards that the dataset in `folder` lacks. Throws Error as DatasetWriter does, and when the user
+/// interrupts.
+void write_dataset(const std::string& folder, const FrameMaker& maker, const DatasetInfo& info, bool shown);
 
 }  // namespace vesalius::cli

@@ -4,7 +4,7 @@
 
 #include "commands/cluster/cluster_flags.h"
 #include "commands/synth/frame_maker.h"
-#include "commands/synth/synth_assets.h"
+#include "commands/synth/synth_recipe.h"
 #include "dataset/dataset_folder.h"
 
 namespace vesalius::cli {

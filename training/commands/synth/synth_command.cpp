@@ -10,17 +10,16 @@
 #include "commands/synth/contact_sheet.h"
 #include "commands/synth/frame_maker.h"
 #include "commands/synth/render_cluster.h"
-#include "commands/synth/synth_assets.h"
-#include "commands/synth/synth_recipe.h"
-#include "commands/synth/write_dataset.h"
-#include "commands/training_commands.h"
 #include "console/interrupts.h"
 #include "console/option_flags.h"
+#include "console/satellites.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
 #include "dataset/labelled_export.h"
 #include "io/files/data_file.h"
-#include "synth/skeleton_joints.h"
+#include "io/files/options_file.h"
+#include "synth/body/poser.h"
+#include "synth/sensor/embree_scene.h"
 #include "train/parallel_in_order.h"
 #include "vesalius/image_file.h"
 #include "vesalius/parallel.h"
@@ -207,8 +206,6 @@ void add_recipe_flags(CLI::App& command, Arguments& arguments) {
       ->group(group);
 }
 
-}  // namespace
-
 void add_synth(CLI::App& program) {
   CLI::App* command = program.add_subcommand("synth", "Make labelled frames of synthetic people");
   const auto arguments = std::make_shared<Arguments>(*command);
@@ -231,6 +228,22 @@ Examples:
   command->callback([arguments, command] {
     if (command->get_subcommands().empty()) run(*arguments);
   });
+}
+
+}  // namespace
+
+Satellite synth_satellite() {
+  return {.name = "synth",
+          .commands = {add_synth},
+          .default_options =
+              [] {
+                synth::Recipe recipe;
+                return options_toml([&](OptionVisitor& visitor) { visit_options("", recipe, visitor); });
+              },
+          .facts =
+              [] {
+                return std::vector<std::pair<std::string, std::string>>{{"renderer", synth::embree_version()}};
+              }};
 }
 
 }  // namespace vesalius::cli

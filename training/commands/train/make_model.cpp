@@ -13,8 +13,8 @@
 #include <sstream>
 #include <utility>
 
+#include "commands/synth/frame_maker.h"
 #include "commands/synth/synth_recipe.h"
-#include "commands/synth/write_dataset.h"
 #include "commands/train/set_samples.h"
 #include "commands/train/train_plan.h"
 #include "commands/train/train_recipe.h"

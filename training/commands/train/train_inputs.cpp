@@ -6,8 +6,8 @@
 #include <cmath>
 #include <memory>
 
+#include "commands/synth/frame_maker.h"
 #include "commands/synth/synth_recipe.h"
-#include "commands/synth/write_dataset.h"
 #include "console/interrupts.h"
 #include "dataset/labelled_dataset.h"
 #include "dataset/labelled_folder.h"

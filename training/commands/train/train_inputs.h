@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/synth/synth_assets.h"
+#include "commands/synth/synth_recipe.h"
 #include "vesalius/body_model.h"
 #include "vesalius/frame.h"
 #include "vesalius/frame_source.h"

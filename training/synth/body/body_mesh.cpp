@@ -1,33 +1,97 @@
 #include "synth/body/body_mesh.h"
 
-#include <utility>
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "vesalius/error.h"
 
 namespace vesalius::synth {
-
 namespace {
 
-Eigen::Vector3f in_mirror(const Eigen::Vector3f& p) { return {-p.x(), p.y(), p.z()}; }
+constexpr float kLargest_m = 100.F;
 
-/// Returns the name of the same thing on the other side, for names such as "wrist.L" and "l_hand".
-std::string name_in_mirror(std::string name) {
-  const auto swap = [](char& c, char l, char r) { c = c == l ? r : c == r ? l : c; };
-  if (name.starts_with("l_") || name.starts_with("r_")) swap(name.front(), 'l', 'r');
-  if (name.ends_with(".L") || name.ends_with(".R")) swap(name.back(), 'L', 'R');
-  return name;
+bool usable(const Eigen::Vector3f& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < kLargest_m; }
+
+[[noreturn]] void fail(const std::string& what) { throw Error(fmt::format("body mesh: {}", what)); }
+
+void check_sizes(const BodyMesh& mesh) {
+  const BodyTopology& t = *mesh.topology;
+  if (t.triangles.empty()) fail("no triangles, expected at least one");
+  if (t.part.size() != t.triangles.size() || t.fabric.size() != t.triangles.size()) {
+    fail(fmt::format("{} parts and {} fabrics, expected one for each of the {} triangles", t.part.size(),
+                     t.fabric.size(), t.triangles.size()));
+  }
+  if (t.skin.size() != mesh.vertices.size()) {
+    fail(fmt::format("{} skin weights, expected one for each of the {} vertices", t.skin.size(), mesh.vertices.size()));
+  }
+  if (t.body_triangles > t.triangles.size()) {
+    fail(fmt::format("{} triangles of the body, expected at most {}", t.body_triangles, t.triangles.size()));
+  }
 }
 
-RigBone in_mirror(const RigBone& bone) {
-  RigBone out = bone;
-  out.name = name_in_mirror(bone.name);
-  out.head = in_mirror(bone.head);
-  out.tail = in_mirror(bone.tail);
-  out.from = mirror(bone.from);
-  out.to = mirror(bone.to);
-  const Eigen::Quaternionf& q = bone.t_from_rest;
-  out.t_from_rest = Eigen::Quaternionf(q.w(), q.x(), -q.y(), -q.z());
-  out.grip = bone.grip == Grip::left ? Grip::right : bone.grip == Grip::right ? Grip::left : Grip::none;
-  out.curl_axis = -in_mirror(bone.curl_axis);  // an axis is a pseudo-vector
-  return out;
+void check_surface(const BodyMesh& mesh, const BodyModel& body) {
+  const BodyTopology& topology = *mesh.topology;
+  bool grounded = false;
+  for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
+    for (const std::uint32_t v : topology.triangles[t]) {
+      if (v >= mesh.vertices.size()) {
+        fail(fmt::format("triangle {} uses vertex {}, expected 0 to {}", t, v, mesh.vertices.size() - 1));
+      }
+    }
+    const int part = topology.part[t];
+    if (part != kBackground && part >= body.part_count()) {
+      fail(fmt::format("triangle {} has part {}, expected one below {}", t, part, body.part_count()));
+    }
+    grounded = grounded || part != kBackground;
+    if (int(topology.fabric[t]) >= kFabricCount) fail(fmt::format("triangle {} has no fabric", t));
+  }
+  if (!grounded) fail("no triangle has a part, expected a person");
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (!usable(mesh.vertices[v])) fail(fmt::format("vertex {} is not finite or beyond 100 m", v));
+  }
+}
+
+void check_skin(const BodyMesh& mesh) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const SkinWeights& skin = mesh.topology->skin[v];
+    float sum = 0.F;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (skin.bone[k] >= mesh.rig.size()) {
+        fail(fmt::format("vertex {} hangs on bone {}, expected 0 to {}", v, skin.bone[k], mesh.rig.size() - 1));
+      }
+      // Posing stops at the first zero, so a weight after it would be ignored.
+      if (!(skin.weight[k] >= 0.F) || (k > 0 && skin.weight[k] > 0.F && skin.weight[k - 1] == 0.F)) {
+        fail(fmt::format("vertex {}: expected weights from 0 to 1, zeros last", v));
+      }
+      sum += skin.weight[k];
+    }
+    if (!(std::abs(sum - 1.F) < 1e-3F)) {
+      fail(fmt::format("vertex {}: its skin weights sum to {}, expected 1", v, sum));
+    }
+  }
+}
+
+void check_rig(const BodyMesh& mesh) {
+  if (mesh.rig.empty()) fail("no rig bones, expected at least one");
+  for (std::size_t b = 0; b < mesh.rig.size(); ++b) {
+    const RigBone& bone = mesh.rig[b];
+    const auto expect = [&](bool good, const char* what) {
+      if (!good) fail(fmt::format("rig bone {} (\"{}\"): expected {}", b, bone.name, what));
+    };
+    expect(bone.parent >= -1 && bone.parent < int(b), "its parent before it");
+    expect(usable(bone.head) && usable(bone.tail), "finite ends within 100 m");
+    expect(index(bone.from) < kBoneCount && index(bone.to) < kBoneCount, "bones of the pose");
+    expect(bone.blend >= 0.F && bone.blend <= 1.F, "a blend from 0 to 1");
+    expect(std::abs(bone.t_from_rest.squaredNorm() - 1.F) < 1e-3F, "a rotation by a unit quaternion");
+    expect(bone.grip == Grip::none || std::abs(bone.curl_axis.squaredNorm() - 1.F) < 1e-3F, "a unit axis");
+    expect(std::isfinite(bone.curl_rad), "a finite angle");
+  }
+  for (const int bone : mesh.rig_of) {
+    if (bone < 0 || bone >= int(mesh.rig.size())) {
+      fail(fmt::format("a joint is the head of rig bone {}, expected 0 to {}", bone, mesh.rig.size() - 1));
+    }
+  }
 }
 
 }  // namespace
@@ -56,20 +120,15 @@ std::array<BoneSegment, kBoneCount> rest_bones(const BodyMesh& mesh) {
   return segments;
 }
 
-BodyMesh mirrored(const BodyMesh& mesh, const BodyModel& body) {
-  BodyMesh out = mesh;
-  auto topology = std::make_shared<BodyTopology>(*mesh.topology);
-  for (Triangle& t : topology->triangles) std::swap(t[0], t[2]);  // keeps the orientation
-  for (std::uint8_t& part : topology->part) {
-    if (part != kBackground) part = static_cast<std::uint8_t>(body.parts[part].mirror);
+void check(const BodyMesh& mesh, const BodyModel& body) {
+  if (mesh.topology == nullptr) fail("no topology");
+  check_sizes(mesh);
+  check_rig(mesh);
+  check_surface(mesh, body);
+  check_skin(mesh);
+  if (!(mesh.stature_m > 0.F && mesh.stature_m < kLargest_m)) {
+    fail(fmt::format("stature {} m, expected one above 0", mesh.stature_m));
   }
-  out.topology = std::move(topology);
-  for (Eigen::Vector3f& p : out.vertices) p = in_mirror(p);
-  for (RigBone& bone : out.rig) bone = in_mirror(bone);
-  for (int b = 0; b < kBoneCount; ++b) {
-    out.rig_of[index(mirror(static_cast<Bone>(b)))] = mesh.rig_of[b];
-  }
-  return out;
 }
 
 }  // namespace vesalius::synth

@@ -77,7 +77,8 @@ struct BoneSegment {
 };
 std::array<BoneSegment, kBoneCount> rest_bones(const BodyMesh& mesh);
 
-/// Returns the mirror image (x -> -x) of the mesh and its labels.
-BodyMesh mirrored(const BodyMesh& mesh, const BodyModel& body);
+/// Throws Error naming the fault if a body has an index out of range, weights that do not sum to 1, or a number that is
+/// not finite.
+void check(const BodyMesh& mesh, const BodyModel& body);
 
 }  // namespace vesalius::synth

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
 
-#include "synth/body/check_body.h"
-#include "synth/body/fit_rig.h"
-#include "synth/body/makehuman_mesh.h"
-#include "synth/body/makehuman_rig.h"
+#include "synth/body/makehuman_files.h"
+#include "synth/body/rig_map.h"
 #include "synth/body/surface_parts.h"
 #include "vesalius/error.h"
 
@@ -72,6 +71,14 @@ Eigen::Vector3f mean(const std::vector<Eigen::Vector3f>& points, const std::vect
   return sum / float(of.size());
 }
 
+struct File {
+  std::string_view path, text;
+};
+
+constexpr File kFiles[] = {
+#include "builtin_body.inc"
+};
+
 }  // namespace
 
 struct MakeHumanModel::State {
@@ -133,10 +140,6 @@ MakeHumanModel::MakeHumanModel(const ReadText& read, const Files& files) {
 
 MakeHumanModel::~MakeHumanModel() = default;
 
-std::shared_ptr<const MakeHumanModel> load_makehuman(const ReadText& read, const MakeHumanModel::Files& files) {
-  return std::make_shared<const MakeHumanModel>(read, files);
-}
-
 BodyMesh make_body(const MakeHumanModel& model, const MakeHumanFactors& factors, const BodyModel& body) {
   const MakeHumanModel::State& state = *model.state_;
   std::vector<Eigen::Vector3f> points = state.morphed(factors);
@@ -169,6 +172,20 @@ BodyMesh make_body(const MakeHumanModel& model, const MakeHumanFactors& factors,
   topology->part = surface_parts(mesh, SurfaceParts(body));
   check(mesh, body);
   return mesh;
+}
+
+const MakeHumanModel& builtin_bodies() {
+  static const MakeHumanModel bodies = [] {
+    MakeHumanModel::Files files{"base.obj", "rig.mhskel", "weights.mhw", {}};
+    for (const File& file : kFiles) {
+      if (file.path.ends_with(".target")) files.targets.emplace_back(file.path);
+    }
+    const ReadText read = [](const std::string& path) {
+      return std::string(std::ranges::find(kFiles, path, &File::path)->text);
+    };
+    return MakeHumanModel(read, files);
+  }();
+  return bodies;
 }
 
 }  // namespace vesalius::synth

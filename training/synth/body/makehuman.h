@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "synth/body/body_mesh.h"
-#include "synth/body/makehuman_factors.h"
+#include "synth/body/population.h"
 #include "synth/text/read_text.h"
 
 namespace vesalius::synth {
@@ -35,10 +35,13 @@ class MakeHumanModel {
   std::unique_ptr<const State> state_;
 };
 
-std::shared_ptr<const MakeHumanModel> load_makehuman(const ReadText& read, const MakeHumanModel::Files& files);
-
 /// Returns the body of these factors, labelled by the surface rules of `body`, with its feet on y = 0. It may be called
 /// from several threads.
 BodyMesh make_body(const MakeHumanModel& model, const MakeHumanFactors& factors, const BodyModel& body);
+
+/// Returns bodies that need no files: MakeHuman's with a sixth of its vertices, of the mean of all peoples, muscles and
+/// limbs' lengths, so that gender, age, weight and stature alone change them. tools/make_builtin_body.py makes them.
+/// Left and right are exact mirror images.
+const MakeHumanModel& builtin_bodies();
 
 }  // namespace vesalius::synth

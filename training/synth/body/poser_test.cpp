@@ -4,9 +4,10 @@
 
 #include <functional>
 #include <limits>
+#include <set>
 
-#include "synth/body/builtin_body.h"
-#include "synth/body/check_body.h"
+#include "synth/body/body_mesh.h"
+#include "synth/body/makehuman.h"
 #include "synth/body/test_bodies.h"
 #include "vesalius/error.h"
 
@@ -17,8 +18,49 @@ using Eigen::Vector3f;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
+Eigen::Vector3f in_mirror(const Eigen::Vector3f& p) { return {-p.x(), p.y(), p.z()}; }
+
+/// Returns the name of the same thing on the other side, for names such as "wrist.L" and "l_hand".
+std::string name_in_mirror(std::string name) {
+  const auto swap = [](char& c, char l, char r) { c = c == l ? r : c == r ? l : c; };
+  if (name.starts_with("l_") || name.starts_with("r_")) swap(name.front(), 'l', 'r');
+  if (name.ends_with(".L") || name.ends_with(".R")) swap(name.back(), 'L', 'R');
+  return name;
+}
+
+RigBone in_mirror(const RigBone& bone) {
+  RigBone out = bone;
+  out.name = name_in_mirror(bone.name);
+  out.head = in_mirror(bone.head);
+  out.tail = in_mirror(bone.tail);
+  out.from = mirror(bone.from);
+  out.to = mirror(bone.to);
+  const Eigen::Quaternionf& q = bone.t_from_rest;
+  out.t_from_rest = Eigen::Quaternionf(q.w(), q.x(), -q.y(), -q.z());
+  out.grip = bone.grip == Grip::left ? Grip::right : bone.grip == Grip::right ? Grip::left : Grip::none;
+  out.curl_axis = -in_mirror(bone.curl_axis);  // an axis is a pseudo-vector
+  return out;
+}
+
+/// Returns the mirror image (x -> -x) of the mesh and its labels.
+BodyMesh mirrored(const BodyMesh& mesh, const BodyModel& body) {
+  BodyMesh out = mesh;
+  auto topology = std::make_shared<BodyTopology>(*mesh.topology);
+  for (Triangle& t : topology->triangles) std::swap(t[0], t[2]);  // keeps the orientation
+  for (std::uint8_t& part : topology->part) {
+    if (part != kBackground) part = static_cast<std::uint8_t>(body.parts[part].mirror);
+  }
+  out.topology = std::move(topology);
+  for (Eigen::Vector3f& p : out.vertices) p = in_mirror(p);
+  for (RigBone& bone : out.rig) bone = in_mirror(bone);
+  for (int b = 0; b < kBoneCount; ++b) {
+    out.rig_of[index(mirror(static_cast<Bone>(b)))] = mesh.rig_of[b];
+  }
+  return out;
+}
+
 std::shared_ptr<const BodyMesh> person() {
-  static const auto mesh = std::make_shared<const BodyMesh>(make_builtin_body({}, paper_body()));
+  static const auto mesh = std::make_shared<const BodyMesh>(make_body(builtin_bodies(), {}, paper_body()));
   return mesh;
 }
 
@@ -204,5 +246,73 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{"empty", [](BodyMesh& m, BodyTopology&) { m.topology = nullptr; }, "no topology"}),
     [](const auto& test) { return test.param.what; });
 
+using Eigen::Isometry3f;
+using Eigen::Vector3f;
+
+const BodyMesh& mesh() {
+  static const BodyMesh body = make_body(builtin_bodies(), {}, paper_body());
+  return body;
+}
+
+PosedBody posed(const Pose& pose) { return Poser(std::make_shared<const BodyMesh>(mesh()), paper_body()).pose(pose); }
+
+std::size_t joint(const std::string& name) {
+  const auto& names = joint_names();
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+TEST(SkeletonJoints, HaveTheNamesOfBonesAndFreeEnds) {
+  const auto& names = joint_names();
+  ASSERT_EQ(names.size(), 24U);
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+  for (std::size_t b = 0; b < kBoneCount; ++b) EXPECT_EQ(names[b], bone_name(static_cast<Bone>(b)));
+  const PosedBody body = posed({});
+  const std::vector<Vector3f> points = joint_points(body, Isometry3f::Identity());
+  ASSERT_EQ(points.size(), names.size());
+  EXPECT_EQ(points[joint("l_shin")], body.joints[index(Bone::l_shin)]);
+  EXPECT_EQ(points[joint("r_hand_end")], body.ends[index(Bone::r_hand)]);
+  EXPECT_GT(points[joint("head_end")].y(), points[joint("head")].y() + 0.1F);
+}
+
+TEST(SkeletonJoints, AreInTheCamerasFrame) {
+  const PosedBody body = posed({});
+  const Isometry3f motion = Eigen::Translation3f(0.5F, -1.F, 3.F) * Eigen::AngleAxisf(0.7F, Vector3f::UnitY());
+  const std::vector<Vector3f> own = joint_points(body, Isometry3f::Identity());
+  const std::vector<Vector3f> seen = joint_points(body, motion);
+  for (std::size_t j = 0; j < own.size(); ++j) EXPECT_LT((seen[j] - motion * own[j]).norm(), 1e-6F) << joint_names()[j];
+}
+
+TEST(SkeletonJoints, LieInsideTheBody) {
+  Random random(3);
+  for (const float most_rad : {0.F, 0.4F, 0.4F}) {
+    const PosedBody body = posed(random_pose(random, most_rad));
+    const auto& triangles = mesh().topology->triangles;
+    const std::vector<Vector3f> points = joint_points(body, Isometry3f::Identity());
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      // Free ends lie on the surface, or off it by the rounding of fingers and toes. Those of closed hands lie where
+      // the open hand would end.
+      const bool inside = is_inside(body.vertices, triangles, mesh().topology->body_triangles, points[j]);
+      const float off =
+          inside ? 0.F : distance_to(body.vertices, triangles, mesh().topology->body_triangles, points[j]);
+      EXPECT_LT(off, joint_names()[j].ends_with("hand_end") ? 0.07F : 0.02F)
+          << joint_names()[j] << " at turns of " << most_rad;
+    }
+  }
+}
+
+TEST(SkeletonJoints, SwapSidesInAMirror) {
+  Random random(4);
+  const Pose pose = random_pose(random, 0.6F);
+  const std::vector<Vector3f> own = joint_points(posed(pose), Isometry3f::Identity());
+  const std::vector<Vector3f> other = joint_points(posed(mirrored(pose)), Isometry3f::Identity());
+  for (std::size_t j = 0; j < own.size(); ++j) {
+    std::string name = joint_names()[j];
+    if (name.starts_with("l_") || name.starts_with("r_")) name[0] = name[0] == 'l' ? 'r' : 'l';
+    const Vector3f expected(-own[j].x(), own[j].y(), own[j].z());
+    EXPECT_LT((other[joint(name)] - expected).norm(), 1e-3F) << name;
+  }
+}
+
 }  // namespace
+
 }  // namespace vesalius::synth

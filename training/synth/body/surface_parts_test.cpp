@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "synth/body/builtin_body.h"
+#include "synth/body/makehuman.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {
@@ -40,7 +40,7 @@ TEST(SurfaceParts, ClampPlacesBeyondTheEndsOfABone) {
 }
 
 TEST(SurfaceParts, GiveEveryPartAnAreaOnItsOwnSide) {
-  const BodyMesh mesh = make_builtin_body({}, paper());
+  const BodyMesh mesh = make_body(builtin_bodies(), {}, paper());
   std::vector<double> area(25, 0.0);
   std::vector<double> x(25, 0.0);
   for (std::size_t t = 0; t < mesh.topology->triangles.size(); ++t) {
@@ -73,7 +73,7 @@ TEST(SurfaceParts, FollowOtherRulesWithoutOtherCode) {
   const BodyModel body = changed([](auto& rules) {
     for (SurfaceRule& rule : rules) rule.part = rule.bone == "head" ? 1 : 0;
   });
-  const BodyMesh mesh = make_builtin_body({}, body);
+  const BodyMesh mesh = make_body(builtin_bodies(), {}, body);
   EXPECT_THAT(mesh.topology->part, testing::Each(testing::AnyOf(0, 1)));
   EXPECT_THAT(mesh.topology->part, testing::Contains(1));
 }

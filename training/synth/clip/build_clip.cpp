@@ -4,12 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "synth/clip/plan_stroll.h"
+#include "synth/clip/stroll.h"
 #include "synth/mesh/palette.h"
-#include "synth/pose/posture.h"
-#include "synth/scene/furnish.h"
+#include "synth/pose/judge_pose.h"
 #include "synth/scene/people_group.h"
-#include "synth/scene/person_mesh.h"
+#include "synth/scene/person_plan.h"
 #include "synth/scene/place_people.h"
 #include "synth/scene/surroundings.h"
 
@@ -275,12 +274,7 @@ class Builder {
         scene.meshes.push_back(std::move(piece.mesh));
       }
     }
-    for (Furniture& piece : furnish(scene_, clip.room, chests, eyes.front(), occupancy, random_)) {
-      scene.meshes.push_back(std::move(piece.mesh));
-    }
-    add_lights(clip.room, scene, random_);
-    scene.sky = draw_sky(clip.room, random_);
-    darken_furniture(scene_.dark_furniture, scene, random_);
+    furnish(scene_, clip.room, chests, eyes.front(), occupancy, scene, random_);
     clip.solids = occupancy.solids();
   }
 

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "synth/clip/camera_motion.h"
 #include "synth/clip/clip_options.h"
 #include "synth/clip/stroll.h"
+#include "synth/clip/tracks.h"
 #include "synth/scene/build_scene.h"
 
 namespace vesalius::synth {

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
-#include "synth/clip/person_track.h"
-#include "synth/pose/gait.h"
-#include "synth/pose/movement.h"
+#include "synth/clip/tracks.h"
+#include "synth/scene/occupancy.h"
 
 namespace vesalius::synth {
 
@@ -38,5 +36,32 @@ void advance(const Repertoire& can, const std::optional<Eigen::Vector2f>& goal, 
 
 /// Returns how the person looks in a state.
 TrackState shown(const Repertoire& can, const StrollState& state);
+
+/// Moves a person over the floor such that the foot that carries the weight slides less, as it does where a way turns,
+/// speeds up or fits the legs badly. The way stays the planned one to within about 15 cm, to which it returns within a
+/// second or so. `leg_m` is the length from hip to ankle.
+void plant_feet(float leg_m, PersonTrack& track);
+
+/// What is there when a person's way is planned.
+struct StrollGround {
+  View view;                                             ///< of the camera in the middle of the places to which it goes
+  float camera_reach_m = 0.F;                            ///< how far the camera goes from there
+  std::vector<OrientedBox> solids;                       ///< seats, beds and tables in the world
+  std::vector<PersonTrack> people;                       ///< who is there already
+  std::vector<std::vector<Eigen::Vector2f>> footprints;  ///< x and z of bones of those who stay on seats and beds
+};
+
+/// What is asked of a way.
+struct StrollWish {
+  bool walks = true;    ///< false stays at the first place
+  bool crosses = true;  ///< passes before or behind somebody who is there, as far as that is possible
+};
+
+/// Plans where a person walks and stays for so many seconds: places in the camera's view and at its distances, now and
+/// then outside. Keeps 0.75 m from other people's middles, 0.35 m from things, and away from the camera. Returns
+/// nothing if no way is found after a bounded number of tries. The same arguments give the same way.
+std::optional<PersonTrack> plan_stroll(const ClipOptions& options, const CameraPlacement& placement,
+                                       const StrollGround& ground, const Repertoire& can, const StrollWish& wish,
+                                       float seconds, Random& random);
 
 }  // namespace vesalius::synth

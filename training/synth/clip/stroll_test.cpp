@@ -4,9 +4,8 @@
 
 #include <cmath>
 
-#include "synth/clip/plant_feet.h"
+#include "synth/pose/pose.h"
 #include "synth/pose/pose_sampler.h"
-#include "synth/pose/stick_figure.h"
 
 namespace vesalius::synth {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "synth/body/check_body.h"
+#include "synth/body/body_mesh.h"
 #include "synth/body/surface_parts.h"
 #include "synth/dress/wardrobe.h"
 #include "vesalius/error.h"

@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "synth/body/builtin_body.h"
-#include "synth/body/check_body.h"
+#include "synth/body/body_mesh.h"
+#include "synth/body/makehuman.h"
 #include "synth/body/poser.h"
 #include "synth/body/test_bodies.h"
 #include "vesalius/error.h"
@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3f;
 
 const BodyMesh& bare() {
-  static const BodyMesh mesh = make_builtin_body({}, paper_body());
+  static const BodyMesh mesh = make_body(builtin_bodies(), {}, paper_body());
   return mesh;
 }
 
@@ -198,7 +198,7 @@ TEST(Dress, KeepsAPersonWithABagOnTheFloor) {
 TEST(Dress, FitsEverySampledOutfitToEverySampledBody) {
   for (std::uint64_t i = 0; i < 30; ++i) {
     Random random(12, i);
-    const BodyMesh body = make_builtin_body(sample_factors({}, random), paper_body());
+    const BodyMesh body = make_body(builtin_bodies(), sample_factors({}, random), paper_body());
     OutfitOptions options;
     options.skirt = options.coat = options.hat = options.backpack = options.bag = options.held = 0.5F;
     const Outfit outfit = sample_outfit(options, random);

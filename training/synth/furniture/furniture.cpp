@@ -1,6 +1,6 @@
 #include "synth/furniture/furniture.h"
 
-#include "synth/mesh/shapes.h"
+#include "synth/mesh/scene_mesh.h"
 
 namespace vesalius::synth {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synth/furniture/coat_stand.h"
-#include "synth/furniture/furniture_builder.h"
 #include "synth/furniture/seats.h"
 
 namespace vesalius::synth {
 namespace {
 
+using Eigen::AngleAxisf;
+using Eigen::Isometry3f;
 using Eigen::Vector3f;
 
 Furniture make_desk(Random& random) {
@@ -139,7 +139,7 @@ Furniture make_box(Random& random) {
 Furniture make_beanbag(Random& random) {
   FurnitureBuilder bag(random);
   const Vector3f half{between(0.25, 0.5, random), between(0.12, 0.35, random), between(0.25, 0.5, random)};
-  Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
+  Isometry3f pose = Isometry3f::Identity();
   pose.translation().y() = 0.95F * half.y();
   add_ellipsoid(bag.piece.mesh, pose, half, bag.stuff(Stuff::cloth), 12);
   const Vector3f inner = half.cwiseProduct(Vector3f(0.8F, 0.9F, 0.8F));
@@ -165,10 +165,68 @@ Furniture make_panel(Random& random) {
   const float width = between(0.3, 1.4, random), height = between(0.5, 2.4, random);
   const float thickness = between(0.02, 0.08, random);
   const float lean = chance(0.4, random) ? between(-0.3, 0.3, random) : 0.F;
-  Eigen::Isometry3f pose(Eigen::AngleAxisf(lean, Vector3f::UnitZ()));
+  Isometry3f pose(AngleAxisf(lean, Vector3f::UnitZ()));
   pose.translation().y() = 0.5F * (height * std::cos(lean) + width * std::abs(std::sin(lean)));
   panel.box(pose, {width, height, thickness}, board);
   return std::move(panel.piece);
+}
+
+void add_blob(FurnitureBuilder& piece, const Vector3f& centre, const Vector3f& half, std::uint8_t material) {
+  add_ellipsoid(piece.piece.mesh, placed_at(centre), half, material, 10);
+}
+
+/// Adds a hanging coat as rings around its shoulders, chest, waist and hem.
+void add_coat(FurnitureBuilder& piece, const Vector3f& shoulders, float length, Random& random) {
+  const std::uint8_t cloth = piece.stuff(Stuff::cloth);
+  const float half = between(0.17, 0.24, random), thick = between(0.07, 0.13, random);
+  add_blob(piece, shoulders - Vector3f(0.F, 0.25F * length, 0.F), {half, 0.3F * length, thick}, cloth);
+  add_blob(piece, shoulders - Vector3f(0.F, 0.62F * length, 0.F), {0.95F * half, 0.4F * length, 1.1F * thick}, cloth);
+  for (const float side : {-1.F, 1.F}) {
+    const Vector3f top = shoulders + Vector3f(side * half * 0.85F, -0.06F, 0.F);
+    const Vector3f cuff = top + Vector3f{side * between(0.02, 0.12, random), -between(0.4, 0.55, random), 0.03F};
+    add_cone(piece.piece.mesh, top, cuff, 0.065F, 0.045F, cloth);
+  }
+  piece.solid(shoulders - Vector3f(half, length, thick), shoulders + Vector3f(half, 0.03F, thick));
+}
+
+/// Returns a stand with one or two hanging coats and perhaps a hat, which resembles a person.
+Furniture make_coat_stand(Random& random) {
+  FurnitureBuilder stand(random);
+  const std::uint8_t wood = stand.stuff(chance(0.5, random) ? Stuff::wood : Stuff::metal);
+  const float height = between(1.55, 1.95, random);
+  stand.post(0.F, 0.F, 0.F, height, 0.02F, wood);
+  stand.post(0.F, 0.F, 0.F, 0.03F, between(0.15, 0.22, random), wood);
+  for (int i = 0; i < 4; ++i) {
+    const float turn = 1.5708F * float(i);
+    add_cone(stand.piece.mesh, {0.F, height - 0.15F, 0.F},
+             {0.15F * std::cos(turn), height - 0.05F, 0.15F * std::sin(turn)}, 0.012F, 0.01F, wood, 6);
+  }
+  const int coats = 1 + int(random.below(2));
+  for (int i = 0; i < coats; ++i) {
+    const float top = height - between(0.1, 0.25, random), length = between(0.6, 1.1, random);
+    add_coat(stand, {0.F, top, i == 0 ? 0.1F : -0.1F}, length, random);
+  }
+  if (chance(0.4, random)) {
+    add_blob(stand, {0.F, height + 0.03F, 0.F}, {0.11F, 0.08F, 0.12F}, stand.stuff(Stuff::cloth));
+  }
+  return std::move(stand.piece);
+}
+
+/// Returns a torso on a pole, perhaps with a head, which resembles a person.
+Furniture make_mannequin(Random& random) {
+  FurnitureBuilder figure(random);
+  const std::uint8_t skin = figure.stuff(chance(0.5, random) ? Stuff::cloth : Stuff::plastic);
+  const std::uint8_t metal = figure.stuff(Stuff::metal);
+  const float waist = between(0.85, 1.1, random), wide = between(0.15, 0.21, random);
+  figure.post(0.F, 0.F, 0.F, waist, 0.015F, metal);
+  figure.post(0.F, 0.F, 0.F, 0.02F, between(0.14, 0.2, random), metal);
+  add_blob(figure, {0.F, waist + 0.02F, 0.F}, {wide * 0.9F, 0.17F, 0.11F}, skin);
+  add_blob(figure, {0.F, waist + 0.3F, 0.F}, {wide, 0.25F, 0.12F}, skin);
+  add_cone(figure.piece.mesh, {0.F, waist + 0.48F, 0.F}, {0.F, waist + 0.62F, 0.F}, 0.055F, 0.05F, skin);
+  const bool head = chance(0.5, random);
+  if (head) add_blob(figure, {0.F, waist + 0.72F, 0.01F}, {0.08F, 0.12F, 0.1F}, skin);
+  figure.solid({-wide, waist - 0.15F, -0.12F}, {wide, waist + (head ? 0.84F : 0.62F), 0.12F});
+  return std::move(figure.piece);
 }
 
 }  // namespace
@@ -233,6 +291,66 @@ Furniture make_furniture(FurnitureKind kind, Random& random) {
       return make_panel(random);
   }
   return {};
+}
+
+void add_small_things(FurnitureBuilder& table, float half_x, float half_z, float height_m, Random& random) {
+  const int count = int(random.below(9));
+  for (int i = 0; i < count; ++i) {
+    const Vector3f foot{between(-0.9, 0.9, random) * half_x, height_m, between(-0.9, 0.9, random) * half_z};
+    const float wide = between(0.03, 0.1, random), tall = between(0.04, 0.3, random);
+    const std::uint8_t stuff = table.stuff(chance(0.5, random) ? Stuff::plastic : Stuff::cardboard);
+    switch (random.below(3)) {
+      case 0:
+        add_cone(table.piece.mesh, foot, foot + Vector3f(0.F, tall, 0.F), 0.6F * wide, 0.5F * wide, stuff);
+        break;
+      case 1: {
+        Isometry3f pose(AngleAxisf(between(-1.5, 1.5, random), Vector3f::UnitY()));
+        pose.translation() = foot + Vector3f(0.F, 0.5F * tall, 0.F);
+        add_box(table.piece.mesh, pose, {2.F * wide, tall, 1.5F * wide}, stuff);
+        break;
+      }
+      default:
+        add_cushion(table.piece.mesh, standing_at(foot.x(), foot.y() + 0.4F * wide, foot.z(), 0.F),
+                    {wide, 0.5F * wide, 0.8F * wide}, stuff);
+    }
+  }
+}
+
+Furniture make_desk_before(float height_m, Random& random) {
+  const float width = between(1.0, 1.8, random), depth = between(0.6, 0.85, random);
+  FurnitureBuilder desk(random);
+  desk.piece = make_table(width, depth, height_m, random);
+  if (chance(0.6, random)) {
+    const std::uint8_t front = desk.stuff(Stuff::wood);
+    const float top = height_m + (chance(0.3, random) ? between(0.1, 0.35, random) : -0.03F);
+    desk.box({-0.5F * width, 0.05F, 0.5F * depth}, {0.5F * width, top, 0.5F * depth + 0.02F}, front);
+  }
+  const std::uint8_t black = desk.stuff(Stuff::plastic);
+  const int screens = int(random.below(3));
+  for (int i = 0; i < screens; ++i) {
+    const float wide = between(0.35, 0.65, random), tall = wide * between(0.55, 0.75, random);
+    Isometry3f pose(AngleAxisf(between(-0.4, 0.4, random), Vector3f::UnitY()));
+    pose.rotate(AngleAxisf(between(-0.05, 0.25, random), Vector3f::UnitX()));
+    const float x = 0.5F * (float(i) - 0.5F * float(screens - 1)) + between(-0.1, 0.1, random);
+    pose.translation() = Vector3f{x, height_m + 0.5F * tall + between(0.03, 0.12, random), between(0.05, 0.2, random)};
+    desk.box(pose, {wide, tall, between(0.02, 0.06, random)}, black);
+    add_cone(desk.piece.mesh, {x, height_m, pose.translation().z()}, pose.translation(), 0.06F, 0.03F, black, 8);
+  }
+  add_small_things(desk, 0.45F * width, 0.4F * depth, height_m, random);
+  move(desk.piece, standing_at(0.F, 0.F, 0.5F * depth, 0.F));
+  return std::move(desk.piece);
+}
+
+Furniture make_counter(float height_m, Random& random) {
+  const float half = between(0.5, 1.2, random), depth = between(0.3, 0.7, random);
+  FurnitureBuilder counter(random);
+  const std::uint8_t front = counter.stuff(chance(0.5, random) ? Stuff::wood : Stuff::wall);
+  const std::uint8_t top = counter.stuff(Stuff::wood);
+  counter.box({-half, 0.F, -0.5F * depth + 0.03F}, {half, height_m - 0.03F, 0.5F * depth - 0.03F}, front);
+  counter.box({-half, height_m - 0.03F, -0.5F * depth}, {half, height_m, 0.5F * depth}, top);
+  add_small_things(counter, 0.9F * half, 0.4F * depth, height_m, random);
+  move(counter.piece, standing_at(0.F, 0.F, 0.5F * depth, 0.F));
+  return std::move(counter.piece);
 }
 
 }  // namespace vesalius::synth

@@ -3,12 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "synth/furniture/cloth.h"
-#include "synth/furniture/furniture_builder.h"
-#include "synth/furniture/machine.h"
 #include "synth/furniture/make_furniture.h"
 #include "synth/furniture/seats.h"
-#include "synth/furniture/small_things.h"
 
 namespace vesalius::synth {
 namespace {
@@ -16,6 +12,65 @@ namespace {
 using Eigen::AngleAxisf;
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
+
+void hang_sleeve(FurnitureBuilder& piece, const Vector3f& shoulder, float side, std::uint8_t cloth, Random& random) {
+  const float length = between(0.35, 0.6, random), wide = between(0.04, 0.075, random);
+  const Vector3f cuff = shoulder + Vector3f{side * between(0.0, 0.1, random), -length, between(-0.02, 0.08, random)};
+  const std::array<Ring, 3> rings = {Ring{shoulder, wide, wide}, Ring{0.5F * (shoulder + cuff), 0.9F * wide, wide},
+                                     Ring{cuff, 0.75F * wide, 0.8F * wide}};
+  add_garment(piece.piece.mesh, rings, 3, 0.3F * wide, cloth);
+}
+
+/// Adds a coat, a jacket or a dress with folds that hangs from a point, `length_m` long, with its front to +z. It is
+/// solid and reaches 0.1 m to the back.
+void hang_garment(FurnitureBuilder& piece, const Vector3f& from, float length_m, Random& random) {
+  const std::uint8_t cloth = piece.stuff(Stuff::cloth);
+  const bool hanger = chance(0.6, random);  // otherwise it hangs by its collar
+  const float shoulder = hanger ? between(0.17, 0.24, random) : between(0.08, 0.15, random);
+  const float thick = between(0.05, 0.1, random), hem = between(0.9, 1.4, random);
+  const auto at = [&](float share) -> Vector3f { return from - Vector3f(0.F, share * length_m, 0.F); };
+  const std::array<Ring, 5> rings = {Ring{from, 0.04F, 0.03F}, Ring{at(0.1F), shoulder, 0.7F * thick},
+                                     Ring{at(0.35F), shoulder * between(0.9, 1.1, random), thick},
+                                     Ring{at(0.65F), shoulder * hem * 0.95F, thick},
+                                     Ring{at(1.F), shoulder * hem, thick * between(0.9, 1.2, random)}};
+  add_garment(piece.piece.mesh, rings, 4 + int(random.below(6)), between(0.01, 0.04, random), cloth);
+  if (chance(0.8, random)) {
+    for (const float side : {-1.F, 1.F}) {
+      hang_sleeve(piece, at(0.12F) + Vector3f(side * 0.9F * shoulder, 0.F, 0.F), side, cloth, random);
+    }
+  }
+  piece.solid(from - Vector3f(shoulder, length_m, thick), from + Vector3f(shoulder, 0.F, thick));
+}
+
+/// Adds a jacket over the top of a chair's back, which is `width_m` wide and ends at `top`. Sleeves hang beside it. It
+/// is not solid: it covers a chair that is.
+void cover_chair_back(FurnitureBuilder& chair, const Vector3f& top, float width_m, Random& random) {
+  const std::uint8_t cloth = chair.stuff(Stuff::cloth);
+  const float half = 0.5F * width_m + between(0.01, 0.05, random), thick = between(0.06, 0.11, random);
+  const float length = between(0.4, 0.75, random);
+  const auto at = [&](float share) -> Vector3f { return top + Vector3f(0.F, 0.03F - share * length, 0.F); };
+  const std::array<Ring, 4> rings = {Ring{at(0.F), 0.5F * half, 0.4F * thick}, Ring{at(0.08F), half, 0.8F * thick},
+                                     Ring{at(0.5F), half * between(0.95, 1.1, random), thick},
+                                     Ring{at(1.F), half * between(0.9, 1.1, random), 1.1F * thick}};
+  add_garment(chair.piece.mesh, rings, 4 + int(random.below(5)), between(0.01, 0.03, random), cloth);
+  for (const float side : {-1.F, 1.F}) {
+    hang_sleeve(chair, at(0.1F) + Vector3f(side * half, 0.F, 0.F), side, cloth, random);
+  }
+}
+
+/// Adds a crumpled blanket: several flat cushions, one over the other, within the given half sizes. It is not solid.
+void crumple_blanket(FurnitureBuilder& piece, const Vector3f& centre, const Vector3f& half, Random& random) {
+  const std::uint8_t cloth = piece.stuff(Stuff::cloth);
+  const int lumps = 4 + int(random.below(5));
+  for (int i = 0; i < lumps; ++i) {
+    const Vector3f aside{between(-0.6, 0.6, random), 0.F, between(-0.6, 0.6, random)};
+    const Vector3f size{between(0.3, 0.6, random), between(0.4, 1.0, random), between(0.3, 0.6, random)};
+    Isometry3f pose(Eigen::AngleAxisf(between(-0.3, 0.3, random), Vector3f::UnitZ()));
+    pose.rotate(Eigen::AngleAxisf(between(-1.5, 1.5, random), Vector3f::UnitY()));
+    pose.translation() = centre + half.cwiseProduct(aside);
+    add_cushion(piece.piece.mesh, pose, half.cwiseProduct(size), cloth);
+  }
+}
 
 FurnitureBuilder builder_of(Furniture piece, Random& random) {
   FurnitureBuilder builder(random);
@@ -104,6 +159,91 @@ Furniture make_jacket_chair(Random& random) {
   cover_chair_back(chair, top, shape.width_m, random);
   move(chair.piece, standing_at(0.F, 0.F, -0.2F, 0.F));
   return std::move(chair.piece);
+}
+
+/// Adds a chain of links, each turned against the one before, with a gripper of two fingers at its end. It stays above
+/// the floor.
+void add_arm(FurnitureBuilder& machine, const Vector3f& shoulder, Vector3f way, float radius, std::uint8_t shell,
+             std::uint8_t joint, Random& random) {
+  const int links = 2 + int(random.below(3));
+  Vector3f from = shoulder;
+  for (int i = 0; i < links; ++i) {
+    const Vector3f bend{between(-0.8, 0.8, random), between(-0.8, 0.8, random), between(-0.3, 0.9, random)};
+    if (i > 0) way = (way + bend).normalized();
+    Vector3f to = from + between(0.12, 0.4, random) * way;
+    to.y() = std::max(to.y(), 1.5F * radius);
+    const float thinner = radius * between(0.7, 0.95, random);
+    machine.cone(from, to, radius, thinner, shell);
+    add_ellipsoid(machine.piece.mesh, placed_at(to), Vector3f::Constant(1.15F * thinner), joint, 6);
+    radius = thinner;
+    from = to;
+  }
+  const Vector3f side = way.unitOrthogonal();
+  for (const float finger : {-1.F, 1.F}) {
+    const Vector3f root = from + 0.6F * finger * radius * side;
+    add_cone(machine.piece.mesh, root, root + between(0.05, 0.12, random) * way, 0.3F * radius, 0.2F * radius, joint,
+             6);
+  }
+}
+
+void add_head(FurnitureBuilder& machine, float height, std::uint8_t shell, std::uint8_t face, Random& random) {
+  const float half = between(0.06, 0.14, random);
+  const Vector3f centre(0.F, height + half, 0.02F);
+  switch (random.below(3)) {
+    case 0:
+      add_ellipsoid(machine.piece.mesh, placed_at(centre), {half, 1.1F * half, half}, shell, 9);
+      machine.solid(centre - Vector3f::Constant(0.8F * half), centre + Vector3f::Constant(0.8F * half));
+      break;
+    case 1:
+      machine.box(centre - Vector3f(half, 0.7F * half, 0.6F * half), centre + Vector3f(half, 0.7F * half, 0.6F * half),
+                  shell);
+      break;
+    default: {  // a screen
+      Isometry3f pose = placed_at(centre);
+      pose.linear() = Eigen::AngleAxisf(between(-0.7, 0.2, random), Vector3f::UnitX()).toRotationMatrix();
+      machine.box(pose, {2.4F * half, 1.6F * half, 0.025F}, face);
+    }
+  }
+}
+
+/// Returns a robot or an upright machine, 0.4 to 1.9 m high: a base, a column, perhaps a trunk and a head, and up to
+/// two arms of several links.
+Furniture make_machine(Random& random) {
+  FurnitureBuilder machine(random);
+  const std::uint8_t shell = machine.stuff(chance(0.6, random) ? Stuff::plastic : Stuff::paint);
+  const std::uint8_t dark = machine.stuff(Stuff::plastic), metal = machine.stuff(Stuff::metal);
+  const float base = between(0.13, 0.32, random), base_height = between(0.08, 0.35, random);
+  const float height = base_height + between(0.25, 1.2, random);
+  const float column = between(0.04, 0.6 * base, random);
+  if (chance(0.5, random)) {
+    machine.post(0.F, 0.F, 0.F, base_height, base, dark);
+  } else {
+    machine.box({-base, 0.F, -base}, {base, base_height, base}, dark);
+  }
+  machine.cone({0.F, base_height, 0.F}, {0.F, height, 0.F}, column * between(1.0, 1.6, random), column, metal);
+  float half_width = column;
+  if (chance(0.65, random)) {
+    half_width = between(0.1, 0.25, random);
+    const float low = std::lerp(base_height, height, between(0.2, 0.6, random)), half = 0.5F * (height - low);
+    const Vector3f size(half_width, half, half_width * between(0.5, 0.9, random)), middle(0.F, low + half, 0.F);
+    if (chance(0.5, random)) {
+      machine.box(middle - size, middle + size, shell);
+    } else {
+      add_cushion(machine.piece.mesh, placed_at(middle), size, shell);
+      machine.solid(middle - 0.9F * size, middle + 0.9F * size);
+    }
+  }
+  const std::uint32_t arms = random.below(3);
+  for (std::uint32_t i = 0; i < arms; ++i) {
+    const float side = i == 0 ? 1.F : -1.F;
+    const Vector3f way =
+        Vector3f{side * between(0.2, 1.0, random), between(-1.0, 0.6, random), between(0.0, 1.0, random)}.normalized();
+    const Vector3f shoulder(side * half_width * 0.8F, height - 0.06F, 0.F);
+    add_arm(machine, shoulder, way, between(0.03, 0.07, random), shell, dark, random);
+  }
+  machine.press_on_floor();
+  if (chance(0.6, random)) add_head(machine, height, shell, dark, random);
+  return std::move(machine.piece);
 }
 
 Furniture make_board(Random& random) {

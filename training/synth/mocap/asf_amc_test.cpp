@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "synth/mocap/amc.h"
+#include "synth/mocap/motion.h"
 #include "vesalius/error.h"
 
 namespace vesalius::synth {

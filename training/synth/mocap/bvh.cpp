@@ -1,5 +1,3 @@
-#include "synth/mocap/bvh.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "synth/mocap/motion.h"
 #include "synth/text/text_scanner.h"
 
 namespace vesalius::synth {

@@ -1,7 +1,6 @@
-#include "synth/mocap/bvh.h"
-
 #include <gmock/gmock.h>
 
+#include "synth/mocap/motion.h"
 #include "synth/text/test_text.h"
 #include "vesalius/error.h"
 

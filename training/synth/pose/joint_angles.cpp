@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synth/pose/stick_figure.h"
+#include "synth/pose/pose.h"
 
 namespace vesalius::synth {
 namespace {

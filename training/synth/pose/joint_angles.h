@@ -95,7 +95,7 @@ ArmAngles arm_angles(const Pose& pose, bool left);
 bool arm_in_range(const ArmAngles& arm);
 
 /// Sets upper arm and forearm, without moving clavicles or trunk, such that the wrist of a person of standard
-/// proportions (stick_figure.h) reaches `wrist_m`, or comes as near as the arm's length and the elbow allow.
+/// proportions (stick_figure()) reaches `wrist_m`, or comes as near as the arm's length and the elbow allow.
 /// `elbow_towards` is the direction in which the elbow points. Both are in the frame of the stick figure. The hand
 /// stays in line with the forearm.
 void reach(Pose& pose, bool left, const Eigen::Vector3f& wrist_m, const Eigen::Vector3f& elbow_towards);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "synth/pose/stick_figure.h"
+#include "synth/pose/pose.h"
 #include "vesalius/base/random.h"
 
 namespace vesalius::synth {

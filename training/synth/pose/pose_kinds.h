@@ -48,17 +48,8 @@ ArmAngles hanging_arm(Random& random, float front, float side);
 /// Returns the ankle's angle at which the sole is level, given the pitch of the pelvis.
 float level_ankle(const LegAngles& leg, float pitch);
 
-/// Returns the position of a point that is fixed to a bone, in the stick figure's frame. `offset_m` is the point's
-/// place from the bone's head at rest, for the left side; if `left` is false, it is mirrored.
-Eigen::Vector3f point_on(const Pose& pose, Bone bone, const Eigen::Vector3f& offset_m);
-/// Returns the vector itself for the left side and its mirror image (x -> -x) for the right.
-Eigen::Vector3f on_side(const Eigen::Vector3f& v, bool left);
-
 /// These functions change only the arms, whatever the legs do. Hands avoid trunk and legs as far as the pose allows.
 void cross_arms(Pose& pose, Random& random);
-void fold_behind(Pose& pose, Random& random);
-void put_on_hip(Pose& pose, bool left, Random& random);
-void hold_in_front(Pose& pose, Random& random);
 void phone_to_ear(Pose& pose, bool left, Random& random);
 void phone_in_hand(Pose& pose, bool left, Random& random);
 void hand_on_thigh(Pose& pose, bool left, Random& random);

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "synth/scene/furnish.h"
 #include "synth/scene/people_group.h"
-#include "synth/scene/person_mesh.h"
+#include "synth/scene/person_plan.h"
 #include "synth/scene/place_people.h"
 #include "synth/scene/surroundings.h"
 #include "vesalius/error.h"
@@ -92,12 +91,7 @@ BuiltScene build_scene(const SceneOptions& options, const CameraPlacement& place
   std::vector<Vector3f> people;
   for (const PlacedPerson& person : built.people) people.push_back(person.body.joints[index(Bone::chest)]);
   const Vector3f eye(0.F, stage.camera.height_m, 0.F);
-  for (Furniture& piece : furnish(options, room, people, eye, stage.occupancy, random)) {
-    built.scene.meshes.push_back(std::move(piece.mesh));
-  }
-  add_lights(room, built.scene, random);
-  built.scene.sky = draw_sky(room, random);
-  darken_furniture(options.dark_furniture, built.scene, random);
+  furnish(options, room, people, eye, stage.occupancy, built.scene, random);
   built.room = room;
   built.solids = stage.occupancy.solids();
   return built;

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "synth/furniture/seats.h"
-#include "synth/furniture/soft_support.h"
 #include "synth/mesh/palette.h"
 
 namespace vesalius::synth {

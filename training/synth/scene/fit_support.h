@@ -31,7 +31,7 @@ BedFit fit_bed(const PosedBody& body);
 
 /// Makes a seat of a random kind under a sitting body (body frame) such that the body does not sink into it. Returns
 /// nothing after some failed tries. With `swell_m` above 0 it is an armchair or a sofa if one fits, whose cushions
-/// swell around the body (soft_support.h).
+/// swell around the body.
 std::optional<Furniture> make_fitting_seat(const SeatFit& fit, const BodyOutline& body, float swell_m, Random& random);
 
 /// Depth to which bodies sink into cushions and mattresses.

@@ -4,10 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "synth/furniture/desk.h"
 #include "synth/furniture/make_furniture.h"
 #include "synth/furniture/seats.h"
-#include "synth/furniture/soft_support.h"
 #include "synth/mesh/palette.h"
 #include "synth/scene/fit_support.h"
 

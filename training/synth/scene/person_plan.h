@@ -6,6 +6,7 @@
 #include "synth/body/body_detail.h"
 #include "synth/body/poser.h"
 #include "synth/mesh/scene_mesh.h"
+#include "synth/scene/scene.h"
 
 namespace vesalius::synth {
 
@@ -20,5 +21,12 @@ struct PersonPlan {
   /// by the options.
   std::optional<float> yaw_rad;
 };
+
+/// Returns the surface of a posed body in the world, as coarse as `detail_px` pixels of the view allow at the body's
+/// nearest point.
+SceneMesh person_mesh(const PersonPlan& plan, const PosedBody& body, const View& view, float detail_px);
+
+/// Returns the body after a motion, for example into the world.
+PosedBody moved(PosedBody body, const Eigen::Isometry3f& motion);
 
 }  // namespace vesalius::synth

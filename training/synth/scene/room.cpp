@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "synth/mesh/palette.h"
-#include "synth/mesh/shapes.h"
+#include "synth/mesh/scene_mesh.h"
 
 namespace vesalius::synth {
 namespace {

@@ -2,12 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <vector>
 
 #include "synth/scene/place_people.h"
-#include "synth/scene/room.h"
-#include "synth/scene/scene.h"
 #include "synth/scene/scene_options.h"
-#include "vesalius/base/random.h"
 
 namespace vesalius::synth {
 
@@ -18,14 +16,11 @@ using ExtentOf = std::function<Eigen::AlignedBox3f(const Eigen::Isometry3f& room
 /// behind which a wall may be, or null.
 RoomShape draw_room(const SceneOptions& options, const PlacedGroup* first, const ExtentOf& extent_of, Random& random);
 
-/// Adds lamps below the ceiling and ambient light.
-void add_lights(const RoomShape& room, Scene& scene, Random& random);
-
-/// Draws the colour outside: more often day than night, and dim beyond a hall's edge.
-Rgb draw_sky(const RoomShape& room, Random& random);
-
-/// Makes whole pieces black leather or lacquer, of which depth cameras see only blotches or nothing. The first mesh is
-/// the room.
-void darken_furniture(float share, Scene& scene, Random& random);
+/// Adds furniture to a scene whose first mesh is the room: along the walls, free-standing, and some of it between the
+/// camera and people; then lamps below the ceiling and what is seen outside. Pieces that find no place are left out;
+/// the others are added to `occupancy` too. Some are black leather or lacquer, of which depth cameras see only
+/// blotches. People may be hidden in part, but not completely.
+void furnish(const SceneOptions& options, const RoomShape& room, const std::vector<Eigen::Vector3f>& people,
+             const Eigen::Vector3f& eye, Occupancy& occupancy, Scene& scene, Random& random);
 
 }  // namespace vesalius::synth

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "synth/body/builtin_body.h"
+#include "synth/body/makehuman.h"
 #include "synth/pose/pose_sampler.h"
 #include "synth/scene/build_scene.h"
 
@@ -18,7 +18,8 @@ inline const std::vector<std::unique_ptr<Poser>>& posers() {
     Random random(3);
     for (int i = 0; i < 4; ++i) {
       made.push_back(std::make_unique<Poser>(
-          std::make_shared<const BodyMesh>(make_builtin_body(sample_factors({}, random), paper_body())), paper_body()));
+          std::make_shared<const BodyMesh>(make_body(builtin_bodies(), sample_factors({}, random), paper_body())),
+          paper_body()));
     }
     return made;
   }();
@@ -31,19 +32,6 @@ inline PersonPlan plan_of(const SampledPose& sampled, std::uint32_t body) {
   plan.pose = sampled.pose;
   plan.posture = sampled.posture;
   return plan;
-}
-
-/// Returns the options that draw one kind of pose alone.
-inline PoseSamplerOptions only(float PoseSamplerOptions::*kind) {
-  PoseSamplerOptions options;
-  for (float* weight :
-       {&options.idle, &options.walking, &options.reaching, &options.waving, &options.bending, &options.arms_crossed,
-        &options.arms_behind, &options.hands_on_hips, &options.carrying, &options.phone, &options.sitting,
-        &options.floor_sitting, &options.lying, &options.kneeling, &options.squatting, &options.any}) {
-    *weight = 0.F;
-  }
-  options.*kind = 1.F;
-  return options;
 }
 
 inline std::vector<PersonPlan> draw_plans(int count, Random& random) {

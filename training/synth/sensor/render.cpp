@@ -7,7 +7,7 @@
 
 #include "synth/sensor/camera_rays.h"
 #include "synth/sensor/embree_scene.h"
-#include "synth/sensor/projector_shadow.h"
+#include "synth/sensor/occlusion.h"
 #include "synth/sensor/scene_geometry.h"
 #include "synth/sensor/shade.h"
 #include "vesalius/error.h"
@@ -187,7 +187,5 @@ Rendering Renderer::render(const Scene& scene, const View& view, const RenderOpt
   if (options.projector) state.fill_lit(*options.projector, out);
   return out;
 }
-
-const char* renderer_version() { return embree_version(); }
 
 }  // namespace vesalius::synth

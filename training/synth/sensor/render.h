@@ -44,7 +44,4 @@ class Renderer {
   std::unique_ptr<State> state_;
 };
 
-/// Returns e.g. "Embree 3.13.5".
-const char* renderer_version();
-
 }  // namespace vesalius::synth

@@ -23,7 +23,6 @@ constexpr float kDegree = 3.14159265F / 180.F;
 Sensor registered_kinect() {
   Sensor s;
   s.name = "kinect-v1";
-  s.title = "Microsoft Kinect for Xbox 360, depth registered to colour";
   s.kind = SensorKind::structured_light;
   s.camera = {640, 480, 525.F, 525.F, 319.5F, 239.5F};  // OpenNI's defaults
   s.near_m = 0.45F;
@@ -52,7 +51,6 @@ Sensor registered_kinect() {
 Sensor raw_kinect() {
   Sensor s = registered_kinect();
   s.name = "kinect-v1-raw";
-  s.title = "Microsoft Kinect for Xbox 360, depth on its own grid";
   s.camera = {640, 480, 580.F, 580.F, 319.5F, 239.5F};
   s.baseline_m = 0.075F;
   s.eye_m = 0.F;
@@ -60,19 +58,17 @@ Sensor raw_kinect() {
   return s;
 }
 
-/// Returns the same PrimeSense module at OpenNI's nominal f = 570.3 px for the infrared eye.
+/// Returns Asus' Xtion PRO Live, the same PrimeSense module at OpenNI's nominal f = 570.3 px for the infrared eye.
 Sensor xtion() {
   Sensor s = registered_kinect();
   s.name = "xtion";
-  s.title = "Asus Xtion PRO Live, depth registered to colour";
   s.disparity_px_m = 570.3F * 0.075F;
   return s;
 }
 
-Sensor time_of_flight(const char* name, const char* title, const Camera& camera) {
+Sensor time_of_flight(const char* name, const Camera& camera) {
   Sensor s;
   s.name = name;
-  s.title = title;
   s.kind = SensorKind::time_of_flight;
   s.camera = camera;
   s.near_m = 0.5F;
@@ -87,8 +83,7 @@ Sensor time_of_flight(const char* name, const char* title, const Camera& camera)
 /// "Comparison of Kinect v1 and v2 Depth Images in Terms of Accuracy and Precision", 2016: 1 mm near, some 3 mm at 4 m
 /// on a bright wall.
 Sensor kinect_v2() {
-  Sensor s =
-      time_of_flight("kinect-v2", "Microsoft Kinect for Xbox One", {512, 424, 365.456F, 365.456F, 254.878F, 205.395F});
+  Sensor s = time_of_flight("kinect-v2", {512, 424, 365.456F, 365.456F, 254.878F, 205.395F});
   s.far_m = 8.F;
   s.axial_base_m = 0.001F;
   s.amplitude_z2 = 0.0001F;
@@ -96,11 +91,11 @@ Sensor kinect_v2() {
   return s;
 }
 
-/// Returns the narrow unbinned mode of an Azure Kinect. The range comes from Microsoft's hardware specification, which
-/// bounds the random error by 17 mm; the noise has half of Kinect v2's slope: Kurillo et al., "Evaluating the Accuracy
-/// of the Azure Kinect and Kinect v2", 2022.
-Sensor azure_kinect(const char* name, const char* title) {
-  Sensor s = time_of_flight(name, title, {640, 576, 504.F, 504.F, 320.F, 330.F});
+/// Returns the narrow unbinned mode of an Azure Kinect or a Femto Bolt. The range comes from Microsoft's hardware
+/// specification, which bounds the random error by 17 mm; the noise has half of Kinect v2's slope: Kurillo et al.,
+/// "Evaluating the Accuracy of the Azure Kinect and Kinect v2", 2022.
+Sensor azure_kinect(const char* name) {
+  Sensor s = time_of_flight(name, {640, 576, 504.F, 504.F, 320.F, 330.F});
   s.far_m = 5.46F;  // 3.86 m is specified; bright surfaces are seen up to the end of the phase's period
   s.axial_base_m = 0.0007F;
   s.amplitude_z2 = 0.00005F;
@@ -111,10 +106,9 @@ Sensor azure_kinect(const char* name, const char* title) {
 /// Returns a RealSense. Baselines, nearest depth and the best resolution of 848x480: Intel, "D400 Series datasheet".
 /// Noise: RMS = z^2 s / (f B) of Intel's tuning guide (Grunnet-Jepsen et al., "Best-known methods for tuning D400 depth
 /// cameras", 2018), with 5 fractional bits of disparity.
-Sensor realsense(const char* name, const char* title, float baseline_m, float nearest_m) {
+Sensor realsense(const char* name, float baseline_m, float nearest_m) {
   Sensor s;
   s.name = name;
-  s.title = title;
   s.kind = SensorKind::stereo;
   s.camera = {848, 480, 424.F, 424.F, 423.5F, 239.5F};
   s.near_m = nearest_m;
@@ -133,10 +127,10 @@ Sensor realsense(const char* name, const char* title, float baseline_m, float ne
   return s;
 }
 
+/// Returns a camera without noise, for tests.
 Sensor perfect() {
   Sensor s;
   s.name = "perfect";
-  s.title = "No noise, for tests";
   s.camera = {640, 480, 525.F, 525.F, 319.5F, 239.5F};
   s.near_m = 0.001F;
   s.far_m = 65.535F;
@@ -156,11 +150,11 @@ const std::vector<Sensor>& sensors() {
   static const std::vector<Sensor> all = {registered_kinect(),
                                           raw_kinect(),
                                           kinect_v2(),
-                                          azure_kinect("azure-kinect", "Microsoft Azure Kinect DK, narrow unbinned"),
-                                          azure_kinect("femto-bolt", "Orbbec Femto Bolt, narrow unbinned"),
+                                          azure_kinect("azure-kinect"),
+                                          azure_kinect("femto-bolt"),
                                           xtion(),
-                                          realsense("d435", "Intel RealSense D435", 0.05F, 0.2F),
-                                          realsense("d455", "Intel RealSense D455", 0.095F, 0.4F),
+                                          realsense("d435", 0.05F, 0.2F),
+                                          realsense("d455", 0.095F, 0.4F),
                                           perfect()};
   return all;
 }

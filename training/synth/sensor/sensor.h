@@ -26,8 +26,7 @@ struct Border {
 /// A depth camera: nominal intrinsics and the parameters of its noise. sensor.cpp names their sources. Numbers in
 /// pixels refer to the size of `camera`.
 struct Sensor {
-  std::string name;   ///< such as "kinect-v1"
-  std::string title;  ///< such as "Microsoft Kinect for Xbox 360"
+  std::string name;  ///< such as "kinect-v1"
   SensorKind kind = SensorKind::perfect;
   Camera camera;  ///< camera of the depth picture
   float near_m = 0.4F, far_m = 10.F;
