@@ -6,8 +6,8 @@
 #include <iterator>
 
 #include "commands/evaluate/sequence_trackers.h"
-#include "commands/evaluate/truth_bvh.h"
 #include "commands/synth/synth_recipe.h"
+#include "dataset/open_truth.h"
 #include "dataset/truth_sequences.h"
 #include "evaluation/evaluate_sequences.h"
 #include "evaluation/evaluate_set.h"
@@ -32,7 +32,7 @@ FittedBodyFile fit_people(const BodyFit& fit) {
   const FrameScorer scorer(model_of(fit), {.detect = {}, .joint_set = fit.joint_set});
   std::vector<KnownPerson> people;
   for (const std::string& source : fit.sources) {
-    const auto frames = cli::open_evaluation_truth(source, fit.step);
+    const auto frames = open_truth(source, fit.step);
     std::ranges::move(evaluate_set(*frames, {source, source, false, true}, scorer).known_people,
                       std::back_inserter(people));
   }
@@ -47,7 +47,7 @@ FittedBodyFile fit_tracks(const BodyFit& fit) {
   std::vector<TrustSample> joints;
   std::vector<StanceSample> postures;
   for (const std::string& source : fit.sources) {
-    const auto one = [&](const std::string& folder) { return cli::open_evaluation_truth(folder, fit.step); };
+    const auto one = [&](const std::string& folder) { return open_truth(folder, fit.step); };
     const auto open = [&] { return open_sequences(source, one); };
     SetResult set = evaluate_sequences(open, {source, source}, scorer, trackers,
                                        {fit.hidden, fit.what == "trust", fit.what == "stances"});

@@ -8,7 +8,6 @@
 #include "dataset/labelled_dataset.h"
 #include "dataset/labelled_folder.h"
 #include "dataset/skeleton_truth.h"
-#include "dataset/stepped_source.h"
 #include "dataset/truth_folder.h"
 #include "vesalius/error.h"
 #include "vesalius/open_source.h"
@@ -19,23 +18,37 @@ namespace {
 class FolderTruth final : public TruthSource {
  public:
   FolderTruth(const std::string& uri, int step, const SourceOptions& options)
-      : source_(open_source(uri, options), step), truth_(path_of_source(uri)) {}
+      : source_(open_source(uri, options)), step_(step), truth_(path_of_source(uri)) {}
 
   std::optional<TrueFrame> next() override {
     if (left_) return std::nullopt;
-    auto step = source_.next();
-    if (!step) return std::nullopt;
-    FrameTruth truth = truth_.truth_of(step->frame);
-    step->frame.time_s = truth_.time_of(step->frame);
-    return TrueFrame{std::move(step->frame), std::move(truth)};
+    std::optional<Frame> frame = next_frame();
+    if (!frame) return std::nullopt;
+    FrameTruth truth = truth_.truth_of(*frame);
+    frame->time_s = truth_.time_of(*frame);
+    return TrueFrame{std::move(*frame), std::move(truth)};
   }
   void leave_sequence() override { left_ = true; }
-  int size() const override { return source_.size(); }
-  std::vector<std::string> notes() const override { return source_.notes(); }
+  int size() const override {
+    const int all = source_->size();
+    return all < 0 ? all : (all + step_ - 1) / step_;
+  }
+  std::vector<std::string> notes() const override { return source_->notes(); }
 
  private:
+  /// Returns the next of every `step` frames.
+  std::optional<Frame> next_frame() {
+    for (;;) {
+      const int index = passed_++;  // a frame that cannot be read counts as well
+      std::optional<Frame> frame = source_->next();
+      if (!frame || index % step_ == 0) return frame;
+    }
+  }
+
   bool left_ = false;
-  SteppedSource source_;
+  std::unique_ptr<FrameSource> source_;
+  int step_;
+  int passed_ = 0;
   TruthFolder truth_;
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kTruth{"frames.csv", "joints.csv", "mask", "truth_bvh.toml", "truth"};
+constexpr std::array kTruth{"frames.csv", "joints.csv", "mask", "truth"};
 
 bool is_there(const fs::path& path) {
   std::error_code ignored;

@@ -10,8 +10,8 @@
 namespace vesalius {
 
 /// Returns the folders in `folder` that have frames with truth, in the order of their names: those that its own
-/// frames.csv names (sets_in), or else those with depth/ and frames.csv, joints.csv, mask/ or truth_bvh.toml in them
-/// and labelled datasets. If `folder` itself holds frames or is none or has no such folders, it is the only one.
+/// frames.csv names (sets_in), or else those with depth/ and frames.csv, joints.csv or mask/ in them and
+/// labelled datasets. If `folder` itself holds frames or is none or has no such folders, it is the only one.
 std::vector<std::string> sequences_in(const std::string& folder);
 
 /// Returns the frames of several sources as one, those of one after those of the other. Each source is opened by `open`

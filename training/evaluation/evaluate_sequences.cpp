@@ -33,7 +33,6 @@ struct Block {
 struct SequenceResult {
   int frames = 0;
   std::vector<Block> blocks;
-  JointCurve joint_curve;
   std::vector<WorstFrame> worst;
   std::vector<TrustSample> trust_samples;
   std::vector<StanceSample> stance_samples;
@@ -55,7 +54,6 @@ class SequenceEvaluation {
       FrameScore score = scorer_.add(std::move(frame), std::move(tracked));
       names_.push_back(name);
       of_frames_.push_back(std::move(score.terms));
-      for (const auto& errors_m : score.joint_errors_m) result_.joint_curve.add(errors_m);
       keep_if_worst({std::move(shown), std::move(score)}, options_.worst, result_.worst);
     } catch (const Error& e) {
       throw Error(fmt::format("{}: frame {}: {}", options_.source, name, e.what()));
@@ -206,7 +204,6 @@ class SequencesEvaluation {
     for (const Block& block : sequence.blocks) {
       result.metrics.add(frame_key(result.name.c_str(), block.name.c_str()), block.terms);
     }
-    result.joint_curve.merge(sequence.joint_curve);
     std::ranges::move(sequence.trust_samples, std::back_inserter(result.trust_samples));
     std::ranges::move(sequence.stance_samples, std::back_inserter(result.stance_samples));
     for (WorstFrame& worst : sequence.worst) keep_if_worst(std::move(worst), options_.worst, result.worst);

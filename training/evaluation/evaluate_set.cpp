@@ -91,7 +91,6 @@ class SetEvaluation {
     ++result_.log.frames;
     result_.log.expected += score.expected;
     result_.log.proposals.insert(result_.log.proposals.end(), score.proposals.begin(), score.proposals.end());
-    for (const auto& errors_m : score.joint_errors_m) result_.joint_curve.add(errors_m);
     result_.joint_precision.add(score.joint_precision);
     result_.centre_precision.add(score.centre_precision);
     if (options_.fit_joints) std::ranges::move(score.known_people, std::back_inserter(result_.known_people));

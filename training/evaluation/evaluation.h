@@ -7,7 +7,6 @@
 
 #include "metrics/detection_curve.h"
 #include "metrics/fit_samples.h"
-#include "metrics/joint_metrics.h"
 #include "metrics/joint_precision.h"
 #include "metrics/metric_table.h"
 #include "metrics/pixel_metrics.h"
@@ -35,7 +34,6 @@ struct SetResult {
   std::vector<std::string> failures;  ///< the first failures, one line each
   MetricTable metrics;
   DetectionLog log;
-  JointCurve joint_curve;
   JointPrecision joint_precision;
   JointPrecision centre_precision;
   std::optional<PixelConfusion> confusion;

@@ -120,18 +120,6 @@ void add_detection_curves(const SetResult& set, const Evaluation& evaluation, Do
                  kShares});
 }
 
-void add_joint_curve(const SetResult& set, Document& document) {
-  if (set.joint_curve.joints == 0) return;
-  PlotSeries line{"all joints", {{0.0, 0.0}}};
-  for (int cm = 1; cm <= kJointCurve_cm; ++cm) line.points.emplace_back(cm, set.joint_curve.share(cm));
-  document.plot({"Share of joints within a distance of the truth",
-                 "distance, cm",
-                 "share of joints",
-                 {line},
-                 std::pair{0.0, double(kJointCurve_cm)},
-                 kShares});
-}
-
 /// Adds how many of the joints given out with each confidence are right: on the diagonal it means what it says.
 void add_reliability(const std::vector<Estimate>& estimates, Document& document) {
   LinePlot plot{"Share of joints that are right by the confidence they were given with",
@@ -212,7 +200,6 @@ void add_set(const SetResult& set, const Evaluation& evaluation, Document& docum
   const std::vector<Estimate> estimates = set.metrics.estimates();
   add_tables(estimates, document);
   add_detection_curves(set, evaluation, document);
-  add_joint_curve(set, document);
   add_reliability(estimates, document);
   add_precision(set.joint_precision, "joint", document);
   add_precision(set.centre_precision, "part's centre", document);

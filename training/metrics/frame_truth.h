@@ -10,9 +10,6 @@
 
 namespace vesalius {
 
-/// Tells whether the camera moved when it took a frame.
-enum class CameraMotion { unknown, still, moving };
-
 /// The side that a person turns to the camera: front within 60 degrees, back beyond 120.
 enum class Heading { front, side, back };
 const char* to_string(Heading heading);
@@ -33,7 +30,6 @@ struct FrameTruth {
   std::vector<float> statures_m;                     ///< [person]: height of the body standing upright; NaN = not known
   std::optional<Eigen::Vector3f> up;                 ///< unit vector away from the ground, optical frame
   std::optional<float> camera_height_m;              ///< height above the ground on which people stand
-  CameraMotion camera_motion = CameraMotion::unknown;
   /// Number of the recording in its set that the frame belongs to; frames of one recording come after each other in
   /// time. -1: the frame stands alone.
   int sequence = -1;

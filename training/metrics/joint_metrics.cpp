@@ -188,21 +188,4 @@ MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::strin
   return terms;
 }
 
-void JointCurve::add(const std::vector<double>& errors_m) {
-  for (const double error_m : errors_m) {
-    if (std::isnan(error_m)) continue;
-    ++joints;
-    for (int cm = 1; cm <= kJointCurve_cm; ++cm) {
-      if (error_m < cm * 0.01) ++within[cm - 1];
-    }
-  }
-}
-
-void JointCurve::merge(const JointCurve& other) {
-  joints += other.joints;
-  for (std::size_t cm = 0; cm < within.size(); ++cm) within[cm] += other.within[cm];
-}
-
-double JointCurve::share(int cm) const { return joints > 0 ? double(within.at(cm - 1)) / double(joints) : kNaN; }
-
 }  // namespace vesalius

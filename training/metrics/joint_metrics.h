@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,8 +16,6 @@ namespace vesalius {
 inline constexpr double kJointTolerance_m = 0.1;
 /// A joint that lies farther from the truth was mistaken for something else and tells nothing about its place.
 inline constexpr double kPlacedJoint_m = 0.25;
-/// Largest distance of the curve over distances, centimetres.
-inline constexpr int kJointCurve_cm = 30;
 
 /// The joints of one true person under the names of its data set, and where they were found. NaN means not known or not
 /// found.
@@ -69,16 +66,5 @@ MetricTerms predicted_part_terms(const Skeleton& skeleton, const JointPair& cent
 /// unless the truth has hips and neck or shoulders, and none of joints nearer to their partner's truth than to their
 /// own: one swapped arm would outweigh many biases.
 MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names);
-
-/// The numbers of joints within 1, 2, ... kJointCurve_cm centimetres of the truth.
-struct JointCurve {
-  std::array<long, kJointCurve_cm> within{};
-  long joints = 0;
-
-  void add(const std::vector<double>& errors_m);
-  void merge(const JointCurve& other);
-  /// Returns the share within `cm`, 1 to kJointCurve_cm; NaN without joints.
-  double share(int cm) const;
-};
 
 }  // namespace vesalius

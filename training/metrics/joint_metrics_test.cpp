@@ -112,16 +112,6 @@ TEST(PredictedParts, AreThoseNotObserved) {
   EXPECT_DOUBLE_EQ(value_of(terms, "missing.right"), 1.0 / 3.0);
 }
 
-TEST(JointCurve, GivesTheSharesWithinDistances) {
-  JointCurve curve;
-  curve.add({0.005, 0.095, 0.105, std::numeric_limits<double>::infinity(), std::nan("")});
-  EXPECT_DOUBLE_EQ(curve.share(1), 0.25);
-  EXPECT_DOUBLE_EQ(curve.share(9), 0.25);
-  EXPECT_DOUBLE_EQ(curve.share(10), 0.5);
-  EXPECT_DOUBLE_EQ(curve.share(30), 0.75);
-  EXPECT_TRUE(std::isnan(JointCurve{}.share(10)));
-}
-
 TEST(JointsByName, AreInTheOrderOfTheTruth) {
   const JointSet& set = paper_body().joint_sets.front();  // nite15
   std::vector<Joint> joints(set.joints.size());

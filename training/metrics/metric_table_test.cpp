@@ -99,14 +99,5 @@ TEST(MetricTable, RefusesTermsThatAreNotFinite) {
   EXPECT_TRUE(table.estimates().empty());
 }
 
-TEST(MetricTable, MeansRootsOfProductsOverTheMembersOfOneFamily) {
-  MetricTable table;
-  table.add(1, {{{Metric::track_det_a_at, 0, "0.05"}, 1.0, 4.0},
-                {{Metric::track_ass_a_at, 0, "0.05"}, 1.0, 1.0},
-                {{Metric::track_det_a_at, 1, "0.10"}, 0.0, 4.0}});
-  const std::vector<Estimate> estimates = table.estimates();
-  EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_hota)->value, 0.25);  // sqrt(1/4 * 1) and 0
-}
-
 }  // namespace
 }  // namespace vesalius

@@ -112,11 +112,6 @@ MetricTerms people_terms(const TrueFrame& frame, const std::vector<Person>& peop
   terms.push_back({Metric::people_found, found, expected});
   add_mask_terms(frame, people, found > 0.0, terms);
   add_part_terms(people, matches, expected, body, terms);
-  if (frame.truth.camera_motion == CameraMotion::still) {
-    terms.push_back({{Metric::motion, 0, "still"}, found, expected});
-  } else if (frame.truth.camera_motion == CameraMotion::moving) {
-    terms.push_back({{Metric::motion, 1, "moving"}, found, expected});
-  }
   if (!frame.truth.posture.empty()) terms.push_back({{Metric::posture, 0, frame.truth.posture}, found, expected});
   return terms;
 }

@@ -37,8 +37,8 @@ PartCounts count_parts(const Skeleton& skeleton, const std::vector<Eigen::Vector
 MetricTerms visible_part_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person,
                                const BodyModel& body);
 
-/// Returns the terms of a frame for people found and false people, for somebody in an empty frame, for its posture and
-/// its camera's motion, for the IoU of masks, and for how often each part was observed on the true people.
+/// Returns the terms of a frame for people found and false people, for somebody in an empty frame, for its posture, for
+/// the IoU of masks, and for how often each part was observed on the true people.
 MetricTerms people_terms(const TrueFrame& frame, const std::vector<Person>& people, const std::vector<Match>& matches,
                          const BodyModel& body);
 

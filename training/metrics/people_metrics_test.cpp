@@ -86,7 +86,6 @@ TEST(PeopleTerms, AgreeWithCountingByHand) {
   frame.truth.person = {};
   frame.truth.people = 2;
   frame.truth.posture = "sitting";
-  frame.truth.camera_motion = CameraMotion::moving;
   frame.truth.mask = Mask(4, 1, 1);
   Mask half(4, 1, 0);
   half(0, 0) = half(1, 0) = 1;
@@ -96,8 +95,6 @@ TEST(PeopleTerms, AgreeWithCountingByHand) {
   EXPECT_DOUBLE_EQ(value_of(terms, "people.found"), 0.5);
   EXPECT_DOUBLE_EQ(value_of(terms, "people.false"), 1.0);
   EXPECT_DOUBLE_EQ(value_of(terms, "posture.sitting"), 0.5);
-  EXPECT_DOUBLE_EQ(value_of(terms, "motion.moving"), 0.5);
-  EXPECT_TRUE(std::isnan(value_of(terms, "motion.still")));
   EXPECT_DOUBLE_EQ(value_of(terms, "mask.iou"), 0.5);
   EXPECT_DOUBLE_EQ(value_of(terms, "mask.iou_where_found"), 0.5);
   EXPECT_DOUBLE_EQ(value_of(terms, "part.seen.neck"), 0.5);
@@ -110,7 +107,6 @@ TEST(PeopleTerms, CountOnlyFalsePeopleInAnEmptyFrame) {
   frame.truth = {};
   frame.truth.people = 0;
   frame.truth.posture = "empty";
-  frame.truth.camera_motion = CameraMotion::still;
   const MetricTerms quiet = people_terms(frame, {}, {}, paper_body());
   EXPECT_DOUBLE_EQ(value_of(quiet, "frames.empty_with_person"), 0.0);
   EXPECT_EQ(quiet.size(), 2U);

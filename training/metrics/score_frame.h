@@ -22,11 +22,10 @@ struct FrameScore {
   MetricTerms terms;
   int expected = 0;  ///< true people
   std::vector<JudgedProposal> proposals;
-  std::vector<std::vector<double>> joint_errors_m;  ///< joint_errors() of each true person
-  JointPrecision joint_precision;                   ///< over all proposed people, whatever their score
-  JointPrecision centre_precision;                  ///< the same of the parts' centres
-  std::optional<PixelConfusion> confusion;          ///< empty if the true labels are not known
-  std::vector<KnownPerson> known_people;            ///< only of frames for fitting joints
+  JointPrecision joint_precision;           ///< over all proposed people, whatever their score
+  JointPrecision centre_precision;          ///< the same of the parts' centres
+  std::optional<PixelConfusion> confusion;  ///< empty if the true labels are not known
+  std::vector<KnownPerson> known_people;    ///< only of frames for fitting joints
 
   std::string what_went_wrong;  ///< empty if nothing did
   double badness = 0.0;         ///< 0 if everything is right; ranks the frames for reports

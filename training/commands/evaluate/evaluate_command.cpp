@@ -11,7 +11,6 @@
 #include <set>
 
 #include "commands/evaluate/sequence_trackers.h"
-#include "commands/evaluate/truth_bvh.h"
 #include "commands/evaluate/truth_recipe.h"
 #include "commands/training_commands.h"
 #include "console/detector_flags.h"
@@ -21,6 +20,7 @@
 #include "console/option_flags.h"
 #include "console/progress.h"
 #include "console/text_sink.h"
+#include "dataset/open_truth.h"
 #include "dataset/truth_folder.h"
 #include "dataset/truth_headings.h"
 #include "dataset/truth_sequences.h"
@@ -147,7 +147,7 @@ std::string command_line(const CLI::App& command) {
 
 /// Opens the frames of a source with what the command line adds to them.
 std::unique_ptr<TruthSource> open_frames(const std::string& source, const Arguments& arguments) {
-  auto frames = open_evaluation_truth(source, arguments.step);
+  auto frames = open_truth(source, arguments.step);
   if (!arguments.headings_file.empty()) {
     const std::string set = whole_path(source).filename().string();
     frames = with_headings(std::move(frames), HeadingTable::read(arguments.headings_file), set);
@@ -235,9 +235,10 @@ void run(const Arguments& arguments, const std::string& command) {
 void add_evaluate(CLI::App& program) {
   CLI::App* command = program.add_subcommand("evaluate", "Measure a model against frames whose truth is known");
   const auto arguments = std::make_shared<Arguments>(*command);
-  command->add_option("SOURCE", arguments->sources,
-                      "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/, joints.csv or "
-                      "truth_bvh.toml, or a folder of such folders with one frames.csv");
+  command->add_option(
+      "SOURCE", arguments->sources,
+      "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/ or joints.csv, or a "
+      "folder of such folders with one frames.csv");
   command
       ->add_option("--recipe", arguments->recipes,
                    "Frames rendered from this recipe and not kept, as `vesalius synth --recipe` makes them")
