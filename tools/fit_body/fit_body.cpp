@@ -8,7 +8,6 @@
 #include "commands/evaluate/sequence_trackers.h"
 #include "commands/synth/synth_recipe.h"
 #include "dataset/open_truth.h"
-#include "dataset/truth_sequences.h"
 #include "evaluation/evaluate_sequences.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"

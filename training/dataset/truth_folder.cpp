@@ -12,7 +12,6 @@
 #include <system_error>
 
 #include "dataset/truth_csv.h"
-#include "dataset/truth_headings.h"
 #include "io/files/read_file.h"
 #include "io/sources/folder_source.h"
 #include "vesalius/error.h"

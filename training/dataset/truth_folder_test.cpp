@@ -150,8 +150,6 @@ TEST(SetsIn, FindsNoneOfTheTablesFolders) {
   EXPECT_THAT(test::error_of([&] { sets_in(folder.path()); }), HasSubstr("none of the sets"));
 }
 
-using ::testing::HasSubstr;
-
 TEST(Trajectory, InterpolatesBetweenPoses) {
   // The camera turns a quarter about its y axis.
   const Trajectory trajectory = Trajectory::parse(

@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include "dataset/truth_source.h"
+#include "dataset/open_truth.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation.h"
 #include "metrics/score_sequence.h"

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "capsule/capsule_person.h"
+#include "dataset/labelled_truth.h"
 #include "dataset/open_truth.h"
 #include "evaluation/compare_evaluations.h"
 #include "evaluation/evaluation_json.h"

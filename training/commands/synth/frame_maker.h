@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "commands/synth/synth_assets.h"
-#include "dataset/clip_layout.h"
+#include "dataset/labelled_dataset.h"
 #include "synth/clip_generator.h"
 #include "synth/recipe.h"
 #include "vesalius/body_model.h"

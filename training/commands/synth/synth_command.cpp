@@ -18,7 +18,7 @@
 #include "console/option_flags.h"
 #include "console/progress.h"
 #include "console/text_sink.h"
-#include "dataset/labelled_export.h"
+#include "dataset/labelled_folder.h"
 #include "io/files/read_file.h"
 #include "synth/skeleton_joints.h"
 #include "train/parallel_in_order.h"

@@ -10,7 +10,7 @@
 #include "commands/synth/synth_assets.h"
 #include "console/interrupts.h"
 #include "console/progress.h"
-#include "dataset/dataset_folder.h"
+#include "dataset/labelled_dataset.h"
 #include "train/parallel_in_order.h"
 #include "vesalius/error.h"
 

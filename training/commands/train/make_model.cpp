@@ -22,6 +22,7 @@
 #include "console/text_sink.h"
 #include "dataset/labelled_dataset.h"
 #include "dataset/labelled_frame_codec.h"
+#include "dataset/labelled_truth.h"
 #include "dataset/open_truth.h"
 #include "downloads/sha256.h"
 #include "folders/folder_lock.h"

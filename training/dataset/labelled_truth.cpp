@@ -1,8 +1,10 @@
-#include "dataset/skeleton_truth.h"
+#include "dataset/labelled_truth.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numeric>
+#include <utility>
 
 namespace vesalius {
 namespace {
@@ -77,8 +79,9 @@ bool has_all(const std::vector<std::string>& names) {
          std::ranges::all_of(kUpwards, has_leg) && std::ranges::all_of(kTrunk, has);
 }
 
-}  // namespace
-
+/// Adds what follows from the joints of the people's skeletons, [person][joint]: the joints of other trackers under
+/// their names, each a joint of the skeleton or the middle between two, and the people's statures. Adds nothing if the
+/// names are those of another skeleton or there is none.
 void add_skeleton_truth(const std::vector<std::string>& names, const std::vector<Points>& skeletons,
                         FrameTruth& truth) {
   if (skeletons.empty() || !has_all(names)) return;
@@ -91,6 +94,44 @@ void add_skeleton_truth(const std::vector<std::string>& names, const std::vector
     truth.statures_m.push_back(skeleton.stature_m());
   }
   truth.joint_set = "nite15";
+}
+
+/// Returns how many of the people are in the picture.
+int people_seen(const Image<std::uint8_t>& person, std::size_t people) {
+  std::vector<bool> seen(kBackground + 1, false);
+  for (const std::uint8_t who : person) seen[who] = true;
+  return int(std::count(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(people), true));
+}
+
+}  // namespace
+
+TrueFrame as_true_frame(LabelledFrame labelled, const std::vector<std::string>& joint_names, int clip) {
+  TrueFrame result;
+  FrameTruth& truth = result.truth;
+  truth.people = int(labelled.parts.size());
+  truth.sequence = clip;
+  if (clip >= 0) {
+    truth.ids.resize(labelled.parts.size());
+    std::iota(truth.ids.begin(), truth.ids.end(), 0);
+    truth.people = people_seen(labelled.person, labelled.parts.size());
+  }
+  truth.mask = Mask(labelled.person.width(), labelled.person.height(), 0);
+  for (std::size_t i = 0; i < truth.mask.size(); ++i) truth.mask[i] = labelled.person[i] == kBackground ? 0 : 1;
+  add_skeleton_truth(joint_names, labelled.joints, truth);
+  truth.parts = std::move(labelled.parts);
+  truth.postures = std::move(labelled.postures);
+  truth.up = labelled.up;
+  truth.camera_height_m = labelled.camera_height_m;
+  truth.person = std::move(labelled.person);
+  truth.labels = std::move(labelled.labels);
+  result.frame = std::move(labelled.frame);
+  return result;
+}
+
+std::vector<std::string> part_names_of(const BodyModel& body) {
+  std::vector<std::string> names;
+  for (const BodyPart& part : body.parts) names.push_back(part.name);
+  return names;
 }
 
 }  // namespace vesalius

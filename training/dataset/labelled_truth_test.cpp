@@ -1,4 +1,4 @@
-#include "dataset/skeleton_truth.h"
+#include "dataset/labelled_truth.h"
 
 #include <gmock/gmock.h>
 
@@ -47,9 +47,9 @@ FrameTruth truth_of(const std::vector<NamedPoint>& skeleton) {
     names.emplace_back(joint.name);
     points.push_back(joint.at);
   }
-  FrameTruth truth;
-  add_skeleton_truth(names, {points}, truth);
-  return truth;
+  LabelledFrame labelled;
+  labelled.joints = {points};
+  return as_true_frame(labelled, names).truth;
 }
 
 Vector3f joint(const FrameTruth& truth, const std::string& name) {
@@ -77,8 +77,7 @@ TEST(SkeletonTruth, MeasuresStatureWhateverThePose) {
 }
 
 TEST(SkeletonTruth, LeavesOutOtherSkeletons) {
-  FrameTruth truth;
-  add_skeleton_truth({"hip", "knee"}, {{Vector3f::Zero(), Vector3f::Zero()}}, truth);
+  const FrameTruth truth = truth_of({{"hip", Vector3f::Zero()}, {"knee", Vector3f::Zero()}});
   EXPECT_TRUE(truth.joints.empty());
   EXPECT_TRUE(truth.joint_names.empty());
   EXPECT_TRUE(truth.statures_m.empty());
