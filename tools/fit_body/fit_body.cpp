@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include "commands/evaluate/sequence_trackers.h"
 #include "commands/synth/synth_recipe.h"
 #include "dataset/open_truth.h"
-#include "evaluation/evaluate_sequences.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
 #include "fitted_toml.h"
@@ -42,7 +40,7 @@ FittedBodyFile fit_people(const BodyFit& fit) {
 FittedBodyFile fit_tracks(const BodyFit& fit) {
   const Model model = model_of(fit);
   const FrameScorer scorer(model, {});
-  const SequenceTrackerFactory trackers = cli::sequence_trackers(model, {});
+  const SequenceTrackerFactory trackers = sequence_trackers(model, {});
   std::vector<TrustSample> joints;
   std::vector<StanceSample> postures;
   for (const std::string& source : fit.sources) {

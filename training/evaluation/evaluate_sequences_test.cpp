@@ -1,5 +1,3 @@
-#include "evaluation/evaluate_sequences.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -7,8 +5,9 @@
 #include <memory>
 #include <string>
 
+#include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_json.h"
-#include "evaluation/evaluation_summary.h"
+#include "evaluation/evaluation_report.h"
 #include "vesalius/base/test_threads.h"
 #include "vesalius/error.h"
 #include "vesalius/fit/flesh_model.h"

@@ -9,7 +9,7 @@
 
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
-#include "metrics/compare_metrics.h"
+#include "metrics/metric_table.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -162,6 +162,20 @@ std::vector<StoredSet> read_evaluation(const std::string& path) {
   } catch (const Error& e) {
     throw Error(fmt::format("{}: {}", path, e.what()));
   }
+}
+
+std::vector<SetComparison> compare_evaluations(const std::vector<StoredSet>& first,
+                                               const std::vector<StoredSet>& second) {
+  std::vector<SetComparison> sets;
+  for (const StoredSet& set : first) {
+    SetComparison& comparison = sets.emplace_back(SetComparison{set.name});
+    const auto other = std::ranges::find(second, set.name, &StoredSet::name);
+    if (other == second.end()) continue;
+    comparison.in_both = true;
+    comparison.paired = set.frames_key == other->frames_key;
+    comparison.metrics = compare_common(set.metrics, other->metrics, comparison.paired);
+  }
+  return sets;
 }
 
 }  // namespace vesalius

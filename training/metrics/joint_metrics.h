@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "metrics/frame_truth.h"
@@ -66,5 +67,58 @@ MetricTerms predicted_part_terms(const Skeleton& skeleton, const JointPair& cent
 /// unless the truth has hips and neck or shoulders, and none of joints nearer to their partner's truth than to their
 /// own: one swapped arm would outweigh many biases.
 MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names);
+
+/// The proposed joints of a person in a frame, under the names of the truth; NaN = not proposed.
+struct JointProposals {
+  float score = 0.F;  ///< score of the person
+  std::vector<Eigen::Vector3f> joints;
+};
+
+/// The average precision of each joint over all proposals of a set of frames, whatever their score (Shotton et al.
+/// 2011): the area under precision against recall as the minimum score falls. A proposal is right if it lies within
+/// kJointTolerance_m of a true joint of its name that no proposal with a higher score took.
+class JointPrecision {
+ public:
+  /// Adds a frame. `truth` is [person][joint] in the order of `names`; NaN leaves a joint out in this frame. People
+  /// with an index of `counted` or more count neither as missed nor, if they are proposed, as wrong.
+  void add(const std::vector<std::string>& names, std::vector<JointProposals> proposals,
+           const std::vector<std::vector<Eigen::Vector3f>>& truth, std::size_t counted);
+  void add(const JointPrecision& frames);
+
+  /// Returns name and average precision (0-1) of the joints that occur in the truth, in the order of their first
+  /// occurrence.
+  std::vector<std::pair<std::string, double>> averages() const;
+
+ private:
+  struct Judged {
+    float score = 0.F;
+    bool right = false;
+  };
+  struct Of {
+    std::string name;
+    long known = 0;
+    std::vector<Judged> proposals;
+  };
+
+  Of& of(const std::string& name);
+
+  std::vector<Of> joints_;
+};
+
+/// Whether the camera sees the body about a true joint.
+enum class Sight {
+  unknown,  ///< the person's pixels, or the joint, are not known
+  seen,     ///< at least 10 cm^2 of the person's surface lie within 0.15 m of it and are seen
+  hidden,   ///< less does
+};
+
+/// Returns this of joints of a true person, metres, optical frame.
+std::vector<Sight> joint_sight(const TrueFrame& frame, std::size_t person, const std::vector<Eigen::Vector3f>& joints);
+
+/// Returns how many of the seen and of the hidden joints of a person lie within kJointTolerance_m, their mean errors,
+/// and of the joints given out with a confidence from each tenth how many lie so, of all, of the seen and of the
+/// hidden. As in joint_terms, joints that were not found count as wrong in the shares and are left out of the errors.
+/// `confidences` and `sight` have the order of the pair.
+MetricTerms sight_terms(const JointPair& pair, const std::vector<float>& confidences, const std::vector<Sight>& sight);
 
 }  // namespace vesalius

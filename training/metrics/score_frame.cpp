@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
-#include "metrics/breakdown_metrics.h"
 #include "metrics/heading.h"
-#include "metrics/joint_sight.h"
+#include "metrics/joint_metrics.h"
 #include "metrics/match_people.h"
+#include "metrics/people_metrics.h"
 #include "metrics/side_metrics.h"
 #include "vesalius/error.h"
 #include "vesalius/predict_parts.h"

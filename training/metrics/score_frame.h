@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "metrics/detection_curve.h"
 #include "metrics/fit_samples.h"
 #include "metrics/frame_truth.h"
 #include "metrics/joint_metrics.h"
-#include "metrics/joint_precision.h"
 #include "metrics/metric_table.h"
+#include "metrics/people_metrics.h"
 #include "metrics/pixel_metrics.h"
 #include "vesalius/detect.h"
 #include "vesalius/trace.h"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -32,5 +33,13 @@ std::uint64_t frame_key(const char* set, const char* frame);
 /// Returns the range from the 2.5th to the 97.5th percentile, interpolated. Values that are not finite do not count;
 /// NaN for none.
 Interval percentile_interval(std::vector<double> values);
+
+/// Returns the middle value, or the upper of the two middle ones; 0 for no values.
+inline double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
 
 }  // namespace vesalius

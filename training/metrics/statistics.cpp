@@ -1,4 +1,4 @@
-#include "metrics/interval.h"
+#include "metrics/statistics.h"
 
 #include <fmt/format.h>
 
