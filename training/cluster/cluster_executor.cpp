@@ -37,6 +37,14 @@ T message_of(const std::map<std::string, std::string>& records, const std::strin
   return from_message<T>(bytes_of(records, key, job), job + ": " + key);
 }
 
+/// Returns the nodes of a subtree. Throws Error naming `name` as well if a child is beyond the last one.
+std::vector<GrownNode> parse_grown_nodes(std::string_view message, const std::string& name) {
+  auto nodes = from_message<std::vector<GrownNode>>(message, name);
+  const auto is_inside = [&](const GrownNode& node) { return std::max(node.left, node.right) < nodes.size(); };
+  if (nodes.empty() || !std::ranges::all_of(nodes, is_inside)) throw Error(name + ": child beyond the last node");
+  return nodes;
+}
+
 }  // namespace
 
 /// The leaves in learning.
@@ -271,7 +279,7 @@ class ClusterExecutor::Round {
         largest = std::max(largest, work_of(open));
       }
     }
-    const double share = work / all_.plan_tasks();
+    const double share = work / std::max(1, all_.plan_.map_tasks);
     if (largest > share * kLargestShare) return {};
     std::vector<std::pair<double, SubtreeRequest>> tasks;
     for (std::size_t t = 0; t < states_.size(); ++t) {
@@ -356,8 +364,6 @@ ClusterExecutor::ClusterExecutor(Engine& engine, ClusterTraining training, const
   lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(own));
   take_prepared(run(job, lines, false), job.name);
 }
-
-int ClusterExecutor::plan_tasks() const { return std::max(1, plan_.map_tasks); }
 
 TrainJob ClusterExecutor::new_job(JobKind kind, const std::string& name) const {
   TrainJob job;

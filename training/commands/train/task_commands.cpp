@@ -7,7 +7,7 @@
 
 #include "cluster/map_task.h"
 #include "cluster/reduce_task.h"
-#include "commands/cluster/cluster_task.h"
+#include "commands/cluster/cluster_flags.h"
 #include "commands/train/train_frames.h"
 #include "vesalius/base/keep_memory.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "commands/cluster/cluster_task.h"
+#include "commands/cluster/cluster_flags.h"
 #include "folders/temporary_folder.h"
 #include "io/files/atomic_file.h"
 #include "io/files/read_file.h"

@@ -1,10 +1,9 @@
-#include "cluster/merge_records.h"
+#include "cluster/message.h"
 
 #include <gmock/gmock.h>
 
 #include <sstream>
 
-#include "cluster/message.h"
 #include "cluster/reduce_task.h"
 #include "vesalius/error.h"
 

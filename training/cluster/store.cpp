@@ -1,4 +1,4 @@
-#include "cluster/store_name.h"
+#include "cluster/store.h"
 
 #include <fmt/format.h>
 
