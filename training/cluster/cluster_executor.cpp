@@ -10,7 +10,7 @@
 #include "cluster/message.h"
 #include "train/grow_tree.h"
 #include "train/leaves/leaf_shard.h"
-#include "train/sharded.h"
+#include "train/local_shards.h"
 #include "train/split_candidates.h"
 #include "vesalius/error.h"
 

@@ -17,7 +17,7 @@
 #include "train/leaves/leaf_shard.h"
 #include "train/local_shards.h"
 #include "train/parallel_in_order.h"
-#include "train/samples/find_leaves.h"
+#include "train/samples/walk_samples.h"
 #include "train/split_candidates.h"
 #include "train/tree_shard.h"
 #include "vesalius/forest/leaf_logits.h"

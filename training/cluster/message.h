@@ -14,7 +14,6 @@
 
 #include "io/files/byte_stream.h"
 #include "train/growing_tree.h"
-#include "train/messages/leaf_messages.h"
 #include "train/messages/training_messages.h"
 #include "vesalius/camera.h"
 #include "vesalius/forest.h"

@@ -11,7 +11,6 @@
 
 #include "train/grow_forest.h"
 #include "train/growing_tree.h"
-#include "train/messages/leaf_messages.h"
 #include "train/messages/training_messages.h"
 #include "vesalius/forest.h"
 

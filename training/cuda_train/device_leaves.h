@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cuda_train/device_samples.h"
-#include "train/messages/leaf_messages.h"
-#include "train/sharded.h"
+#include "train/local_shards.h"
+#include "train/messages/training_messages.h"
 #include "vesalius/forest.h"
 
 namespace vesalius::gpu {

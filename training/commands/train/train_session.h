@@ -4,7 +4,7 @@
 #include <string>
 
 #include "folders/folder_lock.h"
-#include "train/leaves/tree_store.h"
+#include "train/leaves/learn_leaves.h"
 #include "vesalius/forest.h"
 
 namespace vesalius::cli {

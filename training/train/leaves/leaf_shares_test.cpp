@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "train/leaves/prune_tree.h"
+#include "train/growing_tree.h"
 #include "train/samples/training_set.h"
 
 namespace vesalius {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "train/messages/training_sample.h"
+#include "train/messages/training_messages.h"
 #include "vesalius/base/options.h"
 #include "vesalius/base/random.h"
 #include "vesalius/body_model.h"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "train/messages/training_messages.h"
-#include "train/messages/training_sample.h"
 #include "train/samples/frame_store.h"
 #include "train/samples/sample_pixels.h"
 #include "vesalius/body_model.h"

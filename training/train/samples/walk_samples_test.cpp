@@ -1,9 +1,8 @@
-#include "train/samples/find_leaves.h"
+#include "train/samples/walk_samples.h"
 
 #include <gtest/gtest.h>
 
 #include "train/grow_tree.h"
-#include "train/samples/walk_samples.h"
 #include "train/test_training.h"
 
 namespace vesalius {

@@ -1,9 +1,8 @@
-#include "train/samples/find_leaves.h"
+#include "train/samples/walk_samples.h"
 
 #include <algorithm>
 #include <cstddef>
 
-#include "train/samples/walk_samples.h"
 #include "vesalius/forest/packed_tree.h"
 #include "vesalius/forest/padded_depth.h"
 #include "vesalius/forest/walk_kernels.h"
