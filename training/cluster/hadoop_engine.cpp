@@ -12,7 +12,7 @@
 #include "cluster/folder_engine.h"
 #include "cluster/process.h"
 #include "cluster/train_job.h"
-#include "folders/temporary_folder.h"
+#include "folders/owned_folder.h"
 #include "io/files/read_file.h"
 #include "train/messages/training_protocol.h"
 

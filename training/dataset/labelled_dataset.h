@@ -8,7 +8,7 @@
 
 #include "dataset/dataset_shard.h"
 #include "dataset/labelled_frame_codec.h"
-#include "folders/folder_lock.h"
+#include "folders/owned_folder.h"
 #include "vesalius/body_model.h"
 #include "vesalius/frame.h"
 

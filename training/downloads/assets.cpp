@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "downloads/unpack.h"
-#include "folders/folder_lock.h"
+#include "folders/owned_folder.h"
 #include "io/files/read_file.h"
 #include "vesalius/error.h"
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <optional>
 
-#include "metrics/heading.h"
+#include "metrics/frame_truth.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

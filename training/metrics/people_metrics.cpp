@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "metrics/heading.h"
+#include "metrics/frame_truth.h"
 #include "metrics/pixel_metrics.h"
 
 namespace vesalius {

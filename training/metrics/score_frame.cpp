@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "metrics/heading.h"
+#include "metrics/frame_truth.h"
 #include "metrics/joint_metrics.h"
 #include "metrics/match_people.h"
 #include "metrics/people_metrics.h"

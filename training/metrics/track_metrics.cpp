@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "metrics/heading.h"
+#include "metrics/frame_truth.h"
 #include "metrics/match_people.h"
 #include "metrics/pixel_metrics.h"
 #include "vesalius/base/assign_pairs.h"

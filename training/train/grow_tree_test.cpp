@@ -9,7 +9,6 @@
 
 #include "capsule/capsule_person.h"
 #include "train/growing_tree.h"
-#include "train/leaves/leaf_shares.h"
 #include "train/local_shards.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"

@@ -25,7 +25,7 @@
 #include "dataset/labelled_truth.h"
 #include "dataset/open_truth.h"
 #include "downloads/sha256.h"
-#include "folders/folder_lock.h"
+#include "folders/owned_folder.h"
 #include "io/files/options_file.h"
 #include "io/files/read_file.h"
 #include "learn/fit_boosted.h"

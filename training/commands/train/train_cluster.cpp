@@ -17,7 +17,7 @@
 #include "commands/train/train_session.h"
 #include "console/interrupts.h"
 #include "console/text_sink.h"
-#include "folders/temporary_folder.h"
+#include "folders/owned_folder.h"
 #include "io/files/atomic_file.h"
 #include "io/files/read_file.h"
 #include "vesalius/error.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "folders/folder_lock.h"
+#include "folders/owned_folder.h"
 #include "train/leaves/learn_leaves.h"
 #include "vesalius/forest.h"
 

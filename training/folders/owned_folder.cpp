@@ -1,7 +1,8 @@
-#include "folders/folder_lock.h"
+#include "folders/owned_folder.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <stdlib.h>
 #include <sys/file.h>
 
 #include <cerrno>
@@ -24,6 +25,16 @@ FolderLock::FolderLock(const std::string& folder) {
   const int cause = errno;
   if (cause == EWOULDBLOCK) throw Error(folder + ": another process is writing there");
   throw Error(fmt::format("{}: folder cannot be locked: {}", folder, std::generic_category().message(cause)));
+}
+
+TemporaryFolder::TemporaryFolder() {
+  folder_ = (std::filesystem::temp_directory_path() / "vesalius-XXXXXX").string();
+  if (::mkdtemp(folder_.data()) == nullptr) throw Error(folder_ + ": folder cannot be made");
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
 }
 
 }  // namespace vesalius

@@ -1,4 +1,4 @@
-#include "folders/folder_lock.h"
+#include "folders/owned_folder.h"
 
 #include <gmock/gmock.h>
 

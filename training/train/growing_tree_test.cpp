@@ -1,8 +1,7 @@
-#include "train/leaves/leaf_shares.h"
+#include "train/growing_tree.h"
 
 #include <gmock/gmock.h>
 
-#include "train/growing_tree.h"
 #include "train/samples/training_set.h"
 
 namespace vesalius {
