@@ -4,7 +4,6 @@
 // holds everything that a task needs besides the shards' sets, so tasks keep no state and any of them can be run again.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -8,9 +8,6 @@
 #include "vesalius/frame.h"
 #include "vesalius/image.h"
 
-// Lossless compression of pictures in labelled datasets (docs/formats.md). Reading needs the size of the picture,
-// allocates no more memory than that size needs, and throws Error for bytes that do not decode to it.
-
 namespace vesalius {
 
 /// A frame of a labelled dataset and its origin.
@@ -36,6 +33,9 @@ std::string encode_frame(const DatasetFrame& frame, int part_count);
 /// Decodes one frame; colour is left out if `with_colour` is false. Throws Error naming `name` for bytes that hold no
 /// frame. It never allocates more memory than pictures of 64 Mpixel need.
 DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::string& name, bool with_colour = true);
+
+// Lossless compression of a frame's pictures. Reading needs the size of the picture, allocates no more memory than that
+// size needs, and throws Error for bytes that do not decode to it.
 
 /// Writes depth as ranks among the values that occur, each predicted from its neighbours. Depth that a sensor quantised
 /// therefore takes few bytes.

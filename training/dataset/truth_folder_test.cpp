@@ -1,6 +1,5 @@
 #include "dataset/truth_folder.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "io/files/test_files.h"

@@ -17,6 +17,7 @@
 
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
+#include "vesalius/track_people.h"
 
 namespace vesalius {
 namespace {

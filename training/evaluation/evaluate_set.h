@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -17,7 +16,7 @@
 #include "metrics/score_sequence.h"
 #include "vesalius/body_model.h"
 #include "vesalius/frame.h"
-#include "vesalius/track_people.h"
+#include "vesalius/people_options.h"
 
 namespace vesalius {
 

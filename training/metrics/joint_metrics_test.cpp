@@ -14,8 +14,8 @@
 namespace vesalius {
 namespace {
 
-using testing::ElementsAre;
 using test::value_of;
+using testing::ElementsAre;
 
 using Eigen::Vector3f;
 

@@ -8,7 +8,6 @@
 #include <limits>
 #include <set>
 #include <string>
-#include <utility>
 
 #include "metrics/frame_truth.h"
 #include "metrics/match_people.h"

@@ -155,7 +155,7 @@ class ClusterRun {
     session_->remove();
     if (!run_.shown) return;
     say(fmt::format("{}: {} trees, {:.2f} MiB, trained in {:.1f} s", run_.out, forest.trees.size(),
-                    double(std::filesystem::file_size(run_.out)) / kMiB,
+                    double(fs::file_size(run_.out)) / kMiB,
                     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
   }
 

@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "commands/train/grow_display.h"
-#include "console/interrupts.h"
 #include "vesalius/error.h"
 
 namespace vesalius::cli {

@@ -15,7 +15,6 @@
 
 // How the leaves of a forest are learned together (Ren et al., Global refinement of random forest, CVPR 2015), after
 // its trees are grown, from the same shards of samples. training_protocol.h has the glossary and the order of messages.
-
 namespace vesalius {
 
 /// Where the learning of leaves is.

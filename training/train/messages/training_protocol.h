@@ -47,7 +47,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "train/messages/grow_options.h"
