@@ -3,8 +3,8 @@
 #include <exception>
 #include <string>
 
-#include "dataset/dataset_folder.h"
 #include "dataset/dataset_shard.h"
+#include "dataset/labelled_dataset.h"
 #include "dataset/labelled_frame_codec.h"
 #include "vesalius/error.h"
 

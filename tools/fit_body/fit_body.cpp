@@ -5,16 +5,12 @@
 #include <algorithm>
 #include <iterator>
 
-#include "commands/evaluate/sequence_trackers.h"
-#include "commands/evaluate/truth_bvh.h"
 #include "commands/synth/synth_recipe.h"
-#include "dataset/truth_sequences.h"
-#include "evaluation/evaluate_sequences.h"
+#include "dataset/open_truth.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
 #include "fitted_toml.h"
-#include "learn/fit_stances.h"
-#include "learn/fit_trust.h"
+#include "learn/fit_tracks.h"
 #include "synth/fit_flesh.h"
 #include "vesalius/model.h"
 #include "vesalius/model_file.h"
@@ -32,7 +28,7 @@ FittedBodyFile fit_people(const BodyFit& fit) {
   const FrameScorer scorer(model_of(fit), {.detect = {}, .joint_set = fit.joint_set});
   std::vector<KnownPerson> people;
   for (const std::string& source : fit.sources) {
-    const auto frames = cli::open_evaluation_truth(source, fit.step);
+    const auto frames = open_truth(source, fit.step);
     std::ranges::move(evaluate_set(*frames, {source, source, false, true}, scorer).known_people,
                       std::back_inserter(people));
   }
@@ -43,11 +39,11 @@ FittedBodyFile fit_people(const BodyFit& fit) {
 FittedBodyFile fit_tracks(const BodyFit& fit) {
   const Model model = model_of(fit);
   const FrameScorer scorer(model, {});
-  const SequenceTrackerFactory trackers = cli::sequence_trackers(model, {});
+  const SequenceTrackerFactory trackers = sequence_trackers(model, {});
   std::vector<TrustSample> joints;
   std::vector<StanceSample> postures;
   for (const std::string& source : fit.sources) {
-    const auto one = [&](const std::string& folder) { return cli::open_evaluation_truth(folder, fit.step); };
+    const auto one = [&](const std::string& folder) { return open_truth(folder, fit.step); };
     const auto open = [&] { return open_sequences(source, one); };
     SetResult set = evaluate_sequences(open, {source, source}, scorer, trackers,
                                        {fit.hidden, fit.what == "trust", fit.what == "stances"});

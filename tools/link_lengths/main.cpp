@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "../run_tool.h"
+#include "dataset/labelled_truth.h"
 #include "dataset/open_truth.h"
 #include "link_lengths.h"
 #include "vesalius/detect.h"

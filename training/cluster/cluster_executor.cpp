@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -10,7 +9,7 @@
 #include "cluster/message.h"
 #include "train/grow_tree.h"
 #include "train/leaves/leaf_shard.h"
-#include "train/sharded.h"
+#include "train/local_shards.h"
 #include "train/split_candidates.h"
 #include "vesalius/error.h"
 
@@ -35,6 +34,14 @@ const std::string& bytes_of(const std::map<std::string, std::string>& records, c
 template <class T>
 T message_of(const std::map<std::string, std::string>& records, const std::string& key, const std::string& job) {
   return from_message<T>(bytes_of(records, key, job), job + ": " + key);
+}
+
+/// Returns the nodes of a subtree. Throws Error naming `name` as well if a child is beyond the last one.
+std::vector<GrownNode> parse_grown_nodes(std::string_view message, const std::string& name) {
+  auto nodes = from_message<std::vector<GrownNode>>(message, name);
+  const auto is_inside = [&](const GrownNode& node) { return std::max(node.left, node.right) < nodes.size(); };
+  if (nodes.empty() || !std::ranges::all_of(nodes, is_inside)) throw Error(name + ": child beyond the last node");
+  return nodes;
 }
 
 }  // namespace
@@ -271,7 +278,7 @@ class ClusterExecutor::Round {
         largest = std::max(largest, work_of(open));
       }
     }
-    const double share = work / all_.plan_tasks();
+    const double share = work / std::max(1, all_.plan_.map_tasks);
     if (largest > share * kLargestShare) return {};
     std::vector<std::pair<double, SubtreeRequest>> tasks;
     for (std::size_t t = 0; t < states_.size(); ++t) {
@@ -356,8 +363,6 @@ ClusterExecutor::ClusterExecutor(Engine& engine, ClusterTraining training, const
   lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(own));
   take_prepared(run(job, lines, false), job.name);
 }
-
-int ClusterExecutor::plan_tasks() const { return std::max(1, plan_.map_tasks); }
 
 TrainJob ClusterExecutor::new_job(JobKind kind, const std::string& name) const {
   TrainJob job;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cluster/engine.h"
-#include "cluster/task_replies.h"
+#include "cluster/message.h"
 #include "cluster/train_job.h"
 #include "train/messages/training_protocol.h"
 #include "train/samples/training_set.h"
@@ -63,7 +63,6 @@ class ClusterExecutor : public Executor {
   Records run(const TrainJob& job, const std::vector<std::size_t>& lines, bool reduced);
   Records run_over_shards(const TrainJob& job, bool reduced);
   Records results(const std::string& job) const;
-  int plan_tasks() const;
   void take_prepared(const Records& records, const std::string& job);
 
   Engine& engine_;

@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "cluster/map_task.h"
 #include "cluster/test_engine.h"
-#include "cluster/training_set_bytes.h"
 #include "train/grow_forest.h"
 #include "train/test_training.h"
 #include "vesalius/error.h"

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <optional>
@@ -12,7 +11,7 @@
 #include "cluster/folder_engine.h"
 #include "cluster/process.h"
 #include "cluster/train_job.h"
-#include "folders/temporary_folder.h"
+#include "folders/owned_folder.h"
 #include "io/files/data_file.h"
 #include "train/messages/training_protocol.h"
 

@@ -7,11 +7,12 @@
 #include <string>
 
 #include "cluster/store.h"
+#include "train/samples/huge_buffer.h"
+#include "train/samples/training_set.h"
 #include "vesalius/frame.h"
 
 namespace vesalius {
 
-class TrainingSet;
 struct Record;
 struct TrainJob;
 
@@ -37,5 +38,12 @@ void run_map_task(const TaskContext& context, std::istream& in, std::ostream& ou
 /// Writes a shard's set where the job says, and returns the record that a task of kPrepare would write. `hard` is the
 /// number of hard negatives in it.
 Record store_set(Store& store, const TrainJob& job, const TrainingSet& set, std::size_t shard, std::uint64_t hard);
+
+/// Returns a set's frames and samples as bytes with a checksum (docs/formats.md).
+std::string training_set_bytes(const TrainingSet& set);
+
+/// Adds what such bytes hold behind what `contents` has, whose frames stay where they lie in the buffer. Throws Error
+/// naming `name` if the bytes are damaged or of another version.
+void append_training_set(HugeBuffer buffer, const std::string& name, TrainingSet::Contents& contents);
 
 }  // namespace vesalius

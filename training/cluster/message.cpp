@@ -4,6 +4,11 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
 #include "io/files/packed.h"
 
 namespace vesalius {
@@ -32,6 +37,24 @@ std::string from_base64(std::string_view text, const std::string& name) {
   bytes.resize(size - (text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0));
   return bytes;
 }
+
+struct Piece {
+  std::uint32_t shard = 0;
+  std::string message;
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("shard", of.shard...)("message", of.message...); }
+};
+
+/// What is under a key: either pieces or sums.
+struct KeyMessage {
+  bool summed = false;
+  std::vector<Piece> pieces = {};
+  Sums sums = {};
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("summed", of.summed...)("pieces", of.pieces...)("sums", of.sums...);
+  }
+};
 
 }  // namespace
 
@@ -79,6 +102,90 @@ void expect_this_build(const std::string& build, const std::string& name) {
   if (build == program_build()) return;
   throw Error(fmt::format("{}: made by {}, this machine has {}; expected the same on all machines", name, build,
                           program_build()));
+}
+
+std::string piece_message(std::uint32_t shard, std::string_view message) {
+  return to_message(KeyMessage{.pieces = {{shard, std::string(message)}}});
+}
+
+std::string sums_message(const Sums& sums) { return to_message(KeyMessage{.summed = true, .sums = sums}); }
+
+void KeyMerger::add(std::string_view message, const std::string& name) {
+  auto more = from_message<KeyMessage>(message, name);
+  if (started_ && summed_ != more.summed) throw Error(name + ": pieces and sums under one key");
+  started_ = true;
+  summed_ = more.summed;
+  if (summed_) return add_sums(std::move(more.sums), name);
+  for (Piece& piece : more.pieces) add_piece(piece.shard, std::move(piece.message), name);
+}
+
+void KeyMerger::add_piece(std::uint32_t shard, std::string message, const std::string& name) {
+  const std::size_t bytes = message.size();
+  const auto [at, fresh] = pieces_.try_emplace(shard, std::move(message));
+  if (fresh) {
+    piece_bytes_ += bytes;
+  } else if (at->second != message) {
+    throw Error(fmt::format("{}: shard {} came twice with different messages", name, shard));
+  }
+}
+
+void KeyMerger::add_sums(Sums sums, const std::string& name) {
+  if (std::ranges::find(added_, sums.shards) != added_.end()) return;
+  std::vector<std::uint32_t> all, common;
+  std::ranges::set_intersection(sums_.shards, sums.shards, std::back_inserter(common));
+  if (!common.empty()) throw Error(fmt::format("{}: shard {} came twice in different sums", name, common.front()));
+  std::ranges::set_union(sums_.shards, sums.shards, std::back_inserter(all));
+  added_.push_back(std::move(sums.shards));
+  sums_.shards = std::move(all);
+  if (sums_.numbers.empty()) {
+    sums_.numbers = std::move(sums.numbers);
+    return;
+  }
+  if (sums_.numbers.size() != sums.numbers.size()) throw Error(name + ": sums of different lengths");
+  for (std::size_t i = 0; i < sums.numbers.size(); ++i) sums_.numbers[i] += sums.numbers[i];
+}
+
+std::string KeyMerger::message() const {
+  if (summed_) return sums_message(sums_);
+  KeyMessage all;
+  for (const auto& [shard, piece] : pieces_) all.pieces.push_back({shard, piece});
+  return to_message(all);
+}
+
+void check(const GroupRows& group, std::size_t nodes, int candidates, const std::string& name) {
+  const std::size_t all = std::accumulate(group.rows.begin(), group.rows.end(), std::size_t{0});
+  if (group.rows.size() == nodes && group.labels.size() == all && group.low.size() == all * candidates &&
+      group.high.size() == group.low.size()) {
+    return;
+  }
+  throw Error(name + ": other numbers of rows and values than expected");
+}
+
+std::string shard_key(std::size_t shard) { return fmt::format("{:08}", shard); }
+
+std::string tree_key(std::size_t tree) { return fmt::format("{:05}", tree); }
+
+std::string node_key(std::size_t tree, std::size_t node, std::size_t block) {
+  return fmt::format("{:05}.{:010}.{:05}", tree, node, block);
+}
+
+std::vector<std::size_t> key_numbers(const std::string& key, std::size_t count, const std::string& name) {
+  std::vector<std::size_t> numbers{0};
+  bool digit = false;
+  for (const char c : key) {
+    if (c >= '0' && c <= '9') {
+      numbers.back() = 10 * numbers.back() + static_cast<std::size_t>(c - '0');
+      digit = true;
+    } else if (c == '.' && digit) {
+      numbers.push_back(0);
+      digit = false;
+    } else {
+      digit = false;
+      break;
+    }
+  }
+  if (!digit || numbers.size() != count) throw Error(fmt::format("{}: unexpected key {}", name, key));
+  return numbers;
 }
 
 }  // namespace vesalius

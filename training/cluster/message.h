@@ -4,13 +4,15 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
-#include <span>
+#include <map>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "io/files/byte_stream.h"
+#include "train/growing_tree.h"
 #include "train/messages/training_messages.h"
 #include "vesalius/camera.h"
 #include "vesalius/forest.h"
@@ -149,5 +151,117 @@ Record parse_record(std::string_view line, const std::string& name);
 std::string program_build();
 /// Throws Error naming `name`, which another machine wrote, unless its program was built as this one.
 void expect_this_build(const std::string& build, const std::string& name);
+
+// How messages of one key merge, in combiners and reducers. There are two kinds: pieces are kept side by side, each
+// with the shard it comes from; sums are added, with the list of shards in them. What comes twice counts once, since
+// engines may deliver the output of a task again.
+
+/// Messages of several shards under one key, not added.
+using Pieces = std::map<std::uint32_t, std::string>;
+
+/// Integers summed over shards.
+struct Sums {
+  std::vector<std::uint32_t> shards;  ///< ascending
+  std::vector<std::int64_t> numbers;
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("shards", of.shards...)("numbers", of.numbers...); }
+};
+
+std::string piece_message(std::uint32_t shard, std::string_view message);
+std::string sums_message(const Sums& sums);
+
+/// Merges all messages of one key.
+class KeyMerger {
+ public:
+  /// Adds a message of either kind. Throws Error naming `name` if it is damaged, is of the other kind or another
+  /// length than those before, or shares only some of the shards with them.
+  void add(std::string_view message, const std::string& name);
+  /// Returns the merged message.
+  std::string message() const;
+  const Pieces& pieces() const { return pieces_; }
+  const Sums& sums() const { return sums_; }
+  /// The size in bytes of what is held.
+  std::size_t bytes() const { return piece_bytes_ + sums_.numbers.size() * sizeof(std::int64_t); }
+
+ private:
+  void add_piece(std::uint32_t shard, std::string message, const std::string& name);
+  void add_sums(Sums sums, const std::string& name);
+
+  bool summed_ = false, started_ = false;
+  Pieces pieces_;
+  std::size_t piece_bytes_ = 0;
+  Sums sums_;
+  std::vector<std::vector<std::uint32_t>> added_;  ///< lists of shards that were added
+};
+
+/// Leaves whose numbers are in one message: what a reducer holds of a key.
+inline constexpr std::size_t kLeafBlock = 2048;
+/// Key of the likelihoods beside the gradients.
+inline constexpr const char* kLikelihoodKey = "likelihood";
+
+/// What is known of a shard's set.
+struct PreparedShard {
+  SampleCounts samples;
+  LabelCounts labels;
+  std::uint64_t frames = 0, bytes = 0, held_out = 0;
+  std::uint64_t hard_negatives = 0;  ///< samples that were added
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("samples", of.samples...)("labels", of.labels...)("frames", of.frames...)("bytes", of.bytes...)(
+        "held out", of.held_out...)("hard negatives", of.hard_negatives...);
+  }
+};
+
+/// Values of the counted samples of neighbouring nodes for one block of candidates, in one shard; node by node.
+struct GroupRows {
+  std::vector<std::uint32_t> rows;   ///< [node]
+  std::vector<std::uint8_t> labels;  ///< [row of the node]
+  /// Values, [candidate * rows of the node + row of the node], mm. High bytes repeat, low ones hardly: zstd makes less
+  /// of them when they lie apart.
+  std::vector<std::uint8_t> low, high;
+
+  std::int16_t value(std::size_t at) const { return static_cast<std::int16_t>(low[at] | high[at] << 8U); }
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("rows", of.rows...)("labels", of.labels...)("low", of.low...)("high", of.high...);
+  }
+};
+/// Throws Error naming `name` unless there are `nodes` nodes and `candidates` values in a row.
+void check(const GroupRows& group, std::size_t nodes, int candidates, const std::string& name);
+
+/// The best split of a node among one block of candidates.
+struct NodeReply {
+  double gain = 0.0;  ///< bits per sample; 0 if there is none
+  TreeNode split;
+  std::vector<std::int64_t> children;  ///< [side * classes + class]: its counted samples
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("gain", of.gain...)("split", of.split...)("children", of.children...);
+  }
+};
+
+/// Samples at the children of large nodes.
+struct CountReply {
+  std::vector<std::int64_t> totals;  ///< [child * classes + class], all shards
+  std::vector<std::int64_t> before;  ///< [shard * children + child]: in all shards before that one
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("totals", of.totals...)("before", of.before...); }
+};
+
+/// How well leaves in learning do.
+struct Likelihood {
+  double log_likelihood = 0.0, weight = 0.0;  ///< as in LeafGradient
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("log likelihood", of.log_likelihood...)("weight", of.weight...);
+  }
+};
+
+/// Keys: numbers of fixed width, so that lines sort as numbers do.
+std::string shard_key(std::size_t shard);
+std::string tree_key(std::size_t tree);
+std::string node_key(std::size_t tree, std::size_t node, std::size_t block);
+/// Reads the numbers of a key. Throws Error naming `name` if there are not `count`.
+std::vector<std::size_t> key_numbers(const std::string& key, std::size_t count, const std::string& name);
 
 }  // namespace vesalius

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "folders/temporary_folder.h"
+#include "folders/owned_folder.h"
 #include "io/files/data_file.h"
 #include "vesalius/error.h"
 

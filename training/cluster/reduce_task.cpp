@@ -10,9 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "cluster/merge_records.h"
 #include "cluster/message.h"
-#include "cluster/task_replies.h"
 #include "cluster/train_job.h"
 #include "io/files/atomic_file.h"
 #include "train/growing_tree.h"

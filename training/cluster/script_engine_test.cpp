@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "cluster/engine.h"
-#include "cluster/folder_store.h"
+#include "cluster/store.h"
 #include "cluster/train_job.h"
 #include "io/files/test_files.h"
 #include "train/messages/training_protocol.h"
@@ -48,8 +48,7 @@ class ScriptEngineTest : public testing::Test {
 
   /// Runs a job by a script and returns what it left as part-0.
   std::string run(const std::string& script, bool reduced = true) const {
-    const auto engine =
-        make_script_engine(std::make_unique<FolderStore>(folder_ / kStore), options_, program("script", script));
+    const auto engine = make_script_engine(open_store(folder_ / kStore), options_, program("script", script));
     const EngineJob job{"count", "train", {"a1", "a2", "b1", "a1"}, reduced, reduced};
     engine->run(job);
     EXPECT_TRUE(engine->store().exists(result_folder(job.name) + "/_SUCCESS"));
@@ -103,9 +102,9 @@ TEST_F(ScriptEngineTest, ExpectsRecords) {
 TEST_F(ScriptEngineTest, LeavesNothingOfEarlierRuns) {
   EXPECT_THAT(message_of("#!/bin/bash\nmkdir \"$2\"\n: >\"$2/part-9\"\nexit 1\n"), HasSubstr("failed"));
   run(plain_);
-  const FolderStore store(folder_ / kStore);
-  EXPECT_THAT(store.list(job_folder("count")), ElementsAre("lines", "out", "script.log"));
-  EXPECT_THAT(store.list(result_folder("count")), ElementsAre("_SUCCESS", "part-0"));
+  const std::unique_ptr<Store> store = open_store(folder_ / kStore);
+  EXPECT_THAT(store->list(job_folder("count")), ElementsAre("lines", "out", "script.log"));
+  EXPECT_THAT(store->list(result_folder("count")), ElementsAre("_SUCCESS", "part-0"));
 }
 
 TEST_F(ScriptEngineTest, EndsAScriptWhenAskedToStop) {

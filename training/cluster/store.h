@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "train/samples/huge_buffer.h"
@@ -33,5 +34,18 @@ class Store {
 /// Opens a folder, or an address webhdfs://HOST:PORT/PATH of HDFS's name node (its port of WebHDFS). The place itself
 /// is made when something is written. Throws UsageError for any other address.
 std::unique_ptr<Store> open_store(const std::string& place);
+
+/// Returns whether a file of this name is still being written, or was when its writer was killed.
+bool is_temporary_name(const std::string& name);
+
+/// Returns whether `name` is relative, of letters, digits, '.', '_' and '-', with single '/' between folders, none of
+/// them "." or "..".
+bool is_store_name(std::string_view name);
+
+/// Throws UsageError unless `name` is such a name, and not a temporary one.
+void check_store_name(const std::string& name);
+
+/// The same for folders that are listed: the empty name is the store itself.
+void check_store_folder(const std::string& name);
 
 }  // namespace vesalius

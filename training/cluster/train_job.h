@@ -4,14 +4,12 @@
 // holds everything that a task needs besides the shards' sets, so tasks keep no state and any of them can be run again.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "train/grow_forest.h"
 #include "train/growing_tree.h"
-#include "train/messages/leaf_messages.h"
 #include "train/messages/training_messages.h"
 #include "vesalius/forest.h"
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <utility>
 
-#include "cluster/store_name.h"
+#include "cluster/store.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

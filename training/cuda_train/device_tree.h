@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cuda_train/device_samples.h"
+#include "train/local_shards.h"
 #include "train/messages/grow_options.h"
 #include "train/messages/training_messages.h"
-#include "train/sharded.h"
 
 namespace vesalius::gpu {
 

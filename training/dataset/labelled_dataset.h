@@ -3,14 +3,66 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "dataset/dataset_folder.h"
+#include "dataset/dataset_shard.h"
 #include "dataset/labelled_frame_codec.h"
-#include "folders/folder_lock.h"
+#include "folders/owned_folder.h"
 #include "vesalius/body_model.h"
+#include "vesalius/frame.h"
 
+// The folder of a labelled dataset: dataset.json describes it, and NNNNNN.shard files hold its frames
+// (docs/formats.md).
 namespace vesalius {
+
+/// The highest rate of clips, frames a second.
+inline constexpr double kHighestRate_hz = 1000.0;
+
+/// How frames form clips, which come one after the other and are equally long.
+struct ClipLayout {
+  std::uint32_t frames_per_clip = 0;  ///< 0: frames stand alone
+  double rate_hz = 0.0;               ///< frames a second, up to kHighestRate_hz; 0 if frames stand alone
+
+  /// Returns the number of the clip to which a frame belongs, or -1 if it stands alone.
+  int clip_of(std::uint64_t index) const { return frames_per_clip == 0 ? -1 : int(index / frames_per_clip); }
+  friend bool operator==(const ClipLayout&, const ClipLayout&) = default;
+};
+
+/// The facts that all frames of a dataset share.
+struct DatasetInfo {
+  std::string body_toml;                 ///< text of the body model whose parts are the labels
+  std::string recipe;                    ///< says how the frames are made; any text
+  std::uint64_t seed = 0;                ///< seed of the run
+  std::uint64_t frames = 0;              ///< number of frames in the whole dataset
+  std::uint32_t frames_per_shard = 256;  ///< 1 to 4096
+  std::vector<std::string> joints = {};  ///< names of each person's joints, if there are any; at most 255
+  ClipLayout clips = {};                 ///< how frames form clips, if they do
+};
+
+/// Returns a hash of everything that frames depend on: XXH64 over version, body, recipe, seed, shard size and clips.
+/// The number of frames is left out, so that a dataset can grow.
+std::uint64_t dataset_hash(const DatasetInfo& info);
+
+/// The frames [first, first + count).
+struct FrameRange {
+  std::uint64_t first = 0;
+  std::uint32_t count = 0;
+  friend bool operator==(const FrameRange&, const FrameRange&) = default;
+};
+
+/// Returns whether `path` is a folder with a labelled dataset.
+bool is_dataset(const std::string& path);
+
+std::string description_path(const std::string& folder);
+std::string shard_path(const std::string& folder, std::uint64_t shard);
+std::uint64_t shard_count(const DatasetInfo& info);
+FrameRange frames_of_shard(const DatasetInfo& info, std::uint64_t shard);
+
+/// These write and read the text of dataset.json. Both throw Error naming `name`: writing for text that is not UTF-8,
+/// reading for a text that is no description, is of another version, or whose hash does not match.
+std::string serialise_description(const DatasetInfo& info);
+DatasetInfo parse_description(std::string_view json, const std::string& name);
 
 /// Writes a dataset shard by shard. A shard appears only when it is complete, and existing shards are not written
 /// again. One shard's compressed frames are held in memory. Only one process at a time can write to a folder.

@@ -4,7 +4,9 @@
 #include <string>
 #include <string_view>
 
+#include "io/files/byte_stream.h"
 #include "vesalius/frame.h"
+#include "vesalius/image.h"
 
 namespace vesalius {
 
@@ -31,5 +33,22 @@ std::string encode_frame(const DatasetFrame& frame, int part_count);
 /// Decodes one frame; colour is left out if `with_colour` is false. Throws Error naming `name` for bytes that hold no
 /// frame. It never allocates more memory than pictures of 64 Mpixel need.
 DatasetFrame decode_frame(std::string_view bytes, int part_count, const std::string& name, bool with_colour = true);
+
+// Lossless compression of a frame's pictures. Reading needs the size of the picture, allocates no more memory than that
+// size needs, and throws Error for bytes that do not decode to it.
+
+/// Writes depth as ranks among the values that occur, each predicted from its neighbours. Depth that a sensor quantised
+/// therefore takes few bytes.
+void write_depth_plane(ByteWriter& out, const DepthImage& depth);
+DepthImage read_depth_plane(ByteReader& in, int width, int height);
+
+/// Writes labels or person indices, which have few values in large patches.
+void write_byte_plane(ByteWriter& out, const Image<std::uint8_t>& plane);
+Image<std::uint8_t> read_byte_plane(ByteReader& in, int width, int height);
+
+void write_colour_plane(ByteWriter& out, const ColourImage& colour);
+ColourImage read_colour_plane(ByteReader& in, int width, int height);
+/// Skips a colour picture without decoding it.
+void skip_colour_plane(ByteReader& in);
 
 }  // namespace vesalius

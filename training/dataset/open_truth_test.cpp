@@ -27,6 +27,10 @@ void put_frames(const test::TemporaryFolder& folder) {
   test::put(folder / "meta.json", R"({"fx": 5, "fy": 5, "cx": 2.5, "cy": 1.5, "width": 6, "height": 4})");
 }
 
+std::unique_ptr<TruthSource> sequences(const std::string& folder) {
+  return open_sequences(folder, [](const std::string& path) { return open_truth(path); });
+}
+
 TEST(OpenTruth, OpensFramesOfAFolder) {
   const test::TemporaryFolder folder;
   put_frames(folder);
@@ -95,5 +99,67 @@ TEST(OpenTruth, RefusesFramesWithoutTruth) {
   EXPECT_THAT(test::error_of([&] { open_truth("/nowhere"); }), HasSubstr("/nowhere"));
 }
 
+/// Writes frames 0, 1, ... of one person.
+void put_recording(const std::string& folder, int frames) {
+  std::string table = "frame,people\n";
+  for (int i = 0; i < frames; ++i) {
+    test::put(folder + "/depth/" + std::to_string(i) + ".png", encode_png(DepthImage(6, 4, 1000)));
+    table += std::to_string(i) + ",1\n";
+  }
+  test::put(folder + "/frames.csv", table);
+  test::put(folder + "/meta.json", R"({"fx": 5, "rate_hz": 10})");
+}
+
+TEST(OpenSequences, FindsFoldersOfFramesWithTruth) {
+  const test::TemporaryFolder folder;
+  put_recording(folder / "walk_10", 1);
+  put_recording(folder / "walk_9", 1);
+  test::put(folder / "without_truth/depth/a.png", "");
+  test::put(folder / "without_frames/joints.csv", "");
+  EXPECT_THAT(names(*sequences(folder.path())), ElementsAre("walk_9/0", "walk_10/0"));
+  EXPECT_THAT(names(*sequences(folder / "walk_9")), ElementsAre("0"));
+  EXPECT_THAT(test::error_of([&] { sequences(folder / "without_truth"); }), HasSubstr("without_truth"));
+  EXPECT_THAT(test::error_of([&] { sequences("/nowhere"); }), HasSubstr("/nowhere"));
+}
+
+TEST(OpenSequences, GivesOneRecordingAfterTheOther) {
+  const test::TemporaryFolder folder;
+  put_recording(folder / "a", 3);
+  put_recording(folder / "b", 2);
+  const auto frames = sequences(folder.path());
+  std::vector<std::string> names;
+  std::vector<int> sequences;
+  while (const auto frame = frames->next()) {
+    names.push_back(frame->frame.name);
+    sequences.push_back(frame->truth.sequence);
+    EXPECT_THAT(frame->truth.ids, ElementsAre(0));
+  }
+  EXPECT_THAT(names, ElementsAre("a/0", "a/1", "a/2", "b/0", "b/1"));
+  EXPECT_EQ(sequences[0], sequences[2]);
+  EXPECT_LT(sequences[2], sequences[3]);
+  EXPECT_EQ(sequences[3], sequences[4]);
+}
+
+TEST(OpenSequences, LeavesARecording) {
+  const test::TemporaryFolder folder;
+  put_recording(folder / "a", 3);
+  put_recording(folder / "b", 2);
+  const auto frames = sequences(folder.path());
+  frames->next();
+  frames->leave_sequence();
+  EXPECT_EQ(frames->next()->frame.name, "b/0");
+}
+
+TEST(OpenSequences, NamesASourceThatCannotBeOpened) {
+  const test::TemporaryFolder folder;
+  put_recording(folder / "a", 1);
+  put_recording(folder / "gone", 1);
+  const auto frames = sequences(folder.path());
+  frames->next();
+  std::filesystem::remove_all(folder / "gone");
+  EXPECT_THAT(test::error_of([&] { frames->next(); }), HasSubstr("gone"));
+}
+
 }  // namespace
+
 }  // namespace vesalius

@@ -1,9 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "metrics/frame_truth.h"
 
 namespace vesalius {
 
@@ -38,6 +43,22 @@ class CsvTable {
   std::string name_;
   std::vector<std::string> header_;
   std::vector<Row> rows_;
+};
+
+/// Reads a cell with front, side, back or nothing. Throws Error naming the line for anything else.
+std::optional<Heading> heading_in(const CsvTable& table, std::size_t row, std::size_t column);
+
+/// The side that people turn to the camera, as a table beside the frames says: columns `set`, `frame` and `heading`.
+class HeadingTable {
+ public:
+  /// Throws Error naming the line of a table that cannot be used, and if a frame comes twice.
+  static HeadingTable parse(const CsvTable& table);
+  static HeadingTable read(const std::string& path) { return parse(CsvTable::read(path)); }
+
+  std::optional<Heading> of(const std::string& set, const std::string& frame) const;
+
+ private:
+  std::map<std::pair<std::string, std::string>, Heading> headings_;  ///< keys: set and frame
 };
 
 }  // namespace vesalius

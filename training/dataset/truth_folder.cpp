@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -11,7 +12,7 @@
 #include <system_error>
 
 #include "dataset/truth_csv.h"
-#include "dataset/truth_headings.h"
+#include "io/files/data_file.h"
 #include "io/sources/folder_source.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
@@ -63,6 +64,25 @@ Mask read_mask(const std::string& path, const Frame& frame) {
   Mask mask(picture.width(), picture.height(), 0);
   std::ranges::transform(picture, mask.begin(), [](Rgb pixel) -> std::uint8_t { return pixel == Rgb{} ? 0 : 1; });
   return mask;
+}
+
+constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+constexpr double kLongestGap_s = 0.15;  // the benchmark's motion capture gives 100 poses a second
+
+/// Returns the eight numbers of a line, or nothing if the line has any other form.
+std::optional<std::array<double, 8>> numbers(std::string_view line) {
+  constexpr std::string_view kSpace = " \t\r";
+  std::array<double, 8> values{};
+  for (double& value : values) {
+    line.remove_prefix(std::min(line.find_first_not_of(kSpace), line.size()));
+    const char* end = line.data() + line.size();
+    const auto [stop, error] = std::from_chars(line.data(), end, value);
+    if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+    if (stop != end && kSpace.find(*stop) == kSpace.npos) return std::nullopt;
+    line.remove_prefix(stop - line.data());
+  }
+  if (line.find_first_not_of(kSpace) != line.npos) return std::nullopt;
+  return values;
 }
 
 }  // namespace
@@ -152,9 +172,8 @@ FrameTruth TruthFolder::truth_of(const Frame& frame) const {
     truth.heading = facts->second.heading;
   }
   if (const auto time_s = time_of(frame); camera_ && time_s) {
-    truth.camera_motion = camera_->motion(*time_s);
-    if (const auto pose = camera_->world_from_camera(*time_s)) {
-      truth.up = (pose->linear().transpose() * Eigen::Vector3d::UnitZ()).cast<float>();
+    if (const auto turn = camera_->world_from_camera(*time_s)) {
+      truth.up = (turn->toRotationMatrix().transpose() * Eigen::Vector3d::UnitZ()).cast<float>();
     }
   }
   const auto joints = joints_.find(frame.name);
@@ -197,6 +216,43 @@ std::vector<std::string> sets_in(const std::string& folder) {
   std::ranges::sort(names, natural_less);
   for (std::string& name : names) name = (path / name).string();
   return names;
+}
+
+Trajectory Trajectory::parse(std::string_view text, const std::string& name) {
+  Trajectory trajectory;
+  for (int number = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == line.npos || line[begin] == '#') continue;
+    const auto v = numbers(line);
+    if (!v) throw Error(fmt::format("{}:{}: expected \"timestamp tx ty tz qx qy qz qw\"", name, number));
+    const double time_s = (*v)[0];
+    const Eigen::Quaterniond rotation((*v)[7], (*v)[4], (*v)[5], (*v)[6]);
+    if (std::abs(rotation.norm() - 1.0) > 0.01) {
+      throw Error(fmt::format("{}:{}: a quaternion of length {}, expected 1", name, number, rotation.norm()));
+    }
+    if (!trajectory.poses_.empty() && time_s <= trajectory.poses_.back().time_s) {
+      throw Error(fmt::format("{}:{}: a time that does not come after the one before", name, number));
+    }
+    trajectory.poses_.push_back({time_s, rotation.normalized()});
+  }
+  if (trajectory.poses_.empty()) throw Error(name + ": no pose, expected \"timestamp tx ty tz qx qy qz qw\"");
+  return trajectory;
+}
+
+Trajectory Trajectory::read(const std::string& path) { return parse(read_file(path, kMaxBytes), path); }
+
+std::optional<Eigen::Quaterniond> Trajectory::world_from_camera(double time_s) const {
+  const auto after = std::ranges::lower_bound(poses_, time_s, {}, &Pose::time_s);
+  if (after == poses_.end()) return std::nullopt;
+  if (after->time_s == time_s) return after->rotation;
+  if (after == poses_.begin()) return std::nullopt;
+  const Pose& before = *(after - 1);
+  const double gap_s = after->time_s - before.time_s;
+  if (gap_s > kLongestGap_s) return std::nullopt;
+  return before.rotation.slerp((time_s - before.time_s) / gap_s, after->rotation);
 }
 
 }  // namespace vesalius

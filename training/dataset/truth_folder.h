@@ -1,19 +1,42 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "dataset/tum_trajectory.h"
 #include "metrics/frame_truth.h"
 
 namespace vesalius {
 
+/// How a camera is turned over time, by groundtruth.txt of the TUM RGB-D benchmark.
+class Trajectory {
+ public:
+  /// Reads lines of the form "timestamp tx ty tz qx qy qz qw": seconds, metres, and the rotation of the camera's
+  /// optical frame in the world. Empty lines and those that begin with # are skipped. `name` is used as the path in
+  /// errors. Throws Error with the line if a line has another form, its quaternion is not of unit length, or its time
+  /// is not after the previous one.
+  static Trajectory parse(std::string_view text, const std::string& name);
+  static Trajectory read(const std::string& path);
+
+  /// Returns the rotation from camera to world at a time, interpolated between the two nearest poses. Returns nothing
+  /// outside the recording and in gaps of more than 0.15 s.
+  std::optional<Eigen::Quaterniond> world_from_camera(double time_s) const;
+
+ private:
+  struct Pose {
+    double time_s = 0.0;
+    Eigen::Quaterniond rotation;
+  };
+  std::vector<Pose> poses_;  ///< by time
+};
+
 /// The truth that lies beside the pictures of a folder of frames (docs/metrics.md). `frames.csv`, in the folder or one
 /// above it, has the number of people, their posture and heading; `mask/*.png` has their pixels; `joints.csv` has one
 /// person's joints; `groundtruth.txt` has the camera's poses in a world whose z points up (TUM RGB-D), which tell
-/// whether the camera moved and where up is.
+/// where up is.
 class TruthFolder {
  public:
   /// Throws Error naming file and line of a table that cannot be used, and the folder if it has no truth at all.

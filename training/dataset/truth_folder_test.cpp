@@ -1,6 +1,6 @@
 #include "dataset/truth_folder.h"
 
-#include <cmath>
+#include <numbers>
 
 #include "io/files/test_files.h"
 #include "vesalius/image_file.h"
@@ -86,23 +86,6 @@ TEST(TruthFolder, KnowsTheUpwardDirectionOfATrackedCamera) {
   EXPECT_FALSE(TruthFolder(folder.path()).truth_of(frame("7.0x")).up);
 }
 
-TEST(TruthFolder, TellsWhetherTheCameraMoves) {
-  const test::TemporaryFolder folder;
-  test::put(folder / "frames.csv", "frame,people\na,1\n");
-  EXPECT_EQ(TruthFolder(folder.path()).truth_of(frame("a")).camera_motion, CameraMotion::unknown);
-  test::put(folder / "groundtruth.txt", "7.0 0 0 0 0 0 0 1\n7.1 0 0 0 0 0 0 1\n7.2 0.1 0 0 0 0 0 1\n");
-  const TruthFolder truth(folder.path());
-  const auto motion_at = [&](std::optional<double> time_s) {
-    Frame at = frame("a");
-    at.time_s = time_s;
-    return truth.truth_of(at).camera_motion;
-  };
-  EXPECT_EQ(motion_at(7.05), CameraMotion::still);
-  EXPECT_EQ(motion_at(7.14), CameraMotion::moving);
-  EXPECT_EQ(motion_at(0.0), CameraMotion::unknown);
-  EXPECT_EQ(motion_at({}), CameraMotion::unknown);
-}
-
 TEST(TruthFolder, IsOneRecordingInWhichTheOnlyPersonHasAnId) {
   const test::TemporaryFolder folder;
   test::put(folder / "frames.csv", "frame,people\na,1\nb,0\nc,-1\n");
@@ -166,5 +149,38 @@ TEST(SetsIn, FindsNoneOfTheTablesFolders) {
   EXPECT_THAT(test::error_of([&] { sets_in(folder.path()); }), HasSubstr("none of the sets"));
 }
 
+TEST(Trajectory, InterpolatesBetweenPoses) {
+  // The camera turns a quarter about its y axis.
+  const Trajectory trajectory = Trajectory::parse(
+      "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n\n"
+      "10.00 0 0 0 0 0 0 1\r\n10.10 1 0 2 0 0.70710678 0 0.70710678\n",
+      "t");
+  const auto middle = trajectory.world_from_camera(10.05);
+  ASSERT_TRUE(middle);
+  const Eigen::AngleAxisd turn(*middle);
+  EXPECT_NEAR(turn.angle(), std::numbers::pi / 4, 1e-6);
+  // After an eighth of a turn about y the camera looks between the world's z and x.
+  EXPECT_TRUE((*middle * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d(1, 0, 1).normalized(), 1e-6));
+  EXPECT_TRUE(trajectory.world_from_camera(10.0)->isApprox(Eigen::Quaterniond::Identity()));
+  EXPECT_NEAR(Eigen::AngleAxisd(*trajectory.world_from_camera(10.1)).angle(), std::numbers::pi / 2, 1e-6);
+}
+
+TEST(Trajectory, HasNoPoseOutsideTheRecordingAndInGaps) {
+  const Trajectory trajectory = Trajectory::parse("1 0 0 0 0 0 0 1\n1.2 0 0 0 0 0 0 1\n", "t");
+  for (const double time_s : {0.99, 1.1, 1.21}) EXPECT_FALSE(trajectory.world_from_camera(time_s)) << time_s;
+  EXPECT_TRUE(trajectory.world_from_camera(1.2));
+}
+
+TEST(Trajectory, NamesTheLineOfErrors) {
+  const auto error = [](const std::string& text) { return test::error_of([&] { Trajectory::parse(text, "g.txt"); }); };
+  EXPECT_THAT(error("# nothing\n"), HasSubstr("g.txt: no pose"));
+  for (const char* line : {"1 2 3", "1 0 0 0 0 0 0 1 9", "1 0 0 0 0 0 0 x", "1 0 0 0 0 0 0 1x", "nan 0 0 0 0 0 0 1"}) {
+    EXPECT_EQ(error("# c\n" + std::string(line)), "g.txt:2: expected \"timestamp tx ty tz qx qy qz qw\"");
+  }
+  EXPECT_THAT(error("1 0 0 0 0 0 0 0\n"), HasSubstr("g.txt:1: a quaternion of length 0, expected 1"));
+  EXPECT_THAT(error("2 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n"), HasSubstr("g.txt:2: a time that does not come after"));
+}
+
 }  // namespace
+
 }  // namespace vesalius

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "downloads/unpack.h"
-#include "folders/folder_lock.h"
+#include "folders/owned_folder.h"
 #include "io/files/data_file.h"
 #include "vesalius/base/toml_reader.h"
 #include "vesalius/error.h"

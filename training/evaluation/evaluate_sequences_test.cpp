@@ -1,5 +1,3 @@
-#include "evaluation/evaluate_sequences.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -7,8 +5,9 @@
 #include <memory>
 #include <string>
 
+#include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_json.h"
-#include "evaluation/evaluation_summary.h"
+#include "evaluation/evaluation_report.h"
 #include "vesalius/base/test_threads.h"
 #include "vesalius/error.h"
 #include "vesalius/fit/flesh_model.h"
@@ -154,7 +153,7 @@ TEST(EvaluateSequences, AreTheSameForAnyNumberOfThreads) {
     reports.push_back(evaluation_json(evaluation));
   }
   EXPECT_EQ(reports[0], reports[1]);
-  EXPECT_THAT(reports[0], HasSubstr("\"track.hota\""));
+  EXPECT_THAT(reports[0], HasSubstr("\"track.idf1\""));
 }
 
 // Labels: threads

@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "capsule/capsule_person.h"
+#include "dataset/labelled_truth.h"
 #include "dataset/open_truth.h"
-#include "evaluation/compare_evaluations.h"
 #include "evaluation/evaluation_json.h"
-#include "evaluation/evaluation_summary.h"
+#include "evaluation/evaluation_report.h"
 #include "io/files/test_files.h"
 #include "vesalius/error.h"
 #include "vesalius/forest/test_blind_labeller.h"

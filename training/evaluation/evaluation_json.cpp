@@ -9,7 +9,7 @@
 
 #include "io/files/data_file.h"
 #include "io/files/options_file.h"
-#include "metrics/compare_metrics.h"
+#include "metrics/metric_table.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -48,12 +48,6 @@ Json curve_json(const std::vector<DetectionPoint>& curve) {
   return points;
 }
 
-Json joint_curve_json(const JointCurve& curve) {
-  Json shares = Json::array();
-  for (int cm = 1; cm <= kJointCurve_cm; ++cm) shares.push_back(json_number(curve.share(cm)));
-  return shares;
-}
-
 Json confusion_json(const PixelConfusion& confusion) {
   Json rows = Json::array();
   for (int truth = 0; truth <= confusion.parts(); ++truth) {
@@ -81,7 +75,6 @@ Json set_json(const SetResult& set, const Evaluation& evaluation) {
     json["curve_over_parts"] = curve_json(sweep_parts(set.log, evaluation.body.part_count(), double(refine.min_score)));
     json["curve_over_score"] = curve_json(sweep_score(set.log, kScoreSteps, refine.min_parts));
   }
-  if (set.joint_curve.joints > 0) json["joints_within_cm"] = joint_curve_json(set.joint_curve);
   for (const auto& [joint, precision] : set.joint_precision.averages()) json["joint_precision"][joint] = precision;
   for (const auto& [part, precision] : set.centre_precision.averages()) json["centre_precision"][part] = precision;
   if (set.confusion) json["confusion"] = confusion_json(*set.confusion);
@@ -169,6 +162,20 @@ std::vector<StoredSet> read_evaluation(const std::string& path) {
   } catch (const Error& e) {
     throw Error(fmt::format("{}: {}", path, e.what()));
   }
+}
+
+std::vector<SetComparison> compare_evaluations(const std::vector<StoredSet>& first,
+                                               const std::vector<StoredSet>& second) {
+  std::vector<SetComparison> sets;
+  for (const StoredSet& set : first) {
+    SetComparison& comparison = sets.emplace_back(SetComparison{set.name});
+    const auto other = std::ranges::find(second, set.name, &StoredSet::name);
+    if (other == second.end()) continue;
+    comparison.in_both = true;
+    comparison.paired = set.frames_key == other->frames_key;
+    comparison.metrics = compare_common(set.metrics, other->metrics, comparison.paired);
+  }
+  return sets;
 }
 
 }  // namespace vesalius

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/evaluation.h"
+#include "evaluation/evaluate_set.h"
 #include "metrics/metric_table.h"
 
 namespace vesalius {
@@ -28,5 +28,17 @@ struct StoredSet {
 /// Reads the sets of a report.json. Throws Error with the path if the file is not a report, is damaged, has another
 /// version, or has a metric that is not in kMetrics.
 std::vector<StoredSet> read_evaluation(const std::string& path);
+
+/// A set of the first evaluation beside the one of the same name in the second.
+struct SetComparison {
+  std::string name;
+  bool in_both = false;
+  bool paired = false;  ///< both saw the same frames
+  std::vector<Comparison> metrics{};
+};
+
+/// Compares two evaluations set by set, in the order of the first one's sets.
+std::vector<SetComparison> compare_evaluations(const std::vector<StoredSet>& first,
+                                               const std::vector<StoredSet>& second);
 
 }  // namespace vesalius

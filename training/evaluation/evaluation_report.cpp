@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "evaluation/evaluation_json.h"
-#include "evaluation/evaluation_summary.h"
 #include "io/files/atomic_file.h"
 #include "report/document.h"
 #include "vesalius/draw.h"
@@ -120,18 +119,6 @@ void add_detection_curves(const SetResult& set, const Evaluation& evaluation, Do
                  kShares});
 }
 
-void add_joint_curve(const SetResult& set, Document& document) {
-  if (set.joint_curve.joints == 0) return;
-  PlotSeries line{"all joints", {{0.0, 0.0}}};
-  for (int cm = 1; cm <= kJointCurve_cm; ++cm) line.points.emplace_back(cm, set.joint_curve.share(cm));
-  document.plot({"Share of joints within a distance of the truth",
-                 "distance, cm",
-                 "share of joints",
-                 {line},
-                 std::pair{0.0, double(kJointCurve_cm)},
-                 kShares});
-}
-
 /// Adds how many of the joints given out with each confidence are right: on the diagonal it means what it says.
 void add_reliability(const std::vector<Estimate>& estimates, Document& document) {
   LinePlot plot{"Share of joints that are right by the confidence they were given with",
@@ -212,7 +199,6 @@ void add_set(const SetResult& set, const Evaluation& evaluation, Document& docum
   const std::vector<Estimate> estimates = set.metrics.estimates();
   add_tables(estimates, document);
   add_detection_curves(set, evaluation, document);
-  add_joint_curve(set, document);
   add_reliability(estimates, document);
   add_precision(set.joint_precision, "joint", document);
   add_precision(set.centre_precision, "part's centre", document);
@@ -234,6 +220,22 @@ Document make_document(const Evaluation& evaluation) {
   return document;
 }
 
+/// Returns e.g. ", people 56 of 56, false 0".
+std::string people_text(const SetResult& set, const std::vector<Estimate>& estimates) {
+  std::string text;
+  if (const Estimate* found = find_estimate(estimates, Metric::people_found)) {
+    text += fmt::format(", people {:.0f} of {:.0f}", found->numerator, found->denominator);
+  }
+  if (const Estimate* wrong = find_estimate(estimates, Metric::people_false)) {
+    text += fmt::format(", false {:.0f}", wrong->numerator);
+  }
+  if (const Estimate* empty = find_estimate(estimates, Metric::empty_with_person)) {
+    text += fmt::format(", somebody in {:.0f} of {:.0f} empty", empty->numerator, empty->denominator);
+  }
+  if (set.failed > 0) text += fmt::format(", {} failed", set.failed);
+  return text;
+}
+
 }  // namespace
 
 void write_report(const Evaluation& evaluation, const std::string& folder) {
@@ -241,6 +243,22 @@ void write_report(const Evaluation& evaluation, const std::string& folder) {
   write_report_page(make_document(evaluation), folder);
   write_file_atomically((path / "figures.csv").string(), evaluation_csv(evaluation));
   write_file_atomically((path / "report.json").string(), evaluation_json(evaluation) + "\n");
+}
+
+std::string speed_text(const SetResult& set) {
+  return fmt::format("{:.1f} frames/s", set.frames / std::max(1e-9, set.seconds));
+}
+
+std::string summary_lines(const SetResult& set) {
+  const std::vector<Estimate> estimates = set.metrics.estimates();
+  std::string text =
+      fmt::format("{}: {} frames{}, {}\n", set.name, set.frames, people_text(set, estimates), speed_text(set));
+  for (const Metric metric : kOverview) {
+    const Estimate* estimate = find_estimate(estimates, metric);
+    if (estimate == nullptr || metric <= Metric::empty_with_person) continue;
+    text += fmt::format("  {:<24} {}\n", info(metric).title, text_with_interval(*estimate));
+  }
+  return text;
 }
 
 }  // namespace vesalius

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "metrics/joint_metrics.h"
-#include "metrics/median.h"
+#include "metrics/statistics.h"
 #include "vesalius/base/logistic.h"
 #include "vesalius/error.h"
 #include "vesalius/predict_parts.h"

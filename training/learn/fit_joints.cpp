@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "metrics/heading.h"
+#include "metrics/frame_truth.h"
 #include "metrics/joint_metrics.h"
 #include "vesalius/base/body_heading.h"
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "vesalius/detect.h"
 #include "vesalius/fit/joint_trust.h"
 #include "vesalius/person.h"
+#include "vesalius/trace.h"
 
 namespace vesalius {
 
@@ -53,5 +53,13 @@ inline constexpr unsigned kContextEvery = 48;
 void add_trust_samples(const TrackedPerson& found, const std::vector<JointSet>& sets, const JointSet& set,
                        const std::vector<std::string>& names, const std::vector<Eigen::Vector3f>& truth,
                        std::vector<TrustSample>& samples);
+
+/// Returns the evidence (judge_features) for the candidates of a frame of which the truth tells whether they are
+/// people. Each is judged by itself, however many show the same person. A candidate is a person if its mask has an IoU
+/// of at least kMatchIou with a true one. Where only the mask of all people is known, kShareOnMask of its pixels must
+/// lie there, or that share of the mask on it. A candidate is nobody if it has less than half of this and less than
+/// half of kShareOnMask on people, or if the frame is empty. All others are left out, and so are frames with people of
+/// whose masks nothing is known.
+std::vector<BoostSample> judge_samples(const Trace& trace, const FrameTruth& truth, const DepthImage& depth);
 
 }  // namespace vesalius

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
 #include <limits>
 #include <optional>
 
-#include "metrics/heading.h"
+#include "metrics/frame_truth.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -16,6 +17,10 @@ namespace {
 
 constexpr double kMillimetres = 1e3;
 constexpr double kLeastAxis_m = 0.05;
+/// Distance from a joint within which its person's surface counts for it, metres: half the width of a thick limb.
+constexpr double kSightRadius_m = 0.15;
+/// Smallest area of that surface that the camera sees of a joint that is seen, cm^2.
+constexpr double kSight_cm2 = 10.0;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Adds which joints are right, under the metrics of each and of all.
@@ -72,6 +77,37 @@ const Joint* joint_of(const std::string& name, const JointSet& set, const std::v
   if (found == set.joints.end()) throw Error(fmt::format("joint set {}: no joint {}", set.name, name));
   const auto index = found - set.joints.begin();
   return index < std::ssize(joints) && joints[index].state != State::none ? &joints[index] : nullptr;
+}
+
+/// Returns the true joint nearest to a proposal that is within the tolerance and not taken, or -1.
+int nearest_free(const Eigen::Vector3f& at, std::size_t joint, const std::vector<std::vector<Eigen::Vector3f>>& truth,
+                 const std::vector<char>& taken) {
+  int nearest = -1;
+  double least = kJointTolerance_m;
+  for (std::size_t person = 0; person < truth.size(); ++person) {
+    const auto distance = double((truth[person][joint] - at).norm());
+    if (taken[person] != 0 || distance > least) continue;
+    least = distance;
+    nearest = int(person);
+  }
+  return nearest;
+}
+
+/// The metrics of the joints that are seen, or of those that are hidden.
+struct SightMetrics {
+  Metric right, error, right_confidence;
+};
+
+constexpr SightMetrics metrics_of(Sight sight) {
+  if (sight == Sight::seen) {
+    return {Metric::joints_seen_at_10cm, Metric::joints_seen_error, Metric::joints_seen_right_confidence};
+  }
+  return {Metric::joints_hidden_at_10cm, Metric::joints_hidden_error, Metric::joints_hidden_right_confidence};
+}
+
+MetricTerm by_confidence(Metric metric, float confidence, double right) {
+  const int tenth = std::clamp(int(10.F * confidence), 0, 9);
+  return {{metric, tenth, fmt::format("{}_to_{}", 10 * tenth, 10 * tenth + 10)}, right, 1.0};
 }
 
 }  // namespace
@@ -188,21 +224,100 @@ MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::strin
   return terms;
 }
 
-void JointCurve::add(const std::vector<double>& errors_m) {
-  for (const double error_m : errors_m) {
-    if (std::isnan(error_m)) continue;
-    ++joints;
-    for (int cm = 1; cm <= kJointCurve_cm; ++cm) {
-      if (error_m < cm * 0.01) ++within[cm - 1];
+JointPrecision::Of& JointPrecision::of(const std::string& name) {
+  const auto found = std::ranges::find(joints_, name, &Of::name);
+  return found != joints_.end() ? *found : joints_.emplace_back(Of{name, 0, {}});
+}
+
+void JointPrecision::add(const std::vector<std::string>& names, std::vector<JointProposals> proposals,
+                         const std::vector<std::vector<Eigen::Vector3f>>& truth, std::size_t counted) {
+  std::ranges::stable_sort(proposals, [](const auto& a, const auto& b) { return a.score > b.score; });
+  for (std::size_t joint = 0; joint < names.size(); ++joint) {
+    if (std::ranges::any_of(truth, [&](const auto& person) { return person[joint].hasNaN(); })) continue;
+    Of& sums = of(names[joint]);
+    sums.known += static_cast<long>(std::min(counted, truth.size()));
+    std::vector<char> taken(truth.size(), 0);
+    for (const JointProposals& proposal : proposals) {
+      if (proposal.joints[joint].hasNaN()) continue;
+      const int person = nearest_free(proposal.joints[joint], joint, truth, taken);
+      if (person >= 0) taken[person] = 1;
+      if (person >= int(counted)) continue;
+      sums.proposals.push_back({proposal.score, person >= 0});
     }
   }
 }
 
-void JointCurve::merge(const JointCurve& other) {
-  joints += other.joints;
-  for (std::size_t cm = 0; cm < within.size(); ++cm) within[cm] += other.within[cm];
+void JointPrecision::add(const JointPrecision& frames) {
+  for (const Of& other : frames.joints_) {
+    Of& sums = of(other.name);
+    sums.known += other.known;
+    sums.proposals.insert(sums.proposals.end(), other.proposals.begin(), other.proposals.end());
+  }
 }
 
-double JointCurve::share(int cm) const { return joints > 0 ? double(within.at(cm - 1)) / double(joints) : kNaN; }
+std::vector<std::pair<std::string, double>> JointPrecision::averages() const {
+  std::vector<std::pair<std::string, double>> out;
+  for (const Of& joint : joints_) {
+    if (joint.known == 0) continue;
+    std::vector<Judged> surest = joint.proposals;
+    std::ranges::sort(surest, [](const Judged& a, const Judged& b) { return a.score > b.score; });
+    std::vector<std::pair<double, double>> curve;  // right ones, precision; a point for every score that occurs
+    double right = 0.0;
+    for (std::size_t i = 0; i < surest.size(); ++i) {
+      right += surest[i].right ? 1.0 : 0.0;
+      if (i + 1 < surest.size() && surest[i + 1].score == surest[i].score) continue;
+      curve.emplace_back(right, right / double(i + 1));
+    }
+    double area = 0.0, best = 0.0;  // from the right: the best precision at this recall or more
+    for (std::size_t i = curve.size(); i-- > 0;) {
+      best = std::max(best, curve[i].second);
+      area += best * (curve[i].first - (i > 0 ? curve[i - 1].first : 0.0));
+    }
+    out.emplace_back(joint.name, area / double(joint.known));
+  }
+  return out;
+}
+
+std::vector<Sight> joint_sight(const TrueFrame& frame, std::size_t person, const std::vector<Eigen::Vector3f>& joints) {
+  if (frame.truth.person.empty()) return std::vector<Sight>(joints.size(), Sight::unknown);
+  constexpr double kCm2PerM2 = 1e4;
+  const Camera& camera = frame.frame.camera;
+  const DepthImage& depth = frame.frame.depth;
+  const double scale = kCm2PerM2 / (double(camera.fx) * double(camera.fy));
+  std::vector<double> area_cm2(joints.size(), 0.0);
+  for (int v = 0; v < depth.height(); ++v) {
+    for (int u = 0; u < depth.width(); ++u) {
+      if (depth(u, v) == 0 || frame.truth.person(u, v) != person) continue;
+      const Eigen::Vector3f point = point_at(camera, depth, u, v);
+      const double pixel_cm2 = double(point.z()) * double(point.z()) * scale;
+      for (std::size_t j = 0; j < joints.size(); ++j) {
+        if (double((point - joints[j]).norm()) <= kSightRadius_m) area_cm2[j] += pixel_cm2;
+      }
+    }
+  }
+  std::vector<Sight> sight;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    sight.push_back(!joints[j].allFinite() ? Sight::unknown : area_cm2[j] >= kSight_cm2 ? Sight::seen : Sight::hidden);
+  }
+  return sight;
+}
+
+MetricTerms sight_terms(const JointPair& pair, const std::vector<float>& confidences, const std::vector<Sight>& sight) {
+  const std::vector<double> errors = joint_errors(pair);
+  MetricTerms terms;
+  for (std::size_t j = 0; j < errors.size(); ++j) {
+    if (std::isnan(errors[j])) continue;
+    const bool found = std::isfinite(errors[j]);
+    const double right = errors[j] < kJointTolerance_m ? 1.0 : 0.0;
+    if (found) terms.push_back(by_confidence(Metric::joints_right_confidence, confidences[j], right));
+    if (sight[j] == Sight::unknown) continue;
+    const SightMetrics metrics = metrics_of(sight[j]);
+    terms.push_back({metrics.right, right, 1.0});
+    if (!found) continue;
+    terms.push_back({metrics.error, errors[j], 1.0});
+    terms.push_back(by_confidence(metrics.right_confidence, confidences[j], right));
+  }
+  return terms;
+}
 
 }  // namespace vesalius

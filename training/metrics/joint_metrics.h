@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "metrics/frame_truth.h"
@@ -17,8 +17,6 @@ namespace vesalius {
 inline constexpr double kJointTolerance_m = 0.1;
 /// A joint that lies farther from the truth was mistaken for something else and tells nothing about its place.
 inline constexpr double kPlacedJoint_m = 0.25;
-/// Largest distance of the curve over distances, centimetres.
-inline constexpr int kJointCurve_cm = 30;
 
 /// The joints of one true person under the names of its data set, and where they were found. NaN means not known or not
 /// found.
@@ -70,15 +68,57 @@ MetricTerms predicted_part_terms(const Skeleton& skeleton, const JointPair& cent
 /// own: one swapped arm would outweigh many biases.
 MetricTerms joint_bias_terms(const JointPair& pair, const std::vector<std::string>& names);
 
-/// The numbers of joints within 1, 2, ... kJointCurve_cm centimetres of the truth.
-struct JointCurve {
-  std::array<long, kJointCurve_cm> within{};
-  long joints = 0;
-
-  void add(const std::vector<double>& errors_m);
-  void merge(const JointCurve& other);
-  /// Returns the share within `cm`, 1 to kJointCurve_cm; NaN without joints.
-  double share(int cm) const;
+/// The proposed joints of a person in a frame, under the names of the truth; NaN = not proposed.
+struct JointProposals {
+  float score = 0.F;  ///< score of the person
+  std::vector<Eigen::Vector3f> joints;
 };
+
+/// The average precision of each joint over all proposals of a set of frames, whatever their score (Shotton et al.
+/// 2011): the area under precision against recall as the minimum score falls. A proposal is right if it lies within
+/// kJointTolerance_m of a true joint of its name that no proposal with a higher score took.
+class JointPrecision {
+ public:
+  /// Adds a frame. `truth` is [person][joint] in the order of `names`; NaN leaves a joint out in this frame. People
+  /// with an index of `counted` or more count neither as missed nor, if they are proposed, as wrong.
+  void add(const std::vector<std::string>& names, std::vector<JointProposals> proposals,
+           const std::vector<std::vector<Eigen::Vector3f>>& truth, std::size_t counted);
+  void add(const JointPrecision& frames);
+
+  /// Returns name and average precision (0-1) of the joints that occur in the truth, in the order of their first
+  /// occurrence.
+  std::vector<std::pair<std::string, double>> averages() const;
+
+ private:
+  struct Judged {
+    float score = 0.F;
+    bool right = false;
+  };
+  struct Of {
+    std::string name;
+    long known = 0;
+    std::vector<Judged> proposals;
+  };
+
+  Of& of(const std::string& name);
+
+  std::vector<Of> joints_;
+};
+
+/// Whether the camera sees the body about a true joint.
+enum class Sight {
+  unknown,  ///< the person's pixels, or the joint, are not known
+  seen,     ///< at least 10 cm^2 of the person's surface lie within 0.15 m of it and are seen
+  hidden,   ///< less does
+};
+
+/// Returns this of joints of a true person, metres, optical frame.
+std::vector<Sight> joint_sight(const TrueFrame& frame, std::size_t person, const std::vector<Eigen::Vector3f>& joints);
+
+/// Returns how many of the seen and of the hidden joints of a person lie within kJointTolerance_m, their mean errors,
+/// and of the joints given out with a confidence from each tenth how many lie so, of all, of the seen and of the
+/// hidden. As in joint_terms, joints that were not found count as wrong in the shares and are left out of the errors.
+/// `confidences` and `sight` have the order of the pair.
+MetricTerms sight_terms(const JointPair& pair, const std::vector<float>& confidences, const std::vector<Sight>& sight);
 
 }  // namespace vesalius

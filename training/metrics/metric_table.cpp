@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "vesalius/error.h"
 
@@ -45,22 +46,29 @@ Estimate mean_of(Metric metric, const std::vector<Estimate>& members) {
   return mean;
 }
 
-/// Returns for each of `members` the root of its product with what `others` have of the same parameter, 0 if nothing.
-std::vector<Estimate> roots(const std::vector<Estimate>& members, const std::vector<Estimate>& others) {
-  std::vector<Estimate> values;
-  for (const Estimate& member : members) {
-    const Estimate* other = find_estimate(others, others.empty() ? Metric{} : others[0].id.metric, member.id.parameter);
-    const auto value = [&](double first, double second) {
-      if (std::isnan(first)) return kNaN;  // the resample has nobody
-      return std::isnan(second) ? 0.0 : std::sqrt(first * second);
-    };
-    Estimate& result = values.emplace_back(Estimate{member.id});
-    result.value = value(member.value, other != nullptr ? other->value : kNaN);
-    for (std::size_t r = 0; r < kReplicates; ++r) {
-      result.replicates.push_back(value(member.replicates[r], other != nullptr ? other->replicates[r] : kNaN));
-    }
+Interval paired_interval(const Estimate& first, const Estimate& second) {
+  std::vector<double> differences;
+  const std::size_t count = std::min(first.replicates.size(), second.replicates.size());
+  for (std::size_t r = 0; r < count; ++r) differences.push_back(second.replicates[r] - first.replicates[r]);
+  return percentile_interval(std::move(differences));
+}
+
+Interval independent_interval(const Estimate& first, const Estimate& second, double difference) {
+  const double down = std::hypot(second.value - second.interval.low, first.interval.high - first.value);
+  const double up = std::hypot(second.interval.high - second.value, first.value - first.interval.low);
+  return {difference - down, difference + up};
+}
+
+/// Returns whether a change is for the better; `up` says that it surely is one upwards.
+bool is_better(const Comparison& change, bool up) {
+  switch (info(change.id.metric).direction) {
+    case MetricDirection::higher_is_better:
+      return up;
+    case MetricDirection::lower_is_better:
+      return !up;
+    default:
+      return std::abs(change.second) < std::abs(change.first);
   }
-  return values;
 }
 
 }  // namespace
@@ -126,11 +134,119 @@ std::vector<Estimate> MetricTable::estimates() const {
   std::vector<Estimate> all;
   for (const MetricInfo& metric : kMetrics) {
     std::vector<Estimate> some = estimates_of(metric.mean_of.value_or(metric.metric));
-    if (metric.times) some = roots(estimates_of(*metric.times), some);
     if (metric.mean_of && !some.empty()) some = {mean_of(metric.metric, some)};
     std::ranges::move(some, std::back_inserter(all));
   }
   return all;
+}
+
+Comparison compare(const Estimate& first, const Estimate& second, bool paired) {
+  Comparison result{first.id};
+  result.first = first.value;
+  result.second = second.value;
+  result.difference = second.value - first.value;
+  result.interval = paired ? paired_interval(first, second) : independent_interval(first, second, result.difference);
+  const bool up = result.interval.low > 0.0;
+  const bool down = result.interval.high < 0.0;
+  if (up || down) {
+    result.verdict = is_better(result, up) ? Comparison::Verdict::better : Comparison::Verdict::worse;
+  }
+  return result;
+}
+
+std::vector<Comparison> compare_common(const std::vector<Estimate>& first, const std::vector<Estimate>& second,
+                                       bool paired) {
+  std::vector<Comparison> all;
+  for (const Estimate& estimate : first) {
+    const Estimate* other = find_estimate(second, estimate.id.metric, estimate.id.parameter);
+    if (other != nullptr) all.push_back(compare(estimate, *other, paired));
+  }
+  std::ranges::stable_sort(all, {}, [](const Comparison& c) { return c.id.metric; });
+  return all;
+}
+
+const char* verdict_word(Comparison::Verdict verdict) {
+  return verdict == Comparison::Verdict::better ? "better" : verdict == Comparison::Verdict::worse ? "worse" : "same";
+}
+
+std::string MetricId::name() const {
+  std::string name(info(metric).name);
+  if (info(metric).is_family()) name.replace(name.find('*'), 1, parameter);
+  return name;
+}
+
+std::optional<MetricId> parse_metric(std::string_view name) {
+  for (const MetricInfo& metric : kMetrics) {
+    if (!metric.is_family()) {
+      if (name == metric.name) return MetricId(metric.metric);
+      continue;
+    }
+    const std::string_view before = metric.name.substr(0, metric.name.find('*'));
+    const std::string_view behind = metric.name.substr(before.size() + 1);
+    if (name.size() <= before.size() + behind.size() || !name.starts_with(before) || !name.ends_with(behind)) continue;
+    name.remove_prefix(before.size());
+    name.remove_suffix(behind.size());
+    return MetricId(metric.metric, 0, std::string(name));
+  }
+  return std::nullopt;
+}
+
+const char* better_word(Metric metric) {
+  switch (info(metric).direction) {
+    case MetricDirection::higher_is_better:
+      return "higher";
+    case MetricDirection::lower_is_better:
+      return "lower";
+    default:
+      return "zero";
+  }
+}
+
+std::string metric_text(Metric metric, double value) {
+  switch (info(metric).unit) {
+    case MetricUnit::metres:
+      return fmt::format("{:.3f} m", value);
+    case MetricUnit::per_frame:
+      return fmt::format("{:.3f} a frame", value);
+    case MetricUnit::per_person:
+      return fmt::format("{:.2f} a person", value);
+    case MetricUnit::millimetres:
+      return fmt::format("{:+.0f} mm", value);
+    case MetricUnit::mm_per_s2:
+      return fmt::format("{:.0f} mm/s^2", value);
+    default:
+      return fmt::format("{:.2f} %", 100.0 * value);
+  }
+}
+
+std::string metric_difference_text(Metric metric, double difference) {
+  switch (info(metric).unit) {
+    case MetricUnit::metres:
+      return fmt::format("{:+.3f} m", difference);
+    case MetricUnit::per_frame:
+      return fmt::format("{:+.3f}", difference);
+    case MetricUnit::per_person:
+      return fmt::format("{:+.2f}", difference);
+    case MetricUnit::millimetres:
+      return fmt::format("{:+.0f} mm", difference);
+    case MetricUnit::mm_per_s2:
+      return fmt::format("{:+.0f} mm/s^2", difference);
+    default:
+      return fmt::format("{:+.2f} %", 100.0 * difference);
+  }
+}
+
+int metric_digits(Metric metric) {
+  switch (info(metric).unit) {
+    case MetricUnit::share:
+    case MetricUnit::per_person:
+      return 2;
+    case MetricUnit::metres:
+    case MetricUnit::per_frame:
+      return 3;
+    default:
+      return 0;
+  }
 }
 
 }  // namespace vesalius

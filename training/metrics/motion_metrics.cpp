@@ -6,7 +6,7 @@
 #include <map>
 
 #include "metrics/joint_metrics.h"
-#include "metrics/median.h"
+#include "metrics/statistics.h"
 
 namespace vesalius {
 namespace {

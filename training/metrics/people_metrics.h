@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "metrics/frame_truth.h"
@@ -37,9 +38,49 @@ PartCounts count_parts(const Skeleton& skeleton, const std::vector<Eigen::Vector
 MetricTerms visible_part_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person,
                                const BodyModel& body);
 
-/// Returns the terms of a frame for people found and false people, for somebody in an empty frame, for its posture and
-/// its camera's motion, for the IoU of masks, and for how often each part was observed on the true people.
+/// Returns the terms of a frame for people found and false people, for somebody in an empty frame, for its posture, for
+/// the IoU of masks, and for how often each part was observed on the true people.
 MetricTerms people_terms(const TrueFrame& frame, const std::vector<Person>& people, const std::vector<Match>& matches,
                          const BodyModel& body);
+
+/// Returns by how many degrees the camera is turned about its viewing direction, 0 (upright) to 180; nothing if the
+/// truth lacks the upward direction or the camera looks within 20 degrees of straight up or down.
+std::optional<double> camera_roll_deg(const FrameTruth& truth);
+
+/// Returns whether each true person was found, by each of these that is known: distance, the side turned to the camera
+/// (heading_of), the visible share of the body's parts, the person's own posture, stature, and the camera's roll.
+/// `of_person` has the found person for each true one, or null if the person was missed.
+MetricTerms breakdown_terms(const TrueFrame& frame, const std::vector<const Person*>& of_person, const BodyModel& body);
+
+/// A proposal of one frame and whether it is right.
+struct JudgedProposal {
+  float score = 0.F;
+  int parts = 0;  ///< number of observed parts
+  bool person = false;
+  PartCounts counts;  ///< compared with the person that it shows
+};
+
+/// The data of curves: every proposal of a set of frames.
+struct DetectionLog {
+  long frames = 0;
+  long expected = 0;  ///< true people
+  std::vector<JudgedProposal> proposals;
+};
+
+/// The figures at one threshold. Shares of nothing are NaN.
+struct DetectionPoint {
+  double threshold = 0.0;
+  double rate = 0.0;             ///< share of the true people found
+  double false_per_frame = 0.0;  ///< number of false people
+  double part_rate = 0.0;        ///< share of the visible parts of found people that are right
+  double upper_part_rate = 0.0;  ///< the same for parts of the upper body
+};
+
+/// Returns a point for each minimum number of parts, 1 to `max_parts`, over the proposals whose score is at least
+/// `min_score` (the paper's Figs 9 to 14).
+std::vector<DetectionPoint> sweep_parts(const DetectionLog& log, int max_parts, double min_score);
+
+/// Returns a point for each minimum score 0, 1/steps, ... 1, over the proposals that have at least `min_parts` parts.
+std::vector<DetectionPoint> sweep_score(const DetectionLog& log, int steps, int min_parts);
 
 }  // namespace vesalius

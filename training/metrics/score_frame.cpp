@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
-#include "metrics/breakdown_metrics.h"
-#include "metrics/heading.h"
-#include "metrics/joint_sight.h"
+#include "metrics/frame_truth.h"
+#include "metrics/joint_metrics.h"
 #include "metrics/match_people.h"
+#include "metrics/people_metrics.h"
 #include "metrics/side_metrics.h"
 #include "vesalius/error.h"
 #include "vesalius/predict_parts.h"
@@ -247,7 +247,6 @@ void FrameScorer::judge_points(const TrueFrame& frame, const std::vector<const P
     const GivenPoints given = count_given(sided(known.names), pair.found, pair.truth, kJointTolerance_m);
     append(score.terms,
            given_terms(given, GivenKind::joints, heading_of(frame.truth, who, body()), frame.truth.parts.empty()));
-    score.joint_errors_m.push_back(joint_errors(pair));
   };
   const auto judge_centres = [&](std::size_t who, const KnownPoints& known, const JointPair& pair,
                                  const std::vector<Joint>&) {

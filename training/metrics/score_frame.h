@@ -1,16 +1,14 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "metrics/detection_curve.h"
 #include "metrics/fit_samples.h"
 #include "metrics/frame_truth.h"
 #include "metrics/joint_metrics.h"
-#include "metrics/joint_precision.h"
 #include "metrics/metric_table.h"
+#include "metrics/people_metrics.h"
 #include "metrics/pixel_metrics.h"
 #include "vesalius/detect.h"
 #include "vesalius/trace.h"
@@ -22,11 +20,10 @@ struct FrameScore {
   MetricTerms terms;
   int expected = 0;  ///< true people
   std::vector<JudgedProposal> proposals;
-  std::vector<std::vector<double>> joint_errors_m;  ///< joint_errors() of each true person
-  JointPrecision joint_precision;                   ///< over all proposed people, whatever their score
-  JointPrecision centre_precision;                  ///< the same of the parts' centres
-  std::optional<PixelConfusion> confusion;          ///< empty if the true labels are not known
-  std::vector<KnownPerson> known_people;            ///< only of frames for fitting joints
+  JointPrecision joint_precision;           ///< over all proposed people, whatever their score
+  JointPrecision centre_precision;          ///< the same of the parts' centres
+  std::optional<PixelConfusion> confusion;  ///< empty if the true labels are not known
+  std::vector<KnownPerson> known_people;    ///< only of frames for fitting joints
 
   std::string what_went_wrong;  ///< empty if nothing did
   double badness = 0.0;         ///< 0 if everything is right; ranks the frames for reports

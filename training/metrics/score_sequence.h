@@ -9,7 +9,6 @@
 #include "metrics/motion_metrics.h"
 #include "metrics/score_frame.h"
 #include "metrics/track_metrics.h"
-#include "metrics/track_sample.h"
 #include "vesalius/person.h"
 
 namespace vesalius {

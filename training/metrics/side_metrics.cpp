@@ -8,7 +8,6 @@
 #include <numbers>
 #include <string>
 
-#include "metrics/breakdown_metrics.h"
 #include "metrics/people_metrics.h"
 #include "vesalius/base/body_heading.h"
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "metrics/frame_truth.h"
-#include "metrics/heading.h"
 #include "metrics/metric_table.h"
 #include "vesalius/body_model.h"
 #include "vesalius/detect.h"

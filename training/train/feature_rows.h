@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "train/messages/training_sample.h"
+#include "train/messages/training_messages.h"
 #include "train/samples/frame_store.h"
 
 namespace vesalius {

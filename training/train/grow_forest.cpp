@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <utility>
 
-#include "train/leaves/fit_facing.h"
+#include "train/leaves/learn_leaves.h"
 #include "train/local_executor.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"

@@ -5,7 +5,6 @@
 
 #include "train/grow_tree.h"
 #include "train/leaves/learn_leaves.h"
-#include "train/leaves/tree_store.h"
 #include "train/messages/training_protocol.h"
 #include "vesalius/base/options.h"
 #include "vesalius/body_model.h"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "train/growing_tree.h"
-#include "train/leaves/prune_tree.h"
 #include "train/local_shards.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"

@@ -8,8 +8,7 @@
 #include <optional>
 
 #include "capsule/capsule_person.h"
-#include "train/leaves/leaf_shares.h"
-#include "train/leaves/prune_tree.h"
+#include "train/growing_tree.h"
 #include "train/local_shards.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"

@@ -1,16 +1,48 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "train/leaves/leaf_shares.h"
-#include "train/leaves/prune_tree.h"
 #include "train/messages/grow_options.h"
 #include "train/messages/training_messages.h"
 #include "vesalius/forest.h"
 
 namespace vesalius {
+
+/// Computes the class shares of leaves.
+class LeafShares {
+ public:
+  /// `counts` are those of all samples; the first `parts` classes are body parts. `options` say how far shares
+  /// compensate for the sizes of the classes.
+  LeafShares(const SampleCounts& counts, int parts, const LeafOptions& options);
+
+  /// Returns the shares of the four largest classes (the lower one on a tie) in 1/255, rounded down. `counts` are the
+  /// leaf's samples of each class, not all 0.
+  TreeLeaf leaf(const std::int64_t* counts) const;
+
+ private:
+  void balance_parts(const std::int64_t* counts, std::vector<std::uint64_t>& shares) const;
+
+  std::vector<std::uint64_t> weights_;  ///< weight of one sample of a class, up to 2^24
+  std::vector<std::uint64_t> balance_;  ///< likewise for distributing among the parts; empty if equal to weights_
+};
+
+/// A node of a growing tree. Nodes are in the order of growing, parents before their children.
+struct GrownNode {
+  TreeNode split;                   ///< offsets and threshold
+  std::size_t left = 0, right = 0;  ///< indices of the children, or 0 for a leaf
+  TreeLeaf leaf;                    ///< its shares as a leaf
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("split", of.split...)("left", of.left...)("right", of.right...)("leaf", of.leaf...);
+  }
+};
+
+/// Returns the tree below nodes[0], depth first and left before right. If both children of a node are equal leaves, the
+/// node becomes that leaf.
+Tree pruned_tree(const std::vector<GrownNode>& nodes);
 
 /// A node of the level that is to be split.
 struct OpenNode {

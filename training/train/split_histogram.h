@@ -3,10 +3,7 @@
 // The choice of a node's split. A shard makes replies from its rows of feature values (node_values, count_bins,
 // values_in). The driver chooses from the merged replies (best_split, refine_split) and sees no row.
 
-#include <cstdint>
-
 #include "train/feature_rows.h"
-#include "train/messages/entropy_table.h"
 #include "train/messages/training_messages.h"
 
 namespace vesalius {

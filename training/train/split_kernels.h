@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "train/feature_rows.h"
-#include "train/messages/entropy_table.h"
 #include "train/messages/training_messages.h"
 
 namespace vesalius::kernels {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "train/samples/find_leaves.h"
-#include "train/samples/frame_prefetcher.h"
+#include "train/samples/frame_store.h"
 #include "train/samples/walk_samples.h"
 #include "train/split_candidates.h"
 #include "train/split_histogram.h"

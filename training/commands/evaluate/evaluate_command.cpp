@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
@@ -10,25 +11,22 @@
 #include <optional>
 #include <set>
 
-#include "commands/evaluate/sequence_trackers.h"
-#include "commands/evaluate/truth_bvh.h"
 #include "commands/evaluate/truth_recipe.h"
 #include "commands/training_commands.h"
 #include "console/detector_flags.h"
 #include "console/interrupts.h"
 #include "console/machine_facts.h"
 #include "console/option_flags.h"
+#include "console/satellites.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
+#include "dataset/open_truth.h"
+#include "dataset/truth_csv.h"
 #include "dataset/truth_folder.h"
-#include "dataset/truth_headings.h"
-#include "dataset/truth_sequences.h"
-#include "evaluation/evaluate_sequences.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
 #include "evaluation/evaluation_json.h"
 #include "evaluation/evaluation_report.h"
-#include "evaluation/evaluation_summary.h"
 #include "io/files/data_file.h"
 #include "report/document.h"
 #include "vesalius/model_file.h"
@@ -146,7 +144,7 @@ std::string command_line(const CLI::App& command) {
 
 /// Opens the frames of a source with what the command line adds to them.
 std::unique_ptr<TruthSource> open_frames(const std::string& source, const Arguments& arguments) {
-  auto frames = open_evaluation_truth(source, arguments.step);
+  auto frames = open_truth(source, arguments.step);
   if (!arguments.headings_file.empty()) {
     const std::string set = whole_path(source).filename().string();
     frames = with_headings(std::move(frames), HeadingTable::read(arguments.headings_file), set);
@@ -229,14 +227,46 @@ void run(const Arguments& arguments, const std::string& command) {
   if (failed > 0) throw Error(fmt::format("{} frames failed", failed));
 }
 
+std::string comparison_line(const Comparison& c) {
+  const Metric metric = c.id.metric;
+  const bool worse = c.verdict == Comparison::Verdict::worse;
+  return fmt::format("  {:<34} {:>10} -> {:>10}  {:>10} ({} to {})  {}\n", c.id.name(), metric_text(metric, c.first),
+                     metric_text(metric, c.second), metric_difference_text(metric, c.difference),
+                     metric_difference_text(metric, c.interval.low), metric_difference_text(metric, c.interval.high),
+                     worse ? "WORSE" : verdict_word(c.verdict));
+}
+
+void compare(const std::string& first, const std::string& second, bool all) {
+  const std::vector<SetComparison> sets = compare_evaluations(read_evaluation(first), read_evaluation(second));
+  if (std::ranges::none_of(sets, &SetComparison::in_both)) {
+    throw Error(fmt::format("{} and {} have no set in common", first, second));
+  }
+  std::string text;
+  std::array<int, 3> tally{};  // number of metrics for each verdict
+  for (const SetComparison& set : sets) {
+    if (!set.in_both) {
+      text += fmt::format("{}: only in {}\n", one_line(set.name), first);
+      continue;
+    }
+    text += one_line(set.name) + (set.paired ? "\n" : " (not the same frames: wider intervals)\n");
+    for (const Comparison& comparison : set.metrics) {
+      ++tally[static_cast<std::size_t>(comparison.verdict)];
+      if (all || comparison.verdict != Comparison::Verdict::same) text += comparison_line(comparison);
+    }
+  }
+  print(text + fmt::format("{} better, {} worse, {} the same (95 % intervals of the difference)\n", tally[0], tally[1],
+                           tally[2]));
+}
+
 }  // namespace
 
 void add_evaluate(CLI::App& program) {
   CLI::App* command = program.add_subcommand("evaluate", "Measure a model against frames whose truth is known");
   const auto arguments = std::make_shared<Arguments>(*command);
-  command->add_option("SOURCE", arguments->sources,
-                      "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/, joints.csv or "
-                      "truth_bvh.toml, or a folder of such folders with one frames.csv");
+  command->add_option(
+      "SOURCE", arguments->sources,
+      "Labelled datasets of `vesalius synth`, folders of frames with frames.csv, mask/ or joints.csv, or a "
+      "folder of such folders with one frames.csv");
   command
       ->add_option("--recipe", arguments->recipes,
                    "Frames rendered from this recipe and not kept, as `vesalius synth --recipe` makes them")
@@ -304,5 +334,21 @@ Examples:
   vesalius evaluate recordings/ -m adult.forest --track)");
   command->callback([arguments, command] { run(*arguments, command_line(*command)); });
 }
+
+void add_compare(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("compare", "Compare two evaluations metric by metric");
+  const auto first = std::make_shared<std::string>();
+  const auto second = std::make_shared<std::string>();
+  const auto all = std::make_shared<bool>(false);
+  command->add_option("FIRST", *first, "report.json of `vesalius evaluate`")->required();
+  command->add_option("SECOND", *second, "The same for another model or other options")->required();
+  command->add_flag("--all", *all, "Print also metrics that do not differ");
+  command->footer(R"(
+If both evaluations saw the same frames, differences are resampled frame by frame, which shows even small ones. About one
+in twenty metrics without a difference is called better or worse by chance.)");
+  command->callback([first, second, all] { compare(*first, *second, *all); });
+}
+
+Satellite evaluate_satellite() { return {.name = "evaluate", .commands = {add_evaluate, add_compare}}; }
 
 }  // namespace vesalius::cli

@@ -8,7 +8,8 @@
 #include <utility>
 
 #include "commands/synth/synth_recipe.h"
-#include "dataset/clip_layout.h"
+#include "dataset/labelled_dataset.h"
+#include "dataset/labelled_truth.h"
 #include "dataset/open_truth.h"
 #include "synth/body/poser.h"
 #include "synth/generate.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "commands/synth/synth_recipe.h"
-#include "dataset/truth_source.h"
+#include "dataset/open_truth.h"
 #include "synth/generate.h"
 #include "vesalius/body_model.h"
 

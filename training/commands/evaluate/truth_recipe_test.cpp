@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "dataset/skeleton_truth.h"
+#include "dataset/labelled_truth.h"
 #include "synth/body/makehuman.h"
 #include "synth/body/poser.h"
 
@@ -18,9 +18,9 @@ TEST(TruthRecipe, KnowsTheStatureOfABody) {
     const synth::Poser poser(mesh, paper_body());
     synth::Pose pose;
     pose[synth::Bone::l_thigh] = Eigen::AngleAxisf(1.2F, Eigen::Vector3f::UnitX());
-    FrameTruth truth;
-    add_skeleton_truth(synth::joint_names(), {synth::joint_points(poser.pose(pose), Eigen::Isometry3f::Identity())},
-                       truth);
+    LabelledFrame labelled;
+    labelled.joints = {synth::joint_points(poser.pose(pose), Eigen::Isometry3f::Identity())};
+    const FrameTruth truth = as_true_frame(labelled, synth::joint_names()).truth;
     ASSERT_EQ(truth.statures_m.size(), 1U);
     EXPECT_NEAR(truth.statures_m[0], mesh->stature_m, 0.04F);
   }

@@ -9,10 +9,13 @@
 #include "commands/synth/synth_recipe.h"
 #include "console/interrupts.h"
 #include "console/status_line.h"
-#include "dataset/clip_layout.h"
-#include "dataset/dataset_folder.h"
+#include "dataset/labelled_dataset.h"
+#include "synth/generate.h"
+#include "synth/recipe.h"
 #include "train/parallel_in_order.h"
+#include "vesalius/body_model.h"
 #include "vesalius/error.h"
+#include "vesalius/frame.h"
 
 namespace vesalius::cli {
 

@@ -10,9 +10,8 @@
 #include <utility>
 
 #include "cluster/message.h"
-#include "cluster/task_replies.h"
 #include "cluster/train_job.h"
-#include "commands/cluster/cluster_task.h"
+#include "commands/cluster/cluster_flags.h"
 #include "commands/synth/synth_recipe.h"
 #include "console/interrupts.h"
 #include "console/text_sink.h"

@@ -5,7 +5,7 @@
 #include "commands/cluster/cluster_flags.h"
 #include "commands/synth/frame_maker.h"
 #include "commands/synth/synth_recipe.h"
-#include "dataset/dataset_folder.h"
+#include "dataset/labelled_dataset.h"
 
 namespace vesalius::cli {
 

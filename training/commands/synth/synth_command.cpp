@@ -15,7 +15,7 @@
 #include "console/satellites.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
-#include "dataset/labelled_export.h"
+#include "dataset/labelled_folder.h"
 #include "io/files/data_file.h"
 #include "io/files/options_file.h"
 #include "synth/body/poser.h"

@@ -10,7 +10,7 @@
 #include "console/interrupts.h"
 #include "io/files/atomic_file.h"
 #include "io/files/data_file.h"
-#include "metrics/judge_samples.h"
+#include "metrics/fit_samples.h"
 #include "vesalius/detect.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/truth_source.h"
+#include "dataset/open_truth.h"
 #include "metrics/fit_samples.h"
 #include "vesalius/model.h"
 

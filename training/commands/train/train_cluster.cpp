@@ -5,19 +5,29 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "cluster/cluster_executor.h"
-#include "commands/train/train_frames.h"
+#include "commands/cluster/cluster_flags.h"
 #include "commands/train/train_recipe.h"
 #include "commands/train/train_session.h"
 #include "console/interrupts.h"
 #include "console/text_sink.h"
+#include "folders/owned_folder.h"
+#include "io/files/atomic_file.h"
+#include "io/files/data_file.h"
 #include "vesalius/error.h"
 #include "vesalius/model_file.h"
 
 namespace vesalius::cli {
 namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
 
 constexpr double kMiB = 1024.0 * 1024.0;
 constexpr double kGiB = 1024.0 * kMiB;
@@ -40,6 +50,48 @@ class StepTeller : public TrainObserver {
  private:
   bool shown_;
 };
+
+std::string hash_text(const TrainInput& input) { return fmt::format("{:016x}", input.hash); }
+
+TrainSources sources_of(const Json& json, const TemporaryFolder& texts) {
+  const auto put = [&](const std::string& name, const Json& text) {
+    write_file_atomically(texts.path(name), text.get<std::string>());
+    return texts.path(name);
+  };
+  TrainSources sources;
+  sources.data = json.at("data").get<std::vector<std::string>>();
+  int number = 0;
+  for (const Json& recipe : json.at("recipes")) {
+    const std::string name = fs::path(recipe.at("name").get<std::string>()).filename().string();
+    sources.recipes.push_back(put(fmt::format("{}-{}", ++number, name), recipe.at("text")));
+  }
+  if (!json.at("body").get<std::string>().empty()) sources.body = put("body.toml", json.at("body"));
+  sources.count = json.at("count").get<int>();
+  sources.render_seed = json.at("seed").get<std::uint64_t>();
+  sources.assets.motions = json.at("motions").get<std::string>();
+  sources.assets.folder = json.at("assets").get<std::string>();
+  return sources;
+}
+
+/// Returns the sources of frames as text for the tasks of a cluster. Recipes and body are in it; datasets and motions
+/// are named by absolute paths and must be there on every machine.
+std::string frames_text(const TrainSources& sources, const TrainInputs& inputs) {
+  Json json{{"data", for_tasks(sources.data)},
+            {"recipes", Json::array()},
+            {"body", sources.body.empty() ? "" : read_file(sources.body)},
+            {"count", sources.count},
+            {"seed", sources.render_seed},
+            {"motions", for_tasks(sources.assets.motions)},
+            {"assets", assets_for_tasks(sources.assets.folder)},
+            {"inputs", Json::array()}};
+  for (const std::string& recipe : sources.recipes) {
+    json["recipes"].push_back({{"name", recipe}, {"text", read_file(recipe)}});
+  }
+  for (const TrainInput& input : inputs.inputs()) {
+    json["inputs"].push_back({{"name", input.name}, {"hash", hash_text(input)}, {"frames", input.frames}});
+  }
+  return json.dump();
+}
 
 class ClusterRun {
  public:
@@ -103,7 +155,7 @@ class ClusterRun {
     session_->remove();
     if (!run_.shown) return;
     say(fmt::format("{}: {} trees, {:.2f} MiB, trained in {:.1f} s", run_.out, forest.trees.size(),
-                    double(std::filesystem::file_size(run_.out)) / kMiB,
+                    double(fs::file_size(run_.out)) / kMiB,
                     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
   }
 
@@ -134,6 +186,33 @@ class ClusterRun {
 void train_on_cluster(const TrainRun& run, const TrainOptions& options, const TrainSources& sources,
                       const TrainClusterFlags& flags) {
   ClusterRun(run, options, sources, flags).run();
+}
+
+TaskContext::ReadFrame open_frames(const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw Error("the sources of frames: damaged");
+  const TemporaryFolder texts;
+  const auto inputs = std::make_shared<const TrainInputs>(sources_of(json, texts));
+  const Json& expected = json.at("inputs");
+  for (std::size_t i = 0; i < inputs->inputs().size(); ++i) {
+    const TrainInput& input = inputs->inputs()[i];
+    const auto hash = expected.at(i).at("hash").get<std::string>();
+    if (hash_text(input) == hash && input.frames >= expected.at(i).at("frames").get<int>()) continue;
+    throw Error(
+        fmt::format("{}: would give other frames here (hash {}) than where training was begun ({}); expected "
+                    "the same files and packages of `vesalius assets` on all machines",
+                    expected.at(i).at("name").get<std::string>(), hash_text(input), hash));
+  }
+  return [inputs](std::uint64_t number) {
+    std::uint64_t left = number;
+    for (const TrainInput& input : inputs->inputs()) {
+      if (left < static_cast<std::uint64_t>(input.frames)) {
+        return with_context(fmt::format("{}: frame {}", input.name, left), [&] { return input.frame(int(left)); });
+      }
+      left -= static_cast<std::uint64_t>(input.frames);
+    }
+    throw Error(fmt::format("frame {}: beyond the last one", number));
+  };
 }
 
 }  // namespace vesalius::cli

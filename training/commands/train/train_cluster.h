@@ -1,7 +1,8 @@
 #pragma once
 
-#include <cstdint>
+#include <string>
 
+#include "cluster/map_task.h"
 #include "commands/cluster/cluster_flags.h"
 #include "commands/train/train_inputs.h"
 #include "commands/train/train_run.h"
@@ -21,5 +22,10 @@ struct TrainClusterFlags {
 /// Engine::run do.
 void train_on_cluster(const TrainRun& run, const TrainOptions& options, const TrainSources& sources,
                       const TrainClusterFlags& flags);
+
+/// Opens the sources of frames that a text for the tasks of a cluster names; frames are numbered over all inputs.
+/// Throws Error for a source that this machine lacks or whose frames would be others than on the machine that wrote the
+/// text.
+TaskContext::ReadFrame open_frames(const std::string& text);
 
 }  // namespace vesalius::cli

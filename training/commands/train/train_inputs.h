@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,7 +29,7 @@ struct TrainInput {
   std::string name;     ///< for messages
   std::string made_by;  ///< text of the recipe
   std::uint64_t seed = 0;
-  std::uint64_t hash = 0;  ///< hash of the dataset that the frames form or would form (dataset/dataset_folder.h)
+  std::uint64_t hash = 0;  ///< hash of the dataset that the frames form or would form (dataset/labelled_dataset.h)
   int frames = 0;
   int width = 0, height = 0;                ///< size of the first frame in pixels
   std::function<LabelledFrame(int)> frame;  ///< returns a frame by its number; any thread may call it

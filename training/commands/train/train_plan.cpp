@@ -8,7 +8,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "commands/train/train_curves.h"
+#include "commands/train/train_report.h"
 #include "train/local_executor.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"

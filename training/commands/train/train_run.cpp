@@ -4,17 +4,27 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "commands/train/grow_display.h"
-#include "commands/train/train_curves.h"
-#include "commands/train/train_device.h"
 #include "commands/train/train_recipe.h"
 #include "commands/train/train_report.h"
 #include "commands/train/train_session.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
+#include "cuda/cuda_device.h"
+#include "cuda_train/device_executor.h"
+#include "cuda_train/train_kernels.h"
+#include "train/local_executor.h"
+#include "train/messages/training_protocol.h"
+#include "train/samples/training_set.h"
 #include "vesalius/error.h"
+#include "vesalius/model.h"
 #include "vesalius/model_file.h"
 #include "vesalius/parallel.h"
 
@@ -23,6 +33,78 @@ namespace {
 
 constexpr double kMiB = 1024.0 * 1024.0;
 constexpr double kGiB = 1024.0 * kMiB;
+
+/// Makes an executor over the sets, which grows at most so many trees at a time (train/local_executor.h).
+using MakeExecutor = std::function<std::unique_ptr<Executor>(const std::vector<TrainingSet*>&, int trees_at_once)>;
+
+/// The devices that a list like "cuda:0,cuda:1" names.
+struct Wanted {
+  std::string kind;  ///< empty if they are no devices or of several kinds
+  std::vector<int> numbers;
+};
+
+Wanted parse_list(const std::string& names) {
+  Wanted wanted;
+  std::istringstream list(names);
+  for (std::string name; std::getline(list, name, ',');) {
+    const DeviceName device = parse_device(name);
+    if (!wanted.numbers.empty() && device.kind != wanted.kind) return {};
+    wanted.kind = device.kind;
+    wanted.numbers.push_back(device.number);
+  }
+  return names.ends_with(',') ? Wanted{} : wanted;
+}
+
+constexpr const char* kCards = "cuda";
+
+MakeExecutor open_cards(const std::vector<int>& numbers) {
+  std::vector<std::shared_ptr<gpu::Device>> cards;
+  for (const int number : numbers) cards.push_back(gpu::open_cuda_device(number, gpu::train_kernels_on_cards()));
+  return [cards](const std::vector<TrainingSet*>& sets, int trees_at_once) {
+    return std::make_unique<gpu::DeviceExecutor>(sets, cards, trees_at_once);
+  };
+}
+
+/// What trains: the processor, or one or more cards (`vesalius train --device`).
+class TrainDevice {
+ public:
+  /// Takes a name as on_device does, or several of one kind with commas between. Throws UsageError for a device
+  /// that this build does not know and DeviceError for one that this machine does not have. What "auto" decides is said
+  /// on standard error.
+  explicit TrainDevice(const std::string& names) : any_(names == "auto") {
+    if (names == "cpu") return;
+    const LabellerDevices known{{{kCards, {}}}, {}};  // for what is said of an unknown one
+    const Wanted wanted = any_ ? Wanted{{}, {0}} : parse_list(names);
+    if (!any_ && wanted.kind != kCards) throw_unknown_device(names, known);
+    try {
+      make_ = open_cards(wanted.numbers);
+    } catch (const DeviceError& e) {
+      if (!any_) throw;
+      say("note: " + std::string(e.what()) + "; the processor trains");
+    }
+  }
+
+  /// Calls `train` with an executor over the sets. Where any device will do and one fails, a note is said and `train`
+  /// is called again with an executor on the processor; what it stored until then is not done again.
+  void run(const std::vector<TrainingSet*>& sets, int trees_at_once,
+           const std::function<void(Executor&)>& train) const {
+    if (make_) {
+      try {
+        train(*make_(sets, trees_at_once));
+        return;
+      } catch (const DeviceError& e) {
+        if (!any_) throw;
+        say("note: " + std::string(e.what()) + "; the processor goes on");
+      }
+    }
+    LocalExecutor executor(sets, trees_at_once);
+    train(executor);
+  }
+
+ private:
+  MakeExecutor make_;  ///< empty for the processor
+  bool any_ = false;
+};
 
 /// Trains one forest and holds what its steps share.
 class Training {

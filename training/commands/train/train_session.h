@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "folders/folder_lock.h"
-#include "train/leaves/tree_store.h"
+#include "folders/owned_folder.h"
+#include "train/leaves/learn_leaves.h"
 #include "vesalius/forest.h"
 
 namespace vesalius::cli {

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "train/samples/find_leaves.h"
-#include "train/samples/sample_logits.h"
+#include "train/samples/walk_samples.h"
 #include "vesalius/forest/facing.h"
 #include "vesalius/parallel.h"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "train/messages/leaf_messages.h"
+#include "train/messages/training_messages.h"
 #include "train/samples/training_set.h"
 #include "vesalius/forest.h"
 

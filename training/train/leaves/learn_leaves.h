@@ -1,18 +1,65 @@
 #pragma once
 
-// How the leaves of a forest are learned together (Ren et al., Global refinement of random forest, CVPR 2015), after
-// its trees are grown, from the same shards of samples. training_protocol.h has the glossary and the order of messages.
-
 #include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "train/leaves/tree_store.h"
-#include "train/messages/leaf_messages.h"
+#include "train/messages/training_messages.h"
 #include "train/messages/training_protocol.h"
 #include "vesalius/base/options.h"
 #include "vesalius/forest.h"
+#include "vesalius/forest/facing.h"
 
+// How the leaves of a forest are learned together (Ren et al., Global refinement of random forest, CVPR 2015), after
+// its trees are grown, from the same shards of samples. training_protocol.h has the glossary and the order of messages.
 namespace vesalius {
+
+/// Where the learning of leaves is.
+struct LeafState {
+  int rounds = 0;  ///< done
+  LeafLogits logits;
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("rounds", of.rounds...)("logits", of.logits...); }
+};
+
+/// Keeps the finished trees of a training, and the leaves in learning, so that an interrupted run can be continued. The
+/// members about trees may be called from several threads at once.
+class TreeStore {
+ public:
+  virtual ~TreeStore() = default;
+  /// Returns a saved tree, or nothing if it was not saved or cannot be read any more.
+  virtual std::optional<Tree> load(int number) = 0;
+  /// Saves a tree. Throws Error if it cannot.
+  virtual void save(int number, const Tree& tree) = 0;
+  /// Returns what was saved last, or nothing if nothing was or it cannot be read any more.
+  virtual std::optional<LeafState> load_leaves() = 0;
+  /// Replaces what was saved before. Throws Error if it cannot.
+  virtual void save_leaves(const LeafState& state) = 0;
+};
+
+/// Keeps trees in memory.
+class MemoryTreeStore : public TreeStore {
+ public:
+  std::optional<Tree> load(int number) override {
+    const std::scoped_lock lock(mutex_);
+    const auto found = trees_.find(number);
+    return found != trees_.end() ? std::optional(found->second) : std::nullopt;
+  }
+  void save(int number, const Tree& tree) override {
+    const std::scoped_lock lock(mutex_);
+    trees_[number] = tree;
+  }
+  std::optional<LeafState> load_leaves() override { return leaves_; }
+  void save_leaves(const LeafState& state) override { leaves_ = state; }
+
+ private:
+  std::mutex mutex_;
+  std::map<int, Tree> trees_;
+  std::optional<LeafState> leaves_;
+};
 
 /// Options of how leaves are learned together.
 struct LeafLearningOptions {
@@ -42,5 +89,10 @@ LeafLogits learn_leaves(LeafExecutor& shards, const Forest& forest, const LogitL
 
 /// Rounds logits to bytes and puts them into the forest.
 void set_logits(Forest& forest, const LogitLayout& layout, const LeafLogits& logits);
+
+/// Learns the regression of headings by maximum likelihood with a quadratic prior. Each heading counts with its number
+/// of people to the power of a half, so that frequent ones are expected half as much more often than they are seen.
+/// Returns a model without weights if a heading has nobody.
+FacingModel fit_facing(const std::vector<FacingSample>& samples, int parts, int headings);
 
 }  // namespace vesalius

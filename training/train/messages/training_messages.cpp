@@ -1,6 +1,7 @@
 #include "train/messages/training_messages.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "vesalius/error.h"
@@ -106,6 +107,12 @@ HardCut take_part(HardCut& cut, const HardCounts& own) {
   const HardCut part{cut.above, std::min(cut.ties, own.counts[cut.above])};
   cut.ties -= part.ties;
   return part;
+}
+
+EntropyTable::EntropyTable() : values_(kMostCounted + 1, 0) {
+  for (int n = 2; n <= kMostCounted; ++n) {
+    values_[n] = static_cast<std::int32_t>(std::lround(kUnitsPerBit * n * std::log2(n)));
+  }
 }
 
 }  // namespace vesalius

@@ -1,12 +1,5 @@
 #pragma once
 
-// The messages between the driver of a training and the shards of its samples, as plain structs of integers.
-// training_protocol.h explains their order. What goes to other machines has `visit_fields`, which passes each field
-// with its name to a visitor, or each pair of fields of two messages: reading, writing (cluster/message.h) and merging
-// follow from it. `merge(all, other)` adds the reply of one more shard. Since numbers are integers, the result does not
-// depend on the order of merging, unless a comment says otherwise. Every `merge` throws Error if the replies are about
-// different nodes, classes or bins.
-
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,7 +7,14 @@
 #include <vector>
 
 #include "vesalius/forest.h"
+#include "vesalius/forest/leaf_logits.h"
 
+// The messages between the driver of a training and the shards of its samples, as plain structs of integers, and what
+// they are about. training_protocol.h explains their order. What goes to other machines has `visit_fields`, which
+// passes each field with its name to a visitor, or each pair of fields of two messages: reading, writing
+// (cluster/message.h) and merging follow from it. `merge(all, other)` adds the reply of one more shard. Since numbers
+// are integers, the result does not depend on the order of merging, unless a comment says otherwise. Every `merge`
+// throws Error if the replies are about different nodes, classes or bins.
 namespace vesalius {
 
 namespace detail {
@@ -255,5 +255,118 @@ HardCut hard_cut(const HardCounts& all, std::uint64_t most);
 /// Returns the part of `cut` for a shard that counted `own`, and subtracts its ties from `cut`, so that the next shard
 /// gets the rest.
 HardCut take_part(HardCut& cut, const HardCounts& own);
+
+/// The heading of a sample of the background, or of a person whose heading is not known.
+inline constexpr std::uint8_t kNoHeading = 255;
+/// Headings that samples tell apart: eighths of a turn, the first faces the camera (base/body_heading.h).
+inline constexpr int kHeadings = 8;
+
+/// A pixel from which a forest learns.
+struct TrainingSample {
+  std::uint32_t frame = 0;            ///< index in the set's FrameStore
+  std::int16_t u = 0, v = 0;          ///< pixel
+  std::uint16_t depth_mm = 0;         ///< its reading, never 0
+  std::uint8_t label = 0;             ///< class of the forest: body part, or part_count for the background
+  std::uint8_t heading = kNoHeading;  ///< the person's, below kHeadings
+};
+
+/// A person of a frame that no tree learns from: samples [begin, end) of a list.
+struct PersonSamples {
+  std::uint8_t heading = 0;
+  std::uint32_t begin = 0, end = 0;
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("heading", of.heading...)("begin", of.begin...)("end", of.end...);
+  }
+};
+
+/// Entropies as integers, so that splits do not depend on the order of additions. The table gives 1024 n log2 n,
+/// rounded, for n up to kMostCounted. Sums over the classes of a node stay below 2^31.
+class EntropyTable {
+ public:
+  static constexpr double kUnitsPerBit = 1024.0;
+
+  EntropyTable();
+  std::int32_t operator()(std::int64_t n) const { return values_[n]; }
+  const std::int32_t* data() const { return values_.data(); }
+
+ private:
+  std::vector<std::int32_t> values_;
+};
+
+// The messages of learning all leaves of a forest together (learn_leaves.h).
+
+/// Reply: the samples of each class, and of each heading among those of parts.
+struct LabelCounts {
+  std::vector<std::int64_t> classes;   ///< [class]
+  std::vector<std::int64_t> headings;  ///< [heading]
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("classes", of.classes...)("headings", of.headings...); }
+};
+
+/// Request: how much a sample counts, in 1/kUnit.
+struct SampleWeights {
+  static constexpr int kUnit = 64;
+  static constexpr double kOne = double{kUnit} * kUnit;  ///< the weight of a sample that counts once
+  std::vector<std::int32_t> of_class;                    ///< [class]
+  std::vector<std::int32_t> of_heading;                  ///< [heading]; samples of parts without heading count kUnit
+
+  /// Returns the weight of a sample in 1/(kUnit * kUnit).
+  std::int32_t of(const TrainingSample& sample) const {
+    return of_class[sample.label] * (sample.heading < of_heading.size() ? of_heading[sample.heading] : kUnit);
+  }
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("of class", of.of_class...)("of heading", of.of_heading...);
+  }
+};
+
+/// Reply: for each leaf of one tree the weights of its samples by class and by side and heading, in 1/(kUnit * kUnit).
+struct LeafCounts {
+  std::vector<std::int64_t> weights;  ///< [leaf][LogitLayout]
+
+  static void visit_fields(auto&& visit, auto&... self) { visit("weights", self.weights...); }
+};
+
+/// The logits of all leaves in learning.
+struct LeafLogits {
+  static constexpr float kUnit = 1.F / 1024.F;  ///< of a stored number, in nats
+  static constexpr std::size_t kLanes = 16;     ///< rows are padded to a multiple of so many numbers
+
+  std::size_t stride = 0;                           ///< numbers of a leaf
+  std::vector<std::vector<std::int16_t>> of_trees;  ///< [tree][leaf * stride + place in the LogitLayout]
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("stride", of.stride...)("of trees", of.of_trees...); }
+};
+inline std::size_t padded_size(const LogitLayout& layout) {
+  return (static_cast<std::size_t>(layout.size()) + LeafLogits::kLanes - 1) / LeafLogits::kLanes * LeafLogits::kLanes;
+}
+
+/// Request: the gradient over one of the parts into which all frames are divided.
+struct GradientTask {
+  int portion = 0;   ///< frames whose number leaves this remainder
+  int portions = 1;  ///< divided by this
+  int shift = 0;     ///< gradients are counted in 2^-shift of a weight of 1
+};
+
+/// Reply: the gradient of the samples' log likelihood by every logit: their weights where it is the true one, minus
+/// their weights times its share.
+struct LeafGradient {
+  std::vector<std::vector<std::int32_t>> of_trees;  ///< [tree][leaf * stride + place]
+  double log_likelihood = 0.0;                      ///< sum over the samples, for progress only
+  double weight = 0.0;                              ///< of all samples
+
+  static void visit_fields(auto&& visit, auto&... of) {
+    visit("of trees", of.of_trees...)("log likelihood", of.log_likelihood...)("weight", of.weight...);
+  }
+};
+
+/// A person from whom the regression of headings is learned.
+struct FacingSample {
+  std::vector<float> features;  ///< FacingEvidence::features
+  int heading = 0;              ///< the true one
+
+  static void visit_fields(auto&& visit, auto&... of) { visit("features", of.features...)("heading", of.heading...); }
+};
 
 }  // namespace vesalius

@@ -47,12 +47,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <vector>
 
-#include "train/messages/entropy_table.h"
 #include "train/messages/grow_options.h"
-#include "train/messages/leaf_messages.h"
 #include "train/messages/training_messages.h"
 #include "vesalius/error.h"
 #include "vesalius/forest.h"

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "train/messages/training_messages.h"
 #include "train/samples/depth_tiles.h"
 #include "train/samples/huge_buffer.h"
 #include "vesalius/camera.h"
@@ -97,6 +98,26 @@ class FrameUnpacker {
   std::size_t frame_ = 0;
   std::optional<TiledDepth> unpacked_;  ///< the unpacked `frame_`
   std::vector<std::uint16_t> tiles_;
+};
+
+/// Prefetches the next frame's depth, a few cache lines with every sample of the current frame, because unpacking it
+/// would otherwise wait for memory. Results do not depend on it.
+class FramePrefetcher {
+ public:
+  FramePrefetcher(const FrameStore& frames, std::span<const TrainingSample> samples);
+
+  /// Prefetches; called before sample `index` is read. Indices increase by one.
+  void step(std::size_t index);
+
+ private:
+  void enter_frame(std::size_t index);
+
+  const FrameStore& frames_;
+  std::span<const TrainingSample> samples_;
+  std::size_t frame_end_ = 0;  ///< first sample of the next frame
+  const char* next_ = nullptr;
+  const char* end_ = nullptr;
+  std::size_t bytes_per_sample_ = 0;
 };
 
 }  // namespace vesalius

@@ -5,7 +5,6 @@
 #include <mutex>
 #include <numeric>
 
-#include "train/samples/sample_logits.h"
 #include "train/samples/walk_samples.h"
 #include "vesalius/parallel.h"
 
