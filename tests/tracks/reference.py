@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Metrics of tracks by other programs, for the same random sequences as training/metrics/track_metrics_test.cpp makes.
 
-CLEAR MOT and IDF1 come from motmetrics. Prints the table of the test; with a path, checks that the test has just these
-numbers.
+CLEAR MOT and IDF1 come from motmetrics, HOTA from trackeval. Prints the table of the test; with a path, checks that the
+test has just these numbers.
 
-Needs a Python with: motmetrics
+Needs a Python with: motmetrics trackeval
 
 usage: reference.py [training/metrics/track_metrics_test.cpp]
 """
@@ -14,6 +14,7 @@ import sys
 
 import motmetrics
 import numpy as np
+from trackeval.metrics import HOTA
 
 SEQUENCES, FRAMES, TRUE_IDS, FOUND_IDS = 3, 60, 4, 6
 
@@ -68,10 +69,23 @@ def clear_and_identity(sequences):
     return table[names].to_numpy(dtype=float)
 
 
+def hota(sequences):
+    metric, results = HOTA(), {}
+    for number, frames in enumerate(sequences):
+        data = {
+            "gt_ids": [f[0] for f in frames], "tracker_ids": [f[1] for f in frames], "similarity_scores": [f[2] for f in frames],
+            "num_gt_dets": sum(len(f[0]) for f in frames), "num_tracker_dets": sum(len(f[1]) for f in frames),
+            "num_gt_ids": TRUE_IDS, "num_tracker_ids": FOUND_IDS, "num_timesteps": len(frames),
+        }
+        results[number] = metric.eval_sequence(data)
+    rows = list(results.values()) + [metric.combine_sequences(results)]
+    return np.array([[np.mean(row["HOTA"])] for row in rows])
+
+
 def main():
     sequences = [sequence(seed) for seed in range(SEQUENCES)]
     with contextlib.redirect_stdout(io.StringIO()):
-        rows = clear_and_identity(sequences)
+        rows = np.hstack([clear_and_identity(sequences), hota(sequences)])
     lines = ["    {" + ", ".join(f"{value:.12g}" for value in row) + "}," for row in rows]
     print("\n".join(lines))
     if len(sys.argv) < 2:

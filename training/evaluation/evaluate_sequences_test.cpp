@@ -153,7 +153,7 @@ TEST(EvaluateSequences, AreTheSameForAnyNumberOfThreads) {
     reports.push_back(evaluation_json(evaluation));
   }
   EXPECT_EQ(reports[0], reports[1]);
-  EXPECT_THAT(reports[0], HasSubstr("\"track.idf1\""));
+  EXPECT_THAT(reports[0], HasSubstr("\"track.hota\""));
 }
 
 // Labels: threads

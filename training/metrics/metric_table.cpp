@@ -46,6 +46,24 @@ Estimate mean_of(Metric metric, const std::vector<Estimate>& members) {
   return mean;
 }
 
+/// Returns for each of `members` the root of its product with what `others` have of the same parameter, 0 if nothing.
+std::vector<Estimate> roots(const std::vector<Estimate>& members, const std::vector<Estimate>& others) {
+  std::vector<Estimate> values;
+  for (const Estimate& member : members) {
+    const Estimate* other = find_estimate(others, others.empty() ? Metric{} : others[0].id.metric, member.id.parameter);
+    const auto value = [&](double first, double second) {
+      if (std::isnan(first)) return kNaN;  // the resample has nobody
+      return std::isnan(second) ? 0.0 : std::sqrt(first * second);
+    };
+    Estimate& result = values.emplace_back(Estimate{member.id});
+    result.value = value(member.value, other != nullptr ? other->value : kNaN);
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      result.replicates.push_back(value(member.replicates[r], other != nullptr ? other->replicates[r] : kNaN));
+    }
+  }
+  return values;
+}
+
 Interval paired_interval(const Estimate& first, const Estimate& second) {
   std::vector<double> differences;
   const std::size_t count = std::min(first.replicates.size(), second.replicates.size());
@@ -134,6 +152,7 @@ std::vector<Estimate> MetricTable::estimates() const {
   std::vector<Estimate> all;
   for (const MetricInfo& metric : kMetrics) {
     std::vector<Estimate> some = estimates_of(metric.mean_of.value_or(metric.metric));
+    if (metric.times) some = roots(estimates_of(*metric.times), some);
     if (metric.mean_of && !some.empty()) some = {mean_of(metric.metric, some)};
     std::ranges::move(some, std::back_inserter(all));
   }

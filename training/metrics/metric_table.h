@@ -78,6 +78,9 @@ enum class Metric {
   track_switches,
   track_ids,
   track_idf1,
+  track_hota,
+  track_det_a_at,  ///< family
+  track_ass_a_at,  ///< family
   joints_jitter,
   joints_true_jitter,
   bones_error,
@@ -103,6 +106,9 @@ struct MetricInfo {
   MetricDirection direction = MetricDirection::higher_is_better;
   MetricKind kind = MetricKind::ratio;
   std::optional<Metric> mean_of = std::nullopt;
+  /// If given, the mean is that of the roots of the products of each of its members and that of `mean_of`, 0 if there
+  /// is none.
+  std::optional<Metric> times = std::nullopt;
 
   constexpr bool is_family() const { return name.find('*') != std::string_view::npos; }
 };
@@ -177,6 +183,9 @@ inline constexpr auto kMetrics = [] {
       {M::track_switches, "track.switches", "id switches", per_person, lower_is_better},
       {M::track_ids, "track.ids", "ids", per_person, lower_is_better},
       {M::track_idf1, "track.idf1", "IDF1"},
+      {M::track_hota, "track.hota", "HOTA", share, higher_is_better, mean, M::track_ass_a_at, M::track_det_a_at},
+      {M::track_det_a_at, "track.det_a.at_*", "DetA by threshold"},
+      {M::track_ass_a_at, "track.ass_a.at_*", "AssA by threshold"},
       {M::joints_jitter, "joints.jitter_mm_s2", "jitter", mm_per_s2, lower_is_better},
       {M::joints_true_jitter, "joints.true_jitter_mm_s2", "jitter of the truth", mm_per_s2, lower_is_better},
       {M::bones_error, "bones.error", "error of bones' lengths", share, lower_is_better},

@@ -99,6 +99,15 @@ TEST(MetricTable, RefusesTermsThatAreNotFinite) {
   EXPECT_TRUE(table.estimates().empty());
 }
 
+TEST(MetricTable, MeansRootsOfProductsOverTheMembersOfOneFamily) {
+  MetricTable table;
+  table.add(1, {{{Metric::track_det_a_at, 0, "0.05"}, 1.0, 4.0},
+                {{Metric::track_ass_a_at, 0, "0.05"}, 1.0, 1.0},
+                {{Metric::track_det_a_at, 1, "0.10"}, 0.0, 4.0}});
+  const std::vector<Estimate> estimates = table.estimates();
+  EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_hota)->value, 0.25);  // sqrt(1/4 * 1) and 0
+}
+
 using Verdict = Comparison::Verdict;
 
 /// Returns a metric over `frames` frames whose values have a spread of 0.1, which is the same for every `shift`.

@@ -23,6 +23,9 @@ constexpr double kTrackSimilarity = 0.5;
 /// How similar two people are by their trunks: 1 at one place, falling to 0 at this distance in metres.
 constexpr double kTrunkReach_m = 1.0;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr int kThresholds = 19;
+
+double threshold_of(int place) { return 0.05 * (place + 1); }
 
 double count(const std::vector<int>& ids) { return double(ids.size()); }
 
@@ -87,6 +90,17 @@ class ClearMot {
   std::map<int, Person> people_;
 };
 
+/// The numbers of frames that true and found ids share.
+struct SharedFrames {
+  Eigen::MatrixXd both;  ///< [true id][found id]
+  Eigen::VectorXd of_truth, of_found;
+
+  SharedFrames(int truth, int found)
+      : both(Eigen::MatrixXd::Zero(truth, found)),
+        of_truth(Eigen::VectorXd::Zero(truth)),
+        of_found(Eigen::VectorXd::Zero(found)) {}
+};
+
 /// Calls `use(true person, found person, index of the true id, of the found id)` for all pairs of a frame.
 template <class Use>
 void for_pairs(const TrackSample& sample, const IdIndex& truth, const IdIndex& found, const Use& use) {
@@ -116,6 +130,84 @@ void add_identity(const std::vector<TrackSample>& sequence, std::vector<MetricTe
     terms[frame].push_back({Metric::track_idf1, 2.0 * right, count(sample.truth) + count(sample.found)});
   }
 }
+
+/// HOTA of a sequence: one match of each frame for all thresholds, by similarity and by how well ids agree over all.
+class Hota {
+ public:
+  explicit Hota(const std::vector<TrackSample>& sequence)
+      : sequence_(sequence), truth_(sequence, &TrackSample::truth), found_(sequence, &TrackSample::found) {
+    const Eigen::MatrixXd agreement = ids_agree();
+    for (const TrackSample& sample : sequence_) {
+      Eigen::MatrixXd cost = sample.similarity;
+      for_pairs(sample, truth_, found_, [&](Eigen::Index t, Eigen::Index f, int true_id, int found_id) {
+        cost(t, f) *= -agreement(true_id, found_id);
+      });
+      matches_.push_back(assign_pairs(cost));
+    }
+  }
+
+  void add(int place, std::vector<MetricTerms>& terms) const {
+    const double threshold = threshold_of(place);
+    SharedFrames shared(truth_.size(), found_.size());
+    for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
+      for (const int id : sequence_[frame].truth) shared.of_truth[truth_.of(id)] += 1.0;
+      for (const int id : sequence_[frame].found) shared.of_found[found_.of(id)] += 1.0;
+      for_matches(frame, threshold, [&](int true_id, int found_id) { shared.both(true_id, found_id) += 1.0; });
+    }
+    const std::string parameter = fmt::format("{:.2f}", threshold);
+    const auto id = [&](Metric metric) { return MetricId(metric, place, parameter); };
+    for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
+      double matched = 0.0, associated = 0.0;
+      for_matches(frame, threshold, [&](int true_id, int found_id) {
+        const double both = shared.both(true_id, found_id);
+        matched += 1.0;
+        associated += both / (shared.of_truth[true_id] + shared.of_found[found_id] - both);
+      });
+      const double all = count(sequence_[frame].truth) + count(sequence_[frame].found) - matched;
+      terms[frame].push_back({id(Metric::track_det_a_at), matched, all});
+      terms[frame].push_back({id(Metric::track_ass_a_at), associated, matched});
+    }
+  }
+
+ private:
+  /// Returns for each pair of ids the share of their frames in which they are the same person, each frame weighted by
+  /// how much more similar they are than others.
+  Eigen::MatrixXd ids_agree() const {
+    SharedFrames shared(truth_.size(), found_.size());
+    for (const TrackSample& sample : sequence_) {
+      for (const int id : sample.truth) shared.of_truth[truth_.of(id)] += 1.0;
+      for (const int id : sample.found) shared.of_found[found_.of(id)] += 1.0;
+      const Eigen::VectorXd of_truth = sample.similarity.rowwise().sum();
+      const Eigen::RowVectorXd of_found = sample.similarity.colwise().sum();
+      for_pairs(sample, truth_, found_, [&](Eigen::Index t, Eigen::Index f, int true_id, int found_id) {
+        const double similar = sample.similarity(t, f);
+        const double either = of_truth[t] + of_found[f] - similar;
+        if (either > kEpsilon) shared.both(true_id, found_id) += similar / either;
+      });
+    }
+    for (Eigen::Index t = 0; t < shared.both.rows(); ++t) {
+      for (Eigen::Index f = 0; f < shared.both.cols(); ++f) {
+        shared.both(t, f) /= shared.of_truth[t] + shared.of_found[f] - shared.both(t, f);
+      }
+    }
+    return shared.both;
+  }
+
+  template <class Use>
+  void for_matches(std::size_t frame, double threshold, const Use& use) const {
+    const TrackSample& sample = sequence_[frame];
+    for (std::size_t t = 0; t < sample.truth.size(); ++t) {
+      const int f = matches_[frame][t];
+      if (f < 0) continue;
+      if (sample.similarity(static_cast<Eigen::Index>(t), f) < threshold - kEpsilon) continue;
+      use(truth_.of(sample.truth[t]), found_.of(sample.found[f]));
+    }
+  }
+
+  const std::vector<TrackSample>& sequence_;
+  IdIndex truth_, found_;
+  std::vector<std::vector<int>> matches_;  ///< [frame][true person]
+};
 
 void check(const TrackSample& sample) {
   const Eigen::MatrixXd& similarity = sample.similarity;
@@ -281,6 +373,8 @@ std::vector<MetricTerms> track_terms(const std::vector<TrackSample>& sequence) {
   for (std::size_t frame = 0; frame < sequence.size(); ++frame) clear.add(sequence[frame], frame, terms[frame]);
   clear.finish(terms);
   add_identity(sequence, terms);
+  const Hota hota(sequence);
+  for (int place = 0; place < kThresholds; ++place) hota.add(place, terms);
   return terms;
 }
 

@@ -36,6 +36,7 @@ class TrackMatcher {
 /// - CLEAR MOT by TrackMatcher: track.mota, missed, false, switches; ids of a true person.
 /// - IDF1 (E. Ristani et al. 2016): one found id for each true one over the sequence, such that as many frames as
 ///   possible are right.
+/// - HOTA, of DetA and AssA at the thresholds .05 to .95 (J. Luiten et al. 2021).
 std::vector<MetricTerms> track_terms(const std::vector<TrackSample>& sequence);
 
 /// The people of a frame who take part in the metrics of tracks.

@@ -63,21 +63,22 @@ std::vector<TrackSample> found_as(const std::vector<int>& ids) {
 }
 
 TEST(TrackMetrics, AreThoseOfOtherPrograms) {
-  // Of motmetrics: MOTA, missed, false, switches, IDF1. Rows: the sequences of seeds 0, 1, 2 and all of them.
-  // tests/tracks/reference.py prints and checks the table.
-  constexpr std::array<std::array<double, 5>, 4> kExpected{{
-      {-0.143617021277, 51, 121, 43, 0.27802690583},
-      {-0.273224043716, 55, 131, 47, 0.27149321267},
-      {-0.106060606061, 64, 101, 54, 0.290993071594},
-      {-0.17223198594, 170, 353, 144, 0.280090840273},
+  // Of motmetrics: MOTA, missed, false, switches, IDF1; of trackeval: HOTA. Rows: the sequences of seeds 0, 1, 2 and
+  // all of them. tests/tracks/reference.py prints and checks the table.
+  constexpr std::array<std::array<double, 6>, 4> kExpected{{
+      {-0.143617021277, 51, 121, 43, 0.27802690583, 0.212829909636},
+      {-0.273224043716, 55, 131, 47, 0.27149321267, 0.194974231278},
+      {-0.106060606061, 64, 101, 54, 0.290993071594, 0.214622557803},
+      {-0.17223198594, 170, 353, 144, 0.280090840273, 0.20774585111},
   }};
   MetricTable all;
-  const auto check = [](const MetricTable& table, const std::array<double, 5>& expected) {
+  const auto check = [](const MetricTable& table, const std::array<double, 6>& expected) {
     const std::vector<Estimate> estimates = table.estimates();
     const auto value = [&](Metric metric) { return find_estimate(estimates, metric)->value; };
     const auto numerator = [&](Metric metric) { return find_estimate(estimates, metric)->numerator; };
-    const std::array found{value(Metric::track_mota), numerator(Metric::track_missed), numerator(Metric::track_false),
-                           numerator(Metric::track_switches), value(Metric::track_idf1)};
+    const std::array found{value(Metric::track_mota),      numerator(Metric::track_missed),
+                           numerator(Metric::track_false), numerator(Metric::track_switches),
+                           value(Metric::track_idf1),      value(Metric::track_hota)};
     for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-9) << "column " << i;
   };
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
@@ -119,6 +120,7 @@ TEST(TrackMetrics, CountPeopleInEmptyFramesAsFalse) {
   const std::vector<Estimate> estimates = table.estimates();
   EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_false)->value, 0.5);
   EXPECT_EQ(find_estimate(estimates, Metric::track_mota), nullptr);
+  EXPECT_DOUBLE_EQ(find_estimate(estimates, Metric::track_hota)->value, 0.0);
   EXPECT_TRUE(track_terms({}).empty());
 }
 
