@@ -45,7 +45,7 @@ class HueAppearance : public Appearance {
 /// Hue as above, apart for plain, rough and striped surroundings: the paper's example of another feature.
 class TextureAppearance : public Appearance {
  public:
-  static constexpr int kLevels = 3;  ///< of the mean step of lightness between neighbours
+  static constexpr int kLevels = 3;  ///< levels of the mean step of lightness between neighbours
 
   int classes() const override { return kLevels * HueAppearance::kClasses; }
   std::vector<std::uint16_t> describe(const Frame& frame) const override;

@@ -130,9 +130,9 @@ struct FitOptions {
   float surface_m = 0.025F;     ///< standard deviation of points about the flesh's surface
   float outline_m = 0.06F;      ///< standard deviation of flesh beyond the outline
   float free_m = 0.06F;         ///< standard deviation of flesh in space that the camera sees is free
-  float outline_weight = 0.3F;  ///< of those two, for each of three places of a bone
-  float pose_weight = 0.5F;     ///< of the poses' distribution
-  float shape_weight = 1.F;     ///< of the bodies' distribution
+  float outline_weight = 0.3F;  ///< weight of those two, for each of three places of a bone
+  float pose_weight = 0.5F;     ///< weight of the poses' distribution
+  float shape_weight = 1.F;     ///< weight of the bodies' distribution
   float follow_m = 0.02F;       ///< standard deviation of the root from its expected place after a thirtieth second
   float ground_m = 0.05F;       ///< standard deviation of flesh below the ground, and of the lowest foot above it
   float walk_cost = 200.F;      ///< squared deviations that walking backwards costs

@@ -272,7 +272,7 @@ typedef struct vesalius_person {
   int32_t box_width;
   int32_t box_height;
   float yaw_rad;          ///< which way the person faces: 0 the camera, positive turned to the own left; NaN if unknown
-  float velocity_m_s[3];  ///< of the trunk, metres a second, optical frame; NaN from a detector
+  float velocity_m_s[3];  ///< velocity of the trunk, metres a second, optical frame; NaN from a detector
   int32_t stance;         ///< VESALIUS_STANCE_*
   float stature_m;        ///< height standing upright, metres, by the fitted body; NaN without one
 } vesalius_person;

@@ -27,7 +27,7 @@ inline const char* set_or_usual(const char* joint_set) { return joint_set != nul
 
 struct vesalius_options {
   vesalius::PeopleOptions values;
-  std::vector<vesalius::OptionText> texts;  ///< of the values
+  std::vector<vesalius::OptionText> texts;  ///< texts of the values
 };
 struct vesalius_detector {
   std::shared_ptr<const vesalius::c::SharedDetector> shared;

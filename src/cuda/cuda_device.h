@@ -34,7 +34,7 @@ struct KernelFacts {
   std::string name;
   int registers = 0;
   std::size_t shared_bytes = 0, local_bytes = 0;
-  float occupancy = 0.F;  ///< of blocks of 256 threads, 0-1
+  float occupancy = 0.F;  ///< occupancy of blocks of 256 threads, 0-1
 };
 
 /// Returns this for kernels on card `number`. Throws DeviceError as open_cuda_device.

@@ -17,7 +17,7 @@
 namespace vesalius::gpu {
 
 struct DeviceLabellerOptions {
-  unsigned threads = 256;  ///< of a block, kLeastThreads to kMostThreads
+  unsigned threads = 256;  ///< threads of a block, kLeastThreads to kMostThreads
   /// Most pixels that one stream works on at a time; a picture with more is worked on alone.
   std::uint32_t batch_pixels = 1U << 21U;
 };

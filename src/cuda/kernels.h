@@ -39,7 +39,7 @@ inline constexpr int kLeafClasses = 4;
 
 /// Where a tree is among all.
 struct TreePlace {
-  std::uint32_t word = 0;       ///< of its root (PackedTree)
+  std::uint32_t word = 0;       ///< the word of its root (PackedTree)
   std::uint32_t leaf = 0;       ///< its first
   std::uint32_t link_bits = 0;  ///< 0 for nodes of four words
 };

@@ -6,7 +6,7 @@ namespace vesalius::gpu {
 struct LaunchShape {
   unsigned blocks_x = 1;
   unsigned blocks_y = 1;
-  unsigned threads = 256;  ///< of a block
+  unsigned threads = 256;  ///< threads of a block
 };
 
 /// Most threads of a block: what every card of the last fifteen years can do.

@@ -38,7 +38,7 @@ struct PeopleRecord {
 
 struct RecordOptions {
   bool smoothed = false;  ///< take the smoothed joints of people who are followed
-  double rate_hz = 30.0;  ///< of frames without times
+  double rate_hz = 30.0;  ///< rate of frames without times
 };
 
 /// Reads the lines of `vesalius detect --json`, with or without --track. A closing line may be missing. Throws Error

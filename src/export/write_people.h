@@ -39,16 +39,16 @@ std::string to_glb(const std::vector<MovingSkeleton>& skeletons);
 
 /// What is asked of a format.
 struct ExportRequest {
-  std::size_t set = 0;        ///< of joints, for formats that have one
+  std::size_t set = 0;        ///< set of joints, for formats that have one
   std::optional<int> person;  ///< only this one, for formats of one person
-  std::string name;           ///< of the file
+  std::string name;           ///< name of the file
   std::string source;         ///< what the record was read from
 };
 
 /// A format of other programs. `vesalius export` has those of export_formats.
 struct ExportFormat {
   std::string name;    ///< as --format takes it
-  std::string ending;  ///< of files that tell the format by their names; empty where it must be asked for
+  std::string ending;  ///< ending of files that tell the format by their names; empty where it must be asked for
   std::string joints;  ///< usual joint set; empty for formats without one
   bool of_one;         ///< whether it can have one person alone
   /// Returns whom to write a file each; null where one file has everybody.

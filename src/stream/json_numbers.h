@@ -10,7 +10,7 @@
 
 namespace vesalius {
 
-inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< of a radian
+inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< degrees of a radian
 
 /// Rounds to a tenth of a millimetre where the unit is a metre: no sensor knows more. What was read from a text with so
 /// many digits as a float becomes the double nearest to the text.

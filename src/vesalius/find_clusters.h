@@ -20,7 +20,7 @@ struct PartCluster {
   float area_m2 = 0.F;   ///< sum of the pixels' areas perpendicular to the viewing direction
   Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
   Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
-  Eigen::Vector3f eigenvalues = Eigen::Vector3f::Zero();  ///< of the covariance, largest first, square metres
+  Eigen::Vector3f eigenvalues = Eigen::Vector3f::Zero();  ///< those of the covariance, largest first, m²
   float extent_m = 0.F;  ///< length of the rod with the variance of the first axis: sqrt(12 * eigenvalue)
 };
 

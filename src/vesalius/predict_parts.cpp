@@ -15,7 +15,7 @@ using Eigen::Matrix3Xd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kRounds = 4;  ///< of turning and reweighting; more change no place by more than some millimetres
+constexpr int kRounds = 4;  ///< rounds of turning and reweighting; more change no place by more than some millimetres
 /// A known part this far from where the others expect it counts half: three times the usual error of a centre.
 constexpr double kHalfTrusted_m = 0.15;
 /// How far the known parts' mean may lie from where it belongs, standard deviation.

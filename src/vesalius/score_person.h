@@ -14,7 +14,7 @@
 
 namespace vesalius {
 
-inline constexpr float kUsualArea_m2 = 0.45F;  ///< of a person's mask: a standing adult's front
+inline constexpr float kUsualArea_m2 = 0.45F;  ///< usual area of a person's mask: a standing adult's front
 inline constexpr float kBendReach_m = 0.15F;   ///< a limb's radius and more
 
 /// The evidence that a grown mask and its skeleton are a person. Numbers without a unit are 0-1.

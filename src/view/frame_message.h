@@ -17,7 +17,7 @@ namespace vesalius {
 
 /// What the page shows of one frame.
 struct ViewedFrame {
-  int number = 0;     ///< of the frames that were detected, from 1
+  int number = 0;     ///< number of the frames that were detected, from 1
   double at_s = 0.0;  ///< its place in the source
   std::shared_ptr<const Frame> frame;
   TrackedFrame people;

@@ -11,7 +11,7 @@ namespace vesalius {
 
 /// How things stand, besides the player.
 struct ViewerState {
-  double frames_per_s = 0.0;        ///< of the detector, over the last second
+  double frames_per_s = 0.0;        ///< frames a second of the detector, over the last second
   int frames = 0;                   ///< that were detected
   int dropped = 0;                  ///< that were not, since newer ones had come or the camera was not asked in time
   std::optional<double> result_ms;  ///< from a frame's arrival to its people, median of the last ones

@@ -70,7 +70,7 @@ class ClusterExecutor : public Executor {
   ClusterPlan plan_;
   std::vector<std::uint64_t> first_frames_;
   std::vector<PreparedShard> prepared_;
-  std::vector<HardCounts> hard_;  ///< of each shard, counted last
+  std::vector<HardCounts> hard_;  ///< hard samples of each shard, counted last
   Forest hard_forest_;
   std::string sets_ = "sets-0";
 };

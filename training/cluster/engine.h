@@ -35,7 +35,7 @@ struct EngineOptions {
   int reduce_tasks = 1;
   int task_threads = 1;  ///< threads of a task
   bool combine = true;
-  int attempts = 4;                    ///< of a task, before the job fails
+  int attempts = 4;                    ///< attempts of a task, before the job fails
   double answer_s = 30.0;              ///< time within which the engine's commands must answer
   std::vector<std::string> arguments;  ///< more for sbatch, for Hadoop's streaming, or for the script
   std::function<void(const JobProgress&)> tell = [](const JobProgress& /*progress*/) {};

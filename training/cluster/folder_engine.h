@@ -20,10 +20,10 @@ class FolderEngine : public Engine {
   /// Some tasks of a job, by their numbers.
   struct Tasks {
     std::string job;     ///< its name
-    std::string folder;  ///< of these tasks, a path
+    std::string folder;  ///< folder of these tasks, a path
     std::string kind;    ///< "map" or "reduce"
     int all = 0;
-    std::vector<int> numbers;  ///< of the tasks that are not done
+    std::vector<int> numbers;  ///< numbers of the tasks that are not done
   };
 
   /// Runs `bash FOLDER/task.sh KIND NUMBER` for each task and returns when all have ended. Whether they succeeded is

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x534D5356;  // "VSMS"
 constexpr std::uint16_t kVersion = 2;
-constexpr int kLevel = 1;  ///< of compression: messages are written and read once
+constexpr int kLevel = 1;  ///< level of compression: messages are written and read once
 constexpr std::size_t kLargest = std::size_t{1} << 32U;
 
 std::string in_base64(const std::string& bytes) {

@@ -58,7 +58,7 @@ class TestHdfs {
   bool loses_rename_answer = false;   ///< once
   bool knows_rename_options = true;
   std::vector<std::string> requests;  ///< operations so far; those of the data node end in "+"
-  std::string user;                   ///< of the last request to the name node
+  std::string user;                   ///< user of the last request to the name node
 
  private:
   using Socket = boost::asio::ip::tcp::socket;

@@ -32,7 +32,7 @@ enum class JobKind : std::uint8_t {
 struct TreeRequest {
   int number = 0;
   OpenTree open;
-  std::vector<LevelNode> nodes;     ///< of the level; empty for kCount
+  std::vector<LevelNode> nodes;     ///< nodes of the level; empty for kCount
   std::vector<std::int32_t> large;  ///< for kCount the children to count; for kRows the nodes that have ranks
   /// For kRows: samples of each large node in all shards before one: [shard * large.size() + index in large].
   std::vector<std::int64_t> before;
@@ -49,7 +49,7 @@ std::vector<NodeRange> row_groups(const std::vector<LevelNode>& nodes, const Spl
 /// Nodes of one tree whose subtrees one task grows.
 struct SubtreeRequest {
   std::int32_t tree = 0;                               ///< index among TrainJob::trees
-  std::vector<std::int32_t> nodes;                     ///< of its level
+  std::vector<std::int32_t> nodes;                     ///< nodes of its level
   std::vector<std::vector<std::int64_t>> counts = {};  ///< [node][class]: its samples
 
   static void visit_fields(auto&& visit, auto&... of) {
@@ -59,7 +59,7 @@ struct SubtreeRequest {
 
 struct TrainJob {
   JobKind kind = JobKind::kPrepare;
-  std::string name;  ///< of the job
+  std::string name;  ///< name of the job
   Forest forest;     ///< what is trained, with trees where the job needs them
   TrainOptions options;
   std::string source;                       ///< kPrepare: how frames are opened
@@ -67,7 +67,7 @@ struct TrainJob {
   std::string new_sets;                     ///< where kPrepare and kHarden write them
   std::vector<std::uint64_t> first_frames;  ///< [shard] and behind the last one
   std::uint64_t background_frames = 0;      ///< frames of the shards that the driver prepared itself
-  SampleCounts samples;                     ///< of all shards
+  SampleCounts samples;                     ///< samples of all shards
   std::vector<TreeRequest> trees;
   std::vector<SubtreeRequest> subtrees;
   std::vector<HardCut> cuts;  ///< kHarden: [shard]

@@ -224,7 +224,7 @@ class WebHdfsStore::Call {
 
   const WebOptions options_;
   const std::string shown_;
-  const std::string url_;  ///< of the name node; an operation can be appended
+  const std::string url_;  ///< url of the name node; an operation can be appended
   WebConnection connection_;
 };
 

@@ -35,7 +35,7 @@ class DeviceTreeShard {
     LevelNode all;
     std::int64_t first_rank = 0;
     std::uint32_t begin = 0, size = 0;        ///< in `order_`
-    std::int64_t row_begin = 0, row_end = 0;  ///< of its counted samples
+    std::int64_t row_begin = 0, row_end = 0;  ///< rows of its counted samples
   };
 
   /// Memory that requests use; it is kept for the next.

@@ -137,7 +137,7 @@ struct CountNode {
 
 struct Histograms {
   const CountNode* nodes = nullptr;
-  std::uint32_t* counts = nullptr;  ///< of each node [class][bin][pair of candidates], the first in the low half
+  std::uint32_t* counts = nullptr;  ///< counts of each node [class][bin][pair of candidates], the first in the low half
   std::int32_t padded = 0;
 };
 
@@ -193,7 +193,7 @@ struct CollectArguments {
 struct PlainNode {
   std::int16_t du1 = 0, dv1 = 0, du2 = 0, dv2 = 0;
   std::int16_t threshold_mm = 0;
-  std::uint16_t divided = 0;  ///< of a level's nodes: whether they have a split
+  std::uint16_t divided = 0;  ///< whether a level's nodes have a split
   std::int32_t left = 0, right = 0;
 };
 
@@ -296,7 +296,7 @@ using TrainKernels =
 
 /// What a block has room for in shared memory.
 inline constexpr unsigned kSharedCounts = 4096;
-inline constexpr unsigned kMostCandidates = 64;  ///< of a block of candidates (kBlockCandidates)
+inline constexpr unsigned kMostCandidates = 64;  ///< most candidates of a block (kBlockCandidates)
 inline constexpr unsigned kMostBins = 32;
 inline constexpr unsigned kMostClasses = 256;
 

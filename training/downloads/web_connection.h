@@ -23,7 +23,7 @@ struct WebOptions {
 
 /// What a web server answered, or why none did.
 struct WebAnswer {
-  int status = 0;            ///< of HTTP; 0 if no whole answer came
+  int status = 0;            ///< status of HTTP; 0 if no whole answer came
   std::string body;          ///< also what came of one that was cut off
   std::string location;      ///< address to which the server redirects, else empty
   std::string problem;       ///< one line saying why no whole answer came, else empty

@@ -148,7 +148,7 @@ class SetEvaluation {
 
 /// What a block of consecutive frames adds to the metrics.
 struct Block {
-  std::string name;  ///< of its first frame
+  std::string name;  ///< name of its first frame
   MetricTerms terms;
 };
 
@@ -340,7 +340,7 @@ class SequencesEvaluation {
   const EvaluationHooks& hooks_;
   std::atomic<int> next_ = 0;  ///< recording that the next free thread takes
   std::atomic<bool> stopped_ = false;
-  std::mutex mutex_;  ///< of all below, and of the hooks
+  std::mutex mutex_;  ///< guards all below, and the hooks
   int done_ = 0;
   std::map<int, SequenceResult> results_;  ///< by the order of the recordings
   std::set<std::string> failures_;

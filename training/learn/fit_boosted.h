@@ -11,8 +11,8 @@ namespace vesalius {
 struct BoostOptions {
   int trees = 1600;
   double rate = 0.03;          ///< share of a tree's step that is taken
-  double sample_share = 0.7;   ///< of the samples that a tree sees
-  double feature_share = 0.6;  ///< of the features that a tree may ask for
+  double sample_share = 0.7;   ///< share of the samples that a tree sees
+  double feature_share = 0.6;  ///< share of the features that a tree may ask for
   double ridge = 10.0;         ///< on values of leaves, in samples
   int least_samples = 60;      ///< fewest samples of a leaf: of fewer, rooms are learned by heart
 };

@@ -24,7 +24,7 @@ constexpr std::size_t kLeastPeople = 100;
 constexpr float kOnPart_m = 0.2F;
 /// Standard deviation along an axis of the centres observed on their part.
 constexpr float kNoise_m = 0.04F;
-constexpr int kRounds = 8;  ///< of turning all bodies onto their mean
+constexpr int kRounds = 8;  ///< rounds of turning all bodies onto their mean
 
 bool complete(const KnownPerson& person) {
   return !person.part_centres.empty() &&

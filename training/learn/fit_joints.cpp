@@ -18,7 +18,7 @@ namespace {
 /// Errors up to this are those of places, beyond it more and more those of labels: half of the distance at which a
 /// joint counts as right.
 constexpr double kHuber_m = 0.05;
-constexpr int kRounds = 12;  ///< of reweighting; the weights change by less than a thousandth after ten
+constexpr int kRounds = 12;  ///< rounds of reweighting; the weights change by less than a thousandth after ten
 constexpr std::size_t kMostTerms = 3;
 /// Share of the loss that another part must save.
 constexpr double kLeastGain = 0.02;

@@ -288,7 +288,8 @@ class MetricTable {
 
 /// One metric of two evaluations.
 struct Comparison {
-  enum class Verdict { better, worse, same };  ///< of the second one; same if the interval of the difference contains 0
+  /// What is said of the second one; same if the interval of the difference contains 0.
+  enum class Verdict { better, worse, same };
   MetricId id;
   double first = 0.0;
   double second = 0.0;

@@ -36,7 +36,7 @@ struct MotionStep {
   std::vector<Eigen::Vector3f> truth;  ///< joints, metres, in a frame of axes that keeps still; NaN = not known
   std::vector<Eigen::Vector3f> found;  ///< the same joints as found, NaN = not found
   BoneLengths true_bones_m{}, found_bones_m{};
-  int id = 0;         ///< of whom the joints were found; 0 = nobody was
+  int id = 0;         ///< id of the person whose joints were found; 0 = nobody's were
   int track_age = 0;  ///< frames since this id was first there, from 0
 };
 /// One true person over a sequence, by frame.

@@ -15,7 +15,7 @@ namespace vesalius {
 struct PartCounts {
   int visible = 0;
   int right = 0;
-  int visible_upper = 0;  ///< of these, parts of the upper body
+  int visible_upper = 0;  ///< those of them that are parts of the upper body
   int right_upper = 0;
 };
 

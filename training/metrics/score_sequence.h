@@ -58,7 +58,7 @@ class SequenceScorer {
   std::vector<TrackSample> samples_;        ///< [frame]
   std::vector<MetricTerms> terms_;          ///< [frame]
   std::map<int, PersonMotion> people_;      ///< by true id
-  std::map<int, std::size_t> first_frame_;  ///< of each found id
+  std::map<int, std::size_t> first_frame_;  ///< first frame of each found id
   std::vector<TrustSample> trust_samples_;
   std::vector<StanceSample> stance_samples_;
 };

@@ -16,7 +16,7 @@ struct GivenPoints {
   int right = 0;     ///< within the tolerance of their own truth
   int mirrored = 0;  ///< not right, and within the tolerance of their partner's truth
   int paired = 0;    ///< points whose truth is known on both sides
-  int swapped = 0;   ///< of the paired ones, those nearer to their partner's truth than to their own
+  int swapped = 0;   ///< paired ones that are nearer to their partner's truth than to their own
 };
 
 /// Counts the points of `found` (NaN = not given out) whose truth is known. All have the order of `names`, in metres.

@@ -41,7 +41,7 @@ struct Totals {
   int frames_with_people = 0;
   int failed = 0;
   int dropped = 0;
-  std::set<int> ids;  ///< of people who were followed, without those of whom one frame's guess was all
+  std::set<int> ids;  ///< ids of people who were followed, without those of whom one frame's guess was all
   FrameTimes times;
 };
 

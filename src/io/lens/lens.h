@@ -100,9 +100,10 @@ class Rectification {
   struct Place {
     std::int32_t u = 0, v = 0;
   };
-  int width_, height_;  ///< of the pictures that go in
+  int width_, height_;  ///< width and height of the pictures that go in
   Camera to_;
-  std::vector<Place> places_;  ///< of each pixel that comes out; outside of the picture where the lens does not see
+  /// Where each pixel that comes out was; outside of the picture where the lens does not see.
+  std::vector<Place> places_;
 };
 
 /// Returns what turns pictures of a camera that distorts into those of `to`; nothing if there is none. A camera without

@@ -14,7 +14,7 @@ inline constexpr int kModelVersion = 3;
 /// A section of a model file as its table names it.
 struct ModelSection {
   std::string name;
-  int version = 1;         ///< of the section's content
+  int version = 1;         ///< version of the section's content
   bool skippable = false;  ///< whether a reader that does not know it goes on without it
   std::string made_from;   ///< free text
   std::string_view bytes = {};

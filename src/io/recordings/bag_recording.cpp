@@ -178,7 +178,7 @@ class BagRecording final : public ChunkedRecording {
   std::uint64_t data_at_ = 0;
   std::uint32_t data_length_ = 0;
   std::string header_bytes_;
-  std::optional<Fields> header_;  ///< of the record found last; its texts lie in header_bytes_
+  std::optional<Fields> header_;  ///< header of the record found last; its texts lie in header_bytes_
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace vesalius {
 
 /// A picture as a message has it: sensor_msgs/Image and CompressedImage, foxglove.RawImage and CompressedImage.
 struct PictureMessage {
-  std::int64_t time_ns = 0;  ///< of the header; 0 = not given
+  std::int64_t time_ns = 0;  ///< time of the header; 0 = not given
   std::string frame;         ///< name of the camera's coordinate frame
   bool compressed = false;
   int width = 0, height = 0;    ///< 0 where it is compressed
@@ -29,7 +29,7 @@ struct PictureMessage {
 struct Calibration {
   std::string frame;
   int width = 0, height = 0;
-  std::string model;                    ///< of distortion, e.g. "plumb_bob"
+  std::string model;                    ///< model of distortion, e.g. "plumb_bob"
   std::vector<double> distortion;       ///< all 0 or none = not distorted
   std::array<double, 9> matrix{};       ///< K, of the pictures as they are
   std::array<double, 9> rotation{};     ///< R, from these to the rectified ones; all 0 = not given

@@ -61,9 +61,9 @@ class ChunkedRecording : public Recording {
 
   DataFile file_;
   std::vector<RecordedTopic> topics_;
-  std::uint64_t at_;  ///< of the next record in the file
+  std::uint64_t at_;  ///< place of the next record in the file
   std::string chunk_;
-  std::size_t chunk_at_ = 0;        ///< of the next record in the chunk
+  std::size_t chunk_at_ = 0;        ///< place of the next record in the chunk
   std::vector<Stretch> stretches_;  ///< all with messages, in the order of the file
 
  private:

@@ -38,7 +38,7 @@ class FrameRecorder {
   McapWriter out_;
   double rate_;
   int frames_ = 0;
-  std::int64_t time_ns_ = 0;  ///< of the frame that was added last
+  std::int64_t time_ns_ = 0;  ///< time of the frame that was added last
   std::int64_t log_ns_ = 0;   ///< when it arrived, or the same
   std::optional<std::uint16_t> depth_, camera_, colour_, imu_, index_, parts_, markers_, json_;
 };

@@ -13,7 +13,7 @@ namespace vesalius {
 
 /// What an accelerometer measured: sensor_msgs/Imu. At rest that is 9.8 m/s² away from the ground.
 struct Acceleration {
-  std::int64_t time_ns = 0;                        ///< of the header; 0 = not given
+  std::int64_t time_ns = 0;                        ///< time of the header; 0 = not given
   std::string frame;                               ///< name of the coordinate frame
   Eigen::Vector3d m_s2 = Eigen::Vector3d::Zero();  ///< 0 where the message says that it is not known
 };

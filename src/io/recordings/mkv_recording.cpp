@@ -266,7 +266,7 @@ class MkvRecording final : public Recording {
   std::unique_ptr<AVFormatContext, CloseInput> context_;
   std::unique_ptr<AVPacket, FreePacket> packet_;
   int depth_ = -1, colour_ = -1, imu_ = -1;  ///< tracks; -1 = none
-  const ColourFormat* format_ = nullptr;     ///< of colour; null = MJPEG
+  const ColourFormat* format_ = nullptr;     ///< format of colour; null = MJPEG
   std::int64_t offset_ns_ = 0;               ///< the device's time at the beginning
   std::int64_t first_ns_ = 0, duration_ns_ = 0;
   std::vector<RecordedTopic> topics_;

@@ -97,7 +97,7 @@ template <class Picture>
 struct Newest {
   Picture picture;
   std::int64_t time = 0;
-  int count = 0;  ///< of pictures that came
+  int count = 0;  ///< number of pictures that came
   double arrived_s = 0.0;
 };
 
@@ -225,7 +225,7 @@ class FreenectSource final : public LiveSource {
 
   Context context_;
   std::unique_ptr<freenect_device, CloseDevice> device_;
-  std::mutex mutex_;  ///< of all that follows
+  std::mutex mutex_;  ///< guards all that follows
   std::condition_variable came_;
   Newest<DepthImage> depth_;
   Newest<ColourImage> colour_;

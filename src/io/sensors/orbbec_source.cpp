@@ -368,13 +368,14 @@ class OrbbecSource final : public LiveSource {
   Held<ob::Context> context_;
   Held<ob::Device> device_;
   Held<ob::Pipeline> pipeline_;
-  Held<ob::StreamProfile> grid_;        ///< of the stream on whose grid frames lie
+  Held<ob::StreamProfile> grid_;        ///< the stream on whose grid frames lie
   Held<ob::StreamProfile> depth_mode_;  ///< where that is colour's
   Held<ob::Filter> align_;
   std::optional<OrbbecAccelerometer> acceleration_;
   Camera camera_;
-  std::optional<Rectification> rectification_;  ///< of the stream on whose grid frames lie, where its lens distorts
-  bool is_registered_without_lens_ = false;     ///< whether depth lies on that grid with the lens undone already
+  /// Undoes the lens of that stream where it distorts.
+  std::optional<Rectification> rectification_;
+  bool is_registered_without_lens_ = false;  ///< whether depth lies on that grid with the lens undone already
   bool has_colour_ = false;
   std::int64_t last_index_ = -1;
 };

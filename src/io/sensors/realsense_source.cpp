@@ -289,7 +289,7 @@ class RealsenseSource final : public LiveSource {
   Owned<rs2::Pipeline> pipeline_;
   Owned<rs2::PipelineProfile> profile_{nullptr, nullptr};
   std::optional<RealSenseAccelerometer> acceleration_;
-  Camera camera_;  ///< of frames: the depth camera without its lens
+  Camera camera_;  ///< camera of frames: the depth camera without its lens
   std::optional<Rectification> rectification_;
   std::optional<ColourRegistration> registration_;
   std::int64_t last_number_ = -1;

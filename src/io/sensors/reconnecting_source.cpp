@@ -107,11 +107,11 @@ class ReconnectingSource final : public FrameSource {
 
   std::function<std::unique_ptr<FrameSource>()> open_;
   ReconnectOptions options_;
-  mutable std::mutex mutex_;  ///< of what `stop` and `missed` use: changes of source_, and what follows
+  mutable std::mutex mutex_;  ///< guards what `stop` and `missed` use: changes of source_, and what follows
   std::condition_variable changed_;
   std::unique_ptr<FrameSource> source_;
   bool stopped_ = false;
-  int missed_before_ = 0;  ///< of the sources that were lost
+  int missed_before_ = 0;  ///< frames missed by the sources that were lost
   std::vector<std::string> notes_;
   std::optional<Clock::time_point> lost_since_;
   bool shift_is_old_ = false;

@@ -59,7 +59,7 @@ Camera resolve_camera(const CameraFacts& facts, int width, int height, bool regi
 struct CalibratedCamera {
   Camera pinhole;  ///< that the pictures are of once nothing distorts them
   LensCamera lens;
-  std::string odd_model;  ///< of distortion, where that is not known
+  std::string odd_model;  ///< model of distortion, where that is not known
 };
 
 /// Returns the camera of a calibration. `is_rectified` says that its pictures are those that the calibration turns

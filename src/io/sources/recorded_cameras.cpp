@@ -37,7 +37,7 @@ struct PictureTopic {
   std::string encoding, frame;
   bool compressed = false, depth = false;
   int width = 0, height = 0;  ///< 0 = could not be decoded
-  double time_s = 0.0;        ///< of the picture
+  double time_s = 0.0;        ///< time of the picture
   double recorded_s = 0.0;    ///< when it was recorded
 
   bool is_registered() const { return has_word(topic.name, "aligned") || has_word(topic.name, "registered"); }
@@ -189,7 +189,7 @@ const std::pair<std::string, T>* nearest(const std::vector<std::pair<std::string
 }
 
 struct TopicCamera {
-  std::string topic;  ///< of the calibration
+  std::string topic;  ///< topic of the calibration
   CalibratedCamera camera;
 };
 

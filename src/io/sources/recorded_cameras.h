@@ -17,7 +17,7 @@ struct RecordedCameras {
   struct Depth {
     std::string topic;
     int width = 0, height = 0;
-    double time_s = 0.0;      ///< of the first picture
+    double time_s = 0.0;      ///< time of the first picture
     double recorded_s = 0.0;  ///< when that was recorded
     CameraFacts facts;        ///< as recorded
   };
@@ -25,7 +25,7 @@ struct RecordedCameras {
     std::string topic;
     /// The camera; none where the pictures are pixel by pixel those of the depth camera.
     std::optional<LensCamera> camera;
-    Eigen::Isometry3d colour_from_depth = Eigen::Isometry3d::Identity();  ///< of `camera`, metres
+    Eigen::Isometry3d colour_from_depth = Eigen::Isometry3d::Identity();  ///< transform to `camera` from depth, metres
     /// The lens of pictures on the grid of depth, where it distorts.
     std::optional<LensCamera> distorted;
   };

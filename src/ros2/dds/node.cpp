@@ -253,7 +253,7 @@ class Participant {
   std::shared_ptr<Domain> domain_;
   std::size_t gid_bytes_;
   dds_entity_t entity_ = 0, waitset_ = 0, publications_ = 0, discovery_ = 0;
-  std::mutex mutex_;  ///< of the entities
+  std::mutex mutex_;  ///< guards the entities
   NodeEntities entities_;
 };
 

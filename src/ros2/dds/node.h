@@ -27,7 +27,7 @@ inline constexpr int kMostDomain = 232;
 
 /// How messages of a topic are handed over.
 struct Qos {
-  bool reliable = true;  ///< of a reader: only with writers that are; of a writer: for readers of either kind
+  bool reliable = true;  ///< a reader hears only writers that are; a writer serves readers of either kind
   bool latched = false;  ///< whoever comes late gets the last message ("transient local")
   int depth = 10;        ///< messages that are kept for whoever is slow, or to be sent again
 };

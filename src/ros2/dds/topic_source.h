@@ -60,8 +60,8 @@ class TopicSource final : public FrameSource {
   double found_s_ = 0.0;  ///< when depth was found; 0 = not yet
   double last_s_;         ///< when a frame came, or the waiting began
   bool said_silent_ = false;
-  mutable std::mutex mutex_;                          ///< of the stamps
-  std::deque<std::pair<std::string, Stamp>> stamps_;  ///< of the last frames, by name
+  mutable std::mutex mutex_;                          ///< guards the stamps
+  std::deque<std::pair<std::string, Stamp>> stamps_;  ///< stamps of the last frames, by name
 };
 
 }  // namespace vesalius::ros2

@@ -61,7 +61,7 @@ class Assignment {
 
   const Eigen::MatrixXd& cost_;
   std::vector<double> row_price_, column_price_;
-  std::vector<int> row_of_;  ///< of each column, or -1
+  std::vector<int> row_of_;  ///< the row of each column, or -1
 };
 
 }  // namespace

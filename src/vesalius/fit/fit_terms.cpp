@@ -26,7 +26,7 @@ constexpr double kBelowLimit = 6.0;  // the same of flesh below the ground, wher
 /// The flesh of a bone at a place along it.
 struct CrossSection {
   std::array<double, 2> centre, half;
-  std::array<double, FleshBone::kStations> share;  ///< of each station
+  std::array<double, FleshBone::kStations> share;  ///< share of each station
 };
 
 CrossSection section_at(const PlacedBone& placed, const FleshBone& bone, double along) {
@@ -138,7 +138,7 @@ PartSurface::PartSurface(const BodyModel& body, const FleshModel& flesh) : of_pa
 /// How a point lies to the flesh of a stretch of a bone.
 struct FitTerms::Hit {
   double distance = 0.0;  ///< outside of the surface, metres
-  Vector3d normal;        ///< of the surface, optical frame
+  Vector3d normal;        ///< normal of the surface, optical frame
   double along = 0.0;     ///< beyond the stretch's nearer end, metres, away from the bone's head positive
   double end = 0.0;       ///< which end: place along the bone
   double side = 0.0;      ///< on the wrong side of the middle, metres, not below 0

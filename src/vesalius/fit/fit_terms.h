@@ -14,7 +14,7 @@
 
 namespace vesalius {
 
-inline constexpr float kPointWeight = 0.2F;  ///< of a point, since neighbours err alike
+inline constexpr float kPointWeight = 0.2F;  ///< weight of a point, since neighbours err alike
 inline constexpr float kMirrorCost = 3.F;    ///< squared deviations that a label on the wrong side costs
 
 /// The bones whose surface belongs to each part.
@@ -33,7 +33,7 @@ struct PartSurface {
 /// The level ground in the optical frame.
 struct Ground {
   Eigen::Vector3d up{0.0, -1.0, 0.0};  ///< unit vector
-  double height_m = 0.0;               ///< of the camera above the ground
+  double height_m = 0.0;               ///< height of the camera above the ground
 
   double height_of(const Eigen::Vector3d& point) const { return height_m + up.dot(point); }
 };
@@ -42,7 +42,7 @@ struct Ground {
 struct ExpectedBody {
   std::optional<Ground> ground;                        ///< below which no flesh is, and on which most people stand
   std::optional<BodyState> pose;                       ///< where the person is expected in this frame
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the trunk, metres a second
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< velocity of the trunk, metres a second
   int start = 0;                                       ///< which of kStarts is tried besides the pose; -1: none
   double loosened = 1.0;              ///< multiplies the standard deviations of following; grows with the time gone by
   Eigen::VectorXd shape;              ///< mean of the shape

@@ -66,7 +66,7 @@ struct LabelChoice {
 /// What posteriors weigh when the labels of a picture are chosen, in fixed point, so that every platform makes the same
 /// choice.
 struct ChoiceWeights {
-  std::int64_t part = 1024;  ///< of a part's posterior
+  std::int64_t part = 1024;  ///< weight of a part's posterior
   std::int64_t background = 0;
   std::int64_t margin = 0;  ///< weight by which a class must exceed the others to be sure
 };

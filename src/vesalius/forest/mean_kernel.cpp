@@ -195,9 +195,9 @@ class RowMean {
   int reach_;
   Posteriors& out_;
   std::size_t classes_;
-  std::vector<Columns> columns_;  ///< of `spacing` rows
+  std::vector<Columns> columns_;  ///< columns of `spacing` rows
   std::vector<std::uint16_t> nearest_, furthest_;
-  std::vector<Sums> sums_;  ///< of `spacing` pixels
+  std::vector<Sums> sums_;  ///< sums of `spacing` pixels
   std::vector<const std::uint16_t*> neighbours_;
   std::vector<Divider> dividers_;
 };

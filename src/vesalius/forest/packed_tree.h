@@ -29,7 +29,8 @@ struct PackedTree {
   struct alignas(64) LogitLine {
     std::array<std::int8_t, 64> values{};
   };
-  std::vector<LogitLine> logits;  ///< of the leaves where they were learned jointly, each from a line's beginning on
+  /// Logits of the leaves where they were learned jointly, each leaf's from a line's beginning on.
+  std::vector<LogitLine> logits;
   std::size_t lines_per_leaf = 0;
 
   int words_per_node() const { return wide ? 4 : 2; }

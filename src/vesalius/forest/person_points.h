@@ -23,9 +23,9 @@ std::vector<PersonPoint> sample_points(const DepthImage& depth, const Camera& ca
 
 /// The second pass's labels of one person.
 struct PersonLabels {
-  LabelImage labels;       ///< of the frame's size: the likeliest part of the person's pixels, kBackground elsewhere
-  Eigen::VectorXf facing;  ///< probability of each heading (heading_of_yaw); empty where leaves have none
-  float certain = 0.F;     ///< mean_certainty of the posteriors that the labels are chosen from
+  LabelImage labels;  ///< picture of the frame's size: the likeliest part of the person's pixels, kBackground elsewhere
+  Eigen::VectorXf facing;                ///< probability of each heading (heading_of_yaw); empty where leaves have none
+  float certain = 0.F;                   ///< mean_certainty of the posteriors that the labels are chosen from
   std::vector<PersonPoint> points = {};  ///< some of the person's pixels with those posteriors
 };
 

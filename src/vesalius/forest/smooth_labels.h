@@ -7,7 +7,8 @@
 
 namespace vesalius {
 
-inline constexpr int kModeDepthGate_mm = 300;  ///< of the mode, which needs many neighbours more than near ones
+/// Depth gate of the mode, which needs many neighbours more than near ones.
+inline constexpr int kModeDepthGate_mm = 300;
 
 /// Returns for each pixel the most frequent label of the pixels within the window, kModeDepthGate_mm and the
 /// picture (section 4.2.1); spacing is ignored. A pixel keeps its label on a tie that includes it; other ties go to the

@@ -31,7 +31,7 @@ void add_cluster_flags(CLI::App& command, ClusterFlags& flags);
 /// What --on names, and the flags with the engine's defaults.
 struct EngineChoice {
   std::string kind;    ///< "local", "slurm", "hadoop", "script"
-  int processes = 0;   ///< of local:N
+  int processes = 0;   ///< processes of local:N
   std::string script;  ///< path of script:FILE
   EngineOptions options;
 };

@@ -93,7 +93,7 @@ class TrainDisplay : public TrainObserver {
   std::chrono::steady_clock::time_point leaves_start_;
   int leaf_rounds_ = 0;        ///< rounds of leaves done
   int all_leaf_rounds_ = 0;    ///< rounds of leaves to do; 0 before leaves are learned
-  int first_leaf_round_ = -1;  ///< of this run
+  int first_leaf_round_ = -1;  ///< first round of this run in which leaves were learned
 };
 
 }  // namespace vesalius::cli

@@ -72,7 +72,7 @@ class AssetCache {
 struct Source {
   const FrameSet* set = nullptr;
   std::string folder;
-  std::shared_ptr<const LoadedAssets> assets = {};  ///< of rendered frames, as all below
+  std::shared_ptr<const LoadedAssets> assets = {};  ///< for rendered frames, as all below
   DatasetInfo info = {};
   TrainInput input = {};  ///< rendered frames: without `frame`
 
@@ -485,7 +485,7 @@ class ModelMaker::Work {
   std::set<std::string> rendered_;  ///< sets that this run has completed
   std::string forest_recipe_;
   Step context_, judge_;
-  std::optional<TrainPlan> plan_;  ///< of the forest
+  std::optional<TrainPlan> plan_;  ///< plan of the forest
 };
 
 ModelMaker::ModelMaker(Run run, ModelRecipe recipe)

@@ -18,7 +18,7 @@ class ModelMaker {
   struct Run {
     TrainRun train;  ///< its `out` is the model; the report is one of the forest
     AssetPlaces assets;
-    SourceOptions camera;       ///< of backgrounds
+    SourceOptions camera;       ///< camera of backgrounds
     TrainClusterFlags cluster;  ///< grows the forest on an engine if it names one
     bool trial = false;         ///< whether a step may be left out where frames are too few for it
   };

@@ -16,7 +16,8 @@ struct FrameSet {
   std::string looks{};  ///< names of [look.NAME] that apply, in order, with commas between
   int count = 0;        ///< frames to render; most frames to take of a dataset, 0: all
   int seed = 1;
-  synth::Recipe synth{};  ///< of rendered frames: the file that [synth] names, [synth], looks, the set's own options
+  /// Options of rendered frames: the file that [synth] names, [synth], looks, the set's own options.
+  synth::Recipe synth{};
 };
 
 /// The sets that boosted trees are fitted to.

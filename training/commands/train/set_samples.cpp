@@ -24,7 +24,7 @@ constexpr int kFramesPerThread = 4;
 /// The file of a set's samples.
 struct StoredSamples {
   std::string made_from;
-  std::uint64_t features = 0;  ///< of each sample
+  std::uint64_t features = 0;  ///< number of features of each sample
   std::vector<float> values;
   std::vector<std::uint8_t> positive;
 

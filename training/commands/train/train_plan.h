@@ -11,12 +11,12 @@ namespace vesalius::cli {
 
 /// What a training will take, about: some of its frames were measured, the rest is multiplication.
 struct TrainPlan {
-  std::uint64_t bytes = 0;  ///< of the whole program
+  std::uint64_t bytes = 0;  ///< bytes of the whole program
   double seconds = 0.0;
   int trees_at_once = 1;   ///< trees whose memory the limit allows, at most one for each thread
-  double reading_s = 0.0;  ///< of `seconds`: reading the frames
+  double reading_s = 0.0;  ///< the part of `seconds` that goes into reading the frames
   std::string steps;       ///< lines for the user, a step each
-  Forest pilot;            ///< of one tree, which was grown on the frames that were measured
+  Forest pilot;            ///< forest of one tree, grown on the frames that were measured
 
   /// Returns all lines for the user: steps, time, memory.
   std::string text() const;

@@ -12,11 +12,11 @@ namespace vesalius::synth {
 
 /// A person of a clip before they have a place.
 struct ClipPersonPlan {
-  PersonPlan person;       ///< of people who sit, lie or kneel the pose that they keep
+  PersonPlan person;       ///< people who sit, lie or kneel keep its pose
   bool stays_put = false;  ///< on a seat, bed or the floor, where only arms and head move
-  Movement fidget;         ///< of people who stay put; its first state has the person's pose
-  Repertoire can;          ///< of the others
-  bool walks = true;       ///< of the others; false stands at one place
+  Movement fidget;         ///< what people do who stay put; its first state has the person's pose
+  Repertoire can;          ///< what the others can do
+  bool walks = true;       ///< whether the others walk; false stands at one place
   /// Of the others, in place of walking: lies down on the floor, or falls, and remains there.
   std::optional<Movement> lies_down;
   /// Of people on seats: how they sit down, from standing to the person's pose.

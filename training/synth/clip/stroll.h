@@ -44,10 +44,10 @@ void plant_feet(float leg_m, PersonTrack& track);
 
 /// What is there when a person's way is planned.
 struct StrollGround {
-  View view;                                             ///< of the camera in the middle of the places to which it goes
-  float camera_reach_m = 0.F;                            ///< how far the camera goes from there
-  std::vector<OrientedBox> solids;                       ///< seats, beds and tables in the world
-  std::vector<PersonTrack> people;                       ///< who is there already
+  View view;                        ///< view of the camera in the middle of the places to which it goes
+  float camera_reach_m = 0.F;       ///< how far the camera goes from there
+  std::vector<OrientedBox> solids;  ///< seats, beds and tables in the world
+  std::vector<PersonTrack> people;  ///< who is there already
   std::vector<std::vector<Eigen::Vector2f>> footprints;  ///< x and z of bones of those who stay on seats and beds
 };
 

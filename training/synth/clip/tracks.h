@@ -19,7 +19,7 @@ inline constexpr float kTrackRate_hz = 60.F;
 struct TrackState {
   Pose pose;
   Eigen::Vector2f at = Eigen::Vector2f::Zero();  ///< x and z of the pelvis in the world
-  float heading_rad = 0.F;                       ///< of the body frame about y
+  float heading_rad = 0.F;                       ///< heading of the body frame about y
   float seated = 1.F;                            ///< share of PersonTrack::pelvis_m in the height; 0 is on the floor
 };
 

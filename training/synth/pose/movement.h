@@ -13,7 +13,7 @@ namespace vesalius::synth {
 /// A body at one moment of a movement. Lengths are in lengths of the leg (hip to ankle), so that they fit any body.
 struct BodyState {
   Pose pose;                                       ///< the pelvis has no heading
-  float heading_rad = 0.F;                         ///< of the pelvis about y; positive to the person's own left
+  float heading_rad = 0.F;                         ///< heading of the pelvis about y; positive to the person's own left
   Eigen::Vector2f root = Eigen::Vector2f::Zero();  ///< x and z of the pelvis over the floor
   float height = 0.F;                              ///< y of the pelvis above any level; bodies are put on the floor
 };

@@ -41,7 +41,7 @@ void check(const Scene& scene) {
 struct Met {
   std::uint32_t hit = EmbreeScene::kNothing;
   Face face;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of any length
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< normal, of any length
   double offset = 0.0;
   float near_m = 0.F, far_m = 0.F;  ///< extent along the optical axis, metres
   bool has_area = false;

@@ -66,7 +66,7 @@ Image<float> seen_depth(const Rendering& rendering, const Sensor& sensor) {
 /// (noise_kernel.h).
 struct AimedRow {
   Array z;         ///< metres; 0: nothing
-  Array cosine;    ///< of the angle between ray and normal, kSmallestCosine to 1
+  Array cosine;    ///< cosine of the angle between ray and normal, kSmallestCosine to 1
   Array infrared;  ///< share of light sent back
   Array fall_off;  ///< fourth power of the cosine between ray and optical axis: share of light off the axis
   std::vector<std::uint32_t> source;  ///< pixel of the rendering, row-major

@@ -14,7 +14,7 @@ constexpr int kLeafGrain = 1024;
 constexpr int kSavedRounds = 4;  ///< rounds from one that is saved to the next
 /// Samples for which the shares that a leaf has from growing count where its logits start.
 constexpr float kOwnSamples = 100.F;
-constexpr float kLargestStep = 0.5F;  ///< of a logit in one round, nats
+constexpr float kLargestStep = 0.5F;  ///< largest step of a logit in one round, nats
 /// Smallest unit of logits in a file, nats: rounding over eight trees then adds about 0.05.
 constexpr float kLeastUnit = 1.F / 16.F;
 constexpr float kLargestLogit = 16.F;  ///< nats
@@ -205,7 +205,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kSteps = 600;
-constexpr double kPrior = 2e-3;  ///< of the squared weights, for features of standard deviation 1
+constexpr double kPrior = 2e-3;  ///< strength of the prior: of squared weights, for features of standard deviation 1
 
 /// Divides each row by its sum after taking exponentials.
 void softmax(MatrixXd& logits) {

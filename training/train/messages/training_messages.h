@@ -330,7 +330,7 @@ struct LeafCounts {
 
 /// The logits of all leaves in learning.
 struct LeafLogits {
-  static constexpr float kUnit = 1.F / 1024.F;  ///< of a stored number, in nats
+  static constexpr float kUnit = 1.F / 1024.F;  ///< unit of a stored number, in nats
   static constexpr std::size_t kLanes = 16;     ///< rows are padded to a multiple of so many numbers
 
   std::size_t stride = 0;                           ///< numbers of a leaf
@@ -354,7 +354,7 @@ struct GradientTask {
 struct LeafGradient {
   std::vector<std::vector<std::int32_t>> of_trees;  ///< [tree][leaf * stride + place]
   double log_likelihood = 0.0;                      ///< sum over the samples, for progress only
-  double weight = 0.0;                              ///< of all samples
+  double weight = 0.0;                              ///< weight of all samples
 
   static void visit_fields(auto&& visit, auto&... of) {
     visit("of trees", of.of_trees...)("log likelihood", of.log_likelihood...)("weight", of.weight...);

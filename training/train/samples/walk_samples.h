@@ -91,7 +91,7 @@ class SampleLogits {
   const Forest& forest_;
   LogitLayout layout_;
   LogitReader reader_;
-  std::vector<std::int8_t> logits_;         ///< of the last sample's leaves
+  std::vector<std::int8_t> logits_;         ///< logits of the last sample's leaves
   std::vector<const std::int8_t*> leaves_;  ///< where each of them begins
   std::vector<std::uint16_t> turns_;
 };
