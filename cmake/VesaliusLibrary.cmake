@@ -76,7 +76,7 @@ endfunction()
 
 # vesalius_together(LIBRARY [APART SOURCE...]): whoever builds the program once compiles a dozen files together, since the headers
 # cost more time than what is in a file (no two files have one name for two things); whoever develops compiles single files.
-# APART: files that are compiled for several processors, which include themselves.
+# APART: files that are compiled for several processors, which include themselves, or are large by themselves.
 function(vesalius_together library)
   cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
   if(CMAKE_BUILD_TYPE STREQUAL Release)

@@ -89,7 +89,7 @@ constexpr std::array<ModelName, 12> kModels{{{"plumbbob", LensModel::brown_conra
                                              {"pinhole", LensModel::pinhole, 0}}};
 
 /// Returns the letters and digits of a name in lower case.
-std::string plain(std::string_view name) {
+std::string plain_model(std::string_view name) {
   std::string text;
   for (const char c : name) {
     const auto u = static_cast<unsigned char>(c);
@@ -111,7 +111,7 @@ void expect_distorted_size(int width, int height, int picture_width, int picture
 std::optional<Lens> make_lens(std::string_view model, const std::vector<double>& coefficients) {
   const auto is_zero = [](double c) { return c == 0.0; };
   if (std::ranges::all_of(coefficients, is_zero)) return Lens{};
-  const auto named = std::ranges::find(kModels, plain(model), &ModelName::name);
+  const auto named = std::ranges::find(kModels, plain_model(model), &ModelName::name);
   if (named == kModels.end()) return std::nullopt;
   const std::size_t count = std::min(coefficients.size(), named->most);
   if (!std::all_of(coefficients.begin() + static_cast<std::ptrdiff_t>(count), coefficients.end(), is_zero)) {

@@ -10,7 +10,7 @@ namespace vesalius {
 namespace {
 
 constexpr std::size_t kChecksumAt = 20;
-constexpr std::size_t kHeaderBytes = 28;  // magic, version, flags, size, checksum
+constexpr std::size_t kOldHeaderBytes = 28;  // magic, version, flags, size, checksum
 // The first two flags are those of a forest (model_contents.h).
 constexpr unsigned kForestFlags = kForestBackground | kForestLogits;
 constexpr unsigned kJudge = 4, kContext = 8, kNames = 16;
@@ -23,7 +23,7 @@ Model parse_old_model(std::string_view bytes, const std::string& name) {
   const auto flags = in.number<std::uint16_t>("flags");
   const auto size = in.number<std::uint64_t>("size");
   if (bytes.size() != size) throw Error(fmt::format("{}: damaged model, {} of {} bytes", name, bytes.size(), size));
-  if (in.number<std::uint64_t>("checksum") != xxh64(bytes.substr(0, kChecksumAt), bytes.substr(kHeaderBytes))) {
+  if (in.number<std::uint64_t>("checksum") != xxh64(bytes.substr(0, kChecksumAt), bytes.substr(kOldHeaderBytes))) {
     throw Error(name + ": damaged model, the checksum does not match");
   }
   Model model;

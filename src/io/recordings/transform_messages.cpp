@@ -19,7 +19,7 @@ bool is_realsense(const RecordedTopic& topic) {
 }
 
 /// ROS 1 had names with a slash before them.
-std::string plain(std::string_view frame) {
+std::string plain_frame(std::string_view frame) {
   return std::string(frame.starts_with('/') && !frame.starts_with("/device_") ? frame.substr(1) : frame);
 }
 
@@ -71,7 +71,7 @@ void parse_foxglove(std::string_view message, const std::string& name, std::vect
   const ProtobufFields t = parse_protobuf(fields.text(4), name), q = parse_protobuf(fields.text(5), name);
   if (const auto found =
           isometry({field(t, 1), field(t, 2), field(t, 3)}, {field(q, 4), field(q, 1), field(q, 2), field(q, 3)})) {
-    into.push_back({plain(fields.text(2)), plain(fields.text(3)), *found});
+    into.push_back({plain_frame(fields.text(2)), plain_frame(fields.text(3)), *found});
   }
 }
 
@@ -101,8 +101,8 @@ std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::st
     for (std::uint32_t i = 0; i < count; ++i) {
       std::string parent;
       fields.header(parent);
-      const std::string child = plain(fields.text("the child's frame"));
-      if (const auto found = read_transform(fields)) transforms.push_back({plain(parent), child, *found});
+      const std::string child = plain_frame(fields.text("the child's frame"));
+      if (const auto found = read_transform(fields)) transforms.push_back({plain_frame(parent), child, *found});
     }
   }
   return transforms;
@@ -122,7 +122,7 @@ std::string transforms_message(const std::vector<FrameTransform>& transforms, st
 }
 
 std::vector<std::pair<std::string, Eigen::Isometry3d>> TransformTree::chain(const std::string& frame) const {
-  std::vector<std::pair<std::string, Eigen::Isometry3d>> up{{plain(frame), Eigen::Isometry3d::Identity()}};
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> up{{plain_frame(frame), Eigen::Isometry3d::Identity()}};
   while (up.size() < kMostAncestors) {
     const auto found = parents_.find(up.back().first);
     if (found == parents_.end()) break;

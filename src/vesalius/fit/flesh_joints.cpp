@@ -12,7 +12,7 @@ constexpr const char* kFleshJoints =
 #include "flesh_joints.inc"
     ;
 
-FleshJoint mirrored(FleshJoint joint, const FleshModel& flesh) {
+FleshJoint mirrored_joint(FleshJoint joint, const FleshModel& flesh) {
   joint.name.front() = 'r';
   joint.bone = flesh.bones[joint.bone].mirror;
   joint.offset_m.x() = -joint.offset_m.x();
@@ -61,7 +61,7 @@ std::vector<FleshJoint> read_joint(const TomlReader& reader, const toml::table& 
   if (table.contains("axes")) joint.axes = read_axes(reader, table, "axes");
   joint.x_on_bone = table.contains("x_on_bone") && reader.boolean(table, "x_on_bone");
   if (!joint.name.starts_with("l_")) return {joint};
-  FleshJoint right = mirrored(joint, flesh);
+  FleshJoint right = mirrored_joint(joint, flesh);
   if (table.contains("right_axes")) right.axes = read_axes(reader, table, "right_axes");
   return {joint, right};
 }
