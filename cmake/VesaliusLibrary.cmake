@@ -86,10 +86,11 @@ function(vesalius_together library)
 endfunction()
 
 # vesalius_words(LIBRARY): for libraries of words and flags, where nothing is worth the compiler's time, half of which goes into
-# the templates of CLI11 and of JSON.
+# the templates of CLI11 and of JSON. Where they are compiled together, the one file reads the headers itself.
 function(vesalius_words library)
   target_compile_options(vesalius_${library} PRIVATE -O1)
-  if(VESALIUS_PCH)
+  get_target_property(together vesalius_${library} UNITY_BUILD)
+  if(VESALIUS_PCH AND NOT together)
     target_precompile_headers(vesalius_${library} PRIVATE <CLI/CLI.hpp> <Eigen/Geometry> <algorithm> <filesystem> <functional>
                               <map> <memory> <optional> <ranges> <string> <vector>)
   endif()

@@ -1,6 +1,7 @@
 #include "vesalius/fit/flesh_joints.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "vesalius/base/toml_reader.h"
@@ -11,6 +12,17 @@ namespace {
 constexpr const char* kFleshJoints =
 #include "flesh_joints.inc"
     ;
+
+/// Returns the rotation that turns a direction into another, at most a right angle away. Eigen's FromTwoVectors turns
+/// into opposite ones too, by a decomposition that takes the compiler ten seconds.
+Eigen::Quaternionf turn_between(const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+  const Eigen::Vector3f a = from.normalized(), b = to.normalized();
+  const float twice_w = std::sqrt((1.F + b.dot(a)) * 2.F);
+  Eigen::Quaternionf turn;
+  turn.vec() = a.cross(b) * (1.F / twice_w);
+  turn.w() = twice_w * 0.5F;
+  return turn;
+}
 
 FleshJoint mirrored_joint(FleshJoint joint, const FleshModel& flesh) {
   joint.name.front() = 'r';
@@ -127,7 +139,7 @@ std::vector<std::optional<Eigen::Quaternionf>> joint_rotations(const FittedBody&
     Eigen::Quaternionf rotation = bone.global * *place->axes;
     if (place->x_on_bone) {
       const Eigen::Vector3f x = rotation * Eigen::Vector3f::UnitX(), line = bone.tail - bone.head;
-      rotation = Eigen::Quaternionf::FromTwoVectors(x, x.dot(line) < 0.F ? -line : line) * rotation;
+      rotation = turn_between(x, x.dot(line) < 0.F ? -line : line) * rotation;
     }
     rotations[j] = rotation.normalized();
   }
