@@ -8,7 +8,6 @@
 #include "vesalius/track_people.h"
 
 namespace CLI {
-
 class App;
 }
 
@@ -27,11 +26,6 @@ class DeviceFlag {
  private:
   std::string device_ = "cpu";
 };
-
-class App;
-}  // namespace vesalius::cli
-
-namespace vesalius::cli {
 
 /// Returns the default options, changed first by the TOML file (if the path is not empty) and then by the flags. Throws
 /// Error for a file that cannot be used and UsageError for options outside their range.

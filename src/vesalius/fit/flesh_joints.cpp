@@ -48,8 +48,7 @@ Eigen::Quaternionf read_axes(const TomlReader& reader, const toml::table& table,
     axes.col(static_cast<Eigen::Index>(i)) = named_axis(reader.string(*names.get(i), key));
   }
   if (names.size() != 3 || axes.determinant() != 1.F) {
-    reader.fail(names,
-                std::string(key) + ": expected three axes of a right-handed frame, such as \"+x\", \"+z\", \"-y\"");
+    reader.fail(names, std::string(key) + R"(: expected three axes of a right-handed frame, such as "+x", "+z", "-y")");
   }
   return Eigen::Quaternionf(axes);
 }

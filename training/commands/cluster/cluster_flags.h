@@ -10,7 +10,6 @@
 #include "cluster/map_task.h"
 
 namespace CLI {
-
 class App;
 }
 
@@ -46,11 +45,6 @@ std::unique_ptr<Engine> make_engine(const ClusterFlags& flags, const EngineChoic
 
 /// Shows the progress of jobs: a line that changes on a terminal, a line for each job elsewhere.
 std::function<void(const JobProgress&)> show_jobs(bool shown);
-
-class App;
-}  // namespace vesalius::cli
-
-namespace vesalius::cli {
 
 /// Returns paths as tasks need them, which run in other folders: absolute; an empty one stays empty.
 std::string for_tasks(const std::string& path);
