@@ -18,10 +18,8 @@ constexpr const char* kFleshJoints =
 Eigen::Quaternionf turn_between(const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
   const Eigen::Vector3f a = from.normalized(), b = to.normalized();
   const float twice_w = std::sqrt((1.F + b.dot(a)) * 2.F);
-  Eigen::Quaternionf turn;
-  turn.vec() = a.cross(b) * (1.F / twice_w);
-  turn.w() = twice_w * 0.5F;
-  return turn;
+  const Eigen::Vector3f axis = a.cross(b) * (1.F / twice_w);
+  return {twice_w * 0.5F, axis.x(), axis.y(), axis.z()};
 }
 
 FleshJoint mirrored_joint(FleshJoint joint, const FleshModel& flesh) {
