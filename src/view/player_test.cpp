@@ -217,11 +217,12 @@ TEST(Player, SeeksAndGoesOnAsBefore) {
 }
 
 TEST(Player, RepeatsWithTheLastFrameShownAsLongAsTheOthers) {
-  Numbers source(2, 0.05);
+  Numbers source(2, 0.1);
   Shown shown(source, {});
   const std::vector<std::string> names = shown.names(5);
   EXPECT_EQ(std::vector(names.begin(), names.begin() + 5), (std::vector<std::string>{"0", "1", "0", "1", "0"}));
-  EXPECT_GE(shown.between(1, 2), 30ms);
+  EXPECT_GE(shown.between(0, 4), 250ms)
+      << "400, less what a busy machine shows the first one late; 200 if the last took none";
 }
 
 TEST(Player, PlaysAgainFromTheBeginning) {
