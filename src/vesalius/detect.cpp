@@ -139,7 +139,6 @@ std::optional<Candidate> grow_known(const Method& method, const Frame& frame, co
 
 /// Returns where nobody grows: on flat surfaces and where the background is sure enough.
 Mask barred(const Method& method, const SceneLabels& labels) {
-  constexpr int kRowGrain = 8;
   Mask barred = labels.flat;
   const auto least = double(method.options.grow.least_body);
   const Posteriors& posteriors = labels.posteriors();

@@ -2,7 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+
 namespace vesalius {
+
+std::string name_of_time(std::int64_t time_ns) {
+  return fmt::format("{}.{:09}", time_ns / kNanoseconds, std::abs(time_ns % kNanoseconds));
+}
 
 std::string short_type(std::string_view type) {
   constexpr std::string_view kMiddle = "/msg/";

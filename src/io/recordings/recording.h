@@ -33,6 +33,9 @@ inline bool is_ros(const RecordedTopic& topic) {
 /// Nanoseconds of a second.
 inline constexpr std::int64_t kNanoseconds = 1'000'000'000;
 
+/// Returns the name of a frame of that time: seconds with nine places.
+std::string name_of_time(std::int64_t time_ns);
+
 struct RecordedMessage {
   std::size_t topic = 0;     ///< index in Recording::topics()
   std::int64_t time_ns = 0;  ///< when it was recorded

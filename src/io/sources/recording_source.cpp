@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <deque>
 #include <exception>
 #include <filesystem>
@@ -49,10 +48,6 @@ std::int64_t nanoseconds(double time_s) {
 /// Returns when a picture was taken by its header, or recorded where that does not say.
 std::int64_t time_of(const PictureMessage& picture, const RecordedMessage& message) {
   return picture.time_ns != 0 ? picture.time_ns : message.time_ns;
-}
-
-std::string name_of(std::int64_t time_ns) {
-  return fmt::format("{}.{:09}", time_ns / kNanoseconds, std::abs(time_ns % kNanoseconds));
 }
 
 class RecordingSource final : public FrameSource {
@@ -222,7 +217,7 @@ class RecordingSource final : public FrameSource {
       return;
     }
     wanted_from_s_.reset();
-    frame.name = name_of(time_ns);
+    frame.name = name_of_time(time_ns);
     // Another frame of the same time, and yet another.
     while (last_name_.starts_with(frame.name)) frame.name += "_again";
     last_name_ = frame.name;

@@ -18,7 +18,6 @@ constexpr std::uint64_t kMostApart_ns = 50'000'000;
 constexpr double kMostWait_s = 0.1;
 /// Pictures that wait: a third of a second at 30 a second.
 constexpr std::size_t kMostWaiting = 10;
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
 /// ROS has depth in metres or in millimetres, nothing else.
 constexpr float kUnitsPerM = 1000.F;
 
@@ -160,7 +159,7 @@ std::optional<TopicFrame> TopicFrames::next(double now_s) {
   const std::int64_t time_ns = depth.picture.time_ns;
   made.stamp = {time_ns, depth.picture.frame};
   made.frame.time_s = double(time_ns) / double(kNanoseconds);
-  made.frame.name = fmt::format("{}.{:09}", time_ns / kNanoseconds, std::abs(time_ns % kNanoseconds));
+  made.frame.name = name_of_time(time_ns);
   made.frame.arrived_s = depth.arrived_s;
   made.frame.camera = *camera_;
   made.frame.depth = depth_of(depth.picture, kUnitsPerM, topics_.depth);

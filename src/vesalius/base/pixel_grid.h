@@ -17,6 +17,9 @@ namespace vesalius {
 /// and 848x480.
 inline constexpr long kMostPixels = 250'000;
 
+/// Rows of a picture that a thread takes at once (parallel_ranges).
+inline constexpr int kRowGrain = 8;
+
 /// Returns the step for pictures of this camera, at least 1.
 int grid_step(const Camera& camera, const GridOptions& options);
 

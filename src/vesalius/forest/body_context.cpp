@@ -14,8 +14,6 @@
 namespace vesalius {
 namespace {
 
-constexpr int kContextRows = 8;
-
 /// The first channels; then follow the kinds of parts.
 enum Channel : std::size_t { kReadings, kDepth_mm, kBody, kFirstKind };
 
@@ -88,7 +86,7 @@ BodySurroundings::BodySurroundings(const Posteriors& posteriors, const DepthImag
     std::array<int, 2>& parts = parts_of[slots_[p]];
     parts[parts[0] < 0 ? 0 : 1] = int(p);
   }
-  parallel_ranges(rows_, kContextRows, [&](int begin, int end) {
+  parallel_ranges(rows_, kRowGrain, [&](int begin, int end) {
     std::vector<std::uint32_t> run(channels_);
     for (int row = begin; row < end; ++row) {
       std::ranges::fill(run, 0U);
@@ -208,7 +206,7 @@ namespace {
 Image<float> ask(const BoostedTrees& context, const BodySurroundings& around, const Posteriors& posteriors,
                  const BodyModel& body) {
   Image<float> change(around.columns(), around.rows(), std::nanf(""));
-  parallel_ranges(around.rows(), kContextRows, [&](int begin, int end) {
+  parallel_ranges(around.rows(), kRowGrain, [&](int begin, int end) {
     const auto length = static_cast<std::size_t>(context.features);
     std::vector<float> features(length * around.columns()), odds(around.columns());
     std::vector<int> open;
@@ -270,7 +268,7 @@ void correct_bodies(const BoostedTrees& context, const DepthImage& depth, const 
   const Image<float> change = ask(context, around, posteriors, body);
   out.resize_like(posteriors);
   const std::size_t row = static_cast<std::size_t>(out.width) * out.classes;
-  parallel_ranges(depth.height(), kContextRows, [&](int begin, int end) {
+  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       std::copy_n(posteriors.at(0, v), row, out.at(0, v));
       for (int u = 0; u < depth.width(); ++u) {

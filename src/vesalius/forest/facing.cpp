@@ -6,13 +6,13 @@
 #include <numbers>
 #include <numeric>
 
+#include "vesalius/base/pixel_grid.h"
 #include "vesalius/forest/leaf_logits.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {
 
-constexpr int kHeadingRows = 8;
 /// Least probability of a heading that a pixel can tell: what less is depends on chance.
 constexpr float kLeastShare = 0.003F;
 /// A pixel does not count for parts of less than this posterior, which saves time.
@@ -129,7 +129,7 @@ void turn_posteriors(const Posteriors& posteriors, const std::vector<std::uint8_
   out.whole = posteriors.whole;
   out.settled = posteriors.settled.empty() ? Mask{} : crop(posteriors.settled, box);
   out.sums.resize(static_cast<std::size_t>(box.width) * box.height * out.classes);
-  parallel_ranges(box.height, kHeadingRows, [&](int begin, int end) {
+  parallel_ranges(box.height, kRowGrain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < box.width; ++u) {
         const std::uint16_t* from = posteriors.at(box.u + u, box.v + v);

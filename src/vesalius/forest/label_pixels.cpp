@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "vesalius/base/pixel_grid.h"
 #include "vesalius/error.h"
 #include "vesalius/forest/background_gate.h"
 #include "vesalius/forest/leaf_logits.h"
@@ -19,8 +20,6 @@
 
 namespace vesalius {
 namespace {
-
-constexpr int kLabelRows = 8;
 
 /// The weighted posteriors of one pixel.
 class Weights {
@@ -65,13 +64,13 @@ class Chooser {
         unsure_(depth.width(), depth.height(), 0) {}
 
   LabelImage run() {
-    parallel_ranges(box_.height, kLabelRows, [&](int begin, int end) {
+    parallel_ranges(box_.height, kRowGrain, [&](int begin, int end) {
       std::vector<std::uint8_t> skip(static_cast<std::size_t>(box_.width));
       std::vector<TopTwo> parts(skip.size());
       for (int v = box_.v + begin; v < box_.v + end; ++v) choose_alone(v, skip, parts);
     });
     LabelImage out(depth_.width(), depth_.height(), kBackground);
-    parallel_ranges(box_.height, kLabelRows, [&](int begin, int end) {
+    parallel_ranges(box_.height, kRowGrain, [&](int begin, int end) {
       for (int v = box_.v + begin; v < box_.v + end; ++v) {
         for (int u = box_.u; u < box_.u + box_.width; ++u) {
           const std::uint8_t label = unsure_(u, v) != 0 ? ask_neighbours(u, v) : first_(u, v);
@@ -216,14 +215,14 @@ class GatedLabels {
         done_(depth.width(), depth.height(), 0) {}
 
   void run(float gate) {
-    parallel_ranges(depth_.height(), kLabelRows, [&](int begin, int end) {
+    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) {
       clear_holes(begin, end);
       ask(begin, end, BackgroundGate::kStep);
     });
     const BackgroundGate closed(depth_, out_, gate);
     out_.settled = Mask(depth_.width(), depth_.height(), 0);
-    parallel_ranges(depth_.height(), kLabelRows, [&](int begin, int end) { settle(closed, begin, end); });
-    parallel_ranges(depth_.height(), kLabelRows, [&](int begin, int end) { ask(begin, end, 1); });
+    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) { settle(closed, begin, end); });
+    parallel_ranges(depth_.height(), kRowGrain, [&](int begin, int end) { ask(begin, end, 1); });
   }
 
  private:
@@ -325,7 +324,7 @@ void ForestLabeller::label_into(const Frame& frame, float gate, Posteriors& out)
     GatedLabels(*packed_, depth, padded, scaler, out).run(gate);
     return;
   }
-  parallel_ranges(depth.height(), kLabelRows, [&](int begin, int end) {
+  parallel_ranges(depth.height(), kRowGrain, [&](int begin, int end) {
     clear_rows(begin, end, out);
     label_rows(*packed_, padded, WalkPixels(depth, begin, end, scaler, packed_->convention), out);
   });

@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "vesalius/base/pixel_grid.h"
 #include "vesalius/forest/mean_kernel.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {
-
-constexpr int kSmoothRows = 8;
 
 /// Tells whether all pixels of a window have one label, whatever their depth. Most of a picture then needs no counting.
 class EvenWindows {
@@ -51,7 +50,7 @@ void coarse_mean(const Posteriors& posteriors, const DepthImage& depth, const Sm
                  Posteriors& out) {
   Posteriors coarse = posteriors;
   for (std::uint16_t& sum : coarse.sums) sum = static_cast<std::uint16_t>(sum >> bits);
-  parallel_ranges(posteriors.height, kSmoothRows, [&](int begin, int end) {
+  parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
     mean_rows(coarse, depth, window, begin, end, out);
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < out.width; ++u) {
@@ -70,7 +69,7 @@ void coarse_mean(const Posteriors& posteriors, const DepthImage& depth, const Sm
 LabelImage mode_filter(const LabelImage& labels, const DepthImage& depth, const SmoothOptions& options) {
   LabelImage out(labels.width(), labels.height(), kBackground);
   const SmoothWindow window{options.window / 2, 1, kModeDepthGate_mm};
-  parallel_ranges(labels.height(), kSmoothRows, [&](int begin, int end) {
+  parallel_ranges(labels.height(), kRowGrain, [&](int begin, int end) {
     const EvenWindows even(labels, options.window, begin, end);
     std::array<std::uint16_t, 256> count{};
     for (int v = begin; v < end; ++v) {
@@ -104,7 +103,7 @@ void mean_filter(const Posteriors& posteriors, const DepthImage& depth, const Ca
     coarse_mean(posteriors, depth, window, bits, out);
     return;
   }
-  parallel_ranges(posteriors.height, kSmoothRows,
+  parallel_ranges(posteriors.height, kRowGrain,
                   [&](int begin, int end) { mean_rows(posteriors, depth, window, begin, end, out); });
 }
 

@@ -30,7 +30,6 @@ constexpr float kSamePlace_m = 1.F;        // of somebody new who is the one who
 constexpr float kClearlyBetter = 0.1F;     // by which another lost person must look more different
 constexpr float kFadePerS = 1.F;           // of the confidence of what is predicted of hidden people, per second
 
-// The score of each frame counts as evidence.
 constexpr float kClearScore = 0.8F;  // that the frames in which somebody new is found have on average, at least
 
 /// People are taken in an order of their own, so that ids do not depend on the list's.
