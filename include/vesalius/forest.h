@@ -75,7 +75,7 @@ struct Forest {
   FeatureConvention convention;
   bool has_background = false;  ///< whether class `body.part_count()` is the background
   std::vector<Tree> trees;
-  float logit_unit = 0.F;  ///< logit unit of the leaves' logits in nats; 0 where leaves have distributions instead
+  float logit_unit = 0.F;  ///< unit of the leaves' logits in nats; 0 where leaves have distributions instead
   int headings = 0;        ///< headings that the leaves' logits tell apart
   FacingModel facing;      ///< how a person's heading follows from them; may be empty
   std::string recipe;      ///< free text on how it was made

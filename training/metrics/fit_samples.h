@@ -23,7 +23,7 @@ struct BoostSample {
 struct KnownPerson {
   Skeleton skeleton;                          ///< what was given out, with predicted parts
   std::string joint_set;                      ///< the only set that is compared with the joints; empty means any
-  std::vector<std::string> joint_names;       ///< joint names of `joints`
+  std::vector<std::string> joint_names;       ///< names of `joints`
   std::vector<Eigen::Vector3f> joints;        ///< in the order of joint_names
   std::vector<Eigen::Vector3f> part_centres;  ///< [part] centre of the part's volume; empty if not known
 };

@@ -17,7 +17,7 @@ struct K4aCalibration {
   struct Sensor {
     double cx = 0.0, cy = 0.0, fx = 0.0, fy = 0.0;  ///< shares of width and height
     int width = 0, height = 0;                      ///< width and height of the sensor, pixels
-    std::array<double, 8> distortion{};             ///< distortion of rational_polynomial: k1 k2 p1 p2 k3 k4 k5 k6
+    std::array<double, 8> distortion{};             ///< coefficients of rational_polynomial: k1 k2 p1 p2 k3 k4 k5 k6
     Eigen::Isometry3d sensor_from_depth = Eigen::Isometry3d::Identity();  ///< metres
   };
   Sensor depth;

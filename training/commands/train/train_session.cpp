@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr const char* kRecipeFile = "recipe.toml";
 
 constexpr const char* kLeavesFile = "leaves";
-constexpr const char* kClusterFolder = "cluster";  ///< cluster folder of a training on a cluster (train_cluster.h)
+constexpr const char* kClusterFolder = "cluster";  ///< folder of a training on a cluster (train_cluster.h)
 
 bool is_ours(const std::string& name) {
   return name.starts_with("tree-") || name.starts_with(kRecipeFile) || name.starts_with(kLeavesFile) ||
