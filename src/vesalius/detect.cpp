@@ -34,8 +34,8 @@ namespace vesalius {
 struct Method {
   /// `model` has a labeller.
   Method(Model model, const DetectOptions& given, std::shared_ptr<const Appearance> looks)
-      : judge(in_order(model.judge.empty() ? default_judge() : std::move(model.judge), judge_names(model.body),
-                       "judge of people")),
+      : judge(
+            in_order(model.judge.empty() ? default_judge() : model.judge, judge_names(model.body), "judge of people")),
         labeller(std::move(model), {given.label, given.smooth, given.grow.plane}),
         options(given),
         appearance(looks != nullptr ? std::move(looks) : make_appearance(given.grow.appearance)),

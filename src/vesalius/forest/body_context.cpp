@@ -122,7 +122,7 @@ int BodySurroundings::feature_count(const BodyModel& body) {
 
 std::vector<std::string> BodySurroundings::feature_names(const BodyModel& body) {
   std::vector<std::string> kinds = kind_names(body);
-  for (std::string& kind : kinds) kind = "part:" + kind;
+  for (std::string& kind : kinds) kind.insert(0, "part:");
   std::vector<std::string> names{"body", "likeliest", "second", "depth"};
   const auto add = [&](const std::string& where, const std::vector<std::string>& what) {
     for (const std::string& name : what) names.push_back(where + name);
@@ -252,7 +252,8 @@ void multiply_odds(std::uint16_t* of, int parts, int body, int all, float factor
   const float scale = float(all) * factor / (had * factor + rest);
   int left = all;
   for (int p = 0; p < parts; ++p) {
-    const int share = std::min(left, int(float(of[p]) * scale + 0.5F));
+    const float plus_half = float(of[p]) * scale + 0.5F;
+    const int share = std::min(left, int(plus_half));
     of[p] = static_cast<std::uint16_t>(share);
     left -= share;
   }

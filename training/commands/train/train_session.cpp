@@ -54,8 +54,8 @@ void expect_only_ours(const std::string& folder) {
 
 }  // namespace
 
-TrainSession::TrainSession(const std::string& folder, Forest forest, bool restart)
-    : folder_(folder), forest_(std::move(forest)) {
+TrainSession::TrainSession(std::string folder, Forest forest, bool restart)
+    : folder_(std::move(folder)), forest_(std::move(forest)) {
   lock_.emplace(folder_);
   expect_only_ours(folder_);
   tidy(restart);

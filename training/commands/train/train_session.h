@@ -17,7 +17,7 @@ class TrainSession : public TreeStore {
   /// are removed first. `forest` is the forest in training, with its recipe and without trees. Throws Error naming the
   /// folder if it has other files in it, belongs to another recipe (naming the first difference), cannot be created, or
   /// is in use by another process.
-  TrainSession(const std::string& folder, Forest forest, bool restart);
+  TrainSession(std::string folder, Forest forest, bool restart);
 
   /// Returns a saved tree, or nothing if it was not saved or its file is damaged.
   std::optional<Tree> load(int number) override;
