@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vesalius {
+
+/// One convolution of a Network, in integers. Pictures inside a network are its input or what a convolution made;
+/// narrow ones have values of 0 to 255, wide ones 16 bits with a sign. The result at a pixel and an output channel is
+///
+///     round(scale * sum + offset + added_scale * added)      rounded to even, then clamped to the result's range
+///
+/// where `sum` is that of weights times values, exact in 32 bits, and each operation is one of IEEE singles: the same
+/// bytes on every processor, for any order of the sum. Outside of the picture values are 0, those of the network's
+/// input kNetworkZero. With stride 2 the result has every second pixel of every second row, the first included.
+struct Convolution {
+  int input = 0;    ///< what it reads, narrow: 0 is the network's input, n what convolution n - 1 made
+  int side = 3;     ///< width and height of its window, 1 or 3
+  int stride = 1;   ///< 1 or 2
+  int inputs = 0;   ///< channels of what it reads
+  int outputs = 0;  ///< channels of what it makes
+  int added =
+      -1;  ///< what is added (numbered as `input`), of the same channels; of half the size it is enlarged. -1: none
+  float added_scale = 0.F;
+  bool wide = false;                 ///< whether the result is wide; narrow results are thereby rectified
+  std::vector<std::int8_t> weights;  ///< [output][row][column][input]
+  std::vector<float> scale, offset;  ///< of each output
+};
+
+/// Channels of a network's input, which stand for a depth picture and the camera's focal length (network_input.h).
+inline constexpr int kNetworkInputs = 8;
+/// What stands for no reading, in all of them.
+inline constexpr int kNetworkZero = 88;
+/// Pictures are padded to a multiple of this with pixels that have no reading.
+inline constexpr int kNetworkMultiple = 32;
+
+/// Units of what the heads say.
+inline constexpr float kLogitUnit = 1.F / 256.F;     ///< of logits of classes
+inline constexpr float kHeadingUnit = 1.F / 8192.F;  ///< of the cosine and sine of a heading
+
+/// A network of convolutions that labels depth pictures, and knows of each pixel where its person's middle is.
+struct Network {
+  std::vector<Convolution> layers;
+  int classes_of = -1;  ///< layer, at half the size: logits of the body's parts and, last, of the background; wide
+  /// Layer, at a quarter of the size: way from the pixel's point to the middle of its person, in millimetres along x, y
+  /// and z of the optical frame, then cosine and sine of the person's heading (YawEstimate::yaw_rad); wide.
+  int person_of = -1;
+  std::string made_from;  ///< how it was learned; free text
+
+  bool empty() const { return layers.empty(); }
+};
+
+/// Throws Error naming the layer if one reads what is not there yet, if sizes, channels or numbers of weights do not
+/// fit each other, if a scale is not finite, if sums could exceed 32 bits, or if a head has not the classes of `parts`
+/// parts.
+void check(const Network& network, int parts);
+
+}  // namespace vesalius
