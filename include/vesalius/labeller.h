@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -14,10 +15,19 @@ namespace vesalius {
 
 struct SmoothOptions;
 
+/// What a pixel tells of the person whom it belongs to, if it belongs to one.
+struct PersonVote {
+  std::array<std::int16_t, 3> middle_mm{};  ///< way from the pixel's point to the person's middle; optical frame
+  std::array<std::int16_t, 2> heading{};    ///< cosine and sine of the person's heading (YawEstimate), in 1/8192
+  friend bool operator==(const PersonVote&, const PersonVote&) = default;
+};
+/// There is a vote for every so many pixels of every so many rows, the first included.
+inline constexpr int kVoteStep = 4;
+
 /// What a labeller knows of a picture: P(c | x) of every pixel, `classes` values for each pixel, pixel after pixel.
 /// Body parts come first, then the background. All are zero if depth has no reading. What else a labeller may know is
-/// empty where it does not, and who wants it asks for that: headings today. A new kind of answer (a person's middle as
-/// seen from a pixel, places of parts) is a member beside `turns`.
+/// empty where it does not, and who wants it asks for that: headings, votes. A new kind of answer (places of parts) is
+/// a member beside `turns`.
 struct Posteriors {
   int width = 0;
   int height = 0;
@@ -32,6 +42,9 @@ struct Posteriors {
   /// posteriors. They are background, and smoothing leaves them as they are. Empty if the labeller looked at every
   /// pixel.
   Mask settled = {};
+  /// Votes for the middles of people, a picture of kVoteStep-th the size, rounded up. Undefined where depth has no
+  /// reading. Empty if the labeller knows of none.
+  Image<PersonVote> votes = {};
 
   const std::uint16_t* at(int u, int v) const {
     return sums.data() + (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)) *

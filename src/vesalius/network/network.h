@@ -35,16 +35,14 @@ inline constexpr int kNetworkZero = 88;
 /// Pictures are padded to a multiple of this with pixels that have no reading.
 inline constexpr int kNetworkMultiple = 32;
 
-/// Units of what the heads say.
-inline constexpr float kLogitUnit = 1.F / 256.F;     ///< of logits of classes
-inline constexpr float kHeadingUnit = 1.F / 8192.F;  ///< of the cosine and sine of a heading
+/// Unit of logits of classes, nats.
+inline constexpr float kLogitUnit = 1.F / 256.F;
 
 /// A network of convolutions that labels depth pictures, and knows of each pixel where its person's middle is.
 struct Network {
   std::vector<Convolution> layers;
   int classes_of = -1;  ///< layer, at half the size: logits of the body's parts and, last, of the background; wide
-  /// Layer, at a quarter of the size: way from the pixel's point to the middle of its person, in millimetres along x, y
-  /// and z of the optical frame, then cosine and sine of the person's heading (YawEstimate::yaw_rad); wide.
+  /// Layer, at a quarter of the size: the numbers of a PersonVote (labeller.h); wide.
   int person_of = -1;
   std::string made_from;  ///< how it was learned; free text
 
