@@ -181,8 +181,10 @@ class ModelMaker::Work {
     if (!recipe_.context.frames.empty()) model.context = fitted(context_, model, fit_context);
     if (!recipe_.judge.frames.empty()) model.judge = fitted(judge_, model, fit_judge);
     save_model(model, run_.train.out);
-    tell(fmt::format("{}: {} trees{}{}, {:.2f} MiB, made in {}; {} keeps frames and steps for a changed recipe",
-                     run_.train.out, model.forest.trees.size(), model.context.empty() ? "" : ", a context",
+    const std::string labeller =
+        model.network != nullptr ? "a network" : fmt::format("{} trees", model.forest.trees.size());
+    tell(fmt::format("{}: {}{}{}, {:.2f} MiB, made in {}; {} keeps frames and steps for a changed recipe",
+                     run_.train.out, labeller, model.context.empty() ? "" : ", a context",
                      model.judge.empty() ? "" : ", a judge", double(fs::file_size(run_.train.out)) / 1024.0 / 1024.0,
                      duration(seconds_since(start)), folder_));
   }
@@ -235,7 +237,7 @@ class ModelMaker::Work {
       if (!run_.train.trees_of.empty()) kept = kept_trees(run_.train, inputs);
       forest_recipe_ = train_recipe(recipe_.forest, inputs, facts, kept ? &*kept : nullptr);
     } else {
-      forest_recipe_ = at_hand_->forest.recipe;
+      forest_recipe_ = labeller_recipe(*at_hand_);
     }
     std::string made = forest_recipe_;
     const auto name = [&](const char* kind, const char* what, const FitSets& sets, auto sampler) {
@@ -253,7 +255,7 @@ class ModelMaker::Work {
     if (!fs::exists(path)) return std::nullopt;
     try {
       Model model = load_model(path);
-      if (model.forest.recipe == forest_recipe_) return model;
+      if (labeller_recipe(model) == forest_recipe_) return model;
     } catch (const Error&) {  // a damaged model is made again
     }
     return std::nullopt;
@@ -396,7 +398,8 @@ class ModelMaker::Work {
       model = std::move(pilot);
     }
     for (const Step* step : {&context_, &judge_}) {
-      if (needed[step->name].empty() || model->forest.trees.empty()) continue;
+      const bool labels = model->network != nullptr || !model->forest.trees.empty();
+      if (needed[step->name].empty() || !labels) continue;
       const Sampling sampling = sampling_of(*step, needed[step->name], measured, *model);
       expect_memory(*step, sampling.bytes);
       const double step_s = sampling.seconds;
