@@ -1,0 +1,314 @@
+// Highway leaves AVX-512 with VNNI out of what it compiles for unless it is asked.
+#define HWY_WANT_AVX3_DL
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vesalius/network/convolve_kernels.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+// clang-format off
+#include <hwy/highway.h>
+// clang-format on
+
+#include <hwy/aligned_allocator.h>
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+#include "vesalius/network/convolve_kernels.h"
+
+// Output channels lie in the lanes. A few pixels' sums stay in registers while the window's values go by, a group of
+// them at a time: they are copied to all lanes and multiplied with the weights of the group, which all pixels share.
+// A row of a window lies together in memory, so that a window of 3x3 is three runs of values.
+
+HWY_BEFORE_NAMESPACE();
+namespace vesalius::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::ScalableTag<std::int32_t>;
+using Int32 = hn::Vec<Lanes>;
+using Floats = hn::RebindToFloat<Lanes>;
+
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3_DL
+
+using Narrow = std::uint8_t;
+using Weight = std::int8_t;
+
+/// Adds to every lane the products of four values and four weights. Highway 1.0.3 has no name for the instruction, and
+/// its flags for the compiler do not allow the intrinsic.
+HWY_INLINE Int32 AddProducts(Int32 sum, Int32 values, Int32 weights) {
+  asm("vpdpbusd %2, %1, %0" : "+v"(sum.raw) : "v"(values.raw), "v"(weights.raw));
+  return sum;
+}
+
+#else
+
+using Narrow = std::int16_t;
+using Weight = std::int16_t;
+
+/// Adds to every lane the products of two values and two weights.
+HWY_INLINE Int32 AddProducts(Int32 sum, Int32 values, Int32 weights) {
+#if HWY_TARGET == HWY_SCALAR  // a lane of 32 bits has no halves
+  const auto low = [](Int32 x) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(x)); };
+  const auto high = [](Int32 x) { return hn::ShiftRight<16>(x); };
+  return hn::Add(sum, hn::Add(hn::Mul(low(values), low(weights)), hn::Mul(high(values), high(weights))));
+#else
+  const Lanes d;
+  const hn::Repartition<std::int16_t, Lanes> halves;
+  Int32 odd = hn::Zero(d);
+  const Int32 even =
+      hn::ReorderWidenMulAccumulate(d, hn::BitCast(halves, values), hn::BitCast(halves, weights), hn::Zero(d), odd);
+  return hn::Add(sum, hn::RearrangeToOddPlusEven(even, odd));
+#endif
+}
+
+#endif
+
+constexpr int kGroupBytes = 4;
+constexpr int kGroup = kGroupBytes / int(sizeof(Narrow));
+constexpr int kVectors = 2;  ///< of output channels whose sums are in registers
+/// Pixels whose sums are: what wastes less of a row.
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+constexpr int kMany = 10, kFewer = 8;  // 32 registers
+#else
+constexpr int kMany = 5, kFewer = 4;  // 16
+#endif
+
+/// The windows of some pixels, one beside the other.
+struct Windows {
+  const std::uint8_t* first;
+  std::ptrdiff_t step_bytes;  ///< from one to the next
+  std::ptrdiff_t row_bytes;
+  int rows;
+  int groups;  ///< of values in a row of one window
+};
+
+/// Writes the sums of kPixels windows for the channels of kCount vectors, pixel after pixel.
+template <int kPixels, int kCount>
+HWY_NOINLINE void SumWindows(const Windows& windows, const std::int32_t* HWY_RESTRICT weights,
+                             std::int32_t* HWY_RESTRICT to) {
+  const Lanes d;
+  Int32 sums[kPixels][kCount];
+#pragma GCC unroll 16
+  for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 2
+    for (int v = 0; v < kCount; ++v) sums[p][v] = hn::Zero(d);
+  }
+  const std::ptrdiff_t step = windows.step_bytes, three = 3 * step;
+  for (int row = 0; row < windows.rows; ++row) {
+    // Pixels 0 and 5 have pointers, what is between is reached by the addresses that an instruction can have.
+    const std::uint8_t* first = windows.first + row * windows.row_bytes;
+    const std::uint8_t* fifth = first + 5 * step;
+    for (int g = 0; g < windows.groups; ++g) {
+      Int32 w[kCount];
+#pragma GCC unroll 2
+      for (int v = 0; v < kCount; ++v, weights += hn::Lanes(d)) w[v] = hn::Load(d, weights);
+#pragma GCC unroll 16
+      for (int p = 0; p < kPixels; ++p) {
+        const std::ptrdiff_t ahead = p % 5 == 3 ? three : (p % 5) * step;
+        std::int32_t group = 0;
+        std::memcpy(&group, (p < 5 ? first : fifth) + ahead, sizeof(group));
+        const Int32 values = hn::Set(d, group);
+#pragma GCC unroll 2
+        for (int v = 0; v < kCount; ++v) sums[p][v] = AddProducts(sums[p][v], values, w[v]);
+      }
+      first += kGroupBytes;
+      fifth += kGroupBytes;
+    }
+  }
+#pragma GCC unroll 16
+  for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 2
+    for (int v = 0; v < kCount; ++v, to += hn::Lanes(d)) hn::Store(sums[p][v], d, to);
+  }
+}
+
+class ConvolverOn final : public Convolver {
+ public:
+  explicit ConvolverOn(const Convolution& c)
+      : side_(c.side),
+        stride_(c.stride),
+        outputs_(c.outputs),
+        row_values_(c.side * RoundUp(c.inputs, kChannelStep)),
+        added_scale_(c.added_scale),
+        low_(c.wide ? -32768.F : 0.F),
+        high_(c.wide ? 32767.F : 255.F),
+        scale_(c.scale),
+        offset_(c.offset) {
+    const int lanes = int(hn::Lanes(Lanes()));
+    const int padded = RoundUp(outputs_, lanes);
+    scale_.resize(static_cast<std::size_t>(padded), 0.F);
+    offset_.resize(scale_.size(), 0.F);
+    const std::size_t words = scale_.size() * static_cast<std::size_t>(side_ * row_values_ / kGroup);
+    weights_ = hwy::AllocateAligned<std::int32_t>(words);
+    std::int32_t* to = weights_.get();
+    for (int channel = 0; channel < padded; channel += kVectors * lanes) {
+      blocks_.push_back({channel, std::min(kVectors * lanes, padded - channel), to});
+      to = Pack(c, blocks_.back(), to);
+    }
+  }
+
+  int narrow_bytes() const override { return int(sizeof(Narrow)); }
+
+  void run(const PictureView& in, const PictureView* added, int begin, int end, const PictureView& out) const override {
+    const Rows rows{in, added, begin, end, out};
+    if (out.wide) {
+      RunAdding<std::int16_t>(rows);
+    } else {
+      RunAdding<Narrow>(rows);
+    }
+  }
+
+ private:
+  /// Output channels whose sums are made together.
+  struct Block {
+    int channel;  ///< the first
+    int count;    ///< those of one or two vectors
+    const std::int32_t* weights;
+  };
+  struct Rows {
+    const PictureView& in;
+    const PictureView* added;
+    int begin;
+    int end;
+    const PictureView& out;
+  };
+
+  static int RoundUp(int n, int step) { return (n + step - 1) / step * step; }
+
+  /// Writes a block's weights in the order in which they are read; those of channels that are not there are 0.
+  std::int32_t* Pack(const Convolution& c, const Block& block, std::int32_t* to) const {
+    const int row_inputs = row_values_ / side_;
+    for (int row = 0; row < side_; ++row) {
+      for (int first = 0; first < row_values_; first += kGroup) {
+        for (int output = block.channel; output < block.channel + block.count; ++output) {
+          Weight group[kGroup] = {};
+          for (int i = 0; i < kGroup; ++i) {
+            const int column = (first + i) / row_inputs, input = (first + i) % row_inputs;
+            if (input >= c.inputs || output >= c.outputs) continue;
+            group[i] =
+                c.weights[static_cast<std::size_t>(((output * side_ + row) * side_ + column) * c.inputs + input)];
+          }
+          std::memcpy(to++, group, sizeof(group));
+        }
+      }
+    }
+    return to;
+  }
+
+  template <class Out>
+  void RunAdding(const Rows& rows) const {
+    if (rows.added == nullptr) {
+      RunRows<Out, void>(rows);
+    } else if (rows.added->wide) {
+      RunRows<Out, std::int16_t>(rows);
+    } else {
+      RunRows<Out, Narrow>(rows);
+    }
+  }
+
+  /// A block's weights stay in the nearest cache while the rows go by.
+  template <class Out, class Added>
+  void RunRows(const Rows& rows) const {
+    const int width = rows.out.width;
+    const bool many = RoundUp(width, kMany) <= RoundUp(width, kFewer);
+    for (const Block& block : blocks_) {
+      const bool one = block.count == int(hn::Lanes(Lanes()));
+      if (many) {
+        one ? RunBlock<Out, Added, kMany, 1>(rows, block) : RunBlock<Out, Added, kMany, 2>(rows, block);
+      } else {
+        one ? RunBlock<Out, Added, kFewer, 1>(rows, block) : RunBlock<Out, Added, kFewer, 2>(rows, block);
+      }
+    }
+  }
+
+  template <class Out, class Added, int kPixels, int kCount>
+  void RunBlock(const Rows& rows, const Block& block) const {
+    HWY_ALIGN std::int32_t sums[kPixels * kCount * hn::MaxLanes(Lanes())];
+    const auto& [in, added, begin, end, out] = rows;
+    for (int y = begin; y < end; ++y) {
+      for (int x = 0; x < out.width; x += kPixels) {
+        const std::uint8_t* first = in.at(x * stride_ - side_ / 2, y * stride_ - side_ / 2);
+        SumWindows<kPixels, kCount>({first, stride_ * in.pixel_bytes, in.row_bytes, side_, row_values_ / kGroup},
+                                    block.weights, sums);
+        const int there = std::min(kPixels, out.width - x);
+        for (int p = 0; p < there; ++p) {
+          const std::uint8_t* add = nullptr;
+          if constexpr (!std::is_void_v<Added>) {
+            const int halved = added->width < out.width ? 1 : 0;
+            add = added->at((x + p) >> halved, y >> halved);
+          }
+          Finish<Out, Added, kCount>(&sums[p * block.count], block.channel, add, out.at(x + p, y));
+        }
+      }
+    }
+  }
+
+  /// Makes a pixel's result of its sums.
+  template <class Out, class Added, int kCount>
+  HWY_INLINE void Finish(const std::int32_t* sums, int channel, const std::uint8_t* add, std::uint8_t* to) const {
+    const Lanes d;
+    const Floats df;
+    const int lanes = int(hn::Lanes(d));
+#pragma GCC unroll 2
+    for (int v = 0; v < kCount; ++v, channel += lanes) {
+      const int there = std::min(lanes, outputs_ - channel);
+      auto x = hn::Mul(hn::ConvertTo(df, hn::Load(d, sums + v * lanes)), hn::LoadU(df, &scale_[channel]));
+      x = hn::Add(x, hn::LoadU(df, &offset_[channel]));
+      if constexpr (!std::is_void_v<Added>) {
+        const hn::Rebind<Added, Lanes> da;
+        const auto a = LoadFirst(da, reinterpret_cast<const Added*>(add) + channel, there);
+        x = hn::Add(x, hn::Mul(hn::ConvertTo(df, hn::PromoteTo(d, a)), hn::Set(df, added_scale_)));
+      }
+      x = hn::Min(hn::Max(x, hn::Set(df, low_)), hn::Set(df, high_));
+      const hn::Rebind<Out, Lanes> to_d;
+      StoreFirst(hn::DemoteTo(to_d, hn::NearestInt(x)), to_d, reinterpret_cast<Out*>(to) + channel, there);
+    }
+  }
+
+  template <class D>
+  static HWY_INLINE hn::Vec<D> LoadFirst(D d, const hn::TFromD<D>* from, int count) {
+    if (count == int(hn::Lanes(d))) return hn::LoadU(d, from);
+    HWY_ALIGN hn::TFromD<D> all[hn::MaxLanes(d)] = {};
+    std::copy_n(from, count, all);
+    return hn::Load(d, all);
+  }
+
+  template <class D>
+  static HWY_INLINE void StoreFirst(hn::Vec<D> v, D d, hn::TFromD<D>* to, int count) {
+    if (count == int(hn::Lanes(d))) return hn::StoreU(v, d, to);
+    HWY_ALIGN hn::TFromD<D> all[hn::MaxLanes(d)];
+    hn::Store(v, d, all);
+    std::copy_n(all, count, to);
+  }
+
+  int side_;
+  int stride_;
+  int outputs_;
+  int row_values_;  ///< values in a row of a window
+  float added_scale_;
+  float low_;
+  float high_;
+  std::vector<float> scale_;
+  std::vector<float> offset_;
+  hwy::AlignedFreeUniquePtr<std::int32_t[]> weights_;
+  std::vector<Block> blocks_;
+};
+
+std::unique_ptr<const Convolver> MakeConvolver(const Convolution& convolution) {
+  return std::make_unique<ConvolverOn>(convolution);
+}
+
+}  // namespace vesalius::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vesalius {
+
+HWY_EXPORT(MakeConvolver);
+
+std::unique_ptr<const Convolver> Convolver::make(const Convolution& convolution) {
+  return HWY_DYNAMIC_DISPATCH(MakeConvolver)(convolution);
+}
+
+}  // namespace vesalius
+#endif
