@@ -17,6 +17,11 @@ struct ChannelImage {
   int height = 0;
   int channels = 0;
   std::vector<T> values = {};
+
+  const T* at(int u, int v) const {
+    return values.data() + (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + std::size_t(u)) *
+                               static_cast<std::size_t>(channels);
+  }
 };
 
 /// What a network is given: kNetworkInputs channels, sides of a multiple of kNetworkMultiple.
