@@ -27,6 +27,7 @@ struct Convolution {
   bool wide = false;                           ///< whether the result is wide; narrow results are thereby rectified
   std::vector<std::int8_t> weights = {};       ///< [output][row][column][input]
   std::vector<float> scale = {}, offset = {};  ///< of each output
+  friend bool operator==(const Convolution&, const Convolution&) = default;
 };
 
 /// Channels of a network's input, which stand for a depth picture and the camera's focal length (network_input.h).
@@ -46,8 +47,6 @@ struct Network {
   /// Layer, at a quarter of the size: the numbers of a PersonVote (labeller.h); wide.
   int person_of = -1;
   std::string made_from;  ///< how it was learned; free text
-
-  bool empty() const { return layers.empty(); }
 };
 
 /// The numbers of a PersonVote (labeller.h).
