@@ -20,7 +20,9 @@ constexpr int kParts = 3;
 /// 0: to 1/2; 1: to 1/4; 2: classes; 3: votes; 4: to 1/2 again; 5: adds 1/4 enlarged and 6 what layer 5 makes.
 Network good_network() {
   Random random(1);
-  Network network{.classes_of = 2, .person_of = 3};
+  Network network;
+  network.classes_of = 2;
+  network.person_of = 3;
   const auto add = [&](const Convolution& c) { test::add_random(network, random, c); };
   add({.stride = 2, .inputs = kNetworkInputs, .outputs = 6});
   add({.input = 1, .stride = 2, .inputs = 6, .outputs = 5});
