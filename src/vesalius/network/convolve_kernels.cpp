@@ -69,8 +69,7 @@ HWY_INLINE Int32 AddProducts(Int32 sum, Int32 values, Int32 weights) {
 
 constexpr int kGroupBytes = 4;
 constexpr int kGroup = kGroupBytes / int(sizeof(Narrow));
-constexpr int kVectors = 2;  ///< of output channels whose sums are in registers
-/// Pixels whose sums are: what wastes less of a row. There are 32 registers, or 16.
+/// Pixels whose sums are in registers, of which there are 32 or 16: the number that wastes less of a row.
 constexpr int kMany = VESALIUS_AVX512 ? 10 : 5;
 constexpr int kFewer = VESALIUS_AVX512 ? 8 : 4;
 
@@ -124,26 +123,19 @@ HWY_NOINLINE void SumWindows(const WindowShape& shape, const std::uint8_t* corne
 
 class ConvolverOn final : public Convolver {
  public:
-  explicit ConvolverOn(const Convolution& c)
-      : side_(c.side),
-        stride_(c.stride),
-        outputs_(c.outputs),
-        row_values_(c.side * RoundUp(c.inputs, kChannelStep)),
-        added_scale_(c.added_scale),
-        low_(c.wide ? -32768.F : 0.F),
-        high_(c.wide ? 32767.F : 255.F),
-        scale_(c.scale),
-        offset_(c.offset) {
-    const int padded = RoundUp(outputs_, kLanes);
-    scale_.resize(static_cast<std::size_t>(padded), 0.F);
-    offset_.resize(scale_.size(), 0.F);
-    const std::size_t words = scale_.size() * static_cast<std::size_t>(side_ * row_values_ / kGroup);
-    weights_ = hwy::AllocateAligned<std::int32_t>(words);
+  explicit ConvolverOn(const Convolution& convolution)
+      : c_(convolution), row_values_(c_.side * RoundUp(c_.inputs, kChannelStep)) {
+    const int padded = RoundUp(c_.outputs, kLanes);
+    c_.scale.resize(static_cast<std::size_t>(padded));
+    c_.offset.resize(c_.scale.size());
+    weights_ =
+        hwy::AllocateAligned<std::int32_t>(c_.scale.size() * static_cast<std::size_t>(c_.side * row_values_ / kGroup));
     std::int32_t* to = weights_.get();
-    for (int channel = 0; channel < padded; channel += kVectors * kLanes) {
-      blocks_.push_back({channel, std::min(kVectors * kLanes, padded - channel), to});
-      to = Pack(c, blocks_.back(), to);
+    for (int channel = 0; channel < padded; channel += 2 * kLanes) {
+      blocks_.push_back({channel, std::min(2 * kLanes, padded - channel), to});
+      to = Pack(blocks_.back(), to);
     }
+    c_.weights = {};
   }
 
   int narrow_bytes() const override { return int(sizeof(Narrow)); }
@@ -177,20 +169,17 @@ class ConvolverOn final : public Convolver {
   static int RoundUp(int n, int step) { return (n + step - 1) / step * step; }
 
   /// Writes a block's weights in the order in which they are read; those of channels that are not there are 0.
-  std::int32_t* Pack(const Convolution& c, const Block& block, std::int32_t* to) const {
-    const int row_inputs = row_values_ / side_;
-    for (int row = 0; row < side_; ++row) {
-      for (int first = 0; first < row_values_; first += kGroup) {
-        for (int output = block.channel; output < block.channel + block.count; ++output) {
-          Weight group[kGroup] = {};
-          for (int i = 0; i < kGroup; ++i) {
-            const int column = (first + i) / row_inputs, input = (first + i) % row_inputs;
-            if (input >= c.inputs || output >= c.outputs) continue;
-            group[i] =
-                c.weights[static_cast<std::size_t>(((output * side_ + row) * side_ + column) * c.inputs + input)];
-          }
-          std::memcpy(to++, group, sizeof(group));
+  std::int32_t* Pack(const Block& block, std::int32_t* to) const {
+    const int padded_inputs = row_values_ / c_.side;
+    for (int i = 0; i < c_.side * row_values_; i += kGroup) {
+      for (int output = block.channel; output < block.channel + block.count; ++output) {
+        Weight group[kGroup] = {};
+        for (int k = 0; k < kGroup; ++k) {
+          const int place = output * c_.side * c_.side + (i + k) / padded_inputs, input = (i + k) % padded_inputs;
+          if (input >= c_.inputs || output >= c_.outputs) continue;
+          group[k] = c_.weights[static_cast<std::size_t>(place * c_.inputs + input)];
         }
+        std::memcpy(to++, group, sizeof(group));
       }
     }
     return to;
@@ -207,20 +196,22 @@ class ConvolverOn final : public Convolver {
 #pragma GCC unroll 2
     for (int v = 0; v < kCount; ++v) {
       const int channel = block.channel + v * kLanes;
-      scale[v] = hn::LoadU(df, &scale_[channel]);
-      offset[v] = hn::LoadU(df, &offset_[channel]);
-      there[v] = std::min(kLanes, outputs_ - channel);
+      scale[v] = hn::LoadU(df, &c_.scale[channel]);
+      offset[v] = hn::LoadU(df, &c_.offset[channel]);
+      there[v] = std::min(kLanes, c_.outputs - channel);
     }
-    const Float added_scale = hn::Set(df, added_scale_), low = hn::Set(df, low_), high = hn::Set(df, high_);
+    const Float added_scale = hn::Set(df, c_.added_scale);
+    const Float low = hn::Set(df, c_.wide ? -32768.F : 0.F), high = hn::Set(df, c_.wide ? 32767.F : 255.F);
+    const Float rounder = hn::Set(df, 12582912.F);  // 1.5 * 2^23, beside which singles have no fractions
     const bool many = RoundUp(out.width, kMany) <= RoundUp(out.width, kFewer);
     const auto sum = many ? &SumWindows<kMany, kCount> : &SumWindows<kFewer, kCount>;
-    const int pixels = many ? kMany : kFewer, reach = side_ / 2, halved = added.width < out.width ? 1 : 0;
-    const WindowShape shape{stride_ * in.pixel_bytes, in.row_bytes, side_, row_values_ / kGroup};
+    const int pixels = many ? kMany : kFewer, reach = c_.side / 2, halved = added.width < out.width ? 1 : 0;
+    const WindowShape shape{c_.stride * in.pixel_bytes, in.row_bytes, c_.side, row_values_ / kGroup};
     const std::int32_t* weights = block.weights;
     for (int y = begin; y < end; ++y) {
       for (int x = 0, p = pixels; x < out.width; ++x, ++p) {
         if (p == pixels) {
-          sum(shape, in.at(x * stride_ - reach, y * stride_ - reach), weights, sums);
+          sum(shape, in.at(x * c_.stride - reach, y * c_.stride - reach), weights, sums);
           p = 0;
         }
         Result* to = reinterpret_cast<Result*>(out.at(x, y)) + block.channel;
@@ -233,17 +224,12 @@ class ConvolverOn final : public Convolver {
             const auto all = hn::PromoteTo(d, LoadFirst(hn::Rebind<More, Lanes>(), more, there[v]));
             value = hn::Add(value, hn::Mul(hn::ConvertTo(df, all), added_scale));
           }
-          StoreFirst(hn::Rebind<Result, Lanes>(), Rounded(hn::Min(hn::Max(value, low), high)), to, there[v]);
+          value = hn::Add(hn::Min(hn::Max(value, low), high), rounder);
+          const Int32 rounded = hn::Sub(hn::BitCast(d, value), hn::BitCast(d, rounder));
+          StoreFirst(hn::Rebind<Result, Lanes>(), rounded, to, there[v]);
         }
       }
     }
-  }
-
-  /// Rounds numbers of at most 16 bits to even: the sum's last bit is a one. It is quicker than hn::NearestInt.
-  static HWY_INLINE Int32 Rounded(Float x) {
-    const Lanes d;
-    const Float large = hn::Set(Floats(), 12582912.F);  // 1.5 * 2^23
-    return hn::Sub(hn::BitCast(d, hn::Add(x, large)), hn::BitCast(d, large));
   }
 
   template <class D>
@@ -271,15 +257,8 @@ class ConvolverOn final : public Convolver {
 #endif
   }
 
-  int side_;
-  int stride_;
-  int outputs_;
-  int row_values_;  ///< values in a row of a window
-  float added_scale_;
-  float low_;
-  float high_;
-  std::vector<float> scale_;
-  std::vector<float> offset_;
+  Convolution c_;   ///< without weights, scales and offsets padded to whole vectors
+  int row_values_;  ///< in a row of a window
   hwy::AlignedFreeUniquePtr<std::int32_t[]> weights_;
   std::vector<Block> blocks_;
 };

@@ -46,15 +46,17 @@ class NetworkRunner {
     std::int64_t products;  ///< of a pixel
     std::unique_ptr<const Convolver> convolver;
   };
-  /// The pictures of one run, numbered as in Convolution::input.
+  /// The pictures of one run, numbered as in Convolution::input. The heads lie in the result.
   struct Workspace {
     int width = 0;
     int height = 0;
     std::vector<PictureView> views = {};
-    std::vector<std::vector<std::int16_t>> memory = {};  ///< of all but the heads
+    std::vector<std::vector<std::int16_t>> memory = {};
   };
 
+  int narrow_bytes() const { return layers_.front().convolver->narrow_bytes(); }
   void prepare(int width, int height, Workspace& space) const;
+  void lay_out_head(std::size_t picture, Workspace& space, ChannelImage<std::int16_t>& head) const;
   void run_layer(const Layer& layer, const std::vector<PictureView>& views, const PictureView& out) const;
 
   std::vector<NetworkPicture> pictures_;
