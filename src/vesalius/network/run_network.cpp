@@ -14,15 +14,12 @@ constexpr std::int64_t kTaskProducts = 2'000'000;
 
 void check_input(const NetworkInput& input) {
   const auto fits = [](int side) { return side > 0 && side % kNetworkMultiple == 0; };
-  const std::int64_t values = std::int64_t{input.width} * input.height * kNetworkInputs;
-  if (fits(input.width) && fits(input.height) && input.channels == kNetworkInputs &&
-      static_cast<std::int64_t>(input.values.size()) == values) {
-    return;
-  }
-  throw Error("network: input of " + std::to_string(input.width) + "x" + std::to_string(input.height) + " pixels of " +
-              std::to_string(input.channels) + " channels, " + std::to_string(input.values.size()) +
-              " values; expected multiples of " + std::to_string(kNetworkMultiple) + " and " +
-              std::to_string(kNetworkInputs) + " channels");
+  const std::size_t values =
+      static_cast<std::size_t>(input.width) * static_cast<std::size_t>(input.height) * kNetworkInputs;
+  if (fits(input.width) && fits(input.height) && input.values.size() == values) return;
+  throw Error("network: input of " + std::to_string(input.width) + "x" + std::to_string(input.height) + " pixels and " +
+              std::to_string(input.values.size()) + " values, expected multiples of " +
+              std::to_string(kNetworkMultiple) + " and " + std::to_string(kNetworkInputs) + " values a pixel");
 }
 
 /// Lays out a picture whose width and height `view` has, with everything that PictureView promises.
@@ -39,7 +36,7 @@ void lay_out(const NetworkPicture& picture, int narrow_bytes, int fill, PictureV
 }
 
 void copy_input(const NetworkInput& input, int value_bytes, const PictureView& to) {
-  const int row = input.width * input.channels;
+  const int row = input.width * kNetworkInputs;
   const std::uint8_t* from = input.values.data();
   for (int y = 0; y < input.height; ++y, from += row) {
     if (value_bytes == 1) {
@@ -74,7 +71,7 @@ void NetworkRunner::prepare(int width, int height, Workspace& space) const {
   }
 }
 
-void NetworkRunner::lay_out_head(std::size_t picture, Workspace& space, ChannelImage<std::int16_t>& head) const {
+void NetworkRunner::lay_out_head(std::size_t picture, Workspace& space, WideImage& head) const {
   PictureView& view = space.views[picture];
   lay_out(pictures_[picture], narrow_bytes(), 0, view, head.values);
   head.width = view.width;
