@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "vesalius/network/convolve_kernels.h"
@@ -123,8 +124,8 @@ HWY_NOINLINE void SumWindows(const WindowShape& shape, const std::uint8_t* corne
 
 class ConvolverOn final : public Convolver {
  public:
-  explicit ConvolverOn(const Convolution& convolution)
-      : c_(convolution), row_values_(c_.side * RoundUp(c_.inputs, kChannelStep)) {
+  explicit ConvolverOn(Convolution convolution)
+      : c_(std::move(convolution)), row_values_(c_.side * RoundUp(c_.inputs, kChannelStep)) {
     const int padded = RoundUp(c_.outputs, kLanes);
     c_.scale.resize(static_cast<std::size_t>(padded));
     c_.offset.resize(c_.scale.size());
@@ -152,9 +153,11 @@ class ConvolverOn final : public Convolver {
     };
     const auto run_adding = [&](auto result) {
       if (added == nullptr) return run_blocks(result, Nothing());
-      added->wide ? run_blocks(result, std::int16_t()) : run_blocks(result, Narrow());
+      if (added->wide) return run_blocks(result, std::int16_t());
+      return run_blocks(result, Narrow());
     };
-    out.wide ? run_adding(std::int16_t()) : run_adding(Narrow());
+    if (out.wide) return run_adding(std::int16_t());
+    return run_adding(Narrow());
   }
 
  private:
@@ -177,7 +180,7 @@ class ConvolverOn final : public Convolver {
         for (int k = 0; k < kGroup; ++k) {
           const int place = output * c_.side * c_.side + (i + k) / padded_inputs, input = (i + k) % padded_inputs;
           if (input >= c_.inputs || output >= c_.outputs) continue;
-          group[k] = c_.weights[static_cast<std::size_t>(place * c_.inputs + input)];
+          group[k] = Weight{c_.weights[static_cast<std::size_t>(place * c_.inputs + input)]};
         }
         std::memcpy(to++, group, sizeof(group));
       }
