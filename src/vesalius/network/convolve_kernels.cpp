@@ -73,6 +73,7 @@ constexpr int kGroup = kGroupBytes / int(sizeof(Narrow));
 /// Pixels whose sums are in registers, of which there are 32 or 16: the number that wastes less of a row.
 constexpr int kMany = VESALIUS_AVX512 ? 10 : 5;
 constexpr int kFewer = VESALIUS_AVX512 ? 8 : 4;
+static_assert(2 * kMany <= kReadAhead);
 
 /// Windows of some pixels, one beside the other.
 struct WindowShape {
@@ -87,12 +88,9 @@ template <int kPixels, int kCount>
 HWY_NOINLINE void SumWindows(const WindowShape& shape, const std::uint8_t* corner,
                              const std::int32_t* HWY_RESTRICT weights, std::int32_t* HWY_RESTRICT to) {
   const Lanes d;
-  Int32 sums[kPixels][kCount];
-#pragma GCC unroll 16
-  for (int p = 0; p < kPixels; ++p) {
-#pragma GCC unroll 2
-    for (int v = 0; v < kCount; ++v) sums[p][v] = hn::Zero(d);
-  }
+  Int32 sums[kPixels * kCount];
+#pragma GCC unroll 32
+  for (Int32& sum : sums) sum = hn::Zero(d);
   const std::ptrdiff_t step = shape.step_bytes, three = 3 * step;
   for (int row = 0; row < shape.rows; ++row) {
     // Pixels 0 and 5 have pointers, what is between is reached by the addresses that an instruction can have.
@@ -109,17 +107,14 @@ HWY_NOINLINE void SumWindows(const WindowShape& shape, const std::uint8_t* corne
         std::memcpy(&group, (p < 5 ? first : fifth) + ahead, sizeof(group));
         const Int32 values = hn::Set(d, group);
 #pragma GCC unroll 2
-        for (int v = 0; v < kCount; ++v) sums[p][v] = AddProducts(sums[p][v], values, w[v]);
+        for (int v = 0; v < kCount; ++v) sums[p * kCount + v] = AddProducts(sums[p * kCount + v], values, w[v]);
       }
       first += kGroupBytes;
       fifth += kGroupBytes;
     }
   }
-#pragma GCC unroll 16
-  for (int p = 0; p < kPixels; ++p) {
-#pragma GCC unroll 2
-    for (int v = 0; v < kCount; ++v, to += kLanes) hn::Store(sums[p][v], d, to);
-  }
+#pragma GCC unroll 32
+  for (int i = 0; i < kPixels * kCount; ++i) hn::Store(sums[i], d, to + i * kLanes);
 }
 
 class ConvolverOn final : public Convolver {
