@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "vesalius/network/convolve_kernels.h"
@@ -27,7 +28,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::ScalableTag<std::int32_t>;
 using Int32 = hn::Vec<Lanes>;
 using Floats = hn::RebindToFloat<Lanes>;
+using Float = hn::Vec<Floats>;
+constexpr int kLanes = int(hn::MaxLanes(Lanes()));
 
+#undef VESALIUS_AVX512
+#define VESALIUS_AVX512 (HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3)
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3_DL
 
 using Narrow = std::uint8_t;
@@ -65,43 +70,36 @@ HWY_INLINE Int32 AddProducts(Int32 sum, Int32 values, Int32 weights) {
 
 constexpr int kGroupBytes = 4;
 constexpr int kGroup = kGroupBytes / int(sizeof(Narrow));
-constexpr int kVectors = 2;  ///< of output channels whose sums are in registers
-/// Pixels whose sums are: what wastes less of a row.
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
-constexpr int kMany = 10, kFewer = 8;  // 32 registers
-#else
-constexpr int kMany = 5, kFewer = 4;  // 16
-#endif
+/// Pixels whose sums are in registers, of which there are 32 or 16: the number that wastes less of a row.
+constexpr int kMany = VESALIUS_AVX512 ? 10 : 5;
+constexpr int kFewer = VESALIUS_AVX512 ? 8 : 4;
+static_assert(2 * kMany <= kReadAhead);
 
-/// The windows of some pixels, one beside the other.
-struct Windows {
-  const std::uint8_t* first;
-  std::ptrdiff_t step_bytes;  ///< from one to the next
+/// Windows of some pixels, one beside the other.
+struct WindowShape {
+  std::ptrdiff_t step_bytes;  ///< from one window to the next
   std::ptrdiff_t row_bytes;
   int rows;
-  int groups;  ///< of values in a row of one window
+  int groups;  ///< of values in a row of a window
 };
 
 /// Writes the sums of kPixels windows for the channels of kCount vectors, pixel after pixel.
 template <int kPixels, int kCount>
-HWY_NOINLINE void SumWindows(const Windows& windows, const std::int32_t* HWY_RESTRICT weights,
-                             std::int32_t* HWY_RESTRICT to) {
+HWY_NOINLINE void SumWindows(const WindowShape& shape, const std::uint8_t* corner,
+                             const std::int32_t* HWY_RESTRICT weights, std::int32_t* HWY_RESTRICT to) {
   const Lanes d;
-  Int32 sums[kPixels][kCount];
-#pragma GCC unroll 16
-  for (int p = 0; p < kPixels; ++p) {
-#pragma GCC unroll 2
-    for (int v = 0; v < kCount; ++v) sums[p][v] = hn::Zero(d);
-  }
-  const std::ptrdiff_t step = windows.step_bytes, three = 3 * step;
-  for (int row = 0; row < windows.rows; ++row) {
+  Int32 sums[kPixels * kCount];
+#pragma GCC unroll 32
+  for (Int32& sum : sums) sum = hn::Zero(d);
+  const std::ptrdiff_t step = shape.step_bytes, three = 3 * step;
+  for (int row = 0; row < shape.rows; ++row) {
     // Pixels 0 and 5 have pointers, what is between is reached by the addresses that an instruction can have.
-    const std::uint8_t* first = windows.first + row * windows.row_bytes;
+    const std::uint8_t* first = corner + row * shape.row_bytes;
     const std::uint8_t* fifth = first + 5 * step;
-    for (int g = 0; g < windows.groups; ++g) {
+    for (int g = 0; g < shape.groups; ++g) {
       Int32 w[kCount];
 #pragma GCC unroll 2
-      for (int v = 0; v < kCount; ++v, weights += hn::Lanes(d)) w[v] = hn::Load(d, weights);
+      for (int v = 0; v < kCount; ++v, weights += kLanes) w[v] = hn::Load(d, weights);
 #pragma GCC unroll 16
       for (int p = 0; p < kPixels; ++p) {
         const std::ptrdiff_t ahead = p % 5 == 3 ? three : (p % 5) * step;
@@ -109,187 +107,156 @@ HWY_NOINLINE void SumWindows(const Windows& windows, const std::int32_t* HWY_RES
         std::memcpy(&group, (p < 5 ? first : fifth) + ahead, sizeof(group));
         const Int32 values = hn::Set(d, group);
 #pragma GCC unroll 2
-        for (int v = 0; v < kCount; ++v) sums[p][v] = AddProducts(sums[p][v], values, w[v]);
+        for (int v = 0; v < kCount; ++v) sums[p * kCount + v] = AddProducts(sums[p * kCount + v], values, w[v]);
       }
       first += kGroupBytes;
       fifth += kGroupBytes;
     }
   }
-#pragma GCC unroll 16
-  for (int p = 0; p < kPixels; ++p) {
-#pragma GCC unroll 2
-    for (int v = 0; v < kCount; ++v, to += hn::Lanes(d)) hn::Store(sums[p][v], d, to);
-  }
+#pragma GCC unroll 32
+  for (int i = 0; i < kPixels * kCount; ++i) hn::Store(sums[i], d, to + i * kLanes);
 }
 
 class ConvolverOn final : public Convolver {
  public:
-  explicit ConvolverOn(const Convolution& c)
-      : side_(c.side),
-        stride_(c.stride),
-        outputs_(c.outputs),
-        row_values_(c.side * RoundUp(c.inputs, kChannelStep)),
-        added_scale_(c.added_scale),
-        low_(c.wide ? -32768.F : 0.F),
-        high_(c.wide ? 32767.F : 255.F),
-        scale_(c.scale),
-        offset_(c.offset) {
-    const int lanes = int(hn::Lanes(Lanes()));
-    const int padded = RoundUp(outputs_, lanes);
-    scale_.resize(static_cast<std::size_t>(padded), 0.F);
-    offset_.resize(scale_.size(), 0.F);
-    const std::size_t words = scale_.size() * static_cast<std::size_t>(side_ * row_values_ / kGroup);
-    weights_ = hwy::AllocateAligned<std::int32_t>(words);
+  explicit ConvolverOn(Convolution convolution)
+      : c_(std::move(convolution)), row_values_(c_.side * RoundUp(c_.inputs, kChannelStep)) {
+    const int padded = RoundUp(c_.outputs, kLanes);
+    c_.scale.resize(static_cast<std::size_t>(padded));
+    c_.offset.resize(c_.scale.size());
+    weights_ =
+        hwy::AllocateAligned<std::int32_t>(c_.scale.size() * static_cast<std::size_t>(c_.side * row_values_ / kGroup));
     std::int32_t* to = weights_.get();
-    for (int channel = 0; channel < padded; channel += kVectors * lanes) {
-      blocks_.push_back({channel, std::min(kVectors * lanes, padded - channel), to});
-      to = Pack(c, blocks_.back(), to);
+    for (int channel = 0; channel < padded; channel += 2 * kLanes) {
+      blocks_.push_back({channel, std::min(2 * kLanes, padded - channel), to});
+      to = Pack(blocks_.back(), to);
     }
+    c_.weights = {};
   }
 
   int narrow_bytes() const override { return int(sizeof(Narrow)); }
 
   void run(const PictureView& in, const PictureView* added, int begin, int end, const PictureView& out) const override {
-    const Rows rows{in, added, begin, end, out};
-    if (out.wide) {
-      RunAdding<std::int16_t>(rows);
-    } else {
-      RunAdding<Narrow>(rows);
-    }
+    const auto run_blocks = [&](auto result, auto more) {
+      using Result = decltype(result);
+      using More = decltype(more);
+      for (const Block& block : blocks_) {  // its weights stay in the nearest cache while the rows go by
+        const auto run =
+            block.count == kLanes ? &ConvolverOn::Run<Result, More, 1> : &ConvolverOn::Run<Result, More, 2>;
+        (this->*run)(block, in, added == nullptr ? out : *added, begin, end, out);
+      }
+    };
+    const auto run_adding = [&](auto result) {
+      if (added == nullptr) return run_blocks(result, Nothing());
+      if (added->wide) return run_blocks(result, std::int16_t());
+      return run_blocks(result, Narrow());
+    };
+    if (out.wide) return run_adding(std::int16_t());
+    return run_adding(Narrow());
   }
 
  private:
+  struct Nothing {};
   /// Output channels whose sums are made together.
   struct Block {
     int channel;  ///< the first
     int count;    ///< those of one or two vectors
     const std::int32_t* weights;
   };
-  struct Rows {
-    const PictureView& in;
-    const PictureView* added;
-    int begin;
-    int end;
-    const PictureView& out;
-  };
 
   static int RoundUp(int n, int step) { return (n + step - 1) / step * step; }
 
   /// Writes a block's weights in the order in which they are read; those of channels that are not there are 0.
-  std::int32_t* Pack(const Convolution& c, const Block& block, std::int32_t* to) const {
-    const int row_inputs = row_values_ / side_;
-    for (int row = 0; row < side_; ++row) {
-      for (int first = 0; first < row_values_; first += kGroup) {
-        for (int output = block.channel; output < block.channel + block.count; ++output) {
-          Weight group[kGroup] = {};
-          for (int i = 0; i < kGroup; ++i) {
-            const int column = (first + i) / row_inputs, input = (first + i) % row_inputs;
-            if (input >= c.inputs || output >= c.outputs) continue;
-            group[i] =
-                c.weights[static_cast<std::size_t>(((output * side_ + row) * side_ + column) * c.inputs + input)];
-          }
-          std::memcpy(to++, group, sizeof(group));
+  std::int32_t* Pack(const Block& block, std::int32_t* to) const {
+    const int padded_inputs = row_values_ / c_.side;
+    for (int i = 0; i < c_.side * row_values_; i += kGroup) {
+      for (int output = block.channel; output < block.channel + block.count; ++output) {
+        Weight group[kGroup] = {};
+        for (int k = 0; k < kGroup; ++k) {
+          const int place = output * c_.side * c_.side + (i + k) / padded_inputs, input = (i + k) % padded_inputs;
+          if (input >= c_.inputs || output >= c_.outputs) continue;
+          group[k] = Weight{c_.weights[static_cast<std::size_t>(place * c_.inputs + input)]};
         }
+        std::memcpy(to++, group, sizeof(group));
       }
     }
     return to;
   }
 
-  template <class Out>
-  void RunAdding(const Rows& rows) const {
-    if (rows.added == nullptr) {
-      RunRows<Out, void>(rows);
-    } else if (rows.added->wide) {
-      RunRows<Out, std::int16_t>(rows);
-    } else {
-      RunRows<Out, Narrow>(rows);
+  /// Pictures are copies: the compiler cannot know that results do not lie there.
+  template <class Result, class More, int kCount>
+  void Run(const Block& block, PictureView in, PictureView added, int begin, int end, PictureView out) const {
+    const Lanes d;
+    const Floats df;
+    HWY_ALIGN std::int32_t sums[kMany * kCount * hn::MaxLanes(d)];
+    Float scale[kCount], offset[kCount];
+    int there[kCount];
+#pragma GCC unroll 2
+    for (int v = 0; v < kCount; ++v) {
+      const int channel = block.channel + v * kLanes;
+      scale[v] = hn::LoadU(df, &c_.scale[channel]);
+      offset[v] = hn::LoadU(df, &c_.offset[channel]);
+      there[v] = std::min(kLanes, c_.outputs - channel);
     }
-  }
-
-  /// A block's weights stay in the nearest cache while the rows go by.
-  template <class Out, class Added>
-  void RunRows(const Rows& rows) const {
-    const int width = rows.out.width;
-    const bool many = RoundUp(width, kMany) <= RoundUp(width, kFewer);
-    for (const Block& block : blocks_) {
-      const bool one = block.count == int(hn::Lanes(Lanes()));
-      if (many) {
-        one ? RunBlock<Out, Added, kMany, 1>(rows, block) : RunBlock<Out, Added, kMany, 2>(rows, block);
-      } else {
-        one ? RunBlock<Out, Added, kFewer, 1>(rows, block) : RunBlock<Out, Added, kFewer, 2>(rows, block);
-      }
-    }
-  }
-
-  template <class Out, class Added, int kPixels, int kCount>
-  void RunBlock(const Rows& rows, const Block& block) const {
-    HWY_ALIGN std::int32_t sums[kPixels * kCount * hn::MaxLanes(Lanes())];
-    const auto& [in, added, begin, end, out] = rows;
+    const Float added_scale = hn::Set(df, c_.added_scale);
+    const Float low = hn::Set(df, c_.wide ? -32768.F : 0.F), high = hn::Set(df, c_.wide ? 32767.F : 255.F);
+    const Float rounder = hn::Set(df, 12582912.F);  // 1.5 * 2^23, beside which singles have no fractions
+    const bool many = RoundUp(out.width, kMany) <= RoundUp(out.width, kFewer);
+    const auto sum = many ? &SumWindows<kMany, kCount> : &SumWindows<kFewer, kCount>;
+    const int pixels = many ? kMany : kFewer, reach = c_.side / 2, halved = added.width < out.width ? 1 : 0;
+    const WindowShape shape{c_.stride * in.pixel_bytes, in.row_bytes, c_.side, row_values_ / kGroup};
+    const std::int32_t* weights = block.weights;
     for (int y = begin; y < end; ++y) {
-      for (int x = 0; x < out.width; x += kPixels) {
-        const std::uint8_t* first = in.at(x * stride_ - side_ / 2, y * stride_ - side_ / 2);
-        SumWindows<kPixels, kCount>({first, stride_ * in.pixel_bytes, in.row_bytes, side_, row_values_ / kGroup},
-                                    block.weights, sums);
-        const int there = std::min(kPixels, out.width - x);
-        for (int p = 0; p < there; ++p) {
-          const std::uint8_t* add = nullptr;
-          if constexpr (!std::is_void_v<Added>) {
-            const int halved = added->width < out.width ? 1 : 0;
-            add = added->at((x + p) >> halved, y >> halved);
+      for (int x = 0, p = pixels; x < out.width; ++x, ++p) {
+        if (p == pixels) {
+          sum(shape, in.at(x * c_.stride - reach, y * c_.stride - reach), weights, sums);
+          p = 0;
+        }
+        Result* to = reinterpret_cast<Result*>(out.at(x, y)) + block.channel;
+        const More* more = reinterpret_cast<const More*>(added.at(x >> halved, y >> halved)) + block.channel;
+#pragma GCC unroll 2
+        for (int v = 0; v < kCount; ++v, to += kLanes, more += kLanes) {
+          Float value = hn::ConvertTo(df, hn::Load(d, &sums[(p * kCount + v) * kLanes]));
+          value = hn::Add(hn::Mul(value, scale[v]), offset[v]);
+          if constexpr (!std::is_same_v<More, Nothing>) {
+            const auto all = hn::PromoteTo(d, LoadFirst(hn::Rebind<More, Lanes>(), more, there[v]));
+            value = hn::Add(value, hn::Mul(hn::ConvertTo(df, all), added_scale));
           }
-          Finish<Out, Added, kCount>(&sums[p * block.count], block.channel, add, out.at(x + p, y));
+          value = hn::Add(hn::Min(hn::Max(value, low), high), rounder);
+          const Int32 rounded = hn::Sub(hn::BitCast(d, value), hn::BitCast(d, rounder));
+          StoreFirst(hn::Rebind<Result, Lanes>(), rounded, to, there[v]);
         }
       }
     }
   }
 
-  /// Makes a pixel's result of its sums.
-  template <class Out, class Added, int kCount>
-  HWY_INLINE void Finish(const std::int32_t* sums, int channel, const std::uint8_t* add, std::uint8_t* to) const {
-    const Lanes d;
-    const Floats df;
-    const int lanes = int(hn::Lanes(d));
-#pragma GCC unroll 2
-    for (int v = 0; v < kCount; ++v, channel += lanes) {
-      const int there = std::min(lanes, outputs_ - channel);
-      auto x = hn::Mul(hn::ConvertTo(df, hn::Load(d, sums + v * lanes)), hn::LoadU(df, &scale_[channel]));
-      x = hn::Add(x, hn::LoadU(df, &offset_[channel]));
-      if constexpr (!std::is_void_v<Added>) {
-        const hn::Rebind<Added, Lanes> da;
-        const auto a = LoadFirst(da, reinterpret_cast<const Added*>(add) + channel, there);
-        x = hn::Add(x, hn::Mul(hn::ConvertTo(df, hn::PromoteTo(d, a)), hn::Set(df, added_scale_)));
-      }
-      x = hn::Min(hn::Max(x, hn::Set(df, low_)), hn::Set(df, high_));
-      const hn::Rebind<Out, Lanes> to_d;
-      StoreFirst(hn::DemoteTo(to_d, hn::NearestInt(x)), to_d, reinterpret_cast<Out*>(to) + channel, there);
-    }
-  }
-
   template <class D>
   static HWY_INLINE hn::Vec<D> LoadFirst(D d, const hn::TFromD<D>* from, int count) {
-    if (count == int(hn::Lanes(d))) return hn::LoadU(d, from);
+#if VESALIUS_AVX512  // masks leave alone what they leave out
+    return hn::MaskedLoad(hn::FirstN(d, static_cast<std::size_t>(count)), d, from);
+#else
+    if (count == kLanes) return hn::LoadU(d, from);
     HWY_ALIGN hn::TFromD<D> all[hn::MaxLanes(d)] = {};
     std::copy_n(from, count, all);
     return hn::Load(d, all);
+#endif
   }
 
   template <class D>
-  static HWY_INLINE void StoreFirst(hn::Vec<D> v, D d, hn::TFromD<D>* to, int count) {
-    if (count == int(hn::Lanes(d))) return hn::StoreU(v, d, to);
+  static HWY_INLINE void StoreFirst(D d, Int32 values, hn::TFromD<D>* to, int count) {
+    const hn::Vec<D> v = hn::DemoteTo(d, values);
+#if VESALIUS_AVX512  // masks leave alone what they leave out
+    hn::BlendedStore(v, hn::FirstN(d, static_cast<std::size_t>(count)), d, to);
+#else
+    if (count == kLanes) return hn::StoreU(v, d, to);
     HWY_ALIGN hn::TFromD<D> all[hn::MaxLanes(d)];
     hn::Store(v, d, all);
     std::copy_n(all, count, to);
+#endif
   }
 
-  int side_;
-  int stride_;
-  int outputs_;
-  int row_values_;  ///< values in a row of a window
-  float added_scale_;
-  float low_;
-  float high_;
-  std::vector<float> scale_;
-  std::vector<float> offset_;
+  Convolution c_;   ///< without weights, scales and offsets padded to whole vectors
+  int row_values_;  ///< in a row of a window
   hwy::AlignedFreeUniquePtr<std::int32_t[]> weights_;
   std::vector<Block> blocks_;
 };

@@ -29,9 +29,6 @@ class Convolver {
   /// For the best instruction set of this processor.
   static std::unique_ptr<const Convolver> make(const Convolution& convolution);
 
-  Convolver() = default;
-  Convolver(const Convolver&) = delete;
-  Convolver& operator=(const Convolver&) = delete;
   virtual ~Convolver() = default;
   /// Bytes of a narrow value in memory, 1 or 2.
   virtual int narrow_bytes() const = 0;

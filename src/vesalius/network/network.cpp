@@ -21,48 +21,50 @@ void expect(bool holds, const std::string& what) {
   if (!holds) throw Error(what);
 }
 
-std::string counted(std::size_t count, const std::string& things, std::size_t expected) {
-  return std::to_string(count) + " " + things + ", expected " + std::to_string(expected);
-}
-
 bool in_range(std::span<const float> scales) {
   return std::ranges::all_of(scales, [](float s) { return std::abs(s) <= kMostScale; });
 }
 
 void check_numbers(const Convolution& c) {
   const auto outputs = static_cast<std::size_t>(c.outputs);
-  const std::size_t weights = static_cast<std::size_t>(c.side * c.side * c.inputs) * outputs;
-  expect(c.weights.size() == weights, counted(c.weights.size(), "weights", weights));
-  expect(c.scale.size() == outputs, counted(c.scale.size(), "scales", outputs));
-  expect(c.offset.size() == outputs, counted(c.offset.size(), "offsets", outputs));
+  const auto words = [](std::size_t weights, std::size_t scales, std::size_t offsets) {
+    return std::to_string(weights) + " weights, " + std::to_string(scales) + " scales and " + std::to_string(offsets) +
+           " offsets";
+  };
+  const std::string has = words(c.weights.size(), c.scale.size(), c.offset.size());
+  const std::string expected = words(static_cast<std::size_t>(c.side * c.side * c.inputs) * outputs, outputs, outputs);
+  expect(has == expected, has + ", expected " + expected);
   const bool positive = std::ranges::all_of(c.scale, [](float s) { return s > 0.F; });
   expect(positive && in_range(c.scale), "a scale that is not above 0 and at most 1e9");
-  expect(in_range(c.offset), "an offset that is not from -1e9 to 1e9");
-  expect(in_range({&c.added_scale, 1}), "a scale of what is added that is not from -1e9 to 1e9");
+  expect(in_range(c.offset) && in_range({&c.added_scale, 1}), "an offset or added scale that is not from -1e9 to 1e9");
+}
+
+std::string words(const NetworkPicture& p) {
+  return std::string(p.wide ? "wide" : "narrow") + " picture of " + std::to_string(p.channels) + " channels (halved " +
+         std::to_string(p.halvings) + " times)";
 }
 
 /// Returns what `c` makes of `pictures`, which are those before it.
 NetworkPicture made_by(const Convolution& c, std::span<const NetworkPicture> pictures) {
-  const int count = int(pictures.size());
+  const auto picture = [&](int n, int least) -> const NetworkPicture& {
+    const bool there = n >= least && n < int(pictures.size());
+    expect(there, "takes picture " + std::to_string(n) + ", expected one that a layer before it makes");
+    return pictures[static_cast<std::size_t>(n)];
+  };
   expect(c.side == 1 || c.side == 3, "a window of side " + std::to_string(c.side) + ", expected 1 or 3");
   expect(c.stride == 1 || c.stride == 2, "a stride of " + std::to_string(c.stride) + ", expected 1 or 2");
-  expect(c.inputs >= 1 && c.inputs <= kMostChannels, std::to_string(c.inputs) + " inputs, expected 1 to 1024");
   expect(c.outputs >= 1 && c.outputs <= kMostChannels, std::to_string(c.outputs) + " outputs, expected 1 to 1024");
+  const NetworkPicture& read = picture(c.input, 0);
+  expect(!read.wide && read.channels == c.inputs,
+         "reads a " + words(read) + ", expected a narrow one of " + std::to_string(c.inputs) + " channels");
   check_numbers(c);
-  expect(c.input >= 0 && c.input < count, "reads picture " + std::to_string(c.input) + ", which is not there yet");
-  const NetworkPicture& read = pictures[static_cast<std::size_t>(c.input)];
-  expect(!read.wide, "reads picture " + std::to_string(c.input) + ", which is wide");
-  expect(read.channels == c.inputs,
-         "reads a picture of " + std::to_string(read.channels) + " channels, expected " + std::to_string(c.inputs));
-  const NetworkPicture made{c.outputs, read.halvings + (c.stride == 2 ? 1 : 0), c.wide};
+  const NetworkPicture made{c.outputs, read.halvings + c.stride - 1, c.wide};
   expect(made.halvings <= kMostHalvings, "halves pictures more than " + std::to_string(kMostHalvings) + " times");
   if (c.added == -1) return made;
-  expect(c.added >= 1 && c.added < count, "adds picture " + std::to_string(c.added) + ", which no layer before makes");
-  const NetworkPicture& added = pictures[static_cast<std::size_t>(c.added)];
-  expect(added.channels == c.outputs,
-         "adds a picture of " + std::to_string(added.channels) + " channels, expected " + std::to_string(c.outputs));
-  expect(added.halvings == made.halvings || added.halvings == made.halvings + 1,
-         "adds a picture that has neither the same size nor half of it");
+  const NetworkPicture& added = picture(c.added, 1);
+  const int halved = added.halvings - made.halvings;
+  expect(added.channels == made.channels && (halved == 0 || halved == 1),
+         "adds a " + words(added) + " to a " + words(made));
   return made;
 }
 
@@ -71,13 +73,8 @@ void check_head(std::span<const NetworkPicture> pictures, const std::string& nam
   const auto at = static_cast<std::size_t>(layer) + 1;
   expect(layer >= 0 && at < pictures.size(),
          "network: " + name + " come from layer " + std::to_string(layer) + ", which is not there");
-  const NetworkPicture& head = pictures[at];
-  const auto words = [](const NetworkPicture& p) {
-    return std::string(p.wide ? "wide" : "narrow") + " picture of " + std::to_string(p.channels) +
-           " channels, halved " + std::to_string(p.halvings) + " times";
-  };
-  expect(words(head) == words(expected),
-         "network: " + name + " are a " + words(head) + ", expected a " + words(expected));
+  expect(pictures[at] == expected,
+         "network: " + name + " are a " + words(pictures[at]) + ", expected a " + words(expected));
 }
 
 }  // namespace

@@ -57,6 +57,8 @@ struct NetworkPicture {
   int channels = 0;
   int halvings = 0;
   bool wide = false;
+
+  friend bool operator==(const NetworkPicture&, const NetworkPicture&) = default;
 };
 
 /// Returns what a network's pictures are: first its input, then what each convolution makes. Throws Error naming the

@@ -56,7 +56,6 @@ int padded(int size) { return (size + kNetworkMultiple - 1) / kNetworkMultiple *
 void fill_network_input(const DepthImage& depth, float focal_px, NetworkInput& input) {
   input.width = padded(depth.width());
   input.height = padded(depth.height());
-  input.channels = kNetworkInputs;
   const std::size_t row = static_cast<std::size_t>(input.width) * kNetworkInputs;
   input.values.resize(row * static_cast<std::size_t>(input.height));
   parallel_ranges(input.height, kRowGrain, [&](int begin, int end) {

@@ -111,7 +111,7 @@ class Enlarger {
   std::size_t classes_;
 };
 
-Image<PersonVote> votes_of(const ChannelImage<std::int16_t>& person, const DepthImage& depth) {
+Image<PersonVote> votes_of(const WideImage& person, const DepthImage& depth) {
   const auto part = [](int size) { return (size + kVoteStep - 1) / kVoteStep; };
   Image<PersonVote> votes(part(depth.width()), part(depth.height()));
   for (int v = 0; v < votes.height(); ++v) {

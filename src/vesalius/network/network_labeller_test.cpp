@@ -42,8 +42,9 @@ Network any_network(std::uint64_t seed) {
   return test::random_network(random, {{8, 12, 16, 20, 24}, {0, 1, 1, 1, 1}, {20, 16, 12, 8}}, kParts);
 }
 
-std::vector<std::uint8_t> input_at(const NetworkInput& input, int u, int v) {
-  return {input.at(u, v), input.at(u, v) + input.channels};
+std::vector<int> input_at(const NetworkInput& input, int u, int v) {
+  const std::uint8_t* first = input.values.data() + std::ptrdiff_t(v * input.width + u) * kNetworkInputs;
+  return {first, first + kNetworkInputs};
 }
 
 TEST(NetworkInput, TellsHowNearAPixelIsAndHowSteepTheSurface) {
@@ -56,17 +57,16 @@ TEST(NetworkInput, TellsHowNearAPixelIsAndHowSteepTheSurface) {
   fill_network_input(depth, 285.F, input);
   EXPECT_EQ(input.width, 32);
   EXPECT_EQ(input.height, 32);
-  EXPECT_EQ(input.channels, kNetworkInputs);
-  constexpr std::uint8_t zero = kNetworkZero, there = kNetworkZero + 32;
+  constexpr int zero = kNetworkZero, there = kNetworkZero + 32;
   // 2 / 2 m - .7 = .3 is 38.4 steps of 1 / 128: 10 coarse ones of four less 2.
   EXPECT_THAT(input_at(input, 5, 5), ElementsAre(zero + 10, zero - 2, there, zero, zero, zero, zero, zero));
   EXPECT_THAT(input_at(input, 3, 3), testing::Each(zero)) << "no reading";
   EXPECT_THAT(input_at(input, 25, 5), testing::Each(zero)) << "beyond the picture";
-  EXPECT_EQ(input.at(5, 3)[3], zero) << "beside a hole";
+  EXPECT_EQ(input_at(input, 5, 3)[3], zero) << "beside a hole";
   // 40 mm over 4 pixels of 2040 / 285 mm, at 14: slope 1.397, 44.7 steps.
-  EXPECT_EQ(input.at(14, 5)[3], zero + 45);
-  EXPECT_EQ(input.at(14, 5)[4], zero);
-  EXPECT_EQ(input.at(1, 5)[3], zero) << "at the border";
+  EXPECT_EQ(input_at(input, 14, 5)[3], zero + 45);
+  EXPECT_EQ(input_at(input, 14, 5)[4], zero);
+  EXPECT_EQ(input_at(input, 1, 5)[3], zero) << "at the border";
 }
 
 TEST(NetworkInput, IsTheSameForHalfTheFocalLengthAtHalfTheDistance) {
@@ -79,7 +79,7 @@ TEST(NetworkInput, IsTheSameForHalfTheFocalLengthAtHalfTheDistance) {
 TEST(NetworkInput, IsClampedWhereCloser) {
   NetworkInput input;
   fill_network_input(DepthImage(8, 8, 1), 600.F, input);
-  EXPECT_EQ(input.at(4, 4)[0], 255);
+  EXPECT_EQ(input_at(input, 4, 4)[0], 255);
 }
 
 TEST(SoftmaxInSteps, IsThatOfRealNumbersRounded) {

@@ -14,44 +14,29 @@ constexpr std::int64_t kTaskProducts = 2'000'000;
 
 void check_input(const NetworkInput& input) {
   const auto fits = [](int side) { return side > 0 && side % kNetworkMultiple == 0; };
-  const std::int64_t values = std::int64_t{input.width} * input.height * kNetworkInputs;
-  if (fits(input.width) && fits(input.height) && input.channels == kNetworkInputs &&
-      static_cast<std::int64_t>(input.values.size()) == values) {
-    return;
-  }
-  throw Error("network: input of " + std::to_string(input.width) + "x" + std::to_string(input.height) + " pixels of " +
-              std::to_string(input.channels) + " channels, " + std::to_string(input.values.size()) +
-              " values; expected multiples of " + std::to_string(kNetworkMultiple) + " and " +
-              std::to_string(kNetworkInputs) + " channels");
+  const std::size_t values =
+      static_cast<std::size_t>(input.width) * static_cast<std::size_t>(input.height) * kNetworkInputs;
+  if (fits(input.width) && fits(input.height) && input.values.size() == values) return;
+  throw Error("network: input of " + std::to_string(input.width) + "x" + std::to_string(input.height) + " pixels and " +
+              std::to_string(input.values.size()) + " values, expected multiples of " +
+              std::to_string(kNetworkMultiple) + " and " + std::to_string(kNetworkInputs) + " values a pixel");
 }
 
-/// Lays out a narrow picture with everything that PictureView promises.
-void lay_out_narrow(int channels, int value_bytes, std::uint8_t fill, PictureView& view,
-                    std::vector<std::int16_t>& memory) {
-  view.pixel_bytes = (channels + kChannelStep - 1) / kChannelStep * kChannelStep * value_bytes;
-  view.row_bytes = (view.width + 2) * view.pixel_bytes;
-  const std::ptrdiff_t bytes = (view.height + 2) * view.row_bytes + kReadAhead * view.pixel_bytes;
-  memory.assign(static_cast<std::size_t>(bytes / 2), static_cast<std::int16_t>(value_bytes == 1 ? 257 * fill : fill));
-  view.first = reinterpret_cast<std::uint8_t*>(memory.data()) + view.row_bytes + view.pixel_bytes;
-}
-
-void lay_out_wide(int channels, PictureView& view, std::vector<std::int16_t>& memory) {
-  view.wide = true;
-  view.pixel_bytes = channels * 2;
-  view.row_bytes = view.width * view.pixel_bytes;
-  memory.resize(static_cast<std::size_t>(view.height * view.row_bytes / 2));
-  view.first = reinterpret_cast<std::uint8_t*>(memory.data());
-}
-
-void lay_out_head(int channels, PictureView& view, ChannelImage<std::int16_t>& head) {
-  lay_out_wide(channels, view, head.values);
-  head.width = view.width;
-  head.height = view.height;
-  head.channels = channels;
+/// Lays out a picture whose width and height `view` has, with everything that PictureView promises.
+void lay_out(const NetworkPicture& picture, int narrow_bytes, int fill, PictureView& view,
+             std::vector<std::int16_t>& memory) {
+  const int border = picture.wide ? 0 : 1;
+  const int padded = (picture.channels + kChannelStep - 1) / kChannelStep * kChannelStep;
+  view.wide = picture.wide;
+  view.pixel_bytes = picture.wide ? 2 * picture.channels : padded * narrow_bytes;
+  view.row_bytes = (view.width + 2 * border) * view.pixel_bytes;
+  const std::ptrdiff_t bytes = (view.height + 2 * border) * view.row_bytes + border * kReadAhead * view.pixel_bytes;
+  memory.resize(static_cast<std::size_t>(bytes / 2), static_cast<std::int16_t>(narrow_bytes == 1 ? 257 * fill : fill));
+  view.first = reinterpret_cast<std::uint8_t*>(memory.data()) + border * (view.row_bytes + view.pixel_bytes);
 }
 
 void copy_input(const NetworkInput& input, int value_bytes, const PictureView& to) {
-  const int row = input.width * input.channels;
+  const int row = input.width * kNetworkInputs;
   const std::uint8_t* from = input.values.data();
   for (int y = 0; y < input.height; ++y, from += row) {
     if (value_bytes == 1) {
@@ -76,21 +61,22 @@ NetworkRunner::NetworkRunner(const Network& network, int parts)
 
 void NetworkRunner::prepare(int width, int height, Workspace& space) const {
   if (space.width == width && space.height == height) return;
-  space.width = width;
-  space.height = height;
-  space.views.resize(pictures_.size());
+  space = {width, height, std::vector<PictureView>(pictures_.size()), {}};
   space.memory.resize(pictures_.size());
-  const int value_bytes = layers_.front().convolver->narrow_bytes();
   for (std::size_t n = 0; n < pictures_.size(); ++n) {
-    const auto& [channels, halvings, wide] = pictures_[n];
-    PictureView& view = space.views[n] = {.width = width >> halvings, .height = height >> halvings};
-    if (n == classes_of_ || n == person_of_) continue;  // they lie in the result
-    if (wide) {
-      lay_out_wide(channels, view, space.memory[n]);
-    } else {
-      lay_out_narrow(channels, value_bytes, n == 0 ? kNetworkZero : 0, view, space.memory[n]);
-    }
+    space.views[n].width = width >> pictures_[n].halvings;
+    space.views[n].height = height >> pictures_[n].halvings;
+    if (n == classes_of_ || n == person_of_) continue;
+    lay_out(pictures_[n], narrow_bytes(), n == 0 ? kNetworkZero : 0, space.views[n], space.memory[n]);
   }
+}
+
+void NetworkRunner::lay_out_head(std::size_t picture, Workspace& space, WideImage& head) const {
+  PictureView& view = space.views[picture];
+  lay_out(pictures_[picture], narrow_bytes(), 0, view, head.values);
+  head.width = view.width;
+  head.height = view.height;
+  head.channels = pictures_[picture].channels;
 }
 
 void NetworkRunner::run_layer(const Layer& layer, const std::vector<PictureView>& views, const PictureView& out) const {
@@ -106,9 +92,9 @@ void NetworkRunner::run(const NetworkInput& input, NetworkResult& out) const {
   check_input(input);
   Workspace space = spaces_.take();
   prepare(input.width, input.height, space);
-  lay_out_head(pictures_[classes_of_].channels, space.views[classes_of_], out.classes);
-  lay_out_head(pictures_[person_of_].channels, space.views[person_of_], out.person);
-  copy_input(input, layers_.front().convolver->narrow_bytes(), space.views[0]);
+  lay_out_head(classes_of_, space, out.classes);
+  lay_out_head(person_of_, space, out.person);
+  copy_input(input, narrow_bytes(), space.views[0]);
   for (std::size_t n = 0; n < layers_.size(); ++n) run_layer(layers_[n], space.views, space.views[n + 1]);
   spaces_.give_back(std::move(space));
 }

@@ -18,7 +18,12 @@
 namespace vesalius {
 namespace {
 
-using Plain = ChannelImage<int>;
+struct Plain {
+  int width;
+  int height;
+  int channels;
+  std::vector<int> values;
+};
 
 int plain_value(const Plain& image, int x, int y, int c, int outside) {
   if (x < 0 || y < 0 || x >= image.width || y >= image.height) return outside;
@@ -63,7 +68,7 @@ Plain convolve_plainly(const Convolution& c, const Plain& in, const Plain* added
 }
 
 NetworkResult run_plainly(const Network& network, const NetworkInput& input) {
-  std::vector<Plain> made = {{input.width, input.height, input.channels, {input.values.begin(), input.values.end()}}};
+  std::vector<Plain> made = {{input.width, input.height, kNetworkInputs, {input.values.begin(), input.values.end()}}};
   for (const Convolution& c : network.layers) {
     const Plain* added = c.added < 0 ? nullptr : &made[static_cast<std::size_t>(c.added)];
     made.push_back(
@@ -71,13 +76,12 @@ NetworkResult run_plainly(const Network& network, const NetworkInput& input) {
   }
   const auto head = [&](int layer) {
     const Plain& p = made[static_cast<std::size_t>(layer) + 1];
-    return ChannelImage<std::int16_t>{p.width, p.height, p.channels, {p.values.begin(), p.values.end()}};
+    return WideImage{p.width, p.height, p.channels, {p.values.begin(), p.values.end()}};
   };
   return {head(network.classes_of), head(network.person_of)};
 }
 
-void expect_same(const ChannelImage<std::int16_t>& got, const ChannelImage<std::int16_t>& expected,
-                 const std::string& what) {
+void expect_same(const WideImage& got, const WideImage& expected, const std::string& what) {
   EXPECT_EQ(got.width, expected.width) << what;
   EXPECT_EQ(got.height, expected.height) << what;
   EXPECT_EQ(got.channels, expected.channels) << what;
@@ -180,7 +184,7 @@ TEST(NetworkRunner, CountsSumsAtTheExtremesOfTheirRange) {
       network.classes_of = add({.input = half, .inputs = 1024, .outputs = 3, .wide = true}) - 1;
       const int quarter = add({.input = half, .stride = 2, .inputs = 1024, .outputs = 40});
       network.person_of = add({.input = quarter, .inputs = 40, .outputs = kPersonNumbers, .wide = true}) - 1;
-      NetworkInput input{32, 32, kNetworkInputs, std::vector<std::uint8_t>(32 * 32 * kNetworkInputs, 255)};
+      NetworkInput input{32, 32, std::vector<std::uint8_t>(32 * 32 * kNetworkInputs, 255)};
       expect_plain_result(network, 2, input);
     }
   }
@@ -200,7 +204,7 @@ TEST(NetworkRunner, SeesNoReadingOutsideOfTheInputAndZeroOutsideOfTheRest) {
   network.classes_of = add_ones({.input = half, .inputs = 1, .outputs = 2, .wide = true}, 1.F) - 1;
   network.person_of =
       add_ones({.input = half, .stride = 2, .inputs = 1, .outputs = kPersonNumbers, .wide = true}, 1.F) - 1;
-  NetworkInput input{32, 64, kNetworkInputs, std::vector<std::uint8_t>(32 * 64 * kNetworkInputs, kNetworkZero)};
+  NetworkInput input{32, 64, std::vector<std::uint8_t>(32 * 64 * kNetworkInputs, kNetworkZero)};
   NetworkResult result;
   NetworkRunner(network, 1).run(input, result);
   ASSERT_EQ(result.classes.values.size(), 16U * 32U * 2U);
@@ -236,7 +240,8 @@ TEST(NetworkRunner, TakesNoOtherInputThanItSays) {
   Random random(16);
   const NetworkRunner runner(test::random_network(random, {{4, 4, 4, 4, 4}, {0, 0, 0, 0, 0}, {4, 4, 4, 4}}, 1), 1);
   NetworkResult result;
-  const auto message = testing::ThrowsMessage<Error>(testing::HasSubstr("expected multiples of 32 and 8 channels"));
+  const auto message =
+      testing::ThrowsMessage<Error>(testing::HasSubstr("expected multiples of 32 and 8 values a pixel"));
   EXPECT_THAT([&] { runner.run(test::random_input(random, 32, 48), result); }, message);
   EXPECT_THAT([&] { runner.run({}, result); }, message);
   NetworkInput cut = test::random_input(random, 32, 32);

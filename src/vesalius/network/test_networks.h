@@ -71,7 +71,7 @@ inline Network random_network(Random& random, const NetworkShape& shape, int par
 }
 
 inline NetworkInput random_input(Random& random, int width, int height) {
-  NetworkInput input{width, height, kNetworkInputs, {}};
+  NetworkInput input{width, height, {}};
   for (int i = 0; i < width * height * kNetworkInputs; ++i) {
     input.values.push_back(static_cast<std::uint8_t>(random.below(256)));
   }
