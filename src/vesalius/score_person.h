@@ -90,7 +90,15 @@ inline constexpr std::array<JudgedEvidence, 30> kJudgedEvidence{{{"likelihood", 
                                                                  {"ragged", &Evidence::ragged},
                                                                  {"on_flat", &Evidence::on_flat},
                                                                  {"elsewhere", &Evidence::elsewhere},
-                                                                 {"rivals", &Evidence::rivals}}};
+                                                                 {"rivals", &Evidence::rivals},
+                                                                 {"votes", &Evidence::votes},
+                                                                 {"area", &Evidence::area_m2},
+                                                                 {"spread", &Evidence::spread_m, -1},
+                                                                 {"likely", &Evidence::likely, 1},
+                                                                 {"agree", &Evidence::agree, 1},
+                                                                 {"heading", &Evidence::heading},
+                                                                 {"sided", &Evidence::sided},
+                                                                 {"groups", &Evidence::groups}}};
 
 /// Returns the names of all evidence of a body: kJudgedEvidence, then "part:" and the name of each kind of part.
 std::vector<std::string> judge_names(const BodyModel& body);
@@ -101,8 +109,8 @@ std::vector<int> judge_signs(const BodyModel& body);
 /// Returns the value of each.
 std::vector<float> judge_features(const Evidence& evidence);
 
-/// Measures the evidence that a mask and a skeleton are a person. `labels` are those inside `mask`, `posteriors` those
-/// of the first pass; all have the frame's size, and so has the scenery.
+/// Measures the evidence that a mask and a skeleton are a person. `labels` are those inside `mask`, `posteriors`
+/// those of the first pass; all have the frame's size, and so has the scenery.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
                          const Scenery& scenery, const Skeleton& skeleton, const BodyModel& body);
 
@@ -110,11 +118,12 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
 void add_votes(const Frame& frame, const Mask& mask, const Image<PersonVote>& votes, const VoteGroup& group,
                const Skeleton& skeleton, const BodyModel& body, Evidence& evidence);
 
-/// Returns the cosine between the heading of a skeleton's observed parts (body_yaw) and a given one: above 0 where left
-/// and right agree. Returns 0 where the parts have no heading.
+/// Returns the cosine between the heading of a skeleton's observed parts (body_yaw) and a given one: above 0 where
+/// left and right agree. Returns 0 where the parts have no heading.
 float agreement_of_sides(const Skeleton& skeleton, const YawEstimate& heading, const BodyModel& body);
 
-/// Returns Scenery::body_elsewhere for the union of the candidates' masks, from every second pixel of every second row.
+/// Returns Scenery::body_elsewhere for the union of the candidates' masks, from every second pixel of every second
+/// row.
 float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts);
 
 }  // namespace vesalius
