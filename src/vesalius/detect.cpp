@@ -131,16 +131,6 @@ bool swaps_sides(const Skeleton& skeleton, const Skeleton& other, const BodyMode
   return 2 * swapped > compared;
 }
 
-/// The confidence of a heading of votes from which it tells sides apart.
-constexpr float kSureHeading = 0.8F;
-
-/// Returns whether the rough skeleton's sides contradict the heading of the candidate's votes, and the refined one's do
-/// not.
-bool contradicts_votes(const Candidate& candidate, const VoteGroup& group, const BodyModel& body) {
-  return group.heading.confidence >= kSureHeading && agreement_of_sides(candidate.rough, group.heading, body) < 0.F &&
-         agreement_of_sides(candidate.refined, group.heading, body) > 0.F;
-}
-
 /// Runs the same stages on one person a second time, and keeps the likelier of the two skeletons. Where the person's
 /// heading is known, a first one whose sides contradict it is not kept: it was found in labels of single pixels.
 Candidate refine(const Method& method, const Frame& frame, const Scene& scene, const Scenery& scenery,
@@ -157,20 +147,19 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
     person.labels = candidate.labels.empty() ? scene.proposals : candidate.labels;
     person.certain = mean_certainty(scene.labels.posteriors(), candidate.grown, method.body.part_count());
   }
-  const VoteGroup* group = candidate.group < 0 ? nullptr : &scene.groups.items[candidate.group];
   const auto contradicted = [&] {
-    if (person.facing.size() > 0) return swaps_sides(candidate.rough, candidate.refined, method.body);
-    return group != nullptr && contradicts_votes(candidate, *group, method.body);
+    return person.facing.size() > 0 && swaps_sides(candidate.rough, candidate.refined, method.body);
   };
   if (candidate.refined.found == 0 || (candidate.refined.score < candidate.rough.score && !contradicted())) {
     candidate.refined = candidate.rough;
   }
   candidate.evidence =
       gather_evidence(frame, candidate.grown, person, scene.labels.smooth, scenery, candidate.refined, method.body);
-  if (group != nullptr) {
-    add_votes(frame, candidate.grown, scene.labels.raw.votes, *group, candidate.refined, method.body,
+  if (candidate.group >= 0) {
+    const VoteGroup& group = scene.groups.items[candidate.group];
+    add_votes(frame, candidate.grown, scene.labels.raw.votes, group, candidate.refined, method.body,
               candidate.evidence);
-    if (group->heading.confidence > 0.F) candidate.yaw = group->heading;
+    if (group.heading.confidence > 0.F) candidate.yaw = group.heading;
   }
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
   candidate.score = method.score(candidate.evidence);

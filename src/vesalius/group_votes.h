@@ -14,11 +14,10 @@ namespace vesalius {
 /// Votes for one middle: most likely one person's.
 struct VoteGroup {
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();  ///< where the votes are densest, metres, optical frame
-  int votes = 0;                                     ///< at least 1
-  float area_m2 = 0.F;                               ///< visible surface of the pixels that vote
-  float spread_m = 0.F;                              ///< root mean square distance of the votes to their mean
-  float body = 0.F;                                  ///< mean body share of the pixels that vote, 0.5-1
-  YawEstimate heading;                               ///< mean of the votes'; its length, 0-1, is the confidence
+  int votes = 0;
+  float spread_m = 0.F;  ///< root mean square distance of the votes to their mean
+  float body = 0.F;      ///< mean body share of the pixels that vote, 0.5-1
+  YawEstimate heading;   ///< mean of the votes'; its length, 0-1, is the confidence
 };
 
 /// The groups of a frame's votes, and whose every pixel is.
@@ -32,8 +31,8 @@ inline constexpr int kMostGroups = 12;
 Eigen::Vector3f voted_middle(const Image<PersonVote>& votes, const Frame& frame, int column, int row);
 
 /// Groups the votes of the pixels that are likelier body than not by mean shift. Every vote within 60 cm of a peak
-/// belongs to the nearest one, and every body pixel to the group of the votes around it that are at its depth, or to
-/// that of the body pixels beside it. `parts` is the number of the body's; there are no groups without votes.
+/// belongs to the nearest one, and every body pixel to the group of the nearest vote from which body pixels of like
+/// depth lead to it. `parts` is the number of the body's; there are no groups without votes.
 VoteGroups group_votes(const Posteriors& posteriors, const Frame& frame, int parts);
 
 /// Returns the index of the group that has the most pixels of a mask of the frame's size, or -1 if none has any.

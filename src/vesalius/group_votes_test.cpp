@@ -67,16 +67,6 @@ double share_right(const Grouped& of, const LabelledFrame& truth) {
   return double(right) / double(all);
 }
 
-/// Returns the surface of a true person that is seen.
-double surface_m2(const LabelledFrame& truth, std::size_t who) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < truth.person.size(); ++i) {
-    const double side_m = 1e-3 * truth.frame.depth[i] / double(kCamera.fx);
-    if (truth.person[i] == who) sum += side_m * side_m;
-  }
-  return sum;
-}
-
 TEST(GroupVotes, ExactVotesGiveEveryPersonAndAllPixels) {
   const LabelledFrame truth = people_at({{-0.9F, 2.2F}, {0.1F, 3.F}, {1.2F, 4.5F}});
   const Grouped of(truth);
@@ -90,7 +80,6 @@ TEST(GroupVotes, ExactVotesGiveEveryPersonAndAllPixels) {
     EXPECT_NEAR(group.heading.yaw_rad, *body_yaw(truth.parts[who], paper_body()), 1e-3F);
     EXPECT_NEAR(group.heading.confidence, 1.F, 1e-3F);
     EXPECT_FLOAT_EQ(group.body, 1.F);
-    EXPECT_NEAR(group.area_m2, surface_m2(truth, who), 0.03);
   }
   EXPECT_EQ(found.size(), 3U);
   EXPECT_GT(share_right(of, truth), 0.999);

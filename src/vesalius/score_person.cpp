@@ -360,7 +360,6 @@ void add_votes(const Frame& frame, const Mask& mask, const Image<PersonVote>& vo
   }
   constexpr float kLeastDoubt = 1e-3F;
   evidence.votes = std::log10(float(group.votes));
-  evidence.area_m2 = group.area_m2;
   evidence.spread_m = group.spread_m;
   evidence.likely = std::log(group.body / (1.F - group.body + kLeastDoubt));
   evidence.agree = all > 0 ? float(agreeing) / float(all) : 0.F;

@@ -69,7 +69,7 @@ struct JudgedEvidence {
   float Evidence::*evidence;
   int sign = 0;  ///< 1 if more of it can only speak for a person, -1 if only against, 0 if that is open
 };
-inline constexpr std::array<JudgedEvidence, 30> kJudgedEvidence{{{"likelihood", &Evidence::likelihood, 1},
+inline constexpr std::array<JudgedEvidence, 29> kJudgedEvidence{{{"likelihood", &Evidence::likelihood, 1},
                                                                  {"explained", &Evidence::explained, 1},
                                                                  {"open", &Evidence::open, 1},
                                                                  {"core", &Evidence::core, 1},
@@ -92,7 +92,6 @@ inline constexpr std::array<JudgedEvidence, 30> kJudgedEvidence{{{"likelihood", 
                                                                  {"elsewhere", &Evidence::elsewhere},
                                                                  {"rivals", &Evidence::rivals},
                                                                  {"votes", &Evidence::votes},
-                                                                 {"area", &Evidence::area_m2},
                                                                  {"spread", &Evidence::spread_m, -1},
                                                                  {"likely", &Evidence::likely, 1},
                                                                  {"agree", &Evidence::agree, 1},
