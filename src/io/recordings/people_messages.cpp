@@ -194,6 +194,12 @@ std::string markers_message(const TrackedFrame& people, const BodyModel& body, s
       lines.push_back(ball_of(parts[link.parent], body.parts[link.parent]));
       lines.push_back(ball_of(parts[link.child], body.parts[link.child]));
     }
+    if (balls.empty()) {  // nothing but a mask is known
+      highest = {};
+      for (const PersonPoint& point : person.person.points) {
+        if (highest.isZero() || point.at.y() < highest.y()) highest = point.at;
+      }
+    }
     write_marker(out, time_ns, frame, id++, {kLineList, kAdd, {kLine_m, 0, 0}}, origin, lines, "");
     write_marker(out, time_ns, frame, id++, {kSphereList, kAdd, {kBall_m, kBall_m, kBall_m}}, origin, balls, "");
     write_marker(out, time_ns, frame, id++, {kText, kAdd, {0, 0, kText_m}},
