@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "io/files/ply.h"
@@ -21,19 +20,14 @@ void make_folder(const fs::path& folder) {
   if (error) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
 }
 
-/// Returns the mean distance of the observed parts in metres along the optical axis, or that of points without parts.
-double distance_m(const Person& person) {
-  double sum = 0.0;
-  int count = 0;
-  const auto add = [&](const Eigen::Vector3f& place) {
-    sum += double(place.z());
-    ++count;
-  };
-  for (const SkeletonPart& part : person.skeleton.parts) {
-    if (part.state == State::observed) add(part.centre);
+/// Tells how many parts are observed and their mean distance along the optical axis.
+std::string describe(const Skeleton& skeleton) {
+  if (skeleton.found == 0) return "no parts";
+  double sum_m = 0.0;
+  for (const SkeletonPart& part : skeleton.parts) {
+    if (part.state == State::observed) sum_m += double(part.centre.z());
   }
-  if (count == 0) std::ranges::for_each(person.points, add, &PersonPoint::at);
-  return count == 0 ? 0.0 : sum / count;
+  return fmt::format("{} parts at {:.2f} m", skeleton.found, sum_m / skeleton.found);
 }
 
 }  // namespace
@@ -126,7 +120,7 @@ std::string describe(const Frame& frame, const TrackedFrame& people) {
     const Person& found = person.person;
     text += text.empty() ? "" : ", ";
     text += people.followed ? fmt::format("{} {} at {:.2f} m", person.id, to_string(person.state), person.position.z())
-                            : fmt::format("{} parts at {:.2f} m", found.skeleton.found, distance_m(found));
+                            : describe(found.skeleton);
     if (is_found(person)) text += fmt::format(" (score {:.2f})", found.score);
   }
   const std::size_t count = people.people.size();
