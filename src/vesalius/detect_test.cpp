@@ -653,7 +653,7 @@ TEST(Judge, OfOtherEvidenceIsRefused) {
   model.judge = judge_by(0, 0.F);
   model.judge.features -= 1;
   EXPECT_THAT([&] { Detector{model}; },
-              testing::ThrowsMessage<Error>(testing::HasSubstr("judge of people knows 34 features, expected 35")));
+              testing::ThrowsMessage<Error>(testing::HasSubstr("judge of people knows 41 features, expected 42")));
   model.judge = judge_by(0, 0.F);
   model.judge.asks = judge_names(paper_body());
   model.judge.asks.back() = "part:tail";

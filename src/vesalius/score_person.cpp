@@ -9,7 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "vesalius/base/body_heading.h"
+#include "vesalius/derive_joints.h"
 #include "vesalius/forest/body_context.h"
+
 namespace vesalius {
 namespace {
 
@@ -333,8 +336,35 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
   evidence.on_flat = float(count_on_flat(frame, inside, scenery.flat)) / side;
   evidence.elsewhere = scenery.body_elsewhere;
   evidence.rivals = float(scenery.proposals);
+  evidence.groups = float(scenery.groups);
   evidence.parts = std::move(belief.parts);
   return evidence;
+}
+
+float agreement_of_sides(const Skeleton& skeleton, const YawEstimate& heading, const BodyModel& body) {
+  if (skeleton.found == 0) return 0.F;
+  const std::optional<float> yaw = body_yaw(given_centres(skeleton), body);
+  return yaw ? std::cos(*yaw - heading.yaw_rad) : 0.F;
+}
+
+void add_votes(const Frame& frame, const Mask& mask, const Image<PersonVote>& votes, const VoteGroup& group,
+               const Skeleton& skeleton, const BodyModel& body, Evidence& evidence) {
+  long all = 0, agreeing = 0;
+  for (int row = 0; row < votes.height(); ++row) {
+    for (int column = 0; column < votes.width(); ++column) {
+      const int u = column * kVoteStep, v = row * kVoteStep;
+      if (mask(u, v) == 0 || frame.depth(u, v) == 0) continue;
+      ++all;
+      agreeing += (voted_middle(votes, frame, column, row) - group.middle).norm() <= kAgreed_m ? 1 : 0;
+    }
+  }
+  constexpr float kLeastDoubt = 1e-3F;
+  evidence.votes = std::log10(float(group.votes));
+  evidence.spread_m = group.spread_m;
+  evidence.likely = std::log(group.body / (1.F - group.body + kLeastDoubt));
+  evidence.agree = all > 0 ? float(agreeing) / float(all) : 0.F;
+  evidence.heading = group.heading.confidence;
+  evidence.sided = agreement_of_sides(skeleton, group.heading, body);
 }
 
 std::vector<std::string> judge_names(const BodyModel& body) {
