@@ -151,7 +151,7 @@ Network tangle(Random& random, int parts, int most_channels) {
 
 TEST(NetworkRunner, ComputesTheFormulaOnEveryInstructionSetAndNumberOfThreads) {
   Random random(11);
-  for (int n = 0; n < 12; ++n) {
+  for (int n = 0; n < 8; ++n) {
     const int parts = 1 + int(random.below(30));
     const Network network = tangle(random, parts, 40);
     const int width = 32 * (1 + int(random.below(3))), height = 32 * (1 + int(random.below(2)));
