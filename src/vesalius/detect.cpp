@@ -31,13 +31,22 @@
 #include "vesalius/trace.h"
 
 namespace vesalius {
+namespace {
+
+/// Returns a judge that asks for all evidence, in its order. One without names was fitted before there were votes.
+BoostedTrees judge_in_order(const BoostedTrees& judge, const BodyModel& body) {
+  std::vector<std::string> names = judge_names(body);
+  if (judge.asks.empty()) names.resize(names.size() - kVotedEvidence.size());
+  return in_order(judge, names, "judge of people");
+}
+
+}  // namespace
 
 /// The data that all frames share, and memory that they reuse.
 struct Method {
   /// `model` has a labeller.
   Method(Model model, const DetectOptions& given, std::shared_ptr<const Appearance> looks)
-      : judge(
-            in_order(model.judge.empty() ? default_judge() : model.judge, judge_names(model.body), "judge of people")),
+      : judge(judge_in_order(model.judge.empty() ? default_judge() : model.judge, model.body)),
         labeller(std::move(model), {given.label, given.smooth, given.grow.plane}),
         options(given),
         appearance(looks != nullptr ? std::move(looks) : make_appearance(given.grow.appearance)),
@@ -45,7 +54,7 @@ struct Method {
 
   float score(const Evidence& evidence) const { return judge.probability(judge_features(evidence)); }
 
-  BoostedTrees judge;  ///< asks for all evidence, in its order
+  BoostedTrees judge;  ///< judge_in_order
   SceneLabeller labeller;
   DetectOptions options;
   std::shared_ptr<const Appearance> appearance;  ///< none if looks do not matter

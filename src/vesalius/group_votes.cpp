@@ -213,11 +213,13 @@ VoteGroups group_votes(const Posteriors& posteriors, const Frame& frame, int par
 
 int main_group(const VoteGroups& groups, const Mask& mask) {
   std::vector<long> pixels(groups.items.size(), 0);
+  long all = 0;
   for (std::size_t i = 0; i < groups.index.size(); ++i) {
+    all += mask[i] != 0 ? 1 : 0;
     if (mask[i] != 0 && groups.index[i] != kBackground) ++pixels[groups.index[i]];
   }
   const auto most = std::ranges::max_element(pixels);
-  return most == pixels.end() || *most == 0 ? -1 : int(most - pixels.begin());
+  return most == pixels.end() || 3 * *most <= all ? -1 : int(most - pixels.begin());
 }
 
 }  // namespace vesalius

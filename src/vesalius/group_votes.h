@@ -35,7 +35,7 @@ Eigen::Vector3f voted_middle(const Image<PersonVote>& votes, const Frame& frame,
 /// depth lead to it. `parts` is the number of the body's; there are no groups without votes.
 VoteGroups group_votes(const Posteriors& posteriors, const Frame& frame, int parts);
 
-/// Returns the index of the group that has the most pixels of a mask of the frame's size, or -1 if none has any.
+/// Returns the index of the group that has the most pixels of a mask of the frame's size, or -1 if none has a third.
 int main_group(const VoteGroups& groups, const Mask& mask);
 
 }  // namespace vesalius

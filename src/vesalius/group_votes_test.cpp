@@ -170,6 +170,8 @@ TEST(GroupVotes, MainGroupHasTheMostPixelsOfAMask) {
   for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = truth.person[i] == 1 || (truth.person[i] == 0 && i % 3 == 0);
   ASSERT_GE(main_group(of.groups, mask), 0);
   EXPECT_EQ(whose(of.groups.items[main_group(of.groups, mask)], truth), 1U);
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = truth.person[i] == kBackground || i % 2 == 0;
+  EXPECT_EQ(main_group(of.groups, mask), -1) << "of little of it";
 }
 
 }  // namespace

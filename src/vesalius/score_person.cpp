@@ -371,6 +371,7 @@ std::vector<std::string> judge_names(const BodyModel& body) {
   std::vector<std::string> names;
   for (const JudgedEvidence& kind : kJudgedEvidence) names.emplace_back(kind.name);
   for (const std::string& name : kind_names(body)) names.push_back("part:" + name);
+  for (const JudgedEvidence& kind : kVotedEvidence) names.emplace_back(kind.name);
   return names;
 }
 
@@ -378,6 +379,7 @@ std::vector<int> judge_signs(const BodyModel& body) {
   std::vector<int> signs;
   for (const JudgedEvidence& kind : kJudgedEvidence) signs.push_back(kind.sign);
   signs.resize(signs.size() + kind_count(part_slots(body)), 0);
+  for (const JudgedEvidence& kind : kVotedEvidence) signs.push_back(kind.sign);
   return signs;
 }
 
@@ -385,6 +387,7 @@ std::vector<float> judge_features(const Evidence& evidence) {
   std::vector<float> features;
   for (const JudgedEvidence& kind : kJudgedEvidence) features.push_back(evidence.*kind.evidence);
   features.insert(features.end(), evidence.parts.begin(), evidence.parts.end());
+  for (const JudgedEvidence& kind : kVotedEvidence) features.push_back(evidence.*kind.evidence);
   return features;
 }
 

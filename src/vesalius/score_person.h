@@ -45,7 +45,6 @@ struct Evidence {
   float rivals = 0.F;      ///< Scenery::proposals: clutter gives many at once
   // What groups of votes tell (group_votes.h). All but the last are 0 for candidates without one.
   float votes = 0.F;              ///< log10 of the group's number of votes
-  float area_m2 = 0.F;            ///< its surface
   float spread_m = 0.F;           ///< root mean square distance of its votes to their mean
   float likely = 0.F;             ///< log odds of its mean body share
   float agree = 0.F;              ///< share of the mask's votes within kAgreed_m of its middle
@@ -69,7 +68,7 @@ struct JudgedEvidence {
   float Evidence::*evidence;
   int sign = 0;  ///< 1 if more of it can only speak for a person, -1 if only against, 0 if that is open
 };
-inline constexpr std::array<JudgedEvidence, 29> kJudgedEvidence{{{"likelihood", &Evidence::likelihood, 1},
+inline constexpr std::array<JudgedEvidence, 22> kJudgedEvidence{{{"likelihood", &Evidence::likelihood, 1},
                                                                  {"explained", &Evidence::explained, 1},
                                                                  {"open", &Evidence::open, 1},
                                                                  {"core", &Evidence::core, 1},
@@ -90,16 +89,18 @@ inline constexpr std::array<JudgedEvidence, 29> kJudgedEvidence{{{"likelihood", 
                                                                  {"ragged", &Evidence::ragged},
                                                                  {"on_flat", &Evidence::on_flat},
                                                                  {"elsewhere", &Evidence::elsewhere},
-                                                                 {"rivals", &Evidence::rivals},
-                                                                 {"votes", &Evidence::votes},
-                                                                 {"spread", &Evidence::spread_m, -1},
-                                                                 {"likely", &Evidence::likely, 1},
-                                                                 {"agree", &Evidence::agree, 1},
-                                                                 {"heading", &Evidence::heading},
-                                                                 {"sided", &Evidence::sided},
-                                                                 {"groups", &Evidence::groups}}};
+                                                                 {"rivals", &Evidence::rivals}}};
+/// What groups of votes tell; all 0 where labellers have no votes.
+inline constexpr std::array<JudgedEvidence, 7> kVotedEvidence{{{"votes", &Evidence::votes},
+                                                               {"spread", &Evidence::spread_m, -1},
+                                                               {"likely", &Evidence::likely, 1},
+                                                               {"agree", &Evidence::agree, 1},
+                                                               {"heading", &Evidence::heading},
+                                                               {"sided", &Evidence::sided},
+                                                               {"groups", &Evidence::groups}}};
 
-/// Returns the names of all evidence of a body: kJudgedEvidence, then "part:" and the name of each kind of part.
+/// Returns the names of all evidence of a body: kJudgedEvidence, "part:" and the name of each kind of part, and
+/// kVotedEvidence.
 std::vector<std::string> judge_names(const BodyModel& body);
 
 /// Returns the sign of each.
@@ -108,8 +109,8 @@ std::vector<int> judge_signs(const BodyModel& body);
 /// Returns the value of each.
 std::vector<float> judge_features(const Evidence& evidence);
 
-/// Measures the evidence that a mask and a skeleton are a person. `labels` are those inside `mask`, `posteriors`
-/// those of the first pass; all have the frame's size, and so has the scenery.
+/// Measures the evidence that a mask and a skeleton are a person. `labels` are those inside `mask`, `posteriors` those
+/// of the first pass; all have the frame's size, and so has the scenery.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
                          const Scenery& scenery, const Skeleton& skeleton, const BodyModel& body);
 
@@ -117,12 +118,11 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
 void add_votes(const Frame& frame, const Mask& mask, const Image<PersonVote>& votes, const VoteGroup& group,
                const Skeleton& skeleton, const BodyModel& body, Evidence& evidence);
 
-/// Returns the cosine between the heading of a skeleton's observed parts (body_yaw) and a given one: above 0 where
-/// left and right agree. Returns 0 where the parts have no heading.
+/// Returns the cosine between the heading of a skeleton's observed parts (body_yaw) and a given one: above 0 where left
+/// and right agree. Returns 0 where the parts have no heading.
 float agreement_of_sides(const Skeleton& skeleton, const YawEstimate& heading, const BodyModel& body);
 
-/// Returns Scenery::body_elsewhere for the union of the candidates' masks, from every second pixel of every second
-/// row.
+/// Returns Scenery::body_elsewhere for the union of the candidates' masks, from every second pixel of every second row.
 float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts);
 
 }  // namespace vesalius
