@@ -222,19 +222,29 @@ class Dataset:
     def frames_of(self, shard):
         return min(self.per_shard, self.frames - shard * self.per_shard)
 
+    def pixels(self):
+        """Returns the number of pixels of the first frame's picture."""
+        height, width = _parse(self._split(0)[0], self.body.parts, self.folder).size
+        return height * width
+
     def read(self, shard):
         """Returns the frames of a shard: a list of Frames, one for each size of picture."""
-        path = self.folder / f"{shard:06d}.shard"
+        path = self._path(shard)
+        packed = enumerate(self._split(shard))
+        frames = [_parse(frame, self.body.parts, f"{path}, frame {i}") for i, frame in packed]
+        sizes = sorted({frame.size for frame in frames})
+        return [_together([f for f in frames if f.size == size], self.body.parts, path) for size in sizes]
+
+    def _path(self, shard):
+        return self.folder / f"{shard:06d}.shard"
+
+    def _split(self, shard):
+        """Returns the bytes of each frame."""
+        path = self._path(shard)
         try:
             data = path.read_bytes()
         except OSError as error:
             raise InputError(f"{path}: {error.strerror}") from error
-        frames = [_parse(frame, self.body.parts, f"{path}, frame {i}") for i, frame in enumerate(self._split(data, path))]
-        sizes = sorted({frame.size for frame in frames})
-        return [_together([f for f in frames if f.size == size], self.body.parts, path) for size in sizes]
-
-    def _split(self, data, path):
-        """Returns the bytes of each frame."""
         source = Bytes(data, path)
         magic, version, _, count, made_by, _, size = HEADER.unpack(source.take(HEADER.size))
         if magic != MAGIC or version != VERSION:

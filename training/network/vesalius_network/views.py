@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, fields
 
+import numpy as np
 import torch
 
 from .body import headings_of, middles_of
@@ -62,32 +63,34 @@ class Views:
         return len(self.depth)
 
 
-def joined(views):
-    """Returns several Views of the same size as one."""
-    return Views(*[torch.cat([getattr(v, field.name) for v in views]) for field in fields(Views)])
+def joined(parts):
+    """Returns several Views, or Pools, of the same size as one."""
+    kind = type(parts[0])
+    return kind(*[torch.cat([getattr(part, field.name) for part in parts]) for field in fields(kind)])
 
 
+@dataclass
 class Pool:
-    """Frames of one size on a device."""
+    """n frames of one size on a device."""
 
-    def __init__(self, frames, body, device):
-        """`frames`: a list of shards.Frames of the same size."""
+    depth_mm: torch.Tensor  # [n, h, w] int16
+    labels: torch.Tensor  # as those of Views
+    person: torch.Tensor
+    camera: torch.Tensor  # [n, 4] fx, fy, cx, cy
+    centres: torch.Tensor
+    middles: torch.Tensor
+    headings: torch.Tensor
 
-        def gathered(get):
-            return torch.cat([torch.from_numpy(get(f)) for f in frames]).to(device)
-
-        def padded(centres):
-            people = centres[:, :MOST_PEOPLE]
-            missing = MOST_PEOPLE - people.shape[1]
-            return torch.nn.functional.pad(torch.from_numpy(people), (0, 0, 0, 0, 0, missing), value=float("nan"))
-
-        self.depth_mm = gathered(lambda f: f.depth_mm.clip(max=MOST_DEPTH_MM).astype("int16"))
-        self.labels, self.person = gathered(lambda f: f.labels), gathered(lambda f: f.person)
-        self.camera = gathered(lambda f: f.camera)
-        centres = torch.cat([padded(f.centres) for f in frames])
-        self.middles = torch.from_numpy(middles_of(centres.numpy(), body)).to(device)
-        self.headings = torch.from_numpy(headings_of(centres.numpy(), body)).to(device)
-        self.centres = centres.to(device)
+    @staticmethod
+    def of(frames, body, device):
+        """Takes shards.Frames."""
+        missing = MOST_PEOPLE - frames.centres.shape[1]
+        room = ((0, 0), (0, max(0, missing)), (0, 0), (0, 0))
+        centres = np.pad(frames.centres[:, :MOST_PEOPLE], room, constant_values=np.nan)
+        depth = frames.depth_mm.clip(max=MOST_DEPTH_MM).astype(np.int16)
+        truth = centres, middles_of(centres, body), headings_of(centres, body)
+        arrays = depth, frames.labels, frames.person, frames.camera, *truth
+        return Pool(*[torch.from_numpy(a).to(device) for a in arrays])
 
     def __len__(self):
         return len(self.depth_mm)
@@ -113,9 +116,11 @@ class Pool:
 
 
 def pools_of(frames, body, device):
-    """Returns a Pool for each size of picture."""
-    sizes = sorted({f.depth_mm.shape[1:] for f in frames})
-    return [Pool([f for f in frames if f.depth_mm.shape[1:] == size], body, device) for size in sizes]
+    """Returns a Pool for each size of picture among shards.Frames."""
+    pools = {}
+    for some in frames:
+        pools.setdefault(some.depth_mm.shape[1:], []).append(Pool.of(some, body, device))
+    return [joined(pools[size]) for size in sorted(pools)]
 
 
 def voters(views):
