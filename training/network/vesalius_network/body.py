@@ -67,8 +67,8 @@ def middles_of(centres, body):
 
 
 def headings_of(centres, body):
-    """Returns which way people are turned about their own axis, as vesalius::body_yaw does: 0 faces the camera, positive
-    is turned to the own left. `centres` [..., parts, 3] in m, optical frame; NaN = not known. Returns [...] rad, NaN
+    """Returns which way people are turned about their own axis, as vesalius::body_yaw does: 0 faces the camera,
+    positive is turned to the own left. `centres` [..., parts, 3] in m, optical frame; NaN = not known. Returns [...] rad, NaN
     where nothing tells it."""
     flat = centres.reshape(-1, body.parts, 3).astype(np.float64)
     up = _mean_known(flat[:, body.upper]) - _mean_known(flat[:, ~body.upper])

@@ -122,7 +122,8 @@ def rims(depth, scene, chance):
             beside = moved(depth, dv, du)
             gone = torch.maximum(gone, ((beside > 0) & (depth - beside > 0.08 * beside)).float())
     side = 2 * chance.count(1, 4) + 1
-    return _drop(depth, F.max_pool2d(gone[:, None], side, 1, side // 2)[:, 0] > 0)
+    wide = F.max_pool2d(gone[:, None], (1, side), 1, (0, side // 2))
+    return _drop(depth, F.max_pool2d(wide, (side, 1), 1, (side // 2, 0))[:, 0] > 0)
 
 
 def single_readings(depth, scene, chance):

@@ -19,16 +19,28 @@ def moved(picture, dv, du):
     return out
 
 
+def _inner(extent, step, by):
+    """Returns the places along an axis that have neighbours on both sides a step away, moved by so many steps."""
+    return slice(abs(step) + by * step, extent - abs(step) + by * step) if step else slice(None)
+
+
+def _beside_holes(hole, depth):
+    """Returns which readings lie beside a hole and have too little of the depth on their other side."""
+    height, width = depth.shape[-2:]
+    blended, kept = torch.zeros_like(hole), KEPT_SHARE * depth
+    for dv, du in SIDES:
+        before, here, behind = ((..., _inner(height, dv, by), _inner(width, du, by)) for by in (-1, 0, 1))
+        blended[here] |= hole[before] & (depth[here] < kept[behind])
+    return blended & (depth > 0)
+
+
 def without_blended(depth_mm):
     """Drops readings that somebody blended with holes, as src/vesalius/base/blended_depth.cpp does. `depth_mm`: floats
     [..., h, w] with whole numbers, 0 = no reading."""
     out, hole = depth_mm, depth_mm == 0
     for _ in range(WIDEST_RAMP):
-        blended = torch.zeros_like(hole)
-        for dv, du in SIDES:
-            blended |= moved(hole, -dv, -du) & (out < KEPT_SHARE * moved(out, dv, du))
-        blended &= out > 0
-        out, hole = out.masked_fill(blended, 0), blended
+        hole = _beside_holes(hole, out)
+        out = out.masked_fill(hole, 0)
     return out
 
 
@@ -39,10 +51,12 @@ def inputs_of(depth_m, focal):
     focal = focal.view(-1, 1, 1)
     depth = torch.where(seen, depth_m, torch.ones_like(depth_m))
 
-    def slope(dv, du):
-        after, before = moved(depth_m, dv, du), moved(depth_m, -dv, -du)
-        rise = torch.where((after > 0) & (before > 0), after - before, torch.zeros_like(depth))
-        return (rise * focal / (4 * depth)).clamp(-STEEPEST, STEEPEST) * seen
+    def slope(axis):
+        extent = depth.shape[axis] - 4
+        after, before = depth_m.narrow(axis, 4, extent), depth_m.narrow(axis, 0, extent)
+        rise = torch.zeros_like(depth)
+        rise.narrow(axis, 2, extent).copy_((after - before) * ((after > 0) & (before > 0)))
+        return (rise * focal / (4 * depth)).clamp_(-STEEPEST, STEEPEST).mul_(seen)
 
     nearness = (2 * focal / REFERENCE_FOCAL / depth - 0.7) * seen
-    return torch.stack([nearness, seen.to(depth.dtype), slope(0, 2), slope(2, 0)], 1)
+    return torch.stack([nearness, seen.to(depth.dtype), slope(2), slope(1)], 1)

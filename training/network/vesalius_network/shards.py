@@ -89,7 +89,7 @@ class _Frame:
 
 
 def _varints(stream, source):
-    """Returns the numbers of a stream: seven bits in each byte, the lowest first, the high bit says that more follow."""
+    """Returns the numbers of a stream: seven bits in each byte, the lowest first; the high bit says that more follow."""
     if not len(stream):
         return np.zeros(0, np.int64)
     last = np.flatnonzero(stream < 0x80)

@@ -86,9 +86,9 @@ class Training:
     def __init__(self, plan, data, held_out, out, device, memory_bytes, tell=print):
         self.plan, self.device, self.tell = plan, device, tell
         self.out = Path(out)
-        self.datasets = open_datasets([*data, *held_out])[: len(data)]
-        self.body = self.datasets[0].body
-        self.held_out = [(d, shard) for d in map(open_one, held_out) for shard in range(d.shards)]
+        datasets = open_datasets([*data, *held_out])
+        self.body, self.datasets = datasets[0].body, datasets[: len(data)]
+        self.held_out = [(d, shard) for d in datasets[len(data) :] for shard in range(d.shards)]
         self.rounds = Rounds(self.datasets, plan.batch, memory_bytes, plan.seed)
         self.round, self.pools, self.held_out_pools = None, None, None
         torch.manual_seed(plan.seed)
@@ -196,11 +196,8 @@ class Training:
     @torch.no_grad()
     def _average(self):
         kept = self.plan.kept_of_average(self.batch)
-        for mean, new in zip(self.average.state_dict().values(), self.network.state_dict().values()):
-            if mean.is_floating_point():
-                mean.lerp_(new, 1 - kept)
-            else:
-                mean.copy_(new)
+        means, news = (list(weights.floats(network.state_dict()).values()) for network in (self.average, self.network))
+        torch._foreach_lerp_(means, news, 1 - kept)
 
     def step(self):
         """Learns from the next batch. Returns the losses by name."""
@@ -220,7 +217,7 @@ class Training:
         return figures_of(self.average, self.held_out_pools, self.body)
 
     def estimate(self):
-        """Returns what is left to do and about how long it takes, a line each. Some batches are learnt from by a copy."""
+        """Returns what is left to do and about how long it takes, in lines. A copy learns from some batches for it."""
         self._load()
         network = copy.deepcopy(self.network).train()
         optimiser = self._optimiser(network)
@@ -250,9 +247,11 @@ class Training:
         saved = time.monotonic()
         while self.batch < self.plan.batches and not stopped():
             progress.add(self.step(), self.batch)
-            if self.batch * self.plan.batch >= next_figures:
+            if self.batch * self.plan.batch >= next_figures and self.batch < self.plan.batches:
                 next_figures += figures_every
+                progress.say(self.batch)
                 self._tell_figures()
+                progress.begin(self.batch)
             if time.monotonic() - saved > SAVED_EVERY_S:
                 self.save()
                 saved = time.monotonic()
@@ -268,18 +267,14 @@ class Training:
             self.tell(f"held out  after {self.batch * self.plan.batch} views: {figures}")
 
 
-def open_one(folder):
-    return open_datasets([folder])[0]
-
-
 class Progress:
     """Says now and then how far a training is. Losses that are not finite end it."""
 
     def __init__(self, plan, batch, tell):
         self.plan, self.tell = plan, tell
-        self._begin(batch)
+        self.begin(batch)
 
-    def _begin(self, batch):
+    def begin(self, batch):
         self.since, self.first, self.sums = time.monotonic(), batch, {}
 
     def add(self, losses, batch):
@@ -301,4 +296,4 @@ class Progress:
         speed = self.plan.batch / seconds
         done = f"{batch * self.plan.batch} of {self.plan.batches * self.plan.batch}"
         self.tell(f"views     {done}, {speed:.1f}/s, {left} left; losses: {losses}")
-        self._begin(batch)
+        self.begin(batch)

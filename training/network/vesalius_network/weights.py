@@ -27,9 +27,14 @@ def write_whole(path, data):
     beside.replace(path)
 
 
+def floats(state):
+    """Returns the parameters of a state that are numbers to learn, or their statistics."""
+    return {name: value for name, value in state.items() if value.is_floating_point()}
+
+
 def save(path, config, body, state, made_from):
     about = {"config": config, "classes": body.classes, "made_from": made_from, "body": body.text}
-    arrays = {name: value.cpu().numpy() for name, value in state.items() if value.is_floating_point()}
+    arrays = {name: value.cpu().numpy() for name, value in floats(state).items()}
     memory = io.BytesIO()
     np.savez(memory, about=np.array(json.dumps(about)), **arrays)
     write_whole(path, memory.getvalue())
@@ -44,7 +49,7 @@ def _read_npz(path):
 def _read_old(path):
     """Reads what torch.save wrote of `ema`, averaged weights in halves. Their heads have rows that nobody uses."""
     file = torch.load(path, map_location="cpu", weights_only=True)
-    state = {name: value.float() for name, value in file["ema"].items() if value.is_floating_point()}
+    state = {name: value.float() for name, value in floats(file["ema"]).items()}
     parts = state["labels.bias"].shape[0] - 1
     for head, rows in (("inst", PERSON), ("joints", 3 * parts)):
         for name in (f"{head}.weight", f"{head}.bias"):
