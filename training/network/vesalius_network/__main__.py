@@ -14,7 +14,7 @@ from .train import Plan, Training
 
 BATCH = {"cuda": 192, "cpu": 16}
 RATE, RATE_BATCH = 3e-3, 192  # batches of another size have a rate as its square root
-FIGURES = 20  # times in a training
+FIGURES, LEAST_BETWEEN = 20, 2000  # times in a training; views from one to the next
 STOPPED = 130  # exit code
 
 
@@ -31,11 +31,11 @@ def parse(arguments):
     parser.add_argument("--rate", type=float, help="learning rate (3e-3 times the root of batch / 192)")
     parser.add_argument("--seed", type=int, default=Plan.seed, help="of all that is random (%(default)s)")
     parser.add_argument("--init", default="", metavar="FILE", help="weights to begin with (.npz, .pt)")
-    parser.add_argument("--device", choices=["auto", "cpu", "cuda"], default="auto")
+    parser.add_argument("--device", default="auto", help="cpu, cuda, cuda:N or auto, a card where one works")
     parser.add_argument("--precision", choices=["auto", "bf16", "float32"], default="auto", help="of products")
     parser.add_argument("--threads", type=int, help="of the processor (all)")
     parser.add_argument("--memory", type=float, help="GiB for frames (half of the card's or the machine's)")
-    parser.add_argument("--figures-every", type=int, metavar="VIEWS", help="how often it is measured (20 times)")
+    parser.add_argument("--figures-every", type=int, metavar="VIEWS", help="between measurements (a twentieth)")
     parser.add_argument("--estimate", action="store_true", help="only say how long it takes")
     parser.add_argument("--restart", action="store_true", help="forget the training in the folder")
     options = parser.parse_args(arguments)
@@ -49,8 +49,11 @@ def parse(arguments):
 def device_of(name):
     if name == "auto":
         name = "cuda" if torch.cuda.is_available() else "cpu"
-    if name == "cuda" and not torch.cuda.is_available():
-        raise InputError("--device cuda: PyTorch sees no card")
+    kind, _, number = name.partition(":")
+    if kind not in BATCH or (number and not (kind == "cuda" and number.isdigit())):
+        raise InputError(f"--device {name}: expected cpu, cuda, cuda:N or auto")
+    if kind == "cuda" and int(number or 0) >= torch.cuda.device_count():
+        raise InputError(f"--device {name}: PyTorch sees {torch.cuda.device_count()} cards")
     return torch.device(name)
 
 
@@ -107,7 +110,7 @@ def run(options):
     if options.estimate:
         return 0
     signals = Signals()
-    if training.run(options.figures_every or max(1, plan.views // FIGURES), lambda: signals.came):
+    if training.run(options.figures_every or max(LEAST_BETWEEN, plan.views // FIGURES), lambda: signals.came):
         tell(f"{options.out}/network.npz: learnt from {plan.batches * plan.batch} views")
         return 0
     tell(f"stopped after {training.batch * plan.batch} views; the same command goes on")

@@ -63,8 +63,10 @@ def load(path):
     path = Path(path)
     try:
         return _read_old(path) if path.suffix == ".pt" else _read_npz(path)
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or 'expected the weights of a network'}") from error
     except Exception as error:
-        raise InputError(f"{path}: expected the weights of a network: {error}") from error
+        raise InputError(f"{path}: expected the weights of a network, a .npz of this tool") from error
 
 
 def begin_from(network, config, body, path):
