@@ -59,6 +59,10 @@ endif()
 # What else the program reads, what bash asks for commands and flags, and the manual of packages.
 if(TARGET vesalius)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/bodies ${PROJECT_SOURCE_DIR}/data/demo DESTINATION ${VESALIUS_DATA_DIR})
+  if(VESALIUS_TRAINING)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/training/network DESTINATION ${VESALIUS_DATA_DIR}
+            FILES_MATCHING PATTERN "*.py" PATTERN requirements.txt PATTERN tests EXCLUDE PATTERN __pycache__ EXCLUDE)
+  endif()
   install(FILES ${PROJECT_SOURCE_DIR}/data/completion.bash RENAME vesalius
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -87,6 +87,10 @@ std::optional<int> ChildProcess::ended() {
   return code_of(status);
 }
 
+void ChildProcess::ask_to_end() const {
+  if (pid_ >= 0) ::kill(-pid_, SIGTERM);
+}
+
 void ChildProcess::kill() {
   if (pid_ < 0) return;
   ::kill(-pid_, SIGKILL);

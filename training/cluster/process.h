@@ -33,6 +33,8 @@ class ChildProcess {
 
   /// Returns the exit code once it has ended.
   std::optional<int> ended();
+  /// Asks the whole group to end (SIGTERM).
+  void ask_to_end() const;
   void kill();
 
  private:

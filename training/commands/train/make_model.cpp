@@ -15,6 +15,7 @@
 
 #include "commands/synth/frame_maker.h"
 #include "commands/synth/synth_recipe.h"
+#include "commands/train/learn_network.h"
 #include "commands/train/set_samples.h"
 #include "commands/train/train_plan.h"
 #include "commands/train/train_recipe.h"
@@ -162,16 +163,19 @@ class ModelMaker::Work {
     for (const FrameSet& set : recipe_.sets) {
       if (set.data.empty()) open_rendered(set);
     }
-    name_steps();
+    if (!recipe_.network) name_steps();
     if (!run_.train.shown) return;
     for (const auto& [key, loaded] : assets_.all()) {
       for (const std::string& note : loaded->notes) say("note: " + note);
     }
   }
 
-  std::string estimate() { return is_made() ? run_.train.out + ": made by this recipe already\n" : plan(); }
+  std::string estimate() {
+    return !recipe_.network && is_made() ? run_.train.out + ": made by this recipe already\n" : plan();
+  }
 
   void make() {
+    if (recipe_.network) return make_network();
     if (!run_.train.restart && is_made()) return tell(run_.train.out + ": made by this recipe already");
     const FolderLock lock(folder_);
     if (run_.train.restart) remove_work();
@@ -198,6 +202,27 @@ class ModelMaker::Work {
     std::string recipe;  ///< how what this step adds is made; empty for a step that the recipe lacks
     SampleFrame (*sampler)(const Model&) = nullptr;
   };
+
+  void make_network() {
+    expect_network_tool(recipe_.learn);
+    const FolderLock lock(folder_);
+    if (run_.train.restart) remove_work();
+    tell(plan());
+    const std::string learned = learn_network(
+        recipe_.learn, {datasets_of(recipe_.learn.frames), datasets_of(recipe_.learn.held_out), folder_ + "/network",
+                        run_.train.device, run_.train.max_bytes, run_.train.restart, run_.train.shown});
+    write_file_atomically(run_.train.out, read_file(learned));
+  }
+
+  /// Renders what is missing of sets. Returns their folders.
+  std::vector<std::string> datasets_of(const std::vector<std::string>& names) {
+    std::vector<std::string> folders;
+    for (const std::string& name : names) {
+      render(sources_.at(name));
+      folders.push_back(sources_.at(name).folder);
+    }
+    return folders;
+  }
 
   void open_data(const FrameSet& set) {
     Source source{.set = &set, .folder = set.data};
@@ -268,7 +293,7 @@ class ModelMaker::Work {
   std::optional<Model> grown() const { return at_hand_ ? at_hand_ : model_with_this_forest(grown_path()); }
 
   void remove_work() const {
-    for (const char* name : {"frames", "samples", "grown.forest", "grown.forest.work"}) {
+    for (const char* name : {"frames", "samples", "grown.forest", "grown.forest.work", "network"}) {
       fs::remove_all(fs::path(folder_) / name);
     }
   }
@@ -285,10 +310,7 @@ class ModelMaker::Work {
     TrainSources sources;
     sources.backgrounds = recipe_.backgrounds;
     sources.camera = run_.camera;
-    for (const std::string& name : recipe_.forest_frames) {
-      render(sources_.at(name));
-      sources.data.push_back(sources_.at(name).folder);
-    }
+    sources.data = datasets_of(recipe_.forest_frames);
     TrainRun run = run_.train;
     run.out = grown_path();
     run.restart = !fs::exists(run.out + ".work/recipe.toml") ||
@@ -365,11 +387,18 @@ class ModelMaker::Work {
     return names;
   }
 
+  /// Returns the sets whose frames are asked for, by their steps.
+  std::map<std::string, std::vector<std::string>> needed_sets(bool grown) const {
+    if (recipe_.network) return {{"network", recipe_.learn.frames}, {"held out", recipe_.learn.held_out}};
+    std::map<std::string, std::vector<std::string>> needed;
+    if (!grown) needed["forest"] = recipe_.forest_frames;
+    for (const Step* step : {&context_, &judge_}) needed[step->name] = pending(*step);
+    return needed;
+  }
+
   std::string plan() {
     std::optional<Model> model = grown();
-    std::map<std::string, std::vector<std::string>> needed;  // sets by their steps
-    if (!model) needed["forest"] = recipe_.forest_frames;
-    for (const Step* step : {&context_, &judge_}) needed[step->name] = pending(*step);
+    std::map<std::string, std::vector<std::string>> needed = needed_sets(model.has_value());
     std::map<std::string, Measured> measured;
     for (const auto& [step, names] : needed) {
       for (const std::string& name : names) measured[name];
@@ -386,6 +415,11 @@ class ModelMaker::Work {
         text += fmt::format("frames {:<22} {} of {} in {}, {:.2f} GiB\n", name, missing_frames(source),
                             source.input.frames, duration(set.seconds), set.bytes / kGiB);
       }
+    }
+    if (recipe_.network) {
+      text += fmt::format("frames                        about {}; the network's training then says its own\n",
+                          duration(seconds));
+      return text + disk(bytes);
     }
     if (!model) {
       const bool alone = run_.cluster.engine.on.empty();  // engines divide the frames among machines

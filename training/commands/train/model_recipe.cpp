@@ -20,10 +20,13 @@ namespace {
 constexpr std::size_t kMaxRecipeBytes = std::size_t{1} << 18;
 constexpr int kMaxFrames = 100'000'000, kMaxSeed = 2'000'000'000, kMaxStep = 1'000'000;
 constexpr int kFewestFrames = 2;
+constexpr int kMostViews = 1'000'000'000, kMostBatch = 65536;
+constexpr const char *kForest = "forest", *kNetwork = "network";
 
 /// The texts of a recipe as they stand in its file.
 struct Words {
   std::string body, synth_file, model, forest_frames, backgrounds, context_frames, judge_frames;
+  std::string labeller = kForest, network_frames, held_out;
 };
 
 void visit_set(const std::string& prefix, FrameSet& set, OptionVisitor& visitor) {
@@ -36,6 +39,16 @@ void visit_set(const std::string& prefix, FrameSet& set, OptionVisitor& visitor)
 void visit_fit(const std::string& prefix, std::string& frames, int& step, OptionVisitor& visitor) {
   visitor.option(prefix + "frames", frames, {"", 0, 0, "Names of sets, with commas between"});
   visitor.option(prefix + "step", step, {"frames", 1, kMaxStep, "The first of every so many frames"});
+}
+
+void visit_network(NetworkOptions& learn, OptionVisitor& visitor) {
+  visitor.option("network.config", learn.config, {"", 0, 0, "Size of the network: small or default"});
+  visitor.option("network.views", learn.views, {"", 1, kMostViews, "Pictures to learn from"});
+  visitor.option("network.batch", learn.batch, {"", 0, kMostBatch, "Pictures at once; 0: what suits the device"});
+  visitor.option("network.rate", learn.rate, {"", 0, 1, "Learning rate; 0: what suits the batch"});
+  visitor.option("network.seed", learn.seed, {"", 0, kMaxSeed, "Seed of all that is random"});
+  visitor.option("network.init", learn.init, {"", 0, 0, "File of weights to begin with"});
+  visitor.option("network.python", learn.python, {"", 0, 0, "Python that has PyTorch"});
 }
 
 std::vector<std::string> names_in(const std::string& text) {
@@ -70,7 +83,12 @@ class RecipeReader {
     recipe_.forest_frames = sets_of("forest", words_.forest_frames);
     recipe_.context.frames = sets_of("context", words_.context_frames);
     recipe_.judge.frames = sets_of("judge", words_.judge_frames);
-    expect_forest();
+    recipe_.learn.frames = sets_of("network", words_.network_frames);
+    recipe_.learn.held_out = sets_of("network", words_.held_out, "held-out");
+    recipe_.learn.init = resolved(recipe_.learn.init);
+    if (recipe_.learn.python.find('/') != std::string::npos) recipe_.learn.python = resolved(recipe_.learn.python);
+    recipe_.network = is_network();
+    recipe_.network ? expect_network() : expect_forest();
     for (FrameSet& set : recipe_.sets) complete(set);
     return std::move(recipe_);
   }
@@ -103,6 +121,10 @@ class RecipeReader {
     visitor.option("forest.frames", words_.forest_frames, {"", 0, 0, "Names of sets, with commas between"});
     visitor.option("forest.background", words_.backgrounds, {"", 0, 0, "Sources of frames without people"});
     visit_options("forest.", recipe_.forest, visitor);
+    visitor.option("labeller", words_.labeller, {"", 0, 0, "What labels pixels: forest or network"});
+    visitor.option("network.frames", words_.network_frames, {"", 0, 0, "Names of sets, with commas between"});
+    visitor.option("network.held-out", words_.held_out, {"", 0, 0, "Names of sets that it is measured on"});
+    visit_network(recipe_.learn, visitor);
     visit_fit("context.", words_.context_frames, recipe_.context.step, visitor);
     visit_fit("judge.", words_.judge_frames, recipe_.judge.step, visitor);
   }
@@ -113,11 +135,12 @@ class RecipeReader {
   }
 
   /// Returns the names of a step's sets.
-  std::vector<std::string> sets_of(const std::string& step, const std::string& text) {
+  std::vector<std::string> sets_of(const std::string& step, const std::string& text,
+                                   const std::string& option = "frames") {
     std::vector<std::string> known;
     for (const FrameSet& set : recipe_.sets) known.push_back(set.name);
     std::vector<std::string> names = names_in(text);
-    for (const std::string& name : names) expect_known(*root_[step]["frames"].node(), "set", name, known);
+    for (const std::string& name : names) expect_known(*root_[step][option].node(), "set", name, known);
     used_.insert(names.begin(), names.end());
     return names;
   }
@@ -128,6 +151,26 @@ class RecipeReader {
     const std::string nearest = nearest_name(name, known);
     reader_.fail(at, fmt::format("no {} is called {}{}", kind, in_quotes(name),
                                  nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+  }
+
+  bool is_network() const {
+    if (root_.contains("labeller"))
+      expect_known(*root_.get("labeller"), "labeller", words_.labeller, {kForest, kNetwork});
+    if (words_.labeller == kNetwork) return true;
+    if (root_.contains("network")) {
+      reader_.fail(*root_.get("network"), "[network] says how a network is learned: expected labeller = \"network\"");
+    }
+    return false;
+  }
+
+  void expect_network() const {
+    if (recipe_.learn.frames.empty()) throw Error(path_ + ": expected network.frames, sets to learn from");
+    for (const char* other : {"forest", "context", "judge"}) {
+      if (root_.contains(other))
+        reader_.fail(*root_.get(other), fmt::format("expected no [{}] beside [network]", other));
+    }
+    if (const toml::node* config = root_["network"]["config"].node())
+      expect_known(*config, "config", recipe_.learn.config, {"small", "default"});
   }
 
   void expect_forest() const {
@@ -142,6 +185,9 @@ class RecipeReader {
     const toml::node& at = *root_["frames"][set.name].node();
     if (!used_.contains(set.name)) reader_.fail(at, fmt::format("no step learns from set {}", in_quotes(set.name)));
     set.data = resolved(set.data);
+    if (recipe_.network && !set.data.empty() && set.count > 0) {
+      reader_.fail(at, fmt::format("set {}: a network learns from all of its data, expected no count", set.name));
+    }
     if (!set.data.empty()) return;
     if (set.count == 0) reader_.fail(at, fmt::format("set {}: expected count, the frames to render", set.name));
     std::vector<std::string> known;
@@ -194,6 +240,7 @@ void scale(ModelRecipe& recipe, double share) {
   for (FrameSet& set : recipe.sets) {
     if (set.count > 0) set.count = std::max(kFewestFrames, int(std::lround(set.count * share)));
   }
+  recipe.learn.views = std::max(1, int(std::lround(recipe.learn.views * share)));
 }
 
 }  // namespace vesalius::cli

@@ -26,10 +26,24 @@ struct FitSets {
   int step = 1;                     ///< the first of every so many frames
 };
 
+/// How a network is learned (training/network).
+struct NetworkOptions {
+  std::vector<std::string> frames, held_out;  ///< names of sets
+  std::string config = "default";             ///< size of the network
+  int views = 1'500'000;                      ///< pictures that it learns from
+  int batch = 0;                              ///< pictures at once; 0: what suits the device
+  float rate = 0.F;                           ///< learning rate; 0: what suits the batch
+  int seed = 1;
+  std::string init;                ///< file of weights that it begins with; empty for none
+  std::string python = "python3";  ///< interpreter that has PyTorch
+};
+
 /// How a whole model is made (docs/retrain.md, "The recipe"). Paths are relative to the recipe's file.
 struct ModelRecipe {
-  std::string body;   ///< path of a body model; empty: the paper's body, or that of `model`
-  std::string model;  ///< a model at hand whose forest is taken as it is; empty: one is grown
+  std::string body;      ///< path of a body model; empty: the paper's body, or that of `model`
+  std::string model;     ///< a model at hand whose forest is taken as it is; empty: one is grown
+  bool network = false;  ///< whether a network labels pixels, and no forest
+  NetworkOptions learn;  ///< if so, how it is learned
   std::vector<std::string> forest_frames, backgrounds;
   TrainOptions forest;
   FitSets context, judge;
@@ -42,7 +56,7 @@ struct ModelRecipe {
 /// or set (naming the most similar known one), a value out of range, and a set that no step names.
 ModelRecipe read_model_recipe(const std::string& path);
 
-/// Takes so large a share of each set's frames, at least two of each.
+/// Takes so large a share of each set's frames, at least two of each, and of a network's views.
 void scale(ModelRecipe& recipe, double share);
 
 }  // namespace vesalius::cli

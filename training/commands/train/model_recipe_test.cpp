@@ -120,6 +120,53 @@ TEST_F(ModelRecipes, NamesThePlaceOfWhatItDoesNotKnow) {
   EXPECT_THAT(refusal("people.two = 0.5\n"), HasSubstr("expected the recipe of a model"));
 }
 
+constexpr const char* kNetworkRecipe = R"(labeller = "network"
+[network]
+frames = "plain, at_hand"
+held-out = "seen"
+config = "small"
+views = 1000
+init = "weights/f.npz"
+python = "env/bin/python"
+[frames.plain]
+count = 4000
+[frames.seen]
+count = 20
+[frames.at_hand]
+data = "d"
+)";
+
+TEST_F(ModelRecipes, SayHowANetworkIsLearned) {
+  ModelRecipe recipe = read(kNetworkRecipe);
+  EXPECT_TRUE(recipe.network);
+  EXPECT_THAT(recipe.learn.frames, ElementsAre("plain", "at_hand"));
+  EXPECT_THAT(recipe.learn.held_out, ElementsAre("seen"));
+  EXPECT_EQ(recipe.learn.config, "small");
+  EXPECT_EQ(recipe.learn.init, path("weights/f.npz"));
+  EXPECT_EQ(recipe.learn.python, path("env/bin/python"));
+  scale(recipe, 0.1);
+  EXPECT_EQ(recipe.learn.views, 100);
+  EXPECT_FALSE(read(kRecipe).network);
+  EXPECT_EQ(read(with(kNetworkRecipe, "env/bin/", "")).learn.python, "python") << "found as programs are";
+}
+
+TEST_F(ModelRecipes, NameThePlaceOfWhatANetworkDoesNotTake) {
+  EXPECT_THAT(refusal(with(kNetworkRecipe, "\"network\"", "\"netwerk\"")),
+              HasSubstr("model.toml:1: no labeller is called \"netwerk\"; did you mean \"network\"?"));
+  EXPECT_THAT(refusal(with(kNetworkRecipe, "labeller = \"network\"", "")),
+              HasSubstr("expected labeller = \"network\""));
+  EXPECT_THAT(refusal(with(kNetworkRecipe, "\"small\"", "\"smal\"")),
+              HasSubstr("model.toml:5: no config is called \"smal\"; did you mean \"small\"?"));
+  EXPECT_THAT(refusal(with(kNetworkRecipe, "views", "vews")), HasSubstr("model.toml:6: no option is called"));
+  EXPECT_THAT(refusal(with(kNetworkRecipe, "1000", "0")), HasSubstr("model.toml:6: "));
+  EXPECT_THAT(refusal(with(kNetworkRecipe, "\"seen\"", "\"sen\"")), HasSubstr("model.toml:4: no set is called"));
+  EXPECT_THAT(refusal(with(kNetworkRecipe, "data = \"d\"", "data = \"d\"\ncount = 3")),
+              HasSubstr("set at_hand: a network learns from all of its data"));
+  EXPECT_THAT(refusal(std::string(kNetworkRecipe) + "[judge]\nframes = 'seen'\n"),
+              HasSubstr("model.toml:15: expected no [judge] beside [network]"));
+  EXPECT_THAT(refusal("labeller = 'network'\n[frames.a]\ncount = 2\n"), HasSubstr("expected network.frames"));
+}
+
 /// Those of data/models, whole.
 TEST_F(ModelRecipes, ReadsTheShippedOnes) {
   const auto frames_of = [](const ModelRecipe& recipe, const std::vector<std::string>& names) {

@@ -99,6 +99,13 @@ bool makes_model(const Arguments& arguments) {
   return arguments.sources.recipes.size() == 1 && arguments.sources.count == 0;
 }
 
+void expect_network_flags(const Arguments& arguments) {
+  const bool for_forests = !arguments.report.empty() || !arguments.trees_of.empty() ||
+                           !arguments.sources.backgrounds.empty() || !arguments.cluster.engine.on.empty();
+  if (for_forests)
+    throw UsageError("the recipe is a network's: expected neither --report, --trees-of, --background nor --on");
+}
+
 void make_model(const Arguments& arguments) {
   if (!arguments.sources.data.empty() || !arguments.options_file.empty() || !arguments.sources.body.empty()) {
     throw UsageError("the recipe of a model says what --data, --options and --body say otherwise");
@@ -106,6 +113,7 @@ void make_model(const Arguments& arguments) {
   ModelRecipe recipe = read_model_recipe(arguments.sources.recipes.front());
   arguments.train_flags.apply(recipe.forest);
   check(arguments, recipe.forest);
+  if (recipe.network) expect_network_flags(arguments);
   recipe.backgrounds.insert(recipe.backgrounds.end(), arguments.sources.backgrounds.begin(),
                             arguments.sources.backgrounds.end());
   scale(recipe, arguments.scale);

@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+#include "io/files/atomic_file.h"
+#include "run_program.h"
+
+namespace vesalius {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+
+/// `vesalius train` by the recipe of a network, with a Python that is none.
+class NetworkRecipe : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_);
+    write_file_atomically(path("net.toml"), R"(labeller = "network"
+[synth]
+sensor.width = 96
+sensor.height = 72
+sensor.colour = false
+body.kind = "builtin"
+body.count = 2
+pose.captured = 0.0
+[network]
+frames = "learn"
+held-out = "unseen"
+config = "small"
+views = 40
+python = "./python"
+[frames.learn]
+count = 4
+[frames.unseen]
+count = 2
+seed = 2
+)");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Trains with a Python that does this when it is to learn, after it has put its arguments into `arguments`.
+  Outcome train(const std::string& learning, const std::string& importing = "exit 0") const {
+    write_file_atomically(path("python"), "#!/bin/sh\n[ \"$1\" = -c ] && { " + importing + "; }\necho \"$*\" > " +
+                                              path("arguments") + "\n" + learning + "\n");
+    fs::permissions(path("python"), fs::perms::owner_all);
+    return run_program("train --recipe " + path("net.toml") + " --threads 1 --out " + path("out"));
+  }
+
+ private:
+  const fs::path folder_ = fs::temp_directory_path() / ("vesalius_network_recipe_" + std::to_string(::getpid()));
+};
+
+TEST_F(NetworkRecipe, HasFramesRenderedAndANetworkLearned) {
+  const std::string network = path("out.work/network/network.npz");
+  const Outcome run = train("echo 'views 40 of 40'\nprintf learned > " + network);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(bytes_of(path("out")), "learned");
+  EXPECT_THAT(run.err, HasSubstr("views 40 of 40"));
+  EXPECT_THAT(bytes_of(path("arguments")),
+              MatchesRegex("-m vesalius_network .*/frames/learn --held-out .*/frames/unseen --out .*/network "
+                           "--config small --views 40 --seed 1 --device cpu --threads 1 --memory [0-9.]+\n"));
+  for (const char* set : {"learn", "unseen"}) {
+    EXPECT_TRUE(fs::exists(path("out.work/frames/") + set + "/000000.shard")) << set;
+  }
+}
+
+TEST_F(NetworkRecipe, SaysWhatTheToolSays) {
+  const Outcome run = train("echo 'vesalius_network: losses are not finite' >&2; exit 1");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("vesalius_network: losses are not finite"));
+  EXPECT_FALSE(fs::exists(path("out")));
+}
+
+TEST_F(NetworkRecipe, WantsAPythonWithPyTorchBeforeItRenders) {
+  const Outcome run = train("", "echo \"ModuleNotFoundError: No module named 'torch'\" >&2; exit 1");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("No module named 'torch'; expected in network.python a Python"));
+  EXPECT_FALSE(fs::exists(path("out.work/frames")));
+}
+
+TEST_F(NetworkRecipe, IsEstimatedWithoutPython) {
+  const Outcome run = run_program("train --estimate --recipe " + path("net.toml"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("frames learn"));
+  EXPECT_EQ(run_program("train --recipe " + path("net.toml") + " --out x --report " + path("r")).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace vesalius

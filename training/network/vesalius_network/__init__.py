@@ -1,0 +1,1 @@
+"""Learns networks that label depth pictures (README.md beside this folder)."""
