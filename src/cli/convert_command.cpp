@@ -41,17 +41,11 @@ Model load_any_model(const std::string& path) {
   return model_version(bytes) == kOldModelVersion ? parse_old_model(bytes, path) : parse_model(bytes, path);
 }
 
-/// Reads what training a network leaves: how it was made, and the network.
+/// Reads what training a network leaves.
 Model import_network(const std::string& path) {
-  const std::string bytes = read_file(path);
-  ByteReader in(bytes, path);
-  const std::string made_from(in.text("how the network was made"));
   Model model;
   model.body = paper_body();
-  auto network = std::make_shared<Network>(read_network(in));
-  in.expect_end();
-  network->made_from = made_from;
-  model.network = std::move(network);
+  model.network = std::make_shared<Network>(load_network(path));
   return model;
 }
 

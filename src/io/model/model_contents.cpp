@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "io/files/data_file.h"
 #include "io/model/model_trees.h"
 #include "vesalius/forest/leaf_logits.h"
 
@@ -87,6 +88,16 @@ Network read_network(ByteReader& in) {
   for (int i = 0; i < layers; ++i) network.layers.push_back(read_convolution(in));
   network.classes_of = in.number<std::uint16_t>("layer of classes");
   network.person_of = in.number<std::uint16_t>("layer of votes");
+  return network;
+}
+
+Network load_network(const std::string& path) {
+  const std::string bytes = read_file(path);
+  ByteReader in(bytes, path);
+  const std::string made_from(in.text("how the network was made"));
+  Network network = read_network(in);
+  in.expect_end();
+  network.made_from = made_from;
   return network;
 }
 
