@@ -305,6 +305,18 @@ float mean_body_outside(const Mask& candidates, const DepthImage& depth, const P
   return pixels > 0 ? float(sum / double(pixels)) : 0.F;
 }
 
+namespace {
+
+/// Returns Evidence::lacking: an outline that is hidden or cut off excuses missing parts.
+float lacking_of(const Evidence& evidence) {
+  constexpr float kWhole = 0.6F;  // likelihood of people of whom hardly a part is missing
+  constexpr float kExcuse = 1.5F;
+  const float shown = std::max(0.F, 1.F - kExcuse * (evidence.border + evidence.occluded));
+  return std::max(0.F, kWhole - evidence.likelihood) * shown;
+}
+
+}  // namespace
+
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
                          const Scenery& scenery, const Skeleton& skeleton, const BodyModel& body) {
   const Inside inside(mask);
@@ -337,6 +349,7 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
   evidence.elsewhere = scenery.body_elsewhere;
   evidence.rivals = float(scenery.proposals);
   evidence.groups = float(scenery.groups);
+  evidence.lacking = lacking_of(evidence);
   evidence.parts = std::move(belief.parts);
   return evidence;
 }

@@ -44,13 +44,14 @@ struct Evidence {
   float elsewhere = 0.F;   ///< Scenery::body_elsewhere: in some pictures the forest sees bodies everywhere
   float rivals = 0.F;      ///< Scenery::proposals: clutter gives many at once
   // What groups of votes tell (group_votes.h). All but the last are 0 for candidates without one.
-  float votes = 0.F;              ///< log10 of the group's number of votes
-  float spread_m = 0.F;           ///< root mean square distance of its votes to their mean
-  float likely = 0.F;             ///< log odds of its mean body share
-  float agree = 0.F;              ///< share of the mask's votes within kAgreed_m of its middle
-  float heading = 0.F;            ///< confidence of its heading
-  float sided = 0.F;              ///< agreement_of_sides of the skeleton and its heading
-  float groups = 0.F;             ///< Scenery::groups
+  float votes = 0.F;     ///< log10 of the group's number of votes
+  float spread_m = 0.F;  ///< root mean square distance of its votes to their mean
+  float likely = 0.F;    ///< log odds of its mean body share
+  float agree = 0.F;     ///< share of the mask's votes within kAgreed_m of its middle
+  float heading = 0.F;   ///< confidence of its heading
+  float sided = 0.F;     ///< agreement_of_sides of the skeleton and its heading
+  float groups = 0.F;    ///< Scenery::groups
+  float lacking = 0.F;   ///< by how much the likelihood falls short of a whole person's though nothing hides parts
   std::vector<float> parts = {};  ///< share of each part and its mirror partner in the mask's body (part_slots)
 };
 
@@ -91,13 +92,14 @@ inline constexpr std::array<JudgedEvidence, 22> kJudgedEvidence{{{"likelihood", 
                                                                  {"elsewhere", &Evidence::elsewhere},
                                                                  {"rivals", &Evidence::rivals}}};
 /// What groups of votes tell; all 0 where labellers have no votes.
-inline constexpr std::array<JudgedEvidence, 7> kVotedEvidence{{{"votes", &Evidence::votes},
+inline constexpr std::array<JudgedEvidence, 8> kVotedEvidence{{{"votes", &Evidence::votes},
                                                                {"spread", &Evidence::spread_m, -1},
                                                                {"likely", &Evidence::likely, 1},
                                                                {"agree", &Evidence::agree, 1},
                                                                {"heading", &Evidence::heading},
                                                                {"sided", &Evidence::sided},
-                                                               {"groups", &Evidence::groups}}};
+                                                               {"groups", &Evidence::groups},
+                                                               {"lacking", &Evidence::lacking, -1}}};
 
 /// Returns the names of all evidence of a body: kJudgedEvidence, "part:" and the name of each kind of part, and
 /// kVotedEvidence.

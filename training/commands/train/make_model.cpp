@@ -31,6 +31,7 @@
 #include "io/files/options_file.h"
 #include "io/model/model_contents.h"
 #include "learn/fit_boosted.h"
+#include "learn/fit_vote_judge.h"
 #include "vesalius/model_file.h"
 #include "vesalius/parallel.h"
 
@@ -182,7 +183,8 @@ class ModelMaker::Work {
     const auto start = Clock::now();
     Model model = recipe_.network ? learn() : grow();
     if (!recipe_.context.frames.empty()) model.context = fitted(context_, model, fit_context);
-    if (!recipe_.judge.frames.empty()) model.judge = fitted(judge_, model, fit_judge);
+    if (!recipe_.judge.frames.empty())
+      model.judge = fitted(judge_, model, model.network != nullptr ? fit_vote_judge : fit_judge);
     save_model(model, run_.train.out);
     const std::string labeller =
         model.network != nullptr ? "a network" : fmt::format("{} trees", model.forest.trees.size());

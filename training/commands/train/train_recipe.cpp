@@ -77,7 +77,8 @@ std::string network_recipe(const NetworkOptions& options, const BodyModel& body,
                            const std::vector<TrainInput>& inputs) {
   std::string text = fmt::format("# network\nconfig = \"{}\"\nviews = {}\nbatch = {}\nrate = {}\nseed = {}\n",
                                  options.config, options.views, options.batch, options.rate, options.seed);
-  if (!options.init.empty()) text += fmt::format("# begun with weights: sha256 {}\n", sha256_of(read_file(options.init)));
+  if (!options.init.empty())
+    text += fmt::format("# begun with weights: sha256 {}\n", sha256_of(read_file(options.init)));
   text += fmt::format("# body {}: sha256 {}\n", body.name, sha256_of(body.toml));
   for (std::size_t i = 0; i < inputs.size(); ++i) text += source_text(fmt::format("data {}", i + 1), inputs[i]);
   return with_key(text);

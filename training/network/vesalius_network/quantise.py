@@ -52,9 +52,9 @@ class Layer:
 class Convolution:
     """The same in integers: a Convolution of network.h."""
 
-    input: int
+    input: int  # picture that it reads: 0 the channels, n what convolution n - 1 makes
     stride: int
-    added: int
+    added: int  # picture that it adds, 0 for none
     added_scale: float
     wide: bool
     scale: np.ndarray  # [outputs] float32
@@ -226,7 +226,8 @@ def section_of(convolutions, classes, person):
     out = [struct.pack("<H", len(convolutions))]
     for layer in convolutions:
         outputs, inputs, side, _ = layer.weights.shape
-        head = (layer.input, side, layer.stride, inputs, outputs, layer.added, layer.added_scale, layer.wide)
+        added = layer.added + 1 if layer.added else 0
+        head = (layer.input, side, layer.stride, inputs, outputs, added, layer.added_scale, layer.wide)
         out.append(struct.pack("<HBBHHHfB", *head))
         out += [numbers.astype("<f4").tobytes() for numbers in (layer.scale, layer.offset)]
         out.append(layer.weights.transpose(0, 2, 3, 1).tobytes())

@@ -1,0 +1,129 @@
+#include "learn/fit_vote_judge.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "vesalius/error.h"
+#include "vesalius/score_person.h"
+
+namespace vesalius {
+namespace {
+
+/// What the judge asks for.
+constexpr std::array<std::string_view, 10> kAsked{"votes",   "spread",     "likely",    "agree", "groups",
+                                                  "lacking", "likelihood", "explained", "size",  "near"};
+constexpr double kFarthest = 4.0;     ///< standard deviations from the mean, beyond which nothing changes
+constexpr double kSquare = 0.3;       ///< by which squares are scaled, so that the ridge weighs them more
+constexpr double kRidge = 3.0;        ///< on weights, in samples
+constexpr double kFalseCosts = 2.25;  ///< people that a false one costs, besides RefineOptions::min_score
+constexpr int kNewtonSteps = 50;
+constexpr int kStaircases = 4;  ///< trees of each kind of evidence, whose steps lie between each other's
+
+/// One kind of evidence over all samples.
+struct Asked {
+  std::size_t feature = 0;
+  double mean = 0.0, deviation = 1.0;
+  std::vector<double> sorted;  ///< values of all samples
+
+  double standard(double x) const { return std::clamp((x - mean) / deviation, -kFarthest, kFarthest); }
+};
+
+Asked asked_of(const std::vector<BoostSample>& samples, std::size_t feature) {
+  Asked asked{.feature = feature};
+  for (const BoostSample& sample : samples) asked.sorted.push_back(double(sample.features[feature]));
+  std::ranges::sort(asked.sorted);
+  const auto count = double(samples.size());
+  double sum = 0.0, squares = 0.0;
+  for (const double x : asked.sorted) sum += x;
+  asked.mean = sum / count;
+  for (const double x : asked.sorted) squares += (x - asked.mean) * (x - asked.mean);
+  asked.deviation = std::sqrt(squares / count) + 1e-6;
+  return asked;
+}
+
+/// Returns the weights: a constant, then for each kind of evidence that of its standard value and of its square.
+Eigen::VectorXd regress(const std::vector<BoostSample>& samples, const std::vector<Asked>& asked) {
+  const auto rows = Eigen::Index(samples.size()), columns = Eigen::Index(2 * asked.size() + 1);
+  Eigen::MatrixXd known = Eigen::MatrixXd::Ones(rows, columns);
+  Eigen::VectorXd answer(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const BoostSample& sample = samples[std::size_t(i)];
+    answer[i] = sample.positive ? 1.0 : 0.0;
+    for (std::size_t a = 0; a < asked.size(); ++a) {
+      const double x = asked[a].standard(double(sample.features[asked[a].feature]));
+      known(i, Eigen::Index(2 * a + 1)) = x;
+      known(i, Eigen::Index(2 * a + 2)) = kSquare * x * x;
+    }
+  }
+  Eigen::VectorXd ridge = Eigen::VectorXd::Constant(columns, kRidge), weights = Eigen::VectorXd::Zero(columns);
+  ridge[0] = 1e-6;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const Eigen::ArrayXd p = 1.0 / (1.0 + (-(known * weights).array().max(-30.0).min(30.0)).exp());
+    Eigen::MatrixXd curvature = known.transpose() * (p * (1.0 - p)).matrix().asDiagonal() * known;
+    curvature.diagonal() += ridge;
+    const Eigen::VectorXd slope = known.transpose() * (answer - p.matrix()) - ridge.cwiseProduct(weights);
+    weights += curvature.llt().solve(slope);
+  }
+  return weights;
+}
+
+/// Writes thresholds in ascending order to the nodes of a tree, so that leaf l takes what is between two of them.
+void place_thresholds(const std::vector<float>& ascending, std::size_t begin, std::size_t end, std::size_t node,
+                      BoostedTree& tree) {
+  if (begin >= end) return;
+  const std::size_t middle = (begin + end) / 2;
+  tree.threshold[node] = ascending[middle];
+  place_thresholds(ascending, begin, middle, 2 * node + 1, tree);
+  place_thresholds(ascending, middle + 1, end, 2 * node + 2, tree);
+}
+
+/// Returns a part of the staircase that rises as a linear and a square weight say, with steps at every kStaircases-th
+/// of evenly many samples.
+BoostedTree staircase(const Asked& asked, double linear, double square, int number) {
+  BoostedTree tree;
+  tree.feature.fill(static_cast<std::uint16_t>(asked.feature));
+  constexpr int steps = kStaircases * BoostedTree::kLeaves;
+  const std::size_t last = asked.sorted.size() - 1;
+  const auto quantile = [&](double step) { return asked.sorted[std::size_t(step / steps * double(last))]; };
+  std::vector<float> thresholds;
+  for (int n = 1; n <= BoostedTree::kNodes; ++n) thresholds.push_back(float(quantile(kStaircases * n + number - 1)));
+  place_thresholds(thresholds, 0, thresholds.size(), 0, tree);
+  for (int leaf = 0; leaf < BoostedTree::kLeaves; ++leaf) {
+    const double first = std::max(0, kStaircases * leaf + number - 1);
+    const double beyond = std::min(steps, kStaircases * (leaf + 1) + number - 1);
+    const double x = asked.standard(quantile(0.5 * (first + beyond)));
+    tree.value[leaf] = float((linear * x + square * kSquare * x * x) / kStaircases);
+  }
+  return tree;
+}
+
+}  // namespace
+
+BoostedTrees fit_vote_judge(const std::vector<BoostSample>& samples, const BodyModel& body) {
+  const auto people = std::ranges::count(samples, true, &BoostSample::positive);
+  if (people == 0 || people == std::ranges::ssize(samples)) {
+    throw Error(std::string("fitting the judge: the frames have no candidate that is known to be ") +
+                (people == 0 ? "a person" : "nobody"));
+  }
+  const std::vector<std::string> names = judge_names(body);
+  std::vector<Asked> asked;
+  for (const std::string_view name : kAsked) {
+    asked.push_back(asked_of(samples, std::size_t(std::ranges::find(names, name) - names.begin())));
+  }
+  const Eigen::VectorXd weights = regress(samples, asked);
+  BoostedTrees judge{.features = int(names.size()), .bias = float(weights[0] - std::log(kFalseCosts)), .asks = names};
+  for (std::size_t a = 0; a < asked.size(); ++a) {
+    for (int number = 0; number < kStaircases; ++number) {
+      judge.trees.push_back(
+          staircase(asked[a], weights[Eigen::Index(2 * a + 1)], weights[Eigen::Index(2 * a + 2)], number));
+    }
+  }
+  return judge;
+}
+
+}  // namespace vesalius
