@@ -188,6 +188,11 @@ TEST_F(ModelRecipes, ReadsTheShippedOnes) {
   EXPECT_EQ(frames_of(small, small.forest_frames), 12'000);
   EXPECT_EQ(frames_of(small, small.judge.frames), 12'500);
   EXPECT_FALSE(read_model_recipe(folder + "quick.toml").judge.frames.empty());
+  const ModelRecipe network = read_model_recipe(folder + "network.toml");
+  EXPECT_TRUE(network.network);
+  EXPECT_EQ(frames_of(network, network.learn.frames), 200'100);
+  EXPECT_EQ(network.set("near").synth.body.count, 200);
+  EXPECT_EQ(network.set("hall_d435").synth.body.count, 150);
 }
 
 }  // namespace
