@@ -1,5 +1,5 @@
-// Measures the time of each stage of the detector and of the whole on all processors, and the time of fitting bodies
-// and of making synthetic frames on one. `./dev bench --help` lists the flags.
+// Measures the time of each stage of the detector, of networks and of the whole on all processors, and the time of
+// fitting bodies and of making synthetic frames on one. `./dev bench --help` lists the flags.
 
 #include <benchmark/benchmark.h>
 #include <hwy/targets.h>
@@ -10,6 +10,7 @@
 #include <string>
 
 #include "bench/bench_fit.h"
+#include "bench/bench_network.h"
 #include "bench/bench_scenes.h"
 #include "bench/bench_synth.h"
 #include "vesalius/forest/label_pixels.h"
@@ -117,6 +118,7 @@ int main(int argc, char** argv) {
       vesalius::add_search(scene);
       vesalius::add_detect(scene);
     }
+    vesalius::add_network_benchmarks();
     vesalius::add_fit_benchmarks();
     vesalius::add_synth_benchmarks();
     benchmark::RunSpecifiedBenchmarks();

@@ -14,6 +14,8 @@
 
 namespace vesalius {
 
+struct Network;
+
 /// What a model file holds (vesalius/model_file.h) and a Detector takes: a body, what labels pixels with its parts, and
 /// what makes more of the labels.
 struct Model {
@@ -27,15 +29,19 @@ struct Model {
 
   BodyModel body;
   Forest forest;                             ///< trees that label pixels, until on_device makes a labeller of them
+  std::shared_ptr<const Network> network;    ///< or a network that labels them in place of trees; until then
   std::shared_ptr<const Labeller> labeller;  ///< null until then
   FacingModel headings;  ///< how a person's heading follows from the headings of pixels; may be empty
   BoostedTrees context;  ///< which pixels are bodies, given what is around them (body_context.h); may be empty
   BoostedTrees judge;    ///< which proposals are people (score_person.h); empty: default_judge
 };
 
-/// Throws Error if the forest is inconsistent (check(Forest)), if it has other parts than the body, or if a regression
-/// or boosted trees could read what is not there.
+/// Throws Error if the forest or the network is inconsistent, if it has other parts than the body, if there are both,
+/// or if a regression or boosted trees could read what is not there.
 void check(const Model& model);
+
+/// Returns how what labels the model's pixels was made: the recipe of its forest or network.
+const std::string& labeller_recipe(const Model& model);
 
 /// A kind of device besides the processor that labels pixels.
 struct LabellerDevice {
@@ -68,9 +74,10 @@ struct LabellerDevices {
 ///   "auto"              the first device that can be had, otherwise the processor. A device that fails later is left
 ///                       for good, with a note, and its pictures are labelled on the processor: with a gate above 1 the
 ///                       same bits.
-/// A labeller that is there already stays. A forest without a background class is shown cut-outs (CutOutLabeller), and
-/// judged by default_judge_of_cut_outs if the model has no judge. Throws Error for an inconsistent model, UsageError
-/// for a device that this build does not know and DeviceError for one that this machine does not have.
+/// A labeller that is there already stays. A network labels on the processor alone. A forest without a background class
+/// is shown cut-outs (CutOutLabeller), and judged by default_judge_of_cut_outs if the model has no judge. Throws Error
+/// for an inconsistent model, UsageError for a device that this build does not know and DeviceError for one that this
+/// machine does not have.
 Model on_device(Model model, const std::string& device = "cpu", const LabellerDevices& devices = {});
 
 }  // namespace vesalius

@@ -46,7 +46,7 @@ struct Joint {
 /// Which way a person faces (body_yaw), and how sure that is.
 struct YawEstimate {
   float yaw_rad = 0.F;     ///< 0 faces the camera, positive is turned to the person's own left; -pi to pi
-  float confidence = 0.F;  ///< probability of the likeliest heading and its two neighbours, 0-1
+  float confidence = 0.F;  ///< probability of the likeliest heading and its two neighbours, or how votes agree; 0-1
 };
 
 /// A point that the camera sees on a person, and which parts it may belong to.
@@ -65,7 +65,7 @@ struct Person {
   LabelImage labels;                       ///< part of each of the person's pixels, kBackground elsewhere
   Box box;                                 ///< smallest box around the mask
   float score = 0.F;                       ///< 0-1, higher is more certain; what this frame alone tells
-  std::optional<YawEstimate> yaw;          ///< which way the person faces, if the forest's leaves have headings
+  std::optional<YawEstimate> yaw;          ///< which way the person faces, if the labeller knows headings
   std::vector<PersonPoint> points;         ///< some of the person's pixels with the likeliest parts of each
 };
 

@@ -10,6 +10,7 @@
 #include "console/status_line.h"
 #include "console/text_sink.h"
 #include "io/files/data_file.h"
+#include "io/model/model_contents.h"
 #include "io/model/model_sections.h"
 #include "io/model/old_model.h"
 #include "io/model/text_trees.h"
@@ -20,7 +21,11 @@
 namespace vesalius::cli {
 namespace {
 
-constexpr const char* kModelExtension = ".forest";
+constexpr const char *kForestExtension = ".forest", *kModelExtension = ".model", *kNetworkExtension = ".network";
+
+bool names_model(const std::string& path) {
+  return path.ends_with(kForestExtension) || path.ends_with(kModelExtension);
+}
 
 struct ConvertArguments {
   std::vector<std::string> paths;
@@ -36,21 +41,33 @@ Model load_any_model(const std::string& path) {
   return model_version(bytes) == kOldModelVersion ? parse_old_model(bytes, path) : parse_model(bytes, path);
 }
 
+/// Reads what training a network leaves.
+Model import_network(const std::string& path) {
+  Model model;
+  model.body = paper_body();
+  model.network = std::make_shared<Network>(load_network(path));
+  return model;
+}
+
 void convert_model(std::vector<std::string> paths, const std::string& body, bool quiet) {
   const std::string out = paths.back();
   paths.pop_back();
-  if (!out.ends_with(kModelExtension)) {
-    throw UsageError(
-        fmt::format("{}: expected a name that ends in {} (frames are converted with --to)", out, kModelExtension));
+  if (!names_model(out)) {
+    throw UsageError(fmt::format("{}: expected a name that ends in {} or {} (frames are converted with --to)", out,
+                                 kForestExtension, kModelExtension));
   }
-  const bool is_model = paths.front().ends_with(kModelExtension);
-  if (is_model && paths.size() > 1) {
+  const bool is_model = names_model(paths.front()), is_network = paths.front().ends_with(kNetworkExtension);
+  if ((is_model || is_network) && paths.size() > 1) {
     throw UsageError(fmt::format("{}: expected one other name, since it is a model", paths.front()));
   }
-  Model model = is_model ? load_any_model(paths.front()) : Model(import_text_trees(paths));
+  Model model = is_model     ? load_any_model(paths.front())
+                : is_network ? import_network(paths.front())
+                             : Model(import_text_trees(paths));
   if (!body.empty()) replace_body(model, body);
   save_model(model, out);
-  if (!quiet) say(fmt::format("{}: {} trees", out, model.forest.trees.size()));
+  if (quiet) return;
+  say(model.network != nullptr ? fmt::format("{}: a network of {} layers", out, model.network->layers.size())
+                               : fmt::format("{}: {} trees", out, model.forest.trees.size()));
 }
 
 void convert_frames(const ConvertArguments& arguments) {

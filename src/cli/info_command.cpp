@@ -13,6 +13,7 @@
 #include "io/recordings/recording_formats.h"
 #include "io/sensors/sensor_drivers.h"
 #include "vesalius/model_file.h"
+#include "vesalius/network/network.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius::cli {
@@ -87,7 +88,7 @@ Json body_facts(const BodyModel& body) {
   return {{"name", body.name}, {"parts", std::move(parts)}, {"joint_sets", std::move(sets)}};
 }
 
-/// Returns the sections of a model file. What the forest was made from is its recipe, which stands alone.
+/// Returns the sections of a model file. What the forest or network was made from is its recipe, which stands alone.
 Json section_facts(const std::vector<ModelSection>& sections) {
   Json facts = Json::array();
   for (const ModelSection& section : sections) {
@@ -95,15 +96,20 @@ Json section_facts(const std::vector<ModelSection>& sections) {
                                         {"version", section.version},
                                         {"bytes", section.bytes.size()},
                                         {"checksum", fmt::format("{:016x}", section.checksum)}});
-    if (section.name != "forest" && !section.made_from.empty()) one["made_from"] = section.made_from;
+    const bool recipe = section.name == "forest" || section.name == "network";
+    if (!recipe && !section.made_from.empty()) one["made_from"] = section.made_from;
   }
   return facts;
 }
 
-Json model_facts(const std::string& path) {
-  const std::string bytes = read_file(path);
-  const Model model = parse_model(bytes, path);
-  const Forest& forest = model.forest;
+Json network_facts(const Network& network) {
+  std::size_t weights = 0;
+  for (const Convolution& layer : network.layers) weights += layer.weights.size();
+  return {{"layers", network.layers.size()}, {"weights", weights}};
+}
+
+/// Returns what is known of the trees of a model.
+Json forest_facts(const Forest& forest, std::size_t size_bytes) {
   Json trees = Json::array();
   std::size_t nodes = 0, leaves = 0;
   for (const Tree& tree : forest.trees) {
@@ -112,18 +118,9 @@ Json model_facts(const std::string& path) {
     leaves += tree.leaves.size();
   }
   const FeatureConvention& c = forest.convention;
-  return {{"model", path},
-          {"size_bytes", bytes.size()},
-          {"checksum", model_checksum(bytes)},
-          {"sections", section_facts(model_version(bytes) == kModelVersion ? split_sections(bytes, path)
-                                                                           : std::vector<ModelSection>())},
-          {"recipe", forest.recipe},
-          {"body", body_facts(model.body)},
-          {"background_class", forest.has_background},
+  return {{"background_class", forest.has_background},
           {"distributions", has_distributions(forest)},
           {"headings", forest.headings},
-          {"context_trees", model.context.trees.size()},
-          {"judge_trees", model.judge.trees.size()},
           {"features",
            {{"offset_unit_px_m", c.offset_unit},
             {"reference_focal_px", c.reference_focal_px},
@@ -132,8 +129,24 @@ Json model_facts(const std::string& path) {
             {"clip_mm", c.clip_mm}}},
           {"nodes", nodes},
           {"leaves", leaves},
-          {"bytes_per_node", bytes_per_node(bytes.size(), nodes)},
+          {"bytes_per_node", bytes_per_node(size_bytes, nodes)},
           {"trees", std::move(trees)}};
+}
+
+Json model_facts(const std::string& path) {
+  const std::string bytes = read_file(path);
+  const Model model = parse_model(bytes, path);
+  Json facts{{"model", path},
+             {"size_bytes", bytes.size()},
+             {"checksum", model_checksum(bytes)},
+             {"sections", section_facts(model_version(bytes) == kModelVersion ? split_sections(bytes, path)
+                                                                              : std::vector<ModelSection>())},
+             {"recipe", labeller_recipe(model)},
+             {"body", body_facts(model.body)},
+             {"context_trees", model.context.trees.size()},
+             {"judge_trees", model.judge.trees.size()}};
+  facts.update(model.network != nullptr ? network_facts(*model.network) : forest_facts(model.forest, bytes.size()));
+  return facts;
 }
 
 std::string plain(const Json& value) {

@@ -337,7 +337,7 @@ std::vector<LabelImage> DeviceLabeller::label_pictures(const std::vector<DepthIm
   const std::optional<long> enough = gate_sum(*this, label.gate, whole());
   const ChoiceWeights weights = choice_weights(label, whole());
   std::vector<LabelImage> labels(pictures.size());
-  for (const DepthImage& picture : pictures) check_size(picture);
+  for (const DepthImage& picture : pictures) check_sides(picture);
 
   /// Returns how many of the pictures from `first` on fit into one batch.
   const auto fitting = [&](std::size_t first) {

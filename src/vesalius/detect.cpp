@@ -18,24 +18,35 @@
 #include "vesalius/error.h"
 #include "vesalius/find_clusters.h"
 #include "vesalius/forest/facing.h"
+#include "vesalius/group_votes.h"
 #include "vesalius/grow_person.h"
 #include "vesalius/known_people.h"
 #include "vesalius/label_scene.h"
 #include "vesalius/parallel.h"
 #include "vesalius/predict_parts.h"
 #include "vesalius/prior.h"
+#include "vesalius/propose_people.h"
 #include "vesalius/score_person.h"
 #include "vesalius/search_skeletons.h"
 #include "vesalius/trace.h"
 
 namespace vesalius {
+namespace {
+
+/// Returns a judge that asks for all evidence, in its order. One without names was fitted before there were votes.
+BoostedTrees judge_in_order(const BoostedTrees& judge, const BodyModel& body) {
+  std::vector<std::string> names = judge_names(body);
+  if (judge.asks.empty()) names.resize(names.size() - kVotedEvidence.size());
+  return in_order(judge, names, "judge of people");
+}
+
+}  // namespace
 
 /// The data that all frames share, and memory that they reuse.
 struct Method {
   /// `model` has a labeller.
   Method(Model model, const DetectOptions& given, std::shared_ptr<const Appearance> looks)
-      : judge(
-            in_order(model.judge.empty() ? default_judge() : model.judge, judge_names(model.body), "judge of people")),
+      : judge(judge_in_order(model.judge.empty() ? default_judge() : model.judge, model.body)),
         labeller(std::move(model), {given.label, given.smooth, given.grow.plane}),
         options(given),
         appearance(looks != nullptr ? std::move(looks) : make_appearance(given.grow.appearance)),
@@ -43,7 +54,7 @@ struct Method {
 
   float score(const Evidence& evidence) const { return judge.probability(judge_features(evidence)); }
 
-  BoostedTrees judge;  ///< asks for all evidence, in its order
+  BoostedTrees judge;  ///< judge_in_order
   SceneLabeller labeller;
   DetectOptions options;
   std::shared_ptr<const Appearance> appearance;  ///< none if looks do not matter
@@ -54,14 +65,6 @@ struct Method {
 namespace {
 
 using Candidate = Trace::Candidate;
-
-/// The result of the first pass on a frame.
-struct Scene {
-  SceneLabels labels;
-  LabelImage proposals;  ///< labels with the proposals' weight of the background
-  Clusters clusters;
-  std::vector<Skeleton> rough;  ///< best first
-};
 
 /// Runs sections 4 to 6 on the whole picture.
 Scene first_pass(const Method& method, const Frame& frame, StageClock& clock) {
@@ -74,45 +77,9 @@ Scene first_pass(const Method& method, const Frame& frame, StageClock& clock) {
   scene.clusters = find_clusters(scene.proposals, frame.depth, frame.camera, method.body, options.cluster);
   clock.lap(Stage::cluster);
   scene.rough = search_skeletons(scene.clusters.items, method.body, options.search);
+  scene.groups = group_votes(scene.labels.raw, frame, method.body.part_count());
   clock.lap(Stage::search);
   return scene;
-}
-
-constexpr float kRivalLikelihood = 0.2F;  // per part: rough skeletons of at least this grow against each other
-
-/// Returns how many of the rough skeletons, which come best first, grow against each other.
-std::size_t count_rivals(const std::vector<Skeleton>& rough, const Method& method) {
-  const float least = kRivalLikelihood * float(method.body.part_count());
-  const auto first_weak = std::ranges::find_if(rough, [&](const Skeleton& s) { return s.score < least; });
-  const auto strong = static_cast<std::size_t>(first_weak - rough.begin());
-  return std::min(strong, static_cast<std::size_t>(method.options.refine.max_candidates));
-}
-
-/// Grows masks (section 7). Every rough skeleton grows alone; the likelier ones also grow against each other, which
-/// separates people who touch. The second pass decides which result is better.
-std::vector<Candidate> grow_rough(const Method& method, const Scene& scene, const PersonGrower& grower) {
-  const std::size_t count =
-      std::min(scene.rough.size(), static_cast<std::size_t>(method.options.refine.max_candidates));
-  const std::size_t rivals = count_rivals(scene.rough, method);
-  std::vector<Mask> against;
-  if (rivals > 1) {
-    against = grower.grow(std::vector<Skeleton>(scene.rough.begin(), scene.rough.begin() + rivals), scene.clusters);
-  }
-  std::vector<Mask> alone(count);
-  parallel_for(int(count), [&](int i) { alone[i] = std::move(grower.grow({scene.rough[i]}, scene.clusters)[0]); });
-  for (std::size_t i = 0; i < against.size(); ++i) {
-    if (alone[i] == against[i]) alone[i] = {};
-  }
-  std::vector<Candidate> candidates;
-  for (std::vector<Mask>* masks : {&against, &alone}) {
-    for (std::size_t i = 0; i < masks->size(); ++i) {
-      if ((*masks)[i].empty()) continue;
-      Candidate& candidate = candidates.emplace_back();
-      candidate.rough = scene.rough[i];
-      candidate.grown = std::move((*masks)[i]);
-    }
-  }
-  return candidates;
 }
 
 /// Searches for a known person's skeleton where the person is expected, and grows it with the known appearance. Whose
@@ -125,6 +92,7 @@ std::optional<Candidate> grow_known(const Method& method, const Frame& frame, co
   if (!known.flesh.empty()) {
     candidate.rough.parts.resize(method.body.parts.size());
     candidate.grown = known.mask;
+    candidate.group = main_group(scene.groups, candidate.grown);
     return candidate;
   }
   candidate.labels = method.labeller.label_person(scene.labels, frame, known.mask, bounding_box(known.mask)).labels;
@@ -134,43 +102,23 @@ std::optional<Candidate> grow_known(const Method& method, const Frame& frame, co
   if (rough.empty()) return std::nullopt;
   candidate.rough = std::move(rough.front());
   candidate.grown = std::move(grower.grow({candidate.rough}, clusters, {known.appearance})[0]);
+  candidate.group = main_group(scene.groups, candidate.grown);
   return candidate;
 }
 
-/// Returns where nobody grows: on flat surfaces and where the background is sure enough.
-Mask barred(const Method& method, const SceneLabels& labels) {
-  Mask barred = labels.flat;
-  const auto least = double(method.options.grow.least_body);
-  const Posteriors& posteriors = labels.posteriors();
-  const int parts = method.body.part_count();
-  if (least == 0.0) return barred;
-  parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v) {
-      for (int u = 0; u < posteriors.width; ++u) {
-        const std::optional<double> share = body_share(posteriors, u, v, parts);
-        if (share && *share < least) barred(u, v) = 1;
-      }
-    }
-  });
-  return barred;
-}
-
-std::vector<Candidate> propose(const Method& method, const Frame& frame, const Scene& scene, const Looks& looks) {
-  if (scene.rough.empty()) return {};
-  const Mask nobody = barred(method, scene.labels);
-  return grow_rough(method, scene, PersonGrower(frame, nobody, method.body, method.options.grow, looks));
-}
-
 /// Returns the best skeleton of a candidate's labels, which are within `box`, or one without parts if there is none.
-/// `size` is that of the person (search_skeletons).
-Skeleton second_pass(const Method& method, const Frame& frame, const LabelImage& labels, const Box& box, float size) {
+/// It has at least `min_parts`. `size` is that of the person (search_skeletons).
+Skeleton second_pass(const Method& method, const Frame& frame, const LabelImage& labels, const Box& box, int min_parts,
+                     float size) {
   ClusterOptions options = method.options.cluster;
   constexpr float scale = 0.5F;  // of the smallest area of a part: in the second pass all pixels are a person's
   options.min_area_cm2 *= scale;
   options.min_pixels = std::max(1, int(float(options.min_pixels) * scale));
   const Clusters clusters =
       find_clusters(crop(labels, box), crop(frame.depth, box), cropped(frame.camera, box), method.body, options);
-  std::vector<Skeleton> found = search_skeletons(clusters.items, method.body, method.options.search, size);
+  SearchOptions search = method.options.search;
+  search.min_parts = min_parts;
+  std::vector<Skeleton> found = search_skeletons(clusters.items, method.body, search, size);
   return found.empty() ? Skeleton{} : std::move(found.front());
 }
 
@@ -202,7 +150,8 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
   if (method.options.refine.second_pass) {
     person = method.labeller.label_person(scene.labels, frame, candidate.grown, box);
     const float size = candidate.known < 0 ? 1.F : prior.people[static_cast<std::size_t>(candidate.known)].size;
-    candidate.refined = second_pass(method, frame, person.labels, box, size);
+    const int min_parts = candidate.group < 0 ? method.options.search.min_parts : 1;
+    candidate.refined = second_pass(method, frame, person.labels, box, min_parts, size);
   } else {
     person.labels = candidate.labels.empty() ? scene.proposals : candidate.labels;
     person.certain = mean_certainty(scene.labels.posteriors(), candidate.grown, method.body.part_count());
@@ -215,6 +164,12 @@ Candidate refine(const Method& method, const Frame& frame, const Scene& scene, c
   }
   candidate.evidence =
       gather_evidence(frame, candidate.grown, person, scene.labels.smooth, scenery, candidate.refined, method.body);
+  if (candidate.group >= 0) {
+    const VoteGroup& group = scene.groups.items[candidate.group];
+    add_votes(frame, candidate.grown, scene.labels.raw.votes, group, candidate.refined, method.body,
+              candidate.evidence);
+    if (group.heading.confidence > 0.F) candidate.yaw = group.heading;
+  }
   if (person.facing.size() > 0) candidate.yaw = estimate_yaw(person.facing);
   candidate.score = method.score(candidate.evidence);
   candidate.labels = std::move(person.labels);
@@ -247,7 +202,7 @@ Scenery look_around(const Method& method, const Frame& frame, const Scene& scene
     for (std::size_t i = 0; i < anybody.size(); ++i) anybody[i] |= candidate.grown[i];
   }
   return {scene.labels.flat, mean_body_outside(anybody, frame.depth, scene.labels.smooth, method.body.part_count()),
-          int(scene.rough.size())};
+          int(scene.rough.size()), int(scene.groups.items.size())};
 }
 
 /// Refines candidates, among all others whose masks are known so far.
@@ -259,6 +214,12 @@ void refine_all(const Method& method, const Frame& frame, const Scene& scene, co
   });
 }
 
+/// Returns whether a candidate has as many parts as a person needs. Where votes agree, one large part can be a person.
+bool has_enough_parts(const Candidate& candidate, const RefineOptions& options) {
+  const bool voted = candidate.group >= 0 && !candidate.refined.parts.empty();
+  return candidate.refined.found >= options.min_parts || voted;
+}
+
 /// Returns the known people whom no candidate that would pass anyway covers.
 std::vector<int> missed_people(const Method& method, const Prior& prior, const std::vector<Candidate>& candidates) {
   const RefineOptions& options = method.options.refine;
@@ -267,7 +228,7 @@ std::vector<int> missed_people(const Method& method, const Prior& prior, const s
     const Mask& mask = prior.people[i].mask;
     if (mask.empty()) continue;
     const bool found = std::ranges::any_of(candidates, [&](const Candidate& candidate) {
-      return candidate.score >= options.min_score && candidate.refined.found >= options.min_parts &&
+      return candidate.score >= options.min_score && has_enough_parts(candidate, options) &&
              shared_pixels(candidate.grown, mask) >= kSurelyKnown;
     });
     if (!found) missed.push_back(int(i));
@@ -337,7 +298,7 @@ std::vector<Person> choose_people(const Method& method, const Frame& frame, cons
   std::vector<Person> people;
   Mask taken(frame.camera.width, frame.camera.height, 0);
   for (Candidate& candidate : candidates) {
-    const bool few = candidate.refined.found < options.min_parts && !is_followed(candidate, prior);
+    const bool few = !has_enough_parts(candidate, options) && !is_followed(candidate, prior);
     if (candidate.certainty < options.min_score || few) continue;
     if (repeats(candidate.grown, taken, options.max_overlap)) continue;
     candidate.accepted = true;
@@ -385,8 +346,9 @@ Detection detect_everywhere(const Method& method, const Frame& frame, const std:
   clock.skip();  // the time that others took
   const KnownPeople known(frame, scene.labels.flat, scene.labels.smooth, method.body.part_count(), prior);
   Looks looks;
-  if (!scene.rough.empty() || !prior.people.empty()) looks = look_at(frame, method.appearance.get());
-  std::vector<Candidate> candidates = propose(method, frame, scene, looks);
+  if (!scene.rough.empty() || !scene.groups.items.empty() || !prior.people.empty())
+    looks = look_at(frame, method.appearance.get());
+  std::vector<Candidate> candidates = propose_people(frame, scene, looks, method.body, method.options);
   parallel_for(int(candidates.size()), [&](int i) {
     candidates[i].known = known.shown_by(candidates[i].grown);
     known.correct(candidates[i].known, candidates[i].grown);

@@ -70,7 +70,8 @@ Model truth_model(const LabelImage& truth, const BodyModel& body, bool backgroun
 
 /// A judge with these log odds for whatever has no more, and more, than `least` of a kind of evidence.
 BoostedTrees judge_by(int feature, float least, float below = -9.F, float above = 9.F) {
-  BoostedTrees judge{static_cast<int>(judge_signs(paper_body()).size()), 0.F, std::vector<BoostedTree>(1)};
+  BoostedTrees judge{int(judge_names(paper_body()).size()), 0.F, std::vector<BoostedTree>(1),
+                     judge_names(paper_body())};
   BoostedTree& tree = judge.trees.front();
   tree.threshold.fill(std::numeric_limits<float>::infinity());
   tree.feature[0] = static_cast<std::uint16_t>(feature);
@@ -651,11 +652,13 @@ TEST(Judge, DecidesWhoIsAPerson) {
 TEST(Judge, OfOtherEvidenceIsRefused) {
   Model model(std::make_shared<TruthLabeller>(LabelImage(), paper_body(), true));
   model.judge = judge_by(0, 0.F);
-  model.judge.features -= 1;
+  model.judge.asks = {};
+  model.judge.features = 34;
   EXPECT_THAT([&] { Detector{model}; },
               testing::ThrowsMessage<Error>(testing::HasSubstr("judge of people knows 34 features, expected 35")));
+  model.judge.features = 35;
+  EXPECT_NO_THROW(Detector{model}) << "without names it knows nothing of votes";
   model.judge = judge_by(0, 0.F);
-  model.judge.asks = judge_names(paper_body());
   model.judge.asks.back() = "part:tail";
   EXPECT_THAT([&] { Detector{model}; },
               testing::ThrowsMessage<Error>(testing::HasSubstr("judge of people asks for \"part:tail\"")));

@@ -10,6 +10,7 @@
 #include "vesalius/default_judge.h"
 #include "vesalius/error.h"
 #include "vesalius/forest/label_pixels.h"
+#include "vesalius/network/network_labeller.h"
 
 namespace vesalius {
 namespace {
@@ -104,14 +105,36 @@ SharedLabeller make_labeller(Forest forest, const std::string& device, const Lab
   throw_unknown_device(device, devices);
 }
 
+/// Makes the labeller of a network, which runs on the processor.
+SharedLabeller make_labeller(const Network& network, int parts, const std::string& device,
+                             const LabellerDevices& devices) {
+  const bool automatic = device == "auto";
+  if (!automatic && device != "cpu") {
+    const DeviceName wanted = parse_device(device);
+    if (std::ranges::count(devices.kinds, wanted.kind, &LabellerDevice::name) == 0) {
+      throw_unknown_device(device, devices);
+    }
+    throw UsageError("device \"" + device + "\": expected \"cpu\" or \"auto\" for a model with a network");
+  }
+  if (automatic && devices.note) devices.note("the model has a network; the processor labels");
+  return std::make_shared<NetworkLabeller>(network, parts);
+}
+
 }  // namespace
 
 Model::Model(Forest trained) : body(trained.body), forest(std::move(trained)), headings(std::move(forest.facing)) {
   forest.facing = {};
 }
 
+const std::string& labeller_recipe(const Model& model) {
+  return model.network != nullptr ? model.network->made_from : model.forest.recipe;
+}
+
 void check(const Model& model) {
-  if (model.labeller == nullptr) {
+  if (model.labeller == nullptr && model.network != nullptr) {
+    if (!model.forest.trees.empty()) throw Error("model: a forest and a network, expected one of them");
+    check(*model.network, model.body.part_count());
+  } else if (model.labeller == nullptr) {
     check(model.forest);
     if (!std::ranges::equal(model.body.parts, model.forest.body.parts, {}, &BodyPart::name, &BodyPart::name)) {
       throw Error("body: other parts than the forest's");
@@ -125,6 +148,11 @@ void check(const Model& model) {
 Model on_device(Model model, const std::string& device, const LabellerDevices& devices) {
   check(model);
   if (model.labeller != nullptr) return model;
+  if (model.network != nullptr) {
+    model.labeller = make_labeller(*model.network, model.body.part_count(), device, devices);
+    model.network = nullptr;
+    return model;
+  }
   const bool background = model.forest.has_background, votes = !has_distributions(model.forest);
   model.labeller = make_labeller(std::exchange(model.forest, {}), device, devices);
   if (background) return model;

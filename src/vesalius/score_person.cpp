@@ -9,7 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "vesalius/base/body_heading.h"
+#include "vesalius/derive_joints.h"
 #include "vesalius/forest/body_context.h"
+
 namespace vesalius {
 namespace {
 
@@ -333,14 +336,42 @@ Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabel
   evidence.on_flat = float(count_on_flat(frame, inside, scenery.flat)) / side;
   evidence.elsewhere = scenery.body_elsewhere;
   evidence.rivals = float(scenery.proposals);
+  evidence.groups = float(scenery.groups);
   evidence.parts = std::move(belief.parts);
   return evidence;
+}
+
+float agreement_of_sides(const Skeleton& skeleton, const YawEstimate& heading, const BodyModel& body) {
+  if (skeleton.found == 0) return 0.F;
+  const std::optional<float> yaw = body_yaw(given_centres(skeleton), body);
+  return yaw ? std::cos(*yaw - heading.yaw_rad) : 0.F;
+}
+
+void add_votes(const Frame& frame, const Mask& mask, const Image<PersonVote>& votes, const VoteGroup& group,
+               const Skeleton& skeleton, const BodyModel& body, Evidence& evidence) {
+  long all = 0, agreeing = 0;
+  for (int row = 0; row < votes.height(); ++row) {
+    for (int column = 0; column < votes.width(); ++column) {
+      const int u = column * kVoteStep, v = row * kVoteStep;
+      if (mask(u, v) == 0 || frame.depth(u, v) == 0) continue;
+      ++all;
+      agreeing += (voted_middle(votes, frame, column, row) - group.middle).norm() <= kAgreed_m ? 1 : 0;
+    }
+  }
+  constexpr float kLeastDoubt = 1e-3F;
+  evidence.votes = std::log10(float(group.votes));
+  evidence.spread_m = group.spread_m;
+  evidence.likely = std::log(group.body / (1.F - group.body + kLeastDoubt));
+  evidence.agree = all > 0 ? float(agreeing) / float(all) : 0.F;
+  evidence.heading = group.heading.confidence;
+  evidence.sided = agreement_of_sides(skeleton, group.heading, body);
 }
 
 std::vector<std::string> judge_names(const BodyModel& body) {
   std::vector<std::string> names;
   for (const JudgedEvidence& kind : kJudgedEvidence) names.emplace_back(kind.name);
   for (const std::string& name : kind_names(body)) names.push_back("part:" + name);
+  for (const JudgedEvidence& kind : kVotedEvidence) names.emplace_back(kind.name);
   return names;
 }
 
@@ -348,6 +379,7 @@ std::vector<int> judge_signs(const BodyModel& body) {
   std::vector<int> signs;
   for (const JudgedEvidence& kind : kJudgedEvidence) signs.push_back(kind.sign);
   signs.resize(signs.size() + kind_count(part_slots(body)), 0);
+  for (const JudgedEvidence& kind : kVotedEvidence) signs.push_back(kind.sign);
   return signs;
 }
 
@@ -355,6 +387,7 @@ std::vector<float> judge_features(const Evidence& evidence) {
   std::vector<float> features;
   for (const JudgedEvidence& kind : kJudgedEvidence) features.push_back(evidence.*kind.evidence);
   features.insert(features.end(), evidence.parts.begin(), evidence.parts.end());
+  for (const JudgedEvidence& kind : kVotedEvidence) features.push_back(evidence.*kind.evidence);
   return features;
 }
 

@@ -8,6 +8,7 @@
 #include "vesalius/body_model.h"
 #include "vesalius/forest/person_points.h"
 #include "vesalius/frame.h"
+#include "vesalius/group_votes.h"
 #include "vesalius/image.h"
 #include "vesalius/labeller.h"
 #include "vesalius/person.h"
@@ -16,6 +17,7 @@ namespace vesalius {
 
 inline constexpr float kUsualArea_m2 = 0.45F;  ///< usual area of a person's mask: a standing adult's front
 inline constexpr float kBendReach_m = 0.15F;   ///< a limb's radius and more
+inline constexpr float kAgreed_m = 0.2F;       ///< votes this near to their group's middle agree on it
 
 /// The evidence that a grown mask and its skeleton are a person. Numbers without a unit are 0-1.
 struct Evidence {
@@ -41,6 +43,14 @@ struct Evidence {
   float on_flat = 0.F;     ///< pixels close to floor, wall or table over the square root of the mask's pixels
   float elsewhere = 0.F;   ///< Scenery::body_elsewhere: in some pictures the forest sees bodies everywhere
   float rivals = 0.F;      ///< Scenery::proposals: clutter gives many at once
+  // What groups of votes tell (group_votes.h). All but the last are 0 for candidates without one.
+  float votes = 0.F;              ///< log10 of the group's number of votes
+  float spread_m = 0.F;           ///< root mean square distance of its votes to their mean
+  float likely = 0.F;             ///< log odds of its mean body share
+  float agree = 0.F;              ///< share of the mask's votes within kAgreed_m of its middle
+  float heading = 0.F;            ///< confidence of its heading
+  float sided = 0.F;              ///< agreement_of_sides of the skeleton and its heading
+  float groups = 0.F;             ///< Scenery::groups
   std::vector<float> parts = {};  ///< share of each part and its mirror partner in the mask's body (part_slots)
 };
 
@@ -49,6 +59,7 @@ struct Scenery {
   const Mask& flat;            ///< 1 on floor, walls and other large flat surfaces
   float body_elsewhere = 0.F;  ///< mean body share of the posterior outside of all candidates' masks
   int proposals = 0;           ///< rough skeletons of the first pass
+  int groups = 0;              ///< groups of votes
 };
 
 /// A kind of evidence that a judge may ask for.
@@ -79,8 +90,17 @@ inline constexpr std::array<JudgedEvidence, 22> kJudgedEvidence{{{"likelihood", 
                                                                  {"on_flat", &Evidence::on_flat},
                                                                  {"elsewhere", &Evidence::elsewhere},
                                                                  {"rivals", &Evidence::rivals}}};
+/// What groups of votes tell; all 0 where labellers have no votes.
+inline constexpr std::array<JudgedEvidence, 7> kVotedEvidence{{{"votes", &Evidence::votes},
+                                                               {"spread", &Evidence::spread_m, -1},
+                                                               {"likely", &Evidence::likely, 1},
+                                                               {"agree", &Evidence::agree, 1},
+                                                               {"heading", &Evidence::heading},
+                                                               {"sided", &Evidence::sided},
+                                                               {"groups", &Evidence::groups}}};
 
-/// Returns the names of all evidence of a body: kJudgedEvidence, then "part:" and the name of each kind of part.
+/// Returns the names of all evidence of a body: kJudgedEvidence, "part:" and the name of each kind of part, and
+/// kVotedEvidence.
 std::vector<std::string> judge_names(const BodyModel& body);
 
 /// Returns the sign of each.
@@ -93,6 +113,14 @@ std::vector<float> judge_features(const Evidence& evidence);
 /// of the first pass; all have the frame's size, and so has the scenery.
 Evidence gather_evidence(const Frame& frame, const Mask& mask, const PersonLabels& labels, const Posteriors& posteriors,
                          const Scenery& scenery, const Skeleton& skeleton, const BodyModel& body);
+
+/// Adds what a candidate's group of votes tells of its mask and skeleton. All pictures have the frame's size.
+void add_votes(const Frame& frame, const Mask& mask, const Image<PersonVote>& votes, const VoteGroup& group,
+               const Skeleton& skeleton, const BodyModel& body, Evidence& evidence);
+
+/// Returns the cosine between the heading of a skeleton's observed parts (body_yaw) and a given one: above 0 where left
+/// and right agree. Returns 0 where the parts have no heading.
+float agreement_of_sides(const Skeleton& skeleton, const YawEstimate& heading, const BodyModel& body);
 
 /// Returns Scenery::body_elsewhere for the union of the candidates' masks, from every second pixel of every second row.
 float mean_body_outside(const Mask& candidates, const DepthImage& depth, const Posteriors& posteriors, int parts);

@@ -24,10 +24,11 @@ struct Trace {
   const Mask* person = nullptr;
   LabelImage inside;  ///< the second pass's labels of those pixels; empty if none were given
 
-  /// A grown and refined rough skeleton. A rough skeleton has two candidates if growing against its rivals gives
-  /// another mask than growing alone.
+  /// A grown and refined group of votes or rough skeleton. A rough skeleton has two candidates if growing against its
+  /// rivals gives another mask than growing alone.
   struct Candidate {
-    Skeleton rough;  ///< one of `rough`, or the one found in the mask of a known person
+    Skeleton rough;  ///< one of `rough`, or the one found in a group or in the mask of a known person
+    int group = -1;  ///< index of the group of votes (VoteGroups) from which it comes or that it shows, or -1
     int known = -1;  ///< index in Prior::people of the person for whom it is taken, or -1
     Mask grown;
     LabelImage labels;  ///< pass 2, smoothed

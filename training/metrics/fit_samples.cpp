@@ -106,7 +106,7 @@ std::vector<BoostSample> judge_samples(const Trace& trace, const FrameTruth& tru
   const bool known = !truth.person.empty() || !truth.mask.empty();
   if (truth.people != 0 && !known) return samples;
   for (const Trace::Candidate& candidate : trace.candidates) {
-    if (candidate.refined.found == 0) continue;
+    if (candidate.refined.found == 0 && candidate.group < 0) continue;  // the detector refuses it
     const Likeness like = truth.people == 0 ? Likeness{} : likeness(candidate.grown, truth, depth);
     const bool person = like.as_person >= 1.0;
     if (person || std::max(like.as_person, like.on_people) < 0.5) {

@@ -20,16 +20,14 @@ void make_folder(const fs::path& folder) {
   if (error) throw Error(fmt::format("{}: cannot make the folder: {}", folder.string(), error.message()));
 }
 
-/// Returns the mean distance of the observed parts in metres along the optical axis.
-double distance_m(const Skeleton& skeleton) {
-  double sum = 0.0;
-  int count = 0;
+/// Tells how many parts are observed and their mean distance along the optical axis.
+std::string describe(const Skeleton& skeleton) {
+  if (skeleton.found == 0) return "no parts";
+  double sum_m = 0.0;
   for (const SkeletonPart& part : skeleton.parts) {
-    if (part.state != State::observed) continue;
-    sum += double(part.centre.z());
-    ++count;
+    if (part.state == State::observed) sum_m += double(part.centre.z());
   }
-  return count == 0 ? 0.0 : sum / count;
+  return fmt::format("{} parts at {:.2f} m", skeleton.found, sum_m / skeleton.found);
 }
 
 }  // namespace
@@ -122,7 +120,7 @@ std::string describe(const Frame& frame, const TrackedFrame& people) {
     const Person& found = person.person;
     text += text.empty() ? "" : ", ";
     text += people.followed ? fmt::format("{} {} at {:.2f} m", person.id, to_string(person.state), person.position.z())
-                            : fmt::format("{} parts at {:.2f} m", found.skeleton.found, distance_m(found.skeleton));
+                            : describe(found.skeleton);
     if (is_found(person)) text += fmt::format(" (score {:.2f})", found.score);
   }
   const std::size_t count = people.people.size();

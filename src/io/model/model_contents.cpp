@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "io/files/data_file.h"
 #include "io/model/model_trees.h"
 #include "vesalius/forest/leaf_logits.h"
 
@@ -37,6 +38,67 @@ void read_forest(ByteReader& in, unsigned flags, Forest& forest) {
   forest.headings = in.number<std::uint16_t>("headings");
   const LogitLayout layout(forest.body, forest.has_background, forest.headings);
   read_logits(in, static_cast<std::size_t>(layout.size()), forest.trees);
+}
+
+void write_network(ByteWriter& out, const Network& network) {
+  out.number(static_cast<std::uint16_t>(network.layers.size()));
+  for (const Convolution& layer : network.layers) {
+    out.number(static_cast<std::uint16_t>(layer.input));
+    out.number(static_cast<std::uint8_t>(layer.side));
+    out.number(static_cast<std::uint8_t>(layer.stride));
+    out.number(static_cast<std::uint16_t>(layer.inputs));
+    out.number(static_cast<std::uint16_t>(layer.outputs));
+    out.number(static_cast<std::uint16_t>(layer.added + 1));
+    out.real(layer.added_scale);
+    out.number(static_cast<std::uint8_t>(layer.wide ? 1 : 0));
+    for (const float scale : layer.scale) out.real(scale);
+    for (const float offset : layer.offset) out.real(offset);
+    for (const std::int8_t weight : layer.weights) out.number(static_cast<std::uint8_t>(weight));
+  }
+  out.number(static_cast<std::uint16_t>(network.classes_of));
+  out.number(static_cast<std::uint16_t>(network.person_of));
+}
+
+namespace {
+
+Convolution read_convolution(ByteReader& in) {
+  Convolution layer;
+  layer.input = in.number<std::uint16_t>("layer's input");
+  layer.side = in.number<std::uint8_t>("side of windows");
+  layer.stride = in.number<std::uint8_t>("stride");
+  layer.inputs = in.number<std::uint16_t>("channels");
+  layer.outputs = in.number<std::uint16_t>("channels");
+  layer.added = in.number<std::uint16_t>("what is added") - 1;
+  layer.added_scale = in.real32("scale of what is added");
+  layer.wide = in.number<std::uint8_t>("width of results") != 0;
+  for (std::vector<float>* numbers : {&layer.scale, &layer.offset}) {
+    for (int i = 0; i < layer.outputs; ++i) numbers->push_back(in.real32("scales and offsets"));
+  }
+  const auto count = static_cast<std::size_t>(layer.side * layer.side) * static_cast<std::size_t>(layer.inputs) *
+                     static_cast<std::size_t>(layer.outputs);
+  for (const char weight : in.take(count, "weights")) layer.weights.push_back(static_cast<std::int8_t>(weight));
+  return layer;
+}
+
+}  // namespace
+
+Network read_network(ByteReader& in) {
+  Network network;
+  const int layers = in.number<std::uint16_t>("number of layers");
+  for (int i = 0; i < layers; ++i) network.layers.push_back(read_convolution(in));
+  network.classes_of = in.number<std::uint16_t>("layer of classes");
+  network.person_of = in.number<std::uint16_t>("layer of votes");
+  return network;
+}
+
+Network load_network(const std::string& path) {
+  const std::string bytes = read_file(path);
+  ByteReader in(bytes, path);
+  const std::string made_from(in.text("how the network was made"));
+  Network network = read_network(in);
+  in.expect_end();
+  network.made_from = made_from;
+  return network;
 }
 
 void write_headings(ByteWriter& out, const FacingModel& headings) {

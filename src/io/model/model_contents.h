@@ -4,6 +4,7 @@
 #include "vesalius/boosted_trees.h"
 #include "vesalius/forest.h"
 #include "vesalius/forest/facing.h"
+#include "vesalius/network/network.h"
 
 // What the sections of a model file hold (docs/formats.md). Reading throws Error for bytes that cannot be decoded;
 // whether they make sense is left to check(Model).
@@ -15,6 +16,11 @@ inline constexpr unsigned kForestLogits = 2;      ///< leaves were learned joint
 void write_forest(ByteWriter& out, const Forest& forest);
 /// Reads what follows the flags into a forest that has its body already.
 void read_forest(ByteReader& in, unsigned flags, Forest& forest);
+
+void write_network(ByteWriter& out, const Network& network);
+Network read_network(ByteReader& in);
+/// Reads what training a network leaves (docs/formats.md). Throws Error, also for a file that cannot be read.
+Network load_network(const std::string& path);
 
 void write_headings(ByteWriter& out, const FacingModel& headings);
 FacingModel read_headings(ByteReader& in, int headings, int parts);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "io/files/atomic_file.h"
@@ -68,11 +70,21 @@ constexpr Content boosted(const char* name) {
           }};
 }
 
-constexpr std::array<Content, 5> kContents{
+std::string made_by(const Model& model) { return labeller_recipe(model); }
+
+void read_network_section(ByteReader& in, const std::string& made_from, Model& model) {
+  auto network = std::make_shared<Network>(read_network(in));
+  network->made_from = made_from;
+  model.network = std::move(network);
+}
+
+constexpr std::array<Content, 6> kContents{
     {{"body", 1, true, [](const Model&) { return true; }, [](const Model&) { return std::string(); },
       [](ByteWriter& out, const Model& model) { out.bytes() += model.body.toml; }, read_body},
-     {"forest", 1, true, [](const Model&) { return true; }, [](const Model& model) { return model.forest.recipe; },
+     {"forest", 1, false, [](const Model& model) { return model.network == nullptr; }, made_by,
       [](ByteWriter& out, const Model& model) { write_forest(out, model.forest); }, read_forest_section},
+     {"network", 1, false, [](const Model& model) { return model.network != nullptr; }, made_by,
+      [](ByteWriter& out, const Model& model) { write_network(out, *model.network); }, read_network_section},
      {"headings", 1, false, [](const Model& model) { return !model.headings.empty(); },
       [](const Model& model) { return model.headings.made_from; }, write_headings_section, read_headings_section},
      boosted<&Model::context>("context"),
@@ -134,6 +146,9 @@ Model parse_model(std::string_view bytes, const std::string& name) {
     ByteReader in(section->bytes, place);
     kind.read(in, section->made_from, model);
     in.expect_end();
+  }
+  if (model.network == nullptr && model.forest.trees.empty()) {
+    throw Error(name + ": neither a section \"forest\" nor \"network\", expected one of them in every model");
   }
   with_context(name, [&] { check(model); });
   return model;

@@ -8,6 +8,7 @@
 #include "io/model/model_sections.h"
 #include "io/model/test_forest.h"
 #include "vesalius/error.h"
+#include "vesalius/network/test_networks.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius {
@@ -85,6 +86,38 @@ TEST(ModelFile, KeepsTheJudge) {
   EXPECT_TRUE(parse_model(serialise_model(random_forest(4)), "m").judge.empty());
   model.judge.features = 1;
   EXPECT_THAT([&] { serialise_model(model); }, ThrowsMessage<Error>(HasSubstr("judge of people asks for a feature")));
+}
+
+Model network_model() {
+  Random random(11, 0);
+  Model model;
+  model.body = paper_body();
+  Network network = test::random_network(random, {{4, 4, 4, 4, 4}, {0, 1, 0, 0, 0}, {4, 4, 4, 4}}, 25);
+  network.made_from = "frames of people";
+  model.network = std::make_shared<Network>(std::move(network));
+  return model;
+}
+
+TEST(ModelFile, KeepsANetwork) {
+  const Model model = network_model();
+  const std::string bytes = serialise_model(model);
+  const Model again = parse_model(bytes, "m");
+  ASSERT_NE(again.network, nullptr);
+  EXPECT_EQ(again.network->layers, model.network->layers);
+  EXPECT_EQ(again.network->classes_of, model.network->classes_of);
+  EXPECT_EQ(again.network->person_of, model.network->person_of);
+  EXPECT_EQ(labeller_recipe(again), "frames of people");
+  EXPECT_EQ(serialise_model(again), bytes);
+}
+
+TEST(ModelFile, RefusesDamagedNetworks) { parse_changed(serialise_model(network_model()), "network"); }
+
+TEST(ModelFile, NeedsSomethingThatLabels) {
+  const std::string bytes = serialise_model(network_model());
+  std::vector<ModelSection> sections = split_sections(bytes, "m");
+  std::erase_if(sections, [](const ModelSection& section) { return section.name == "network"; });
+  EXPECT_THAT([&] { parse_model(join_sections(sections), "m"); },
+              ThrowsMessage<Error>(HasSubstr("neither a section \"forest\" nor \"network\"")));
 }
 
 TEST(ModelFile, KeepsTheContext) {

@@ -189,6 +189,8 @@ std::string markers_message(const TrackedFrame& people, const BodyModel& body, s
       balls.push_back(ball_of(parts[i], body.parts[i]));
       if (parts[i].centre.y() < highest.y()) highest = parts[i].centre;
     }
+    // Of whom no part is known, the points begin at the top.
+    if (balls.empty() && !person.person.points.empty()) highest = person.person.points.front().at;
     for (const BodyLink& link : body.links) {
       if (parts[link.parent].state == State::none || parts[link.child].state == State::none) continue;
       lines.push_back(ball_of(parts[link.parent], body.parts[link.parent]));

@@ -283,7 +283,7 @@ const Forest& checked(const Forest& forest) {
 TrainedLabeller::TrainedLabeller(const Forest& forest)
     : trees_(int(checked(forest).trees.size())), layout_(forest.body, forest.has_background, forest.headings) {}
 
-void TrainedLabeller::check_size(const DepthImage& depth) {
+void check_sides(const DepthImage& depth) {
   if (std::max(depth.width(), depth.height()) > PaddedDepth::kMaxSide) {
     throw Error("depth image of " + std::to_string(depth.width()) + "x" + std::to_string(depth.height()) +
                 " pixels, expected at most " + std::to_string(PaddedDepth::kMaxSide) + " a side");
@@ -291,11 +291,12 @@ void TrainedLabeller::check_size(const DepthImage& depth) {
 }
 
 void TrainedLabeller::prepare(const DepthImage& depth, Posteriors& out) const {
-  check_size(depth);
+  check_sides(depth);
   out.resize_like(
       {.width = depth.width(), .height = depth.height(), .classes = layout_.classes(), .whole = whole(), .sums = {}});
   out.headings = layout_.headings;
   out.turns.resize(depth.size() * out.turn_count());
+  out.votes = {};
 }
 
 struct ForestLabeller::Packed : PackedForest {};

@@ -12,6 +12,9 @@
 
 namespace vesalius {
 
+/// Throws Error for a picture of more than 16,000 pixels a side.
+void check_sides(const DepthImage& depth);
+
 /// What the labellers of a trained forest have in common, on whatever device they walk it. They look at depth alone.
 /// The posteriors of a forest without a background class have parts only; CutOutLabeller (cut_out_labeller.h) makes a
 /// detector's of them.
@@ -27,9 +30,7 @@ class TrainedLabeller : public Labeller {
   /// Returns Posteriors::whole.
   int whole() const { return 255 * trees_; }
 
-  /// Throws Error for a picture of more than 16,000 pixels a side.
-  static void check_size(const DepthImage& depth);
-  /// Does the same, and gives `out` the size of the picture; the numbers are undefined.
+  /// Does check_sides, and gives `out` the size of the picture; the numbers are undefined.
   void prepare(const DepthImage& depth, Posteriors& out) const;
 
  private:

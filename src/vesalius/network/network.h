@@ -20,12 +20,14 @@ struct Convolution {
   int stride = 1;   ///< 1 or 2
   int inputs = 0;   ///< channels of what it reads
   int outputs = 0;  ///< channels of what it makes
-  int added =
-      -1;  ///< what is added (numbered as `input`), of the same channels; of half the size it is enlarged. -1: none
+  /// What is added, an earlier result (numbered as `input`) of the same channels; of half the size it is enlarged by
+  /// doubling pixels. -1: none.
+  int added = -1;
   float added_scale = 0.F;
-  bool wide = false;                 ///< whether the result is wide; narrow results are thereby rectified
-  std::vector<std::int8_t> weights;  ///< [output][row][column][input]
-  std::vector<float> scale, offset;  ///< of each output
+  bool wide = false;                           ///< whether the result is wide; narrow results are thereby rectified
+  std::vector<std::int8_t> weights = {};       ///< [output][row][column][input]
+  std::vector<float> scale = {}, offset = {};  ///< of each output
+  friend bool operator==(const Convolution&, const Convolution&) = default;
 };
 
 /// Channels of a network's input, which stand for a depth picture and the camera's focal length (network_input.h).
@@ -45,13 +47,26 @@ struct Network {
   /// Layer, at a quarter of the size: the numbers of a PersonVote (labeller.h); wide.
   int person_of = -1;
   std::string made_from;  ///< how it was learned; free text
-
-  bool empty() const { return layers.empty(); }
 };
 
-/// Throws Error naming the layer if one reads what is not there yet, if sizes, channels or numbers of weights do not
-/// fit each other, if a scale is not finite, if sums could exceed 32 bits, or if a head has not the classes of `parts`
-/// parts.
+/// The numbers of a PersonVote (labeller.h).
+inline constexpr int kPersonNumbers = 5;
+
+/// A picture inside a network; its width and height are those of the input, halved so many times.
+struct NetworkPicture {
+  int channels = 0;
+  int halvings = 0;
+  bool wide = false;
+
+  friend bool operator==(const NetworkPicture&, const NetworkPicture&) = default;
+};
+
+/// Returns what a network's pictures are: first its input, then what each convolution makes. Throws Error naming the
+/// layer if one reads what is not there yet, if sizes, channels or numbers of weights do not fit each other or are
+/// beyond what the program computes (sums then stay within 32 bits), or if a scale is not finite or very large.
+std::vector<NetworkPicture> pictures_of(const Network& network);
+
+/// Throws what `pictures_of` throws, and Error if a head has not the size or the outputs of `parts` parts.
 void check(const Network& network, int parts);
 
 }  // namespace vesalius

@@ -111,7 +111,7 @@ std::string learn_network(const NetworkOptions& options, const NetworkRun& run) 
   failures.pass_on();
   if (interrupted()) throw Error("interrupted: the same command goes on");
   if (*code != 0) throw Error(failures.last().empty() ? "the tool failed; see " + errors : failures.last());
-  return run.folder + "/network.npz";
+  return run.folder + "/network.network";
 }
 
 }  // namespace vesalius::cli

@@ -29,6 +29,7 @@
 #include "folders/owned_folder.h"
 #include "io/files/data_file.h"
 #include "io/files/options_file.h"
+#include "io/model/model_contents.h"
 #include "learn/fit_boosted.h"
 #include "vesalius/model_file.h"
 #include "vesalius/parallel.h"
@@ -163,30 +164,30 @@ class ModelMaker::Work {
     for (const FrameSet& set : recipe_.sets) {
       if (set.data.empty()) open_rendered(set);
     }
-    if (!recipe_.network) name_steps();
+    name_steps();
     if (!run_.train.shown) return;
     for (const auto& [key, loaded] : assets_.all()) {
       for (const std::string& note : loaded->notes) say("note: " + note);
     }
   }
 
-  std::string estimate() {
-    return !recipe_.network && is_made() ? run_.train.out + ": made by this recipe already\n" : plan();
-  }
+  std::string estimate() { return is_made() ? run_.train.out + ": made by this recipe already\n" : plan(); }
 
   void make() {
-    if (recipe_.network) return make_network();
     if (!run_.train.restart && is_made()) return tell(run_.train.out + ": made by this recipe already");
+    if (recipe_.network && !grown()) expect_network_tool(recipe_.learn);
     const FolderLock lock(folder_);
     if (run_.train.restart) remove_work();
     tell(plan());
     const auto start = Clock::now();
-    Model model = grow();
+    Model model = recipe_.network ? learn() : grow();
     if (!recipe_.context.frames.empty()) model.context = fitted(context_, model, fit_context);
     if (!recipe_.judge.frames.empty()) model.judge = fitted(judge_, model, fit_judge);
     save_model(model, run_.train.out);
-    tell(fmt::format("{}: {} trees{}{}, {:.2f} MiB, made in {}; {} keeps frames and steps for a changed recipe",
-                     run_.train.out, model.forest.trees.size(), model.context.empty() ? "" : ", a context",
+    const std::string labeller =
+        model.network != nullptr ? "a network" : fmt::format("{} trees", model.forest.trees.size());
+    tell(fmt::format("{}: {}{}{}, {:.2f} MiB, made in {}; {} keeps frames and steps for a changed recipe",
+                     run_.train.out, labeller, model.context.empty() ? "" : ", a context",
                      model.judge.empty() ? "" : ", a judge", double(fs::file_size(run_.train.out)) / 1024.0 / 1024.0,
                      duration(seconds_since(start)), folder_));
   }
@@ -201,15 +202,19 @@ class ModelMaker::Work {
     SampleFrame (*sampler)(const Model&) = nullptr;
   };
 
-  void make_network() {
-    expect_network_tool(recipe_.learn);
-    const FolderLock lock(folder_);
-    if (run_.train.restart) remove_work();
-    tell(plan());
+  /// Returns a model whose pixels a network labels.
+  Model learn() {
+    if (std::optional<Model> model = grown()) return std::move(*model);
     const std::string learned = learn_network(
         recipe_.learn, {datasets_of(recipe_.learn.frames), datasets_of(recipe_.learn.held_out), folder_ + "/network",
                         run_.train.device, run_.train.max_bytes, run_.train.restart, run_.train.shown});
-    write_file_atomically(run_.train.out, read_file(learned));
+    Network network = load_network(learned);
+    network.made_from = forest_recipe_;
+    Model model;
+    model.body = body_;
+    model.network = std::make_shared<Network>(std::move(network));
+    save_model(model, grown_path());
+    return model;
   }
 
   /// Renders what is missing of sets. Returns their folders.
@@ -253,14 +258,16 @@ class ModelMaker::Work {
 
   /// Says how each section of the model is made. Equal texts mean equal sections.
   void name_steps() {
-    if (!at_hand_) {
+    if (recipe_.network) {
+      forest_recipe_ = network_recipe(recipe_.learn, body_, inputs_of(recipe_.learn.frames));
+    } else if (!at_hand_) {
       const TrainInputs inputs(body_, inputs_of(recipe_.forest_frames), recipe_.backgrounds, run_.camera);
       const auto facts = inputs.read_backgrounds([](const LabelledFrame&) {});
       std::optional<Forest> kept;
       if (!run_.train.trees_of.empty()) kept = kept_trees(run_.train, inputs);
       forest_recipe_ = train_recipe(recipe_.forest, inputs, facts, kept ? &*kept : nullptr);
     } else {
-      forest_recipe_ = at_hand_->forest.recipe;
+      forest_recipe_ = labeller_recipe(*at_hand_);
     }
     std::string made = forest_recipe_;
     const auto name = [&](const char* kind, const char* what, const FitSets& sets, auto sampler) {
@@ -278,7 +285,7 @@ class ModelMaker::Work {
     if (!fs::exists(path)) return std::nullopt;
     try {
       Model model = load_model(path);
-      if (model.forest.recipe == forest_recipe_) return model;
+      if (labeller_recipe(model) == forest_recipe_) return model;
     } catch (const Error&) {  // a damaged model is made again
     }
     return std::nullopt;
@@ -387,9 +394,12 @@ class ModelMaker::Work {
 
   /// Returns the sets whose frames are asked for, by their steps.
   std::map<std::string, std::vector<std::string>> needed_sets(bool grown) const {
-    if (recipe_.network) return {{"network", recipe_.learn.frames}, {"held out", recipe_.learn.held_out}};
     std::map<std::string, std::vector<std::string>> needed;
-    if (!grown) needed["forest"] = recipe_.forest_frames;
+    if (!grown && !recipe_.network) needed["forest"] = recipe_.forest_frames;
+    if (!grown && recipe_.network) {
+      needed["network"] = recipe_.learn.frames;
+      needed["held out"] = recipe_.learn.held_out;
+    }
     for (const Step* step : {&context_, &judge_}) needed[step->name] = pending(*step);
     return needed;
   }
@@ -414,7 +424,7 @@ class ModelMaker::Work {
                             source.input.frames, duration(set.seconds), set.bytes / kGiB);
       }
     }
-    if (recipe_.network) {
+    if (!model && recipe_.network) {
       text += fmt::format("frames                        about {}; the network's training then says its own\n",
                           duration(seconds));
       return text + disk(bytes);
@@ -430,7 +440,8 @@ class ModelMaker::Work {
       model = std::move(pilot);
     }
     for (const Step* step : {&context_, &judge_}) {
-      if (needed[step->name].empty() || model->forest.trees.empty()) continue;
+      const bool labels = model->network != nullptr || !model->forest.trees.empty();
+      if (needed[step->name].empty() || !labels) continue;
       const Sampling sampling = sampling_of(*step, needed[step->name], measured, *model);
       expect_memory(*step, sampling.bytes);
       const double step_s = sampling.seconds;

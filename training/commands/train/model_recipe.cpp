@@ -165,10 +165,7 @@ class RecipeReader {
 
   void expect_network() const {
     if (recipe_.learn.frames.empty()) throw Error(path_ + ": expected network.frames, sets to learn from");
-    for (const char* other : {"forest", "context", "judge"}) {
-      if (root_.contains(other))
-        reader_.fail(*root_.get(other), fmt::format("expected no [{}] beside [network]", other));
-    }
+    if (root_.contains("forest")) reader_.fail(*root_.get("forest"), "expected no [forest] beside [network]");
     if (const toml::node* config = root_["network"]["config"].node())
       expect_known(*config, "config", recipe_.learn.config, {"small", "default"});
   }

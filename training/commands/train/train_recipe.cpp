@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "downloads/sha256.h"
+#include "io/files/data_file.h"
 #include "io/files/options_file.h"
 #include "vesalius/model_file.h"
 
@@ -69,6 +70,16 @@ std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
     text += fmt::format("# trees of a model of checksum {}, made by\n{}", model_checksum(serialise_model(*trees_of)),
                         commented(trees_of->recipe));
   }
+  return with_key(text);
+}
+
+std::string network_recipe(const NetworkOptions& options, const BodyModel& body,
+                           const std::vector<TrainInput>& inputs) {
+  std::string text = fmt::format("# network\nconfig = \"{}\"\nviews = {}\nbatch = {}\nrate = {}\nseed = {}\n",
+                                 options.config, options.views, options.batch, options.rate, options.seed);
+  if (!options.init.empty()) text += fmt::format("# begun with weights: sha256 {}\n", sha256_of(read_file(options.init)));
+  text += fmt::format("# body {}: sha256 {}\n", body.name, sha256_of(body.toml));
+  for (std::size_t i = 0; i < inputs.size(); ++i) text += source_text(fmt::format("data {}", i + 1), inputs[i]);
   return with_key(text);
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/train/model_recipe.h"
 #include "commands/train/train_inputs.h"
 #include "train/grow_forest.h"
 
@@ -13,6 +14,10 @@ namespace vesalius::cli {
 /// the same text. Equal texts give equal forests. `vesalius train --options` reads the text.
 std::string train_recipe(TrainOptions options, const TrainInputs& inputs,
                          const std::vector<BackgroundFacts>& backgrounds, const Forest* trees_of = nullptr);
+
+/// Returns how a network is learned, likewise: options, the SHA-256 of the weights that it begins with, sets to learn
+/// from. The machine may round otherwise, so equal texts mean networks that are as good.
+std::string network_recipe(const NetworkOptions& options, const BodyModel& body, const std::vector<TrainInput>& inputs);
 
 /// Returns how what a model has besides its forest is made, likewise: `what` ("judge of people") fitted to the first of
 /// every `step` frames of the sources, with a model made by `before`.

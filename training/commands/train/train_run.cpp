@@ -251,6 +251,7 @@ class Training {
 
 Forest kept_trees(const TrainRun& run, const TrainInputs& inputs) {
   Forest forest = load_model(run.trees_of).forest;
+  if (forest.trees.empty()) throw Error(run.trees_of + ": labels by a network, expected a model with trees");
   if (!std::ranges::equal(forest.body.parts, inputs.body().parts, {}, &BodyPart::name, &BodyPart::name)) {
     throw Error(run.trees_of + ": has other body parts than the frames, expected the same");
   }

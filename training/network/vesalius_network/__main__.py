@@ -11,6 +11,7 @@ import torch
 
 from .errors import InputError
 from .nets import CONFIGS
+from .quantise import MOST_FRAMES, write_network
 from .train import Plan, Training
 
 BATCH = {"cuda": 192, "cpu": 16}
@@ -112,16 +113,18 @@ def run(options):
     def tell(text):
         print(text, flush=True)
 
+    network = Path(options.out) / "network.network"
     training = Training(plan, options.data, options.held_out, options.out, device, memory, tell)
-    if training.batch == plan.batches:
-        tell(f"{options.out}/network.npz: made already")
+    if training.batch == plan.batches and network.exists():
+        tell(f"{network}: made already")
         return 0
     tell(training.estimate())
     if options.estimate:
         return 0
     signals = Signals()
     if training.run(options.figures_every or max(LEAST_BETWEEN, plan.views // FIGURES), lambda: signals.came):
-        tell(f"{options.out}/network.npz: learnt from {plan.batches * plan.batch} views")
+        write_network(network.with_suffix(".npz"), options.data, network, MOST_FRAMES)
+        tell(f"{network}: learnt from {plan.batches * plan.batch} views")
         return 0
     tell(f"stopped after {training.batch * plan.batch} views; the same command goes on")
     return STOPPED

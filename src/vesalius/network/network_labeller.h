@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "vesalius/labeller.h"
+#include "vesalius/network/network.h"
+
+namespace vesalius {
+
+/// Labels on the processor by a network, which sees a picture as a whole, by depth and the focal length alone. It
+/// answers for every second pixel of every second row; those between take what the ones around them at their own depth
+/// say. It votes for the middles of people.
+class NetworkLabeller : public Labeller {
+ public:
+  /// Throws Error for a network that is inconsistent (check(Network)) or has other classes than `parts` and the
+  /// background.
+  NetworkLabeller(const Network& network, int parts);
+  ~NetworkLabeller() override;
+
+  /// Throws Error for a picture of more than 16,000 pixels a side.
+  void label_into(const Frame& frame, float gate, Posteriors& out) const override;
+
+ private:
+  struct Working;
+  std::unique_ptr<const Working> working_;
+};
+
+/// Writes to `shares` the probabilities, in 1/`whole` and rounded, that `count` logits stand for (kLogitUnit).
+void softmax_in_steps(const std::int16_t* logits, int count, int whole, std::uint16_t* shares);
+
+}  // namespace vesalius

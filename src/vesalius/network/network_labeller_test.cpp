@@ -1,0 +1,214 @@
+// Labels: threads
+#include "vesalius/network/network_labeller.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "vesalius/base/random.h"
+#include "vesalius/error.h"
+#include "vesalius/model.h"
+#include "vesalius/network/network_input.h"
+#include "vesalius/network/test_networks.h"
+#include "vesalius/parallel.h"
+
+namespace vesalius {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr int kParts = 3;
+
+Frame frame_of(DepthImage depth, float focal_px = 285.F) {
+  Frame frame;
+  frame.camera = {.width = depth.width(), .height = depth.height(), .fx = focal_px, .fy = focal_px};
+  frame.depth = std::move(depth);
+  return frame;
+}
+
+DepthImage random_depth(Random& random, int width, int height) {
+  DepthImage depth(width, height, 0);
+  for (std::uint16_t& mm : depth) {
+    if (random.below(5) != 0) mm = static_cast<std::uint16_t>(500 + random.below(4000));
+  }
+  return depth;
+}
+
+/// A network that tells classes by the sums of its windows: any will do.
+Network any_network(std::uint64_t seed) {
+  Random random(seed, 0);
+  return test::random_network(random, {{8, 12, 16, 20, 24}, {0, 1, 1, 1, 1}, {20, 16, 12, 8}}, kParts);
+}
+
+std::vector<int> input_at(const NetworkInput& input, int u, int v) {
+  const std::uint8_t* first = input.values.data() + std::ptrdiff_t(v * input.width + u) * kNetworkInputs;
+  return {first, first + kNetworkInputs};
+}
+
+TEST(NetworkInput, TellsHowNearAPixelIsAndHowSteepTheSurface) {
+  DepthImage depth(20, 10, 2000);
+  for (int v = 0; v < 10; ++v) {
+    for (int u = 10; u < 20; ++u) depth(u, v) = static_cast<std::uint16_t>(2000 + 10 * (u - 10));
+  }
+  depth(3, 3) = 0;
+  NetworkInput input;
+  fill_network_input(depth, 285.F, input);
+  EXPECT_EQ(input.width, 32);
+  EXPECT_EQ(input.height, 32);
+  constexpr int zero = kNetworkZero, there = kNetworkZero + 32;
+  // 2 / 2 m - .7 = .3 is 38.4 steps of 1 / 128: 10 coarse ones of four less 2.
+  EXPECT_THAT(input_at(input, 5, 5), ElementsAre(zero + 10, zero - 2, there, zero, zero, zero, zero, zero));
+  EXPECT_THAT(input_at(input, 3, 3), testing::Each(zero)) << "no reading";
+  EXPECT_THAT(input_at(input, 25, 5), testing::Each(zero)) << "beyond the picture";
+  EXPECT_EQ(input_at(input, 5, 3)[3], zero) << "beside a hole";
+  // 40 mm over 4 pixels of 2040 / 285 mm, at 14: slope 1.397, 44.7 steps.
+  EXPECT_EQ(input_at(input, 14, 5)[3], zero + 45);
+  EXPECT_EQ(input_at(input, 14, 5)[4], zero);
+  EXPECT_EQ(input_at(input, 1, 5)[3], zero) << "at the border";
+}
+
+TEST(NetworkInput, IsTheSameForHalfTheFocalLengthAtHalfTheDistance) {
+  NetworkInput here, there;
+  fill_network_input(DepthImage(40, 30, 3000), 570.F, here);
+  fill_network_input(DepthImage(40, 30, 1500), 285.F, there);
+  EXPECT_EQ(here.values, there.values);
+}
+
+TEST(NetworkInput, IsClampedWhereCloser) {
+  NetworkInput input;
+  fill_network_input(DepthImage(8, 8, 1), 600.F, input);
+  EXPECT_EQ(input_at(input, 4, 4)[0], 255);
+}
+
+TEST(SoftmaxInSteps, IsThatOfRealNumbersRounded) {
+  Random random(3, 0);
+  for (int trial = 0; trial < 200; ++trial) {
+    std::array<std::int16_t, 26> logits;
+    for (std::int16_t& logit : logits) logit = static_cast<std::int16_t>(int(random.below(4000)) - 2000);
+    std::array<std::uint16_t, 26> shares;
+    softmax_in_steps(logits.data(), 26, 2040, shares.data());
+    double sum = 0.0;
+    for (const std::int16_t logit : logits) sum += std::exp(double(logit) / 256.0);
+    for (std::size_t c = 0; c < 26; ++c) {
+      EXPECT_NEAR(shares[c], 2040.0 * std::exp(double(logits[c]) / 256.0) / sum, 0.6) << c;
+    }
+  }
+}
+
+TEST(SoftmaxInSteps, BearsTheLargestDifferences) {
+  const std::array<std::int16_t, 3> logits{-32768, 32767, 32767};
+  std::array<std::uint16_t, 3> shares;
+  softmax_in_steps(logits.data(), 3, 2040, shares.data());
+  EXPECT_THAT(shares, ElementsAre(0, 1020, 1020));
+}
+
+TEST(NetworkLabeller, GivesTheSameForAnyNumberOfThreads) {
+  Random random(5, 0);
+  const Network network = any_network(1);
+  const NetworkLabeller labeller(network, kParts);
+  const Frame frame = frame_of(random_depth(random, 75, 53));
+  Posteriors expected;
+  {
+    const ThreadLimit limit(1);
+    labeller.label_into(frame, 0.7F, expected);
+  }
+  for (const int threads : {2, 7}) {
+    const ThreadLimit limit(threads);
+    Posteriors got;
+    labeller.label_into(frame, 0.7F, got);
+    EXPECT_EQ(got.sums, expected.sums);
+    EXPECT_EQ(got.votes, expected.votes);
+    EXPECT_EQ(got.settled, expected.settled);
+  }
+}
+
+TEST(NetworkLabeller, AnswersEveryPixelWithAReading) {
+  Random random(6, 0);
+  const NetworkLabeller labeller(any_network(2), kParts);
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{2, 3}, std::pair{33, 31}, std::pair{64, 32}}) {
+    const Frame frame = frame_of(random_depth(random, width, height));
+    const Posteriors out = labeller.label(frame);
+    ASSERT_EQ(out.width, width);
+    ASSERT_EQ(out.classes, kParts + 1);
+    EXPECT_EQ(out.votes.width(), (width + kVoteStep - 1) / kVoteStep);
+    EXPECT_EQ(out.votes.height(), (height + kVoteStep - 1) / kVoteStep);
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        int sum = 0;
+        for (int c = 0; c < out.classes; ++c) sum += out.at(u, v)[c];
+        if (frame.depth(u, v) == 0) {
+          EXPECT_EQ(sum, 0) << u << "," << v;
+        } else {
+          EXPECT_NEAR(sum, out.whole, out.classes) << u << "," << v;
+        }
+      }
+    }
+  }
+}
+
+TEST(NetworkLabeller, TakesBetweenItsPixelsWhatThoseOfTheSameDepthSay) {
+  Random random(7, 0);
+  DepthImage depth(32, 32, 1500);
+  for (int v = 0; v < 32; ++v) {
+    for (int u = 15; u < 32; ++u) depth(u, v) = 3000;
+  }
+  const Frame frame = frame_of(depth);
+  const Posteriors out = NetworkLabeller(any_network(3), kParts).label(frame);
+  for (int v = 0; v < 32; v += 2) {
+    for (int c = 0; c < out.classes; ++c) {
+      EXPECT_EQ(out.at(15, v)[c], out.at(16, v)[c]) << "column 15 is of the far half, 14 of the near one";
+      EXPECT_NEAR(out.at(21, v)[c], (out.at(20, v)[c] + out.at(22, v)[c]) / 2, 1);
+    }
+  }
+}
+
+TEST(NetworkLabeller, MarksWhereTheBackgroundIsCertainAsSettled) {
+  Network network = any_network(4);
+  Convolution& classes = network.layers[std::size_t(network.classes_of)];
+  classes.offset.back() = 32000.F;  // the background
+  const Frame frame = frame_of(DepthImage(40, 40, 2000));
+  Posteriors out;
+  const NetworkLabeller labeller(network, kParts);
+  labeller.label_into(frame, 0.7F, out);
+  EXPECT_THAT(out.settled, testing::Each(1));
+  EXPECT_EQ(out.at(7, 7)[kParts], out.whole);
+  labeller.label_into(frame, 2.F, out);
+  EXPECT_TRUE(out.settled.empty()) << "with a gate above 1";
+}
+
+TEST(NetworkLabeller, RefusesPicturesThatAreTooLarge) {
+  const NetworkLabeller labeller(any_network(4), kParts);
+  EXPECT_THAT([&] { labeller.label(frame_of(DepthImage(16001, 1, 0))); }, ThrowsMessage<Error>(HasSubstr("16000")));
+}
+
+Model network_model() {
+  Random random(8, 0);
+  Model model;
+  model.body = paper_body();
+  model.network = std::make_shared<Network>(
+      test::random_network(random, {{8, 12, 16, 20, 24}, {0, 1, 1, 1, 1}, {20, 16, 12, 8}}, model.body.part_count()));
+  return model;
+}
+
+TEST(NetworkModel, LabelsOnTheProcessorAlone) {
+  const LabellerDevices devices{{{"card", [](Forest, int) { return nullptr; }}}};
+  EXPECT_NE(on_device(network_model()).labeller, nullptr);
+  EXPECT_THAT([&] { on_device(network_model(), "card:1", devices); },
+              ThrowsMessage<UsageError>(HasSubstr("expected \"cpu\" or \"auto\" for a model with a network")));
+  EXPECT_THAT([&] { on_device(network_model(), "loom", devices); },
+              ThrowsMessage<UsageError>(HasSubstr("not known to this build")));
+  std::string heard;
+  on_device(network_model(), "auto", {{}, [&](const std::string& note) { heard = note; }});
+  EXPECT_THAT(heard, HasSubstr("the processor labels"));
+}
+
+TEST(NetworkModel, HasNoForestBeside) {
+  Model model = network_model();
+  model.forest.trees.resize(1);
+  EXPECT_THAT([&] { check(model); }, ThrowsMessage<Error>(HasSubstr("a forest and a network")));
+}
+
+}  // namespace
+}  // namespace vesalius
