@@ -6,7 +6,11 @@
 #include <string>
 
 #include "io/files/atomic_file.h"
+#include "io/files/byte_stream.h"
+#include "io/model/model_contents.h"
 #include "run_program.h"
+#include "vesalius/model_file.h"
+#include "vesalius/network/test_networks.h"
 
 namespace vesalius {
 namespace {
@@ -58,10 +62,19 @@ seed = 2
 };
 
 TEST_F(NetworkRecipe, HasFramesRenderedAndANetworkLearned) {
-  const std::string network = path("out.work/network/network.npz");
-  const Outcome run = train("echo 'views 40 of 40'\nprintf learned > " + network);
+  Random random(1, 0);
+  const Network network = test::random_network(random, test::kSmallShape, 25);
+  ByteWriter file;
+  file.text("how it was made");
+  write_network(file, network);
+  write_file_atomically(path("learned"), file.bytes());
+  const Outcome run =
+      train("echo 'views 40 of 40'\ncp " + path("learned") + " " + path("out.work/network/network.network"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(bytes_of(path("out")), "learned");
+  const Model model = load_model(path("out"));
+  ASSERT_NE(model.network, nullptr);
+  EXPECT_EQ(model.network->layers.size(), network.layers.size());
+  EXPECT_EQ(model.body.name, "paper25");
   EXPECT_THAT(run.err, HasSubstr("views 40 of 40"));
   EXPECT_THAT(bytes_of(path("arguments")),
               MatchesRegex("-m vesalius_network .*/frames/learn --held-out .*/frames/unseen --out .*/network "

@@ -172,7 +172,7 @@ TEST(NetworkLabeller, MarksWhereTheBackgroundIsCertainAsSettled) {
   Posteriors out;
   const NetworkLabeller labeller(network, kParts);
   labeller.label_into(frame, 0.7F, out);
-  EXPECT_THAT(out.settled, testing::Each(1));
+  EXPECT_THAT(std::vector(out.settled.begin(), out.settled.end()), testing::Each(1));
   EXPECT_EQ(out.at(7, 7)[kParts], out.whole);
   labeller.label_into(frame, 2.F, out);
   EXPECT_TRUE(out.settled.empty()) << "with a gate above 1";

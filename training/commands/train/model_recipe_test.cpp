@@ -162,8 +162,9 @@ TEST_F(ModelRecipes, NameThePlaceOfWhatANetworkDoesNotTake) {
   EXPECT_THAT(refusal(with(kNetworkRecipe, "\"seen\"", "\"sen\"")), HasSubstr("model.toml:4: no set is called"));
   EXPECT_THAT(refusal(with(kNetworkRecipe, "data = \"d\"", "data = \"d\"\ncount = 3")),
               HasSubstr("set at_hand: a network learns from all of its data"));
-  EXPECT_THAT(refusal(std::string(kNetworkRecipe) + "[judge]\nframes = 'seen'\n"),
-              HasSubstr("model.toml:15: expected no [judge] beside [network]"));
+  EXPECT_THAT(refusal(std::string(kNetworkRecipe) + "[forest]\nframes = 'seen'\n"),
+              HasSubstr("model.toml:15: expected no [forest] beside [network]"));
+  EXPECT_THAT(read(std::string(kNetworkRecipe) + "[judge]\nframes = 'seen'\n").judge.frames, ElementsAre("seen"));
   EXPECT_THAT(refusal("labeller = 'network'\n[frames.a]\ncount = 2\n"), HasSubstr("expected network.frames"));
 }
 
@@ -188,6 +189,11 @@ TEST_F(ModelRecipes, ReadsTheShippedOnes) {
   EXPECT_EQ(frames_of(small, small.forest_frames), 12'000);
   EXPECT_EQ(frames_of(small, small.judge.frames), 12'500);
   EXPECT_FALSE(read_model_recipe(folder + "quick.toml").judge.frames.empty());
+  const ModelRecipe network = read_model_recipe(folder + "network.toml");
+  EXPECT_TRUE(network.network);
+  EXPECT_EQ(frames_of(network, network.learn.frames), 200'100);
+  EXPECT_EQ(network.set("near").synth.body.count, 200);
+  EXPECT_EQ(network.set("hall_d435").synth.body.count, 150);
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ def equal(a, b):
 class Shards(unittest.TestCase):
     def test_are_the_frames_of_a_folder(self):
         render("folder", ["--format", "folder"])
-        frames = Dataset(path("shards")).read(0)[0]
+        frames = Dataset(path("shards")).read(0)
         names = sorted(p.name for p in Path(path("folder"), "depth").iterdir())
         self.assertEqual(len(names), 12)
         for i, name in enumerate(names):
@@ -117,8 +117,8 @@ class Shards(unittest.TestCase):
 
     def test_take_turns_where_memory_has_no_room(self):
         dataset = Dataset(path("shards"))
-        dataset.per_shard = 3
-        room = 7 * 8 * dataset.pixels()
+        dataset.size, dataset.per_shard = (72, 96), 3
+        room = 7 * 4 * 72 * 96
         rounds = Rounds([dataset], 4, room, 1)
         self.assertFalse(rounds.at_once)
         first, second = rounds.of(0), rounds.of(rounds.of(0).end)

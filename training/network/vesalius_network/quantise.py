@@ -242,11 +242,11 @@ def tops_of(layers, folders, most):
     for folder in folders:
         dataset, left = Dataset(folder), most
         for shard in range(dataset.shards):
-            for frames in dataset.read(shard):
-                for depth_mm, camera in list(zip(frames.depth_mm, frames.camera))[:left]:
-                    depth = as_program_sees(torch.from_numpy(depth_mm.astype(np.float32) / 1000)[None])
-                    tops.add(run_layers(layers, padded(inputs_of(depth, torch.tensor([camera[0]])))))
-                    left -= 1
+            frames = dataset.read(shard)
+            for depth_mm, camera in list(zip(frames.depth_mm, frames.camera))[:left]:
+                depth = as_program_sees(torch.from_numpy(depth_mm.astype(np.float32) / 1000)[None])
+                tops.add(run_layers(layers, padded(inputs_of(depth, torch.tensor([camera[0]])))))
+                left -= 1
             if left <= 0:
                 break
     return tops

@@ -1,5 +1,7 @@
 """Which frames are in memory while a network learns."""
 
+import math
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -9,10 +11,10 @@ import torch
 from .errors import InputError
 from .place import placed
 from .shards import Dataset
-from .views import joined, pools_of
+from .views import Pool, joined
 
-VIEWS_OF_FRAME = 2  # before other frames take its place
-BYTES_OF_PIXEL = 2 * 4  # depth, label and person, and a copy while shards are put together
+VIEWS_OF_FRAME = 4  # before other frames take its place
+BYTES_OF_PIXEL = 4  # depth, label, person
 
 
 def open_datasets(folders):
@@ -25,10 +27,18 @@ def open_datasets(folders):
 
 
 def read_pools(shards, body, device):
-    """Returns the Pools of (dataset, number) of shards."""
+    """Returns a Pool for each size of picture in shards, which are given as (dataset, number)."""
+    counts = Counter()
+    for dataset, number in shards:
+        counts[dataset.size] += dataset.frames_of(number)
+    pools = {size: Pool.empty(count, size, body.parts, device) for size, count in sorted(counts.items())}
+    filled = Counter()
     with ThreadPoolExecutor(torch.get_num_threads()) as threads:
-        frames = threads.map(lambda shard: shard[0].read(shard[1]), shards)
-        return pools_of((some for each in frames for some in each), body, device)
+        for frames in threads.map(lambda shard: shard[0].read(shard[1]), shards):
+            size = frames.depth_mm.shape[1:]
+            pools[size].put(filled[size], frames, body)
+            filled[size] += len(frames.people)
+    return list(pools.values())
 
 
 @dataclass
@@ -46,7 +56,7 @@ class Rounds:
     def __init__(self, datasets, batch, most_bytes, seed):
         self.shards = [(dataset, number) for dataset in datasets for number in range(dataset.shards)]
         self.batch, self.seed = batch, seed
-        bytes_of_frame = BYTES_OF_PIXEL * max(dataset.pixels() for dataset in datasets)
+        bytes_of_frame = BYTES_OF_PIXEL * max(math.prod(dataset.size) for dataset in datasets)
         self.room = int(most_bytes / bytes_of_frame)
         self.frames = sum(dataset.frames for dataset in datasets)
 

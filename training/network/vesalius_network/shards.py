@@ -3,6 +3,7 @@
 import json
 import struct
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -64,7 +65,7 @@ class Bytes:
 
 @dataclass
 class Frames:
-    """Frames of one size."""
+    """n frames."""
 
     depth_mm: np.ndarray  # [n, height, width] uint16, 0 = no reading
     labels: np.ndarray  # [n, height, width] uint8, 255 = background
@@ -222,18 +223,20 @@ class Dataset:
     def frames_of(self, shard):
         return min(self.per_shard, self.frames - shard * self.per_shard)
 
-    def pixels(self):
-        """Returns the number of pixels of the first frame's picture."""
-        height, width = _parse(self._split(0)[0], self.body.parts, self.folder).size
-        return height * width
+    @cached_property
+    def size(self):
+        """Height and width of the first frame, which all others must have as well."""
+        return _parse(self._split(0)[0], self.body.parts, self.folder).size
 
     def read(self, shard):
-        """Returns the frames of a shard: a list of Frames, one for each size of picture."""
+        """Returns the Frames of a shard."""
         path = self._path(shard)
         packed = enumerate(self._split(shard))
         frames = [_parse(frame, self.body.parts, f"{path}, frame {i}") for i, frame in packed]
-        sizes = sorted({frame.size for frame in frames})
-        return [_together([f for f in frames if f.size == size], self.body.parts, path) for size in sizes]
+        for frame in frames:
+            if frame.size != self.size:
+                raise InputError(f"{path}: pictures of {frame.size[::-1]} pixels, expected {self.size[::-1]} in all")
+        return _together(frames, self.body.parts, path)
 
     def _path(self, shard):
         return self.folder / f"{shard:06d}.shard"
@@ -253,6 +256,8 @@ class Dataset:
             raise InputError(f"{path}: of another dataset than {self.folder / 'dataset.json'} describes")
         if size != len(data):
             raise InputError(f"{path}: {len(data)} bytes, expected {size}")
+        if count != self.frames_of(shard):
+            raise InputError(f"{path}: {count} frames, expected {self.frames_of(shard)}")
         sizes = [ENTRY.unpack(source.take(ENTRY.size))[0] for _ in range(count)]
         source.take(8)
         return [source.take(size) for size in sizes]

@@ -64,9 +64,8 @@ class Views:
 
 
 def joined(parts):
-    """Returns several Views, or Pools, of the same size as one."""
-    kind = type(parts[0])
-    return kind(*[torch.cat([getattr(part, field.name) for part in parts]) for field in fields(kind)])
+    """Returns several Views of the same size as one."""
+    return Views(*[torch.cat([getattr(part, field.name) for part in parts]) for field in fields(Views)])
 
 
 @dataclass
@@ -82,15 +81,23 @@ class Pool:
     headings: torch.Tensor
 
     @staticmethod
-    def of(frames, body, device):
-        """Takes shards.Frames."""
+    def empty(count, size, parts, device):
+        """Returns room for so many frames."""
+        pictures, people = (count, *size), (count, MOST_PEOPLE)
+        shapes = [pictures, pictures, pictures, (count, 4), (*people, parts, 3), (*people, 3), people]
+        kinds = [torch.int16, torch.uint8, torch.uint8] + 4 * [torch.float32]
+        return Pool(*[torch.empty(shape, dtype=kind, device=device) for shape, kind in zip(shapes, kinds)])
+
+    def put(self, first, frames, body):
+        """Puts shards.Frames into their places, from `first` on."""
         missing = MOST_PEOPLE - frames.centres.shape[1]
         room = ((0, 0), (0, max(0, missing)), (0, 0), (0, 0))
         centres = np.pad(frames.centres[:, :MOST_PEOPLE], room, constant_values=np.nan)
         depth = frames.depth_mm.clip(max=MOST_DEPTH_MM).astype(np.int16)
         truth = centres, middles_of(centres, body), headings_of(centres, body)
         arrays = depth, frames.labels, frames.person, frames.camera, *truth
-        return Pool(*[torch.from_numpy(a).to(device) for a in arrays])
+        for field, array in zip(fields(Pool), arrays):
+            getattr(self, field.name)[first : first + len(depth)] = torch.from_numpy(array)
 
     def __len__(self):
         return len(self.depth_mm)
@@ -113,14 +120,6 @@ class Pool:
             self.middles[index],
             self.headings[index],
         )
-
-
-def pools_of(frames, body, device):
-    """Returns a Pool for each size of picture among shards.Frames."""
-    pools = {}
-    for some in frames:
-        pools.setdefault(some.depth_mm.shape[1:], []).append(Pool.of(some, body, device))
-    return [joined(pools[size]) for size in sorted(pools)]
 
 
 def voters(views):
