@@ -72,6 +72,15 @@ TEST(GatherEvidence, MeasuresTheOccludedShareOfTheOutline) {
   EXPECT_FLOAT_EQ(s.evidence().occluded, 0.F);
 }
 
+TEST(GatherEvidence, MeasuresWhatIsLackingWhereNothingHidesIt) {
+  Square s(3000);
+  EXPECT_FLOAT_EQ(s.evidence().lacking, 0.6F) << "no part, nothing hidden";
+  for (int u = 15; u < 25; ++u) s.frame.depth(u, 20) = 1500;  // hides what is below a quarter of the outline
+  EXPECT_FLOAT_EQ(s.evidence().lacking, 0.6F * (1.F - 1.5F * 0.25F));
+  s.skeleton.score = 0.6F * float(paper_body().part_count());
+  EXPECT_FLOAT_EQ(s.evidence().lacking, 0.F) << "as likely as a whole person";
+}
+
 TEST(GatherEvidence, MeasuresNearnessByTheMeanDepthBeyondAMetre) {
   Square s(3000);
   EXPECT_FLOAT_EQ(s.evidence().near, 0.5F);

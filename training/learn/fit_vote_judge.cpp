@@ -34,7 +34,8 @@ struct Asked {
 };
 
 Asked asked_of(const std::vector<BoostSample>& samples, std::size_t feature) {
-  Asked asked{.feature = feature};
+  Asked asked;
+  asked.feature = feature;
   for (const BoostSample& sample : samples) asked.sorted.push_back(double(sample.features[feature]));
   std::ranges::sort(asked.sorted);
   const auto count = double(samples.size());
@@ -116,7 +117,10 @@ BoostedTrees fit_vote_judge(const std::vector<BoostSample>& samples, const BodyM
     asked.push_back(asked_of(samples, std::size_t(std::ranges::find(names, name) - names.begin())));
   }
   const Eigen::VectorXd weights = regress(samples, asked);
-  BoostedTrees judge{.features = int(names.size()), .bias = float(weights[0] - std::log(kFalseCosts)), .asks = names};
+  BoostedTrees judge;
+  judge.features = int(names.size());
+  judge.bias = float(weights[0] - std::log(kFalseCosts));
+  judge.asks = names;
   for (std::size_t a = 0; a < asked.size(); ++a) {
     for (int number = 0; number < kStaircases; ++number) {
       judge.trees.push_back(

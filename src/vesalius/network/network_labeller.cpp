@@ -24,6 +24,8 @@ constexpr int kNetworkWhole = 2040;
 /// exp(-i / 256) of every i, until it is nothing; in 2^-16. By products of doubles, which are the same everywhere.
 class Powers {
  public:
+  static constexpr int kCount = 2560;  ///< exp(-10) is less than a tenth of 1 / kNetworkWhole
+
   Powers() {
     constexpr double step = 0.99610136947011749;  // exp(-1 / 256)
     double power = 65536.0;
@@ -35,7 +37,6 @@ class Powers {
   std::uint32_t operator()(int below) const { return below < kCount ? powers_[below] : 0; }
 
  private:
-  static constexpr int kCount = 3072;  ///< exp(-12) is less than half of 2^-16
   std::array<std::uint32_t, kCount> powers_{};
 };
 
@@ -43,6 +44,7 @@ class Powers {
 struct HalfPosteriors {
   int width = 0, height = 0, classes = 0;
   std::vector<std::uint16_t> shares;
+  Mask sure;  ///< 1 where nothing but the background is possible
 
   const std::uint16_t* at(int u, int v) const {
     return shares.data() + (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + std::size_t(u)) *
@@ -62,7 +64,7 @@ class Enlarger {
       const int mm = depth_(u, v);
       if (mm == 0) {
         std::fill_n(out_.at(u, v), classes_, std::uint16_t{0});
-      } else if (u % 2 == 0 && v % 2 == 0) {
+      } else if ((u % 2 == 0 && v % 2 == 0) || is_sure(u, v)) {
         std::copy_n(half_.at(u / 2, v / 2), classes_, out_.at(u, v));
       } else {
         mix(u, v, mm);
@@ -71,6 +73,12 @@ class Enlarger {
   }
 
  private:
+  bool is_sure(int u, int v) const {
+    const int right = std::min((u + 1) / 2, half_.width - 1), below = std::min((v + 1) / 2, half_.height - 1);
+    return (half_.sure(u / 2, v / 2) & half_.sure(right, v / 2) & half_.sure(u / 2, below) &
+            half_.sure(right, below)) != 0;
+  }
+
   /// Takes the mean of the pixels around whose depth is like this one's; if none is, the one that is nearest to it.
   void mix(int u, int v, int mm) const {
     const int like_mm = 20 + 3 * mm / 100;
@@ -127,7 +135,12 @@ Image<PersonVote> votes_of(const WideImage& person, const DepthImage& depth) {
 
 void softmax_in_steps(const std::int16_t* logits, int count, int whole, std::uint16_t* shares) {
   static const Powers powers;
-  const int most = *std::max_element(logits, logits + count);
+  const int most = *std::max_element(logits, logits + count), last = logits[count - 1];
+  if (last == most && *std::max_element(logits, logits + count - 1) <= last - Powers::kCount) {
+    std::fill_n(shares, count - 1, std::uint16_t{0});
+    shares[count - 1] = static_cast<std::uint16_t>(whole);
+    return;
+  }
   std::array<std::uint32_t, 256> power;
   std::uint32_t sum = 0;
   for (int c = 0; c < count; ++c) sum += power[c] = powers(most - logits[c]);
@@ -163,12 +176,14 @@ void NetworkLabeller::label_into(const Frame& frame, float gate, Posteriors& out
   half.width = (depth.width() + 1) / 2;
   half.height = (depth.height() + 1) / 2;
   half.classes = working_->classes;
+  half.sure = Mask(half.width, half.height, 0);
   half.shares.resize(static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height) *
                      static_cast<std::size_t>(half.classes));
   parallel_ranges(half.height, kRowGrain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < half.width; ++u) {
         softmax_in_steps(memory.result.classes.at(u, v), half.classes, kNetworkWhole, half.at(u, v));
+        half.sure(u, v) = half.at(u, v)[half.classes - 1] == kNetworkWhole ? 1 : 0;
       }
     }
   });

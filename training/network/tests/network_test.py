@@ -19,7 +19,7 @@ except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
-from vesalius_network import place, weights
+from vesalius_network import nets, place, quantise, weights
 from vesalius_network.body import headings_of, middles_of, read_body
 from vesalius_network.damage import KINDS, Scene, damaged
 from vesalius_network.errors import InputError
@@ -281,6 +281,53 @@ class Files(unittest.TestCase):
         for name in ("bad.npz", "none.npz", "none.pt"):
             with self.assertRaisesRegex(InputError, name):
                 weights.load(path(name))
+
+
+class Quantising(unittest.TestCase):
+    def network(self):
+        torch.manual_seed(3)
+        network = Network(CONFIGS["small"], 3).eval()
+        for module in network.modules():
+            if isinstance(module, torch.nn.BatchNorm2d):
+                torch.nn.init.uniform_(module.weight, 0.5, 1.5)
+                torch.nn.init.uniform_(module.bias, -0.3, 0.3)
+                torch.nn.init.uniform_(module.running_mean, -0.2, 0.2)
+                torch.nn.init.uniform_(module.running_var, 0.5, 1.5)
+        return network
+
+    def inputs(self):
+        views, _ = frames_as_views()
+        return nets.padded(inputs_of(views.depth, views.focal))
+
+    @torch.no_grad()
+    def test_layers_say_what_the_network_says(self):
+        network, x = self.network(), self.inputs()
+        layers, classes, person = quantise.layers_of(weights.floats(network.state_dict()))
+        results = quantise.run_layers(layers, x)
+        for got, expected in zip((results[classes], results[person]), network(x)):
+            self.assertLess(float((got - expected).abs().max()), 1e-3)
+
+    @torch.no_grad()
+    def test_integers_are_near_real_numbers(self):
+        x = self.inputs()
+        layers, classes, person = quantise.layers_of(weights.floats(self.network().state_dict()))
+        real = quantise.run_layers(layers, x)
+        tops = quantise.Tops(layers)
+        tops.add(real)
+        whole = quantise.run_convolutions(quantise.quantise(layers, person, tops), quantise.channels_of(x))
+        for layer, unit in ((classes, quantise.LOGIT_UNIT), (person, quantise.PERSON_UNITS[:, None, None])):
+            off = (whole[layer + 1] * torch.as_tensor(unit) - real[layer]).abs().mean()
+            spread = real[layer].std()
+            self.assertLess(float(off / spread), 0.1)
+
+    def test_the_program_reads_what_is_written(self):
+        network, body = self.network(), read_body((BODIES / "paper25.toml").read_text(), "paper25.toml")
+        network = Network(CONFIGS["small"], body.parts).eval()
+        weights.save(path("n.npz"), "small", body, network.state_dict(), "a test")
+        quantise.write_network(path("n.npz"), [path("shards")], path("n.network"), 4)
+        subprocess.run([program, "convert", "-q", path("n.network"), path("n.model")], check=True)
+        said = subprocess.run([program, "info", path("n.model")], check=True, capture_output=True, text=True).stdout
+        self.assertIn("a test", said)
 
 
 class Learning(unittest.TestCase):
