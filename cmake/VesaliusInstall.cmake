@@ -53,8 +53,9 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 set(VESALIUS_DATA_DIR ${CMAKE_INSTALL_DATADIR}/vesalius)
 if(TARGET vesalius OR TARGET vesalius_c)
   # All but the tests' own.
-  install(FILES ${PROJECT_SOURCE_DIR}/data/models/default.forest ${PROJECT_SOURCE_DIR}/data/models/small.forest
-                ${PROJECT_SOURCE_DIR}/data/models/README.md ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${VESALIUS_DATA_DIR}/models)
+  install(FILES ${PROJECT_SOURCE_DIR}/data/models/default.model ${PROJECT_SOURCE_DIR}/data/models/default.forest
+                ${PROJECT_SOURCE_DIR}/data/models/small.forest ${PROJECT_SOURCE_DIR}/data/models/README.md
+                ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${VESALIUS_DATA_DIR}/models)
 endif()
 # What else the program reads, what bash asks for commands and flags, and the manual of packages.
 if(TARGET vesalius)

@@ -9,7 +9,7 @@ using UnityEngine;
 
 public class VesaliusPeople : MonoBehaviour
 {
-    [SerializeField] string model = "default.forest";  // in StreamingAssets
+    [SerializeField] string model = "default.model";  // in StreamingAssets
     [SerializeField] string jointSet = "k4abt32";
     [SerializeField] int threads = 2;
     [SerializeField] float sphereSize = 0.06f;  // metres

@@ -39,7 +39,7 @@ struct StreamOptions {
 /// threads. Exceptions of `take` are passed on. A live source is stopped at the end. Returns the number of dropped
 /// frames.
 ///
-///   Detector detector(load_model("default.forest"));
+///   Detector detector(load_model("default.model"));
 ///   const auto source = open_source("frames/");
 ///   stream_frames(*source, detector, {}, [&](FoundFrame found) {
 ///     if (found.error) std::rethrow_exception(found.error);

@@ -188,9 +188,8 @@ typedef struct vesalius_tracker vesalius_tracker;
 /// The people of one frame.
 typedef struct vesalius_people vesalius_people;
 
-/// Loads a trained forest, a file of many megabytes, and makes a detector: once, not for every frame.
-///   model    path of a .forest file; NULL: default.forest in $VESALIUS_MODELS, in "models" beside the library, or
-///   where
+/// Loads a trained model, a file of several megabytes, and makes a detector: once, not for every frame.
+///   model    path of a model file; NULL: default.model in $VESALIUS_MODELS, in "models" beside the library, or where
 ///            `cmake --install` put it
 ///   options  copied; NULL: the defaults
 ///   threads  most threads at work on one call, 0 (as many as the machine has) to 1024. While a call runs, the limit is

@@ -19,7 +19,7 @@ from ._vesalius import Detector as _Detector
 __all__ = ["Bone", "Camera", "Detector", "Error", "Frame", "People", "Person", "Source", "Tracker", "open", "options",
            "__version__"]
 
-_MODEL = _Path(__file__).parent / "models" / "default.forest"
+_MODEL = _Path(__file__).parent / "models" / "default.model"
 
 
 class Detector(_Detector):

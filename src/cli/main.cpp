@@ -54,7 +54,7 @@ void describe_program(CLI::App& program) {
 Examples:
   vesalius detect frames/                                  what is found, a line per frame
   vesalius detect frames/ --json people.jsonl --out pictures/
-  vesalius info data/models/default.forest                 what is in a model
+  vesalius info data/models/default.model                  what is in a model
   vesalius train --data train/ --out my.forest             a model of your own
   vesalius detect --help                                   everything about one command
 

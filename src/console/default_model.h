@@ -9,7 +9,7 @@ namespace vesalius::cli {
 /// the program (the build tree has a link there), and share/vesalius/models of the installation.
 std::vector<std::string> model_folders();
 
-/// Returns the path of the model that commands use without --model: default.forest in the first of these folders that
+/// Returns the path of the model that commands use without --model: default.model in the first of these folders that
 /// has it. Throws Error naming the folders if none has it.
 std::string default_model();
 

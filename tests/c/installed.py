@@ -69,7 +69,7 @@ def check_models(prefix, folder, frames):
     environment = {**os.environ, "LD_LIBRARY_PATH": str(lone), "VESALIUS_MODELS": ""}
     arguments, expected = frames[0]
     done = subprocess.run([program, "-", *arguments], env=environment, stderr=subprocess.PIPE, text=True, check=False)
-    if done.returncode != 1 or f"no default.forest in {lone}/models, " not in done.stderr:
+    if done.returncode != 1 or f"no default.model in {lone}/models, " not in done.stderr:
         sys.exit(f"expected to hear where models are looked for, got {done.returncode}: {done.stderr}")
     models = prefix / "share/vesalius/models"
     expect_same(run(program, "-", *arguments, env={**environment, "VESALIUS_MODELS": str(models)}), expected, "a chosen folder")

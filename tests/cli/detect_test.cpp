@@ -282,7 +282,7 @@ TEST_F(Detect, PrintsResultsOnSeparateLinesOfATerminal) {
 
 TEST_F(Detect, FindsTheDefaultModel) {
   fs::create_directories(path("models"));
-  fs::copy_file(model(), path("models/default.forest"));
+  fs::copy_file(model(), path("models/default.model"));
   const Outcome chosen = run_program("detect " + frames() + " -q --json -", "VESALIUS_MODELS='" + path("models") + "'");
   EXPECT_EQ(chosen.exit_code, 0) << chosen.err;
   EXPECT_EQ(chosen.out, detect(" -q --json -").out);
@@ -295,10 +295,10 @@ TEST_F(Detect, NamesTheFoldersThatLackTheDefaultModel) {
   const std::string command =
       "cd " + path("") + " && VESALIUS_MODELS=elsewhere bin/vesalius detect frames 2>" + path("models.err");
   EXPECT_NE(std::system(command.c_str()), 0);
-  EXPECT_EQ(bytes_of(path("models.err")), "vesalius: no --model given, and no default.forest in elsewhere, " +
+  EXPECT_EQ(bytes_of(path("models.err")), "vesalius: no --model given, and no default.model in elsewhere, " +
                                               path("bin/models") + ", " + path("share/vesalius/models") + "\n");
   fs::create_directories(path("share/vesalius/models"));
-  fs::copy_file(model(), path("share/vesalius/models/default.forest"));
+  fs::copy_file(model(), path("share/vesalius/models/default.model"));
   EXPECT_EQ(std::system(command.c_str()), 0) << "as an installation has it: " << bytes_of(path("models.err"));
 }
 

@@ -12,7 +12,7 @@ import tarfile
 import tempfile
 from pathlib import Path
 
-HOLDS = ["bin/vesalius", "share/vesalius/models/default.forest", "share/vesalius/bodies/paper25.toml",
+HOLDS = ["bin/vesalius", "share/vesalius/models/default.model", "share/vesalius/models/default.forest", "share/vesalius/bodies/paper25.toml",
          "share/vesalius/demo/meta.json", "share/bash-completion/completions/vesalius", "share/doc/vesalius/copyright"]
 PATTERN = {"DEB": "vesalius_*.deb", "TGZ": "*.tar.gz"}
 HELD_BY_DEBIAN = ["share/doc/vesalius/changelog.gz", "share/doc/vesalius/changelog.Debian.gz"]

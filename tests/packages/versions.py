@@ -44,7 +44,7 @@ def of_the_sources(source):
     """Whatever names a version of this project in a text file of it."""
     for name in said("git", "-C", source, "ls-files").splitlines():
         path = source / name
-        if not path.is_file() or path.suffix in (".forest", ".png", ".jpg", ".gz"):
+        if not path.is_file() or path.suffix in (".forest", ".model", ".png", ".jpg", ".gz"):
             continue
         try:
             text = path.read_text(encoding="utf-8")

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 10> kAsked{"votes",   "spread",     "like
 constexpr double kFarthest = 4.0;     ///< standard deviations from the mean, beyond which nothing changes
 constexpr double kSquare = 0.3;       ///< by which squares are scaled, so that the ridge weighs them more
 constexpr double kRidge = 3.0;        ///< on weights, in samples
-constexpr double kFalseCosts = 2.25;  ///< people that a false one costs, besides RefineOptions::min_score
+constexpr double kFalseCosts = 3.0;  ///< people that a false one costs, besides RefineOptions::min_score
 constexpr int kNewtonSteps = 50;
 constexpr int kStaircases = 4;  ///< trees of each kind of evidence, whose steps lie between each other's
 

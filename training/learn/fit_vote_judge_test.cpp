@@ -49,8 +49,8 @@ TEST(FitVoteJudge, FindsTheOddsThatMadeTheSamples) {
       std::vector<float> features(judge_names(paper_body()).size(), 0.F);
       features[feature("votes")] = float(votes);
       features[feature("size")] = float(size);
-      // A false person costs 2.25 times as much; steps of a sixteenth of the range, four of them staggered.
-      EXPECT_NEAR(log_odds(judge, features), truth(votes, size) - std::log(2.25), 0.45) << votes << " " << size;
+      // A false person costs 3 times as much; steps of a sixteenth of the range, four of them staggered.
+      EXPECT_NEAR(log_odds(judge, features), truth(votes, size) - std::log(3.0), 0.45) << votes << " " << size;
     }
   }
 }

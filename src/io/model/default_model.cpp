@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kName = "default.forest";
+constexpr const char* kName = "default.model";
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace vesalius {
 /// "models" in its own folder, and `installed`, as seen from there. An empty `own_folder` is not known.
 std::vector<std::string> model_folders(const std::string& own_folder, const std::string& installed);
 
-/// Returns the path of default.forest in the first of the folders that has it. Throws Error naming the folders if none
+/// Returns the path of default.model in the first of the folders that has it. Throws Error naming the folders if none
 /// has it; the message begins with `context`.
 std::string find_default_model(const std::vector<std::string>& folders, const std::string& context);
 

@@ -27,12 +27,12 @@ TEST(DefaultModel, IsLookedForWhereTheUserSaysAndThenBesideTheBinary) {
 TEST(DefaultModel, IsTheFirstThatIsThere) {
   const test::TemporaryFolder folder;
   std::filesystem::create_directories(folder / "second");
-  std::ofstream(folder / "second/default.forest") << "a model";
-  EXPECT_EQ(find_default_model({folder / "first", folder / "second"}, "no model"), folder / "second/default.forest");
+  std::ofstream(folder / "second/default.model") << "a model";
+  EXPECT_EQ(find_default_model({folder / "first", folder / "second"}, "no model"), folder / "second/default.model");
   EXPECT_THAT(([] {
                 find_default_model({"/one", "/two"}, "no model");
               }),
-              ThrowsMessage<Error>("no model, and no default.forest in /one, /two"));
+              ThrowsMessage<Error>("no model, and no default.model in /one, /two"));
 }
 
 }  // namespace
