@@ -27,7 +27,7 @@ def main():
         print("SKIPPED: no mcs or mono (mono-mcs, mono-runtime)")
         sys.exit(77)
     binding, here = source / "examples/csharp/Vesalius.cs", source / "tests/c/csharp"
-    model = source / "data/models/default.forest"
+    model = source / "data/models/default.model"
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         quiet = {**os.environ, "LD_LIBRARY_PATH": str(library), "VESALIUS_MODELS": ""}

@@ -20,7 +20,7 @@ def refused(command, code, what):
 
 def main():
     source, example, reference = (Path(a).resolve() for a in sys.argv[1:4])
-    model = source / "data/models/default.forest"
+    model = source / "data/models/default.model"
     with tempfile.TemporaryDirectory() as folder:
         frames = expected_frames(reference, source / "data/demo", folder)[:3]  # CLibrary has all
         expect_example([example], model, frames)

@@ -30,7 +30,7 @@ namespace {
 using testing::HasSubstr;
 
 const std::string kData = std::string(VESALIUS_SOURCE_DIR) + "/data/";
-const std::string kModel = kData + "models/default.forest";
+const std::string kModel = kData + "models/default.model";
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 template <class T, void (*destroy)(T*)>

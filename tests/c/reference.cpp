@@ -34,7 +34,7 @@ void print(const vesalius::Person& person, std::size_t index, const vesalius::Bo
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const vesalius::Detector detector(
-      vesalius::load_model(std::string(VESALIUS_SOURCE_DIR) + "/data/models/default.forest"));
+      vesalius::load_model(std::string(VESALIUS_SOURCE_DIR) + "/data/models/default.model"));
   const auto source = vesalius::open_source(argv[1]);
   while (auto frame = source->next()) {
     const std::string path = std::string(argv[2]) + "/" + frame->name + ".depth";

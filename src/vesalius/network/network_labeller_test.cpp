@@ -167,6 +167,8 @@ TEST(NetworkLabeller, TakesBetweenItsPixelsWhatThoseOfTheSameDepthSay) {
 TEST(NetworkLabeller, MarksWhereTheBackgroundIsCertainAsSettled) {
   Network network = any_network(4);
   Convolution& classes = network.layers[std::size_t(network.classes_of)];
+  std::ranges::fill(classes.scale, 1e-6F);
+  std::ranges::fill(classes.offset, 0.F);
   classes.offset.back() = 32000.F;  // the background
   const Frame frame = frame_of(DepthImage(40, 40, 2000));
   Posteriors out;
