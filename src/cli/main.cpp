@@ -101,7 +101,7 @@ std::string explain(const CLI::App& program, const CLI::ParseError& error) {
   const std::string help = fmt::format(" (see vesalius {}--help)", chosen.empty() ? "" : command.get_name() + " ");
   const std::vector<std::string> unknown = command.remaining();
   if (unknown.empty()) return error.what() + help;
-  if (const std::string absent = absent_command(unknown.front()); chosen.empty() && !absent.empty()) return absent;
+  if (std::string absent = absent_command(unknown.front()); chosen.empty() && !absent.empty()) return absent;
   const std::string nearest = nearest_name(unknown.front(), names_in(command));
   return fmt::format("unknown argument {}{}{}", unknown.front(),
                      nearest.empty() ? "" : fmt::format(", did you mean {}?", nearest), help);

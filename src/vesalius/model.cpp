@@ -79,7 +79,7 @@ SharedLabeller make_on_any(Forest forest, const LabellerDevices& devices) {
 }  // namespace
 
 void throw_unknown_device(const std::string& device, const LabellerDevices& devices) {
-  std::string known = "\"cpu\", \"auto\"";
+  std::string known = R"("cpu", "auto")";
   for (const LabellerDevice& kind : devices.kinds) known += ", \"" + kind.name + "\" or \"" + kind.name + ":NUMBER\"";
   throw UsageError("device \"" + device + "\" is not known to this build, expected " + known);
 }
@@ -114,7 +114,7 @@ SharedLabeller make_labeller(const Network& network, int parts, const std::strin
     if (std::ranges::count(devices.kinds, wanted.kind, &LabellerDevice::name) == 0) {
       throw_unknown_device(device, devices);
     }
-    throw UsageError("device \"" + device + "\": expected \"cpu\" or \"auto\" for a model with a network");
+    throw UsageError("device \"" + device + R"(": expected "cpu" or "auto" for a model with a network)");
   }
   if (automatic && devices.note) devices.note("the model has a network; the processor labels");
   return std::make_shared<NetworkLabeller>(network, parts);

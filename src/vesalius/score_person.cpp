@@ -381,15 +381,18 @@ void add_votes(const Frame& frame, const Mask& mask, const Image<PersonVote>& vo
 }
 
 std::vector<std::string> judge_names(const BodyModel& body) {
+  const std::vector<std::string> kinds = kind_names(body);
   std::vector<std::string> names;
+  names.reserve(kJudgedEvidence.size() + kinds.size() + kVotedEvidence.size());
   for (const JudgedEvidence& kind : kJudgedEvidence) names.emplace_back(kind.name);
-  for (const std::string& name : kind_names(body)) names.push_back("part:" + name);
+  for (const std::string& name : kinds) names.push_back("part:" + name);
   for (const JudgedEvidence& kind : kVotedEvidence) names.emplace_back(kind.name);
   return names;
 }
 
 std::vector<int> judge_signs(const BodyModel& body) {
   std::vector<int> signs;
+  signs.reserve(judge_names(body).size());
   for (const JudgedEvidence& kind : kJudgedEvidence) signs.push_back(kind.sign);
   signs.resize(signs.size() + kind_count(part_slots(body)), 0);
   for (const JudgedEvidence& kind : kVotedEvidence) signs.push_back(kind.sign);
@@ -398,6 +401,7 @@ std::vector<int> judge_signs(const BodyModel& body) {
 
 std::vector<float> judge_features(const Evidence& evidence) {
   std::vector<float> features;
+  features.reserve(kJudgedEvidence.size() + evidence.parts.size() + kVotedEvidence.size());
   for (const JudgedEvidence& kind : kJudgedEvidence) features.push_back(evidence.*kind.evidence);
   features.insert(features.end(), evidence.parts.begin(), evidence.parts.end());
   for (const JudgedEvidence& kind : kVotedEvidence) features.push_back(evidence.*kind.evidence);

@@ -17,9 +17,9 @@ namespace {
 /// What the judge asks for.
 constexpr std::array<std::string_view, 10> kAsked{"votes",   "spread",     "likely",    "agree", "groups",
                                                   "lacking", "likelihood", "explained", "size",  "near"};
-constexpr double kFarthest = 4.0;     ///< standard deviations from the mean, beyond which nothing changes
-constexpr double kSquare = 0.3;       ///< by which squares are scaled, so that the ridge weighs them more
-constexpr double kRidge = 3.0;        ///< on weights, in samples
+constexpr double kFarthest = 4.0;    ///< standard deviations from the mean, beyond which nothing changes
+constexpr double kSquare = 0.3;      ///< by which squares are scaled, so that the ridge weighs them more
+constexpr double kRidge = 3.0;       ///< on weights, in samples
 constexpr double kFalseCosts = 3.0;  ///< people that a false one costs, besides RefineOptions::min_score
 constexpr int kNewtonSteps = 50;
 constexpr int kStaircases = 4;  ///< trees of each kind of evidence, whose steps lie between each other's
@@ -113,6 +113,7 @@ BoostedTrees fit_vote_judge(const std::vector<BoostSample>& samples, const BodyM
   }
   const std::vector<std::string> names = judge_names(body);
   std::vector<Asked> asked;
+  asked.reserve(kAsked.size());
   for (const std::string_view name : kAsked) {
     asked.push_back(asked_of(samples, std::size_t(std::ranges::find(names, name) - names.begin())));
   }

@@ -29,7 +29,8 @@ std::vector<BoostSample> candidates(int count, std::uint64_t seed, const LogOdds
     for (std::size_t f = 0; f < judge_names(paper_body()).size(); ++f) {
       sample.features.push_back(float(random.uniform(-1.0, 1.0)));
     }
-    const double odds = std::exp(of(double(sample.features[feature("votes")]), double(sample.features[feature("size")])));
+    const double odds =
+        std::exp(of(double(sample.features[feature("votes")]), double(sample.features[feature("size")])));
     sample.positive = random.uniform(0.0, 1.0) < odds / (1.0 + odds);
   }
   return all;
@@ -56,7 +57,8 @@ TEST(FitVoteJudge, FindsTheOddsThatMadeTheSamples) {
 }
 
 TEST(FitVoteJudge, AsksForNothingElse) {
-  const BoostedTrees judge = fit_vote_judge(candidates(500, 2, [](double votes, double) { return votes; }), paper_body());
+  const BoostedTrees judge =
+      fit_vote_judge(candidates(500, 2, [](double votes, double) { return votes; }), paper_body());
   EXPECT_EQ(judge.asks, judge_names(paper_body()));
   std::vector<float> some(judge.asks.size(), 0.2F), other = some;
   for (const char* name : {"body", "surest", "beside", "bend", "heading"}) other[feature(name)] = 0.9F;

@@ -148,7 +148,7 @@ Model parse_model(std::string_view bytes, const std::string& name) {
     in.expect_end();
   }
   if (model.network == nullptr && model.forest.trees.empty()) {
-    throw Error(name + ": neither a section \"forest\" nor \"network\", expected one of them in every model");
+    throw Error(name + R"(: neither a section "forest" nor "network", expected one of them in every model)");
   }
   with_context(name, [&] { check(model); });
   return model;

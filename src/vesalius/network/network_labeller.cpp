@@ -20,6 +20,7 @@ namespace {
 
 /// Posteriors::whole: what smoothing sums over its window fits 16 bits.
 constexpr int kNetworkWhole = 2040;
+constexpr double kHalf = 0.5;  ///< added to what is rounded down, which is the same everywhere
 
 /// exp(-i / 256) of every i, until it is nothing; in 2^-16. By products of doubles, which are the same everywhere.
 class Powers {
@@ -30,7 +31,7 @@ class Powers {
     constexpr double step = 0.99610136947011749;  // exp(-1 / 256)
     double power = 65536.0;
     for (std::uint32_t& each : powers_) {
-      each = static_cast<std::uint32_t>(power + 0.5);
+      each = static_cast<std::uint32_t>(power + kHalf);
       power *= step;
     }
   }
@@ -145,7 +146,7 @@ void softmax_in_steps(const std::int16_t* logits, int count, int whole, std::uin
   std::uint32_t sum = 0;
   for (int c = 0; c < count; ++c) sum += power[c] = powers(most - logits[c]);
   const float scale = float(whole) / float(sum);
-  for (int c = 0; c < count; ++c) shares[c] = static_cast<std::uint16_t>(float(power[c]) * scale + 0.5F);
+  for (int c = 0; c < count; ++c) shares[c] = static_cast<std::uint16_t>(float(power[c]) * scale + float(kHalf));
 }
 
 struct NetworkLabeller::Working {

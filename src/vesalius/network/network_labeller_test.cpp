@@ -159,7 +159,7 @@ TEST(NetworkLabeller, TakesBetweenItsPixelsWhatThoseOfTheSameDepthSay) {
   for (int v = 0; v < 32; v += 2) {
     for (int c = 0; c < out.classes; ++c) {
       EXPECT_EQ(out.at(15, v)[c], out.at(16, v)[c]) << "column 15 is of the far half, 14 of the near one";
-      EXPECT_NEAR(out.at(21, v)[c], (out.at(20, v)[c] + out.at(22, v)[c]) / 2, 1);
+      EXPECT_NEAR(out.at(21, v)[c], 0.5 * (out.at(20, v)[c] + out.at(22, v)[c]), 1.0);
     }
   }
 }
@@ -195,7 +195,7 @@ Model network_model() {
 }
 
 TEST(NetworkModel, LabelsOnTheProcessorAlone) {
-  const LabellerDevices devices{{{"card", [](Forest, int) { return nullptr; }}}};
+  const LabellerDevices devices{{{"card", [](const Forest&, int) { return nullptr; }}}};
   EXPECT_NE(on_device(network_model()).labeller, nullptr);
   EXPECT_THAT([&] { on_device(network_model(), "card:1", devices); },
               ThrowsMessage<UsageError>(HasSubstr("expected \"cpu\" or \"auto\" for a model with a network")));

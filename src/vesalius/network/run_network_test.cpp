@@ -224,6 +224,7 @@ TEST(NetworkRunner, RunsSeveralAtOnceAndOtherSizesInTurn) {
   const NetworkInput inputs[] = {test::random_input(random, 64, 32), test::random_input(random, 32, 96)};
   const NetworkResult expected[] = {run_plainly(network, inputs[0]), run_plainly(network, inputs[1])};
   std::vector<std::thread> threads;
+  threads.reserve(4);
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&, t] {
       NetworkResult result;
