@@ -114,7 +114,8 @@ SharedLabeller make_labeller(const Network& network, int parts, const std::strin
     if (std::ranges::count(devices.kinds, wanted.kind, &LabellerDevice::name) == 0) {
       throw_unknown_device(device, devices);
     }
-    throw UsageError("device \"" + device + R"(": expected "cpu" or "auto" for a model with a network)");
+    throw UsageError("device \"" + device +
+                     R"(": expected "cpu" or "auto" for a model with a network; one with a forest labels on cards)");
   }
   if (automatic && devices.note) devices.note("the model has a network; the processor labels");
   return std::make_shared<NetworkLabeller>(network, parts);
