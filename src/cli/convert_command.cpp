@@ -41,11 +41,11 @@ Model load_any_model(const std::string& path) {
   return model_version(bytes) == kOldModelVersion ? parse_old_model(bytes, path) : parse_model(bytes, path);
 }
 
-/// Reads what training a network leaves.
-Model import_network(const std::string& path) {
+/// Reads what training a network leaves: of the body in a file, or of the paper's without one.
+Model import_network(const std::string& path, const std::string& body) {
   Model model;
-  model.body = paper_body();
-  model.network = std::make_shared<Network>(load_network(path));
+  model.body = body.empty() ? paper_body() : parse_body_model(read_file(body), body);
+  model.network = std::make_shared<Network>(load_network(path, model.body.part_count()));
   return model;
 }
 
@@ -61,9 +61,9 @@ void convert_model(std::vector<std::string> paths, const std::string& body, bool
     throw UsageError(fmt::format("{}: expected one other name, since it is a model", paths.front()));
   }
   Model model = is_model     ? load_any_model(paths.front())
-                : is_network ? import_network(paths.front())
+                : is_network ? import_network(paths.front(), body)
                              : Model(import_text_trees(paths));
-  if (!body.empty()) replace_body(model, body);
+  if (!body.empty() && !is_network) replace_body(model, body);
   save_model(model, out);
   if (quiet) return;
   say(model.network != nullptr ? fmt::format("{}: a network of {} layers", out, model.network->layers.size())
@@ -104,7 +104,7 @@ void add_convert(CLI::App& program) {
           "Text trees (.txt or .txt.bz2) or a model, and the .forest to write; with --to a source and a folder")
       ->required()
       ->expected(2, 257);
-  command->add_option("--body", arguments->body, "Body model to put into the .forest, for the same parts")
+  command->add_option("--body", arguments->body, "Body model to put into the model, for the same parts")
       ->type_name("FILE");
   command->add_option("--to", arguments->format, "Write frames in this layout")
       ->check(CLI::IsMember({"folder", "tum"}))

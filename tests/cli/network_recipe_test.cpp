@@ -49,6 +49,19 @@ seed = 2
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
+  static Network random_network(int parts) {
+    Random random(1, 0);
+    return test::random_network(random, test::kSmallShape, parts);
+  }
+
+  /// Writes what the tool leaves.
+  void write_learned(const std::string& name, const Network& network) const {
+    ByteWriter file;
+    file.text("how it was made");
+    write_network(file, network);
+    write_file_atomically(path(name), file.bytes());
+  }
+
   /// Trains with a Python that does this when it is to learn, after it has put its arguments into `arguments`.
   Outcome train(const std::string& learning, const std::string& importing = "exit 0") const {
     write_file_atomically(path("python"), "#!/bin/sh\n[ \"$1\" = -c ] && { " + importing + "; }\necho \"$*\" > " +
@@ -62,12 +75,8 @@ seed = 2
 };
 
 TEST_F(NetworkRecipe, HasFramesRenderedAndANetworkLearned) {
-  Random random(1, 0);
-  const Network network = test::random_network(random, test::kSmallShape, 25);
-  ByteWriter file;
-  file.text("how it was made");
-  write_network(file, network);
-  write_file_atomically(path("learned"), file.bytes());
+  const Network network = random_network(25);
+  write_learned("learned", network);
   const Outcome run =
       train("echo 'views 40 of 40'\ncp " + path("learned") + " " + path("out.work/network/network.network"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -82,6 +91,31 @@ TEST_F(NetworkRecipe, HasFramesRenderedAndANetworkLearned) {
   for (const char* set : {"learn", "unseen"}) {
     EXPECT_TRUE(fs::exists(path("out.work/frames/") + set + "/000000.shard")) << set;
   }
+}
+
+TEST_F(NetworkRecipe, IsNotNeededToConvertANetworkOfAnotherBody) {
+  const std::string body = VESALIUS_SOURCE_DIR "/data/bodies/upper_body.toml";
+  const int parts = parse_body_model(bytes_of(body), body).part_count();
+  write_learned("upper.network", random_network(parts));
+  const std::string convert = "convert -q " + path("upper.network") + " " + path("upper.model");
+  const Outcome run = run_program(convert + " --body " + body);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(load_model(path("upper.model")).body.part_count(), parts);
+  fs::remove(path("upper.model"));
+  const Outcome without = run_program(convert);
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_THAT(without.err, HasSubstr(path("upper.network") + ": network: classes are a wide picture of"));
+  EXPECT_FALSE(fs::exists(path("upper.model")));
+}
+
+TEST_F(NetworkRecipe, NamesTheFileOfANetworkThatIsInconsistent) {
+  Network network = random_network(25);
+  network.layers[0].scale[0] = 0.F;
+  write_learned("spoilt.network", network);
+  const Outcome run = run_program("convert " + path("spoilt.network") + " " + path("spoilt.model"));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr(path("spoilt.network") + ": network: layer 0: a scale"));
+  EXPECT_FALSE(fs::exists(path("spoilt.model")));
 }
 
 TEST_F(NetworkRecipe, SaysWhatTheToolSays) {

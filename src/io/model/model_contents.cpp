@@ -91,12 +91,13 @@ Network read_network(ByteReader& in) {
   return network;
 }
 
-Network load_network(const std::string& path) {
+Network load_network(const std::string& path, int parts) {
   const std::string bytes = read_file(path);
   ByteReader in(bytes, path);
   const std::string made_from(in.text("how the network was made"));
   Network network = read_network(in);
   in.expect_end();
+  with_context(path, [&] { check(network, parts); });
   network.made_from = made_from;
   return network;
 }

@@ -19,8 +19,9 @@ void read_forest(ByteReader& in, unsigned flags, Forest& forest);
 
 void write_network(ByteWriter& out, const Network& network);
 Network read_network(ByteReader& in);
-/// Reads what training a network leaves (docs/formats.md). Throws Error, also for a file that cannot be read.
-Network load_network(const std::string& path);
+/// Reads what training a network leaves (docs/formats.md), for a body of so many parts. Throws Error for a file that
+/// cannot be read or whose network is inconsistent (check(Network)).
+Network load_network(const std::string& path, int parts);
 
 void write_headings(ByteWriter& out, const FacingModel& headings);
 FacingModel read_headings(ByteReader& in, int headings, int parts);

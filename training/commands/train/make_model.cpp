@@ -210,7 +210,7 @@ class ModelMaker::Work {
     const std::string learned = learn_network(
         recipe_.learn, {datasets_of(recipe_.learn.frames), datasets_of(recipe_.learn.held_out), folder_ + "/network",
                         run_.train.device, run_.train.max_bytes, run_.train.restart, run_.train.shown});
-    Network network = load_network(learned);
+    Network network = load_network(learned, body_.part_count());
     network.made_from = forest_recipe_;
     Model model;
     model.body = body_;
