@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
+#include <optional>
 
 #include "vesalius/base/pixel_grid.h"
 #include "vesalius/parallel.h"
@@ -40,20 +40,18 @@ struct Peak {
 };
 
 /// Returns whether a pixel is likelier body than not, so that it votes and belongs to a group.
-bool is_body(const Posteriors& posteriors, int u, int v, int parts) {
-  const std::uint16_t* sums = posteriors.at(u, v);
-  return std::accumulate(sums, sums + parts, 0) > std::accumulate(sums + parts, sums + posteriors.classes, 0);
-}
+bool is_body(std::optional<double> share) { return share && *share > 0.5; }
 
 std::vector<Vote> collect_votes(const Posteriors& posteriors, const Frame& frame, int parts) {
   std::vector<Vote> votes;
   for (int row = 0; row < posteriors.votes.height(); ++row) {
     for (int column = 0; column < posteriors.votes.width(); ++column) {
       const int u = column * kVoteStep, v = row * kVoteStep;
-      if (frame.depth(u, v) == 0 || !is_body(posteriors, u, v, parts)) continue;
+      const std::optional<double> share = body_share(posteriors, u, v, parts);
+      if (frame.depth(u, v) == 0 || !is_body(share)) continue;
       const float side_m = float(frame.depth(u, v)) * 1e-3F * float(kVoteStep);
       votes.push_back({column, row, voted_middle(posteriors.votes, frame, column, row),
-                       side_m * side_m / (frame.camera.fx * frame.camera.fy), *body_share(posteriors, u, v, parts)});
+                       side_m * side_m / (frame.camera.fx * frame.camera.fy), *share});
     }
   }
   return votes;
@@ -183,7 +181,7 @@ Image<std::uint8_t> spread(const std::vector<Vote>& votes, const Posteriors& pos
       const int nu = u + du, nv = v + dv;
       if (!index.contains(nu, nv) || index(nu, nv) != kOpen) continue;
       if (std::abs(depth(nu, nv) - depth(u, v)) > within_mm) continue;
-      const bool body = is_body(posteriors, nu, nv, parts);
+      const bool body = is_body(body_share(posteriors, nu, nv, parts));
       index(nu, nv) = body ? index(u, v) : kBackground;
       if (body) queue.push_back({nu, nv});
     }

@@ -391,10 +391,11 @@ std::vector<std::string> judge_names(const BodyModel& body) {
 }
 
 std::vector<int> judge_signs(const BodyModel& body) {
+  const std::size_t parts = kind_count(part_slots(body));
   std::vector<int> signs;
-  signs.reserve(judge_names(body).size());
+  signs.reserve(kJudgedEvidence.size() + parts + kVotedEvidence.size());
   for (const JudgedEvidence& kind : kJudgedEvidence) signs.push_back(kind.sign);
-  signs.resize(signs.size() + kind_count(part_slots(body)), 0);
+  signs.resize(signs.size() + parts, 0);
   for (const JudgedEvidence& kind : kVotedEvidence) signs.push_back(kind.sign);
   return signs;
 }

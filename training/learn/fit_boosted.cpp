@@ -58,6 +58,7 @@ struct Column {
 
 Column column(const std::vector<BoostSample>& samples, std::size_t feature) {
   std::vector<float> sorted;
+  sorted.reserve(samples.size());
   for (const BoostSample& sample : samples) sorted.push_back(sample.features[feature]);
   std::ranges::sort(sorted);
   Column column;
@@ -241,8 +242,12 @@ BoostedTrees fit_context(const std::vector<BoostSample>& samples, const BodyMode
   return context;
 }
 
-BoostedTrees fit_judge(const std::vector<BoostSample>& samples, const BodyModel& body) {
+void expect_people_and_nobodies(const std::vector<BoostSample>& samples) {
   expect_both(samples, "fitting the judge: the frames have no candidate that is known to be ", "a person", "nobody");
+}
+
+BoostedTrees fit_judge(const std::vector<BoostSample>& samples, const BodyModel& body) {
+  expect_people_and_nobodies(samples);
   BoostedTrees judge = boost_trees(samples, judge_signs(body));
   judge.asks = judge_names(body);
   return judge;

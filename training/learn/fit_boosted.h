@@ -29,6 +29,9 @@ BoostedTrees boost_trees(const std::vector<BoostSample>& samples, const std::vec
 /// others.
 BoostedTrees fit_context(const std::vector<BoostSample>& samples, const BodyModel& body);
 
+/// Throws Error unless there are candidates (judge_samples) that are people and others that are nobody.
+void expect_people_and_nobodies(const std::vector<BoostSample>& samples);
+
 /// Fits the judge to candidates (judge_samples): which of them are people, by the evidence for them. Each candidate
 /// counts the same. Throws Error unless there are people and nobodies.
 BoostedTrees fit_judge(const std::vector<BoostSample>& samples, const BodyModel& body);

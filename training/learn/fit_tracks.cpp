@@ -125,16 +125,26 @@ LogisticFit fit_logistic(const Eigen::MatrixXd& features, const Eigen::VectorXd&
   Eigen::VectorXd spread = Eigen::VectorXd::Zero(count);
   for (Eigen::Index s = 0; s < samples; ++s) spread += (features.col(s) - mean).cwiseAbs2();
   spread = (spread / all).cwiseSqrt().cwiseMax(kLeastSpread);
+  Eigen::MatrixXd standard(count, samples);
+  for (Eigen::Index s = 0; s < samples; ++s) standard.col(s) = (features.col(s) - mean).cwiseQuotient(spread);
+  LogisticFit fit = fit_standard_logistic(standard, positive, weight, kRidge * weight.sum());
+  fit.weights = fit.weights.cwiseQuotient(spread).eval();
+  fit.bias -= fit.weights.dot(mean);
+  return fit;
+}
 
+LogisticFit fit_standard_logistic(const Eigen::MatrixXd& features, const Eigen::VectorXd& positive,
+                                  const Eigen::VectorXd& weight, double ridge_on_weights) {
+  const Eigen::Index count = features.rows(), samples = features.cols();
   Eigen::MatrixXd ridge = Eigen::MatrixXd::Zero(count + 1, count + 1);
-  ridge.diagonal().head(count).setConstant(kRidge * weight.sum());
+  ridge.diagonal().head(count).setConstant(ridge_on_weights);
   Eigen::VectorXd w = Eigen::VectorXd::Zero(count + 1), x(count + 1);  // the bias last
   x[count] = 1.0;
   for (int step = 0; step < kMostSteps; ++step) {
     Eigen::VectorXd slope = -(ridge * w);
     Eigen::MatrixXd curvature = ridge;
     for (Eigen::Index s = 0; s < samples; ++s) {
-      x.head(count) = (features.col(s) - mean).cwiseQuotient(spread);
+      x.head(count) = features.col(s);
       const double p = logistic(w.dot(x));
       slope += weight[s] * (positive[s] - p) * x;
       curvature.selfadjointView<Eigen::Lower>().rankUpdate(x, weight[s] * p * (1.0 - p));
@@ -143,10 +153,7 @@ LogisticFit fit_logistic(const Eigen::MatrixXd& features, const Eigen::VectorXd&
     w += change;
     if (change.norm() < kSmallestStep) break;
   }
-  LogisticFit fit;
-  fit.weights = w.head(count).cwiseQuotient(spread);
-  fit.bias = w[count] - fit.weights.dot(mean);
-  return fit;
+  return {w.head(count), w[count]};
 }
 
 TrustFit fit_trust(const std::vector<TrustSample>& samples, const BodyTrust& start) {

@@ -23,6 +23,10 @@ struct LogisticFit {
 LogisticFit fit_logistic(const Eigen::MatrixXd& features, const Eigen::VectorXd& positive,
                          const Eigen::VectorXd& weight);
 
+/// Does the same with features as they are: `ridge` is on the weights, and none on the bias.
+LogisticFit fit_standard_logistic(const Eigen::MatrixXd& features, const Eigen::VectorXd& positive,
+                                  const Eigen::VectorXd& weight, double ridge);
+
 /// Fewest right and fewest wrong samples of one kind to which its trust is fitted.
 inline constexpr long kLeastTrustSamples = 200;
 

@@ -1,14 +1,13 @@
 #include "learn/fit_vote_judge.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string_view>
 
-#include "vesalius/error.h"
+#include "learn/fit_boosted.h"
+#include "learn/fit_tracks.h"
 #include "vesalius/score_person.h"
 
 namespace vesalius {
@@ -21,8 +20,7 @@ constexpr double kFarthest = 4.0;    ///< standard deviations from the mean, bey
 constexpr double kSquare = 0.3;      ///< by which squares are scaled, so that the ridge weighs them more
 constexpr double kRidge = 3.0;       ///< on weights, in samples
 constexpr double kFalseCosts = 3.0;  ///< people that a false one costs, besides RefineOptions::min_score
-constexpr int kNewtonSteps = 50;
-constexpr int kStaircases = 4;  ///< trees of each kind of evidence, whose steps lie between each other's
+constexpr int kStaircases = 4;       ///< trees of each kind of evidence, whose steps lie between each other's
 
 /// One kind of evidence over all samples.
 struct Asked {
@@ -47,30 +45,21 @@ Asked asked_of(const std::vector<BoostSample>& samples, std::size_t feature) {
   return asked;
 }
 
-/// Returns the weights: a constant, then for each kind of evidence that of its standard value and of its square.
-Eigen::VectorXd regress(const std::vector<BoostSample>& samples, const std::vector<Asked>& asked) {
-  const auto rows = Eigen::Index(samples.size()), columns = Eigen::Index(2 * asked.size() + 1);
-  Eigen::MatrixXd known = Eigen::MatrixXd::Ones(rows, columns);
-  Eigen::VectorXd answer(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) {
+/// Returns the weights, for each kind of evidence that of its standard value and of its square.
+LogisticFit regress(const std::vector<BoostSample>& samples, const std::vector<Asked>& asked) {
+  const auto count = Eigen::Index(samples.size());
+  Eigen::MatrixXd known(Eigen::Index(2 * asked.size()), count);
+  Eigen::VectorXd answer(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
     const BoostSample& sample = samples[std::size_t(i)];
     answer[i] = sample.positive ? 1.0 : 0.0;
     for (std::size_t a = 0; a < asked.size(); ++a) {
       const double x = asked[a].standard(double(sample.features[asked[a].feature]));
-      known(i, Eigen::Index(2 * a + 1)) = x;
-      known(i, Eigen::Index(2 * a + 2)) = kSquare * x * x;
+      known(Eigen::Index(2 * a), i) = x;
+      known(Eigen::Index(2 * a + 1), i) = kSquare * x * x;
     }
   }
-  Eigen::VectorXd ridge = Eigen::VectorXd::Constant(columns, kRidge), weights = Eigen::VectorXd::Zero(columns);
-  ridge[0] = 1e-6;
-  for (int step = 0; step < kNewtonSteps; ++step) {
-    const Eigen::ArrayXd p = 1.0 / (1.0 + (-(known * weights).array().max(-30.0).min(30.0)).exp());
-    Eigen::MatrixXd curvature = known.transpose() * (p * (1.0 - p)).matrix().asDiagonal() * known;
-    curvature.diagonal() += ridge;
-    const Eigen::VectorXd slope = known.transpose() * (answer - p.matrix()) - ridge.cwiseProduct(weights);
-    weights += curvature.llt().solve(slope);
-  }
-  return weights;
+  return fit_standard_logistic(known, answer, Eigen::VectorXd::Ones(count), kRidge);
 }
 
 /// Writes thresholds in ascending order to the nodes of a tree, so that leaf l takes what is between two of them.
@@ -106,26 +95,22 @@ BoostedTree staircase(const Asked& asked, double linear, double square, int numb
 }  // namespace
 
 BoostedTrees fit_vote_judge(const std::vector<BoostSample>& samples, const BodyModel& body) {
-  const auto people = std::ranges::count(samples, true, &BoostSample::positive);
-  if (people == 0 || people == std::ranges::ssize(samples)) {
-    throw Error(std::string("fitting the judge: the frames have no candidate that is known to be ") +
-                (people == 0 ? "a person" : "nobody"));
-  }
+  expect_people_and_nobodies(samples);
   const std::vector<std::string> names = judge_names(body);
   std::vector<Asked> asked;
   asked.reserve(kAsked.size());
   for (const std::string_view name : kAsked) {
     asked.push_back(asked_of(samples, std::size_t(std::ranges::find(names, name) - names.begin())));
   }
-  const Eigen::VectorXd weights = regress(samples, asked);
+  const LogisticFit fit = regress(samples, asked);
   BoostedTrees judge;
   judge.features = int(names.size());
-  judge.bias = float(weights[0] - std::log(kFalseCosts));
+  judge.bias = float(fit.bias - std::log(kFalseCosts));
   judge.asks = names;
   for (std::size_t a = 0; a < asked.size(); ++a) {
     for (int number = 0; number < kStaircases; ++number) {
       judge.trees.push_back(
-          staircase(asked[a], weights[Eigen::Index(2 * a + 1)], weights[Eigen::Index(2 * a + 2)], number));
+          staircase(asked[a], fit.weights[Eigen::Index(2 * a)], fit.weights[Eigen::Index(2 * a + 1)], number));
     }
   }
   return judge;

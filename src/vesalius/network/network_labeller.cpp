@@ -41,23 +41,11 @@ class Powers {
   std::array<std::uint32_t, kCount> powers_{};
 };
 
-/// Posteriors of every second pixel.
-struct HalfPosteriors {
-  int width = 0, height = 0, classes = 0;
-  std::vector<std::uint16_t> shares;
-  Mask sure;  ///< 1 where nothing but the background is possible
-
-  const std::uint16_t* at(int u, int v) const {
-    return shares.data() + (static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + std::size_t(u)) *
-                               static_cast<std::size_t>(classes);
-  }
-  std::uint16_t* at(int u, int v) { return const_cast<std::uint16_t*>(std::as_const(*this).at(u, v)); }
-};
-
-/// Makes posteriors of all pixels of those of every second one.
+/// Makes posteriors of all pixels of those of every second one, which are settled where nothing but the background is
+/// possible.
 class Enlarger {
  public:
-  Enlarger(const DepthImage& depth, const HalfPosteriors& half, Posteriors& out)
+  Enlarger(const DepthImage& depth, const Posteriors& half, Posteriors& out)
       : depth_(depth), half_(half), out_(out), classes_(static_cast<std::size_t>(half.classes)) {}
 
   void row(int v) const {
@@ -65,7 +53,7 @@ class Enlarger {
       const int mm = depth_(u, v);
       if (mm == 0) {
         std::fill_n(out_.at(u, v), classes_, std::uint16_t{0});
-      } else if ((u % 2 == 0 && v % 2 == 0) || is_sure(u, v)) {
+      } else if ((u % 2 == 0 && v % 2 == 0) || is_settled(u, v)) {
         std::copy_n(half_.at(u / 2, v / 2), classes_, out_.at(u, v));
       } else {
         mix(u, v, mm);
@@ -74,10 +62,10 @@ class Enlarger {
   }
 
  private:
-  bool is_sure(int u, int v) const {
+  bool is_settled(int u, int v) const {
     const int right = std::min((u + 1) / 2, half_.width - 1), below = std::min((v + 1) / 2, half_.height - 1);
-    return (half_.sure(u / 2, v / 2) & half_.sure(right, v / 2) & half_.sure(u / 2, below) &
-            half_.sure(right, below)) != 0;
+    return (half_.settled(u / 2, v / 2) & half_.settled(right, v / 2) & half_.settled(u / 2, below) &
+            half_.settled(right, below)) != 0;
   }
 
   /// Takes the mean of the pixels around whose depth is like this one's; if none is, the one that is nearest to it.
@@ -115,7 +103,7 @@ class Enlarger {
   }
 
   const DepthImage& depth_;
-  const HalfPosteriors& half_;
+  const Posteriors& half_;
   Posteriors& out_;
   std::size_t classes_;
 };
@@ -157,7 +145,7 @@ struct NetworkLabeller::Working {
   struct Memory {
     NetworkInput input;
     NetworkResult result;
-    HalfPosteriors half;
+    Posteriors half;  ///< of every second pixel
   };
   mutable Pool<Memory> memory;
 };
@@ -173,18 +161,19 @@ void NetworkLabeller::label_into(const Frame& frame, float gate, Posteriors& out
   Working::Memory memory = working_->memory.take();
   fill_network_input(depth, frame.camera.fx, memory.input);
   working_->runner.run(memory.input, memory.result);
-  HalfPosteriors& half = memory.half;
-  half.width = (depth.width() + 1) / 2;
-  half.height = (depth.height() + 1) / 2;
-  half.classes = working_->classes;
-  half.sure = Mask(half.width, half.height, 0);
-  half.shares.resize(static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height) *
-                     static_cast<std::size_t>(half.classes));
+  Posteriors& half = memory.half;
+  const int half_width = (depth.width() + 1) / 2, half_height = (depth.height() + 1) / 2;
+  half.resize_like({.width = half_width,
+                    .height = half_height,
+                    .classes = working_->classes,
+                    .whole = kNetworkWhole,
+                    .sums = {},
+                    .settled = Mask(half_width, half_height, 0)});
   parallel_ranges(half.height, kRowGrain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       for (int u = 0; u < half.width; ++u) {
         softmax_in_steps(memory.result.classes.at(u, v), half.classes, kNetworkWhole, half.at(u, v));
-        half.sure(u, v) = half.at(u, v)[half.classes - 1] == kNetworkWhole ? 1 : 0;
+        half.settled(u, v) = half.at(u, v)[half.classes - 1] == kNetworkWhole ? 1 : 0;
       }
     }
   });
