@@ -23,6 +23,7 @@ constexpr float kOnFloor_m = 0.45F;  // up to which the trunk of somebody on the
 constexpr float kUpright_m = 0.6F;   // above which the chest of somebody is who does not sit on the floor
 constexpr double kFall_s = 2.0;      // from upright to the floor ...
 constexpr double kSinks_s = 0.5;     // ... and of it seen near the floor without lying: who sits there has not fallen
+constexpr double kUp_s = 0.2;        // upright for so long, nobody lies any more
 constexpr double kLong_s = 10.0;     // on the floor, without a fall that was seen
 constexpr double kStanceForgotten_s = 5.0;
 
@@ -154,14 +155,22 @@ void TrackStance::advance(const Posture& posture, double time_s) {
       ++path.heights;
     }
   }
-  const double most = std::ranges::max_element(paths_, {}, &Path::log_odds)->log_odds;
-  for (Path& path : paths_) path.log_odds -= most;
   if (posture.chest_m) down_ = *posture.chest_m <= kUpright_m;
   near_floor_s_ += std::min(passed_s, kMostEvidence_s);
   if (of.lying < 0.5F && posture.chest_m && !down_) {
+    if (!rose_s_) rose_s_ = time_s;
     upright_s_ = time_s;
     near_floor_s_ = 0.0;
+  } else {
+    rose_s_.reset();
   }
+  auto& [standing, sitting, lying] = paths_;
+  // However long somebody lay: who is up does not lie.
+  if (rose_s_ && time_s - *rose_s_ >= kUp_s) {
+    lying.log_odds = std::min(lying.log_odds, std::max(standing.log_odds, sitting.log_odds) - kClear);
+  }
+  const double most = std::ranges::max_element(paths_, {}, &Path::log_odds)->log_odds;
+  for (Path& path : paths_) path.log_odds -= most;
   seen_s_ = time_s;
 }
 

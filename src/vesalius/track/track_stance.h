@@ -20,8 +20,8 @@ inline constexpr double kMostEvidence_s = 0.2;
 /// Viterbi's algorithm. Each frame tells how probable each stance is (stance_probabilities), and a person changes the
 /// stance seldom. A stance is told when it is clearly likelier than any other, and then counts from the frame in which
 /// it began. Whoever lies on the floor within 2 seconds of being upright has fallen, unless seen to sit there before,
-/// and so has whoever lies there for 10 seconds; who lies as high as on a bed has not. Without evidence for 5 seconds
-/// the stance is unknown.
+/// and so has whoever lies there for 10 seconds; who lies as high as on a bed has not. Whoever is up again for a fifth
+/// of a second does not lie. Without evidence for 5 seconds the stance is unknown.
 class TrackStance {
  public:
   /// Takes the posture of a frame, if there is one. Returns the new stance and when it began, if it changed.
@@ -53,6 +53,7 @@ class TrackStance {
   std::array<Path, kStances.size()> paths_;
   Stance stance_ = Stance::unknown;
   std::optional<double> upright_s_;  ///< when the person was last seen upright, higher than on the floor
+  std::optional<double> rose_s_;     ///< since when the person has been upright
   double near_floor_s_ = 0.0;        ///< seconds in which the person has been seen since
   std::optional<double> seen_s_;     ///< when there was evidence last
   std::optional<double> known_s_;    ///< when a stance was clear last

@@ -174,7 +174,18 @@ TEST_F(StanceOverTime, WhoGetsUpAgainStands) {
   show(kStanding, 2.0);
   show(kOnFloor, 3.0);
   show(kStanding, 1.0);
-  EXPECT_EQ(stances(), (std::vector{Stance::standing, Stance::fallen, Stance::standing}));
+  ASSERT_EQ(stances(), (std::vector{Stance::standing, Stance::fallen, Stance::standing}));
+  EXPECT_LT(changes[2].told_s, 5.0 + 10.5 * kFrame_s) << "an alarm ends soon";
+}
+
+TEST_F(StanceOverTime, WhoLiesAndIsMistakenForAMomentStillLies) {
+  show(kStanding, 2.0);
+  show(kOnFloor, 3.0);
+  for (int i = 0; i < 10; ++i) {
+    show(kStanding, 0.1);
+    show(kOnFloor, 0.5);
+  }
+  EXPECT_EQ(stances(), (std::vector{Stance::standing, Stance::fallen}));
 }
 
 TEST_F(StanceOverTime, WithoutEvidenceNobodyKnows) {
