@@ -37,7 +37,7 @@ struct Track {
   int found = 0;         ///< frames in which the person was found
   float evidence = 0.F;  ///< sum of what their scores tell, as long as the track is fresh
   TrackStance stance;
-  bool stays = false;  ///< not found, but was near the floor, where something still is
+  bool rests = false;  ///< not found, but most pixels are as they were when the person was
   JointSmoother smoother;
   double smoothed_s = 0.0;  ///< time of the joints that were smoothed last
   double since_s = 0.0;     ///< time of the first one

@@ -25,7 +25,8 @@ namespace {
 constexpr std::size_t kMostTracks = 128;   // at once: no camera sees so many
 constexpr std::size_t kMostExpected = 16;  // of whom the detector is told, the surest ones
 constexpr double kExpect_s = 1.0;          // after being seen; later nobody knows the place
-constexpr float kStays = 0.6F;             // share of the pixels that are as they were where somebody still lies
+constexpr float kRests = 0.6F;             // share of the pixels that are as they were where somebody still is
+constexpr float kSlow_m_s = 0.2F;          // at most, of somebody who rests
 constexpr float kSamePlace_m = 1.F;        // of somebody new who is the one who lay there
 constexpr float kClearlyBetter = 0.1F;     // by which another lost person must look more different
 constexpr float kFadePerS = 1.F;           // of the confidence of what is predicted of hidden people, per second
@@ -102,9 +103,18 @@ TrackedPerson describe(const Track& track) {
   return out;
 }
 
+/// Gives somebody who was not found, but rests, the pixels that are as they were.
+void show_resting(const Track& track, const Frame& frame, TrackedPerson& out) {
+  out.velocity.setZero();
+  out.person.mask = track.place.expected(frame, track.place_position, track.place_position);
+  out.person.box = bounding_box(out.person.mask);
+  out.person.labels = LabelImage(out.person.mask.width(), out.person.mask.height(), kBackground);
+}
+
 TrackedPerson describe_unseen(const Track& track, const BodyModel& body, const BodyFitter* fitter, double time_s) {
   TrackedPerson out = describe(track);
-  const Eigen::Vector3f by = track.motion.position() - track.place_position;
+  if (track.rests) out.position = track.place_position;
+  const Eigen::Vector3f by = out.position - track.place_position;
   const auto unseen_s = float(std::clamp(time_s - track.seen_s, 0.0, 1e6));
   const float faded = std::exp(-kFadePerS * unseen_s);
   out.person = track.person;
@@ -116,9 +126,17 @@ TrackedPerson describe_unseen(const Track& track, const BodyModel& body, const B
   return out;
 }
 
+bool is_unchanged(const Track& track, const Frame& frame) {
+  return !track.place.at_border() && track.place.unchanged(frame) >= kRests;
+}
+
 /// Returns whether somebody who was found near the floor is still there, found or not: who is down does not vanish.
-bool stays_down(const Track& track, const Frame& frame) {
-  return track.stance.down() && !track.place.at_border() && track.place.unchanged(frame) >= kStays;
+bool stays_down(const Track& track, const Frame& frame) { return track.stance.down() && is_unchanged(track, frame); }
+
+/// Returns whether somebody is still as last found, found or not, and not about to go on.
+bool rests(const Track& track, const Frame& frame) {
+  const bool slow = track.stance.down() || track.motion.velocity().norm() <= kSlow_m_s;
+  return slow && is_unchanged(track, frame);
 }
 
 bool is_sure(const Track& track) { return track.state != TrackState::fresh; }
@@ -281,7 +299,7 @@ bool PeopleTracker::State::begun_at(const Track& stayed, const std::vector<Sight
 /// Returns the time after which somebody who is not found is given up.
 double PeopleTracker::State::longest_unseen_s(const Track& track) const {
   if (!is_sure(track)) return double(options.confirm_s);
-  return double(track.stays ? std::max(options.down_s, options.hidden_s) : options.hidden_s);
+  return double(track.rests && track.stance.down() ? std::max(options.down_s, options.hidden_s) : options.hidden_s);
 }
 
 /// Gives a track up. Nobody is told of a guess.
@@ -314,7 +332,7 @@ std::vector<int> PeopleTracker::State::follow(const Frame& frame, const std::vec
                                               TrackedFrame& out) {
   const std::vector<int> matched = match(sightings, time_s);
   for (std::size_t t = 0; t < tracks.size(); ++t) {
-    tracks[t].stays = matched[t] < 0 && stays_down(tracks[t], frame) && !begun_at(tracks[t], sightings, matched);
+    tracks[t].rests = matched[t] < 0 && rests(tracks[t], frame) && !begun_at(tracks[t], sightings, matched);
   }
   std::vector<Track> staying;
   std::vector<int> sighting_of;
@@ -399,9 +417,10 @@ void PeopleTracker::State::tell(const Frame& frame, const std::vector<int>& sigh
       told.posture = posture;
       told.person = std::move(sighting.person);
     } else {
-      if (track.stays) track.stance.hold(out.time_s);
+      if (track.rests) track.stance.hold(out.time_s);
       take_stance(frame, track, nullptr, out);
       told = describe_unseen(track, body, fitter.get(), out.time_s);
+      if (track.rests) show_resting(track, frame, told);
     }
     smooth(track, told, out.time_s);
   }

@@ -190,6 +190,27 @@ TEST(TrackPeople, WhoIsHiddenIsPredictedComesBackOrIsLost) {
   EXPECT_TRUE(follower.show(std::vector<Actor>{}).people.empty());
 }
 
+TEST(TrackPeople, WhoRestsHasAPlaceThoughNotFound) {
+  Follower follower;
+  Actor resting;
+  follower.show({resting}, 29);
+  const Person found = follower.show({resting}).people.at(0).person;
+  resting.found = false;
+  for (int i = 0; i < 20; ++i) {
+    const TrackedPerson hidden = follower.show({resting}).people.at(0);
+    EXPECT_EQ(hidden.state, TrackState::hidden);
+    EXPECT_EQ(hidden.person.mask, found.mask);
+    EXPECT_EQ(hidden.person.box.u, found.box.u);
+    EXPECT_EQ(hidden.person.box.height, found.box.height);
+    EXPECT_TRUE(hidden.person.labels.same_size(found.labels));
+    EXPECT_NEAR((hidden.position - resting.trunk).norm(), 0.F, 0.02F);
+    EXPECT_EQ(hidden.velocity, Vector3f::Zero());
+  }
+  const TrackedPerson gone = follower.show(std::vector<Actor>{}).people.at(0);
+  EXPECT_TRUE(gone.person.mask.empty()) << "the wall is seen where somebody was";
+  EXPECT_EQ(gone.person.box.width, 0);
+}
+
 TEST(TrackPeople, WhoComesBackAndLooksTheSameHasTheOldId) {
   Follower follower;
   Actor red, blue;
