@@ -50,6 +50,9 @@ class FrameSource {
   virtual void seek(double /*time_s*/) {}
   /// Returns remarks for the user, one line each, such as guessed intrinsics or depth pictures without colour.
   virtual std::vector<std::string> notes() const { return {}; }
+  /// Returns whether the frames are one camera's over time, so that people can be followed. Pictures without times may
+  /// have nothing to do with each other.
+  virtual bool is_sequence() const { return true; }
   /// Returns whether the frames come from a camera as they are taken: whoever is late misses some, and the stream ends
   /// only when it is told to.
   virtual bool is_live() const { return false; }

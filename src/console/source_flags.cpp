@@ -1,6 +1,7 @@
 #include "console/source_flags.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <utility>
 
 #include "console/detector_flags.h"
@@ -61,6 +62,13 @@ CLI::Option* add_rate_flag(CLI::App& command, double& rate, const std::string& w
       ->type_name("N")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
+}
+
+void add_track_flag(CLI::App& command, std::optional<bool>& track) {
+  command.add_flag_function(
+      "--track,!--no-track", [&track](std::int64_t times) { track = times > 0; },
+      "Follow people over the frames: ids, states, velocities, fitted bodies; or look at each frame by itself. "
+      "Recordings, cameras and other frames with times are followed unless told otherwise");
 }
 
 void add_threads_flag(CLI::App& command, int& threads) {

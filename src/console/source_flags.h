@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "vesalius/open_source.h"
@@ -42,6 +43,9 @@ void add_frames_flag(CLI::App& command, int& frames);
 
 /// Adds --rate, in frames per second. `what` is its help.
 CLI::Option* add_rate_flag(CLI::App& command, double& rate, const std::string& what);
+
+/// Adds --track and --no-track: whether people are followed over the frames. Nothing said: FrameSource::is_sequence.
+void add_track_flag(CLI::App& command, std::optional<bool>& track);
 
 /// Adds --threads; 0 = all.
 void add_threads_flag(CLI::App& command, int& threads);

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -30,13 +31,14 @@ struct DetectArguments {
   DetectorFlags detector;
   StreamOptions stream;
   int threads = 0;
-  int frames = 0;  ///< 0 = all
-  bool track = false;
+  int frames = 0;             ///< 0 = all
+  std::optional<bool> track;  ///< whether to follow people; nothing: where the frames are a sequence
   bool timing = false;
   bool keep_going = false;
 };
 
 struct Totals {
+  bool follows = false;  ///< whether people are followed
   int people = 0;
   int frames_with_people = 0;
   int failed = 0;
@@ -84,7 +86,7 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
     progress.step();
     return arguments.frames == 0 || progress.done() < arguments.frames;
   };
-  if (arguments.track) {
+  if (totals.follows) {
     PeopleTracker tracker = make_tracker(detector, arguments.detector.options());
     totals.dropped = stream_frames(source, detector, tracker, options, take);
   } else {
@@ -99,8 +101,9 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
 }
 
 void say_totals(const DetectArguments& arguments, const Totals& totals, const Progress& progress) {
-  const std::string in_all =
-      arguments.track ? fmt::format("{} followed", totals.ids.size()) : fmt::format("{} in all", totals.people);
+  std::string in_all =
+      totals.follows ? fmt::format("{} followed", totals.ids.size()) : fmt::format("{} in all", totals.people);
+  if (!arguments.track && !totals.follows && progress.done() > 1) in_all += "; --track follows them";
   say(fmt::format("{} frames, people in {} of them ({}), {:.1f} s, {:.1f} frames/s{}", progress.done(),
                   totals.frames_with_people, in_all, progress.seconds(), progress.done() / progress.seconds(),
                   arguments.stream.realtime || totals.dropped > 0 ? fmt::format(", {} dropped", totals.dropped) : ""));
@@ -125,6 +128,7 @@ void run_detect(const DetectArguments& arguments) {
   const int wanted = arguments.frames == 0 || (all >= 0 && all < arguments.frames) ? all : arguments.frames;
   Progress progress(wanted, !arguments.outputs.quiet);
   Totals totals;
+  totals.follows = arguments.track.value_or(source->is_sequence());
   const auto say_end = [&] {
     if (!arguments.outputs.quiet) say_totals(arguments, totals, progress);
     if (arguments.timing) say_times(totals.times);
@@ -189,7 +193,7 @@ void add_detect(CLI::App& program) {
   arguments->source.add_to(*command);
   add_threads_flag(*command, arguments->threads);
   add_time_flags(*command, *arguments);
-  command->add_flag("--track", arguments->track, "Follow people over the frames: ids, states, velocities");
+  add_track_flag(*command, arguments->track);
   add_frames_flag(*command, arguments->frames);
   command->add_flag("--keep-going", arguments->keep_going, "Skip frames that fail; the exit code is then 1");
   command->add_flag("-q,--quiet", arguments->outputs.quiet, "Print errors only");
@@ -200,7 +204,7 @@ lists them.
 Examples:
   vesalius detect frames/
   vesalius detect tum:walking -m small.forest --json - | jq .people
-  vesalius detect session.mcap --track --json people.jsonl
+  vesalius detect session.mcap --json people.jsonl
   vesalius detect depth.png --fx 525 --out found/ --save overlay,mask)");
   command->callback([arguments] { run_detect(*arguments); });
 }

@@ -27,7 +27,7 @@ struct RecordArguments {
   double rate = kUsualRate;
   int frames = 0;  ///< 0 = all
   bool people = false;
-  bool track = false;  ///< implies people
+  std::optional<bool> track;  ///< true implies people
   bool quiet = false;
 };
 
@@ -60,7 +60,7 @@ int record_people(const RecordArguments& arguments, FrameSource& source, const D
     progress.step();
     return !is_enough(arguments, progress);
   };
-  if (!arguments.track) return stream_frames(source, detector, options, take);
+  if (!arguments.track.value_or(true)) return stream_frames(source, detector, options, take);
   PeopleTracker tracker = make_tracker(detector, arguments.detector.options());
   return stream_frames(source, detector, tracker, options, take);
 }
@@ -68,7 +68,7 @@ int record_people(const RecordArguments& arguments, FrameSource& source, const D
 void run_record(const RecordArguments& arguments) {
   keep_freed_memory();
   std::optional<Detector> detector;
-  if (arguments.people || arguments.track) detector.emplace(arguments.detector.make());
+  if (arguments.people || arguments.track.value_or(false)) detector.emplace(arguments.detector.make());
   LateLines late;
   const auto source = arguments.source.open(arguments.quiet, [&late](const std::string& line) { late.add(line); });
   FrameRecorder recorder(arguments.out, arguments.rate);
@@ -108,7 +108,7 @@ void add_record(CLI::App& program) {
   const auto arguments = std::make_shared<RecordArguments>(*command);
   command->add_option("--out", arguments->out, "MCAP file to write; must not exist")->type_name("FILE")->required();
   command->add_flag("--people", arguments->people, "Find people and record them too: body index, parts, markers, JSON");
-  command->add_flag("--track", arguments->track, "Record people with ids, states and fitted bodies, as detect --track");
+  add_track_flag(*command, arguments->track);
   add_rate_flag(*command, arguments->rate, "Frames per second of a source that does not know its frames' times");
   add_frames_flag(*command, arguments->frames);
   arguments->source.add_to(*command);
@@ -119,9 +119,8 @@ killed lacks the last second at most.
 
 Examples:
   vesalius record frames/ --out session.mcap
-  vesalius record session.bag --out found.mcap --people
-  vesalius record session.bag --out followed.mcap --track
-  vesalius detect found.mcap)");
+  vesalius record session.bag --out followed.mcap --people
+  vesalius detect session.mcap)");
   command->callback([arguments] { run_record(*arguments); });
 }
 

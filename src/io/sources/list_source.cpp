@@ -38,6 +38,7 @@ class ListSource final : public FrameSource {
     next_ = first_not_before(time_s, reader_.size(), [this](std::size_t i) { return time_of(i); });
   }
   std::vector<std::string> notes() const override { return reader_.list().notes; }
+  bool is_sequence() const override { return reader_.list().frames.front().time_s.has_value(); }
 
  private:
   double time_of(std::size_t index) const { return reader_.list().frames[index].time_s.value_or(usual_time_s(index)); }

@@ -129,6 +129,7 @@ class Started final : public FrameSource {
   std::optional<TimeSpan> span() const override { return source_->span(); }
   void seek(double time_s) override { source_->seek(time_s); }
   std::vector<std::string> notes() const override { return source_->notes(); }
+  bool is_sequence() const override { return source_->is_sequence(); }
 
  private:
   std::unique_ptr<FrameSource> source_;

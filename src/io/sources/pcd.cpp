@@ -220,6 +220,7 @@ class PcdSource final : public FrameSource {
   int size() const override { return int(files_.size()); }
   std::optional<TimeSpan> span() const override { return TimeSpan{0.0, usual_time_s(files_.size() - 1)}; }
   void seek(double time_s) override { next_ = first_not_before(time_s, files_.size(), usual_time_s); }
+  bool is_sequence() const override { return false; }
   std::vector<std::string> notes() const override { return notes_; }
 
  private:
