@@ -215,8 +215,8 @@ TrackedFrame seen_people(std::vector<Person> people);
 /// Returns whether somebody was found in the frame, and not only expected there.
 inline bool is_found(const TrackedPerson& person) { return person.state <= TrackState::tracked; }
 
-/// Returns the people as they were found, in their order, so that each has the same index in both lists. Hidden and
-/// lost ones have empty masks.
+/// Returns the people as they were found, in their order, so that each has the same index in both lists. Lost ones
+/// and hidden ones who do not rest have empty masks.
 std::vector<Person> people_of(const TrackedFrame& tracked);
 
 }  // namespace vesalius

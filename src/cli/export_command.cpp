@@ -30,7 +30,7 @@ struct ExportArguments {
   bool quiet = false;
 };
 
-/// Returns the lines of people in an MCAP file that `vesalius record --people` or --track wrote.
+/// Returns the lines of people in an MCAP file that `vesalius record --people` wrote.
 std::string lines_of_mcap(const std::string& path, bool quiet) {
   const std::unique_ptr<Recording> recording = open_recording(path);
   std::optional<std::size_t> wanted;
@@ -41,7 +41,7 @@ std::string lines_of_mcap(const std::string& path, bool quiet) {
     wanted = t;
   }
   if (!wanted)
-    throw Error(fmt::format("{}: no people in it, expected a recording of record --people or --track", path));
+    throw Error(fmt::format("{}: no people in it, expected a recording of record --people", path));
   std::string lines;
   while (const auto message = recording->next()) {
     if (message->topic != *wanted) continue;
@@ -130,7 +130,7 @@ void add_export(CLI::App& program) {
   for (const ExportFormat& format : export_formats()) names.push_back(format.name);
   command
       ->add_option("PEOPLE", arguments->people,
-                   "What detect --json wrote, or an MCAP file of record --people or --track")
+                   "What detect --json wrote, or an MCAP file of record --people")
       ->required();
   command
       ->add_option("--to", arguments->to,
