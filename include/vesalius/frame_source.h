@@ -34,6 +34,18 @@ struct TimeSpan {
   double last_s = 0.0;
 };
 
+/// Something that a source holds: a topic of a recording, the pictures of a folder, a calibration.
+struct SourceItem {
+  std::string name;   ///< of the topic, stream, file or folder
+  std::string holds;  ///< type, encoding and size, as "sensor_msgs/Image 16UC1 640x480"
+  long count = -1;    ///< messages or files; -1 where nobody counted
+  std::string use;    ///< what it is taken for, as "depth"; empty if it is not taken
+  std::string why;    ///< of what is not taken: why, and the flag that takes it, if one does; of what is: remarks
+};
+
+/// Returns a line for each item, aligned, or nothing for none.
+std::string to_text(const std::vector<SourceItem>& items);
+
 /// A stream of frames: a folder, a file, a sensor.
 class FrameSource {
  public:
@@ -50,6 +62,8 @@ class FrameSource {
   virtual void seek(double /*time_s*/) {}
   /// Returns remarks for the user, one line each, such as guessed intrinsics or depth pictures without colour.
   virtual std::vector<std::string> notes() const { return {}; }
+  /// Returns what the source holds, taken or not. A source that cannot be opened tells it in its error.
+  virtual std::vector<SourceItem> contents() const { return {}; }
   /// Returns whether the frames are one camera's over time, so that people can be followed. Pictures without times may
   /// have nothing to do with each other.
   virtual bool is_sequence() const { return true; }

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -12,8 +14,10 @@
 #include "io/model/model_sections.h"
 #include "io/recordings/recording_formats.h"
 #include "io/sensors/sensor_drivers.h"
+#include "io/sources/folder_source.h"
 #include "vesalius/model_file.h"
 #include "vesalius/network/network.h"
+#include "vesalius/open_source.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius::cli {
@@ -149,6 +153,41 @@ Json model_facts(const std::string& path) {
   return facts;
 }
 
+bool is_model(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".model" || extension == ".forest") return true;
+  std::array<char, 16> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return model_version({begin.data(), begin.size()}) != 0;
+}
+
+Json source_facts(const std::string& uri, const FrameSource& source) {
+  Json holds = Json::array();
+  for (const SourceItem& item : source.contents()) {
+    holds.push_back({{"name", item.name},
+                     {"holds", item.holds},
+                     {"count", item.count < 0 ? Json() : Json(item.count)},
+                     {"use", item.use.empty() ? "not taken" : item.use},
+                     {"why", item.why}});
+  }
+  return {{"source", uri},
+          {"frames", source.size() < 0 ? Json() : Json(source.size())},
+          {"sequence", source.is_sequence()},
+          {"holds", std::move(holds)},
+          {"notes", source.notes()}};
+}
+
+std::string source_text(const std::string& uri, const FrameSource& source) {
+  const std::string frames = source.size() < 0 ? "frames" : fmt::format("{} frames", source.size());
+  std::string text = fmt::format("{}: {}, {}\n{}", uri, frames,
+                                 source.is_sequence() ? "with times: people are followed" : "without times",
+                                 to_text(source.contents()));
+  for (const std::string& note : source.notes()) text += "note: " + note + "\n";
+  return text;
+}
+
+std::string as_text(const Json& facts) { return facts.dump(2, ' ', true, Json::error_handler_t::replace) + "\n"; }
+
 std::string plain(const Json& value) {
   if (value.is_string()) return escaped(value.get<std::string>());
   if (!value.is_object()) return value.dump();
@@ -178,20 +217,20 @@ void append_text(std::string& text, const Json& object, const std::string& inden
 }  // namespace
 
 void add_info(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("info", "Describe this build, or a model");
-  const auto model = std::make_shared<std::string>();
+  CLI::App* command = program.add_subcommand("info", "Describe this build, a model, or what a source of frames holds");
+  const auto what = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("MODEL", *model, "Model file; without it the build is described");
+  command->add_option("FILE", *what, "Model file, or a SOURCE as of detect; without it the build is described");
   command->add_flag("--json", *json, "As JSON");
-  command->callback([model, json] {
-    const Json facts = model->empty() ? program_facts() : model_facts(*model);
-    std::string text;
-    if (*json) {
-      text = facts.dump(2, ' ', true, Json::error_handler_t::replace) + "\n";
-    } else {
-      append_text(text, facts, "");
+  command->callback([what, json] {
+    if (!what->empty() && !is_model(*what)) {
+      const std::unique_ptr<FrameSource> source = open_source(*what);
+      return print(*json ? as_text(source_facts(*what, *source)) : source_text(*what, *source));
     }
-    print(text);
+    const Json facts = what->empty() ? program_facts() : model_facts(*what);
+    std::string text;
+    if (!*json) append_text(text, facts, "");
+    print(*json ? as_text(facts) : text);
   });
 }
 

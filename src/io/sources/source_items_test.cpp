@@ -1,0 +1,20 @@
+#include <gmock/gmock.h>
+
+#include "vesalius/frame_source.h"
+
+namespace vesalius {
+namespace {
+
+TEST(SourceItems, AreLinesWhoseColumnsAlign) {
+  const std::string text = to_text({{"/depth", "Image 16UC1 640x480", 120, "depth", ""},
+                                    {"/camera/ir", "Image 8UC1", 7, "", "8 bits, expected 16"},
+                                    {"rgb", "JPEG", -1, "colour", "4 ms later"}});
+  EXPECT_EQ(text,
+            "  /depth      Image 16UC1 640x480     120  depth\n"
+            "  /camera/ir  Image 8UC1                7  not taken: 8 bits, expected 16\n"
+            "  rgb         JPEG                         colour: 4 ms later\n");
+  EXPECT_EQ(to_text({}), "");
+}
+
+}  // namespace
+}  // namespace vesalius
