@@ -52,7 +52,7 @@ TEST_F(Detect, PrintsALineForEachFrame) {
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.out, MatchesRegex("a: 1 person: [0-9]+ parts at 2\\.[0-9]+ m .score [0-9.]+.\nb: 1 person: .*\nc: "
                                     "nobody\n"));
-  EXPECT_THAT(run.err, StartsWith("3 frames, people in 2 of them (2 in all)"));
+  EXPECT_THAT(run.err, StartsWith("3 frames, people in 2 of them (2 in all; --track follows them)"));
 }
 
 TEST_F(Detect, QuietPrintsNothing) {
