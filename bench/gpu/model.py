@@ -52,7 +52,7 @@ INSTRUCTIONS_TO_FIND_ONE = 142
 INSTRUCTIONS_A_CLASS = 28  # of choosing
 NEIGHBOURS = 25
 LANES = 16  # threads of a pixel
-INSTRUCTIONS_A_STEP = 70  # of a network, 32 of them four products each
+INSTRUCTIONS_A_STEP = 63  # of a network, 32 of them four products each
 STEP_CYCLES = 200  # until the next step of a thread: its weights come from the second level
 INSTRUCTIONS_A_VALUE = {"Evaluate": 229, "Ranges": 29, "Count": 52}  # of a candidate at a sample
 

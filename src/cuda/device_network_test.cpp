@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <thread>
@@ -24,7 +25,7 @@ using test::random_tangle;
 constexpr int kParts = 3;
 const test::NetworkShape kTinyShape = {{8, 12, 16, 20, 24}, {0, 1, 1, 1, 1}, {20, 16, 12, 8}};
 
-std::shared_ptr<SimulatedDevice> simulated(SimulatedDeviceOptions options = {}) {
+std::shared_ptr<SimulatedDevice> simulated(const SimulatedDeviceOptions& options = {}) {
   return std::make_shared<SimulatedDevice>(options);
 }
 
@@ -63,17 +64,22 @@ TEST(DeviceNetwork, GivesTheProcessorsBitsForAnyConvolutions) {
 /// Sums that are as large as they can be; results beyond the range or half way between two integers.
 TEST(DeviceNetwork, RoundsAndClampsAsTheProcessorDoes) {
   Random random(22);
-  for (const auto& [weight, scale, offset] :
-       {std::tuple{-128, 1e9F, -1e9F}, {127, 1e9F, 1e9F}, {127, 1.F / (1 << 17), .5F}, {-128, 1.F / (1 << 17), .5F}}) {
+  struct Numbers {
+    int weight;
+    float scale, offset;
+  };
+  constexpr float kTied = 1.F / (1 << 17);
+  for (const Numbers& all : {Numbers{-128, 1e9F, -1e9F}, {127, 1e9F, 1e9F}, {127, kTied, 0.5F}, {-128, kTied, 0.5F}}) {
     Network network;
     const auto add = [&](const Convolution& c) {
       const int made = test::add_random(network, random, c);
-      std::ranges::fill(network.layers.back().weights, static_cast<std::int8_t>(weight));
-      std::ranges::fill(network.layers.back().scale, scale);
-      std::ranges::fill(network.layers.back().offset, offset);
+      std::ranges::fill(network.layers.back().weights, static_cast<std::int8_t>(all.weight));
+      std::ranges::fill(network.layers.back().scale, all.scale);
+      std::ranges::fill(network.layers.back().offset, all.offset);
       return made;
     };
     const int half = add({.stride = 2, .inputs = kNetworkInputs, .outputs = 1024});
+    std::ranges::fill(network.layers.back().weights, std::int8_t{127});
     std::ranges::fill(network.layers.back().offset, 255.F);
     network.classes_of = add({.input = half, .inputs = 1024, .outputs = kParts + 1, .wide = true}) - 1;
     const int quarter = add({.input = half, .stride = 2, .inputs = 1024, .outputs = 40});

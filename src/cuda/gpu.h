@@ -64,7 +64,8 @@ GPU_FUNCTION std::int32_t add_products(std::int32_t sum, std::uint32_t values, s
 #if defined(__CUDA_ARCH__)  // CUDA has no name for the instruction with one sign
   asm("dp4a.u32.s32 %0, %1, %2, %0;" : "+r"(sum) : "r"(values), "r"(weights));
 #else
-  for (int at = 0; at < 32; at += 8) sum += int(values >> at & 255U) * static_cast<std::int8_t>(weights >> at);
+  const auto product = [&](int at) { return int(values >> at & 255U) * static_cast<std::int8_t>(weights >> at); };
+  sum += product(0) + product(8) + product(16) + product(24);
 #endif
   return sum;
 }

@@ -120,7 +120,7 @@ TEST(RealFramesOnADevice, GiveTheSameInTheSimulator) {
 // Labels: real slow
 TEST(RealFramesOnADevice, GiveTheSameInTheSimulatorByTheDefaultNetwork) {
   VESALIUS_NEEDS_SHARED();
-  constexpr std::size_t kSlower = 10;
+  constexpr std::size_t kSlower = 20;
   expect_same_on_real_frames(shared, shipped("default.model"), std::make_shared<gpu::SimulatedDevice>(),
                              kSlower * frame_step());
 }
