@@ -17,12 +17,15 @@
 #include "bench/gpu/count_reads.h"
 #include "bench/gpu/timed_device.h"
 #include "cuda/cuda_device.h"
+#include "cuda/cuda_labeller.h"
 #include "cuda/device_labeller.h"
 #include "simulator/simulated_device.h"
 #include "vesalius/base/keep_memory.h"
+#include "vesalius/base/pixel_grid.h"
 #include "vesalius/detect.h"
 #include "vesalius/error.h"
 #include "vesalius/model_file.h"
+#include "vesalius/network/network.h"
 #include "vesalius/open_source.h"
 #include "vesalius/parallel.h"
 
@@ -76,6 +79,22 @@ Json count(const Forest& forest, const Frame& frame, float gate) {
           {"logit_bytes", reads.logit_bytes}};
 }
 
+/// For each convolution of a network that sees 320x256 pixels: its threads, and the steps that each takes one after the
+/// other, of kReadChannels inputs at a place of the window (convolve.cuh).
+Json network_counts(const Network& network) {
+  const auto groups = [](int count, int of) { return (count + of - 1) / of; };
+  const std::vector<NetworkPicture> pictures = pictures_of(network);
+  Json layers = Json::array();
+  for (std::size_t n = 0; n < network.layers.size(); ++n) {
+    const Convolution& c = network.layers[n];
+    const int width = 320 >> pictures[n + 1].halvings, height = 256 >> pictures[n + 1].halvings;
+    layers.push_back(
+        {{"threads", height * groups(width, gpu::kConvolvePixels) * groups(c.outputs, gpu::kConvolveChannels)},
+         {"steps", c.side * c.side * groups(c.inputs, gpu::kReadChannels)}});
+  }
+  return layers;
+}
+
 /// Milliseconds of each kind of work for the labels of one picture, every pixel looked at.
 Json kernel_times(const Forest& forest, const std::shared_ptr<gpu::Device>& device, const Frame& frame, int rounds) {
   const auto timed = std::make_shared<gpu::TimedDevice>(device);
@@ -101,7 +120,7 @@ Json kernel_times(const Forest& forest, const std::shared_ptr<gpu::Device>& devi
   return medians;
 }
 
-Json measure(const Arguments& arguments, const Model& model, const std::vector<Frame>& frames,
+Json measure(const Arguments& arguments, const Model& model, const Model& network, const std::vector<Frame>& frames,
              const std::shared_ptr<gpu::Device>& device) {
   Json figures{{"device", device->name()}, {"processor_threads", thread_count()}};
   if (!arguments.simulated) {
@@ -138,6 +157,12 @@ Json measure(const Arguments& arguments, const Model& model, const std::vector<F
                           {"device, a picture of a batch", batch_ms / arguments.batch},
                           {"device, a picture of a batch, gated", gated_ms / arguments.batch},
                           {"processor", processor_ms}};
+  const auto label_ms = [&](const std::shared_ptr<const Labeller>& labeller) {
+    const Frame grid = every_nth(frame, grid_step(frame.camera, {}));
+    return median_ms(arguments.rounds, [&] { labeller->label(grid); });
+  };
+  figures["network_ms"] = {{"device", label_ms(gpu::make_device_labeller(network, device))},
+                           {"processor", label_ms(vesalius::on_device(network).labeller)}};
   const auto detect_ms = [&](const std::shared_ptr<const Labeller>& labeller, int threads) {
     const ThreadLimit limit(threads);
     Model placed = model;
@@ -158,10 +183,12 @@ Json measure(const Arguments& arguments, const Model& model, const std::vector<F
 void run(const Arguments& arguments) {
   keep_freed_memory();
   const Model model = load_model(VESALIUS_SOURCE_DIR "/data/models/default.forest");
+  const Model network = load_model(VESALIUS_SOURCE_DIR "/data/models/default.model");
   const std::vector<Frame> frames = read_frames(arguments.frames);
   constexpr float kNoGate = 2.F;
   Json figures{{"counts", count(model.forest, frames.front(), kNoGate)},
-               {"gated_counts", count(model.forest, frames.front(), LabelOptions{}.gate)}};
+               {"gated_counts", count(model.forest, frames.front(), LabelOptions{}.gate)},
+               {"network_counts", network_counts(*network.network)}};
   if (!arguments.count_only) {
     std::shared_ptr<gpu::Device> device;
     if (arguments.simulated) {
@@ -169,7 +196,7 @@ void run(const Arguments& arguments) {
     } else {
       device = gpu::open_cuda_device(arguments.device);
     }
-    figures["measured"] = measure(arguments, model, frames, device);
+    figures["measured"] = measure(arguments, model, network, frames, device);
   }
   const std::string text = figures.dump(1) + "\n";
   if (arguments.json.empty()) {

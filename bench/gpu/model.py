@@ -52,6 +52,8 @@ INSTRUCTIONS_TO_FIND_ONE = 142
 INSTRUCTIONS_A_CLASS = 28  # of choosing
 NEIGHBOURS = 25
 LANES = 16  # threads of a pixel
+INSTRUCTIONS_A_STEP = 63  # of a network, 32 of them four products each
+STEP_CYCLES = 200  # until the next step of a thread: its weights come from the second level
 INSTRUCTIONS_A_VALUE = {"Evaluate": 229, "Ranges": 29, "Count": 52}  # of a candidate at a sample
 
 
@@ -108,6 +110,17 @@ def print_table(what, counts, kernels):
     print()
 
 
+def print_network(layers):
+    """A convolution takes as long as its instructions, or as the steps of a thread one after the other."""
+    print("| predicted, us | the network of 320x256 | of it starts of kernels |\n|---|---|---|")
+    for card in CARDS:
+        starts = START_US * len(layers)
+        cycles = sum(max(layer["threads"] / 32 * layer["steps"] * INSTRUCTIONS_A_STEP / (4 * ISSUE * card.multiprocessors),
+                         layer["steps"] * STEP_CYCLES) for layer in layers)
+        print(f"| {card.name} | {starts + cycles / (card.ghz * 1e3):.0f} | {starts:.0f} |")
+    print()
+
+
 def print_training(kernels):
     """Values of eq. 1 a second where they are computed, ranged and counted; instructions are what bounds them."""
     print("| predicted | values of eq. 1 a second |\n|---|---|")
@@ -130,6 +143,7 @@ def main():
     kernels = json.loads(arguments.kernels.read_text())
     for what, key in (("Every pixel is looked at", "counts"), ("With the gate", "gated_counts")):
         print_table(what, figures[key], kernels)
+    print_network(figures["network_counts"])
     print_training(kernels)
     if arguments.measured:
         for device, ms in json.loads(arguments.measured.read_text())["measured"]["kernel_ms"].items():

@@ -46,9 +46,9 @@ const std::string& labeller_recipe(const Model& model);
 /// A kind of device besides the processor that labels pixels.
 struct LabellerDevice {
   std::string name;  ///< as users write it: "cuda"
-  /// Returns a labeller on device `number`, from 0 on, of this kind. Throws Error for an inconsistent forest and
-  /// DeviceError where the device is not there or cannot take the forest.
-  std::function<std::shared_ptr<const Labeller>(Forest forest, int number)> make;
+  /// Returns a labeller of the model's forest or network on device `number`, from 0 on, of this kind. Throws Error for
+  /// an inconsistent one and DeviceError where the device is not there or cannot take it.
+  std::function<std::shared_ptr<const Labeller>(const Model& model, int number)> make;
 };
 
 /// The name of a device in parts: "cuda:1" is number 1 of kind "cuda".
@@ -68,16 +68,15 @@ struct LabellerDevices {
 /// Throws UsageError, which says what is known.
 [[noreturn]] void throw_unknown_device(const std::string& device, const LabellerDevices& devices);
 
-/// Returns the model with a labeller in place of its forest, on `device`:
+/// Returns the model with a labeller in place of its forest or network, on `device`:
 ///   "cpu"               the processor
 ///   "NAME", "NAME:N"    the first or N-th device (from 0 on) of a kind, e.g. "cuda:1"
 ///   "auto"              the first device that can be had, otherwise the processor. A device that fails later is left
 ///                       for good, with a note, and its pictures are labelled on the processor: with a gate above 1 the
 ///                       same bits.
-/// A labeller that is there already stays. A network labels on the processor alone. A forest without a background class
-/// is shown cut-outs (CutOutLabeller), and judged by default_judge_of_cut_outs if the model has no judge. Throws Error
-/// for an inconsistent model, UsageError for a device that this build does not know and DeviceError for one that this
-/// machine does not have.
+/// A labeller that is there already stays. A forest without a background class is shown cut-outs (CutOutLabeller), and
+/// judged by default_judge_of_cut_outs if the model has no judge. Throws Error for an inconsistent model, UsageError
+/// for a device that this build does not know and DeviceError for one that this machine does not have.
 Model on_device(Model model, const std::string& device = "cpu", const LabellerDevices& devices = {});
 
 }  // namespace vesalius

@@ -3,13 +3,16 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "cuda/cuda_device.h"
 #include "cuda/device_labeller.h"
+#include "cuda/device_network.h"
 #include "cuda/test_forests.h"
 #include "simulator/simulated_device.h"
 #include "vesalius/error.h"
+#include "vesalius/network/test_networks.h"
 
 namespace vesalius::gpu {
 namespace {
@@ -52,6 +55,27 @@ TEST(Card, GivesTheProcessorsBitsForEveryKindOfForest) {
           EXPECT_EQ(mean.sums, mean_filter(expected, depth, camera, {}).sums);
         }
       }
+    }
+  }
+}
+
+// Labels: gpu
+TEST(Card, GivesTheProcessorsBitsForNetworks) {
+  VESALIUS_NEEDS_CARD();
+  constexpr int kParts = 25;
+  Random random(7);
+  std::vector<Network> networks = {test::random_network(random, test::kLargeShape, kParts)};
+  for (int n = 0; n < 20; ++n) networks.push_back(test::random_tangle(random, kParts, 40));
+  for (const Network& network : networks) {
+    const DeviceNetwork card(network, kParts, open_cuda_device(0));
+    const NetworkRunner processor(network, kParts);
+    for (const auto& [width, height] : {std::pair{320, 256}, {32, 64}}) {
+      const NetworkInput input = test::random_input(random, width, height);
+      NetworkResult found, expected;
+      card.run(input, found);
+      processor.run(input, expected);
+      EXPECT_TRUE(found.classes.values == expected.classes.values);
+      EXPECT_TRUE(found.person.values == expected.person.values);
     }
   }
 }

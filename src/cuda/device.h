@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cuda/kernel_call.h"
 #include "cuda/launch_shape.h"
@@ -97,5 +98,13 @@ class DeviceArray {
 
 template <class T>
 using PinnedArray = DeviceArray<T, true>;
+
+/// Starts to copy values, which must stay as they are until `stream` is waited for, to new memory of a device.
+template <class T>
+DeviceArray<T> uploaded(const std::shared_ptr<Device>& device, Stream& stream, const std::vector<T>& values) {
+  DeviceArray<T> array(device, values.size());
+  if (!values.empty()) stream.copy_to_device(array.data(), values.data(), array.bytes());
+  return array;
+}
 
 }  // namespace vesalius::gpu

@@ -18,18 +18,6 @@ namespace {
 
 static_assert(kGateStep == BackgroundGate::kStep && kGuideMm == BackgroundGate::kGuideMm, "as kernels gate");
 
-/// Copies values to new memory of a device.
-template <class T>
-DeviceArray<T> uploaded(const std::shared_ptr<Device>& device, Stream& stream, const std::vector<T>& values) {
-  DeviceArray<T> array(device, values.size());
-  if (!values.empty()) stream.copy_to_device(array.data(), values.data(), array.bytes());
-  return array;
-}
-
-unsigned blocks_for(std::uint32_t threads, unsigned of_block) {
-  return std::max(1U, (threads + of_block - 1) / of_block);
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> groups_of(const LogitLayout& layout) {

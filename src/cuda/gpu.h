@@ -11,6 +11,7 @@
 //   GPU_KERNEL                       before a kernel
 //   GPU_FUNCTION                     before a function that kernels call
 //   GPU_SHARED(type, name, count)    an array in the block's shared memory, undefined at first
+//   GPU_UNROLL                       before a loop whose body is to be written out
 //   block_x() block_y()              the block's place among all
 //   threads_in_block()
 //   add(place, value)                atomic; returns what was there before
@@ -19,6 +20,7 @@
 //   rounded(x)                       the nearest integer, of two the one further from zero
 //   logarithm(x)                     for display only: its last bits differ from card to card
 //   bits_as_float(x)
+//   add_products(sum, values, weights)   four bytes of 0 to 255 times four with a sign
 
 #include <cstdint>
 
@@ -29,6 +31,7 @@
 #define GPU_SHARED(type, name, count) __shared__ type name[count]
 #define GPU_PHASE(thread) for (unsigned thread = threadIdx.x, once_ = 1; once_ != 0; once_ = 0, __syncthreads())
 #define GPU_LAST_PHASE(thread) for (unsigned thread = threadIdx.x, once_ = 1; once_ != 0; once_ = 0)
+#define GPU_UNROLL _Pragma("unroll")
 
 namespace vesalius::gpu {
 
@@ -54,3 +57,17 @@ GPU_FUNCTION std::int32_t float_as_bits(float x) { return __float_as_int(x); }
 #error \
     "kernels need the words of whoever runs them before their text: nvcc's, hipcc's or the simulator's (simulator/gpu_words.h)"
 #endif
+
+namespace vesalius::gpu {
+
+GPU_FUNCTION std::int32_t add_products(std::int32_t sum, std::uint32_t values, std::uint32_t weights) {
+#if defined(__CUDA_ARCH__)  // CUDA has no name for the instruction with one sign
+  asm("dp4a.u32.s32 %0, %1, %2, %0;" : "+r"(sum) : "r"(values), "r"(weights));
+#else
+  const auto product = [&](int at) { return int(values >> at & 255U) * static_cast<std::int8_t>(weights >> at); };
+  sum += product(0) + product(8) + product(16) + product(24);
+#endif
+  return sum;
+}
+
+}  // namespace vesalius::gpu

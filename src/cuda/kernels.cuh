@@ -3,6 +3,7 @@
 // The kernels, in the words of gpu.h. Those that share a text with the processor's side include it (feature.h); the
 // others do the same operations in the same order wherever order shows in the result, and are tested for equal bits.
 
+#include "cuda/convolve.cuh"
 #include "cuda/gpu.h"
 #include "cuda/kernels.h"
 #include "cuda/launch_shape.h"
@@ -87,13 +88,6 @@ struct WalkNode {
   int du1, dv1, du2, dv2;
   std::int32_t threshold_mm;
   std::uint32_t link;
-};
-
-struct alignas(8) TwoWords {
-  std::uint32_t word[2];
-};
-struct alignas(16) FourWords {
-  std::uint32_t word[4];
 };
 
 /// Nodes of two words (PackedTree).

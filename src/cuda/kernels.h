@@ -3,6 +3,7 @@
 // What kernels (kernels.cuh) are told. Pictures of one size are worked on together, a camera each: a kernel's threads
 // go over the pixels of all of them. All pointers are to the device's memory.
 
+#include <cstddef>
 #include <cstdint>
 
 #include "cuda/kernel_call.h"
@@ -164,9 +165,51 @@ struct AskNeighboursArguments {
   std::uint8_t* labels = nullptr;  ///< kBackground where there is no part
 };
 
+/// What is read or written at once.
+struct alignas(8) TwoWords {
+  std::uint32_t word[2];
+};
+struct alignas(16) FourWords {
+  std::uint32_t word[4];
+};
+
+/// A picture inside a network, pixel after pixel, row after row: narrow values with room for a multiple of
+/// kReadChannels, of which those beyond the picture's channels are undefined, or wide ones.
+struct NetworkValues {
+  std::uint8_t* narrow = nullptr;
+  std::int16_t* wide = nullptr;  ///< one of both is null
+  int width = 0, height = 0;
+  int room = 0;  ///< values of a pixel
+
+  constexpr std::size_t place(int x, int y) const {
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
+           static_cast<std::size_t>(room);
+  }
+};
+inline constexpr int kReadChannels = 8;  ///< that are read at once
+/// What a thread makes: pixels beside each other, and channels.
+inline constexpr int kConvolvePixels = 4;
+inline constexpr int kConvolveChannels = 4;
+
+/// One convolution of a network (vesalius/network/network.h). For every kConvolvePixels pixels of a row a thread for
+/// each group of kConvolveChannels channels, blocks_y: rows of the result.
+struct ConvolveArguments {
+  static constexpr const char* kName = "convolve";
+  NetworkValues in, out;
+  NetworkValues added;  ///< both of its pointers are null where nothing is; of half the size it is enlarged
+  float added_scale = 0.F;
+  std::uint32_t outside_word = 0;  ///< four values outside of what is read
+  int side = 3, stride = 1, outputs = 0;
+  /// [row][column][four inputs][group of outputs], a word for each output; 0 for channels that are not there.
+  const FourWords* weights = nullptr;
+  const float* scale = nullptr;  ///< [output]
+  const float* offset = nullptr;
+};
+
 /// All kernels of labelling.
-using LabelKernels = KernelList<SelectArguments, WalkArguments, AddArguments, LogitArguments, GateArguments,
-                                SettleArguments, MeanArguments, ChooseAloneArguments, AskNeighboursArguments>;
+using LabelKernels =
+    KernelList<SelectArguments, WalkArguments, AddArguments, LogitArguments, GateArguments, SettleArguments,
+               MeanArguments, ChooseAloneArguments, AskNeighboursArguments, ConvolveArguments>;
 
 /// Threads that share a pixel, neighbours so that they read a leaf's logits or a pixel's sums together: four logits
 /// each, two classes each.

@@ -17,11 +17,16 @@ namespace {
 
 using SharedLabeller = std::shared_ptr<const Labeller>;
 
+SharedLabeller make_on_processor(Model model) {
+  if (model.network == nullptr) return std::make_shared<ForestLabeller>(std::move(model.forest));
+  return std::make_shared<NetworkLabeller>(*model.network, model.body.part_count());
+}
+
 /// Labels on a device until it fails, from then on on the processor.
 class RescuedLabeller : public Labeller {
  public:
-  RescuedLabeller(SharedLabeller device, Forest forest, std::function<void(const std::string&)> note)
-      : device_(std::move(device)), forest_(std::move(forest)), note_(std::move(note)) {}
+  RescuedLabeller(SharedLabeller device, Model model, std::function<void(const std::string&)> note)
+      : device_(std::move(device)), model_(std::move(model)), note_(std::move(note)) {}
 
   void label_into(const Frame& frame, float gate, Posteriors& out) const override {
     if (!done([&] { device_->label_into(frame, gate, out); })) processor().label_into(frame, gate, out);
@@ -48,32 +53,32 @@ class RescuedLabeller : public Labeller {
   }
 
   const Labeller& processor() const {
-    std::call_once(once_, [&] { processor_ = std::make_unique<ForestLabeller>(std::move(forest_)); });
+    std::call_once(once_, [&] { processor_ = make_on_processor(std::move(model_)); });
     return *processor_;
   }
 
   SharedLabeller device_;
-  mutable Forest forest_;  ///< until the processor takes it
+  mutable Model model_;  ///< until the processor takes it
   std::function<void(const std::string&)> note_;
   mutable std::atomic<bool> lost_ = false;
   mutable std::once_flag once_;
-  mutable std::unique_ptr<const ForestLabeller> processor_;
+  mutable SharedLabeller processor_;
 };
 
-SharedLabeller make_on_any(Forest forest, const LabellerDevices& devices) {
+SharedLabeller make_on_any(Model model, const LabellerDevices& devices) {
   const auto note = [&](const std::string& text) {
     if (devices.note) devices.note(text);
   };
   if (devices.kinds.empty()) note("this build knows no device but the processor, which labels");
   for (const LabellerDevice& kind : devices.kinds) {
     try {
-      SharedLabeller labeller = kind.make(forest, 0);
-      return std::make_shared<RescuedLabeller>(std::move(labeller), std::move(forest), devices.note);
+      SharedLabeller labeller = kind.make(model, 0);
+      return std::make_shared<RescuedLabeller>(std::move(labeller), std::move(model), devices.note);
     } catch (const DeviceError& e) {
       note(std::string(e.what()) + "; the processor labels");
     }
   }
-  return std::make_shared<ForestLabeller>(std::move(forest));
+  return make_on_processor(std::move(model));
 }
 
 }  // namespace
@@ -95,30 +100,14 @@ DeviceName parse_device(const std::string& name) {
 
 namespace {
 
-SharedLabeller make_labeller(Forest forest, const std::string& device, const LabellerDevices& devices) {
-  if (device == "cpu") return std::make_shared<ForestLabeller>(std::move(forest));
-  if (device == "auto") return make_on_any(std::move(forest), devices);
+SharedLabeller make_labeller(Model model, const std::string& device, const LabellerDevices& devices) {
+  if (device == "cpu") return make_on_processor(std::move(model));
+  if (device == "auto") return make_on_any(std::move(model), devices);
   const DeviceName wanted = parse_device(device);
   for (const LabellerDevice& kind : devices.kinds) {
-    if (kind.name == wanted.kind) return kind.make(std::move(forest), wanted.number);
+    if (kind.name == wanted.kind) return kind.make(model, wanted.number);
   }
   throw_unknown_device(device, devices);
-}
-
-/// Makes the labeller of a network, which runs on the processor.
-SharedLabeller make_labeller(const Network& network, int parts, const std::string& device,
-                             const LabellerDevices& devices) {
-  const bool automatic = device == "auto";
-  if (!automatic && device != "cpu") {
-    const DeviceName wanted = parse_device(device);
-    if (std::ranges::count(devices.kinds, wanted.kind, &LabellerDevice::name) == 0) {
-      throw_unknown_device(device, devices);
-    }
-    throw UsageError("device \"" + device +
-                     R"(": expected "cpu" or "auto" for a model with a network; one with a forest labels on cards)");
-  }
-  if (automatic && devices.note) devices.note("the model has a network; the processor labels");
-  return std::make_shared<NetworkLabeller>(network, parts);
 }
 
 }  // namespace
@@ -149,13 +138,13 @@ void check(const Model& model) {
 Model on_device(Model model, const std::string& device, const LabellerDevices& devices) {
   check(model);
   if (model.labeller != nullptr) return model;
-  if (model.network != nullptr) {
-    model.labeller = make_labeller(*model.network, model.body.part_count(), device, devices);
-    model.network = nullptr;
-    return model;
-  }
-  const bool background = model.forest.has_background, votes = !has_distributions(model.forest);
-  model.labeller = make_labeller(std::exchange(model.forest, {}), device, devices);
+  const bool background = model.network != nullptr || model.forest.has_background;
+  const bool votes = !has_distributions(model.forest);
+  Model labelling;
+  labelling.body = model.body;
+  labelling.forest = std::exchange(model.forest, {});
+  labelling.network = std::exchange(model.network, nullptr);
+  model.labeller = make_labeller(std::move(labelling), device, devices);
   if (background) return model;
   model.labeller = std::make_shared<CutOutLabeller>(std::move(model.labeller), votes);
   if (model.judge.empty()) model.judge = default_judge_of_cut_outs();

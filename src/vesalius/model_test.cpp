@@ -73,22 +73,22 @@ TEST(OnDevice, RefusesAnUnknownDevice) {
 /// A device that is lost after some pictures.
 class Failing : public Labeller {
  public:
-  Failing(Forest forest, int pictures) : forest_(std::move(forest)), left_(pictures) {}
+  Failing(const Model& model, int pictures) : model_(on_device(model)), left_(pictures) {}
   void label_into(const Frame& frame, float gate, Posteriors& out) const override {
     if (left_-- <= 0) throw DeviceError("test:0: lost");
-    forest_.label_into(frame, gate, out);
+    model_.labeller->label_into(frame, gate, out);
   }
 
  private:
-  ForestLabeller forest_;
+  Model model_;
   mutable int left_;
 };
 
 /// A kind of which a machine has `count`; each is lost after `pictures`. What is said is kept in `notes`.
 LabellerDevices failing_devices(int count, int pictures, std::vector<std::string>& notes) {
-  const auto make = [=](Forest forest, int number) -> std::shared_ptr<const Labeller> {
+  const auto make = [=](const Model& model, int number) -> std::shared_ptr<const Labeller> {
     if (number >= count) throw DeviceError("test:" + std::to_string(number) + ": not there");
-    return std::make_shared<Failing>(std::move(forest), pictures);
+    return std::make_shared<Failing>(model, pictures);
   };
   return {{{"test", make}}, [&notes](const std::string& note) { notes.push_back(note); }};
 }

@@ -16,6 +16,7 @@
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a name
 #define GPU_PHASE(thread) for (const unsigned thread : ::vesalius::gpu::Simulator::phase())
 #define GPU_LAST_PHASE(thread) GPU_PHASE(thread)
+#define GPU_UNROLL
 
 namespace vesalius::gpu {
 

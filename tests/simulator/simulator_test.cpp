@@ -109,7 +109,7 @@ TEST(SimulatedDevice, HasKernelsThatAreToldApartByTheirNames) {
   for (const SimulatedKernel& kernel : simulated_label_kernels()) {
     EXPECT_TRUE(names.insert(kernel.name).second) << kernel.name;
   }
-  EXPECT_EQ(names.size(), 9U);
+  EXPECT_EQ(names.size(), 10U);
 }
 
 TEST(SimulatedDevice, RefusesKernelsThatItWasNotMadeFor) {

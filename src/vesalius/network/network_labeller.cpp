@@ -138,9 +138,9 @@ void softmax_in_steps(const std::int16_t* logits, int count, int whole, std::uin
 }
 
 struct NetworkLabeller::Working {
-  Working(const Network& network, int parts) : runner(network, parts), classes(parts + 1) {}
+  Working(RunNetwork by, int parts) : run(std::move(by)), classes(parts + 1) {}
 
-  NetworkRunner runner;
+  RunNetwork run;
   int classes;
   struct Memory {
     NetworkInput input;
@@ -151,7 +151,12 @@ struct NetworkLabeller::Working {
 };
 
 NetworkLabeller::NetworkLabeller(const Network& network, int parts)
-    : working_(std::make_unique<const Working>(network, parts)) {}
+    : NetworkLabeller([runner = std::make_shared<const NetworkRunner>(network, parts)](
+                          const NetworkInput& input, NetworkResult& out) { runner->run(input, out); },
+                      parts) {}
+
+NetworkLabeller::NetworkLabeller(RunNetwork run, int parts)
+    : working_(std::make_unique<const Working>(std::move(run), parts)) {}
 
 NetworkLabeller::~NetworkLabeller() = default;
 
@@ -160,7 +165,7 @@ void NetworkLabeller::label_into(const Frame& frame, float gate, Posteriors& out
   check_sides(depth);
   Working::Memory memory = working_->memory.take();
   fill_network_input(depth, frame.camera.fx, memory.input);
-  working_->runner.run(memory.input, memory.result);
+  working_->run(memory.input, memory.result);
   Posteriors& half = memory.half;
   const int half_width = (depth.width() + 1) / 2, half_height = (depth.height() + 1) / 2;
   half.resize_like({.width = half_width,

@@ -3,7 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "vesalius/base/random.h"
 #include "vesalius/error.h"
@@ -194,16 +198,40 @@ Model network_model() {
   return model;
 }
 
-TEST(NetworkModel, LabelsOnTheProcessorAlone) {
-  const LabellerDevices devices{{{"card", [](const Forest&, int) { return nullptr; }}}};
-  EXPECT_NE(on_device(network_model()).labeller, nullptr);
-  EXPECT_THAT([&] { on_device(network_model(), "card:1", devices); },
-              ThrowsMessage<UsageError>(HasSubstr("expected \"cpu\" or \"auto\" for a model with a network")));
-  EXPECT_THAT([&] { on_device(network_model(), "loom", devices); },
+/// A labeller whose device, which runs the network as the processor does, is lost after one picture.
+std::shared_ptr<const Labeller> lost_after_one(const Model& model) {
+  const int parts = model.body.part_count();
+  const auto runner = std::make_shared<const NetworkRunner>(*model.network, parts);
+  const auto left = std::make_shared<std::atomic<int>>(1);
+  return std::make_shared<NetworkLabeller>(
+      [=](const NetworkInput& input, NetworkResult& out) {
+        if ((*left)-- <= 0) throw DeviceError("loom:1: lost");
+        runner->run(input, out);
+      },
+      parts);
+}
+
+TEST(NetworkModel, LabelsOnDevices) {
+  Random random(9, 0);
+  const Frame frame = frame_of(random_depth(random, 40, 30));
+  const Model processor = on_device(network_model());
+  const Posteriors expected = processor.labeller->label(frame);
+  std::vector<std::string> heard;
+  const LabellerDevices devices{{{"loom", [](const Model& model, int) { return lost_after_one(model); }}},
+                                [&](const std::string& note) { heard.push_back(note); }};
+  const Model model = on_device(network_model(), "loom:1", devices);
+  EXPECT_EQ(model.network, nullptr);
+  EXPECT_EQ(model.labeller->label(frame).sums, expected.sums);
+  EXPECT_THROW(model.labeller->label(frame), DeviceError);
+  const Model any = on_device(network_model(), "auto", devices);
+  for (int n = 0; n < 3; ++n) {
+    const Posteriors found = any.labeller->label(frame);
+    EXPECT_EQ(found.sums, expected.sums);
+    EXPECT_EQ(found.votes, expected.votes);
+  }
+  EXPECT_THAT(heard, ElementsAre("loom:1: lost; the processor goes on"));
+  EXPECT_THAT([&] { on_device(network_model(), "card", devices); },
               ThrowsMessage<UsageError>(HasSubstr("not known to this build")));
-  std::string heard;
-  on_device(network_model(), "auto", {{}, [&](const std::string& note) { heard = note; }});
-  EXPECT_THAT(heard, HasSubstr("the processor labels"));
 }
 
 TEST(NetworkModel, HasNoForestBeside) {

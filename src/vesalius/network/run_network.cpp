@@ -12,16 +12,6 @@ namespace {
 /// Products that are worth a task of their own: about 20 microseconds of a core with VNNI, where starting one takes 1.
 constexpr std::int64_t kTaskProducts = 2'000'000;
 
-void check_input(const NetworkInput& input) {
-  const auto fits = [](int side) { return side > 0 && side % kNetworkMultiple == 0; };
-  const std::size_t values =
-      static_cast<std::size_t>(input.width) * static_cast<std::size_t>(input.height) * kNetworkInputs;
-  if (fits(input.width) && fits(input.height) && input.values.size() == values) return;
-  throw Error("network: input of " + std::to_string(input.width) + "x" + std::to_string(input.height) + " pixels and " +
-              std::to_string(input.values.size()) + " values, expected multiples of " +
-              std::to_string(kNetworkMultiple) + " and " + std::to_string(kNetworkInputs) + " values a pixel");
-}
-
 /// Lays out a picture whose width and height `view` has, with everything that PictureView promises.
 void lay_out(const NetworkPicture& picture, int narrow_bytes, int fill, PictureView& view,
              std::vector<std::int16_t>& memory) {
@@ -48,6 +38,16 @@ void copy_input(const NetworkInput& input, int value_bytes, const PictureView& t
 }
 
 }  // namespace
+
+void check(const NetworkInput& input) {
+  const auto fits = [](int side) { return side > 0 && side % kNetworkMultiple == 0; };
+  const std::size_t values =
+      static_cast<std::size_t>(input.width) * static_cast<std::size_t>(input.height) * kNetworkInputs;
+  if (fits(input.width) && fits(input.height) && input.values.size() == values) return;
+  throw Error("network: input of " + std::to_string(input.width) + "x" + std::to_string(input.height) + " pixels and " +
+              std::to_string(input.values.size()) + " values, expected multiples of " +
+              std::to_string(kNetworkMultiple) + " and " + std::to_string(kNetworkInputs) + " values a pixel");
+}
 
 NetworkRunner::NetworkRunner(const Network& network, int parts)
     : classes_of_(static_cast<std::size_t>(network.classes_of) + 1),
@@ -89,7 +89,7 @@ void NetworkRunner::run_layer(const Layer& layer, const std::vector<PictureView>
 }
 
 void NetworkRunner::run(const NetworkInput& input, NetworkResult& out) const {
-  check_input(input);
+  check(input);
   Workspace space = spaces_.take();
   prepare(input.width, input.height, space);
   lay_out_head(classes_of_, space, out.classes);

@@ -17,6 +17,9 @@ struct NetworkInput {
   std::vector<std::uint8_t> values = {};
 };
 
+/// Throws Error if `input` has not the size that NetworkInput says.
+void check(const NetworkInput& input);
+
 /// `channels` numbers a pixel, pixel after pixel, row after row.
 struct WideImage {
   int width = 0;

@@ -70,6 +70,48 @@ inline Network random_network(Random& random, const NetworkShape& shape, int par
   return network;
 }
 
+/// Random convolutions between the input and the heads: every one reads one of those before, and may add one.
+inline Network random_tangle(Random& random, int parts, int most_channels) {
+  Network network;
+  const auto any = [&](int count) { return int(random.below(static_cast<std::uint32_t>(count))); };
+  const auto add = [&](Convolution c, int channels) {
+    const std::vector<NetworkPicture> pictures = pictures_of(network);
+    const NetworkPicture& read = pictures[static_cast<std::size_t>(c.input)];
+    c.inputs = read.channels;
+    c.outputs = channels > 0 ? channels : 1 + any(most_channels);
+    const int halvings = read.halvings + c.stride - 1;
+    const int other = any(int(pictures.size()));
+    const NetworkPicture& added = pictures[static_cast<std::size_t>(other)];
+    if (other > 0 && (added.halvings == halvings || added.halvings == halvings + 1) &&
+        (channels == 0 || channels == added.channels)) {
+      c.added = other;
+      c.outputs = added.channels;
+      c.added_scale = float(random.uniform(-1.0, 1.0));
+    }
+    return add_random(network, random, c);
+  };
+  const int half = add({.stride = 2}, 0);
+  const int quarter = add({.input = half, .stride = 2}, 0);
+  for (int n = 0; n < 12; ++n) {
+    const std::vector<NetworkPicture> pictures = pictures_of(network);
+    int input = any(int(pictures.size()));
+    while (pictures[static_cast<std::size_t>(input)].wide) input = any(int(pictures.size()));
+    const bool halve = pictures[static_cast<std::size_t>(input)].halvings < 5 && any(3) == 0;
+    add({.input = input, .side = 1 + 2 * any(2), .stride = halve ? 2 : 1, .wide = any(4) == 0}, 0);
+  }
+  // The heads read, if there is one, a picture made last.
+  const std::vector<NetworkPicture> pictures = pictures_of(network);
+  int last_half = half, last_quarter = quarter;
+  for (int n = quarter; n < int(pictures.size()); ++n) {
+    const NetworkPicture& p = pictures[static_cast<std::size_t>(n)];
+    if (!p.wide && p.halvings == 1) last_half = n;
+    if (!p.wide && p.halvings == 2) last_quarter = n;
+  }
+  network.classes_of = add({.input = last_half, .side = 3, .wide = true}, parts + 1) - 1;
+  network.person_of = add({.input = last_quarter, .side = 1, .wide = true}, kPersonNumbers) - 1;
+  return network;
+}
+
 inline NetworkInput random_input(Random& random, int width, int height) {
   NetworkInput input{width, height, {}};
   for (int i = 0; i < width * height * kNetworkInputs; ++i) {
