@@ -26,10 +26,12 @@ Joint derive_joint(const JointDefinition& definition, const Skeleton& skeleton, 
   Joint joint{State::none, Eigen::Vector3f::Constant(kNaN), 0.F};
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float weight = 0.F;
-  float confidence = 0.F;
+  float confidence = 0.F, whole = 0.F;
   bool all_observed = true;
   for (std::size_t i = 0; i < definition.parts.size(); ++i) {
     const SkeletonPart& part = skeleton.parts[definition.parts[i]];
+    const float influence = std::abs(definition.weights[i]);
+    whole += influence;
     if (part.state == State::none) {
       all_observed = false;
       continue;
@@ -37,12 +39,12 @@ Joint derive_joint(const JointDefinition& definition, const Skeleton& skeleton, 
     all_observed = all_observed && part.state == State::observed;
     sum += definition.weights[i] * part.centre;
     weight += definition.weights[i];
-    confidence += definition.weights[i] * part.confidence;
+    confidence += influence * part.confidence;
   }
   if (definition.parts.empty() || weight < kLeastWeight) return joint;
   const Eigen::Vector3f surface = sum / weight;
   joint.position = surface + definition.depth_offset_m * surface.normalized() + definition.up_offset_m * up;
-  joint.confidence = std::clamp(confidence, 0.F, 1.F);  // relative to the whole weight, so missing parts lower it
+  joint.confidence = std::clamp(confidence / whole, 0.F, 1.F);  // missing parts lower it
   joint.state = all_observed ? State::observed : State::predicted;
   return joint;
 }

@@ -79,6 +79,21 @@ TEST(DeriveJoints, HasNoJointThatTheBodyLacks) {
   EXPECT_EQ(joint_of(sets, "coco17", "r_knee").state, State::observed);
 }
 
+TEST(DeriveJoints, LiesBeyondAPartWithANegativeWeightForAnother) {
+  const JointDefinition wrist{
+      "wrist", {paper_body().find_part("l_forearm"), paper_body().find_part("l_elbow")}, {1.5F, -0.5F}, 0.F, 0.F};
+  Skeleton s = whole_skeleton();
+  part_of(s, "l_elbow").centre = {0.F, 0.F, 2.F};
+  part_of(s, "l_forearm").centre = {0.2F, 0.F, 2.F};
+  const Joint whole = derive_joint(wrist, s, kUp);
+  EXPECT_LT((whole.position - Eigen::Vector3f(0.3F, 0.F, 2.F)).norm(), 1e-5F);
+  EXPECT_FLOAT_EQ(whole.confidence, 0.8F);
+  part_of(s, "l_elbow") = {};
+  const Joint half = derive_joint(wrist, s, kUp);
+  EXPECT_LT((half.position - Eigen::Vector3f(0.2F, 0.F, 2.F)).norm(), 1e-5F);
+  EXPECT_LT(half.confidence, whole.confidence);
+}
+
 TEST(DeriveJoints, NeedsHalfOfTheWeight) {
   Skeleton s = whole_skeleton();
   part_of(s, "l_elbow") = {};  // 0.6 of the joint
