@@ -6,38 +6,46 @@
 #include <iterator>
 
 #include "commands/synth/synth_recipe.h"
+#include "dataset/labelled_truth.h"
 #include "dataset/open_truth.h"
 #include "evaluation/evaluate_set.h"
 #include "evaluation/evaluation_joints.h"
 #include "fitted_toml.h"
 #include "learn/fit_tracks.h"
 #include "synth/fit_flesh.h"
+#include "vesalius/error.h"
 #include "vesalius/model.h"
 #include "vesalius/model_file.h"
 
 namespace vesalius {
 namespace {
 
-Model model_of(const BodyFit& fit) {
-  Model model = load_model(fit.model);
+Model model_of(const std::string& file) {
+  Model model = load_model(file);
   model.body = with_evaluation_joints(model.body);
   return on_device(std::move(model));
 }
 
 FittedBodyFile fit_people(const BodyFit& fit) {
-  const FrameScorer scorer(model_of(fit), {.detect = {}, .joint_set = fit.joint_set});
   std::vector<KnownPerson> people;
-  for (const std::string& source : fit.sources) {
-    const auto frames = open_truth(source, fit.step);
-    std::ranges::move(evaluate_set(*frames, {source, source, false, true}, scorer).known_people,
-                      std::back_inserter(people));
+  const BodyModel body = model_of(fit.models.front()).body;
+  for (const std::string& file : fit.models) {
+    const FrameScorer scorer(model_of(file), {.detect = {}, .joint_set = fit.joint_set});
+    if (part_names_of(scorer.body()) != part_names_of(body)) {
+      throw UsageError(fmt::format("{}: expected the parts of {}", file, fit.models.front()));
+    }
+    for (const std::string& source : fit.sources) {
+      const auto frames = open_truth(source, fit.step);
+      std::ranges::move(evaluate_set(*frames, {source, source, false, true}, scorer).known_people,
+                        std::back_inserter(people));
+    }
   }
   const std::string told = fmt::format("{} fitted to {} people\n", fit.what, people.size());
-  return {fit.what == "joints" ? joints_toml(people, scorer.body()) : parts_toml(people, scorer.body()), told};
+  return {fit.what == "joints" ? joints_toml(people, body) : parts_toml(people, body), told};
 }
 
 FittedBodyFile fit_tracks(const BodyFit& fit) {
-  const Model model = model_of(fit);
+  const Model model = model_of(fit.models.front());
   const FrameScorer scorer(model, {});
   const SequenceTrackerFactory trackers = sequence_trackers(model, {});
   std::vector<TrustSample> joints;
@@ -86,7 +94,11 @@ FittedBodyFile fit_flesh(const BodyFit& fit) {
 
 FittedBodyFile fit_body(const BodyFit& fit) {
   if (fit.what == "flesh") return fit_flesh(fit);
-  return fit.what == "joints" || fit.what == "parts" ? fit_people(fit) : fit_tracks(fit);
+  const bool of_frames = fit.what == "joints" || fit.what == "parts";
+  if (fit.models.empty() || (fit.models.size() > 1 && !of_frames)) {
+    throw UsageError(fmt::format("{}: {} models, expected one", fit.what, fit.models.size()));
+  }
+  return of_frames ? fit_people(fit) : fit_tracks(fit);
 }
 
 }  // namespace vesalius

@@ -11,7 +11,7 @@ namespace vesalius {
 struct BodyFit {
   std::string what;                    ///< joints, parts, trust, stances or flesh
   std::vector<std::string> sources{};  ///< frames with their truth; for trust and stances recordings
-  std::string model{};                 ///< finds the people in them
+  std::vector<std::string> models{};   ///< find the people in them, each for itself; one for trust and stances
   std::string joint_set{};             ///< joints: the only set to fit; empty: those of the truth
   std::string recipe{};                ///< flesh: whose bodies and poses are taken
   cli::AssetPlaces assets{};
@@ -25,7 +25,8 @@ struct FittedBodyFile {
   std::string told;  ///< how well it fits, lines for the user
 };
 
-/// Throws Error for sources that cannot be used and too few people in them.
+/// Throws UsageError for models of different parts or too many of them, Error for sources that cannot be used and too
+/// few people in them.
 FittedBodyFile fit_body(const BodyFit& fit);
 
 }  // namespace vesalius

@@ -65,13 +65,13 @@ class FitBody : public testing::Test {
 
 TEST_F(FitBody, FitsTheTrustToTheJointsOfClips) {
   const std::string recording = clip();
-  const FittedBodyFile fitted = fit_body({.what = "trust", .sources = {recording}, .model = small_});
+  const FittedBodyFile fitted = fit_body({.what = "trust", .sources = {recording}, .models = {small_}});
   EXPECT_THAT(fitted.told,
               ContainsRegex("trust in observed joints: [1-9][0-9]* of [1-9][0-9]* right; confidence and share"));
   const BodyTrust trust = parse_body_trust(fitted.toml, "trust.toml");
   EXPECT_NE(trust.observed.bias, builtin_trust().observed.bias);
   EXPECT_NEAR(trust.hidden.bias, builtin_trust().hidden.bias, 1e-3F) << "nobody is hidden unless asked for";
-  EXPECT_THAT(refusal({.what = "stances", .sources = {recording}, .model = small_}),
+  EXPECT_THAT(refusal({.what = "stances", .sources = {recording}, .models = {small_}}),
               HasSubstr("fitting the stances: "));
 }
 
@@ -86,10 +86,10 @@ TEST_F(FitBody, FitsTheJointSetOfTheTruth) {
   std::ofstream(folder_ / "frames/frames.csv") << "frame,people\na,1\n";
   std::ofstream(folder_ / "frames/joints.csv") << "frame,joint,x_m,y_m,z_m\na,head,0,-0.6,2.5\na,l_knee,0.1,0.5,2.5\n";
   write_png(frame.depth, path("frames/depth/a.png"));
-  const FittedBodyFile fitted = fit_body({.what = "joints", .sources = {path("frames")}, .model = capsule_});
+  const FittedBodyFile fitted = fit_body({.what = "joints", .sources = {path("frames")}, .models = {capsule_}});
   EXPECT_THAT(fitted.toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
   EXPECT_EQ(fitted.told, "joints fitted to 1 people\n");
-  EXPECT_THAT(refusal({.what = "trust", .sources = {path("frames")}, .model = capsule_}),
+  EXPECT_THAT(refusal({.what = "trust", .sources = {path("frames")}, .models = {capsule_}}),
               HasSubstr("fitting the trust: expected fitted bodies"));
 }
 

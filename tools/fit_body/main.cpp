@@ -19,7 +19,10 @@ int run(int argc, char** argv) {
   app.add_option("WHAT", fit.what)->required()->check(CLI::IsMember({"joints", "parts", "trust", "stances", "flesh"}));
   app.add_option("OUT", out, "File to write")->required();
   app.add_option("SOURCE", fit.sources, "Frames with their truth, as `vesalius evaluate` takes them; not for flesh");
-  app.add_option("-m,--model", fit.model, "Model that finds the people; not for flesh");
+  app.add_option(
+         "-m,--model", fit.models,
+         "Model that finds the people; for joints and parts also several, each of which finds them; not for flesh")
+      ->allow_extra_args(false);
   app.add_option("--step", fit.step, "Only the first of every N frames")->check(CLI::PositiveNumber);
   app.add_option("--joint-set", fit.joint_set, "joints: the set to fit, e.g. kinect20; by default the truth's choice");
   app.add_flag("--hidden", fit.hidden, "trust, stances: people who are hidden take part");
