@@ -20,8 +20,11 @@ namespace {
 constexpr double kHuber_m = 0.05;
 constexpr int kRounds = 12;  ///< rounds of reweighting; the weights change by less than a thousandth after ten
 constexpr std::size_t kMostTerms = 3;
-/// Share of the loss that another part must save.
+/// Share of the loss that another part must save, or an offset along the body: that is one of metres, right for people
+/// of one stature alone, where shares of the ways between parts grow with a limb.
 constexpr double kLeastGain = 0.02;
+/// Least weight of a part, either way: a joint counts as observed only where all of its parts are.
+constexpr double kLeastPart = 0.05;
 
 double loss(double error_m) {
   const double e = std::min(error_m, kPlacedJoint_m);
@@ -153,27 +156,29 @@ void set_weights(JointDefinition& joint, const std::vector<Term>& terms, const s
 double to_millimetres(double metres) { return std::round(1e3 * metres) / 1e3; }
 
 /// Fits the offsets of a joint whose weights are known, also to people of whom only some of its parts were given out.
-void fit_offsets(JointDefinition& joint, const std::vector<Prepared>& samples) {
+void fit_offsets(JointDefinition& joint, bool with_up, const std::vector<Prepared>& samples) {
   joint.depth_offset_m = joint.up_offset_m = 0.F;
-  PointFit fit(2);
+  const int columns = with_up ? 2 : 1;
+  PointFit fit(columns);
   for (const Prepared& one : samples) {
     const Joint surface = derive_joint(joint, one.skeleton, one.up);
     if (surface.state == State::none) continue;
     Eigen::Matrix3Xd rows(3, 2);
     rows << surface.position.normalized().cast<double>(), one.up.cast<double>();
-    fit.add(rows, (one.truth - surface.position).cast<double>());
+    fit.add(rows.leftCols(columns), (one.truth - surface.position).cast<double>());
   }
   if (fit.size() == 0) return;
   const Eigen::VectorXd offsets = fit.solve();
   joint.depth_offset_m = float(to_millimetres(offsets[0]));
-  joint.up_offset_m = float(to_millimetres(offsets[1]));
+  if (with_up) joint.up_offset_m = float(to_millimetres(offsets[1]));
 }
 
-/// Fits a joint to these terms. Returns nothing if a weight would be negative or too few samples have all terms.
-std::optional<JointDefinition> fit_terms(const JointDefinition& joint, const std::vector<Term>& terms,
+/// Fits a joint to these terms. Returns nothing if too few samples have all terms or one hardly moves the joint.
+std::optional<JointDefinition> fit_terms(const JointDefinition& joint, const std::vector<Term>& terms, bool with_up,
                                          const std::vector<Prepared>& samples) {
   const auto others = static_cast<Eigen::Index>(terms.size()) - 1;
-  PointFit fit(int(others) + 2);
+  const auto columns = others + (with_up ? 2 : 1);
+  PointFit fit{int(columns)};
   for (const Prepared& one : samples) {
     const std::optional<Eigen::Vector3d> first = middle(one.skeleton, terms[0]);
     if (!first) continue;
@@ -187,16 +192,16 @@ std::optional<JointDefinition> fit_terms(const JointDefinition& joint, const std
     if (!has_all) continue;
     rows.col(others) = first->normalized();
     rows.col(others + 1) = one.up.cast<double>();
-    fit.add(rows, one.truth.cast<double>() - *first);
+    fit.add(rows.leftCols(columns), one.truth.cast<double>() - *first);
   }
   if (fit.size() < kLeastJointSamples) return std::nullopt;
   const Eigen::VectorXd solved = fit.solve();
   std::vector<double> weights(1, 1.0 - solved.head(others).sum());
   for (Eigen::Index t = 0; t < others; ++t) weights.push_back(solved[t]);
-  if (*std::ranges::min_element(weights) < 0.0) return std::nullopt;
+  if (std::ranges::any_of(weights, [](double weight) { return std::abs(weight) < kLeastPart; })) return std::nullopt;
   JointDefinition fitted = joint;
   set_weights(fitted, terms, weights);
-  fit_offsets(fitted, samples);
+  fit_offsets(fitted, with_up, samples);
   return fitted;
 }
 
@@ -208,6 +213,32 @@ double mean_loss(const JointDefinition& joint, const std::vector<Prepared>& samp
     sum += loss(has ? double((derived.position - one.truth).norm()) : kPlacedJoint_m);
   }
   return sum / double(samples.size());
+}
+
+/// The definition of least loss so far.
+struct Best {
+  JointDefinition joint;
+  double loss = std::numeric_limits<double>::infinity();
+};
+
+/// Fits the joint to every choice of so many of the terms. One that saves too little of the loss before is not taken.
+void fit_choices(const JointDefinition& joint, const std::vector<Term>& terms, std::size_t count, bool with_up,
+                 const std::vector<Prepared>& samples, Best& best) {
+  double allowed = (1.0 - kLeastGain) * best.loss;
+  std::vector<int> chosen(terms.size(), 0);
+  std::fill_n(chosen.begin(), count, 1);
+  do {
+    std::vector<Term> some;
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      if (chosen[t] != 0) some.push_back(terms[t]);
+    }
+    const std::optional<JointDefinition> fitted = fit_terms(joint, some, with_up, samples);
+    if (!fitted) continue;
+    const double cost = mean_loss(*fitted, samples);
+    if (cost >= allowed) continue;
+    best = {*fitted, cost};
+    allowed = cost;
+  } while (std::ranges::prev_permutation(chosen).found);
 }
 
 bool is_set_of_parts(const JointSet& set, const BodyModel& body) {
@@ -265,26 +296,11 @@ JointDefinition fit_joint(const JointDefinition& joint, const std::vector<JointS
   const std::vector<Prepared> prepared = prepare(samples, joint, body);
   if (joint.parts.empty() || prepared.size() < kLeastJointSamples) return joint;
   const std::vector<Term> terms = candidate_terms(joint, body, with_neighbours);
-  JointDefinition best = joint;
-  double least = std::numeric_limits<double>::infinity();
+  Best best{.joint = joint};
   for (std::size_t count = 1; count <= std::min(kMostTerms, terms.size()); ++count) {
-    double allowed = (1.0 - kLeastGain) * least;
-    std::vector<int> chosen(terms.size(), 0);
-    std::fill_n(chosen.begin(), count, 1);
-    do {
-      std::vector<Term> some;
-      for (std::size_t t = 0; t < terms.size(); ++t) {
-        if (chosen[t] != 0) some.push_back(terms[t]);
-      }
-      const std::optional<JointDefinition> fitted = fit_terms(joint, some, prepared);
-      if (!fitted) continue;
-      const double cost = mean_loss(*fitted, prepared);
-      if (cost >= allowed) continue;
-      best = *fitted;
-      allowed = least = cost;
-    } while (std::ranges::prev_permutation(chosen).found);
+    for (const bool with_up : {false, true}) fit_choices(joint, terms, count, with_up, prepared, best);
   }
-  return best;
+  return best.joint;
 }
 
 std::vector<JointSet> fit_joint_sets(const std::vector<KnownPerson>& people, const BodyModel& body) {

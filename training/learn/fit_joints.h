@@ -20,13 +20,14 @@ struct JointSample {
 inline constexpr std::size_t kLeastJointSamples = 100;
 
 /// Returns the joint with parts, weights and offsets fitted to the samples: of its own parts and those linked to them
-/// at most three, with weights that are not negative, so that the joint stays among them where one is misplaced.
+/// at most three. Weights may be negative: a wrist lies beyond its forearm as seen from the elbow, however the arm is
+/// held and however long it is.
 /// Errors cost as Huber's loss does, up to a limit, since a part on the wrong limb says nothing about a joint's place;
 /// a joint that is not derived any more costs that limit. Samples count whose observed parts give the joint as it is. A
-/// joint that is its own mirror image stays so: its parts of both sides share a weight. Parts that hardly lower the
-/// loss are left out. Weights are rounded to hundredths, offsets to millimetres. Returns the joint as it is if it has
-/// no parts or fewer than kLeastJointSamples count.
-/// Without `with_neighbours` only its own parts are used.
+/// joint that is its own mirror image stays so: its parts of both sides share a weight. Parts and an offset along the
+/// body that hardly lower the loss are left out. Weights are rounded to hundredths, offsets to millimetres. Returns the
+/// joint as it is if it has no parts or fewer than kLeastJointSamples count. Without `with_neighbours` only its own
+/// parts are used.
 JointDefinition fit_joint(const JointDefinition& joint, const std::vector<JointSample>& samples, const BodyModel& body,
                           bool with_neighbours = true);
 
