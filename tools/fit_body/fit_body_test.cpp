@@ -89,6 +89,10 @@ TEST_F(FitBody, FitsTheJointSetOfTheTruth) {
   const FittedBodyFile fitted = fit_body({.what = "joints", .sources = {path("frames")}, .models = {capsule_}});
   EXPECT_THAT(fitted.toml, StartsWith("[[joint_set]]\nname = \"nite15\"\n"));
   EXPECT_EQ(fitted.told, "joints fitted to 1 people\n");
+  const BodyFit by_two{.what = "joints", .sources = {path("frames")}, .models = {capsule_, capsule_}};
+  EXPECT_EQ(fit_body(by_two).told, "joints fitted to 2 people\n");
+  EXPECT_THAT(refusal({.what = "trust", .sources = {path("frames")}, .models = {capsule_, capsule_}}),
+              HasSubstr("trust: 2 models, expected one"));
   EXPECT_THAT(refusal({.what = "trust", .sources = {path("frames")}, .models = {capsule_}}),
               HasSubstr("fitting the trust: expected fitted bodies"));
 }
