@@ -217,7 +217,7 @@ def make_stand_ins(program, source, folder):
     vesalius("synth", "-q", "--count", 3, "--seed", 6, "--format", "folder", "--out", folder / "rooms", *nobody)
     vesalius("convert", source / "data/sample", folder / "walking", "--to", "tum", "--rate", 30, "-q")
     vesalius("record", source / "data/sample", "--out", folder / "session.mcap", "-q")
-    vesalius("record", source / "data/sample", "--out", folder / "followed.mcap", "--track", "-q")
+    vesalius("record", source / "data/sample", "--out", folder / "followed.mcap", "--people", "-q")
     vesalius("detect", source / "data/sample", "--json", folder / "people.jsonl", "--track", "-q")
     (folder / "frames").symlink_to(source / "data/sample")
     (folder / "some.forest").symlink_to(source / "data/models/capsule.forest")
