@@ -23,6 +23,8 @@ struct Frame {
   std::optional<double> arrived_s = std::nullopt;
   /// Unit vector away from the ground in the optical frame, as a sensor of acceleration measured it; none without one.
   std::optional<Eigen::Vector3f> up = std::nullopt;
+  /// Quarter turns clockwise, 0 to 3, after which the picture is upright; none where nobody says so: then `up` tells.
+  std::optional<int> quarter_turns = std::nullopt;
 };
 
 /// Returns a frame of nothing but depth.

@@ -29,6 +29,7 @@
 #include "vesalius/score_person.h"
 #include "vesalius/search_skeletons.h"
 #include "vesalius/trace.h"
+#include "vesalius/upright.h"
 
 namespace vesalius {
 namespace {
@@ -384,8 +385,37 @@ Detector::Detector(Model model, DetectOptions options, std::shared_ptr<const App
   method_ = std::make_shared<const Method>(on_device(std::move(model)), options, std::move(appearance));
 }
 
+namespace {
+
+/// Finds the people in the upright frame and turns them back.
+Detection detect_turned(const Detector& detector, const Frame& given, int quarters, const AskPrior& ask, Trace* trace,
+                        StageTimes* times) {
+  const auto ask_turned = [&](const Frame&) {
+    Prior prior = ask(given);
+    check(prior, given);
+    return turned(std::move(prior), quarters);
+  };
+  Mask person;
+  Trace upright;
+  if (trace != nullptr && trace->person != nullptr) {
+    person = turned(*trace->person, quarters);
+    upright.person = &person;
+  }
+  Detection found = detector.detect(turned(given, quarters), ask_turned, trace != nullptr ? &upright : nullptr, times);
+  if (trace != nullptr) {
+    upright.person = trace->person;
+    *trace = turned(std::move(upright), 4 - quarters);
+  }
+  return turned(std::move(found), 4 - quarters);
+}
+
+}  // namespace
+
 Detection Detector::detect(const Frame& given, const AskPrior& ask, Trace* trace, StageTimes* times) const {
   check(given);
+  if (const int quarters = quarters_to_upright(given); quarters != 0) {
+    return detect_turned(*this, given, quarters, ask, trace, times);
+  }
   StageClock clock(times);
   Frame memory;
   const Frame& frame = without_blended(given, method_->options.blend, memory);
@@ -422,6 +452,11 @@ std::vector<Person> Detector::detect(const Frame& frame, Trace* trace, StageTime
 
 FrameLabels Detector::label(const Frame& given, const Mask* person) const {
   check(given);
+  if (const int quarters = quarters_to_upright(given); quarters != 0) {
+    const Mask inside = person != nullptr ? turned(*person, quarters) : Mask{};
+    const FrameLabels found = label(turned(given, quarters), person != nullptr ? &inside : nullptr);
+    return {turned(found.labels, 4 - quarters), turned(found.inside, 4 - quarters)};
+  }
   Frame memory;
   const Frame& frame = without_blended(given, method_->options.blend, memory);
   return on_grid(

@@ -20,6 +20,7 @@
 #include "vesalius/prior.h"
 #include "vesalius/score_person.h"
 #include "vesalius/trace.h"
+#include "vesalius/upright.h"
 
 namespace vesalius {
 namespace {
@@ -164,6 +165,31 @@ TEST(Detector, FindsThreePeopleAndTheirMasks) {
   }
   EXPECT_GE(people[0].score, people[1].score);
   EXPECT_GE(people[1].score, people[2].score);
+}
+
+TEST(Detector, FindsTheSamePeopleWithATurnedCameraInItsOwnFrame) {
+  const LabelledFrame truth = render(one_person(2.5F), kCamera, paper_body());
+  const Detector detector(truth_model(truth.labels, paper_body(), true));
+  Trace upright_trace, trace;
+  const std::vector<Person> upright = detector.detect(truth.frame, &upright_trace);
+  ASSERT_EQ(upright.size(), 1U);
+  for (int quarters = 1; quarters < 4; ++quarters) {
+    Frame frame = turned(truth.frame, 4 - quarters);
+    frame.quarter_turns = quarters;
+    const Mask expected = turned(upright[0].mask, 4 - quarters);
+    Prior prior;
+    prior.people.push_back({expected, {}, 2.F});
+    const std::vector<Person> people = detector.detect(frame, prior, &trace);
+    ASSERT_EQ(people.size(), 1U) << quarters;
+    EXPECT_EQ(people[0].mask, expected);
+    EXPECT_EQ(people[0].labels, turned(upright[0].labels, 4 - quarters));
+    EXPECT_EQ(people[0].score, upright[0].score);
+    for (std::size_t p = 0; p < upright[0].skeleton.parts.size(); ++p) {
+      EXPECT_EQ(people[0].skeleton.parts[p].centre, turned(upright[0].skeleton.parts[p].centre, 4 - quarters)) << p;
+    }
+    EXPECT_EQ(trace.labels, turned(upright_trace.labels, 4 - quarters));
+    EXPECT_EQ(detector.label(frame).labels, trace.labels);
+  }
 }
 
 TEST(Detector, FindsNobodyInAnEmptyRoom) {

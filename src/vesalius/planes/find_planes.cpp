@@ -262,8 +262,9 @@ Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptio
   return find_flat_surfaces(depth, camera, options).pixels;
 }
 
-std::optional<Plane> find_floor(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up) {
-  const Eigen::Vector3f down = up ? Eigen::Vector3f(-*up) : Eigen::Vector3f(Eigen::Vector3f::UnitY());
+std::optional<Plane> find_floor(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up,
+                                const Eigen::Vector3f& guess) {
+  const Eigen::Vector3f down = -up.value_or(guess);
   const float least = up ? kLevel : kLevelGuessed;
   std::optional<Plane> floor;
   for (const Plane& plane : planes) {

@@ -30,8 +30,9 @@ FlatSurfaces find_flat_surfaces(const DepthImage& depth, const Camera& camera, c
 Mask flat_pixels(const DepthImage& depth, const Camera& camera, const PlaneOptions& options);
 
 /// Returns the floor among the planes of a picture: the lowest that is level and below the camera; nothing if none is.
-/// `up` is the unit vector away from the ground in the optical frame. Without it the camera is taken to be held upright
-/// and tilted by less than 60 degrees.
-std::optional<Plane> find_floor(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up);
+/// `up` is the unit vector away from the ground in the optical frame. Without it the camera is taken to be tilted by
+/// less than 60 degrees from where `guess` is up.
+std::optional<Plane> find_floor(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up,
+                                const Eigen::Vector3f& guess = -Eigen::Vector3f::UnitY());
 
 }  // namespace vesalius

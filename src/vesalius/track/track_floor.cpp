@@ -33,10 +33,11 @@ void approach(Plane& plane, const Plane& to, float share) {
 
 }  // namespace
 
-void TrackFloor::update(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up, double passed_s) {
+void TrackFloor::update(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up, double passed_s,
+                        const Eigen::Vector3f& guess) {
   std::optional<Eigen::Vector3f> upwards = up;
   if (!upwards && floor_) upwards = -floor_->normal;
-  const std::optional<Plane> seen = find_floor(planes, upwards);
+  const std::optional<Plane> seen = find_floor(planes, upwards, guess);
   unseen_s_ += passed_s;
   if (seen && floor_ && same(*seen, *floor_, kSameCosine, kSameHeight_m)) {
     follow(*seen, passed_s);

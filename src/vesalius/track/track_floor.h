@@ -15,8 +15,9 @@ namespace vesalius {
 class TrackFloor {
  public:
   /// Takes the planes of a frame (find_planes), `passed_s` seconds after the one before, and up in the optical frame as
-  /// a sensor measured it, if one did. Without, up is that of the floor so far, or about that of the picture.
-  void update(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up, double passed_s);
+  /// a sensor measured it, if one did. Without, up is that of the floor so far, or about `guess`.
+  void update(const std::vector<Plane>& planes, const std::optional<Eigen::Vector3f>& up, double passed_s,
+              const Eigen::Vector3f& guess = -Eigen::Vector3f::UnitY());
   /// Forgets all: the camera may be anywhere.
   void reset() { *this = {}; }
 

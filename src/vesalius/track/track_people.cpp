@@ -18,6 +18,7 @@
 #include "vesalius/track/track_clock.h"
 #include "vesalius/track/track_floor.h"
 #include "vesalius/track/track_stance.h"
+#include "vesalius/upright.h"
 
 namespace vesalius {
 namespace {
@@ -490,7 +491,7 @@ TrackedFrame PeopleTracker::update(const Frame& frame, std::vector<Person> peopl
     s.lose_all(step.time_s, out);
     s.floor.reset();
   }
-  s.floor.update(planes, frame.up, step.passed_s);
+  s.floor.update(planes, frame.up, step.passed_s, guessed_up(frame));
   out.floor = s.floor.view();
   s.predict(frame, step.passed_s);
   const std::vector<int> sighting_of = s.follow(frame, sightings, step.time_s, out);
