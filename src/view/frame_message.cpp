@@ -12,6 +12,7 @@
 #include "vesalius/image_file.h"
 #include "vesalius/person_json.h"
 #include "vesalius/planes/find_planes.h"
+#include "vesalius/upright.h"
 
 namespace vesalius {
 namespace {
@@ -51,7 +52,7 @@ Json floor_json(const ViewedFrame& viewed) {
     const FloorView& floor = *viewed.people.floor;
     return {{"normal", point_json(-floor.up)}, {"offset_m", rounded(floor.height_m)}, {"lasting", true}};
   }
-  const std::optional<Plane> floor = find_floor(viewed.planes, viewed.frame->up);
+  const std::optional<Plane> floor = find_floor(viewed.planes, viewed.frame->up, guessed_up(*viewed.frame));
   if (!floor) return {};
   return {{"normal", point_json(floor->normal)}, {"offset_m", rounded(floor->offset)}, {"lasting", false}};
 }
