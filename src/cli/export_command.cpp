@@ -40,8 +40,7 @@ std::string lines_of_mcap(const std::string& path, bool quiet) {
     if (wanted) throw Error(fmt::format("{}: people of several cameras, expected those of one", path));
     wanted = t;
   }
-  if (!wanted)
-    throw Error(fmt::format("{}: no people in it, expected a recording of record --people", path));
+  if (!wanted) throw Error(fmt::format("{}: no people in it, expected a recording of record --people", path));
   std::string lines;
   while (const auto message = recording->next()) {
     if (message->topic != *wanted) continue;
@@ -92,6 +91,9 @@ std::vector<File> make_files(const ExportArguments& arguments, const ExportForma
   const bool is_mcap = arguments.people.ends_with(".mcap");
   const std::string lines = is_mcap ? lines_of_mcap(arguments.people, arguments.quiet) : read_file(arguments.people);
   const PeopleRecord record = parse_people(lines, arguments.people, arguments.record);
+  if (!arguments.quiet) {
+    for (const std::string& note : record.notes) say("note: " + note);
+  }
   ExportRequest request{0, arguments.person, "", arguments.people};
   if (!format.joints.empty()) request.set = find_set(record, arguments, format);
   return with_context(arguments.people, [&] {
@@ -128,9 +130,7 @@ void add_export(CLI::App& program) {
   const auto arguments = std::make_shared<ExportArguments>();
   std::vector<std::string> names;
   for (const ExportFormat& format : export_formats()) names.push_back(format.name);
-  command
-      ->add_option("PEOPLE", arguments->people,
-                   "What detect --json wrote, or an MCAP file of record --people")
+  command->add_option("PEOPLE", arguments->people, "What detect --json wrote, or an MCAP file of record --people")
       ->required();
   command
       ->add_option("--to", arguments->to,

@@ -23,13 +23,18 @@ class LineReader {
  public:
   LineReader(std::string source, const RecordOptions& options) : source_(std::move(source)), options_(options) {}
 
-  void read(std::string_view line) {
+  /// `ends` says whether the line has its end: whoever was killed while writing leaves one without.
+  void read(std::string_view line, bool ends) {
     ++line_;
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
     Json json;
     try {
       json = Json::parse(line);
     } catch (const Json::parse_error& e) {
+      if (!ends && !record_.frames.empty()) {
+        record_.notes.push_back(fmt::format("{}: line {} is cut and left out", source_, line_));
+        return;
+      }
       fail(fmt::format("no JSON from byte {} on, expected a line of vesalius detect --json", e.byte));
     } catch (const Json::exception& e) {
       fail(reason(e));
@@ -222,7 +227,7 @@ PeopleRecord parse_people(std::string_view lines, const std::string& source, con
   LineReader reader(source, options);
   while (!lines.empty()) {
     const std::size_t end = std::min(lines.find('\n'), lines.size());
-    reader.read(lines.substr(0, end));
+    reader.read(lines.substr(0, end), end < lines.size());
     lines.remove_prefix(std::min(end + 1, lines.size()));
   }
   return reader.finish();

@@ -31,6 +31,7 @@ struct PeopleRecord {
   std::vector<std::vector<std::string>> joints;  ///< [set][joint]
   std::vector<std::string> bones;                ///< empty if nobody has a fitted body
   std::vector<RecordedFrame> frames;
+  std::vector<std::string> notes;  ///< remarks for the user
 
   /// Returns the index of a set. Throws UsageError naming those that there are.
   std::size_t find_set(const std::string& name) const;
@@ -41,8 +42,9 @@ struct RecordOptions {
   double rate_hz = 30.0;  ///< rate of frames without times
 };
 
-/// Reads the lines of `vesalius detect --json`, with or without --track. A closing line may be missing. Throws Error
-/// naming `source`, the line and what was expected.
+/// Reads the lines of `vesalius detect --json`, with or without --track. A closing line may be missing, and a last
+/// line that is cut, without its end, is left out with a note. Throws Error naming `source`, the line and what was
+/// expected.
 PeopleRecord parse_people(std::string_view lines, const std::string& source, const RecordOptions& options);
 
 }  // namespace vesalius

@@ -31,6 +31,17 @@ TEST(ParsePeople, ReadsFramesPeopleJointsAndBodies) {
   EXPECT_THAT([&] { (void)record.find_set("body25"); }, ThrowsMessage<UsageError>(HasSubstr("k4abt32, coco17")));
 }
 
+TEST(ParsePeople, LeavesOutALastLineThatIsCut) {
+  const std::string line = frame_json({}, TrackedFrame{}, BodyModel{});
+  const PeopleRecord record = parse_people(line + "\n" + line.substr(0, line.size() / 2), "x", {});
+  EXPECT_EQ(record.frames.size(), 1U);
+  EXPECT_THAT(record.notes, testing::ElementsAre("x: line 2 is cut and left out"));
+  EXPECT_THAT(parse_people(line + "\n" + line, "x", {}).notes, testing::IsEmpty()) << "only its end is missing";
+  for (const std::string& bad : {line.substr(0, line.size() / 2) + "\n" + line, line.substr(0, 9)}) {
+    EXPECT_THAT([&] { (void)parse_people(bad, "x", {}); }, ThrowsMessage<Error>(HasSubstr("line 1: no JSON"))) << bad;
+  }
+}
+
 TEST(ParsePeople, GivesBackTheFieldsThatWereWritten) {
   TrackedPerson person;
   person.id = 7;
