@@ -12,6 +12,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <deque>
+#include <list>
 #include <set>
 #include <utility>
 #include <vector>
@@ -85,12 +86,14 @@ std::pair<std::string, std::string> split_target(std::string_view target) {
 }
 
 class Client;
+class Connection;
 
 /// What connections share. All but the two counts belongs to the server's thread.
 struct Hub {
   WebServerOptions options;
   WebHandlers handlers;
   std::set<Client*> clients;
+  std::list<Connection*> waiting;  ///< for requests or for answers to be taken, the longest first
   std::atomic<int> client_count = 0;
   std::atomic<int> detail_count = 0;
   int connections = 0;
@@ -209,8 +212,14 @@ class Client : public std::enable_shared_from_this<Client> {
 /// A connection that asks for files, until it becomes a WebSocket.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket socket, Hub& hub) : stream_(std::move(socket)), hub_(hub) { ++hub_.connections; }
-  ~Connection() { --hub_.connections; }
+  Connection(tcp::socket socket, Hub& hub) : stream_(std::move(socket)), hub_(hub) {
+    ++hub_.connections;
+    place_ = hub_.waiting.insert(hub_.waiting.end(), this);
+  }
+  ~Connection() {
+    hub_.waiting.erase(place_);
+    --hub_.connections;
+  }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
@@ -218,14 +227,26 @@ class Connection : public std::enable_shared_from_this<Connection> {
     parser_.emplace();
     parser_->header_limit(kMaxHeader);
     parser_->body_limit(kMaxBody);
-    stream_.expires_after(kRequestPatience);
+    wait();
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
       if (!error) self->answer(self->parser_->release());
     });
   }
 
+  /// Ends the connection. Until that is done, others come before it.
+  void give_way() {
+    stream_.close();
+    hub_.waiting.splice(hub_.waiting.end(), hub_.waiting, place_);
+  }
+
  private:
   using Request = http::request<http::string_body>;
+
+  /// Begins to wait for the other side, behind all who wait already.
+  void wait() {
+    stream_.expires_after(kRequestPatience);
+    hub_.waiting.splice(hub_.waiting.end(), hub_.waiting, place_);
+  }
 
   void answer(const Request& request) {
     const auto [path, token] = split_target({request.target().data(), request.target().size()});
@@ -279,7 +300,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     response_.body() = content.body;
     response_.prepare_payload();
     if (request.method() == http::verb::head) response_.body().clear();
-    stream_.expires_after(kRequestPatience);
+    wait();
     http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code error, std::size_t) {
       if (!error && self->response_.keep_alive()) return self->read();
       beast::error_code ignored;
@@ -289,6 +310,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   beast::tcp_stream stream_;
   Hub& hub_;
+  std::list<Connection*>::iterator place_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
@@ -297,7 +319,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
 }  // namespace
 
 struct WebServer::Server {
-  Server(WebServerOptions options, WebHandlers handlers) : hub{std::move(options), std::move(handlers), {}, 0, 0, 0} {
+  Server(WebServerOptions options, WebHandlers handlers)
+      : hub{std::move(options), std::move(handlers), {}, {}, 0, 0, 0} {
     listen();
   }
 
@@ -334,7 +357,10 @@ struct WebServer::Server {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == net::error::operation_aborted) return;
       if (error) return accept_later();
-      if (hub.connections < hub.options.max_connections) {
+      const bool full = hub.connections >= hub.options.max_connections;
+      // Whoever sends half a request and no more is not in others' way.
+      if (full && !hub.waiting.empty()) hub.waiting.front()->give_way();
+      if (!full || !hub.waiting.empty()) {
         beast::error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);
         std::make_shared<Connection>(std::move(socket), hub)->read();

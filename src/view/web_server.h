@@ -17,8 +17,9 @@ struct WebServerOptions {
   std::string host = "127.0.0.1";  ///< address or name to listen at
   std::uint16_t port = 8080;       ///< 0 = any that is free
   WebAccess access;
-  int max_clients = 16;             ///< WebSockets at a time
-  int max_connections = 64;         ///< connections at a time, WebSockets among them
+  int max_clients = 16;  ///< WebSockets at a time
+  /// Connections at a time, WebSockets among them. One more ends that which waits longest for a request.
+  int max_connections = 64;
   std::size_t max_message = 65536;  ///< bytes of a client's message; a longer one ends its connection
   double max_rate = 200.0;          ///< messages a second from one client; more end its connection
 };

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
 #include <mutex>
 #include <thread>
 
@@ -201,6 +204,24 @@ TEST(WebServer, TakesOnlySoManyPages) {
   first.reset();
   server.until([&] { return server.server.clients() == 1; });
   EXPECT_EQ(Page(server.port()).status, 101) << "one has left";
+}
+
+TEST(WebServer, ServesOthersWhileManyRequestsAreHalfSent) {
+  WebServerOptions options;
+  options.max_connections = 8;
+  Server server("", options);
+  Page page(server.port());
+  page.receive();
+  boost::asio::io_context io;
+  std::vector<boost::asio::ip::tcp::socket> held;
+  for (int i = 0; i < 40; ++i) {
+    held.emplace_back(io).connect({boost::asio::ip::make_address("127.0.0.1"), server.port()});
+    boost::asio::write(held.back(), boost::asio::buffer(std::string("GET / HTTP/1.1\r\n")));
+    if (i % 10 != 9) continue;
+    EXPECT_EQ(request(server.port(), "/").status, 200) << i;
+  }
+  server.server.publish_text("state", "still here");
+  EXPECT_EQ(page.receive()->bytes, "still here") << "pages that are open stay";
 }
 
 TEST(WebServer, RefusesHugeRequests) {
