@@ -69,6 +69,7 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
     late.print(progress);
     return interrupted();
   };
+  std::size_t lossy = 0;  // addresses of which was said that they cannot be reached
   const auto take = [&](const FoundFrame& found) {
     // On a terminal both appear, and a printed line must not follow the changing one in the same row.
     if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
@@ -82,6 +83,10 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
       progress.clear();
       say(std::string("vesalius: ") + e.what());
       ++totals.failed;
+    }
+    if (const auto lost = outputs.losses(); lost.size() > lossy) {
+      late.add(lost.back() + "; it is tried on");
+      lossy = lost.size();
     }
     progress.step();
     return arguments.frames == 0 || progress.done() < arguments.frames;
@@ -130,6 +135,7 @@ void run_detect(const DetectArguments& arguments) {
   Totals totals;
   totals.follows = arguments.track.value_or(source->is_sequence());
   const auto say_end = [&] {
+    for (const std::string& line : outputs.losses()) say("vesalius: " + line);
     if (!arguments.outputs.quiet) say_totals(arguments, totals, progress);
     if (arguments.timing) say_times(totals.times);
   };

@@ -56,7 +56,7 @@ DetectOutputs::DetectOutputs(OutputRequest request, const BodyModel& body)
   }
 }
 
-void DetectOutputs::send(const TrackedFrame& people, const std::string& json) const {
+void DetectOutputs::send(const TrackedFrame& people, const std::string& json) {
   if (udp_) {
     for (const std::string& datagram : json_datagrams(json, UdpSender::kMost)) udp_->send(datagram);
   }
@@ -112,6 +112,14 @@ void DetectOutputs::finish(const std::string& why_not_all) {
   }
   if (video_ && (frames_ > 0 || why_not_all.empty())) video_->close();
   if (request_.lines()) finish_stdout();
+}
+
+std::vector<std::string> DetectOutputs::losses() const {
+  std::vector<std::string> lines;
+  for (const std::optional<UdpSender>* sender : {&udp_, &osc_}) {
+    if (*sender && (*sender)->lost() > 0) lines.push_back((*sender)->why_lost());
+  }
+  return lines;
 }
 
 std::string describe(const Frame& frame, const TrackedFrame& people) {

@@ -45,12 +45,14 @@ class DetectOutputs {
   /// Completes JSON and video. `why_not_all` says why frames are missing and is repeated in the JSON; it is empty if
   /// none are.
   void finish(const std::string& why_not_all);
+  /// Returns a line for each address to which something could not be sent.
+  std::vector<std::string> losses() const;
 
  private:
   bool wants(const std::string& kind) const { return kinds_.contains(kind); }
   std::string path(const char* kind, const Frame& frame, const char* extension) const;
   void write_pictures(const Frame& frame, const std::vector<Person>& people);
-  void send(const TrackedFrame& people, const std::string& json) const;
+  void send(const TrackedFrame& people, const std::string& json);
 
   OutputRequest request_;
   std::set<std::string> kinds_;

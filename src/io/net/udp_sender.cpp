@@ -45,14 +45,19 @@ UdpSender::UdpSender(const std::string& address) : address_(address) {
   throw Error(fmt::format("{}: cannot be sent to: {}", address, std::strerror(errno)));
 }
 
-void UdpSender::send(std::string_view bytes) const {
+void UdpSender::send(std::string_view bytes) {
   if (bytes.size() > kMost) {
     throw Error(fmt::format("{}: a datagram of {} bytes, expected at most {}", address_, bytes.size(), kMost));
   }
   if (::send(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL) >= 0) return;
   // Nobody listens, or the way is full: what comes next may arrive.
   if (errno == ECONNREFUSED || errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOBUFS) return;
-  throw Error(fmt::format("{}: cannot be sent to: {}", address_, std::strerror(errno)));
+  ++lost_;
+  error_ = errno;
+}
+
+std::string UdpSender::why_lost() const {
+  return fmt::format("{}: {} datagrams lost: {}", address_, lost_, std::strerror(error_));
 }
 
 }  // namespace vesalius

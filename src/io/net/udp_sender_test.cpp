@@ -21,7 +21,7 @@ TEST(UdpSender, SendsToWhoeverListens) {
   ASSERT_EQ(::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&place), &size), 0);
   const timeval patience{5, 0};
   ::setsockopt(listener.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
-  const UdpSender sender("127.0.0.1:" + std::to_string(ntohs(place.sin_port)));
+  UdpSender sender("127.0.0.1:" + std::to_string(ntohs(place.sin_port)));
   for (const std::string& sent : {std::string("hello"), std::string(60000, 'x')}) {
     sender.send(sent);
     std::string received(70000, '\0');
@@ -34,8 +34,25 @@ TEST(UdpSender, SendsToWhoeverListens) {
 }
 
 TEST(UdpSender, DoesNotMindThatNobodyListens) {
-  const UdpSender sender("127.0.0.1:9");
+  UdpSender sender("127.0.0.1:9");
   for (int i = 0; i < 5; ++i) EXPECT_NO_THROW(sender.send("hello"));
+}
+
+TEST(UdpSender, CountsWhatCannotBeSentAndGoesOn) {
+  UdpSender sender("127.0.0.1:9");
+  // A network that goes, as far as the socket can tell.
+  int shut = 0;
+  for (int descriptor = 3; descriptor < 200; ++descriptor) {
+    sockaddr_in peer{};
+    socklen_t size = sizeof(peer);
+    if (::getpeername(descriptor, reinterpret_cast<sockaddr*>(&peer), &size) != 0 || ntohs(peer.sin_port) != 9)
+      continue;
+    shut += ::shutdown(descriptor, SHUT_WR) == 0 ? 1 : 0;
+  }
+  ASSERT_EQ(shut, 1);
+  for (int i = 0; i < 3; ++i) EXPECT_NO_THROW(sender.send("hello"));
+  EXPECT_EQ(sender.lost(), 3);
+  EXPECT_THAT(sender.why_lost(), testing::StartsWith("127.0.0.1:9: 3 datagrams lost: "));
 }
 
 TEST(UdpSender, RefusesWhatIsNoAddress) {
