@@ -83,10 +83,10 @@ void run_record(const RecordArguments& arguments) {
   try {
     missed = detector ? record_people(arguments, *source, *detector, recorder, options, progress)
                       : record_frames(arguments, *source, recorder, options, progress);
-  } catch (const Error&) {
+  } catch (const Error& e) {
     progress.clear();
     recorder.close();  // what was recorded is kept
-    throw;
+    throw Error(fmt::format("{}; {} has the {} frames before", e.what(), arguments.out, progress.done()));
   }
   recorder.close();
   progress.clear();
