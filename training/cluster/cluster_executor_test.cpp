@@ -139,7 +139,8 @@ TEST_F(ClusterTrainingTest, NamesWhatIsDamaged) {
       over(again, trees, 6);
       ADD_FAILURE() << "a damaged shard was read";
     } catch (const Error& e) {
-      EXPECT_THAT(e.what(), testing::HasSubstr("shard 2: memory/sets-0/000002"));
+      EXPECT_THAT(e.what(),
+                  testing::AllOf(testing::HasSubstr("shard 2: memory/sets-0/000002"), testing::HasSubstr("--restart")));
     }
     bytes[at] = static_cast<char>(bytes[at] - 1);
   }
@@ -150,7 +151,8 @@ TEST_F(ClusterTrainingTest, NamesWhatIsDamaged) {
     over(again, trees, 6);
     ADD_FAILURE() << "a damaged result was read";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("memory/jobs/prepare/out/part-0: 0000000"));
+    EXPECT_THAT(e.what(), testing::AllOf(testing::HasSubstr("memory/jobs/prepare/out/part-0: 0000000"),
+                                         testing::HasSubstr("--restart")));
   }
 }
 

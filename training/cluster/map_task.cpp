@@ -348,7 +348,8 @@ std::string training_set_bytes(const TrainingSet& set) {
 void append_training_set(HugeBuffer buffer, const std::string& name, TrainingSet::Contents& contents) {
   const std::string_view bytes(reinterpret_cast<const char*>(buffer.data()), buffer.size());
   MessageReader in(bytes, name);
-  if (in.number<std::uint32_t>("the mark of a shard") != kMagic) throw Error(name + ": no shard of a training");
+  if (in.number<std::uint32_t>("the mark of a shard") != kMagic)
+    throw Error(name + ": no shard of a training; --restart makes all shards anew");
   if (const auto version = in.number<std::uint32_t>("version"); version != kVersion) {
     throw Error(fmt::format("{}: shard of version {}, expected {}", name, version, kVersion));
   }

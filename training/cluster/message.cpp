@@ -18,6 +18,8 @@ constexpr std::uint32_t kMagic = 0x534D5356;  // "VSMS"
 constexpr std::uint16_t kVersion = 2;
 constexpr int kLevel = 1;  ///< level of compression: messages are written and read once
 constexpr std::size_t kLargest = std::size_t{1} << 32U;
+/// What is damaged in a store stays damaged.
+constexpr const char* kAnew = "; --restart begins anew";
 
 std::string in_base64(const std::string& bytes) {
   std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
@@ -33,7 +35,7 @@ std::string from_base64(std::string_view text, const std::string& name) {
                        ? -1
                        : EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
                                          reinterpret_cast<const unsigned char*>(text.data()), int(text.size()));
-  if (size < 0) throw Error(name + ": damaged, expected base 64 after the tab");
+  if (size < 0) throw Error(name + ": damaged, expected base 64 after the tab" + kAnew);
   bytes.resize(size - (text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0));
   return bytes;
 }
@@ -70,7 +72,8 @@ std::string sealed(std::string_view message) {
 
 std::string opened(std::string_view envelope, const std::string& name) {
   ByteReader in(envelope, name);
-  if (in.number<std::uint32_t>("the mark of a message") != kMagic) throw Error(name + ": no message of vesalius");
+  if (in.number<std::uint32_t>("the mark of a message") != kMagic)
+    throw Error(name + ": no message of vesalius" + kAnew);
   const auto version = in.number<std::uint16_t>("version");
   if (version != kVersion) {
     throw Error(fmt::format("{}: message of version {}, expected {}: the machines have different versions of vesalius",
@@ -78,7 +81,8 @@ std::string opened(std::string_view envelope, const std::string& name) {
   }
   const auto expected = in.number<std::uint64_t>("checksum");
   const std::string_view rest = envelope.substr(envelope.size() - in.left());
-  if (XXH64(rest.data(), rest.size(), 0) != expected) throw Error(name + ": damaged, its checksum does not match");
+  if (XXH64(rest.data(), rest.size(), 0) != expected)
+    throw Error(name + ": damaged, its checksum does not match" + kAnew);
   std::string message = read_packed(in, 0, kLargest, "message");
   in.expect_end();
   return message;
@@ -89,7 +93,7 @@ std::string record_line(const Record& record) { return record.key + '\t' + in_ba
 Record parse_record(std::string_view line, const std::string& name) {
   if (line.ends_with('\n')) line.remove_suffix(1);
   const std::size_t tab = line.find('\t');
-  if (tab == std::string_view::npos || tab == 0) throw Error(name + ": expected a key, a tab and a message");
+  if (tab == std::string_view::npos || tab == 0) throw Error(name + ": expected a key, a tab and a message" + kAnew);
   Record record{std::string(line.substr(0, tab)), {}};
   const std::string where = name + ": " + record.key;
   record.message = opened(from_base64(line.substr(tab + 1), where), where);
