@@ -85,6 +85,13 @@ class PythonSource {
   std::unique_ptr<FrameSource> source_;
 };
 
+DepthBits depth_bits_named(const std::string& name) {
+  if (name == "plain") return DepthBits::plain;
+  if (name == "swapped") return DepthBits::swapped;
+  if (name == "rotated") return DepthBits::rotated;
+  throw UsageError("depth_bits is \"" + name + "\", expected \"plain\", \"swapped\" or \"rotated\"");
+}
+
 std::string path_of(const nb::handle& path) {
   return nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(path));
 }
@@ -93,7 +100,8 @@ std::shared_ptr<PythonSource> open(const nb::object& source, std::optional<float
                                    std::optional<float> cx, std::optional<float> cy, std::optional<float> depth_scale,
                                    const nb::object& camera_file, const nb::object& colour_file,
                                    const std::string& depth_topic, const std::string& colour_topic,
-                                   std::optional<double> start, bool reconnect) {
+                                   std::optional<double> start, bool reconnect, const std::string& depth_bits,
+                                   std::optional<int> turn) {
   SourceOptions options;
   options.fx = fx;
   options.fy = fy;
@@ -106,6 +114,8 @@ std::shared_ptr<PythonSource> open(const nb::object& source, std::optional<float
   options.colour_topic = colour_topic;
   options.start_s = start;
   options.reconnect = reconnect;
+  options.depth_bits = depth_bits_named(depth_bits);
+  options.turn = turn;
   const std::string uri = path_of(source);
   const nb::gil_scoped_release released;
   return std::make_shared<PythonSource>(uri, options);
@@ -117,7 +127,7 @@ void bind_frame(nb::module_& m) {
           "__init__",
           [](PythonFrame* self, const AnyArray& depth, const PythonCamera& camera,
              const std::optional<AnyArray>& colour, std::optional<double> time,
-             const std::optional<std::array<float, 3>>& up, const std::string& name) {
+             const std::optional<std::array<float, 3>>& up, const std::string& name, std::optional<int> turn) {
             auto frame = std::make_shared<Frame>(frame_of(depth, camera, colour, time));
             frame->name = name;
             if (up) {
@@ -126,12 +136,19 @@ void bind_frame(nb::module_& m) {
                 throw UsageError("up: expected a direction of 3 numbers");
               frame->up = given.normalized();
             }
+            if (turn) {
+              if (*turn % 90 != 0 || *turn < 0 || *turn > 270) throw UsageError("turn: expected 0, 90, 180 or 270");
+              frame->quarter_turns = *turn / 90;
+            }
             new (self) PythonFrame{std::move(frame)};
           },
           "depth"_a, "camera"_a, "colour"_a = nb::none(), "time"_a = nb::none(), "up"_a = nb::none(), "name"_a = "",
+          "turn"_a = nb::none(),
           "depth: (height, width) uint16 in millimetres or float32 in metres; 0, and of float32 what is no number, is "
           "no reading. colour: (height, width, 3) uint8. Both are copied. time: seconds. up: direction away from the "
-          "ground, optical frame. Raises ValueError for what does not fit.")
+          "ground, optical frame. turn: degrees clockwise, 0, 90, 180 or 270, that make the picture upright; None: as "
+          "up "
+          "tells. Raises ValueError for what does not fit.")
       .def_prop_ro(
           "name", [](const PythonFrame& f) { return f.frame->name; }, "File stem or time stamp.")
       .def_prop_ro(
@@ -183,10 +200,15 @@ void bind_source(nb::module_& m) {
       "open", &open, "source"_a, nb::kw_only(), "fx"_a = nb::none(), "fy"_a = nb::none(), "cx"_a = nb::none(),
       "cy"_a = nb::none(), "depth_scale"_a = nb::none(), "camera_file"_a = nb::none(), "colour_file"_a = nb::none(),
       "depth_topic"_a = "", "colour_topic"_a = "", "start"_a = nb::none(), "reconnect"_a = false,
+      "depth_bits"_a = "plain", "turn"_a = nb::none(),
       "Opens frames: the path of a folder, a picture or a recording, or a camera such as \"realsense:\", as the "
       "program does (docs/recordings.md, docs/cameras.md). fx, fy, cx, cy: pixels; depth_scale: stored units per "
       "metre; camera_file: meta.json or ROS camera_info; colour_file: of a single depth picture; depth_topic, "
-      "colour_topic: of a recording; start: seconds after the first frame; reconnect: wait for a camera that is lost. "
+      "colour_topic: of a recording; start: seconds after the first frame; reconnect: wait for a camera that is lost; "
+      "depth_bits: \"swapped\" bytes or \"rotated\" by three bits, as in SUN RGB-D; turn: degrees clockwise, 0, 90, "
+      "180 or "
+      "270, that make the pictures upright (default: as gravity tells, where it is measured): results stay in the "
+      "camera's own pictures and axes. "
       "Returns an iterator of Frame. Raises Error for what cannot be read, there and in the iteration, which can go "
       "on with the next frame.");
 }

@@ -201,6 +201,19 @@ class Package(unittest.TestCase):
         columns = numpy.ascontiguousarray(depth)
         self.assertEqual(len(self.detector.detect(columns, CAMERA)), len(self.detector.detect(depth.copy(), CAMERA)))
 
+    def test_finds_people_with_a_camera_on_its_side(self):
+        _, depth, _ = self.frames[0]
+        side = numpy.ascontiguousarray(numpy.rot90(depth))
+        camera = vesalius.Camera(META["fy"], META["fx"], META["cy"], depth.shape[1] - 1 - META["cx"])
+        people = self.detector.detect(vesalius.Frame(depth, CAMERA))
+        turned = self.detector.detect(vesalius.Frame(side, camera, turn=90))
+        by_gravity = self.detector.detect(vesalius.Frame(side, camera, up=(-1, 0, 0)))
+        self.assertGreater(len(people), 0)
+        for others in (turned, by_gravity):
+            self.assertEqual(len(others), len(people))
+            for person, other in zip(people, others):
+                numpy.testing.assert_array_equal(other.mask, numpy.rot90(person.mask))
+
     def test_masks_and_labels_outlive_the_people(self):
         _, depth, colour = self.frames[0]
         people = self.detector.detect(depth, CAMERA, colour)
@@ -225,6 +238,9 @@ class Package(unittest.TestCase):
             "threads: expected": lambda: vesalius.Detector(threads=-1),
             "expected one of": lambda: detect(depth, CAMERA, colour).joints("body25"),
             "up: expected": lambda: vesalius.Frame(depth, CAMERA, up=(0, 0, 0)),
+            "turn: expected": lambda: vesalius.Frame(depth, CAMERA, turn=45),
+            "a turn of 45": lambda: vesalius.open(FOLDER, turn=45),
+            'depth_bits is "big"': lambda: vesalius.open(FOLDER, depth_bits="big"),
             "a start of 1000000 s": lambda: vesalius.open(FOLDER, start=1e6),
             "time: expected": lambda: vesalius.Tracker(self.detector).update(depth, CAMERA, time=math.nan),
         }.items():

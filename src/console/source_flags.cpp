@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <map>
+#include <string>
 #include <utility>
 
 #include "console/detector_flags.h"
@@ -11,18 +13,34 @@ namespace vesalius::cli {
 
 void add_camera_flags(CLI::App& command, SourceOptions& options) {
   const auto add = [&](const char* name, auto& value, const char* type, const char* help) {
-    command.add_option(name, value, help)->type_name(type)->group("Camera, where the files do not say");
+    return command.add_option(name, value, help)->type_name(type)->group("Camera, where the files do not say");
   };
   add("--fx", options.fx, "PX", "Focal length, horizontal");
   add("--fy", options.fy, "PX", "Focal length, vertical (default: fx)");
   add("--cx", options.cx, "PX", "Principal point, column (default: centre)");
   add("--cy", options.cy, "PX", "Principal point, row (default: centre)");
-  add("--depth-scale", options.depth_scale, "N", "Stored depth units per metre: 1000 = millimetres, 5000 = TUM");
+  add("--depth-scale", options.depth_scale, "N",
+      "Stored depth units per metre: 1000 = millimetres, 5000 = TUM; floats: 1");
+  add("--depth-bits", options.depth_bits, "KIND",
+      "How 16 bits of depth are stored: plain, swapped (bytes) or rotated (three bits to the left, as in SUN RGB-D)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, DepthBits>{
+          {"plain", DepthBits::plain}, {"swapped", DepthBits::swapped}, {"rotated", DepthBits::rotated}}));
   add("--camera", options.camera_file, "FILE", "meta.json or ROS camera_info YAML, whose distortion is undone");
   add("--colour,--color", options.colour_file, "FILE", "Colour picture of a single depth PNG");
   add("--depth-topic", options.depth_topic, "TOPIC", "Topic or stream of a recording that depth comes from");
   add("--colour-topic,--color-topic", options.colour_topic, "TOPIC",
       "Topic or stream of a recording with colour registered to depth");
+}
+
+void add_turn_flag(CLI::App& command, SourceOptions& options) {
+  command
+      .add_option(
+          "--turn", options.turn,
+          "Degrees clockwise that make the pictures upright: 90, 180 or 270 where the camera lies on its side or "
+          "hangs; 0 as they are (default: as gravity tells, where the camera measures it). Results stay in the "
+          "camera's own pictures and axes")
+      ->type_name("DEGREES")
+      ->check(CLI::IsMember({0, 90, 180, 270}));
 }
 
 void add_start_flag(CLI::App& command, SourceOptions& options) {
@@ -34,6 +52,7 @@ void add_start_flag(CLI::App& command, SourceOptions& options) {
 void SourceFlags::add_to(CLI::App& command, bool required) {
   command.add_option("SOURCE", name_, kSourceHelp)->required(required);
   add_camera_flags(command, options_);
+  add_turn_flag(command, options_);
   add_start_flag(command, options_);
   command
       .add_flag("--reconnect", options_.reconnect,

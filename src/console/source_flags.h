@@ -15,8 +15,11 @@ class Option;
 namespace vesalius::cli {
 
 /// Adds the flags for what the files of SOURCE may not state: --fx --fy --cx --cy --depth-scale --camera --colour
-/// --depth-topic --colour-topic.
+/// --depth-topic --colour-topic --depth-bits.
 void add_camera_flags(CLI::App& command, SourceOptions& options);
+
+/// Adds --turn, by which pictures become upright.
+void add_turn_flag(CLI::App& command, SourceOptions& options);
 
 /// Adds --start, the first frame of SOURCE to take.
 void add_start_flag(CLI::App& command, SourceOptions& options);

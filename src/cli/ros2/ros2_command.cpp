@@ -14,6 +14,7 @@
 #include "console/status_line.h"
 #include "console/text_sink.h"
 #include "io/sensors/live_source.h"
+#include "io/sources/source_around.h"
 #include "ros2/dds/node_sink.h"
 #include "ros2/messages/message_sink.h"
 #include "vesalius/base/keep_memory.h"
@@ -129,6 +130,8 @@ std::unique_ptr<FrameSource> open_frames(const Ros2Arguments& arguments, ros2::N
   wanted.say = say_late;
   auto source = std::make_unique<ros2::TopicSource>(node, wanted);
   topics = source.get();
+  if (const auto turn = arguments.source.options().turn)
+    return std::make_unique<TurnedSource>(std::move(source), *turn);
   return source;
 }
 

@@ -248,25 +248,27 @@ bool is_depth(const PictureMessage& picture) {
   return picture.encoding == "16UC1" || picture.encoding == "mono16" || picture.encoding == "32FC1";
 }
 
-DepthImage depth_of(const PictureMessage& picture, float units_per_m, const std::string& name) {
-  const double to_mm = 1e3 / double(units_per_m);
-  const bool is_float = picture.encoding.starts_with("32FC1");
-  if (picture.compressed) {
-    Image<std::uint16_t> stored = unpack_compressed_depth(picture.data, picture.encoding, name);
-    if (!is_float && to_mm != 1.0) {
-      for (std::uint16_t& value : stored) value = depth_reading_of_mm(value * to_mm);
-    }
-    return stored;
+DepthImage depth_of(const PictureMessage& given, const StoredDepth& stored, const std::string& name) {
+  const bool is_float = given.encoding.starts_with("32FC1");
+  const double to_mm = 1e3 / double(is_float ? stored.float_units_per_m : stored.units_per_m);
+  const auto in_mm = [&](std::uint16_t value) { return to_mm == 1.0 ? value : depth_reading_of_mm(value * to_mm); };
+  if (given.compressed) {
+    Image<std::uint16_t> depth = unpack_compressed_depth(given.data, given.encoding, name);
+    if (is_float) return depth;
+    restore(depth, stored.bits);
+    std::ranges::transform(depth, depth.begin(), in_mm);
+    return depth;
   }
+  PictureMessage picture = given;
+  if (is_float && stored.bits == DepthBits::swapped) picture.big_endian = !picture.big_endian;
   expect_rows(picture, is_float ? sizeof(float) : sizeof(std::uint16_t), name);
   DepthImage depth(picture.width, picture.height);
   for (int v = 0; v < picture.height; ++v) {
     for (int u = 0; u < picture.width; ++u) {
       if (is_float) {
-        depth(u, v) = depth_reading_of_mm(1e3 * double(value_at<float>(picture, u, v)));
+        depth(u, v) = depth_reading_of_mm(to_mm * double(value_at<float>(picture, u, v)));
       } else {
-        const auto stored = value_at<std::uint16_t>(picture, u, v);
-        depth(u, v) = to_mm == 1.0 ? stored : depth_reading_of_mm(stored * to_mm);
+        depth(u, v) = in_mm(restored(value_at<std::uint16_t>(picture, u, v), stored.bits));
       }
     }
   }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/files/stored_depth.h"
 #include "io/recordings/recording.h"
 #include "vesalius/camera.h"
 #include "vesalius/frame.h"
@@ -47,9 +48,8 @@ Calibration parse_calibration(const RecordedTopic& topic, std::string_view messa
 /// Returns whether a picture is one of depth, by how it is encoded.
 bool is_depth(const PictureMessage& picture);
 
-/// Returns depth in millimetres, 0 = no reading. Whole numbers are divided by `units_per_m`; numbers with a fraction
-/// are metres. Throws Error naming `name` if the picture is not what it says.
-DepthImage depth_of(const PictureMessage& picture, float units_per_m, const std::string& name);
+/// Returns depth in millimetres, 0 = no reading. Throws Error naming `name` if the picture is not what it says.
+DepthImage depth_of(const PictureMessage& picture, const StoredDepth& stored, const std::string& name);
 
 /// Returns the colours of a picture: rgb8, bgr8, rgba8, bgra8, mono8, yuv422_yuy2, nv12, PNG or JPEG. Throws Error
 /// naming `name`.

@@ -158,6 +158,7 @@ CameraFacts facts_given(const SourceOptions& options) try {
   if (options.cx) facts.cx = checked_centre(*options.cx, name, "cx");
   if (options.cy) facts.cy = checked_centre(*options.cy, name, "cy");
   if (options.depth_scale) facts.depth_scale = checked_scale(*options.depth_scale, name, "depth_scale");
+  facts.depth_bits = options.depth_bits;
   return facts;
 } catch (const Error& e) {
   throw UsageError(e.what());

@@ -17,8 +17,9 @@ struct CameraFacts {
   std::optional<float> fx, fy, cx, cy;  ///< pixels
   std::optional<int> width, height;     ///< size of the pictures that fx ... cy are for
   std::optional<float> depth_scale;     ///< stored units per metre
-  std::optional<double> rate_hz;        ///< frames a second
-  std::string sensor;                   ///< e.g. "Kinect v1"; empty = not named
+  DepthBits depth_bits = DepthBits::plain;
+  std::optional<double> rate_hz;  ///< frames a second
+  std::string sensor;             ///< e.g. "Kinect v1"; empty = not named
   /// The camera behind its lens, where that distorts: what pictures are turned from. Those that they are turned into
   /// have fx ... cy. Its size is 0 where none is given.
   std::optional<LensCamera> distorted;

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "io/files/data_file.h"
+#include "io/files/stored_depth.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
 
@@ -125,7 +126,8 @@ FrameListReader::FrameListReader(FrameList list) : list_(std::move(list)) {
 
 Frame FrameListReader::read(std::size_t index, bool with_colour) const {
   const FrameFiles& files = list_.frames[index];
-  const Image<std::uint16_t> stored = read_png16(files.depth);
+  Image<std::uint16_t> stored = read_png16(files.depth);
+  restore(stored, list_.facts.depth_bits);
   expect_size_of(stored, camera_, files.depth, "the size of the first");
   Frame frame{files.name, files.time_s, camera_, to_millimetres(stored, units_per_m_), {}};
   if (with_colour && !files.colour.empty()) {

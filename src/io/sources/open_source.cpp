@@ -16,10 +16,12 @@
 #include "io/sensors/reconnecting_source.h"
 #include "io/sensors/sensor_drivers.h"
 #include "io/sources/camera_file.h"
+#include "io/sources/depth_check.h"
 #include "io/sources/folder_source.h"
 #include "io/sources/list_source.h"
 #include "io/sources/pcd.h"
 #include "io/sources/recording_source.h"
+#include "io/sources/source_around.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -110,38 +112,31 @@ std::unique_ptr<FrameSource> open_recording_file(const std::string& path, const 
 }
 
 /// The frames of a source from a time on.
-class Started final : public FrameSource {
+class Started final : public SourceAround {
  public:
   /// Throws UsageError unless `start_s` lies between the first and the last frame.
-  Started(std::unique_ptr<FrameSource> source, double start_s, const std::string& uri) : source_(std::move(source)) {
+  Started(std::unique_ptr<FrameSource> around, double start_s, const std::string& uri)
+      : SourceAround(std::move(around)) {
     constexpr double kRounding_s = 1e-3;  // of the length in the message
-    const std::optional<TimeSpan> span = source_->span();
+    const std::optional<TimeSpan> span = source().span();
     if (!span) throw UsageError(uri + ": a start goes with recordings and files only");
     const double length_s = span->last_s - span->first_s;
     if (!(start_s >= 0.0 && start_s <= length_s + kRounding_s)) {
       throw UsageError(
           fmt::format("{}: a start of {} s, expected 0 to {:.3f} s, where its last frame is", uri, start_s, length_s));
     }
-    source_->seek(std::min(span->first_s + start_s, span->last_s));
+    source().seek(std::min(span->first_s + start_s, span->last_s));
   }
-  std::optional<Frame> next() override { return source_->next(); }
   int size() const override { return -1; }
-  std::optional<TimeSpan> span() const override { return source_->span(); }
-  void seek(double time_s) override { source_->seek(time_s); }
-  std::vector<std::string> notes() const override { return source_->notes(); }
-  bool is_sequence() const override { return source_->is_sequence(); }
-
- private:
-  std::unique_ptr<FrameSource> source_;
 };
 
 /// A camera whose lens the user knows better than its driver.
-class Calibrated final : public FrameSource {
+class Calibrated final : public SourceAround {
  public:
   Calibrated(std::unique_ptr<FrameSource> source, CameraFacts facts, std::string place)
-      : source_(std::move(source)), facts_(std::move(facts)), place_(std::move(place)) {}
+      : SourceAround(std::move(source)), facts_(std::move(facts)), place_(std::move(place)) {}
   std::optional<Frame> next() override {
-    std::optional<Frame> frame = source_->next();
+    std::optional<Frame> frame = source().next();
     if (!frame) return frame;
     std::vector<std::string> ignored;
     frame->camera = resolve_camera(facts_, frame->depth.width(), frame->depth.height(), true, place_, ignored);
@@ -151,14 +146,8 @@ class Calibrated final : public FrameSource {
     if (!frame->colour.empty()) frame->colour = rectification_->colour(frame->colour);
     return frame;
   }
-  int size() const override { return source_->size(); }
-  std::vector<std::string> notes() const override { return source_->notes(); }
-  bool is_live() const override { return source_->is_live(); }
-  int missed() const override { return source_->missed(); }
-  void stop() override { source_->stop(); }
 
  private:
-  std::unique_ptr<FrameSource> source_;
   CameraFacts facts_;
   std::string place_;
   std::optional<Rectification> rectification_;
@@ -169,7 +158,9 @@ std::unique_ptr<FrameSource> open_camera(const SensorDriver& driver, const std::
   const std::string place = fmt::format("{}:{}", driver.scheme, id);
   refuse_colour_file(place, options);
   if (options.start_s) throw UsageError(place + ": a camera begins now; a start goes with recordings and files only");
-  if (options.depth_scale) throw UsageError(place + ": a camera says itself what a unit of depth is");
+  if (options.depth_scale || options.depth_bits != DepthBits::plain) {
+    throw UsageError(place + ": a camera says itself how depth is stored");
+  }
   const CameraFacts facts = find_camera_facts(options, {});
   const auto open = [&driver, id] { return open_sensor(driver, id); };
   std::unique_ptr<FrameSource> source =
@@ -223,16 +214,23 @@ std::unique_ptr<FrameSource> open_files(const std::string& uri, const SourceOpti
   return std::ranges::find(kSchemes, name, &Scheme::name)->open(uri, options);
 }
 
-}  // namespace
-
-std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& options) {
-  if (const SensorDriver* driver = camera_of(uri)) {
-    return open_camera(*driver, uri.substr(driver->scheme.size() + 1), options);
-  }
+std::unique_ptr<FrameSource> open_started(const std::string& uri, const SourceOptions& options) {
   if (options.reconnect) throw UsageError(uri + ": only a camera can be waited for (--reconnect)");
   std::unique_ptr<FrameSource> source = open_files(uri, options);
   if (!options.start_s) return source;
   return std::make_unique<Started>(std::move(source), *options.start_s, uri);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOptions& options) {
+  const SensorDriver* driver = camera_of(uri);
+  std::unique_ptr<FrameSource> source =
+      driver != nullptr ? open_camera(*driver, uri.substr(driver->scheme.size() + 1), options)
+                        : with_depth_checked(open_started(uri, options), uri, options,
+                                             [&](const SourceOptions& other) { return open_started(uri, other); });
+  if (!options.turn) return source;
+  return std::make_unique<TurnedSource>(std::move(source), *options.turn);
 }
 
 bool is_camera(const std::string& uri) { return camera_of(uri) != nullptr; }

@@ -69,7 +69,7 @@ PictureTopic look_at(const RecordedTopic& topic, const RecordedMessage& message,
   if (picture.encoding == "mono16" && !has_word(topic.name, "depth")) seen.depth = false;
   try {
     if (seen.depth) {
-      const DepthImage depth = depth_of(picture, 1000.F, place);
+      const DepthImage depth = depth_of(picture, {}, place);
       seen.width = depth.width();
       seen.height = depth.height();
     } else {

@@ -61,7 +61,7 @@ class RecordingSource final : public FrameSource {
     facts.fill_from(depth.facts);
     const bool on_grid = cameras.colour && !cameras.colour->camera;
     camera_ = resolve_camera(facts, depth.width, depth.height, on_grid, place, notes_);
-    units_per_m_ = facts.depth_scale.value_or(1000.F);
+    stored_ = {facts.depth_scale.value_or(1000.F), options.depth_scale.value_or(1.F), options.depth_bits};
     depth_topic_ = depth.topic;
     rectification_ = make_rectification(facts.distorted, camera_);
     if (cameras.colour) use_colour(*cameras.colour);
@@ -222,7 +222,7 @@ class RecordingSource final : public FrameSource {
     while (last_name_.starts_with(frame.name)) frame.name += "_again";
     last_name_ = frame.name;
     frame.camera = camera_;
-    frame.depth = depth_of(picture, units_per_m_, fmt::format("{}: {}", place, frame.name));
+    frame.depth = depth_of(picture, stored_, fmt::format("{}: {}", place, frame.name));
     if (frame.depth.width() != camera_.width || frame.depth.height() != camera_.height) {
       throw Error(fmt::format("{}: {}: {}x{} pixels, expected {}x{} as before", place, frame.name, frame.depth.width(),
                               frame.depth.height(), camera_.width, camera_.height));
@@ -268,7 +268,7 @@ class RecordingSource final : public FrameSource {
   std::size_t at_ = 0;  ///< recording that is being read
   std::string depth_topic_, colour_topic_;
   Camera camera_;
-  float units_per_m_ = 1000.F;
+  StoredDepth stored_;
   std::optional<Rectification> rectification_, colour_rectification_;
   std::optional<ColourRegistration> registration_;
   std::optional<RecordedCameras::Acceleration> acceleration_;

@@ -18,8 +18,6 @@ constexpr std::uint64_t kMostApart_ns = 50'000'000;
 constexpr double kMostWait_s = 0.1;
 /// Pictures that wait: a third of a second at 30 a second.
 constexpr std::size_t kMostWaiting = 10;
-/// ROS has depth in metres or in millimetres, nothing else.
-constexpr float kUnitsPerM = 1000.F;
 
 /// Depth and the colour on its grid, below the camera's namespace, the best first.
 struct Driver {
@@ -162,7 +160,7 @@ std::optional<TopicFrame> TopicFrames::next(double now_s) {
   made.frame.name = name_of_time(time_ns);
   made.frame.arrived_s = depth.arrived_s;
   made.frame.camera = *camera_;
-  made.frame.depth = depth_of(depth.picture, kUnitsPerM, topics_.depth);
+  made.frame.depth = depth_of(depth.picture, {}, topics_.depth);
   if (made.frame.depth.width() != camera_->width || made.frame.depth.height() != camera_->height) {
     throw Error(fmt::format("{}: {}x{} pixels, expected {}x{} as {} says", topics_.depth, made.frame.depth.width(),
                             made.frame.depth.height(), camera_->width, camera_->height, topics_.camera_info));

@@ -1,0 +1,252 @@
+#include "io/sources/depth_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+#include <exception>
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include "io/sources/source_around.h"
+#include "vesalius/error.h"
+
+namespace vesalius {
+namespace {
+
+constexpr int kLooked = 5;               // frames: some cameras begin with empty ones
+constexpr std::size_t kLeastRead = 500;  // pixels of those that are looked at
+/// Kinect v1 as it is stored by some: 11 bits of disparity, of which the largest is no reading.
+constexpr std::uint16_t kNoDisparity = 2047, kMostDisparity = 1100;
+
+/// What a picture of depth tells at a glance.
+struct DepthLook {
+  std::size_t pixels = 0, readings = 0;
+  std::array<int, 3> mm{};  ///< distances that 5, 50 and 95 % of the readings do not exceed
+  /// How much neighbours differ against how much all readings do. Where bytes are swapped it is some ten times as much.
+  double roughness = 1.0;
+  bool in_fives = false;  ///< whether all readings are multiples of 5
+  bool disparity = false;
+};
+
+DepthLook look_at(const DepthImage& depth) {
+  constexpr double kEnough = 3e4;  // pixels
+  const int stride = std::max(1, int(std::sqrt(double(depth.size()) / kEnough)));
+  DepthLook look;
+  std::vector<std::uint16_t> read, steps;
+  for (int v = 0; v < depth.height(); v += stride) {
+    for (int u = 0; u < depth.width(); u += stride) {
+      const std::uint16_t here = depth(u, v), beside = u > 0 ? depth(u - 1, v) : std::uint16_t{0};
+      ++look.pixels;
+      if (here != 0) read.push_back(here);
+      if (here != 0 && beside != 0) steps.push_back(static_cast<std::uint16_t>(std::abs(here - beside)));
+    }
+  }
+  look.readings = read.size();
+  if (read.size() < kLeastRead) return look;
+  std::ranges::sort(read);
+  const auto at = [&](std::size_t percent) { return int(read[(read.size() - 1) * percent / 100]); };
+  look.mm = {at(5), at(50), at(95)};
+  double sum = 0.0;
+  for (const std::uint16_t step : steps) sum += step;
+  if (!steps.empty()) look.roughness = sum / double(steps.size()) / std::max(1.0, double(look.mm[2] - look.mm[0]));
+  look.in_fives = std::ranges::all_of(read, [](std::uint16_t value) { return value % 5 == 0; });
+  const auto none = std::ranges::lower_bound(read, kNoDisparity);
+  look.disparity = none != read.begin() && read.back() == kNoDisparity && *(none - 1) <= kMostDisparity &&
+                   std::size_t(read.end() - none) > read.size() / 200;
+  return look;
+}
+
+/// Returns whether rooms look so to cameras that see people.
+bool is_room(const DepthLook& look) {
+  constexpr std::array kLeast_mm = {300, 500, 1000}, kMost_mm = {4000, 7000, 15000};
+  for (std::size_t i = 0; i < look.mm.size(); ++i) {
+    if (look.mm[i] < kLeast_mm[i] || look.mm[i] > kMost_mm[i]) return false;
+  }
+  return true;
+}
+
+/// What depth is if it is none of a room.
+enum class Oddity { none, missing, too_near, near, far };
+
+Oddity oddity_of(const DepthLook& look) {
+  constexpr int kTooNear_mm = 300, kNear_mm = 2000, kFar_mm = 8000;
+  if (20 * look.readings < look.pixels) return Oddity::missing;
+  if (look.mm[1] < kTooNear_mm) return Oddity::too_near;
+  if (look.mm[2] < kNear_mm) return Oddity::near;
+  return look.mm[1] > kFar_mm ? Oddity::far : Oddity::none;
+}
+
+std::string metres(const DepthLook& look) {
+  return fmt::format("{:.2f} to {:.2f} m", 1e-3 * look.mm[0], 1e-3 * look.mm[2]);
+}
+
+std::string words(Oddity oddity, const DepthLook& look) {
+  if (oddity == Oddity::missing) return "there is hardly any depth in the first frames";
+  return fmt::format("depth is {} than in rooms, {}", oddity == Oddity::far ? "farther" : "nearer", metres(look));
+}
+
+/// Options that may be the right ones, and the flag that gives them.
+struct Remedy {
+  SourceOptions options;
+  std::string flag;
+  DepthLook look = {};
+  bool is_of_bits() const { return flag.starts_with("--depth-bits"); }
+};
+
+std::vector<Remedy> remedies(const SourceOptions& given, Oddity oddity) {
+  std::vector<Remedy> all;
+  const auto add_scale = [&](float scale) {
+    if (given.depth_scale == scale) return;
+    all.push_back({given, fmt::format("--depth-scale {}", scale)});
+    all.back().options.depth_scale = scale;
+  };
+  const auto add_bits = [&](DepthBits bits, const char* name) {
+    if (given.depth_bits == bits) return;
+    all.push_back({given, fmt::format("--depth-bits {}", name)});
+    all.back().options.depth_bits = bits;
+  };
+  if (oddity != Oddity::near) {
+    add_bits(DepthBits::swapped, "swapped");
+    add_bits(DepthBits::rotated, "rotated");
+    for (const float scale : {100.F, 4000.F, 5000.F, 10000.F}) add_scale(scale);
+  }
+  add_scale(1000.F);
+  return all;
+}
+
+/// Returns whether depth is a room's with a remedy. `odd` is the depth without.
+bool mends(const Remedy& remedy, Oddity oddity, const DepthLook& odd) {
+  constexpr double kSmoother = 0.5, kAsSmooth = 1.1;
+  constexpr int kFar_mm = 6000, kVeryFar_mm = 15000;
+  const DepthLook& now = remedy.look;
+  if (!is_room(now) || now.readings < odd.readings / 2) return false;
+  if (oddity == Oddity::missing) return now.readings > 3 * odd.readings;
+  if (remedy.is_of_bits()) {
+    const bool swapped = remedy.options.depth_bits == DepthBits::swapped;
+    return now.roughness < (swapped ? kSmoother : kAsSmooth) * odd.roughness;
+  }
+  // Kinects give whole millimetres, of which five thousandths of a metre are multiples.
+  if (oddity == Oddity::near) return now.mm[1] > odd.mm[1] && !now.in_fives;
+  return oddity == Oddity::too_near || (odd.mm[0] > kFar_mm && odd.mm[1] > kVeryFar_mm);
+}
+
+double unlikeliness(const Remedy& remedy) {
+  constexpr double kUsual_mm = 2500.0;
+  return std::abs(std::log(double(remedy.look.mm[1]) / kUsual_mm));
+}
+
+using Opener = std::function<std::unique_ptr<FrameSource>(const SourceOptions&)>;
+
+/// Returns what the first frame with depth looks like, or the last of those that are looked at.
+DepthLook first_look(FrameSource& source) {
+  DepthLook look;
+  for (int i = 0; i < kLooked && look.readings < kLeastRead; ++i) {
+    const std::optional<Frame> frame = source.next();
+    if (!frame) break;
+    look = look_at(frame->depth);
+  }
+  return look;
+}
+
+/// Returns whether depth counts as fifths of a millimetre, as in the TUM benchmark: many bring such folders of
+/// millimetres. Of other sources that are near nothing can be said: they may look at a table.
+bool is_of_tum(const DepthLook& look, SourceOptions options, const Opener& open) {
+  options.depth_scale = 5000.F;
+  return first_look(*open(options)).mm == look.mm;
+}
+
+/// Returns the best remedy; nothing where none helps. Bytes and bits that fit are no chance, so they come first.
+std::optional<Remedy> remedy_of(Oddity oddity, const DepthLook& odd, const SourceOptions& given, const Opener& open) {
+  if (oddity == Oddity::near && !is_of_tum(odd, given, open)) return std::nullopt;
+  std::optional<Remedy> best;
+  for (Remedy& remedy : remedies(given, oddity)) {
+    try {
+      remedy.look = first_look(*open(remedy.options));
+    } catch (const Error&) {
+      continue;
+    }
+    if (!mends(remedy, oddity, odd)) continue;
+    if (remedy.is_of_bits()) return remedy;
+    if (!best || unlikeliness(remedy) < unlikeliness(*best)) best = remedy;
+  }
+  return best;
+}
+
+/// Returns whether depth is none that any camera gives, whatever it looks at.
+bool cannot_be(const DepthLook& look) {
+  constexpr int kNearest_mm = 300, kFarthest_mm = 20000;
+  return look.readings < kLeastRead || look.mm[2] < kNearest_mm || look.mm[0] > kFarthest_mm;
+}
+
+std::string doubt(const DepthLook& look, const std::string& place, const SourceOptions& given, const Opener& open) {
+  if (look.disparity) {
+    return place + ": depth looks like the raw disparity of a Kinect (2047 = none), expected distances";
+  }
+  const Oddity oddity = oddity_of(look);
+  if (oddity == Oddity::none) return {};
+  if (const auto remedy = remedy_of(oddity, look, given, open)) {
+    return fmt::format("{}: {}; with {} it is a room's, {}", place, words(oddity, look), remedy->flag,
+                       metres(remedy->look));
+  }
+  if (!cannot_be(look)) return {};
+  return fmt::format("{}: {}; expected millimetres, or the unit by --depth-scale", place, words(oddity, look));
+}
+
+class DepthChecked final : public SourceAround {
+ public:
+  DepthChecked(std::unique_ptr<FrameSource> around, const std::string& place, const SourceOptions& options,
+               const Opener& open)
+      : SourceAround(std::move(around)) {
+    DepthLook look;
+    while (first_.size() < kLooked && look.readings < kLeastRead) {
+      try {
+        std::optional<Frame> frame = source().next();
+        if (!frame) break;
+        look = look_at(frame->depth);
+        first_.emplace_back(std::move(*frame));
+      } catch (const Error&) {
+        first_.emplace_back(std::current_exception());
+        return;
+      }
+    }
+    if (!first_.empty() && is_large(std::get<Frame>(first_.back()))) note_ = doubt(look, place, options, open);
+  }
+
+  std::optional<Frame> next() override {
+    if (first_.empty()) return source().next();
+    std::variant<Frame, std::exception_ptr> one = std::move(first_.front());
+    first_.pop_front();
+    if (const auto* failed = std::get_if<std::exception_ptr>(&one)) std::rethrow_exception(*failed);
+    return std::get<Frame>(std::move(one));
+  }
+  void seek(double time_s) override {
+    first_.clear();
+    source().seek(time_s);
+  }
+  std::vector<std::string> notes() const override {
+    std::vector<std::string> all = source().notes();
+    if (!note_.empty()) all.push_back(note_);
+    return all;
+  }
+
+ private:
+  /// Of a smaller picture nothing can be said.
+  static bool is_large(const Frame& frame) { return frame.depth.size() >= 4 * kLeastRead; }
+
+  std::deque<std::variant<Frame, std::exception_ptr>> first_;
+  std::string note_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> with_depth_checked(std::unique_ptr<FrameSource> source, const std::string& place,
+                                                const SourceOptions& options, const Opener& open) {
+  return std::make_unique<DepthChecked>(std::move(source), place, options, open);
+}
+
+}  // namespace vesalius
