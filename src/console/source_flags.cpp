@@ -23,8 +23,10 @@ void add_camera_flags(CLI::App& command, SourceOptions& options) {
       "Stored depth units per metre: 1000 = millimetres, 5000 = TUM; floats: 1");
   add("--depth-bits", options.depth_bits, "KIND",
       "How 16 bits of depth are stored: plain, swapped (bytes) or rotated (three bits to the left, as in SUN RGB-D)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, DepthBits>{
-          {"plain", DepthBits::plain}, {"swapped", DepthBits::swapped}, {"rotated", DepthBits::rotated}}));
+      ->transform(CLI::CheckedTransformer(std::map<std::string, DepthBits>{{"plain", DepthBits::plain},
+                                                                           {"swapped", DepthBits::swapped},
+                                                                           {"rotated", DepthBits::rotated}})
+                      .description("{plain,swapped,rotated}"));
   add("--camera", options.camera_file, "FILE", "meta.json or ROS camera_info YAML, whose distortion is undone");
   add("--colour,--color", options.colour_file, "FILE", "Colour picture of a single depth PNG");
   add("--depth-topic", options.depth_topic, "TOPIC", "Topic or stream of a recording that depth comes from");

@@ -147,6 +147,7 @@ TEST(FindFloor, FollowsWhatIsKnownOfUp) {
   // A camera on its side: the ground is to the right.
   const Plane right = plane({1.F, 0.F, 0.F}, 1.F);
   EXPECT_EQ(find_floor({right}, std::nullopt), std::nullopt);
+  EXPECT_EQ(find_floor({right, kFloor}, std::nullopt, {-1.F, 0.F, 0.F})->offset, 1.F) << "as somebody says";
   EXPECT_FLOAT_EQ(find_floor({right, kFloor}, Eigen::Vector3f(-1.F, 0.F, 0.F))->offset, 1.F);
 }
 
