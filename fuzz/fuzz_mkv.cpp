@@ -37,7 +37,7 @@ void read_picture(std::string_view packet, const char* encoding) {
   picture.big_endian = true;
   picture.data = picture.compressed ? packet : packet.substr(2);
   if (is_depth(picture)) {
-    depth_of(picture, 1000.F, "fuzz");
+    depth_of(picture, {}, "fuzz");
   } else {
     colour_of(picture, "fuzz");
   }
