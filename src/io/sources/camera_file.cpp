@@ -1,7 +1,6 @@
 #include "io/sources/camera_file.h"
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <array>
@@ -12,165 +11,89 @@
 #include <optional>
 
 #include "io/files/data_file.h"
+#include "io/sources/fact_tree.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
 namespace {
 
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxCameraFileBytes = 1 << 20;
-constexpr int kMaxSide = 1 << 16;
-constexpr double kLowestRate_hz = 0.001;
-constexpr double kHighestRate_hz = 10000.0;
-
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
+[[noreturn]] void fail_at(const std::string& key, const std::string& expected) {
+  throw UsageError(fmt::format("options: \"{}\": expected {}", key, expected));
 }
 
-[[noreturn]] void fail_at(const std::string& name, const std::string& key, const std::string& expected) {
-  throw Error(fmt::format("{}: \"{}\": expected {}", name, key, expected));
+float checked_focal(float value, const std::string& key) {
+  if (!(value > 0.F && value < 1e6F)) fail_at(key, "a positive number of pixels");
+  return value;
 }
 
-float checked_focal(double value, const std::string& name, const std::string& key) {
-  if (!(value > 0.0 && value < 1e6)) fail_at(name, key, "a positive number of pixels");
-  return float(value);
-}
-
-float checked_centre(double value, const std::string& name, const std::string& key) {
-  if (!(std::abs(value) < 1e6)) fail_at(name, key, "a number of pixels");
-  return float(value);
-}
-
-float checked_scale(double value, const std::string& name, const std::string& key) {
-  if (!(value >= 1.0 && value <= 1e6)) fail_at(name, key, "stored units per metre, 1 to 1000000");
-  return float(value);
-}
-
-std::optional<double> number(const json& object, const std::string& key, const std::string& name) {
-  const auto found = object.find(key);
-  if (found == object.end()) return std::nullopt;
-  if (!found->is_number()) fail_at(name, key, "a number");
-  return found->get<double>();
-}
-
-std::optional<int> side_if_given(const json& object, const std::string& key, const std::string& name) {
-  const std::optional<double> value = number(object, key, name);
-  if (!value) return std::nullopt;
-  if (!(*value >= 1.0 && *value <= kMaxSide) || std::floor(*value) != *value) fail_at(name, key, "a number of pixels");
-  return int(*value);
-}
-
-/// Returns the units per metre that "mm", "mm (checked)" and so on name.
-float scale_of_units(const json& units, const std::string& name) {
-  const std::string text = units.is_string() ? units.get<std::string>() : "";
-  const std::string word(text.begin(),
-                         std::find_if(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) == 0; }));
-  if (word == "mm") return 1000.F;
-  if (word == "cm") return 100.F;
-  if (word == "m") return 1.F;
-  fail_at(name, "units", R"("mm", "cm" or "m", or else "depth_scale" in units per metre)");
-}
-
-std::vector<double> numbers(const YAML::Node& node, std::size_t count, const std::string& name,
-                            const std::string& key) {
-  const YAML::Node list = node.IsMap() ? node["data"] : node;
-  if (!list.IsDefined() || !list.IsSequence() || (count != 0 && list.size() != count)) {
-    fail_at(name, key, count != 0 ? fmt::format("a list of {} numbers", count) : "a list of numbers");
-  }
-  std::vector<double> values;
-  for (const YAML::Node& value : list) values.push_back(value.as<double>());
-  return values;
-}
-
-/// Returns the value under the first of two keys that the file has; camera_calibration and rostopic spell them
-/// differently.
-YAML::Node either(const YAML::Node& root, const char* a, const char* b) {
-  const YAML::Node first = root[a];
-  return first.IsDefined() ? first : root[b];
-}
-
-/// Returns the camera behind its lens, nothing if that does not distort. `odd_model` receives a model that is not
-/// known.
-std::optional<LensCamera> distorted_camera(const YAML::Node& root, const std::vector<double>& matrix,
-                                           const std::string& name, std::string& odd_model) {
-  const YAML::Node d = either(root, "distortion_coefficients", "D");
-  if (!d.IsDefined()) return std::nullopt;
-  const std::vector<double> coefficients = numbers(d, 0, name, "distortion_coefficients");
-  const YAML::Node model = root["distortion_model"];
-  const std::string model_name = model.IsDefined() ? model.as<std::string>() : "";
-  const std::optional<Lens> lens = make_lens(model_name, coefficients);
-  if (!lens) odd_model = model_name.empty() ? "without a name" : model_name;
-  if (!lens || *lens == Lens{}) return std::nullopt;
-  return LensCamera{
-      {0, 0, checked_focal(matrix[0], name, "camera_matrix"), checked_focal(matrix[4], name, "camera_matrix"),
-       checked_centre(matrix[2], name, "camera_matrix"), checked_centre(matrix[5], name, "camera_matrix")},
-      *lens};
-}
-
-CameraFacts camera_info_facts(const YAML::Node& root, const std::string& name) {
-  CameraFacts facts;
-  facts.origin = name;
-  if (!root.IsMap()) throw Error(name + ": expected a map with camera_matrix (or K), image_width, image_height");
-  const YAML::Node k = either(root, "camera_matrix", "K");
-  const YAML::Node p = either(root, "projection_matrix", "P");
-  if (!k.IsDefined()) fail_at(name, "camera_matrix", "3x3 numbers (or K)");
-  std::vector<double> matrix = numbers(k, 9, name, "camera_matrix");
-  facts.distorted = distorted_camera(root, matrix, name, facts.odd_lens);
-  std::size_t stride = 3;
-  if (facts.distorted && p.IsDefined()) {
-    const std::vector<double> projection = numbers(p, 12, name, "projection_matrix");
-    if (projection[0] != 0.0 && projection[5] != 0.0) {
-      matrix = projection;
-      stride = 4;
-    }
-  }
-  facts.fx = checked_focal(matrix[0], name, "camera_matrix");
-  facts.fy = checked_focal(matrix[stride + 1], name, "camera_matrix");
-  facts.cx = checked_centre(matrix[2], name, "camera_matrix");
-  facts.cy = checked_centre(matrix[stride + 2], name, "camera_matrix");
-  const YAML::Node width = either(root, "image_width", "width");
-  const YAML::Node height = either(root, "image_height", "height");
-  if (width.IsDefined()) facts.width = width.as<int>();
-  if (height.IsDefined()) facts.height = height.as<int>();
-  if (facts.distorted) {
-    facts.distorted->camera.width = facts.width.value_or(0);
-    facts.distorted->camera.height = facts.height.value_or(0);
-  }
-  return facts;
+float checked_centre(float value, const std::string& key) {
+  if (!(std::abs(value) < 1e6F)) fail_at(key, "a number of pixels");
+  return value;
 }
 
 CameraFacts read_camera_file(const std::string& path) {
-  const std::string text = read_file(path, kMaxCameraFileBytes);
-  const std::string extension = fs::path(path).extension().string();
-  if (extension == ".yaml" || extension == ".yml") return parse_camera_info(text, path);
-  return parse_meta(text, path);
+  return parse_camera(read_file(path, kMaxCameraFileBytes), path);
 }
 
 /// Returns the facts that the caller gave. A wrong value there is a UsageError.
-CameraFacts facts_given(const SourceOptions& options) try {
+CameraFacts facts_given(const SourceOptions& options) {
   CameraFacts facts;
-  const std::string name = "options";
-  if (options.fx) facts.fx = checked_focal(*options.fx, name, "fx");
-  if (options.fy) facts.fy = checked_focal(*options.fy, name, "fy");
-  if (options.cx) facts.cx = checked_centre(*options.cx, name, "cx");
-  if (options.cy) facts.cy = checked_centre(*options.cy, name, "cy");
-  if (options.depth_scale) facts.depth_scale = checked_scale(*options.depth_scale, name, "depth_scale");
+  if (options.fx) facts.fx = checked_focal(*options.fx, "fx");
+  if (options.fy) facts.fy = checked_focal(*options.fy, "fy");
+  if (options.cx) facts.cx = checked_centre(*options.cx, "cx");
+  if (options.cy) facts.cy = checked_centre(*options.cy, "cy");
+  facts.depth_scale = options.depth_scale;
+  if (facts.depth_scale && !(*facts.depth_scale >= 1.F && *facts.depth_scale <= 1e6F)) {
+    fail_at("depth_scale", "stored units per metre, 1 to 1000000");
+  }
   facts.depth_bits = options.depth_bits;
   return facts;
-} catch (const Error& e) {
-  throw UsageError(e.what());
 }
 
+/// Returns the files of a folder that may be of its camera, those of depth before those of colour, meta.json first.
+std::vector<fs::path> camera_files(const std::string& folder) {
+  std::vector<std::pair<int, fs::path>> ranked;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string stem = plain_name(it->path().stem().string()),
+                      extension = plain_name(it->path().extension().string());
+    const auto has = [&](std::string_view word) { return stem.find(word) != stem.npos; };
+    const std::array<std::string_view, 7> kinds{"json", "yaml", "yml", "txt", "toml", "ini", "csv"};
+    const bool named =
+        stem == "meta" || stem == "k" || has("camera") || has("cam") || has("intrinsic") || has("calib") || has("info");
+    std::error_code ignored;
+    if (std::ranges::find(kinds, extension) == kinds.end() || !named || it->file_size(ignored) > kMaxCameraFileBytes)
+      continue;
+    const int rank = stem == "meta"                                ? 0
+                     : stem == "camerainfo"                        ? 1
+                     : has("depth") || has("ir")                   ? 2
+                     : has("color") || has("colour") || has("rgb") ? 4
+                                                                   : 3;
+    ranked.emplace_back(rank, it->path());
+  }
+  std::ranges::sort(ranked);
+  std::vector<fs::path> files;
+  for (auto& [rank, path] : ranked) files.push_back(std::move(path));
+  return files;
+}
+
+/// A file called meta or camera_info must be readable; others may be something else.
 CameraFacts facts_in_folder(const std::string& folder) {
   CameraFacts facts;
-  for (const char* file : {"meta.json", "camera_info.yaml", "camera_info.yml"}) {
-    const fs::path path = fs::path(folder) / file;
-    std::error_code ignored;
-    if (fs::exists(path, ignored)) facts.fill_from(read_camera_file(path.string()));
+  std::string broken;
+  for (const fs::path& path : camera_files(folder)) {
+    const std::string stem = plain_name(path.stem().string());
+    try {
+      facts.fill_from(read_camera_file(path.string()));
+    } catch (const Error& e) {
+      if (stem == "meta" || stem == "camerainfo") throw;
+      if (broken.empty()) broken = e.what();
+    }
   }
+  if (!facts.has_focal() && facts.sensor.empty() && !broken.empty()) throw Error(broken);
   return facts;
 }
 
@@ -220,64 +143,107 @@ bool keeps_direction(const Calibration& c) {
   return (c.rotation == same || c.rotation == none) && c.projection[3] == 0.0 && c.projection[7] == 0.0;
 }
 
+/// Returns the camera of pictures whose pixels are `by` times as large; centres of pixels are at whole numbers.
+Camera scaled(const Camera& camera, double by, int width, int height) {
+  const auto centre = [by](float at) { return float((double(at) + 0.5) / by - 0.5); };
+  return {width, height, float(camera.fx / by), float(camera.fy / by), centre(camera.cx), centre(camera.cy)};
+}
+
+/// Returns by how much pixels of a calibration of other pictures are smaller, if it is a whole number or one over it.
+std::optional<double> whole_ratio(int calibrated_width, int calibrated_height, int width, int height) {
+  const bool smaller = calibrated_width > width;
+  const int large = smaller ? calibrated_width : width, small = smaller ? width : calibrated_width;
+  const int ratio = large / std::max(small, 1);
+  const bool whole =
+      ratio * small == large && (smaller ? height * ratio == calibrated_height : calibrated_height * ratio == height);
+  if (!whole) return std::nullopt;
+  return smaller ? double(ratio) : 1.0 / ratio;
+}
+
+/// Takes the camera of the mode that an Azure Kinect's pictures are of, its depth's or, for depth on the grid of
+/// colour, its colour's.
+void take_k4a(CameraFacts& facts, int width, int height) {
+  auto calibration = k4a_depth_calibration(*facts.k4a, width, height);
+  constexpr int kLeastColourWidth = 1280;
+  const bool of_colour = width >= kLeastColourWidth && (width * 3 == height * 4 || width * 9 == height * 16);
+  if (!calibration && of_colour) calibration = k4a_colour_calibration(*facts.k4a, width, height);
+  if (!calibration) {
+    throw Error(fmt::format("{}: calibration of an Azure Kinect, but pictures of {}x{}, which is none of its modes",
+                            facts.origin, width, height));
+  }
+  const CalibratedCamera camera = calibrated(*calibration, false);
+  facts.fx = camera.pinhole.fx;
+  fill(facts.fy, std::optional(camera.pinhole.fy));
+  fill(facts.cx, std::optional(camera.pinhole.cx));
+  fill(facts.cy, std::optional(camera.pinhole.cy));
+  if (camera.lens.lens != Lens{}) facts.distorted = camera.lens;
+}
+
+/// Makes a calibration that of pictures of a size: takes another camera of its file that has it, or scales it by a
+/// whole number. Throws Error naming both sizes otherwise.
+void fit_to_size(CameraFacts& facts, int width, int height, const std::string& place, std::vector<std::string>& notes) {
+  if (facts.k4a && !facts.fx) take_k4a(facts, width, height);
+  const auto fits = [&](const CameraFacts& f) {
+    return f.width.value_or(width) == width && f.height.value_or(height) == height;
+  };
+  if (fits(facts)) return;
+  const auto other = std::ranges::find_if(facts.others, [&](const auto& f) { return f.width && f.height && fits(f); });
+  if (other != facts.others.end()) {
+    CameraFacts taken = *other;
+    facts.fx.reset();
+    facts.fy = facts.cx = facts.cy = std::nullopt;
+    facts.fill_from(taken);
+    return;
+  }
+  const int calibrated_width = facts.width.value_or(width), calibrated_height = facts.height.value_or(height);
+  const auto by = facts.width && facts.height && facts.fx
+                      ? whole_ratio(calibrated_width, calibrated_height, width, height)
+                      : std::nullopt;
+  if (!by) {
+    throw Error(fmt::format("{}: camera of {}x{} pictures, but {} has {}x{}", facts.origin, calibrated_width,
+                            calibrated_height, place, width, height));
+  }
+  const auto centre = [&](const std::optional<float>& at, int side) { return at.value_or(float(side - 1) / 2.F); };
+  const Camera camera = scaled({calibrated_width, calibrated_height, *facts.fx, facts.fy.value_or(*facts.fx),
+                                centre(facts.cx, calibrated_width), centre(facts.cy, calibrated_height)},
+                               *by, width, height);
+  facts.fx = camera.fx;
+  facts.fy = camera.fy;
+  facts.cx = camera.cx;
+  facts.cy = camera.cy;
+  facts.width = width;
+  facts.height = height;
+  if (facts.distorted) facts.distorted->camera = scaled(facts.distorted->camera, *by, width, height);
+  notes.push_back(fmt::format("{}: camera of {}x{} pictures, scaled to the {}x{} of {}", facts.origin, calibrated_width,
+                              calibrated_height, width, height, place));
+}
+
 }  // namespace
 
 void CameraFacts::fill_from(const CameraFacts& other) {
-  const bool needs_focal = !fx;
-  fill(fx, other.fx);
+  const bool needs_focal = !has_focal();
   // A lone fx means square pixels, so fy comes from the same place as fx or not at all.
-  if (needs_focal) fill(fy, other.fy);
+  if (needs_focal) {
+    fill(fx, other.fx);
+    fill(fy, other.fy);
+  }
   fill(cx, other.cx);
   fill(cy, other.cy);
   fill(depth_scale, other.depth_scale);
   fill(rate_hz, other.rate_hz);
-  if (needs_focal && other.fx) {
+  if (needs_focal && other.has_focal()) {
     width = other.width;
     height = other.height;
     distorted = other.distorted;
     odd_lens = other.odd_lens;
     origin = other.origin;
+    others = other.others;
+    k4a = other.k4a;
+  } else if (other.has_focal()) {
+    others.push_back(other);
   }
+  if (lacks.empty()) lacks = other.lacks;
   if (sensor.empty()) sensor = other.sensor;
-}
-
-CameraFacts parse_meta(std::string_view text, const std::string& name) {
-  json root;
-  try {
-    root = json::parse(text);
-  } catch (const json::exception& e) {
-    throw Error(name + ": not JSON: " + one_line(e.what()));
-  }
-  if (!root.is_object()) throw Error(name + ": expected a JSON object with fx, fy, cx, cy");
-  CameraFacts facts;
-  facts.origin = name;
-  if (const auto v = number(root, "fx", name)) facts.fx = checked_focal(*v, name, "fx");
-  if (const auto v = number(root, "fy", name)) facts.fy = checked_focal(*v, name, "fy");
-  if (const auto v = number(root, "cx", name)) facts.cx = checked_centre(*v, name, "cx");
-  if (const auto v = number(root, "cy", name)) facts.cy = checked_centre(*v, name, "cy");
-  facts.width = side_if_given(root, "width", name);
-  facts.height = side_if_given(root, "height", name);
-  if (const auto v = number(root, "depth_scale", name)) {
-    facts.depth_scale = checked_scale(*v, name, "depth_scale");
-  } else if (const auto units = root.find("units"); units != root.end()) {
-    facts.depth_scale = scale_of_units(*units, name);
-  }
-  if (const auto v = number(root, "rate_hz", name)) {
-    if (!(*v >= kLowestRate_hz && *v <= kHighestRate_hz)) {
-      fail_at(name, "rate_hz", fmt::format("frames a second, {} to {}", kLowestRate_hz, kHighestRate_hz));
-    }
-    facts.rate_hz = *v;
-  }
-  if (const auto sensor = root.find("sensor"); sensor != root.end() && sensor->is_string()) facts.sensor = *sensor;
-  return facts;
-}
-
-CameraFacts parse_camera_info(std::string_view yaml, const std::string& name) {
-  try {
-    return camera_info_facts(YAML::Load(std::string(yaml)), name);
-  } catch (const YAML::Exception& e) {
-    throw Error(name + ": not the YAML of a camera_info: " + one_line(e.what()));
-  }
 }
 
 std::string serialise_meta(const Camera& camera, float depth_scale, std::optional<float> rate_hz) {
@@ -299,27 +265,28 @@ CameraFacts find_camera_facts(const SourceOptions& options, const std::vector<st
   CameraFacts facts = facts_given(options);
   if (!options.camera_file.empty()) {
     facts.fill_from(read_camera_file(options.camera_file));
+    const bool helps = facts.has_focal() || facts.depth_scale || facts.rate_hz || !facts.sensor.empty();
+    if (!helps) throw Error(facts.lacks);
     return facts;
   }
   for (const std::string& folder : folders) {
     const CameraFacts found = facts_in_folder(folder);
-    if (found.origin.empty() && found.sensor.empty() && !found.depth_scale && !found.rate_hz) continue;
+    if (facts.lacks.empty()) facts.lacks = found.lacks;
+    if (!found.has_focal() && found.sensor.empty() && !found.depth_scale && !found.rate_hz) continue;
     facts.fill_from(found);
     break;
   }
   return facts;
 }
 
-Camera resolve_camera(const CameraFacts& facts, int width, int height, bool registered, const std::string& place,
+Camera resolve_camera(CameraFacts& facts, int width, int height, bool registered, const std::string& place,
                       std::vector<std::string>& notes) {
-  if ((facts.width && *facts.width != width) || (facts.height && *facts.height != height)) {
-    throw Error(fmt::format("{}: camera of {}x{} pictures, but {} has {}x{}", facts.origin, facts.width.value_or(width),
-                            facts.height.value_or(height), place, width, height));
-  }
+  fit_to_size(facts, width, height, place, notes);
   Camera camera{width, height, facts.fx.value_or(0.F), 0.F, 0.F, 0.F};
   if (!facts.fx) {
     camera.fx = nominal_focal(facts.sensor, width, height, registered);
     if (camera.fx == 0.F) {
+      if (!facts.lacks.empty()) throw Error(facts.lacks);
       throw Error(
           place +
           ": no intrinsics: expected fx, fy, cx, cy in meta.json, a camera_info.yaml, or --fx, --fy, --cx, --cy");

@@ -7,6 +7,7 @@
 
 #include "io/lens/lens.h"
 #include "io/recordings/camera_messages.h"
+#include "io/recordings/k4a_messages.h"
 #include "vesalius/camera.h"
 #include "vesalius/frame_source.h"
 
@@ -25,35 +26,39 @@ struct CameraFacts {
   std::optional<LensCamera> distorted;
   std::string odd_lens;  ///< model of a distortion that is not known and stays; empty = none
   std::string origin;    ///< the file, for messages
+  std::string lacks;     ///< of a file without focal length: what was looked for there and what it has instead
+  std::vector<CameraFacts> others;    ///< further cameras, for pictures of their sizes
+  std::optional<K4aCalibration> k4a;  ///< of which fx ... cy follow for pictures of each size
 
+  bool has_focal() const { return fx.has_value() || k4a.has_value(); }
   /// Fills in from `other` what is missing here.
   void fill_from(const CameraFacts& other);
 };
 
-/// Reads a meta.json: fx fy cx cy (pixels), width height, units ("mm", "cm" or "m"; words after it are ignored) or
-/// depth_scale (stored units per metre), rate_hz (frames a second) and sensor. Every key may be missing; other keys are
-/// ignored. Throws Error naming `name`, the key and what was expected.
-CameraFacts parse_meta(std::string_view json, const std::string& name);
+/// Reads what tells of a camera, by the names that tools give: meta.json, camera_info of ROS 1 and 2 as saved or
+/// printed, OpenCV's FileStorage, librealsense, Open3D, ORB-SLAM, Kalibr, an Azure Kinect's calibration.json, Orbbec's,
+/// a matrix of 3x3 or 4x4 numbers, "fx fy cx cy"; JSON, YAML, TOML, INI or plain text. meta.json adds units ("mm", "cm"
+/// or "m"; words after it are ignored), depth_scale (stored units per metre, or metres or millimetres a unit where it
+/// is 1 or less), rate_hz (frames a second) and sensor. Everything may be missing. Of several cameras the one named
+/// depth comes first. If the lens is distorted, fx ... cy are those of the rectified pictures (projection matrix),
+/// where there are any. Throws Error naming `name`, the key and what was expected.
+CameraFacts parse_camera(std::string_view text, const std::string& name);
 
-/// Reads a ROS camera_info YAML as saved by camera_calibration or printed by rostopic echo. If the lens is distorted,
-/// fx ... cy are those of the rectified pictures (projection matrix), where there are any. Throws Error naming `name`,
-/// the key and what was expected.
-CameraFacts parse_camera_info(std::string_view yaml, const std::string& name);
-
-/// Returns the text of a meta.json that `parse_meta` reads back exactly. `depth_scale` is in stored units per metre,
+/// Returns the text of a meta.json that `parse_camera` reads back exactly. `depth_scale` is in stored units per metre,
 /// `rate_hz` in frames a second.
 std::string serialise_meta(const Camera& camera, float depth_scale = 1000.F, std::optional<float> rate_hz = {});
 
 /// Returns the facts that `options` state. Missing ones come from the camera file that `options` name; without such a
-/// file they come from meta.json, camera_info.yaml or camera_info.yml in the first of `folders` that has one. Throws
-/// Error for an unusable file or value.
+/// file they come from meta.json, camera_info.yaml, intrinsics.txt and the like in the first of `folders` that has one.
+/// Throws Error for an unusable file or value.
 CameraFacts find_camera_facts(const SourceOptions& options, const std::vector<std::string>& folders);
 
 /// Returns the camera of pictures of `width` x `height` pixels. fy defaults to fx and the principal point to the
 /// centre. If fx is missing, the usual focal length of the named sensor is taken (`registered`: depth was warped onto
-/// the colour camera's grid). Guesses and assumptions are added to `notes`. Throws Error naming `place` if no focal
-/// length is known or the facts are for pictures of another size.
-Camera resolve_camera(const CameraFacts& facts, int width, int height, bool registered, const std::string& place,
+/// the colour camera's grid). Facts for pictures of another size become those of this one where the file has such a
+/// camera or the sizes have a whole ratio. Guesses and assumptions are added to `notes`. Throws Error naming `place` if
+/// no focal length is known, or both sizes.
+Camera resolve_camera(CameraFacts& facts, int width, int height, bool registered, const std::string& place,
                       std::vector<std::string>& notes);
 
 /// A calibration as cameras are made of it.

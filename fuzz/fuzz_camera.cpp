@@ -8,7 +8,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const auto facts = vesalius::parse_camera_info({reinterpret_cast<const char*>(data), size}, "camera_info.yaml");
+    auto facts = vesalius::parse_camera({reinterpret_cast<const char*>(data), size}, "camera");
     std::vector<std::string> notes;
     vesalius::resolve_camera(facts, 640, 480, true, "fuzz", notes);
   } catch (const vesalius::Error&) {
