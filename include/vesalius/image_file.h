@@ -18,7 +18,7 @@ Image<std::uint16_t> decode_depth_png(std::string_view bytes, const std::string&
 /// Reads an 8-bit grey PNG, such as a mask or a label picture.
 Image<std::uint8_t> read_png8(const std::string& path);
 
-/// Reads a PNG or JPEG of any kind as 8-bit colour. Transparency and orientation tags are ignored.
+/// Reads a PNG or JPEG of any kind, or a PPM, as 8-bit colour. Transparency and orientation tags are ignored.
 ColourImage read_colour(const std::string& path);
 ColourImage decode_colour(std::string_view bytes, const std::string& name);
 

@@ -27,7 +27,8 @@ void add_camera_flags(CLI::App& command, SourceOptions& options) {
                                                                            {"swapped", DepthBits::swapped},
                                                                            {"rotated", DepthBits::rotated}})
                       .description("{plain,swapped,rotated}"));
-  add("--camera", options.camera_file, "FILE", "meta.json or ROS camera_info YAML, whose distortion is undone");
+  add("--camera", options.camera_file, "FILE",
+      "Calibration (meta.json, camera_info of ROS, OpenCV, ...), whose distortion is undone");
   add("--colour,--color", options.colour_file, "FILE", "Colour picture of a single depth PNG");
   add("--depth-topic", options.depth_topic, "TOPIC", "Topic or stream of a recording that depth comes from");
   add("--colour-topic,--color-topic", options.colour_topic, "TOPIC",

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 
 #include "vesalius/error.h"
 
@@ -34,12 +37,6 @@ std::uint32_t crc32(std::string_view bytes) {
   std::uint32_t crc = 0xFFFFFFFFU;
   for (const char c : bytes) crc = table[(crc ^ static_cast<unsigned char>(c)) & 0xFFU] ^ (crc >> 8U);
   return ~crc;
-}
-
-void check_image_size(std::int64_t width, std::int64_t height, const std::string& name) {
-  if (width < 1 || height < 1 || width > kMaxPixels / height) {
-    throw Error(fmt::format("{}: picture of {}x{} pixels, expected 1 to {} in all", name, width, height, kMaxPixels));
-  }
 }
 
 /// A chunk of a PNG. Its checksum has been verified.
@@ -98,7 +95,26 @@ std::size_t next_marker(std::string_view bytes, std::size_t at) {
   return bytes.npos;
 }
 
+/// Returns the next whole number of a header of a PNM, behind blanks and comments; 0 where there is none.
+int next_number(std::string_view bytes, std::size_t& at) {
+  while (at < bytes.size() && std::isspace(static_cast<unsigned char>(bytes[at])) != 0) {
+    ++at;
+    while (at < bytes.size() && bytes[at] == '#') at = std::min(bytes.find('\n', at), bytes.size());
+  }
+  int number = 0;
+  const char* begin = bytes.data() + at;
+  const auto [stop, error] = std::from_chars(begin, bytes.data() + bytes.size(), number);
+  at += static_cast<std::size_t>(stop - begin);
+  return error == std::errc() ? number : 0;
+}
+
 }  // namespace
+
+void check_image_size(std::int64_t width, std::int64_t height, const std::string& name) {
+  if (width < 1 || height < 1 || width > kMaxPixels / height) {
+    throw Error(fmt::format("{}: picture of {}x{} pixels, expected 1 to {} in all", name, width, height, kMaxPixels));
+  }
+}
 
 bool is_png(std::string_view bytes) { return bytes.starts_with(kPngSignature); }
 
@@ -120,6 +136,24 @@ PngBytes check_png(std::string_view bytes, const std::string& name) {
   }
   check_data_size(png, data_bytes, name);
   return png;
+}
+
+PnmHeader check_pnm(std::string_view bytes, int values, const std::string& name) {
+  PnmHeader header;
+  std::size_t at = 2;
+  header.width = next_number(bytes, at);
+  header.height = next_number(bytes, at);
+  header.most = next_number(bytes, at);
+  check_image_size(header.width, header.height, name);
+  if (header.most < 1 || header.most > 0xFFFF) throw Error(name + ": largest value expected to be 1 to 65535");
+  header.begin = at + 1;
+  const std::size_t expected =
+      std::size_t(header.width) * std::size_t(header.height) * std::size_t(values) * (header.most > 0xFF ? 2 : 1);
+  if (bytes.size() < header.begin + expected) {
+    throw Error(fmt::format("{}: truncated: {} bytes, expected {} for {}x{} pixels", name, bytes.size(),
+                            header.begin + expected, header.width, header.height));
+  }
+  return header;
 }
 
 void check_jpeg(std::string_view bytes, const std::string& name) {

@@ -31,8 +31,24 @@ PngBytes check_png(std::string_view bytes, const std::string& name);
 /// than any real encoder writes.
 void check_jpeg(std::string_view bytes, const std::string& name);
 
+/// The header of a PGM or PPM in binary.
+struct PnmHeader {
+  int width = 0, height = 0;
+  int most = 0;           ///< largest value; of two bytes, the high one first, where it is over 255
+  std::size_t begin = 0;  ///< of the pixels
+};
+
+/// Reads the header of a PGM ("P5", `values` of a pixel 1) or PPM ("P6", 3). Throws Error naming `name` if it is
+/// damaged, too large, or the file too short for it.
+PnmHeader check_pnm(std::string_view bytes, int values, const std::string& name);
+
+/// Throws Error naming `name` unless a picture of this size has 1 to kMaxPixels pixels.
+void check_image_size(std::int64_t width, std::int64_t height, const std::string& name);
+
 bool is_png(std::string_view bytes);
 bool is_jpeg(std::string_view bytes);
+inline bool is_pgm(std::string_view bytes) { return bytes.starts_with("P5"); }
+inline bool is_ppm(std::string_view bytes) { return bytes.starts_with("P6"); }
 
 /// Fills a picture from rows in memory whose beginnings lie `stride` bytes apart.
 template <class T>

@@ -65,6 +65,14 @@ ColourImage decode_jpeg(std::string_view bytes, const std::string& name) {
   return image;
 }
 
+ColourImage decode_ppm(std::string_view bytes, const std::string& name) {
+  const PnmHeader header = check_pnm(bytes, 3, name);
+  if (header.most > 0xFF) throw Error(name + ": PPM of 16 bits, expected 8");
+  ColourImage image(header.width, header.height);
+  copy_rows(bytes.data() + header.begin, std::size_t(header.width) * sizeof(Rgb), image);
+  return image;
+}
+
 /// Fast rather than small: most of such files are frames.
 template <class T>
 std::string encode(const Image<T>& image, spng_color_type colours, int bits) {
@@ -114,8 +122,10 @@ static_assert(sizeof(Rgb) == 3);
 
 ColourImage decode_colour(std::string_view bytes, const std::string& name) {
   if (is_png(bytes)) return decode_png<Rgb>(check_png(bytes, name), SPNG_FMT_RGB8, name);
+  if (is_ppm(bytes)) return decode_ppm(bytes, name);
   if (!is_jpeg(bytes)) {
-    throw Error(name + (bytes.empty() ? ": empty file" : ": unknown kind of picture") + ", expected a PNG or JPEG");
+    throw Error(name + (bytes.empty() ? ": empty file" : ": unknown kind of picture") +
+                ", expected a PNG, JPEG or PPM");
   }
   check_jpeg(bytes, name);
   return decode_jpeg(bytes, name);

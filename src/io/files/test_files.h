@@ -57,12 +57,15 @@ inline std::string get(const std::string& path) {
 }
 
 /// Returns the message of the Error that `f` throws. Fails the test if nothing is thrown or the message has several
-/// lines.
+/// lines, but for those of what a source holds, which are indented.
 inline std::string error_of(const std::function<void()>& f) {
   try {
     f();
   } catch (const Error& e) {
-    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+    const std::string_view text = e.what();
+    for (auto at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1)) {
+      EXPECT_EQ(text.substr(at + 1, 2), "  ") << text;
+    }
     return e.what();
   }
   ADD_FAILURE() << "expected an Error";

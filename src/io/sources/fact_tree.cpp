@@ -1,13 +1,13 @@
 #include "io/sources/fact_tree.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "vesalius/error.h"
 

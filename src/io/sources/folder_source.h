@@ -13,6 +13,9 @@ namespace vesalius {
 /// different names are never equal.
 bool natural_less(std::string_view a, std::string_view b);
 
+/// Returns a text in lower case.
+std::string lower(std::string text);
+
 /// Returns the extension of a path in lower case, with its dot.
 std::string lower_extension(const std::filesystem::path& path);
 
@@ -20,14 +23,34 @@ std::string lower_extension(const std::filesystem::path& path);
 /// Hidden files are left out. Throws Error naming the folder if it cannot be read.
 std::vector<std::filesystem::path> list_files(const std::string& folder, const std::vector<std::string>& extensions);
 
-/// Lists the depth PNG files in `folder`/depth, with colour files of the same stem in rgb, color or colour; if there is
-/// no folder depth, lists the PNG files in `folder` itself. Where meta.json has a rate, frames have times: their names
-/// over the rate if all are whole numbers that rise, so that missing pictures are gaps, otherwise their places in
+/// What the name of a picture says. The words of depth and of colour in it do not count for which go together:
+/// "frame-000000.depth" and "frame-000000.color", "depth_0000" and "rgb_0000".
+struct PictureName {
+  enum class Role { unknown, depth, colour } role = Role::unknown;
+  std::string key;               ///< the name without that word
+  std::optional<double> time_s;  ///< time since 1970, or a number with a fraction, that the name begins with
+};
+PictureName parse_picture_name(const std::string& stem);
+
+/// Returns what a folder and those in it hold by kinds of files, those of `frames` as taken.
+std::vector<SourceItem> items_of(const std::string& folder, const std::vector<FrameFiles>& frames);
+
+/// Returns a message and behind it the lines of `items`.
+std::string with_items(const std::string& message, const std::vector<SourceItem>& items);
+
+/// Returns whether a folder has one of depth in it.
+bool has_depth_folder(const std::string& folder);
+
+/// Lists the pictures of depth in the folder of `folder` that is called depth in some way, with colour of that called
+/// rgb, color or image; if there is none, those in `folder` itself, with colour beside them by name. They go together
+/// by their names, by names without the words of depth and colour, by times within 20 ms where names are times, or by
+/// the last numbers of the names. Frames have the times that their names are; else, where meta.json has a rate, their
+/// names over the rate if all are whole numbers that rise, so that missing pictures are gaps, otherwise their places in
 /// order.
 FrameList list_folder(const std::string& folder, const SourceOptions& options);
 
-/// Lists one depth PNG. Its colour file is that of `options`; if none is given and the PNG lies in a folder named
-/// depth, it is looked for in the folders beside that.
-FrameList list_single_png(const std::string& path, const SourceOptions& options);
+/// Lists one picture of depth. Its colour file is that of `options`; if none is given it is looked for as list_folder
+/// does.
+FrameList list_single_picture(const std::string& path, const SourceOptions& options);
 
 }  // namespace vesalius

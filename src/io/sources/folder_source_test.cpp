@@ -56,5 +56,98 @@ TEST(ListFolder, TakesTimesFromTheRateAndTheNumbersOfFrames) {
   EXPECT_THAT(times_of({"1", "2"}, "{}"), testing::ElementsAre(-1.0, -1.0));
 }
 
+TEST(ParsePictureName, FindsRolesKeysAndTimes) {
+  using Role = PictureName::Role;
+  struct Row {
+    const char* stem;
+    Role role;
+    const char* key;
+    std::optional<double> time_s;
+  };
+  for (const auto& [stem, role, key, time_s] : std::vector<Row>{
+           {"frame-000000.depth", Role::depth, "frame-000000", {}},
+           {"frame-000000.color", Role::colour, "frame-000000", {}},
+           {"depth_0000", Role::depth, "0000", {}},
+           {"RGB_0000", Role::colour, "0000", {}},
+           {"0001-depth", Role::depth, "0001", {}},
+           {"colorImage12", Role::colour, "12", {}},
+           {"rgbd_scene_1", Role::unknown, "rgbd_scene_1", {}},
+           {"d", Role::unknown, "d", {}},
+           {"d-1294886360.208451-2996770081", Role::depth, "1294886360.208451-2996770081", 1294886360.208451},
+           {"out_Depth_1534422894873.58374023", Role::depth, "out_1534422894873.58374023", 1534422894.87358374},
+           {"1700000000.033", Role::unknown, "1700000000.033", 1700000000.033},
+           {"1700000000_033000", Role::unknown, "1700000000_033000", 1700000000.033},
+           {"1700000000033", Role::unknown, "1700000000033", 1700000000.033},
+           {"1700000000033000", Role::unknown, "1700000000033000", 1700000000.033},
+           {"1700000000033000000", Role::unknown, "1700000000033000000", 1700000000.033},
+           {"0.033333", Role::unknown, "0.033333", 0.033333},
+           {"0000000000000012", Role::unknown, "0000000000000012", {}},
+           {"1.5", Role::unknown, "1.5", {}}}) {
+    const PictureName name = parse_picture_name(stem);
+    EXPECT_EQ(name.role, role) << stem;
+    EXPECT_EQ(name.key, key) << stem;
+    EXPECT_EQ(name.time_s.has_value(), time_s.has_value()) << stem;
+    EXPECT_NEAR(name.time_s.value_or(0.0), time_s.value_or(0.0), 1e-5) << stem;
+  }
+}
+
+/// Returns "depth colour" of each frame of a folder with these files.
+std::vector<std::string> pairs_of(const std::vector<std::string>& files) {
+  const TemporaryFolder folder;
+  for (const std::string& file : files) put(folder / file, "");
+  std::vector<std::string> pairs;
+  const auto relative = [&](const std::string& path) {
+    return path.empty() ? "-" : std::filesystem::relative(path, folder.path()).string();
+  };
+  for (const FrameFiles& f : list_folder(folder.path(), {}).frames) {
+    pairs.push_back(relative(f.depth) + " " + relative(f.colour));
+  }
+  return pairs;
+}
+
+TEST(ListFolder, PairsDepthAndColourByName) {
+  using testing::ElementsAre;
+  EXPECT_THAT(
+      pairs_of({"frame-000000.depth.png", "frame-000000.color.png", "frame-000000.pose.txt", "frame-000001.depth.png"}),
+      ElementsAre("frame-000000.depth.png frame-000000.color.png", "frame-000001.depth.png -"));
+  EXPECT_THAT(pairs_of({"depth_0000.png", "rgb_0000.jpg"}), ElementsAre("depth_0000.png rgb_0000.jpg"));
+  EXPECT_THAT(pairs_of({"Depth/000001.PNG", "Color/000001.JPG", "Infrared/000001.png"}),
+              ElementsAre("Depth/000001.PNG Color/000001.JPG"));
+  EXPECT_THAT(pairs_of({"depth/depth_7.png", "rgb/rgb_7.png", "depth_vis/depth_7.png"}),
+              ElementsAre("depth/depth_7.png rgb/rgb_7.png"));
+  EXPECT_THAT(pairs_of({"depth/depth_7.png", "depth/height_7.png"}),
+              ElementsAre("depth/depth_7.png -", "depth/height_7.png -"));
+  EXPECT_THAT(pairs_of({"depth/image_7.png", "image/image_7.jpg"}), ElementsAre("depth/image_7.png image/image_7.jpg"));
+  EXPECT_THAT(pairs_of({"depth_images/0007.png", "RGB/frame7.png"}),
+              ElementsAre("depth_images/0007.png RGB/frame7.png"));
+  EXPECT_THAT(pairs_of({"0001.png", "0001.jpg"}), ElementsAre("0001.png 0001.jpg"));
+  EXPECT_THAT(pairs_of({"depth/0000103.png", "image/x.jpg"}), ElementsAre("depth/0000103.png image/x.jpg"));
+  EXPECT_THAT(pairs_of({"d-1294886360.208451-29.pgm", "d-1294886361.0-29.pgm", "r-1294886360.210000-7.ppm"}),
+              ElementsAre("d-1294886360.208451-29.pgm r-1294886360.210000-7.ppm", "d-1294886361.0-29.pgm -"));
+  EXPECT_THAT(pairs_of({"a.png", "b.png", "d.png"}), ElementsAre("a.png -", "b.png -", "d.png -"));
+  EXPECT_THAT(pairs_of({"0.npy", "0.pgm", "1.pgm"}), ElementsAre("0.pgm -", "1.pgm -"));
+}
+
+TEST(ListFolder, TakesTimesThatAreNames) {
+  using testing::ElementsAre;
+  EXPECT_THAT(times_of({"1700000000.033000", "1700000000.5", "1700000000.000000"}, "{}"),
+              ElementsAre(1700000000.0, 1700000000.033, 1700000000.5));
+  EXPECT_THAT(pairs_of({"depth/1700000000000.png", "depth/1700000000033.png", "depth/1700000000066.png",
+                        "rgb/1700000000037.jpg", "rgb/1700000000004.jpg", "rgb/1700000000100.jpg"}),
+              ElementsAre("depth/1700000000000.png rgb/1700000000004.jpg",
+                          "depth/1700000000033.png rgb/1700000000037.jpg", "depth/1700000000066.png -"));
+}
+
+TEST(ListFolder, SaysWhatThereIsWhereNothingIsOfDepth) {
+  const TemporaryFolder folder;
+  put(folder / "depth/0.exr", "");
+  put(folder / "depth/1.exr", "");
+  put(folder / "rgb/0.png", "");
+  EXPECT_THAT(
+      error_of([&] { list_folder(folder.path(), {}); }),
+      testing::AllOf(HasSubstr("depth: no frames, expected 16-bit depth PNG files\n"), HasSubstr("depth/*.exr"),
+                     HasSubstr("2  not taken: depth of .exr, expected PNG; convert: python3"), HasSubstr("rgb/*.png")));
+}
+
 }  // namespace
 }  // namespace vesalius

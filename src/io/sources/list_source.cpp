@@ -6,23 +6,21 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <queue>
 #include <tuple>
 
 #include "io/files/data_file.h"
+#include "io/files/depth_picture.h"
 #include "io/files/stored_depth.h"
+#include "io/sources/folder_source.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
 
 namespace vesalius {
 namespace {
 
-template <class T>
-void expect_size_of(const Image<T>& image, const Camera& camera, const std::string& path, const char* expected) {
-  if (image.width() == camera.width && image.height() == camera.height) return;
-  throw Error(fmt::format("{}: {}x{} pixels, expected {}, {}x{}", path, image.width(), image.height(), expected,
-                          camera.width, camera.height));
+bool is_of_size(const auto& image, const Camera& camera) {
+  return image.width() == camera.width && image.height() == camera.height;
 }
 
 class ListSource final : public FrameSource {
@@ -39,6 +37,7 @@ class ListSource final : public FrameSource {
     next_ = first_not_before(time_s, reader_.size(), [this](std::size_t i) { return time_of(i); });
   }
   std::vector<std::string> notes() const override { return reader_.list().notes; }
+  std::vector<SourceItem> contents() const override { return reader_.list().items; }
   bool is_sequence() const override { return reader_.list().frames.front().time_s.has_value(); }
 
  private:
@@ -50,19 +49,18 @@ class ListSource final : public FrameSource {
 
 namespace fs = std::filesystem;
 
-constexpr float kTumUnitsPerM = 5000.F;       // the benchmark's file format page
-constexpr double kMaxTimeDifferenceS = 0.02;  // default of the benchmark's associate tool
+constexpr float kTumUnitsPerM = 5000.F;  // the benchmark's file format page
 constexpr std::size_t kMaxListBytes = 64 << 20;
 
 std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\r";
+  constexpr std::string_view kSpace = " \t\r,";
   const std::size_t begin = text.find_first_not_of(kSpace);
   if (begin == text.npos) return {};
   return text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
 }
 
 TumEntry parse_line(std::string_view line, const std::string& name, int number) {
-  const std::size_t gap = std::min(line.find_first_of(" \t"), line.size());
+  const std::size_t gap = std::min(line.find_first_of(" \t,"), line.size());
   TumEntry entry;
   entry.stamp = std::string(line.substr(0, gap));
   entry.file = std::string(trimmed(line.substr(gap)));
@@ -72,7 +70,56 @@ TumEntry parse_line(std::string_view line, const std::string& name, int number) 
   if (error != std::errc() || stop != end || !std::isfinite(entry.time_s) || !named) {
     throw Error(fmt::format("{}:{}: expected \"timestamp file\"", name, number));
   }
+  entry.time_s = clock_seconds(entry.time_s);
   return entry;
+}
+
+const std::vector<std::string> kDepthLists{"depth.txt"}, kColourLists{"rgb.txt", "color.txt"},
+    kAssociations{"associations.txt", "associate.txt", "association.txt", "assoc.txt", "associated.txt"};
+
+/// Returns the path of the first of some files, whatever the case of its name; empty where there is none.
+std::string find_list(const fs::path& folder, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    for (const fs::path& path : list_files(folder.string(), {".txt"})) {
+      if (lower(path.filename().string()) == name) return path.string();
+    }
+  }
+  return {};
+}
+
+struct TumLists {
+  std::vector<TumEntry> depth, colour;
+  std::string name;  ///< path of the list that depth is in
+};
+
+/// Splits lines "time file time file"; of the two files depth's has the word in its path.
+TumLists split_associations(const std::string& path) {
+  TumLists lists{{}, {}, path};
+  for (const TumEntry& both : parse_tum_list(read_file(path, kMaxListBytes), path)) {
+    const std::size_t gap = std::min(both.file.find_first_of(" \t,"), both.file.size());
+    const TumEntry first{both.time_s, both.stamp, both.file.substr(0, gap)};
+    const std::string rest(trimmed(std::string_view(both.file).substr(gap)));
+    const std::vector<TumEntry> others = parse_tum_list(rest, path);
+    if (others.size() != 1) throw Error(path + ": expected lines \"timestamp file timestamp file\"");
+    const TumEntry& second = others.front();
+    const bool depth_first = lower(first.file).find("depth") != std::string::npos;
+    lists.depth.push_back(depth_first ? first : second);
+    lists.colour.push_back(depth_first ? second : first);
+  }
+  for (auto* list : {&lists.depth, &lists.colour}) std::ranges::stable_sort(*list, {}, &TumEntry::time_s);
+  return lists;
+}
+
+TumLists read_lists(const fs::path& root) {
+  const std::string depth = find_list(root, kDepthLists), colour = find_list(root, kColourLists);
+  if (depth.empty()) {
+    const std::string both = find_list(root, kAssociations);
+    if (!both.empty()) return split_associations(both);
+  }
+  const std::string depth_list = depth.empty() ? (root / kDepthLists.front()).string() : depth;
+  TumLists lists{parse_tum_list(read_file(depth_list, kMaxListBytes), depth_list), {}, depth_list};
+  if (!colour.empty()) lists.colour = parse_tum_list(read_file(colour, kMaxListBytes), colour);
+  return lists;
 }
 
 /// Both lists merged by time as a linked list. When a pair is taken out, the entries beside it become neighbours; so
@@ -109,50 +156,100 @@ struct Merged {
 }  // namespace
 
 FrameListReader::FrameListReader(FrameList list) : list_(std::move(list)) {
-  const Image<std::uint16_t> first = read_png16(list_.frames.front().depth);
+  try {
+    look_at_first();
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& e) {
+    throw Error(with_items(e.what(), list_.items));
+  }
+}
+
+void FrameListReader::look_at_first() {
+  const DepthPicture first = read_depth(list_.frames.front().depth);
   CameraFacts& facts = list_.facts;
   const CameraFacts& fallback = list_.fallback;
-  if (!facts.fx && facts.sensor.empty() && fallback.fx && fallback.width == first.width() &&
+  if (!facts.has_focal() && facts.sensor.empty() && fallback.fx && fallback.width == first.width() &&
       fallback.height == first.height()) {
     facts.fill_from(fallback);
     list_.notes.push_back(fmt::format("{}: no intrinsics given; those of {} assumed", list_.place, fallback.origin));
   }
   const bool registered = std::any_of(list_.frames.begin(), list_.frames.end(),
                                       [](const FrameFiles& files) { return !files.colour.empty(); });
+  for (SourceItem& item : list_.items) {
+    if (item.use == "depth") item.holds += fmt::format(" {}x{}", first.width(), first.height());
+    if (facts.has_focal() && item.use.empty() && facts.origin.ends_with("/" + item.name)) item.use = "calibration";
+  }
   camera_ = resolve_camera(facts, first.width(), first.height(), registered, list_.place, list_.notes);
   rectification_ = make_rectification(facts.distorted, camera_);
-  units_per_m_ = facts.depth_scale.value_or(list_.default_scale);
+  look_at_colour();
+}
+
+void FrameListReader::look_at_colour() {
+  const auto with = std::ranges::find_if(list_.frames, [](const FrameFiles& files) { return !files.colour.empty(); });
+  if (with == list_.frames.end()) return;
+  ColourImage first;
+  try {
+    first = read_colour(with->colour);
+  } catch (const Error&) {
+    return;  // that frame says so
+  }
+  if (is_of_size(first, camera_)) return;
+  const auto& k4a = list_.facts.k4a;
+  const auto colour = k4a && k4a_depth_calibration(*k4a, camera_.width, camera_.height)
+                          ? k4a_colour_calibration(*k4a, first.width(), first.height())
+                          : std::nullopt;
+  if (colour) {
+    registration_.emplace(camera_, calibrated(*colour, false).lens, k4a->colour->sensor_from_depth);
+    return;
+  }
+  const std::string why = fmt::format("no colour, since that has {}x{} pixels and depth {}x{}", first.width(),
+                                      first.height(), camera_.width, camera_.height);
+  list_.notes.push_back(fmt::format("{}: {}", list_.place, why));
+  for (SourceItem& item : list_.items) {
+    if (item.use != "colour") continue;
+    item.use.clear();
+    item.why = why;
+  }
 }
 
 Frame FrameListReader::read(std::size_t index, bool with_colour) const {
   const FrameFiles& files = list_.frames[index];
-  Image<std::uint16_t> stored = read_png16(files.depth);
-  restore(stored, list_.facts.depth_bits);
-  expect_size_of(stored, camera_, files.depth, "the size of the first");
-  Frame frame{files.name, files.time_s, camera_, to_millimetres(stored, units_per_m_), {}};
-  if (with_colour && !files.colour.empty()) {
-    frame.colour = read_colour(files.colour);
-    expect_size_of(frame.colour, camera_, files.colour, "the size of the depth");
-    if (rectification_) frame.colour = rectification_->colour(frame.colour);
+  DepthPicture stored = read_depth(files.depth);
+  restore(stored.whole, list_.facts.depth_bits);
+  if (!is_of_size(stored, camera_)) {
+    throw Error(fmt::format("{}: {}x{} pixels, expected the size of the first, {}x{}", files.depth, stored.width(),
+                            stored.height(), camera_.width, camera_.height));
   }
+  const std::optional<float> scale = list_.facts.depth_scale;
+  Frame frame{files.name,
+              files.time_s,
+              camera_,
+              to_millimetres(stored, scale.value_or(list_.default_scale), scale.has_value()),
+              {}};
   if (rectification_) frame.depth = rectification_->depth(frame.depth);
+  if (!with_colour || files.colour.empty()) return frame;
+  ColourImage colour = read_colour(files.colour);
+  if (registration_ && registration_->fits(colour)) {
+    frame.colour = (*registration_)(frame.depth, colour);
+  } else if (is_of_size(colour, camera_)) {
+    frame.colour = rectification_ ? rectification_->colour(colour) : std::move(colour);
+  }
   return frame;
 }
 
 std::unique_ptr<FrameSource> open_list(FrameList list) { return std::make_unique<ListSource>(std::move(list)); }
 
-DepthImage to_millimetres(const Image<std::uint16_t>& stored, float units_per_m) {
-  if (units_per_m == 1000.F) return stored;
-  const double mm_per_unit = 1000.0 / units_per_m;
-  DepthImage depth(stored.width(), stored.height());
-  std::transform(stored.begin(), stored.end(), depth.begin(), [mm_per_unit](std::uint16_t units) {
-    const double mm = std::round(units * mm_per_unit);
-    return mm > std::numeric_limits<std::uint16_t>::max() ? std::uint16_t{0} : static_cast<std::uint16_t>(mm);
-  });
-  return depth;
+double clock_seconds(double time) {
+  constexpr double kFirst_s = 9e8, kLast_s = 5e9;  // 1998 to 2128
+  for (const double by : {1e3, 1e6, 1e9}) {
+    if (time > kFirst_s * by && time < kLast_s * by) return time / by;
+  }
+  return time;
 }
 
 std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& name) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::vector<TumEntry> entries;
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -162,9 +259,6 @@ std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& n
   }
   std::stable_sort(entries.begin(), entries.end(),
                    [](const TumEntry& a, const TumEntry& b) { return a.time_s < b.time_s; });
-  const auto twin = std::adjacent_find(entries.begin(), entries.end(),
-                                       [](const TumEntry& a, const TumEntry& b) { return a.time_s == b.time_s; });
-  if (twin != entries.end()) throw Error(fmt::format("{}: time {} occurs twice, expected once", name, twin->stamp));
   return entries;
 }
 
@@ -201,6 +295,10 @@ std::vector<int> associate(const std::vector<TumEntry>& depth, const std::vector
   return partner;
 }
 
+bool is_tum_folder(const std::string& folder) {
+  return !find_list(folder, kDepthLists).empty() || !find_list(folder, kAssociations).empty();
+}
+
 FrameList list_tum(const std::string& folder, const SourceOptions& options) {
   const fs::path root(folder);
   FrameList list;
@@ -213,14 +311,8 @@ FrameList list_tum(const std::string& folder, const SourceOptions& options) {
   list.fallback.height = 480;
   list.fallback.origin = "the TUM benchmark (525, 525, 319.5, 239.5)";
 
-  const std::string depth_list = (root / "depth.txt").string();
-  const std::vector<TumEntry> depth = parse_tum_list(read_file(depth_list, kMaxListBytes), depth_list);
+  auto [depth, colour, depth_list] = read_lists(root);
   if (depth.empty()) throw Error(depth_list + ": no frames, expected lines \"timestamp file\"");
-  std::vector<TumEntry> colour;
-  std::error_code ignored;
-  if (const fs::path colour_list = root / "rgb.txt"; fs::exists(colour_list, ignored)) {
-    colour = parse_tum_list(read_file(colour_list.string(), kMaxListBytes), colour_list.string());
-  }
   const std::vector<int> partner = associate(depth, colour, kMaxTimeDifferenceS);
   for (std::size_t i = 0; i < depth.size(); ++i) {
     const std::string colour_file = partner[i] < 0 ? "" : (root / colour[partner[i]].file).string();
@@ -232,6 +324,12 @@ FrameList list_tum(const std::string& folder, const SourceOptions& options) {
                                      depth.size(), kMaxTimeDifferenceS));
   }
   list.facts = find_camera_facts(options, {folder});
+  list.items = items_of(folder, list.frames);
+  for (SourceItem& item : list.items) {
+    for (const auto* lists : {&kDepthLists, &kColourLists, &kAssociations}) {
+      if (std::ranges::find(*lists, lower(item.name)) != lists->end()) item.use = "list of frames";
+    }
+  }
   return list;
 }
 

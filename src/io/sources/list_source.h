@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/lens/colour_registration.h"
 #include "io/lens/lens.h"
 #include "io/sources/camera_file.h"
 #include "vesalius/frame_source.h"
@@ -19,12 +20,12 @@ namespace vesalius {
 struct FrameFiles {
   std::string name;
   std::optional<double> time_s;  ///< seconds, as in Frame
-  std::string depth;             ///< path of a 16-bit PNG
-  std::string colour;            ///< path of a PNG or JPEG of the same size; empty = none
+  std::string depth;             ///< path of a picture that read_depth reads
+  std::string colour;            ///< path of a PNG, JPEG or PPM; empty = none
 };
 
 /// Frames whose depth and colour pictures are files of their own, in order. Either all have times, and they rise, or
-/// none.
+/// none. Times may be equal.
 struct FrameList {
   std::string place;  ///< for messages
   std::vector<FrameFiles> frames;
@@ -32,12 +33,13 @@ struct FrameList {
   CameraFacts fallback;          ///< camera where `facts` has none and the size fits; fx empty = none
   float default_scale = 1000.F;  ///< stored units per metre where `facts` has none
   std::vector<std::string> notes;
+  std::vector<SourceItem> items;  ///< what the folder holds
 };
 
 /// Reads the frames of a list in any order. It may be used from several threads.
 class FrameListReader {
  public:
-  /// Throws Error if the first picture is unusable or the camera is unknown.
+  /// Throws Error if the first picture is unusable or the camera is unknown, with what there is.
   explicit FrameListReader(FrameList list);
 
   std::size_t size() const { return list_.frames.size(); }
@@ -46,22 +48,28 @@ class FrameListReader {
   /// Returns whether frames differ from the pictures in the files, since the lens distorts those.
   bool is_rectified() const { return rectification_.has_value(); }
 
-  /// Returns frame `index`, which must be below size(). Throws Error naming a picture that cannot be read or differs in
-  /// size from the first.
+  /// Returns frame `index`, which must be below size(). Colour of another size than depth is left out, unless the
+  /// calibration says where it lies. Throws Error naming a picture that cannot be read, or depth that differs in size
+  /// from the first.
   Frame read(std::size_t index, bool with_colour = true) const;
 
  private:
+  void look_at_first();
+  void look_at_colour();
+
   FrameList list_;
   Camera camera_;
   std::optional<Rectification> rectification_;
+  std::optional<ColourRegistration> registration_;  ///< of colour that is another camera's
   float units_per_m_ = 1000.F;
 };
 
 /// Returns a source that reads the pictures one by one. Throws Error as FrameListReader does.
 std::unique_ptr<FrameSource> open_list(FrameList list);
 
-/// Converts stored depth to millimetres. A result over 65535 mm does not fit and becomes 0, no reading.
-DepthImage to_millimetres(const Image<std::uint16_t>& stored, float units_per_m);
+/// Returns seconds of a time that counts milliseconds, microseconds or nanoseconds since 1970, as its size tells; other
+/// times as they are, in seconds.
+double clock_seconds(double time);
 
 /// One line of a TUM list (depth.txt, rgb.txt).
 struct TumEntry {
@@ -70,10 +78,13 @@ struct TumEntry {
   std::string file;   ///< relative to the list's folder
 };
 
-/// Reads lines of the form "timestamp file". Empty lines and those that begin with # are skipped. The entries are
-/// sorted by time. Throws Error naming `name` and the line if a line has another form or repeats the time of an earlier
-/// one.
+/// Reads lines of the form "timestamp file", with blanks, a tab or a comma between. Times are those of clock_seconds.
+/// Empty lines and those that begin with # are skipped. The entries are sorted by time; equal times stay in order.
+/// Throws Error naming `name` and the line if a line has another form.
 std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& name);
+
+/// Most that times of depth and colour differ, the default of the benchmark's associate tool.
+inline constexpr double kMaxTimeDifferenceS = 0.02;
 
 /// Pairs depth with colour as the benchmark's associate tool does: of all pairs less than `max_difference_s` apart the
 /// closest is taken first, and each entry is in one pair only. Both lists must be sorted by time. Returns for each
@@ -81,7 +92,11 @@ std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& n
 std::vector<int> associate(const std::vector<TumEntry>& depth, const std::vector<TumEntry>& colour,
                            double max_difference_s);
 
-/// Lists a folder in the layout of the TUM RGB-D benchmark: depth.txt and, if there is colour, rgb.txt.
+/// Returns whether a folder has a list of the TUM RGB-D benchmark.
+bool is_tum_folder(const std::string& folder);
+
+/// Lists a folder in the layout of the TUM RGB-D benchmark: depth.txt and, if there is colour, rgb.txt, or
+/// associations.txt with lines "timestamp file timestamp file", either of them first.
 FrameList list_tum(const std::string& folder, const SourceOptions& options);
 
 /// Returns when frame `index` counts as taken where the frames have no times.

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "io/files/depth_picture.h"
 #include "io/files/image_bytes.h"
 #include "io/lens/lens.h"
 #include "io/sensors/reconnecting_source.h"
@@ -102,7 +103,7 @@ std::unique_ptr<FrameSource> open_clouds(const std::string& path, const SourceOp
 
 std::unique_ptr<FrameSource> open_png(const std::string& path, const SourceOptions& options) {
   if (is_folder(path, kPng)) return open_folder(path, options);
-  return open_list(list_single_png(path, options));
+  return open_list(list_single_picture(path, options));
 }
 
 std::unique_ptr<FrameSource> open_recording_file(const std::string& path, const SourceOptions& options) {
@@ -165,7 +166,7 @@ std::unique_ptr<FrameSource> open_camera(const SensorDriver& driver, const std::
   const auto open = [&driver, id] { return open_sensor(driver, id); };
   std::unique_ptr<FrameSource> source =
       options.reconnect ? keep_open(open, {source_of(driver.scheme, id), options.say}) : open();
-  if (!facts.fx) return source;
+  if (!facts.has_focal()) return source;
   return std::make_unique<Calibrated>(std::move(source), facts, place);
 }
 
@@ -187,7 +188,10 @@ const SensorDriver* camera_of(const std::string& uri) { return row_of(sensor_dri
 
 std::string_view scheme_of_file(const std::string& path) {
   const std::string extension = lower_extension(path);
-  if (extension == ".png") return "png";
+  if (std::ranges::find(depth_extensions(), extension) != depth_extensions().end()) return "png";
+  if (std::ranges::find(unread_depth_extensions(), extension) != unread_depth_extensions().end()) {
+    throw Error(path + ": " + unread_advice(extension));
+  }
   if (extension == ".pcd") return "pcd";
   for (const char* recorded : {".mcap", ".bag", ".db3", ".mkv"}) {
     if (extension == recorded) return "recording";
@@ -197,15 +201,15 @@ std::string_view scheme_of_file(const std::string& path) {
 
 std::string_view scheme_of_folder(const std::string& path) {
   std::error_code ignored;
-  if (fs::exists(fs::path(path) / "depth.txt", ignored)) return "tum";
+  if (is_tum_folder(path)) return "tum";
   if (fs::exists(fs::path(path) / "metadata.yaml", ignored)) return "recording";
-  if (fs::is_directory(fs::path(path) / "depth", ignored)) return "folder";
-  const bool png = !list_files(path, {".png"}).empty();
+  if (has_depth_folder(path)) return "folder";
+  const bool png = !list_files(path, depth_extensions()).empty();
   const bool pcd = !list_files(path, {".pcd"}).empty();
   if (png && pcd) throw Error(path + ": PNG and PCD files in one folder, expected folder: or pcd: before the path");
   if (png) return "folder";
   if (pcd) return "pcd";
-  throw Error(path + ": no frames, expected depth/*.png, depth.txt, *.png or *.pcd");
+  throw Error(with_items(path + ": no frames, expected depth/*.png, depth.txt, *.png or *.pcd", items_of(path, {})));
 }
 
 std::unique_ptr<FrameSource> open_files(const std::string& uri, const SourceOptions& options) {

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "io/files/test_files.h"
+#include "io/recordings/test_k4a.h"
 #include "io/sources/test_pcd_write.h"
 #include "vesalius/image_file.h"
 
@@ -130,8 +131,6 @@ TEST(FolderSource, NamesBadFramesAndGoesOn) {
   put(folder / "depth/1.png", "");
   put(folder / "depth/2.png", png.substr(0, png.size() / 2));
   put_depth(folder / "depth/3.png", DepthImage(8, 8, 1));
-  put(folder / "depth/4.png", png);
-  put_colour(folder / "rgb/4.png", ColourImage(8, 8));
   put(folder / "depth/5.png", encode_png(frame.colour));
   put(folder / "depth/6.png", png);
   put(folder / "rgb/6.jpg", "\xFF\xD8\xFF\xE0 no more");
@@ -141,12 +140,56 @@ TEST(FolderSource, NamesBadFramesAndGoesOn) {
   ASSERT_TRUE(source->next());
   for (const char* expected :
        {"1.png: empty file", "2.png: truncated PNG", "3.png: 8x8 pixels, expected the size of the first, 37x23",
-        "rgb/4.png: 8x8 pixels, expected the size of the depth, 37x23", "5.png: 8-bit colour PNG, expected 16-bit grey",
-        "rgb/6.jpg: truncated JPEG", "7.png: cannot be read: No such file"}) {
+        "5.png: 8-bit colour PNG, expected 16-bit grey", "rgb/6.jpg: truncated JPEG",
+        "7.png: cannot be read: No such file"}) {
     EXPECT_THAT(error_of([&] { source->next(); }), HasSubstr(expected));
   }
   EXPECT_EQ(source->next()->name, "8");
   EXPECT_FALSE(source->next());
+}
+
+TEST(FolderSource, GoesWithoutColourOfAnotherSize) {
+  const TemporaryFolder folder;
+  put(folder / "meta.json", kMeta);
+  const Frame frame = random_frame("a", 3);
+  put_depth(folder / "depth/0.png", frame.depth);
+  put_colour(folder / "rgb/0.png", ColourImage(64, 36));
+  const auto source = open_source(folder.path());
+  const auto read = source->next();
+  EXPECT_EQ(read->depth, frame.depth);
+  EXPECT_TRUE(read->colour.empty());
+  EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("no colour, since that has 64x36 pixels and depth 37x23")));
+  std::vector<std::string> items;
+  for (const SourceItem& item : source->contents()) {
+    items.push_back(item.name + " " + item.holds + " " + std::to_string(item.count) + " " + item.use +
+                    item.why.substr(0, 9));
+  }
+  EXPECT_THAT(
+      items, ElementsAre("depth/*.png png 37x23 1 depth", "meta.json json 1 calibration", "rgb/*.png png 1 no colour"));
+}
+
+TEST(FolderSource, PutsColourOfAnAzureKinectOnTheGridOfDepth) {
+  const TemporaryFolder folder;
+  put(folder / "calibration.json", test::k4a_json());
+  put_depth(folder / "depth/0.png", DepthImage(320, 288, 2000));
+  put_colour(folder / "color/0.png", ColourImage(1280, 720, {10, 20, 30}));
+  const auto source = open_source(folder.path());
+  EXPECT_THAT(source->notes(), IsEmpty());
+  const auto frame = source->next();
+  EXPECT_EQ(frame->camera.fx, 256.F);
+  ASSERT_TRUE(frame->colour.same_size(frame->depth));
+  EXPECT_EQ(frame->colour(160, 144), (Rgb{10, 20, 30}));
+}
+
+TEST(SinglePng, FindsColourBesideItByName) {
+  const TemporaryFolder folder;
+  put(folder / "intrinsics.txt", "41.3 0 17.2\n0 40.7 12.9\n0 0 1\n");
+  const Frame frame = random_frame("frame-000000.depth", 4);
+  put_depth(folder / "frame-000000.depth.png", frame.depth);
+  put_colour(folder / "frame-000000.color.png", frame.colour);
+  const auto read = open_source(folder / "frame-000000.depth.png")->next();
+  EXPECT_EQ(read->colour, frame.colour);
+  EXPECT_EQ(read->camera, frame.camera);
 }
 
 TEST(SinglePng, FindsColourAndCameraBesideIt) {
@@ -195,6 +238,19 @@ TEST(TumSource, PairsByTimeAndScalesBy5000) {
   EXPECT_EQ(frames[0].camera, (Camera{640, 480, 525.F, 525.F, 319.5F, 239.5F}));
   EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("1 of 2 depth pictures have no colour within 0.02 s"),
                                            HasSubstr("no intrinsics given; those of the TUM benchmark")));
+}
+
+TEST(TumSource, ReadsAssociationsInBothOrders) {
+  for (const char* line : {"1.0 rgb/x.png 1.01 depth/a.png\n", "1.01,depth/a.png,1.0,rgb/x.png\r\n"}) {
+    const TemporaryFolder folder;
+    put_depth(folder / "depth/a.png", DepthImage(640, 480, 10000));
+    put_colour(folder / "rgb/x.png", ColourImage(640, 480, {1, 2, 3}));
+    put(folder / "Associations.txt", std::string("# both\n") + line);
+    const auto frame = open_source(folder.path())->next();
+    EXPECT_EQ(frame->time_s, 1.01);
+    EXPECT_EQ(frame->depth(3, 4), 2000);
+    EXPECT_EQ(frame->colour(3, 4), (Rgb{1, 2, 3}));
+  }
 }
 
 TEST(TumSource, TakesTheScaleFromTheAddress) {
@@ -314,6 +370,7 @@ TEST(OpenSource, NamesWhatIsNotASource) {
   EXPECT_THAT(open_error(folder.path()), HasSubstr(folder.path() + ": no frames, expected depth/*.png"));
   EXPECT_THAT(open_error("pcd:" + folder.path()), HasSubstr("no frames, expected *.pcd"));
   EXPECT_THAT(open_error(put(folder / "a.txt", "x")), HasSubstr("a.txt: unknown kind of file"));
+  EXPECT_THAT(open_error(put(folder / "a.TIF", "x")), HasSubstr("a.TIF: depth of .tif, expected PNG; convert"));
   EXPECT_THAT(open_error("tum:" + folder / "a.txt"), HasSubstr("a.txt: a file, expected a folder"));
   EXPECT_THAT(open_error(put(folder / "a.png", "")), HasSubstr("a.png: empty file"));
   EXPECT_THAT(open_error(put(folder / "a.pcd", "")), HasSubstr("a.pcd: empty file"));

@@ -206,7 +206,7 @@ class PcdSource final : public FrameSource {
  public:
   PcdSource(std::vector<fs::path> files, CameraFacts facts) : files_(std::move(files)), facts_(std::move(facts)) {
     const Camera camera = read(files_.front()).camera;
-    if (!facts_.fx) {
+    if (!facts_.has_focal()) {
       notes_.push_back(fmt::format("{}: intrinsics estimated from its points: fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}",
                                    files_.front().string(), camera.fx, camera.fy, camera.cx, camera.cy));
     }
@@ -222,13 +222,18 @@ class PcdSource final : public FrameSource {
   void seek(double time_s) override { next_ = first_not_before(time_s, files_.size(), usual_time_s); }
   bool is_sequence() const override { return false; }
   std::vector<std::string> notes() const override { return notes_; }
+  std::vector<SourceItem> contents() const override {
+    const fs::path& first = files_.front();
+    return {{files_.size() == 1 ? first.filename().string() : "*.pcd", "points of rows and columns",
+             long(files_.size()), "depth and colour", ""}};
+  }
 
  private:
   Frame read(const fs::path& file) {
     const std::string path = file.string();
     PointGrid grid = parse_pcd(read_file(path), path);
     CameraFacts facts = facts_;
-    if (!facts.fx) facts.fill_from(estimate_camera(grid, path));
+    if (!facts.has_focal()) facts.fill_from(estimate_camera(grid, path));
     std::vector<std::string> notes;
     const Camera camera =
         resolve_camera(facts, grid.points_m.width(), grid.points_m.height(), !grid.colour.empty(), path, notes);
