@@ -61,7 +61,7 @@ std::vector<fs::path> camera_files(const std::string& folder) {
     const std::string stem = plain_name(it->path().stem().string()),
                       extension = plain_name(it->path().extension().string());
     const auto has = [&](std::string_view word) { return stem.find(word) != stem.npos; };
-    const std::array<std::string_view, 7> kinds{"json", "yaml", "yml", "txt", "toml", "ini", "csv"};
+    const std::array<std::string_view, 8> kinds{"json", "yaml", "yml", "xml", "txt", "toml", "ini", "csv"};
     const bool named =
         stem == "meta" || stem == "k" || has("camera") || has("cam") || has("intrinsic") || has("calib") || has("info");
     std::error_code ignored;

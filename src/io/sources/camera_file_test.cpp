@@ -177,6 +177,7 @@ TEST(ParseCamera, NamesWhatIsWrongInYaml) {
   EXPECT_THAT(message("fx: 9\nD: [a, b]"), HasSubstr("\"D\": expected a list of numbers"));
   EXPECT_THAT(message(std::string(100000, '[')), HasSubstr("c.yaml"));
   parse_camera("{\"a\":" + std::string(100000, '[') + std::string(100000, ']') + "}", "deep.json");
+  for (const char* text : {"<", "</a>", "<a", "<a><b></a>", "<a/>"}) error_of([&] { parse_camera(text, "c.xml"); });
   std::string aliases = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
   for (int i = 1; i < 12; ++i) {
     const std::string last = "*a" + std::to_string(i - 1) + ", ";
@@ -221,6 +222,11 @@ const std::vector<Spelling>& spellings() {
       {"OpenCV, JSON",
        R"({"size": [320, 240], "cameraMatrix": {"type_id": "opencv-matrix", "rows": 3, "cols": 3, "dt": "d",
           "data": [262.5, 0, 150, 0, 263.5, 110, 0, 0, 1]}})"},
+      {"OpenCV, XML",
+       "<?xml version=\"1.0\"?>\n<opencv_storage>\n<!-- made today -->\n<image_width>320</image_width><image_height>240"
+       "</image_height>\n<Camera_Matrix type_id=\"opencv-matrix\">\n  <rows>3</rows>\n  <cols>3</cols>\n  <dt>d</dt>\n "
+       " <data>\n"
+       "    2.625e+02 0. 150. 0. 2.635e+02 110. 0. 0. 1.</data></Camera_Matrix>\n</opencv_storage>\n"},
       {"ros2 topic echo",
        "header:\n  stamp:\n    sec: 1\n    nanosec: 2\n  frame_id: depth\nheight: 240\nwidth: 320\n"
        "distortion_model: plumb_bob\nd:\n- 0.0\n- 0.0\nk:\n- 262.5\n- 0.0\n- 150.0\n- 0.0\n- 263.5\n- 110.0\n- 0.0\n- "

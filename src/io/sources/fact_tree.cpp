@@ -188,6 +188,34 @@ std::optional<FactTree> as_toml(const std::string& text) try {
   return std::nullopt;
 }
 
+/// Reads elements within elements, as OpenCV writes XML; attributes are passed over.
+FactTree as_xml(std::string_view text, const std::string& name) {
+  struct Element {
+    std::string name;
+    FactTree inner;
+    std::string text;
+  };
+  std::vector<Element> open(1);
+  while (!text.empty()) {
+    const std::size_t begin = std::min(text.find('<'), text.size());
+    open.back().text += text.substr(0, begin);
+    const std::size_t end = std::min(text.find('>', begin), text.size());
+    std::string_view tag = trimmed(text.substr(begin, end - begin), "<> \t\r\n");
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (tag.empty() || tag.front() == '?' || tag.front() == '!' || tag.back() == '/') continue;
+    if (tag.front() != '/') {
+      open.push_back({std::string(tag.substr(0, tag.find_first_of(kSpace))), {}, {}});
+    } else if (open.size() > 1) {
+      Element done = std::move(open.back());
+      open.pop_back();
+      open.back().inner[done.name] = done.inner.is_null() ? FactTree(trimmed(done.text)) : std::move(done.inner);
+    }
+    if (open.size() > std::size_t(kFactLevels)) throw Error(name + ": XML of too many levels");
+  }
+  if (open.front().inner.is_null()) throw Error(name + ": XML without an element that ends");
+  return std::move(open.front().inner);
+}
+
 }  // namespace
 
 std::optional<double> number_of(std::string_view word) {
@@ -232,6 +260,7 @@ FactTree parse_facts(std::string_view bytes, const std::string& name) {
   const std::string text = as_utf8(bytes);
   const bool braces = trimmed(text).starts_with('{');
   if (auto json = as_json(text); json && json->is_object()) return std::move(*json);
+  if (trimmed(text).starts_with('<')) return as_xml(text, name);
   std::string why;
   if (auto yaml = as_yaml(text, why)) return std::move(*yaml);
   if (braces) throw Error(name + ": not JSON: " + why);

@@ -17,8 +17,8 @@ inline constexpr int kFactLevels = 12;
 /// Member of what plain text becomes that has its lines of numbers without a name, each a list.
 inline constexpr const char* kNumberRows = "rows of numbers";
 
-/// Reads JSON, YAML (OpenCV's too), TOML, INI or plain text (lines "name: value", "name = value", rows of numbers) as
-/// one tree. Marks of byte order are skipped, and UTF-16 is read. Throws Error naming `name`.
+/// Reads JSON, YAML and XML (OpenCV's too), TOML, INI or plain text (lines "name: value", "name = value", rows of
+/// numbers) as one tree. Marks of byte order are skipped, and UTF-16 is read. Throws Error naming `name`.
 FactTree parse_facts(std::string_view text, const std::string& name);
 
 /// Returns the number that a word is as a whole.

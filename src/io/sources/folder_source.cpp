@@ -134,12 +134,23 @@ std::string last_number(const std::string& name) {
   return begin == name.size() ? "" : name.substr(first);
 }
 
-/// Gives each frame the colour that `of` names alike. Returns how many got one.
+/// Returns the whole number that comes first in a name.
+std::string first_number(const std::string& name) {
+  const std::size_t begin = name.find_first_of("0123456789");
+  if (begin == name.npos) return {};
+  return last_number(name.substr(0, name.find_first_not_of("0123456789", begin)));
+}
+
+/// Gives each frame the colour that `of` names alike, unless it does not tell depth pictures apart. Returns how many
+/// got one.
 template <class Of>
 std::size_t pair_by(std::vector<FrameFiles>& frames, const std::vector<Picture>& depths,
                     const std::vector<Picture>& colours, Of of) {
   std::map<std::string, std::string> paths;
   for (const Picture& colour : colours) paths.emplace(of(colour), colour.path.string());
+  std::set<std::string> names;
+  for (const Picture& depth : depths) names.insert(of(depth));
+  if (names.size() != depths.size()) return 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < depths.size(); ++i) {
     const std::string name = of(depths[i]);
@@ -173,6 +184,8 @@ void add_colours(FrameList& list, const std::vector<Picture>& depths, const std:
     return;
   }
   if (pair_by(list.frames, depths, colours, [](const Picture& p) { return last_number(p.stem); }) != 0) return;
+  // Redwood: the picture's number, then its camera's time.
+  if (pair_by(list.frames, depths, colours, [](const Picture& p) { return first_number(p.stem); }) != 0) return;
   if (depths.size() == 1 && colours.size() == 1) list.frames.front().colour = colours.front().path.string();
 }
 
@@ -369,6 +382,9 @@ std::vector<SourceItem> items_of(const std::string& folder, const std::vector<Fr
     const std::string extension = "." + item.holds;
     const auto& unread = unread_depth_extensions();
     if (item.use.empty() && std::ranges::find(unread, extension) != unread.end()) item.why = unread_advice(extension);
+    if (frames.empty() && kind.find("/*depth*") != kind.npos) item.why = "give that folder as the source";
+    const bool jpeg_of_depth = extension.starts_with(".jp") && kind.find("epth") != kind.npos;
+    if (item.use.empty() && jpeg_of_depth) item.why = "JPEG loses depth, expected PNG of 16 bits";
     all.push_back(std::move(item));
   }
   return all;
@@ -392,7 +408,9 @@ FrameList list_folder(const std::string& folder, const SourceOptions& options) {
   std::set<std::string> names;
   for (const Picture& p : colours) names.insert(p.stem);
   note_missing_colours(list, names.size());
-  list.facts = find_camera_facts(options, depth_folder ? std::vector<std::string>{folder} : camera_folders(folder));
+  std::vector<std::string> folders = depth_folder ? std::vector<std::string>{folder} : camera_folders(folder);
+  folders.push_back((fs::path(folder) / "intrinsic").string());  // ScanNet
+  list.facts = find_camera_facts(options, folders);
   if (list.facts.rate_hz && !list.frames.front().time_s) add_times(list, *list.facts.rate_hz);
   list.items = items_of(folder, list.frames);
   return list;

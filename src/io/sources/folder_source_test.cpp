@@ -120,6 +120,12 @@ TEST(ListFolder, PairsDepthAndColourByName) {
   EXPECT_THAT(pairs_of({"depth/image_7.png", "image/image_7.jpg"}), ElementsAre("depth/image_7.png image/image_7.jpg"));
   EXPECT_THAT(pairs_of({"depth_images/0007.png", "RGB/frame7.png"}),
               ElementsAre("depth_images/0007.png RGB/frame7.png"));
+  EXPECT_THAT(pairs_of({"depth/0000001-000000000000.png", "depth/0000002-000000033369.png",
+                        "rgb/0000001-000000004000.jpg", "rgb/0000002-000000037000.jpg"}),
+              ElementsAre("depth/0000001-000000000000.png rgb/0000001-000000004000.jpg",
+                          "depth/0000002-000000033369.png rgb/0000002-000000037000.jpg"));
+  EXPECT_THAT(pairs_of({"depth/1_left.png", "depth/1_right.png", "rgb/x1.png"}),
+              ElementsAre("depth/1_left.png -", "depth/1_right.png -"));
   EXPECT_THAT(pairs_of({"0001.png", "0001.jpg"}), ElementsAre("0001.png 0001.jpg"));
   EXPECT_THAT(pairs_of({"depth/0000103.png", "image/x.jpg"}), ElementsAre("depth/0000103.png image/x.jpg"));
   EXPECT_THAT(pairs_of({"d-1294886360.208451-29.pgm", "d-1294886361.0-29.pgm", "r-1294886360.210000-7.ppm"}),
@@ -142,11 +148,12 @@ TEST(ListFolder, SaysWhatThereIsWhereNothingIsOfDepth) {
   const TemporaryFolder folder;
   put(folder / "depth/0.exr", "");
   put(folder / "depth/1.exr", "");
+  put(folder / "depth/2.jpg", "");
   put(folder / "rgb/0.png", "");
-  EXPECT_THAT(
-      error_of([&] { list_folder(folder.path(), {}); }),
-      testing::AllOf(HasSubstr("depth: no frames, expected 16-bit depth PNG files\n"), HasSubstr("depth/*.exr"),
-                     HasSubstr("2  not taken: depth of .exr, expected PNG; convert: python3"), HasSubstr("rgb/*.png")));
+  EXPECT_THAT(error_of([&] { list_folder(folder.path(), {}); }),
+              testing::AllOf(HasSubstr("depth: no frames, expected 16-bit depth PNG files\n"), HasSubstr("depth/*.exr"),
+                             HasSubstr("2  not taken: depth of .exr, expected PNG; convert: python3"),
+                             HasSubstr("JPEG loses depth"), HasSubstr("rgb/*.png")));
 }
 
 }  // namespace
