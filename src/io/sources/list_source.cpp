@@ -12,7 +12,6 @@
 #include "io/files/data_file.h"
 #include "io/files/depth_picture.h"
 #include "io/files/stored_depth.h"
-#include "io/sources/folder_source.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
 
@@ -238,15 +237,16 @@ Frame FrameListReader::read(std::size_t index, bool with_colour) const {
   return frame;
 }
 
-std::unique_ptr<FrameSource> open_list(FrameList list) { return std::make_unique<ListSource>(std::move(list)); }
-
-double clock_seconds(double time) {
-  constexpr double kFirst_s = 9e8, kLast_s = 5e9;  // 1998 to 2128
-  for (const double by : {1e3, 1e6, 1e9}) {
-    if (time > kFirst_s * by && time < kLast_s * by) return time / by;
+void add_items(FrameList& list) {
+  std::vector<std::string> depths, colours;
+  for (const FrameFiles& files : list.frames) {
+    depths.push_back(files.depth);
+    if (!files.colour.empty()) colours.push_back(files.colour);
   }
-  return time;
+  list.items = items_of(list.place, depths, colours);
 }
+
+std::unique_ptr<FrameSource> open_list(FrameList list) { return std::make_unique<ListSource>(std::move(list)); }
 
 std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& name) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -324,7 +324,7 @@ FrameList list_tum(const std::string& folder, const SourceOptions& options) {
                                      depth.size(), kMaxTimeDifferenceS));
   }
   list.facts = find_camera_facts(options, {folder});
-  list.items = items_of(folder, list.frames);
+  add_items(list);
   for (SourceItem& item : list.items) {
     for (const auto* lists : {&kDepthLists, &kColourLists, &kAssociations}) {
       if (std::ranges::find(*lists, lower(item.name)) != lists->end()) item.use = "list of frames";

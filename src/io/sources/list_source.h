@@ -12,6 +12,7 @@
 #include "io/lens/colour_registration.h"
 #include "io/lens/lens.h"
 #include "io/sources/camera_file.h"
+#include "io/sources/picture_files.h"
 #include "vesalius/frame_source.h"
 
 namespace vesalius {
@@ -35,6 +36,9 @@ struct FrameList {
   std::vector<std::string> notes;
   std::vector<SourceItem> items;  ///< what the folder holds
 };
+
+/// Fills the items of a list with what its folder, the `place`, holds.
+void add_items(FrameList& list);
 
 /// Reads the frames of a list in any order. It may be used from several threads.
 class FrameListReader {
@@ -66,10 +70,6 @@ class FrameListReader {
 
 /// Returns a source that reads the pictures one by one. Throws Error as FrameListReader does.
 std::unique_ptr<FrameSource> open_list(FrameList list);
-
-/// Returns seconds of a time that counts milliseconds, microseconds or nanoseconds since 1970, as its size tells; other
-/// times as they are, in seconds.
-double clock_seconds(double time);
 
 /// One line of a TUM list (depth.txt, rgb.txt).
 struct TumEntry {

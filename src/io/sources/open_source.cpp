@@ -209,7 +209,7 @@ std::string_view scheme_of_folder(const std::string& path) {
   if (png && pcd) throw Error(path + ": PNG and PCD files in one folder, expected folder: or pcd: before the path");
   if (png) return "folder";
   if (pcd) return "pcd";
-  throw Error(with_items(path + ": no frames, expected depth/*.png, depth.txt, *.png or *.pcd", items_of(path, {})));
+  throw Error(with_items(path + ": no frames, expected depth/*.png, depth.txt, *.png or *.pcd", items_of(path)));
 }
 
 std::unique_ptr<FrameSource> open_files(const std::string& uri, const SourceOptions& options) {
