@@ -78,7 +78,15 @@ constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 
 int complain(const std::string& message, int exit_code) {
-  say("vesalius: " + message);
+  // What a source holds is listed on indented lines below an error.
+  constexpr std::string_view kLine = "\n  ";
+  std::size_t at = message.find(kLine);
+  say("vesalius: " + message.substr(0, at));
+  while (at != message.npos) {
+    const std::size_t next = message.find(kLine, at + 1);
+    say(message.substr(at + 1, next == message.npos ? next : next - at - 1));
+    at = next;
+  }
   return exit_code;
 }
 

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <type_traits>
 
 #include "io/files/image_bytes.h"
+#include "io/recordings/colour_encodings.h"
 #include "io/recordings/depth_codecs.h"
 #include "io/recordings/message_fields.h"
+#include "io/recordings/orbbec_topics.h"
 #include "io/recordings/realsense_topics.h"
 #include "vesalius/base/depth_reading.h"
 #include "vesalius/error.h"
@@ -17,18 +20,7 @@
 namespace vesalius {
 namespace {
 
-/// Encodings of colour and where red, green and blue stand in a pixel.
-struct ColourEncoding {
-  std::string_view name;
-  int bytes, r, g, b;
-};
-constexpr std::array<ColourEncoding, 7> kColourEncodings{{{"rgb8", 3, 0, 1, 2},
-                                                          {"bgr8", 3, 2, 1, 0},
-                                                          {"8UC3", 3, 2, 1, 0},
-                                                          {"rgba8", 4, 0, 1, 2},
-                                                          {"bgra8", 4, 2, 1, 0},
-                                                          {"mono8", 1, 0, 0, 0},
-                                                          {"8UC1", 1, 0, 0, 0}}};
+constexpr std::string_view kDisparities = "stereo_msgs/DisparityImage", kPoints = "sensor_msgs/PointCloud2";
 
 int picture_side(std::uint64_t value, const std::string& name) {
   if (value > static_cast<std::uint64_t>(kMaxPixels)) {
@@ -50,26 +42,27 @@ std::array<double, N> exactly(const std::vector<double>& values) {
   return all;
 }
 
-/// Throws Error unless all rows of the picture are there.
-void expect_rows(const PictureMessage& picture, std::size_t pixel_bytes, const std::string& name) {
-  const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
-  if (width == 0 || height == 0 || width * height > kMaxPixels) {
-    throw Error(fmt::format("{}: a picture of {}x{}, expected at most {} pixels", name, width, height, kMaxPixels));
-  }
-  if (picture.row_bytes < width * pixel_bytes || picture.data.size() / picture.row_bytes < height) {
-    throw Error(fmt::format("{}: a picture of {}x{} {} with {} bytes, {} to a row", name, width, height,
-                            picture.encoding, picture.data.size(), picture.row_bytes));
-  }
-}
-
-/// Reads a number of a raw picture.
+/// Reads the number that stands `at` bytes behind the beginning of a row.
 template <class T>
-T value_at(const PictureMessage& picture, int u, int v) {
+T value_at(const PictureMessage& picture, int v, std::size_t at) {
   std::array<char, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), picture.data.data() + static_cast<std::size_t>(v) * picture.row_bytes + u * sizeof(T),
-              sizeof(T));
+  std::memcpy(bytes.data(), picture.data.data() + static_cast<std::size_t>(v) * picture.row_bytes + at, sizeof(T));
   if (picture.big_endian != (std::endian::native == std::endian::big)) std::ranges::reverse(bytes);
   return std::bit_cast<T>(bytes);
+}
+
+/// Makes depth of the numbers of a raw picture, one from the next `step` bytes away.
+template <class T, class ToReading>
+DepthImage depth_from(const PictureMessage& picture, std::size_t step, std::size_t first, const std::string& name,
+                      const ToReading& to_reading) {
+  expect_rows(picture, step, name);
+  DepthImage depth(picture.width, picture.height);
+  for (int v = 0; v < picture.height; ++v) {
+    for (int u = 0; u < picture.width; ++u) {
+      depth(u, v) = to_reading(value_at<T>(picture, v, static_cast<std::size_t>(u) * step + first));
+    }
+  }
+  return depth;
 }
 
 /// From librealsense 2.56 on, what the library itself states: its messages of sensor_msgs call every model plumb_bob.
@@ -96,6 +89,44 @@ Calibration parse_realsense_text(std::string_view text, const std::string& name)
   return calibration;
 }
 
+/// From Orbbec's SDK 2 on; those of accelerometers have other fields.
+bool is_orbbec_profile(const RecordedTopic& topic) {
+  return topic.layout == MessageLayout::ros1 && topic.type.ends_with("StreamProfileInfo") &&
+         topic.type.find("Imu") == std::string::npos && orbbec_number(topic.name, "/cam/streamProfileType_") != 0;
+}
+
+/// Reads an OBStreamProfileInfo after its header.
+Calibration parse_orbbec_profile(MessageFields& fields, const RecordedTopic& topic) {
+  constexpr std::array kModels{
+      "", "modified_brown_conrady", "inverse_brown_conrady", "brown_conrady", "rational_polynomial", "kannala_brandt4"};
+  constexpr int kPose = 12;
+  const auto reals = [&](int count, const char* what) {
+    std::vector<double> all;
+    for (int i = 0; i < count; ++i) all.push_back(double(fields.real32(what)));
+    return all;
+  };
+  fields.u8("the kind of stream");
+  fields.u8("the format");
+  reals(kPose, "the pose");
+  Calibration calibration;
+  calibration.frame = orbbec_frame(orbbec_stream(topic.name));
+  calibration.width = fields.u16("the width");
+  calibration.height = fields.u16("the height");
+  fields.u16("the rate");
+  const std::vector<double> k = reals(4, "the intrinsics");
+  const std::vector<double> d = reals(8, "the distortion");
+  const std::uint8_t model = fields.u8("the distortion model");
+  calibration.model = model < kModels.size() ? kModels[model] : fmt::format("number {}", model);
+  const bool is_fisheye = model + 1U == kModels.size();
+  if (is_fisheye) {
+    calibration.distortion.assign(d.begin(), d.begin() + 4);
+  } else {
+    calibration.distortion = {d[0], d[1], d[6], d[7], d[2], d[3], d[4], d[5]};
+  }
+  calibration.matrix = {k[0], 0, k[2], 0, k[1], k[3], 0, 0, 1};
+  return calibration;
+}
+
 std::string image_message(std::string_view encoding, int width, int height, int pixel_bytes, std::string_view data,
                           std::int64_t time_ns, std::string_view frame) {
   PictureMessage picture;
@@ -109,51 +140,68 @@ std::string image_message(std::string_view encoding, int width, int height, int 
   return picture_message(picture);
 }
 
-/// Returns the colour of luminance and chrominance as television has them (BT.601, 16 to 235), in 256ths.
-Rgb from_yuv(int y, int u, int v) {
-  constexpr int kScale = 298, kRound = 128, kShift = 8;
-  const int c = kScale * (y - 16) + kRound, d = u - 128, e = v - 128;
-  const auto byte = [](int value) { return static_cast<std::uint8_t>(std::clamp(value >> kShift, 0, 255)); };
-  return {byte(c + 409 * e), byte(c - 100 * d - 208 * e), byte(c + 516 * d)};
+/// Pictures that are compressed in a message for raw ones, as Orbbec records colour.
+bool is_compressed_encoding(std::string_view encoding) {
+  return std::ranges::any_of(std::array{"mjpg", "mjpeg", "jpeg", "jpg", "png", "MJPG"},
+                             [&](const char* one) { return encoding == one; });
 }
 
-/// Two pixels share their chrominance: Y U Y V.
-ColourImage from_yuy2(const PictureMessage& picture, const std::string& name) {
-  constexpr std::size_t kPixelBytes = 2;
-  expect_rows(picture, kPixelBytes, name);
-  if (picture.width % 2 != 0) {
-    throw Error(fmt::format("{}: yuv422_yuy2 of {} columns, expected an even number", name, picture.width));
-  }
-  ColourImage colour(picture.width, picture.height);
-  for (int v = 0; v < picture.height; ++v) {
-    const auto* row =
-        reinterpret_cast<const std::uint8_t*>(picture.data.data()) + static_cast<std::size_t>(v) * picture.row_bytes;
-    for (int u = 0; u < picture.width; ++u) {
-      const std::uint8_t* pair = row + 4 * (u / 2);
-      colour(u, v) = from_yuv(row[2 * u], pair[1], pair[3]);
-    }
-  }
-  return colour;
+/// Orbbec's Images have numbers behind the picture. Some have how many bytes there are of a camera's own before it, in
+/// the list of the picture's bytes and counted in front of that.
+void skip_orbbec_metadata(MessageFields fields, PictureMessage& picture) {
+  constexpr std::size_t kBehind = 32, kMostBehind = 64;
+  const std::uint32_t own = fields.u32("the length of metadata");
+  if (fields.left() < sizeof(std::uint32_t)) return;
+  const std::uint32_t all = fields.u32("the length of the picture");
+  if (own > all || fields.left() < all + kBehind || fields.left() > all + kMostBehind) return;
+  picture.data = fields.take(all, "the picture").substr(own);
 }
 
-/// Luminance of all pixels, then chrominance of each four, U V.
-ColourImage from_nv12(const PictureMessage& picture, const std::string& name) {
-  expect_rows(picture, 1, name);
-  const auto row_bytes = static_cast<std::size_t>(picture.row_bytes);
-  const auto height = static_cast<std::size_t>(picture.height);
-  if (picture.width % 2 != 0 || picture.height % 2 != 0 || picture.data.size() < row_bytes * (height + height / 2)) {
-    throw Error(fmt::format("{}: nv12 of {}x{} with {} bytes, expected even sides and {} bytes", name, picture.width,
-                            picture.height, picture.data.size(), row_bytes * (height + height / 2)));
+void parse_image(MessageFields& fields, PictureMessage& picture, const std::string& name, bool is_orbbec) {
+  picture.height = picture_side(fields.u32("the height"), name);
+  picture.width = picture_side(fields.u32("the width"), name);
+  picture.encoding = fields.text("the encoding");
+  picture.compressed = is_compressed_encoding(picture.encoding);
+  picture.big_endian = fields.u8("the byte order") != 0;
+  picture.row_bytes = fields.u32("the length of a row");
+  if (is_orbbec) skip_orbbec_metadata(fields, picture);
+  if (picture.data.empty()) picture.data = fields.bytes("the picture");
+}
+
+/// stereo_msgs/DisparityImage
+void parse_disparities(MessageFields& fields, PictureMessage& picture, const std::string& name) {
+  std::string frame_of_picture;
+  fields.header(frame_of_picture);
+  parse_image(fields, picture, name, false);
+  const double focal = fields.real32("the focal length");
+  picture.focal_baseline = focal * fields.real32("the baseline");
+  if (!(picture.focal_baseline > 0.0)) throw Error(name + ": disparities without a focal length and a baseline");
+}
+
+/// sensor_msgs/PointCloud2
+void parse_points(MessageFields& fields, PictureMessage& picture, const std::string& name) {
+  constexpr std::uint8_t kFloat = 7;
+  picture.height = picture_side(fields.u32("the height"), name);
+  picture.width = picture_side(fields.u32("the width"), name);
+  int found = 0;
+  const std::uint32_t count = fields.u32("the number of fields");
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::string_view field = fields.text("the name of a field");
+    const std::uint32_t offset = fields.u32("the place of a field");
+    const bool is_float = fields.u8("the type of a field") == kFloat;
+    fields.u32("the length of a field");
+    const std::size_t axis = std::string_view("xyz").find(field);
+    if (field.size() != 1 || axis == std::string_view::npos || !is_float) continue;
+    picture.xyz[axis] = offset;
+    found |= 1 << axis;
   }
-  ColourImage colour(picture.width, picture.height);
-  const auto* luminance = reinterpret_cast<const std::uint8_t*>(picture.data.data());
-  const std::uint8_t* chrominance = luminance + row_bytes * height;
-  for (int v = 0; v < picture.height; ++v) {
-    const std::uint8_t* y = luminance + row_bytes * static_cast<std::size_t>(v);
-    const std::uint8_t* uv = chrominance + row_bytes * static_cast<std::size_t>(v / 2);
-    for (int u = 0; u < picture.width; ++u) colour(u, v) = from_yuv(y[u], uv[u / 2 * 2], uv[u / 2 * 2 + 1]);
-  }
-  return colour;
+  picture.big_endian = fields.u8("the byte order") != 0;
+  const std::uint32_t point_bytes = fields.u32("the length of a point");
+  picture.row_bytes = fields.u32("the length of a row");
+  picture.data = fields.bytes("the points");
+  const bool fits = std::ranges::max(picture.xyz) + std::uint64_t{sizeof(float)} <= point_bytes;
+  picture.encoding = picture.height > 1 && found == 7 ? "xyz" : picture.height > 1 ? "without x, y, z" : "in no rows";
+  if (picture.encoding == "xyz" && fits) picture.point_bytes = point_bytes;
 }
 
 template <class T>
@@ -164,13 +212,16 @@ std::string_view bytes_of(const Image<T>& image) {
 }  // namespace
 
 bool is_picture(const RecordedTopic& topic) {
-  if (is_ros(topic)) return topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage";
+  if (is_ros(topic)) {
+    return topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage" ||
+           topic.type == kDisparities || topic.type == kPoints;
+  }
   return topic.layout == MessageLayout::protobuf &&
          (topic.type == "foxglove.RawImage" || topic.type == "foxglove.CompressedImage");
 }
 
 bool is_calibration(const RecordedTopic& topic) {
-  if (is_realsense_text(topic)) return true;
+  if (is_realsense_text(topic) || is_orbbec_profile(topic)) return true;
   if (is_ros(topic)) return topic.type == "sensor_msgs/CameraInfo";
   return topic.layout == MessageLayout::protobuf && topic.type == "foxglove.CameraCalibration";
 }
@@ -198,16 +249,18 @@ PictureMessage parse_picture(const RecordedTopic& topic, std::string_view messag
   MessageFields fields(message, topic.layout, name);
   picture.time_ns = fields.header(picture.frame);
   if (std::string stream = realsense_stream(topic.name); !stream.empty()) picture.frame = std::move(stream);
-  if (picture.compressed) {
+  const int orbbec = orbbec_stream(topic.name);
+  if (orbbec != 0) picture.frame = orbbec_frame(orbbec);
+  if (topic.type == kDisparities) {
+    parse_disparities(fields, picture, name);
+  } else if (topic.type == kPoints) {
+    parse_points(fields, picture, name);
+  } else if (picture.compressed) {
     picture.encoding = fields.text("the format");
+    picture.data = fields.bytes("the picture");
   } else {
-    picture.height = picture_side(fields.u32("the height"), name);
-    picture.width = picture_side(fields.u32("the width"), name);
-    picture.encoding = fields.text("the encoding");
-    picture.big_endian = fields.u8("the byte order") != 0;
-    picture.row_bytes = fields.u32("the length of a row");
+    parse_image(fields, picture, name, orbbec != 0);
   }
-  picture.data = fields.bytes("the picture");
   return picture;
 }
 
@@ -232,6 +285,7 @@ Calibration parse_calibration(const RecordedTopic& topic, std::string_view messa
     return calibration;
   }
   fields.header(calibration.frame);
+  if (is_orbbec_profile(topic)) return parse_orbbec_profile(fields, topic);
   if (std::string stream = realsense_stream(topic.name); !stream.empty()) calibration.frame = std::move(stream);
   calibration.height = picture_side(fields.u32("the height"), name);
   calibration.width = picture_side(fields.u32("the width"), name);
@@ -240,61 +294,97 @@ Calibration parse_calibration(const RecordedTopic& topic, std::string_view messa
   calibration.matrix = exactly<9>(fields.reals64(9, "the camera matrix"));
   calibration.rotation = exactly<9>(fields.reals64(9, "the rotation"));
   calibration.projection = exactly<12>(fields.reals64(12, "the projection"));
+  const auto whole = [&](const char* what) { return picture_side(fields.u32(what), name); };
+  calibration.binning_x = std::max(1, whole("the binning"));
+  calibration.binning_y = std::max(1, whole("the binning"));
+  calibration.roi_x = whole("the part of the picture");
+  calibration.roi_y = whole("the part of the picture");
+  calibration.roi_height = whole("the part of the picture");
+  calibration.roi_width = whole("the part of the picture");
   return calibration;
 }
 
-bool is_depth(const PictureMessage& picture) {
-  if (picture.compressed) return picture.encoding.find("compressedDepth") != std::string::npos;
-  return picture.encoding == "16UC1" || picture.encoding == "mono16" || picture.encoding == "32FC1";
+std::optional<Calibration> scaled_to(const Calibration& calibration, int width, int height) {
+  Calibration c = calibration;
+  const bool is_part = c.roi_width > 0 && c.roi_height > 0;
+  const int part_width = is_part ? c.roi_width : c.width, part_height = is_part ? c.roi_height : c.height;
+  double x = c.binning_x, y = c.binning_y;
+  const bool as_it_says = part_width / c.binning_x == width && part_height / c.binning_y == height;
+  if (!as_it_says) {
+    const auto is_multiple = [](int large, int small) { return small > 0 && large % small == 0; };
+    const bool smaller = is_multiple(part_width, width) && part_width / width * height == part_height;
+    const bool larger = is_multiple(width, part_width) && width / part_width * part_height == height;
+    if (!smaller && !larger) return std::nullopt;
+    x = y = double(part_width) / double(width);
+  }
+  if (x == 1.0 && y == 1.0 && c.roi_x == 0 && c.roi_y == 0) return c;
+  // A pixel's centre has whole numbers, so that the picture begins half a pixel before 0.
+  const auto centre = [](double at, int first, double by) { return (at - first + 0.5) / by - 0.5; };
+  c.matrix[0] /= x;
+  c.matrix[4] /= y;
+  c.matrix[2] = centre(c.matrix[2], c.roi_x, x);
+  c.matrix[5] = centre(c.matrix[5], c.roi_y, y);
+  c.projection[0] /= x;
+  c.projection[3] /= x;
+  c.projection[5] /= y;
+  c.projection[7] /= y;
+  c.projection[2] = centre(c.projection[2], c.roi_x, x);
+  c.projection[6] = centre(c.projection[6], c.roi_y, y);
+  c.width = width;
+  c.height = height;
+  return c;
 }
 
+bool is_depth(const PictureMessage& picture) { return look_at(picture).is_depth(); }
+
 DepthImage depth_of(const PictureMessage& given, const StoredDepth& stored, const std::string& name) {
-  const bool is_float = given.encoding.starts_with("32FC1");
-  const double to_mm = 1e3 / double(is_float ? stored.float_units_per_m : stored.units_per_m);
-  const auto in_mm = [&](std::uint16_t value) { return to_mm == 1.0 ? value : depth_reading_of_mm(value * to_mm); };
+  const std::string& encoding = given.encoding;
+  const double to_mm = 1e3 / double(stored.units_per_m), float_to_mm = 1e3 / double(stored.float_units_per_m);
+  const auto whole = [&](auto value) {
+    if constexpr (std::is_unsigned_v<decltype(value)>) value = restored(value, stored.bits);
+    if (to_mm == 1.0) return static_cast<std::uint16_t>(std::max<int>(value, 0));
+    return depth_reading_of_mm(value * to_mm);
+  };
+  const auto real = [&](auto value) { return depth_reading_of_mm(float_to_mm * double(value)); };
   if (given.compressed) {
-    Image<std::uint16_t> depth = unpack_compressed_depth(given.data, given.encoding, name);
-    if (is_float) return depth;
-    restore(depth, stored.bits);
-    std::ranges::transform(depth, depth.begin(), in_mm);
+    const bool is_packed = encoding.find("compressedDepth") != std::string::npos;
+    Image<std::uint16_t> depth =
+        is_packed ? unpack_compressed_depth(given.data, encoding, name) : decode_depth_png(given.data, name);
+    if (!encoding.starts_with("32FC1")) std::ranges::transform(depth, depth.begin(), whole);
     return depth;
   }
   PictureMessage picture = given;
-  if (is_float && stored.bits == DepthBits::swapped) picture.big_endian = !picture.big_endian;
-  expect_rows(picture, is_float ? sizeof(float) : sizeof(std::uint16_t), name);
-  DepthImage depth(picture.width, picture.height);
+  const bool is_real = picture.point_bytes > 0 || picture.focal_baseline > 0.0 || encoding.ends_with("FC1");
+  if (is_real && stored.bits == DepthBits::swapped) picture.big_endian = !picture.big_endian;
+  if (picture.point_bytes > 0) return depth_from<float>(picture, picture.point_bytes, picture.xyz[2], name, real);
+  if (picture.focal_baseline > 0.0) {
+    return depth_from<float>(picture, sizeof(float), 0, name, [&](float disparity) {
+      return depth_reading_of_mm(disparity > 0.F ? 1e3 * picture.focal_baseline / double(disparity) : 0.0);
+    });
+  }
+  if (encoding == "32FC1") return depth_from<float>(picture, sizeof(float), 0, name, real);
+  if (encoding == "64FC1") return depth_from<double>(picture, sizeof(double), 0, name, real);
+  if (encoding == "16SC1") return depth_from<std::int16_t>(picture, sizeof(std::int16_t), 0, name, whole);
+  return depth_from<std::uint16_t>(picture, sizeof(std::uint16_t), 0, name, whole);
+}
+
+Image<Eigen::Vector3f> points_of(const PictureMessage& picture, const std::string& name) {
+  if (picture.point_bytes == 0) throw Error(name + ": no points in rows with x, y and z");
+  expect_rows(picture, picture.point_bytes, name);
+  Image<Eigen::Vector3f> points(picture.width, picture.height, Eigen::Vector3f::Zero());
   for (int v = 0; v < picture.height; ++v) {
     for (int u = 0; u < picture.width; ++u) {
-      if (is_float) {
-        depth(u, v) = depth_reading_of_mm(to_mm * double(value_at<float>(picture, u, v)));
-      } else {
-        depth(u, v) = in_mm(restored(value_at<std::uint16_t>(picture, u, v), stored.bits));
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t at = std::size_t(u) * picture.point_bytes + picture.xyz[std::size_t(axis)];
+        points(u, v)[axis] = value_at<float>(picture, v, at);
       }
     }
   }
-  return depth;
+  return points;
 }
 
 ColourImage colour_of(const PictureMessage& picture, const std::string& name) {
-  if (picture.compressed) return decode_colour(picture.data, name);
-  if (picture.encoding == "yuv422_yuy2") return from_yuy2(picture, name);
-  if (picture.encoding == "nv12") return from_nv12(picture, name);
-  const auto found = std::ranges::find(kColourEncodings, picture.encoding, &ColourEncoding::name);
-  if (found == kColourEncodings.end()) {
-    throw Error(
-        fmt::format("{}: colour encoded as \"{}\", expected rgb8, bgr8, rgba8, bgra8, mono8, yuv422_yuy2 or nv12", name,
-                    picture.encoding));
-  }
-  expect_rows(picture, static_cast<std::size_t>(found->bytes), name);
-  ColourImage colour(picture.width, picture.height);
-  for (int v = 0; v < picture.height; ++v) {
-    const auto* of =
-        reinterpret_cast<const std::uint8_t*>(picture.data.data()) + static_cast<std::size_t>(v) * picture.row_bytes;
-    for (int u = 0; u < picture.width; ++u, of += found->bytes) {
-      colour(u, v) = {of[found->r], of[found->g], of[found->b]};
-    }
-  }
-  return colour;
+  return picture.compressed ? decode_colour(picture.data, name) : decode_raw_colour(picture, name);
 }
 
 std::string depth_message(const DepthImage& depth, std::int64_t time_ns, std::string_view frame) {

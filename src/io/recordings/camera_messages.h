@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -8,33 +9,24 @@
 #include <vector>
 
 #include "io/files/stored_depth.h"
+#include "io/recordings/picture_message.h"
 #include "io/recordings/recording.h"
 #include "vesalius/camera.h"
 #include "vesalius/frame.h"
 
 namespace vesalius {
 
-/// A picture as a message has it: sensor_msgs/Image and CompressedImage, foxglove.RawImage and CompressedImage.
-struct PictureMessage {
-  std::int64_t time_ns = 0;  ///< time of the header; 0 = not given
-  std::string frame;         ///< name of the camera's coordinate frame
-  bool compressed = false;
-  int width = 0, height = 0;    ///< 0 where it is compressed
-  std::string encoding;         ///< e.g. "16UC1"; of a compressed one its format, e.g. "jpeg"
-  std::uint32_t row_bytes = 0;  ///< from one row to the next
-  bool big_endian = false;
-  std::string_view data;  ///< into the message
-};
-
-/// A camera's calibration: sensor_msgs/CameraInfo, foxglove.CameraCalibration, that of a RealSense stream.
+/// A camera's calibration: sensor_msgs/CameraInfo, foxglove.CameraCalibration, that of a RealSense or Orbbec stream.
 struct Calibration {
   std::string frame;
-  int width = 0, height = 0;
+  int width = 0, height = 0;            ///< of the pictures that the numbers below are for
   std::string model;                    ///< model of distortion, e.g. "plumb_bob"
   std::vector<double> distortion;       ///< all 0 or none = not distorted
   std::array<double, 9> matrix{};       ///< K, of the pictures as they are
   std::array<double, 9> rotation{};     ///< R, from these to the rectified ones; all 0 = not given
   std::array<double, 12> projection{};  ///< P, of the rectified ones
+  int binning_x = 1, binning_y = 1;     ///< pixels that were made one, after the part below was cut out
+  int roi_x = 0, roi_y = 0, roi_width = 0, roi_height = 0;  ///< part that is recorded; 0x0 = all
 };
 
 bool is_picture(const RecordedTopic& topic);
@@ -45,14 +37,22 @@ PictureMessage parse_picture(const RecordedTopic& topic, std::string_view messag
 /// Reads a message of a topic that is_calibration. Throws Error naming `name`.
 Calibration parse_calibration(const RecordedTopic& topic, std::string_view message, const std::string& name);
 
+/// Returns the calibration of pictures of that size that a camera records which is calibrated for others: a part of
+/// them, pixels binned, or both sides a whole number of times smaller or larger, as filters that decimate leave it.
+/// Returns nothing where the sizes do not go together.
+std::optional<Calibration> scaled_to(const Calibration& calibration, int width, int height);
+
 /// Returns whether a picture is one of depth, by how it is encoded.
 bool is_depth(const PictureMessage& picture);
 
-/// Returns depth in millimetres, 0 = no reading. Throws Error naming `name` if the picture is not what it says.
+/// Returns depth in millimetres, 0 = no reading: 16 bits, a 16-bit PNG, compressedDepth, disparities, points. Throws Error naming `name` if the picture
+/// is not what it says.
 DepthImage depth_of(const PictureMessage& picture, const StoredDepth& stored, const std::string& name);
 
-/// Returns the colours of a picture: rgb8, bgr8, rgba8, bgra8, mono8, yuv422_yuy2, nv12, PNG or JPEG. Throws Error
-/// naming `name`.
+/// Returns the points of a picture of points, metres; NaN = no reading. Throws Error naming `name` if it has none.
+Image<Eigen::Vector3f> points_of(const PictureMessage& picture, const std::string& name);
+
+/// Returns the colours of a picture: those of colour_encodings.h, PNG or JPEG. Throws Error naming `name`.
 ColourImage colour_of(const PictureMessage& picture, const std::string& name);
 
 /// Returns a sensor_msgs/Image of 16UC1, millimetres, as CDR.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 
 #include "io/files/byte_stream.h"
@@ -119,6 +120,15 @@ std::string pack_rvl(const Image<std::uint16_t>& depth) {
     }
   }
   return out.finish();
+}
+
+std::pair<int, int> rvl_size(std::string_view data) {
+  if (data.size() < kCompressedDepthHead + 2 * sizeof(std::uint32_t)) return {};
+  const std::string name;
+  ByteReader in(data.substr(kCompressedDepthHead), name);
+  const auto side = [&] { return int(std::min<std::int64_t>(in.number<std::uint32_t>("size of RVL"), kMaxPixels)); };
+  const int width = side();
+  return {width, side()};
 }
 
 Image<std::uint16_t> unpack_compressed_depth(std::string_view data, std::string_view format, const std::string& name) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "vesalius/image.h"
 
@@ -15,6 +17,12 @@ Image<std::uint16_t> unpack_rvl(std::string_view packed, int width, int height, 
 
 /// Packs a depth picture in that way.
 std::string pack_rvl(const Image<std::uint16_t>& depth);
+
+/// Bytes before the PNG or RVL of compressedDepth.
+inline constexpr std::size_t kCompressedDepthHead = 12;
+
+/// Returns width and height of the data of compressedDepth that RVL packed, as they are stated; 0 where they are not.
+std::pair<int, int> rvl_size(std::string_view data);
 
 /// Unpacks the data of a sensor_msgs/CompressedImage of compressed_depth_image_transport. `format` is the message's,
 /// e.g. "16UC1; compressedDepth png", "32FC1; compressedDepth", "16UC1; compressedDepth rvl". Returns depth in the

@@ -18,6 +18,7 @@ class MessageFields {
   MessageFields(std::string_view bytes, MessageLayout layout, const std::string& name);
 
   std::uint8_t u8(const char* what) { return static_cast<std::uint8_t>(number(1, what)); }
+  std::uint16_t u16(const char* what) { return static_cast<std::uint16_t>(number(2, what)); }
   std::uint32_t u32(const char* what) { return static_cast<std::uint32_t>(number(4, what)); }
   float real32(const char* what);
   double real64(const char* what);
@@ -30,10 +31,12 @@ class MessageFields {
   std::vector<double> list64(const char* what);
   /// Reads a std_msgs/Header and returns its time stamp in nanoseconds. `frame` receives its frame_id.
   std::int64_t header(std::string& frame);
+  /// Returns the next bytes as they are.
+  std::string_view take(std::size_t count, const char* what);
+  std::size_t left() const { return bytes_.size() - at_; }
 
  private:
   std::uint64_t number(std::size_t size, const char* what);
-  std::string_view take(std::size_t count, const char* what);
 
   std::string_view bytes_;
   bool aligned_, big_endian_ = false;

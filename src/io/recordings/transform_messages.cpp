@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/recordings/message_fields.h"
+#include "io/recordings/orbbec_topics.h"
 #include "io/recordings/realsense_topics.h"
 
 namespace vesalius {
@@ -60,6 +61,28 @@ std::vector<FrameTransform> parse_realsense(const RecordedTopic& topic, std::str
   return {{device + topic.name.substr(stream.size()), stream, stream_from_reference->inverse()}};
 }
 
+bool is_orbbec(const RecordedTopic& topic) {
+  return topic.name == "/cam/streamProfileType_3" && topic.type.ends_with("StreamProfileInfo");
+}
+
+/// The stream of depth of Orbbec's recordings: what takes its points to those of colour, row by row, millimetres.
+std::vector<FrameTransform> parse_orbbec(const RecordedTopic& topic, std::string_view message,
+                                         const std::string& name) {
+  MessageFields fields(message, topic.layout, name);
+  std::string frame;
+  fields.header(frame);
+  fields.u8("the kind of stream");
+  fields.u8("the format");
+  Eigen::Matrix3d rotation;
+  for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = double(fields.real32("the rotation"));
+  Eigen::Vector3d translation_mm;
+  for (double& t : translation_mm) t = double(fields.real32("the translation"));
+  if (!rotation.allFinite() || !rotation.isUnitary(1e-2) || rotation.determinant() < 0.0) return {};
+  const auto colour_from_depth = isometry(translation_mm / 1e3, Eigen::Quaterniond(rotation));
+  if (!colour_from_depth) return {};
+  return {{orbbec_frame(kOrbbecColour), orbbec_frame(kOrbbecDepth), *colour_from_depth}};
+}
+
 double field(const ProtobufFields& fields, std::uint32_t number, double otherwise = 0.0) {
   const std::vector<double> values = fields.list64(number);
   return values.empty() ? otherwise : values.back();
@@ -83,7 +106,7 @@ bool is_transform(const RecordedTopic& topic) {
   }
   if (!is_ros(topic)) return false;
   const bool is_static = topic.type == "tf2_msgs/TFMessage" && topic.name.ends_with("tf_static");
-  return is_static || is_realsense(topic);
+  return is_static || is_realsense(topic) || is_orbbec(topic);
 }
 
 std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::string_view message,
@@ -95,6 +118,8 @@ std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::st
     for (const std::string_view one : parse_protobuf(message, name).all_texts(1)) parse_foxglove(one, name, transforms);
   } else if (is_realsense(topic)) {
     transforms = parse_realsense(topic, message, name);
+  } else if (is_orbbec(topic)) {
+    transforms = parse_orbbec(topic, message, name);
   } else {
     MessageFields fields(message, topic.layout, name);
     const std::uint32_t count = fields.u32("the number of transforms");

@@ -19,7 +19,7 @@ struct FrameTransform {
 };
 
 /// Returns whether a topic says where coordinate frames stand for good: tf2_msgs/TFMessage of tf_static,
-/// foxglove.FrameTransform and FrameTransforms, and the extrinsics of RealSense streams.
+/// foxglove.FrameTransform and FrameTransforms, and the extrinsics of RealSense and Orbbec streams.
 bool is_transform(const RecordedTopic& topic);
 
 /// Reads a message of a topic that is_transform; transforms that are none (not finite, no rotation) are left out.

@@ -20,6 +20,7 @@
 #include "io/sources/camera_file.h"
 #include "io/sources/folder_source.h"
 #include "io/sources/recorded_cameras.h"
+#include "io/sources/recorded_topics.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -55,14 +56,18 @@ class RecordingSource final : public FrameSource {
   RecordingSource(std::vector<std::string> files, const SourceOptions& options) : files_(std::move(files)) {
     for (const std::string& file : files_) recordings_.push_back(open_recording(file));
     const std::string& place = files_.front();
-    const RecordedCameras cameras = choose_cameras(*recordings_.front(), options, place, notes_);
+    RecordedCameras cameras = choose_cameras(*recordings_.front(), options, place, notes_);
+    items_ = std::move(cameras.items);
+    count_items();
     const RecordedCameras::Depth& depth = cameras.depth;
     CameraFacts facts = find_camera_facts(options, {});
     facts.fill_from(depth.facts);
     const bool on_grid = cameras.colour && !cameras.colour->camera;
-    camera_ = resolve_camera(facts, depth.width, depth.height, on_grid, place, notes_);
+    camera_ = camera_from(facts, depth, on_grid, place);
     stored_ = {facts.depth_scale.value_or(1000.F), options.depth_scale.value_or(1.F), options.depth_bits};
     depth_topic_ = depth.topic;
+    left_out_ = depth.left_out;
+    first_recorded_s_ = depth.recorded_s;
     rectification_ = make_rectification(facts.distorted, camera_);
     if (cameras.colour) use_colour(*cameras.colour);
     acceleration_ = cameras.acceleration;
@@ -71,6 +76,7 @@ class RecordingSource final : public FrameSource {
     }
     recorded_later_s_ = depth.recorded_s - depth.time_s;
     span_ = {depth.time_s, std::max(depth.time_s, last_time_s().value_or(depth.time_s))};
+    if (cameras.colour) compare_clocks(depth, *cameras.colour, place);
     go_to(-std::numeric_limits<double>::infinity());
   }
 
@@ -113,9 +119,10 @@ class RecordingSource final : public FrameSource {
         frames += topic.messages;
       }
     }
-    return int(frames);
+    return int(frames) - left_out_;
   }
   std::vector<std::string> notes() const override { return notes_; }
+  std::vector<SourceItem> contents() const override { return items_; }
 
  private:
   struct Colour {
@@ -127,6 +134,44 @@ class RecordingSource final : public FrameSource {
     std::int64_t time_ns;
     Frame frame;
   };
+
+  Camera camera_from(CameraFacts& facts, const RecordedCameras::Depth& depth, bool on_grid,
+                     const std::string& place) {
+    try {
+      return resolve_camera(facts, depth.width, depth.height, on_grid, place, notes_);
+    } catch (const Error& e) {
+      throw Error(listed(e.what(), items_));
+    }
+  }
+
+  /// Adds the messages of the other files of a folder.
+  void count_items() {
+    for (std::size_t i = 1; i < recordings_.size(); ++i) {
+      for (const RecordedTopic& topic : recordings_[i]->topics()) {
+        const auto same = std::ranges::find(items_, topic.name, &SourceItem::name);
+        if (same == items_.end()) continue;
+        same->count = same->count < 0 || topic.messages < 0 ? -1 : same->count + topic.messages;
+      }
+    }
+  }
+
+  /// Notes where the clocks that depth and colour have times of are so far apart that what was seen at one time does
+  /// not come together. Colour that begins a little later does.
+  void compare_clocks(const RecordedCameras::Depth& depth, const RecordedCameras::Colour& colour,
+                      const std::string& place) {
+    constexpr double kMostApart_s = 1e-9 * double(kMostApart_ns), kMostLate_s = 1.0;
+    const double apart_s = (colour.time_s - colour.recorded_s) - (depth.time_s - depth.recorded_s);
+    const double behind_s =
+        std::max(colour.time_s - span_.last_s, span_.first_s - last_colour_s_.value_or(span_.last_s));
+    if (behind_s > kMostApart_s) {
+      notes_.push_back(
+          fmt::format("{}: no colour within {:.0f} ms of any depth (nearest {:.3g} s away): {} is on another clock",
+                      place, 1e3 * kMostApart_s, behind_s, colour.topic));
+    } else if (std::abs(apart_s) > kMostLate_s) {
+      notes_.push_back(fmt::format("{}: the clock of {} is {:.3g} s {} that of {}", place, colour.topic,
+                                   std::abs(apart_s), apart_s > 0.0 ? "before" : "behind", depth.topic));
+    }
+  }
 
   void use_colour(const RecordedCameras::Colour& colour) {
     colour_topic_ = colour.topic;
@@ -161,15 +206,18 @@ class RecordingSource final : public FrameSource {
     return std::nullopt;
   }
 
-  /// Returns the time of the next depth that is not damaged.
+  /// Returns the time of the next depth that is not damaged, and learns those of colour on the way.
   std::optional<double> next_depth_time_s() {
     while (at_ < recordings_.size()) {
       try {
         const auto message = next_message();
         if (!message) continue;
         const RecordedTopic& topic = recordings_[at_]->topics()[message->topic];
-        if (topic.name != depth_topic_) continue;
-        return seconds(time_of(parse_picture(topic, message->bytes, files_[at_]), *message));
+        const bool is_depth = topic.name == depth_topic_;
+        if (!is_depth && (colour_topic_.empty() || topic.name != colour_topic_)) continue;
+        const double time_s = seconds(time_of(parse_picture(topic, message->bytes, files_[at_]), *message));
+        if (is_depth) return time_s;
+        last_colour_s_ = time_s;
       } catch (const Error&) {  // whoever asks for the frame hears of it
       }
     }
@@ -203,6 +251,8 @@ class RecordingSource final : public FrameSource {
       return take_acceleration(message);
     const bool is_depth = topic.name == depth_topic_;
     if (!is_depth && (colour_topic_.empty() || topic.name != colour_topic_)) return;
+    const bool may_be_left_out = is_depth && left_out_ > 0 && seconds(message.time_ns) <= first_recorded_s_;
+    if (may_be_left_out && !is_whole_picture(topic, message.bytes)) return;
     const PictureMessage picture = parse_picture(topic, message.bytes, place);
     const std::int64_t time_ns = time_of(picture, message);
     if (!is_depth) {
@@ -274,11 +324,15 @@ class RecordingSource final : public FrameSource {
   std::optional<RecordedCameras::Acceleration> acceleration_;
   UpHistory ups_;
   std::vector<std::string> notes_;
+  std::vector<SourceItem> items_;
   std::deque<Waiting> waiting_;
   std::deque<Colour> colours_;
   std::string last_name_;
   TimeSpan span_;
-  double recorded_later_s_ = 0.0;  ///< by how much messages were recorded after they were taken, about
+  int left_out_ = 0;                     ///< messages of depth before the first whole picture
+  double first_recorded_s_ = 0.0;        ///< when that was recorded
+  std::optional<double> last_colour_s_;  ///< time of the latest colour, where it was looked at
+  double recorded_later_s_ = 0.0;        ///< by how much messages were recorded after they were taken, about
   /// After a seek, until a frame has come that is not earlier.
   std::optional<double> wanted_from_s_;
   std::exception_ptr failed_;  ///< what could not be read since the last frame that was too early
