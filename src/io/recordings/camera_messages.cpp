@@ -12,6 +12,7 @@
 #include "io/recordings/depth_codecs.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/orbbec_topics.h"
+#include "io/recordings/picture_look.h"
 #include "io/recordings/realsense_topics.h"
 #include "vesalius/base/depth_reading.h"
 #include "vesalius/error.h"
@@ -294,7 +295,7 @@ Calibration parse_calibration(const RecordedTopic& topic, std::string_view messa
   calibration.matrix = exactly<9>(fields.reals64(9, "the camera matrix"));
   calibration.rotation = exactly<9>(fields.reals64(9, "the rotation"));
   calibration.projection = exactly<12>(fields.reals64(12, "the projection"));
-  const auto whole = [&](const char* what) { return picture_side(fields.u32(what), name); };
+  const auto whole = [&](const char* what) { return int(std::min<std::int64_t>(fields.u32(what), kMaxPixels)); };
   calibration.binning_x = std::max(1, whole("the binning"));
   calibration.binning_y = std::max(1, whole("the binning"));
   calibration.roi_x = whole("the part of the picture");
@@ -306,18 +307,16 @@ Calibration parse_calibration(const RecordedTopic& topic, std::string_view messa
 
 std::optional<Calibration> scaled_to(const Calibration& calibration, int width, int height) {
   Calibration c = calibration;
+  if (c.width == width && c.height == height) return c;
   const bool is_part = c.roi_width > 0 && c.roi_height > 0;
-  const int part_width = is_part ? c.roi_width : c.width, part_height = is_part ? c.roi_height : c.height;
+  const std::int64_t part_width = is_part ? c.roi_width : c.width, part_height = is_part ? c.roi_height : c.height;
   double x = c.binning_x, y = c.binning_y;
-  const bool as_it_says = part_width / c.binning_x == width && part_height / c.binning_y == height;
-  if (!as_it_says) {
-    const auto is_multiple = [](int large, int small) { return small > 0 && large % small == 0; };
-    const bool smaller = is_multiple(part_width, width) && part_width / width * height == part_height;
-    const bool larger = is_multiple(width, part_width) && width / part_width * part_height == height;
-    if (!smaller && !larger) return std::nullopt;
+  if (part_width / c.binning_x != width || part_height / c.binning_y != height) {
+    const bool has_size = width > 0 && height > 0 && part_width > 0 && part_height > 0;
+    const bool same_shape = part_width * height == part_height * width;
+    if (!has_size || !same_shape || (part_width % width != 0 && width % part_width != 0)) return std::nullopt;
     x = y = double(part_width) / double(width);
   }
-  if (x == 1.0 && y == 1.0 && c.roi_x == 0 && c.roi_y == 0) return c;
   // A pixel's centre has whole numbers, so that the picture begins half a pixel before 0.
   const auto centre = [](double at, int first, double by) { return (at - first + 0.5) / by - 0.5; };
   c.matrix[0] /= x;

@@ -54,5 +54,38 @@ TEST(ColourOf, Nv12) {
               HasSubstr("nv12 of 4x2 with 11 bytes, expected even sides and 12 bytes"));
 }
 
+Calibration calibration_of(int width, int height, double focal, double cx, double cy) {
+  Calibration c;
+  c.width = width;
+  c.height = height;
+  c.matrix = {focal, 0, cx, 0, focal, cy, 0, 0, 1};
+  return c;
+}
+
+TEST(ScaledTo, GoesByWholeRatiosOfBothSides) {
+  const Calibration c = calibration_of(640, 480, 500, 319.5, 239.5);
+  EXPECT_EQ(scaled_to(c, 640, 480)->matrix, c.matrix);
+  EXPECT_THAT(scaled_to(c, 160, 120)->matrix, testing::ElementsAre(125, 0, 79.5, 0, 125, 59.5, 0, 0, 1));
+  EXPECT_THAT(scaled_to(c, 1280, 960)->matrix, testing::ElementsAre(1000, 0, 639.5, 0, 1000, 479.5, 0, 0, 1));
+  for (const auto& [width, height] : {std::pair(320, 480), {480, 360}, {640, 360}, {0, 0}}) {
+    EXPECT_FALSE(scaled_to(c, width, height)) << width;
+  }
+}
+
+TEST(ScaledTo, PartsAndBinsAreAsTheCalibrationSays) {
+  Calibration c = calibration_of(640, 480, 500, 319.5, 239.5);
+  c.roi_x = 100;
+  c.roi_y = 40;
+  c.roi_width = 200;
+  c.roi_height = 100;
+  EXPECT_EQ(scaled_to(c, 200, 100)->matrix[2], 219.5);
+  c.binning_x = c.binning_y = 2;
+  const Calibration scaled = scaled_to(c, 100, 50).value();
+  EXPECT_EQ(scaled.matrix[0], 250);
+  EXPECT_EQ(scaled.matrix[2], 109.5);
+  EXPECT_EQ(scaled.matrix[5], 99.5);
+  EXPECT_EQ(scaled_to(c, 640, 480)->matrix, c.matrix) << "drivers that say one thing and record another";
+}
+
 }  // namespace
 }  // namespace vesalius

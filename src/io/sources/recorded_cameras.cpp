@@ -44,7 +44,7 @@ bool is_taken_for_depth(const PictureTopic& picture) {
 std::string why_no_colour(const PictureTopic& picture) {
   const bool is_grey = picture.look.kind == Kind::grey || picture.look.is_depth();
   if (picture.look.kind == Kind::unread) return picture.look.why;
-  if (picture.name == TopicName::depth || picture.name == TopicName::other) return "by its name no colour";
+  if (picture.name == TopicName::other || (is_grey && picture.name == TopicName::depth)) return "by its name no colour";
   if (is_grey && picture.name != TopicName::colour) return "grey, and its name does not say colour";
   return {};
 }
@@ -110,10 +110,8 @@ struct TopicCamera {
 
 /// Returns the namespace of a topic: what a camera's pictures and their calibration have in common.
 std::string_view beside(std::string_view topic) {
-  for (const std::string_view transport : {"/compressed", "/compressedDepth"}) {
-    if (topic.ends_with(transport)) topic.remove_suffix(transport.size());
-  }
-  return topic.substr(0, topic.rfind('/'));
+  const std::string_view plain = without_transport(topic);
+  return plain.substr(0, plain.rfind('/'));
 }
 
 /// How well a calibration goes with pictures, the less the better; nothing where it does not.
@@ -269,7 +267,9 @@ std::optional<RecordedCameras::Colour> choose_colour(const Recording& recording,
     const bool same_place = !depth.frame.empty() && depth.frame == picture.frame;
     (picture.same_size(depth) && (depth.is_registered() || same_place) ? colours : others).push_back(&picture);
   }
-  const auto rank = [](const PictureTopic* one) { return std::pair(one->look.kind != Kind::colour, one->compressed); };
+  const auto rank = [](const PictureTopic* one) {
+    return std::tuple(one->look.kind != Kind::colour, one->name == TopicName::depth, one->compressed);
+  };
   std::ranges::stable_sort(colours, {}, rank);
   if (!colours.empty()) return on_grid(contents, *colours.front(), depth_lens);
   std::ranges::stable_sort(others, {}, rank);
@@ -411,6 +411,7 @@ RecordedCameras choose_cameras(Recording& recording, const SourceOptions& option
                      facts_of(contents, *depth, place, notes)};
     if (depth->points && !cameras.depth.facts.fx && !options.fx && options.camera_file.empty()) {
       cameras.depth.facts = facts_of_points(recording, *depth, place);
+      notes.push_back(fmt::format("{}: camera of {} estimated from its points", place, depth->topic.name));
     }
     const std::optional<LensCamera>& lens = cameras.depth.facts.distorted;
     cameras.colour = options.colour_topic.empty() ? choose_colour(recording, contents, *depth, lens, place, notes)

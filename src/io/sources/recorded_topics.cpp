@@ -193,13 +193,18 @@ class Looking {
 
 }  // namespace
 
+std::string_view without_transport(std::string_view topic) {
+  for (const std::string_view transport : {"/compressed", "/compressedDepth"}) {
+    if (topic.ends_with(transport)) return topic.substr(0, topic.size() - transport.size());
+  }
+  return topic;
+}
+
 TopicName name_says(std::string_view topic) {
   if (const int stream = orbbec_stream(topic); stream != 0) {
     return stream == kOrbbecDepth ? TopicName::depth : stream == kOrbbecColour ? TopicName::colour : TopicName::other;
   }
-  for (const std::string_view transport : {"/compressed", "/compressedDepth"}) {
-    if (topic.ends_with(transport)) topic.remove_suffix(transport.size());
-  }
+  topic = without_transport(topic);
   TopicName says = TopicName::nothing;
   while (!topic.empty()) {
     const std::string_view part = topic.substr(0, topic.find('/'));

@@ -8,6 +8,7 @@
 
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/imu_messages.h"
+#include "io/recordings/picture_look.h"
 #include "io/recordings/recording.h"
 #include "io/recordings/transform_messages.h"
 
@@ -19,6 +20,9 @@ enum class TopicName { nothing, depth, colour, other };
 /// Reads a name as people give them: "/camera/aligned_depth_to_color/image_raw" is depth, "/kinect2/sd/image_ir" other.
 /// Of several words the last one counts, and none that stands behind "to".
 TopicName name_says(std::string_view topic);
+
+/// Returns the name of the pictures that a topic of image_transport has compressed.
+std::string_view without_transport(std::string_view topic);
 
 /// What the first usable message of a topic of pictures shows.
 struct PictureTopic {

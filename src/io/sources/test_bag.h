@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "io/files/byte_stream.h"
+#include "io/recordings/recording.h"
+#include "io/recordings/recording_formats.h"
+
+namespace vesalius::test {
+
+/// Writes a ROS 1 bag of one chunk that was never closed.
+class Bag {
+ public:
+  void put(const std::string& topic, const std::string& type, std::int64_t time_ns, const std::string& message) {
+    const auto [found, is_new] = connections_.try_emplace(topic, connections_.size());
+    const std::string connection = "conn=" + bytes_of(static_cast<std::uint32_t>(found->second));
+    if (is_new) add(records_, {"op=\7", connection, "topic=" + topic}, fields({"topic=" + topic, "type=" + type}));
+    const auto seconds = static_cast<std::uint32_t>(time_ns / kNanoseconds);
+    const std::string time = bytes_of(seconds) + bytes_of(static_cast<std::uint32_t>(time_ns % kNanoseconds));
+    add(records_, {"op=\2", connection, "time=" + time}, message);
+  }
+  std::string bytes() const {
+    std::string all(kBagMagic);
+    add(all, {"op=\5", "compression=none", "size=" + bytes_of(static_cast<std::uint32_t>(records_.size()))}, records_);
+    return all;
+  }
+
+ private:
+  static std::string bytes_of(std::uint32_t value) {
+    ByteWriter out;
+    out.number(value);
+    return out.bytes();
+  }
+  static std::string fields(std::initializer_list<std::string> all) {
+    ByteWriter out;
+    for (const std::string& one : all) out.text(one);
+    return out.bytes();
+  }
+  static void add(std::string& to, std::initializer_list<std::string> header, const std::string& data) {
+    to += bytes_of(static_cast<std::uint32_t>(fields(header).size())) + fields(header);
+    to += bytes_of(static_cast<std::uint32_t>(data.size())) + data;
+  }
+
+  std::map<std::string, std::size_t> connections_;
+  std::string records_;
+};
+
+}  // namespace vesalius::test
