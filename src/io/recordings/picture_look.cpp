@@ -65,7 +65,9 @@ bool says_depth(const std::string& format) {
 }
 
 PictureLook look_at_compressed(const PictureMessage& picture) {
-  PictureLook look{Kind::unread, picture.encoding, 0, 0, {}};
+  // image_transport's formats end with a space.
+  const std::string format = picture.encoding.substr(0, picture.encoding.find_last_not_of(' ') + 1);
+  PictureLook look{Kind::unread, format, 0, 0, {}};
   if (picture.encoding.find("compressedDepth") != std::string::npos) {
     look.kind = Kind::depth;
     if (picture.encoding.ends_with("rvl")) {
@@ -80,17 +82,18 @@ PictureLook look_at_compressed(const PictureMessage& picture) {
   const Head head = head_of(picture.data);
   look.width = head.width;
   look.height = head.height;
+  const std::string_view kind = head.kind.empty() ? "this format" : head.kind;
   const bool is_16 = head.kind == "PNG" && head.bits == 16 && head.channels == 1;
   if (is_16) {
     look.kind = says_depth(picture.encoding) ? Kind::depth : Kind::sixteen;
   } else if (says_depth(picture.encoding)) {
     look.why = head.kind == "JPEG" || head.kind == "PNG"
                    ? fmt::format("{} bits of a {} are no distances; compressedDepth keeps them", head.bits, head.kind)
-                   : "expected a 16-bit PNG or compressedDepth";
+                   : fmt::format("{} is not read, expected a 16-bit PNG or compressedDepth", kind);
   } else if (head.kind == "PNG" || head.kind == "JPEG") {
     look.kind = head.channels == 1 ? Kind::grey : Kind::colour;
   } else {
-    look.why = fmt::format("{} is not read, expected JPEG or PNG", head.kind.empty() ? "this format" : head.kind);
+    look.why = fmt::format("{} is not read, expected JPEG or PNG", kind);
   }
   return look;
 }

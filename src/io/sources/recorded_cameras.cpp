@@ -83,8 +83,8 @@ const PictureTopic& choose_depth_topic(const RecordedContents& contents, const S
   }
   const PictureTopic& chosen = *depths.front();
   if (chosen.left_out > 0) {
-    notes.push_back(fmt::format("{}: the first {} of {} left out, since they have no pixels or not all of them", place,
-                                chosen.left_out == 1 ? "message" : fmt::format("{} messages", chosen.left_out),
+    notes.push_back(fmt::format("{}: {} of {} before the first frame left out: no pixels, too few, or another size",
+                                place, chosen.left_out == 1 ? "1 message" : fmt::format("{} messages", chosen.left_out),
                                 chosen.topic.name));
   }
   return chosen;
@@ -156,7 +156,7 @@ CameraFacts facts_of_points(Recording& recording, const PictureTopic& points, co
   CameraFacts facts;
   while (const auto message = recording.next()) {
     const RecordedTopic& topic = recording.topics()[message->topic];
-    if (topic.name != points.topic.name || !is_whole_picture(topic, message->bytes)) continue;
+    if (topic.name != points.topic.name || !whole_picture(topic, message->bytes)) continue;
     facts = estimate_camera({points_of(parse_picture(topic, message->bytes, place), place), {}}, place);
     break;
   }
@@ -309,7 +309,10 @@ std::optional<RecordedCameras::Acceleration> choose_acceleration(const RecordedC
 std::string why_not(const PictureTopic& picture, const PictureTopic* depth) {
   if (is_taken_for_depth(picture)) return "another depth; --depth-topic takes it";
   if (picture.points) return picture.look.encoding == "xyz" ? "" : "points are read where they lie in rows";
-  if (picture.look.is_depth()) return "by its name no depth; --depth-topic takes it";
+  if (picture.look.is_depth()) {
+    const bool is_other = picture.name == TopicName::other;
+    return fmt::format("{}; --depth-topic takes it", is_other ? "by its name no depth" : "its name does not say depth");
+  }
   std::string why = why_no_colour(picture);
   if (depth == nullptr || picture.look.kind == Kind::unread) return why;
   if (!picture.same_size(*depth)) return fmt::format("not {} as depth, and nothing connects them", size_of(*depth));
@@ -363,8 +366,15 @@ std::vector<SourceItem> items_of(const Recording& recording, const RecordedConte
   for (const PictureTopic& picture : contents.pictures) {
     if (cameras.colour && cameras.colour->topic == picture.topic.name) colour_camera = camera_topic(picture);
   }
+  std::size_t listed = 0;
   for (const RecordedTopic& topic : recording.topics()) {
     if (items.size() == kMostItems) break;
+    ++listed;
+    // Bags have a connection for each of several programs that publish a topic.
+    if (const auto same = std::ranges::find(items, topic.name, &SourceItem::name); same != items.end()) {
+      same->count += long(topic.messages);
+      continue;
+    }
     SourceItem& item = items.emplace_back(plain_item(topic));
     for (const PictureTopic& picture : contents.pictures) {
       if (picture.topic.name != topic.name) continue;
@@ -375,15 +385,15 @@ std::vector<SourceItem> items_of(const Recording& recording, const RecordedConte
       item.why = item.use.empty() ? why_not(picture, depth) : "";
     }
     for (const auto& [name, calibration] : contents.calibrations) {
-      if (name != topic.name) continue;
+      if (name != topic.name || !item.use.empty()) continue;
       item.holds += fmt::format(" {}x{}", calibration.width, calibration.height);
       item.use = name == camera ? "camera of depth" : name == colour_camera ? "camera of colour" : "";
       item.why = item.use.empty() ? why_not(calibration, depth) : "";
     }
     if (cameras.acceleration && cameras.acceleration->topic == topic.name) item.use = "up";
   }
-  if (const std::size_t rest = recording.topics().size() - items.size(); rest > 0) {
-    items.push_back({fmt::format("and {} topics more", rest), "", -1, "", ""});
+  if (const std::size_t rest = recording.topics().size() - listed; rest > 0) {
+    items.push_back({fmt::format("and {} topics more", rest), "", -1, "not listed", ""});
   }
   return items;
 }

@@ -21,6 +21,8 @@ constexpr std::int64_t kForTransforms_ns = 1'000'000'000;
 constexpr std::int64_t kForOthers_ns = 20'000'000'000;
 /// Messages of a topic of which one must be a whole picture.
 constexpr int kMostLeftOut = 100;
+/// Messages of depth after the first; if all of them have another size, that one was odd.
+constexpr int kConfirming = 2;
 
 bool has_word(const std::string& text, std::string_view word) {
   const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == b; };
@@ -108,7 +110,7 @@ class Looking {
       const RecordedTopic& topic = recording.topics()[t];
       if (topic.messages == 0) continue;
       const bool matters = is_picture(topic) || is_calibration(topic) || is_acceleration(topic) || is_depth_unit(topic);
-      if (matters) wanted_[t] = 0;
+      if (matters) wanted_[t] = {};
       if (is_transform(topic)) has_transforms_ = true;
     }
   }
@@ -159,7 +161,13 @@ class Looking {
     return !any(fits) && must_come([](const RecordedTopic& of) { return is_calibration(of); });
   }
 
-  /// Returns whether a topic that was wanted has shown itself.
+  /// What is known of a topic that is still looked at.
+  struct Wanted {
+    int left_out = 0;   ///< messages that are no whole pictures
+    int confirmed = 0;  ///< messages of another size than the first whole picture, one after the other
+  };
+
+  /// Returns whether the message was of a topic that is looked at.
   bool take(const RecordedMessage& message) {
     const RecordedTopic& of = topic(message.topic);
     if (is_transform(of)) {
@@ -167,12 +175,8 @@ class Looking {
     }
     const auto found = wanted_.find(message.topic);
     if (found == wanted_.end()) return false;
-    if (is_picture(of) && !is_whole_picture(of, message.bytes) && ++found->second < kMostLeftOut) return false;
     if (is_picture(of)) {
-      if (found->second < kMostLeftOut) {
-        contents_.pictures.push_back(seen(of, message, place_));
-        contents_.pictures.back().left_out = found->second;
-      }
+      if (!take_picture(of, message, found->second)) return true;
     } else if (is_calibration(of)) {
       contents_.calibrations.emplace_back(of.name, with_matrix(parse_calibration(of, message.bytes, place_)));
     } else if (is_acceleration(of)) {
@@ -184,10 +188,28 @@ class Looking {
     return true;
   }
 
+  /// Returns whether nothing more is to be learned from the topic.
+  bool take_picture(const RecordedTopic& of, const RecordedMessage& message, Wanted& wanted) {
+    const auto known = std::ranges::find(contents_.pictures, of.name, [](const auto& one) { return one.topic.name; });
+    const std::optional<PictureLook> look = whole_picture(of, message.bytes);
+    if (known == contents_.pictures.end()) {
+      if (!look) return ++wanted.left_out >= kMostLeftOut;
+      contents_.pictures.push_back(seen(of, message, place_));
+      contents_.pictures.back().left_out = wanted.left_out;
+      return !look->is_depth() || of.messages - wanted.left_out <= kConfirming;
+    }
+    if (!look || (look->width == known->look.width && look->height == known->look.height)) return true;
+    if (++wanted.confirmed < kConfirming) return false;
+    const int left_out = known->left_out + 1;
+    *known = seen(of, message, place_);
+    known->left_out = left_out;
+    return true;
+  }
+
   Recording& recording_;
   const std::string& place_;
   RecordedContents contents_;
-  std::map<std::size_t, int> wanted_;  ///< topics that have not shown themselves, and their messages left out
+  std::map<std::size_t, Wanted> wanted_;  ///< topics that have not shown themselves
   bool has_transforms_ = false;
 };
 
@@ -224,13 +246,14 @@ bool PictureTopic::is_registered() const {
 }
 bool PictureTopic::is_rectified() const { return has_word(topic.name, "rect"); }
 
-bool is_whole_picture(const RecordedTopic& topic, std::string_view message) {
+std::optional<PictureLook> whole_picture(const RecordedTopic& topic, std::string_view message) {
   try {
     const PictureMessage picture = parse_picture(topic, message, topic.name);
-    return is_whole(picture, look_at(picture));
-  } catch (const Error&) {
-    return false;
+    PictureLook look = look_at(picture);
+    if (is_whole(picture, look)) return look;
+  } catch (const Error&) {  // whoever asks for the frame hears of it
   }
+  return std::nullopt;
 }
 
 RecordedContents look_into(Recording& recording, const std::string& place) { return Looking(recording, place).look(); }

@@ -34,7 +34,7 @@ struct PictureTopic {
   bool points = false, disparities = false;
   double time_s = 0.0;      ///< time of the picture
   double recorded_s = 0.0;  ///< when it was recorded
-  int left_out = 0;         ///< messages before it that are no whole pictures
+  int left_out = 0;         ///< messages before it that are no whole pictures, or of a size of their own
 
   bool same_size(const PictureTopic& other) const {
     return look.width == other.look.width && look.height == other.look.height;
@@ -52,8 +52,9 @@ struct RecordedContents {
   TransformTree transforms;
 };
 
-/// Returns whether a message has a picture of some size, and all its bytes as far as that shows without decoding.
-bool is_whole_picture(const RecordedTopic& topic, std::string_view message);
+/// Looks at a message's picture; nothing where it has no size, or not all its bytes as far as that shows without
+/// decoding.
+std::optional<PictureLook> whole_picture(const RecordedTopic& topic, std::string_view message);
 
 /// Reads messages until every topic that matters has shown itself, and transforms had their time; for depth and its
 /// calibration as long as it takes, for others some thousand messages. Decodes no picture. The recording is rewound.

@@ -138,11 +138,23 @@ TEST_F(RecordedTopics, MessagesWithoutPixelsBeforeDepthAreNamedAndLeftOut) {
   out_.depth("/depth/image", 2 * kMs, a_);
   out_.depth("/depth/image", 3 * kMs, a_);
   const auto source = open();
-  EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("the first 2 messages of /depth/image left out")));
+  EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("2 messages of /depth/image before the first frame left out")));
   EXPECT_EQ(source->size(), 2);
   EXPECT_EQ(source->next()->name, "0.002000000");
   EXPECT_EQ(source->next()->name, "0.003000000");
   EXPECT_FALSE(source->next());
+}
+
+TEST_F(RecordedTopics, AFirstPictureOfASizeOfItsOwnIsLeftOut) {
+  out_.camera("/depth/camera_info", a_.camera);
+  out_.depth("/depth/image", 0, random_frame("b", 2, 20, 15));
+  for (const std::int64_t ms : {1, 2, 3}) out_.depth("/depth/image", ms * kMs, a_);
+  const auto source = open();
+  EXPECT_EQ(source->size(), 3);
+  EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("1 message of /depth/image before the first frame left out")));
+  for (const char* name : {"0.001000000", "0.002000000", "0.003000000"}) EXPECT_EQ(source->next()->name, name);
+  source->seek(0.0);
+  EXPECT_EQ(source->next()->name, "0.001000000");
 }
 
 TEST_F(RecordedTopics, PicturesThatAreNotWantedAreNotDecoded) {
@@ -328,7 +340,7 @@ TEST_F(RecordedTopics, WhatIsNotReadAsColourIsNoted) {
   out_.depth("/depth/image", 0, a_);
   out_.put("/left/image", kImage, 0, grey_message(Image<std::uint8_t>(40, 30, 77), 0, "depth_frame"));
   out_.put("/color/image", kImage, 0, raw("yuv444p10", a_.depth));
-  out_.put("/color/image/compressed", kCompressed, 0, packed("h264", "\0\0\0\1 and so on"));
+  out_.put("/color/image/compressed", kCompressed, 0, packed("h264", "a picture and what changed since"));
   out_.put("/color/video", "foxglove_msgs/msg/CompressedVideo", 0, "x");
   const auto source = open();
   EXPECT_THAT(source->notes(),

@@ -244,6 +244,10 @@ class RecordingSource final : public FrameSource {
     return !colours_.empty() && colours_.back().time_ns >= waiting_.front().time_ns;
   }
 
+  bool has_the_size(const std::optional<PictureLook>& look) const {
+    return look && look->width == camera_.width && look->height == camera_.height;
+  }
+
   void take_message(const RecordedMessage& message) {
     const RecordedTopic& topic = recordings_[at_]->topics()[message.topic];
     const std::string& place = files_[at_];
@@ -252,7 +256,7 @@ class RecordingSource final : public FrameSource {
     const bool is_depth = topic.name == depth_topic_;
     if (!is_depth && (colour_topic_.empty() || topic.name != colour_topic_)) return;
     const bool may_be_left_out = is_depth && left_out_ > 0 && seconds(message.time_ns) <= first_recorded_s_;
-    if (may_be_left_out && !is_whole_picture(topic, message.bytes)) return;
+    if (may_be_left_out && !has_the_size(whole_picture(topic, message.bytes))) return;
     const PictureMessage picture = parse_picture(topic, message.bytes, place);
     const std::int64_t time_ns = time_of(picture, message);
     if (!is_depth) {
