@@ -384,13 +384,16 @@ std::vector<SourceItem> items_of(const Recording& recording, const RecordedConte
       item.use = &picture == depth ? "depth" : is_colour ? "colour" : "";
       item.why = item.use.empty() ? why_not(picture, depth) : "";
     }
-    for (const auto& [name, calibration] : contents.calibrations) {
-      if (name != topic.name || !item.use.empty()) continue;
-      item.holds += fmt::format(" {}x{}", calibration.width, calibration.height);
-      item.use = name == camera ? "camera of depth" : name == colour_camera ? "camera of colour" : "";
-      item.why = item.use.empty() ? why_not(calibration, depth) : "";
+    const auto calibration =
+        std::ranges::find(contents.calibrations, topic.name, &std::pair<std::string, Calibration>::first);
+    if (calibration != contents.calibrations.end()) {
+      item.holds += fmt::format(" {}x{}", calibration->second.width, calibration->second.height);
+      item.use = topic.name == camera ? "camera of depth" : topic.name == colour_camera ? "camera of colour" : "";
+      item.why = item.use.empty() ? why_not(calibration->second, depth) : "";
     }
     if (cameras.acceleration && cameras.acceleration->topic == topic.name) item.use = "up";
+    const bool is_unit = std::ranges::any_of(contents.units_m, [&](const auto& of) { return of.first == topic.name; });
+    if (is_unit) item.use = "unit of depth";
   }
   if (const std::size_t rest = recording.topics().size() - listed; rest > 0) {
     items.push_back({fmt::format("and {} topics more", rest), "", -1, "not listed", ""});

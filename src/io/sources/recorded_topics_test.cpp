@@ -418,6 +418,7 @@ TEST(OrbbecTopics, AreReadWithCamerasAndColour) {
     const auto source = open_source(test::put(folder / "a.bag", bag.bytes()));
     EXPECT_EQ(source->next().value().depth, a.depth);
     EXPECT_EQ(item_of(*source, "/cam/sensor_2/frameType_2").use, "colour");
+    EXPECT_EQ(item_of(*source, "/cam/streamProfileType_3").use, "camera of depth");
     const Frame again = *open_source(folder / "a.bag")->next();
     EXPECT_EQ(again.camera, a.camera);
     ASSERT_FALSE(again.colour.empty());
