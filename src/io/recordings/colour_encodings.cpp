@@ -86,11 +86,13 @@ Rgb from_yuv(int y, int u, int v) {
   return {byte(c + 409 * e), byte(c - 100 * d - 208 * e), byte(c + 516 * d)};
 }
 
+/// `colour_at` gets the beginning of a pixel's row, and its place.
 template <class ColourAt>
 ColourImage make_colour(const PictureMessage& picture, const ColourAt& colour_at) {
   ColourImage colour(picture.width, picture.height);
   for (int v = 0; v < picture.height; ++v) {
-    for (int u = 0; u < picture.width; ++u) colour(u, v) = colour_at(u, v);
+    const Bytes row = row_of(picture, v);
+    for (int u = 0; u < picture.width; ++u) colour(u, v) = colour_at(row, u, v);
   }
   return colour;
 }
@@ -98,8 +100,8 @@ ColourImage make_colour(const PictureMessage& picture, const ColourAt& colour_at
 /// `high` is where in a channel its upper eight bits stand.
 ColourImage from_packed(const PictureMessage& picture, const Packed& of, int high, const std::string& name) {
   expect_rows(picture, static_cast<std::size_t>(of.bytes), name);
-  return make_colour(picture, [&](int u, int v) {
-    const Bytes pixel = row_of(picture, v) + u * of.bytes + high;
+  return make_colour(picture, [&](Bytes row, int u, int) {
+    const Bytes pixel = row + u * of.bytes + high;
     return Rgb{pixel[of.r], pixel[of.g], pixel[of.b]};
   });
 }
@@ -109,8 +111,8 @@ ColourImage from_pairs(const PictureMessage& picture, const Pairs& of, const std
   if (picture.width % 2 != 0) {
     throw Error(fmt::format("{}: {} of {} columns, expected an even number", name, picture.encoding, picture.width));
   }
-  return make_colour(picture, [&](int u, int v) {
-    const Bytes pair = row_of(picture, v) + 4 * (u / 2);
+  return make_colour(picture, [&](Bytes row, int u, int) {
+    const Bytes pair = row + 4 * (u / 2);
     return from_yuv(pair[of.y + 2 * (u % 2)], pair[of.u], pair[of.v]);
   });
 }
@@ -126,9 +128,9 @@ ColourImage from_planes(const PictureMessage& picture, const Planes& of, const s
   const std::size_t chroma_row = of.together ? row_bytes : row_bytes / 2;
   const Bytes second = of.together ? first + 1 : first + chroma_row * (height / 2);
   const int step = of.together ? 2 : 1;
-  return make_colour(picture, [&](int u, int v) {
+  return make_colour(picture, [&](Bytes row, int u, int v) {
     const std::size_t at = chroma_row * std::size_t(v / 2) + std::size_t(u / 2 * step);
-    return from_yuv(row_of(picture, v)[u], (of.v_first ? second : first)[at], (of.v_first ? first : second)[at]);
+    return from_yuv(row[u], (of.v_first ? second : first)[at], (of.v_first ? first : second)[at]);
   });
 }
 
@@ -137,7 +139,7 @@ ColourImage from_bayer(const PictureMessage& picture, std::string_view pattern, 
                        const std::string& name) {
   expect_rows(picture, static_cast<std::size_t>(bytes), name);
   if (picture.width < 2 || picture.height < 2) throw Error(name + ": a Bayer pattern of less than 2x2 pixels");
-  return make_colour(picture, [&](int u, int v) {
+  return make_colour(picture, [&](Bytes, int u, int v) {
     const int left = std::min(u / 2 * 2, (picture.width - 2) / 2 * 2),
               top = std::min(v / 2 * 2, (picture.height - 2) / 2 * 2);
     int r = 0, g = 0, b = 0;

@@ -260,6 +260,7 @@ class RecordingSource final : public FrameSource {
     const PictureMessage picture = parse_picture(topic, message.bytes, place);
     const std::int64_t time_ns = time_of(picture, message);
     if (!is_depth) {
+      if (picture.data.empty()) return;  // as drivers send before the first picture
       colours_.push_back({time_ns, topic, std::string(message.bytes)});
       if (colours_.size() > 2 * kMostWaiting) colours_.pop_front();
       return;
