@@ -1,9 +1,12 @@
 #include "vesalius/detect_stream.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <future>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -107,17 +110,30 @@ class Pace {
   explicit Pace(double rate) : period_s_(1.0 / rate) {}
 
   Clock::time_point due(const Frame& frame) {
-    if (frames_ == 0) first_s_ = frame.time_s;
-    const double by_rate = period_s_ * frames_++;
-    const double wait_s = frame.time_s && first_s_ ? *frame.time_s - *first_s_ : by_rate;
-    return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
+    const double time_s = frame.time_s.value_or(kNoTime);
+    const double step_s = time_s - latest_s_;
+    if (begun_) due_s_ += std::isfinite(step_s) ? wait(step_s) : period_s_;
+    begun_ = true;
+    // After a frame that comes late the next one is as far from the latest as before.
+    if (std::isfinite(time_s) && !is_late(step_s)) latest_s_ = time_s;
+    return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(due_s_));
   }
 
  private:
+  static bool is_late(double step_s) { return step_s < 0.0 && step_s > -kLate_s; }
+  /// Where the clock was set, or nothing was taken, nobody waits for long.
+  double wait(double step_s) const {
+    if (step_s <= -kLate_s) return period_s_;
+    return std::clamp(step_s, 0.0, kLongestGap_s);
+  }
+
+  static constexpr double kLongestGap_s = 2.0, kLate_s = 1.0;
+  static constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
   double period_s_;
   Clock::time_point start_ = Clock::now();
-  std::optional<double> first_s_;  ///< none if frames have no times
-  int frames_ = 0;
+  bool begun_ = false;
+  double due_s_ = 0.0;  ///< after the start
+  double latest_s_ = kNoTime;
 };
 
 /// A frame in the queues. Whoever takes it out of the writing queue waits until it is processed.

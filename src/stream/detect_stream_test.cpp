@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -205,6 +206,36 @@ TEST(FollowedFramesThreads, EndWheneverTheTakerHasEnough) {
     stream_frames(source, detector, tracker, {}, [&](const FoundFrame&) { return ++taken < enough; });
     EXPECT_EQ(taken, enough);
   }
+}
+
+/// Empty frames at these times.
+class Times final : public FrameSource {
+ public:
+  explicit Times(std::vector<double> times_s) : times_s_(std::move(times_s)) {}
+  std::optional<Frame> next() override {
+    if (given_ == times_s_.size()) return std::nullopt;
+    return Frame{"", times_s_[given_++], {80, 60, 65.F, 65.F, 39.5F, 29.5F}, DepthImage(80, 60, 3000), {}};
+  }
+  int size() const override { return int(times_s_.size()); }
+
+ private:
+  std::vector<double> times_s_;
+  std::size_t given_ = 0;
+};
+
+// Labels: threads
+TEST(RealTimeThreads, NeverWaitsForAClockThatJumps) {
+  constexpr double kNow_s = 1.7e9;
+  const auto start = std::chrono::steady_clock::now();
+  // 1970, then now, a frame that comes late, nonsense, and the clock set back by years.
+  Times source({0.0, 0.03, kNow_s, kNow_s + 0.06, kNow_s + 0.03, kNow_s + 0.09, std::nan(""), 1e300, 5.0, 5.03});
+  const Detector detector(std::make_shared<test::BlindLabeller>());
+  StreamOptions options;
+  options.realtime = true;
+  int taken = 0;
+  const int dropped = stream_frames(source, detector, options, [&](const FoundFrame&) { return ++taken > 0; });
+  EXPECT_EQ(taken + dropped, 10);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << "two gaps of 2 s";
 }
 
 // Labels: threads

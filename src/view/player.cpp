@@ -151,7 +151,7 @@ Player::Clock::duration Player::period(const TimedFrame& next, const PlayerState
   // Back to the beginning, or times that fall: a frame is shown as long as usual.
   if (!(gap_s > 0.0)) gap_s = 1.0 / kUsualRate;
   return std::chrono::duration_cast<Clock::duration>(
-      std::chrono::duration<double>(std::min(gap_s, kLongestGap_s) / (now.speed * rate)));
+      std::chrono::duration<double>(std::min(std::min(gap_s, kLongestGap_s) / (now.speed * rate), kLongestGap_s)));
 }
 
 /// Returns until when there is nothing to do but to obey; nothing if that is for ever.

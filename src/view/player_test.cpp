@@ -289,6 +289,15 @@ TEST(Player, WaitsNoHourForAGapAndGoesOnAtThePace) {
   EXPECT_LT(shown.between(2, 4), 150ms);
 }
 
+TEST(Player, WaitsTwoSecondsAtMostHoweverSlowItPlays) {
+  Numbers source(3, 0.01);
+  source.gap_after = 1;
+  Shown shown(source, {.repeat = false});
+  shown.player.set_speed(0.1);
+  EXPECT_THAT(shown.names(3), ElementsAre("0", "1", "2"));
+  EXPECT_LT(shown.between(1, 2), 5s) << "not twenty";
+}
+
 TEST(Player, ACameraThatFailsIsLost) {
   Numbers source(10, 0.01);
   source.live = true;

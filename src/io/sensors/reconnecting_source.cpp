@@ -94,7 +94,9 @@ class ReconnectingSource final : public FrameSource {
 
   void keep_time(Frame& frame) {
     if (!frame.time_s || !frame.arrived_s) return;
-    if (shift_is_old_ && last_time_s_) {
+    // A clock that stands, as some do after a cable was pulled, is as good as one that begins anew.
+    const bool stands = last_time_s_ && *frame.time_s + shift_s_ <= *last_time_s_;
+    if ((shift_is_old_ || stands) && last_time_s_) {
       constexpr double kLeast_s = 1e-3;  // this machine's clock may have been set back
       const double later_s = std::max(kLeast_s, *frame.arrived_s - last_arrived_s_);
       shift_s_ = *last_time_s_ + later_s - *frame.time_s;

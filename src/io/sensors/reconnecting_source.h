@@ -20,8 +20,8 @@ struct ReconnectOptions {
 /// Opens a camera by `open` and returns its frames. Where it fails, which an Error says, it is opened again and again
 /// until it is back; `stop` ends the waiting. Times go on from where they were: the first frame that comes back is as
 /// much later than the last one before as it arrived later, whatever the camera's clock says, and those that follow
-/// keep their distance to it. Frames of the time between are not counted as missed. Throws Error if the camera cannot
-/// be opened the first time: it would rather be named wrongly.
+/// keep their distance to it, or that of their arrivals where its clock stands. Frames of the time between are not
+/// counted as missed. Throws Error if the camera cannot be opened the first time: it would rather be named wrongly.
 std::unique_ptr<FrameSource> keep_open(std::function<std::unique_ptr<FrameSource>()> open, ReconnectOptions options);
 
 }  // namespace vesalius

@@ -24,6 +24,7 @@ struct Session {
   std::vector<double> times_s;
   double arrived_after_s = 0.0;
   int missed = 0;
+  double apart_s = 0.0;  ///< by which each frame arrives later, whatever its time
 };
 
 /// A camera that gives its frames and is then unplugged.
@@ -37,7 +38,7 @@ class Unplugged final : public LiveSource {
     missed_ = session_.missed;
     const double time_s = session_.times_s[given_++];
     Frame frame = arrived(time_s);
-    frame.arrived_s = time_s + session_.arrived_after_s;
+    frame.arrived_s = time_s + session_.arrived_after_s + session_.apart_s * double(given_);
     return frame;
   }
 
@@ -96,6 +97,17 @@ TEST(ReconnectingSource, ClocksThatBeginAnewGoOnFromWhereTheyWere) {
   }
   EXPECT_THAT(times_s, ElementsAre(50.0, 51.0, testing::DoubleNear(61.0, 1e-6), testing::DoubleNear(61.1, 1e-6)));
   EXPECT_EQ(name, "61.100000");
+}
+
+TEST(ReconnectingSource, AClockThatStandsIsReplacedByThisMachines) {
+  // The camera's clock stands at 7 once it is back, 2 s later; frames come each 0.1 s.
+  Session back{{7.0, 7.0, 7.0}, 995.0};
+  back.apart_s = 0.1;
+  Socket socket{{Session{{50.0, 50.1}, 950.0 - 0.1}, back}, {}, 0};
+  const auto source = socket.source();
+  std::vector<double> times_s;
+  for (int i = 0; i < 5; ++i) times_s.push_back(*source->next()->time_s);
+  for (std::size_t i = 3; i < 5; ++i) EXPECT_NEAR(times_s[i] - times_s[i - 1], 0.1, 1e-6) << i;
 }
 
 TEST(ReconnectingSource, TimesIncreaseThoughThisMachinesClockIsSetBack) {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
-#include <set>
 #include <system_error>
 
 #include "io/files/atomic_file.h"
@@ -43,11 +43,11 @@ class FolderWriter : public FrameWriter {
 
   void write(const Frame& frame) final {
     check(frame);
-    const std::string name = file_name(frame);
+    std::string name = file_name(frame);
     const bool plain =
         !name.empty() && name.front() != '.' && name.find('/') == name.npos && name.find('\0') == name.npos;
     if (!plain) throw Error(fmt::format("{}: frame named \"{}\", expected a file name", root_.string(), name));
-    if (!names_.insert(name).second) throw Error(fmt::format("{}: two frames named {}", root_.string(), name));
+    name = one_of_its_own(name);
     if (!camera_) {
       camera_ = frame.camera;
       write_file_atomically((root_ / "meta.json").string(), serialise_meta(*camera_, units_per_m_, rate_hz_));
@@ -75,11 +75,19 @@ class FolderWriter : public FrameWriter {
   const fs::path& root() const { return root_; }
 
  private:
+  /// Frames of one time, as of a clock that stood or was set back, have one name: the second gets "_2".
+  std::string one_of_its_own(const std::string& name) {
+    int& count = names_[name];
+    std::string own = ++count == 1 ? name : fmt::format("{}_{}", name, count);
+    while (own != name && !names_.try_emplace(own, 1).second) own = fmt::format("{}_{}", name, ++count);
+    return own;
+  }
+
   fs::path root_;
   float units_per_m_;
   std::optional<float> rate_hz_;
   std::optional<Camera> camera_;
-  std::set<std::string> names_;
+  std::map<std::string, int> names_;  ///< how many frames were named so
 };
 
 class PngWriter final : public FolderWriter {
@@ -116,8 +124,9 @@ class TumWriter final : public FolderWriter {
 
   void write_pictures(const Frame& frame, const std::string& name) override {
     write_pngs(stored(frame), frame.colour, name);
-    depth_list_ += fmt::format("{0} depth/{0}.png\n", name);
-    if (!frame.colour.empty()) colour_list_ += fmt::format("{0} rgb/{0}.png\n", name);
+    const std::string_view time = std::string_view(name).substr(0, name.find('_'));
+    depth_list_ += fmt::format("{} depth/{}.png\n", time, name);
+    if (!frame.colour.empty()) colour_list_ += fmt::format("{} rgb/{}.png\n", time, name);
   }
 
   Image<std::uint16_t> stored(const Frame& frame) const {

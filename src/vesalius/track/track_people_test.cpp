@@ -430,6 +430,37 @@ TEST(TrackedTime, ThatJumpsLosesAllButRemembersLooks) {
   }
 }
 
+TEST(TrackedTime, OfAFrameThatComesLateLosesNobody) {
+  PeopleTracker tracker(paper_body(), {}, hue());
+  Stage stage({Actor{}});
+  double last_s = 0.0;
+  for (const int place : {0, 1, 2, 3, 5, 4, 6, 7, 9, 8, 10, 11}) {
+    stage.frame.time_s = 100.0 + place * kFrame_s;
+    const bool expected = !tracker.expect(stage.frame).people.empty();
+    EXPECT_EQ(expected, place != 0) << place;
+    const TrackedFrame tracked = tracker.update(stage.frame, stage.people);
+    ASSERT_EQ(tracked.people.size(), 1U) << place;
+    EXPECT_EQ(tracked.people[0].id, 1);
+    EXPECT_NE(tracked.people[0].state, TrackState::lost);
+    EXPECT_GE(tracked.time_s, last_s) << "times of what is told rise";
+    last_s = tracked.time_s;
+  }
+  EXPECT_NEAR(last_s, 100.0 + 11 * kFrame_s, 1e-9) << "none of the late frames counts";
+}
+
+TEST(TrackedTime, OfAClockSetBackALittleGoesOn) {
+  PeopleTracker tracker(paper_body(), {}, hue());
+  Stage stage({Actor{}});
+  TrackedFrame tracked;
+  for (int i = 0; i < 60; ++i) {
+    stage.frame.time_s = 100.0 + i * kFrame_s - (i < 30 ? 0.0 : 0.8);
+    tracked = tracker.update(stage.frame, stage.people);
+    ASSERT_EQ(tracked.people.size(), 1U) << i;
+    ASSERT_EQ(tracked.people[0].id, 1);
+  }
+  EXPECT_NEAR(tracked.time_s, 100.0 + 58 * kFrame_s, 1e-9) << "only the step back takes no time";
+}
+
 TEST(TrackedTime, ThatStandsStillOrIsNonsenseIsBorne) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
   PeopleTracker tracker(paper_body(), {}, hue());
