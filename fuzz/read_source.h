@@ -1,6 +1,6 @@
 #pragma once
 
-#include <sys/mman.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <cstddef>
@@ -25,14 +25,31 @@ inline void read_frames(FrameSource& source) {
   }
 }
 
-/// Opens a file in memory, since recordings are read wherever their records say, and reads and seeks in it. `open` gets
-/// its path.
+/// A file that is written anew for each input. It has a name, since SQLite opens no other.
+class InputFile {
+ public:
+  InputFile() : file_(::mkstemp(path_.data())) {}
+  ~InputFile() { ::unlink(path_.c_str()); }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+  const std::string& path() const { return path_; }
+  bool write(const std::uint8_t* data, std::size_t size) const {
+    return ::ftruncate(file_.get(), 0) == 0 && ::lseek(file_.get(), 0, SEEK_SET) == 0 &&
+           write_all(file_, {reinterpret_cast<const char*>(data), size}) == 0;
+  }
+
+ private:
+  std::string path_ = "/dev/shm/vesalius_fuzz_XXXXXX";
+  Descriptor file_;
+};
+
+/// Opens a file, since recordings are read wherever their records say, and reads and seeks in it. `open` gets its path.
 template <class Open>
 void read_source(const std::uint8_t* data, std::size_t size, const Open& open) {
-  const Descriptor file(::memfd_create("recording", MFD_CLOEXEC));
-  if (!file.is_open() || write_all(file, {reinterpret_cast<const char*>(data), size}) != 0) return;
+  static const InputFile file;
+  if (!file.write(data, size)) return;
   try {
-    const std::unique_ptr<FrameSource> source = open("/proc/self/fd/" + std::to_string(file.get()));
+    const std::unique_ptr<FrameSource> source = open(file.path());
     read_frames(*source);
     if (const auto span = source->span()) {
       source->seek(span->first_s + 0.6 * (span->last_s - span->first_s));

@@ -1,7 +1,10 @@
 // Runs the fuzz targets without libFuzzer, so that every change can be tried with whatever compiler and sanitizers
-// there are: each seed as it is, cut short, and changed at random, always in the same way.
+// there are: each seed as it is, cut short, and changed at random, always in the same way. Whatever the bytes are, they
+// are read or refused within bounds of time and memory.
 //
 // Usage: fuzz_replay TARGET RUNS FOLDER
+
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +12,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -93,6 +97,24 @@ Bytes changed(const std::vector<Bytes>& seeds, std::mt19937& random) {
   return bytes;
 }
 
+/// Runs the target. Ends the program and keeps the input where that takes too long, by the processor, or the program
+/// has grown too large, sanitizers and what they keep of freed memory included.
+void run_bounded(const Named& target, const Bytes& bytes) {
+  constexpr double kMost_s = 10.0;
+  constexpr long kMost_kB = 2 << 20;
+  const std::clock_t start = std::clock();
+  target.run(bytes.data(), bytes.size());
+  const double took_s = double(std::clock() - start) / CLOCKS_PER_SEC;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  if (took_s <= kMost_s && usage.ru_maxrss <= kMost_kB) return;
+  const std::string kept = std::string(target.name) + "-bounds";
+  std::ofstream(kept, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
+  std::fprintf(stderr, "%s: %.1f s and %ld MiB, expected at most %.0f s and %ld MiB; input kept in %s\n", kept.c_str(),
+               took_s, usage.ru_maxrss >> 10, kMost_s, kMost_kB >> 10, kept.c_str());
+  std::exit(1);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -102,12 +124,11 @@ int main(int argc, char** argv) {
   if (target == kTargets.end() || seeds.empty()) {
     return std::fprintf(stderr, "%s: no such target, or no seeds in %s\n", argv[1], argv[3]), 2;
   }
-  for (const Bytes& seed : seeds) target->run(seed.data(), seed.size());
+  for (const Bytes& seed : seeds) run_bounded(*target, seed);
   std::mt19937 random(1);
   const int runs = std::atoi(argv[2]);
   for (int run = 0; run < runs; ++run) {
-    const Bytes bytes = changed(seeds, random);
-    target->run(bytes.data(), bytes.size());
+    run_bounded(*target, changed(seeds, random));
   }
   std::printf("%s: %zu seeds and %d changes of them\n", argv[1], seeds.size(), runs);
 }
