@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "io/files/descriptor.h"
 
@@ -15,7 +16,13 @@ class DataFile {
   /// Throws Error naming `path` if it cannot be opened or is not a regular file.
   explicit DataFile(const std::string& path);
 
+  /// A file that has no name of its own any more: `path` is for messages.
+  DataFile(std::string path, OpenFile file) : path_(std::move(path)), has_name_(false), file_(std::move(file)) {}
+
   const std::string& path() const { return path_; }
+  /// Returns whether others can open it by its path.
+  bool has_name() const { return has_name_; }
+  int descriptor() const { return file_.descriptor.get(); }
   std::uint64_t size() const { return file_.size; }
   /// Returns the `count` bytes from `at` on, or those up to the end where there are fewer. Throws Error if the system
   /// cannot read them.
@@ -25,6 +32,7 @@ class DataFile {
 
  private:
   std::string path_;
+  bool has_name_ = true;
   OpenFile file_;
 };
 

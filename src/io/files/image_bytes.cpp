@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 
+#include "io/files/known_kind.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -122,7 +123,7 @@ bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xFF\xD8\xFF"sv
 
 PngBytes check_png(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw Error(name + ": empty file, expected a PNG");
-  if (!is_png(bytes)) throw Error(name + ": no PNG signature, expected a PNG");
+  if (!is_png(bytes)) throw Error(fmt::format("{}: {}, expected a PNG", name, kind_or(bytes, "no PNG signature")));
   std::size_t at = kPngSignature.size();
   Chunk chunk = chunk_at(bytes, at, name);
   PngBytes png = parse_png_header(chunk, name);

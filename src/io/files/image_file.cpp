@@ -12,6 +12,7 @@
 #include "io/files/atomic_file.h"
 #include "io/files/data_file.h"
 #include "io/files/image_bytes.h"
+#include "io/files/known_kind.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -124,8 +125,8 @@ ColourImage decode_colour(std::string_view bytes, const std::string& name) {
   if (is_png(bytes)) return decode_png<Rgb>(check_png(bytes, name), SPNG_FMT_RGB8, name);
   if (is_ppm(bytes)) return decode_ppm(bytes, name);
   if (!is_jpeg(bytes)) {
-    throw Error(name + (bytes.empty() ? ": empty file" : ": unknown kind of picture") +
-                ", expected a PNG, JPEG or PPM");
+    throw Error(fmt::format("{}: {}, expected a PNG, JPEG or PPM", name,
+                            bytes.empty() ? "empty file" : kind_or(bytes, "unknown kind of picture")));
   }
   check_jpeg(bytes, name);
   return decode_jpeg(bytes, name);

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "io/files/byte_stream.h"
+#include "io/files/known_kind.h"
 
 namespace vesalius {
 namespace {
@@ -26,7 +27,8 @@ struct Table {
 Table read_header(std::string_view bytes, const std::string& name, bool checked) {
   if (bytes.empty()) throw Error(name + ": empty file, expected a vesalius model");
   if (bytes.substr(0, kMagic.size()) != kMagic.substr(0, bytes.size())) {
-    throw Error(name + ": not a vesalius model (text trees are read by `vesalius convert`)");
+    throw Error(fmt::format("{}: {}", name,
+                            kind_or(bytes, "not a vesalius model (text trees are read by `vesalius convert`)")));
   }
   if (bytes.size() < kHeaderBytes) {
     throw Error(fmt::format("{}: truncated model, {} bytes of the {} of its header", name, bytes.size(), kHeaderBytes));

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <optional>
 
+#include "io/files/known_kind.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -163,6 +164,10 @@ class HeaderReader {
 
 }  // namespace
 
-PcdHeader parse_pcd_header(std::string_view bytes, const std::string& name) { return HeaderReader(bytes, name).read(); }
+PcdHeader parse_pcd_header(std::string_view bytes, const std::string& name) {
+  const std::string_view kind = known_kind(bytes.substr(0, kKindBytes));
+  if (!kind.empty()) throw Error(fmt::format("{}: {}, expected a PCD file", name, kind));
+  return HeaderReader(bytes, name).read();
+}
 
 }  // namespace vesalius
