@@ -92,10 +92,18 @@ class BagRecording final : public ChunkedRecording {
     const std::string_view after = std::string_view(header_bytes_).substr(length);
     data_length_ = ByteReader(after, file_.path()).number<std::uint32_t>("length of data");
     data_at_ = at_ + 2 * sizeof(std::uint32_t) + length;
-    if (data_length_ > file_.size() - data_at_) return stop_early();
-    at_ = data_at_ + data_length_;
+    const std::uint64_t left = file_.size() - data_at_;
+    const std::uint64_t begin = std::exchange(at_, data_at_ + std::min<std::uint64_t>(data_length_, left));
     header_.emplace(std::string_view(header_bytes_).substr(0, length), file_.path());
-    return true;
+    const bool is_chunk = header_->number<std::uint8_t>("op") == kChunk;
+    // The chunk at which rosbag was killed says that it is empty: its sizes are filled in when it is full.
+    const bool is_open = is_chunk && data_length_ == 0 && left > 0 && header_->number<std::uint32_t>("size") == 0;
+    extent_ = is_open || data_length_ > left ? Packed::cut : Packed::whole;
+    if (extent_ == Packed::whole) return true;
+    at_ = begin;
+    end_early();
+    data_length_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(left, kMaxPieceBytes));
+    return is_chunk;
   }
 
   bool stop_early() {
@@ -103,11 +111,26 @@ class BagRecording final : public ChunkedRecording {
     return false;
   }
 
+  /// Returns how many bytes a record has by what its head says; 0 where that is not whole.
+  static std::uint64_t record_length(std::string_view bytes) {
+    std::uint64_t length = 0;
+    for (int part = 0; part < 2; ++part) {  // header, data
+      if (length + sizeof(std::uint32_t) > bytes.size()) return 0;
+      const std::string none;
+      ByteReader in(bytes.substr(length), none);
+      length += sizeof(std::uint32_t) + in.number<std::uint32_t>("length");
+    }
+    return length;
+  }
+
   void load_chunk() {
     chunk_.clear();
     chunk_at_ = 0;
-    const std::string packed = file_.read(data_at_, data_length_);
-    chunk_ = decompress(packed, header_->text("compression"), header_->number<std::uint32_t>("size"), file_.path());
+    const std::string packed = read_piece(data_at_, data_length_);
+    const auto stated = header_->number<std::uint32_t>("size");
+    const std::size_t size = stated == 0 && extent_ == Packed::cut ? kMaxPieceBytes : stated;
+    unpack_chunk(packed, header_->text("compression"), size, extent_);
+    if (extent_ == Packed::cut) keep_whole_records(record_length);
   }
 
   void add_connection(const Fields& header, std::string_view data) {
@@ -128,7 +151,7 @@ class BagRecording final : public ChunkedRecording {
     rewind();
     for (std::uint64_t at = at_; next_record(); at = at_) {
       const auto op = header_->number<std::uint8_t>("op");
-      if (op == kConnection) add_connection(*header_, file_.read(data_at_, data_length_));
+      if (op == kConnection) add_connection(*header_, read_piece(data_at_, data_length_));
       if (op == kChunk) {
         chunk_without_index = true;
         stretches_.push_back({at, 0});
@@ -177,6 +200,7 @@ class BagRecording final : public ChunkedRecording {
   std::map<std::uint32_t, std::size_t> topic_of_;
   std::uint64_t data_at_ = 0;
   std::uint32_t data_length_ = 0;
+  Packed extent_ = Packed::whole;  ///< of the data of the record found last
   std::string header_bytes_;
   std::optional<Fields> header_;  ///< header of the record found last; its texts lie in header_bytes_
 };

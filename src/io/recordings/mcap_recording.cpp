@@ -23,6 +23,7 @@ MessageLayout layout_of(std::string_view encoding) {
 struct Place {
   McapRecord kind{};
   std::uint64_t at = 0, length = 0;
+  Packed extent = Packed::whole;
 };
 
 class McapRecording final : public ChunkedRecording {
@@ -51,16 +52,17 @@ class McapRecording final : public ChunkedRecording {
       const std::optional<Place> place = next_place();
       if (!place) return std::nullopt;
       if (place->kind == McapRecord::chunk) {
-        load_chunk(*place);
+        place->extent == Packed::whole ? load_chunk(*place) : void(try_chunk(*place));
       } else if (place->kind == McapRecord::message) {
-        loose_ = file_.read(place->at, place->length);
+        loose_ = read_piece(place->at, place->length);
         if (const auto message = as_message(loose_)) return message;
       }
     }
   }
 
  private:
-  /// Returns the next record of the data section that is in the file as a whole; nothing after it.
+  /// Returns the next record of the data section that is in the file as a whole, or the chunk in which that ends;
+  /// nothing after it.
   std::optional<Place> next_place() {
     const std::string head = file_.read(at_, kMcapRecordHead);
     if (head.size() < kMcapRecordHead) return stop_early(!head.empty() || !ended_);
@@ -73,7 +75,14 @@ class McapRecording final : public ChunkedRecording {
       ended_ = true;
       return std::nullopt;
     }
-    if (place.length > file_.size() - place.at) return stop_early(true);
+    const std::uint64_t left = file_.size() - place.at;
+    if (place.length > left) {
+      stop_early(true);
+      if (place.kind != McapRecord::chunk) return std::nullopt;
+      place.length = std::min<std::uint64_t>(left, kMaxPieceBytes);
+      place.extent = Packed::cut;
+      return place;
+    }
     at_ = place.at + place.length;
     return place;
   }
@@ -85,9 +94,9 @@ class McapRecording final : public ChunkedRecording {
   }
 
   void load_chunk(const Place& place) {
-    const std::string bytes = file_.read(place.at, place.length);
     chunk_.clear();
     chunk_at_ = 0;
+    const std::string bytes = read_piece(place.at, place.length);
     ByteReader in(bytes, file_.path());
     in.number<std::uint64_t>("first time of a chunk");
     in.number<std::uint64_t>("last time of a chunk");
@@ -95,8 +104,18 @@ class McapRecording final : public ChunkedRecording {
     in.number<std::uint32_t>("checksum of a chunk");
     const std::string_view method = in.text("compression of a chunk");
     const auto packed = in.number<std::uint64_t>("compressed size of a chunk");
-    if (packed > in.left()) in.fail("a chunk is shorter than it says");
-    chunk_ = decompress(in.take(packed, "chunk"), method, size, file_.path());
+    const bool is_whole = place.extent == Packed::whole;
+    if (packed > in.left() && is_whole) in.fail("a chunk is shorter than it says");
+    unpack_chunk(in.take(std::min<std::uint64_t>(packed, in.left()), "chunk"), method, size, place.extent);
+    if (!is_whole) keep_whole_records(record_length);
+  }
+
+  /// Returns how many bytes a record has by what its head says; 0 where that is not whole.
+  static std::uint64_t record_length(std::string_view bytes) {
+    if (bytes.size() < kMcapRecordHead) return 0;
+    const std::string none;
+    const auto length = ByteReader(bytes.substr(1), none).number<std::uint64_t>("length of a record");
+    return length > bytes.size() ? length : kMcapRecordHead + length;  // either is too long for the chunk, or right
   }
 
   /// Returns nothing for a message of a channel that nobody described.
@@ -142,10 +161,10 @@ class McapRecording final : public ChunkedRecording {
       add_stretch(*place);
       switch (place->kind) {
         case McapRecord::schema:
-          add_schema(file_.read(place->at, place->length));
+          add_schema(read_piece(place->at, place->length));
           break;
         case McapRecord::channel:
-          add_channel(file_.read(place->at, place->length));
+          add_channel(read_piece(place->at, place->length));
           break;
         case McapRecord::message:
           count(file_.read(place->at, sizeof(std::uint16_t)));

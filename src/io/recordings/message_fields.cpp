@@ -18,6 +18,9 @@ std::uint64_t little_endian(std::string_view bytes) {
   return value;
 }
 
+/// A field takes thirty times as much memory as its two bytes; messages of cameras have a hundred.
+constexpr std::size_t kMostFields = 1U << 20U;
+
 }  // namespace
 
 MessageFields::MessageFields(std::string_view bytes, MessageLayout layout, const std::string& name)
@@ -120,7 +123,8 @@ ProtobufFields parse_protobuf(std::string_view bytes, const std::string& name) {
     fail();
     return value;
   };
-  while (!bytes.empty()) {
+  for (std::size_t count = 0; !bytes.empty(); ++count) {
+    if (count == kMostFields) throw Error(fmt::format("{}: a message of more than {} fields", name, kMostFields));
     const std::uint64_t tag = varint();
     const auto field = static_cast<std::uint32_t>(tag >> 3U);
     switch (tag & 7U) {

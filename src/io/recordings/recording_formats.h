@@ -20,8 +20,9 @@ inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
 /// that was never closed gives its whole messages. Throws Error naming the file.
 std::unique_ptr<Recording> open_bag(DataFile file);
 
-/// Opens a ROS 2 bag in SQLite (.db3), its messages compressed one by one or not. Throws Error naming the file.
-std::unique_ptr<Recording> open_sqlite(const std::string& path);
+/// Opens a ROS 2 bag in SQLite (.db3), its messages compressed one by one or not. What a killed recorder left in the
+/// log beside it (-wal) is read too; nothing is written. Throws Error naming the file.
+std::unique_ptr<Recording> open_sqlite(DataFile file);
 
 /// Returns whether this build has libavformat, which `open_mkv` needs.
 bool has_mkv();

@@ -12,8 +12,11 @@
 #include <system_error>
 
 #include "io/files/depth_picture.h"
+#include "io/files/data_file.h"
 #include "io/files/image_bytes.h"
+#include "io/files/known_kind.h"
 #include "io/lens/lens.h"
+#include "io/recordings/open_recording.h"
 #include "io/sensors/reconnecting_source.h"
 #include "io/sensors/sensor_drivers.h"
 #include "io/sources/camera_file.h"
@@ -21,6 +24,7 @@
 #include "io/sources/folder_source.h"
 #include "io/sources/list_source.h"
 #include "io/sources/pcd.h"
+#include "io/sources/recording_files.h"
 #include "io/sources/recording_source.h"
 #include "io/sources/source_around.h"
 #include "vesalius/error.h"
@@ -52,7 +56,7 @@ constexpr const char* kFolder = "a folder with depth/*.png or depth PNG files";
 constexpr const char* kTum = "a folder with depth.txt (TUM RGB-D)";
 constexpr const char* kPcd = "an organised PCD file or a folder of them";
 constexpr const char* kPng = "a depth PNG or a folder of them";
-constexpr const char* kRecording = "an MCAP file, a ROS bag, a folder of rosbag2 or an .mkv";
+constexpr const char* kRecording = "an MCAP file, a ROS bag, a folder of these or an .mkv";
 constexpr const char* kAnything = "a folder, a depth PNG, a PCD file or a recording";
 
 void refuse_colour_file(const std::string& path, const SourceOptions& options) {
@@ -193,10 +197,12 @@ std::string_view scheme_of_file(const std::string& path) {
     throw Error(path + ": " + unread_advice(extension));
   }
   if (extension == ".pcd") return "pcd";
-  for (const char* recorded : {".mcap", ".bag", ".db3", ".mkv"}) {
-    if (extension == recorded) return "recording";
-  }
-  throw Error(fmt::format("{}: unknown kind of file, expected {}", path, kAnything));
+  if (has_recording_name(path)) return "recording";
+  const std::string first = DataFile(path).read(0, kKindBytes);
+  if (is_recording(first)) return "recording";
+  if (is_png(first)) return "png";
+  if (first.starts_with("# .PCD")) return "pcd";
+  throw Error(fmt::format("{}: {}, expected {}", path, kind_or(first, "unknown kind of file"), kAnything));
 }
 
 std::string_view scheme_of_folder(const std::string& path) {
@@ -209,7 +215,9 @@ std::string_view scheme_of_folder(const std::string& path) {
   if (png && pcd) throw Error(path + ": PNG and PCD files in one folder, expected folder: or pcd: before the path");
   if (png) return "folder";
   if (pcd) return "pcd";
-  throw Error(with_items(path + ": no frames, expected depth/*.png, depth.txt, *.png or *.pcd", items_of(path)));
+  if (!list_recording(path).empty()) return "recording";
+  throw Error(
+      with_items(path + ": no frames, expected depth/*.png, depth.txt, *.png, *.pcd or recordings", items_of(path)));
 }
 
 std::unique_ptr<FrameSource> open_files(const std::string& uri, const SourceOptions& options) {

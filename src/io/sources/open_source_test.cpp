@@ -14,6 +14,7 @@
 
 #include "io/files/test_files.h"
 #include "io/recordings/test_k4a.h"
+#include "io/sources/test_messages.h"
 #include "io/sources/test_pcd_write.h"
 #include "vesalius/image_file.h"
 
@@ -390,6 +391,78 @@ TEST(OpenSource, RefusesAFolderWithoutPermission) {
   fs::create_directory(folder / "shut");
   ASSERT_EQ(chmod((folder / "shut").c_str(), 0), 0);
   EXPECT_THAT(open_error(folder / "shut"), HasSubstr("Permission denied"));
+}
+
+/// A recording of three frames by the tools of others.
+std::string recording_of_others(const std::string& name) {
+  return test::get(std::string(VESALIUS_FUZZ_SEEDS) + "/fuzz_recording/" + name);
+}
+
+TEST(OpenSource, KnowsARecordingByItsContentWhereTheNameDoesNotTell) {
+  const TemporaryFolder folder;
+  for (const char* name : {"x.bag.active", "x.bag.orig", "noname", "x.avi"}) {
+    const auto source = open_source(put(folder / name, recording_of_others("plain.bag")));
+    EXPECT_THAT(all_frames(*source), SizeIs(3)) << name;
+  }
+  EXPECT_THAT(all_frames(*open_source(put(folder / "x.sqlite3", recording_of_others("plain.db3")))), SizeIs(3));
+  SourceOptions options;
+  options.fx = 50.F;
+  EXPECT_THAT(all_frames(*open_source(put(folder / "picture", encode_png(random_frame("a", 1).depth)), options)),
+              SizeIs(1));
+}
+
+TEST(OpenSource, SaysWhatAnUnknownFileIs) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(open_error(put(folder / "a.zip", std::string("PK\3\4", 4) + "...")),
+              HasSubstr("a zip archive; unpack it"));
+  EXPECT_THAT(open_error(put(folder / "a.bag", "\x1F\x8B\x08 packed")), HasSubstr("gunzip"));
+  EXPECT_THAT(open_error(put(folder / "a.db3", "<!DOCTYPE html>\n<title>Sign in")),
+              HasSubstr("a web page, not the file"));
+  EXPECT_THAT(open_error(put(folder / "a.xyz", "anything")), HasSubstr("unknown kind of file"));
+}
+
+TEST(OpenSource, FoldersOfOneRecordingNeedNoMetadata) {
+  const TemporaryFolder folder;
+  put(folder / "one/rosbag.db3", recording_of_others("plain.db3"));
+  put(folder / "one/notes.txt", "");
+  put(folder / "split/x_0.bag", recording_of_others("plain.bag"));
+  put(folder / "split/x_1.bag", recording_of_others("bz2.bag"));
+  put(folder / "split/x_2.bag.active", recording_of_others("lz4.bag"));
+  put(folder / "dated/run_2024-01-02-10-00-00_0.mcap", recording_of_others("zstd.mcap"));
+  put(folder / "dated/run_2024-01-02-10-05-00_1.mcap", recording_of_others("lz4.mcap"));
+  for (const auto& [name, frames] : std::map<std::string, int>{{"one", 3}, {"split", 9}, {"dated", 6}}) {
+    const auto source = open_source(folder / name);
+    EXPECT_EQ(source->size(), frames) << name;
+    EXPECT_THAT(all_frames(*source), SizeIs(static_cast<std::size_t>(frames))) << name;
+  }
+}
+
+TEST(OpenSource, PartsOfARecordingAreOrderedByTheirNumbers) {
+  const TemporaryFolder folder;
+  for (const int part : {0, 2, 10}) {
+    test::Messages out((fs::create_directories(folder / "bag"), folder / ("bag/x_" + std::to_string(part) + ".mcap")));
+    out.camera("/depth/camera_info", random_frame("a", 1).camera);
+    out.depth("/depth/image", std::int64_t{1'000'000'000} * part, random_frame("a", 1));
+    out.close();
+  }
+  EXPECT_THAT(names(all_frames(*open_source(folder / "bag"))),
+              ElementsAre("0.000000000", "2.000000000", "10.000000000"));
+}
+
+TEST(OpenSource, RecordingsThatAreNoPartsOfOneAreNotMixed) {
+  const TemporaryFolder folder;
+  put(folder / "all/kitchen.bag", recording_of_others("plain.bag"));
+  put(folder / "all/hall.bag", recording_of_others("plain.bag"));
+  EXPECT_THAT(open_error(folder / "all"),
+              HasSubstr("2 recordings, such as hall.bag and kitchen.bag: expected one of them"));
+}
+
+TEST(OpenSource, APackedPartIsNotReadTwice) {
+  const TemporaryFolder folder;
+  put(folder / "bag/metadata.yaml", "");
+  put(folder / "bag/x_0.db3", recording_of_others("plain.db3"));
+  put(folder / "bag/x_0.db3.zstd", "left by ros2 bag play");
+  EXPECT_THAT(all_frames(*open_source(folder / "bag")), SizeIs(3));
 }
 
 TEST(MakeFrame, CopiesRowsWithStrides) {

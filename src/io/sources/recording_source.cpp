@@ -18,9 +18,9 @@
 #include "io/recordings/open_recording.h"
 #include "io/recordings/time_difference.h"
 #include "io/sources/camera_file.h"
-#include "io/sources/folder_source.h"
 #include "io/sources/recorded_cameras.h"
 #include "io/sources/recorded_topics.h"
+#include "io/sources/recording_files.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -31,6 +31,8 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMostApart_ns = 50'000'000;
 /// Frames that wait for their colour: half a second at 30 a second.
 constexpr std::size_t kMostWaiting = 15;
+/// Fewer where they are larger than this together, and so are the colour pictures that wait for them.
+constexpr std::size_t kMostWaitingBytes = std::size_t{1} << 28;
 /// How long before the time of a seek reading begins: what two streams may lie apart in the file.
 constexpr double kLead_s = 0.5;
 /// By how much more, where that was not early enough.
@@ -56,7 +58,7 @@ class RecordingSource final : public FrameSource {
   RecordingSource(std::vector<std::string> files, const SourceOptions& options) : files_(std::move(files)) {
     for (const std::string& file : files_) recordings_.push_back(open_recording(file));
     const std::string& place = files_.front();
-    RecordedCameras cameras = choose_cameras(*recordings_.front(), options, place, notes_);
+    RecordedCameras cameras = choose_in_first(options);
     items_ = std::move(cameras.items);
     count_items();
     const RecordedCameras::Depth& depth = cameras.depth;
@@ -155,6 +157,21 @@ class RecordingSource final : public FrameSource {
     }
   }
 
+  /// What a recording lacks may lie behind where it was cut.
+  RecordedCameras choose_in_first(const SourceOptions& options) {
+    try {
+      return choose_cameras(*recordings_.front(), options, files_.front(), notes_);
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error& e) {
+      const std::vector<std::string> cut = recordings_.front()->notes();
+      if (cut.empty()) throw;
+      std::string text = e.what();
+      text.insert(std::min(text.find('\n'), text.size()), fmt::format(" ({})", cut.front()));  // a list may follow
+      throw Error(text);
+    }
+  }
+
   /// Notes where the clocks that depth and colour have times of are so far apart that what was seen at one time does
   /// not come together. Colour that begins a little later does.
   void compare_clocks(const RecordedCameras::Depth& depth, const RecordedCameras::Colour& colour,
@@ -192,8 +209,9 @@ class RecordingSource final : public FrameSource {
     for (std::size_t later = at_ + 1; later < recordings_.size(); ++later) recordings_[later]->rewind();
     waiting_.clear();
     colours_.clear();
+    colour_bytes_ = 0;
     ups_.clear();
-    last_name_.clear();
+    last_time_ns_.reset();
     failed_ = nullptr;
     wanted_from_s_.reset();
     return left_out;
@@ -240,7 +258,8 @@ class RecordingSource final : public FrameSource {
   bool is_ready() const {
     if (at_ == recordings_.size()) return true;
     if (waiting_.empty()) return false;
-    if (colour_topic_.empty() || waiting_.size() >= kMostWaiting) return true;
+    const std::size_t waiting_bytes = waiting_.size() * waiting_.front().frame.depth.size() * sizeof(std::uint16_t);
+    if (colour_topic_.empty() || waiting_.size() >= kMostWaiting || waiting_bytes > kMostWaitingBytes) return true;
     return !colours_.empty() && colours_.back().time_ns >= waiting_.front().time_ns;
   }
 
@@ -262,7 +281,9 @@ class RecordingSource final : public FrameSource {
     if (!is_depth) {
       if (picture.data.empty()) return;  // as drivers send before the first picture
       colours_.push_back({time_ns, topic, std::string(message.bytes)});
-      if (colours_.size() > 2 * kMostWaiting) colours_.pop_front();
+      colour_bytes_ += message.bytes.size();
+      while (colours_.size() > 2 * kMostWaiting || (colours_.size() > 1 && colour_bytes_ > kMostWaitingBytes))
+        forget_colour();
       return;
     }
     Frame frame;
@@ -273,9 +294,9 @@ class RecordingSource final : public FrameSource {
     }
     wanted_from_s_.reset();
     frame.name = name_of_time(time_ns);
-    // Another frame of the same time, and yet another.
-    while (last_name_.starts_with(frame.name)) frame.name += "_again";
-    last_name_ = frame.name;
+    of_this_time_ = time_ns == last_time_ns_ ? of_this_time_ + 1 : 1;
+    last_time_ns_ = time_ns;
+    if (of_this_time_ > 1) frame.name += fmt::format("_{}", of_this_time_);
     frame.camera = camera_;
     frame.depth = depth_of(picture, stored_, fmt::format("{}: {}", place, frame.name));
     if (frame.depth.width() != camera_.width || frame.depth.height() != camera_.height) {
@@ -300,6 +321,11 @@ class RecordingSource final : public FrameSource {
     return colour_rectification_ ? colour_rectification_->colour(colour) : std::move(colour);
   }
 
+  void forget_colour() {
+    colour_bytes_ -= colours_.front().message.size();
+    colours_.pop_front();
+  }
+
   Frame with_colour() {
     Waiting one = std::move(waiting_.front());
     waiting_.pop_front();
@@ -314,7 +340,7 @@ class RecordingSource final : public FrameSource {
     const auto is_past = [&](const Colour& colour) {
       return colour.time_ns < one.time_ns && apart(colour) > kMostApart_ns;
     };
-    while (!colours_.empty() && is_past(colours_.front())) colours_.pop_front();
+    while (!colours_.empty() && is_past(colours_.front())) forget_colour();
     return std::move(one.frame);
   }
 
@@ -332,7 +358,9 @@ class RecordingSource final : public FrameSource {
   std::vector<SourceItem> items_;
   std::deque<Waiting> waiting_;
   std::deque<Colour> colours_;
-  std::string last_name_;
+  std::size_t colour_bytes_ = 0;
+  std::optional<std::int64_t> last_time_ns_;  ///< of the frame that was named last
+  int of_this_time_ = 0;                      ///< number of frames with this time, one after the other
   TimeSpan span_;
   int left_out_ = 0;                     ///< messages of depth before the first whole picture
   double first_recorded_s_ = 0.0;        ///< when that was recorded
@@ -348,8 +376,8 @@ class RecordingSource final : public FrameSource {
 std::unique_ptr<FrameSource> open_recorded(const std::string& path, const SourceOptions& options) {
   std::vector<std::string> files;
   if (fs::is_directory(path)) {
-    for (const fs::path& file : list_files(path, {".mcap", ".db3"})) files.push_back(file.string());
-    if (files.empty()) throw Error(path + ": no recording, expected *.mcap or *.db3");
+    files = list_recording(path);
+    if (files.empty()) throw Error(path + ": no recording, expected *.mcap, *.db3 or *.bag");
   } else {
     files.push_back(path);
   }

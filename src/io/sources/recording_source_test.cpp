@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "io/files/test_files.h"
 #include "io/recordings/camera_messages.h"
@@ -308,7 +310,25 @@ TEST(RecordingSource, NamesFramesOfOneTimeAlikeAfterASeek) {
   source->seek(0.002);
   std::vector<std::string> names;
   for (const Frame& frame : all_of(*source)) names.push_back(frame.name);
-  EXPECT_THAT(names, ElementsAre("0.002000000", "0.002000000_again", "0.002000000_again_again", "0.003000000"));
+  EXPECT_THAT(names, ElementsAre("0.002000000", "0.002000000_2", "0.002000000_3", "0.003000000"));
+}
+
+TEST(RecordingSource, NamesThousandsOfFramesOfOneTimeShortlyAndSoon) {
+  const test::TemporaryFolder folder;
+  const Frame a = random_frame("a", 1, 2, 2);
+  Messages out(folder / "a.mcap");
+  out.camera("/depth/camera_info", a.camera);
+  constexpr int kMany = 20'000;
+  for (int i = 0; i < kMany; ++i)
+    out.put("/depth/image", "sensor_msgs/msg/Image", i * kMs, depth_message(a.depth, 5 * kMs, "depth_frame"));
+  out.close();
+  const auto start = std::chrono::steady_clock::now();
+  const auto source = open_source(folder / "a.mcap");
+  std::set<std::string> names;
+  while (const auto frame = source->next()) names.insert(frame->name);
+  EXPECT_EQ(names.size(), kMany);
+  EXPECT_TRUE(names.contains("0.005000000_20000"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 TEST(RecordingSource, SeekPassesOverDamageBeforeItAlone) {
