@@ -131,7 +131,8 @@ TEST(ImageFile, SaysWhyAPictureIsNotDepth) {
   EXPECT_EQ(message(cv::Mat(3, 4, CV_8UC1, cv::Scalar(1))),
             "d.png: 8-bit grey PNG, expected 16-bit grey (depth, 0 = no reading)");
   EXPECT_THAT(message(cv::Mat(3, 4, CV_16UC3, cv::Scalar(1))), HasSubstr("16-bit colour PNG"));
-  EXPECT_THAT(error_of([] { decode_depth_png("\xFF\xD8\xFF\xE0", "d.png"); }), HasSubstr("d.png: no PNG signature"));
+  EXPECT_THAT(error_of([] { decode_depth_png("\xFF\xD8\xFF\xE0", "d.png"); }),
+              HasSubstr("d.png: a JPEG, which cannot hold depth"));
   EXPECT_THAT(error_of([] { decode_colour("BM", "c.bmp"); }), HasSubstr("c.bmp: unknown kind of picture"));
   EXPECT_THAT(error_of([] { decode_colour("", "c.png"); }), HasSubstr("c.png: empty file"));
 }

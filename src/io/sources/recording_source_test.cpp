@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <set>
 
@@ -322,13 +322,13 @@ TEST(RecordingSource, NamesThousandsOfFramesOfOneTimeShortlyAndSoon) {
   for (int i = 0; i < kMany; ++i)
     out.put("/depth/image", "sensor_msgs/msg/Image", i * kMs, depth_message(a.depth, 5 * kMs, "depth_frame"));
   out.close();
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const auto source = open_source(folder / "a.mcap");
   std::set<std::string> names;
   while (const auto frame = source->next()) names.insert(frame->name);
   EXPECT_EQ(names.size(), kMany);
   EXPECT_TRUE(names.contains("0.005000000_20000"));
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 10.0);
 }
 
 TEST(RecordingSource, SeekPassesOverDamageBeforeItAlone) {
