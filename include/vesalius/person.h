@@ -202,7 +202,7 @@ struct StanceEvent {
 
 /// The people of a frame: of one of a sequence over which they are followed, or as a detector found them (seen_people).
 struct TrackedFrame {
-  double time_s = 0.0;                ///< the frame's time, or its number over the rate where it has none
+  double time_s = 0.0;                ///< the frame's time, the latest's if it is late, or its number over the rate
   std::vector<TrackedPerson> people;  ///< by id; of lost ones those that were lost in this frame
   std::optional<FloorView> floor;
   std::vector<StanceEvent> events;
