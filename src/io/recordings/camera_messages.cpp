@@ -8,12 +8,11 @@
 #include <type_traits>
 
 #include "io/files/image_bytes.h"
+#include "io/recordings/camera_topics.h"
 #include "io/recordings/colour_encodings.h"
 #include "io/recordings/depth_codecs.h"
 #include "io/recordings/message_fields.h"
-#include "io/recordings/orbbec_topics.h"
 #include "io/recordings/picture_look.h"
-#include "io/recordings/realsense_topics.h"
 #include "vesalius/base/depth_reading.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"

@@ -45,8 +45,8 @@ std::optional<Calibration> scaled_to(const Calibration& calibration, int width, 
 /// Returns whether a picture is one of depth, by how it is encoded.
 bool is_depth(const PictureMessage& picture);
 
-/// Returns depth in millimetres, 0 = no reading: 16 bits, a 16-bit PNG, compressedDepth, disparities, points. Throws Error naming `name` if the picture
-/// is not what it says.
+/// Returns depth in millimetres, 0 = no reading: 16 bits, a 16-bit PNG, compressedDepth, disparities, points. Throws
+/// Error naming `name` if the picture is not what it says.
 DepthImage depth_of(const PictureMessage& picture, const StoredDepth& stored, const std::string& name);
 
 /// Returns the points of a picture of points, metres; NaN = no reading. Throws Error naming `name` if it has none.

@@ -1,7 +1,7 @@
 #include "io/recordings/imu_messages.h"
 
+#include "io/recordings/camera_topics.h"
 #include "io/recordings/message_fields.h"
-#include "io/recordings/realsense_topics.h"
 
 namespace vesalius {
 namespace {

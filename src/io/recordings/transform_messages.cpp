@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/recordings/camera_topics.h"
 #include "io/recordings/message_fields.h"
-#include "io/recordings/orbbec_topics.h"
-#include "io/recordings/realsense_topics.h"
 
 namespace vesalius {
 namespace {

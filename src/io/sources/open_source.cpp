@@ -11,8 +11,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/files/depth_picture.h"
 #include "io/files/data_file.h"
+#include "io/files/depth_picture.h"
 #include "io/files/image_bytes.h"
 #include "io/files/known_kind.h"
 #include "io/lens/lens.h"

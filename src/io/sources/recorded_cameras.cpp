@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "io/recordings/realsense_topics.h"
+#include "io/recordings/camera_topics.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/pcd.h"
 #include "io/sources/recorded_topics.h"

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <map>
 
+#include "io/recordings/camera_topics.h"
 #include "io/recordings/message_fields.h"
-#include "io/recordings/orbbec_topics.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

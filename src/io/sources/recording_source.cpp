@@ -137,8 +137,7 @@ class RecordingSource final : public FrameSource {
     Frame frame;
   };
 
-  Camera camera_from(CameraFacts& facts, const RecordedCameras::Depth& depth, bool on_grid,
-                     const std::string& place) {
+  Camera camera_from(CameraFacts& facts, const RecordedCameras::Depth& depth, bool on_grid, const std::string& place) {
     try {
       return resolve_camera(facts, depth.width, depth.height, on_grid, place, notes_);
     } catch (const Error& e) {
