@@ -37,6 +37,9 @@ class PeopleTracker {
   PeopleTracker restarted(TrackOptions options, std::shared_ptr<const Appearance> appearance,
                           std::shared_ptr<const BodyFitter> fitter) const;
 
+  /// Returns a tracker with the same options that knows nobody, whose ids go on counting too.
+  PeopleTracker restarted() const;
+
   /// Returns what the frames before tell about the people of this one, which comes next.
   Prior expect(const Frame& frame) const;
 

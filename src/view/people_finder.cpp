@@ -109,8 +109,8 @@ PeopleTracker& TrackHistory::before(double at_s) {
     if (!newest) newest = std::move(known_.back().tracker);
     known_.pop_back();
   }
-  // What came before this frame is not known any more. The newest tracker takes that as the jump it is.
-  if (known_.size() == 1 && newest && !again) known_.front().tracker = std::move(*newest);
+  // What came before this frame is not known any more.
+  if (known_.size() == 1 && newest && !again) known_.front().tracker = newest->restarted();
   known_.push_back({at_s, known_.back().tracker});
   if (known_.size() > kMostKnown) known_.pop_front();
   return known_.back().tracker;

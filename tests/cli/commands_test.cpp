@@ -154,7 +154,7 @@ TEST_F(Commands, ConvertPutsAnotherBodyIntoAModel) {
 }
 
 TEST_F(Commands, ConvertKeepsThePeopleInFrames) {
-  const std::string flags = " -q --json - -m " + model();
+  const std::string flags = " --no-track -q --json - -m " + model();
   const auto people = [&](const std::string& source) {
     std::vector<json> found;
     std::istringstream in(run_program("detect " + source + flags).out);

@@ -18,7 +18,7 @@ class Record : public SmallWorld {
  protected:
   /// Returns the lines of `vesalius detect --json`, without what differs between a folder and its recording.
   static std::vector<json> found_in(const std::string& source) {
-    const Outcome run = run_program("detect " + source + " -q --json - -m " + model());
+    const Outcome run = run_program("detect " + source + " --no-track -q --json - -m " + model());
     EXPECT_EQ(run.exit_code, 0) << run.err;
     std::vector<json> lines;
     std::istringstream in(run.out);

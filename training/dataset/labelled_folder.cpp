@@ -269,10 +269,12 @@ void LabelledExporter::write(const LabelledFrame& labelled) {
       }
     }
   });
-  frames_->write(labelled.frame);
   const auto path = [&](const char* kind, const char* extension) {
     return (fs::path(folder_) / kind / (name + extension)).string();
   };
+  // The writer of frames would number the second one, and its truth would replace the first one's.
+  if (fs::exists(path("truth", ".json"))) throw Error(fmt::format("{}: two frames named {}", folder_, name));
+  frames_->write(labelled.frame);
   write_png(labelled.labels, path("labels", ".png"));
   write_png(labelled.person, path("person", ".png"));
   write_file_atomically(path("truth", ".json"), truth_json(labelled, body_, joints_));

@@ -450,6 +450,10 @@ PeopleTracker PeopleTracker::restarted(TrackOptions options, std::shared_ptr<con
   return tracker;
 }
 
+PeopleTracker PeopleTracker::restarted() const {
+  return restarted(state_->options, state_->appearance, state_->fitter);
+}
+
 Prior PeopleTracker::expect(const Frame& frame) const {
   Prior prior;
   const TrackStep step = state_->clock.step_to(frame);
