@@ -101,8 +101,8 @@ Calibration parse_orbbec_profile(MessageFields& fields, const RecordedTopic& top
       "", "modified_brown_conrady", "inverse_brown_conrady", "brown_conrady", "rational_polynomial", "kannala_brandt4"};
   constexpr int kPose = 12;
   const auto reals = [&](int count, const char* what) {
-    std::vector<double> all;
-    for (int i = 0; i < count; ++i) all.push_back(double(fields.real32(what)));
+    std::vector<double> all(std::size_t(count), 0.0);
+    for (double& each : all) each = double(fields.real32(what));
     return all;
   };
   fields.u8("the kind of stream");
