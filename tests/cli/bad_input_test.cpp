@@ -17,7 +17,8 @@ using testing::StartsWith;
 
 class BadInput : public SmallWorld {
  protected:
-  /// Expects one line on standard error, perhaps with what a source holds below it, indented, nothing on standard output and no file left behind.
+  /// Expects one line on standard error, perhaps with what a source holds below it, indented, nothing on standard
+  /// output and no file left behind.
   static void expect_refused(const Outcome& run, int exit_code, const std::string& reason) {
     EXPECT_EQ(run.exit_code, exit_code) << run.err;
     EXPECT_EQ(run.out, "");
