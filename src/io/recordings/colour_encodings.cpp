@@ -15,27 +15,27 @@ namespace {
 using Bytes = const std::uint8_t*;
 
 /// Channels of a pixel beside each other: bytes of a pixel and where red, green and blue stand.
-struct Packed {
+struct PackedColour {
   std::string_view name;
   int bytes, r, g, b;
 };
-constexpr std::array<Packed, 9> kPacked{{{"rgb8", 3, 0, 1, 2},
-                                         {"bgr8", 3, 2, 1, 0},
-                                         {"8uc3", 3, 2, 1, 0},
-                                         {"rgba8", 4, 0, 1, 2},
-                                         {"bgra8", 4, 2, 1, 0},
-                                         {"8uc4", 4, 2, 1, 0},
-                                         {"mono8", 1, 0, 0, 0},
-                                         {"8uc1", 1, 0, 0, 0},
-                                         {"gray", 1, 0, 0, 0}}};
+constexpr std::array<PackedColour, 9> kPacked{{{"rgb8", 3, 0, 1, 2},
+                                               {"bgr8", 3, 2, 1, 0},
+                                               {"8uc3", 3, 2, 1, 0},
+                                               {"rgba8", 4, 0, 1, 2},
+                                               {"bgra8", 4, 2, 1, 0},
+                                               {"8uc4", 4, 2, 1, 0},
+                                               {"mono8", 1, 0, 0, 0},
+                                               {"8uc1", 1, 0, 0, 0},
+                                               {"gray", 1, 0, 0, 0}}};
 /// The same of 16 bits.
-constexpr std::array<Packed, 7> kPacked16{{{"rgb16", 6, 0, 2, 4},
-                                           {"bgr16", 6, 4, 2, 0},
-                                           {"16uc3", 6, 4, 2, 0},
-                                           {"rgba16", 8, 0, 2, 4},
-                                           {"bgra16", 8, 4, 2, 0},
-                                           {"mono16", 2, 0, 0, 0},
-                                           {"16uc1", 2, 0, 0, 0}}};
+constexpr std::array<PackedColour, 7> kPacked16{{{"rgb16", 6, 0, 2, 4},
+                                                 {"bgr16", 6, 4, 2, 0},
+                                                 {"16uc3", 6, 4, 2, 0},
+                                                 {"rgba16", 8, 0, 2, 4},
+                                                 {"bgra16", 8, 4, 2, 0},
+                                                 {"mono16", 2, 0, 0, 0},
+                                                 {"16uc1", 2, 0, 0, 0}}};
 /// Two pixels share their chrominance: where in their four bytes the first luminance, U and V stand.
 struct Pairs {
   std::string_view name;
@@ -98,7 +98,7 @@ ColourImage make_colour(const PictureMessage& picture, const ColourAt& colour_at
 }
 
 /// `high` is where in a channel its upper eight bits stand.
-ColourImage from_packed(const PictureMessage& picture, const Packed& of, int high, const std::string& name) {
+ColourImage from_packed(const PictureMessage& picture, const PackedColour& of, int high, const std::string& name) {
   expect_rows(picture, static_cast<std::size_t>(of.bytes), name);
   return make_colour(picture, [&](Bytes row, int u, int) {
     const Bytes pixel = row + u * of.bytes + high;
@@ -161,7 +161,7 @@ bool is_colour_encoding(std::string_view encoding) {
 
 bool is_grey_encoding(std::string_view encoding) {
   const std::string name = lower(encoding);
-  const Packed* packed = row_of(kPacked, name);
+  const PackedColour* packed = row_of(kPacked, name);
   return (packed != nullptr && packed->bytes == 1) || name == "mono16" || name == "16uc1";
 }
 
