@@ -7,18 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/ip/address.hpp>
-#include <cctype>
 
+#include "io/files/plain_text.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
 
 /// Removes the port from "name:8080" or "[::1]:8080", and the brackets.
 std::string name_in(std::string_view host) {

@@ -4,9 +4,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cctype>
 #include <string>
 
+#include "io/files/plain_text.h"
 #include "io/lens/fixed_point.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
@@ -88,16 +88,6 @@ constexpr std::array<ModelName, 12> kModels{{{"plumbbob", LensModel::brown_conra
                                              {"kannalabrandt4", LensModel::kannala_brandt, 4},
                                              {"pinhole", LensModel::pinhole, 0}}};
 
-/// Returns the letters and digits of a name in lower case.
-std::string plain_model(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    if (std::isalnum(u) != 0) text += static_cast<char>(std::tolower(u));
-  }
-  return text;
-}
-
 constexpr int kRectifiedRows = 16;
 
 void expect_distorted_size(int width, int height, int picture_width, int picture_height) {
@@ -111,7 +101,7 @@ void expect_distorted_size(int width, int height, int picture_width, int picture
 std::optional<Lens> make_lens(std::string_view model, const std::vector<double>& coefficients) {
   const auto is_zero = [](double c) { return c == 0.0; };
   if (std::ranges::all_of(coefficients, is_zero)) return Lens{};
-  const auto named = std::ranges::find(kModels, plain_model(model), &ModelName::name);
+  const auto named = std::ranges::find(kModels, letters_and_digits(model), &ModelName::name);
   if (named == kModels.end()) return std::nullopt;
   const std::size_t count = std::min(coefficients.size(), named->most);
   if (!std::all_of(coefficients.begin() + static_cast<std::ptrdiff_t>(count), coefficients.end(), is_zero)) {
@@ -178,6 +168,14 @@ ColourImage Rectification::colour(const ColourImage& picture) const {
     }
   });
   return colour;
+}
+
+std::optional<double> whole_ratio(std::int64_t from_width, std::int64_t from_height, std::int64_t width,
+                                  std::int64_t height) {
+  const bool has_size = width > 0 && height > 0 && from_width > 0 && from_height > 0;
+  if (!has_size || from_width * height != from_height * width) return std::nullopt;
+  if (from_width % width != 0 && width % from_width != 0) return std::nullopt;
+  return double(from_width) / double(width);
 }
 
 std::optional<Rectification> make_rectification(std::optional<LensCamera> distorted, const Camera& to) {

@@ -83,6 +83,11 @@ inline void bend_kannala_brandt(const std::array<Real, 8>& k, Real& x, Real& y) 
   y *= scale;
 }
 
+/// Returns by how much larger than `width` x `height` a picture of the first two sides is, of the same shape, if that
+/// is a whole number or one over it: what decimation leaves of a calibration.
+std::optional<double> whole_ratio(std::int64_t from_width, std::int64_t from_height, std::int64_t width,
+                                  std::int64_t height);
+
 /// Turns pictures of a camera with a lens into those of a pinhole camera in its place. Where each pixel comes from is
 /// worked out once.
 class Rectification {

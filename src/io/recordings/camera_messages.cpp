@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "io/files/image_bytes.h"
+#include "io/lens/lens.h"
 #include "io/recordings/camera_topics.h"
 #include "io/recordings/colour_encodings.h"
 #include "io/recordings/depth_codecs.h"
@@ -311,10 +312,9 @@ std::optional<Calibration> scaled_to(const Calibration& calibration, int width, 
   const std::int64_t part_width = is_part ? c.roi_width : c.width, part_height = is_part ? c.roi_height : c.height;
   double x = c.binning_x, y = c.binning_y;
   if (part_width / c.binning_x != width || part_height / c.binning_y != height) {
-    const bool has_size = width > 0 && height > 0 && part_width > 0 && part_height > 0;
-    const bool same_shape = part_width * height == part_height * width;
-    if (!has_size || !same_shape || (part_width % width != 0 && width % part_width != 0)) return std::nullopt;
-    x = y = double(part_width) / double(width);
+    const std::optional<double> by = whole_ratio(part_width, part_height, width, height);
+    if (!by) return std::nullopt;
+    x = y = *by;
   }
   // A pixel's centre has whole numbers, so that the picture begins half a pixel before 0.
   const auto centre = [](double at, int first, double by) { return (at - first + 0.5) / by - 0.5; };

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
+#include "io/files/plain_text.h"
 #include "io/recordings/picture_message.h"
 #include "vesalius/error.h"
 
@@ -58,12 +58,6 @@ template <class Table>
 const auto* row_of(const Table& table, std::string_view name) {
   const auto found = std::ranges::find(table, name, &Table::value_type::name);
   return found == table.end() ? nullptr : &*found;
-}
-
-std::string lower(std::string_view text) {
-  std::string all(text);
-  std::ranges::transform(all, all.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return all;
 }
 
 /// Returns the pattern of "bayer_rggb8", or nothing.

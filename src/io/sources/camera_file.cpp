@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "io/files/data_file.h"
+#include "io/files/plain_text.h"
 #include "io/sources/fact_tree.h"
 #include "vesalius/error.h"
 
@@ -119,11 +119,10 @@ const std::vector<SensorFocal>& known_sensors() {
 
 /// Returns the sensor's usual focal length for pictures of this size, or 0 if it is not known.
 float nominal_focal(const std::string& sensor, int width, int height, bool registered) {
-  std::string lower = sensor;
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string name = lower(sensor);
   for (const SensorFocal& known : known_sensors()) {
     const bool named = std::any_of(known.names.begin(), known.names.end(),
-                                   [&](const char* n) { return lower.find(n) != std::string::npos; });
+                                   [&](const char* n) { return name.find(n) != std::string::npos; });
     if (!named) continue;
     const bool same_format = std::int64_t{width} * known.height == std::int64_t{height} * known.width;
     if (!same_format && !known.crops) return 0.F;
@@ -147,17 +146,6 @@ bool keeps_direction(const Calibration& c) {
 Camera scaled(const Camera& camera, double by, int width, int height) {
   const auto centre = [by](float at) { return float((double(at) + 0.5) / by - 0.5); };
   return {width, height, float(camera.fx / by), float(camera.fy / by), centre(camera.cx), centre(camera.cy)};
-}
-
-/// Returns by how much pixels of a calibration of other pictures are smaller, if it is a whole number or one over it.
-std::optional<double> whole_ratio(int calibrated_width, int calibrated_height, int width, int height) {
-  const bool smaller = calibrated_width > width;
-  const int large = smaller ? calibrated_width : width, small = smaller ? width : calibrated_width;
-  const int ratio = large / std::max(small, 1);
-  const bool whole =
-      ratio * small == large && (smaller ? height * ratio == calibrated_height : calibrated_height * ratio == height);
-  if (!whole) return std::nullopt;
-  return smaller ? double(ratio) : 1.0 / ratio;
 }
 
 /// Takes the camera of the mode that an Azure Kinect's pictures are of, its depth's or, for depth on the grid of

@@ -5,10 +5,10 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <sstream>
 
+#include "io/files/plain_text.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -247,13 +247,7 @@ std::vector<double> numbers_of(const FactTree& value, int levels) {
 }
 
 std::string plain_name(std::string_view text) {
-  text = text.substr(text.rfind('.') + 1);  // of npos 0
-  std::string name;
-  for (const char c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    if (std::isalnum(u) != 0) name += static_cast<char>(std::tolower(u));
-  }
-  return name;
+  return letters_and_digits(text.substr(text.rfind('.') + 1));  // of npos 0
 }
 
 FactTree parse_facts(std::string_view bytes, const std::string& name) {

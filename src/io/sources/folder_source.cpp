@@ -13,6 +13,8 @@
 #include <tuple>
 
 #include "io/files/depth_picture.h"
+#include "io/files/plain_text.h"
+#include "io/sources/source_items.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

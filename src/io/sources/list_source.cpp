@@ -11,7 +11,9 @@
 
 #include "io/files/data_file.h"
 #include "io/files/depth_picture.h"
+#include "io/files/plain_text.h"
 #include "io/files/stored_depth.h"
+#include "io/sources/source_items.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
 

@@ -27,6 +27,7 @@
 #include "io/sources/recording_files.h"
 #include "io/sources/recording_source.h"
 #include "io/sources/source_around.h"
+#include "io/sources/source_items.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

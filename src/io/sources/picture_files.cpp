@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "io/files/depth_picture.h"
+#include "io/files/plain_text.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -113,11 +114,6 @@ bool natural_less(std::string_view a, std::string_view b) {
   return a < b;  // decides between 01 and 1
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 std::string lower_extension(const fs::path& path) { return lower(path.extension().string()); }
 
 std::vector<fs::path> list_files(const std::string& folder, const std::vector<std::string>& extensions) {
@@ -157,12 +153,6 @@ PictureName parse_picture_name(const std::string& stem) {
   }
   name.time_s = time_in(name.key);
   return name;
-}
-
-std::string with_items(const std::string& message, const std::vector<SourceItem>& items) {
-  std::string text = message + "\n" + to_text(items);
-  text.pop_back();
-  return text;
 }
 
 std::vector<SourceItem> items_of(const std::string& folder, const std::vector<std::string>& depths,

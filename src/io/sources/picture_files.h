@@ -14,9 +14,6 @@ namespace vesalius {
 /// different names are never equal.
 bool natural_less(std::string_view a, std::string_view b);
 
-/// Returns a text in lower case.
-std::string lower(std::string text);
-
 /// Returns the extension of a path in lower case, with its dot.
 std::string lower_extension(const std::filesystem::path& path);
 
@@ -36,9 +33,6 @@ PictureName parse_picture_name(const std::string& stem);
 /// Returns what a folder and those in it hold by kinds of files; those of these files are taken for depth and colour.
 std::vector<SourceItem> items_of(const std::string& folder, const std::vector<std::string>& depths = {},
                                  const std::vector<std::string>& colours = {});
-
-/// Returns a message and behind it the lines of `items`.
-std::string with_items(const std::string& message, const std::vector<SourceItem>& items);
 
 /// Returns seconds of a time that counts milliseconds, microseconds or nanoseconds since 1970, as its size tells; other
 /// times as they are, in seconds.

@@ -11,6 +11,7 @@
 #include "io/sources/camera_file.h"
 #include "io/sources/pcd.h"
 #include "io/sources/recorded_topics.h"
+#include "io/sources/source_items.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -403,11 +404,6 @@ std::vector<SourceItem> items_of(const Recording& recording, const RecordedConte
 
 }  // namespace
 
-std::string listed(const std::string& error, const std::vector<SourceItem>& items) {
-  const std::string text = to_text(items);
-  return error + (text.empty() ? "" : "\n" + text.substr(0, text.size() - 1));
-}
-
 RecordedCameras choose_cameras(Recording& recording, const SourceOptions& options, const std::string& place,
                                std::vector<std::string>& notes) {
   const RecordedContents contents = look_into(recording, place);
@@ -432,7 +428,7 @@ RecordedCameras choose_cameras(Recording& recording, const SourceOptions& option
   } catch (const UsageError&) {
     throw;
   } catch (const Error& e) {
-    throw Error(listed(e.what(), items_of(recording, contents, cameras, depth)));
+    throw Error(with_items(e.what(), items_of(recording, contents, cameras, depth)));
   }
   cameras.acceleration = choose_acceleration(contents, *depth);
   cameras.items = items_of(recording, contents, cameras, depth);

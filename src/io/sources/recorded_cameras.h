@@ -49,7 +49,4 @@ struct RecordedCameras {
 RecordedCameras choose_cameras(Recording& recording, const SourceOptions& options, const std::string& place,
                                std::vector<std::string>& notes);
 
-/// Returns an error's text with a list of what there is on lines below it.
-std::string listed(const std::string& error, const std::vector<SourceItem>& items);
-
 }  // namespace vesalius

@@ -21,6 +21,7 @@
 #include "io/sources/recorded_cameras.h"
 #include "io/sources/recorded_topics.h"
 #include "io/sources/recording_files.h"
+#include "io/sources/source_items.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
@@ -141,7 +142,7 @@ class RecordingSource final : public FrameSource {
     try {
       return resolve_camera(facts, depth.width, depth.height, on_grid, place, notes_);
     } catch (const Error& e) {
-      throw Error(listed(e.what(), items_));
+      throw Error(with_items(e.what(), items_));
     }
   }
 

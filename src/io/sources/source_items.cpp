@@ -1,8 +1,8 @@
+#include "io/sources/source_items.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "vesalius/frame_source.h"
 
 namespace vesalius {
 
@@ -19,6 +19,12 @@ std::string to_text(const std::vector<SourceItem>& items) {
     text += fmt::format("  {:<{}}  {:<{}}  {:>6}  {}{}{}\n", item.name, name, item.holds, holds, count, use,
                         item.why.empty() ? "" : ": ", item.why);
   }
+  return text;
+}
+
+std::string with_items(const std::string& message, const std::vector<SourceItem>& items) {
+  std::string text = message + "\n" + to_text(items);
+  text.pop_back();
   return text;
 }
 

@@ -1,6 +1,6 @@
-#include <gmock/gmock.h>
+#include "io/sources/source_items.h"
 
-#include "vesalius/frame_source.h"
+#include <gmock/gmock.h>
 
 namespace vesalius {
 namespace {
@@ -14,6 +14,11 @@ TEST(SourceItems, AreLinesWhoseColumnsAlign) {
             "  /camera/ir  Image 8UC1                7  not taken: 8 bits, expected 16\n"
             "  rgb         JPEG                         colour: 4 ms later\n");
   EXPECT_EQ(to_text({}), "");
+}
+
+TEST(SourceItems, StandBelowAMessage) {
+  EXPECT_EQ(with_items("no depth", {{"a", "b", 1, "", ""}}), "no depth\n  a  b       1  not taken");
+  EXPECT_EQ(with_items("no depth", {}), "no depth");
 }
 
 }  // namespace

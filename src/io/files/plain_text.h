@@ -1,0 +1,24 @@
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <string_view>
+
+namespace vesalius {
+
+/// Returns a text in lower case.
+inline std::string lower(std::string_view text) {
+  std::string all(text);
+  std::ranges::transform(all, all.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return all;
+}
+
+/// Returns the letters and digits of a text in lower case: "Kannala-Brandt_4" and "kannalabrandt4" are the same.
+inline std::string letters_and_digits(std::string_view text) {
+  std::string all = lower(text);
+  std::erase_if(all, [](unsigned char c) { return std::isalnum(c) == 0; });
+  return all;
+}
+
+}  // namespace vesalius
