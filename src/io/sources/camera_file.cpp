@@ -76,6 +76,7 @@ std::vector<fs::path> camera_files(const std::string& folder) {
   }
   std::ranges::sort(ranked);
   std::vector<fs::path> files;
+  files.reserve(ranked.size());
   for (auto& [rank, path] : ranked) files.push_back(std::move(path));
   return files;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <sstream>
+#include <vector>
 
 #include "io/files/plain_text.h"
 #include "vesalius/error.h"
@@ -190,30 +191,31 @@ std::optional<FactTree> as_toml(const std::string& text) try {
 
 /// Reads elements within elements, as OpenCV writes XML; attributes are passed over.
 FactTree as_xml(std::string_view text, const std::string& name) {
-  struct Element {
-    std::string name;
-    FactTree inner;
-    std::string text;
-  };
-  std::vector<Element> open(1);
+  // Of the elements that are open, the outermost first.
+  std::vector<std::string> names(1), texts(1);
+  std::vector<FactTree> inner(1);
   while (!text.empty()) {
     const std::size_t begin = std::min(text.find('<'), text.size());
-    open.back().text += text.substr(0, begin);
+    texts.back() += text.substr(0, begin);
     const std::size_t end = std::min(text.find('>', begin), text.size());
     std::string_view tag = trimmed(text.substr(begin, end - begin), "<> \t\r\n");
     text.remove_prefix(std::min(end + 1, text.size()));
     if (tag.empty() || tag.front() == '?' || tag.front() == '!' || tag.back() == '/') continue;
     if (tag.front() != '/') {
-      open.push_back({std::string(tag.substr(0, tag.find_first_of(kSpace))), {}, {}});
-    } else if (open.size() > 1) {
-      Element done = std::move(open.back());
-      open.pop_back();
-      open.back().inner[done.name] = done.inner.is_null() ? FactTree(trimmed(done.text)) : std::move(done.inner);
+      names.emplace_back(tag.substr(0, tag.find_first_of(kSpace)));
+      texts.emplace_back();
+      inner.emplace_back();
+    } else if (names.size() > 1) {
+      FactTree done = inner.back().is_null() ? FactTree(trimmed(texts.back())) : std::move(inner.back());
+      inner.pop_back();
+      inner.back()[names.back()] = std::move(done);
+      names.pop_back();
+      texts.pop_back();
     }
-    if (open.size() > std::size_t(kFactLevels)) throw Error(name + ": XML of too many levels");
+    if (names.size() > std::size_t(kFactLevels)) throw Error(name + ": XML of too many levels");
   }
-  if (open.front().inner.is_null()) throw Error(name + ": XML without an element that ends");
-  return std::move(open.front().inner);
+  if (inner.front().is_null()) throw Error(name + ": XML without an element that ends");
+  return std::move(inner.front());
 }
 
 }  // namespace
