@@ -27,6 +27,48 @@ IMPORT_MS = 1000 * (time.perf_counter() - started)
 import numpy  # noqa: E402
 from PIL import Image  # noqa: E402
 
+# Imports the package in each kind of subinterpreter that this Python has, and prints what each says; the main one works on.
+SUBINTERPRETERS = """
+import sys, tempfile
+import vesalius
+try:
+    import _interpreters as interpreters
+    kinds = [interpreters.new_config(kind) for kind in ("legacy", "isolated")]
+    create = interpreters.create
+except ImportError:
+    import _xxsubinterpreters as interpreters
+    kinds = [False, True]
+    create = lambda isolated: interpreters.create(isolated=isolated)
+
+def find_people():
+    frames = list(vesalius.open(sys.argv[1]))
+    try:
+        vesalius.open(sys.argv[1] + "/none")
+        sys.exit("a source that is missing was opened")
+    except vesalius.Error:
+        return [len(vesalius.Detector(threads=1).detect(frame)) for frame in frames[:1]]
+
+people = find_people()
+for kind in kinds:
+    other = create(kind)
+    with tempfile.NamedTemporaryFile() as said:
+        interpreters.run_string(other, f'''
+import sys
+sys.path[:0] = {sys.path!r}
+try:
+    import vesalius
+    said = "imported"
+except ImportError as error:
+    said = str(error)
+with open({said.name!r}, "w") as file:
+    file.write(said)
+''')
+        assert people == find_people()
+        interpreters.destroy(other)
+        assert people == find_people()
+        print(open(said.name).read())
+"""
+
 PROGRAM, FOLDER = sys.argv.pop(1), Path(sys.argv.pop(1))
 # Two libraries may read a JPEG differently: colour is left out where pictures are compared with the program's.
 WITHOUT_COLOUR = tempfile.TemporaryDirectory()
@@ -274,6 +316,14 @@ class Package(unittest.TestCase):
             thread.join()
         for joints in found:
             numpy.testing.assert_array_equal(joints, expected)
+
+    def test_leaves_the_main_interpreter_alone(self):
+        done = subprocess.run([sys.executable, "-c", SUBINTERPRETERS, str(FOLDER)], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = done.stdout.splitlines()
+        self.assertEqual(len(said), 2)
+        for line in said:
+            self.assertIn("main interpreter only", line)
 
     def test_keeps_its_memory(self):
         """VESALIUS_FRAMES frames, 10,000 in .ci/nightly."""

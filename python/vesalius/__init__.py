@@ -9,12 +9,28 @@
 Positions are metres in the camera's optical frame: x right, y down, z away.
 """
 
+import importlib as _importlib
 import os as _os
 from pathlib import Path as _Path
 
-from ._vesalius import (Bone, Camera, Error, Frame, People, Person, Source, Tracker, __version__, open,  # noqa: A004
+
+def _expect_main_interpreter() -> None:
+    """What nanobind knows of classes is of one interpreter in a process: a second one would take it from the first."""
+    for name in ("_interpreters", "_xxsubinterpreters"):  # of Python 3.13 and later, of those before
+        try:
+            interpreters = _importlib.import_module(name)
+        except ImportError:
+            continue
+        if interpreters.get_current() != interpreters.get_main():
+            raise ImportError("vesalius works in the main interpreter only; from a subinterpreter, hand frames to that one "
+                              "or to another process (multiprocessing)")
+        return
+
+
+_expect_main_interpreter()
+from ._vesalius import (Bone, Camera, Error, Frame, People, Person, Source, Tracker, __version__, open,  # noqa: A004, E402
                         options)
-from ._vesalius import Detector as _Detector
+from ._vesalius import Detector as _Detector  # noqa: E402
 
 __all__ = ["Bone", "Camera", "Detector", "Error", "Frame", "People", "Person", "Source", "Tracker", "open", "options",
            "__version__"]
