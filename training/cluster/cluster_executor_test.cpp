@@ -205,6 +205,15 @@ TEST_F(ClusterTrainingTest, RefusesTasksOfAnotherBuild) {
   EXPECT_EQ(out.str(), "");
 }
 
+TEST(ProgramBuild, IsThatOfTheProgramWhateverItsVersion) {
+  EXPECT_THAT(program_build(), testing::MatchesRegex("vesalius [0-9.]+ of hash [0-9a-f]+"));
+  EXPECT_EQ(program_build(), program_build());
+  expect_this_build(program_build(), "job");
+  std::string other = program_build();
+  other.back() = other.back() == '0' ? '1' : '0';  // of the same version, from other sources
+  EXPECT_THROW(expect_this_build(other, "job"), Error);
+}
+
 TEST_F(ClusterTrainingTest, RefusesLinesThatNameNoShard) {
   MemoryStore store;
   TestEngine engine(store, reader(), {.jobs_before_end = 0});

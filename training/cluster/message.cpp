@@ -1,5 +1,6 @@
 #include "cluster/message.h"
 
+#include <link.h>
 #include <openssl/evp.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "io/files/packed.h"
@@ -58,6 +60,25 @@ struct KeyMessage {
   }
 };
 
+/// Returns a hash of the program's code and of what its linker noted of all else. As they are in memory: the file that
+/// runs is the loader's where a bundle brings its own.
+std::uint64_t hash_of_program() {
+  std::uint64_t hash = 0;
+  const auto add = [](dl_phdr_info* program, std::size_t /*size*/, void* sum) {
+    auto& so_far = *static_cast<std::uint64_t*>(sum);
+    for (const auto& segment : std::span(program->dlpi_phdr, program->dlpi_phnum)) {
+      const bool is_code = segment.p_type == PT_LOAD && (segment.p_flags & PF_X) != 0;
+      if (!is_code && segment.p_type != PT_NOTE) continue;
+      // NOLINTNEXTLINE(performance-no-int-to-ptr): where the program lies is given as a number
+      so_far = XXH3_64bits_withSeed(reinterpret_cast<const void*>(program->dlpi_addr + segment.p_vaddr),
+                                    segment.p_filesz, so_far);
+    }
+    return 1;  // its libraries follow
+  };
+  dl_iterate_phdr(add, &hash);
+  return hash;
+}
+
 }  // namespace
 
 std::string sealed(std::string_view message) {
@@ -100,7 +121,10 @@ Record parse_record(std::string_view line, const std::string& name) {
   return record;
 }
 
-std::string program_build() { return fmt::format("vesalius {} by {}", VESALIUS_VERSION, __VERSION__); }
+std::string program_build() {
+  static const std::string build = fmt::format("vesalius {} of hash {:016x}", VESALIUS_VERSION, hash_of_program());
+  return build;
+}
 
 void expect_this_build(const std::string& build, const std::string& name) {
   if (build == program_build()) return;
