@@ -86,7 +86,9 @@ void run_record(const RecordArguments& arguments) {
   } catch (const Error& e) {
     progress.clear();
     recorder.close();  // what was recorded is kept
-    throw Error(fmt::format("{}; {} has the {} frames before", e.what(), arguments.out, progress.done()));
+    const std::string text = fmt::format("{}; {} has the {} frames before", e.what(), arguments.out, progress.done());
+    if (dynamic_cast<const UsageError*>(&e) != nullptr) throw UsageError(text);
+    throw Error(text);
   }
   recorder.close();
   progress.clear();
