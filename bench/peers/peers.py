@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs MediaPipe Pose on the colour of the frames that `vesalius evaluate` is measured on, and prints both.
 
-  python3 -m venv peers && peers/bin/pip install mediapipe==0.10.21 opencv-python-headless numpy
+  python3 -m venv peers && peers/bin/pip install --require-hashes -r tools/python/pins/peers.txt
   peers/bin/python bench/peers/peers.py build/release/src/cli/vesalius data/models/default.forest real/alina_wave ...
 
 Options: --step N (the first of every N frames), --threads N (of vesalius; MediaPipe takes what it wants), --tracking (MediaPipe
