@@ -67,6 +67,19 @@ if(TARGET vesalius)
   install(FILES ${PROJECT_SOURCE_DIR}/data/completion.bash RENAME vesalius
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  # Notices of what is compiled in, where the packages that it is of can be asked for.
+  find_program(DPKG_QUERY dpkg-query)
+  find_package(Python3 COMPONENTS Interpreter)
+  if(DPKG_QUERY AND Python3_FOUND AND CMAKE_GENERATOR STREQUAL Ninja)
+    install(CODE "execute_process(
+        COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/package/third_party.py
+                \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/THIRD-PARTY-NOTICES.gz ${CMAKE_MAKE_PROGRAM}
+                ${PROJECT_BINARY_DIR} $<TARGET_FILE:vesalius> $<$<TARGET_EXISTS:vesalius_c>:$<TARGET_FILE:vesalius_c>>
+        RESULT_VARIABLE failed)
+      if(failed)
+        message(WARNING \"THIRD-PARTY-NOTICES.gz lacks what is named above\")
+      endif()")
+  endif()
   if(VESALIUS_MANUAL)
     find_program(HELP2MAN help2man REQUIRED)
     set(pages ${PROJECT_BINARY_DIR}/man)

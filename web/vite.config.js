@@ -3,6 +3,8 @@ import { join } from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { defineConfig } from 'vite';
 
+import { noticesOf } from './notices.js';
+
 // The program holds the files compressed, as it sends them. A gzip header has no time in it, so that the same sources
 // give the same files.
 function compress(from, to) {
@@ -14,6 +16,18 @@ function compress(from, to) {
         writeFileSync(join(to, `${file}.gz`), gzipSync(readFileSync(join(from, file)), { level: 9 }));
       }
       rmSync(from, { recursive: true });
+    },
+  };
+}
+
+function withNotices() {
+  return {
+    name: 'notices',
+    enforce: 'post',
+    generateBundle(_, bundle) {
+      for (const file of Object.values(bundle)) {
+        if (file.type === 'chunk') file.code = noticesOf(file) + file.code;
+      }
     },
   };
 }
@@ -32,5 +46,5 @@ export default defineConfig({
       output: { entryFileNames: 'view.js', assetFileNames: 'view[extname]', inlineDynamicImports: true },
     },
   },
-  plugins: [compress('dist', to)],
+  plugins: [withNotices(), compress('dist', to)],
 });

@@ -4,6 +4,7 @@ Compressed less than those of ./dev release, which takes long.
 
 usage: package.py VESALIUS SOURCE_DIR BUILD_DIR
 """
+import gzip
 import os
 import shutil
 import subprocess
@@ -12,8 +13,12 @@ import tarfile
 import tempfile
 from pathlib import Path
 
+NOTICES = "share/doc/vesalius/THIRD-PARTY-NOTICES.gz"
 HOLDS = ["bin/vesalius", "share/vesalius/models/default.model", "share/vesalius/models/default.forest", "share/vesalius/bodies/paper25.toml",
-         "share/vesalius/demo/meta.json", "share/bash-completion/completions/vesalius", "share/doc/vesalius/copyright"]
+         "share/vesalius/demo/meta.json", "share/bash-completion/completions/vesalius", "share/doc/vesalius/copyright", NOTICES]
+# What every program holds: headers alone, headers of libraries, and what the pages bring.
+COMPILED_IN = ["libboost1.74-dev", "libcli11-dev", "libeigen3-dev", "libfmt-dev", "libhwy-dev", "libtbb-dev", "libtomlplusplus-dev",
+               "nlohmann-json3-dev"]
 PATTERN = {"DEB": "vesalius_*.deb", "TGZ": "*.tar.gz"}
 HELD_BY_DEBIAN = ["share/doc/vesalius/changelog.gz", "share/doc/vesalius/changelog.Debian.gz"]
 
@@ -68,6 +73,25 @@ def check_debian(deb, folder, epoch):
     return folder / "deb/usr"
 
 
+def check_notices(prefix, source, build):
+    """It has the notice of each package whose headers the build read, word by word, and of the pages; a header of no package is told."""
+    sys.path.append(str(source / "cmake/package"))
+    import third_party
+    headers = third_party.inputs_of("ninja", build, ["src/cli/vesalius"])
+    packages, _ = third_party.split_by_owner({path for path in headers if not path.is_relative_to(source)})
+    lacking = set(COMPILED_IN) - packages
+    expect(not lacking, f"no header of {sorted(lacking)} was found among those of the build")
+    said = gzip.decompress((prefix / NOTICES).read_bytes()).decode()
+    for package in packages:
+        text = Path(f"/usr/share/doc/{package}/copyright").read_text(encoding="utf-8").strip()
+        expect(package in said and text in said, f"{NOTICES} lacks what {package} says")
+    for page in ("three ", "uplot "):
+        expect(f"\n{page}" in said, f"{NOTICES} lacks {page}")
+    for own in ([source], []):
+        _, missing = third_party.notices({source / "include/vesalius/detect.h", *list(headers)[:50]}, own)
+        expect(any("vesalius/detect.h: of no package" in each for each in missing) != bool(own), f"missing: {missing}")
+
+
 def check_archive(archive, folder, epoch):
     names = check_entries(archive, epoch)
     top = archive.name.removesuffix(".tar.gz")
@@ -107,7 +131,9 @@ def main():
         (again,) = pack(build, folder / "second", ["DEB"], "Pacific/Auckland")
         expect(deb.read_bytes() == again.read_bytes(), f"{deb.name} has other bytes the second time")
         check_program(check_debian(deb, folder, epoch), folder, wanted)
-        check_program(check_archive(archive, folder, epoch), folder, wanted)
+        unpacked = check_archive(archive, folder, epoch)
+        check_program(unpacked, folder, wanted)
+        check_notices(unpacked, source, build)
         print(f"{deb.name} {deb.stat().st_size} bytes, {archive.name} {archive.stat().st_size} bytes")
 
 

@@ -1,7 +1,7 @@
-"""Makes a wheel that other machines can install: usage: repair_wheel.py WHEEL FOLDER
+"""Makes a wheel that other machines can install: usage: repair_wheel.py WHEEL BUILD FOLDER
 
-The libraries that its module needs go into it (auditwheel), with their licences as this system's packages state them. The result
-lies in FOLDER; with SOURCE_DATE_EPOCH the same wheel gives the same bytes.
+The libraries that its module needs go into it (auditwheel), with their licences as this system's packages state them, and so do
+the notices of what was compiled in: BUILD is the folder where the module was built. The result lies in FOLDER; with SOURCE_DATE_EPOCH the same wheel gives the same bytes.
 """
 
 import re
@@ -10,6 +10,9 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "cmake/package"))
+import third_party  # noqa: E402
 
 
 def run(*command):
@@ -39,7 +42,8 @@ def licence_of(library):
 
 
 def main():
-    wheel, folder = map(Path, sys.argv[1:])
+    wheel, build, folder = map(Path, sys.argv[1:])
+    build = build.resolve()
     with tempfile.TemporaryDirectory() as place:
         place = Path(place)
         run("auditwheel", "repair", "--wheel-dir", place / "repaired", wheel)
@@ -50,6 +54,11 @@ def main():
         for library in sorted((content / "vesalius.libs").iterdir()):
             package, licence = licence_of(library.name)
             shutil.copy(licence, licences / f"{package}.txt")
+        module = only(build / "python", "_vesalius*.so").relative_to(build)
+        texts, missing = third_party.notices(third_party.inputs_of("ninja", build, [module]), [build.parents[2]])
+        if missing:
+            sys.exit("\n".join(missing))
+        (licences.parent / "THIRD-PARTY-NOTICES").write_text(third_party.as_one_file(texts), encoding="utf-8")
         run(sys.executable, "-m", "wheel", "pack", "--dest-dir", folder, content)
 
 

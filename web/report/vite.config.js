@@ -1,6 +1,7 @@
-import { readFileSync } from 'node:fs';
 import { gzipSync } from 'node:zlib';
 import { defineConfig } from 'vite';
+
+import { noticesOf } from '../notices.js';
 
 // Everything in one page, compressed, beside which the program puts what was measured.
 function onePage() {
@@ -9,13 +10,12 @@ function onePage() {
     enforce: 'post',
     generateBundle(_, bundle) {
       const file = (ending) => Object.values(bundle).find(({ fileName }) => fileName.endsWith(ending));
-      const script = file('.js').code;
+      const script = noticesOf(file('.js')) + file('.js').code;
       if (script.includes('</script')) throw new Error('a script that ends itself');
-      const licence = readFileSync(new URL('../node_modules/uplot/LICENSE', import.meta.url), 'utf8').trim();
       const page = file('.html')
         .source.replace(/\s*<(script type="module"|link rel="stylesheet")[^>]*>(<\/script>)?/g, '')
         .replace('</head>', () => `  <style>\n${file('.css').source.trim()}\n</style>\n  </head>`)
-        .replace('</body>', () => `  <!-- uPlot:\n${licence}\n-->\n    <script type="module">\n${script.trim()}\n</script>\n  </body>`);
+        .replace('</body>', () => `  <script type="module">\n${script.trim()}\n</script>\n  </body>`);
       for (const name of Object.keys(bundle)) delete bundle[name];
       this.emitFile({ type: 'asset', fileName: 'report.html.gz', source: gzipSync(page, { level: 9 }) });
     },
