@@ -21,4 +21,12 @@ inline std::string letters_and_digits(std::string_view text) {
   return all;
 }
 
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Returns a text without the characters of `of` at its ends.
+inline std::string_view trimmed(std::string_view text, std::string_view of = " \t\r\n") {
+  const std::size_t begin = text.find_first_not_of(of);
+  return begin == text.npos ? std::string_view() : text.substr(begin, text.find_last_not_of(of) - begin + 1);
+}
+
 }  // namespace vesalius

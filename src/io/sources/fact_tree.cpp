@@ -18,13 +18,7 @@ namespace {
 using namespace std::literals;
 
 constexpr int kMostNodes = 100'000;  // aliases of YAML multiply
-constexpr std::string_view kSpace = " \t\r\n";
 constexpr std::string_view kBetweenNumbers = " \t\r\n,;[](){}";
-
-std::string_view trimmed(std::string_view text, std::string_view of = kSpace) {
-  const std::size_t begin = text.find_first_not_of(of);
-  return begin == text.npos ? std::string_view() : text.substr(begin, text.find_last_not_of(of) - begin + 1);
-}
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -202,7 +196,7 @@ FactTree as_xml(std::string_view text, const std::string& name) {
     text.remove_prefix(std::min(end + 1, text.size()));
     if (tag.empty() || tag.front() == '?' || tag.front() == '!' || tag.back() == '/') continue;
     if (tag.front() != '/') {
-      names.emplace_back(tag.substr(0, tag.find_first_of(kSpace)));
+      names.emplace_back(tag.substr(0, tag.find_first_of(" \t\r\n")));
       texts.emplace_back();
       inner.emplace_back();
     } else if (names.size() > 1) {

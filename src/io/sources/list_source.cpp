@@ -52,19 +52,13 @@ namespace fs = std::filesystem;
 
 constexpr float kTumUnitsPerM = 5000.F;  // the benchmark's file format page
 constexpr std::size_t kMaxListBytes = 64 << 20;
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\r,";
-  const std::size_t begin = text.find_first_not_of(kSpace);
-  if (begin == text.npos) return {};
-  return text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
-}
+constexpr std::string_view kBetweenWords = " \t\r,";
 
 TumEntry parse_line(std::string_view line, const std::string& name, int number) {
   const std::size_t gap = std::min(line.find_first_of(" \t,"), line.size());
   TumEntry entry;
   entry.stamp = std::string(line.substr(0, gap));
-  entry.file = std::string(trimmed(line.substr(gap)));
+  entry.file = std::string(trimmed(line.substr(gap), kBetweenWords));
   const char* end = entry.stamp.data() + entry.stamp.size();
   const auto [stop, error] = std::from_chars(entry.stamp.data(), end, entry.time_s);
   const bool named = !entry.file.empty() && entry.file.find('\0') == entry.file.npos;
@@ -99,7 +93,7 @@ TumLists split_associations(const std::string& path) {
   for (const TumEntry& both : parse_tum_list(read_file(path, kMaxListBytes), path)) {
     const std::size_t gap = std::min(both.file.find_first_of(" \t,"), both.file.size());
     const TumEntry first{both.time_s, both.stamp, both.file.substr(0, gap)};
-    const std::string rest(trimmed(std::string_view(both.file).substr(gap)));
+    const std::string rest(trimmed(std::string_view(both.file).substr(gap), kBetweenWords));
     const std::vector<TumEntry> others = parse_tum_list(rest, path);
     if (others.size() != 1) throw Error(path + ": expected lines \"timestamp file timestamp file\"");
     const TumEntry& second = others.front();
@@ -255,7 +249,7 @@ std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& n
   std::vector<TumEntry> entries;
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = trimmed(text.substr(0, end));
+    const std::string_view line = trimmed(text.substr(0, end), kBetweenWords);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (!line.empty() && line.front() != '#') entries.push_back(parse_line(line, name, number));
   }

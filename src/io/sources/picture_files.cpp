@@ -18,8 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using Role = PictureName::Role;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 /// Returns the digits at `at` without leading zeros, and moves `at` past them.
 std::string_view number_at(std::string_view text, std::size_t& at) {
   while (at < text.size() && text[at] == '0') ++at;
