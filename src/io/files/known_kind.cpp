@@ -30,6 +30,7 @@ constexpr auto kKinds = std::to_array<Kind>({
      "packed with xz; unpack it first (unxz, or tar xf where it is an archive)"},
     {0, "\x04\x22\x4D\x18"sv, "packed with LZ4; unpack it first (unlz4)"},
     {0, "\x28\xB5\x2F\xFD"sv, "packed with zstd; unpack it first (unzstd, or tar xf where it is an archive)"},
+    {0, "#ROSRECORD V1"sv, "a ROS bag of version 1, expected 2.0; `rosbag fix` of an old ROS rewrites it"},
     {0, "#ROSBAG V1"sv, "a ROS bag of version 1, expected 2.0; `rosbag fix` of an old ROS rewrites it"},
     {0, "NI10"sv, "a recording of OpenNI (.oni), which is not read; record its topics or pictures while it plays"},
     {0, "\x89HDF\r\n\x1A\n"sv, "an HDF5 file, which is not read; write its depth as 16-bit PNG files"},

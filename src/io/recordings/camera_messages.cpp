@@ -12,6 +12,7 @@
 #include "io/recordings/camera_topics.h"
 #include "io/recordings/colour_encodings.h"
 #include "io/recordings/depth_codecs.h"
+#include "io/recordings/foxglove_messages.h"
 #include "io/recordings/message_fields.h"
 #include "io/recordings/picture_look.h"
 #include "vesalius/base/depth_reading.h"
@@ -21,19 +22,14 @@
 namespace vesalius {
 namespace {
 
-constexpr std::string_view kDisparities = "stereo_msgs/DisparityImage", kPoints = "sensor_msgs/PointCloud2";
+constexpr std::string_view kDisparities = "stereo_msgs/DisparityImage", kPoints = "sensor_msgs/PointCloud2",
+                           kFoxgloveCalibration = "CameraCalibration";
 
 int picture_side(std::uint64_t value, const std::string& name) {
   if (value > static_cast<std::uint64_t>(kMaxPixels)) {
     throw Error(fmt::format("{}: a picture {} pixels long, expected at most {}", name, value, kMaxPixels));
   }
   return int(value);
-}
-
-/// google.protobuf.Timestamp
-std::int64_t protobuf_time(std::string_view bytes, const std::string& name) {
-  const ProtobufFields time = parse_protobuf(bytes, name);
-  return static_cast<std::int64_t>(time.number(1) * kNanoseconds + time.number(2));
 }
 
 template <std::size_t N>
@@ -205,6 +201,39 @@ void parse_points(MessageFields& fields, PictureMessage& picture, const std::str
   if (picture.encoding == "xyz" && fits) picture.point_bytes = point_bytes;
 }
 
+bool is_foxglove_picture(const RecordedTopic& topic) {
+  return is_foxglove(topic, "RawImage") || is_foxglove(topic, "CompressedImage");
+}
+
+PictureMessage foxglove_picture(const RecordedTopic& topic, std::string_view message, const std::string& name) {
+  const FoxgloveMessage fields = read_foxglove(topic, message, name).front();
+  PictureMessage picture;
+  picture.compressed = is_foxglove(topic, "CompressedImage");
+  picture.time_ns = static_cast<std::int64_t>(fields.number("timestamp"));
+  picture.frame = fields.text("frame_id");
+  picture.width = picture_side(fields.number("width"), name);
+  picture.height = picture_side(fields.number("height"), name);
+  picture.encoding = fields.text(picture.compressed ? "format" : "encoding");
+  picture.row_bytes = static_cast<std::uint32_t>(fields.number("step"));
+  picture.data = fields.text("data");
+  picture.unpacked = fields["data"].owned;
+  return picture;
+}
+
+Calibration foxglove_calibration(const RecordedTopic& topic, std::string_view message, const std::string& name) {
+  const FoxgloveMessage fields = read_foxglove(topic, message, name).front();
+  Calibration calibration;
+  calibration.frame = fields.text("frame_id");
+  calibration.width = picture_side(fields.number("width"), name);
+  calibration.height = picture_side(fields.number("height"), name);
+  calibration.model = fields.text("distortion_model");
+  calibration.distortion = fields.reals("D");
+  calibration.matrix = exactly<9>(fields.reals("K"));
+  calibration.rotation = exactly<9>(fields.reals("R"));
+  calibration.projection = exactly<12>(fields.reals("P"));
+  return calibration;
+}
+
 template <class T>
 std::string_view bytes_of(const Image<T>& image) {
   return {reinterpret_cast<const char*>(image.data()), image.size() * sizeof(T)};
@@ -213,40 +242,20 @@ std::string_view bytes_of(const Image<T>& image) {
 }  // namespace
 
 bool is_picture(const RecordedTopic& topic) {
-  if (is_ros(topic)) {
-    return topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage" ||
-           topic.type == kDisparities || topic.type == kPoints;
-  }
-  return topic.layout == MessageLayout::protobuf &&
-         (topic.type == "foxglove.RawImage" || topic.type == "foxglove.CompressedImage");
+  if (is_foxglove_picture(topic)) return true;
+  return is_ros(topic) && (topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage" ||
+                           topic.type == kDisparities || topic.type == kPoints);
 }
 
 bool is_calibration(const RecordedTopic& topic) {
   if (is_realsense_text(topic) || is_orbbec_profile(topic)) return true;
-  if (is_ros(topic)) return topic.type == "sensor_msgs/CameraInfo";
-  return topic.layout == MessageLayout::protobuf && topic.type == "foxglove.CameraCalibration";
+  return is_foxglove(topic, kFoxgloveCalibration) || (is_ros(topic) && topic.type == "sensor_msgs/CameraInfo");
 }
 
 PictureMessage parse_picture(const RecordedTopic& topic, std::string_view message, const std::string& name) {
+  if (is_foxglove_picture(topic)) return foxglove_picture(topic, message, name);
   PictureMessage picture;
   picture.compressed = topic.type.ends_with("CompressedImage");
-  if (topic.layout == MessageLayout::protobuf) {
-    const ProtobufFields fields = parse_protobuf(message, name);
-    picture.time_ns = protobuf_time(fields.text(1), name);
-    if (picture.compressed) {
-      picture.frame = fields.text(4);
-      picture.encoding = fields.text(3);
-      picture.data = fields.text(2);
-    } else {
-      picture.frame = fields.text(7);
-      picture.width = picture_side(fields.number(2), name);
-      picture.height = picture_side(fields.number(3), name);
-      picture.encoding = fields.text(4);
-      picture.row_bytes = static_cast<std::uint32_t>(fields.number(5));
-      picture.data = fields.text(6);
-    }
-    return picture;
-  }
   MessageFields fields(message, topic.layout, name);
   picture.time_ns = fields.header(picture.frame);
   if (std::string stream = realsense_stream(topic.name); !stream.empty()) picture.frame = std::move(stream);
@@ -267,18 +276,7 @@ PictureMessage parse_picture(const RecordedTopic& topic, std::string_view messag
 
 Calibration parse_calibration(const RecordedTopic& topic, std::string_view message, const std::string& name) {
   Calibration calibration;
-  if (topic.layout == MessageLayout::protobuf) {
-    const ProtobufFields fields = parse_protobuf(message, name);
-    calibration.frame = fields.text(9);
-    calibration.width = picture_side(fields.number(2), name);
-    calibration.height = picture_side(fields.number(3), name);
-    calibration.model = fields.text(4);
-    calibration.distortion = fields.list64(5);
-    calibration.matrix = exactly<9>(fields.list64(6));
-    calibration.rotation = exactly<9>(fields.list64(7));
-    calibration.projection = exactly<12>(fields.list64(8));
-    return calibration;
-  }
+  if (is_foxglove(topic, kFoxgloveCalibration)) return foxglove_calibration(topic, message, name);
   MessageFields fields(message, topic.layout, name);
   if (is_realsense_text(topic)) {
     calibration = parse_realsense_text(fields.text("the calibration"), name);

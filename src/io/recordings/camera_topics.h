@@ -24,6 +24,11 @@ inline std::string realsense_stream(std::string_view topic) {
   return std::string(topic.substr(0, end));
 }
 
+/// ROS 1 had names of coordinate frames with a slash before them.
+inline std::string plain_frame(std::string_view frame) {
+  return std::string(frame.starts_with('/') && !frame.starts_with("/device_") ? frame.substr(1) : frame);
+}
+
 /// Returns the value of `key` in "width=640;height=480"; empty if there is none.
 inline std::string_view realsense_value(std::string_view text, std::string_view key) {
   while (!text.empty()) {

@@ -138,7 +138,7 @@ Image<std::uint16_t> unpack_compressed_depth(std::string_view data, std::string_
   const float scale = in.real32("scale of compressedDepth");
   const float offset = in.real32("offset of compressedDepth");
   Image<std::uint16_t> stored;
-  if (format.ends_with("rvl")) {
+  if (format.find("rvl") != std::string_view::npos) {
     const auto width = in.number<std::uint32_t>("width of RVL");
     const auto height = in.number<std::uint32_t>("height of RVL");
     check_depth_size(width, height, name);

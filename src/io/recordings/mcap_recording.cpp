@@ -16,6 +16,7 @@ MessageLayout layout_of(std::string_view encoding) {
   if (encoding == "cdr") return MessageLayout::cdr;
   if (encoding == "ros1") return MessageLayout::ros1;
   if (encoding == "protobuf") return MessageLayout::protobuf;
+  if (encoding == "json") return MessageLayout::json;
   return MessageLayout::other;
 }
 

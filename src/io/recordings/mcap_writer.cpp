@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "io/files/byte_stream.h"
-#include "io/recordings/time_difference.h"
+#include "io/recordings/recording.h"
 #include "vesalius/error.h"
 
 namespace vesalius {

@@ -70,7 +70,7 @@ PictureLook look_at_compressed(const PictureMessage& picture) {
   PictureLook look{Kind::unread, format, 0, 0, {}};
   if (picture.encoding.find("compressedDepth") != std::string::npos) {
     look.kind = Kind::depth;
-    if (picture.encoding.ends_with("rvl")) {
+    if (format.ends_with("rvl")) {
       std::tie(look.width, look.height) = rvl_size(picture.data);
     } else {
       const Head head = head_of(picture.data.substr(std::min(kCompressedDepthHead, picture.data.size())));

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -18,7 +19,8 @@ struct PictureMessage {
   std::string encoding;         ///< e.g. "16UC1"; of a compressed one its format, e.g. "jpeg"; of points "xyz"
   std::uint32_t row_bytes = 0;  ///< from one row to the next
   bool big_endian = false;
-  std::string_view data;  ///< into the message
+  std::string_view data;                        ///< into the message, or into what follows
+  std::shared_ptr<const std::string> unpacked;  ///< of JSON: what the message has in base64
   double focal_baseline =
       0.0;  ///< of disparities: focal length (pixels) times baseline (metres); 0 = of another picture
   std::uint32_t point_bytes = 0;       ///< of points: from one to the next

@@ -13,7 +13,8 @@ enum class MessageLayout {
   ros1,      ///< little-endian, without gaps
   cdr,       ///< ROS 2: aligned, in either byte order, after four bytes that say which
   protobuf,  ///< Protocol Buffers
-  other      ///< none that is read here, such as JSON
+  json,      ///< a JSON object each
+  other      ///< none that is read here
 };
 
 /// A stream of messages of one type in a recording.
@@ -32,6 +33,12 @@ inline bool is_ros(const RecordedTopic& topic) {
 
 /// Nanoseconds of a second.
 inline constexpr std::int64_t kNanoseconds = 1'000'000'000;
+
+/// Returns how far two times lie apart. Those of damaged files may be any number, whose difference no signed one holds.
+inline std::uint64_t apart_ns(std::int64_t a, std::int64_t b) {
+  const auto wrapped = static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b);
+  return a > b ? wrapped : std::uint64_t{0} - wrapped;
+}
 
 /// Returns the name of a frame of that time: seconds with nine places.
 std::string name_of_time(std::int64_t time_ns);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/recordings/camera_topics.h"
+#include "io/recordings/foxglove_messages.h"
 #include "io/recordings/message_fields.h"
 
 namespace vesalius {
@@ -16,11 +17,6 @@ bool is_realsense(const RecordedTopic& topic) {
   const std::string stream = realsense_stream(topic.name);
   return !stream.empty() && topic.name.starts_with(stream + "/tf/") &&
          (topic.type == "geometry_msgs/Transform" || topic.type == "std_msgs/String");
-}
-
-/// ROS 1 had names with a slash before them.
-std::string plain_frame(std::string_view frame) {
-  return std::string(frame.starts_with('/') && !frame.starts_with("/device_") ? frame.substr(1) : frame);
 }
 
 /// Returns nothing unless the numbers are a translation and a rotation.
@@ -82,27 +78,26 @@ std::vector<FrameTransform> parse_orbbec(const RecordedTopic& topic, std::string
   return {{orbbec_frame(kOrbbecColour), orbbec_frame(kOrbbecDepth), *colour_from_depth}};
 }
 
-double field(const ProtobufFields& fields, std::uint32_t number, double otherwise = 0.0) {
-  const std::vector<double> values = fields.list64(number);
-  return values.empty() ? otherwise : values.back();
+bool is_of_foxglove(const RecordedTopic& topic) {
+  return is_foxglove(topic, "FrameTransform") || is_foxglove(topic, "FrameTransforms");
 }
 
-/// foxglove.FrameTransform
-void parse_foxglove(std::string_view message, const std::string& name, std::vector<FrameTransform>& into) {
-  const ProtobufFields fields = parse_protobuf(message, name);
-  const ProtobufFields t = parse_protobuf(fields.text(4), name), q = parse_protobuf(fields.text(5), name);
-  if (const auto found =
-          isometry({field(t, 1), field(t, 2), field(t, 3)}, {field(q, 4), field(q, 1), field(q, 2), field(q, 3)})) {
-    into.push_back({plain_frame(fields.text(2)), plain_frame(fields.text(3)), *found});
+std::vector<FrameTransform> parse_foxglove(const RecordedTopic& topic, std::string_view message,
+                                           const std::string& name) {
+  std::vector<FrameTransform> transforms;
+  for (const FoxgloveMessage& one : read_foxglove(topic, message, name)) {
+    const std::vector<double>&t = one.reals("translation"), &q = one.reals("rotation");
+    if (const auto found = isometry({t[0], t[1], t[2]}, {q[3], q[0], q[1], q[2]})) {
+      transforms.push_back({plain_frame(one.text("parent_frame_id")), plain_frame(one.text("child_frame_id")), *found});
+    }
   }
+  return transforms;
 }
 
 }  // namespace
 
 bool is_transform(const RecordedTopic& topic) {
-  if (topic.layout == MessageLayout::protobuf) {
-    return topic.type == "foxglove.FrameTransform" || topic.type == "foxglove.FrameTransforms";
-  }
+  if (is_of_foxglove(topic)) return true;
   if (!is_ros(topic)) return false;
   const bool is_static = topic.type == "tf2_msgs/TFMessage" && topic.name.ends_with("tf_static");
   return is_static || is_realsense(topic) || is_orbbec(topic);
@@ -111,10 +106,8 @@ bool is_transform(const RecordedTopic& topic) {
 std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::string_view message,
                                              const std::string& name) {
   std::vector<FrameTransform> transforms;
-  if (topic.type == "foxglove.FrameTransform") {
-    parse_foxglove(message, name, transforms);
-  } else if (topic.layout == MessageLayout::protobuf) {
-    for (const std::string_view one : parse_protobuf(message, name).all_texts(1)) parse_foxglove(one, name, transforms);
+  if (is_of_foxglove(topic)) {
+    transforms = parse_foxglove(topic, message, name);
   } else if (is_realsense(topic)) {
     transforms = parse_realsense(topic, message, name);
   } else if (is_orbbec(topic)) {

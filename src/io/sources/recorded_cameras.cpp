@@ -342,7 +342,7 @@ SourceItem plain_item(const RecordedTopic& topic) {
   if (topic.messages == 0) {
     item.why = "empty";
   } else if (topic.layout == MessageLayout::other && is_wanted) {
-    item.why = "messages in JSON or another encoding, expected CDR, ROS 1 or Protocol Buffers";
+    item.why = "messages in another encoding, expected CDR, ROS 1, Protocol Buffers or JSON";
   } else if (is_video(topic)) {
     item.why = "video is not read";
   } else if (is_picture(topic)) {

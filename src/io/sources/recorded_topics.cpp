@@ -62,7 +62,7 @@ std::vector<std::string> words_of(std::string_view part) {
 /// RealSense cameras: how many metres a unit of depth is, as a number (ROS 1) or as text (ROS 2).
 bool is_depth_unit(const RecordedTopic& topic) {
   const bool is_value = topic.type == "std_msgs/Float32" || topic.type == "std_msgs/String";
-  return is_value && topic.layout != MessageLayout::protobuf && topic.name.ends_with("/Depth_Units/value");
+  return is_value && is_ros(topic) && topic.name.ends_with("/Depth_Units/value");
 }
 
 float depth_unit(const RecordedTopic& topic, const RecordedMessage& message, const std::string& place) {
@@ -88,7 +88,7 @@ bool is_whole(const PictureMessage& picture, const PictureLook& look) {
 PictureTopic seen(const RecordedTopic& topic, const RecordedMessage& message, const std::string& place) {
   const PictureMessage picture = parse_picture(topic, message.bytes, place);
   const std::int64_t time_ns = picture.time_ns != 0 ? picture.time_ns : message.time_ns;
-  PictureTopic one{topic, look_at(picture), name_says(topic.name), picture.frame, picture.compressed};
+  PictureTopic one{topic, look_at(picture), name_says(topic.name), plain_frame(picture.frame), picture.compressed};
   one.points = topic.type == "sensor_msgs/PointCloud2";
   one.disparities = picture.focal_baseline > 0.0;
   one.time_s = double(time_ns) / double(kNanoseconds);
@@ -99,6 +99,7 @@ PictureTopic seen(const RecordedTopic& topic, const RecordedMessage& message, co
 /// Some drivers give the rectified pictures' matrix alone.
 Calibration with_matrix(Calibration c) {
   const auto& p = c.projection;
+  c.frame = plain_frame(c.frame);
   if (c.matrix[0] == 0.0 && p[0] > 0.0) c.matrix = {p[0], 0, p[2], 0, p[5], p[6], 0, 0, 1};
   return c;
 }

@@ -327,6 +327,15 @@ TEST_F(RecordedTopics, TheCalibrationBesideDepthMayNameAnotherFrame) {
   EXPECT_EQ(source->next()->camera, a_.camera);
 }
 
+TEST_F(RecordedTopics, AFrameWithASlashIsTheSame) {
+  out_.depth("/d/image", 0, a_, "/cam");
+  out_.colour("/c/image", 0, a_, "cam");
+  out_.camera("/d/camera_info", a_.camera, "cam");
+  const auto source = open();
+  EXPECT_EQ(item_of(*source, "/c/image").use, "colour");
+  EXPECT_EQ(source->next().value().camera, a_.camera);
+}
+
 TEST_F(RecordedTopics, GreyIsColourWhereItIsCalledSo) {
   Image<std::uint8_t> grey(40, 30, 77);
   out_.camera("/depth/camera_info", a_.camera);

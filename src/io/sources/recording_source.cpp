@@ -16,7 +16,6 @@
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/imu_messages.h"
 #include "io/recordings/open_recording.h"
-#include "io/recordings/time_difference.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/recorded_cameras.h"
 #include "io/sources/recorded_topics.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "io/recordings/time_difference.h"
+#include "io/recordings/recording.h"
 #include "io/sources/camera_file.h"
 #include "vesalius/error.h"
 
