@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "io/files/data_file.h"
 #include "io/files/plain_text.h"
@@ -62,10 +63,13 @@ std::vector<fs::path> camera_files(const std::string& folder) {
                       extension = plain_name(it->path().extension().string());
     const auto has = [&](std::string_view word) { return stem.find(word) != stem.npos; };
     const std::array<std::string_view, 8> kinds{"json", "yaml", "yml", "xml", "txt", "toml", "ini", "csv"};
-    const bool named =
-        stem == "meta" || stem == "k" || has("camera") || has("cam") || has("intrinsic") || has("calib") || has("info");
+    const bool named = stem == "meta" || stem == "k" || has("cam") || has("trinsic") || has("calib") || has("info") ||
+                       has("stereo") || has("transform") || role_in(stem) != CameraRole::unsaid ||
+                       stem.starts_with("scene");
+    const bool a_list = extension == "txt" && (stem == "depth" || stem == "rgb" || stem == "color");
     std::error_code ignored;
-    if (std::ranges::find(kinds, extension) == kinds.end() || !named || it->file_size(ignored) > kMaxCameraFileBytes)
+    if (std::ranges::find(kinds, extension) == kinds.end() || !named || a_list ||
+        it->file_size(ignored) > kMaxCameraFileBytes)
       continue;
     const int rank = stem == "meta"                                ? 0
                      : stem == "camerainfo"                        ? 1
@@ -168,20 +172,81 @@ void take_k4a(CameraFacts& facts, int width, int height) {
   if (camera.lens.lens != Lens{}) facts.distorted = camera.lens;
 }
 
+/// Returns how far a camera's centre is from that of pictures, in their widths.
+double off_centre(const CameraFacts& facts, int width, int height) {
+  const double x = 2.0 * double(facts.cx.value_or(float(width) / 2.F)) / width - 1.0;
+  const double y = 2.0 * double(facts.cy.value_or(float(height) / 2.F)) / height - 1.0;
+  return std::hypot(x, y);
+}
+
+/// Makes one of the other cameras of a calibration the first.
+void take_other(CameraFacts& facts, CameraFacts& other) {
+  const CameraFacts taken = other;
+  std::vector<CameraFacts> others = std::exchange(facts.others, {});
+  std::vector<RigidFact> transforms = std::exchange(facts.transforms, {});
+  others[std::size_t(&other - others.data())] = facts;
+  facts.fx.reset();
+  facts.fy = facts.cx = facts.cy = std::nullopt;
+  facts.fill_from(taken);
+  facts.others = std::move(others);
+  facts.transforms = std::move(transforms);
+}
+
+/// Of two cameras that are numbered, takes the one whose centre is nearer to that of the pictures.
+void take_by_centre(CameraFacts& facts, int width, int height) {
+  const auto other = std::ranges::find(facts.others, CameraRole::second, &CameraFacts::role);
+  if (facts.role != CameraRole::first || facts.width || other == facts.others.end()) return;
+  if (off_centre(*other, width, height) >= off_centre(facts, width, height)) return;
+  take_other(facts, *other);
+}
+
+/// Returns by how much larger the pictures are that a calibration without a size is for, where its centre says that
+/// they are others: those of a telephone's colour camera are 7.5 times as large as its depth.
+std::optional<double> ratio_by_centre(const CameraFacts& facts, int width, int height) {
+  constexpr double kSame = 1.4, kUnequal = 0.1, kSteps = 4.0;
+  if (facts.width || facts.height || !facts.fx || !facts.cx || !facts.cy) return std::nullopt;
+  const double x = 2.0 * double(*facts.cx) / width, y = 2.0 * double(*facts.cy) / height, mean = (x + y) / 2.0;
+  if (!(mean > 0.0) || std::abs(x - y) > kUnequal * mean) return std::nullopt;
+  if (mean > kSame) return std::round(kSteps * mean) / kSteps;
+  return mean < 1.0 / kSame ? std::optional(kSteps / std::round(kSteps / mean)) : std::nullopt;
+}
+
+/// Makes a calibration of pictures of a size that of pictures whose pixels are `by` times as large.
+void scale(CameraFacts& facts, double by, int width, int height) {
+  const auto centre = [&](const std::optional<float>& at, int side) {
+    return at.value_or(float(side * by - 1.0) / 2.F);
+  };
+  const Camera camera =
+      scaled({0, 0, *facts.fx, facts.fy.value_or(*facts.fx), centre(facts.cx, width), centre(facts.cy, height)}, by,
+             width, height);
+  facts.fx = camera.fx;
+  facts.fy = camera.fy;
+  facts.cx = camera.cx;
+  facts.cy = camera.cy;
+  facts.width = width;
+  facts.height = height;
+  if (facts.distorted) facts.distorted->camera = scaled(facts.distorted->camera, by, width, height);
+}
+
 /// Makes a calibration that of pictures of a size: takes another camera of its file that has it, or scales it by a
 /// whole number. Throws Error naming both sizes otherwise.
 void fit_to_size(CameraFacts& facts, int width, int height, const std::string& place, std::vector<std::string>& notes) {
   if (facts.k4a && !facts.fx) take_k4a(facts, width, height);
+  take_by_centre(facts, width, height);
   const auto fits = [&](const CameraFacts& f) {
     return f.width.value_or(width) == width && f.height.value_or(height) == height;
   };
+  if (const auto by = ratio_by_centre(facts, width, height)) {
+    scale(facts, *by, width, height);
+    notes.push_back(
+        fmt::format("{}: its centre is that of pictures {:.4g} times as large as the {}x{} of {}; it is "
+                    "scaled to these",
+                    facts.origin, *by, width, height, place));
+  }
   if (fits(facts)) return;
   const auto other = std::ranges::find_if(facts.others, [&](const auto& f) { return f.width && f.height && fits(f); });
   if (other != facts.others.end()) {
-    CameraFacts taken = *other;
-    facts.fx.reset();
-    facts.fy = facts.cx = facts.cy = std::nullopt;
-    facts.fill_from(taken);
+    take_other(facts, *other);
     return;
   }
   const int calibrated_width = facts.width.value_or(width), calibrated_height = facts.height.value_or(height);
@@ -192,17 +257,7 @@ void fit_to_size(CameraFacts& facts, int width, int height, const std::string& p
     throw Error(fmt::format("{}: camera of {}x{} pictures, but {} has {}x{}", facts.origin, calibrated_width,
                             calibrated_height, place, width, height));
   }
-  const auto centre = [&](const std::optional<float>& at, int side) { return at.value_or(float(side - 1) / 2.F); };
-  const Camera camera = scaled({calibrated_width, calibrated_height, *facts.fx, facts.fy.value_or(*facts.fx),
-                                centre(facts.cx, calibrated_width), centre(facts.cy, calibrated_height)},
-                               *by, width, height);
-  facts.fx = camera.fx;
-  facts.fy = camera.fy;
-  facts.cx = camera.cx;
-  facts.cy = camera.cy;
-  facts.width = width;
-  facts.height = height;
-  if (facts.distorted) facts.distorted->camera = scaled(facts.distorted->camera, *by, width, height);
+  scale(facts, *by, width, height);
   notes.push_back(fmt::format("{}: camera of {}x{} pictures, scaled to the {}x{} of {}", facts.origin, calibrated_width,
                               calibrated_height, width, height, place));
 }
@@ -228,9 +283,13 @@ void CameraFacts::fill_from(const CameraFacts& other) {
     origin = other.origin;
     others = other.others;
     k4a = other.k4a;
+    role = other.role;
+    from_librealsense = other.from_librealsense;
   } else if (other.has_focal()) {
     others.push_back(other);
+    others.insert(others.end(), other.others.begin(), other.others.end());
   }
+  transforms.insert(transforms.end(), other.transforms.begin(), other.transforms.end());
   if (lacks.empty()) lacks = other.lacks;
   if (sensor.empty()) sensor = other.sensor;
 }

@@ -8,6 +8,7 @@
 #include "io/lens/lens.h"
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/k4a_messages.h"
+#include "io/sources/rigid_facts.h"
 #include "vesalius/camera.h"
 #include "vesalius/frame_source.h"
 
@@ -29,6 +30,9 @@ struct CameraFacts {
   std::string lacks;     ///< of a file without focal length: what was looked for there and what it has instead
   std::vector<CameraFacts> others;    ///< further cameras, for pictures of their sizes
   std::optional<K4aCalibration> k4a;  ///< of which fx ... cy follow for pictures of each size
+  CameraRole role = CameraRole::unsaid;
+  bool from_librealsense = false;     ///< by its names of facts
+  std::vector<RigidFact> transforms;  ///< between cameras
 
   bool has_focal() const { return fx.has_value() || k4a.has_value(); }
   /// Fills in from `other` what is missing here.

@@ -95,7 +95,7 @@ class PlainText {
     if (numbers.size() > 1 && titles_.size() == numbers.size()) {
       for (std::size_t i = 0; i < numbers.size(); ++i) here()[titles_[i]] = numbers[i];
     }
-    FactTree& rows = here()[kNumberRows];
+    FactTree& rows = here()[rows_name_.empty() ? kNumberRows : rows_name_];
     if (!rows.is_array()) rows = FactTree::array();
     rows.push_back(numbers);
     titles_.clear();
@@ -147,13 +147,16 @@ class PlainText {
   }
 
   void name(std::string_view text) {
-    section_ = text;
     titles_.clear();
+    // librealsense: the rows of a rotation in a section.
+    rows_name_ = letters_and_digits(text).starts_with("rotation") ? text : "";
+    if (!rows_name_.empty()) return;
+    section_ = text;
     for (const std::string_view title : pieces(text)) titles_.emplace_back(title);
   }
 
   FactTree root_ = FactTree::object();
-  std::string section_;
+  std::string section_, rows_name_;
   std::vector<std::string> titles_;
 };
 

@@ -13,6 +13,7 @@
 #include "io/files/depth_picture.h"
 #include "io/files/plain_text.h"
 #include "io/files/stored_depth.h"
+#include "io/sources/colour_camera.h"
 #include "io/sources/source_items.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
@@ -22,6 +23,12 @@ namespace {
 
 bool is_of_size(const auto& image, const Camera& camera) {
   return image.width() == camera.width && image.height() == camera.height;
+}
+
+/// Returns whether a path says that its pictures lie on those of another camera.
+bool is_registered(const std::string& path) {
+  const std::string text = lower(path);
+  return text.find("align") != text.npos || text.find("register") != text.npos;
 }
 
 class ListSource final : public FrameSource {
@@ -189,17 +196,25 @@ void FrameListReader::look_at_colour() {
   } catch (const Error&) {
     return;  // that frame says so
   }
-  if (is_of_size(first, camera_)) return;
-  const auto& k4a = list_.facts.k4a;
-  const auto colour = k4a && k4a_depth_calibration(*k4a, camera_.width, camera_.height)
-                          ? k4a_colour_calibration(*k4a, first.width(), first.height())
-                          : std::nullopt;
-  if (colour) {
-    registration_.emplace(camera_, calibrated(*colour, false).lens, k4a->colour->sensor_from_depth);
-    return;
+  const bool same_size = is_of_size(first, camera_),
+             said_registered = is_registered(with->depth) || is_registered(with->colour);
+  std::string missing;
+  const auto colour = same_size && said_registered
+                          ? std::nullopt
+                          : find_colour_camera(list_.facts, camera_, first.width(), first.height(), missing);
+  const bool same_camera = same_size && colour && colour->lens.camera == camera_ &&
+                           colour->colour_from_depth.isApprox(Eigen::Isometry3d::Identity());
+  if (colour && !same_camera) registration_.emplace(camera_, colour->lens, colour->colour_from_depth);
+  if (colour && same_size && !same_camera) {
+    list_.notes.push_back(
+        fmt::format("{}: colour is put on the grid of depth, as {} says; a --camera of depth alone "
+                    "leaves it as it is",
+                    list_.place, list_.facts.origin));
   }
-  const std::string why = fmt::format("no colour, since that has {}x{} pixels and depth {}x{}", first.width(),
-                                      first.height(), camera_.width, camera_.height);
+  if (colour || same_size) return;
+  const std::string why =
+      fmt::format("no colour, since that has {}x{} pixels and depth {}x{}{}", first.width(), first.height(),
+                  camera_.width, camera_.height, missing.empty() ? "" : ", and " + missing);
   list_.notes.push_back(fmt::format("{}: {}", list_.place, why));
   for (SourceItem& item : list_.items) {
     if (item.use != "colour") continue;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <tuple>
 
+#include "io/files/plain_text.h"
 #include "io/recordings/k4a_messages.h"
 #include "io/sources/camera_file.h"
 #include "io/sources/fact_tree.h"
@@ -20,11 +22,10 @@ using Spellings = std::vector<std::string_view>;
 
 const Spellings kFx{"fx", "focallengthx", "focalx", "flx", "fu"};
 const Spellings kFy{"fy", "focallengthy", "focaly", "fly", "fv"};
-const Spellings kCx{"cx", "ppx", "principalpointx", "cu", "u0", "centerx"};
-const Spellings kCy{"cy", "ppy", "principalpointy", "cv", "v0", "centery"};
+const Spellings kCx{"cx", "ppx", "principalpointx", "cu", "u0", "centerx", "mx"};
+const Spellings kCy{"cy", "ppy", "principalpointy", "cv", "v0", "centery", "my"};
 const Spellings kMatrix{"k",         "cameramatrix", "intrinsicmatrix",  "camk", "intrinsics",
-                        "intrinsic", "kmatrix",      "cameraintrinsics", "m1",   "mint",
-                        "mtx"};
+                        "intrinsic", "kmatrix",      "cameraintrinsics", "mint", "mtx"};
 const Spellings kFocal{"focal", "focallength", "f"};
 const Spellings kCentre{"principalpoint", "center", "pp", "c"};
 const Spellings kView{"hfov", "fovx", "fovh", "horizontalfov"};
@@ -39,12 +40,21 @@ const Spellings kScale{"scale",       "depthscale", "depthmapfactor", "pngdepths
                        "mdepthshift", "depthunits", "unitspermeter",  "depthunit",     "units"};
 constexpr std::array<const char*, 8> kCoefficients{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
 
+/// What stands before and after names of facts, the likeliest first.
+using Affixes = std::vector<std::array<std::string_view, 2>>;
+const Affixes kOfDepth{{"depth", ""}, {"", "depth"}, {"mdepth", ""}, {"mcalibrationdepth", ""}, {"", "d"}, {"ir", ""},
+                       {"", "ir"},    {"", ""},      {"m", ""}};
+const Affixes kOfColour{{"color", ""}, {"", "color"},  {"colour", ""},           {"rgb", ""},
+                        {"", "rgb"},   {"mcolor", ""}, {"mcalibrationcolor", ""}};
+const Affixes kOfFirst{{"", "1"}}, kOfSecond{{"", "2"}};
+
 /// An object of the tree with those around it.
 struct Scope {
   const FactTree* object;
   std::map<std::string, std::pair<std::string, const FactTree*>> named;  ///< by plain name: the name and its value
   std::string path;                                                      ///< plain names of the objects around it
   int above = -1;                                                        ///< index of the one around it
+  const Affixes* affixes = &kOfDepth;                                    ///< whose facts are looked for
 };
 
 /// What a name of several leads to.
@@ -55,9 +65,7 @@ struct Fact {
 };
 
 Fact find(const Scope& scope, const Spellings& spellings) {
-  constexpr std::array<std::array<std::string_view, 2>, 8> kOfDepth{
-      {{"depth", ""}, {"", "depth"}, {"mdepth", ""}, {"", "d"}, {"ir", ""}, {"", "ir"}, {"", ""}, {"m", ""}}};
-  for (const auto& [before, after] : kOfDepth) {
+  for (const auto& [before, after] : *scope.affixes) {
     for (const std::string_view spelling : spellings) {
       const auto found = scope.named.find(fmt::format("{}{}{}", before, spelling, after));
       if (found != scope.named.end()) return {found->second.first, found->second.second};
@@ -110,9 +118,10 @@ class CameraReader {
   CameraFacts read() {
     std::vector<std::tuple<int, std::size_t, CameraFacts>> cameras;
     for (const Scope& scope : scopes_) {
-      CameraFacts facts = camera_of(scope);
-      if (!facts.fx) continue;
-      cameras.emplace_back(rank_of(scope.path), scope.path.size(), std::move(facts));
+      for (CameraFacts& facts : cameras_of(scope)) {
+        const int rank = facts.role == CameraRole::depth ? 0 : facts.role == CameraRole::colour ? 2 : 1;
+        cameras.emplace_back(rank, scope.path.size(), std::move(facts));
+      }
     }
     const auto order = [](const auto& camera) { return std::pair(std::get<0>(camera), std::get<1>(camera)); };
     std::ranges::stable_sort(cameras, {}, order);
@@ -123,11 +132,52 @@ class CameraReader {
       facts = std::move(std::get<2>(cameras.front()));
       for (std::size_t i = 1; i < cameras.size(); ++i) facts.others.push_back(std::move(std::get<2>(cameras[i])));
     }
+    const auto unsaid = [](const CameraFacts& camera) { return camera.role == CameraRole::unsaid; };
+    if (unsaid(facts) && std::ranges::all_of(facts.others, unsaid)) {
+      facts.role = role_in(letters_and_digits(std::filesystem::path(name_).stem().string()));
+      for (CameraFacts& other : facts.others) other.role = facts.role;
+    }
     add_depth(facts);
     return facts;
   }
 
  private:
+  /// Returns the cameras that an object has: one, or those of depth and colour, or two that are numbered.
+  std::vector<CameraFacts> cameras_of(const Scope& scope) const {
+    using enum CameraRole;
+    std::vector<CameraFacts> cameras;
+    const auto take = [&](CameraFacts facts, CameraRole role) {
+      if (!facts.fx) return;
+      facts.role = role;
+      cameras.push_back(std::move(facts));
+    };
+    const std::array<std::pair<CameraRole, const Affixes*>, 3> others{
+        {{colour, &kOfColour}, {first, &kOfFirst}, {second, &kOfSecond}}};
+    for (const auto& [role, affixes] : others) {
+      const std::string_view digit = affixes->front()[1];
+      const auto of_it = [&](const auto& named) {
+        return role == colour ? role_in(named.first) == colour : named.first.ends_with(digit);
+      };
+      if (std::ranges::any_of(scope.named, of_it)) take(camera_of({scope.object, scope.named, "", -1, affixes}), role);
+    }
+    const std::array<CameraRole, 3> ranked{depth, unsaid, colour};
+    const CameraRole said = scope.path.ends_with("/cam0")   ? first
+                            : scope.path.ends_with("/cam1") ? second  // Kalibr
+                                                            : ranked[std::size_t(rank_of(scope.path))];
+    CameraFacts facts = camera_of(scope);
+    CameraFacts rows;
+    rows.origin = name_;
+    take_rows(scope, rows, 0);
+    if (rows.width) take(std::move(rows), colour);
+    const auto same = [&](const CameraFacts& other) {
+      return other.fx == facts.fx && other.fy == facts.fy && other.cx == facts.cx && other.cy == facts.cy;
+    };
+    if (facts.fx && std::ranges::none_of(cameras, same)) {
+      take(std::move(facts), said == unsaid && !cameras.empty() && cameras.front().role == colour ? depth : said);
+    }
+    return cameras;
+  }
+
   [[noreturn]] void fail(const std::string& key, const std::string& expected) const {
     throw Error(fmt::format("{}: \"{}\": expected {}", name_, key, expected));
   }
@@ -188,23 +238,27 @@ class CameraReader {
 
   /// Returns the matrix of a scope: the one of a known name, else the first that can be nothing else.
   std::optional<std::pair<Matrix, std::string>> find_matrix(const Scope& scope) const {
+    const bool of_depth = scope.affixes == &kOfDepth;
     if (const Fact fact = find(scope, kMatrix); fact && holds_numbers(*fact.value)) {
       const std::vector<double> values = numbers_of(*fact.value);
       if (const auto matrix = matrix_of(values)) return std::pair(*matrix, fact.key);
+      if (!of_depth) return std::nullopt;  // k1 and k2 are of a lens too
       if (values.size() == 4) return std::pair(Matrix{values[0], values[1], values[2], values[3], true}, fact.key);
       fail(fact.key, "3x3 numbers, or fx, fy, cx, cy");
     }
     std::optional<std::pair<Matrix, std::string>> best;
     for (const auto& [plain, named] : scope.named) {
       const auto matrix = matrix_of(numbers_of(*named.second));
-      if (!matrix || !matrix->is_pinhole || plain == "p" || plain == "projectionmatrix") continue;
+      if (!matrix || !matrix->is_pinhole || plain.starts_with('p')) continue;
+      if (!of_depth && !plain.ends_with(scope.affixes->front()[1])) continue;
+      if (scope.affixes == &kOfColour && role_in(plain) != CameraRole::colour) continue;
       if (!best || rank_of(plain) < rank_of(plain_name(best->second))) best.emplace(*matrix, named.first);
     }
     return best;
   }
 
   /// Plain numbers: fx fy cx cy (and a lens), or InfiniTAM's blocks of size, focal lengths and centre, depth last.
-  void take_rows(const Scope& scope, CameraFacts& facts) const {
+  void take_rows(const Scope& scope, CameraFacts& facts, std::size_t last) const {
     const auto found = scope.named.find(plain_name(kNumberRows));
     if (found == scope.named.end() || !found->second.second->is_array()) return;
     const FactTree& rows = *found->second.second;
@@ -212,7 +266,7 @@ class CameraReader {
     if (first.size() >= 4 && first.size() <= 9 && first[0] > kShortest && first[1] > kShortest) {
       take({first[0], first[1], first[2], first[3], true}, "fx fy cx cy", facts);
     }
-    for (std::size_t i = 0; i + 2 < rows.size() && i <= 3; i += 3) {
+    for (std::size_t i = 0; i + 2 < rows.size() && i <= last; i += 3) {
       const std::vector<double> size = numbers_of(rows[i]), f = numbers_of(rows[i + 1]), c = numbers_of(rows[i + 2]);
       if (size.size() != 2 || f.size() != 2 || c.size() != 2) break;
       take({f[0], f[1], c[0], c[1], true}, "fx fy", facts);
@@ -226,12 +280,15 @@ class CameraReader {
     facts.origin = name_;
     if (const Fact fx = find(scope, kFx)) facts.fx = focal(number(fx), fx.key);
     if (const Fact fy = find(scope, kFy)) facts.fy = focal(number(fy), fy.key);
-    if (const Fact cx = find(scope, kCx)) facts.cx = centre(number(cx), cx.key);
+    if (const Fact cx = find(scope, kCx)) {
+      facts.cx = centre(number(cx), cx.key);
+      facts.from_librealsense = plain_name(cx.key) == "ppx";
+    }
     if (const Fact cy = find(scope, kCy)) facts.cy = centre(number(cy), cy.key);
     if (!facts.fx) {
       if (const auto matrix = find_matrix(scope)) take(matrix->first, matrix->second, facts);
     }
-    if (!facts.fx) take_rows(scope, facts);
+    if (!facts.fx && scope.affixes == &kOfDepth) take_rows(scope, facts, 3);
     if (!facts.fx) take_pairs(scope, facts);
     add_size(scope, facts);
     if (const Fact view = find(scope, kView); !facts.fx && view && facts.width) {
@@ -263,6 +320,7 @@ class CameraReader {
   /// The size of a camera's pictures stands beside its focal length, in an object there, or around it.
   void add_size(const Scope& inner, CameraFacts& facts) const {
     for (const Scope* scope = &inner; scope != nullptr && !facts.width && !facts.height; scope = above(*scope)) {
+      if (find(*scope, {"x"}) && find(*scope, {"w"})) continue;  // a quaternion
       const Fact width = find(*scope, kWidth), height = find(*scope, kHeight);
       if (width) facts.width = side(number(width), width.key);
       if (height) facts.height = side(number(height), height.key);
@@ -410,7 +468,9 @@ CameraFacts parse_camera(std::string_view text, const std::string& name) {
     facts.origin = name;
     return facts;
   }
-  return CameraReader(root, name).read();
+  facts = CameraReader(root, name).read();
+  facts.transforms = rigid_facts(root, name);
+  return facts;
 }
 
 }  // namespace vesalius
