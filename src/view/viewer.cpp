@@ -19,6 +19,7 @@
 
 #include "io/files/options_file.h"
 #include "stream/frame_queue.h"
+#include "stream/turn_hint.h"
 #include "vesalius/base/quiet_thread.h"
 #include "vesalius/error.h"
 #include "view/frame_message.h"
@@ -320,11 +321,20 @@ class Viewer::Session {
   }
 
   void find_all(PeopleFinder& finder) {
+    TurnHint hint(now_.get().settings->detector);
+    const auto tell = [this](const std::optional<std::string>& note) {
+      if (note) say(*note);
+      if (note && say_) say_(*note);
+    };
     while (!jobs_.finished()) {
       const std::optional<Job> job = jobs_.pop(kPatience);
-      if (!job) continue;
+      if (!job) {
+        if (!player_.state().playing) tell(hint.finish());
+        continue;
+      }
       try {
         ViewedFrame viewed = finder.find(job->played, job->settings, server_.clients_for_details() > 0);
+        tell(hint.add(*viewed.frame, !viewed.people.people.empty()));
         const Clock::time_point now = Clock::now();
         const double result_ms = std::chrono::duration<double, std::milli>(now - job->arrived).count();
         if (viewed.frame->arrived_s) viewed.latency_ms = result_ms;

@@ -15,6 +15,7 @@
 #include "console/source_flags.h"
 #include "console/status_line.h"
 #include "console/text_sink.h"
+#include "stream/turn_hint.h"
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/detect_stream.h"
 #include "vesalius/parallel.h"
@@ -69,12 +70,17 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
     late.print(progress);
     return interrupted();
   };
+  TurnHint hint(detector);
+  const auto tell = [&](const std::optional<std::string>& note) {
+    if (note && !arguments.outputs.quiet) late.add("note: " + *note);
+  };
   std::size_t lossy = 0;  // addresses of which was said that they cannot be reached
   const auto take = [&](const FoundFrame& found) {
     // On a terminal both appear, and a printed line must not follow the changing one in the same row.
     if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
     try {
       write_found(found, outputs, totals);
+      tell(hint.add(*found.frame, std::ranges::any_of(found.people.people, is_found)));
     } catch (const BrokenPipe&) {
       throw;
     } catch (const Error& e) {
@@ -97,6 +103,7 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
   } else {
     totals.dropped = stream_frames(source, detector, options, take);
   }
+  tell(hint.finish());
   late.print(progress);
   totals.dropped += source.missed();
   progress.clear();
