@@ -362,6 +362,17 @@ TEST(ResolveCamera, ScalesByWholeRatios) {
   }
 }
 
+TEST(ResolveCamera, ScalesWhatHasTheCentreOfLargerPictures) {
+  // Stray Scanner: the matrix is that of 1920x1440, depth is 256x192.
+  CameraFacts facts = parse_camera("1605.3,0,960.5\n0,1605.3,718.2\n0,0,1\n", "camera_matrix.csv");
+  std::vector<std::string> notes;
+  const Camera camera = resolve_camera(facts, 256, 192, false, "here", notes);
+  EXPECT_NEAR(camera.fx, 1605.3 / 7.5, 1e-3);
+  EXPECT_NEAR(camera.cx, 961.0 / 7.5 - 0.5, 1e-3);
+  EXPECT_THAT(notes,
+              ElementsAre(HasSubstr("its centre is that of pictures 7.5 times as large as the 256x192 of here")));
+}
+
 TEST(ResolveCamera, TakesTheCameraOfTheSizeOfThePictures) {
   const char* both =
       R"({"depth": {"fx": 500, "width": 640, "height": 576}, "color": {"fx": 900, "width": 1280, "height": 720}})";

@@ -124,6 +124,14 @@ TumLists read_lists(const fs::path& root) {
   return lists;
 }
 
+/// Returns whether a list counts frames instead of telling times, as those of ICL-NUIM do: "0 depth/0.png".
+bool counts_frames(const std::vector<TumEntry>& entries) {
+  constexpr std::size_t kMostDigits = 7;
+  return std::ranges::all_of(entries, [](const TumEntry& entry) {
+    return entry.stamp.size() <= kMostDigits && entry.stamp.find_first_not_of("0123456789") == entry.stamp.npos;
+  });
+}
+
 /// Both lists merged by time as a linked list. When a pair is taken out, the entries beside it become neighbours; so
 /// the closest remaining pair is always a pair of neighbours.
 struct Merged {
@@ -324,6 +332,15 @@ FrameList list_tum(const std::string& folder, const SourceOptions& options) {
 
   auto [depth, colour, depth_list] = read_lists(root);
   if (depth.empty()) throw Error(depth_list + ": no frames, expected lines \"timestamp file\"");
+  list.facts = find_camera_facts(options, {folder});
+  if (counts_frames(depth) && counts_frames(colour)) {
+    const double rate_hz = list.facts.rate_hz.value_or(kUsualRate);
+    for (auto* entries : {&depth, &colour}) {
+      for (TumEntry& entry : *entries) entry.time_s /= rate_hz;
+    }
+    list.notes.push_back(
+        fmt::format("{}: numbers of frames, no times; they count as {} a second", depth_list, rate_hz));
+  }
   const std::vector<int> partner = associate(depth, colour, kMaxTimeDifferenceS);
   for (std::size_t i = 0; i < depth.size(); ++i) {
     const std::string colour_file = partner[i] < 0 ? "" : (root / colour[partner[i]].file).string();
@@ -334,7 +351,6 @@ FrameList list_tum(const std::string& folder, const SourceOptions& options) {
     list.notes.push_back(fmt::format("{}: {} of {} depth pictures have no colour within {} s", folder, lonely,
                                      depth.size(), kMaxTimeDifferenceS));
   }
-  list.facts = find_camera_facts(options, {folder});
   add_items(list);
   for (SourceItem& item : list.items) {
     for (const auto* lists : {&kDepthLists, &kColourLists, &kAssociations}) {

@@ -1,5 +1,6 @@
 #include "vesalius/open_source.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -252,6 +253,28 @@ TEST(TumSource, ReadsAssociationsInBothOrders) {
     EXPECT_EQ(frame->depth(3, 4), 2000);
     EXPECT_EQ(frame->colour(3, 4), (Rgb{1, 2, 3}));
   }
+}
+
+TEST(TumSource, TakesNumbersOfFramesForNoTimes) {
+  const TemporaryFolder folder;
+  std::string lines;
+  for (int i = 0; i < 12; ++i) {
+    put_depth(folder / ("depth/" + std::to_string(i) + ".png"), DepthImage(640, 480, 10000));
+    put_colour(folder / ("rgb/" + std::to_string(i) + ".png"),
+               ColourImage(640, 480, {static_cast<std::uint8_t>(i), 2, 3}));
+    lines += fmt::format("{0} depth/{0}.png {0} rgb/{0}.png\n", i);
+  }
+  put(folder / "associations.txt", lines);
+  const auto source = open_source(folder.path());
+  const std::vector<Frame> frames = all_frames(*source);
+  EXPECT_THAT(names(frames), SizeIs(12));
+  EXPECT_EQ(frames[11].name, "11");
+  EXPECT_EQ(frames[11].time_s, 11.0 / 30.0);
+  EXPECT_EQ(frames[11].colour(0, 0), (Rgb{11, 2, 3}));
+  EXPECT_THAT(source->notes().front(),
+              HasSubstr("associations.txt: numbers of frames, no times; they count as 30 a second"));
+  put(folder / "meta.json", R"({"fx": 525, "rate_hz": 10})");
+  EXPECT_EQ(all_frames(*open_source(folder.path()))[11].time_s, 1.1);
 }
 
 TEST(TumSource, TakesTheScaleFromTheAddress) {
