@@ -101,6 +101,20 @@ std::vector<std::string> names_in(const CLI::App& app) {
   return names;
 }
 
+/// Returns what is wrong where CLI11 could not read an option's value; it leaves out the names of hidden ones. Empty
+/// for other errors.
+std::string unread_value(const CLI::App& command, const std::string& message) {
+  const std::size_t equals = message.rfind(" = ");
+  if (!message.starts_with("Could not convert") || equals == message.npos) return {};
+  const std::string value = message.substr(equals + 3);
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_lnames().empty() || option->count() == 0 || option->results().back() != value) continue;
+    return fmt::format("--{}: {} is not a value of it, expected {}", option->get_lnames().front(), value,
+                       option->get_type_name() == "INT" ? "a whole number" : "a number");
+  }
+  return {};
+}
+
 /// Returns the message for a command line that CLI11 refused. CLI11 may report what is missing instead of the misspelt
 /// word.
 std::string explain(const CLI::App& program, const CLI::ParseError& error) {
@@ -108,7 +122,10 @@ std::string explain(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& command = chosen.empty() ? program : *chosen.front();
   const std::string help = fmt::format(" (see vesalius {}--help)", chosen.empty() ? "" : command.get_name() + " ");
   const std::vector<std::string> unknown = command.remaining();
-  if (unknown.empty()) return error.what() + help;
+  if (unknown.empty()) {
+    const std::string unread = unread_value(command, error.what());
+    return (unread.empty() ? error.what() : unread) + help;
+  }
   if (std::string absent = absent_command(unknown.front()); chosen.empty() && !absent.empty()) return absent;
   const std::string nearest = nearest_name(unknown.front(), names_in(command));
   return fmt::format("unknown argument {}{}{}", unknown.front(),

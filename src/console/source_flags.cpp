@@ -21,12 +21,16 @@ void add_camera_flags(CLI::App& command, SourceOptions& options) {
   add("--cy", options.cy, "PX", "Principal point, row (default: centre)");
   add("--depth-scale", options.depth_scale, "N",
       "Stored depth units per metre: 1000 = millimetres, 5000 = TUM; floats: 1");
-  add("--depth-bits", options.depth_bits, "KIND",
-      "How 16 bits of depth are stored: plain, swapped (bytes) or rotated (three bits to the left, as in SUN RGB-D)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, DepthBits>{{"plain", DepthBits::plain},
-                                                                           {"swapped", DepthBits::swapped},
-                                                                           {"rotated", DepthBits::rotated}})
-                      .description("{plain,swapped,rotated}"));
+  static const std::map<std::string, DepthBits> kinds{
+      {"plain", DepthBits::plain}, {"swapped", DepthBits::swapped}, {"rotated", DepthBits::rotated}};
+  command
+      .add_option_function<std::string>(
+          "--depth-bits", [&options](const std::string& kind) { options.depth_bits = kinds.at(kind); },
+          "How 16 bits of depth are stored: plain, swapped (bytes) or rotated (three bits to the left, as in SUN "
+          "RGB-D)")
+      ->type_name("KIND")
+      ->check(CLI::IsMember(kinds))
+      ->group("Camera, where the files do not say");
   add("--camera", options.camera_file, "FILE",
       "Calibration (meta.json, camera_info of ROS, OpenCV, ...), whose distortion is undone");
   add("--colour,--color", options.colour_file, "FILE", "Colour picture of a single depth PNG");
@@ -49,7 +53,7 @@ void add_turn_flag(CLI::App& command, SourceOptions& options) {
 void add_start_flag(CLI::App& command, SourceOptions& options) {
   command.add_option("--start", options.start_s, "Begin so many seconds after the first frame; not with a camera")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 1e9));
 }
 
 void SourceFlags::add_to(CLI::App& command, bool required) {
@@ -76,7 +80,7 @@ std::unique_ptr<FrameSource> SourceFlags::open(bool quiet, std::function<void(co
 void add_frames_flag(CLI::App& command, int& frames) {
   command.add_option("--frames", frames, "End after so many frames; 0 = all")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 1'000'000'000));
 }
 
 CLI::Option* add_rate_flag(CLI::App& command, double& rate, const std::string& what) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -21,6 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxCameraFileBytes = 1 << 20;
+constexpr std::size_t kMostOfFrames = 8;  // files in a folder for calibrations; of more, each is of a frame
+constexpr int kRankByContents = 5;
 [[noreturn]] void fail_at(const std::string& key, const std::string& expected) {
   throw UsageError(fmt::format("options: \"{}\": expected {}", key, expected));
 }
@@ -54,48 +57,86 @@ CameraFacts facts_given(const SourceOptions& options) {
   return facts;
 }
 
-/// Returns the files of a folder that may be of its camera, those of depth before those of colour, meta.json first.
-std::vector<fs::path> camera_files(const std::string& folder) {
+/// Returns how likely a file is a calibration of the pictures beside it, 0 surely; nothing for one that is none. Those
+/// of depth come before those of colour, and before files of which only what is in them tells.
+std::optional<int> rank_of_file(const fs::path& path, bool in_folder_for_them) {
+  constexpr std::array<std::string_view, 10> kKinds{"json", "yaml", "yml", "xml",  "txt",
+                                                    "toml", "ini",  "csv", "conf", "pincam"};
+  const std::string stem = plain_name(path.stem().string()), extension = plain_name(path.extension().string());
+  const auto has = [&](std::string_view word) { return stem.find(word) != stem.npos; };
+  const bool list = extension == "txt" && (stem == "depth" || stem == "rgb" || stem == "color");
+  if (std::ranges::find(kKinds, extension) == kKinds.end() || list) return std::nullopt;
+  if (stem == "meta") return 0;
+  if (stem == "camerainfo") return 1;
+  const CameraRole role = role_in(stem);
+  constexpr std::array<std::string_view, 8> kWords{"cam",  "trinsic", "calib",     "info",
+                                                   "meta", "stereo",  "transform", "scene0"};
+  const bool named =
+      in_folder_for_them || stem == "k" || role != CameraRole::unsaid || std::ranges::any_of(kWords, has);
+  if (named) return has("ir") || role == CameraRole::depth ? 2 : role == CameraRole::colour ? 4 : 3;
+  const bool of_frame = extension == "json" && stem.starts_with("frame");
+  const bool settings = extension == "yaml" || extension == "yml" || extension == "ini" || extension == "conf";
+  return of_frame || settings ? std::optional(kRankByContents) : std::nullopt;
+}
+
+/// Returns the files of a folder that may be of its camera, the likeliest first. Of those of single frames, or of which
+/// only what is in them tells, there are a few.
+std::vector<fs::path> camera_files(const std::string& folder, bool is_for_them) {
+  constexpr std::ptrdiff_t kMostByContents = 5;
   std::vector<std::pair<int, fs::path>> ranked;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string stem = plain_name(it->path().stem().string()),
-                      extension = plain_name(it->path().extension().string());
-    const auto has = [&](std::string_view word) { return stem.find(word) != stem.npos; };
-    const std::array<std::string_view, 8> kinds{"json", "yaml", "yml", "xml", "txt", "toml", "ini", "csv"};
-    const bool named = stem == "meta" || stem == "k" || has("cam") || has("trinsic") || has("calib") || has("info") ||
-                       has("stereo") || has("transform") || role_in(stem) != CameraRole::unsaid ||
-                       stem.starts_with("scene");
-    const bool a_list = extension == "txt" && (stem == "depth" || stem == "rgb" || stem == "color");
     std::error_code ignored;
-    if (std::ranges::find(kinds, extension) == kinds.end() || !named || a_list ||
-        it->file_size(ignored) > kMaxCameraFileBytes)
-      continue;
-    const int rank = stem == "meta"                                ? 0
-                     : stem == "camerainfo"                        ? 1
-                     : has("depth") || has("ir")                   ? 2
-                     : has("color") || has("colour") || has("rgb") ? 4
-                                                                   : 3;
-    ranked.emplace_back(rank, it->path());
+    const auto rank = rank_of_file(it->path(), is_for_them);
+    if (rank && it->file_size(ignored) <= kMaxCameraFileBytes) ranked.emplace_back(*rank, it->path());
   }
   std::ranges::sort(ranked);
+  const auto few = std::ranges::find(ranked, kRankByContents, &std::pair<int, fs::path>::first);
+  ranked.erase(few + std::min(kMostByContents, ranked.end() - few), ranked.end());
+  if (is_for_them && ranked.size() > kMostOfFrames) ranked.resize(1);
   std::vector<fs::path> files;
   files.reserve(ranked.size());
   for (auto& [rank, path] : ranked) files.push_back(std::move(path));
   return files;
 }
 
+/// Returns the folders in a folder that are for calibrations by their names, as those of ScanNet and Matterport have.
+std::vector<fs::path> folders_for_cameras(const std::string& folder) {
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = plain_name(it->path().filename().string());
+    const auto has = [&](std::string_view word) { return name.find(word) != name.npos; };
+    std::error_code ignored;
+    const bool named = has("intrinsic") || has("calib") || name == "cameras" || name == "camera" || name == "cam";
+    if (named && it->is_directory(ignored)) folders.push_back(it->path());
+  }
+  std::ranges::sort(folders);
+  return folders;
+}
+
 /// A file called meta or camera_info must be readable; others may be something else.
 CameraFacts facts_in_folder(const std::string& folder) {
   CameraFacts facts;
   std::string broken;
-  for (const fs::path& path : camera_files(folder)) {
+  const auto read = [&](const fs::path& path) {
     const std::string stem = plain_name(path.stem().string());
+    const bool by_contents = rank_of_file(path, false).value_or(0) == kRankByContents;
+    if (by_contents && facts.has_focal()) return;
     try {
-      facts.fill_from(read_camera_file(path.string()));
+      CameraFacts found = read_camera_file(path.string());
+      if (by_contents) found.lacks.clear();
+      facts.fill_from(found);
     } catch (const Error& e) {
       if (stem == "meta" || stem == "camerainfo") throw;
-      if (broken.empty()) broken = e.what();
+      if (broken.empty() && !by_contents) broken = e.what();
+    }
+  };
+  std::ranges::for_each(camera_files(folder, false), read);
+  if (!facts.has_focal()) {
+    for (const fs::path& inner : folders_for_cameras(folder)) {
+      std::ranges::for_each(camera_files(inner.string(), true), read);
+      if (facts.has_focal()) break;
     }
   }
   if (!facts.has_focal() && facts.sensor.empty() && !broken.empty()) throw Error(broken);
@@ -147,12 +188,6 @@ bool keeps_direction(const Calibration& c) {
   return (c.rotation == same || c.rotation == none) && c.projection[3] == 0.0 && c.projection[7] == 0.0;
 }
 
-/// Returns the camera of pictures whose pixels are `by` times as large; centres of pixels are at whole numbers.
-Camera scaled(const Camera& camera, double by, int width, int height) {
-  const auto centre = [by](float at) { return float((double(at) + 0.5) / by - 0.5); };
-  return {width, height, float(camera.fx / by), float(camera.fy / by), centre(camera.cx), centre(camera.cy)};
-}
-
 /// Takes the camera of the mode that an Azure Kinect's pictures are of, its depth's or, for depth on the grid of
 /// colour, its colour's.
 void take_k4a(CameraFacts& facts, int width, int height) {
@@ -192,12 +227,15 @@ void take_other(CameraFacts& facts, CameraFacts& other) {
   facts.transforms = std::move(transforms);
 }
 
-/// Of two cameras that are numbered, takes the one whose centre is nearer to that of the pictures.
+/// Of cameras without sizes that no name tells apart, takes the one whose centre is nearest to that of the pictures.
 void take_by_centre(CameraFacts& facts, int width, int height) {
-  const auto other = std::ranges::find(facts.others, CameraRole::second, &CameraFacts::role);
-  if (facts.role != CameraRole::first || facts.width || other == facts.others.end()) return;
-  if (off_centre(*other, width, height) >= off_centre(facts, width, height)) return;
-  take_other(facts, *other);
+  if (facts.width || !facts.fx || facts.role == CameraRole::depth || facts.role == CameraRole::colour) return;
+  const auto off = [&](const CameraFacts& other) {
+    const bool alike = !other.width && other.role != CameraRole::colour;
+    return alike ? off_centre(other, width, height) : std::numeric_limits<double>::infinity();
+  };
+  const auto nearest = std::ranges::min_element(facts.others, {}, off);
+  if (nearest != facts.others.end() && off(*nearest) < off_centre(facts, width, height)) take_other(facts, *nearest);
 }
 
 /// Returns by how much larger the pictures are that a calibration without a size is for, where its centre says that
@@ -209,6 +247,14 @@ std::optional<double> ratio_by_centre(const CameraFacts& facts, int width, int h
   if (!(mean > 0.0) || std::abs(x - y) > kUnequal * mean) return std::nullopt;
   if (mean > kSame) return std::round(kSteps * mean) / kSteps;
   return mean < 1.0 / kSame ? std::optional(kSteps / std::round(kSteps / mean)) : std::nullopt;
+}
+
+/// Returns by how much larger pictures of the first two sides are, if that is a whole number or one over it, or at
+/// least two by quarters, as the colour of telephones is larger than their depth: 3.75 and 7.5.
+std::optional<double> ratio_by_size(std::int64_t from_width, std::int64_t from_height, int width, int height) {
+  const bool same_shape = from_width * height == from_height * width;
+  if (same_shape && from_width >= 2 * width && 4 * from_width % width == 0) return double(from_width) / width;
+  return whole_ratio(from_width, from_height, width, height);
 }
 
 /// Makes a calibration of pictures of a size that of pictures whose pixels are `by` times as large.
@@ -223,6 +269,8 @@ void scale(CameraFacts& facts, double by, int width, int height) {
   facts.fy = camera.fy;
   facts.cx = camera.cx;
   facts.cy = camera.cy;
+  facts.calibrated_width = int(std::lround(by * width));
+  facts.calibrated_height = int(std::lround(by * height));
   facts.width = width;
   facts.height = height;
   if (facts.distorted) facts.distorted->camera = scaled(facts.distorted->camera, by, width, height);
@@ -251,7 +299,7 @@ void fit_to_size(CameraFacts& facts, int width, int height, const std::string& p
   }
   const int calibrated_width = facts.width.value_or(width), calibrated_height = facts.height.value_or(height);
   const auto by = facts.width && facts.height && facts.fx
-                      ? whole_ratio(calibrated_width, calibrated_height, width, height)
+                      ? ratio_by_size(calibrated_width, calibrated_height, width, height)
                       : std::nullopt;
   if (!by) {
     throw Error(fmt::format("{}: camera of {}x{} pictures, but {} has {}x{}", facts.origin, calibrated_width,
@@ -263,6 +311,11 @@ void fit_to_size(CameraFacts& facts, int width, int height, const std::string& p
 }
 
 }  // namespace
+
+Camera scaled(const Camera& camera, double by, int width, int height) {
+  const auto centre = [by](float at) { return float((double(at) + 0.5) / by - 0.5); };
+  return {width, height, float(camera.fx / by), float(camera.fy / by), centre(camera.cx), centre(camera.cy)};
+}
 
 void CameraFacts::fill_from(const CameraFacts& other) {
   const bool needs_focal = !has_focal();
@@ -337,7 +390,8 @@ Camera resolve_camera(CameraFacts& facts, int width, int height, bool registered
       if (!facts.lacks.empty()) throw Error(facts.lacks);
       throw Error(
           place +
-          ": no intrinsics: expected fx, fy, cx, cy in meta.json, a camera_info.yaml, or --fx, --fy, --cx, --cy");
+          ": no intrinsics: expected fx, fy, cx, cy in meta.json, a camera_info.yaml, or --fx, --fy, --cx, --cy" +
+          (width == 640 && height == 480 ? "; of a Kinect v1 or Xtion usually --fx 525" : ""));
     }
     notes.push_back(fmt::format("{}: no focal length given; {:.4g} pixels assumed, usual for \"{}\"", place, camera.fx,
                                 facts.sensor));

@@ -28,8 +28,9 @@ struct CameraFacts {
   std::string odd_lens;  ///< model of a distortion that is not known and stays; empty = none
   std::string origin;    ///< the file, for messages
   std::string lacks;     ///< of a file without focal length: what was looked for there and what it has instead
-  std::vector<CameraFacts> others;    ///< further cameras, for pictures of their sizes
-  std::optional<K4aCalibration> k4a;  ///< of which fx ... cy follow for pictures of each size
+  std::vector<CameraFacts> others;                  ///< further cameras, for pictures of their sizes
+  std::optional<K4aCalibration> k4a;                ///< of which fx ... cy follow for pictures of each size
+  int calibrated_width = 0, calibrated_height = 0;  ///< size of the pictures that it was for, where it was scaled
   CameraRole role = CameraRole::unsaid;
   bool from_librealsense = false;     ///< by its names of facts
   std::vector<RigidFact> transforms;  ///< between cameras
@@ -64,6 +65,9 @@ CameraFacts find_camera_facts(const SourceOptions& options, const std::vector<st
 /// no focal length is known, or both sizes.
 Camera resolve_camera(CameraFacts& facts, int width, int height, bool registered, const std::string& place,
                       std::vector<std::string>& notes);
+
+/// Returns the camera of pictures whose pixels are `by` times as large; centres of pixels are at whole numbers.
+Camera scaled(const Camera& camera, double by, int width, int height);
 
 /// A calibration as cameras are made of it.
 struct CalibratedCamera {

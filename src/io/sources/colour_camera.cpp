@@ -53,9 +53,14 @@ std::optional<ColourCamera> find_colour_camera(const CameraFacts& facts, const C
   }
   const bool same_size = width == depth.width && height == depth.height;
   // Depth on the grid of colour, whose calibration is that of both.
-  if (facts.role == CameraRole::colour) {
-    const auto lens = same_size ? std::nullopt : camera_for(facts, width, height);
-    return lens ? std::optional(ColourCamera{*lens}) : std::nullopt;
+  const bool of_colour =
+      facts.role == CameraRole::colour || (facts.calibrated_width == width && facts.calibrated_height == height);
+  if (of_colour && facts.role != CameraRole::depth) {
+    if (same_size || width * depth.height != height * depth.width) return std::nullopt;
+    const double by = double(depth.width) / width;
+    ColourCamera colour{{scaled(depth, by, width, height), {}}};
+    if (facts.distorted) colour.lens = {scaled(facts.distorted->camera, by, width, height), facts.distorted->lens};
+    return colour;
   }
   const auto is_other = [&](const CameraFacts& other) {
     return other.role == CameraRole::colour || (facts.role == CameraRole::first && other.role == CameraRole::second) ||

@@ -31,6 +31,14 @@ using Role = PictureName::Role;
 
 const std::vector<std::string> kColourExtensions{".png", ".jpg", ".jpeg", ".ppm"};
 
+/// Returns what a folder is for: "kinectdepth" too, where names of pictures begin with the word.
+Role role_of_folder(const std::string& name) {
+  const Role role = parse_picture_name(name).role;
+  if (role != Role::unknown) return role;
+  if (name.ends_with("depth")) return Role::depth;
+  return name.ends_with("color") || name.ends_with("rgb") || name.ends_with("wide") ? Role::colour : role;
+}
+
 /// Returns the folder in `root` whose name says most clearly what it has; nothing if none does.
 std::optional<fs::path> child_of_role(const fs::path& root, Role role) {
   const std::vector<std::string> usual =
@@ -41,11 +49,11 @@ std::optional<fs::path> child_of_role(const fs::path& root, Role role) {
   for (fs::directory_iterator it(root, error), end; !error && it != end; it.increment(error)) {
     const std::string name = lower(it->path().filename().string());
     const auto rank = std::ranges::find(usual, name) - usual.begin();
-    const bool shown = name.find("vis") != name.npos || name.find("preview") != name.npos;  // depth in colours
+    const bool shown = name.find("vis") != name.npos || name.find("preview") != name.npos ||
+                       name.find("conf") != name.npos;  // depth in colours
     const auto& extensions = role == Role::depth ? depth_extensions() : kColourExtensions;
-    const bool fits =
-        rank < std::ssize(usual) || (!shown && parse_picture_name(name).role == role && is_folder(it->path()) &&
-                                     !list_files(it->path().string(), extensions).empty());
+    const bool fits = rank < std::ssize(usual) || (!shown && role_of_folder(name) == role && is_folder(it->path()) &&
+                                                   !list_files(it->path().string(), extensions).empty());
     if (fits && name.front() != '.' && is_folder(it->path())) found.emplace_back(rank, name, it->path());
   }
   if (found.empty()) return std::nullopt;
@@ -246,8 +254,14 @@ FrameList list_folder(const std::string& folder, const SourceOptions& options) {
   for (const Picture& p : colours) names.insert(p.stem);
   note_missing_colours(list, names.size());
   std::vector<std::string> folders = depth_folder ? std::vector<std::string>{folder} : camera_folders(folder);
-  folders.push_back((fs::path(folder) / "intrinsic").string());  // ScanNet
   list.facts = find_camera_facts(options, folders);
+  for (const char* above : {"..", "../.."}) {  // Replica: the pictures are two folders below their calibration
+    if (list.facts.has_focal() || !list.facts.sensor.empty() || !list.facts.lacks.empty()) break;
+    const CameraFacts found = find_camera_facts({}, {(fs::path(folder) / above).string()});
+    if (!found.has_focal()) continue;
+    list.facts.fill_from(found);
+    list.notes.push_back(fmt::format("{}: no calibration beside the pictures; taken from {}", folder, found.origin));
+  }
   if (list.facts.rate_hz && !list.frames.front().time_s) add_times(list, *list.facts.rate_hz);
   add_items(list);
   return list;

@@ -206,6 +206,19 @@ std::string_view scheme_of_file(const std::string& path) {
   throw Error(fmt::format("{}: {}, expected {}", path, kind_or(first, "unknown kind of file"), kAnything));
 }
 
+/// Says which of the folders in a folder have frames.
+std::string frames_below(const std::string& path) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;
+    const std::string inner = it->path().string();
+    if (it->is_directory(ignored) && (has_depth_folder(inner) || is_tum_folder(inner))) names.push_back(inner);
+  }
+  if (names.empty()) return {};
+  return fmt::format("; {} has some", *std::ranges::min_element(names));
+}
+
 std::string_view scheme_of_folder(const std::string& path) {
   std::error_code ignored;
   if (is_tum_folder(path)) return "tum";
@@ -218,7 +231,8 @@ std::string_view scheme_of_folder(const std::string& path) {
   if (pcd) return "pcd";
   if (!list_recording(path).empty()) return "recording";
   throw Error(
-      with_items(path + ": no frames, expected depth/*.png, depth.txt, *.png, *.pcd or recordings", items_of(path)));
+      with_items(path + ": no frames, expected depth/*.png, depth.txt, *.png, *.pcd or recordings" + frames_below(path),
+                 items_of(path)));
 }
 
 std::unique_ptr<FrameSource> open_files(const std::string& uri, const SourceOptions& options) {

@@ -171,7 +171,8 @@ std::vector<SourceItem> items_of(const std::string& folder, const std::vector<st
     const std::string extension = "." + item.holds;
     const auto& unread = unread_depth_extensions();
     if (item.use.empty() && std::ranges::find(unread, extension) != unread.end()) item.why = unread_advice(extension);
-    if (depths.empty() && kind.find("/*depth*") != kind.npos) item.why = "give that folder as the source";
+    const bool elsewhere = depths.empty() && kind.find("/*depth*") != kind.npos;
+    if (elsewhere && item.why.empty()) item.why = "give that folder as the source";
     const bool jpeg_of_depth = extension.starts_with(".jp") && kind.find("epth") != kind.npos;
     if (item.use.empty() && jpeg_of_depth) item.why = "JPEG loses depth, expected PNG of 16 bits";
     all.push_back(std::move(item));

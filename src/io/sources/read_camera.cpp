@@ -91,6 +91,9 @@ bool holds_numbers(const FactTree& value) {
 /// Focal length in pixels of no camera; rotations have 1 at most, and focal lengths in millimetres are less.
 constexpr double kShortest = 10.0;
 
+/// Returns whether a principal point is near the middle of a picture.
+bool is_middle(double centre, double side) { return side >= 16.0 && std::abs(2.0 * centre / side - 1.0) < 0.2; }
+
 /// A matrix of intrinsics by rows, of 3x3, 3x4 or 4x4.
 struct Matrix {
   double fx, fy, cx, cy;
@@ -262,7 +265,13 @@ class CameraReader {
     const auto found = scope.named.find(plain_name(kNumberRows));
     if (found == scope.named.end() || !found->second.second->is_array()) return;
     const FactTree& rows = *found->second.second;
-    const std::vector<double> first = numbers_of(rows.front());
+    std::vector<double> first = numbers_of(rows.front());
+    // Matterport and ARKitScenes: width, height, fx, fy, cx, cy and perhaps a lens.
+    if (first.size() >= 6 && is_middle(first[4], first[0]) && is_middle(first[5], first[1])) {
+      facts.width = side(first[0], "width");
+      facts.height = side(first[1], "height");
+      first.erase(first.begin(), first.begin() + 2);
+    }
     if (first.size() >= 4 && first.size() <= 9 && first[0] > kShortest && first[1] > kShortest) {
       take({first[0], first[1], first[2], first[3], true}, "fx fy cx cy", facts);
     }

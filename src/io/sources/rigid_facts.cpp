@@ -151,7 +151,7 @@ class RigidReader {
     const auto turned = rotation_of(*rotation);
     const auto moved = translation_of(*translation);
     const auto transform = turned && moved ? rigid(*turned, *moved) : std::nullopt;
-    const bool in_one_list = rotation->is_array() && !rotation->front().is_array();
+    const bool in_one_list = rotation->is_array() && rotation->size() == 9;
     if (transform) add(*transform, path, in_one_list);
   }
 
