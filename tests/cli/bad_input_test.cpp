@@ -105,6 +105,8 @@ TEST_F(BadInput, InvalidCommandLinesAreRefused) {
   detect(frames(), model(), " --depth-scale 0", 2, "\"depth_scale\": expected stored units per metre");
   detect(frames(), model(), " --out ''", 2, "--out: expected a value, found none");
   detect("''", model(), "", 2, "SOURCE: expected a value, found none");
+  detect(frames(), model(), " --depth-bits upside", 2, "--depth-bits: upside not in {plain,rotated,swapped}");
+  detect(frames(), model(), " --search.min-parts few", 2, "--search.min-parts: few is not a value of it, expected a");
   detect(frames(), model(), " --jsno -", 2, "unknown argument --jsno, did you mean --json?");
   detect("", model(), "", 2, "SOURCE is required");
   expect_refused(run_program("detcet"), 2, "unknown argument detcet, did you mean detect?");

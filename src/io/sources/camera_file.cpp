@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/files/data_file.h"
+#include "io/files/depth_picture.h"
 #include "io/files/plain_text.h"
 #include "io/sources/fact_tree.h"
 #include "vesalius/error.h"
@@ -39,6 +40,10 @@ float checked_centre(float value, const std::string& key) {
 }
 
 CameraFacts read_camera_file(const std::string& path) {
+  if (path.ends_with(".npy")) {  // numpy.save of a matrix
+    const DepthPicture matrix = read_depth(path);
+    return parse_camera(fmt::format("{}", fmt::join(matrix.real, " ")), path);
+  }
   return parse_camera(read_file(path, kMaxCameraFileBytes), path);
 }
 
@@ -60,12 +65,13 @@ CameraFacts facts_given(const SourceOptions& options) {
 /// Returns how likely a file is a calibration of the pictures beside it, 0 surely; nothing for one that is none. Those
 /// of depth come before those of colour, and before files of which only what is in them tells.
 std::optional<int> rank_of_file(const fs::path& path, bool in_folder_for_them) {
-  constexpr std::array<std::string_view, 10> kKinds{"json", "yaml", "yml", "xml",  "txt",
-                                                    "toml", "ini",  "csv", "conf", "pincam"};
+  constexpr std::array<std::string_view, 11> kKinds{"json", "yaml", "yml",  "xml",    "txt", "toml",
+                                                    "ini",  "csv",  "conf", "pincam", "npy"};
   const std::string stem = plain_name(path.stem().string()), extension = plain_name(path.extension().string());
   const auto has = [&](std::string_view word) { return stem.find(word) != stem.npos; };
   const bool list = extension == "txt" && (stem == "depth" || stem == "rgb" || stem == "color");
-  if (std::ranges::find(kKinds, extension) == kKinds.end() || list) return std::nullopt;
+  const bool depths = extension == "npy" && stem != "k" && !has("trinsic") && !has("cam");
+  if (std::ranges::find(kKinds, extension) == kKinds.end() || list || depths) return std::nullopt;
   if (stem == "meta") return 0;
   if (stem == "camerainfo") return 1;
   const CameraRole role = role_in(stem);
@@ -241,10 +247,10 @@ void take_by_centre(CameraFacts& facts, int width, int height) {
 /// Returns by how much larger the pictures are that a calibration without a size is for, where its centre says that
 /// they are others: those of a telephone's colour camera are 7.5 times as large as its depth.
 std::optional<double> ratio_by_centre(const CameraFacts& facts, int width, int height) {
-  constexpr double kSame = 1.4, kUnequal = 0.1, kSteps = 4.0;
+  constexpr double kSame = 1.4, kUnequal = 0.1, kSteps = 4.0, kMost = 16.0;
   if (facts.width || facts.height || !facts.fx || !facts.cx || !facts.cy) return std::nullopt;
   const double x = 2.0 * double(*facts.cx) / width, y = 2.0 * double(*facts.cy) / height, mean = (x + y) / 2.0;
-  if (!(mean > 0.0) || std::abs(x - y) > kUnequal * mean) return std::nullopt;
+  if (!(mean > 1.0 / kMost && mean < kMost) || std::abs(x - y) > kUnequal * mean) return std::nullopt;
   if (mean > kSame) return std::round(kSteps * mean) / kSteps;
   return mean < 1.0 / kSame ? std::optional(kSteps / std::round(kSteps / mean)) : std::nullopt;
 }

@@ -409,6 +409,20 @@ TEST(FindCameraFacts, FindsFilesByTheirNames) {
   EXPECT_THAT(error_of([&] { find_camera_facts({}, {folder.path()}); }), HasSubstr("camera.json: not JSON"));
 }
 
+TEST(FindCameraFacts, ReadsAMatrixOfNumPy) {
+  const TemporaryFolder folder;
+  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 3), }";
+  header.resize(118, ' ');
+  std::string bytes = std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header;
+  for (const double value : {500.0, 0.0, 320.0, 0.0, 501.0, 240.0, 0.0, 0.0, 1.0}) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  }
+  put(folder / "intrinsics.npy", bytes);
+  const CameraFacts facts = find_camera_facts({}, {folder.path()});
+  EXPECT_EQ(facts.fx, 500.F);
+  EXPECT_EQ(facts.cy, 240.F);
+}
+
 TEST(ResolveCamera, DefaultsToSquarePixelsAndTheCentre) {
   CameraFacts facts;
   facts.fx = 100.F;

@@ -164,6 +164,7 @@ bool is_of_tum(const DepthLook& look, SourceOptions options, const Opener& open)
 std::optional<Remedy> remedy_of(Oddity oddity, const DepthLook& odd, const SourceOptions& given, const Opener& open) {
   if (oddity == Oddity::near && !is_of_tum(odd, given, open)) return std::nullopt;
   std::optional<Remedy> best;
+  int units = 0;  // of two that are too near each other to tell
   for (Remedy& remedy : remedies(given, oddity)) {
     try {
       remedy.look = first_look(*open(remedy.options));
@@ -172,8 +173,11 @@ std::optional<Remedy> remedy_of(Oddity oddity, const DepthLook& odd, const Sourc
     }
     if (!mends(remedy, oddity, odd)) continue;
     if (remedy.is_of_bits()) return remedy;
+    units += remedy.flag == "--depth-scale 4000" || remedy.flag == "--depth-scale 5000" ? 1 : 0;
     if (!best || unlikeliness(remedy) < unlikeliness(*best)) best = remedy;
   }
+  const bool either = units == 2 && (*best->options.depth_scale == 4000.F || *best->options.depth_scale == 5000.F);
+  if (either) best->flag = "--depth-scale 5000 (TUM) or 4000 (Matterport)";
   return best;
 }
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "io/files/test_files.h"
+#include "vesalius/image_file.h"
+#include "vesalius/open_source.h"
 
 namespace vesalius {
 namespace {
@@ -13,6 +15,7 @@ namespace {
 using test::error_of;
 using test::put;
 using test::TemporaryFolder;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 TEST(NaturalLess, ComparesNumbersByValue) {
@@ -33,7 +36,7 @@ TEST(ListFiles, ListsOnlyTheWantedKinds) {
   for (const char* name : {"b10.png", "b9.PNG", "._b1.png", "c.jpg", "d.txt", "png"}) put(folder / name, "");
   std::vector<std::string> names;
   for (const auto& path : list_files(folder.path(), {".png", ".jpg"})) names.push_back(path.filename().string());
-  EXPECT_THAT(names, testing::ElementsAre("b9.PNG", "b10.png", "c.jpg"));
+  EXPECT_THAT(names, ElementsAre("b9.PNG", "b10.png", "c.jpg"));
   EXPECT_THAT(error_of([&] { list_files(folder / "none", {".png"}); }),
               HasSubstr("none: folder cannot be read: No such"));
 }
@@ -50,10 +53,10 @@ std::vector<double> times_of(const std::vector<std::string>& names, const std::s
 
 TEST(ListFolder, TakesTimesFromTheRateAndTheNumbersOfFrames) {
   const std::string meta = R"({"rate_hz": 4})";
-  EXPECT_THAT(times_of({"002", "003", "010"}, meta), testing::ElementsAre(0.5, 0.75, 2.5));
-  EXPECT_THAT(times_of({"a2", "a3", "a10"}, meta), testing::ElementsAre(0.0, 0.25, 0.5));
-  EXPECT_THAT(times_of({"1", "01"}, meta), testing::ElementsAre(0.0, 0.25));  // the numbers do not rise
-  EXPECT_THAT(times_of({"1", "2"}, "{}"), testing::ElementsAre(-1.0, -1.0));
+  EXPECT_THAT(times_of({"002", "003", "010"}, meta), ElementsAre(0.5, 0.75, 2.5));
+  EXPECT_THAT(times_of({"a2", "a3", "a10"}, meta), ElementsAre(0.0, 0.25, 0.5));
+  EXPECT_THAT(times_of({"1", "01"}, meta), ElementsAre(0.0, 0.25));  // the numbers do not rise
+  EXPECT_THAT(times_of({"1", "2"}, "{}"), ElementsAre(-1.0, -1.0));
 }
 
 TEST(ParsePictureName, FindsRolesKeysAndTimes) {
@@ -154,6 +157,75 @@ TEST(ListFolder, SaysWhatThereIsWhereNothingIsOfDepth) {
               testing::AllOf(HasSubstr("depth: no frames, expected 16-bit depth PNG files\n"), HasSubstr("depth/*.exr"),
                              HasSubstr("2  not taken: depth of .exr, expected PNG; convert: python3"),
                              HasSubstr("JPEG loses depth"), HasSubstr("rgb/*.png")));
+}
+
+/// A folder as a tool leaves it, whose camera has the focal length 210 for 256x192 pixels.
+struct Layout {
+  const char* tool;
+  const char* depth;
+  const char* colour;
+  const char* calibration;
+  const char* text;
+  int colour_width = 256;
+};
+
+TEST(ListFolder, FindsCalibrationsWhereToolsPutThem) {
+  const std::vector<Layout> layouts{
+      {"Stray Scanner", "depth/000000.png", "rgb/000000.png", "camera_matrix.csv",
+       "1575.0,0.0,959.5\n0.0,1575.0,719.5\n0.0,0.0,1.0\n", 1920},
+      {"ScanNet++", "depth/frame_000010.png", "rgb/frame_000010.jpg", "pose_intrinsic_imu.json",
+       R"({"frame_000010": {"poses": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]],
+           "intrinsic": [[1575, 0, 959.5], [0, 1575, 719.5], [0, 0, 1]]}})",
+       1920},
+      {"Record3D", "depth/0.png", "rgb/0.jpg", "metadata.json",
+       R"({"w": 960, "h": 720, "K": [787.5, 0, 0, 0, 787.5, 0, 479.5, 359.5, 1], "fps": 60})", 960},
+      {"3D Scanner App", "depth_00000.png", "frame_00000.jpg", "frame_00000.json",
+       R"({"intrinsics": [1575, 0, 959.5, 0, 1575, 719.5, 0, 0, 1], "time": 1.5})", 1920},
+      {"Polycam", "depth/1000.png", "images/1000.jpg", "cameras/1000.json",
+       R"({"fx": 840, "fy": 840, "cx": 511.5, "cy": 383.5, "width": 1024, "height": 768})", 1024},
+      {"ARKitScenes", "lowres_depth/1_6845.400.png", "lowres_wide/1_6845.400.png", "lowres_wide_intrinsics/1_6.pincam",
+       "256 192 210 210 127.5 95.5"},
+      {"Matterport", "matterport_depth_images/0b_d0_0.png", "matterport_color_images/0b_i0_0.jpg",
+       "matterport_camera_intrinsics/0b_intrinsics_0.txt", "256 192 210 210 127.5 95.5 0 0 0 0 0\n"},
+      {"SceneNN", "depth/depth00001.png", "image/image00001.png", "asus.ini", "fx=210\nfy=210\ncx=127.5\ncy=95.5\n"},
+      {"ORB-SLAM3", "depth/0.png", "rgb/0.png", "TUM1.yaml",
+       "%YAML:1.0\nCamera.type: \"PinHole\"\nCamera1.fx: 210\nCamera1.fy: 210\nCamera1.cx: 127.5\nCamera1.cy: 95.5\n"},
+      {"ZED", "depth/0.png", "color/0.png", "SN12345.conf",
+       "[LEFT_CAM_HD]\nfx=525\nfy=525\ncx=640\ncy=360\n[LEFT_CAM_VGA]\nfx=210\nfy=210\ncx=127.5\ncy=95.5\n"},
+      {"Panoptic", "kinectdepth/N_0.png", "kinectcolor/N_0.png", "kcalibration.json",
+       R"({"sensors": [{"K_depth": [[210, 0, 127.5], [0, 210, 95.5], [0, 0, 1]],
+           "K_color": [[1060, 0, 959.5], [0, 1060, 539.5], [0, 0, 1]]}]})"}};
+  for (const Layout& layout : layouts) {
+    SCOPED_TRACE(layout.tool);
+    const TemporaryFolder folder;
+    put(folder / layout.depth, encode_png(DepthImage(256, 192, 2000)));
+    put(folder / layout.colour,
+        encode_png(ColourImage(layout.colour_width, layout.colour_width * 3 / 4, {10, 20, 30})));
+    put(folder / layout.calibration, layout.text);
+    const auto frame = open_source(folder.path())->next();
+    EXPECT_NEAR(frame->camera.fx, 210.0, 1e-3);
+    EXPECT_NEAR(frame->camera.cx, 127.5, 0.5);
+    ASSERT_TRUE(frame->colour.same_size(frame->depth));
+    EXPECT_EQ(frame->colour(128, 96), (Rgb{10, 20, 30}));
+  }
+}
+
+TEST(ListFolder, TakesACalibrationFromAboveWithANote) {
+  const TemporaryFolder folder;
+  put(folder / "cam_params.json", R"({"camera": {"w": 64, "h": 48, "fx": 50, "cx": 31, "cy": 23, "scale": 6553.5}})");
+  put(folder / "room0/results/depth000000.png", encode_png(DepthImage(64, 48, 6554)));
+  const auto source = open_source(folder / "room0/results");
+  EXPECT_EQ(source->next()->depth(0, 0), 1000);
+  EXPECT_THAT(source->notes(), ElementsAre(HasSubstr("no calibration beside the pictures; taken from")));
+  put(folder / "room0/results/intrinsics.txt", "60 60 31 23\n");
+  EXPECT_EQ(open_source(folder / "room0/results")->next()->camera.fx, 60.F) << "the nearer one";
+}
+
+TEST(ListFolder, NamesTheFolderThatHasFrames) {
+  const TemporaryFolder folder;
+  put(folder / "cam_1/depth/0.png", encode_png(DepthImage(64, 48, 1000)));
+  put(folder / "notes.txt", "hello");
+  EXPECT_THAT(error_of([&] { open_source(folder.path()); }), HasSubstr("cam_1 has some"));
 }
 
 }  // namespace

@@ -188,7 +188,11 @@ void FrameListReader::look_at_first() {
                                       [](const FrameFiles& files) { return !files.colour.empty(); });
   for (SourceItem& item : list_.items) {
     if (item.use == "depth") item.holds += fmt::format(" {}x{}", first.width(), first.height());
-    if (facts.has_focal() && item.use.empty() && facts.origin.ends_with("/" + item.name)) item.use = "calibration";
+    const auto is_it = [&](const std::string& origin) { return origin.ends_with("/" + item.name); };
+    const bool used = (facts.has_focal() && is_it(facts.origin)) ||
+                      std::ranges::any_of(facts.others, is_it, &CameraFacts::origin) ||
+                      std::ranges::any_of(facts.transforms, is_it, &RigidFact::origin);
+    if (used && item.use.empty()) item.use = "calibration";
   }
   camera_ = resolve_camera(facts, first.width(), first.height(), registered, list_.place, list_.notes);
   rectification_ = make_rectification(facts.distorted, camera_);

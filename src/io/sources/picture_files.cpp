@@ -171,6 +171,7 @@ std::vector<SourceItem> items_of(const std::string& folder, const std::vector<st
     const std::string extension = "." + item.holds;
     const auto& unread = unread_depth_extensions();
     if (item.use.empty() && std::ranges::find(unread, extension) != unread.end()) item.why = unread_advice(extension);
+    if (extension == ".depth") item.why = "Record3D packs it by LZFSE; export PNG, or EXR + JPG";
     const bool elsewhere = depths.empty() && kind.find("/*depth*") != kind.npos;
     if (elsewhere && item.why.empty()) item.why = "give that folder as the source";
     const bool jpeg_of_depth = extension.starts_with(".jp") && kind.find("epth") != kind.npos;

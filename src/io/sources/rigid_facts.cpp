@@ -106,7 +106,7 @@ std::optional<Isometry3d> matrix_of(const std::vector<double>& m) {
 class RigidReader {
  public:
   explicit RigidReader(const std::string& name)
-      : file_(letters_and_digits(std::filesystem::path(name).stem().string())) {}
+      : name_(name), file_(letters_and_digits(std::filesystem::path(name).stem().string())) {}
 
   void read(const FactTree& value, const std::string& path, int levels) {
     constexpr std::size_t kMost = 100;
@@ -117,7 +117,7 @@ class RigidReader {
     }
     // ScanNet's pictures lie on each other already, whatever its colorToDepthExtrinsics is (its authors, issue 92).
     if (value.contains("axisAlignment"))
-      found_.push_back({CameraRole::depth, CameraRole::colour, Isometry3d::Identity(), false});
+      found_.push_back({CameraRole::depth, CameraRole::colour, Isometry3d::Identity(), name_, false});
     const std::string here = path + frames_of(value);
     pair(value, here);
     for (const auto& [key, inner] : value.items()) {
@@ -132,10 +132,13 @@ class RigidReader {
   /// Returns the frames of a message of ROS: points go from the child's to that of the header.
   static std::string frames_of(const FactTree& object) {
     std::string text;
-    if (object.contains("child_frame_id")) text += object["child_frame_id"].dump();
+    const auto add = [&](const FactTree& of, const char* key) {
+      const auto found = of.is_object() ? of.find(key) : of.end();
+      if (found != of.end() && found->is_string()) text += found->get_ref<const std::string&>();
+    };
+    add(object, "child_frame_id");
     const auto header = object.find("header");
-    if (header != object.end() && header->is_object() && header->contains("frame_id"))
-      text += (*header)["frame_id"].dump();
+    if (header != object.end()) add(*header, "frame_id");
     return text.empty() ? text : "/" + letters_and_digits(text);
   }
 
@@ -168,7 +171,7 @@ class RigidReader {
       }
       // Its first camera is that of colour, and the matrix takes points from it to depth.
       if (const auto transform = matrix_of(last)) {
-        found_.push_back({CameraRole::colour, CameraRole::depth, *transform, false});
+        found_.push_back({CameraRole::colour, CameraRole::depth, *transform, name_, false});
       }
     } else if (const auto transform = named ? matrix_of(numbers_of(value)) : std::nullopt) {
       add(*transform, path, false);
@@ -179,11 +182,11 @@ class RigidReader {
     const auto direction = direction_in(path);
     const auto said = direction ? direction : direction_in(file_);
     const auto [from, to] = said.value_or(std::pair(CameraRole::unsaid, CameraRole::unsaid));
-    found_.push_back({from, to, transform, in_one_list});
+    found_.push_back({from, to, transform, name_, in_one_list});
   }
 
   static constexpr std::size_t kInfinitamRows = 9;
-  std::string file_;
+  std::string name_, file_;
   std::vector<RigidFact> found_;
 };
 

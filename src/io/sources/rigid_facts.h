@@ -17,6 +17,7 @@ struct RigidFact {
   CameraRole from = CameraRole::unsaid;  ///< points are taken from its frame ...
   CameraRole to = CameraRole::unsaid;    ///< ... to its frame; one alone is unsaid where all refer to a third frame
   Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();  ///< metres
+  std::string origin;                                           ///< the file
   bool in_one_list = false;  ///< whether the rotation is a list of nine, which librealsense writes column by column
 };
 
