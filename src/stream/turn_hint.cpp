@@ -10,11 +10,13 @@
 namespace vesalius {
 namespace {
 
-/// Returns in how many frames people are found that are turned by so many quarters.
+/// Returns in how many frames somebody is surely found once they are turned by so many quarters. Of real frames of
+/// empty rooms the scores of what is taken for people so are up to 0.87; those of people are 0.98 and more.
 std::size_t frames_with_people(const Detector& detector, std::vector<Frame>& frames, int quarters) {
+  constexpr float kSure = 0.9F;
   return std::size_t(std::ranges::count_if(frames, [&](Frame& frame) {
     frame.quarter_turns = quarters;
-    return !detector.detect(frame).empty();
+    return std::ranges::any_of(detector.detect(frame), [](const Person& person) { return person.score > kSure; });
   }));
 }
 
