@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <functional>
 #include <limits>
 
+#include "io/files/av_pictures.h"
 #include "io/files/data_file.h"
 #include "io/files/image_bytes.h"
 #include "vesalius/error.h"
@@ -24,6 +26,10 @@ static_assert(std::endian::native == std::endian::little, "arrays of NumPy say w
 
 constexpr float kMost = std::numeric_limits<std::uint16_t>::max();
 constexpr std::string_view kNumpy = "\x93NUMPY"sv;
+
+std::string extension_of(std::string_view kind) {
+  return kind == "TIFF" ? ".tif" : kind == "OpenEXR" ? ".exr" : ".webp";
+}
 
 /// Returns values of type T from `from` on, as those of a picture.
 template <class T, class Pixel>
@@ -47,6 +53,31 @@ Image<std::uint16_t> decode_pgm(std::string_view bytes, const std::string& name)
   const PnmHeader header = check_pnm(bytes, 1, name);
   if (header.most <= 0xFF) throw Error(name + ": 8-bit PGM, expected 16-bit (depth, 0 = no reading)");
   return pixels<std::uint16_t, std::uint16_t>(bytes.substr(header.begin), header.width, header.height, true);
+}
+
+/// "Pf", sides, a number that is negative where the low byte comes first, and rows from the lowest up.
+DepthPicture decode_pfm(std::string_view bytes, const std::string& name) {
+  std::array<std::string_view, 3> words;
+  std::size_t at = 2;
+  for (std::string_view& word : words) {
+    at = bytes.find_first_not_of(" \t\r\n", at);
+    const std::size_t end = std::min(bytes.find_first_of(" \t\r\n", at), bytes.size());
+    if (at >= end) throw Error(name + ": truncated PFM");
+    word = bytes.substr(at, end - at);
+    at = end;
+  }
+  int width = 0, height = 0;
+  std::from_chars(words[0].data(), words[0].data() + words[0].size(), width);
+  std::from_chars(words[1].data(), words[1].data() + words[1].size(), height);
+  check_image_size(width, height, name);
+  const std::size_t expected = std::size_t(width) * std::size_t(height) * sizeof(float);
+  if (bytes.size() < at + 1 + expected) {
+    throw Error(fmt::format("{}: truncated: {} bytes, expected {} for {}x{} pixels", name, bytes.size(),
+                            at + 1 + expected, width, height));
+  }
+  auto image = pixels<float, float>(bytes.substr(at + 1), width, height, !words[2].starts_with('-'));
+  for (int v = 0; v < height / 2; ++v) std::swap_ranges(image.row(v), image.row(v) + width, image.row(height - 1 - v));
+  return {{}, std::move(image)};
 }
 
 /// Returns what stands between `begin` and `end` in the header of an array; empty where nothing does.
@@ -109,19 +140,20 @@ DepthPicture decode_numpy(std::string_view bytes, const std::string& name) {
 }  // namespace
 
 const std::vector<std::string>& depth_extensions() {
-  static const std::vector<std::string> all{".png", ".pgm", ".npy"};
-  return all;
+  static const std::vector<std::string> without{".png", ".pgm", ".npy", ".pfm"};
+  static const std::vector<std::string> with{".png", ".pgm", ".npy", ".pfm", ".tif", ".tiff", ".exr"};
+  return has_avcodec() ? with : without;
 }
 
 const std::vector<std::string>& unread_depth_extensions() {
-  static const std::vector<std::string> all{".tif", ".tiff", ".exr", ".pfm", ".npz", ".mat",
+  static const std::vector<std::string> all{".tif", ".tiff", ".exr", ".npz", ".mat",
                                             ".h5",  ".hdf5", ".raw", ".bin", ".dpt"};
   return all;
 }
 
 std::string unread_advice(const std::string& extension) {
   const std::string what = fmt::format("depth of {}, expected PNG", extension);
-  const bool metres = extension == ".exr" || extension == ".pfm";
+  const bool metres = extension == ".exr";
   if (metres || extension.starts_with(".tif")) {
     return fmt::format("{}; convert: python3 -c \"import cv2; cv2.imwrite('out.png', ({}).astype('uint16'))\"", what,
                        metres ? fmt::format("cv2.imread('in{}', -1) * 1000", extension)
@@ -132,10 +164,16 @@ std::string unread_advice(const std::string& extension) {
 
 DepthPicture decode_depth(std::string_view bytes, const std::string& name) {
   if (is_pgm(bytes)) return {decode_pgm(bytes, name), {}};
+  if (bytes.starts_with("Pf")) return decode_pfm(bytes, name);
+  if (bytes.starts_with("PF")) throw Error(name + ": PFM of colours, expected one of one channel");
   if (bytes.starts_with(kNumpy)) return decode_numpy(bytes, name);
   if (is_jpeg(bytes)) throw Error(name + ": JPEG, which loses depth, expected a PNG of 16 bits");
-  if (bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv)) throw Error(name + ": " + unread_advice(".tif"));
-  if (bytes.starts_with("\x76\x2f\x31\x01"sv)) throw Error(name + ": " + unread_advice(".exr"));
+  if (const std::string_view kind = av_picture_kind(bytes); !kind.empty()) {
+    if (!has_avcodec()) throw Error(fmt::format("{}: {}", name, unread_advice(extension_of(kind))));
+    AvPicture picture = decode_av_picture(bytes, name);
+    if (!picture.colour.empty()) throw Error(fmt::format("{}: {} of 8 bits, expected 16 or floats", name, kind));
+    return {std::move(picture.whole), std::move(picture.real)};
+  }
   return {decode_depth_png(bytes, name), {}};
 }
 

@@ -26,8 +26,9 @@ const std::vector<std::string>& unread_depth_extensions();
 /// Returns what to do about a file of an extension that is not read.
 std::string unread_advice(const std::string& extension);
 
-/// Reads a PNG or PGM of 16 bits, or an array of NumPy (.npy) of whole numbers or of numbers with a fraction: rows of
-/// columns. Throws Error naming `name` if it is damaged, too large, or something else.
+/// Reads a PNG or PGM of 16 bits, a PFM, or an array of NumPy (.npy) of whole numbers or of numbers with a fraction:
+/// rows of columns; with libavcodec TIFF of 16 bits and OpenEXR too. Throws Error naming `name` if it is damaged, too
+/// large, or something else.
 DepthPicture decode_depth(std::string_view bytes, const std::string& name);
 DepthPicture read_depth(const std::string& path);
 

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <limits>
+#include <opencv2/imgcodecs.hpp>
 
+#include "io/files/av_pictures.h"
 #include "io/files/test_files.h"
 #include "vesalius/image_file.h"
 
@@ -69,11 +71,28 @@ TEST(DepthPicture, RefusesOtherArrays) {
   EXPECT_THAT(error_of([&] { read("\x93NUMPY\x02\0\xFF\xFF\xFF\xFF{}"s); }), HasSubstr("truncated"));
 }
 
+TEST(DepthPicture, ReadsPfmFromTheLowestRowUp) {
+  cv::Mat metres(2, 2, CV_32F);
+  metres.at<float>(0, 0) = 1.5F, metres.at<float>(0, 1) = 0.F;
+  metres.at<float>(1, 0) = 2.25F, metres.at<float>(1, 1) = std::numeric_limits<float>::infinity();
+  std::vector<std::uint8_t> written;
+  ASSERT_TRUE(cv::imencode(".pfm", metres, written));
+  const std::string bytes(written.begin(), written.end());
+  EXPECT_THAT(values(read(bytes)), ElementsAre(1500, 0, 2250, 0));
+  EXPECT_THAT(values(read("Pf 1 1 1.0\n\x3F\x80\0\0"s)), ElementsAre(1000)) << "the high byte first";
+  EXPECT_THAT(error_of([&] { read(bytes.substr(0, bytes.size() - 1)); }), HasSubstr("d: truncated"));
+  EXPECT_THAT(error_of([] { read("Pf\n100000 100000\n-1\n"); }), HasSubstr("pixels"));
+  EXPECT_THAT(error_of([] { read("Pf\n2"); }), HasSubstr("d: truncated PFM"));
+  EXPECT_THAT(error_of([] { read("PF\n1 1\n-1\n123456789abc"); }), HasSubstr("d: PFM of colours"));
+}
+
 TEST(DepthPicture, SaysWhatOtherPicturesAre) {
   EXPECT_THAT(error_of([] { read("\xFF\xD8\xFF\xE0"); }), HasSubstr("d: JPEG, which loses depth"));
+  const bool is_read = has_avcodec();
   EXPECT_THAT(error_of([] { read("II*\0\x08\0\0\0"s); }),
-              HasSubstr("d: depth of .tif, expected PNG; convert: python3"));
-  EXPECT_THAT(error_of([] { read("\x76\x2f\x31\x01\x02"); }), HasSubstr("d: depth of .exr, expected PNG; convert"));
+              HasSubstr(is_read ? "d: damaged TIFF" : "d: depth of .tif, expected PNG; convert: python3"));
+  EXPECT_THAT(error_of([] { read("\x76\x2f\x31\x01\x02"); }),
+              HasSubstr(is_read ? "d: damaged OpenEXR" : "d: depth of .exr, expected PNG; convert"));
   EXPECT_THAT(error_of([] { read(encode_png(Image<std::uint8_t>(2, 2, 9))); }),
               HasSubstr("d: 8-bit grey PNG, expected 16"));
   EXPECT_THAT(error_of([] { read(encode_png(ColourImage(2, 2))); }), HasSubstr("d: 8-bit colour PNG, expected 16"));

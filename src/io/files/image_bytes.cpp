@@ -121,6 +121,12 @@ bool is_png(std::string_view bytes) { return bytes.starts_with(kPngSignature); }
 
 bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xFF\xD8\xFF"sv); }
 
+std::string_view av_picture_kind(std::string_view bytes) {
+  if (bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv)) return "TIFF";
+  if (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP")) return "WebP";
+  return bytes.starts_with("\x76\x2f\x31\x01"sv) ? "OpenEXR" : "";
+}
+
 PngBytes check_png(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw Error(name + ": empty file, expected a PNG");
   if (!is_png(bytes)) throw Error(fmt::format("{}: {}, expected a PNG", name, kind_or(bytes, "no PNG signature")));

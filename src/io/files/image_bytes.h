@@ -47,6 +47,9 @@ void check_image_size(std::int64_t width, std::int64_t height, const std::string
 
 bool is_png(std::string_view bytes);
 bool is_jpeg(std::string_view bytes);
+/// Returns the kind of a picture that libavcodec reads (io/files/av_pictures.h), by its first bytes: "TIFF", "WebP" or
+/// "OpenEXR"; nothing for others.
+std::string_view av_picture_kind(std::string_view bytes);
 inline bool is_pgm(std::string_view bytes) { return bytes.starts_with("P5"); }
 inline bool is_ppm(std::string_view bytes) { return bytes.starts_with("P6"); }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "io/files/atomic_file.h"
+#include "io/files/av_pictures.h"
 #include "io/files/data_file.h"
 #include "io/files/image_bytes.h"
 #include "io/files/known_kind.h"
@@ -124,8 +125,13 @@ static_assert(sizeof(Rgb) == 3);
 ColourImage decode_colour(std::string_view bytes, const std::string& name) {
   if (is_png(bytes)) return decode_png<Rgb>(check_png(bytes, name), SPNG_FMT_RGB8, name);
   if (is_ppm(bytes)) return decode_ppm(bytes, name);
+  if (const std::string_view kind = av_picture_kind(bytes); !kind.empty()) {
+    AvPicture picture = decode_av_picture(bytes, name);
+    if (picture.colour.empty()) throw Error(fmt::format("{}: {} of 16 bits or floats, expected colours", name, kind));
+    return std::move(picture.colour);
+  }
   if (!is_jpeg(bytes)) {
-    throw Error(fmt::format("{}: {}, expected a PNG, JPEG or PPM", name,
+    throw Error(fmt::format("{}: {}, expected a PNG, JPEG, PPM, TIFF or WebP", name,
                             bytes.empty() ? "empty file" : kind_or(bytes, "unknown kind of picture")));
   }
   check_jpeg(bytes, name);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "io/files/depth_picture.h"
 #include "io/files/image_bytes.h"
 #include "io/lens/lens.h"
 #include "io/recordings/camera_topics.h"
@@ -23,7 +24,8 @@ namespace vesalius {
 namespace {
 
 constexpr std::string_view kDisparities = "stereo_msgs/DisparityImage", kPoints = "sensor_msgs/PointCloud2",
-                           kFoxgloveCalibration = "CameraCalibration";
+                           kFoxgloveCalibration = "CameraCalibration",
+                           kPacket = "ffmpeg_image_transport_msgs/FFMPEGPacket";
 
 int picture_side(std::uint64_t value, const std::string& name) {
   if (value > static_cast<std::uint64_t>(kMaxPixels)) {
@@ -202,13 +204,14 @@ void parse_points(MessageFields& fields, PictureMessage& picture, const std::str
 }
 
 bool is_foxglove_picture(const RecordedTopic& topic) {
-  return is_foxglove(topic, "RawImage") || is_foxglove(topic, "CompressedImage");
+  return is_foxglove(topic, "RawImage") || is_foxglove(topic, "CompressedImage") ||
+         is_foxglove(topic, "CompressedVideo");
 }
 
 PictureMessage foxglove_picture(const RecordedTopic& topic, std::string_view message, const std::string& name) {
   const FoxgloveMessage fields = read_foxglove(topic, message, name).front();
   PictureMessage picture;
-  picture.compressed = is_foxglove(topic, "CompressedImage");
+  picture.compressed = !is_foxglove(topic, "RawImage");
   picture.time_ns = static_cast<std::int64_t>(fields.number("timestamp"));
   picture.frame = fields.text("frame_id");
   picture.width = picture_side(fields.number("width"), name);
@@ -234,6 +237,17 @@ Calibration foxglove_calibration(const RecordedTopic& topic, std::string_view me
   return calibration;
 }
 
+/// ffmpeg_image_transport_msgs/FFMPEGPacket
+void parse_packet(MessageFields& fields, PictureMessage& picture, const std::string& name) {
+  picture.width = picture_side(fields.u32("the width"), name);
+  picture.height = picture_side(fields.u32("the height"), name);
+  picture.encoding = fields.text("the encoding");
+  fields.u64("the time of the packet");
+  fields.u8("the flags");
+  fields.u8("the byte order");
+  picture.data = fields.bytes("the packet");
+}
+
 template <class T>
 std::string_view bytes_of(const Image<T>& image) {
   return {reinterpret_cast<const char*>(image.data()), image.size() * sizeof(T)};
@@ -244,7 +258,7 @@ std::string_view bytes_of(const Image<T>& image) {
 bool is_picture(const RecordedTopic& topic) {
   if (is_foxglove_picture(topic)) return true;
   return is_ros(topic) && (topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage" ||
-                           topic.type == kDisparities || topic.type == kPoints);
+                           topic.type == kDisparities || topic.type == kPoints || topic.type == kPacket);
 }
 
 bool is_calibration(const RecordedTopic& topic) {
@@ -255,7 +269,7 @@ bool is_calibration(const RecordedTopic& topic) {
 PictureMessage parse_picture(const RecordedTopic& topic, std::string_view message, const std::string& name) {
   if (is_foxglove_picture(topic)) return foxglove_picture(topic, message, name);
   PictureMessage picture;
-  picture.compressed = topic.type.ends_with("CompressedImage");
+  picture.compressed = topic.type == kPacket || topic.type.ends_with("CompressedImage");
   MessageFields fields(message, topic.layout, name);
   picture.time_ns = fields.header(picture.frame);
   if (std::string stream = realsense_stream(topic.name); !stream.empty()) picture.frame = std::move(stream);
@@ -265,6 +279,8 @@ PictureMessage parse_picture(const RecordedTopic& topic, std::string_view messag
     parse_disparities(fields, picture, name);
   } else if (topic.type == kPoints) {
     parse_points(fields, picture, name);
+  } else if (topic.type == kPacket) {
+    parse_packet(fields, picture, name);
   } else if (picture.compressed) {
     picture.encoding = fields.text("the format");
     picture.data = fields.bytes("the picture");
@@ -344,8 +360,18 @@ DepthImage depth_of(const PictureMessage& given, const StoredDepth& stored, cons
   const auto real = [&](auto value) { return depth_reading_of_mm(float_to_mm * double(value)); };
   if (given.compressed) {
     const bool is_packed = encoding.find("compressedDepth") != std::string::npos;
-    Image<std::uint16_t> depth =
-        is_packed ? unpack_compressed_depth(given.data, encoding, name) : decode_depth_png(given.data, name);
+    DepthPicture picture;
+    if (is_packed) {
+      picture.whole = unpack_compressed_depth(given.data, encoding, name);
+    } else {
+      picture = decode_depth(given.data, name);
+    }
+    if (!picture.real.empty()) {
+      Image<std::uint16_t> depth(picture.width(), picture.height());
+      std::ranges::transform(picture.real, depth.begin(), real);
+      return depth;
+    }
+    Image<std::uint16_t> depth = std::move(picture.whole);
     if (!encoding.starts_with("32FC1")) std::ranges::transform(depth, depth.begin(), whole);
     return depth;
   }

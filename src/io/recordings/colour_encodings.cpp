@@ -6,6 +6,7 @@
 #include <array>
 
 #include "io/files/plain_text.h"
+#include "io/files/rgb_of_yuv.h"
 #include "io/recordings/picture_message.h"
 #include "vesalius/error.h"
 
@@ -72,14 +73,6 @@ Bytes row_of(const PictureMessage& picture, int v) {
   return reinterpret_cast<Bytes>(picture.data.data()) + static_cast<std::size_t>(v) * picture.row_bytes;
 }
 
-/// Returns the colour of luminance and chrominance as television has them (BT.601, 16 to 235), in 256ths.
-Rgb from_yuv(int y, int u, int v) {
-  constexpr int kScale = 298, kRound = 128, kShift = 8;
-  const int c = kScale * (y - 16) + kRound, d = u - 128, e = v - 128;
-  const auto byte = [](int value) { return static_cast<std::uint8_t>(std::clamp(value >> kShift, 0, 255)); };
-  return {byte(c + 409 * e), byte(c - 100 * d - 208 * e), byte(c + 516 * d)};
-}
-
 /// `colour_at` gets the beginning of a pixel's row, and its place.
 template <class ColourAt>
 ColourImage make_colour(const PictureMessage& picture, const ColourAt& colour_at) {
@@ -107,7 +100,7 @@ ColourImage from_pairs(const PictureMessage& picture, const Pairs& of, const std
   }
   return make_colour(picture, [&](Bytes row, int u, int) {
     const Bytes pair = row + 4 * (u / 2);
-    return from_yuv(pair[of.y + 2 * (u % 2)], pair[of.u], pair[of.v]);
+    return rgb_of_yuv(pair[of.y + 2 * (u % 2)], pair[of.u], pair[of.v]);
   });
 }
 
@@ -124,7 +117,7 @@ ColourImage from_planes(const PictureMessage& picture, const Planes& of, const s
   const int step = of.together ? 2 : 1;
   return make_colour(picture, [&](Bytes row, int u, int v) {
     const std::size_t at = chroma_row * std::size_t(v / 2) + std::size_t(u / 2 * step);
-    return from_yuv(row[u], (of.v_first ? second : first)[at], (of.v_first ? first : second)[at]);
+    return rgb_of_yuv(row[u], (of.v_first ? second : first)[at], (of.v_first ? first : second)[at]);
   });
 }
 

@@ -37,6 +37,8 @@ constexpr std::array<Field, 7> kRawImage{{{1, "timestamp", Kind::time},
                                           {6, "data", Kind::bytes}}};
 constexpr std::array<Field, 4> kCompressedImage{
     {{1, "timestamp", Kind::time}, {4, "frame_id", Kind::text}, {2, "data", Kind::bytes}, {3, "format", Kind::text}}};
+constexpr std::array<Field, 4> kCompressedVideo{
+    {{1, "timestamp", Kind::time}, {2, "frame_id", Kind::text}, {3, "data", Kind::bytes}, {4, "format", Kind::text}}};
 constexpr std::array<Field, 9> kCameraCalibration{{{1, "timestamp", Kind::time},
                                                    {9, "frame_id", Kind::text},
                                                    {2, "width", Kind::number},
@@ -61,6 +63,7 @@ std::string_view schema_of(const RecordedTopic& topic) {
 Fields fields_of(std::string_view schema) {
   if (schema == "RawImage") return kRawImage;
   if (schema == "CompressedImage") return kCompressedImage;
+  if (schema == "CompressedVideo") return kCompressedVideo;
   return schema == "CameraCalibration" ? Fields(kCameraCalibration) : Fields(kFrameTransform);
 }
 

@@ -34,8 +34,8 @@ class FoxgloveMessage {
 /// Returns whether messages are of a schema, e.g. "RawImage": in Protocol Buffers or JSON, or of foxglove_msgs in ROS.
 bool is_foxglove(const RecordedTopic& topic, std::string_view schema);
 
-/// Reads a message of a topic that is_foxglove of RawImage, CompressedImage, CameraCalibration or FrameTransform; all
-/// transforms of FrameTransforms. Throws Error naming `name`.
+/// Reads a message of a topic that is_foxglove of RawImage, CompressedImage, CompressedVideo, CameraCalibration or
+/// FrameTransform; all transforms of FrameTransforms. Throws Error naming `name`.
 std::vector<FoxgloveMessage> read_foxglove(const RecordedTopic& topic, std::string_view message,
                                            const std::string& name);
 

@@ -20,6 +20,7 @@ class MessageFields {
   std::uint8_t u8(const char* what) { return static_cast<std::uint8_t>(number(1, what)); }
   std::uint16_t u16(const char* what) { return static_cast<std::uint16_t>(number(2, what)); }
   std::uint32_t u32(const char* what) { return static_cast<std::uint32_t>(number(4, what)); }
+  std::uint64_t u64(const char* what) { return number(8, what); }
   float real32(const char* what);
   double real64(const char* what);
   std::string_view text(const char* what);

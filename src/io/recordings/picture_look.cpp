@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "io/files/av_pictures.h"
 #include "io/files/image_bytes.h"
+#include "io/files/video_stream.h"
 #include "io/recordings/colour_encodings.h"
 #include "io/recordings/depth_codecs.h"
 #include "vesalius/error.h"
@@ -50,12 +52,25 @@ Head jpeg_head(std::string_view bytes) {
   return {"JPEG"};
 }
 
+/// Of pictures that are decoded for it: few cameras record such.
+Head av_head(std::string_view bytes) {
+  Head head{av_picture_kind(bytes)};
+  if (head.kind.empty() || !has_avcodec()) return head;
+  try {
+    const AvPicture picture = decode_av_picture(bytes, "");
+    const bool is_depth = picture.colour.empty();
+    head.width = std::max({picture.colour.width(), picture.whole.width(), picture.real.width()});
+    head.height = std::max({picture.colour.height(), picture.whole.height(), picture.real.height()});
+    if (is_depth) head.bits = 16, head.channels = 1;
+  } catch (const Error&) {  // whoever asks for the frame hears of it
+  }
+  return head;
+}
+
 Head head_of(std::string_view bytes) {
   if (is_png(bytes)) return png_head(bytes);
   if (is_jpeg(bytes)) return jpeg_head(bytes);
-  if (bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv)) return {"TIFF"};
-  if (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP")) return {"WebP"};
-  return {};
+  return av_head(bytes);
 }
 
 /// Pictures that were of 16 bits or of metres before they were compressed: "16UC1; jpeg compressed".
@@ -64,7 +79,22 @@ bool says_depth(const std::string& format) {
                              [&](const char* one) { return format.starts_with(one); });
 }
 
+PictureLook look_at_video(const PictureMessage& picture, std::string_view codec) {
+  PictureLook look{Kind::unread, picture.encoding, 0, 0, {}};
+  std::tie(look.width, look.height) = video_size(codec, picture.data);
+  if (look.width > 0) {
+    look.kind = Kind::colour;
+  } else {
+    look.needs_others = has_avcodec();
+    look.why = has_avcodec() ? "no picture of this video can be decoded without others before it"
+                             : "video is not read without libavcodec";
+  }
+  return look;
+}
+
 PictureLook look_at_compressed(const PictureMessage& picture) {
+  if (const std::string_view codec = video_codec(picture.encoding); !codec.empty())
+    return look_at_video(picture, codec);
   // image_transport's formats end with a space.
   const std::string format = picture.encoding.substr(0, picture.encoding.find_last_not_of(' ') + 1);
   PictureLook look{Kind::unread, format, 0, 0, {}};
@@ -83,17 +113,17 @@ PictureLook look_at_compressed(const PictureMessage& picture) {
   look.width = head.width;
   look.height = head.height;
   const std::string_view kind = head.kind.empty() ? "this format" : head.kind;
-  const bool is_16 = head.kind == "PNG" && head.bits == 16 && head.channels == 1;
+  const bool is_read = head.width > 0, is_16 = is_read && head.bits == 16 && head.channels == 1;
   if (is_16) {
     look.kind = says_depth(picture.encoding) ? Kind::depth : Kind::sixteen;
   } else if (says_depth(picture.encoding)) {
     look.why = head.kind == "JPEG" || head.kind == "PNG"
                    ? fmt::format("{} bits of a {} are no distances; compressedDepth keeps them", head.bits, head.kind)
                    : fmt::format("{} is not read, expected a 16-bit PNG or compressedDepth", kind);
-  } else if (head.kind == "PNG" || head.kind == "JPEG") {
+  } else if (is_read || head.kind == "PNG" || head.kind == "JPEG") {
     look.kind = head.channels == 1 ? Kind::grey : Kind::colour;
   } else {
-    look.why = fmt::format("{} is not read, expected JPEG or PNG", kind);
+    look.why = fmt::format("{} is not read{}, expected JPEG or PNG", kind, has_avcodec() ? "" : " without libavcodec");
   }
   return look;
 }

@@ -19,10 +19,11 @@ struct PictureLook {
   std::string encoding;       ///< how it is encoded, in a word or two
   int width = 0, height = 0;  ///< 0 = not said
   std::string why;            ///< why it cannot be read
+  bool needs_others = false;  ///< of a video: whether a later picture may be one with which decoding can begin
   bool is_depth() const { return kind == Kind::depth || kind == Kind::sixteen; }
 };
 
-/// Looks at the head of a picture.
+/// Looks at the head of a picture; of kinds that libavcodec decodes, at the picture.
 PictureLook look_at(const PictureMessage& picture);
 
 }  // namespace vesalius

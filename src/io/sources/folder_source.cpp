@@ -29,7 +29,7 @@ bool is_folder(const fs::path& path) {
 
 using Role = PictureName::Role;
 
-const std::vector<std::string> kColourExtensions{".png", ".jpg", ".jpeg", ".ppm"};
+const std::vector<std::string> kColourExtensions{".png", ".jpg", ".jpeg", ".ppm", ".webp", ".tif", ".tiff"};
 
 /// Returns what a folder is for: "kinectdepth" too, where names of pictures begin with the word.
 Role role_of_folder(const std::string& name) {

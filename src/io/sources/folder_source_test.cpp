@@ -149,13 +149,13 @@ TEST(ListFolder, TakesTimesThatAreNames) {
 
 TEST(ListFolder, SaysWhatThereIsWhereNothingIsOfDepth) {
   const TemporaryFolder folder;
-  put(folder / "depth/0.exr", "");
-  put(folder / "depth/1.exr", "");
+  put(folder / "depth/0.npz", "");
+  put(folder / "depth/1.npz", "");
   put(folder / "depth/2.jpg", "");
   put(folder / "rgb/0.png", "");
   EXPECT_THAT(error_of([&] { list_folder(folder.path(), {}); }),
-              testing::AllOf(HasSubstr("depth: no frames, expected 16-bit depth PNG files\n"), HasSubstr("depth/*.exr"),
-                             HasSubstr("2  not taken: depth of .exr, expected PNG; convert: python3"),
+              testing::AllOf(HasSubstr("depth: no frames, expected 16-bit depth PNG files\n"), HasSubstr("depth/*.npz"),
+                             HasSubstr("2  not taken: depth of .npz, expected PNG of 16 bits"),
                              HasSubstr("JPEG loses depth"), HasSubstr("rgb/*.png")));
 }
 

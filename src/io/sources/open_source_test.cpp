@@ -394,7 +394,7 @@ TEST(OpenSource, NamesWhatIsNotASource) {
   EXPECT_THAT(open_error(folder.path()), HasSubstr(folder.path() + ": no frames, expected depth/*.png"));
   EXPECT_THAT(open_error("pcd:" + folder.path()), HasSubstr("no frames, expected *.pcd"));
   EXPECT_THAT(open_error(put(folder / "a.txt", "x")), HasSubstr("a.txt: unknown kind of file"));
-  EXPECT_THAT(open_error(put(folder / "a.TIF", "x")), HasSubstr("a.TIF: depth of .tif, expected PNG; convert"));
+  EXPECT_THAT(open_error(put(folder / "a.NPZ", "x")), HasSubstr("a.NPZ: depth of .npz, expected PNG of 16 bits"));
   EXPECT_THAT(open_error("tum:" + folder / "a.txt"), HasSubstr("a.txt: a file, expected a folder"));
   EXPECT_THAT(open_error(put(folder / "a.png", "")), HasSubstr("a.png: empty file"));
   EXPECT_THAT(open_error(put(folder / "a.pcd", "")), HasSubstr("a.pcd: empty file"));

@@ -237,8 +237,8 @@ RecordedCameras::Colour named_colour(const RecordedContents& contents, const Pic
 
 /// Messages of video, which are in no picture's message.
 bool is_video(const RecordedTopic& topic) {
-  return topic.messages != 0 && (topic.type.ends_with("CompressedVideo") || topic.type.ends_with("FFMPEGPacket") ||
-                                 topic.type == "theora_image_transport/Packet");
+  return topic.messages != 0 && !is_picture(topic) &&
+         (topic.type.ends_with("CompressedVideo") || topic.type.ends_with("/Packet"));
 }
 
 /// Returns why topics that have pictures give no colour: one after the other.

@@ -21,6 +21,8 @@ constexpr std::int64_t kForTransforms_ns = 1'000'000'000;
 constexpr std::int64_t kForOthers_ns = 20'000'000'000;
 /// Messages of a topic of which one must be a whole picture.
 constexpr int kMostLeftOut = 100;
+/// Messages of a video of which one must be such that decoding can begin with it.
+constexpr int kMostWithoutKey = 1000;
 /// Messages of depth after the first; if all of them have another size, that one was odd.
 constexpr int kConfirming = 2;
 
@@ -197,7 +199,13 @@ class Looking {
       if (!look) return ++wanted.left_out >= kMostLeftOut;
       contents_.pictures.push_back(seen(of, message, place_));
       contents_.pictures.back().left_out = wanted.left_out;
+      if (look->needs_others) return false;
       return !look->is_depth() || of.messages - wanted.left_out <= kConfirming;
+    }
+    if (known->look.needs_others) {
+      if (!look || look->needs_others) return ++wanted.left_out >= kMostWithoutKey;
+      *known = seen(of, message, place_);
+      return true;
     }
     if (!look || (look->width == known->look.width && look->height == known->look.height)) return true;
     if (++wanted.confirmed < kConfirming) return false;

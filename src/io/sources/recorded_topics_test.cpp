@@ -350,7 +350,7 @@ TEST_F(RecordedTopics, WhatIsNotReadAsColourIsNoted) {
   out_.put("/left/image", kImage, 0, grey_message(Image<std::uint8_t>(40, 30, 77), 0, "depth_frame"));
   out_.put("/color/image", kImage, 0, raw("yuv444p10", a_.depth));
   out_.put("/color/image/compressed", kCompressed, 0, packed("h264", "a picture and what changed since"));
-  out_.put("/color/video", "foxglove_msgs/msg/CompressedVideo", 0, "x");
+  out_.put("/color/video", "theora_image_transport/msg/Packet", 0, "x");
   const auto source = open();
   EXPECT_THAT(source->notes(),
               ElementsAre(AllOf(HasSubstr("no colour, since"), HasSubstr("/left/image (mono8): grey"),

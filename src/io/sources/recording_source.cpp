@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/av_pictures.h"
+#include "io/files/video_stream.h"
 #include "io/lens/colour_registration.h"
 #include "io/lens/lens.h"
 #include "io/recordings/camera_messages.h"
@@ -85,7 +87,11 @@ class RecordingSource final : public FrameSource {
   std::optional<Frame> next() override {
     while (!is_ready()) {
       try {
-        if (const auto message = next_message()) take_message(*message);
+        if (const auto message = next_message()) {
+          take_message(*message);
+        } else if (video_) {
+          take_decoded(video_->decode({}, 0));
+        }
       } catch (const Error&) {
         if (!wanted_from_s_) throw;
         failed_ = std::current_exception();
@@ -106,6 +112,10 @@ class RecordingSource final : public FrameSource {
     for (double back_s = 2.0 * kLead_s; go_to(aim_s - back_s); back_s *= kFurther) {
       const std::optional<double> first_s = next_depth_time_s();
       if (!first_s || *first_s > aim_s - kLead_s) continue;
+      for (auto later_s = first_s; video_key_ == VideoKey::wanted && later_s && *later_s < aim_s;) {
+        later_s = next_depth_time_s();
+      }
+      if (video_key_ == VideoKey::wanted) continue;
       go_to(aim_s - back_s);
       break;
     }
@@ -131,6 +141,8 @@ class RecordingSource final : public FrameSource {
     std::int64_t time_ns;
     RecordedTopic topic;
     std::string message;
+    ColourImage decoded;  ///< of a video; `message` is empty
+    std::size_t bytes() const { return message.size() + decoded.size() * sizeof(Rgb); }
   };
   struct Waiting {
     std::int64_t time_ns;
@@ -209,6 +221,8 @@ class RecordingSource final : public FrameSource {
     waiting_.clear();
     colours_.clear();
     colour_bytes_ = 0;
+    if (video_) video_->restart();
+    video_key_ = VideoKey::none;
     ups_.clear();
     last_time_ns_.reset();
     failed_ = nullptr;
@@ -232,13 +246,20 @@ class RecordingSource final : public FrameSource {
         const RecordedTopic& topic = recordings_[at_]->topics()[message->topic];
         const bool is_depth = topic.name == depth_topic_;
         if (!is_depth && (colour_topic_.empty() || topic.name != colour_topic_)) continue;
-        const double time_s = seconds(time_of(parse_picture(topic, message->bytes, files_[at_]), *message));
+        const PictureMessage picture = parse_picture(topic, message->bytes, files_[at_]);
+        const double time_s = seconds(time_of(picture, *message));
         if (is_depth) return time_s;
         last_colour_s_ = time_s;
+        note_video(picture);
       } catch (const Error&) {  // whoever asks for the frame hears of it
       }
     }
     return std::nullopt;
+  }
+
+  void note_video(const PictureMessage& picture) {
+    if (!is_video(picture) || video_key_ == VideoKey::seen) return;
+    video_key_ = is_key_message(video_codec(picture.encoding), picture.data) ? VideoKey::seen : VideoKey::wanted;
   }
 
   std::optional<double> last_time_s() {
@@ -279,11 +300,8 @@ class RecordingSource final : public FrameSource {
     const std::int64_t time_ns = time_of(picture, message);
     if (!is_depth) {
       if (picture.data.empty()) return;  // as drivers send before the first picture
-      colours_.push_back({time_ns, topic, std::string(message.bytes)});
-      colour_bytes_ += message.bytes.size();
-      while (colours_.size() > 2 * kMostWaiting || (colours_.size() > 1 && colour_bytes_ > kMostWaitingBytes))
-        forget_colour();
-      return;
+      if (is_video(picture)) return take_video(picture, time_ns);
+      return take_colour({time_ns, topic, std::string(message.bytes), {}});
     }
     Frame frame;
     frame.time_s = seconds(time_ns);
@@ -306,6 +324,27 @@ class RecordingSource final : public FrameSource {
     waiting_.push_back({time_ns, std::move(frame)});
   }
 
+  void take_colour(Colour colour) {
+    colour_bytes_ += colour.bytes();
+    colours_.push_back(std::move(colour));
+    while (colours_.size() > 2 * kMostWaiting || (colours_.size() > 1 && colour_bytes_ > kMostWaitingBytes))
+      forget_colour();
+  }
+
+  static bool is_video(const PictureMessage& picture) {
+    return picture.compressed && !video_codec(picture.encoding).empty();
+  }
+
+  /// Pictures of a video build on those before: they are decoded one after the other, wanted or not.
+  void take_video(const PictureMessage& picture, std::int64_t time_ns) {
+    if (!video_) video_ = std::make_unique<VideoDecoder>(video_codec(picture.encoding));
+    take_decoded(video_->decode(picture.data, time_ns));
+  }
+
+  void take_decoded(std::vector<VideoDecoder::Picture> pictures) {
+    for (VideoDecoder::Picture& each : pictures) take_colour({each.time_ns, {}, {}, std::move(each.colour)});
+  }
+
   void take_acceleration(const RecordedMessage& message) {
     const RecordedTopic& topic = recordings_[at_]->topics()[message.topic];
     const Acceleration acceleration = parse_acceleration(topic, message.bytes, files_[at_]);
@@ -321,7 +360,7 @@ class RecordingSource final : public FrameSource {
   }
 
   void forget_colour() {
-    colour_bytes_ -= colours_.front().message.size();
+    colour_bytes_ -= colours_.front().bytes();
     colours_.pop_front();
   }
 
@@ -333,7 +372,9 @@ class RecordingSource final : public FrameSource {
     if (nearest != colours_.end() && apart(*nearest) <= kMostApart_ns) {
       const std::string name = fmt::format("{}: {}", files_[std::min(at_, files_.size() - 1)], one.frame.name);
       one.frame.colour =
-          registered(colour_of(parse_picture(nearest->topic, nearest->message, name), name), one.frame.depth);
+          registered(nearest->decoded.empty() ? colour_of(parse_picture(nearest->topic, nearest->message, name), name)
+                                              : nearest->decoded,
+                     one.frame.depth);
     }
     one.frame.up = ups_.up_at(one.time_ns);
     const auto is_past = [&](const Colour& colour) {
@@ -358,6 +399,9 @@ class RecordingSource final : public FrameSource {
   std::deque<Waiting> waiting_;
   std::deque<Colour> colours_;
   std::size_t colour_bytes_ = 0;
+  std::unique_ptr<VideoDecoder> video_;
+  /// Whether messages of a video were looked at, and one of them was such that decoding can begin.
+  enum class VideoKey { none, wanted, seen } video_key_ = VideoKey::none;
   std::optional<std::int64_t> last_time_ns_;  ///< of the frame that was named last
   int of_this_time_ = 0;                      ///< number of frames with this time, one after the other
   TimeSpan span_;

@@ -1,0 +1,216 @@
+#include "io/files/av_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+
+#include "io/files/image_bytes.h"
+#include "io/files/rgb_of_yuv.h"
+#include "io/files/video_stream.h"
+#include "vesalius/error.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavutil/log.h>
+#include <libavutil/pixdesc.h>
+}
+
+namespace vesalius {
+namespace {
+
+template <auto Free>
+struct FreeBy {
+  template <class T>
+  void operator()(T* it) const {
+    Free(&it);
+  }
+};
+using Context = std::unique_ptr<AVCodecContext, FreeBy<avcodec_free_context>>;
+using Packet = std::unique_ptr<AVPacket, FreeBy<av_packet_free>>;
+using AvFrame = std::unique_ptr<AVFrame, FreeBy<av_frame_free>>;
+
+Context open_decoder(AVCodecID id, const std::string& what) {
+  av_log_set_level(AV_LOG_QUIET);  // what is wrong is told by errors
+  const AVCodec* codec = avcodec_find_decoder(id);
+  Context context(codec == nullptr ? nullptr : avcodec_alloc_context3(codec));
+  if (!context) throw Error(what + ": the libavcodec of this machine does not decode it");
+  context->thread_count = 1;
+  context->max_pixels = kMaxPixels;
+  context->flags |= AV_CODEC_FLAG_LOW_DELAY | AV_CODEC_FLAG_BITEXACT;
+  if (avcodec_open2(context.get(), codec, nullptr) != 0) throw Error(what + ": libavcodec does not start");
+  return context;
+}
+
+Packet packet_of(std::string_view bytes, std::int64_t time_ns) {
+  Packet packet(av_packet_alloc());
+  constexpr std::size_t kMost = std::numeric_limits<int>::max() / 2;
+  if (bytes.size() > kMost || !packet || av_new_packet(packet.get(), int(bytes.size())) != 0) return nullptr;
+  std::memcpy(packet->data, bytes.data(), bytes.size());
+  packet->pts = time_ns;
+  return packet;
+}
+
+/// Returns a value of `from` bits as one of eight.
+std::uint8_t byte_of(std::uint16_t value, int from) {
+  return static_cast<std::uint8_t>(from >= 8 ? value >> (from - 8) : value * 255 / ((1 << from) - 1));
+}
+
+/// The rows of a picture of any format of pixels, a channel each.
+class Rows {
+ public:
+  explicit Rows(const AVFrame& frame)
+      : frame_(frame), format_(*av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format))) {
+    for (auto& row : rows_) row.resize(std::size_t(frame.width));
+  }
+  bool is_grey() const { return format_.nb_components < 3 && !has(AV_PIX_FMT_FLAG_PAL); }
+  bool is_depth() const { return is_grey() && format_.comp[0].depth == 16; }
+  bool has(std::uint64_t flag) const { return (format_.flags & flag) != 0; }
+  int bits(int channel) const { return format_.comp[channel].depth; }
+
+  void read(int v, int channel) {
+    // Two components in the middle of a video's format have fewer rows and columns.
+    const bool is_small = !has(AV_PIX_FMT_FLAG_RGB) && (channel == 1 || channel == 2);
+    const int by_x = is_small ? format_.log2_chroma_w : 0, by_y = is_small ? format_.log2_chroma_h : 0;
+    const int count = (frame_.width + (1 << by_x) - 1) >> by_x;
+    auto& row = rows_[std::size_t(channel)];
+    av_read_image_line2(row.data(), const_cast<const std::uint8_t**>(frame_.data), frame_.linesize, &format_, 0,
+                        v >> by_y, channel, count, has(AV_PIX_FMT_FLAG_PAL) ? 1 : 0, sizeof(std::uint16_t));
+    for (int u = frame_.width - 1; by_x > 0 && u >= 0; --u) row[std::size_t(u)] = row[std::size_t(u >> by_x)];
+  }
+  std::uint16_t value(int u, int channel) const { return rows_[std::size_t(channel)][std::size_t(u)]; }
+  std::uint8_t byte(int u, int channel) const { return byte_of(value(u, channel), bits(channel)); }
+
+ private:
+  const AVFrame& frame_;
+  const AVPixFmtDescriptor& format_;
+  std::array<std::vector<std::uint16_t>, 3> rows_;
+};
+
+ColourImage colour_of(const AVFrame& frame) {
+  Rows rows(frame);
+  const int channels = rows.is_grey() ? 1 : 3;
+  const bool is_rgb = rows.has(AV_PIX_FMT_FLAG_RGB) || rows.has(AV_PIX_FMT_FLAG_PAL);
+  const auto format = static_cast<AVPixelFormat>(frame.format);
+  const bool is_full = frame.color_range == AVCOL_RANGE_JPEG || format == AV_PIX_FMT_YUVJ420P ||
+                       format == AV_PIX_FMT_YUVJ422P || format == AV_PIX_FMT_YUVJ444P;
+  ColourImage colour(frame.width, frame.height);
+  for (int v = 0; v < frame.height; ++v) {
+    for (int c = 0; c < channels; ++c) rows.read(v, c);
+    for (int u = 0; u < frame.width; ++u) {
+      const std::uint8_t y = rows.byte(u, 0);
+      if (channels == 1) {
+        colour(u, v) = {y, y, y};
+      } else if (is_rgb) {
+        colour(u, v) = {y, rows.byte(u, 1), rows.byte(u, 2)};
+      } else {
+        colour(u, v) = rgb_of_yuv(is_full ? 16 + y * 219 / 255 : y, rows.byte(u, 1), rows.byte(u, 2));
+      }
+    }
+  }
+  return colour;
+}
+
+Image<std::uint16_t> whole_numbers_of(const AVFrame& frame) {
+  Rows rows(frame);
+  Image<std::uint16_t> image(frame.width, frame.height);
+  for (int v = 0; v < frame.height; ++v) {
+    rows.read(v, 0);
+    for (int u = 0; u < frame.width; ++u) image(u, v) = rows.value(u, 0);
+  }
+  return image;
+}
+
+/// Of a picture with several planes of floats, the first: they are alike where depth was written as colour.
+Image<float> floats_of(const AVFrame& frame) {
+  Image<float> image(frame.width, frame.height);
+  for (int v = 0; v < frame.height; ++v) {
+    const std::uint8_t* row = frame.data[0] + std::ptrdiff_t{frame.linesize[0]} * v;
+    std::memcpy(image.row(v), row, sizeof(float) * std::size_t(frame.width));
+  }
+  return image;
+}
+
+/// Of WebP that was cut the decoder gives what is there.
+bool is_cut_webp(std::string_view bytes) {
+  constexpr std::size_t kHead = 8;
+  std::uint32_t size = 0;
+  if (av_picture_kind(bytes) != "WebP" || bytes.size() < kHead) return false;
+  for (std::size_t i = kHead; i-- > kHead / 2;) size = size << 8U | static_cast<unsigned char>(bytes[i]);
+  return bytes.size() < kHead + std::size_t{size};
+}
+
+AVCodecID picture_codec(std::string_view kind) {
+  if (kind == "TIFF") return AV_CODEC_ID_TIFF;
+  if (kind == "WebP") return AV_CODEC_ID_WEBP;
+  return AV_CODEC_ID_EXR;
+}
+
+AVCodecID video_codec_id(std::string_view codec) { return codec == "h264" ? AV_CODEC_ID_H264 : AV_CODEC_ID_HEVC; }
+
+}  // namespace
+
+bool has_avcodec() { return true; }
+
+AvPicture decode_av_picture(std::string_view bytes, const std::string& name) {
+  const std::string_view kind = av_picture_kind(bytes);
+  const Context context = open_decoder(picture_codec(kind), fmt::format("{}: {}", name, kind));
+  const Packet packet = packet_of(bytes, 0);
+  const AvFrame frame(av_frame_alloc());
+  const bool is_decoded = packet && frame && avcodec_send_packet(context.get(), packet.get()) == 0 &&
+                          avcodec_send_packet(context.get(), nullptr) == 0 &&
+                          avcodec_receive_frame(context.get(), frame.get()) == 0;
+  if (!is_decoded || is_cut_webp(bytes))
+    throw Error(fmt::format("{}: damaged {}, or one of a kind that is not read", name, kind));
+  check_image_size(frame->width, frame->height, name);
+  const Rows rows(*frame);
+  if (rows.has(AV_PIX_FMT_FLAG_FLOAT) && rows.bits(0) == 32) return {{}, {}, floats_of(*frame)};
+  if (rows.is_depth()) return {{}, whole_numbers_of(*frame), {}};
+  return {colour_of(*frame), {}, {}};
+}
+
+std::pair<int, int> video_size(std::string_view codec, std::string_view message) {
+  if (!is_key_message(codec, message)) return {0, 0};
+  VideoDecoder decoder(codec);
+  std::vector<VideoDecoder::Picture> pictures = decoder.decode(message, 0);
+  if (pictures.empty()) pictures = decoder.decode({}, 0);
+  if (pictures.empty()) return {0, 0};
+  return {pictures.front().colour.width(), pictures.front().colour.height()};
+}
+
+struct VideoDecoder::State {
+  std::string codec;
+  Context context;
+  AvFrame frame{av_frame_alloc()};
+  bool begun = false;  ///< whether there was a message at which decoding can begin
+};
+
+VideoDecoder::VideoDecoder(std::string_view codec) : state_(std::make_unique<State>()) {
+  state_->codec = codec;
+  state_->context = open_decoder(video_codec_id(codec), state_->codec);
+}
+
+VideoDecoder::~VideoDecoder() = default;
+
+std::vector<VideoDecoder::Picture> VideoDecoder::decode(std::string_view message, std::int64_t time_ns) {
+  State& s = *state_;
+  s.begun = s.begun || is_key_message(s.codec, message);
+  if (!s.begun) return {};
+  const Packet packet = message.empty() ? nullptr : packet_of(message, time_ns);
+  if (!message.empty() && !packet) return {};
+  if (avcodec_send_packet(s.context.get(), packet.get()) != 0) return {};
+  std::vector<Picture> pictures;
+  while (avcodec_receive_frame(s.context.get(), s.frame.get()) == 0) {
+    pictures.push_back({s.frame->pts, vesalius::colour_of(*s.frame)});
+  }
+  return pictures;
+}
+
+void VideoDecoder::restart() {
+  avcodec_flush_buffers(state_->context.get());
+  state_->begun = false;
+}
+
+}  // namespace vesalius
