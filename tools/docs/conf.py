@@ -51,6 +51,9 @@ def remember_identifiers(app, env):
 
 
 html_theme = "furo"
+# Of the styles that come with Pygments these have enough contrast, which check_pages.py measures.
+pygments_style = "xcode"
+pygments_dark_style = "github-dark"
 html_title = f"vesalius {version}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
