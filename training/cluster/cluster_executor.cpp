@@ -1,5 +1,7 @@
 #include "cluster/cluster_executor.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 #include <sstream>
@@ -293,6 +295,7 @@ class ClusterExecutor::Round {
     }
     std::ranges::stable_sort(tasks, [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<SubtreeRequest> requests;
+    requests.reserve(tasks.size());
     for (auto& task : tasks) requests.push_back(std::move(task.second));
     return requests;
   }
@@ -314,7 +317,8 @@ class ClusterExecutor::Round {
     for (const SubtreeRequest& task : tasks) {
       for (const std::int32_t n : task.nodes) {
         const std::string key = node_key(task.tree, n, 0);
-        states_[task.tree].grown.graft(n, parse_grown_nodes(bytes_of(records, key, name), name + ": " + key));
+        states_[task.tree].grown.graft(
+            n, parse_grown_nodes(bytes_of(records, key, name), fmt::format("{}: {}", name, key)));
       }
     }
     for (State& state : states_) state.grown.close();
@@ -418,7 +422,7 @@ ClusterExecutor::Records ClusterExecutor::results(const std::string& job) const 
 void ClusterExecutor::take_prepared(const Records& records, const std::string& job) {
   for (const auto& [key, message] : records) {
     const std::size_t shard = key_numbers(key, 1, job)[0];
-    if (shard >= shards()) throw Error(job + ": unexpected result for " + key);
+    if (shard >= shards()) throw Error(fmt::format("{}: unexpected result for {}", job, key));
     prepared_[shard] = from_message<PreparedShard>(message, job);
   }
   for (std::size_t s = 0; s < shards(); ++s) {

@@ -1,5 +1,6 @@
 #include "cluster/reduce_task.h"
 
+#include <fmt/format.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -38,7 +39,7 @@ void merge_keys(std::istream& in, std::size_t most, const Take& take) {
     }
     started = true;
     key = std::move(record.key);
-    merger.add(record.message, name + ": " + key);
+    merger.add(record.message, fmt::format("{}: {}", name, key));
   }
   if (started) take(key, merger);
 }

@@ -45,6 +45,7 @@ std::vector<float> depths_of(const std::vector<KnownPerson>& people, const BodyM
     }
   }
   std::vector<float> depths;
+  depths.reserve(samples.size());
   for (std::vector<double>& of_part : samples) depths.push_back(float(median(std::move(of_part))));
   return depths;
 }

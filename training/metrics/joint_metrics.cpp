@@ -279,7 +279,8 @@ std::vector<std::pair<std::string, double>> JointPrecision::averages() const {
 }
 
 std::vector<Sight> joint_sight(const TrueFrame& frame, std::size_t person, const std::vector<Eigen::Vector3f>& joints) {
-  if (frame.truth.person.empty()) return std::vector<Sight>(joints.size(), Sight::unknown);
+  std::vector<Sight> sight(joints.size(), Sight::unknown);
+  if (frame.truth.person.empty()) return sight;
   constexpr double kCm2PerM2 = 1e4;
   const Camera& camera = frame.frame.camera;
   const DepthImage& depth = frame.frame.depth;
@@ -295,9 +296,8 @@ std::vector<Sight> joint_sight(const TrueFrame& frame, std::size_t person, const
       }
     }
   }
-  std::vector<Sight> sight;
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    sight.push_back(!joints[j].allFinite() ? Sight::unknown : area_cm2[j] >= kSight_cm2 ? Sight::seen : Sight::hidden);
+    if (joints[j].allFinite()) sight[j] = area_cm2[j] >= kSight_cm2 ? Sight::seen : Sight::hidden;
   }
   return sight;
 }

@@ -241,8 +241,8 @@ std::optional<Eigen::Vector3f> true_trunk(const FrameTruth& truth, std::size_t p
     for (std::size_t j = 0; j < truth.joint_names.size(); ++j) {
       if (is_of_trunk(truth.joint_names[j])) trunk.push_back(truth.joints[person][j]);
     }
-    if (const auto mean = known_mean(trunk)) return mean;
-    if (const auto mean = known_mean(truth.joints[person])) return mean;
+    if (auto mean = known_mean(trunk)) return mean;
+    if (auto mean = known_mean(truth.joints[person])) return mean;
   }
   return person < truth.parts.size() ? known_mean(truth.parts[person]) : std::nullopt;
 }
@@ -321,6 +321,7 @@ std::vector<const TrackedPerson*> taking_part(const TrueFrame& frame, const Trac
   const bool all_count = hidden && similarity_kind(frame.truth) == SimilarityKind::masks;
   std::ranges::stable_sort(visible, std::ranges::greater{}, [](const auto* person) { return person->person.score; });
   std::vector<Proposal> proposals;
+  proposals.reserve(visible.size());
   for (const TrackedPerson* person : visible) {
     proposals.push_back({&person->person.mask, &person->person.skeleton, person->person.score});
   }

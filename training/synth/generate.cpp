@@ -68,10 +68,10 @@ struct Studio {
   Cast cast;
   Photographer photographer;
 
-  Studio(const Recipe& the_recipe, BodiesAndMotions the_assets, const BodyModel& the_body, std::uint64_t the_seed)
+  Studio(const Recipe& the_recipe, BodiesAndMotions the_assets, BodyModel the_body, std::uint64_t the_seed)
       : recipe(checked(the_recipe)),
         assets(std::move(the_assets)),
-        body(the_body),
+        body(std::move(the_body)),
         seed(the_seed),
         cast(recipe, assets.makehuman, assets.captured, body, seed),
         photographer(recipe, seed) {}

@@ -40,6 +40,7 @@ std::vector<std::uint64_t> fixed_point(const std::vector<double>& factors) {
   constexpr double kLargest = 16777216.0;
   const double largest = factors.empty() ? 1.0 : *std::ranges::max_element(factors);
   std::vector<std::uint64_t> weights;
+  weights.reserve(factors.size());
   for (const double factor : factors) {
     weights.push_back(static_cast<std::uint64_t>(std::max(1.0, std::round(kLargest * factor / largest))));
   }

@@ -111,7 +111,7 @@ std::string place_of(const std::string& program) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string file = folder + "/" + program;
+    std::string file = fmt::format("{}/{}", folder, program);
     std::error_code ignored;
     if (!folder.empty() && std::filesystem::is_regular_file(file, ignored)) return file;
   }

@@ -90,8 +90,8 @@ TrainInput open_labelled(const std::string& folder, int count, BodyModel& body, 
 }
 
 TrainInputs::TrainInputs(BodyModel body, std::vector<TrainInput> inputs, const std::vector<std::string>& backgrounds,
-                         const SourceOptions& camera)
-    : background_camera_(camera), body_(std::move(body)), inputs_(std::move(inputs)) {
+                         SourceOptions camera)
+    : background_camera_(std::move(camera)), body_(std::move(body)), inputs_(std::move(inputs)) {
   for (const std::string& source : backgrounds) open_background(source);
 }
 

@@ -58,7 +58,7 @@ class TrainInputs {
  public:
   /// Takes labelled frames that are open; `backgrounds` are opened. Throws Error as below.
   TrainInputs(BodyModel body, std::vector<TrainInput> inputs, const std::vector<std::string>& backgrounds,
-              const SourceOptions& camera);
+              SourceOptions camera);
   /// Throws UsageError if neither data nor recipes are given or recipes lack a count. Throws Error for a source that
   /// cannot be opened, has no frame, or has another body than the others.
   explicit TrainInputs(const TrainSources& sources);

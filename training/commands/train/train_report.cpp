@@ -154,6 +154,7 @@ void add_curves(Document& document, const std::vector<CurvePoint>& points) {
   document.plot(curve_plot("Accuracy against candidates of a node", "candidates", by_candidates,
                            [](const CurvePoint& p) { return p.candidates; }));
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(points.size());
   for (const CurvePoint& point : points) {
     rows.push_back({fmt::format("{}", point.frames), fmt::format("{}", point.candidates),
                     fmt::format("{}", point.trees), share_text(point.accuracy.parts_only),

@@ -59,6 +59,7 @@ constexpr const char* kCards = "cuda";
 
 MakeExecutor open_cards(const std::vector<int>& numbers) {
   std::vector<std::shared_ptr<gpu::Device>> cards;
+  cards.reserve(numbers.size());
   for (const int number : numbers) cards.push_back(gpu::open_cuda_device(number, gpu::train_kernels_on_cards()));
   return [cards](const std::vector<TrainingSet*>& sets, int trees_at_once) {
     return std::make_unique<gpu::DeviceExecutor>(sets, cards, trees_at_once);

@@ -292,6 +292,7 @@ PosedBody Poser::pose(const Pose& pose) const {
 const std::vector<std::string>& joint_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
+    all.reserve(kBoneCount + kFreeEnds.size());
     for (int b = 0; b < kBoneCount; ++b) all.emplace_back(bone_name(static_cast<Bone>(b)));
     for (const Bone bone : kFreeEnds) all.push_back(std::string(bone_name(bone)) + "_end");
     return all;

@@ -191,8 +191,8 @@ Eigen::Vector3f curl_axis(const MappedRig& rig, const MappedRig::Finger& finger,
   const int b = finger.bone;
   const bool left = rig.bones[b].grip == Grip::left;
   const auto head = [&](int bone) -> const Eigen::Vector3f& { return heads[bone]; };
-  const Eigen::Vector3f wrist = head(rig.rig_of[index(left ? Bone::l_hand : Bone::r_hand)]);
-  const Eigen::Vector3f first = head(rig.first_knuckle[left ? 0 : 1]);
+  const Eigen::Vector3f& wrist = head(rig.rig_of[index(left ? Bone::l_hand : Bone::r_hand)]);
+  const Eigen::Vector3f& first = head(rig.first_knuckle[left ? 0 : 1]);
   const Eigen::Vector3f across = (head(rig.last_knuckle[left ? 0 : 1]) - first).normalized();
   const Eigen::Vector3f along = first - wrist;
   const Eigen::Vector3f palm = (left ? across.cross(along) : along.cross(across)).normalized();

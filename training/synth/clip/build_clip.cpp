@@ -253,7 +253,7 @@ class Builder {
   /// Builds room and furniture about everything that moves.
   void surround(ClipScene& clip) {
     std::vector<Vector3f> eyes;
-    for (float t = 0.F; t <= (moves_ ? seconds_ : 0.F); t += 0.5F) eyes.push_back(clip.camera.at(t).translation());
+    for (float t = 0.F; t <= (moves_ ? seconds_ : 0.F); t += 0.5F) eyes.emplace_back(clip.camera.at(t).translation());
     const PlacedGroup* first = stage_.groups.empty() ? nullptr : stage_.groups.data();
     clip.room = draw_room(
         scene_, first, [&](const Isometry3f& room_from_world) { return extent_of(eyes, room_from_world); }, random_);

@@ -63,8 +63,8 @@ void check_bone(const TomlReader& reader, const toml::node& bones, const MotionC
     reader.fail(bones, fmt::format("{}: rest \"aim\" needs a single joint", name));
   }
   if (source.rest == RestRule::like && convention.bones[index(source.like)].rest == RestRule::like) {
-    reader.fail(bones, fmt::format("{}: rest names {}, expected a bone with \"same\" or \"aim\"", name,
-                                   bone_name(source.like)));
+    reader.fail(
+        bones, fmt::format(R"({}: rest names {}, expected a bone with "same" or "aim")", name, bone_name(source.like)));
   }
 }
 

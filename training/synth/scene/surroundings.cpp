@@ -81,7 +81,7 @@ class Furnisher {
                                                       FurnitureKind::pillar};
       return {make_furniture(kLike[random_.below(kLike.size())], random_)};
     }
-    constexpr std::uint32_t kOrdinary = static_cast<std::uint32_t>(FurnitureKind::pillar);
+    constexpr auto kOrdinary = static_cast<std::uint32_t>(FurnitureKind::pillar);
     return {make_furniture(static_cast<FurnitureKind>(random_.below(kOrdinary)), random_)};
   }
 
