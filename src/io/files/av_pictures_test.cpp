@@ -4,6 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "io/files/depth_picture.h"
 #include "io/files/image_bytes.h"
 #include "io/files/test_files.h"
 #include "io/files/video_stream.h"
