@@ -38,14 +38,12 @@ class McapRecording final : public ChunkedRecording {
     for (;;) {
       while (chunk_at_ < chunk_.size()) {
         ByteReader in(std::string_view(chunk_).substr(chunk_at_), file_.path());
+        chunk_at_ = chunk_.size();  // in case of damage
         const auto kind = static_cast<McapRecord>(in.number<std::uint8_t>("record"));
         const auto length = in.number<std::uint64_t>("length of a record");
-        if (length > in.left()) {
-          chunk_at_ = chunk_.size();
-          in.fail("a chunk ends within a record");
-        }
+        if (length > in.left()) in.fail("a chunk ends within a record");
         const std::string_view content = in.take(length, "record");
-        chunk_at_ += kMcapRecordHead + length;
+        chunk_at_ = chunk_.size() - in.left();
         if (kind == McapRecord::message) {
           if (const auto message = as_message(content)) return message;
         }

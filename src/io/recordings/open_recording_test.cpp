@@ -6,6 +6,7 @@
 
 #include <ctime>
 
+#include "io/files/byte_stream.h"
 #include "io/files/test_files.h"
 #include "io/recordings/chunked_recording.h"
 #include "io/recordings/mcap_writer.h"
@@ -132,6 +133,23 @@ TEST(Recording, McapSeeksByItsIndexAndWithoutOne) {
     EXPECT_FALSE(recording->seek(0)) << name;
     EXPECT_EQ(recording->next()->time_ns, 0) << name;
   }
+}
+
+TEST(Recording, McapOfAChunkThatEndsInAHeadGoesOn) {
+  const test::TemporaryFolder folder;
+  ByteWriter chunk;
+  for (int i = 0; i < 2; ++i) chunk.number(std::uint64_t{0});  // times
+  chunk.number(std::uint64_t{3});
+  for (int i = 0; i < 2; ++i) chunk.number(std::uint32_t{0});  // no checksum, not compressed
+  chunk.number(std::uint64_t{3});
+  chunk.bytes() += "\x05\x01\x01";
+  ByteWriter file;
+  file.bytes() += "\x89MCAP0\r\n\x06";
+  file.number(std::uint64_t{chunk.bytes().size()});
+  file.bytes() += chunk.bytes();
+  const auto recording = open_recording(test::put(folder / "a.mcap", file.bytes()));
+  EXPECT_THAT(error_of([&] { recording->next(); }), HasSubstr("a.mcap"));
+  EXPECT_FALSE(recording->next());
 }
 
 TEST(Recording, SeekDoesNotReadTheChunksBefore) {

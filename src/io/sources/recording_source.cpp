@@ -39,8 +39,6 @@ constexpr std::size_t kMostWaitingBytes = std::size_t{1} << 28;
 constexpr double kLead_s = 0.5;
 /// By how much more, where that was not early enough.
 constexpr double kFurther = 4.0;
-/// Longer than all times that there are: a damaged recording may say for ever that something lies before.
-constexpr double kFurthest_s = 2e10;
 
 double seconds(std::int64_t time_ns) { return double(time_ns) / double(kNanoseconds); }
 
@@ -111,7 +109,7 @@ class RecordingSource final : public FrameSource {
     const double aim_s = std::clamp(std::isnan(time_s) ? span_.first_s : time_s, span_.first_s, span_.last_s + kLead_s);
     // Messages are found by when they were recorded, which may drift from when they were taken: depth must be found
     // that is old enough.
-    for (double back_s = 2.0 * kLead_s; go_to(aim_s - back_s) && back_s < kFurthest_s; back_s *= kFurther) {
+    for (double back_s = 2.0 * kLead_s; go_to(aim_s - back_s); back_s *= kFurther) {
       const std::optional<double> first_s = next_depth_time_s();
       if (!first_s || *first_s > aim_s - kLead_s) continue;
       for (auto later_s = first_s; video_key_ == VideoKey::wanted && later_s && *later_s < aim_s;) {
@@ -272,7 +270,7 @@ class RecordingSource final : public FrameSource {
     for (double back_s = 0.0;; back_s = std::max(kLead_s, back_s * kFurther)) {
       const bool left_out = go_to(end_s - back_s);
       while (const auto time_s = next_depth_time_s()) last_s = time_s;
-      if (last_s || !left_out || back_s > kFurthest_s) return last_s;
+      if (last_s || !left_out) return last_s;
     }
   }
 
