@@ -15,28 +15,28 @@ namespace {
 
 using Bytes = const std::uint8_t*;
 
-/// Channels of a pixel beside each other: bytes of a pixel and where red, green and blue stand.
+/// Channels of a pixel beside each other: bytes of a pixel, where red, green and blue stand, bytes of a channel.
 struct PackedColour {
   std::string_view name;
-  int bytes, r, g, b;
+  int bytes, r, g, b, channel_bytes = 1;
+  bool is_grey() const { return bytes == channel_bytes; }
 };
-constexpr std::array<PackedColour, 9> kPackedColours{{{"rgb8", 3, 0, 1, 2},
-                                                      {"bgr8", 3, 2, 1, 0},
-                                                      {"8uc3", 3, 2, 1, 0},
-                                                      {"rgba8", 4, 0, 1, 2},
-                                                      {"bgra8", 4, 2, 1, 0},
-                                                      {"8uc4", 4, 2, 1, 0},
-                                                      {"mono8", 1, 0, 0, 0},
-                                                      {"8uc1", 1, 0, 0, 0},
-                                                      {"gray", 1, 0, 0, 0}}};
-/// The same of 16 bits.
-constexpr std::array<PackedColour, 7> kPackedColours16{{{"rgb16", 6, 0, 2, 4},
-                                                        {"bgr16", 6, 4, 2, 0},
-                                                        {"16uc3", 6, 4, 2, 0},
-                                                        {"rgba16", 8, 0, 2, 4},
-                                                        {"bgra16", 8, 4, 2, 0},
-                                                        {"mono16", 2, 0, 0, 0},
-                                                        {"16uc1", 2, 0, 0, 0}}};
+constexpr std::array<PackedColour, 16> kPackedColours{{{"rgb8", 3, 0, 1, 2},
+                                                       {"bgr8", 3, 2, 1, 0},
+                                                       {"8uc3", 3, 2, 1, 0},
+                                                       {"rgba8", 4, 0, 1, 2},
+                                                       {"bgra8", 4, 2, 1, 0},
+                                                       {"8uc4", 4, 2, 1, 0},
+                                                       {"mono8", 1, 0, 0, 0},
+                                                       {"8uc1", 1, 0, 0, 0},
+                                                       {"gray", 1, 0, 0, 0},
+                                                       {"rgb16", 6, 0, 2, 4, 2},
+                                                       {"bgr16", 6, 4, 2, 0, 2},
+                                                       {"16uc3", 6, 4, 2, 0, 2},
+                                                       {"rgba16", 8, 0, 2, 4, 2},
+                                                       {"bgra16", 8, 4, 2, 0, 2},
+                                                       {"mono16", 2, 0, 0, 0, 2},
+                                                       {"16uc1", 2, 0, 0, 0, 2}}};
 /// Two pixels share their chrominance: where in their four bytes the first luminance, U and V stand.
 struct Pairs {
   std::string_view name;
@@ -142,21 +142,21 @@ ColourImage from_bayer(const PictureMessage& picture, std::string_view pattern, 
 
 bool is_colour_encoding(std::string_view encoding) {
   const std::string name = lower(encoding);
-  return row_of(kPackedColours, name) != nullptr || row_of(kPackedColours16, name) != nullptr ||
-         row_of(kPairs, name) != nullptr || row_of(kPlanes, name) != nullptr || !bayer_pattern(name).empty();
+  return row_of(kPackedColours, name) != nullptr || row_of(kPairs, name) != nullptr ||
+         row_of(kPlanes, name) != nullptr || !bayer_pattern(name).empty();
 }
 
 bool is_grey_encoding(std::string_view encoding) {
-  const std::string name = lower(encoding);
-  const PackedColour* packed = row_of(kPackedColours, name);
-  return (packed != nullptr && packed->bytes == 1) || name == "mono16" || name == "16uc1";
+  const PackedColour* packed = row_of(kPackedColours, lower(encoding));
+  return packed != nullptr && packed->is_grey();
 }
 
 ColourImage decode_raw_colour(const PictureMessage& picture, const std::string& name) {
   const std::string encoding = lower(picture.encoding);
   const int high = picture.big_endian ? 0 : 1;
-  if (const auto* of = row_of(kPackedColours, encoding)) return from_packed(picture, *of, 0, name);
-  if (const auto* of = row_of(kPackedColours16, encoding)) return from_packed(picture, *of, high, name);
+  if (const auto* of = row_of(kPackedColours, encoding)) {
+    return from_packed(picture, *of, of->channel_bytes == 1 ? 0 : high, name);
+  }
   if (const auto* of = row_of(kPairs, encoding)) return from_pairs(picture, *of, name);
   if (const auto* of = row_of(kPlanes, encoding)) return from_planes(picture, *of, name);
   if (const std::string_view pattern = bayer_pattern(encoding); !pattern.empty()) {
