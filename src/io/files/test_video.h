@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,26 @@ struct VideoMessage {
   std::string bytes;
 };
 
-/// Returns grey pictures as an encoder of libavcodec packs them, the first of each `group` such that decoding can begin
-/// there; nothing where there is no such encoder. Picture i is as bright as `grey_of(i)` says.
+/// How bright a picture is.
 inline int grey_of(int picture) { return 40 + 5 * picture; }
+inline AVFrame* grey_picture(const AVCodecContext& of, int picture) {
+  AVFrame* frame = av_frame_alloc();
+  frame->width = of.width;
+  frame->height = of.height;
+  frame->format = of.pix_fmt;
+  frame->pts = picture;
+  frame->pict_type = picture % of.gop_size == 0 ? AV_PICTURE_TYPE_I : AV_PICTURE_TYPE_NONE;
+  av_frame_get_buffer(frame, 0);
+  for (int plane = 0; plane < 3; ++plane) {
+    const int rows = plane == 0 ? of.height : of.height / 2;
+    std::memset(frame->data[plane], plane == 0 ? grey_of(picture) : 128,
+                std::size_t(rows) * std::size_t(frame->linesize[plane]));
+  }
+  return frame;
+}
+
+/// Returns grey pictures as an encoder of libavcodec packs them, the first of each `group` such that decoding can begin
+/// there; nothing where there is no such encoder.
 inline std::vector<VideoMessage> encode_video(const char* encoder, int width, int height, int pictures, int group,
                                               int between = 0) {
   std::vector<VideoMessage> messages;
@@ -38,43 +56,18 @@ inline std::vector<VideoMessage> encode_video(const char* encoder, int width, in
   if (between == 0) av_opt_set(context->priv_data, "tune", "zerolatency", 0);
   av_opt_set(context->priv_data, "x265-params", "log-level=none", 0);
   av_opt_set(context->priv_data, "x264-params", between > 0 ? "scenecut=0:b-adapt=0" : "scenecut=0", 0);
-  AVFrame* frame = av_frame_alloc();
   AVPacket* packet = av_packet_alloc();
-  if (avcodec_open2(context, codec, nullptr) == 0) {
-    frame->width = width;
-    frame->height = height;
-    frame->format = context->pix_fmt;
-    for (int i = 0; i <= pictures; ++i) {
-      if (i < pictures) {
-        av_frame_get_buffer(frame, 0);
-        for (int plane = 0; plane < 3; ++plane) {
-          const int rows = plane == 0 ? height : height / 2;
-          const int value = plane == 0 ? grey_of(i) : 128;
-          for (int v = 0; v < rows; ++v) {
-            for (int u = 0; u < (plane == 0 ? width : width / 2); ++u) {
-              frame->data[plane][v * frame->linesize[plane] + u] = static_cast<std::uint8_t>(value);
-            }
-          }
-        }
-        frame->pts = i;
-        frame->pict_type = i % group == 0 ? AV_PICTURE_TYPE_I : AV_PICTURE_TYPE_NONE;
-      }
-      avcodec_send_frame(context, i < pictures ? frame : nullptr);
-      if (i < pictures) {
-        av_frame_unref(frame);
-        frame->width = width;
-        frame->height = height;
-        frame->format = context->pix_fmt;
-      }
-      while (avcodec_receive_packet(context, packet) == 0) {
-        messages.push_back(
-            {int(packet->pts), {reinterpret_cast<const char*>(packet->data), std::size_t(packet->size)}});
-        av_packet_unref(packet);
-      }
+  const bool is_open = avcodec_open2(context, codec, nullptr) == 0;
+  for (int i = 0; is_open && i <= pictures; ++i) {
+    AVFrame* frame = i < pictures ? grey_picture(*context, i) : nullptr;
+    avcodec_send_frame(context, frame);
+    av_frame_free(&frame);
+    while (avcodec_receive_packet(context, packet) == 0) {
+      messages.push_back({int(packet->pts), {reinterpret_cast<const char*>(packet->data), std::size_t(packet->size)}});
+      av_packet_unref(packet);
     }
   }
   av_packet_free(&packet);
-  av_frame_free(&frame);
   avcodec_free_context(&context);
   return messages;
 }
