@@ -72,7 +72,7 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
   };
   TurnHint hint(detector);
   const auto tell = [&](const std::optional<std::string>& note) {
-    if (note && !arguments.outputs.quiet) late.add("note: " + *note);
+    if (note) late.add("note: " + *note);
   };
   std::size_t lossy = 0;  // addresses of which was said that they cannot be reached
   const auto take = [&](const FoundFrame& found) {
@@ -80,7 +80,7 @@ void detect_all(const DetectArguments& arguments, FrameSource& source, const Det
     if (arguments.outputs.lines() || arguments.outputs.json == "-") progress.clear();
     try {
       write_found(found, outputs, totals);
-      tell(hint.add(*found.frame, std::ranges::any_of(found.people.people, is_found)));
+      if (!arguments.outputs.quiet) tell(hint.add(*found.frame, std::ranges::any_of(found.people.people, is_found)));
     } catch (const BrokenPipe&) {
       throw;
     } catch (const Error& e) {
