@@ -133,13 +133,37 @@ Image<float> floats_of(const AVFrame& frame) {
   return image;
 }
 
-/// Of WebP that was cut the decoder gives what is there.
-bool is_cut_webp(std::string_view bytes) {
-  constexpr std::size_t kHead = 8;
-  std::uint32_t size = 0;
-  if (av_picture_kind(bytes) != "WebP" || bytes.size() < kHead) return false;
-  for (std::size_t i = kHead; i-- > kHead / 2;) size = size << 8U | static_cast<unsigned char>(bytes[i]);
-  return bytes.size() < kHead + std::size_t{size};
+/// Returns the number of `count` bytes at a place, the lowest first; more than there are bytes where the text ends
+/// before.
+std::uint64_t number_at(std::string_view bytes, std::uint64_t at, std::size_t count) {
+  if (at > bytes.size() || bytes.size() - at < count) return bytes.size() + 1;
+  std::uint64_t value = 0;
+  for (std::size_t i = count; i-- > 0;) value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
+  return value;
+}
+
+/// An OpenEXR file has attributes (name, type, size, value), then where each block of rows begins, then these.
+bool is_cut_exr(std::string_view bytes) {
+  constexpr unsigned kTiled = 2;  // tiles have four numbers before their size, rows one
+  std::uint64_t at = 8;
+  while (at < bytes.size() && bytes[at] != '\0') {
+    for (int text = 0; text < 2; ++text) at = std::min(bytes.find('\0', at), bytes.size()) + 1;
+    at += 4 + number_at(bytes, at, 4);
+  }
+  const std::uint64_t blocks = at + 1, first = number_at(bytes, blocks, 8);
+  std::uint64_t last = first;
+  for (at = blocks; at + 8 <= std::min<std::uint64_t>(first, bytes.size()); at += 8) {
+    last = std::max(last, number_at(bytes, at, 8));
+  }
+  if (last >= bytes.size()) return true;
+  const std::uint64_t size_at = last + (static_cast<unsigned>(bytes[5]) & kTiled ? 16 : 4);
+  return number_at(bytes, size_at, 4) > bytes.size() - std::min<std::uint64_t>(size_at + 4, bytes.size());
+}
+
+/// Returns whether the end of a file is missing. Of some kinds the decoder gives what is there.
+bool is_cut(std::string_view kind, std::string_view bytes) {
+  if (kind == "WebP") return number_at(bytes, 4, 4) > bytes.size() - std::min<std::size_t>(8, bytes.size());
+  return kind == "OpenEXR" && is_cut_exr(bytes);
 }
 
 AVCodecID picture_codec(std::string_view kind) {
@@ -162,8 +186,9 @@ AvPicture decode_av_picture(std::string_view bytes, const std::string& name) {
   const bool is_decoded = packet && frame && avcodec_send_packet(context.get(), packet.get()) == 0 &&
                           avcodec_send_packet(context.get(), nullptr) == 0 &&
                           avcodec_receive_frame(context.get(), frame.get()) == 0;
-  if (!is_decoded || is_cut_webp(bytes))
+  if (!is_decoded || is_cut(kind, bytes)) {
     throw Error(fmt::format("{}: damaged {}, or one of a kind that is not read", name, kind));
+  }
   check_image_size(frame->width, frame->height, name);
   const Rows rows(*frame);
   if (rows.has(AV_PIX_FMT_FLAG_FLOAT) && rows.bits(0) == 32) return {{}, {}, floats_of(*frame)};

@@ -116,6 +116,20 @@ TEST(VideoCodec, BeginsWithParameterSets) {
 
 #ifdef VESALIUS_TEST_VIDEO
 
+TEST_F(AvPictures, OpenExrIsDepthInMetres) {
+  Image<float> metres(40, 30);
+  for (int i = 0; i < 40 * 30; ++i) metres(i % 40, i / 40) = 1.F + 0.3F * float(i / 40) + 0.001F * float(i % 40);
+  const std::string bytes = test::encode_exr(metres);
+  if (bytes.empty()) GTEST_SKIP() << "libavcodec writes no OpenEXR";
+  const DepthPicture depth = decode_depth(bytes, "a.exr");
+  EXPECT_EQ(depth.real, metres);
+  EXPECT_EQ(to_millimetres(depth, 1000.F, false)(3, 2), 1603);
+  for (std::size_t size = 4; size < bytes.size(); ++size) {
+    EXPECT_THAT(error_of([&] { decode_depth(bytes.substr(0, size), "cut"); }), HasSubstr("cut: damaged OpenEXR"))
+        << size;
+  }
+}
+
 constexpr int kWidth = 64, kHeight = 48, kPictures = 24, kGroup = 8;
 constexpr std::int64_t kApart_ns = 33'000'000, kFirst_ns = 1'000'000'000;
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "vesalius/image.h"
+
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavutil/opt.h>
@@ -70,6 +72,37 @@ inline std::vector<VideoMessage> encode_video(const char* encoder, int width, in
   av_packet_free(&packet);
   avcodec_free_context(&context);
   return messages;
+}
+
+/// Returns a picture of floats as OpenEXR; nothing where there is no encoder.
+inline std::string encode_exr(const Image<float>& image) {
+  const AVCodec* codec = avcodec_find_encoder_by_name("exr");
+  if (codec == nullptr) return {};
+  AVCodecContext* context = avcodec_alloc_context3(codec);
+  context->width = image.width();
+  context->height = image.height();
+  context->time_base = {1, 1};
+  context->pix_fmt = AV_PIX_FMT_GRAYF32;
+  AVFrame* frame = av_frame_alloc();
+  frame->width = context->width;
+  frame->height = context->height;
+  frame->format = context->pix_fmt;
+  AVPacket* packet = av_packet_alloc();
+  std::string bytes;
+  if (avcodec_open2(context, codec, nullptr) == 0 && av_frame_get_buffer(frame, 0) == 0) {
+    for (int v = 0; v < image.height(); ++v) {
+      std::memcpy(frame->data[0] + std::ptrdiff_t{frame->linesize[0]} * v, image.row(v),
+                  sizeof(float) * std::size_t(image.width()));
+    }
+    avcodec_send_frame(context, frame);
+    if (avcodec_receive_packet(context, packet) == 0) {
+      bytes.assign(reinterpret_cast<const char*>(packet->data), std::size_t(packet->size));
+    }
+  }
+  av_packet_free(&packet);
+  av_frame_free(&frame);
+  avcodec_free_context(&context);
+  return bytes;
 }
 
 }  // namespace vesalius::test
