@@ -12,6 +12,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
 endif()
 if(VESALIUS_SANITIZE)
   list(APPEND vesalius_options -fsanitize=${VESALIUS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    list(APPEND vesalius_options -Wno-maybe-uninitialized)  # false ones of instrumented code, as GCC's manual says
+  endif()
   target_link_options(vesalius_settings INTERFACE -fsanitize=${VESALIUS_SANITIZE})
 endif()
 target_compile_options(vesalius_settings INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${vesalius_options}>")  # nvcc has others

@@ -67,7 +67,7 @@ constexpr const char* kOptionsPath = "/options.toml";
 class RecentTimes {
  public:
   void add_time(Clock::time_point when, double ms) {
-    last_.push_back({when, ms});
+    last_.emplace_back(when, ms);
     if (last_.size() > kMostRecent) last_.pop_front();
   }
   /// Returns the median of the last ones in milliseconds.

@@ -158,7 +158,7 @@ class CameraReader {
         {{colour, &kOfColour}, {first, &kOfFirst}, {second, &kOfSecond}}};
     for (const auto& [role, affixes] : others) {
       const std::string_view digit = affixes->front()[1];
-      const auto of_it = [&](const auto& named) {
+      const auto of_it = [&, role = role](const auto& named) {  // clang 14 captures no structured binding
         return role == colour ? role_in(named.first) == colour : named.first.ends_with(digit);
       };
       if (std::ranges::any_of(scope.named, of_it)) take(camera_of({scope.object, scope.named, "", -1, affixes}), role);
@@ -369,7 +369,7 @@ class CameraReader {
       const bool known = *number >= 0.0 && *number < double(kRealSense.size());
       return known ? kRealSense[std::size_t(*number)] : fmt::format("{}", *number);
     }
-    const std::string model = fact.value->is_string() ? plain_name(fact.value->get_ref<const std::string&>()) : "";
+    std::string model = fact.value->is_string() ? plain_name(fact.value->get_ref<const std::string&>()) : "";
     for (const char* any : {"pinhole", "opencv", "perspective", "none"}) {
       if (model == any) return {};
     }
