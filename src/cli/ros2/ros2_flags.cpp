@@ -104,6 +104,9 @@ ros2::PeopleTopicsOptions topic_options(const Ros2Flags& flags) {
 }
 
 ros2::TopicSourceOptions subscribe_options(const Ros2Flags& flags, const SourceOptions& camera) {
+  if (camera.fx || camera.fy || camera.cx || camera.cy || !camera.camera_file.empty() || !camera.colour_file.empty()) {
+    throw UsageError("--subscribe: camera_info is the calibration; --fx, --camera and --colour go with a SOURCE only");
+  }
   const auto full = [&](const std::string& topic, const char* what) {
     return topic.empty() ? "" : ros2::resolve_name(topic, flags.name_space, flags.node, what);
   };
@@ -114,6 +117,8 @@ ros2::TopicSourceOptions subscribe_options(const Ros2Flags& flags, const SourceO
   options.topics.colour = full(camera.colour_topic, "--colour-topic");
   options.topics.camera_info = full(flags.camera_info_topic, "--camera-info-topic");
   options.reliable = flags.reliable;
+  options.stored.depth_scale = camera.depth_scale;
+  options.stored.depth_bits = camera.depth_bits;
   return options;
 }
 

@@ -63,6 +63,11 @@ TEST(Ros2Flags, ResolveNames) {
   camera.depth_topic = "depth/image";
   EXPECT_EQ(subscribe_options(flags, camera).topics.depth, "/robot/depth/image");
   EXPECT_EQ(subscribe_options(flags, camera).topics.colour, "");
+  camera.depth_scale = 5000.F;
+  EXPECT_EQ(subscribe_options(flags, camera).stored.depth_scale, 5000.F);
+  camera.fx = 500.F;
+  EXPECT_THROW(subscribe_options(flags, camera), UsageError) << "camera_info has it";
+  camera.fx.reset();
   camera.depth_topic = "depth image";
   EXPECT_THROW(subscribe_options(flags, camera), UsageError);
   flags.remaps = {"/tf=/tf2"};

@@ -14,6 +14,11 @@ struct StoredDepth {
   DepthBits bits = DepthBits::plain;
 };
 
+/// Returns how depth is stored by what is said of it: in millimetres and metres, where nothing is.
+inline StoredDepth stored_depth(const SourceOptions& said) {
+  return {said.depth_scale.value_or(1000.F), said.depth_scale.value_or(1.F), said.depth_bits};
+}
+
 /// Returns the number that was stored so.
 inline std::uint16_t restored(std::uint16_t stored, DepthBits bits) {
   switch (bits) {

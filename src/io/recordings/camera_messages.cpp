@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cstring>
 #include <type_traits>
 
@@ -145,6 +146,23 @@ bool is_compressed_encoding(std::string_view encoding) {
                              [&](const char* one) { return encoding == one; });
 }
 
+/// Returns the name of an encoding as ROS spells it: some write OpenCV's kinds of pixels as "16uc1" or "TYPE_16UC1".
+std::string plain_encoding(std::string_view given) {
+  constexpr std::string_view kType = "TYPE_";
+  if (given.starts_with(kType)) given.remove_prefix(kType.size());
+  std::string encoding(given);
+  const bool is_of_opencv = encoding.size() > 3 && std::isdigit(static_cast<unsigned char>(encoding.front())) != 0 &&
+                            std::tolower(static_cast<unsigned char>(encoding[encoding.size() - 2])) == 'c';
+  if (is_of_opencv) std::ranges::transform(encoding, encoding.begin(), [](unsigned char c) { return std::toupper(c); });
+  return encoding;
+}
+
+/// Returns the bytes from one row to the next; some writers leave them out.
+std::uint32_t row_length(std::uint64_t given, const PictureMessage& picture) {
+  const bool is_left_out = given == 0 && picture.height > 0;
+  return static_cast<std::uint32_t>(is_left_out ? picture.data.size() / std::size_t(picture.height) : given);
+}
+
 /// Orbbec's Images have numbers behind the picture. Some have how many bytes there are of a camera's own before it, in
 /// the list of the picture's bytes and counted in front of that.
 void skip_orbbec_metadata(MessageFields fields, PictureMessage& picture) {
@@ -159,12 +177,13 @@ void skip_orbbec_metadata(MessageFields fields, PictureMessage& picture) {
 void parse_image(MessageFields& fields, PictureMessage& picture, const std::string& name, bool is_orbbec) {
   picture.height = picture_side(fields.u32("the height"), name);
   picture.width = picture_side(fields.u32("the width"), name);
-  picture.encoding = fields.text("the encoding");
+  picture.encoding = plain_encoding(fields.text("the encoding"));
   picture.compressed = is_compressed_encoding(picture.encoding);
   picture.big_endian = fields.u8("the byte order") != 0;
-  picture.row_bytes = fields.u32("the length of a row");
+  const std::uint32_t row_bytes = fields.u32("the length of a row");
   if (is_orbbec) skip_orbbec_metadata(fields, picture);
   if (picture.data.empty()) picture.data = fields.bytes("the picture");
+  picture.row_bytes = row_length(row_bytes, picture);
 }
 
 /// stereo_msgs/DisparityImage
@@ -216,9 +235,10 @@ PictureMessage foxglove_picture(const RecordedTopic& topic, std::string_view mes
   picture.frame = fields.text("frame_id");
   picture.width = picture_side(fields.number("width"), name);
   picture.height = picture_side(fields.number("height"), name);
-  picture.encoding = fields.text(picture.compressed ? "format" : "encoding");
-  picture.row_bytes = static_cast<std::uint32_t>(fields.number("step"));
+  const std::string_view encoding = fields.text(picture.compressed ? "format" : "encoding");
+  picture.encoding = picture.compressed ? std::string(encoding) : plain_encoding(encoding);
   picture.data = fields.text("data");
+  picture.row_bytes = row_length(fields.number("step"), picture);
   picture.unpacked = fields["data"].owned;
   return picture;
 }
@@ -354,7 +374,9 @@ DepthImage depth_of(const PictureMessage& given, const StoredDepth& stored, cons
   const double to_mm = 1e3 / double(stored.units_per_m), float_to_mm = 1e3 / double(stored.float_units_per_m);
   const auto whole = [&](auto value) {
     if constexpr (std::is_unsigned_v<decltype(value)>) value = restored(value, stored.bits);
-    if (to_mm == 1.0) return static_cast<std::uint16_t>(std::max<int>(value, 0));
+    if (to_mm == 1.0 && sizeof(value) <= sizeof(std::uint16_t)) {
+      return static_cast<std::uint16_t>(std::max<int>(value, 0));
+    }
     return depth_reading_of_mm(value * to_mm);
   };
   const auto real = [&](auto value) { return depth_reading_of_mm(float_to_mm * double(value)); };
@@ -387,6 +409,7 @@ DepthImage depth_of(const PictureMessage& given, const StoredDepth& stored, cons
   if (encoding == "32FC1") return depth_from<float>(picture, sizeof(float), 0, name, real);
   if (encoding == "64FC1") return depth_from<double>(picture, sizeof(double), 0, name, real);
   if (encoding == "16SC1") return depth_from<std::int16_t>(picture, sizeof(std::int16_t), 0, name, whole);
+  if (encoding == "32SC1") return depth_from<std::int32_t>(picture, sizeof(std::int32_t), 0, name, whole);
   return depth_from<std::uint16_t>(picture, sizeof(std::uint16_t), 0, name, whole);
 }
 

@@ -14,6 +14,9 @@
 namespace vesalius {
 namespace {
 
+/// Bytes before the PNG or RVL of compressedDepth.
+constexpr std::size_t kCompressedDepthHead = 12;
+
 /// Groups of four bits out of words of 32, the highest first: three of a number and one that says whether more follow.
 class Nibbles {
  public:
@@ -122,6 +125,10 @@ std::string pack_rvl(const Image<std::uint16_t>& depth) {
   return out.finish();
 }
 
+std::string_view without_compressed_depth_head(std::string_view data) {
+  return is_png(data) ? data : data.substr(std::min(kCompressedDepthHead, data.size()));
+}
+
 std::pair<int, int> rvl_size(std::string_view data) {
   if (data.size() < kCompressedDepthHead + 2 * sizeof(std::uint32_t)) return {};
   const std::string name;
@@ -133,6 +140,10 @@ std::pair<int, int> rvl_size(std::string_view data) {
 
 Image<std::uint16_t> unpack_compressed_depth(std::string_view data, std::string_view format, const std::string& name) {
   const bool is_float = format.starts_with("32FC1");
+  if (is_png(data)) {
+    if (is_float) throw Error(name + ": compressedDepth of 32FC1 without the 12 bytes that state its scale");
+    return decode_depth_png(data, name);
+  }
   ByteReader in(data, name);
   in.number<std::uint32_t>("kind of compressedDepth");
   const float scale = in.real32("scale of compressedDepth");

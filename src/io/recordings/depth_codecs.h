@@ -18,8 +18,8 @@ Image<std::uint16_t> unpack_rvl(std::string_view packed, int width, int height, 
 /// Packs a depth picture in that way.
 std::string pack_rvl(const Image<std::uint16_t>& depth);
 
-/// Bytes before the PNG or RVL of compressedDepth.
-inline constexpr std::size_t kCompressedDepthHead = 12;
+/// Returns the PNG or RVL of compressedDepth: what follows 12 bytes, which some writers of PNG leave out.
+std::string_view without_compressed_depth_head(std::string_view data);
 
 /// Returns width and height of the data of compressedDepth that RVL packed, as they are stated; 0 where they are not.
 std::pair<int, int> rvl_size(std::string_view data);

@@ -69,6 +69,7 @@ TEST(CompressedDepth, IsPngOrRvlBehindAHeader) {
   const Image<std::uint16_t> depth = random_depth(3, 21, 14);
   EXPECT_EQ(unpack_compressed_depth(header(0, 0) + encode_png(depth), "16UC1; compressedDepth png", "a"), depth);
   EXPECT_EQ(unpack_compressed_depth(header(0, 0) + encode_png(depth), "16UC1; compressedDepth", "a"), depth);
+  EXPECT_EQ(unpack_compressed_depth(encode_png(depth), "16UC1; compressedDepth", "a"), depth) << "without its head";
   ByteWriter size;
   size.number(std::uint32_t{21});
   size.number(std::uint32_t{14});
@@ -88,6 +89,9 @@ TEST(CompressedDepth, OfMetresWasStoredAsItsInverse) {
 }
 
 TEST(CompressedDepth, RefusesDamage) {
+  EXPECT_THAT(
+      error_of([] { unpack_compressed_depth(encode_png(DepthImage(4, 3)), "32FC1; compressedDepth", "a.bag"); }),
+      HasSubstr("without the 12 bytes"));
   EXPECT_THAT(error_of([] { unpack_compressed_depth("short", "16UC1; compressedDepth png", "a.bag"); }),
               AllOf(HasSubstr("a.bag"), HasSubstr("compressedDepth")));
   EXPECT_THAT(

@@ -73,10 +73,11 @@ Head head_of(std::string_view bytes) {
   return av_head(bytes);
 }
 
+constexpr std::array kDepthEncodings{"16UC1", "16SC1", "32SC1", "32FC1", "64FC1", "z16", "Z16"};
+
 /// Pictures that were of 16 bits or of metres before they were compressed: "16UC1; jpeg compressed".
 bool says_depth(const std::string& format) {
-  return std::ranges::any_of(std::array{"16UC1", "16SC1", "32FC1", "64FC1", "z16", "Z16"},
-                             [&](const char* one) { return format.starts_with(one); });
+  return std::ranges::any_of(kDepthEncodings, [&](const char* one) { return format.starts_with(one); });
 }
 
 PictureLook look_at_video(const PictureMessage& picture, std::string_view codec) {
@@ -103,7 +104,7 @@ PictureLook look_at_compressed(const PictureMessage& picture) {
     if (format.ends_with("rvl")) {
       std::tie(look.width, look.height) = rvl_size(picture.data);
     } else {
-      const Head head = head_of(picture.data.substr(std::min(kCompressedDepthHead, picture.data.size())));
+      const Head head = head_of(without_compressed_depth_head(picture.data));
       look.width = head.width;
       look.height = head.height;
     }
@@ -134,8 +135,7 @@ PictureLook look_at(const PictureMessage& picture) {
   if (picture.compressed) return look_at_compressed(picture);
   const std::string& e = picture.encoding;
   PictureLook look{Kind::unread, e, picture.width, picture.height, {}};
-  if (picture.focal_baseline > 0.0 || picture.point_bytes > 0 || e == "z16" || e == "Z16" || e == "16UC1" ||
-      e == "16SC1" || e == "32FC1" || e == "64FC1") {
+  if (picture.focal_baseline > 0.0 || picture.point_bytes > 0 || std::ranges::count(kDepthEncodings, e) > 0) {
     look.kind = Kind::depth;
   } else if (e == "mono16") {
     look.kind = Kind::sixteen;

@@ -78,6 +78,10 @@ std::vector<FrameTransform> parse_orbbec(const RecordedTopic& topic, std::string
   return {{orbbec_frame(kOrbbecColour), orbbec_frame(kOrbbecDepth), *colour_from_depth}};
 }
 
+bool is_of_ros(const RecordedTopic& topic) {
+  return topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage";  // the second is older
+}
+
 bool is_of_foxglove(const RecordedTopic& topic) {
   return is_foxglove(topic, "FrameTransform") || is_foxglove(topic, "FrameTransforms");
 }
@@ -99,8 +103,7 @@ std::vector<FrameTransform> parse_foxglove(const RecordedTopic& topic, std::stri
 bool is_transform(const RecordedTopic& topic) {
   if (is_of_foxglove(topic)) return true;
   if (!is_ros(topic)) return false;
-  const bool is_static = topic.type == "tf2_msgs/TFMessage" && topic.name.ends_with("tf_static");
-  return is_static || is_realsense(topic) || is_orbbec(topic);
+  return is_of_ros(topic) || is_realsense(topic) || is_orbbec(topic);
 }
 
 std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::string_view message,
@@ -122,6 +125,9 @@ std::vector<FrameTransform> parse_transforms(const RecordedTopic& topic, std::st
       if (const auto found = read_transform(fields)) transforms.push_back({plain_frame(parent), child, *found});
     }
   }
+  // Drivers of ROS 1 repeat in /tf where their cameras stand.
+  const bool may_move = (is_of_ros(topic) || is_of_foxglove(topic)) && !topic.name.ends_with("tf_static");
+  for (FrameTransform& one : transforms) one.may_move = may_move;
   return transforms;
 }
 
@@ -136,6 +142,20 @@ std::string transforms_message(const std::vector<FrameTransform>& transforms, st
     for (const double k : {q.x(), q.y(), q.z(), q.w()}) out.real64(k);
   }
   return out.message();
+}
+
+void TransformTree::add(const FrameTransform& transform) {
+  constexpr double kSame = 1e-6;
+  if (transform.may_move && moving_.contains(transform.child)) return;
+  const auto [known, is_new] = parents_.try_emplace(transform.child, transform);
+  if (is_new || !known->second.may_move) return;
+  if (!transform.may_move) {
+    known->second = transform;
+  } else if (known->second.parent != transform.parent ||
+             !known->second.parent_from_child.isApprox(transform.parent_from_child, kSame)) {
+    moving_.insert(transform.child);
+    parents_.erase(known);
+  }
 }
 
 std::vector<std::pair<std::string, Eigen::Isometry3d>> TransformTree::chain(const std::string& frame) const {

@@ -40,8 +40,25 @@ TEST(TransformTree, EndsWhereFramesStandInEachOther) {
   EXPECT_FALSE(tree.find("c", "a"));
 }
 
+TEST(TransformTree, WhatMayMoveCountsUntilItDoes) {
+  const Isometry3d here = some(0.2, {1, 2, 3}), there = some(0.3, {1, 2, 3});
+  TransformTree tree;
+  for (int i = 0; i < 3; ++i) tree.add({"base", "camera", here, true});
+  EXPECT_TRUE(tree.find("base", "camera")->isApprox(here)) << "a driver of ROS 1 repeats it";
+  tree.add({"base", "camera", there, true});
+  tree.add({"base", "camera", here, true});
+  EXPECT_FALSE(tree.find("base", "camera")) << "it moves";
+  tree.add({"base", "camera", there});
+  tree.add({"base", "camera", here, true});
+  EXPECT_TRUE(tree.find("base", "camera")->isApprox(there)) << "tf_static rules";
+  tree.add({"base", "lens", here, true});
+  tree.add({"base", "lens", there});
+  EXPECT_TRUE(tree.find("base", "lens")->isApprox(there)) << "whichever comes first";
+}
+
 TEST(TransformMessages, AreReadInBothLayoutsOfRos) {
   const auto parse = [](MessageLayout layout, const std::string& bytes) {
+    EXPECT_TRUE(parse_transforms({"/tf", "tf/tfMessage", layout, 1}, bytes, "here").front().may_move);
     return parse_transforms({"/tf_static", "tf2_msgs/TFMessage", layout, 1}, bytes, "here");
   };
   CdrWriter cdr;

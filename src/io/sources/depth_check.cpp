@@ -18,7 +18,6 @@
 namespace vesalius {
 namespace {
 
-constexpr int kLooked = 5;               // frames: some cameras begin with empty ones
 constexpr std::size_t kLeastRead = 500;  // pixels of those that are looked at
 /// Kinect v1 as it is stored by some: 11 bits of disparity, of which the largest is no reading.
 constexpr std::uint16_t kNoDisparity = 2047, kMostDisparity = 1100;
@@ -141,33 +140,34 @@ double unlikeliness(const Remedy& remedy) {
 }
 
 using Opener = std::function<std::unique_ptr<FrameSource>(const SourceOptions&)>;
+using Reread = std::function<DepthImage(const SourceOptions&)>;
 
-/// Returns what the first frame with depth looks like, or the last of those that are looked at.
-DepthLook first_look(FrameSource& source) {
-  DepthLook look;
-  for (int i = 0; i < kLooked && look.readings < kLeastRead; ++i) {
-    const std::optional<Frame> frame = source.next();
+/// Returns the depth of the first frame that has some, or of the last of those that are looked at.
+DepthImage first_depth(FrameSource& source) {
+  DepthImage depth;
+  for (int i = 0; i < kFirstFrames && !has_depth(depth); ++i) {
+    std::optional<Frame> frame = source.next();
     if (!frame) break;
-    look = look_at(frame->depth);
+    depth = std::move(frame->depth);
   }
-  return look;
+  return depth;
 }
 
 /// Returns whether depth counts as fifths of a millimetre, as in the TUM benchmark: many bring such folders of
 /// millimetres. Of other sources that are near nothing can be said: they may look at a table.
-bool is_of_tum(const DepthLook& look, SourceOptions options, const Opener& open) {
+bool is_of_tum(const DepthLook& look, SourceOptions options, const Reread& reread) {
   options.depth_scale = 5000.F;
-  return first_look(*open(options)).mm == look.mm;
+  return look_at(reread(options)).mm == look.mm;
 }
 
 /// Returns the best remedy; nothing where none helps. Bytes and bits that fit are no chance, so they come first.
-std::optional<Remedy> remedy_of(Oddity oddity, const DepthLook& odd, const SourceOptions& given, const Opener& open) {
-  if (oddity == Oddity::near && !is_of_tum(odd, given, open)) return std::nullopt;
+std::optional<Remedy> remedy_of(Oddity oddity, const DepthLook& odd, const SourceOptions& given, const Reread& reread) {
+  if (oddity == Oddity::near && !is_of_tum(odd, given, reread)) return std::nullopt;
   std::optional<Remedy> best;
   int units = 0;  // of two that are too near each other to tell
   for (Remedy& remedy : remedies(given, oddity)) {
     try {
-      remedy.look = first_look(*open(remedy.options));
+      remedy.look = look_at(reread(remedy.options));
     } catch (const Error&) {
       continue;
     }
@@ -187,13 +187,20 @@ bool cannot_be(const DepthLook& look) {
   return look.readings < kLeastRead || look.mm[2] < kNearest_mm || look.mm[0] > kFarthest_mm;
 }
 
-std::string doubt(const DepthLook& look, const std::string& place, const SourceOptions& given, const Opener& open) {
+}  // namespace
+
+bool has_depth(const DepthImage& depth) { return look_at(depth).readings >= kLeastRead; }
+
+std::string doubt_of_depth(const DepthImage& depth, const std::string& place, const SourceOptions& given,
+                           const Reread& reread) {
+  if (depth.size() < 4 * kLeastRead) return {};
+  const DepthLook look = look_at(depth);
   if (look.disparity) {
     return place + ": depth looks like the raw disparity of a Kinect (2047 = none), expected distances";
   }
   const Oddity oddity = oddity_of(look);
   if (oddity == Oddity::none) return {};
-  if (const auto remedy = remedy_of(oddity, look, given, open)) {
+  if (const auto remedy = remedy_of(oddity, look, given, reread)) {
     return fmt::format("{}: {}; with {} it is a room's, {}", place, words(oddity, look), remedy->flag,
                        metres(remedy->look));
   }
@@ -201,24 +208,28 @@ std::string doubt(const DepthLook& look, const std::string& place, const SourceO
   return fmt::format("{}: {}; expected millimetres, or the unit by --depth-scale", place, words(oddity, look));
 }
 
+namespace {
+
 class DepthChecked final : public SourceAround {
  public:
   DepthChecked(std::unique_ptr<FrameSource> around, const std::string& place, const SourceOptions& options,
                const Opener& open)
       : SourceAround(std::move(around)) {
-    DepthLook look;
-    while (first_.size() < kLooked && look.readings < kLeastRead) {
+    bool is_found = false;
+    while (first_.size() < kFirstFrames && !is_found) {
       try {
         std::optional<Frame> frame = source().next();
         if (!frame) break;
-        look = look_at(frame->depth);
+        is_found = has_depth(frame->depth);
         first_.emplace_back(std::move(*frame));
       } catch (const Error&) {
         first_.emplace_back(std::current_exception());
         return;
       }
     }
-    if (!first_.empty() && is_large(std::get<Frame>(first_.back()))) note_ = doubt(look, place, options, open);
+    if (first_.empty()) return;
+    note_ = doubt_of_depth(std::get<Frame>(first_.back()).depth, place, options,
+                           [&](const SourceOptions& other) { return first_depth(*open(other)); });
   }
 
   std::optional<Frame> next() override {
@@ -239,9 +250,6 @@ class DepthChecked final : public SourceAround {
   }
 
  private:
-  /// Of a smaller picture nothing can be said.
-  static bool is_large(const Frame& frame) { return frame.depth.size() >= 4 * kLeastRead; }
-
   std::deque<std::variant<Frame, std::exception_ptr>> first_;
   std::string note_;
 };

@@ -186,17 +186,20 @@ TEST_F(RecordedTopics, AJpegOfDepthIsNoColour) {
 
 TEST_F(RecordedTopics, EncodingsOfDepthAreRead) {
   Image<std::int16_t> with_sign(40, 30);
+  Image<std::int32_t> wide(40, 30);
   Image<double> metres(40, 30);
   DepthImage positive = a_.depth;
   for (std::size_t i = 0; i < positive.size(); ++i) {
     with_sign[i] = static_cast<std::int16_t>(i % 7 == 0 ? -5 : positive[i]);
+    wide[i] = i % 7 == 0 ? i % 2 == 0 ? -5 : 70000 : positive[i];
     metres[i] = double(positive[i]) / 1e3;
     if (i % 7 == 0) positive[i] = 0;
   }
-  const std::vector<std::tuple<const char*, std::string, DepthImage>> all{{"z16", raw("z16", a_.depth), a_.depth},
-                                                                          {"Z16", raw("Z16", a_.depth), a_.depth},
-                                                                          {"16SC1", raw("16SC1", with_sign), positive},
-                                                                          {"64FC1", raw("64FC1", metres), a_.depth}};
+  const std::vector<std::tuple<const char*, std::string, DepthImage>> all{
+      {"z16", raw("z16", a_.depth), a_.depth},      {"Z16", raw("Z16", a_.depth), a_.depth},
+      {"16SC1", raw("16SC1", with_sign), positive}, {"32SC1", raw("32SC1", wide), positive},
+      {"16uc1", raw("16uc1", a_.depth), a_.depth},  {"TYPE", raw("TYPE_16UC1", a_.depth), a_.depth},
+      {"64FC1", raw("64FC1", metres), a_.depth}};
   for (const auto& [name, message, depth] : all) {
     const std::string path = folder_ / (std::string(name) + ".mcap");
     Messages out(path);
@@ -205,6 +208,18 @@ TEST_F(RecordedTopics, EncodingsOfDepthAreRead) {
     out.close();
     EXPECT_EQ(open_source(path)->next()->depth, depth) << name;
   }
+}
+
+TEST_F(RecordedTopics, RowsWhoseLengthIsLeftOutFollowEachOther) {
+  PictureMessage picture;
+  picture.frame = "depth_frame";
+  picture.width = a_.depth.width();
+  picture.height = a_.depth.height();
+  picture.encoding = "16UC1";
+  picture.data = {reinterpret_cast<const char*>(a_.depth.data()), a_.depth.size() * sizeof(std::uint16_t)};
+  out_.camera("/camera/depth/camera_info", a_.camera);
+  out_.put("/camera/depth/image", kImage, 0, picture_message(picture));
+  EXPECT_EQ(open()->next()->depth, a_.depth);
 }
 
 /// Writes a stereo_msgs/DisparityImage as CDR.

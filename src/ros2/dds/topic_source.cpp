@@ -79,7 +79,7 @@ void TopicSource::open(const CameraTopics& topics) {
   camera_info_ = node_.subscribe(topics.camera_info, "sensor_msgs/CameraInfo", qos);
   if (!topics.colour.empty()) colour_ = node_.subscribe(topics.colour, picture_type(topics.colour), qos);
   topics_ = topics;
-  frames_.emplace(topics);
+  frames_.emplace(topics, options_.stored);
   options_.say(fmt::format("depth of {}, calibration of {}, {}", topics.depth, topics.camera_info,
                            topics.colour.empty() ? "no colour" : "colour of " + topics.colour));
 }

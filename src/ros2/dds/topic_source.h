@@ -21,6 +21,7 @@ struct TopicSourceOptions {
   std::string
       name_space;         ///< a camera's, e.g. "/camera", below which topics are chosen; may be empty if depth is named
   CameraTopics topics;    ///< those that the user names, full names; empty ones are chosen
+  SourceOptions stored;   ///< how depth is stored; the rest counts nothing
   bool reliable = false;  ///< ask again for pictures that get lost, with publishers that can do that
   /// Gets a line when topics are found, when nothing comes, and when a message is not what it should be, in the thread
   /// that calls `next`.

@@ -6,8 +6,10 @@
 #include <array>
 #include <utility>
 
+#include "io/files/stored_depth.h"
 #include "io/recordings/recording.h"
 #include "io/sources/camera_file.h"
+#include "io/sources/depth_check.h"
 #include "vesalius/error.h"
 
 namespace vesalius::ros2 {
@@ -81,7 +83,8 @@ std::optional<CameraTopics> choose_topics(const std::string& name_space, const C
   return chosen;
 }
 
-TopicFrames::TopicFrames(CameraTopics topics) : topics_(std::move(topics)) {}
+TopicFrames::TopicFrames(CameraTopics topics, const SourceOptions& stored)
+    : topics_(std::move(topics)), stored_(stored), unchecked_(kFirstFrames) {}
 
 void TopicFrames::note_once(const std::string& key, const std::string& line) {
   if (!std::exchange(noted_[key], true)) notes_.push_back(line);
@@ -149,6 +152,18 @@ ColourImage TopicFrames::colour_for(const Picture& depth, const DepthImage& imag
   return rectification_ ? rectification_->colour(colour) : colour;
 }
 
+DepthImage TopicFrames::depth_from(const PictureMessage& picture) {
+  const auto read = [&](const SourceOptions& stored) { return depth_of(picture, stored_depth(stored), topics_.depth); };
+  DepthImage depth = read(stored_);
+  if (unchecked_ > 0 && (has_depth(depth) || --unchecked_ == 0)) {
+    unchecked_ = 0;
+    if (std::string doubt = doubt_of_depth(depth, topics_.depth, stored_, read); !doubt.empty()) {
+      notes_.push_back(std::move(doubt));
+    }
+  }
+  return depth;
+}
+
 std::optional<TopicFrame> TopicFrames::next(double now_s) {
   if (!camera_ || depths_.empty() || !is_complete(depths_.front(), now_s)) return std::nullopt;
   const Picture depth = std::move(depths_.front());
@@ -160,7 +175,7 @@ std::optional<TopicFrame> TopicFrames::next(double now_s) {
   made.frame.name = name_of_time(time_ns);
   made.frame.arrived_s = depth.arrived_s;
   made.frame.camera = *camera_;
-  made.frame.depth = depth_of(depth.picture, {}, topics_.depth);
+  made.frame.depth = depth_from(depth.picture);
   if (made.frame.depth.width() != camera_->width || made.frame.depth.height() != camera_->height) {
     throw Error(fmt::format("{}: {}x{} pixels, expected {}x{} as {} says", topics_.depth, made.frame.depth.width(),
                             made.frame.depth.height(), camera_->width, camera_->height, topics_.camera_info));

@@ -15,6 +15,7 @@
 #include "io/recordings/recording.h"
 #include "ros2/messages/people_topics.h"
 #include "vesalius/frame.h"
+#include "vesalius/frame_source.h"
 
 namespace vesalius::ros2 {
 
@@ -47,10 +48,11 @@ struct TopicFrame {
 /// metres) and of colour, CompressedImage of both, and CameraInfo. A depth picture goes with the colour nearest in
 /// time, at most 50 ms away, for which it waits no longer than 100 ms; with colour that has another size or stands in
 /// another frame it goes alone. What a lens did to depth and colour is undone. Without a calibration there are no
-/// frames.
+/// frames. Of the first ones with depth that no camera gives in a room there is a note.
 class TopicFrames {
  public:
-  explicit TopicFrames(CameraTopics topics);
+  /// `stored` says how depth is stored; the rest of it counts nothing.
+  explicit TopicFrames(CameraTopics topics, const SourceOptions& stored = {});
 
   // Take a message as CDR. `arrived_s` is when, by this machine's clock. All throw Error naming the topic where the
   // message is not what it should be; it is left out then.
@@ -77,9 +79,12 @@ class TopicFrames {
   static Picture parse(const std::string& topic, std::string_view message);
   void note_once(const std::string& key, const std::string& line);
   bool is_complete(const Picture& depth, double now_s) const;
+  DepthImage depth_from(const PictureMessage& picture);
   ColourImage colour_for(const Picture& depth, const DepthImage& image);
 
   CameraTopics topics_;
+  SourceOptions stored_;
+  int unchecked_;  ///< pictures one of which should have depth
   std::optional<Camera> camera_;
   LensCamera lens_;
   std::optional<Rectification> rectification_;  ///< made with the first picture of the camera

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -11,6 +12,7 @@
 namespace vesalius::ros2 {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -192,6 +194,34 @@ TEST_F(TopicFramesTest, RefusePicturesThatAreNoneAndGoOn) {
   EXPECT_THROW(frames.next(20.0), Error) << "another size than the calibration's";
   frames.take_depth(depth(2), 10.0);
   EXPECT_TRUE(frames.next(20.0));
+}
+
+TEST_F(TopicFramesTest, NoteDepthOfAnotherUnitAndTakeIt) {
+  Camera camera{160, 120, 130.F, 130.F, 79.5F, 59.5F};
+  DepthImage room(160, 120), tenths(160, 120);
+  for (int v = 0; v < room.height(); ++v) {
+    for (int u = 0; u < room.width(); ++u) room(u, v) = static_cast<std::uint16_t>(2000 + 10 * u + (u * v) % 7);
+  }
+  std::ranges::transform(room, tenths.begin(), [](std::uint16_t mm) { return static_cast<std::uint16_t>(10 * mm); });
+  const auto notes_of = [&](const DepthImage& stored, const SourceOptions& options, int empty = 0) {
+    TopicFrames frames(topics(false), options);
+    frames.take_calibration(calibration_message(camera, 0, "camera"));
+    for (int i = 0; i < empty; ++i) {
+      frames.take_depth(depth_message(DepthImage(160, 120), i, "camera"), 10.0);
+      frames.next(20.0);
+    }
+    frames.take_depth(depth_message(stored, 100, "camera"), 10.0);
+    EXPECT_EQ(frames.next(20.0)->frame.depth, options.depth_scale ? room : stored);
+    return frames.take_notes();
+  };
+  SourceOptions in_tenths;
+  in_tenths.depth_scale = 10000.F;
+  EXPECT_THAT(notes_of(room, {}), IsEmpty());
+  EXPECT_THAT(notes_of(tenths, {}),
+              ElementsAre(AllOf(HasSubstr("/c/depth/image: "), HasSubstr("--depth-scale 10000"))));
+  EXPECT_THAT(notes_of(tenths, in_tenths), IsEmpty());
+  EXPECT_THAT(notes_of(tenths, {}, 3), ElementsAre(HasSubstr("--depth-scale 10000"))) << "a camera begins with nothing";
+  EXPECT_THAT(notes_of(room, {}, 5), ElementsAre(HasSubstr("hardly any depth")));
 }
 
 TEST(ChooseTopics, PrefersDepthOnTheGridOfColour) {
