@@ -58,14 +58,6 @@ class TextureAppearance : public Appearance {
 /// Returns the appearance of a name: "hue" or "texture"; nothing for "none". Throws UsageError for any other.
 std::shared_ptr<const Appearance> make_appearance(const std::string& name);
 
-/// What the pixels of one frame look like, which all who grow in it share.
-struct Looks {
-  const Appearance* appearance = nullptr;  ///< none if looks do not matter
-  std::vector<std::uint16_t> classes;      ///< Appearance::describe; empty without an appearance
-};
-/// Returns the looks of a frame; `appearance` may be null, or must outlive them.
-Looks look_at(const Frame& frame, const Appearance* appearance);
-
 /// How often each class of an appearance occurs in some pixels, such as a person's.
 class AppearanceHistogram {
  public:
@@ -73,6 +65,11 @@ class AppearanceHistogram {
     if (look >= counts_.size()) counts_.resize(look + std::size_t{1}, 0);
     ++counts_[look];
     ++samples_;
+  }
+  /// Takes a pixel out that was added.
+  void remove(std::uint16_t look) {
+    --counts_[look];
+    --samples_;
   }
   /// Adds the pixels of another histogram of the same appearance.
   void add(const AppearanceHistogram& other);
@@ -88,6 +85,15 @@ class AppearanceHistogram {
   std::vector<std::uint32_t> counts_;
   long samples_ = 0;
 };
+
+/// What the pixels of one frame look like, which all who grow in it share.
+struct Looks {
+  const Appearance* appearance = nullptr;  ///< none if looks do not matter
+  std::vector<std::uint16_t> classes;      ///< Appearance::describe; empty without an appearance
+  AppearanceHistogram all;                 ///< of the whole picture
+};
+/// Returns the looks of a frame; `appearance` may be null, or must outlive them.
+Looks look_at(const Frame& frame, const Appearance* appearance);
 
 /// Returns what the pixels inside `mask`, which has the frame's size, look like; nothing if the frame lacks what the
 /// appearance takes.

@@ -72,6 +72,14 @@ struct Box {
   int u = 0, v = 0, width = 0, height = 0;
 };
 
+/// Returns the smallest box around two; an empty one does not count.
+inline Box around(const Box& a, const Box& b) {
+  if (a.width == 0 || a.height == 0) return b;
+  if (b.width == 0 || b.height == 0) return a;
+  const int u = std::min(a.u, b.u), v = std::min(a.v, b.v);
+  return {u, v, std::max(a.u + a.width, b.u + b.width) - u, std::max(a.v + a.height, b.v + b.height) - v};
+}
+
 /// Returns the part of a picture inside a box, which must lie within it.
 template <class T>
 Image<T> crop(const Image<T>& image, const Box& box) {
@@ -88,23 +96,25 @@ using LabelImage = Image<std::uint8_t>;
 using Mask = Image<std::uint8_t>;
 using ColourImage = Image<Rgb>;
 
-/// Returns the smallest box around the pixels inside the mask, or an empty box if there are none.
-inline Box bounding_box(const Mask& mask) {
+/// Returns the smallest box around the pixels inside the mask, or an empty box if there are none. All are `within` a
+/// box.
+inline Box bounding_box(const Mask& mask, const Box& within) {
   int left = mask.width(), right = -1, top = mask.height(), bottom = -1;
   const auto inside = [](std::uint8_t value) { return value != 0; };
-  for (int v = 0; v < mask.height(); ++v) {
-    const std::uint8_t* row = mask.row(v);
-    const auto first = int(std::find_if(row, row + mask.width(), inside) - row);
-    if (first == mask.width()) continue;
-    int last = mask.width() - 1;
-    while (row[last] == 0) --last;
-    left = std::min(left, first);
-    right = std::max(right, last);
+  for (int v = within.v; v < within.v + within.height; ++v) {
+    const std::uint8_t *row = mask.row(v), *begin = row + within.u, *end = begin + within.width;
+    const std::uint8_t* first = std::find_if(begin, end, inside);
+    if (first == end) continue;
+    const std::uint8_t* last = end - 1;
+    while (*last == 0) --last;
+    left = std::min(left, int(first - row));
+    right = std::max(right, int(last - row));
     top = std::min(top, v);
     bottom = v;
   }
   return right < 0 ? Box{} : Box{left, top, right - left + 1, bottom - top + 1};
 }
+inline Box bounding_box(const Mask& mask) { return bounding_box(mask, {0, 0, mask.width(), mask.height()}); }
 
 /// Label of pixels that belong to no body part, and body index of pixels that belong to no person.
 inline constexpr std::uint8_t kBackground = 255;

@@ -126,7 +126,10 @@ std::shared_ptr<const Appearance> make_appearance(const std::string& name) {
 }
 
 Looks look_at(const Frame& frame, const Appearance* appearance) {
-  return {appearance, appearance != nullptr ? appearance->describe(frame) : std::vector<std::uint16_t>{}};
+  Looks looks{appearance, {}, {}};
+  if (appearance != nullptr) looks.classes = appearance->describe(frame);
+  for (const std::uint16_t look : looks.classes) looks.all.add(look);
+  return looks;
 }
 
 void AppearanceHistogram::add(const AppearanceHistogram& other) {

@@ -417,11 +417,10 @@ Detection Detector::detect(const Frame& given, const AskPrior& ask, Trace* trace
     return detect_turned(*this, given, quarters, ask, trace, times);
   }
   StageClock clock(times);
-  Frame memory;
-  const Frame& frame = without_blended(given, method_->options.blend, memory);
+  const std::optional<DepthImage> cleared = without_blended(given.depth, method_->options.blend);
   clock.lap(Stage::grid);
   return on_grid(
-      frame, method_->options.grid, times,
+      given, cleared ? *cleared : given.depth, method_->options.grid, times,
       [&](const Frame& grid, int step) {
         const bool has_person = trace != nullptr && trace->person != nullptr;
         const Mask person = has_person ? every_nth(*trace->person, step) : Mask{};
@@ -457,10 +456,9 @@ FrameLabels Detector::label(const Frame& given, const Mask* person) const {
     const FrameLabels found = label(turned(given, quarters), person != nullptr ? &inside : nullptr);
     return {turned(found.labels, 4 - quarters), turned(found.inside, 4 - quarters)};
   }
-  Frame memory;
-  const Frame& frame = without_blended(given, method_->options.blend, memory);
+  const std::optional<DepthImage> cleared = without_blended(given.depth, method_->options.blend);
   return on_grid(
-      frame, method_->options.grid, nullptr,
+      given, cleared ? *cleared : given.depth, method_->options.grid, nullptr,
       [&](const Frame& grid, int step) {
         const Mask inside = person != nullptr ? every_nth(*person, step) : Mask{};
         return label_everywhere(*method_, grid, person != nullptr ? &inside : nullptr);

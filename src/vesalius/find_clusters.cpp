@@ -25,15 +25,15 @@ struct Moments {
 class ClusterFinder {
  public:
   ClusterFinder(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
-                const ClusterOptions& options)
-      : labels_(labels), depth_(depth), camera_(camera), body_(body), options_(options) {}
+                const ClusterOptions& options, const Box& within)
+      : labels_(labels), depth_(depth), camera_(camera), body_(body), options_(options), within_(within) {}
 
   Clusters run() {
     Clusters out;
     out.index = Image<std::int32_t>(labels_.width(), labels_.height(), kNone);
     std::vector<PartCluster> kept;
-    for (int v = 0; v < labels_.height(); ++v) {
-      for (int u = 0; u < labels_.width(); ++u) {
+    for (int v = within_.v; v < within_.v + within_.height; ++v) {
+      for (int u = within_.u; u < within_.u + within_.width; ++u) {
         if (out.index(u, v) != kNone || !labelled(u, v)) continue;
         const PartCluster cluster = fill(u, v, static_cast<std::int32_t>(kept.size()), out.index);
         if (feasible(cluster)) {
@@ -65,6 +65,8 @@ class ClusterFinder {
     PartCluster cluster;
     cluster.label = labels_(u, v);
     cluster.first_pixel = v * labels_.width() + u;
+    const int left = within_.u, right = left + within_.width - 1;
+    const int top = within_.v, bottom = top + within_.height - 1;
     Moments moments;
     double area = 0.0;
     queue_.assign(1, cluster.first_pixel);
@@ -75,8 +77,8 @@ class ClusterFinder {
       const Eigen::Vector3f here = point(pu, pv);
       moments.add(here);
       area += double(here.z()) * double(here.z());
-      for (int nv = std::max(0, pv - 1); nv <= std::min(labels_.height() - 1, pv + 1); ++nv) {
-        for (int nu = std::max(0, pu - 1); nu <= std::min(labels_.width() - 1, pu + 1); ++nu) {
+      for (int nv = std::max(top, pv - 1); nv <= std::min(bottom, pv + 1); ++nv) {
+        for (int nu = std::max(left, pu - 1); nu <= std::min(right, pu + 1); ++nu) {
           if (index(nu, nv) != kNone || labels_(nu, nv) != cluster.label || !labelled(nu, nv)) continue;
           if (!connected(here, point(nu, nv))) continue;
           index(nu, nv) = id;
@@ -107,7 +109,7 @@ class ClusterFinder {
            cluster.extent_m <= part.max_extent_m * options_.max_extent_scale;
   }
 
-  static void renumber(const std::vector<PartCluster>& kept, Clusters& out) {
+  void renumber(const std::vector<PartCluster>& kept, Clusters& out) const {
     std::vector<std::size_t> order(kept.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
@@ -121,7 +123,10 @@ class ClusterFinder {
       rank[order[i]] = static_cast<std::int32_t>(i);
       out.items.push_back(kept[order[i]]);
     }
-    for (std::int32_t& id : out.index) id = id >= 0 ? rank[id] : -1;
+    for (int v = within_.v; v < within_.v + within_.height; ++v) {
+      std::int32_t* row = out.index.row(v);
+      for (int u = within_.u; u < within_.u + within_.width; ++u) row[u] = row[u] >= 0 ? rank[row[u]] : -1;
+    }
   }
 
   const LabelImage& labels_;
@@ -129,14 +134,15 @@ class ClusterFinder {
   const Camera& camera_;
   const BodyModel& body_;
   const ClusterOptions& options_;
+  const Box& within_;
   std::vector<int> queue_;  ///< row-major pixels of the cluster being filled
 };
 
 }  // namespace
 
 Clusters find_clusters(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
-                       const ClusterOptions& options) {
-  return ClusterFinder(labels, depth, camera, body, options).run();
+                       const ClusterOptions& options, const Box& within) {
+  return ClusterFinder(labels, depth, camera, body, options, within).run();
 }
 
 }  // namespace vesalius

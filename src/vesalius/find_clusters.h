@@ -31,8 +31,14 @@ struct Clusters {
 
 /// Returns the part proposals of a labelling, found by breadth-first search over the 8-neighbourhood (section 5).
 /// Neighbours with equal labels that are closer than the gap belong to one cluster. Clusters that are too small, or
-/// longer than their part can be, are dropped. Pixels without a reading belong to none.
+/// longer than their part can be, are dropped. Pixels without a reading, or outside of `within`, belong to none.
 Clusters find_clusters(const LabelImage& labels, const DepthImage& depth, const Camera& camera, const BodyModel& body,
-                       const ClusterOptions& options);
+                       const ClusterOptions& options, const Box& within);
+
+/// Does so in the whole picture.
+inline Clusters find_clusters(const LabelImage& labels, const DepthImage& depth, const Camera& camera,
+                              const BodyModel& body, const ClusterOptions& options) {
+  return find_clusters(labels, depth, camera, body, options, {0, 0, labels.width(), labels.height()});
+}
 
 }  // namespace vesalius

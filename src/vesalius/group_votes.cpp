@@ -164,8 +164,9 @@ VoteGroup describe(const Peak& peak, int group, const std::vector<Vote>& votes, 
 }
 
 /// Hands the groups of votes on to the body pixels around them that have no vote of their own, over like depths.
+/// Returns whose pixels are; `groups` get the boxes around theirs.
 Image<std::uint8_t> spread(const std::vector<Vote>& votes, const Posteriors& posteriors, const DepthImage& depth,
-                           int parts) {
+                           int parts, std::vector<VoteGroup>& groups) {
   constexpr std::array<std::array<int, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
   constexpr std::uint8_t kOpen = kBackground - 1;
   Image<std::uint8_t> index(depth.width(), depth.height(), kOpen);
@@ -187,6 +188,10 @@ Image<std::uint8_t> spread(const std::vector<Vote>& votes, const Posteriors& pos
     }
   }
   std::ranges::replace(index, kOpen, kBackground);
+  for (const auto& [u, v] : queue) {
+    const std::uint8_t group = index(u, v);
+    if (group != kBackground) groups[group].box = around(groups[group].box, {u, v, 1, 1});
+  }
   return index;
 }
 
@@ -205,7 +210,7 @@ VoteGroups group_votes(const Posteriors& posteriors, const Frame& frame, int par
   VoteGroups groups;
   for (const Peak& peak : peaks)
     groups.items.push_back(describe(peak, int(groups.items.size()), votes, posteriors.votes));
-  if (!peaks.empty()) groups.index = spread(votes, posteriors, frame.depth, parts);
+  if (!peaks.empty()) groups.index = spread(votes, posteriors, frame.depth, parts, groups.items);
   return groups;
 }
 

@@ -18,6 +18,7 @@ struct VoteGroup {
   float spread_m = 0.F;  ///< root mean square distance of the votes to their mean
   float body = 0.F;      ///< mean body share of the pixels that vote, 0.5-1
   YawEstimate heading;   ///< mean of the votes'; its length, 0-1, is the confidence
+  Box box = {};          ///< around its pixels
 };
 
 /// The groups of a frame's votes, and whose every pixel is.

@@ -46,6 +46,20 @@ PersonGrower::PersonGrower(const Frame& frame, const Mask& flat, const BodyModel
                            const Looks& looks)
     : frame_(frame), flat_(flat), body_(body), options_(options), looks_(looks) {}
 
+Box PersonGrower::box_around_parts(const Skeleton& rough, const std::vector<float>& reach) const {
+  Box all;
+  for (std::size_t i = 0; i < rough.parts.size(); ++i) {
+    if (rough.parts[i].state != State::observed || reach[i] <= 0.F) continue;
+    const Eigen::Vector3f& centre = rough.parts[i].centre;
+    all = around(all, box_around({centre, centre, reach[i], reach[i]}, frame_.camera));
+  }
+  return all;
+}
+
+Box PersonGrower::reach_of(const Skeleton& rough) const {
+  return box_around_parts(rough, reach_of_parts(rough, body_, options_));
+}
+
 Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>& reach) const {
   Mask out(frame_.depth.width(), frame_.depth.height(), 0);
   for (std::size_t i = 0; i < rough.parts.size(); ++i) {
@@ -65,19 +79,21 @@ Mask PersonGrower::around_parts(const Skeleton& rough, const std::vector<float>&
   return out;
 }
 
-Mask PersonGrower::refused_looks(const Skeleton& rough, const Mask& seeds, const Mask& reach,
-                                 AppearanceHistogram person) const {
-  Mask refused(seeds.width(), seeds.height(), 0);
-  if (looks_.classes.empty()) return refused;
-  AppearanceHistogram rest;
-  for (std::size_t i = 0; i < seeds.size(); ++i) {
-    if (seeds[i] != 0) {
-      person.add(looks_.classes[i]);
-    } else if (reach[i] == 0 || flat_[i] != 0) {
-      rest.add(looks_.classes[i]);
+void PersonGrower::refuse_looks(const Skeleton& rough, const Mask& seeds, const Box& box, AppearanceHistogram person,
+                                Mask& allowed) const {
+  if (looks_.classes.empty()) return;
+  const int width = seeds.width();
+  const auto each = [&](const auto& use) {
+    for (int v = box.v; v < box.v + box.height; ++v) {
+      for (int i = v * width + box.u; i < v * width + box.u + box.width; ++i) use(static_cast<std::size_t>(i));
     }
-  }
-  if (person.samples() < kLeastSamples || rest.samples() < kLeastSamples) return refused;
+  };
+  AppearanceHistogram rest = looks_.all;
+  each([&](std::size_t i) {
+    if (seeds[i] != 0) person.add(looks_.classes[i]);
+    if (seeds[i] != 0 || (allowed[i] != 0 && flat_[i] == 0)) rest.remove(looks_.classes[i]);
+  });
+  if (person.samples() < kLeastSamples || rest.samples() < kLeastSamples) return;
   const std::vector<float> here = person.probabilities(*looks_.appearance);
   const std::vector<float> elsewhere = rest.probabilities(*looks_.appearance);
   // Looks that are rare everywhere are as likely elsewhere as if all were equally common.
@@ -87,15 +103,18 @@ Mask PersonGrower::refused_looks(const Skeleton& rough, const Mask& seeds, const
     refuses[look] = std::log(std::max(elsewhere[look], least) / here[look]) > kVeto ? 1 : 0;
   }
   const Mask any_look = around_parts(rough, any_look_radius(rough, body_, options_));
-  for (std::size_t i = 0; i < seeds.size(); ++i) {
-    if (reach[i] == 0 || seeds[i] != 0 || any_look[i] != 0) continue;
-    refused[i] = refuses[looks_.classes[i]];
-  }
-  return refused;
+  each([&](std::size_t i) {
+    if (allowed[i] != 0 && seeds[i] == 0 && any_look[i] == 0 && refuses[looks_.classes[i]] != 0) allowed[i] = 0;
+  });
 }
 
 std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const Clusters& clusters,
                                      const std::vector<AppearanceHistogram>& known) const {
+  return grow(people, clusters, known, {0, 0, frame_.depth.width(), frame_.depth.height()});
+}
+
+std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const Clusters& clusters,
+                                     const std::vector<AppearanceHistogram>& known, const Box& within) const {
   const int width = frame_.depth.width();
   const int height = frame_.depth.height();
   Mask nobody(width, height, 0);
@@ -113,21 +132,20 @@ std::vector<Mask> PersonGrower::grow(const std::vector<Skeleton>& people, const 
   };
   std::vector<Front> queue;
   Mask taken = flat_;
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    const std::int32_t cluster = clusters.index[i];
-    const int owner = cluster < 0 ? -1 : owner_of[cluster];
-    if (owner < 0 || taken[i] != 0) continue;
-    taken[i] = 1;
-    grown[owner][i] = 1;
-    queue.push_back({int(i), owner});
+  for (int v = within.v; v < within.v + within.height; ++v) {
+    for (int u = within.u; u < within.u + within.width; ++u) {
+      const std::int32_t cluster = clusters.index(u, v);
+      const int owner = cluster < 0 ? -1 : owner_of[cluster];
+      if (owner < 0 || taken(u, v) != 0) continue;
+      taken(u, v) = 1;
+      grown[owner](u, v) = 1;
+      queue.push_back({v * width + u, owner});
+    }
   }
   for (std::size_t i = 0; i < people.size(); ++i) {
     allowed.push_back(around_parts(people[i], reach_of_parts(people[i], body_, options_)));
-    const Mask refused =
-        refused_looks(people[i], grown[i], allowed.back(), known.empty() ? AppearanceHistogram{} : known[i]);
-    for (std::size_t k = 0; k < refused.size(); ++k) {
-      if (refused[k] != 0) allowed.back()[k] = 0;
-    }
+    refuse_looks(people[i], grown[i], around(within, reach_of(people[i])),
+                 known.empty() ? AppearanceHistogram{} : known[i], allowed.back());
   }
   const auto point = [&](int u, int v) { return point_at(frame_.camera, frame_.depth, u, v); };
   for (std::size_t head = 0; head < queue.size(); ++head) {

@@ -27,12 +27,21 @@ class PersonGrower {
   /// person's appearance learned before, to which the looks of this frame are added.
   std::vector<Mask> grow(const std::vector<Skeleton>& people, const Clusters& clusters,
                          const std::vector<AppearanceHistogram>& known = {}) const;
+  /// Does the same faster where all clusters lie within a box.
+  std::vector<Mask> grow(const std::vector<Skeleton>& people, const Clusters& clusters,
+                         const std::vector<AppearanceHistogram>& known, const Box& within) const;
+  /// Returns the box around all pixels to which a skeleton may grow.
+  Box reach_of(const Skeleton& rough) const;
 
  private:
-  /// Returns 1 on pixels within `radius_m[part]` of each observed part's centre; a radius of 0 reaches nothing.
+  /// Returns the box around the pixels within `radius_m[part]` of each observed part's centre.
+  Box box_around_parts(const Skeleton& rough, const std::vector<float>& radius_m) const;
+  /// Returns 1 on these pixels; a radius of 0 reaches nothing.
   Mask around_parts(const Skeleton& rough, const std::vector<float>& radius_m) const;
-  /// Returns 1 where a pixel within reach looks as the person hardly ever does.
-  Mask refused_looks(const Skeleton& rough, const Mask& seeds, const Mask& reach, AppearanceHistogram person) const;
+  /// Takes from `allowed`, the pixels within reach, those that look as the person hardly ever does. All seeds and
+  /// allowed pixels are in `box`.
+  void refuse_looks(const Skeleton& rough, const Mask& seeds, const Box& box, AppearanceHistogram person,
+                    Mask& allowed) const;
 
   const Frame& frame_;
   const Mask& flat_;

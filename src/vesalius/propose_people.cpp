@@ -17,32 +17,34 @@ using Candidate = Trace::Candidate;
 
 constexpr float kRivalLikelihood = 0.2F;  // per part: rough skeletons of at least this grow against each other
 
-/// Returns where nobody grows: on flat surfaces and where the background is sure enough.
-Mask barred(const SceneLabels& labels, int parts, double least) {
-  Mask barred = labels.flat;
-  const Posteriors& posteriors = labels.posteriors();
-  if (least == 0.0) return barred;
-  parallel_ranges(posteriors.height, kRowGrain, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v) {
-      for (int u = 0; u < posteriors.width; ++u) {
+Box whole(const Mask& mask) { return {0, 0, mask.width(), mask.height()}; }
+
+/// Adds the pixels in a box where the background is sure enough that nobody grows there.
+void bar_background(const Posteriors& posteriors, int parts, double least, const Box& box, Mask& mask) {
+  if (least == 0.0) return;
+  parallel_ranges(box.height, kRowGrain, [&](int begin, int end) {
+    for (int v = box.v + begin; v < box.v + end; ++v) {
+      for (int u = box.u; u < box.u + box.width; ++u) {
         const std::optional<double> share = body_share(posteriors, u, v, parts);
-        if (share && *share < least) barred(u, v) = 1;
+        if (share && *share < least) mask(u, v) = 1;
       }
     }
   });
-  return barred;
 }
 
-/// Adds the pixels of all groups but `own` (-1: of all) to a mask.
-void bar_groups(const VoteGroups& groups, int own, Mask& mask) {
-  for (std::size_t i = 0; i < groups.index.size(); ++i) {
-    if (groups.index[i] != kBackground && groups.index[i] != own) mask[i] = 1;
+/// Adds the pixels in a box of all groups but `own` (-1: of all) to a mask.
+void bar_groups(const VoteGroups& groups, int own, const Box& box, Mask& mask) {
+  if (groups.items.empty()) return;
+  for (int v = box.v; v < box.v + box.height; ++v) {
+    for (int u = box.u; u < box.u + box.width; ++u) {
+      if (groups.index(u, v) != kBackground && groups.index(u, v) != own) mask(u, v) = 1;
+    }
   }
 }
 
 /// Returns those rough skeletons most of whose pixels belong to no group.
 std::vector<Skeleton> outside_groups(const Scene& scene) {
-  if (scene.groups.items.empty()) return scene.rough;
+  if (scene.groups.items.empty() || scene.rough.empty()) return scene.rough;
   std::vector<int> grouped(scene.clusters.items.size(), 0);
   for (std::size_t i = 0; i < scene.groups.index.size(); ++i) {
     const int cluster = scene.clusters.index[i];
@@ -69,12 +71,13 @@ class Proposer {
 
   std::vector<Candidate> run() const {
     const std::vector<Skeleton> rough = outside_groups(scene_);
-    if (rough.empty() && scene_.groups.items.empty()) return {};
-    Mask nobody = barred(scene_.labels, body_.part_count(), double(options_.grow.least_body));
     std::vector<Candidate> candidates(limited(scene_.groups.items.size()));
-    parallel_for(int(candidates.size()), [&](int i) { candidates[i] = grow_group(i, nobody); });
+    parallel_for(int(candidates.size()), [&](int i) { candidates[i] = grow_group(i); });
     std::erase_if(candidates, [](const Candidate& c) { return std::ranges::count(c.grown, 1) == 0; });
-    bar_groups(scene_.groups, -1, nobody);
+    if (rough.empty()) return candidates;
+    Mask nobody = scene_.labels.flat;
+    bar_background(whole(nobody), nobody);
+    bar_groups(scene_.groups, -1, whole(nobody), nobody);
     std::ranges::move(grow_rough(rough, PersonGrower(frame_, nobody, body_, options_.grow, looks_)),
                       std::back_inserter(candidates));
     return candidates;
@@ -85,26 +88,38 @@ class Proposer {
     return std::min(count, static_cast<std::size_t>(options_.refine.max_candidates));
   }
 
+  void bar_background(const Box& box, Mask& mask) const {
+    vesalius::bar_background(scene_.labels.posteriors(), body_.part_count(), double(options_.grow.least_body), box,
+                             mask);
+  }
+
   /// Searches a skeleton in the labels of a group and grows it. The group's pixels are the person's anyway.
-  Candidate grow_group(int group, const Mask& nobody) const {
+  Candidate grow_group(int group) const {
     const Image<std::uint8_t>& index = scene_.groups.index;
-    Mask inside(index.width(), index.height(), 0), closed = nobody;
-    LabelImage labels = scene_.proposals;
-    bar_groups(scene_.groups, group, closed);
-    for (std::size_t i = 0; i < index.size(); ++i) {
-      if (index[i] != group) labels[i] = kBackground;
-      if (index[i] == group && nobody[i] == 0) inside[i] = 1;
+    const Box& box = scene_.groups.items[group].box;
+    Mask inside(index.width(), index.height(), 0), closed = scene_.labels.flat;
+    LabelImage labels(index.width(), index.height(), kBackground);
+    bar_background(box, closed);
+    for (int v = box.v; v < box.v + box.height; ++v) {
+      for (int u = box.u; u < box.u + box.width; ++u) {
+        if (index(u, v) != group) continue;
+        labels(u, v) = scene_.proposals(u, v);
+        inside(u, v) = closed(u, v) == 0 ? 1 : 0;
+      }
     }
     Candidate candidate;
     candidate.group = group;
     candidate.rough.parts.resize(body_.parts.size());
     candidate.grown = std::move(inside);
-    const Clusters clusters = find_clusters(labels, frame_.depth, frame_.camera, body_, options_.cluster);
+    const Clusters clusters = find_clusters(labels, frame_.depth, frame_.camera, body_, options_.cluster, box);
     std::vector<Skeleton> found = search_skeletons(clusters.items, body_, options_.search);
     if (found.empty()) return candidate;
     candidate.rough = std::move(found.front());
     const PersonGrower grower(frame_, closed, body_, options_.grow, looks_);
-    const Mask grown = std::move(grower.grow({candidate.rough}, clusters)[0]);
+    const Box reach = grower.reach_of(candidate.rough);
+    bar_background(reach, closed);
+    bar_groups(scene_.groups, group, around(reach, box), closed);
+    const Mask grown = std::move(grower.grow({candidate.rough}, clusters, {}, box)[0]);
     for (std::size_t i = 0; i < grown.size(); ++i) candidate.grown[i] |= grown[i];
     return candidate;
   }

@@ -1,11 +1,20 @@
 #include "vesalius/trace.h"
 
+#include <utility>
+
 namespace vesalius {
 
 void enlarge(const GridGuide& guide, Person& person) {
-  person.mask = guide.enlarge(person.mask, std::uint8_t{0}, person.box);
-  person.labels = guide.enlarge(person.labels, kBackground, person.box);
-  person.box = bounding_box(person.mask);
+  const Box box = guide.whole_box(person.box);
+  Mask mask(guide.width(), guide.height(), 0);
+  LabelImage labels(guide.width(), guide.height(), kBackground);
+  guide.each(box, [&](int u, int v, int column, int row) {
+    mask(u, v) = person.mask(column, row);
+    labels(u, v) = person.labels(column, row);
+  });
+  person.box = bounding_box(mask, box);
+  person.mask = std::move(mask);
+  person.labels = std::move(labels);
 }
 
 void enlarge(const GridGuide& guide, Trace& trace) {

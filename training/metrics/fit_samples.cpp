@@ -61,8 +61,7 @@ Likeness likeness(const Mask& mask, const FrameTruth& truth, const DepthImage& d
 std::vector<BoostSample> context_samples(const TrueFrame& frame, const Model& model, const DetectOptions& options) {
   if (frame.truth.labels.empty()) return {};
   const SceneLabeller scenes(model, {options.label, options.smooth, options.grow.plane});
-  Frame memory;
-  const Frame& seen = without_blended(frame.frame, options.blend, memory);
+  const std::optional<DepthImage> cleared = without_blended(frame.frame.depth, options.blend);
   const auto sample = [&](const Frame& grid, int step) {
     StageClock clock(nullptr);
     const SceneLabels scene = scenes.label_scene(grid, clock);
@@ -81,7 +80,8 @@ std::vector<BoostSample> context_samples(const TrueFrame& frame, const Model& mo
     }
     return samples;
   };
-  return on_grid(seen, options.grid, nullptr, sample, [](const GridGuide&, const std::vector<BoostSample>&) {});
+  return on_grid(frame.frame, cleared ? *cleared : frame.frame.depth, options.grid, nullptr, sample,
+                 [](const GridGuide&, const std::vector<BoostSample>&) {});
 }
 
 void add_trust_samples(const TrackedPerson& found, const std::vector<JointSet>& sets, const JointSet& set,

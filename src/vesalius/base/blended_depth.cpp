@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -29,30 +31,38 @@ void add_blended(const DepthImage& depth, Pixel hole, float least_share, std::ve
   }
 }
 
-/// Returns for each pixel of a row 1 if it is a hole and has a reading beside it. Most holes are inside larger ones.
-std::vector<std::uint8_t> holes_beside_readings(const DepthImage& depth, int v) {
+/// Memory for a row of a picture.
+struct BlendRow {
+  explicit BlendRow(int width) : any(static_cast<std::size_t>(width) + 2), holes(static_cast<std::size_t>(width)) {}
+  std::vector<std::uint16_t> any;   ///< readings of three rows, one pixel to the right
+  std::vector<std::uint8_t> holes;  ///< 1 on holes that have a reading beside them
+};
+
+/// Finds the holes of a row that have a reading beside them. Most holes are inside larger ones.
+void find_holes(const DepthImage& depth, int v, BlendRow& row) {
   const int width = depth.width();
-  std::vector<std::uint16_t> any(static_cast<std::size_t>(width) + 2,
-                                 0);  // readings of the rows, one pixel to the right
-  for (int row = std::max(0, v - 1); row <= std::min(depth.height() - 1, v + 1); ++row) {
-    const std::uint16_t* values = depth.row(row);
-    for (int u = 0; u < width; ++u) any[u + 1] = static_cast<std::uint16_t>(any[u + 1] | values[u]);
-  }
   const std::uint16_t* here = depth.row(v);
-  std::vector<std::uint8_t> holes(width);
-  for (int u = 0; u < width; ++u) holes[u] = here[u] == 0 && (any[u] | any[u + 1] | any[u + 2]) != 0 ? 1 : 0;
-  return holes;
+  const std::uint16_t *above = depth.row(std::max(0, v - 1)), *below = depth.row(std::min(depth.height() - 1, v + 1));
+  for (int u = 0; u < width; ++u) row.any[u + 1] = static_cast<std::uint16_t>(above[u] | here[u] | below[u]);
+  for (int u = 0; u < width; ++u) {
+    const bool beside = (row.any[u] | row.any[u + 1] | row.any[u + 2]) != 0;
+    row.holes[u] = static_cast<std::uint8_t>(int(here[u] == 0) & int(beside));
+  }
 }
 
 /// Returns the blended readings beside all holes of a picture.
 std::vector<Pixel> blended_beside_holes(const DepthImage& depth, float least_share) {
   std::vector<std::vector<Pixel>> of_row(depth.height());
   parallel_ranges(depth.height(), kBlendRows, [&](int begin, int end) {
+    BlendRow row(depth.width());
     for (int v = begin; v < end; ++v) {
-      const std::vector<std::uint8_t> holes = holes_beside_readings(depth, v);
-      for (int u = 0; u < depth.width(); ++u) {
-        if (holes[u] != 0) add_blended(depth, {u, v}, least_share, of_row[v]);
-      }
+      find_holes(depth, v, row);
+      const std::uint8_t *first = row.holes.data(), *last = first + row.holes.size(), *hole = first;
+      const auto next = [&] {
+        hole = static_cast<const std::uint8_t*>(std::memchr(hole, 1, static_cast<std::size_t>(last - hole)));
+        return hole != nullptr;
+      };
+      for (; hole != last && next(); ++hole) add_blended(depth, {int(hole - first), v}, least_share, of_row[v]);
     }
   });
   std::vector<Pixel> all;
@@ -73,13 +83,6 @@ std::optional<DepthImage> without_blended(const DepthImage& depth, const BlendOp
     for (const Pixel& pixel : blended) add_blended(out, pixel, options.least_share, next);
     blended = std::move(next);
   }
-}
-
-const Frame& without_blended(const Frame& frame, const BlendOptions& options, Frame& memory) {
-  std::optional<DepthImage> depth = without_blended(frame.depth, options);
-  if (!depth) return frame;
-  memory = {frame.name, frame.time_s, frame.camera, std::move(*depth), frame.colour};
-  return memory;
 }
 
 }  // namespace vesalius

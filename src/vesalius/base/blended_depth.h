@@ -3,7 +3,6 @@
 #include <optional>
 #include <string>
 
-#include "vesalius/frame.h"
 #include "vesalius/image.h"
 #include "vesalius/people_options.h"
 
@@ -14,7 +13,5 @@ namespace vesalius {
 /// reading on its other side; then those beside it are asked, up to three pixels from the hole. Returns nothing if all
 /// readings stay.
 std::optional<DepthImage> without_blended(const DepthImage& depth, const BlendOptions& options);
-/// Returns the frame, or `memory` with a copy of it if some of its readings were blended with holes.
-const Frame& without_blended(const Frame& frame, const BlendOptions& options, Frame& memory);
 
 }  // namespace vesalius

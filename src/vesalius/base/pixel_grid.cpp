@@ -12,13 +12,13 @@ int grid_step(const Camera& camera, const GridOptions& options) {
   return step;
 }
 
-Frame every_nth(const Frame& frame, int step) {
+Frame every_nth(const Frame& frame, const DepthImage& depth, int step) {
   const Camera& c = frame.camera;
   const auto by = float(step);
   Frame coarse;
   coarse.name = frame.name;
   coarse.time_s = frame.time_s;
-  coarse.depth = every_nth(frame.depth, step);
+  coarse.depth = every_nth(depth, step);
   if (!frame.colour.empty()) coarse.colour = every_nth(frame.colour, step);
   // Pixel u of the grid is pixel step * u of the picture.
   coarse.camera = {coarse.depth.width(), coarse.depth.height(), c.fx / by, c.fy / by, c.cx / by, c.cy / by};
