@@ -6,9 +6,12 @@
 #include <cstdlib>
 
 #include "vesalius/error.h"
+#include "vesalius/parallel.h"
 
 namespace vesalius {
 namespace {
+
+constexpr int kPixels = 4096;  // that a thread takes at once
 
 /// Blurs `count` values from `begin` on with a box of three; neighbouring hues, 5 degrees apart, look alike.
 void blur_range(std::vector<float>& values, std::size_t begin, int count, bool wraps) {
@@ -92,9 +95,10 @@ int HueAppearance::class_of(Rgb c) {
 }
 
 std::vector<std::uint16_t> HueAppearance::describe(const Frame& frame) const {
-  std::vector<std::uint16_t> looks;
-  looks.reserve(frame.colour.size());
-  for (const Rgb colour : frame.colour) looks.push_back(static_cast<std::uint16_t>(class_of(colour)));
+  std::vector<std::uint16_t> looks(frame.colour.size());
+  parallel_ranges(int(looks.size()), kPixels, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) looks[i] = static_cast<std::uint16_t>(class_of(frame.colour[i]));
+  });
   return looks;
 }
 

@@ -33,8 +33,10 @@ class ClusterFinder {
     out.index = Image<std::int32_t>(labels_.width(), labels_.height(), kNone);
     std::vector<PartCluster> kept;
     for (int v = within_.v; v < within_.v + within_.height; ++v) {
+      const std::uint8_t* labels = labels_.row(v);
       for (int u = within_.u; u < within_.u + within_.width; ++u) {
-        if (out.index(u, v) != kNone || !labelled(u, v)) continue;
+        if (labels[u] >= body_.part_count()) continue;  // most pixels
+        if (out.index(u, v) != kNone || depth_(u, v) == 0) continue;
         const PartCluster cluster = fill(u, v, static_cast<std::int32_t>(kept.size()), out.index);
         if (feasible(cluster)) {
           kept.push_back(cluster);

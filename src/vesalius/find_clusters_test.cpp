@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 #include <set>
@@ -137,6 +138,30 @@ TEST(FindClusters, DropsPartsThatAreTooLong) {
   EXPECT_NEAR(clusters.items[0].extent_m, 0.5, 0.01);
   EXPECT_EQ(clusters.index(10, 5), -1);
   EXPECT_EQ(clusters.index(10, 21), 0);
+}
+
+TEST(FindClusters, WhatIsOutsideOfTheBoxIsNotThere) {
+  Random random(5);
+  LabelImage labels(64, 48, kBackground);
+  DepthImage depth(64, 48, 4000);
+  for (int i = 0; i < 40; ++i) {
+    paint(labels, depth, int(random.below(56)), int(random.below(40)), 8, 8, 1000,
+          static_cast<std::uint8_t>(random.below(4)));
+  }
+  const Box box{9, 7, 40, 30};
+  LabelImage inside(64, 48, kBackground);
+  for (int v = box.v; v < box.v + box.height; ++v) {
+    std::copy_n(labels.row(v) + box.u, box.width, inside.row(v) + box.u);
+  }
+  const Clusters expected = find_clusters(inside, depth, kCamera, paper_body(), {});
+  const Clusters found = find_clusters(labels, depth, kCamera, paper_body(), {}, box);
+  ASSERT_GT(expected.items.size(), 3U);
+  ASSERT_EQ(found.items.size(), expected.items.size());
+  EXPECT_EQ(found.index, expected.index);
+  for (std::size_t i = 0; i < found.items.size(); ++i) {
+    EXPECT_EQ(found.items[i].first_pixel, expected.items[i].first_pixel);
+    EXPECT_EQ(found.items[i].centroid, expected.items[i].centroid);
+  }
 }
 
 TEST(FindClusters, SortsByLabelThenArea) {

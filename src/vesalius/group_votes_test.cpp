@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <numbers>
 #include <set>
 
@@ -83,6 +84,12 @@ TEST(GroupVotes, ExactVotesGiveEveryPersonAndAllPixels) {
   }
   EXPECT_EQ(found.size(), 3U);
   EXPECT_GT(share_right(of, truth), 0.999);
+  for (std::size_t i = 0; i < of.groups.items.size(); ++i) {
+    Mask own(kCamera.width, kCamera.height, 0);
+    std::ranges::transform(of.groups.index, own.begin(), [&](int group) { return std::uint8_t{group == int(i)}; });
+    const Box box = bounding_box(own), given = of.groups.items[i].box;
+    EXPECT_TRUE(given.u == box.u && given.v == box.v && given.width == box.width && given.height == box.height) << i;
+  }
 }
 
 TEST(GroupVotes, PeopleAThirdOfAMetreApartAreTwo) {

@@ -226,6 +226,10 @@ TEST(GrowPerson, StopsAtKnownColoursIfTheSeedsHaveTooFew) {
   EXPECT_LT(with, without / 2);
   EXPECT_EQ(grower.grow(scene.rough, scene.clusters, {AppearanceHistogram{}}),
             grower.grow(scene.rough, scene.clusters));
+  Mask clustered(kCamera.width, kCamera.height, 0);
+  std::ranges::transform(scene.clusters.index, clustered.begin(), [](int one) { return std::uint8_t{one >= 0}; });
+  EXPECT_EQ(grower.grow(scene.rough, scene.clusters, {}, bounding_box(clustered)),
+            grower.grow(scene.rough, scene.clusters));
 }
 
 }  // namespace

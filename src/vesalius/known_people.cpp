@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "vesalius/base/pixel_grid.h"
 #include "vesalius/parallel.h"
 
 namespace vesalius {
@@ -32,25 +33,52 @@ float log_odds(double share) {
 
 }  // namespace
 
-Image<float> distance_from(const std::vector<Capsule>& capsules, const Frame& frame, float reach_m) {
-  Image<float> distance(frame.depth.width(), frame.depth.height(), kFar);
+namespace {
+
+/// A capsule, and where a pixel must lie to be within reach of it.
+struct Reach {
+  Capsule capsule;
+  float nearest_m = 0.F, farthest_m = 0.F;
+  Box box;
+};
+
+std::vector<Reach> reaches_of(const std::vector<Capsule>& capsules, const Camera& camera, float reach_m) {
+  std::vector<Reach> all;
   for (const Capsule& capsule : capsules) {
     if (!capsule.from.allFinite() || !capsule.to.allFinite()) continue;
     const float reach = reach_m + std::max(capsule.from_radius, capsule.to_radius);
     const float nearest = std::min(capsule.from.z(), capsule.to.z()) - reach;
     const float farthest = std::max(capsule.from.z(), capsule.to.z()) + reach;
     if (farthest <= 0.F) continue;
-    const Capsule around{capsule.from, capsule.to, capsule.from_radius + reach_m, capsule.to_radius + reach_m};
-    const Box box = box_around(around, frame.camera);
-    for (int v = box.v; v < box.v + box.height; ++v) {
-      for (int u = box.u; u < box.u + box.width; ++u) {
-        const float z = float(frame.depth(u, v)) * 1e-3F;
-        if (z == 0.F || z < nearest || z > farthest) continue;
-        const float d = capsule.distance(point_at(frame.camera, frame.depth, u, v));
-        if (d < reach_m) distance(u, v) = std::min(distance(u, v), d);
+    const Capsule wider{capsule.from, capsule.to, capsule.from_radius + reach_m, capsule.to_radius + reach_m};
+    all.push_back({capsule, nearest, farthest, box_around(wider, camera)});
+  }
+  return all;
+}
+
+}  // namespace
+
+Image<float> distance_from(const std::vector<Capsule>& capsules, const Frame& frame, float reach_m) {
+  Image<float> distance(frame.depth.width(), frame.depth.height(), kFar);
+  const std::vector<Reach> reaches = reaches_of(capsules, frame.camera, reach_m);
+  Box all;
+  for (const Reach& one : reaches) all = around(all, one.box);
+  parallel_ranges(all.height, kRowGrain, [&](int begin, int end) {
+    std::vector<Eigen::Vector3f> points(static_cast<std::size_t>(all.width));  // of a row, for all capsules
+    for (int v = all.v + begin; v < all.v + end; ++v) {
+      for (int i = 0; i < all.width; ++i) points[i] = point_at(frame.camera, frame.depth, all.u + i, v);
+      float* row = distance.row(v);
+      for (const auto& [capsule, nearest_m, farthest_m, box] : reaches) {
+        if (v < box.v || v >= box.v + box.height) continue;
+        for (int u = box.u; u < box.u + box.width; ++u) {
+          const Eigen::Vector3f& point = points[u - all.u];
+          if (point.z() == 0.F || point.z() < nearest_m || point.z() > farthest_m) continue;
+          const float d = capsule.distance(point);
+          if (d < reach_m) row[u] = std::min(row[u], d);
+        }
       }
     }
-  }
+  });
   return distance;
 }
 

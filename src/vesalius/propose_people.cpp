@@ -25,6 +25,7 @@ void bar_background(const Posteriors& posteriors, int parts, double least, const
   parallel_ranges(box.height, kRowGrain, [&](int begin, int end) {
     for (int v = box.v + begin; v < box.v + end; ++v) {
       for (int u = box.u; u < box.u + box.width; ++u) {
+        if (mask(u, v) != 0) continue;
         const std::optional<double> share = body_share(posteriors, u, v, parts);
         if (share && *share < least) mask(u, v) = 1;
       }

@@ -67,6 +67,8 @@ TEST_F(Commands, BenchMeasuresStages) {
     EXPECT_GE(detect.at("median_ms"), one.at("stages").at("label").at("median_ms"));
   }
   EXPECT_THAT(run_program("bench " + frames() + " -m " + model() + " --threads 1").out, HasSubstr("\n1 thread: "));
+  EXPECT_THAT(run_program("bench " + frames() + " -m " + model() + " --threads 1 --track --frames 5").out,
+              HasSubstr("\ntrack "));
   EXPECT_EQ(run_program("bench " + frames() + " -m " + model() + " --threads many").exit_code, 2);
 }
 

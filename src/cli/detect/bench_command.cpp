@@ -8,6 +8,8 @@
 #include <ctime>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/detect/latency.h"
@@ -20,6 +22,7 @@
 #include "vesalius/base/keep_memory.h"
 #include "vesalius/error.h"
 #include "vesalius/parallel.h"
+#include "vesalius/track_people.h"
 
 namespace vesalius::cli {
 namespace {
@@ -35,16 +38,17 @@ struct BenchArguments {
   SourceOptions camera;
   DetectorFlags detector;
   int frames = 0;
-  bool quiet = false;
+  bool track = false, quiet = false;
 };
 
 /// Measurements with one number of threads.
 struct Run {
   int threads = 1;
-  FrameTimes times;
+  std::optional<PeopleTracker> tracker = {};  ///< none where people are not followed
+  FrameTimes times = {};
   double processor_ms = 0.0;  ///< over all threads and frames
 
-  double frames_per_s() const { return times.frames() == 0 ? 0.0 : 1000.0 / times.detect().mean; }
+  double frames_per_s() const { return times.frames() == 0 ? 0.0 : 1000.0 / times.mean_people_ms(); }
   double processor_ms_a_frame() const { return processor_ms / double(times.frames()); }
 };
 
@@ -82,10 +86,20 @@ std::vector<Run> runs_for(const std::string& threads) {
 void measure(const Detector& detector, const Frame& frame, double read_ms, Run& run) {
   const ThreadLimit limit(run.threads);
   StageTimes stages;
+  double track_ms = 0.0;
+  const auto expect = [&](const Frame& asked) {
+    Prior prior;
+    if (run.tracker) track_ms += elapsed_ms([&] { prior = run.tracker->expect(asked); });
+    return prior;
+  };
   const std::clock_t before = std::clock();
-  detector.detect(frame, nullptr, &stages);
+  Detection found = detector.detect(frame, expect, nullptr, &stages);
+  if (run.tracker) {
+    track_ms += elapsed_ms([&] { run.tracker->update(frame, std::move(found.people), found.planes); });
+  }
   run.processor_ms += double(std::clock() - before) * 1e3 / CLOCKS_PER_SEC;
   run.times.add(stages, read_ms, -1.0);
+  if (run.tracker) run.times.add_tracking(track_ms);
 }
 
 /// Measures every frame with each number of threads in turn, so that other load on the machine affects all of them
@@ -101,10 +115,14 @@ void measure_all(const BenchArguments& arguments, const Detector& detector, Benc
     if (!frame && (progress.done() == 0 || arguments.frames == 0 || live)) break;
     if (!frame) {
       source = open_source(arguments.source, arguments.camera);
+      for (Run& run : bench.runs) {
+        if (run.tracker) run.tracker = run.tracker->restarted();
+      }
       continue;
     }
     // Of a camera that would be the time until it has the next frame.
     const double read_ms = live ? -1.0 : seconds_since(start) * 1e3;
+    if (!frame->time_s) frame->time_s = progress.done() / kUsualRate;
     bench.width = frame->depth.width();
     bench.height = frame->depth.height();
     if (progress.done() == 0) detector.detect(*frame);  // fills pages and caches
@@ -146,6 +164,7 @@ void report(const BenchArguments& arguments, const Bench& bench) {
                       {"machine", machine_facts()},
                       {"version", VESALIUS_VERSION},
                       {"frames", frames},
+                      {"followed", arguments.track},
                       {"size_px", {bench.width, bench.height}},
                       {"ready_s", rounded(bench.ready_s, 1000)},
                       {"peak_memory_mb", rounded(memory, 10)},
@@ -167,6 +186,9 @@ void run_bench(const BenchArguments& arguments) {
   const auto start = Clock::now();
   const Detector detector = arguments.detector.make();
   bench.ready_s = seconds_since(start);
+  for (Run& run : bench.runs) {
+    if (arguments.track) run.tracker = make_tracker(detector, arguments.detector.options());
+  }
   watch_interrupts();
   measure_all(arguments, detector, bench);
   report(arguments, bench);
@@ -189,11 +211,12 @@ void add_bench(CLI::App& program) {
   command->add_option("--threads", arguments->threads, "Threads to use: a number, 0 = all, or both one and all")
       ->type_name("N")
       ->capture_default_str();
+  command->add_flag("--track", arguments->track, "Follow the people as well");
   command->add_option("--json", arguments->json, "The figures as JSON; - is standard output")->type_name("FILE");
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
 Times are wall-clock times from a frame in memory to its people; "read" is the time to load it. Frames/s count one
-detection after the other. Ctrl-C ends the measurement of a camera with the figures so far. Every detector option is a flag too; `vesalius options` lists them.
+frame after the other. Ctrl-C ends the measurement of a camera with the figures so far. Every detector option is a flag too; `vesalius options` lists them.
 
 Example:
   vesalius bench frames/ --frames 300 --json bench.json)");

@@ -29,8 +29,10 @@ class FrameTimes {
   void add_latency(double ms) { latency_.push_back(ms); }
 
   std::size_t frames() const { return detect_.size(); }
-  /// Returns the times of detection, without reading and writing.
+  /// Returns the times of detection, without reading, following and writing.
   Latency detect() const { return summarise(detect_); }
+  /// Returns the mean time to find and follow the people of a frame.
+  double mean_people_ms() const { return detect().mean + summarise(track_).mean; }
 
   struct Row {
     std::string name;

@@ -81,14 +81,9 @@ class GridGuide {
   /// Returns a picture of full size. Pixels without a reading, or without a grid pixel near enough, become `outside`.
   template <class T>
   Image<T> enlarge(const Image<T>& coarse, T outside) const {
-    return enlarge(coarse, outside, {0, 0, coarse.width(), coarse.height()});
-  }
-
-  /// Does the same faster for a coarse picture that has only `outside` beyond `box`.
-  template <class T>
-  Image<T> enlarge(const Image<T>& coarse, T outside, const Box& box) const {
     Image<T> out(depth_.width(), depth_.height(), outside);
-    each(whole_box(box), [&](int u, int v, int column, int row) { out(u, v) = coarse(column, row); });
+    each({0, 0, out.width(), out.height()},
+         [&](int u, int v, int column, int row) { out(u, v) = coarse(column, row); });
     return out;
   }
 

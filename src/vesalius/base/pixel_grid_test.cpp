@@ -119,8 +119,11 @@ TEST(GridGuide, NeedsOnlyABoxOfTheGrid) {
     for (int u = 7; u < 8; ++u) coarse(u, v) = 1;
   }
   coarse(6, 3) = 1;
-  EXPECT_EQ(guide.enlarge(coarse, std::uint8_t{0}, bounding_box(coarse)), guide.enlarge(coarse, std::uint8_t{0}));
-  EXPECT_EQ(guide.enlarge(Mask(8, 6, 0), std::uint8_t{0}, Box{}), Mask(23, 17, 0));
+  Mask enlarged(23, 17, 0);
+  const Box box = guide.whole_box(bounding_box(coarse));
+  guide.each(box, [&](int u, int v, int column, int row) { enlarged(u, v) = coarse(column, row); });
+  EXPECT_EQ(enlarged, guide.enlarge(coarse, std::uint8_t{0}));
+  EXPECT_EQ(guide.whole_box(Box{}).width, 0);
 }
 
 TEST(GridGuide, RefusesAStepOfZero) { EXPECT_THROW(GridGuide(DepthImage(2, 2), 0), Error); }

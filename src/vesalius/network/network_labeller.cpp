@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -124,8 +125,10 @@ Image<PersonVote> votes_of(const WideImage& person, const DepthImage& depth) {
 
 void softmax_in_steps(const std::int16_t* logits, int count, int whole, std::uint16_t* shares) {
   static const Powers powers;
-  const int most = *std::max_element(logits, logits + count), last = logits[count - 1];
-  if (last == most && *std::max_element(logits, logits + count - 1) <= last - Powers::kCount) {
+  std::int16_t body = std::numeric_limits<std::int16_t>::min();
+  for (int c = 0; c + 1 < count; ++c) body = std::max(body, logits[c]);
+  const std::int16_t last = logits[count - 1], most = std::max(body, last);
+  if (last - body >= Powers::kCount) {
     std::fill_n(shares, count - 1, std::uint16_t{0});
     shares[count - 1] = static_cast<std::uint16_t>(whole);
     return;
