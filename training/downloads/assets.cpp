@@ -3,92 +3,23 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <optional>
-#include <set>
 #include <system_error>
 #include <vector>
 
 #include "downloads/unpack.h"
 #include "folders/owned_folder.h"
 #include "io/files/data_file.h"
-#include "vesalius/base/toml_reader.h"
 #include "vesalius/error.h"
 
 namespace vesalius {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view kAssets =
-#include "assets.inc"
-    ;
-
-constexpr std::int64_t kMaxBytes = std::int64_t{1} << 40;
-constexpr std::size_t kSumDigits = 64;
-
-class Reader : public TomlReader {
- public:
-  using TomlReader::TomlReader;
-
-  std::string line(const toml::node& node, std::string_view what) const {
-    const auto value = node.value_exact<std::string>();
-    if (!value || value->empty() || std::ranges::any_of(*value, [](unsigned char c) { return c < ' '; })) {
-      fail(node, fmt::format("{}: expected a text of one line", what));
-    }
-    return *value;
-  }
-  std::string line(const toml::table& table, std::string_view key) const { return line(need(table, key), key); }
-};
-
-AssetFile read_file_row(const Reader& reader, const toml::node& node, std::string_view what) {
-  const toml::array& row = reader.array(node, what);
-  if (row.size() != 3) reader.fail(row, fmt::format("{}: expected [path, bytes, SHA-256]", what));
-  AssetFile file;
-  file.path = reader.line(row[0], what);
-  if (!stays_inside(file.path)) reader.fail(row, fmt::format("{}: expected a path that leads nowhere else", what));
-  file.digest.bytes = reader.integer(row[1], what, 0, kMaxBytes);
-  file.digest.sha256 = reader.line(row[2], what);
-  const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-  if (file.digest.sha256.size() != kSumDigits || !std::ranges::all_of(file.digest.sha256, is_hex)) {
-    reader.fail(row, fmt::format("{}: expected a SHA-256 of {} small hexadecimal digits", what, kSumDigits));
-  }
-  return file;
-}
-
-std::string read_name(const Reader& reader, const toml::table& table) {
-  std::string name = reader.line(table, "name");
-  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
-  if (!std::ranges::all_of(name, allowed)) {
-    reader.fail(table, "name: expected letters, digits, '_' and '-'");
-  }
-  return name;
-}
-
-AssetPackage read_package(const Reader& reader, const toml::node& node) {
-  const toml::table& table = reader.table(node, "package");
-  reader.expect_keys(table, {"name", "licence", "credit", "page", "homes", "archive", "files"});
-  AssetPackage package;
-  package.name = read_name(reader, table);
-  package.licence = reader.line(table, "licence");
-  package.credit = reader.line(table, "credit");
-  package.page = reader.line(table, "page");
-  for (const toml::node& home : reader.array(table, "homes")) {
-    package.homes.push_back(reader.line(home, "homes"));
-  }
-  package.archive = read_file_row(reader, reader.need(table, "archive"), "archive");
-  std::set<std::string> paths;
-  for (const toml::node& row : reader.array(table, "files")) {
-    package.files.push_back(read_file_row(reader, row, "files"));
-    if (!paths.insert(package.files.back().path).second) reader.fail(row, "files: this path is listed twice");
-  }
-  return package;
-}
 
 constexpr const char* kUnfinished = ".unfinished";
 
@@ -257,38 +188,6 @@ class Installation {
 };
 
 }  // namespace
-
-std::uint64_t AssetPackage::bytes() const {
-  return std::accumulate(files.begin(), files.end(), std::uint64_t{0},
-                         [](std::uint64_t sum, const AssetFile& file) { return sum + file.digest.bytes; });
-}
-
-std::vector<AssetPackage> parse_asset_list(std::string_view toml, const std::string& name) {
-  const Reader reader(name);
-  const toml::table root = reader.parse(toml);
-  reader.expect_keys(root, {"package"});
-  std::vector<AssetPackage> packages;
-  std::set<std::string> names;
-  for (const toml::node& node : reader.array(root, "package")) {
-    packages.push_back(read_package(reader, node));
-    if (!names.insert(packages.back().name).second) reader.fail(node, "package: this name is used twice");
-  }
-  return packages;
-}
-
-const std::vector<AssetPackage>& asset_packages() {
-  static const std::vector<AssetPackage> packages = parse_asset_list(kAssets, "data/assets.toml");
-  return packages;
-}
-
-const AssetPackage& asset_package(std::string_view name) {
-  std::string known;
-  for (const AssetPackage& package : asset_packages()) {
-    if (package.name == name) return package;
-    known += (known.empty() ? "" : ", ") + package.name;
-  }
-  throw UsageError(fmt::format("no assets are called \"{}\", expected {}", name, known));
-}
 
 std::string assets_folder() {
   if (const std::string own = variable("VESALIUS_ASSETS"); !own.empty()) return own;
