@@ -84,6 +84,10 @@ TEST_F(RealAssets, AreFetchedFromAServer) {
   EXPECT_THAT(again.err, HasSubstr("/makehuman: 0 files fetched, 238 were there"));
   EXPECT_THAT(again.err, HasSubstr("/mocap: 1 files fetched, 464 were there"));
   EXPECT_EQ(run_program("assets -q --dir " + home() + " --mirror /").err, "") << "nothing is looked for";
+  fs::remove(home() + "/mocap/manifest.csv");
+  const Outcome enclosed = run_program("assets motions --dir " + home());
+  EXPECT_THAT(enclosed.err, HasSubstr("/mocap: 1 files fetched, 464 were there")) << "the program holds it";
+  expect_whole(asset_package("mocap"), home());
 }
 
 TEST_F(RealAssets, AreCompletedAfterAKill) {
@@ -149,6 +153,8 @@ TEST(AssetsCommand, ListsThePackages) {
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.out, HasSubstr("makehuman: 238 files, 78.2 MB, not fetched\n"));
   EXPECT_THAT(run.out, HasSubstr("NSF EIA-0196217"));
+  EXPECT_THAT(run.out, HasSubstr("made of 292 files, 56.7 MB, of https://raw.githubusercontent.com/zhangchi8620/"));
+  EXPECT_THAT(run.out, HasSubstr("    licence: HDM05: CC BY-SA 3.0\n"));
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
@@ -164,7 +170,7 @@ TEST(AssetsCommand, ReportsErrorsInOneLine) {
   refused("moccap" + into, 2, "no assets are called \"moccap\", expected makehuman, mocap");
   refused("--mirror ftp://example.org" + into, 2, "expected an address with http://");
   refused("--mirror /no/such" + into, 2, "/no/such: no such folder");
-  refused("mocap" + into, 1, "mocap: no public address holds these files");
+  refused("motions --mirror " + folder.path() + into, 1, "/mocap/cmu_amc/01.asf: not found");
   refused("makehuman --mirror " + folder.path() + into, 1, "not found");
   refused("makehuman --mirror " + folder.path() + " --dir /dev/null", 1, "/dev/null: folder cannot be ");
   test::put(folder / "makehuman.tar.xz", "no archive");

@@ -1,6 +1,7 @@
 #include "downloads/asset_list.h"
 
 #include <algorithm>
+#include <map>
 
 #include "io/files/test_files.h"
 
@@ -64,16 +65,59 @@ TEST(AssetList, NamesTheLineOfErrors) {
               HasSubstr("this name is used twice"));
 }
 
+std::string sources_with(const std::string& from, const std::string& to) {
+  std::string text = "[[source]]\nhome = \"http://example.org/a\"\nlicence = \"L\"\ncredit = \"C\"\nfiles = [\n" +
+                     ("[\"a.asf\", \"x y/a.asf\", 3, \"" + kSum) + "\"],\n[\"a_1.amc\", \"1.amc\", 4, \"" + kSum +
+                     "\", \"a.asf\"],\n]\n";
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(SourceList, ReadsASource) {
+  const auto sources = parse_source_list(sources_with("", ""), "l");
+  ASSERT_EQ(sources.size(), 1U);
+  EXPECT_EQ(sources[0].home, "http://example.org/a");
+  EXPECT_EQ(sources[0].originals.at("a.asf").path, "x y/a.asf");
+  EXPECT_EQ(sources[0].originals.at("a_1.amc").digest.sha256, kSum);
+  EXPECT_EQ(sources[0].originals.at("a_1.amc").skeleton, "a.asf");
+  EXPECT_EQ(sources[0].bytes(), 7U);
+}
+
+TEST(SourceList, NamesTheLineOfErrors) {
+  const auto error = [](const std::string& from, const std::string& to) {
+    return test::error_of([&] { parse_source_list(sources_with(from, to), "l.toml"); });
+  };
+  EXPECT_THAT(error("home", "hmoe"), HasSubstr("l.toml:2: unknown key"));
+  EXPECT_THAT(error(", 3, \"" + kSum + "\"", ""), HasSubstr("l.toml:6: files: expected [path, original's path"));
+  EXPECT_THAT(error(", \"a.asf\"]", "]"), HasSubstr("l.toml:7: files: expected [path, original's path"));
+  EXPECT_THAT(error("\"" + kSum + "\"", "\"\""), HasSubstr("l.toml:6: files: expected a text"));
+  EXPECT_THAT(error("x y", ".."), HasSubstr("expected a path that leads nowhere else"));
+  EXPECT_THAT(
+      error("[\"a_1.amc\", \"1.amc\", 4, \"" + kSum + "\", \"a.asf\"]", "[\"a.asf\", \"b\", 4, \"" + kSum + "\"]"),
+      HasSubstr("l.toml:7: files: this path is listed twice"));
+}
+
 TEST(AssetList, ContainsThePackagesOfTheProgram) {
   const AssetPackage& makehuman = asset_package("makehuman");
   EXPECT_THAT(makehuman.files, Contains(Field(&AssetFile::path, "makehuman/data/3dobjs/base.obj")));
   EXPECT_FALSE(makehuman.homes.empty());
   for (const std::string& home : makehuman.homes) EXPECT_TRUE(home.starts_with("https://")) << home;
-  const AssetPackage& mocap = asset_package("mocap");
-  EXPECT_EQ(std::ranges::count_if(
-                mocap.files, [](const AssetFile& f) { return f.path.ends_with(".bvh") || f.path.ends_with(".amc"); }),
-            453);
   EXPECT_THAT(test::error_of([] { asset_package("moccap"); }), HasSubstr("expected makehuman, mocap"));
+}
+
+TEST(AssetList, KnowsWhereEachMotionWasPublished) {
+  const AssetPackage& mocap = asset_package("motions");
+  EXPECT_EQ(&mocap, &asset_package("mocap"));
+  std::map<std::string, int> had;
+  for (const AssetSource& source : mocap.sources) {
+    EXPECT_TRUE(source.home.starts_with("https://raw.githubusercontent.com/")) << source.home;
+    for (const auto& [path, original] : source.originals) ++had[path];
+  }
+  EXPECT_EQ(had.size(), 464U);
+  for (const auto& [path, text] : mocap.enclosed) ++had[path];
+  for (const AssetFile& file : mocap.files) EXPECT_EQ(had[file.path], 1) << file.path;
+  EXPECT_EQ(had.size(), mocap.files.size());
+  const auto manifest = std::ranges::find(mocap.files, "manifest.csv", &AssetFile::path);
+  EXPECT_EQ(sha256_of(mocap.enclosed.at("manifest.csv")), manifest->digest.sha256);
 }
 
 }  // namespace

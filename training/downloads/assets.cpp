@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -11,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "downloads/packed_motion.h"
 #include "downloads/unpack.h"
 #include "folders/owned_folder.h"
 #include "io/files/data_file.h"
@@ -81,11 +83,8 @@ class Installation {
   void run(const std::string& mirror) {
     if (missing_.empty()) return;
     workplace_.emplace(folder_);
-    if (mirror.empty()) {
-      fetch_files(homes(), "");
-      return;
-    }
-    std::vector<std::unique_ptr<Origin>> origins;
+    if (mirror.empty()) return fetch_published();
+    Origins origins;
     origins.push_back(std::make_unique<Origin>(mirror, options_));
     if (!fetch_archive(*origins.front())) fetch_files(origins, package_.name + "/");
   }
@@ -102,24 +101,87 @@ class Installation {
   void go_on() const {
     if (!options_.go_on(0)) throw Error(package_.name + ": interrupted");
   }
-  Origins homes() const {
-    if (package_.homes.empty()) {
-      throw Error(fmt::format("{}: no public address holds these files, expected a mirror with {}", package_.name,
-                              package_.archive.path));
-    }
-    Origins origins;
-    for (const std::string& home : package_.homes) origins.push_back(std::make_unique<Origin>(home, options_));
-    return origins;
-  }
 
-  void fetch_files(const Origins& origins, const std::string& prefix) {
-    for (const AssetFile* file : missing_) total_bytes_ += file->digest.bytes;
-    for (const AssetFile* file : missing_) {
-      fetch_file(origins, prefix, *file);
-      done_bytes_ += file->digest.bytes;
+  /// How a missing file is had, and the number of bytes that are fetched for it.
+  struct Supply {
+    std::uint64_t bytes = 0;
+    std::function<void()> get;
+  };
+
+  void take(const std::vector<Supply>& supplies) {
+    for (const Supply& supply : supplies) total_bytes_ += supply.bytes;
+    for (const Supply& supply : supplies) {
+      go_on();
+      supply.get();
+      done_bytes_ += supply.bytes;
     }
+  }
+  Supply fetched(const Origins& origins, const std::string& prefix, const AssetFile& file) const {
+    return {file.digest.bytes, [this, &origins, prefix, &file] { fetch_file(origins, prefix, file); }};
+  }
+  void fetch_files(const Origins& origins, const std::string& prefix) {
+    std::vector<Supply> supplies;
+    for (const AssetFile* file : missing_) supplies.push_back(fetched(origins, prefix, *file));
+    take(supplies);
+  }
+  void fetch_published() {
+    Origins homes, sources;
+    for (const std::string& home : package_.homes) homes.push_back(std::make_unique<Origin>(home, options_));
+    for (const AssetSource& source : package_.sources) {
+      sources.push_back(std::make_unique<Origin>(source.home, options_));
+    }
+    std::vector<Supply> supplies;
+    for (const AssetFile* file : missing_) supplies.push_back(published(homes, sources, *file));
+    take(supplies);
+  }
+  /// `sources` are those of the package, in its order.
+  Supply published(const Origins& homes, const Origins& sources, const AssetFile& file) const {
+    if (const auto enclosed = package_.enclosed.find(file.path); enclosed != package_.enclosed.end()) {
+      return {0, [this, &file, &bytes = enclosed->second] { write(file, bytes); }};
+    }
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      const auto found = package_.sources[i].originals.find(file.path);
+      if (found == package_.sources[i].originals.end()) continue;
+      return {found->second.digest.bytes,
+              [this, &file, &original = found->second, &source = *sources[i]] { make(file, original, source); }};
+    }
+    return fetched(homes, "", file);
+  }
+  void write(const AssetFile& file, std::string_view bytes) const {
+    const auto target = begin(file);
+    target->write(bytes);
+    target->commit();
+  }
+  void make(const AssetFile& file, const AssetOriginal& original, Origin& source) const {
+    const std::string place = source.place_of(original.path);
+    const std::string path = workplace_->unfinished("originals/" + file.path);
+    if (!fetch_aside(source, original.path, original.digest, path)) {
+      throw Error(fmt::format("{}: not found, expected the original of {}; --mirror takes the package from elsewhere",
+                              place, path_of(file)));
+    }
+    try {
+      write(file, packed_motion(read_file(path), file.path, original.skeleton));
+    } catch (const Error& e) {
+      throw Error(fmt::format("made from {}: {}", place, e.what()));
+    }
+    std::remove(path.c_str());
+  }
+  /// Fetches a checked file to `path`, which is below the workplace. Returns whether the origin has it.
+  bool fetch_aside(Origin& origin, const std::string& name, const FileDigest& digest, const std::string& path) const {
+    VerifiedFile file(path, workplace_->unfinished("aside"), digest);
+    try {
+      if (!origin.get(name, file)) return false;
+      file.commit();
+    } catch (const WrongBytes& e) {
+      throw WrongBytes(fmt::format("{}: {}", origin.place_of(name), e.what()));
+    }
+    return true;
   }
   void fetch_file(const Origins& origins, const std::string& prefix, const AssetFile& file) const {
+    if (origins.empty()) {
+      throw Error(fmt::format("{}: no public address holds {}, expected a mirror with {}", package_.name, file.path,
+                              package_.archive.path));
+    }
     std::string refused;
     for (const auto& origin : origins) {
       const auto target = begin(file);
@@ -139,16 +201,10 @@ class Installation {
   bool fetch_archive(Origin& mirror) {
     const std::string& name = package_.archive.path;
     const std::string path = workplace_->unfinished("checked-" + fs::path(name).filename().string());
-    VerifiedFile archive(path, workplace_->unfinished("archive"), package_.archive.digest);
     total_bytes_ = package_.archive.digest.bytes;
-    try {
-      if (!mirror.get(name, archive)) {
-        total_bytes_ = 0;
-        return false;
-      }
-      archive.commit();
-    } catch (const WrongBytes& e) {
-      throw WrongBytes(fmt::format("{}: {}", mirror.place_of(name), e.what()));
+    if (!fetch_aside(mirror, name, package_.archive.digest, path)) {
+      total_bytes_ = 0;
+      return false;
     }
     done_bytes_ = total_bytes_;
     unpack_archive(path);

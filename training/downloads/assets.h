@@ -37,9 +37,10 @@ using InstallWatch = std::function<bool(std::uint64_t done_bytes, std::uint64_t 
 
 /// Fetches the files of a package that are missing in `folder` or differ from the list. They come from `mirror`, a
 /// folder or address that holds the archive or has the files in a subfolder of the package's name; if `mirror` is
-/// empty, they come from the package's homes. A file gets its name only after its SHA-256 was checked. Files that an
-/// earlier installation completed are kept; its unfinished ones are removed. Throws Error if a file cannot be fetched
-/// or written, and if another process is writing in `folder`.
+/// empty, they are taken from the program, made of what the package's sources have, or come from its homes. A file gets
+/// its name only after its SHA-256 was checked, as is that of its original. Files that an earlier installation
+/// completed are kept; its unfinished ones are removed. Throws Error if a file cannot be fetched, made or written, and
+/// if another process is writing in `folder`.
 InstallReport install_assets(const AssetPackage& package, const std::string& folder, const std::string& mirror,
                              const InstallWatch& watch, WebOptions options = {});
 

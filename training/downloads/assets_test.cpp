@@ -132,7 +132,7 @@ TEST_F(Assets, NameTheFileThatNoHomeHas) {
   package_.homes = {other.address() + "/elsewhere", other.address() + "/nowhere"};
   EXPECT_THAT(error_from(""), HasSubstr("/elsewhere/sub/z: not found, nor at the other homes of p"));
   package_.homes.clear();
-  EXPECT_THAT(error_from(""), HasSubstr("p: no public address holds these files, expected a mirror with p.tar.xz"));
+  EXPECT_THAT(error_from(""), HasSubstr("p: no public address holds sub/z, expected a mirror with p.tar.xz"));
 }
 
 TEST_F(Assets, RefuseWrongBytes) {

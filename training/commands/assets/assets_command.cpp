@@ -32,6 +32,10 @@ void print_list(const std::string& folder) {
     print(fmt::format("{}: {} files, {}, {}\n", package.name, package.files.size(), megabytes(package.bytes()),
                       has_assets(package, folder) ? "in " + folder + "/" + package.name : "not fetched"));
     print(fmt::format("  licence: {}\n  credit: {}\n  see: {}\n", package.licence, package.credit, package.page));
+    for (const AssetSource& source : package.sources) {
+      print(fmt::format("  made of {} files, {}, of {}\n    licence: {}\n    credit: {}\n", source.originals.size(),
+                        megabytes(source.bytes()), source.home, source.licence, source.credit));
+    }
   }
 }
 
@@ -57,13 +61,7 @@ void run(const Arguments& arguments) {
   std::vector<const AssetPackage*> wanted;
   for (const std::string& name : arguments.names) wanted.push_back(&asset_package(name));
   if (arguments.names.empty()) {
-    for (const AssetPackage& package : asset_packages()) {
-      if (!package.homes.empty() || !arguments.mirror.empty()) {
-        wanted.push_back(&package);
-      } else if (!arguments.quiet && !has_assets(package, folder)) {
-        say(fmt::format("note: {} is left out: it comes from a mirror only (--mirror)", package.name));
-      }
-    }
+    for (const AssetPackage& package : asset_packages()) wanted.push_back(&package);
   }
   watch_interrupts();
   for (const AssetPackage* package : wanted) install(*package, folder, arguments);
@@ -72,8 +70,7 @@ void run(const Arguments& arguments) {
 void add_assets(CLI::App& program) {
   CLI::App* command = program.add_subcommand("assets", "Fetch the bodies and motions that `vesalius synth` can use");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("NAME", arguments->names,
-                      "Packages (makehuman, mocap); all that can be fetched if none is named");
+  command->add_option("NAME", arguments->names, "Packages (makehuman, mocap or motions); all if none is named");
   command->add_option("--mirror", arguments->mirror,
                       "Folder or address (http://, https://, file://) that holds NAME.tar.xz or the files below NAME/");
   command->add_option("--dir", arguments->folder,
@@ -83,9 +80,10 @@ void add_assets(CLI::App& program) {
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
 Each file gets its name only if its SHA-256 is right. Running the command again fetches missing files.
+The motions are fetched as they were published (207 MB) and thinned to 30 frames a second, unless a mirror has them so.
 
 Examples:
-  vesalius assets makehuman
+  vesalius assets motions
   vesalius assets --mirror /media/usb/assets --dir ~/vesalius-assets)");
   command->callback([arguments] { run(*arguments); });
 }
