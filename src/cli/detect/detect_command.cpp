@@ -116,8 +116,9 @@ void say_totals(const DetectArguments& arguments, const Totals& totals, const Pr
   std::string in_all =
       totals.follows ? fmt::format("{} followed", totals.ids.size()) : fmt::format("{} in all", totals.people);
   if (!arguments.track && !totals.follows && progress.done() > 1) in_all += "; --track follows them";
-  say(fmt::format("{} frames, people in {} of them ({}), {:.1f} s, {:.1f} frames/s{}", progress.done(),
-                  totals.frames_with_people, in_all, progress.seconds(), progress.done() / progress.seconds(),
+  say(fmt::format("{} frame{}, people in {} of them ({}), {:.1f} s, {:.1f} frames/s{}", progress.done(),
+                  progress.done() == 1 ? "" : "s", totals.frames_with_people, in_all, progress.seconds(),
+                  progress.done() / progress.seconds(),
                   arguments.stream.realtime || totals.dropped > 0 ? fmt::format(", {} dropped", totals.dropped) : ""));
 }
 

@@ -1,6 +1,7 @@
 #include "vesalius/open_source.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -42,13 +43,21 @@ struct Scheme {
   std::unique_ptr<FrameSource> (*open)(const std::string& rest, const SourceOptions& options);
 };
 
+/// Returns what cameras a name that is no file may have meant; nothing where it is surely a path.
+std::string cameras_meant(const std::string& name) {
+  if (name.empty() || (name.find('/') != name.npos && !name.starts_with("/dev/"))) return {};
+  std::vector<std::string> schemes;
+  for (const SensorDriver& driver : sensor_drivers()) schemes.push_back(fmt::format("{}:", driver.scheme));
+  return fmt::format(", or a camera ({}; vesalius cameras lists those that are plugged in)", fmt::join(schemes, ", "));
+}
+
 /// Returns whether `path` is a folder rather than a file. Throws Error if it does not exist.
 bool is_folder(const std::string& path, const char* expected) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
     const std::string why = error ? error.message() : "no such file or folder";
-    throw Error(fmt::format("{}: {}, expected {}", path, why, expected));
+    throw Error(fmt::format("{}: {}, expected {}{}", path, why, expected, cameras_meant(path)));
   }
   return fs::is_directory(status);
 }

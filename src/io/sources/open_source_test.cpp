@@ -28,9 +28,11 @@ using test::put;
 using test::random_frame;
 using test::serialise_pcd;
 using test::TemporaryFolder;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 constexpr const char* kMeta = R"({"fx": 41.3, "fy": 40.7, "cx": 17.2, "cy": 12.9, "units": "mm"})";
@@ -390,6 +392,10 @@ TEST(OpenSource, RefusesAStartThatIsNone) {
 TEST(OpenSource, NamesWhatIsNotASource) {
   const TemporaryFolder folder;
   EXPECT_THAT(open_error(folder / "none"), HasSubstr("none: No such file or directory, expected a folder"));
+  for (const char* name : {"k4a:", "openni2", "/dev/video0"}) {
+    EXPECT_THAT(open_error(name), AllOf(HasSubstr("openni2:, freenect:, realsense:"), HasSubstr("vesalius cameras")));
+  }
+  EXPECT_THAT(open_error(folder / "none"), Not(HasSubstr("a camera")));
   EXPECT_THAT(open_error(""), HasSubstr("expected a folder"));
   EXPECT_THAT(open_error(folder.path()), HasSubstr(folder.path() + ": no frames, expected depth/*.png"));
   EXPECT_THAT(open_error("pcd:" + folder.path()), HasSubstr("no frames, expected *.pcd"));
