@@ -218,6 +218,7 @@ VideoDecoder::VideoDecoder(std::string_view codec) : state_(std::make_unique<Sta
 }
 
 VideoDecoder::~VideoDecoder() = default;
+  if (kind == "BMP") return AV_CODEC_ID_BMP;
 
 std::vector<VideoDecoder::Picture> VideoDecoder::decode(std::string_view message, std::int64_t time_ns) {
   State& s = *state_;

@@ -57,10 +57,10 @@ TEST_F(AvPictures, TiffOfSixteenBitsIsDepth) {
   EXPECT_EQ(depth.whole(39, 29), 9739);
 }
 
-TEST_F(AvPictures, WebPAndTiffAreColour) {
+TEST_F(AvPictures, WebPTiffAndBmpAreColour) {
   cv::Mat colours(30, 40, CV_8UC3);
   for (int i = 0; i < 30 * 40; ++i) colours.at<cv::Vec3b>(i / 40, i % 40) = {7, static_cast<uchar>(i % 40 * 5), 200};
-  for (const char* extension : {".webp", ".tiff"}) {
+  for (const char* extension : {".webp", ".tiff", ".bmp"}) {
     const ColourImage colour = decode_colour(packed(extension, colours), extension);
     ASSERT_EQ(colour.width(), 40) << extension;
     EXPECT_EQ(colour(4, 3), (Rgb{200, 20, 7})) << extension;

@@ -200,3 +200,13 @@ DepthImage to_millimetres(const DepthPicture& picture, float units_per_m, bool o
 }
 
 }  // namespace vesalius
+bool may_be_depth(const std::string& path) try {
+  constexpr std::size_t kHeader = 512, kBits = 24, kColours = 25;  // of a PNG
+  const std::string first = DataFile(path).read(0, kHeader);
+  if (is_png(first) && first.size() > kColours) return first[kBits] == 16 && first[kColours] == 0;
+  if (is_pgm(first)) return pnm_header(first).most > 0xFF;
+  return !is_ppm(first) && !is_jpeg(first);
+} catch (const Error&) {
+  return true;
+}
+

@@ -32,8 +32,12 @@ std::string unread_advice(const std::string& extension);
 DepthPicture decode_depth(std::string_view bytes, const std::string& name);
 DepthPicture read_depth(const std::string& path);
 
-/// Returns depth in millimetres, 0 = no reading. What is over 65535 mm does not fit and has none. `units_per_m` is that
-/// of whole numbers and, where `of_real` says so, of numbers with a fraction, which are metres otherwise.
+/// Returns false for a file whose first bytes are those of a picture that `read_depth` refuses: of 8 bits, of colours.
+bool may_be_depth(const std::string& path);
+
+/// Returns depth in millimetres, 0 = no reading. What is over 65535 mm does not fit and has none; whole numbers of
+/// 65535 are no readings of programs that write such (7-Scenes). `units_per_m` is that of whole numbers and, where
+/// `of_real` says so, of numbers with a fraction, which are metres otherwise.
 DepthImage to_millimetres(const DepthPicture& picture, float units_per_m, bool of_real);
 
 }  // namespace vesalius

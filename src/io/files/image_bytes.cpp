@@ -124,6 +124,7 @@ bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xFF\xD8\xFF"sv
 std::string_view av_picture_kind(std::string_view bytes) {
   if (bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv)) return "TIFF";
   if (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP")) return "WebP";
+  if (bytes.starts_with("BM") && bytes.size() > 10 && bytes.substr(6, 4) == "\0\0\0\0"sv) return "BMP";
   return bytes.starts_with("\x76\x2f\x31\x01"sv) ? "OpenEXR" : "";
 }
 
@@ -145,15 +146,18 @@ PngBytes check_png(std::string_view bytes, const std::string& name) {
   return png;
 }
 
-PnmHeader check_pnm(std::string_view bytes, int values, const std::string& name) {
+PnmHeader pnm_header(std::string_view bytes) {
   PnmHeader header;
   std::size_t at = 2;
-  header.width = next_number(bytes, at);
-  header.height = next_number(bytes, at);
-  header.most = next_number(bytes, at);
+  for (int* number : {&header.width, &header.height, &header.most}) *number = next_number(bytes, at);
+  header.begin = at + 1;
+  return header;
+}
+
+PnmHeader check_pnm(std::string_view bytes, int values, const std::string& name) {
+  const PnmHeader header = pnm_header(bytes);
   check_image_size(header.width, header.height, name);
   if (header.most < 1 || header.most > 0xFFFF) throw Error(name + ": largest value expected to be 1 to 65535");
-  header.begin = at + 1;
   const std::size_t expected =
       std::size_t(header.width) * std::size_t(header.height) * std::size_t(values) * (header.most > 0xFF ? 2 : 1);
   if (bytes.size() < header.begin + expected) {

@@ -38,8 +38,11 @@ struct PnmHeader {
   std::size_t begin = 0;  ///< of the pixels
 };
 
-/// Reads the header of a PGM ("P5", `values` of a pixel 1) or PPM ("P6", 3). Throws Error naming `name` if it is
-/// damaged, too large, or the file too short for it.
+/// Reads the header of a PGM ("P5") or PPM ("P6"); numbers that are missing are 0.
+PnmHeader pnm_header(std::string_view bytes);
+
+/// Reads the header of a PGM (`values` of a pixel 1) or PPM (3). Throws Error naming `name` if it is damaged, too
+/// large, or the file too short for it.
 PnmHeader check_pnm(std::string_view bytes, int values, const std::string& name);
 
 /// Throws Error naming `name` unless a picture of this size has 1 to kMaxPixels pixels.
@@ -47,8 +50,8 @@ void check_image_size(std::int64_t width, std::int64_t height, const std::string
 
 bool is_png(std::string_view bytes);
 bool is_jpeg(std::string_view bytes);
-/// Returns the kind of a picture that libavcodec reads (io/files/av_pictures.h), by its first bytes: "TIFF", "WebP" or
-/// "OpenEXR"; nothing for others.
+/// Returns the kind of a picture that libavcodec reads (io/files/av_pictures.h), by its first bytes: "TIFF", "WebP",
+/// "BMP" or "OpenEXR"; nothing for others.
 std::string_view av_picture_kind(std::string_view bytes);
 inline bool is_pgm(std::string_view bytes) { return bytes.starts_with("P5"); }
 inline bool is_ppm(std::string_view bytes) { return bytes.starts_with("P6"); }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <map>
@@ -29,7 +30,7 @@ bool is_folder(const fs::path& path) {
 
 using Role = PictureName::Role;
 
-const std::vector<std::string> kColourExtensions{".png", ".jpg", ".jpeg", ".ppm", ".webp", ".tif", ".tiff"};
+const std::vector<std::string> kColourExtensions{".png", ".jpg", ".jpeg", ".ppm", ".webp", ".tif", ".tiff", ".bmp"};
 
 /// Returns what a folder is for: "kinectdepth" too, where names of pictures begin with the word.
 Role role_of_folder(const std::string& name) {
@@ -44,20 +45,22 @@ std::optional<fs::path> child_of_role(const fs::path& root, Role role) {
   const std::vector<std::string> usual =
       role == Role::depth ? std::vector<std::string>{"depth"}
                           : std::vector<std::string>{"rgb", "color", "colour", "image", "images", "img"};
-  std::vector<std::tuple<std::ptrdiff_t, std::string, fs::path>> found;
+  std::vector<std::tuple<bool, std::ptrdiff_t, std::string, fs::path>> found;
   std::error_code error;
   for (fs::directory_iterator it(root, error), end; !error && it != end; it.increment(error)) {
     const std::string name = lower(it->path().filename().string());
-    const auto rank = std::ranges::find(usual, name) - usual.begin();
+    const auto rank = std::ranges::find(usual, name) - usual.begin() + (name.starts_with("left") ? 1 : 0);
     const bool shown = name.find("vis") != name.npos || name.find("preview") != name.npos ||
                        name.find("conf") != name.npos;  // depth in colours
-    const auto& extensions = role == Role::depth ? depth_extensions() : kColourExtensions;
-    const bool fits = rank < std::ssize(usual) || (!shown && role_of_folder(name) == role && is_folder(it->path()) &&
-                                                   !list_files(it->path().string(), extensions).empty());
-    if (fits && name.front() != '.' && is_folder(it->path())) found.emplace_back(rank, name, it->path());
+    const bool is_usual = rank < std::ssize(usual);
+    if (name.front() == '.' || !is_folder(it->path()) || (!is_usual && (shown || role_of_folder(name) != role)))
+      continue;
+    const auto files = list_files(it->path().string(), role == Role::depth ? depth_extensions() : kColourExtensions);
+    const bool is_it = !files.empty() && (role == Role::colour || may_be_depth(files.front().string()));
+    if (is_usual || !files.empty()) found.emplace_back(!is_it, rank, name, it->path());
   }
   if (found.empty()) return std::nullopt;
-  return std::get<2>(*std::ranges::min_element(found));
+  return std::get<3>(*std::ranges::min_element(found));
 }
 
 /// A picture by what its name says.
@@ -81,14 +84,27 @@ void prefer(std::vector<Picture>& pictures, Wanted wanted) {
   if (std::ranges::any_of(pictures, wanted)) std::erase_if(pictures, [&](const Picture& p) { return !wanted(p); });
 }
 
-/// Returns the pictures of depth in a folder: all, if it `is_for_depth`; else those that say so, if some do; else those
-/// that do not say that they are of colour. All are of one kind of file.
+/// Keeps the pictures that can be depth, if one can, by the first of those whose names differ by digits alone.
+void prefer_depths(std::vector<Picture>& pictures) {
+  std::map<std::string, bool> kinds;
+  prefer(pictures, [&](const Picture& p) {
+    std::string kind = p.path.filename().string();
+    std::erase_if(kind, is_digit);
+    const auto [known, is_new] = kinds.try_emplace(kind);
+    if (is_new) known->second = may_be_depth(p.path.string());
+    return known->second;
+  });
+}
+
+/// Returns the pictures of depth in a folder: of those that can be, all if it `is_for_depth` and none says so, else
+/// those that say so, if some do; else those that do not say that they are of colour. All are of one kind of file.
 std::vector<Picture> depths_in(const fs::path& folder, bool is_for_depth) {
   std::vector<Picture> depths = pictures_in(folder, depth_extensions());
-  if (!is_for_depth) {
-    prefer(depths, [](const Picture& p) { return p.name.role == Role::depth; });
-    prefer(depths, [](const Picture& p) { return p.name.role != Role::colour; });
-  }
+  prefer_depths(depths);
+  const auto says_depth = [](const Picture& p) { return p.name.role == Role::depth; };
+  const bool is_said = std::ranges::any_of(depths, says_depth);
+  if (!is_for_depth) prefer(depths, says_depth);
+  if (!is_for_depth || is_said) prefer(depths, [](const Picture& p) { return p.name.role != Role::colour; });
   for (const std::string& extension : depth_extensions()) {
     const auto of_kind = [&](const Picture& p) { return lower_extension(p.path) == extension; };
     if (std::ranges::none_of(depths, of_kind)) continue;
@@ -98,17 +114,20 @@ std::vector<Picture> depths_in(const fs::path& folder, bool is_for_depth) {
   return depths;
 }
 
-/// Returns the pictures of colour: those of a folder for them, else those beside depth that say so or are JPEG.
-std::vector<Picture> colours_of(const fs::path& root, const std::optional<fs::path>& depth_folder) {
+/// Returns the pictures of colour: those of a folder for them, else those beside depth that say so, are JPEG, or have
+/// the names of `depths` without the word.
+std::vector<Picture> colours_of(const fs::path& root, const std::optional<fs::path>& depth_folder,
+                                const std::vector<Picture>& depths) {
   std::vector<Picture> colours;
   if (depth_folder) {
     if (const auto folder = child_of_role(root, Role::colour)) colours = pictures_in(*folder, kColourExtensions);
   } else {
     colours = pictures_in(root, kColourExtensions);
-    std::erase_if(colours, [](const Picture& p) {
-      const std::string extension = lower_extension(p.path);
-      return p.name.role == Role::depth ||
-             (p.name.role == Role::unknown && extension != ".jpg" && extension != ".jpeg");
+    std::set<std::string> names;
+    for (const Picture& depth : depths) names.insert(depth.name.role == Role::depth ? depth.name.key : "");
+    std::erase_if(colours, [&](const Picture& p) {
+      const bool is_colour = lower_extension(p.path).starts_with(".jp") || names.contains(p.stem);
+      return p.name.role == Role::depth || (p.name.role == Role::unknown && !is_colour);
     });
   }
   // A PNG takes precedence over a JPEG of the same name.
@@ -192,6 +211,33 @@ void note_missing_colours(FrameList& list, std::size_t colours) {
   }
 }
 
+/// Returns why what looks like colour is not taken; nothing of other files.
+std::string why_no_colour(const SourceItem& item, std::size_t frames) {
+  const fs::path name(item.name);
+  const std::string folder = lower(name.parent_path().string());
+  const auto is_one_of = [&](const std::vector<std::string>& all) { return std::ranges::count(all, item.holds) != 0; };
+  const bool is_named =
+      role_of_folder(folder) == Role::colour || parse_picture_name(name.stem().string()).role == Role::colour;
+  if (is_named && is_one_of({"mp4", "mov", "avi", "mkv", "webm", "m4v"})) {
+    return "films are not read; ffmpeg -i FILM -start_number 0 rgb/%06d.jpg makes pictures of one";
+  }
+  if (is_named) return is_one_of({"json", "txt", "csv", "yaml", "yml"}) ? "" : "not read, expected PNG or JPEG";
+  const bool is_other = std::ranges::any_of(std::array{"depth", "ir", "mask", "seg", "label", "conf", "normal", "vis"},
+                                            [&](const char* word) { return folder.find(word) != folder.npos; });
+  const bool may_be = is_one_of({"jpg", "jpeg"}) && !folder.empty() && !is_other && item.count >= long(frames);
+  return may_be ? "its name does not say colour, expected rgb, color or image" : "";
+}
+
+void note_colour_not_taken(FrameList& list) {
+  for (SourceItem& item : list.items) {
+    if (!item.use.empty() || !item.why.empty()) continue;
+    item.why = why_no_colour(item, list.frames.size());
+    if (item.why.empty()) continue;
+    list.notes.push_back(fmt::format("{}: no colour: {}: {}", list.place, item.name, item.why));
+    return;
+  }
+}
+
 /// Returns the number that a whole name is; nothing for other names and for numbers that a double does not hold.
 std::optional<double> whole_number(const std::string& name) {
   constexpr std::size_t kMostDigits = 15;
@@ -248,7 +294,7 @@ FrameList list_folder(const std::string& folder, const SourceOptions& options) {
   }
   sort_by_time(depths);
   for (const Picture& p : depths) list.frames.push_back({p.stem, p.name.time_s, p.path.string(), ""});
-  const std::vector<Picture> colours = colours_of(folder, depth_folder);
+  const std::vector<Picture> colours = colours_of(folder, depth_folder, depths);
   add_colours(list, depths, colours);
   std::set<std::string> names;
   for (const Picture& p : colours) names.insert(p.stem);
@@ -264,6 +310,7 @@ FrameList list_folder(const std::string& folder, const SourceOptions& options) {
   }
   if (list.facts.rate_hz && !list.frames.front().time_s) add_times(list, *list.facts.rate_hz);
   add_items(list);
+  if (colours.empty()) note_colour_not_taken(list);
   return list;
 }
 
@@ -276,8 +323,8 @@ FrameList list_single_picture(const std::string& path, const SourceOptions& opti
   const Picture depth{file, file.stem().string(), parse_picture_name(file.stem().string())};
   if (options.colour_file.empty()) {
     const bool in_depth_folder = camera_folders(folder).size() > 1;
-    std::vector<Picture> colours = in_depth_folder ? colours_of(folder / "..", folder) : std::vector<Picture>();
-    if (!in_depth_folder && depth.name.role == Role::depth) colours = colours_of(folder, {});
+    std::vector<Picture> colours = in_depth_folder ? colours_of(folder / "..", folder, {}) : std::vector<Picture>();
+    if (colours.empty() && depth.name.role == Role::depth) colours = colours_of(folder, {}, {depth});
     add_colours(list, {depth}, colours);
   }
   list.facts = find_camera_facts(options, {folder.string(), (folder / "..").string()});

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -135,6 +136,62 @@ TEST(ListFolder, PairsDepthAndColourByName) {
               ElementsAre("d-1294886360.208451-29.pgm r-1294886360.210000-7.ppm", "d-1294886361.0-29.pgm -"));
   EXPECT_THAT(pairs_of({"a.png", "b.png", "d.png"}), ElementsAre("a.png -", "b.png -", "d.png -"));
   EXPECT_THAT(pairs_of({"0.npy", "0.pgm", "1.pgm"}), ElementsAre("0.pgm -", "1.pgm -"));
+}
+
+TEST(ListFolder, NamesOfPicturesCountMoreThanThatOfTheirFolder) {
+  const TemporaryFolder folder;
+  const std::string recording = folder / "my_depth_recording";
+  for (const char* name : {"color_0.png", "depth_0.png", "left_0.png"}) put(recording + "/" + name, "");
+  const FrameList list = list_folder(recording, {});
+  ASSERT_EQ(list.frames.size(), 1U);
+  EXPECT_THAT(list.frames[0].depth, HasSubstr("depth_0.png"));
+  EXPECT_THAT(list.frames[0].colour, HasSubstr("color_0.png"));
+}
+
+TEST(ListFolder, TakesColourWhoseNameIsThatOfDepthWithoutTheWord) {
+  EXPECT_THAT(pairs_of({"desk_1_1.png", "desk_1_1_depth.png", "desk_1_1_mask.png"}),
+              ElementsAre("desk_1_1_depth.png desk_1_1.png"));
+  EXPECT_THAT(pairs_of({"left000001.png", "depth000001.png", "right000001.png"}),
+              ElementsAre("depth000001.png left000001.png"));
+  EXPECT_THAT(pairs_of({"gt_depth/1.png", "left/1.png", "right/1.png"}), ElementsAre("gt_depth/1.png left/1.png"));
+  EXPECT_THAT(pairs_of({"depth/1.png", "left/1.png", "rgb_small/1.png"}), ElementsAre("depth/1.png rgb_small/1.png"));
+  EXPECT_THAT(pairs_of({"depth/left_1.png", "depth/right_1.png"}),
+              ElementsAre("depth/left_1.png -", "depth/right_1.png -"));
+}
+
+TEST(ListFolder, TakesNoPictureForDepthThatCannotBeWhereOneCan) {
+  const std::string colours = encode_png(ColourImage(8, 6)), grey = "P5 2 2 255\n1234";
+  const std::string depth = encode_png(DepthImage(8, 6)), array = "\x93NUMPY";
+  const auto depths_of = [](const std::map<std::string, std::string>& files) {
+    const TemporaryFolder folder;
+    for (const auto& [name, bytes] : files) put(folder / name, bytes);
+    std::vector<std::string> depths;
+    for (const FrameFiles& f : list_folder(folder.path(), {}).frames) {
+      depths.push_back(std::filesystem::relative(f.depth, folder.path()).string());
+    }
+    return depths;
+  };
+  EXPECT_THAT(depths_of({{"depth_color/1.png", colours}, {"depth_raw/1.png", depth}}), ElementsAre("depth_raw/1.png"));
+  EXPECT_THAT(depths_of({{"depth_1.png", colours}, {"depth_1.npy", array}}), ElementsAre("depth_1.npy"));
+  EXPECT_THAT(depths_of({{"1_depth.png", depth}, {"1_depth_colored.png", colours}, {"1_depth_c.pgm", grey}}),
+              ElementsAre("1_depth.png"));
+  EXPECT_THAT(depths_of({{"1.png", "cut"}, {"2.png", depth}}), ElementsAre("1.png", "2.png"));
+  EXPECT_THAT(depths_of({{"depth_1.png", colours}, {"depth_2.png", colours}}),
+              ElementsAre("depth_1.png", "depth_2.png"))
+      << "none can";
+}
+
+TEST(ListFolder, SaysWhyColourIsNotTaken) {
+  const auto notes_of = [](const std::vector<std::string>& files) {
+    const TemporaryFolder folder;
+    for (const std::string& file : files) put(folder / file, "");
+    return list_folder(folder.path(), {}).notes;
+  };
+  EXPECT_THAT(notes_of({"depth/1.png", "rgb/1.gif"}),
+              ElementsAre(HasSubstr("no colour: rgb/*.gif: not read, expected")));
+  EXPECT_THAT(notes_of({"depth/1.png", "rgb.mp4"}), ElementsAre(HasSubstr("films are not read; ffmpeg -i")));
+  EXPECT_THAT(notes_of({"depth/1.png", "iphone/1.jpg"}), ElementsAre(HasSubstr("iphone/*.jpg: its name does not say")));
+  EXPECT_THAT(notes_of({"depth/1.png", "masks/1.jpg", "preview.jpg", "rgb.txt"}), testing::IsEmpty());
 }
 
 TEST(ListFolder, TakesTimesThatAreNames) {

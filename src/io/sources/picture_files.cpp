@@ -149,6 +149,12 @@ PictureName parse_picture_name(const std::string& stem) {
     }
     name.key.erase(begin, end - begin);
   }
+  // ZED: the left picture is that of depth.
+  constexpr std::size_t kLeft = 4;
+  if (name.role == Role::unknown && text.starts_with("left") && (text.size() == kLeft || !is_letter(text[kLeft]))) {
+    name.role = Role::colour;
+    name.key.erase(0, text.find_first_not_of("_-. ", kLeft));
+  }
   name.time_s = time_in(name.key);
   return name;
 }
