@@ -28,9 +28,27 @@ struct DepthLook {
   std::array<int, 3> mm{};  ///< distances that 5, 50 and 95 % of the readings do not exceed
   /// How much neighbours differ against how much all readings do. Where bytes are swapped it is some ten times as much.
   double roughness = 1.0;
-  bool in_fives = false;  ///< whether all readings are multiples of 5
+  bool in_fives = false, in_tens = false;  ///< whether all readings are multiples of 5, or of 10
+  /// Steps between values that occur, over those of the coarsest camera, a Kinect v1, at such a distance. Where it is
+  /// above 1, the distance is a larger one.
+  double coarseness = 1.0;
   bool disparity = false;
 };
+
+/// Returns the median over readings, which are sorted, of the step to the next value, over that of a Kinect v1.
+double coarseness_of(const std::vector<std::uint16_t>& read) {
+  constexpr double kSteps_mm = 348000.0;  // an eighth of a pixel of disparity, with 580 pixels and 75 mm
+  std::vector<double> all;
+  for (auto here = read.begin(); here != read.end();) {
+    const auto next = std::upper_bound(here, read.end(), *here);
+    const double step = next == read.end() ? 0.0 : double(*next - *here);
+    all.insert(all.end(), std::size_t(next - here), step / std::max(1.0, double(*here) * *here / kSteps_mm));
+    here = next;
+  }
+  const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  return *middle;
+}
 
 DepthLook look_at(const DepthImage& depth) {
   constexpr double kEnough = 3e4;  // pixels
@@ -54,6 +72,8 @@ DepthLook look_at(const DepthImage& depth) {
   for (const std::uint16_t step : steps) sum += step;
   if (!steps.empty()) look.roughness = sum / double(steps.size()) / std::max(1.0, double(look.mm[2] - look.mm[0]));
   look.in_fives = std::ranges::all_of(read, [](std::uint16_t value) { return value % 5 == 0; });
+  look.in_tens = std::ranges::all_of(read, [](std::uint16_t value) { return value % 10 == 0; });
+  look.coarseness = coarseness_of(read);
   const auto none = std::ranges::lower_bound(read, kNoDisparity);
   look.disparity = none != read.begin() && read.back() == kNoDisparity && *(none - 1) <= kMostDisparity &&
                    std::size_t(read.end() - none) > read.size() / 200;
@@ -92,34 +112,55 @@ std::string words(Oddity oddity, const DepthLook& look) {
 /// Options that may be the right ones, and the flag that gives them.
 struct Remedy {
   SourceOptions options;
-  std::string flag;
+  std::string flag, value;
   DepthLook look = {};
-  bool is_of_bits() const { return flag.starts_with("--depth-bits"); }
+  bool is_of_bits() const { return flag == "--depth-bits"; }
 };
 
-std::vector<Remedy> remedies(const SourceOptions& given, Oddity oddity) {
+/// A unit that programs store, those that most do in front.
+struct Unit {
+  float per_m;
+  const char* of;
+};
+constexpr std::array<Unit, 8> kUnits{{{1000.F, ""},
+                                      {5000.F, " (TUM)"},
+                                      {10000.F, ""},
+                                      {4000.F, " (Matterport)"},
+                                      {6553.5F, " (Replica)"},
+                                      {100.F, " (centimetres)"},
+                                      {256.F, " (KITTI)"},
+                                      {1.F, " (metres)"}}};
+
+/// Returns whether a unit comes into question. Whole millimetres that were multiplied tell by what.
+bool may_be(const Unit& unit, Oddity oddity, const DepthLook& odd, bool is_tum) {
+  constexpr double kCoarse = 2.5;
+  if (oddity == Oddity::near && is_tum) return unit.per_m == 1000.F;
+  if (oddity == Oddity::near) return odd.coarseness > kCoarse && (unit.per_m == 100.F || unit.per_m == 256.F);
+  if (oddity != Oddity::far || !odd.in_fives) return true;
+  return unit.per_m == (odd.in_tens ? 10000.F : 5000.F);
+}
+
+std::vector<Remedy> remedies(const SourceOptions& given, Oddity oddity, const DepthLook& odd, bool is_tum) {
   std::vector<Remedy> all;
-  const auto add_scale = [&](float scale) {
-    if (given.depth_scale == scale) return;
-    all.push_back({given, fmt::format("--depth-scale {}", scale)});
-    all.back().options.depth_scale = scale;
-  };
   const auto add_bits = [&](DepthBits bits, const char* name) {
     if (given.depth_bits == bits) return;
-    all.push_back({given, fmt::format("--depth-bits {}", name)});
+    all.push_back({given, "--depth-bits", name});
     all.back().options.depth_bits = bits;
   };
   if (oddity != Oddity::near) {
     add_bits(DepthBits::swapped, "swapped");
     add_bits(DepthBits::rotated, "rotated");
-    for (const float scale : {100.F, 4000.F, 5000.F, 10000.F}) add_scale(scale);
   }
-  add_scale(1000.F);
+  for (const Unit& unit : kUnits) {
+    if (given.depth_scale == unit.per_m || !may_be(unit, oddity, odd, is_tum)) continue;
+    all.push_back({given, "--depth-scale", fmt::format("{}{}", unit.per_m, unit.of)});
+    all.back().options.depth_scale = unit.per_m;
+  }
   return all;
 }
 
 /// Returns whether depth is a room's with a remedy. `odd` is the depth without.
-bool mends(const Remedy& remedy, Oddity oddity, const DepthLook& odd) {
+bool mends(const Remedy& remedy, Oddity oddity, const DepthLook& odd, bool is_tum) {
   constexpr double kSmoother = 0.5, kAsSmooth = 1.1;
   constexpr int kFar_mm = 6000, kVeryFar_mm = 15000;
   const DepthLook& now = remedy.look;
@@ -130,13 +171,8 @@ bool mends(const Remedy& remedy, Oddity oddity, const DepthLook& odd) {
     return now.roughness < (swapped ? kSmoother : kAsSmooth) * odd.roughness;
   }
   // Kinects give whole millimetres, of which five thousandths of a metre are multiples.
-  if (oddity == Oddity::near) return now.mm[1] > odd.mm[1] && !now.in_fives;
+  if (oddity == Oddity::near) return now.mm[1] > odd.mm[1] && !(now.in_fives && is_tum);
   return oddity == Oddity::too_near || (odd.mm[0] > kFar_mm && odd.mm[1] > kVeryFar_mm);
-}
-
-double unlikeliness(const Remedy& remedy) {
-  constexpr double kUsual_mm = 2500.0;
-  return std::abs(std::log(double(remedy.look.mm[1]) / kUsual_mm));
 }
 
 using Opener = std::function<std::unique_ptr<FrameSource>(const SourceOptions&)>;
@@ -154,31 +190,36 @@ DepthImage first_depth(FrameSource& source) {
 }
 
 /// Returns whether depth counts as fifths of a millimetre, as in the TUM benchmark: many bring such folders of
-/// millimetres. Of other sources that are near nothing can be said: they may look at a table.
+/// millimetres. Other sources that are near may look at a table.
 bool is_of_tum(const DepthLook& look, SourceOptions options, const Reread& reread) {
   options.depth_scale = 5000.F;
   return look_at(reread(options)).mm == look.mm;
 }
 
-/// Returns the best remedy; nothing where none helps. Bytes and bits that fit are no chance, so they come first.
-std::optional<Remedy> remedy_of(Oddity oddity, const DepthLook& odd, const SourceOptions& given, const Reread& reread) {
-  if (oddity == Oddity::near && !is_of_tum(odd, given, reread)) return std::nullopt;
-  std::optional<Remedy> best;
-  int units = 0;  // of two that are too near each other to tell
-  for (Remedy& remedy : remedies(given, oddity)) {
+/// Returns the remedies that help. Bytes and bits that fit are no chance; of units several may.
+std::vector<Remedy> remedies_of(Oddity oddity, const DepthLook& odd, const SourceOptions& given, const Reread& reread) {
+  const bool is_tum = oddity == Oddity::near && is_of_tum(odd, given, reread);
+  std::vector<Remedy> all;
+  for (Remedy& remedy : remedies(given, oddity, odd, is_tum)) {
     try {
       remedy.look = look_at(reread(remedy.options));
     } catch (const Error&) {
       continue;
     }
-    if (!mends(remedy, oddity, odd)) continue;
-    if (remedy.is_of_bits()) return remedy;
-    units += remedy.flag == "--depth-scale 4000" || remedy.flag == "--depth-scale 5000" ? 1 : 0;
-    if (!best || unlikeliness(remedy) < unlikeliness(*best)) best = remedy;
+    if (!mends(remedy, oddity, odd, is_tum)) continue;
+    if (remedy.is_of_bits()) return {remedy};
+    all.push_back(remedy);
   }
-  const bool either = units == 2 && (*best->options.depth_scale == 4000.F || *best->options.depth_scale == 5000.F);
-  if (either) best->flag = "--depth-scale 5000 (TUM) or 4000 (Matterport)";
-  return best;
+  return all;
+}
+
+/// Returns "--depth-scale 5000 (TUM), 10000 or 4000 (Matterport)".
+std::string flag_of(const std::vector<Remedy>& remedies) {
+  std::string text = remedies.front().flag + " " + remedies.front().value;
+  for (std::size_t i = 1; i < remedies.size(); ++i) {
+    text += (i + 1 == remedies.size() ? " or " : ", ") + remedies[i].value;
+  }
+  return text;
 }
 
 /// Returns whether depth is none that any camera gives, whatever it looks at.
@@ -200,9 +241,9 @@ std::string doubt_of_depth(const DepthImage& depth, const std::string& place, co
   }
   const Oddity oddity = oddity_of(look);
   if (oddity == Oddity::none) return {};
-  if (const auto remedy = remedy_of(oddity, look, given, reread)) {
-    return fmt::format("{}: {}; with {} it is a room's, {}", place, words(oddity, look), remedy->flag,
-                       metres(remedy->look));
+  if (const auto remedies = remedies_of(oddity, look, given, reread); !remedies.empty()) {
+    return fmt::format("{}: {}; with {} it is a room's{}", place, words(oddity, look), flag_of(remedies),
+                       remedies.size() > 1 ? "" : ", " + metres(remedies.front().look));
   }
   if (!cannot_be(look)) return {};
   return fmt::format("{}: {}; expected millimetres, or the unit by --depth-scale", place, words(oddity, look));

@@ -101,6 +101,43 @@ TEST(DepthCheck, NamesTheScale) {
                 changed(coarse, [](int cm) { return 10 * cm; }));
 }
 
+/// Depth as a Kinect v1 gives it, by eighths of a pixel of disparity, of a deeper room.
+DepthImage coarse_room() {
+  return changed(room(),
+                 [](int mm) { return mm == 0 ? 0 : int(std::lround(348000.0 / std::round(348000.0 / (1.5 * mm)))); });
+}
+
+TEST(DepthCheck, NamesAllScalesThatFit) {
+  const TemporaryFolder fives, any;
+  EXPECT_THAT(
+      open_source(folder_of(fives, changed(room(), [](int mm) { return 7 * mm; })))->notes(),
+      ElementsAre(HasSubstr("with --depth-scale 5000 (TUM), 10000, 4000 (Matterport) or 6553.5 (Replica) it is")));
+  EXPECT_THAT(open_source(folder_of(any, changed(room(), [](int mm) { return 5 * mm; })))->notes(),
+              ElementsAre(HasSubstr("with --depth-scale 5000 (TUM) it is a room's, 1.")))
+      << "multiples of 5";
+}
+
+TEST(DepthCheck, KnowsCoarseUnitsByTheStepsOfTheCamera) {
+  const TemporaryFolder centimetres, kitti, millimetres;
+  EXPECT_THAT(open_source(folder_of(centimetres, changed(coarse_room(), [](int mm) { return mm / 10; })))->notes(),
+              ElementsAre(HasSubstr("--depth-scale 100 (centimetres)")));
+  EXPECT_THAT(open_source(folder_of(kitti, changed(coarse_room(), [](int mm) { return mm * 256 / 1000; })))->notes(),
+              ElementsAre(HasSubstr("256 (KITTI) it is a room's")));
+  EXPECT_THAT(open_source(folder_of(millimetres, coarse_room()))->notes(), IsEmpty());
+}
+
+TEST(DepthCheck, FloatsOfMetresBesideAScaleOfMillimetres) {
+  const TemporaryFolder folder;
+  std::string pfm = "Pf 160 120 -1\n";
+  for (const std::uint16_t mm : room()) {
+    const float metres = 1e-3F * mm;
+    pfm.append(reinterpret_cast<const char*>(&metres), sizeof(metres));
+  }
+  put(folder / "meta.json", R"({"fx": 130, "depth_scale": 1000})");
+  put(folder / "depth/0.pfm", pfm);
+  EXPECT_THAT(open_source(folder.path())->notes(), ElementsAre(HasSubstr("--depth-scale 1 (metres)")));
+}
+
 TEST(DepthCheck, SeesSwappedBytesAndRotatedBits) {
   const TemporaryFolder swapped, rotated;
   const DepthImage other = changed(room(), [](int mm) { return mm << 8 | mm >> 8; });
