@@ -14,6 +14,7 @@
 #include "io/files/av_pictures.h"
 #include "io/files/data_file.h"
 #include "io/files/image_bytes.h"
+#include "io/files/stored_depth.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
 
@@ -189,12 +190,11 @@ DepthImage to_millimetres(const DepthPicture& picture, float units_per_m, bool o
     });
     return depth;
   }
-  if (units_per_m == 1000.F) return picture.whole;
   const double mm_per_unit = 1000.0 / units_per_m;
   DepthImage depth(picture.width(), picture.height());
   std::ranges::transform(picture.whole, depth.begin(), [mm_per_unit](std::uint16_t units) {
     const double mm = std::round(units * mm_per_unit);
-    return mm > kMost ? std::uint16_t{0} : static_cast<std::uint16_t>(mm);
+    return mm > kMost || units == kNoReading ? std::uint16_t{0} : static_cast<std::uint16_t>(mm);
   });
   return depth;
 }

@@ -7,6 +7,9 @@
 
 namespace vesalius {
 
+/// What 7-Scenes and others store where there is no reading, whatever their unit.
+inline constexpr std::uint16_t kNoReading = 0xFFFF;
+
 /// How the depth of pictures is stored.
 struct StoredDepth {
   float units_per_m = 1000.F;     ///< of whole numbers

@@ -373,7 +373,10 @@ DepthImage depth_of(const PictureMessage& given, const StoredDepth& stored, cons
   const std::string& encoding = given.encoding;
   const double to_mm = 1e3 / double(stored.units_per_m), float_to_mm = 1e3 / double(stored.float_units_per_m);
   const auto whole = [&](auto value) {
-    if constexpr (std::is_unsigned_v<decltype(value)>) value = restored(value, stored.bits);
+    if constexpr (std::is_unsigned_v<decltype(value)>) {
+      value = restored(value, stored.bits);
+      if (value == kNoReading) value = 0;
+    }
     if (to_mm == 1.0 && sizeof(value) <= sizeof(std::uint16_t)) {
       return static_cast<std::uint16_t>(std::max<int>(value, 0));
     }
