@@ -74,7 +74,9 @@ const PictureTopic& choose_depth_topic(const RecordedContents& contents, const S
     throw Error(place + ": no depth, expected a topic of pictures of 16UC1, mono16, 32FC1 or compressedDepth");
   }
   const auto rank = [](const PictureTopic* d) {
-    return std::tuple(d->points, d->disparities, d->name != TopicName::depth, !d->is_registered(), d->compressed);
+    const bool may_be_labels = d->look.encoding == "32SC1";
+    return std::tuple(d->points, d->disparities, d->name != TopicName::depth, may_be_labels, !d->is_registered(),
+                      d->compressed);
   };
   std::ranges::stable_sort(depths, {}, rank);
   std::erase_if(depths, [&](const auto* d) { return d->points && !depths.front()->points; });
@@ -96,10 +98,12 @@ std::size_t common(const std::string& a, const std::string& b) {
   return static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
 }
 
-/// Returns what was recorded nearest to a topic; null if nothing was.
+/// Returns what was recorded nearest to a topic by their beginnings, else by what they say; null if nothing was.
 template <class T>
 const std::pair<std::string, T>* nearest(const std::vector<std::pair<std::string, T>>& all, const std::string& topic) {
-  const auto found = std::ranges::max_element(all, {}, [&](const auto& one) { return common(one.first, topic); });
+  const TopicName says = name_says(topic);
+  const auto found = std::ranges::max_element(
+      all, {}, [&](const auto& one) { return std::pair(common(one.first, topic), name_says(one.first) == says); });
   return found == all.end() ? nullptr : &*found;
 }
 

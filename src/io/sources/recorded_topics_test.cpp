@@ -114,6 +114,33 @@ TEST_F(RecordedTopics, DepthIsTheOneThatIsCalledSo) {
   EXPECT_EQ(open_source(folder_ / "a.mcap", named)->next()->depth, infrared.depth);
 }
 
+TEST_F(RecordedTopics, WholeNumbersOf32BitsComeLast) {
+  out_.camera("/camera/camera_info", a_.camera);
+  Image<std::int32_t> labels(40, 30, 3);
+  out_.put("/camera/instances", kImage, 0, raw("32SC1", labels));
+  out_.put("/camera/z", kImage, 0, raw("32FC1", Image<float>(40, 30, 2.F)));
+  EXPECT_EQ(open()->next()->depth(0, 0), 2000);
+}
+
+TEST_F(RecordedTopics, OfCalibrationsAsNearByNameThatOfDepthIsTaken) {
+  Camera other = a_.camera;
+  other.fx = 99.F;
+  out_.camera("/cam/info_color", other);
+  out_.camera("/cam/info_depth", a_.camera);
+  out_.depth("/cam/depth", 0, a_);
+  EXPECT_EQ(open()->next()->camera.fx, a_.camera.fx);
+}
+
+TEST_F(RecordedTopics, TheLargestNumberIsNoReading) {
+  out_.camera("/depth/camera_info", a_.camera);
+  a_.depth(3, 2) = 65535;
+  a_.depth(4, 2) = 65534;
+  out_.depth("/depth/image", 0, a_);
+  const Frame frame = *open()->next();
+  EXPECT_EQ(frame.depth(3, 2), 0);
+  EXPECT_EQ(frame.depth(4, 2), 65534);
+}
+
 TEST_F(RecordedTopics, InfraredAloneIsNoDepthAndTheErrorListsIt) {
   out_.camera("/camera/ir/camera_info", a_.camera);
   out_.depth("/camera/ir/image", 0, a_);
