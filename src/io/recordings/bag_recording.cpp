@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "io/files/byte_stream.h"
@@ -46,8 +47,10 @@ class Fields {
 class BagRecording final : public ChunkedRecording {
  public:
   explicit BagRecording(DataFile file) : ChunkedRecording(std::move(file), kBagMagic.size()) {
+    find_chunks();
     find_topics();
     rewind();
+    is_open_ = true;
   }
 
   std::optional<RecordedMessage> next() override {
@@ -75,18 +78,38 @@ class BagRecording final : public ChunkedRecording {
     return static_cast<std::int64_t>((time & 0xFFFFFFFFU) * 1000000000U + (time >> 32U));
   }
 
-  /// Goes to the next record and reads its header. Returns false at the end.
+  /// Goes to the next record that is whole and reads its header. Returns false at the end. Throws Error where records
+  /// are damaged; the call after that goes on with the next chunk that is known.
   bool next_record() {
+    for (;;) {
+      const std::uint64_t at = at_;
+      try {
+        return read_record();
+      } catch (const Error&) {
+        const auto later = chunks_.upper_bound(at);
+        at_ = later == chunks_.end() ? file_.size() : *later;
+        if (is_open_) throw Error(fmt::format("{}: damaged at byte {}, expected a record", file_.path(), at));
+      }
+    }
+  }
+
+  /// Finds the places of chunks by the list at the end of the file, if it has one.
+  void find_chunks() try {
+    if (!read_record()) return;
+    at_ = header_->number<std::uint64_t>("index_pos");
+    while (at_ > kBagMagic.size() && read_record()) {
+      if (header_->number<std::uint8_t>("op") == kChunkInfo)
+        chunks_.insert(header_->number<std::uint64_t>("chunk_pos"));
+    }
+  } catch (const Error&) {  // whoever reads it record by record hears of it
+  }
+
+  bool read_record() {
     const std::string length_bytes = file_.read(at_, sizeof(std::uint32_t));
     if (length_bytes.empty()) return false;
     if (length_bytes.size() < sizeof(std::uint32_t)) return stop_early();
     const auto length = ByteReader(length_bytes, file_.path()).number<std::uint32_t>("length of a header");
-    if (length > kMaxHeaderBytes) {
-      const std::uint64_t at = at_;
-      at_ = file_.size();
-      throw Error(fmt::format("{}: damaged at byte {}: a header of {} bytes, expected at most {}", file_.path(), at,
-                              length, kMaxHeaderBytes));
-    }
+    if (length > kMaxHeaderBytes) throw Error(file_.path() + ": a header of too many bytes");
     header_bytes_ = file_.read(at_ + sizeof(std::uint32_t), length + sizeof(std::uint32_t));
     if (header_bytes_.size() < length + sizeof(std::uint32_t)) return stop_early();
     const std::string_view after = std::string_view(header_bytes_).substr(length);
@@ -180,24 +203,29 @@ class BagRecording final : public ChunkedRecording {
       stretches_.push_back({at, 0});
       try {
         load_chunk();
-      } catch (const Error&) {
-        continue;  // `next` says so when it comes there
-      }
-      ByteReader in(chunk_, file_.path());
-      while (in.left() > 0) {
-        const Fields header(in.text("header of a record"), file_.path());
-        const std::string_view data = in.text("data of a record");
-        const auto op = header.number<std::uint8_t>("op");
-        if (op == kConnection) add_connection(header, data);
-        if (op != kMessage) continue;
-        stretches_.back().last_ns = std::max(stretches_.back().last_ns, time_of(header, "time"));
-        const auto found = topic_of_.find(header.number<std::uint32_t>("conn"));
-        if (found != topic_of_.end()) ++topics_[found->second].messages;
+        count_messages();
+      } catch (const Error&) {  // `next` says so when it comes there
       }
     }
   }
 
+  void count_messages() {
+    ByteReader in(chunk_, file_.path());
+    while (in.left() > 0) {
+      const Fields header(in.text("header of a record"), file_.path());
+      const std::string_view data = in.text("data of a record");
+      const auto op = header.number<std::uint8_t>("op");
+      if (op == kConnection) add_connection(header, data);
+      if (op != kMessage) continue;
+      stretches_.back().last_ns = std::max(stretches_.back().last_ns, time_of(header, "time"));
+      const auto found = topic_of_.find(header.number<std::uint32_t>("conn"));
+      if (found != topic_of_.end()) ++topics_[found->second].messages;
+    }
+  }
+
   std::map<std::uint32_t, std::size_t> topic_of_;
+  std::set<std::uint64_t> chunks_;  ///< places of them, as far as a list says
+  bool is_open_ = false;            ///< whether topics are known
   std::uint64_t data_at_ = 0;
   std::uint32_t data_length_ = 0;
   Packed extent_ = Packed::whole;  ///< of the data of the record found last

@@ -89,7 +89,7 @@ class RecordingSource final : public FrameSource {
       try {
         if (const auto message = next_message()) {
           take_message(*message);
-        } else if (video_) {
+        } else if (video_ && apart_.empty()) {
           take_decoded(video_->decode({}, 0));
         }
       } catch (const Error&) {
@@ -219,9 +219,7 @@ class RecordingSource final : public FrameSource {
     if (recordings_[at_]->seek(time_ns)) left_out = true;
     for (std::size_t later = at_ + 1; later < recordings_.size(); ++later) recordings_[later]->rewind();
     waiting_.clear();
-    colours_.clear();
-    colour_bytes_ = 0;
-    if (video_) video_->restart();
+    rewind_colour();
     video_key_ = VideoKey::none;
     ups_.clear();
     last_time_ns_.reset();
@@ -230,11 +228,36 @@ class RecordingSource final : public FrameSource {
     return left_out;
   }
 
+  void rewind_colour() {
+    colours_.clear();
+    colour_bytes_ = 0;
+    is_colour_lost_ = false;
+    if (video_) video_->restart();
+    apart_at_ = 0;
+    for (const auto& recording : apart_) recording->rewind();
+  }
+
   std::optional<RecordedMessage> next_message() {
     for (; at_ < recordings_.size(); ++at_) {
       if (auto message = recordings_[at_]->next()) return message;
     }
     return std::nullopt;
+  }
+
+  /// Reads colour where the file has it far from its depth, as programs write that go topic by topic: up to a time, by
+  /// readers of its own.
+  void read_colour_apart(std::int64_t to_ns) {
+    for (std::size_t i = apart_.size(); i < files_.size(); ++i) apart_.push_back(open_recording(files_[i]));
+    while (apart_at_ < apart_.size() && (colours_.empty() || colours_.back().time_ns < to_ns)) {
+      try {
+        const auto message = apart_[apart_at_]->next();
+        if (!message && ++apart_at_ == apart_.size() && video_) take_decoded(video_->decode({}, 0));
+        if (!message) continue;
+        const RecordedTopic& topic = apart_[apart_at_]->topics()[message->topic];
+        if (topic.name == colour_topic_) take_colour_message(topic, *message, files_[apart_at_]);
+      } catch (const Error&) {  // whoever reads depth hears of it
+      }
+    }
   }
 
   /// Returns the time of the next depth that is not damaged, and learns those of colour on the way.
@@ -279,7 +302,9 @@ class RecordingSource final : public FrameSource {
     if (at_ == recordings_.size()) return true;
     if (waiting_.empty()) return false;
     const std::size_t waiting_bytes = waiting_.size() * waiting_.front().frame.depth.size() * sizeof(std::uint16_t);
-    if (colour_topic_.empty() || waiting_.size() >= kMostWaiting || waiting_bytes > kMostWaitingBytes) return true;
+    if (colour_topic_.empty() || !apart_.empty() || waiting_.size() >= kMostWaiting ||
+        waiting_bytes > kMostWaitingBytes)
+      return true;
     return !colours_.empty() && colours_.back().time_ns >= waiting_.front().time_ns;
   }
 
@@ -293,16 +318,12 @@ class RecordingSource final : public FrameSource {
     if (acceleration_ && topic.name == acceleration_->topic && is_acceleration(topic))
       return take_acceleration(message);
     const bool is_depth = topic.name == depth_topic_;
-    if (!is_depth && (colour_topic_.empty() || topic.name != colour_topic_)) return;
-    const bool may_be_left_out = is_depth && left_out_ > 0 && seconds(message.time_ns) <= first_recorded_s_;
+    if (!is_depth && (colour_topic_.empty() || topic.name != colour_topic_ || !apart_.empty())) return;
+    if (!is_depth) return take_colour_message(topic, message, place);
+    const bool may_be_left_out = left_out_ > 0 && seconds(message.time_ns) <= first_recorded_s_;
     if (may_be_left_out && !has_the_size(whole_picture(topic, message.bytes))) return;
     const PictureMessage picture = parse_picture(topic, message.bytes, place);
     const std::int64_t time_ns = time_of(picture, message);
-    if (!is_depth) {
-      if (picture.data.empty()) return;  // as drivers send before the first picture
-      if (is_video(picture)) return take_video(picture, time_ns);
-      return take_colour({time_ns, topic, std::string(message.bytes), {}});
-    }
     Frame frame;
     frame.time_s = seconds(time_ns);
     if (wanted_from_s_ && *frame.time_s < *wanted_from_s_) {
@@ -324,11 +345,21 @@ class RecordingSource final : public FrameSource {
     waiting_.push_back({time_ns, std::move(frame)});
   }
 
+  void take_colour_message(const RecordedTopic& topic, const RecordedMessage& message, const std::string& place) {
+    const PictureMessage picture = parse_picture(topic, message.bytes, place);
+    const std::int64_t time_ns = time_of(picture, message);
+    if (picture.data.empty()) return;  // as drivers send before the first picture
+    if (is_video(picture)) return take_video(picture, time_ns);
+    take_colour({time_ns, topic, std::string(message.bytes), {}});
+  }
+
   void take_colour(Colour colour) {
     colour_bytes_ += colour.bytes();
     colours_.push_back(std::move(colour));
-    while (colours_.size() > 2 * kMostWaiting || (colours_.size() > 1 && colour_bytes_ > kMostWaitingBytes))
+    while (colours_.size() > 2 * kMostWaiting || (colours_.size() > 1 && colour_bytes_ > kMostWaitingBytes)) {
       forget_colour();
+      is_colour_lost_ = true;
+    }
   }
 
   static bool is_video(const PictureMessage& picture) {
@@ -365,11 +396,16 @@ class RecordingSource final : public FrameSource {
   }
 
   Frame with_colour() {
+    const bool may_be_elsewhere = !colour_topic_.empty() && (is_colour_lost_ || waiting_.size() >= kMostWaiting);
     Waiting one = std::move(waiting_.front());
     waiting_.pop_front();
     const auto apart = [&](const Colour& colour) { return apart_ns(colour.time_ns, one.time_ns); };
+    const auto is_near = [&](const Colour& colour) { return apart(colour) <= kMostApart_ns; };
+    const bool is_elsewhere = apart_.empty() && may_be_elsewhere && std::ranges::none_of(colours_, is_near);
+    if (is_elsewhere) rewind_colour();
+    if (is_elsewhere || !apart_.empty()) read_colour_apart(one.time_ns);
     const auto nearest = std::ranges::min_element(colours_, {}, apart);
-    if (nearest != colours_.end() && apart(*nearest) <= kMostApart_ns) {
+    if (nearest != colours_.end() && is_near(*nearest)) {
       const std::string name = fmt::format("{}: {}", files_[std::min(at_, files_.size() - 1)], one.frame.name);
       one.frame.colour =
           registered(nearest->decoded.empty() ? colour_of(parse_picture(nearest->topic, nearest->message, name), name)
@@ -387,6 +423,9 @@ class RecordingSource final : public FrameSource {
   std::vector<std::string> files_;
   std::vector<std::unique_ptr<Recording>> recordings_;
   std::size_t at_ = 0;  ///< recording that is being read
+  /// Readers of colour alone, where the file has it elsewhere, and the one that is being read.
+  std::vector<std::unique_ptr<Recording>> apart_;
+  std::size_t apart_at_ = 0;
   std::string depth_topic_, colour_topic_;
   Camera camera_;
   StoredDepth stored_;
@@ -399,6 +438,7 @@ class RecordingSource final : public FrameSource {
   std::deque<Waiting> waiting_;
   std::deque<Colour> colours_;
   std::size_t colour_bytes_ = 0;
+  bool is_colour_lost_ = false;  ///< whether some was forgotten for want of room
   std::unique_ptr<VideoDecoder> video_;
   /// Whether messages of a video were looked at, and one of them was such that decoding can begin.
   enum class VideoKey { none, wanted, seen } video_key_ = VideoKey::none;

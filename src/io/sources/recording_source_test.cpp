@@ -1,5 +1,6 @@
 #include "io/sources/recording_source.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -8,9 +9,11 @@
 #include <limits>
 #include <set>
 
+#include "io/files/byte_stream.h"
 #include "io/files/test_files.h"
 #include "io/recordings/camera_messages.h"
 #include "io/recordings/frame_recorder.h"
+#include "io/sources/test_bag.h"
 #include "io/sources/test_messages.h"
 #include "vesalius/image_file.h"
 #include "vesalius/open_source.h"
@@ -91,6 +94,58 @@ TEST(RecordingSource, TakesTheColourNearestInTime) {
   EXPECT_EQ(frames[0].colour, a.colour);
   EXPECT_EQ(frames[1].colour, b.colour);
   EXPECT_TRUE(frames[2].colour.empty());
+}
+
+TEST(RecordingSource, TakesColourThatStandsFarFromDepthInTheFile) {
+  constexpr int kFrames = 70;
+  for (const bool depth_first : {true, false}) {
+    const test::TemporaryFolder folder;
+    Messages out(folder / "a.mcap");
+    const auto frame_of = [](int i) { return random_frame("f", static_cast<std::uint64_t>(i)); };
+    out.camera("/depth/camera_info", frame_of(0).camera);
+    for (const bool is_depth : {depth_first, !depth_first}) {
+      for (int i = 0; i < kFrames; ++i) {
+        is_depth ? out.depth("/depth/image", 33 * i * kMs, frame_of(i))
+                 : out.colour("/rgb/image", (33 * i + 1) * kMs, frame_of(i));
+      }
+    }
+    out.close();
+    const auto source = open_source(folder / "a.mcap");
+    EXPECT_THAT(source->notes(), IsEmpty());
+    const std::vector<Frame> frames = all_of(*source);
+    ASSERT_EQ(frames.size(), std::size_t{kFrames});
+    for (int i = 0; i < kFrames; ++i) EXPECT_EQ(frames[std::size_t(i)].colour, frame_of(i).colour) << i;
+    source->seek(1.0);
+    const auto later = source->next();
+    ASSERT_TRUE(later);
+    EXPECT_EQ(later->colour, frame_of(31).colour) << later->name;
+  }
+}
+
+TEST(RecordingSource, ABagWithZerosBetweenItsChunksLosesOne) {
+  const test::TemporaryFolder folder;
+  const Frame a = random_frame("a", 1);
+  test::Bag bag;
+  for (int i = 0; i < 3; ++i) {
+    ByteWriter image;
+    for (const int word : {0, 0, i, 0, a.depth.height(), a.depth.width()}) image.number(word);
+    image.text("16UC1");
+    image.number(std::uint8_t{0});
+    image.number(2 * a.depth.width());
+    image.text({reinterpret_cast<const char*>(a.depth.data()), 2 * a.depth.size()});
+    bag.put("/depth/image", "sensor_msgs/Image", i + 1, image.bytes());
+    bag.end_chunk();
+  }
+  std::vector<std::size_t> places;
+  std::string bytes = bag.closed(places);
+  std::fill_n(bytes.begin() + std::ptrdiff_t(places[1]), 60, '\0');
+  SourceOptions options;
+  options.fx = 40.F;
+  const auto source = open_source(test::put(folder / "a.bag", bytes), options);
+  EXPECT_EQ(source->next()->name, "0.000000001");
+  EXPECT_THAT(error_of([&] { source->next(); }), HasSubstr(fmt::format("a.bag: damaged at byte {}", places[1])));
+  EXPECT_TRUE(source->next());
+  EXPECT_FALSE(source->next());
 }
 
 TEST(RecordingSource, BearsColourAnyTimeAway) {

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "io/files/byte_stream.h"
 #include "io/recordings/recording.h"
@@ -23,12 +25,36 @@ class Bag {
   }
   std::string bytes() const {
     std::string all(kBagMagic);
-    add(all, {"op=\5", "compression=none", "size=" + bytes_of(static_cast<std::uint32_t>(records_.size()))}, records_);
+    add_chunk(all, records_);
+    return all;
+  }
+  /// Ends a chunk, of which `closed` writes several.
+  void end_chunk() { chunks_.push_back(std::exchange(records_, {})); }
+  /// Returns a bag that ends with a list of its chunks. `places` receives where they stand.
+  std::string closed(std::vector<std::size_t>& places) const {
+    std::string all;
+    for (std::uint64_t index_pos = 1; index_pos != all.size();) {
+      index_pos = all.size();
+      places.clear();
+      all = kBagMagic;
+      add(all, {"op=\3", "index_pos=" + bytes_of(index_pos)}, "");
+      for (const std::string& chunk : chunks_) {
+        places.push_back(all.size());
+        add_chunk(all, chunk);
+      }
+    }
+    for (const std::size_t place : places) {
+      add(all, {"op=\6", "chunk_pos=" + bytes_of(std::uint64_t{place}), "end_time=" + bytes_of(std::uint64_t{0})}, "");
+    }
     return all;
   }
 
  private:
-  static std::string bytes_of(std::uint32_t value) {
+  static void add_chunk(std::string& to, const std::string& records) {
+    add(to, {"op=\5", "compression=none", "size=" + bytes_of(static_cast<std::uint32_t>(records.size()))}, records);
+  }
+  template <class T>
+  static std::string bytes_of(T value) {
     ByteWriter out;
     out.number(value);
     return out.bytes();
@@ -45,6 +71,7 @@ class Bag {
 
   std::map<std::string, std::size_t> connections_;
   std::string records_;
+  std::vector<std::string> chunks_;
 };
 
 }  // namespace vesalius::test
