@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "io/files/image_bytes.h"
+#include "io/files/plain_text.h"
 #include "io/files/rgb_of_yuv.h"
 #include "io/files/video_stream.h"
 #include "vesalius/error.h"
@@ -15,6 +16,7 @@
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavutil/log.h>
+#include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
 }
 
@@ -32,7 +34,8 @@ using Context = std::unique_ptr<AVCodecContext, FreeBy<avcodec_free_context>>;
 using Packet = std::unique_ptr<AVPacket, FreeBy<av_packet_free>>;
 using AvFrame = std::unique_ptr<AVFrame, FreeBy<av_frame_free>>;
 
-Context open_decoder(AVCodecID id, const std::string& what) {
+/// `layer` is that of an OpenEXR whose channels are taken.
+Context open_decoder(AVCodecID id, const std::string& what, const std::string& layer = {}) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong is told by errors
   const AVCodec* codec = avcodec_find_decoder(id);
   Context context(codec == nullptr ? nullptr : avcodec_alloc_context3(codec));
@@ -40,6 +43,7 @@ Context open_decoder(AVCodecID id, const std::string& what) {
   context->thread_count = 1;
   context->max_pixels = kMaxPixels;
   context->flags |= AV_CODEC_FLAG_LOW_DELAY | AV_CODEC_FLAG_BITEXACT;
+  if (!layer.empty()) av_opt_set(context->priv_data, "layer", layer.c_str(), 0);
   if (avcodec_open2(context.get(), codec, nullptr) != 0) throw Error(what + ": libavcodec does not start");
   return context;
 }
@@ -123,12 +127,16 @@ Image<std::uint16_t> whole_numbers_of(const AVFrame& frame) {
   return image;
 }
 
-/// Of a picture with several planes of floats, the first: they are alike where depth was written as colour.
+/// Returns the floats of a picture; of several planes, which are alike where depth was written as colour, the first.
+/// Nothing where they differ.
 Image<float> floats_of(const AVFrame& frame) {
   Image<float> image(frame.width, frame.height);
+  const bool has_planes = frame.data[1] != nullptr;
   for (int v = 0; v < frame.height; ++v) {
-    const std::uint8_t* row = frame.data[0] + std::ptrdiff_t{frame.linesize[0]} * v;
-    std::memcpy(image.row(v), row, sizeof(float) * std::size_t(frame.width));
+    const auto row = [&](int plane) { return frame.data[plane] + std::ptrdiff_t{frame.linesize[plane]} * v; };
+    const std::size_t bytes = sizeof(float) * std::size_t(frame.width);
+    std::memcpy(image.row(v), row(0), bytes);
+    if (has_planes && std::memcmp(row(0), row(1), bytes) != 0) return {};
   }
   return image;
 }
@@ -142,17 +150,58 @@ std::uint64_t number_at(std::string_view bytes, std::uint64_t at, std::size_t co
   return value;
 }
 
-/// An OpenEXR file has attributes (name, type, size, value), then where each block of rows begins, then these.
+/// What stands where in an OpenEXR file: attributes (name, type, size, value), then where each block of rows begins.
+struct ExrHead {
+  std::vector<std::string_view> channels;  ///< names
+  std::uint64_t blocks = 0;
+};
+
+ExrHead exr_head(std::string_view bytes) {
+  ExrHead head;
+  std::uint64_t at = 8;
+  const auto text = [&] {
+    const std::string_view found = bytes.substr(std::min<std::uint64_t>(at, bytes.size()));
+    at += std::min(found.find('\0'), found.size()) + 1;
+    return found.substr(0, found.find('\0'));
+  };
+  while (at < bytes.size() && bytes[at] != '\0') {
+    const bool is_list = text() == "channels";
+    text();
+    const std::uint64_t end = at + 4 + number_at(bytes, at, 4);
+    constexpr std::uint64_t kOfChannel = 16;  // type, four bytes, steps in x and y
+    for (at += 4; is_list && at + 1 < std::min<std::uint64_t>(end, bytes.size()); at += kOfChannel) {
+      head.channels.push_back(text());
+    }
+    at = end;
+  }
+  head.blocks = at + 1;
+  return head;
+}
+
+/// libavcodec reads a channel Y. Calls that of depth so by its last letter, and all others by none that it knows.
+/// Returns the letters before, the layer for libavcodec. Of pictures of colours, and of none, nothing is changed.
+std::string call_depth_y(std::string& bytes) {
+  const std::vector<std::string_view> channels = exr_head(bytes).channels;
+  const auto is_depth = [&](std::string_view name) {
+    const std::string text = lower(name);
+    const std::string x = std::string(name.substr(0, name.size() - 1)) + (name.ends_with('z') ? "x" : "X");
+    const bool is_z = (text == "z" || text.ends_with(".z")) && std::ranges::count(channels, x) == 0;
+    return channels.size() == 1 || is_z || text.find("depth") != text.npos;
+  };
+  const auto depth = std::ranges::find_if(channels, is_depth);
+  if (depth == channels.end() || depth->empty()) return {};
+  std::string layer(depth->substr(0, depth->size() - 1));
+  for (const std::string_view name : channels) {
+    if (!name.empty()) bytes[std::size_t(&name.back() - bytes.data())] = name.data() == depth->data() ? 'Y' : '_';
+  }
+  return layer;
+}
+
 bool is_cut_exr(std::string_view bytes) {
   constexpr unsigned kTiled = 2;  // tiles have four numbers before their size, rows one
-  std::uint64_t at = 8;
-  while (at < bytes.size() && bytes[at] != '\0') {
-    for (int text = 0; text < 2; ++text) at = std::min(bytes.find('\0', at), bytes.size()) + 1;
-    at += 4 + number_at(bytes, at, 4);
-  }
-  const std::uint64_t blocks = at + 1, first = number_at(bytes, blocks, 8);
+  const std::uint64_t blocks = exr_head(bytes).blocks, first = number_at(bytes, blocks, 8);
   std::uint64_t last = first;
-  for (at = blocks; at + 8 <= std::min<std::uint64_t>(first, bytes.size()); at += 8) {
+  for (std::uint64_t at = blocks; at + 8 <= std::min<std::uint64_t>(first, bytes.size()); at += 8) {
     last = std::max(last, number_at(bytes, at, 8));
   }
   if (last >= bytes.size()) return true;
@@ -169,6 +218,7 @@ bool is_cut(std::string_view kind, std::string_view bytes) {
 AVCodecID picture_codec(std::string_view kind) {
   if (kind == "TIFF") return AV_CODEC_ID_TIFF;
   if (kind == "WebP") return AV_CODEC_ID_WEBP;
+  if (kind == "BMP") return AV_CODEC_ID_BMP;
   return AV_CODEC_ID_EXR;
 }
 
@@ -180,8 +230,10 @@ bool has_avcodec() { return true; }
 
 AvPicture decode_av_picture(std::string_view bytes, const std::string& name) {
   const std::string_view kind = av_picture_kind(bytes);
-  const Context context = open_decoder(picture_codec(kind), fmt::format("{}: {}", name, kind));
-  const Packet packet = packet_of(bytes, 0);
+  std::string named(kind == "OpenEXR" ? bytes : "");
+  const std::string layer = call_depth_y(named);
+  const Context context = open_decoder(picture_codec(kind), fmt::format("{}: {}", name, kind), layer);
+  const Packet packet = packet_of(named.empty() ? bytes : named, 0);
   const AvFrame frame(av_frame_alloc());
   const bool is_decoded = packet && frame && avcodec_send_packet(context.get(), packet.get()) == 0 &&
                           avcodec_send_packet(context.get(), nullptr) == 0 &&
@@ -191,7 +243,11 @@ AvPicture decode_av_picture(std::string_view bytes, const std::string& name) {
   }
   check_image_size(frame->width, frame->height, name);
   const Rows rows(*frame);
-  if (rows.has(AV_PIX_FMT_FLAG_FLOAT) && rows.bits(0) == 32) return {{}, {}, floats_of(*frame)};
+  if (rows.has(AV_PIX_FMT_FLAG_FLOAT) && rows.bits(0) == 32) {
+    Image<float> floats = floats_of(*frame);
+    if (floats.empty()) throw Error(fmt::format("{}: {} of colours, expected one channel, or Z", name, kind));
+    return {{}, {}, std::move(floats)};
+  }
   if (rows.is_depth()) return {{}, whole_numbers_of(*frame), {}};
   return {colour_of(*frame), {}, {}};
 }
@@ -218,7 +274,6 @@ VideoDecoder::VideoDecoder(std::string_view codec) : state_(std::make_unique<Sta
 }
 
 VideoDecoder::~VideoDecoder() = default;
-  if (kind == "BMP") return AV_CODEC_ID_BMP;
 
 std::vector<VideoDecoder::Picture> VideoDecoder::decode(std::string_view message, std::int64_t time_ns) {
   State& s = *state_;

@@ -4,6 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "io/files/byte_stream.h"
 #include "io/files/depth_picture.h"
 #include "io/files/image_bytes.h"
 #include "io/files/test_files.h"
@@ -127,6 +128,73 @@ TEST_F(AvPictures, OpenExrIsDepthInMetres) {
   for (std::size_t size = 4; size < bytes.size(); ++size) {
     EXPECT_THAT(error_of([&] { decode_depth(bytes.substr(0, size), "cut"); }), HasSubstr("cut: damaged OpenEXR"))
         << size;
+  }
+}
+
+/// Returns an OpenEXR file without compression of 4x3 pixels. Pixels of channel i are i + 1 and a bit.
+std::string exr_of(const std::vector<std::string>& channels) {
+  constexpr int kColumns = 4, kRows = 3;
+  ByteWriter out;
+  const auto text = [&](std::string_view word) {
+    for (const char c : word) out.number(c);
+    out.number('\0');
+  };
+  const auto numbers = [&](std::initializer_list<int> all) {
+    for (const int one : all) out.number(one);
+  };
+  const auto attribute = [&](const char* name, const char* type, int size) {
+    text(name);
+    text(type);
+    out.number(size);
+  };
+  numbers({20000630, 2});
+  int size = 1;
+  for (const std::string& name : channels) size += int(name.size()) + 17;
+  attribute("channels", "chlist", size);
+  for (const std::string& name : channels) {
+    text(name);
+    numbers({2, 0, 1, 1});
+  }
+  out.number('\0');
+  attribute("compression", "compression", 1);
+  out.number('\0');
+  for (const char* window : {"dataWindow", "displayWindow"}) {
+    attribute(window, "box2i", 16);
+    numbers({0, 0, kColumns - 1, kRows - 1});
+  }
+  attribute("lineOrder", "lineOrder", 1);
+  out.number('\0');
+  attribute("pixelAspectRatio", "float", 4);
+  out.real(1.F);
+  attribute("screenWindowCenter", "v2f", 8);
+  numbers({0, 0});
+  attribute("screenWindowWidth", "float", 4);
+  out.real(1.F);
+  out.number('\0');
+  const int row_bytes = int(channels.size()) * kColumns * 4;
+  const std::uint64_t first = out.bytes().size() + 8 * kRows;
+  for (int v = 0; v < kRows; ++v) out.number(first + std::uint64_t(v) * std::uint64_t(row_bytes + 8));
+  for (int v = 0; v < kRows; ++v) {
+    numbers({v, row_bytes});
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      for (int u = 0; u < kColumns; ++u) out.real(float(c + 1) + 0.25F * float(u) + 0.0625F * float(v));
+    }
+  }
+  return out.bytes();
+}
+
+TEST_F(AvPictures, OpenExrHasItsDepthInWhateverChannelSaysSo) {
+  const auto at = [](const std::vector<std::string>& channels) {
+    return decode_depth(exr_of(channels), "a.exr").real(2, 1);
+  };
+  for (const char* one : {"Y", "R", "Z", "V", "A", "Depth.Z", "depth", "ViewLayer.Depth.V"}) {
+    EXPECT_EQ(at({one}), 1.5625F) << one;
+  }
+  EXPECT_EQ(at({"B", "G", "R", "Z"}), 4.5625F);
+  EXPECT_EQ(at({"A", "Combined.B", "Combined.G", "Combined.R", "Depth.Z"}), 5.5625F);
+  EXPECT_EQ(at({"B", "G", "R", "depth"}), 4.5625F);
+  for (const std::vector<std::string>& none : {std::vector<std::string>{"B", "G", "R"}, {"X", "Y", "Z"}}) {
+    EXPECT_THAT(error_of([&] { at(none); }), HasSubstr("a.exr: OpenEXR of colours, expected one channel, or Z"));
   }
 }
 

@@ -28,10 +28,6 @@ static_assert(std::endian::native == std::endian::little, "arrays of NumPy say w
 constexpr float kMost = std::numeric_limits<std::uint16_t>::max();
 constexpr std::string_view kNumpy = "\x93NUMPY"sv;
 
-std::string extension_of(std::string_view kind) {
-  return kind == "TIFF" ? ".tif" : kind == "OpenEXR" ? ".exr" : ".webp";
-}
-
 /// Returns values of type T from `from` on, as those of a picture.
 template <class T, class Pixel>
 Image<Pixel> pixels(std::string_view from, int width, int height, bool swapped) {
@@ -79,6 +75,29 @@ DepthPicture decode_pfm(std::string_view bytes, const std::string& name) {
   auto image = pixels<float, float>(bytes.substr(at + 1), width, height, !words[2].starts_with('-'));
   for (int v = 0; v < height / 2; ++v) std::swap_ranges(image.row(v), image.row(v) + width, image.row(height - 1 - v));
   return {{}, std::move(image)};
+}
+
+/// Returns why a TIFF is not read; empty where nothing in its first directory speaks against it.
+std::string_view why_no_tiff(std::string_view bytes) {
+  const auto number = [&](std::size_t at, std::size_t count) {
+    std::size_t value = 0;
+    for (std::size_t i = 0; i < count && at + count <= bytes.size(); ++i) {
+      const std::size_t byte = bytes.front() == 'M' ? i : count - 1 - i;
+      value = value << 8U | static_cast<unsigned char>(bytes[at + byte]);
+    }
+    return value;
+  };
+  constexpr std::size_t kSampleFormat = 339, kFloats = 3, kEntry = 12;
+  const std::size_t directory = number(4, 4), entries = number(directory, 2);
+  for (std::size_t i = 0; i < entries; ++i) {
+    const std::size_t at = directory + 2 + kEntry * i, place = number(at + 4, 4) > 2 ? number(at + 8, 4) : at + 8;
+    if (number(at, 2) == kSampleFormat && number(place, 2) == kFloats) {
+      return "TIFF of floats, which is not read; write metres as .npy: python3 -c \"import cv2, numpy; "
+             "numpy.save('out.npy', cv2.imread('in.tif', -1))\"";
+    }
+  }
+  const bool is_first = number(directory + 2 + kEntry * entries, 4) != 0;
+  return is_first ? "TIFF of several pictures, expected a file for each" : "";
 }
 
 /// Returns what stands between `begin` and `end` in the header of an array; empty where nothing does.
@@ -147,8 +166,8 @@ const std::vector<std::string>& depth_extensions() {
 }
 
 const std::vector<std::string>& unread_depth_extensions() {
-  static const std::vector<std::string> all{".tif", ".tiff", ".exr", ".npz", ".mat",
-                                            ".h5",  ".hdf5", ".raw", ".bin", ".dpt"};
+  static const std::vector<std::string> all{".tif", ".tiff", ".exr", ".npz",  ".mat", ".h5",   ".hdf5", ".raw",
+                                            ".bin", ".dpt",  ".jp2", ".sens", ".svo", ".svo2", ".xef",  ".klg"};
   return all;
 }
 
@@ -160,6 +179,10 @@ std::string unread_advice(const std::string& extension) {
                        metres ? fmt::format("cv2.imread('in{}', -1) * 1000", extension)
                               : fmt::format("cv2.imread('in{}', -1)", extension));
   }
+  if (extension == ".sens") {
+    return what + "; ScanNet's reader.py: --export_depth_images --export_color_images --export_intrinsics";
+  }
+  if (extension.starts_with(".svo")) return what + "; write depth and left pictures by ZED's sample SVO Export";
   return what + " of 16 bits, PGM or .npy; convert it";
 }
 
@@ -170,15 +193,29 @@ DepthPicture decode_depth(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with(kNumpy)) return decode_numpy(bytes, name);
   if (is_jpeg(bytes)) throw Error(name + ": JPEG, which loses depth, expected a PNG of 16 bits");
   if (const std::string_view kind = av_picture_kind(bytes); !kind.empty()) {
-    if (!has_avcodec()) throw Error(fmt::format("{}: {}", name, unread_advice(extension_of(kind))));
+    const bool may_be = kind == "TIFF" || kind == "OpenEXR";
+    if (!may_be) throw Error(fmt::format("{}: {} of 8 bits, expected 16 or floats", name, kind));
+    if (!has_avcodec()) throw Error(fmt::format("{}: {}", name, unread_advice(kind == "TIFF" ? ".tif" : ".exr")));
+    if (kind == "TIFF" && !why_no_tiff(bytes).empty()) throw Error(fmt::format("{}: {}", name, why_no_tiff(bytes)));
     AvPicture picture = decode_av_picture(bytes, name);
-    if (!picture.colour.empty()) throw Error(fmt::format("{}: {} of 8 bits, expected 16 or floats", name, kind));
+    if (!picture.colour.empty())
+      throw Error(fmt::format("{}: {} of 8 bits or colours, expected grey of 16", name, kind));
     return {std::move(picture.whole), std::move(picture.real)};
   }
   return {decode_depth_png(bytes, name), {}};
 }
 
 DepthPicture read_depth(const std::string& path) { return decode_depth(read_file(path), path); }
+
+bool may_be_depth(const std::string& path) try {
+  constexpr std::size_t kHeader = 512, kBits = 24, kColours = 25;  // of a PNG
+  const std::string first = DataFile(path).read(0, kHeader);
+  if (is_png(first) && first.size() > kColours) return first[kBits] == 16 && first[kColours] == 0;
+  if (is_pgm(first)) return pnm_header(first).most > 0xFF;
+  return !is_ppm(first) && !is_jpeg(first);
+} catch (const Error&) {
+  return true;
+}
 
 DepthImage to_millimetres(const DepthPicture& picture, float units_per_m, bool of_real) {
   if (!picture.real.empty()) {
@@ -200,13 +237,3 @@ DepthImage to_millimetres(const DepthPicture& picture, float units_per_m, bool o
 }
 
 }  // namespace vesalius
-bool may_be_depth(const std::string& path) try {
-  constexpr std::size_t kHeader = 512, kBits = 24, kColours = 25;  // of a PNG
-  const std::string first = DataFile(path).read(0, kHeader);
-  if (is_png(first) && first.size() > kColours) return first[kBits] == 16 && first[kColours] == 0;
-  if (is_pgm(first)) return pnm_header(first).most > 0xFF;
-  return !is_ppm(first) && !is_jpeg(first);
-} catch (const Error&) {
-  return true;
-}
-

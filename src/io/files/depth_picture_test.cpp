@@ -91,6 +91,13 @@ TEST(DepthPicture, SaysWhatOtherPicturesAre) {
   const bool is_read = has_avcodec();
   EXPECT_THAT(error_of([] { read("II*\0\x08\0\0\0"s); }),
               HasSubstr(is_read ? "d: damaged TIFF" : "d: depth of .tif, expected PNG; convert: python3"));
+  if (is_read) {
+    const std::string floats = "II*\0\x08\0\0\0\1\0\x53\1\3\0\1\0\0\0\3\0\0\0\0\0\0\0"s;
+    EXPECT_THAT(error_of([&] { read(floats); }),
+                HasSubstr("d: TIFF of floats, which is not read; write metres as .npy"));
+    const std::string pages = "MM\0*\0\0\0\x08\0\0\0\0\0\x0E"s;
+    EXPECT_THAT(error_of([&] { read(pages); }), HasSubstr("d: TIFF of several pictures"));
+  }
   EXPECT_THAT(error_of([] { read("\x76\x2f\x31\x01\x02"); }),
               HasSubstr(is_read ? "d: damaged OpenEXR" : "d: depth of .exr, expected PNG; convert"));
   EXPECT_THAT(error_of([] { read(encode_png(Image<std::uint8_t>(2, 2, 9))); }),

@@ -33,10 +33,26 @@ TEST(KnownKind, SaysWhatStandsInPlaceOfAFile) {
   EXPECT_THAT(known_kind("\0\0\0\x18"
                          "ftypmp42"sv),
               HasSubstr("MP4"));
+  EXPECT_THAT(known_kind("\0\0\0\x18"
+                         "ftypheic"sv),
+              HasSubstr("HEIC"));
+  EXPECT_THAT(known_kind("RIFF1234AVI LIST"sv), HasSubstr("AVI film; if it has depth of 16 bits: ffmpeg"));
+  EXPECT_THAT(known_kind("RIFF1234WAVEfmt "sv), HasSubstr("sound"));
+  EXPECT_THAT(known_kind("II+\0\x08\0\0\0"sv), HasSubstr("BigTIFF"));
+  EXPECT_THAT(known_kind("P2\n640 480\n"sv), HasSubstr("PGM of text"));
+  EXPECT_THAT(known_kind("ply\nformat ascii 1.0\n"sv), HasSubstr("PLY"));
   EXPECT_THAT(known_kind(std::string(512, '\0')), HasSubstr("zeros"));
   for (const std::string_view other : {""sv, "\0"sv, "\x89PNG\r\n\x1a\n"sv, "some text"sv, "P"sv}) {
     EXPECT_THAT(known_kind(other), IsEmpty());
   }
+}
+
+TEST(KnownKind, SaysWhatToDoWithRecordingsThatAreNotRead) {
+  const test::TemporaryFolder folder;
+  const auto said = [&](const char* name) { return error_of([&] { open_source(test::put(folder / name, "?")); }); };
+  EXPECT_THAT(said("scene.sens"), HasSubstr("reader.py: --export_depth_images"));
+  EXPECT_THAT(said("a.svo2"), HasSubstr("SVO Export"));
+  EXPECT_THAT(said("a.klg"), HasSubstr("depth of .klg, expected PNG of 16 bits"));
 }
 
 TEST(KnownKind, NamesAPointerOfGitWhateverIsExpected) {

@@ -166,7 +166,11 @@ class MkvRecording final : public Recording {
       duration_ns_ = std::min(kMostTime_ns, av_rescale_q(context_->duration, {1, AV_TIME_BASE}, kNanosecond));
     }
     for (unsigned i = 0; i < context_->nb_streams; ++i) look_at(int(i));
-    if (depth_ < 0) throw Error(path_ + ": no depth, expected a track of the codec b16g that is named DEPTH");
+    if (depth_ < 0) {
+      throw Error(path_ +
+                  ": no depth, expected a track of the codec b16g that is named DEPTH; a film of 16-bit depth: "
+                  "ffmpeg -i x.mkv -pix_fmt gray16be depth/%04d.png");
+    }
     add_topic(depth_, "/depth/image", "sensor_msgs/Image");
     if (colour_ >= 0) {
       const bool is_jpeg = context_->streams[colour_]->codecpar->codec_id == AV_CODEC_ID_MJPEG;

@@ -135,7 +135,7 @@ TEST(Pcd, NamesTheFileAndTheLineOfErrors) {
   const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1";
   const auto message = [](const std::string& text) { return error_of([&] { parse_pcd(text, "f.pcd"); }); };
   EXPECT_THAT(message(""), HasSubstr("f.pcd: empty file"));
-  EXPECT_THAT(message("ply\n"), HasSubstr("f.pcd:1: expected a PCD header"));
+  EXPECT_THAT(message("plain\n"), HasSubstr("f.pcd:1: expected a PCD header"));
   EXPECT_THAT(message("VERSION .7\nFIELDS x y\nSIZE 4 4 4\n"), HasSubstr("f.pcd:3: expected SIZE with a value"));
   EXPECT_THAT(message("FIELDS x y z\nTYPE F F Q\n"), HasSubstr("f.pcd:2: expected TYPE"));
   EXPECT_THAT(message("FIELDS x y z\nSIZE 4 4 9\n"), HasSubstr("f.pcd:2: expected SIZE of 1 to 8"));

@@ -181,7 +181,7 @@ std::vector<SourceItem> items_of(const std::string& folder, const std::vector<st
     const bool elsewhere = depths.empty() && kind.find("/*depth*") != kind.npos;
     if (elsewhere && item.why.empty()) item.why = "give that folder as the source";
     const bool jpeg_of_depth = extension.starts_with(".jp") && kind.find("epth") != kind.npos;
-    if (item.use.empty() && jpeg_of_depth) item.why = "JPEG loses depth, expected PNG of 16 bits";
+    if (item.use.empty() && item.why.empty() && jpeg_of_depth) item.why = "JPEG loses depth, expected PNG of 16 bits";
     all.push_back(std::move(item));
   }
   return all;
