@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <queue>
 #include <tuple>
@@ -29,6 +30,20 @@ bool is_of_size(const auto& image, const Camera& camera) {
 bool is_registered(const std::string& path) {
   const std::string text = lower(path);
   return text.find("align") != text.npos || text.find("register") != text.npos;
+}
+
+/// Returns the first picture of depth that can be read. Whoever asks for one before it hears of that.
+DepthPicture first_depth_of(const FrameList& list) {
+  constexpr std::size_t kMostLookedAt = 20;
+  std::exception_ptr failed;
+  for (std::size_t i = 0; i < std::min(list.frames.size(), kMostLookedAt); ++i) {
+    try {
+      return read_depth(list.frames[i].depth);
+    } catch (const Error&) {
+      if (!failed) failed = std::current_exception();
+    }
+  }
+  std::rethrow_exception(failed);
 }
 
 class ListSource final : public FrameSource {
@@ -176,7 +191,7 @@ FrameListReader::FrameListReader(FrameList list) : list_(std::move(list)) {
 }
 
 void FrameListReader::look_at_first() {
-  const DepthPicture first = read_depth(list_.frames.front().depth);
+  const DepthPicture first = first_depth_of(list_);
   CameraFacts& facts = list_.facts;
   const CameraFacts& fallback = list_.fallback;
   if (!facts.has_focal() && facts.sensor.empty() && fallback.fx && fallback.width == first.width() &&

@@ -43,7 +43,7 @@ void add_items(FrameList& list);
 /// Reads the frames of a list in any order. It may be used from several threads.
 class FrameListReader {
  public:
-  /// Throws Error if the first picture is unusable or the camera is unknown, with what there is.
+  /// Throws Error if the first pictures are all unusable or the camera is unknown, with what there is.
   explicit FrameListReader(FrameList list);
 
   std::size_t size() const { return list_.frames.size(); }

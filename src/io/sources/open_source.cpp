@@ -233,9 +233,13 @@ std::string_view scheme_of_folder(const std::string& path) {
   if (is_tum_folder(path)) return "tum";
   if (fs::exists(fs::path(path) / "metadata.yaml", ignored)) return "recording";
   if (has_depth_folder(path)) return "folder";
-  const bool png = !list_files(path, depth_extensions()).empty();
+  const std::vector<fs::path> pictures = list_files(path, depth_extensions());
+  const bool png = !pictures.empty();
   const bool pcd = !list_files(path, {".pcd"}).empty();
   if (png && pcd) throw Error(path + ": PNG and PCD files in one folder, expected folder: or pcd: before the path");
+  // A picture of the screen beside a recording is no depth.
+  const auto is_depth = [](const fs::path& picture) { return may_be_depth(picture.string()); };
+  if (png && std::ranges::none_of(pictures, is_depth) && !list_recording(path).empty()) return "recording";
   if (png) return "folder";
   if (pcd) return "pcd";
   if (!list_recording(path).empty()) return "recording";

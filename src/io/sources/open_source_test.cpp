@@ -152,6 +152,23 @@ TEST(FolderSource, NamesBadFramesAndGoesOn) {
   EXPECT_FALSE(source->next());
 }
 
+TEST(FolderSource, ABadFirstFrameIsOneFrame) {
+  const TemporaryFolder folder;
+  put(folder / "meta.json", kMeta);
+  put(folder / "depth/0.png", "");
+  put_depth(folder / "depth/2.png", random_frame("a", 3).depth);
+  put(folder / "depth.txt", "0.5 depth/0.png\n0.6 depth/1.png\n0.7 depth/2.png\n");
+  for (const std::string& uri : {"folder:" + folder.path(), folder.path()}) {
+    const auto source = open_source(uri);
+    EXPECT_THAT(error_of([&] { source->next(); }), HasSubstr("0.png: empty file"));
+    if (uri == folder.path()) {
+      EXPECT_THAT(error_of([&] { source->next(); }), HasSubstr("1.png: cannot be read"));
+    }
+    EXPECT_TRUE(source->next());
+    EXPECT_FALSE(source->next());
+  }
+}
+
 TEST(FolderSource, GoesWithoutColourOfAnotherSize) {
   const TemporaryFolder folder;
   put(folder / "meta.json", kMeta);
@@ -464,6 +481,17 @@ TEST(OpenSource, FoldersOfOneRecordingNeedNoMetadata) {
     EXPECT_EQ(source->size(), frames) << name;
     EXPECT_THAT(all_frames(*source), SizeIs(static_cast<std::size_t>(frames))) << name;
   }
+}
+
+TEST(OpenSource, ARecordingComesBeforeAPictureThatIsNoDepth) {
+  const TemporaryFolder folder;
+  const Frame a = random_frame("a", 1);
+  test::Messages out(folder / "rec.mcap");
+  out.camera("/depth/camera_info", a.camera);
+  out.depth("/depth/image", 0, a);
+  out.close();
+  put_colour(folder / "screenshot.png", ColourImage(64, 36));
+  EXPECT_EQ(open_source(folder.path())->next()->depth, a.depth);
 }
 
 TEST(OpenSource, PartsOfARecordingAreOrderedByTheirNumbers) {
