@@ -317,6 +317,27 @@ void fit_to_size(CameraFacts& facts, int width, int height, const std::string& p
 }
 
 }  // namespace
+/// Throws Error naming `origin` where pictures of a camera would see all round, or nothing but a point; notes where
+/// their centre is none.
+void expect_possible(const Camera& camera, const std::string& origin, std::vector<std::string>& notes) {
+  constexpr float kWidest = 0.1F, kNarrowest = 20.F, kCorner = 0.05F, kOutside = 0.5F;
+  const auto width = float(camera.width), height = float(camera.height);
+  for (const float focal : {camera.fx, camera.fy}) {
+    if (focal >= kWidest * width && focal <= kNarrowest * width) continue;
+    throw Error(
+        fmt::format("{}: focal length {:.4g} for pictures of {}x{} pixels, expected {:.0f} to {:.0f} pixels, neither "
+                    "millimetres nor shares of the width",
+                    origin, focal, camera.width, camera.height, kWidest * width, kNarrowest * width));
+  }
+  const float x = camera.cx / width, y = camera.cy / height;
+  const bool is_corner = std::abs(x) < kCorner && std::abs(y) < kCorner;
+  const bool is_outside = std::max(std::abs(x - 0.5F), std::abs(y - 0.5F)) > 0.5F + kOutside;
+  if (!is_corner && !is_outside) return;
+  notes.push_back(fmt::format("{}: principal point {:.4g}, {:.4g} of pictures of {}x{} pixels, expected near {}, {}",
+                              origin, camera.cx, camera.cy, camera.width, camera.height, camera.width / 2,
+                              camera.height / 2));
+}
+
 
 Camera scaled(const Camera& camera, double by, int width, int height) {
   const auto centre = [by](float at) { return float((double(at) + 0.5) / by - 0.5); };
@@ -411,6 +432,7 @@ Camera resolve_camera(CameraFacts& facts, int width, int height, bool registered
   camera.cy = facts.cy.value_or(float(height - 1) / 2.F);
   check(camera);
   return camera;
+  expect_possible(camera, facts.origin.empty() ? place : facts.origin, notes);
 }
 
 CalibratedCamera calibrated(const Calibration& c, bool is_rectified) {

@@ -372,7 +372,7 @@ TEST(RecordingSource, NamesThousandsOfFramesOfOneTimeShortlyAndSoon) {
   const test::TemporaryFolder folder;
   const Frame a = random_frame("a", 1, 2, 2);
   Messages out(folder / "a.mcap");
-  out.camera("/depth/camera_info", a.camera);
+  out.camera("/depth/camera_info", {2, 2, 4.F, 4.F, 0.5F, 0.5F});
   constexpr int kMany = 20'000;
   for (int i = 0; i < kMany; ++i)
     out.put("/depth/image", "sensor_msgs/msg/Image", i * kMs, depth_message(a.depth, 5 * kMs, "depth_frame"));
