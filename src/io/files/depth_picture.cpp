@@ -108,7 +108,7 @@ std::string_view between(std::string_view text, std::string_view begin, std::str
   return text.substr(0, text.find(end));
 }
 
-/// Returns the sides of an array without those of 1 around rows and columns.
+/// Returns the sides of an array without those of 1 around rows and columns. A list is one row.
 std::vector<int> shape_of(std::string_view text) {
   std::vector<int> sides;
   for (std::size_t at = 0; at < text.size();) {
@@ -118,6 +118,7 @@ std::vector<int> shape_of(std::string_view text) {
     at = std::max(at + 1, std::size_t(stop - text.data()));
   }
   if (sides.size() == 3) std::erase(sides, 1);
+  if (sides.size() == 1) sides.insert(sides.begin(), 1);
   return sides;
 }
 

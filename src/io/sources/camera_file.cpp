@@ -65,20 +65,21 @@ CameraFacts facts_given(const SourceOptions& options) {
 /// Returns how likely a file is a calibration of the pictures beside it, 0 surely; nothing for one that is none. Those
 /// of depth come before those of colour, and before files of which only what is in them tells.
 std::optional<int> rank_of_file(const fs::path& path, bool in_folder_for_them) {
-  constexpr std::array<std::string_view, 11> kKinds{"json", "yaml", "yml",  "xml",    "txt", "toml",
-                                                    "ini",  "csv",  "conf", "pincam", "npy"};
+  constexpr std::array<std::string_view, 13> kKinds{"json", "yaml", "yml",    "xml", "txt", "toml", "ini",
+                                                    "csv",  "conf", "pincam", "npy", "npz", "mat"};
   const std::string stem = plain_name(path.stem().string()), extension = plain_name(path.extension().string());
   const auto has = [&](std::string_view word) { return stem.find(word) != stem.npos; };
   const bool list = extension == "txt" && (stem == "depth" || stem == "rgb" || stem == "color");
-  const bool depths = extension == "npy" && stem != "k" && !has("trinsic") && !has("cam");
+  const bool is_array = extension == "npy" || extension == "npz" || extension == "mat";
+  const bool depths = is_array && stem != "k" && !has("trinsic") && !has("cam") && !has("calib");
   if (std::ranges::find(kKinds, extension) == kKinds.end() || list || depths) return std::nullopt;
   if (stem == "meta") return 0;
   if (stem == "camerainfo") return 1;
   const CameraRole role = role_in(stem);
   constexpr std::array<std::string_view, 8> kWords{"cam",  "trinsic", "calib",     "info",
                                                    "meta", "stereo",  "transform", "scene0"};
-  const bool named =
-      in_folder_for_them || stem == "k" || role != CameraRole::unsaid || std::ranges::any_of(kWords, has);
+  const bool named = in_folder_for_them || stem == "k" || stem == "ost" || role != CameraRole::unsaid ||
+                     std::ranges::any_of(kWords, has);
   if (named) return has("ir") || role == CameraRole::depth ? 2 : role == CameraRole::colour ? 4 : 3;
   const bool of_frame = extension == "json" && stem.starts_with("frame");
   const bool settings = extension == "yaml" || extension == "yml" || extension == "ini" || extension == "conf";
@@ -316,7 +317,6 @@ void fit_to_size(CameraFacts& facts, int width, int height, const std::string& p
                               calibrated_height, width, height, place));
 }
 
-}  // namespace
 /// Throws Error naming `origin` where pictures of a camera would see all round, or nothing but a point; notes where
 /// their centre is none.
 void expect_possible(const Camera& camera, const std::string& origin, std::vector<std::string>& notes) {
@@ -338,6 +338,7 @@ void expect_possible(const Camera& camera, const std::string& origin, std::vecto
                               camera.height / 2));
 }
 
+}  // namespace
 
 Camera scaled(const Camera& camera, double by, int width, int height) {
   const auto centre = [by](float at) { return float((double(at) + 0.5) / by - 0.5); };
@@ -431,8 +432,8 @@ Camera resolve_camera(CameraFacts& facts, int width, int height, bool registered
   camera.cx = facts.cx.value_or(float(width - 1) / 2.F);
   camera.cy = facts.cy.value_or(float(height - 1) / 2.F);
   check(camera);
-  return camera;
   expect_possible(camera, facts.origin.empty() ? place : facts.origin, notes);
+  return camera;
 }
 
 CalibratedCamera calibrated(const Calibration& c, bool is_rectified) {

@@ -1,5 +1,6 @@
 #include "io/sources/camera_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "io/files/test_files.h"
@@ -321,6 +322,60 @@ TEST(ParseCamera, TakesAnAngleOfViewInDegreesWhereTheWidthIsKnown) {
   EXPECT_NEAR(parse_camera(R"({"hfov": 90, "width": 640, "height": 480})", "c").fx.value(), 320.F, 1e-3);
   EXPECT_FALSE(parse_camera(R"({"hfov": 1.5, "width": 640, "height": 480})", "c").fx) << "radians?";
   EXPECT_FALSE(parse_camera(R"({"fov": 90, "width": 640, "height": 480})", "c").fx) << "of which side?";
+}
+
+TEST(ParseCamera, ReadsColmapOstAndListsOfCameras) {
+  CameraFacts facts = parse_camera("# Camera list\n1 PINHOLE 640 480 577.5 578.5 332 234\n", "cameras.txt");
+  EXPECT_EQ(facts.fx, 577.5F);
+  EXPECT_EQ(facts.fy, 578.5F);
+  EXPECT_EQ(facts.cx, 331.5F);
+  EXPECT_EQ(facts.cy, 233.5F);
+  EXPECT_EQ(facts.width, 640);
+  facts = parse_camera("1 SIMPLE_RADIAL 640 480 577.5 332 234 0.125\n", "cameras.txt");
+  EXPECT_EQ(facts.fy, 577.5F);
+  EXPECT_EQ(facts.cy, 233.5F);
+  EXPECT_TRUE(facts.distorted);
+  facts = parse_camera(
+      "# oST version 5.0 parameters\n\n[image]\n\nwidth\n640\n\nheight\n480\n\n[narrow_stereo]\n\ncamera matrix\n"
+      "577.5 0 331.5\n0 578.5 233.5\n0 0 1\n\ndistortion\n0.1 0 0 0 0\n\nrectification\n1 0 0\n0 1 0\n0 0 1\n\n"
+      "projection\n570 0 330 0\n0 571 230 0\n0 0 1 0\n",
+      "ost.txt");
+  EXPECT_EQ(facts.height, 480);
+  EXPECT_EQ(facts.fy, 571.F);
+  ASSERT_TRUE(facts.distorted);
+  EXPECT_EQ(facts.distorted->camera.fx, 577.5F);
+  const std::string list = R"([{"id": "color", "fx": 1155, "width": 1280}, {"id": "depth", "K": [5,0,1,0,5,1,0,0,1],
+      "depth": {"fx": 577.5, "width": 640}}])";
+  EXPECT_EQ(parse_camera(list, "cameras.json").fx, 577.5F);
+  EXPECT_EQ(parse_camera("[500, 501, 320, 240]", "k.txt").fy, 501.F);
+  const std::string wide("\xFE\xFF\0f\0x\0=\0005\0000\0000", 14);
+  EXPECT_EQ(parse_camera(wide, "c.txt").fx, 500.F) << "UTF-16 of high bytes first";
+}
+
+TEST(ParseCamera, SaysWhatAFileOfAnotherKindIs) {
+  EXPECT_THAT(error_of([] { parse_camera("PK\3\4", "k.npz"); }), HasSubstr("k.npz: a zip archive; unpack it first"));
+  EXPECT_THAT(error_of([] { parse_camera("MATLAB 5.0 MAT-file, Platform: GLNXA64", "k.mat"); }),
+              HasSubstr("a file of MATLAB, which is not read; write its depth as 16-bit PNG, a calibration as text"));
+  const TemporaryFolder folder;
+  put(folder / "calibration.npz", "PK\3\4");
+  EXPECT_THAT(error_of([&] { find_camera_facts({}, {folder.path()}); }), HasSubstr("calibration.npz: a zip archive"));
+}
+
+TEST(ResolveCamera, RefusesFocalLengthsThatCannotBe) {
+  std::vector<std::string> notes;
+  for (const char* focal : {"0.9023", "1.93", "70000"}) {
+    CameraFacts facts = parse_camera(fmt::format(R"({{"fx": {}}})", focal), "c.json");
+    EXPECT_THAT(error_of([&] { resolve_camera(facts, 640, 480, false, "here", notes); }),
+                testing::AllOf(HasSubstr("c.json: focal length"), HasSubstr("expected 64 to 12800 pixels")));
+  }
+  EXPECT_THAT(notes, testing::IsEmpty());
+  for (const char* centre : {R"("cx": 0, "cy": 0)", R"("cx": 12, "cy": -6)", R"("cx": 1400, "cy": 240)"}) {
+    notes.clear();
+    CameraFacts facts = parse_camera(fmt::format(R"({{"fx": 577, "width": 640, {}}})", centre), "c.json");
+    resolve_camera(facts, 640, 480, false, "here", notes);
+    EXPECT_THAT(notes,
+                testing::ElementsAre(testing::AllOf(HasSubstr("c.json: principal point"), HasSubstr("320, 240"))));
+  }
 }
 
 TEST(ParseCamera, SaysWhatAFileWithoutFocalLengthHas) {

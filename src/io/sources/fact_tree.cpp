@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "io/files/known_kind.h"
 #include "io/files/plain_text.h"
 #include "vesalius/error.h"
 
@@ -25,10 +26,11 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 /// PowerShell's ">" writes UTF-16; names and numbers have only low bytes there.
 std::string as_utf8(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF"sv)) text.remove_prefix(3);
+  const bool high_first = text.starts_with("\xFE\xFF"sv);
   // Some calibrations of the Azure Kinect end in zeros, as strings of C do.
-  if (!text.starts_with("\xFF\xFE"sv)) return std::string(text.substr(0, text.find('\0')));
+  if (!high_first && !text.starts_with("\xFF\xFE"sv)) return std::string(text.substr(0, text.find('\0')));
   std::string low;
-  for (std::size_t i = 2; i < text.size(); i += 2) low += text[i];
+  for (std::size_t i = high_first ? 3 : 2; i < text.size(); i += 2) low += text[i];
   return low;
 }
 
@@ -83,7 +85,7 @@ class PlainText {
     if (!numbers.empty()) return row(numbers);
     if (text.front() == '[' && text.back() == ']' && text.find_first_of("[]", 1) == text.size() - 1) {
       section_ = trimmed(text, "[] ");
-    } else if (realsense(text)) {
+    } else if (realsense(text) || colmap(text)) {
     } else if (std::count_if(text.begin(), text.end(), [](char c) { return c == ':' || c == '='; }) > 1) {
       for (const std::string_view piece : pieces(text)) pair(piece);
     } else {
@@ -95,9 +97,10 @@ class PlainText {
     if (numbers.size() > 1 && titles_.size() == numbers.size()) {
       for (std::size_t i = 0; i < numbers.size(); ++i) here()[titles_[i]] = numbers[i];
     }
-    FactTree& rows = here()[rows_name_.empty() ? kNumberRows : rows_name_];
+    FactTree& rows = (is_ost() ? root_ : here())[rows_name_.empty() ? kNumberRows : rows_name_];
     if (!rows.is_array()) rows = FactTree::array();
     rows.push_back(numbers);
+    if (rows_name_ == "width" || rows_name_ == "height") rows = numbers.front();
     titles_.clear();
   }
 
@@ -132,6 +135,27 @@ class PlainText {
     return true;
   }
 
+  /// COLMAP's cameras.txt: 1 PINHOLE 640 480 FX FY CX CY. A pixel's middle has halves there.
+  bool colmap(std::string_view text) {
+    const std::size_t begin = std::min(text.find(' '), text.size());
+    const std::string_view rest = trimmed(text.substr(begin)), model = rest.substr(0, rest.find(' '));
+    const std::vector<double> numbers = all_numbers(rest.substr(model.size()));
+    if (!number_of(text.substr(0, begin)) || numbers.size() < 5) return false;
+    const bool is_simple = model.starts_with("SIMPLE_") || model == "RADIAL";
+    const std::size_t centre = is_simple ? 3 : 4;
+    if (numbers.size() < centre + 2 || !std::isupper(static_cast<unsigned char>(model.front()))) return false;
+    FactTree& camera = root_["camera" + std::string(text.substr(0, begin))];
+    camera = {{"width", numbers[0]},
+              {"height", numbers[1]},
+              {"fx", numbers[2]},
+              {"fy", numbers[centre - 1]},
+              {"cx", numbers[centre] - 0.5},
+              {"cy", numbers[centre + 1] - 0.5},
+              {"coeffs", std::vector<double>(numbers.begin() + std::ptrdiff_t(centre) + 2, numbers.end())}};
+    if (model.ends_with("FISHEYE")) camera["model"] = "kannala_brandt";
+    return true;
+  }
+
   /// "name: value", "name = value", "name 1 2 3"; a name alone begins a section, several are titles of columns.
   void pair(std::string_view text) {
     std::size_t gap = text.find_first_of(":=");
@@ -148,12 +172,17 @@ class PlainText {
 
   void name(std::string_view text) {
     titles_.clear();
-    // librealsense: the rows of a rotation in a section.
+    // librealsense: the rows of a rotation in a section. ROS's ost.txt: all facts so.
     rows_name_ = letters_and_digits(text).starts_with("rotation") ? text : "";
+    for (const char* of_ost : {"width", "height", "camera matrix", "distortion", "projection"}) {
+      if (text == of_ost) rows_name_ = text == "projection" ? "projection matrix" : of_ost;
+    }
     if (!rows_name_.empty()) return;
     section_ = text;
     for (const std::string_view title : pieces(text)) titles_.emplace_back(title);
   }
+
+  bool is_ost() const { return !rows_name_.empty() && !letters_and_digits(rows_name_).starts_with("rotation"); }
 
   FactTree root_ = FactTree::object();
   std::string section_, rows_name_;
@@ -252,7 +281,14 @@ std::string plain_name(std::string_view text) {
 FactTree parse_facts(std::string_view bytes, const std::string& name) {
   const std::string text = as_utf8(bytes);
   const bool braces = trimmed(text).starts_with('{');
+  const bool is_text = known_kind(bytes.substr(0, kKindBytes)).empty();
+  if (!is_text)
+    throw Error(fmt::format("{}: {}, expected a calibration", name, known_kind(bytes.substr(0, kKindBytes))));
   if (auto json = as_json(text); json && json->is_object()) return std::move(*json);
+  // Those of Gaussian Splatting have a list of cameras.
+  if (auto json = as_json(text); json && json->is_array() && !json->empty() && json->front().is_object()) {
+    return FactTree{{"cameras", std::move(*json)}};
+  }
   if (trimmed(text).starts_with('<')) return as_xml(text, name);
   std::string why;
   if (auto yaml = as_yaml(text, why)) return std::move(*yaml);
