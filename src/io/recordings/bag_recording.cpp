@@ -56,15 +56,7 @@ class BagRecording final : public ChunkedRecording {
   std::optional<RecordedMessage> next() override {
     for (;;) {
       while (chunk_at_ < chunk_.size()) {
-        ByteReader in(std::string_view(chunk_).substr(chunk_at_), file_.path());
-        chunk_at_ = chunk_.size();  // in case of damage
-        const Fields header(in.text("header of a record"), file_.path());
-        const std::string_view data = in.text("data of a record");
-        chunk_at_ = chunk_.size() - in.left();
-        if (header.number<std::uint8_t>("op") != kMessage) continue;
-        const auto found = topic_of_.find(header.number<std::uint32_t>("conn"));
-        if (found == topic_of_.end()) continue;
-        return RecordedMessage{found->second, time_of(header, "time"), data};
+        if (auto message = next_of_chunk()) return message;
       }
       if (!next_record()) return std::nullopt;
       if (header_->number<std::uint8_t>("op") == kChunk) load_chunk();
@@ -72,6 +64,21 @@ class BagRecording final : public ChunkedRecording {
   }
 
  private:
+  /// Reads the next record of the chunk; returns nothing where that is no message.
+  std::optional<RecordedMessage> next_of_chunk() try {
+    ByteReader in(std::string_view(chunk_).substr(chunk_at_), file_.path());
+    const Fields header(in.text("header of a record"), file_.path());
+    const std::string_view data = in.text("data of a record");
+    chunk_at_ = chunk_.size() - in.left();
+    if (header.number<std::uint8_t>("op") != kMessage) return std::nullopt;
+    const auto found = topic_of_.find(header.number<std::uint32_t>("conn"));
+    if (found == topic_of_.end()) return std::nullopt;
+    return RecordedMessage{found->second, time_of(header, "time"), data};
+  } catch (const Error&) {
+    chunk_at_ = chunk_.size();
+    throw Error(fmt::format("{}: damaged in the chunk that ends at byte {}", file_.path(), at_));
+  }
+
   /// Seconds, then nanoseconds.
   static std::int64_t time_of(const Fields& header, std::string_view key) {
     const auto time = header.number<std::uint64_t>(key);
@@ -159,8 +166,8 @@ class BagRecording final : public ChunkedRecording {
   void add_connection(const Fields& header, std::string_view data) {
     const auto id = header.number<std::uint32_t>("conn");
     if (topic_of_.contains(id)) return;
-    topic_of_[id] = topics_.size();
     const Fields connection(data, file_.path());
+    topic_of_[id] = topics_.size();
     topics_.push_back(
         {std::string(header.text("topic")), std::string(connection.text("type")), MessageLayout::ros1, 0});
   }

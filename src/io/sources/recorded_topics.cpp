@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <exception>
 #include <map>
 
 #include "io/recordings/camera_topics.h"
@@ -122,7 +123,7 @@ class Looking {
     bool is_essential = lacks_essential();
     std::optional<std::int64_t> first_ns, complete_ns;
     for (int left = kMostProbed; left > 0 && (!wanted_.empty() || has_transforms_);) {
-      const std::optional<RecordedMessage> message = recording_.next();
+      const std::optional<RecordedMessage> message = next();
       if (!message || (complete_ns && is_later(message->time_ns, *complete_ns, kForTransforms_ns))) break;
       if (!first_ns) first_ns = message->time_ns;
       if (!is_essential) --left;
@@ -135,10 +136,24 @@ class Looking {
       if (wanted_.empty() && !complete_ns) complete_ns = message->time_ns;
     }
     recording_.rewind();
+    if (failed_ && contents_.pictures.empty()) std::rethrow_exception(failed_);
     return std::move(contents_);
   }
 
  private:
+  /// Returns the next message that is not damaged. Whoever asks for the frames hears of those before it.
+  std::optional<RecordedMessage> next() {
+    constexpr int kMostFailed = 100;
+    for (int i = 0; i < kMostFailed; ++i) {
+      try {
+        return recording_.next();
+      } catch (const Error&) {
+        if (!failed_) failed_ = std::current_exception();
+      }
+    }
+    return std::nullopt;
+  }
+
   const RecordedTopic& topic(std::size_t number) const { return recording_.topics()[number]; }
   bool may_be_empty(std::size_t number) const { return topic(number).messages < 0; }
 
@@ -220,6 +235,7 @@ class Looking {
   RecordedContents contents_;
   std::map<std::size_t, Wanted> wanted_;  ///< topics that have not shown themselves
   bool has_transforms_ = false;
+  std::exception_ptr failed_;  ///< the first that could not be read
 };
 
 }  // namespace

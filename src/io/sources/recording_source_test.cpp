@@ -138,14 +138,25 @@ TEST(RecordingSource, ABagWithZerosBetweenItsChunksLosesOne) {
   }
   std::vector<std::size_t> places;
   std::string bytes = bag.closed(places);
+  const std::string whole = bytes;
   std::fill_n(bytes.begin() + std::ptrdiff_t(places[1]), 60, '\0');
   SourceOptions options;
   options.fx = 40.F;
-  const auto source = open_source(test::put(folder / "a.bag", bytes), options);
+  auto source = open_source(test::put(folder / "a.bag", bytes), options);
   EXPECT_EQ(source->next()->name, "0.000000001");
   EXPECT_THAT(error_of([&] { source->next(); }), HasSubstr(fmt::format("a.bag: damaged at byte {}", places[1])));
   EXPECT_TRUE(source->next());
   EXPECT_FALSE(source->next());
+  bytes = whole;
+  std::fill_n(bytes.begin() + std::ptrdiff_t(bytes.find("type=")), 5, '\0');
+  EXPECT_THAT(error_of([&] { open_source(test::put(folder / "b.bag", bytes), options); }), HasSubstr("b.bag: no depth"))
+      << "nobody knows the topic";
+  bytes = whole;
+  std::fill_n(bytes.begin() + std::ptrdiff_t(bytes.find("op=\2")) - 4, 9, '\0');
+  source = open_source(test::put(folder / "a.bag", bytes), options);
+  EXPECT_THAT(error_of([&] { source->next(); }),
+              HasSubstr(fmt::format("a.bag: damaged in the chunk that ends at byte {}", places[1])));
+  EXPECT_TRUE(source->next());
 }
 
 TEST(RecordingSource, BearsColourAnyTimeAway) {
