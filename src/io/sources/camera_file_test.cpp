@@ -352,6 +352,12 @@ TEST(ParseCamera, ReadsColmapOstAndListsOfCameras) {
   EXPECT_EQ(parse_camera(wide, "c.txt").fx, 500.F) << "UTF-16 of high bytes first";
 }
 
+TEST(ParseCamera, ReadsTheUnitOfInfinitam) {
+  const CameraFacts facts = parse_camera("640 480\n504 503\n352 272\n\naffine 0.0002 0.0\n", "calib.txt");
+  EXPECT_EQ(facts.depth_scale, 5000.F);
+  EXPECT_EQ(facts.fx, 504.F);
+}
+
 TEST(ParseCamera, SaysWhatAFileOfAnotherKindIs) {
   EXPECT_THAT(error_of([] { parse_camera("PK\3\4", "k.npz"); }), HasSubstr("k.npz: a zip archive; unpack it first"));
   EXPECT_THAT(error_of([] { parse_camera("MATLAB 5.0 MAT-file, Platform: GLNXA64", "k.mat"); }),
@@ -410,10 +416,10 @@ TEST(ResolveCamera, ScalesByWholeRatios) {
       parse_camera(R"({"fx": 300, "cx": 159.5, "cy": 119.5, "width": 320, "height": 240})", "small.json");
   std::vector<std::string> notes;
   EXPECT_EQ(resolve_camera(facts, 640, 480, false, "here", notes), (Camera{640, 480, 600.F, 600.F, 319.5F, 239.5F}));
-  for (const auto& [width, height] : {std::pair(640, 360), {480, 360}, {320, 180}}) {
+  for (const auto& size : {std::pair(640, 360), {480, 360}, {320, 180}}) {
     CameraFacts other = parse_camera(R"({"fx": 300, "width": 320, "height": 240})", "c.json");
-    EXPECT_THAT(error_of([&] { resolve_camera(other, width, height, false, "here", notes); }),
-                HasSubstr("c.json: camera of 320x240 pictures, but here has " + std::to_string(width)));
+    EXPECT_THAT(error_of([&] { resolve_camera(other, size.first, size.second, false, "here", notes); }),
+                HasSubstr("c.json: camera of 320x240 pictures, but here has " + std::to_string(size.first)));
   }
 }
 

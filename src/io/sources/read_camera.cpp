@@ -431,6 +431,12 @@ class CameraReader {
       if (scale && !facts.depth_scale && !scale.value->is_structured()) {
         facts.depth_scale = plain_name(scale.key) == "units" ? std::optional(scale_of_word(scale)) : scale_of(scale);
       }
+      // InfiniTAM: metres of a unit, and of 0.
+      const Fact affine = find(scope, {"affine"});
+      const std::vector<double> line = affine ? numbers_of(*affine.value) : std::vector<double>();
+      if (line.size() == 2 && line[0] >= 1e-6 && line[0] <= 0.05 && line[1] == 0.0 && !facts.depth_scale) {
+        facts.depth_scale = float(1.0 / line[0]);
+      }
       if (const Fact rate = find(scope, {"ratehz"}); rate && !facts.rate_hz) {
         constexpr double kLowest_hz = 0.001, kHighest_hz = 10000.0;
         const double hz = number(rate);
