@@ -136,6 +136,7 @@ bool may_be(const Unit& unit, Oddity oddity, const DepthLook& odd, bool is_tum) 
   constexpr double kCoarse = 2.5;
   if (oddity == Oddity::near && is_tum) return unit.per_m == 1000.F;
   if (oddity == Oddity::near) return odd.coarseness > kCoarse && (unit.per_m == 100.F || unit.per_m == 256.F);
+  if (oddity == Oddity::missing) return unit.per_m == 1000.F || unit.per_m == 100.F || unit.per_m == 1.F;  // floats
   if (oddity != Oddity::far || !odd.in_fives) return true;
   return unit.per_m == (odd.in_tens ? 10000.F : 5000.F);
 }

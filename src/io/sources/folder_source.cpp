@@ -211,6 +211,14 @@ void note_missing_colours(FrameList& list, std::size_t colours) {
   }
 }
 
+constexpr const char* kNoName = "its name does not say colour, expected rgb, color or image";
+
+/// Returns whether a name is that of pictures that are shown for something else than what the camera saw.
+bool says_other(const std::string& name) {
+  const auto has = [&](const char* word) { return name.find(word) != name.npos; };
+  return std::ranges::any_of(std::array{"depth", "ir", "mask", "seg", "label", "conf", "normal", "vis"}, has);
+}
+
 /// Returns why what looks like colour is not taken; nothing of other files.
 std::string why_no_colour(const SourceItem& item, std::size_t frames) {
   const fs::path name(item.name);
@@ -221,11 +229,10 @@ std::string why_no_colour(const SourceItem& item, std::size_t frames) {
   if (is_named && is_one_of({"mp4", "mov", "avi", "mkv", "webm", "m4v"})) {
     return "films are not read; ffmpeg -i FILM -start_number 0 rgb/%06d.jpg makes pictures of one";
   }
-  if (is_named) return is_one_of({"json", "txt", "csv", "yaml", "yml"}) ? "" : "not read, expected PNG or JPEG";
-  const bool is_other = std::ranges::any_of(std::array{"depth", "ir", "mask", "seg", "label", "conf", "normal", "vis"},
-                                            [&](const char* word) { return folder.find(word) != folder.npos; });
-  const bool may_be = is_one_of({"jpg", "jpeg"}) && !folder.empty() && !is_other && item.count >= long(frames);
-  return may_be ? "its name does not say colour, expected rgb, color or image" : "";
+  if (is_named && is_one_of({"bmp", "gif", "heic", "heif", "jp2", "raw", "yuv"}))
+    return "not read, expected PNG or JPEG";
+  const bool is_jpeg = is_one_of({"jpg", "jpeg"}) && !folder.empty() && item.count >= long(frames);
+  return !is_named && is_jpeg && !says_other(folder) ? kNoName : "";
 }
 
 void note_colour_not_taken(FrameList& list) {
@@ -234,6 +241,12 @@ void note_colour_not_taken(FrameList& list) {
     item.why = why_no_colour(item, list.frames.size());
     if (item.why.empty()) continue;
     list.notes.push_back(fmt::format("{}: no colour: {}: {}", list.place, item.name, item.why));
+    return;
+  }
+  if (fs::path(list.frames.front().depth).parent_path() != fs::path(list.place)) return;
+  for (const Picture& p : pictures_in(list.place, {".png"})) {  // beside depth
+    if (may_be_depth(p.path.string()) || says_other(lower(p.stem))) continue;
+    list.notes.push_back(fmt::format("{}: no colour: {}: {}", list.place, p.path.filename().string(), kNoName));
     return;
   }
 }

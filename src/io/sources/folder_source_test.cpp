@@ -191,7 +191,12 @@ TEST(ListFolder, SaysWhyColourIsNotTaken) {
               ElementsAre(HasSubstr("no colour: rgb/*.gif: not read, expected")));
   EXPECT_THAT(notes_of({"depth/1.png", "rgb.mp4"}), ElementsAre(HasSubstr("films are not read; ffmpeg -i")));
   EXPECT_THAT(notes_of({"depth/1.png", "iphone/1.jpg"}), ElementsAre(HasSubstr("iphone/*.jpg: its name does not say")));
-  EXPECT_THAT(notes_of({"depth/1.png", "masks/1.jpg", "preview.jpg", "rgb.txt"}), testing::IsEmpty());
+  EXPECT_THAT(notes_of({"depth/1.png", "masks/1.jpg", "preview.jpg", "rgb.txt", "color_k.npy"}), testing::IsEmpty());
+  const TemporaryFolder folder;
+  put(folder / "D1.png", encode_png(DepthImage(8, 6)));
+  put(folder / "C1.png", encode_png(ColourImage(8, 6)));
+  put(folder / "A1_mask.png", encode_png(ColourImage(8, 6)));
+  EXPECT_THAT(list_folder(folder.path(), {}).notes, ElementsAre(HasSubstr("no colour: C1.png: its name does not say")));
 }
 
 TEST(ListFolder, TakesTimesThatAreNames) {
