@@ -58,13 +58,13 @@ std::vector<Vote> collect_votes(const Posteriors& posteriors, const Frame& frame
 }
 
 /// Votes that stand for all others: where each votes, and for how much surface.
-struct Sample {
+struct VoteSample {
   Eigen::ArrayXf x, y, z, area_m2;
   Vector3f at(Eigen::Index i) const { return {x[i], y[i], z[i]}; }
 };
 
 /// Returns at most kSample votes, evenly spread over the surface that votes: of near people some, of far ones all.
-Sample choose_sample(const std::vector<Vote>& votes) {
+VoteSample choose_sample(const std::vector<Vote>& votes) {
   double all = 0.0;
   for (const Vote& vote : votes) all += double(vote.area_m2);
   const double step = all / kSample;
@@ -83,7 +83,7 @@ Sample choose_sample(const std::vector<Vote>& votes) {
 }
 
 /// Returns the places from which to climb: some of the sample, apart from each other.
-std::vector<Vector3f> choose_starts(const Sample& votes) {
+std::vector<Vector3f> choose_starts(const VoteSample& votes) {
   std::vector<Vector3f> starts;
   for (Eigen::Index i = 0; i < votes.x.size(); i += kEvery) {
     const Vector3f at = votes.at(i);
@@ -94,7 +94,7 @@ std::vector<Vector3f> choose_starts(const Sample& votes) {
 }
 
 /// Returns where the densest votes near `at` are. The kernel is a polynomial, the same on all processors.
-Peak climb(const Sample& votes, Vector3f at) {
+Peak climb(const VoteSample& votes, Vector3f at) {
   constexpr float kSquare = 1.F / (kReach_m * kReach_m);
   for (int round = 0;; ++round) {
     const Eigen::ArrayXf x = votes.x - at.x(), y = votes.y - at.y(), z = votes.z - at.z();
@@ -108,7 +108,7 @@ Peak climb(const Sample& votes, Vector3f at) {
 
 /// Returns the peaks, most massive first, none of them on another's slope.
 std::vector<Peak> find_peaks(const std::vector<Vote>& votes) {
-  const Sample sample = choose_sample(votes);
+  const VoteSample sample = choose_sample(votes);
   const std::vector<Vector3f> starts = choose_starts(sample);
   std::vector<Peak> climbed(starts.size());
   parallel_for(int(starts.size()), [&](int i) { climbed[i] = climb(sample, starts[i]); });

@@ -9,13 +9,13 @@ namespace {
 
 using namespace std::literals;
 
-struct Kind {
+struct Signature {
   std::size_t at;
   std::string_view magic;  ///< in small letters where it is text of a web page
   std::string_view what;
 };
 
-constexpr auto kKinds = std::to_array<Kind>({
+constexpr auto kKinds = std::to_array<Signature>({
     {0, "version https://git-lfs.github.com/spec/"sv,
      "this is a pointer of Git LFS, not the file itself; `git lfs pull` fetches it"},
     {0, "PK\3\4"sv, "a zip archive; unpack it first (unzip)"},
@@ -59,7 +59,7 @@ bool is_same(char byte, char magic) { return byte == magic || std::tolower(stati
 }  // namespace
 
 std::string_view known_kind(std::string_view first) {
-  const auto found = std::ranges::find_if(kKinds, [&](const Kind& kind) {
+  const auto found = std::ranges::find_if(kKinds, [&](const Signature& kind) {
     if (first.size() < kind.at + kind.magic.size()) return false;
     const std::string_view there = first.substr(kind.at, kind.magic.size());
     return kind.magic.front() == '<' ? std::ranges::equal(there, kind.magic, is_same) : there == kind.magic;

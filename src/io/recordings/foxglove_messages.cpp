@@ -17,54 +17,58 @@ namespace {
 using nlohmann::json;
 using Value = FoxgloveMessage::Value;
 
-enum class Kind { time, number, text, bytes, reals };
+enum class FieldKind { time, number, text, bytes, reals };
 
 /// A field of a schema. In ROS the fields come in this order.
 struct Field {
   std::uint32_t number;  ///< in Protocol Buffers
   std::string_view name;
-  Kind kind;
+  FieldKind kind;
   std::size_t count = 0;        ///< of reals: how many ROS has without their number; 0 = their number stands before
   std::string_view parts = {};  ///< of reals: names of each, where they are a message
 };
 
-constexpr std::array<Field, 7> kRawImage{{{1, "timestamp", Kind::time},
-                                          {7, "frame_id", Kind::text},
-                                          {2, "width", Kind::number},
-                                          {3, "height", Kind::number},
-                                          {4, "encoding", Kind::text},
-                                          {5, "step", Kind::number},
-                                          {6, "data", Kind::bytes}}};
-constexpr std::array<Field, 4> kCompressedImage{
-    {{1, "timestamp", Kind::time}, {4, "frame_id", Kind::text}, {2, "data", Kind::bytes}, {3, "format", Kind::text}}};
-constexpr std::array<Field, 4> kCompressedVideo{
-    {{1, "timestamp", Kind::time}, {2, "frame_id", Kind::text}, {3, "data", Kind::bytes}, {4, "format", Kind::text}}};
-constexpr std::array<Field, 9> kCameraCalibration{{{1, "timestamp", Kind::time},
-                                                   {9, "frame_id", Kind::text},
-                                                   {2, "width", Kind::number},
-                                                   {3, "height", Kind::number},
-                                                   {4, "distortion_model", Kind::text},
-                                                   {5, "D", Kind::reals},
-                                                   {6, "K", Kind::reals, 9},
-                                                   {7, "R", Kind::reals, 9},
-                                                   {8, "P", Kind::reals, 12}}};
-constexpr std::array<Field, 5> kFrameTransform{{{1, "timestamp", Kind::time},
-                                                {2, "parent_frame_id", Kind::text},
-                                                {3, "child_frame_id", Kind::text},
-                                                {4, "translation", Kind::reals, 3, "xyz"},
-                                                {5, "rotation", Kind::reals, 4, "xyzw"}}};
+constexpr std::array<Field, 7> kRawImage{{{1, "timestamp", FieldKind::time},
+                                          {7, "frame_id", FieldKind::text},
+                                          {2, "width", FieldKind::number},
+                                          {3, "height", FieldKind::number},
+                                          {4, "encoding", FieldKind::text},
+                                          {5, "step", FieldKind::number},
+                                          {6, "data", FieldKind::bytes}}};
+constexpr std::array<Field, 4> kCompressedImage{{{1, "timestamp", FieldKind::time},
+                                                 {4, "frame_id", FieldKind::text},
+                                                 {2, "data", FieldKind::bytes},
+                                                 {3, "format", FieldKind::text}}};
+constexpr std::array<Field, 4> kCompressedVideo{{{1, "timestamp", FieldKind::time},
+                                                 {2, "frame_id", FieldKind::text},
+                                                 {3, "data", FieldKind::bytes},
+                                                 {4, "format", FieldKind::text}}};
+constexpr std::array<Field, 9> kCameraCalibration{{{1, "timestamp", FieldKind::time},
+                                                   {9, "frame_id", FieldKind::text},
+                                                   {2, "width", FieldKind::number},
+                                                   {3, "height", FieldKind::number},
+                                                   {4, "distortion_model", FieldKind::text},
+                                                   {5, "D", FieldKind::reals},
+                                                   {6, "K", FieldKind::reals, 9},
+                                                   {7, "R", FieldKind::reals, 9},
+                                                   {8, "P", FieldKind::reals, 12}}};
+constexpr std::array<Field, 5> kFrameTransform{{{1, "timestamp", FieldKind::time},
+                                                {2, "parent_frame_id", FieldKind::text},
+                                                {3, "child_frame_id", FieldKind::text},
+                                                {4, "translation", FieldKind::reals, 3, "xyz"},
+                                                {5, "rotation", FieldKind::reals, 4, "xyzw"}}};
 
-using Fields = std::span<const Field>;
+using FieldList = std::span<const Field>;
 
 std::string_view schema_of(const RecordedTopic& topic) {
   return std::string_view(topic.type).substr(topic.type.find_first_of("./") + 1);
 }
 
-Fields fields_of(std::string_view schema) {
+FieldList fields_of(std::string_view schema) {
   if (schema == "RawImage") return kRawImage;
   if (schema == "CompressedImage") return kCompressedImage;
   if (schema == "CompressedVideo") return kCompressedVideo;
-  return schema == "CameraCalibration" ? Fields(kCameraCalibration) : Fields(kFrameTransform);
+  return schema == "CameraCalibration" ? FieldList(kCameraCalibration) : FieldList(kFrameTransform);
 }
 
 /// Returns nothing where the text is not base64.
@@ -98,11 +102,11 @@ std::uint64_t protobuf_time(std::string_view bytes, const std::string& name) {
 
 Value value_in(const ProtobufFields& message, const Field& field, const std::string& name) {
   Value value;
-  if (field.kind == Kind::time) {
+  if (field.kind == FieldKind::time) {
     value.number = protobuf_time(message.text(field.number), name);
-  } else if (field.kind == Kind::number) {
+  } else if (field.kind == FieldKind::number) {
     value.number = message.number(field.number);
-  } else if (field.kind != Kind::reals) {
+  } else if (field.kind != FieldKind::reals) {
     value.text = message.text(field.number);
   } else if (field.parts.empty()) {
     value.reals = message.list64(field.number);
@@ -128,16 +132,16 @@ double real(const json& value) { return value.is_number() ? value.get<double>() 
 Value value_in(const json& message, const Field& field, const std::string& name) {
   const json& found = member(message, field.name);
   Value value;
-  if (field.kind == Kind::time) {
+  if (field.kind == FieldKind::time) {
     value.number = whole(member(found, "sec")) * kNanoseconds + whole(member(found, "nsec"));
-  } else if (field.kind == Kind::number) {
+  } else if (field.kind == FieldKind::number) {
     value.number = whole(found);
-  } else if (field.kind == Kind::reals) {
+  } else if (field.kind == FieldKind::reals) {
     for (const char part : field.parts) value.reals.push_back(real(member(found, std::string_view(&part, 1))));
     if (found.is_array()) std::ranges::transform(found, std::back_inserter(value.reals), real);
   } else if (found.is_string()) {
     const auto& text = found.get_ref<const std::string&>();
-    value.owned = field.kind == Kind::bytes ? from_base64(text) : std::make_shared<const std::string>(text);
+    value.owned = field.kind == FieldKind::bytes ? from_base64(text) : std::make_shared<const std::string>(text);
     if (!value.owned) throw Error(fmt::format("{}: \"{}\": expected base64", name, field.name));
     value.text = *value.owned;
   }
@@ -147,15 +151,15 @@ Value value_in(const json& message, const Field& field, const std::string& name)
 Value value_in(MessageFields& message, const Field& field, const std::string&) {
   Value value;
   const char* what = field.name.data();
-  if (field.kind == Kind::time) {
+  if (field.kind == FieldKind::time) {
     value.number = message.u32(what) * std::uint64_t{kNanoseconds};
     value.number += message.u32(what);
-  } else if (field.kind == Kind::number) {
+  } else if (field.kind == FieldKind::number) {
     value.number = message.u32(what);
-  } else if (field.kind == Kind::reals) {
+  } else if (field.kind == FieldKind::reals) {
     value.reals = field.count == 0 ? message.list64(what) : message.reals64(field.count, what);
   } else {
-    value.text = field.kind == Kind::text ? message.text(what) : message.bytes(what);
+    value.text = field.kind == FieldKind::text ? message.text(what) : message.bytes(what);
   }
   return value;
 }
@@ -182,7 +186,7 @@ const Value& FoxgloveMessage::operator[](std::string_view field) const {
 
 class FoxgloveReader {
  public:
-  FoxgloveReader(Fields fields, const std::string& name) : fields_(fields), name_(name) {}
+  FoxgloveReader(FieldList fields, const std::string& name) : fields_(fields), name_(name) {}
   template <class Message>
   FoxgloveMessage operator()(Message&& message) const {
     FoxgloveMessage read;
@@ -191,7 +195,7 @@ class FoxgloveReader {
   }
 
  private:
-  Fields fields_;
+  FieldList fields_;
   const std::string& name_;
 };
 

@@ -24,7 +24,7 @@ namespace {
 using ob::api;
 
 /// Of ob_camera_distortion_model, in its order.
-constexpr std::array<std::string_view, 6> kLensModels{
+constexpr std::array<std::string_view, 6> kOrbbecLenses{
     "none",          "modified Brown-Conrady", "inverse Brown-Conrady",
     "Brown-Conrady", "rational polynomial",    "Kannala-Brandt4"};
 
@@ -283,8 +283,8 @@ class OrbbecSource final : public LiveSource {
   LensCamera lens_of(const ob::StreamProfile* stream) {
     const ob::Intrinsics pinhole = call(place_, api().video_stream_profile_get_intrinsic, stream);
     const ob::Distortion lens = call(place_, api().video_stream_profile_get_distortion, stream);
-    const bool known = lens.model >= 0 && lens.model < int(kLensModels.size());
-    const std::string_view model = known ? kLensModels[static_cast<std::size_t>(lens.model)] : "of a later version";
+    const bool known = lens.model >= 0 && lens.model < int(kOrbbecLenses.size());
+    const std::string_view model = known ? kOrbbecLenses[static_cast<std::size_t>(lens.model)] : "of a later version";
     return with_lens({pinhole.width, pinhole.height, pinhole.fx, pinhole.fy, pinhole.cx, pinhole.cy}, model,
                      coefficients_of(lens));
   }

@@ -27,8 +27,8 @@ namespace {
 using rs2::api;
 
 /// Of rs2_distortion, in its order.
-constexpr std::array<std::string_view, 6> kLensModels{"none",    "modified Brown-Conrady", "inverse Brown-Conrady",
-                                                      "F-theta", "Brown-Conrady",          "Kannala-Brandt4"};
+constexpr std::array<std::string_view, 6> kRealSenseLenses{"none",    "modified Brown-Conrady", "inverse Brown-Conrady",
+                                                           "F-theta", "Brown-Conrady",          "Kannala-Brandt4"};
 
 Owned<rs2::Context> make_context() {
   const int version = call("realsense", api().get_api_version);
@@ -234,8 +234,9 @@ class RealsenseSource final : public LiveSource {
     constexpr int kMostOfFisheye = 4;
     rs2::Intrinsics lens{};
     call(place_, api().get_video_stream_intrinsics, stream, &lens);
-    const bool known = lens.model >= 0 && lens.model < int(kLensModels.size());
-    const std::string_view model = known ? kLensModels[static_cast<std::size_t>(lens.model)] : "of a later version";
+    const bool known = lens.model >= 0 && lens.model < int(kRealSenseLenses.size());
+    const std::string_view model =
+        known ? kRealSenseLenses[static_cast<std::size_t>(lens.model)] : "of a later version";
     std::vector<double> coefficients(std::begin(lens.coefficients), std::end(lens.coefficients));
     if (lens.model == rs2::kNoDistortion) coefficients.clear();
     if (lens.model == rs2::kKannalaBrandt) coefficients.resize(kMostOfFisheye);

@@ -92,7 +92,7 @@ std::optional<Eigen::Vector3d> translation_of(const FactTree& value) {
 }
 
 /// Returns a transform of 3x4 or 4x4 numbers by rows, or by columns where the translation is in the last row.
-std::optional<Isometry3d> matrix_of(const std::vector<double>& m) {
+std::optional<Isometry3d> pose_matrix_of(const std::vector<double>& m) {
   if (m.size() != 12 && m.size() != 16) return std::nullopt;
   const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows =
       Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(m.data());
@@ -170,10 +170,10 @@ class RigidReader {
         last.insert(last.end(), row.begin(), row.end());
       }
       // Its first camera is that of colour, and the matrix takes points from it to depth.
-      if (const auto transform = matrix_of(last)) {
+      if (const auto transform = pose_matrix_of(last)) {
         found_.push_back({CameraRole::colour, CameraRole::depth, *transform, name_, false});
       }
-    } else if (const auto transform = named ? matrix_of(numbers_of(value)) : std::nullopt) {
+    } else if (const auto transform = named ? pose_matrix_of(numbers_of(value)) : std::nullopt) {
       add(*transform, path, false);
     }
   }
