@@ -78,11 +78,12 @@ class GridGuide {
   /// `depth` is the whole picture and must outlive the guide. Throws Error for a step below 1.
   GridGuide(const DepthImage& depth, int step);
 
-  /// Returns a picture of full size. Pixels without a reading, or without a grid pixel near enough, become `outside`.
+  /// Returns a picture of full size. Pixels without a reading, or without a grid pixel near enough, become `outside`;
+  /// all do where `coarse` is empty.
   template <class T>
   Image<T> enlarge(const Image<T>& coarse, T outside) const {
     Image<T> out(depth_.width(), depth_.height(), outside);
-    each({0, 0, out.width(), out.height()},
+    each(whole_box({0, 0, coarse.width(), coarse.height()}),
          [&](int u, int v, int column, int row) { out(u, v) = coarse(column, row); });
     return out;
   }

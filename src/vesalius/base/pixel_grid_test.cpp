@@ -124,6 +124,7 @@ TEST(GridGuide, NeedsOnlyABoxOfTheGrid) {
   guide.each(box, [&](int u, int v, int column, int row) { enlarged(u, v) = coarse(column, row); });
   EXPECT_EQ(enlarged, guide.enlarge(coarse, std::uint8_t{0}));
   EXPECT_EQ(guide.whole_box(Box{}).width, 0);
+  EXPECT_EQ(guide.enlarge(Mask(), std::uint8_t{0}), Mask(23, 17, 0)) << "labels of a candidate without pixels";
 }
 
 TEST(GridGuide, RefusesAStepOfZero) { EXPECT_THROW(GridGuide(DepthImage(2, 2), 0), Error); }
