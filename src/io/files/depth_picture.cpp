@@ -197,7 +197,8 @@ DepthPicture decode_depth(std::string_view bytes, const std::string& name) {
     const bool may_be = kind == "TIFF" || kind == "OpenEXR";
     if (!may_be) throw Error(fmt::format("{}: {} of 8 bits, expected 16 or floats", name, kind));
     if (!has_avcodec()) throw Error(fmt::format("{}: {}", name, unread_advice(kind == "TIFF" ? ".tif" : ".exr")));
-    if (kind == "TIFF" && !why_no_tiff(bytes).empty()) throw Error(fmt::format("{}: {}", name, why_no_tiff(bytes)));
+    const std::string_view why = kind == "TIFF" ? why_no_tiff(bytes) : "";
+    if (!why.empty()) throw Error(fmt::format("{}: {}", name, why));
     AvPicture picture = decode_av_picture(bytes, name);
     if (!picture.colour.empty())
       throw Error(fmt::format("{}: {} of 8 bits or colours, expected grey of 16", name, kind));
