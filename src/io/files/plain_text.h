@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -27,6 +28,17 @@ inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 inline std::string_view trimmed(std::string_view text, std::string_view of = " \t\r\n") {
   const std::size_t begin = text.find_first_not_of(of);
   return begin == text.npos ? std::string_view() : text.substr(begin, text.find_last_not_of(of) - begin + 1);
+}
+
+/// Returns a text without its byte order mark. Of UTF-16, which PowerShell's ">" writes, the low bytes are kept, since
+/// names and numbers have no others.
+inline std::string without_byte_order(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const bool high_first = text.starts_with("\xFE\xFF");
+  if (!high_first && !text.starts_with("\xFF\xFE")) return std::string(text);
+  std::string low;
+  for (std::size_t i = high_first ? 3 : 2; i < text.size(); i += 2) low += text[i];
+  return low;
 }
 
 }  // namespace vesalius

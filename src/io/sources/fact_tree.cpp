@@ -16,23 +16,10 @@
 namespace vesalius {
 namespace {
 
-using namespace std::literals;
-
 constexpr int kMostNodes = 100'000;  // aliases of YAML multiply
 constexpr std::string_view kBetweenNumbers = " \t\r\n,;[](){}";
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-/// PowerShell's ">" writes UTF-16; names and numbers have only low bytes there.
-std::string as_utf8(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF"sv)) text.remove_prefix(3);
-  const bool high_first = text.starts_with("\xFE\xFF"sv);
-  // Some calibrations of the Azure Kinect end in zeros, as strings of C do.
-  if (!high_first && !text.starts_with("\xFF\xFE"sv)) return std::string(text.substr(0, text.find('\0')));
-  std::string low;
-  for (std::size_t i = high_first ? 3 : 2; i < text.size(); i += 2) low += text[i];
-  return low;
-}
 
 FactTree tree_of(const YAML::Node& node, int levels, int& nodes) {
   if (--nodes < 0 || levels < 0) throw Error("too many values or levels");
@@ -279,7 +266,8 @@ std::string plain_name(std::string_view text) {
 }
 
 FactTree parse_facts(std::string_view bytes, const std::string& name) {
-  const std::string text = as_utf8(bytes);
+  std::string text = without_byte_order(bytes);
+  text.resize(std::min(text.find('\0'), text.size()));  // some of the Azure Kinect end in zeros, as strings of C do
   const bool braces = trimmed(text).starts_with('{');
   const bool is_text = known_kind(bytes.substr(0, kKindBytes)).empty();
   if (!is_text)

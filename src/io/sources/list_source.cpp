@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <queue>
+#include <system_error>
 #include <tuple>
 
 #include "io/files/data_file.h"
@@ -15,6 +16,7 @@
 #include "io/files/plain_text.h"
 #include "io/files/stored_depth.h"
 #include "io/sources/colour_camera.h"
+#include "io/sources/fact_tree.h"
 #include "io/sources/source_items.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
@@ -76,14 +78,29 @@ constexpr float kTumUnitsPerM = 5000.F;  // the benchmark's file format page
 constexpr std::size_t kMaxListBytes = 64 << 20;
 constexpr std::string_view kBetweenWords = " \t\r,";
 
+/// Returns where the time ends that a line begins with. A comma with digits up to a blank behind it is the point of
+/// German or French numbers: "1305031102,160 depth/a.png".
+std::size_t end_of_time(std::string_view line) {
+  constexpr const char* kDigits = "0123456789";
+  const std::size_t end = line.find_first_of(" \t,");
+  if (end >= line.size() || line[end] != ',') return std::min(end, line.size());
+  const std::size_t decimals = line.find_first_not_of(kDigits, end + 1);
+  const bool is_point =
+      decimals != line.npos && decimals > end + 1 && (line[decimals] == ' ' || line[decimals] == '\t');
+  return is_point ? decimals : end;
+}
+
 TumEntry parse_line(std::string_view line, const std::string& name, int number) {
-  const std::size_t gap = std::min(line.find_first_of(" \t,"), line.size());
+  const std::size_t gap = end_of_time(line);
   TumEntry entry;
   entry.stamp = std::string(line.substr(0, gap));
+  std::ranges::replace(entry.stamp, ',', '.');
   entry.file = std::string(trimmed(line.substr(gap), kBetweenWords));
   const char* end = entry.stamp.data() + entry.stamp.size();
   const auto [stop, error] = std::from_chars(entry.stamp.data(), end, entry.time_s);
-  const bool named = !entry.file.empty() && entry.file.find('\0') == entry.file.npos;
+  const bool is_number =
+      number_of(std::string_view(entry.file).substr(0, entry.file.find_first_of(kBetweenWords))).has_value();
+  const bool named = !entry.file.empty() && !is_number && entry.file.find('\0') == entry.file.npos;
   if (error != std::errc() || stop != end || !std::isfinite(entry.time_s) || !named) {
     throw Error(fmt::format("{}:{}: expected \"timestamp file\"", name, number));
   }
@@ -137,6 +154,19 @@ TumLists read_lists(const fs::path& root) {
   TumLists lists{parse_tum_list(read_file(depth_list, kMaxListBytes), depth_list), {}, depth_list};
   if (!colour.empty()) lists.colour = parse_tum_list(read_file(colour, kMaxListBytes), colour);
   return lists;
+}
+
+/// Returns where a picture of a list lies: as written, with slashes for the backslashes of Windows, or by its last
+/// folder's name where the whole path is that of another machine.
+std::string path_of(const fs::path& root, const std::string& file) {
+  std::string slashed = file;
+  std::ranges::replace(slashed, '\\', '/');
+  const fs::path path(slashed);
+  std::error_code none;
+  for (const fs::path& one : {fs::path(file), path, path.parent_path().filename() / path.filename()}) {
+    if (fs::exists(root / one, none)) return (root / one).string();
+  }
+  return (root / file).string();
 }
 
 /// Returns whether a list counts frames instead of telling times, as those of ICL-NUIM do: "0 depth/0.png".
@@ -286,8 +316,9 @@ void add_items(FrameList& list) {
 
 std::unique_ptr<FrameSource> open_list(FrameList list) { return std::make_unique<ListSource>(std::move(list)); }
 
-std::vector<TumEntry> parse_tum_list(std::string_view text, const std::string& name) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+std::vector<TumEntry> parse_tum_list(std::string_view bytes, const std::string& name) {
+  const std::string plain = without_byte_order(bytes);
+  std::string_view text = plain;
   std::vector<TumEntry> entries;
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -362,8 +393,8 @@ FrameList list_tum(const std::string& folder, const SourceOptions& options) {
   }
   const std::vector<int> partner = associate(depth, colour, kMaxTimeDifferenceS);
   for (std::size_t i = 0; i < depth.size(); ++i) {
-    const std::string colour_file = partner[i] < 0 ? "" : (root / colour[partner[i]].file).string();
-    list.frames.push_back({depth[i].stamp, depth[i].time_s, (root / depth[i].file).string(), colour_file});
+    const std::string colour_file = partner[i] < 0 ? "" : path_of(root, colour[partner[i]].file);
+    list.frames.push_back({depth[i].stamp, depth[i].time_s, path_of(root, depth[i].file), colour_file});
   }
   const auto lonely = std::count(partner.begin(), partner.end(), -1);
   if (lonely != 0 && !colour.empty()) {

@@ -18,6 +18,7 @@ namespace {
 
 using test::error_of;
 using testing::ElementsAre;
+using testing::Field;
 using testing::HasSubstr;
 
 TEST(ParseTumList, SortsLinesByTime) {
@@ -54,6 +55,23 @@ TEST(ParseTumList, TakesCommasAndAMarkOfByteOrder) {
   ASSERT_EQ(entries.size(), 2U);
   EXPECT_EQ(entries[0].time_s, 1.5);
   EXPECT_EQ(entries[1].file, "depth/b.png");
+}
+
+TEST(ParseTumList, TakesCommasAsPointsAndPowerShellsText) {
+  const auto entries = parse_tum_list("1700000000,25 a.png\n1700000000,5\tdepth/b.png\n", "depth.txt");
+  ASSERT_EQ(entries.size(), 2);
+  EXPECT_EQ(entries[0].time_s, 1700000000.25);
+  EXPECT_EQ(entries[0].stamp, "1700000000.25");
+  EXPECT_EQ(entries[1].file, "depth/b.png");
+  std::string wide = "\xFF\xFE";
+  for (const char c : std::string("1 a.png\r\n2 b.png")) wide += {c, '\0'};
+  EXPECT_THAT(parse_tum_list(wide, "depth.txt"),
+              ElementsAre(Field(&TumEntry::file, "a.png"), Field(&TumEntry::file, "b.png")));
+}
+
+TEST(ParseTumList, RefusesAMatrixOfDepth) {
+  EXPECT_EQ(error_of([] { parse_tum_list("1503 1504 1510\n1500 1502 0\n", "depth.txt"); }),
+            "depth.txt:1: expected \"timestamp file\"");
 }
 
 TEST(ParseTumList, KnowsUnitsByTheirDigits) {

@@ -274,6 +274,20 @@ TEST(TumSource, ReadsAssociationsInBothOrders) {
   }
 }
 
+TEST(TumSource, FindsPicturesOfListsFromOtherMachines) {
+  for (const char* line :
+       {"1.0 depth\\a.png 1.0 rgb\\x.png", "1.0 C:\\me\\rec\\depth\\a.png 1.0 C:\\me\\rec\\rgb\\x.png",
+        "1.0 /home/me/rec/rgb/x.png 1.0 /home/me/rec/depth/a.png"}) {
+    const TemporaryFolder folder;
+    put_depth(folder / "depth/a.png", DepthImage(640, 480, 10000));
+    put_colour(folder / "rgb/x.png", ColourImage(640, 480, {1, 2, 3}));
+    put(folder / "associations.txt", line);
+    const auto frame = open_source(folder.path())->next();
+    EXPECT_EQ(frame->depth(3, 4), 2000) << line;
+    EXPECT_EQ(frame->colour(3, 4), (Rgb{1, 2, 3})) << line;
+  }
+}
+
 TEST(TumSource, TakesNumbersOfFramesForNoTimes) {
   const TemporaryFolder folder;
   std::string lines;
