@@ -65,6 +65,19 @@ DepthImage depth_from(const PictureMessage& picture, std::size_t step, std::size
   return depth;
 }
 
+ColourImage colour_of_points(const PictureMessage& picture, const std::string& name) {
+  expect_rows(picture, picture.point_bytes, name);
+  ColourImage colour(picture.width, picture.height);
+  for (int v = 0; v < picture.height; ++v) {
+    for (int u = 0; u < picture.width; ++u) {
+      const auto rgb = value_at<std::uint32_t>(picture, v, std::size_t(u) * picture.point_bytes + *picture.rgb);
+      const auto channel = [&](unsigned shift) { return static_cast<std::uint8_t>(rgb >> shift & 0xFFU); };
+      colour(u, v) = {channel(16), channel(8), channel(0)};
+    }
+  }
+  return colour;
+}
+
 /// From librealsense 2.56 on, what the library itself states: its messages of sensor_msgs call every model plumb_bob.
 bool is_realsense_text(const RecordedTopic& topic) {
   return topic.type == "std_msgs/String" && topic.layout == MessageLayout::cdr &&
@@ -208,6 +221,7 @@ void parse_points(MessageFields& fields, PictureMessage& picture, const std::str
     const std::uint32_t offset = fields.u32("the place of a field");
     const bool is_float = fields.u8("the type of a field") == kFloat;
     fields.u32("the length of a field");
+    if (field == "rgb" || field == "rgba") picture.rgb = offset;
     const std::size_t axis = std::string_view("xyz").find(field);
     if (field.size() != 1 || axis == std::string_view::npos || !is_float) continue;
     picture.xyz[axis] = offset;
@@ -217,9 +231,12 @@ void parse_points(MessageFields& fields, PictureMessage& picture, const std::str
   const std::uint32_t point_bytes = fields.u32("the length of a point");
   picture.row_bytes = fields.u32("the length of a row");
   picture.data = fields.bytes("the points");
-  const bool fits = std::ranges::max(picture.xyz) + std::uint64_t{sizeof(float)} <= point_bytes;
-  picture.encoding = picture.height > 1 && found == 7 ? "xyz" : picture.height > 1 ? "without x, y, z" : "in no rows";
-  if (picture.encoding == "xyz" && fits) picture.point_bytes = point_bytes;
+  const std::uint32_t last = std::max(std::ranges::max(picture.xyz), picture.rgb.value_or(0));
+  const bool fits = last + std::uint64_t{sizeof(float)} <= point_bytes;
+  const bool is_picture = picture.height > 1 && found == 7;
+  picture.encoding = is_picture ? "xyz" : picture.height > 1 ? "without x, y, z" : "in no rows";
+  if (is_picture && picture.rgb) picture.encoding += " rgb";
+  if (is_picture && fits) picture.point_bytes = point_bytes;
 }
 
 bool is_foxglove_picture(const RecordedTopic& topic) {
@@ -432,6 +449,7 @@ Image<Eigen::Vector3f> points_of(const PictureMessage& picture, const std::strin
 }
 
 ColourImage colour_of(const PictureMessage& picture, const std::string& name) {
+  if (picture.point_bytes > 0 && picture.rgb) return colour_of_points(picture, name);
   return picture.compressed ? decode_colour(picture.data, name) : decode_raw_colour(picture, name);
 }
 

@@ -52,7 +52,7 @@ DepthImage depth_of(const PictureMessage& picture, const StoredDepth& stored, co
 /// Returns the points of a picture of points, metres; NaN = no reading. Throws Error naming `name` if it has none.
 Image<Eigen::Vector3f> points_of(const PictureMessage& picture, const std::string& name);
 
-/// Returns the colours of a picture: those of colour_encodings.h, PNG or JPEG. Throws Error naming `name`.
+/// Returns the colours of a picture: those of colour_encodings.h, PNG or JPEG, of points. Throws Error naming `name`.
 ColourImage colour_of(const PictureMessage& picture, const std::string& name);
 
 /// Returns a sensor_msgs/Image of 16UC1, millimetres, as CDR.

@@ -313,7 +313,7 @@ std::optional<RecordedCameras::Acceleration> choose_acceleration(const RecordedC
 /// Returns why a picture was not taken, where one of depth was.
 std::string why_not(const PictureTopic& picture, const PictureTopic* depth) {
   if (is_taken_for_depth(picture)) return "another depth; --depth-topic takes it";
-  if (picture.points) return picture.look.encoding == "xyz" ? "" : "points are read where they lie in rows";
+  if (picture.points) return picture.look.encoding.starts_with("xyz") ? "" : "points are read where they lie in rows";
   if (picture.look.is_depth()) {
     const bool is_other = picture.name == TopicName::other;
     return fmt::format("{}; --depth-topic takes it", is_other ? "by its name no depth" : "its name does not say depth");
@@ -351,6 +351,8 @@ SourceItem plain_item(const RecordedTopic& topic) {
     item.why = "video is not read";
   } else if (is_picture(topic)) {
     item.why = "no whole picture seen";
+  } else if (is_like("RGBD")) {  // of the RealSense driver and of RTAB-Map
+    item.why = "depth and colour in one message are not read, expected the topics that it is made of";
   } else if (is_like("PointCloud")) {
     item.why = "expected sensor_msgs/PointCloud2";
   } else if (is_transform(topic)) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "io/files/byte_stream.h"
@@ -278,7 +279,7 @@ TEST_F(RecordedTopics, DisparitiesBecomeDepth) {
   EXPECT_EQ(std::ranges::count(frame.depth, 0), 40 * 30 - 1);
 }
 
-/// Writes a sensor_msgs/PointCloud2 of x, y, z and four bytes of something as CDR.
+/// Writes a sensor_msgs/PointCloud2 of rgb, x, y, z as CDR.
 std::string points_message(const Frame& frame, bool in_rows) {
   CdrWriter out;
   out.header(0, "depth_frame");
@@ -301,7 +302,9 @@ std::string points_message(const Frame& frame, bool in_rows) {
     for (int u = 0; u < frame.depth.width(); ++u) {
       const float z = float(frame.depth(u, v)) / 1e3F;
       const Eigen::Vector3f p = frame.camera.point(float(u), float(v), z > 0.F ? z : NAN);
-      const std::array<float, 4> all{1.F, p.x(), p.y(), p.z()};
+      const Rgb c = frame.colour.empty() ? Rgb{} : frame.colour(u, v);
+      const auto rgb = static_cast<std::uint32_t>(c.r << 16 | c.g << 8 | c.b);
+      const std::array<float, 4> all{std::bit_cast<float>(rgb), p.x(), p.y(), p.z()};
       data.append(reinterpret_cast<const char*>(all.data()), sizeof(all));
     }
   }
@@ -315,9 +318,17 @@ TEST_F(RecordedTopics, PointsInRowsAreDepthWithTheirCamera) {
   const auto source = open();
   const Frame frame = *source->next();
   EXPECT_EQ(frame.depth, a_.depth);
+  EXPECT_EQ(frame.colour, a_.colour);
   EXPECT_NEAR(frame.camera.fx, a_.camera.fx, 0.01F);
   EXPECT_NEAR(frame.camera.cy, a_.camera.cy, 0.01F);
   EXPECT_EQ(item_of(*source, "/camera/depth/points").use, "depth");
+  EXPECT_THAT(item_of(*source, "/camera/depth/points").holds, HasSubstr("xyz rgb"));
+}
+
+TEST_F(RecordedTopics, BothPicturesInOneMessageAreNamed) {
+  out_.put("/camera/rgbd", "realsense2_camera_msgs/msg/RGBD", 0, "unread");
+  EXPECT_THAT(error_of([&] { open(); }),
+              AllOf(HasSubstr("/camera/rgbd"), HasSubstr("depth and colour in one message")));
 }
 
 TEST_F(RecordedTopics, PointsInNoRowsAreNamed) {

@@ -272,7 +272,7 @@ class RecordingSource final : public FrameSource {
         const PictureMessage picture = parse_picture(topic, message->bytes, files_[at_]);
         const double time_s = seconds(time_of(picture, *message));
         if (is_depth) return time_s;
-        last_colour_s_ = time_s;
+        last_colour_s_ = std::max(last_colour_s_.value_or(time_s), time_s);  // messages may lie in any order
         note_video(picture);
       } catch (const Error&) {  // whoever asks for the frame hears of it
       }
@@ -292,7 +292,7 @@ class RecordingSource final : public FrameSource {
     std::optional<double> last_s;
     for (double back_s = 0.0;; back_s = std::max(kLead_s, back_s * kFurther)) {
       const bool left_out = go_to(end_s - back_s);
-      while (const auto time_s = next_depth_time_s()) last_s = time_s;
+      while (const auto time_s = next_depth_time_s()) last_s = std::max(last_s.value_or(*time_s), *time_s);
       if (last_s || !left_out) return last_s;
     }
   }
@@ -341,6 +341,7 @@ class RecordingSource final : public FrameSource {
       throw Error(fmt::format("{}: {}: {}x{} pixels, expected {}x{} as before", place, frame.name, frame.depth.width(),
                               frame.depth.height(), camera_.width, camera_.height));
     }
+    if (colour_topic_.empty() && picture.rgb) frame.colour = rectified(colour_of(picture, frame.name), rectification_);
     if (rectification_) frame.depth = rectification_->depth(frame.depth);
     waiting_.push_back({time_ns, std::move(frame)});
   }
@@ -387,7 +388,11 @@ class RecordingSource final : public FrameSource {
   ColourImage registered(ColourImage colour, const DepthImage& depth) const {
     if (registration_ && registration_->fits(colour)) return (*registration_)(depth, colour);
     if (registration_ || !colour.same_size(depth)) return {};
-    return colour_rectification_ ? colour_rectification_->colour(colour) : std::move(colour);
+    return rectified(std::move(colour), colour_rectification_);
+  }
+
+  static ColourImage rectified(ColourImage colour, const std::optional<Rectification>& rectification) {
+    return rectification ? rectification->colour(colour) : std::move(colour);
   }
 
   void forget_colour() {

@@ -122,6 +122,25 @@ TEST(RecordingSource, TakesColourThatStandsFarFromDepthInTheFile) {
   }
 }
 
+TEST(RecordingSource, MessagesInAnotherOrderThanTheirTimesAreOnOneClock) {
+  const Frame a = random_frame("a", 1);
+  for (const bool falling : {true, false}) {  // or the second half before the first
+    const test::TemporaryFolder folder;
+    Messages out(folder / "a.mcap");
+    out.camera("/depth/camera_info", a.camera);
+    for (int i = 0; i < 20; ++i) {
+      const std::int64_t time_ns = 33 * kMs * (falling ? 20 - i : 1 + (i + 10) % 20);
+      out.depth("/depth/image", time_ns, a);
+      out.colour("/rgb/image", time_ns + kMs, a);
+    }
+    out.close();
+    const auto source = open_source(folder / "a.mcap");
+    EXPECT_THAT(source->notes(), IsEmpty()) << falling;
+    const auto without = [](const Frame& frame) { return frame.colour.empty(); };
+    EXPECT_LE(std::ranges::count_if(all_of(*source), without), 1) << "that after a jump back";
+  }
+}
+
 TEST(RecordingSource, ABagWithZerosBetweenItsChunksLosesOne) {
   const test::TemporaryFolder folder;
   const Frame a = random_frame("a", 1);
