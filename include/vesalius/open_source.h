@@ -26,7 +26,7 @@ std::unique_ptr<FrameSource> open_source(const std::string& uri, const SourceOpt
 /// Returns whether `uri` names a camera that is plugged in, which makes a live source, without opening it.
 bool is_camera(const std::string& uri);
 
-/// Returns the path in `uri` without the scheme and the depth scale.
+/// Returns the path in `uri` without the scheme.
 std::string path_of_source(const std::string& uri);
 
 /// Returns a frame with copies of the caller's buffers. `depth_mm` has width x height values; `rgb` has three bytes for

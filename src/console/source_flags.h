@@ -57,6 +57,6 @@ void add_threads_flag(CLI::App& command, int& threads);
 inline constexpr const char* kSourceHelp =
     "Frames: a folder (depth/*.png with meta.json or camera_info.yaml, TUM RGB-D, PNG or PCD files), a 16-bit depth "
     "PNG, an organised PCD file, a recording (MCAP, ROS 1 .bag, ROS 2 .db3, .mkv), or a camera that "
-    "`vesalius cameras` lists; tum:FOLDER:SCALE and similar prefixes state the kind";
+    "`vesalius cameras` lists; tum:FOLDER and similar prefixes state the kind";
 
 }  // namespace vesalius::cli

@@ -78,6 +78,17 @@ std::vector<Picture> pictures_in(const fs::path& folder, const std::vector<std::
   return pictures;
 }
 
+/// Returns whether a name is that of pictures about those of depth: "0_depth_mask.npy" beside "0_depth.npy".
+bool says_no_depth(const std::string& name) {
+  const auto has = [&](const char* word) { return name.find(word) != name.npos; };
+  return std::ranges::any_of(std::array{"mask", "seg", "label", "conf", "normal", "vis"}, has);
+}
+
+/// Returns whether a name is that of pictures that are shown for something else than what the camera saw.
+bool says_other(const std::string& name) {
+  return says_no_depth(name) || name.find("depth") != name.npos || name.find("ir") != name.npos;
+}
+
 /// Keeps the pictures for which `wanted` holds, if it does for one.
 template <class Wanted>
 void prefer(std::vector<Picture>& pictures, Wanted wanted) {
@@ -101,6 +112,7 @@ void prefer_depths(std::vector<Picture>& pictures) {
 std::vector<Picture> depths_in(const fs::path& folder, bool is_for_depth) {
   std::vector<Picture> depths = pictures_in(folder, depth_extensions());
   prefer_depths(depths);
+  prefer(depths, [](const Picture& p) { return !says_no_depth(lower(p.stem)); });
   const auto says_depth = [](const Picture& p) { return p.name.role == Role::depth; };
   const bool is_said = std::ranges::any_of(depths, says_depth);
   if (!is_for_depth) prefer(depths, says_depth);
@@ -212,12 +224,6 @@ void note_missing_colours(FrameList& list, std::size_t colours) {
 }
 
 constexpr const char* kNoName = "its name does not say colour, expected rgb, color or image";
-
-/// Returns whether a name is that of pictures that are shown for something else than what the camera saw.
-bool says_other(const std::string& name) {
-  const auto has = [&](const char* word) { return name.find(word) != name.npos; };
-  return std::ranges::any_of(std::array{"depth", "ir", "mask", "seg", "label", "conf", "normal", "vis"}, has);
-}
 
 /// Returns why what looks like colour is not taken; nothing of other files.
 std::string why_no_colour(const SourceItem& item, std::size_t frames) {

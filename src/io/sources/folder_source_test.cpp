@@ -181,6 +181,15 @@ TEST(ListFolder, TakesNoPictureForDepthThatCannotBeWhereOneCan) {
       << "none can";
 }
 
+TEST(ListFolder, MasksOfDepthAreNoDepth) {
+  const TemporaryFolder folder;
+  put(folder / "meta.json", R"({"fx": 50})");
+  for (const char* name : {"0_depth.png", "0_depth_mask.png", "1_depth.png", "1_depth_mask.png"}) {
+    put(folder / name, encode_png(DepthImage(64, 48, 1000)));
+  }
+  EXPECT_EQ(open_source(folder.path())->size(), 2);
+}
+
 TEST(ListFolder, SaysWhyColourIsNotTaken) {
   const auto notes_of = [](const std::vector<std::string>& files) {
     const TemporaryFolder folder;
@@ -288,6 +297,17 @@ TEST(ListFolder, NamesTheFolderThatHasFrames) {
   put(folder / "cam_1/depth/0.png", encode_png(DepthImage(64, 48, 1000)));
   put(folder / "notes.txt", "hello");
   EXPECT_THAT(error_of([&] { open_source(folder.path()); }), HasSubstr("cam_1 has some"));
+}
+
+TEST(ListFolder, NamesFramesThatLieDeep) {
+  for (const char* file : {"mav0/cam0/data/000001.png", "2024/day 1/rec_0.mcap", "a/b/c/depth/0.png", "x/cloud.pcd"}) {
+    const TemporaryFolder folder;
+    put(folder / "none/of/them.txt", "hello");
+    put(folder / file, encode_png(DepthImage(64, 48, 1000)));
+    const std::string has = std::filesystem::path(file).parent_path().string();
+    const std::string above = has.substr(0, has.find("/depth"));
+    EXPECT_THAT(error_of([&] { open_source(folder.path()); }), HasSubstr(above + " has some")) << file;
+  }
 }
 
 }  // namespace

@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "io/files/data_file.h"
 #include "io/files/depth_picture.h"
@@ -85,26 +86,7 @@ std::unique_ptr<FrameSource> open_folder(const std::string& path, const SourceOp
   return open_list(list_folder(path, options));
 }
 
-/// Removes the scale from "walking:1000" and returns it, unless a folder has that whole name.
-std::optional<float> split_scale(std::string& path) {
-  std::error_code ignored;
-  const std::size_t colon = path.rfind(':');
-  if (colon == path.npos || fs::exists(path, ignored)) return std::nullopt;
-  float scale = 0.F;
-  const char* end = path.data() + path.size();
-  const auto [stop, error] = std::from_chars(path.data() + colon + 1, end, scale);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  path.resize(colon);
-  return scale;
-}
-
-std::unique_ptr<FrameSource> open_tum(const std::string& rest, const SourceOptions& given) {
-  std::string path = rest;
-  SourceOptions options = given;
-  if (const auto scale = split_scale(path)) {
-    if (options.depth_scale) throw UsageError(rest + ": the depth scale is given twice, here and as an option");
-    options.depth_scale = scale;
-  }
+std::unique_ptr<FrameSource> open_tum(const std::string& path, const SourceOptions& options) {
   expect_folder(path, options, kTum);
   return open_list(list_tum(path, options));
 }
@@ -215,17 +197,30 @@ std::string_view scheme_of_file(const std::string& path) {
   throw Error(fmt::format("{}: {}, expected {}", path, kind_or(first, "unknown kind of file"), kAnything));
 }
 
-/// Says which of the folders in a folder have frames.
-std::string frames_below(const std::string& path) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
-    std::error_code ignored;
-    const std::string inner = it->path().string();
-    if (it->is_directory(ignored) && (has_depth_folder(inner) || is_tum_folder(inner))) names.push_back(inner);
+bool has_frames(const std::string& folder) {
+  try {
+    const std::vector<fs::path> pictures = list_files(folder, depth_extensions());
+    return has_depth_folder(folder) || is_tum_folder(folder) || has_recordings(folder) ||
+           !list_files(folder, {".pcd"}).empty() || (!pictures.empty() && may_be_depth(pictures.front().string()));
+  } catch (const Error&) {  // a folder that must not be read
+    return false;
   }
-  if (names.empty()) return {};
-  return fmt::format("; {} has some", *std::ranges::min_element(names));
+}
+
+/// Says which folder in a folder has frames, the least deep one first.
+std::string frames_below(const std::string& path) {
+  constexpr int kMostLevels = 3, kMostLookedAt = 100'000;
+  std::vector<std::pair<int, std::string>> found;
+  std::error_code error;
+  fs::recursive_directory_iterator it(path, fs::directory_options::skip_permission_denied, error);
+  for (int left = kMostLookedAt; !error && left > 0 && it != fs::end(it); it.increment(error), --left) {
+    std::error_code ignored;
+    if (!it->is_directory(ignored)) continue;
+    const bool has = has_frames(it->path().string());
+    if (has) found.emplace_back(it.depth(), it->path().string());
+    if (has || it.depth() + 1 == kMostLevels) it.disable_recursion_pending();
+  }
+  return found.empty() ? "" : fmt::format("; {} has some", std::ranges::min_element(found)->second);
 }
 
 std::string_view scheme_of_folder(const std::string& path) {
@@ -278,9 +273,7 @@ bool is_camera(const std::string& uri) { return camera_of(uri) != nullptr; }
 std::string path_of_source(const std::string& uri) {
   if (const SensorDriver* driver = camera_of(uri)) return uri.substr(driver->scheme.size() + 1);
   const Scheme* scheme = scheme_of(uri);
-  std::string path = scheme == nullptr ? uri : uri.substr(scheme->name.size() + 1);
-  if (scheme != nullptr && scheme->open == open_tum) split_scale(path);
-  return path;
+  return scheme == nullptr ? uri : uri.substr(scheme->name.size() + 1);
 }
 
 Frame make_frame(const Camera& camera, const std::uint16_t* depth_mm, std::size_t depth_stride, const std::uint8_t* rgb,

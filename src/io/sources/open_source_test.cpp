@@ -310,16 +310,12 @@ TEST(TumSource, TakesNumbersOfFramesForNoTimes) {
   EXPECT_EQ(all_frames(*open_source(folder.path()))[11].time_s, 1.1);
 }
 
-TEST(TumSource, TakesTheScaleFromTheAddress) {
+TEST(TumSource, TakesTheScaleThatIsGiven) {
   const TemporaryFolder folder;
   put_tum(folder, DepthImage(640, 480, 10000), ColourImage(640, 480));
-  EXPECT_EQ(open_source("tum:" + folder.path() + ":1000")->next()->depth(0, 0), 10000);
   SourceOptions options;
   options.depth_scale = 2000.F;
   EXPECT_EQ(open_source("tum:" + folder.path(), options)->next()->depth(0, 0), 5000);
-  EXPECT_THROW(open_source("tum:" + folder.path() + ":1000", options), UsageError);
-  EXPECT_THAT(open_error("tum:" + folder.path() + ":-4"), HasSubstr("depth_scale"));
-  EXPECT_THAT(open_error("tum:" + folder.path() + ":x"), HasSubstr("No such file"));
 }
 
 TEST(TumSource, NeedsACameraForOtherSizes) {

@@ -41,14 +41,7 @@ bool are_parts(const std::vector<std::string>& files) {
   return numbers.size() == files.size() && !numbers.contains(std::nullopt);
 }
 
-}  // namespace
-
-bool has_recording_name(const std::string& path) {
-  constexpr std::array<std::string_view, 4> kRecorded{".mcap", ".bag", ".db3", ".mkv"};
-  return std::ranges::find(kRecorded, lower_extension(without_state(path))) != kRecorded.end();
-}
-
-std::vector<std::string> list_recording(const std::string& folder) {
+std::vector<std::string> recordings_in(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code none;
   for (const fs::path& file : list_files(folder, {".mcap", ".bag", ".db3", ".mkv", ".active", ".zstd", ".zst"})) {
@@ -56,6 +49,21 @@ std::vector<std::string> list_recording(const std::string& folder) {
     const bool is_double = plain != file && fs::exists(plain, none);  // `ros2 bag play` leaves what it unpacked
     if (has_recording_name(file.string()) && !is_double) files.push_back(file.string());
   }
+  return files;
+}
+
+}  // namespace
+
+bool has_recording_name(const std::string& path) {
+  constexpr std::array<std::string_view, 4> kRecorded{".mcap", ".bag", ".db3", ".mkv"};
+  return std::ranges::find(kRecorded, lower_extension(without_state(path))) != kRecorded.end();
+}
+
+bool has_recordings(const std::string& folder) { return !recordings_in(folder).empty(); }
+
+std::vector<std::string> list_recording(const std::string& folder) {
+  std::vector<std::string> files = recordings_in(folder);
+  std::error_code none;
   if (files.size() < 2 || fs::exists(fs::path(folder) / "metadata.yaml", none)) return files;
   if (!are_parts(files)) {
     throw Error(fmt::format(

@@ -9,6 +9,9 @@ namespace vesalius {
 /// "x.db3.zstd", which rosbag2 packed.
 bool has_recording_name(const std::string& path);
 
+/// Returns whether a folder has recordings.
+bool has_recordings(const std::string& folder);
+
 /// Returns the files of a folder that are one recording, in their order: those of rosbag2, with or without
 /// metadata.yaml, or what `rosbag record --split` wrote. Empty where there are none. Throws Error where there are
 /// several that are no parts of each other: files of one recording end in _0, _1 and so on.
