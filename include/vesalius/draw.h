@@ -19,10 +19,12 @@ ColourImage draw_depth(const DepthImage& depth);
 ColourImage draw_labels(const LabelImage& labels, const DepthImage& depth, const BodyModel& body, bool legend);
 
 /// Draws people over the frame's colour, or over its depth if it has no colour. Each person has a tinted mask with an
-/// outline, a skeleton and "index: score". Observed parts are discs in their colours, predicted ones rings; links
-/// between observed parts are thick, others thin. People whose masks are empty, such as hidden ones who are followed,
-/// are left out and keep their index. Pictures narrower than 480 pixels are doubled in size. Throws Error if a mask or
-/// skeleton does not fit the frame or the body.
-ColourImage draw_people(const Frame& frame, const std::vector<Person>& people, const BodyModel& body);
+/// outline, a skeleton and "number: score", which keeps its colour: of `numbers`, such as the ids of people who are
+/// followed, or without these of their places in `people`. Observed parts are discs in their colours, predicted ones
+/// rings; links between observed parts are thick, others thin. People whose masks are empty, such as hidden ones who
+/// are followed, are left out and keep their number. Pictures narrower than 480 pixels are doubled in size. Throws
+/// Error if a mask or skeleton does not fit the frame or the body, or `numbers` are not as many as people.
+ColourImage draw_people(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
+                        const std::vector<int>& numbers = {});
 
 }  // namespace vesalius

@@ -155,9 +155,9 @@ void draw_skeleton(ColourImage& picture, const Skeleton& skeleton, const Camera&
   }
 }
 
-void draw_score(ColourImage& picture, const Person& person, std::size_t index, Rgb colour, int scale) {
+void draw_score(ColourImage& picture, const Person& person, int number, Rgb colour, int scale) {
   std::array<char, 48> text;
-  std::snprintf(text.data(), text.size(), "%zu: %.2f", index, double(person.score));
+  std::snprintf(text.data(), text.size(), "%d: %.2f", number, double(person.score));
   draw_tag(picture, text.data(), person.box.u * scale, person.box.v * scale - 2, colour);
 }
 
@@ -199,11 +199,19 @@ ColourImage draw_labels(const LabelImage& labels, const DepthImage& depth, const
   return legend ? with_legend(picture, body) : picture;
 }
 
-ColourImage draw_people(const Frame& frame, const std::vector<Person>& people, const BodyModel& body) {
+ColourImage draw_people(const Frame& frame, const std::vector<Person>& people, const BodyModel& body,
+                        const std::vector<int>& numbers) {
   check(frame);
+  if (!numbers.empty() && numbers.size() != people.size()) {
+    throw Error("draw_people: " + std::to_string(numbers.size()) + " numbers for " + std::to_string(people.size()) +
+                " people");
+  }
+  const auto number_of = [&](std::size_t i) { return numbers.empty() ? int(i) : numbers[i]; };
   const int scale = legible_scale(frame.depth.width());
   ColourImage picture = enlarge(frame.colour.empty() ? draw_depth(frame.depth) : frame.colour, scale);
-  const auto colour_of = [](std::size_t index) { return kPersonColours[index % kPersonColours.size()]; };
+  const auto colour_of = [&](std::size_t i) {
+    return kPersonColours[std::size_t(number_of(i)) % kPersonColours.size()];
+  };
   for (std::size_t i = 0; i < people.size(); ++i) {
     if (people[i].mask.empty()) continue;
     check_fits(frame, people[i], i, body);
@@ -212,7 +220,7 @@ ColourImage draw_people(const Frame& frame, const std::vector<Person>& people, c
   for (std::size_t i = 0; i < people.size(); ++i) {
     if (people[i].mask.empty()) continue;
     draw_skeleton(picture, people[i].skeleton, frame.camera, body, scale);
-    draw_score(picture, people[i], i, colour_of(i), scale);
+    draw_score(picture, people[i], number_of(i), colour_of(i), scale);
   }
   return picture;
 }

@@ -174,6 +174,21 @@ TEST(DrawPeople, DrawsPeopleInDifferentColours) {
   EXPECT_NE(picture(100, 300), picture(500, 300));
 }
 
+TEST(DrawPeople, KeepsTheColourOfANumber) {
+  const Frame frame = plain_frame(640, 480);
+  const BodyModel body = three_parts();
+  std::vector<Person> people(2, person_of(frame, body));
+  people[0].mask(100, 300) = 1;
+  people[1].mask(500, 300) = 1;
+  const ColourImage picture = draw_people(frame, people, body, {4, 3}),
+                    later = draw_people(frame, people, body, {3, 4});
+  EXPECT_EQ(picture(100, 300), later(500, 300));
+  EXPECT_EQ(picture(500, 300), later(100, 300));
+  EXPECT_NE(picture(100, 300), later(100, 300));
+  EXPECT_THAT([&] { draw_people(frame, people, body, {3}); },
+              ThrowsMessage<Error>(HasSubstr("1 numbers for 2 people")));
+}
+
 TEST(DrawPeople, DrawsObservedPartsAsDiscsAndPredictedOnesAsRings) {
   const Frame frame = plain_frame(640, 480);
   const BodyModel body = three_parts();

@@ -73,7 +73,7 @@ std::string DetectOutputs::path(const char* kind, const Frame& frame, const char
 
 void DetectOutputs::write(const FoundFrame& found) {
   const Frame& frame = *found.frame;
-  if (!kinds_.empty()) write_pictures(frame, people_of(found.people));  // numbered as in the JSON
+  if (!kinds_.empty()) write_pictures(frame, found.people);
   const std::string json = json_ || udp_ ? frame_json(frame, found.people, body_, found.latency_ms) : "";
   send(found.people, json);
   if (json_) json_->line(json);
@@ -81,7 +81,12 @@ void DetectOutputs::write(const FoundFrame& found) {
   ++frames_;
 }
 
-void DetectOutputs::write_pictures(const Frame& frame, const std::vector<Person>& people) {
+void DetectOutputs::write_pictures(const Frame& frame, const TrackedFrame& found) {
+  const std::vector<Person> people = people_of(found);  // in the order of the JSON
+  std::vector<int> ids;
+  for (const TrackedPerson& person : found.people) {
+    if (found.followed) ids.push_back(person.id);
+  }
   const int width = frame.depth.width();
   const int height = frame.depth.height();
   if (!names_.insert(frame.name).second) {
@@ -89,7 +94,7 @@ void DetectOutputs::write_pictures(const Frame& frame, const std::vector<Person>
         fmt::format("frame \"{}\": its pictures would replace those of another frame of this name", frame.name));
   }
   if (wants("overlay") || video_) {
-    const ColourImage overlay = draw_people(frame, people, body_);
+    const ColourImage overlay = draw_people(frame, people, body_, ids);
     if (wants("overlay")) write_png(overlay, path("overlay", frame, ".png"));
     if (video_) video_->write(overlay);
   }

@@ -51,7 +51,7 @@ class DetectOutputs {
  private:
   bool wants(const std::string& kind) const { return kinds_.contains(kind); }
   std::string path(const char* kind, const Frame& frame, const char* extension) const;
-  void write_pictures(const Frame& frame, const std::vector<Person>& people);
+  void write_pictures(const Frame& frame, const TrackedFrame& found);
   void send(const TrackedFrame& people, const std::string& json);
 
   OutputRequest request_;
