@@ -297,6 +297,21 @@ TEST(ClipGenerator, LetsPeopleFallWithinASecondOrSo) {
   }
 }
 
+TEST(ClipGenerator, LetsWhoFellGetUpAgain) {
+  Recipe recipe = recipe_of_one();
+  recipe.clip.falling_share = recipe.clip.rising_share = 1.F;
+  const ClipGenerator clips(recipe, {}, paper_body(), 4, {9.F, 20.0});
+  const std::vector<LabelledFrame> frames = frames_of(clips, 0);
+  std::vector<std::string> postures;
+  for (const LabelledFrame& frame : frames) {
+    const std::string& now = frame.postures.at(0);
+    if (now == "standing" || now == "lying") postures.push_back(now);
+  }
+  postures.erase(std::ranges::unique(postures).begin(), postures.end());
+  EXPECT_THAT(postures, testing::ElementsAre("standing", "lying", "standing"));
+  EXPECT_LT(longest_step(frames), 0.42F) << "8.4 m/s";
+}
+
 TEST(ClipGenerator, LetsPeopleSitDownAndGetUp) {
   Recipe recipe = recipe_of_one();
   recipe.clip.walking_share = 0.F;

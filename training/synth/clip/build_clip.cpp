@@ -31,14 +31,18 @@ std::vector<BodyOutline> outlines_of(const Poser& poser, const PersonTrack& trac
   return outlines;
 }
 
-/// Returns the track of a movement that is played once, some time after the beginning.
+/// Returns the track of a movement that is played once, some time after the beginning, and back if the person `rises`.
 PersonTrack track_of(const Movement& movement, float leg_m, const Vector2f& at, float heading_rad, float delay_s,
-                     float seconds) {
+                     float seconds, bool rises = false) {
+  constexpr float kRest_s = 1.5F, kSlower = 0.5F;  // who fell gets up with care
   const BodyState& first = movement.states.front();
   const float about = heading_rad - first.heading_rad;
   PersonTrack track;
   for (int i = 0; i < track_length(seconds); ++i) {
-    const BodyState state = state_at(movement, std::max(0.F, float(i) / kTrackRate_hz - delay_s));
+    float time_s = std::max(0.F, float(i) / kTrackRate_hz - delay_s);
+    const float rested_s = time_s - movement.seconds() - kRest_s;
+    if (rises && rested_s > 0.F) time_s = std::max(0.F, movement.seconds() - kSlower * rested_s);
+    const BodyState state = state_at(movement, time_s);
     const Vector2f way = leg_m * (state.root - first.root);
     track.states.push_back({state.pose, at + way.x() * left_of(about) + way.y() * front_of(about),
                             heading_rad + state.heading_rad - first.heading_rad});
@@ -218,7 +222,7 @@ class Builder {
     const float bearing = between(-0.7, 0.7, random_) * half_fan, heading = between(-kPi, kPi, random_);
     const float delay = between(0.0, 0.3, random_) * seconds_;
     return track_of(*plan.lies_down, plan.can.leg_m, {along * std::sin(bearing), -along * std::cos(bearing)}, heading,
-                    delay, seconds_);
+                    delay, seconds_, asked(options_.rising_share, random_));
   }
 
   /// Returns whether a person is apart from the camera, all seats and beds, and at all times from all others.

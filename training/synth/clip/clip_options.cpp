@@ -10,6 +10,8 @@ void visit_options(const std::string& prefix, ClipOptions& o, OptionVisitor& vis
   visitor.option(prefix + "crossing-share", o.crossing_share,
                  {"", 0, 1, "Share of clips of several people in which those who walk pass before or behind others."});
   visitor.option(prefix + "falling-share", o.falling_share, {"", 0, 1, "Share of people who fall and remain lying."});
+  visitor.option(prefix + "rising-share", o.rising_share,
+                 {"", 0, 1, "Share of those who fall or lie down who get up again."});
   visitor.option(prefix + "seating-share", o.seating_share,
                  {"", 0, 1, "Share of people on seats who sit down or get up meanwhile."});
   visitor.option(prefix + "moving-share", o.moving_share, {"", 0, 1, "Share of clips whose camera moves."});

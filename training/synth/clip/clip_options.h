@@ -13,6 +13,7 @@ struct ClipOptions {
   float leaving_share = 0.1F;   ///< share of ways that lead out of the picture
   float crossing_share = 0.9F;  ///< share of clips with walking people and others in which they pass before each other
   float falling_share = 0.F;    ///< share of people who stand, fall and remain lying, whatever else they would do
+  float rising_share = 0.F;     ///< share of those who fall or lie down who get up again
   float seating_share = 0.F;    ///< share of people on seats who sit down or get up in the clip
   float moving_share = 0.5F;    ///< share of clips whose camera moves
   float speed_max_m_s = 0.3F;   ///< greatest speed of the camera
