@@ -67,7 +67,7 @@ void add(const std::string& name, const std::shared_ptr<const BodyFitter>& fitte
 
 void add_fit_benchmarks() {
   const auto fitter = std::make_shared<const BodyFitter>(paper_body());
-  add("first/demo", fitter, find_fits("demo", "default.forest", *fitter).first);
+  add("first/rooms", fitter, find_fits("rooms", "default.forest", *fitter).first);
   add("followed/sample", fitter, find_fits("sample", "capsule.forest", *fitter).second);
 }
 

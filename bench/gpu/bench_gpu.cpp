@@ -37,7 +37,7 @@ using Json = nlohmann::ordered_json;
 struct Arguments {
   int device = 0, rounds = 20, batch = 256;
   bool simulated = false, count_only = false;
-  std::string frames = VESALIUS_SOURCE_DIR "/data/demo", json;
+  std::string frames = VESALIUS_SOURCE_DIR "/data/rooms", json;
 };
 
 double median_ms(int rounds, const std::function<void()>& work) {
@@ -217,7 +217,7 @@ int main(int argc, char** argv) {
   app.add_flag("--simulated", arguments.simulated,
                "The simulator instead of a card: to try this program, not to measure");
   app.add_flag("--count-only", arguments.count_only, "Only what bench/gpu/model.py needs");
-  app.add_option("--frames", arguments.frames, "Frames to label; those of data/demo without");
+  app.add_option("--frames", arguments.frames, "Frames to label; those of data/rooms without");
   app.add_option("--rounds", arguments.rounds, "Runs of which a median is taken")->check(CLI::Range(1, 10000));
   app.add_option("--batch", arguments.batch, "Pictures that are labelled together")->check(CLI::Range(1, 100000));
   app.add_option("--json", arguments.json, "File for the figures; standard output without");

@@ -39,7 +39,7 @@ def main():
         print("structures")
         expect_same(run(*compiled("Layouts.exe", binding, here / "Layouts.cs")), run(layouts), "C#'s structures")
         print("the example")
-        frames = expected_frames(reference, source / "data/demo", folder)[:2]
+        frames = expected_frames(reference, source / "data/rooms", folder)[:2]
         example = compiled("DetectPeople.exe", binding, source / "examples/csharp/DetectPeople.cs")
         expect_example(example, model, frames, env=quiet)
         expect_same(run(*example, "-", *frames[0][0], env=quiet), frames[0][1], "the model that comes with vesalius")

@@ -22,7 +22,7 @@ def main():
     source, example, reference = (Path(a).resolve() for a in sys.argv[1:4])
     model = source / "data/models/default.model"
     with tempfile.TemporaryDirectory() as folder:
-        frames = expected_frames(reference, source / "data/demo", folder)[:3]  # CLibrary has all
+        frames = expected_frames(reference, source / "data/rooms", folder)[:3]  # CLibrary has all
         expect_example([example], model, frames)
         expect_example([example], "-", frames[:1])
         depth, width, height, *camera = frames[0][0]

@@ -96,7 +96,7 @@ def main():
         folder = Path(folder)
         prefix = folder / "prefix"
         run("cmake", "--install", build, "--prefix", prefix)
-        frames = expected_frames(reference, source / "data/demo", folder)[:1]
+        frames = expected_frames(reference, source / "data/rooms", folder)[:1]
         check_pkg_config(source, prefix, folder, frames)
         check_models(prefix, folder, frames)
         check_cmake(source, prefix, folder, frames)

@@ -71,10 +71,10 @@ CTracker make_tracker(const vesalius_detector* detector) {
   return CTracker(made);
 }
 
-const std::vector<Frame>& demo() {
+const std::vector<Frame>& rooms() {
   static const std::vector<Frame> frames = [] {
     std::vector<Frame> read;
-    const auto source = open_source(kData + "demo");
+    const auto source = open_source(kData + "rooms");
     while (auto frame = source->next()) read.push_back(std::move(*frame));
     return read;
   }();
@@ -239,9 +239,9 @@ void expect_same_body(const TrackedPerson& expected, const BodyModel& body, cons
 // Labels: slow
 TEST(CLibrary, FindsTheSamePeopleAsTheDetectorToTheBit) {
   const Detector detector(load_model(kModel));
-  ASSERT_FALSE(demo().empty());
+  ASSERT_FALSE(rooms().empty());
   int found = 0;
-  for (const Frame& frame : demo()) {
+  for (const Frame& frame : rooms()) {
     const std::vector<Person> expected = detector.detect(frame);
     const CPeople people = detect(usual_detector(), frame_of(frame), camera_of(frame.camera));
     ASSERT_EQ(vesalius_people_count(people.get()), static_cast<int>(expected.size())) << frame.name;
@@ -265,7 +265,7 @@ TEST(CLibrary, FollowsPeopleAsTheTrackerToTheBit) {
   int hidden = 0, fitted = 0;
   // Thrice the same frame, so that people are sure, and one without them.
   for (const std::size_t which : {0, 0, 0, 1, 2}) {
-    Frame frame = demo().at(which);
+    Frame frame = rooms().at(which);
     if (which == 1) frame.depth.fill(4000);
     const TrackedFrame expected = follow(detector, tracker, frame);
     const vesalius_frame given = frame_of(frame);
@@ -326,10 +326,10 @@ TEST(CLibrary, NamesBonesAsTheFlesh) {
   EXPECT_EQ(vesalius_detector_bone_name(nullptr, 0), nullptr);
 }
 
-/// The first frame of the demo in a way of storing it, and the same people in it.
+/// The first of the rooms in a way of storing it, and the same people in it.
 class Layout : public testing::Test {
  protected:
-  const Frame& frame_ = demo().front();
+  const Frame& frame_ = rooms().front();
   const std::size_t width_ = static_cast<std::size_t>(frame_.camera.width);
   const std::size_t height_ = static_cast<std::size_t>(frame_.camera.height);
   const vesalius_camera camera_ = camera_of(frame_.camera);
@@ -501,7 +501,7 @@ TEST(CLibrary, DetectsWithTheOptionsThatAreSet) {
   EXPECT_EQ(value_of(options, "refine.max-candidates"), "1");
   EXPECT_EQ(value_of(options, "refine.min-score"), "1.0");
   const CDetector strict = make_detector(kModel, options.get());
-  for (const Frame& frame : demo()) {
+  for (const Frame& frame : rooms()) {
     const CPeople nobody = detect(strict.get(), frame_of(frame), camera_of(frame.camera));
     EXPECT_EQ(vesalius_people_count(nobody.get()), 0);
   }
@@ -532,7 +532,7 @@ TEST(CLibrary, DestroysNull) {
 /// Calls that must fail, and everything that they need to succeed.
 class CErrors : public testing::Test {
  protected:
-  const Frame& frame_ = demo().front();
+  const Frame& frame_ = rooms().front();
   vesalius_camera camera_ = camera_of(frame_.camera);
   vesalius_frame given_ = frame_of(frame_);
   vesalius_people* const untouched_ = reinterpret_cast<vesalius_people*>(this);

@@ -41,7 +41,7 @@ SECONDS = 3600
 SMALL = ["--sensor.width", "320", "--sensor.height", "240", "--pose.captured", "0", "--body.kind", "builtin"]
 TWO_PEOPLE = ["--people.none", "0", "--people.one", "0", "--people.two", "1", "--people.three", "0", "--people.four", "0"]
 # Files that a page takes for the reader's own, and what the program makes them with.
-READERS_OWN = {"recording.mcap": ["record", "data/demo", "-q", "--out"]}
+READERS_OWN = {"recording.mcap": ["record", "data/rooms", "-q", "--out"]}
 
 
 @dataclass

@@ -98,7 +98,7 @@ Frame part_of(const Frame& frame, int left, int top, int width, int height) {
 }
 
 TEST(DemoOnADevice, IsTheSameByTheDefaultNetworkInTheSimulator) {
-  const Frame frame = *open_source(VESALIUS_SOURCE_DIR "/data/demo")->next();
+  const Frame frame = *open_source(VESALIUS_SOURCE_DIR "/data/rooms")->next();
   const Frame part = part_of(every_nth(frame, grid_step(frame.camera, {})), 80, 40, 150, 120);
   const Model model = shipped("default.model");
   const Posteriors expected = on_device(model).labeller->label(part);

@@ -4,7 +4,7 @@
 usage: fast_dds.py CASE VESALIUS SENDER SOURCE_DIR WORK_DIR [PEER]
 
   types      one message of each type goes to Fast DDS, which reads it and writes it anew: the same bytes come back
-  topics     Fast DDS reads all topics of a run on data/demo, and who the node is
+  topics     Fast DDS reads all topics of a run on data/rooms, and who the node is
   rate       all topics at 30 Hz with pictures of 640x480 for VESALIUS_ROS2_SECONDS (5): none is lost, though another
              reader is killed meanwhile; whoever comes late gets what is latched
   subscribe  frames from topics that Fast DDS publishes, depth in millimetres and in metres
@@ -89,8 +89,8 @@ class Case:
         return by_topic
 
     def clip(self, frames):
-        """A folder in which a frame of data/demo with people stays for so long."""
-        demo, folder = Path(self.source) / "data/demo", Path(self.work) / "clip"
+        """A folder in which a frame of data/rooms with people stays for so long."""
+        demo, folder = Path(self.source) / "data/rooms", Path(self.work) / "clip"
         for kind in ("depth", "rgb"):
             (folder / kind).mkdir(parents=True, exist_ok=True)
             picture = sorted((demo / kind).iterdir())[0]
@@ -126,7 +126,7 @@ class Case:
             fail(f"types: {done.stdout}{done.stderr}")
 
     def usage(self):
-        demo = f"{self.source}/data/demo"
+        demo = f"{self.source}/data/rooms"
         for words, code, why in (([], 2, "either SOURCE or --subscribe"), ([demo, "--subscribe", "/c"], 2, "either SOURCE"),
                                  (["--subscribe", "c"], 2, "--subscribe c: expected a name"),
                                  (["--subscribe", "/c", "--every-frame"], 2, "--every-frame goes with"),

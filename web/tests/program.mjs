@@ -8,7 +8,7 @@ import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
 export const root = join(dirname(fileURLToPath(import.meta.url)), '../..');
-export const demo = join(root, 'data/demo');
+export const rooms = join(root, 'data/rooms');
 const program = process.env.VESALIUS ?? join(root, 'build/dev/src/cli/vesalius');
 const browserPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 

@@ -4,7 +4,7 @@ import { mkdirSync, readFileSync, readdirSync } from 'node:fs';
 import http from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { NO_3D, View, demo, launch, makeClip, newFolder, open, request, root, run, shown, until } from './program.mjs';
+import { NO_3D, View, rooms, launch, makeClip, newFolder, open, request, root, run, shown, until } from './program.mjs';
 
 const pictures = join(root, 'out/web');
 mkdirSync(pictures, { recursive: true });
@@ -27,7 +27,7 @@ function clip() {
 }
 
 /** Runs `work` with a viewer and a page on it; the page must not have complained. */
-async function withPage(work, words = [], options = {}, useBrowser = null, source = demo) {
+async function withPage(work, words = [], options = {}, useBrowser = null, source = rooms) {
   const view = await View.start(source, '--paused', '--port', '0', ...words);
   const page = await open(useBrowser ?? browser, view.address, options);
   try {
@@ -40,7 +40,7 @@ async function withPage(work, words = [], options = {}, useBrowser = null, sourc
   }
 }
 
-function detected(source = demo, ...flags) {
+function detected(source = rooms, ...flags) {
   const lines = run('detect', source, '-q', '--json', '-', ...flags).trim().split('\n');
   return lines.map((line) => JSON.parse(line)).filter((line) => line.people);
 }
@@ -85,7 +85,7 @@ async function look(page, id) {
 test('shows the people that detect finds, to the pixel', async () => {
   const expected = detected();
   const { folder, remove } = newFolder();
-  run('detect', demo, '-q', '--out', folder, '--save', 'labels,mask');
+  run('detect', rooms, '-q', '--out', folder, '--save', 'labels,mask');
   await withPage(async (page) => {
     await page.selectOption('#skeleton', 'parts');
     for (const [i, line] of expected.entries()) {
@@ -299,7 +299,7 @@ test('an option gives another result at once, and the file has it', async () => 
     await page.click('#save-options');
     const file = await (await saved).path();
     assert.match(readFileSync(file, 'utf8'), /\nrefine\.min-score = 1\.0\n/);
-    assert.match(run('detect', demo, '--options', file), /: nobody/);
+    assert.match(run('detect', rooms, '--options', file), /: nobody/);
     await page.screenshot({ path: join(pictures, 'options.png') });
     await field.fill('-5');
     await field.press('Enter');
@@ -376,14 +376,14 @@ test('pages do not take the stages from each other', async () => {
 });
 
 test('survives a restarted program', async () => {
-  const first = await View.start(demo, '--paused', '--port', '0');
+  const first = await View.start(rooms, '--paused', '--port', '0');
   const page = await open(browser, first.address);
   await until(page, () => window.vesalius?.frame());
   await page.keyboard.press('ArrowRight');
   await until(page, () => window.vesalius.frame().number > 1);
   assert.equal(await first.stop(), 0);
   await page.locator('#status', { hasText: 'does not answer' }).waitFor();
-  const second = await View.start(demo, '--paused', '--port', String(first.port));
+  const second = await View.start(rooms, '--paused', '--port', String(first.port));
   await until(page, () => !document.body.classList.contains('away') && window.vesalius.frame()?.number === 1);
   await page.context().close();
   assert.equal(await second.stop(), 0);
@@ -458,7 +458,7 @@ test('shows the flat picture where there is no WebGL 2', async () => {
 
 test('refuses foreign hosts, pages and tokens', async () => {
   const renamed = await launch(['--host-resolver-rules=MAP evil.example 127.0.0.1']);
-  const view = await View.start(demo, '--paused', '--port', '0');
+  const view = await View.start(rooms, '--paused', '--port', '0');
   // A page whose name was made to mean this machine.
   const page = await (await renamed.newContext()).newPage();
   const response = await page.goto(`http://evil.example:${view.port}/`);
@@ -482,7 +482,7 @@ test('refuses foreign hosts, pages and tokens', async () => {
   await renamed.close();
   assert.equal(await view.stop(), 0);
 
-  const shared = await View.start(demo, '--paused', '--port', '0', '--host', '0.0.0.0');
+  const shared = await View.start(rooms, '--paused', '--port', '0', '--host', '0.0.0.0');
   const token = new URL(shared.address).searchParams.get('token');
   assert.match(token, /^[0-9a-f]{32}$/);
   assert.equal((await request(shared.port, '/')).status, 403);
@@ -497,11 +497,11 @@ test('refuses foreign hosts, pages and tokens', async () => {
 });
 
 test('says in a line why it cannot start', async () => {
-  const view = await View.start(demo, '--paused', '--port', '0');
+  const view = await View.start(rooms, '--paused', '--port', '0');
   const refusal = (...words) => View.start(...words).then(() => 'started', (error) => error.message);
-  assert.match(await refusal(demo, '--port', String(view.port)), /^vesalius: 127\.0\.0\.1:\d+: another program has this port.*\n$/);
-  assert.match(await refusal(demo, '--port', '0', '--host', '192.0.2.1'), /^vesalius: 192\.0\.2\.1:0: .*\n$/);
-  assert.match(await refusal(demo, '--port', '0', '--folder', '/no/such'), /^vesalius: \/no\/such: no such folder.*\n$/);
+  assert.match(await refusal(rooms, '--port', String(view.port)), /^vesalius: 127\.0\.0\.1:\d+: another program has this port.*\n$/);
+  assert.match(await refusal(rooms, '--port', '0', '--host', '192.0.2.1'), /^vesalius: 192\.0\.2\.1:0: .*\n$/);
+  assert.match(await refusal(rooms, '--port', '0', '--folder', '/no/such'), /^vesalius: \/no\/such: no such folder.*\n$/);
   assert.match(await refusal('/no/such'), /^vesalius: \/no\/such: .*\n$/);
   assert.equal(await view.stop(), 0);
 });

@@ -1,4 +1,4 @@
-"""Compares the program's default network with the same one run by ONNX Runtime, on the frames of data/demo:
+"""Compares the program's default network with the same one run by ONNX Runtime, on the frames of data/rooms:
 `oracle_test.py VESALIUS_NETWORK_HEADS`, with the program of tests/network. Without ONNX Runtime or PyTorch the exit
 code is 77: skipped."""
 
@@ -44,7 +44,7 @@ class Shown:
 
 def frames_of(program, out):
     """Runs the program of tests/network."""
-    subprocess.run([program, MODEL, DATA / "demo", out], check=True, capture_output=True)
+    subprocess.run([program, MODEL, DATA / "rooms", out], check=True, capture_output=True)
     file, frames = Bytes(Path(out).read_bytes(), out), []
 
     def picture(kind):
@@ -92,7 +92,7 @@ class Oracle(unittest.TestCase):
         return max(float(np.abs(a - b).max()) for a, b in zip(said, (frame.classes, frame.person)))
 
     def test_frames_are_those_of_the_folder(self):
-        self.assertEqual(len(self.frames), len(list((DATA / "demo" / "depth").iterdir())))
+        self.assertEqual(len(self.frames), len(list((DATA / "rooms" / "depth").iterdir())))
 
     def test_a_network_that_is_read_is_the_one_that_was_written(self):
         classes, person = (head - 1 for head in self.heads)

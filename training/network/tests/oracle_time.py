@@ -1,5 +1,5 @@
 """Measures the processor time of the program's default network and of ONNX Runtime, one thread each, in turns, on a
-frame of data/demo: `oracle_time.py VESALIUS_NETWORK_HEADS`, with the program of tests/network. The library runs the
+frame of data/rooms: `oracle_time.py VESALIUS_NETWORK_HEADS`, with the program of tests/network. The library runs the
 network in real numbers, and in the integers that its own quantiser makes of them: 8 bits, a scale for each channel of
 the weights."""
 
@@ -49,7 +49,7 @@ def library_ms(session, inputs):
 
 
 def program_ms(program, out):
-    command = [program, MODEL, DATA / "demo" / "depth" / "01.png", out, "--runs", str(RUNS)]
+    command = [program, MODEL, DATA / "rooms" / "depth" / "01.png", out, "--runs", str(RUNS)]
     return float(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[0])
 
 
