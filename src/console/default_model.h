@@ -13,4 +13,7 @@ std::vector<std::string> model_folders();
 /// has it. Throws Error naming the folders if none has it.
 std::string default_model();
 
+/// The text of --help on --model, for commands that do so.
+inline constexpr const char* kModelHelp = "Trained model; without it the default.model that comes with vesalius";
+
 }  // namespace vesalius::cli

@@ -41,8 +41,7 @@ PeopleOptions people_options(const std::string& options_file, const OptionFlags<
 }
 
 DetectorFlags::DetectorFlags(CLI::App& command) : device_(command, kDetectorGroup), options_(command) {
-  command.add_option("-m,--model", model_, "Trained model; without it the default.model that comes with vesalius")
-      ->type_name("FILE");
+  command.add_option("-m,--model", model_, kModelHelp)->type_name("FILE");
   command.add_option("--options", options_file_, "TOML file of detector options")
       ->type_name("FILE")
       ->group(kDetectorGroup);

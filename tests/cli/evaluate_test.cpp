@@ -53,6 +53,13 @@ TEST_F(Evaluate, PrintsTheMetricsOfASet) {
                                      "frames/s\n  body on empty frames +[0-9.]+ % \\("));
 }
 
+TEST_F(Evaluate, MeasuresTheDefaultModelOnTheSample) {
+  const Outcome run = run_program("evaluate " VESALIUS_SOURCE_DIR "/data/sample -q");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, ContainsRegex("^sample: 8 frames, people 24 of 24, false 0, [0-9.]+ frames/s\n  mask IoU "
+                                     "where found +9[78][.]"));
+}
+
 TEST_F(Evaluate, StepTakesTheFirstOfEveryN) {
   EXPECT_THAT(evaluate(" --step 2").out, StartsWith("frames: 2 frames, people 1 of 1"));
 }

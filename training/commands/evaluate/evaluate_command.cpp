@@ -13,6 +13,7 @@
 
 #include "commands/evaluate/truth_recipe.h"
 #include "commands/training_commands.h"
+#include "console/default_model.h"
 #include "console/detector_flags.h"
 #include "console/interrupts.h"
 #include "console/machine_facts.h"
@@ -195,15 +196,16 @@ void run(const Arguments& arguments, const std::string& command) {
   const ThreadLimit limit(arguments.threads);
   const std::vector<Request> requests = set_requests(arguments);
   (void)rendered_truth(arguments);  // before anything is read
-  const std::string bytes = read_file(arguments.model);
-  Model model = parse_model(bytes, arguments.model);
+  const std::string path = arguments.model.empty() ? default_model() : arguments.model;
+  const std::string bytes = read_file(path);
+  Model model = parse_model(bytes, path);
   model.body = arguments.joints_file.empty() ? with_evaluation_joints(model.body)
                                              : with_joints_of(model.body, arguments.joints_file);
   Evaluation evaluation;
   evaluation.options = people_options(arguments.options_file, arguments.detector_flags);
   evaluation.labels_only = arguments.labels_only;
   evaluation.command = command;
-  evaluation.model = arguments.model;
+  evaluation.model = path;
   evaluation.model_checksum = model_checksum(bytes);
   evaluation.version = VESALIUS_VERSION;
   evaluation.machine = machine_facts();
@@ -282,7 +284,7 @@ void add_evaluate(CLI::App& program) {
   command->add_option("--render-seed", arguments->rendered.seed, "Seed of the recipes' frames")->type_name("N");
   command->add_option("--assets", arguments->rendered.assets.folder, "Folder in which `vesalius assets` put its files")
       ->type_name("DIR");
-  command->add_option("-m,--model", arguments->model, "Trained forest")->type_name("FILE")->required();
+  command->add_option("-m,--model", arguments->model, kModelHelp)->type_name("FILE");
   command->add_option("--report", arguments->report, "Folder for report.html, report.json and figures.csv")
       ->type_name("DIR");
   command->add_option("--json", arguments->json, "Metrics as JSON, for `vesalius compare`; - for standard output")
