@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "console/text_sink.h"
 #include "export/people_record.h"
+#include "export/stand_upright.h"
 #include "export/write_people.h"
 #include "io/files/atomic_file.h"
 #include "io/files/data_file.h"
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 struct ExportArguments {
   std::string people, to, format, joints;
   std::optional<int> person;
+  std::string frame = "floor";
   RecordOptions record;
   bool quiet = false;
 };
@@ -90,7 +92,11 @@ std::size_t find_set(const PeopleRecord& record, const ExportArguments& argument
 std::vector<File> make_files(const ExportArguments& arguments, const ExportFormat& format) {
   const bool is_mcap = arguments.people.ends_with(".mcap");
   const std::string lines = is_mcap ? lines_of_mcap(arguments.people, arguments.quiet) : read_file(arguments.people);
-  const PeopleRecord record = parse_people(lines, arguments.people, arguments.record);
+  PeopleRecord record = parse_people(lines, arguments.people, arguments.record);
+  if (format.stands && arguments.frame == "floor" && !stand_upright(record)) {
+    record.notes.push_back(arguments.people +
+                           ": no floor is known; places are those of the camera, however it is tilted");
+  }
   if (!arguments.quiet) {
     for (const std::string& note : record.notes) say("note: " + note);
   }
@@ -148,6 +154,12 @@ void add_export(CLI::App& program) {
       ->type_name("SET");
   command->add_option("--person", arguments->person, "Only the person with this id, in trc, bvh or glb")
       ->type_name("ID");
+  command
+      ->add_option("--frame", arguments->frame,
+                   "Whose places csv, trc, bvh and glb have: floor, where the people were followed and it is known "
+                   "(level, the origin on it below the camera), or camera")
+      ->check(CLI::IsMember({"floor", "camera"}))
+      ->capture_default_str();
   command->add_flag("--smoothed", arguments->record.smoothed, "Smoothed joints, where people were followed");
   command->add_option("--rate", arguments->record.rate_hz, "Frames a second where frames have no times")
       ->type_name("HZ")
@@ -155,8 +167,8 @@ void add_export(CLI::App& program) {
       ->capture_default_str();
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command->footer(R"(
-Positions are metres in the optical frame (x right, y down, z away) in csv, millimetres in k4abt; y is up and the camera in the origin in trc
-(millimetres), bvh (centimetres) and glb (metres).
+On the floor and in trc (millimetres), bvh (centimetres) and glb (metres) y is up and z points towards the camera; csv (metres) with --frame camera
+and k4abt (millimetres) have the optical frame: x right, y down, z away.
 
 Examples:
   vesalius detect frames/ --track --json people.jsonl

@@ -10,7 +10,7 @@
 namespace vesalius {
 
 /// A person's fitted body as animation programs take it: bones of one length each that turn about their heads, y up,
-/// the camera in the origin. Lengths are medians over all frames with a body.
+/// the origin that of the record. Lengths are medians over all frames with a body.
 struct MovingSkeleton {
   struct Bone {
     std::string name;  ///< as Mixamo calls it

@@ -138,6 +138,11 @@ class LineReader {
     frame.camera = {whole_number(camera.at("width")), whole_number(camera.at("height")),
                     float(number(camera.at("fx"))),   float(number(camera.at("fy"))),
                     float(number(camera.at("cx"))),   float(number(camera.at("cy")))};
+    if (const auto floor = json.find("floor"); floor != json.end() && !floor->is_null()) {
+      read_value(floor->at("up"), frame.floor.emplace().up);
+      read_value(floor->at("height_m"), frame.floor->height_m);
+      if (frame.floor->up.norm() < 0.5F) fail("floor: up: expected a vector of length 1");
+    }
     for (const Json& person : json.at("people")) frame.people.push_back(person_of(person));
     return frame;
   }

@@ -22,6 +22,7 @@ struct RecordedFrame {
   std::string name;
   double time_s = 0.0;
   Camera camera;
+  std::optional<FloorView> floor;
   std::vector<RecordedPerson> people;
 };
 
@@ -31,6 +32,7 @@ struct PeopleRecord {
   std::vector<std::vector<std::string>> joints;  ///< [set][joint]
   std::vector<std::string> bones;                ///< empty if nobody has a fitted body
   std::vector<RecordedFrame> frames;
+  bool upright = false;            ///< whether joints and bones stand on the floor (stand_upright)
   std::vector<std::string> notes;  ///< remarks for the user
 
   /// Returns the index of a set. Throws UsageError naming those that there are.

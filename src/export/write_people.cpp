@@ -67,7 +67,8 @@ std::string to_csv(const PeopleRecord& record, std::size_t set) {
       fmt::format_to(to, "{},{:.6f},{},{:.4f}", field(frame.name), frame.time_s, person.id, person.person.score);
       for (const Joint& joint : person.person.joints[set]) {
         if (joint.state != State::none) {
-          const Eigen::Vector3d at = rounded(joint.position);
+          const Eigen::Vector3d place = rounded(joint.position);
+          const Eigen::Vector3d at = record.upright ? Eigen::Vector3d(1e-3 * upright_mm(place)) : place;
           fmt::format_to(to, ",{:.4f},{:.4f},{:.4f}", at.x(), at.y(), at.z());
         } else {
           fmt::format_to(to, ",,,");
@@ -396,14 +397,15 @@ const std::vector<ExportFormat>& export_formats() {
   using Record = const PeopleRecord&;
   using Request = const ExportRequest&;
   static const std::vector<ExportFormat> kFormats{
-      {"csv", ".csv", "k4abt32", false, nullptr, [](Record r, Request q) { return to_csv(r, q.set); }},
-      {"trc", ".trc", "k4abt32", true, people_in,
+      {"csv", ".csv", "k4abt32", false, true, nullptr, [](Record r, Request q) { return to_csv(r, q.set); }},
+      {"trc", ".trc", "k4abt32", true, true, people_in,
        [](Record r, Request q) { return to_trc(r, q.set, *q.person, q.name); }},
-      {"bvh", ".bvh", "", true, people_with_bodies,
+      {"bvh", ".bvh", "", true, true, people_with_bodies,
        [](Record r, Request q) { return to_bvh(moving_skeletons(r, q.person)[0]); }},
-      {"glb", ".glb", "", true, nullptr, [](Record r, Request q) { return to_glb(moving_skeletons(r, q.person)); }},
-      {"coco", "", "coco17", false, nullptr, [](Record r, Request q) { return to_coco(r, q.set); }},
-      {"k4abt", "", "", false, nullptr, [](Record r, Request q) { return to_k4abt(r, q.source); }}};
+      {"glb", ".glb", "", true, true, nullptr,
+       [](Record r, Request q) { return to_glb(moving_skeletons(r, q.person)); }},
+      {"coco", "", "coco17", false, false, nullptr, [](Record r, Request q) { return to_coco(r, q.set); }},
+      {"k4abt", "", "", false, false, nullptr, [](Record r, Request q) { return to_k4abt(r, q.source); }}};
   return kFormats;
 }
 

@@ -11,12 +11,13 @@
 namespace vesalius {
 
 /// All people as a table, a row for each frame and person: frame, time, id, score, and of each joint of a set its place
-/// in metres (optical frame), confidence and state. Places of joints without one are empty.
+/// in metres (optical frame; of a record that stands on the floor with y up and z towards the camera), confidence and
+/// state. Places of joints without one are empty.
 std::string to_csv(const PeopleRecord& record, std::size_t set);
 
-/// One person's joints as OpenSim's markers: millimetres, y up, the camera in the origin. A row for each frame from the
-/// person's first to the last; places that are not known are empty. `name` is what the file calls itself. Throws Error
-/// if the person is not there.
+/// One person's joints as OpenSim's markers: millimetres, y up, the origin that of the record. A row for each frame
+/// from the person's first to the last; places that are not known are empty. `name` is what the file calls itself.
+/// Throws Error if the person is not there.
 std::string to_trc(const PeopleRecord& record, std::size_t set, int person, const std::string& name);
 
 /// Returns the ids of all people, rising.
@@ -51,6 +52,7 @@ struct ExportFormat {
   std::string ending;  ///< ending of files that tell the format by their names; empty where it must be asked for
   std::string joints;  ///< usual joint set; empty for formats without one
   bool of_one;         ///< whether it can have one person alone
+  bool stands;         ///< whether its places are rather the floor's than the camera's, where the floor is known
   /// Returns whom to write a file each; null where one file has everybody.
   std::vector<int> (*files)(const PeopleRecord& record);
   std::string (*write)(const PeopleRecord& record, const ExportRequest& request);

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "vesalius/body_model.h"
+#include "vesalius/track/track_floor.h"
 
 namespace vesalius {
 namespace {
@@ -44,7 +45,8 @@ class Bundles {
 };
 
 /// Adds a place with y up and z towards the camera.
-OscMessage& add_place(OscMessage& message, const Eigen::Vector3f& at) {
+OscMessage& add_place(OscMessage& message, const Eigen::Isometry3f& from_optical, const Eigen::Vector3f& optical) {
+  const Eigen::Vector3f at = from_optical * optical;
   return message.add(at.x()).add(-at.y()).add(-at.z());
 }
 
@@ -79,6 +81,8 @@ std::string OscMessage::bytes() const {
 std::vector<std::string> osc_bundles(const TrackedFrame& people, const BodyModel& body, const OscOptions& options) {
   const std::size_t set = find_joint_set(body, options.joints);
   const JointSet& names = body.joint_sets[set];
+  const bool stands = options.frame == "floor" && people.floor.has_value();
+  const Eigen::Isometry3f from_optical = stands ? floor_from_optical(*people.floor) : Eigen::Isometry3f::Identity();
   Bundles bundles;
   OscMessage all("/vesalius/people");
   all.add(static_cast<std::int32_t>(people.people.size()));
@@ -89,13 +93,13 @@ std::vector<std::string> osc_bundles(const TrackedFrame& people, const BodyModel
     bundles.add(OscMessage(address + "state").add(to_string(person.state)));
     if (people.followed) {
       OscMessage position(address + "position");
-      bundles.add(add_place(position, person.position));
+      bundles.add(add_place(position, from_optical, person.position));
     }
     const std::vector<Joint>& joints = person.person.joints[set];
     for (std::size_t j = 0; j < joints.size(); ++j) {
       if (joints[j].state == State::none) continue;
       OscMessage message(address + names.joints[j].name);
-      bundles.add(add_place(message, joints[j].position).add(joints[j].confidence));
+      bundles.add(add_place(message, from_optical, joints[j].position).add(joints[j].confidence));
     }
   }
   return bundles.take();

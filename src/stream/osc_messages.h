@@ -27,10 +27,11 @@ class OscMessage {
 /// What is sent of each joint.
 struct OscOptions {
   std::string joints = "k4abt32";  ///< joint set
+  std::string frame = "floor";     ///< whose places they are: the floor's where it is known, or the camera's
 };
 
 /// Returns the people of a frame as OSC bundles that fit into Ethernet's packets. Metres, x right, y up, z towards the
-/// camera, which is in the origin:
+/// camera; the origin lies on the floor below it where that is known and wanted, else in the camera:
 ///   /vesalius/people        how many, then their ids
 ///   /vesalius/ID/state      tracked, hidden ...; seen where nobody follows people
 ///   /vesalius/ID/position   x y z: the middle of the trunk, of people who are followed

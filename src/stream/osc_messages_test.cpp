@@ -95,6 +95,14 @@ TEST(OscBundles, SendIdsAndStatesOfPeopleWhoAreFollowed) {
               testing::ElementsAre(std::bit_cast<std::uint32_t>(-0.F + 0.F), std::bit_cast<std::uint32_t>(-0.125F),
                                    std::bit_cast<std::uint32_t>(-3.F)));
   EXPECT_EQ(messages.at("/vesalius/17/state").second.front(), 0x68696464U) << "hidd";
+  // From a camera 1.5 m over the floor that looks straight down, 1.375 m lie below, and what is below in its picture is
+  // behind.
+  tracked.floor = FloorView{{0.F, 0.F, -1.F}, 1.5F, 1.57F, 0.F};
+  const auto on_floor = read(osc_bundles(tracked, body, {body.joint_sets[0].name}));
+  EXPECT_THAT(
+      on_floor.at("/vesalius/17/position").second,
+      testing::ElementsAre(testing::_, std::bit_cast<std::uint32_t>(-1.5F), std::bit_cast<std::uint32_t>(0.125F)));
+  EXPECT_EQ(read(osc_bundles(tracked, body, {body.joint_sets[0].name, "camera"})), messages);
   EXPECT_TRUE(read(osc_bundles(TrackedFrame{}, body, {body.joint_sets[0].name})).contains("/vesalius/people"));
   EXPECT_THROW(osc_bundles(tracked, body, {"body99"}), UsageError);
 }

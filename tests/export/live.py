@@ -41,7 +41,7 @@ def main():
         threads = threading.Thread(target=listen)
         threads.start()
         subprocess.run([program, "detect", source, "--track", "-q", "--json", lines,
-                        "--osc", f"127.0.0.1:{server.server_address[1]}", "--udp", f"127.0.0.1:{listener.getsockname()[1]}"],
+                        "--osc-frame", "camera", "--osc", f"127.0.0.1:{server.server_address[1]}", "--udp", f"127.0.0.1:{listener.getsockname()[1]}"],
                        check=True)
         threads.join()
         frames = [line for line in map(json.loads, lines.read_text().splitlines()) if "frame" in line]

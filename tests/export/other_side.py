@@ -216,7 +216,7 @@ def main():
         for name, more in (("p.csv", []), ("p.trc", ["--person", person_id]), ("p.bvh", ["--person", person_id]),
                            ("p.glb", ["--person", person_id]), ("coco.json", ["--format", "coco"]),
                            ("k4abt.json", ["--format", "k4abt"])):
-            run("export", people, "--to", folder / name, *more)
+            run("export", people, "--to", folder / name, "--frame", "camera", *more)
         print("CSV:", check_csv(folder / "p.csv", frames), "rows")
         print("TRC:", check_trc(folder / "p.trc", frames, person_id), "rows")
         print("COCO:", check_coco(folder / "coco.json", frames), "people")

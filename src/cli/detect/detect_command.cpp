@@ -175,6 +175,10 @@ void add_output_flags(CLI::App& command, OutputRequest& outputs) {
       "Send each frame's JSON there as datagrams, of more than 64 kB one for each person");
   add("--osc", outputs.osc, "HOST:PORT", "Send people there as OSC messages, for TouchDesigner, Max and others");
   add("--osc-joints", outputs.osc_options.joints, "SET", "Joint set of these messages")->capture_default_str();
+  add("--osc-frame", outputs.osc_options.frame, "NAME",
+      "Whose places they have: floor, where it is known (level, the origin on it below the camera), or camera")
+      ->check(CLI::IsMember({"floor", "camera"}))
+      ->capture_default_str();
   add("--out", outputs.folder, "DIR", "Folder for pictures, created if missing");
   add("--save", outputs.save, "WHAT",
       "What to put into --out, separated by commas: overlay (default) and parts, pictures of skeletons and of body "

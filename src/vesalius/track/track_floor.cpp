@@ -90,7 +90,7 @@ FloorView view_of_floor(const Plane& floor) {
   return {up, floor.offset, std::asin(std::clamp(-up.z(), -1.F, 1.F)), std::atan2(-up.x(), -up.y())};
 }
 
-Eigen::Isometry3f gravity_from_optical(const FloorView& view) {
+Eigen::Isometry3f floor_from_optical(const FloorView& view) {
   constexpr float kLeastForward = 1e-3F;
   const Eigen::Vector3f up = view.up.normalized();
   const auto level = [&](const Eigen::Vector3f& direction) -> Eigen::Vector3f {
@@ -101,12 +101,12 @@ Eigen::Isometry3f gravity_from_optical(const FloorView& view) {
   if (forward.norm() < kLeastForward) forward = level(-Eigen::Vector3f::UnitY());
   forward.normalize();
   Eigen::Matrix3f rotation;
-  rotation.row(0) = forward.transpose();
-  rotation.row(1) = up.cross(forward).transpose();
-  rotation.row(2) = up.transpose();
+  rotation.row(0) = forward.cross(up).transpose();
+  rotation.row(1) = -up.transpose();
+  rotation.row(2) = forward.transpose();
   Eigen::Isometry3f transformation = Eigen::Isometry3f::Identity();
   transformation.linear() = rotation;
-  transformation.translation() = Eigen::Vector3f(0.F, 0.F, view.height_m);
+  transformation.translation() = Eigen::Vector3f(0.F, -view.height_m, 0.F);
   return transformation;
 }
 

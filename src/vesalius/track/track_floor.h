@@ -42,8 +42,8 @@ class TrackFloor {
 /// Returns how the camera stands over a floor. The plane's normal points away from the camera.
 FloorView view_of_floor(const Plane& floor);
 
-/// Returns the transformation from the optical frame to one with z up whose origin is on the floor below the camera; x
-/// points where the camera looks and y to its left (ROS REP 103). Metres.
-Eigen::Isometry3f gravity_from_optical(const FloorView& view);
+/// Returns the transformation from the optical frame to one that is level and has its origin on the floor below the
+/// camera, with the same axes otherwise: x right, y down, z away from the camera. Metres.
+Eigen::Isometry3f floor_from_optical(const FloorView& view);
 
 }  // namespace vesalius

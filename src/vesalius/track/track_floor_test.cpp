@@ -126,21 +126,21 @@ TEST(TrackFloor, IsForgottenSoonByACameraThatIsTurnedAway) {
   EXPECT_FALSE(floor.view());
 }
 
-TEST(TrackFloor, GravityFrameIsThatOfRos) {
+TEST(TrackFloor, FloorsFrameIsLevel) {
   const FloorView view = view_of_floor(floor_under(1.2F, 0.4F, 0.2F));
-  const Eigen::Isometry3f gravity = gravity_from_optical(view);
-  const Eigen::Matrix3f should_be_one = gravity.linear() * gravity.linear().transpose();
+  const Eigen::Isometry3f level = floor_from_optical(view);
+  const Eigen::Matrix3f should_be_one = level.linear() * level.linear().transpose();
   EXPECT_NEAR((should_be_one - Eigen::Matrix3f::Identity()).norm(), 0.F, 1e-5F);
-  EXPECT_NEAR(gravity.linear().determinant(), 1.F, 1e-5F);
-  EXPECT_NEAR((gravity * Vector3f(0.F, 0.F, 0.F) - Vector3f(0.F, 0.F, 1.2F)).norm(), 0.F, 1e-5F) << "the camera";
-  const Vector3f ahead = gravity * Vector3f(0.F, 0.F, 2.F);
-  EXPECT_NEAR((ahead - Vector3f(2.F * std::cos(0.4F), 0.F, 1.2F - 2.F * std::sin(0.4F))).norm(), 0.F, 1e-5F);
-  const Vector3f below = gravity * Vector3f(-1.2F * view.up);
+  EXPECT_NEAR(level.linear().determinant(), 1.F, 1e-5F);
+  EXPECT_NEAR((level * Vector3f(0.F, 0.F, 0.F) - Vector3f(0.F, -1.2F, 0.F)).norm(), 0.F, 1e-5F) << "the camera";
+  const Vector3f ahead = level * Vector3f(0.F, 0.F, 2.F);
+  EXPECT_NEAR((ahead - Vector3f(0.F, -1.2F + 2.F * std::sin(0.4F), 2.F * std::cos(0.4F))).norm(), 0.F, 1e-5F);
+  const Vector3f below = level * Vector3f(-1.2F * view.up);
   EXPECT_NEAR(below.norm(), 0.F, 1e-5F) << "the floor below the camera";
-  const Eigen::Isometry3f level = gravity_from_optical(view_of_floor(floor_under(1.F)));
-  EXPECT_NEAR((level * Vector3f(0.3F, 0.2F, 2.F) - Vector3f(2.F, -0.3F, 0.8F)).norm(), 0.F, 1e-5F);
-  const Eigen::Isometry3f down = gravity_from_optical(view_of_floor({Vector3f::UnitZ(), 2.F, 4.F}));
-  EXPECT_NEAR((down * Vector3f(0.3F, -0.2F, 2.F) - Vector3f(0.2F, -0.3F, 0.F)).norm(), 0.F, 1e-5F);
+  const Eigen::Isometry3f straight = floor_from_optical(view_of_floor(floor_under(1.F)));
+  EXPECT_NEAR((straight * Vector3f(0.3F, 0.2F, 2.F) - Vector3f(0.3F, -0.8F, 2.F)).norm(), 0.F, 1e-5F);
+  const Eigen::Isometry3f down = floor_from_optical(view_of_floor({Vector3f::UnitZ(), 2.F, 4.F}));
+  EXPECT_NEAR((down * Vector3f(0.3F, -0.2F, 2.F) - Vector3f(0.3F, 0.F, 0.2F)).norm(), 0.F, 1e-5F);
 }
 
 }  // namespace
