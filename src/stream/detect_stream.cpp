@@ -196,14 +196,20 @@ class Stream {
 
   void read_in_real_time() {
     Pace pace(options_.rate);
+    bool after_error = false;
     for (auto job = std::make_shared<Job>(); read_next(source_, job->found); job = std::make_shared<Job>()) {
       // A camera keeps its own pace, by a clock that may run a little faster or slower than ours.
       const bool waits = job->found.frame && !source_.is_live();
       if (waits && work_.closed_by(pace.due(*job->found.frame))) break;
       if (stopping_) break;
-      const bool lost = source_.is_live() && job->found.error;
-      dropped_ += work_.push_newest(std::move(job));
-      if (lost) break;  // a camera has ended: no newer frame may take the place of its error
+      const bool is_error = bool(job->found.error);
+      if (!is_error && !after_error) {
+        dropped_ += work_.push_newest(std::move(job));
+      } else if (!work_.push(std::move(job))) {  // no newer frame may take the place of an error
+        break;
+      }
+      if (is_error && source_.is_live()) break;  // a camera has ended
+      after_error = is_error;
     }
     work_.close();
   }

@@ -353,7 +353,7 @@ TEST_F(Detect, WritesOrCountsEveryFrameInRealTime) {
 TEST_F(Detect, StopsAtErrorsInRealTimeToo) {
   fs::copy(frames(), path("broken"), fs::copy_options::recursive);
   write("broken/depth/a.png", "no picture");
-  const Outcome run = run_program("detect " + path("broken") + " -q --realtime --rate 2 -m " + model());
+  const Outcome run = run_program("detect " + path("broken") + " -q --realtime -m " + model());
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, HasSubstr("a.png"));
 }
