@@ -143,11 +143,11 @@ class LineReader {
       read_value(floor->at("height_m"), frame.floor->height_m);
       if (frame.floor->up.norm() < 0.5F) fail("floor: up: expected a vector of length 1");
     }
-    for (const Json& person : json.at("people")) frame.people.push_back(person_of(person));
+    for (const Json& person : json.at("people")) frame.people.push_back(person_of(person, frame.camera));
     return frame;
   }
 
-  RecordedPerson person_of(const Json& json) {
+  RecordedPerson person_of(const Json& json, const Camera& camera) {
     RecordedPerson person;
     read_fields<TrackedPerson>(json, person);
     read_fields<Person>(json, person.person);
@@ -159,7 +159,7 @@ class LineReader {
       const Json& set = sets.at(record_.sets[s]);
       person.person.joints.emplace_back();
       person.px.emplace_back();
-      for (const std::string& name : record_.joints[s]) add_joint(set.at(name), person);
+      for (const std::string& name : record_.joints[s]) add_joint(set.at(name), camera, person);
     }
     person.rotations.resize(record_.sets.size());
     if (json.contains("body") && !json.at("body").is_null()) add_body(json.at("body"), person);
@@ -174,7 +174,7 @@ class LineReader {
     }
   }
 
-  void add_joint(const Json& json, RecordedPerson& person) const {
+  void add_joint(const Json& json, const Camera& camera, RecordedPerson& person) const {
     Joint& joint = person.person.joints.back().emplace_back();
     read_value(json.at("state"), joint.state);
     read_value(json.at("confidence"), joint.confidence);
@@ -185,6 +185,8 @@ class LineReader {
     }
     auto& px = person.px.back().emplace_back();
     if (json.contains("px") && !json.at("px").is_null()) px = vector<2>(json.at("px"));
+    const bool is_brief = !json.contains("px") && joint.state != State::none && joint.position.z() > 0.F;
+    if (is_brief) px = camera.pixel(joint.position).cast<double>();
   }
 
   void add_body(const Json& json, RecordedPerson& person) {

@@ -49,22 +49,22 @@ Json fields_json(const Struct& of) {
 const Eigen::Vector3f& place_of(const Joint& joint) { return joint.position; }
 const Eigen::Vector3f& place_of(const SkeletonPart& part) { return part.centre; }
 
-/// Parts or joints by their names.
+/// Parts or joints by their names. Without a camera they have no pixels.
 template <class Named, class Point>
-Json points_json(const std::vector<Named>& names, const std::vector<Point>& points, const Camera& camera) {
+Json points_json(const std::vector<Named>& names, const std::vector<Point>& points, const Camera* camera) {
   Json all = Json::object();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Point& point = points.at(i);
     Json xyz, px;  // null
     if (point.state != State::none) xyz = value_json(place_of(point));
-    if (point.state != State::none && place_of(point).z() > 0.F) {
-      const Eigen::Vector2f pixel = camera.pixel(place_of(point));
+    if (camera != nullptr && point.state != State::none && place_of(point).z() > 0.F) {
+      const Eigen::Vector2f pixel = camera->pixel(place_of(point));
       px = {rounded(pixel.x(), 10), rounded(pixel.y(), 10)};
     }
-    all[names[i].name] = {{"xyz_m", xyz},
-                          {"px", px},
-                          {"confidence", point.state == State::none ? 0.0 : rounded(point.confidence)},
-                          {"state", to_string(point.state)}};
+    Json& json = all[names[i].name] = {{"xyz_m", xyz}};
+    if (camera != nullptr) json["px"] = px;
+    json["confidence"] = point.state == State::none ? 0.0 : rounded(point.confidence);
+    json["state"] = to_string(point.state);
   }
   return all;
 }
@@ -74,9 +74,11 @@ Json camera_json(const Camera& camera) {
           {"fy", shortest(camera.fy)}, {"cx", shortest(camera.cx)}, {"cy", shortest(camera.cy)}};
 }
 
-Json joints_json(const std::vector<std::vector<Joint>>& joints, const BodyModel& body, const Camera& camera) {
+Json joints_json(const std::vector<std::vector<Joint>>& joints, const BodyModel& body, const Camera* camera,
+                 const JsonOptions& options) {
   Json sets = Json::object();
   for (std::size_t s = 0; s < body.joint_sets.size(); ++s) {
+    if (!options.joints.empty() && body.joint_sets[s].name != options.joints) continue;
     sets[body.joint_sets[s].name] = points_json(body.joint_sets[s].joints, joints.at(s), camera);
   }
   return sets;
@@ -95,7 +97,7 @@ Json frame_facts(const Frame& frame, std::optional<double> latency_ms) {
   return json;
 }
 
-Json body_json(const TrackedPerson& person, const BodyModel& body) {
+Json body_json(const TrackedPerson& person, const BodyModel& body, const JsonOptions& options) {
   Json json = fields_json(*person.body);
   Json& bones = json["bones"] = Json::object();
   const std::vector<FleshBone>& names = builtin_flesh().bones;
@@ -105,6 +107,7 @@ Json body_json(const TrackedPerson& person, const BodyModel& body) {
   // Of the joint sets that have some, in the sets' own conventions.
   Json& sets = json["joint_rotations_xyzw"] = Json::object();
   for (const JointSet& set : body.joint_sets) {
+    if (!options.joints.empty() && set.name != options.joints) continue;
     const auto rotations = rotations_of(person, set);
     for (std::size_t j = 0; j < rotations.size(); ++j) {
       if (rotations[j]) sets[set.name][set.joints[j].name] = value_json(*rotations[j]);
@@ -114,15 +117,16 @@ Json body_json(const TrackedPerson& person, const BodyModel& body) {
 }
 
 Json person_json(const TrackedPerson& tracked, bool followed, std::size_t index, const BodyModel& body,
-                 const Camera& camera) {
+                 const Camera& camera, const JsonOptions& options) {
   const Person& person = tracked.person;
   Json json = followed ? fields_json(tracked) : Json::object();
   json["index"] = index;
   json.update(fields_json(person));
-  json["parts"] = points_json(body.parts, person.skeleton.parts, camera);
-  json["joints"] = joints_json(person.joints, body, camera);
-  if (tracked.body) json["body"] = body_json(tracked, body);
-  if (!tracked.smoothed.empty()) json["smoothed"] = joints_json(tracked.smoothed, body, camera);
+  if (!options.brief) json["parts"] = points_json(body.parts, person.skeleton.parts, &camera);
+  json["joints"] = joints_json(person.joints, body, options.brief ? nullptr : &camera, options);
+  if (options.brief) return json;
+  if (tracked.body) json["body"] = body_json(tracked, body, options);
+  if (!tracked.smoothed.empty()) json["smoothed"] = joints_json(tracked.smoothed, body, &camera, options);
   return json;
 }
 
@@ -145,7 +149,8 @@ Json events_json(const std::vector<StanceEvent>& events) {
 }  // namespace
 
 std::string frame_json(const Frame& frame, const TrackedFrame& people, const BodyModel& body,
-                       std::optional<double> latency_ms) {
+                       std::optional<double> latency_ms, const JsonOptions& options) {
+  if (!options.joints.empty()) (void)find_joint_set(body, options.joints);  // there is one
   Json json = frame_facts(frame, latency_ms);
   if (people.followed) {
     json["track_time_s"] = value_json(people.time_s);
@@ -154,7 +159,7 @@ std::string frame_json(const Frame& frame, const TrackedFrame& people, const Bod
   }
   Json& list = json["people"] = Json::array();
   for (const TrackedPerson& person : people.people) {
-    list.push_back(person_json(person, people.followed, list.size(), body, frame.camera));
+    list.push_back(person_json(person, people.followed, list.size(), body, frame.camera, options));
   }
   return line(json);
 }

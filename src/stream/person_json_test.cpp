@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "vesalius/error.h"
 #include "vesalius/fit/flesh_model.h"
 
 namespace vesalius {
@@ -53,6 +54,33 @@ TEST(PersonJson, SaysWhereUpIsIfTheFrameKnows) {
   EXPECT_FALSE(json::parse(frame_json(frame, kNobody, paper_body())).contains("up"));
   frame.up = {0.F, -0.8F, 0.6F};
   EXPECT_EQ(json::parse(frame_json(frame, kNobody, paper_body())).at("up"), json({0.0, -0.8, 0.6}));
+}
+
+TEST(PersonJson, OfOneSetInBriefFitsTwoKilobytes) {
+  const BodyModel& body = paper_body();
+  TrackedFrame tracked = seen_people({half_seen(body)});
+  tracked.followed = true;
+  TrackedPerson& person = tracked.people[0];
+  for (std::vector<Joint>& set : person.person.joints) {
+    for (Joint& joint : set) joint = {State::predicted, {-1.2345F, -0.9876F, 3.4567F}, 0.1234F};
+  }
+  person.smoothed = person.person.joints;
+  const std::string line = frame_json(named("f"), tracked, body, 12.5, {"coco17", true});
+  EXPECT_LE(line.size(), 2000U);
+  const json read = json::parse(line), whole = json::parse(frame_json(named("f"), tracked, body, 12.5));
+  const json &one = read.at("people").at(0), &all = whole.at("people").at(0);
+  EXPECT_EQ(one.at("joints").size(), 1U);
+  json nose = all.at("joints").at("coco17").at("nose");
+  nose.erase("px");
+  EXPECT_EQ(one.at("joints").at("coco17").at("nose"), nose);
+  for (const char* gone : {"parts", "body", "smoothed"}) EXPECT_FALSE(one.contains(gone)) << gone;
+  for (const char* kept : {"id", "state", "position_m", "score", "yaw", "box_px"})
+    EXPECT_EQ(one.at(kept), all.at(kept)) << kept;
+  const json nite = json::parse(frame_json(named("f"), tracked, body, {}, {"nite15", false})).at("people").at(0);
+  EXPECT_EQ(nite.at("joints").size(), 1U);
+  EXPECT_EQ(nite.at("smoothed").size(), 1U);
+  EXPECT_EQ(nite.at("parts"), all.at("parts"));
+  EXPECT_THROW(frame_json(named("f"), tracked, body, {}, {"feet", false}), UsageError);
 }
 
 TEST(PersonJson, ListsEveryPartAndJoint) {

@@ -157,7 +157,7 @@ TEST_F(Detect, SendsPeopleWhereNobodyNeedsToListen) {
   for (const auto& [flags, exit_code, why] :
        {std::tuple{" --osc nowhere", 2, "nowhere: expected HOST:PORT"},
         std::tuple{" --udp 1.2.3.4:99999", 2, "HOST:PORT"},
-        std::tuple{" --osc 127.0.0.1:9 --osc-joints feet", 2, "joint set \"feet\" is not of this body"},
+        std::tuple{" --osc 127.0.0.1:9 --joints feet", 2, "joint set \"feet\" is not of this body"},
         std::tuple{" --udp no.such.host.invalid:9", 1, "no.such.host.invalid:9"}}) {
     const Outcome refused = detect(flags);
     EXPECT_EQ(refused.exit_code, exit_code) << flags;

@@ -165,16 +165,20 @@ void run_detect(const DetectArguments& arguments) {
 }
 
 void add_output_flags(CLI::App& command, OutputRequest& outputs) {
+  constexpr const char* kOutputGroup = "Output (without any of these: a line per frame)";
   const auto add = [&](const char* name, auto& value, const char* type, const char* help) {
-    return command.add_option(name, value, help)
-        ->type_name(type)
-        ->group("Output (without any of these: a line per frame)");
+    return command.add_option(name, value, help)->type_name(type)->group(kOutputGroup);
   };
   add("--json", outputs.json, "FILE", "People as JSON, one line a frame; - is standard output");
   add("--udp", outputs.udp, "HOST:PORT",
       "Send each frame's JSON there as datagrams, of more than 64 kB one for each person");
   add("--osc", outputs.osc, "HOST:PORT", "Send people there as OSC messages, for TouchDesigner, Max and others");
-  add("--osc-joints", outputs.osc_options.joints, "SET", "Joint set of these messages")->capture_default_str();
+  add("--joints", outputs.json_options.joints, "SET",
+      "Joint set of JSON and OSC: nite15, k4abt32 or coco17 (default: all in JSON, k4abt32 in OSC)");
+  command
+      .add_flag("--brief", outputs.json_options.brief,
+                "JSON without body parts, fitted bodies, smoothed joints and pixels")
+      ->group(kOutputGroup);
   add("--osc-frame", outputs.osc_options.frame, "NAME",
       "Whose places they have: floor, where it is known (level, the origin on it below the camera), or camera")
       ->check(CLI::IsMember({"floor", "camera"}))

@@ -48,6 +48,10 @@ DetectOutputs::DetectOutputs(OutputRequest request, const BodyModel& body)
     if (wants("labels")) write_file_atomically(in_folder("labels.json"), part_table_json(body));
     if (wants("video")) video_.emplace(in_folder("overlay.avi"), request_.video_rate);
   }
+  if (!request_.json_options.joints.empty()) {
+    (void)find_joint_set(body, request_.json_options.joints);  // there is one
+    request_.osc_options.joints = request_.json_options.joints;
+  }
   if (!request_.json.empty()) json_.emplace(request_.json);
   if (!request_.udp.empty()) udp_.emplace(request_.udp);
   if (!request_.osc.empty()) {
@@ -74,7 +78,8 @@ std::string DetectOutputs::path(const char* kind, const Frame& frame, const char
 void DetectOutputs::write(const FoundFrame& found) {
   const Frame& frame = *found.frame;
   if (!kinds_.empty()) write_pictures(frame, found.people);
-  const std::string json = json_ || udp_ ? frame_json(frame, found.people, body_, found.latency_ms) : "";
+  const std::string json =
+      json_ || udp_ ? frame_json(frame, found.people, body_, found.latency_ms, request_.json_options) : "";
   send(found.people, json);
   if (json_) json_->line(json);
   if (request_.lines()) print(one_line(describe(frame, found.people)) + "\n");

@@ -11,13 +11,15 @@
 #include "stream/osc_messages.h"
 #include "vesalius/detect.h"
 #include "vesalius/detect_stream.h"
+#include "vesalius/person_json.h"
 
 namespace vesalius::cli {
 
 /// The outputs that `vesalius detect` writes.
 struct OutputRequest {
-  std::string json;      ///< path; "-" means standard output, empty means none
-  std::string folder;    ///< folder for pictures; empty means none
+  std::string json;    ///< path; "-" means standard output, empty means none
+  std::string folder;  ///< folder for pictures; empty means none
+  JsonOptions json_options;
   std::string udp, osc;  ///< addresses to which people are sent; empty means none
   OscOptions osc_options;
   std::vector<std::string> save;  ///< words of kSaveKinds; if empty and there is a folder, overlays
