@@ -59,6 +59,24 @@ function(vesalius_library name)
   endif()
 endfunction()
 
+# vesalius_shared(NAME LIBRARY SYMBOLS USES library...): the shared library vesalius_NAME out of the objects of LIBRARY, with the
+# libraries that it USES inside. It exports what the version script SYMBOLS names.
+function(vesalius_shared name library symbols)
+  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  set(target vesalius_${name})
+  add_library(${target} SHARED $<TARGET_OBJECTS:vesalius_${library}>)
+  add_library(vesalius::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX LINK_DEPENDS ${symbols})
+  list(TRANSFORM ARG_USES PREPEND vesalius_)
+  target_link_libraries(${target} PRIVATE ${ARG_USES} vesalius_core vesalius_settings)
+  # Of them only what is called is linked, and of other libraries only those that this needs.
+  target_link_options(${target} PRIVATE -Wl,--as-needed -Wl,--gc-sections -Wl,--exclude-libs,ALL
+                      -Wl,--version-script=${symbols})
+  # Threads of oneTBB run on for a moment after the last call. Hosts that unload libraries, as Mono does at its end, would take
+  # their code away from under them.
+  target_link_options(${target} PRIVATE -Wl,-z,nodelete)
+endfunction()
+
 # vesalius_generate(TARGET TEMPLATE.inc.in [VARIABLE FILE]...): TEMPLATE.inc for TARGET to include, each @VARIABLE@ the text
 # of a file below the project's data folder: what a library knows without opening a file.
 function(vesalius_generate target template)

@@ -1,8 +1,4 @@
-#include <dlfcn.h>
-
-#include <filesystem>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -22,18 +18,9 @@ namespace {
 
 constexpr int kMaxThreads = 1024;
 
-/// Returns the folder in which this library lies; empty if that cannot be found out.
-std::string own_folder() {
-  Dl_info found{};
-  if (dladdr(reinterpret_cast<const void*>(&vesalius_detector_create), &found) == 0 || found.dli_fname == nullptr)
-    return {};
-  std::error_code error;
-  const std::filesystem::path library = std::filesystem::canonical(found.dli_fname, error);
-  return error ? std::string() : library.parent_path().string();
-}
-
 std::string default_model() {
-  return find_default_model(model_folders(own_folder(), VESALIUS_MODELS_FROM_LIB), "model is NULL");
+  const std::string own_folder = folder_of_library(reinterpret_cast<const void*>(&vesalius_detector_create));
+  return find_default_model(model_folders(own_folder, VESALIUS_MODELS_FROM_LIB), "model is NULL");
 }
 
 std::shared_ptr<const SharedDetector> make_detector(const char* model, const vesalius_options* options, int threads,

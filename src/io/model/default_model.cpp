@@ -1,5 +1,6 @@
 #include "io/model/default_model.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,6 +18,14 @@ namespace fs = std::filesystem;
 constexpr const char* kName = "default.model";
 
 }  // namespace
+
+std::string folder_of_library(const void* symbol) {
+  Dl_info found{};
+  if (dladdr(symbol, &found) == 0 || found.dli_fname == nullptr) return {};
+  std::error_code error;
+  const fs::path library = fs::canonical(found.dli_fname, error);
+  return error ? std::string() : library.parent_path().string();
+}
 
 std::vector<std::string> model_folders(const std::string& own_folder, const std::string& installed) {
   std::vector<std::string> folders;

@@ -21,6 +21,9 @@ class RunTimeLibrary {
   /// file was named.
   RunTimeLibrary(std::string name, const std::string& expected, const char* variable, std::string prefix,
                  const std::vector<std::string>& files);
+  /// Takes functions of a library that is loaded already: `handle` is what dlopen returns, or RTLD_DEFAULT.
+  RunTimeLibrary(std::string name, std::string prefix, void* handle)
+      : name_(std::move(name)), prefix_(std::move(prefix)), handle_(handle) {}
 
   /// Returns the library's function of this name. Throws Error naming the library where it has none.
   template <class Function>
