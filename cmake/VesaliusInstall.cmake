@@ -36,6 +36,14 @@ if(TARGET vesalius_c)
   install(FILES ${PROJECT_BINARY_DIR}/vesalius.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endif()
 
+# The library for programs of Azure Kinect Body Tracking lies where nobody finds it who does not ask for it, beside Microsoft's.
+# Its name has no version of ours, so it is in the program's package, of which there is one at a time.
+if(TARGET vesalius_k4abt)
+  install(TARGETS vesalius_k4abt LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/vesalius/k4abt COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/src/k4abt/include/k4abt.h ${PROJECT_SOURCE_DIR}/src/k4abt/include/k4abttypes.h
+          DESTINATION ${VESALIUS_INCLUDE_DIR}/k4abt)
+endif()
+
 get_property(VESALIUS_OPTIONAL_PACKAGES GLOBAL PROPERTY VESALIUS_OPTIONAL_PACKAGES)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vesaliusConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake INSTALL_DESTINATION ${VESALIUS_CMAKE_DIR})
@@ -51,7 +59,7 @@ install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/v
 # What the program and the C library find without being told where (src/io/model/default_model.h).
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 set(VESALIUS_DATA_DIR ${CMAKE_INSTALL_DATADIR}/vesalius)
-if(TARGET vesalius OR TARGET vesalius_c)
+if(TARGET vesalius OR TARGET vesalius_c OR TARGET vesalius_k4abt)
   # All but the tests' own.
   install(FILES ${PROJECT_SOURCE_DIR}/data/models/default.model ${PROJECT_SOURCE_DIR}/data/models/default.forest
                 ${PROJECT_SOURCE_DIR}/data/models/small.forest ${PROJECT_SOURCE_DIR}/data/models/README.md
@@ -75,6 +83,7 @@ if(TARGET vesalius)
         COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/package/third_party.py
                 \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/THIRD-PARTY-NOTICES.gz ${CMAKE_MAKE_PROGRAM}
                 ${PROJECT_BINARY_DIR} $<TARGET_FILE:vesalius> $<$<TARGET_EXISTS:vesalius_c>:$<TARGET_FILE:vesalius_c>>
+                $<$<TARGET_EXISTS:vesalius_k4abt>:$<TARGET_FILE:vesalius_k4abt>>
         RESULT_VARIABLE failed)
       if(failed)
         message(WARNING \"THIRD-PARTY-NOTICES.gz lacks what is named above\")

@@ -11,7 +11,7 @@ SECTIONS = [
     ("Start in five minutes", ["starts/try-it", "starts/my-camera", "starts/my-robot", "starts/my-notebook", "starts/retrain",
                                "starts/contribute"]),
     ("What to expect", ["features", "limits", "comparison", "accuracy", "performance"]),
-    ("Guides", ["program", "view", "cameras", "recordings", "tracking", "export", "ros2", "python", "library", "c", "packages",
+    ("Guides", ["program", "view", "cameras", "recordings", "tracking", "export", "ros2", "python", "library", "c", "k4abt", "packages",
                 "*"]),
     ("A forest of your own", ["synthetic", "retrain", "metrics", "cluster", "gpu"]),
     ("Reference", ["reference/commands", "options", "formats", "reference/python", "reference/cpp/index"]),
