@@ -26,7 +26,7 @@ class HandleRegistry {
     const std::scoped_lock lock(mutex_);
     last_ += kStep;
     entries_.emplace(last_, Entry{std::move(object), 1});
-    return reinterpret_cast<Handle>(last_);
+    return reinterpret_cast<Handle>(last_);  // NOLINT(performance-no-int-to-ptr): nobody looks behind it
   }
 
   /// Throws UsageError for what is no handle, here and below.

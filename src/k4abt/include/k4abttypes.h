@@ -3,6 +3,7 @@
 #ifndef K4ABTTYPES_H
 #define K4ABTTYPES_H
 
+/* NOLINTBEGIN(modernize-*,bugprone-reserved-identifier): what is C is no old C++, and the names are theirs. */
 #include <k4a/k4atypes.h> /* of the program's libk4a */
 #include <stdint.h>
 
@@ -122,5 +123,7 @@ static const k4abt_tracker_configuration_t K4ABT_TRACKER_CONFIG_DEFAULT = {
 #ifdef __cplusplus
 }
 #endif
+
+/* NOLINTEND(modernize-*,bugprone-reserved-identifier) */
 
 #endif

@@ -4,6 +4,7 @@
 #ifndef K4ATYPES_H
 #define K4ATYPES_H
 
+/* NOLINTBEGIN(modernize-*,bugprone-reserved-identifier): what is C is no old C++, and the names are theirs. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -110,5 +111,7 @@ typedef struct _k4a_calibration_t {
   k4a_depth_mode_t depth_mode;
   k4a_color_resolution_t color_resolution;
 } k4a_calibration_t;
+
+/* NOLINTEND(modernize-*,bugprone-reserved-identifier) */
 
 #endif
