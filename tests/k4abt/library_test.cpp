@@ -151,6 +151,7 @@ std::vector<TrackedPerson> found_in(const TrackedFrame& frame) {
 
 std::vector<Person> only_people(const std::vector<TrackedPerson>& tracked) {
   std::vector<Person> people;
+  people.reserve(tracked.size());
   for (const TrackedPerson& one : tracked) people.push_back(one.person);
   return people;
 }
@@ -489,7 +490,7 @@ TEST(K4abt, TellsWhatNoTrackerIsMadeOf) {
     testing::internal::CaptureStderr();
     EXPECT_EQ(k4abt_tracker_create(of, config, &made), K4A_RESULT_FAILED);
     EXPECT_EQ(made, nullptr);
-    const std::string said = testing::internal::GetCapturedStderr();
+    std::string said = testing::internal::GetCapturedStderr();
     EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
     return said;
   };
