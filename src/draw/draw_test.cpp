@@ -164,22 +164,14 @@ TEST(DrawPeople, OutlinesTheMask) {
   EXPECT_EQ(picture(320, 200), frame.colour(320, 200));
 }
 
-TEST(DrawPeople, DrawsPeopleInDifferentColours) {
+TEST(DrawPeople, DrawsPeopleInTheColoursOfTheirNumbers) {
   const Frame frame = plain_frame(640, 480);
   const BodyModel body = three_parts();
   std::vector<Person> people(2, person_of(frame, body));
   people[0].mask(100, 300) = 1;
   people[1].mask(500, 300) = 1;
-  const ColourImage picture = draw_people(frame, people, body);
-  EXPECT_NE(picture(100, 300), picture(500, 300));
-}
-
-TEST(DrawPeople, KeepsTheColourOfANumber) {
-  const Frame frame = plain_frame(640, 480);
-  const BodyModel body = three_parts();
-  std::vector<Person> people(2, person_of(frame, body));
-  people[0].mask(100, 300) = 1;
-  people[1].mask(500, 300) = 1;
+  const ColourImage unnumbered = draw_people(frame, people, body);
+  EXPECT_NE(unnumbered(100, 300), unnumbered(500, 300));
   const ColourImage picture = draw_people(frame, people, body, {4, 3}),
                     later = draw_people(frame, people, body, {3, 4});
   EXPECT_EQ(picture(100, 300), later(500, 300));

@@ -16,6 +16,7 @@
 
 #include "io/files/options_file.h"
 #include "io/lens/lens.h"
+#include "io/sources/test_rooms.h"
 #include "vesalius/detect.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_model.h"
@@ -69,16 +70,6 @@ CTracker make_tracker(const vesalius_detector* detector) {
   vesalius_tracker* made = nullptr;
   EXPECT_EQ(vesalius_tracker_create(detector, &made), VESALIUS_OK);
   return CTracker(made);
-}
-
-const std::vector<Frame>& rooms() {
-  static const std::vector<Frame> frames = [] {
-    std::vector<Frame> read;
-    const auto source = open_source(kData + "rooms");
-    while (auto frame = source->next()) read.push_back(std::move(*frame));
-    return read;
-  }();
-  return frames;
 }
 
 vesalius_camera camera_of(const Camera& camera) {
@@ -239,9 +230,9 @@ void expect_same_body(const TrackedPerson& expected, const BodyModel& body, cons
 // Labels: slow
 TEST(CLibrary, FindsTheSamePeopleAsTheDetectorToTheBit) {
   const Detector detector(load_model(kModel));
-  ASSERT_FALSE(rooms().empty());
+  ASSERT_FALSE(test::rooms().empty());
   int found = 0;
-  for (const Frame& frame : rooms()) {
+  for (const Frame& frame : test::rooms()) {
     const std::vector<Person> expected = detector.detect(frame);
     const CPeople people = detect(usual_detector(), frame_of(frame), camera_of(frame.camera));
     ASSERT_EQ(vesalius_people_count(people.get()), static_cast<int>(expected.size())) << frame.name;
@@ -265,7 +256,7 @@ TEST(CLibrary, FollowsPeopleAsTheTrackerToTheBit) {
   int hidden = 0, fitted = 0;
   // Thrice the same frame, so that people are sure, and one without them.
   for (const std::size_t which : {0, 0, 0, 1, 2}) {
-    Frame frame = rooms().at(which);
+    Frame frame = test::rooms().at(which);
     if (which == 1) frame.depth.fill(4000);
     const TrackedFrame expected = follow(detector, tracker, frame);
     const vesalius_frame given = frame_of(frame);
@@ -329,7 +320,7 @@ TEST(CLibrary, NamesBonesAsTheFlesh) {
 /// The first of the rooms in a way of storing it, and the same people in it.
 class Layout : public testing::Test {
  protected:
-  const Frame& frame_ = rooms().front();
+  const Frame& frame_ = test::rooms().front();
   const std::size_t width_ = static_cast<std::size_t>(frame_.camera.width);
   const std::size_t height_ = static_cast<std::size_t>(frame_.camera.height);
   const vesalius_camera camera_ = camera_of(frame_.camera);
@@ -501,7 +492,7 @@ TEST(CLibrary, DetectsWithTheOptionsThatAreSet) {
   EXPECT_EQ(value_of(options, "refine.max-candidates"), "1");
   EXPECT_EQ(value_of(options, "refine.min-score"), "1.0");
   const CDetector strict = make_detector(kModel, options.get());
-  for (const Frame& frame : rooms()) {
+  for (const Frame& frame : test::rooms()) {
     const CPeople nobody = detect(strict.get(), frame_of(frame), camera_of(frame.camera));
     EXPECT_EQ(vesalius_people_count(nobody.get()), 0);
   }
@@ -532,7 +523,7 @@ TEST(CLibrary, DestroysNull) {
 /// Calls that must fail, and everything that they need to succeed.
 class CErrors : public testing::Test {
  protected:
-  const Frame& frame_ = rooms().front();
+  const Frame& frame_ = test::rooms().front();
   vesalius_camera camera_ = camera_of(frame_.camera);
   vesalius_frame given_ = frame_of(frame_);
   vesalius_people* const untouched_ = reinterpret_cast<vesalius_people*>(this);

@@ -21,6 +21,7 @@
 
 #include "io/files/test_files.h"
 #include "io/lens/lens.h"
+#include "io/sources/test_rooms.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/model_file.h"
 #include "vesalius/open_source.h"
@@ -48,16 +49,6 @@ using Tracker = Owned<k4abt_tracker_t, k4abt_tracker_destroy>;
 using Bodies = Owned<k4abt_frame_t, k4abt_frame_release>;
 using Capture = Owned<k4a_capture_t, k4a_capture_release>;
 using Picture = Owned<k4a_image_t, k4a_image_release>;
-
-const std::vector<Frame>& rooms() {
-  static const std::vector<Frame> frames = [] {
-    std::vector<Frame> read;
-    const auto source = open_source(kData + "rooms");
-    while (auto frame = source->next()) read.push_back(std::move(*frame));
-    return read;
-  }();
-  return frames;
-}
 
 k4a_calibration_t calibration_of(const Camera& camera) {
   k4a_calibration_t calibration{};
@@ -203,11 +194,11 @@ double seconds(std::uint64_t usec) { return double(usec * 1000) / 1e9; }
 TEST(K4abt, GivesThePeopleOfTheTrackerToTheBit) {
   const Detector detector(load_model(kModel));
   PeopleTracker tracker = make_tracker(detector, {});
-  const Tracker theirs = make_k4abt(calibration_of(rooms()[0].camera), kModel);
+  const Tracker theirs = make_k4abt(calibration_of(test::rooms()[0].camera), kModel);
   std::uint64_t usec = 5'000'000;
   int placed = 0, people = 0;
   for (const std::size_t which : {0, 0, 0, 1, 2, 3, 4, 5}) {
-    Frame frame = rooms().at(which);
+    Frame frame = test::rooms().at(which);
     frame.time_s = seconds(usec);
     const std::vector<TrackedPerson> expected = found_in(follow(detector, tracker, frame));
     const Bodies bodies = next_bodies(theirs, frame, usec);
@@ -234,7 +225,7 @@ TEST(K4abt, TurnsPicturesOfCamerasThatAreMountedOtherwise) {
   for (const Mounting& of : {Mounting{K4ABT_SENSOR_ORIENTATION_CLOCKWISE90, 1, 1.F, 0.F},
                              Mounting{K4ABT_SENSOR_ORIENTATION_COUNTERCLOCKWISE90, 3, -1.F, 0.F},
                              Mounting{K4ABT_SENSOR_ORIENTATION_FLIP180, 2, 0.F, 1.F}}) {
-    Frame frame = turned(rooms()[0], of.quarters);
+    Frame frame = turned(test::rooms()[0], of.quarters);
     frame.quarter_turns = (4 - of.quarters) % 4;
     frame.time_s = seconds(kStep_usec);
     PeopleTracker tracker = make_tracker(detector, {});
@@ -254,7 +245,7 @@ TEST(K4abt, TurnsPicturesOfCamerasThatAreMountedOtherwise) {
 /// Pictures of a lens are straightened, and what is found in them is put back into the bent ones.
 // Labels: slow
 TEST(K4abt, UndoesTheLensAndPutsBodiesBackBehindIt) {
-  const Frame straight = rooms()[0];
+  const Frame straight = test::rooms()[0];
   k4a_calibration_t calibration = calibration_of(straight.camera);
   calibration.depth_camera_calibration.intrinsics.parameters.param.k1 = -0.15F;
   const Lens lens = *make_lens("rational_polynomial", {-0.15F, 0, 0, 0, 0, 0, 0, 0});
@@ -303,7 +294,7 @@ TEST(K4abt, UndoesTheLensAndPutsBodiesBackBehindIt) {
 
 // Labels: slow
 TEST(K4abt, SmoothsJointsByTheFactor) {
-  const Frame frame = rooms()[0];
+  const Frame frame = test::rooms()[0];
   const auto spread = [&](float factor) {
     const Tracker tracker = make_k4abt(calibration_of(frame.camera), kModel);
     k4abt_tracker_set_temporal_smoothing(tracker.get(), factor);
@@ -598,12 +589,12 @@ TEST(K4abt, ProgramsOfTheInterfaceRun) {
   const Detector detector(load_model(kModel));
   PeopleTracker tracker = make_tracker(detector, {});
   const std::size_t set = find_joint_set(detector.body(), "k4abt32");
-  const k4a_calibration_t calibration = calibration_of(rooms()[0].camera);
+  const k4a_calibration_t calibration = calibration_of(test::rooms()[0].camera);
   std::ofstream file(folder / "recording", std::ios::binary);
   file.write(reinterpret_cast<const char*>(&calibration), sizeof calibration);
   std::string expected;
   std::uint64_t usec = 1'000'000;
-  for (Frame frame : rooms()) {
+  for (Frame frame : test::rooms()) {
     frame.colour = {};
     frame.time_s = seconds(usec);
     file.write(reinterpret_cast<const char*>(&usec), sizeof usec);
