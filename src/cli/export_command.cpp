@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "console/source_flags.h"
 #include "console/text_sink.h"
 #include "export/people_record.h"
 #include "export/stand_upright.h"
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 struct ExportArguments {
   std::string people, to, format, joints;
   std::optional<int> person;
-  std::string frame = "floor";
+  bool on_floor = true;
   RecordOptions record;
   bool quiet = false;
 };
@@ -93,7 +94,7 @@ std::vector<File> make_files(const ExportArguments& arguments, const ExportForma
   const bool is_mcap = arguments.people.ends_with(".mcap");
   const std::string lines = is_mcap ? lines_of_mcap(arguments.people, arguments.quiet) : read_file(arguments.people);
   PeopleRecord record = parse_people(lines, arguments.people, arguments.record);
-  if (format.stands && arguments.frame == "floor" && !stand_upright(record)) {
+  if (format.stands && arguments.on_floor && !stand_upright(record)) {
     record.notes.push_back(arguments.people +
                            ": no floor is known; places are those of the camera, however it is tilted");
   }
@@ -154,12 +155,7 @@ void add_export(CLI::App& program) {
       ->type_name("SET");
   command->add_option("--person", arguments->person, "Only the person with this id, in trc, bvh or glb")
       ->type_name("ID");
-  command
-      ->add_option("--frame", arguments->frame,
-                   "Whose places csv, trc, bvh and glb have: floor, where the people were followed and it is known "
-                   "(level, the origin on it below the camera), or camera")
-      ->check(CLI::IsMember({"floor", "camera"}))
-      ->capture_default_str();
+  add_places_flag(*command, "--frame", arguments->on_floor, "Whose places csv, trc, bvh and glb have");
   command->add_flag("--smoothed", arguments->record.smoothed, "Smoothed joints, where people were followed");
   command->add_option("--rate", arguments->record.rate_hz, "Frames a second where frames have no times")
       ->type_name("HZ")

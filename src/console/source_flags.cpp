@@ -104,4 +104,15 @@ void add_threads_flag(CLI::App& command, int& threads) {
       ->group(kDetectorGroup);
 }
 
+CLI::Option* add_places_flag(CLI::App& command, const std::string& name, bool& on_floor, const std::string& whose) {
+  return command
+      .add_option_function<std::string>(
+          name, [&on_floor](const std::string& frame) { on_floor = frame == "floor"; },
+          whose +
+              ": floor, where the people were followed and it is known (level, the origin on it below the camera), or "
+              "camera")
+      ->check(CLI::IsMember({"floor", "camera"}))
+      ->default_str("floor");
+}
+
 }  // namespace vesalius::cli

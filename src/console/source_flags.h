@@ -53,6 +53,10 @@ void add_track_flag(CLI::App& command, std::optional<bool>& track);
 /// Adds --threads; 0 = all.
 void add_threads_flag(CLI::App& command, int& threads);
 
+/// Adds the flag `name` that says whose places somebody gets: "floor", as long as it is not given, or "camera". `whose`
+/// begins its text.
+CLI::Option* add_places_flag(CLI::App& command, const std::string& name, bool& on_floor, const std::string& whose);
+
 /// The text of --help on what SOURCE may be.
 inline constexpr const char* kSourceHelp =
     "Frames: a folder (depth/*.png with meta.json or camera_info.yaml, TUM RGB-D, PNG or PCD files), a 16-bit depth "

@@ -131,7 +131,7 @@ ColourImage CaptureReader::colour_of(k4a_capture_t capture, const DepthImage& de
   try {
     ColourImage colour = decode(image.get());
     // Of the camera's own pixels, as k4a_transformation_color_image_to_depth_camera makes it.
-    if (colour.same_size(depth)) return rectification_ ? rectification_->colour(colour) : std::move(colour);
+    if (colour.same_size(depth)) return rectified(rectification_, std::move(colour));
     if (registration_ && registration_->fits(colour)) return (*registration_)(depth, colour);
   } catch (const Error& e) {
     say_once(std::string("colour is left out: ") + e.what());

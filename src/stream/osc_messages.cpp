@@ -81,7 +81,7 @@ std::string OscMessage::bytes() const {
 std::vector<std::string> osc_bundles(const TrackedFrame& people, const BodyModel& body, const OscOptions& options) {
   const std::size_t set = find_joint_set(body, options.joints);
   const JointSet& names = body.joint_sets[set];
-  const bool stands = options.frame == "floor" && people.floor.has_value();
+  const bool stands = options.on_floor && people.floor.has_value();
   const Eigen::Isometry3f from_optical = stands ? floor_from_optical(*people.floor) : Eigen::Isometry3f::Identity();
   Bundles bundles;
   OscMessage all("/vesalius/people");

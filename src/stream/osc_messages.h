@@ -27,7 +27,7 @@ class OscMessage {
 /// What is sent of each joint.
 struct OscOptions {
   std::string joints = "k4abt32";  ///< joint set
-  std::string frame = "floor";     ///< whose places they are: the floor's where it is known, or the camera's
+  bool on_floor = true;            ///< whether places are the floor's where it is known, or always the camera's
 };
 
 /// Returns the people of a frame as OSC bundles that fit into Ethernet's packets. Metres, x right, y up, z towards the

@@ -102,7 +102,7 @@ TEST(OscBundles, SendIdsAndStatesOfPeopleWhoAreFollowed) {
   EXPECT_THAT(
       on_floor.at("/vesalius/17/position").second,
       testing::ElementsAre(testing::_, std::bit_cast<std::uint32_t>(-1.5F), std::bit_cast<std::uint32_t>(0.125F)));
-  EXPECT_EQ(read(osc_bundles(tracked, body, {body.joint_sets[0].name, "camera"})), messages);
+  EXPECT_EQ(read(osc_bundles(tracked, body, {body.joint_sets[0].name, false})), messages);
   EXPECT_TRUE(read(osc_bundles(TrackedFrame{}, body, {body.joint_sets[0].name})).contains("/vesalius/people"));
   EXPECT_THROW(osc_bundles(tracked, body, {"body99"}), UsageError);
 }

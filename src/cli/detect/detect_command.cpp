@@ -179,10 +179,7 @@ void add_output_flags(CLI::App& command, OutputRequest& outputs) {
       .add_flag("--brief", outputs.json_options.brief,
                 "JSON without body parts, fitted bodies, smoothed joints and pixels")
       ->group(kOutputGroup);
-  add("--osc-frame", outputs.osc_options.frame, "NAME",
-      "Whose places they have: floor, where it is known (level, the origin on it below the camera), or camera")
-      ->check(CLI::IsMember({"floor", "camera"}))
-      ->capture_default_str();
+  add_places_flag(command, "--osc-frame", outputs.osc_options.on_floor, "Whose places OSC has")->group(kOutputGroup);
   add("--out", outputs.folder, "DIR", "Folder for pictures, created if missing");
   add("--save", outputs.save, "WHAT",
       "What to put into --out, separated by commas: overlay (default) and parts, pictures of skeletons and of body "

@@ -38,6 +38,10 @@ void check(const OutputRequest& request) {
 
 DetectOutputs::DetectOutputs(OutputRequest request, const BodyModel& body)
     : request_(std::move(request)), kinds_(request_.save.begin(), request_.save.end()), body_(body) {
+  const std::string& joints = request_.json_options.joints;
+  if (!joints.empty()) request_.osc_options.joints = joints;
+  if (!joints.empty() || !request_.osc.empty())
+    (void)find_joint_set(body, request_.osc_options.joints);  // there is one
   if (!request_.folder.empty()) {
     if (kinds_.empty()) kinds_.insert("overlay");
     make_folder(request_.folder);
@@ -48,16 +52,9 @@ DetectOutputs::DetectOutputs(OutputRequest request, const BodyModel& body)
     if (wants("labels")) write_file_atomically(in_folder("labels.json"), part_table_json(body));
     if (wants("video")) video_.emplace(in_folder("overlay.avi"), request_.video_rate);
   }
-  if (!request_.json_options.joints.empty()) {
-    (void)find_joint_set(body, request_.json_options.joints);  // there is one
-    request_.osc_options.joints = request_.json_options.joints;
-  }
   if (!request_.json.empty()) json_.emplace(request_.json);
   if (!request_.udp.empty()) udp_.emplace(request_.udp);
-  if (!request_.osc.empty()) {
-    (void)osc_bundles(TrackedFrame{}, body, request_.osc_options);  // says if the joint set is unknown
-    osc_.emplace(request_.osc);
-  }
+  if (!request_.osc.empty()) osc_.emplace(request_.osc);
 }
 
 void DetectOutputs::send(const TrackedFrame& people, const std::string& json) {

@@ -13,6 +13,12 @@ namespace vesalius {
 /// Largest picture, in pixels, that is decoded. A header can claim any size.
 inline constexpr std::int64_t kMaxPixels = std::int64_t{64} << 20;
 
+/// Returns the colour that points have in one number, 0xRRGGBB.
+inline Rgb unpack_rgb(std::uint32_t packed) {
+  return {static_cast<std::uint8_t>(packed >> 16U), static_cast<std::uint8_t>(packed >> 8U),
+          static_cast<std::uint8_t>(packed)};
+}
+
 /// The header of a PNG, and its data without the chunks that do not affect the pixels.
 struct PngBytes {
   int width = 0;

@@ -115,4 +115,9 @@ class Rectification {
 /// a size has that of `to`.
 std::optional<Rectification> make_rectification(std::optional<LensCamera> distorted, const Camera& to);
 
+/// Returns colour without the distortion of its camera, if that has one.
+inline ColourImage rectified(const std::optional<Rectification>& rectification, ColourImage colour) {
+  return rectification ? rectification->colour(colour) : std::move(colour);
+}
+
 }  // namespace vesalius

@@ -70,9 +70,8 @@ ColourImage colour_of_points(const PictureMessage& picture, const std::string& n
   ColourImage colour(picture.width, picture.height);
   for (int v = 0; v < picture.height; ++v) {
     for (int u = 0; u < picture.width; ++u) {
-      const auto rgb = value_at<std::uint32_t>(picture, v, std::size_t(u) * picture.point_bytes + *picture.rgb);
-      const auto channel = [&](unsigned shift) { return static_cast<std::uint8_t>(rgb >> shift & 0xFFU); };
-      colour(u, v) = {channel(16), channel(8), channel(0)};
+      const std::size_t at = std::size_t(u) * picture.point_bytes + *picture.rgb;
+      colour(u, v) = unpack_rgb(value_at<std::uint32_t>(picture, v, at));
     }
   }
   return colour;

@@ -300,7 +300,7 @@ Frame FrameListReader::read(std::size_t index, bool with_colour) const {
   if (registration_ && registration_->fits(colour)) {
     frame.colour = (*registration_)(frame.depth, colour);
   } else if (is_of_size(colour, camera_)) {
-    frame.colour = rectification_ ? rectification_->colour(colour) : std::move(colour);
+    frame.colour = rectified(rectification_, std::move(colour));
   }
   return frame;
 }

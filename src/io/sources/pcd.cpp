@@ -34,11 +34,6 @@ T load(const char* at) {
   return value;
 }
 
-Rgb unpack(std::uint32_t packed) {
-  return {static_cast<std::uint8_t>(packed >> 16U), static_cast<std::uint8_t>(packed >> 8U),
-          static_cast<std::uint8_t>(packed)};
-}
-
 float load_coordinate(const PcdField& field, const char* at) {
   return field.size == 8 ? float(load<double>(at)) : load<float>(at);
 }
@@ -62,7 +57,7 @@ PointGrid gather(const PcdHeader& header, ColumnOf&& column_of) {
   if (header.rgb >= 0) {
     grid.colour = ColourImage(header.width, header.height);
     const Column column = column_of(header.fields[header.rgb]);
-    for (std::size_t i = 0; i < grid.colour.size(); ++i) grid.colour[i] = unpack(load<std::uint32_t>(column.at(i)));
+    for (std::size_t i = 0; i < grid.colour.size(); ++i) grid.colour[i] = unpack_rgb(load<std::uint32_t>(column.at(i)));
   }
   return grid;
 }
@@ -120,12 +115,12 @@ bool parse_colour(const PcdField& field, std::string_view word, Rgb& colour) {
   if (field.type == 'F') {  // the colour is stored in the bits of this number
     float bits = 0.F;
     if (!parse_word(word, bits)) return false;
-    colour = std::isnan(bits) ? Rgb{} : unpack(std::bit_cast<std::uint32_t>(bits));
+    colour = std::isnan(bits) ? Rgb{} : unpack_rgb(std::bit_cast<std::uint32_t>(bits));
     return true;
   }
   std::int64_t packed = 0;
   if (!parse_word(word, packed)) return false;
-  colour = unpack(static_cast<std::uint32_t>(packed));
+  colour = unpack_rgb(static_cast<std::uint32_t>(packed));
   return true;
 }
 

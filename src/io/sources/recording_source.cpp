@@ -341,7 +341,7 @@ class RecordingSource final : public FrameSource {
       throw Error(fmt::format("{}: {}: {}x{} pixels, expected {}x{} as before", place, frame.name, frame.depth.width(),
                               frame.depth.height(), camera_.width, camera_.height));
     }
-    if (colour_topic_.empty() && picture.rgb) frame.colour = rectified(colour_of(picture, frame.name), rectification_);
+    if (colour_topic_.empty() && picture.rgb) frame.colour = rectified(rectification_, colour_of(picture, frame.name));
     if (rectification_) frame.depth = rectification_->depth(frame.depth);
     waiting_.push_back({time_ns, std::move(frame)});
   }
@@ -388,11 +388,7 @@ class RecordingSource final : public FrameSource {
   ColourImage registered(ColourImage colour, const DepthImage& depth) const {
     if (registration_ && registration_->fits(colour)) return (*registration_)(depth, colour);
     if (registration_ || !colour.same_size(depth)) return {};
-    return rectified(std::move(colour), colour_rectification_);
-  }
-
-  static ColourImage rectified(ColourImage colour, const std::optional<Rectification>& rectification) {
-    return rectification ? rectification->colour(colour) : std::move(colour);
+    return rectified(colour_rectification_, std::move(colour));
   }
 
   void forget_colour() {

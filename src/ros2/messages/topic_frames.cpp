@@ -149,7 +149,7 @@ ColourImage TopicFrames::colour_for(const Picture& depth, const DepthImage& imag
     note_once("colour", fmt::format("{}: no colour, since it is not registered to {}", topics_.colour, topics_.depth));
     return {};
   }
-  return rectification_ ? rectification_->colour(colour) : colour;
+  return rectified(rectification_, std::move(colour));
 }
 
 DepthImage TopicFrames::depth_from(const PictureMessage& picture) {
