@@ -36,7 +36,7 @@ double with_decimals(double value, int decimals) {
 }
 
 /// With y up and z towards the camera.
-Eigen::Vector3d upright(const Eigen::Vector3d& optical) { return {optical.x(), -optical.y(), -optical.z()}; }
+Eigen::Vector3d with_y_up(const Eigen::Vector3d& optical) { return {optical.x(), -optical.y(), -optical.z()}; }
 
 /// Returns the frames a second: the median of the times between them.
 double rate_of(const std::vector<double>& times_s) {
@@ -66,7 +66,7 @@ std::string to_csv(const PeopleRecord& record, std::size_t set) {
       for (const Joint& joint : person.person.joints[set]) {
         if (joint.state != State::none) {
           const Eigen::Vector3d place = rounded(joint.position);
-          const Eigen::Vector3d at = record.upright ? upright(place) : place;
+          const Eigen::Vector3d at = record.upright ? with_y_up(place) : place;
           fmt::format_to(to, ",{:.4f},{:.4f},{:.4f}", at.x(), at.y(), at.z());
         } else {
           fmt::format_to(to, ",,,");
@@ -122,7 +122,7 @@ std::string to_trc(const PeopleRecord& record, std::size_t set, int person, cons
         fmt::format_to(to, "\t\t\t");
         continue;
       }
-      const Eigen::Vector3d at = 1000.0 * upright(rounded(joint.position));
+      const Eigen::Vector3d at = 1000.0 * with_y_up(rounded(joint.position));
       fmt::format_to(to, "\t{:.3f}\t{:.3f}\t{:.3f}", at.x(), at.y(), at.z());
     }
     fmt::format_to(to, "\n");
