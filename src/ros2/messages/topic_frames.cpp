@@ -83,8 +83,8 @@ std::optional<CameraTopics> choose_topics(const std::string& name_space, const C
   return chosen;
 }
 
-TopicFrames::TopicFrames(CameraTopics topics, const SourceOptions& stored)
-    : topics_(std::move(topics)), stored_(stored), unchecked_(kFirstFrames) {}
+TopicFrames::TopicFrames(CameraTopics topics, SourceOptions stored)
+    : topics_(std::move(topics)), stored_(std::move(stored)), unchecked_(kFirstFrames) {}
 
 void TopicFrames::note_once(const std::string& key, const std::string& line) {
   if (!std::exchange(noted_[key], true)) notes_.push_back(line);

@@ -52,7 +52,7 @@ struct TopicFrame {
 class TopicFrames {
  public:
   /// `stored` says how depth is stored; the rest of it counts nothing.
-  explicit TopicFrames(CameraTopics topics, const SourceOptions& stored = {});
+  explicit TopicFrames(CameraTopics topics, SourceOptions stored = {});
 
   // Take a message as CDR. `arrived_s` is when, by this machine's clock. All throw Error naming the topic where the
   // message is not what it should be; it is left out then.
