@@ -83,7 +83,7 @@ void BodyTracker::run() {
     PeopleTracker tracker = make_tracker(*detector_, {});
     stream_frames(captures, *detector_, tracker, {}, [&](const FoundFrame& found) { return take(found); });
   } catch (...) {
-    say_exception("a tracker ends");
+    kGuard.say_exception("a tracker ends");
   }
   const std::scoped_lock lock(mutex_);
   closed_ = ended_ = true;
@@ -127,7 +127,7 @@ bool BodyTracker::take(const FoundFrame& found) {
     try {
       std::rethrow_exception(found.error);
     } catch (...) {
-      say_exception("nobody is looked for in a capture");
+      kGuard.say_exception("nobody is looked for in a capture");
     }
   }
   std::unique_lock lock(mutex_);

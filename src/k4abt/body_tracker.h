@@ -15,6 +15,7 @@
 #include "k4abt/bodies.h"
 #include "k4abt/body_frame.h"
 #include "k4abt/read_capture.h"
+#include "standin/body_smoother.h"
 #include "vesalius/detect_stream.h"
 #include "vesalius/frame_source.h"
 
@@ -66,7 +67,7 @@ class BodyTracker {
   const CaptureReader reader_;
   const std::size_t set_;  ///< index of the joint set
   std::atomic<float> smoothing_ = K4ABT_DEFAULT_TRACKER_SMOOTHING_FACTOR;
-  BodySmoother smoother_;  ///< of the thread
+  standin::BodySmoother smoother_;  ///< of the thread
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<CaptureReference> waiting_, working_;

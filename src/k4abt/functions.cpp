@@ -12,9 +12,9 @@
 #include "k4abt/body_frame.h"
 #include "k4abt/body_tracker.h"
 #include "k4abt/guard.h"
-#include "k4abt/handle_registry.h"
 #include "k4abt/k4a_library.h"
-#include "k4abt/shared_detector.h"
+#include "standin/handle_registry.h"
+#include "standin/shared_detector.h"
 #include "vesalius/error.h"
 
 namespace vesalius::k4abt {
@@ -22,11 +22,11 @@ namespace {
 
 /// The registries are never destroyed: programs may release what they have at their very end.
 auto& trackers() {
-  static auto& registry = *new HandleRegistry<k4abt_tracker_t, BodyTracker>("tracker");
+  static auto& registry = *new standin::HandleRegistry<k4abt_tracker_t, BodyTracker>("tracker");
   return registry;
 }
 auto& frames() {
-  static auto& registry = *new HandleRegistry<k4abt_frame_t, const BodyFrame>("frame");
+  static auto& registry = *new standin::HandleRegistry<k4abt_frame_t, const BodyFrame>("frame");
   return registry;
 }
 
@@ -44,6 +44,16 @@ template <class T>
 T& need(T* pointer, const char* name) {
   if (pointer == nullptr) throw UsageError(std::string(name) + " is NULL");
   return *pointer;
+}
+
+/// Returns the model of a path that a program configures: null and what only Microsoft's library reads (.onnx) stand
+/// for the usual one.
+std::string model_of(const char* model_path) {
+  const std::string asked = model_path != nullptr ? model_path : "";
+  const bool is_theirs = asked.ends_with(".onnx") || asked.ends_with(".ONNX");
+  if (is_theirs) kGuard.say_once("the model " + asked + " is not of vesalius; its own is used");
+  if (!asked.empty() && !is_theirs) return asked;
+  return standin::usual_model(reinterpret_cast<const void*>(&k4abt_tracker_create), VESALIUS_MODELS_FROM_K4ABT);
 }
 
 /// Returns what a program gives, which need not be one of the enumeration's.
@@ -84,15 +94,16 @@ using namespace vesalius::k4abt;
 
 k4a_result_t k4abt_tracker_create(const k4a_calibration_t* sensor_calibration, k4abt_tracker_configuration_t config,
                                   k4abt_tracker_t* tracker_handle) {
-  return guarded(__func__, K4A_RESULT_FAILED, [&] {
+  return kGuard.run(__func__, K4A_RESULT_FAILED, [&] {
     need(tracker_handle, "tracker_handle") = nullptr;
     CaptureReader reader(need(sensor_calibration, "sensor_calibration"),
                          quarter_turns(value_of(config.sensor_orientation)));
     (void)k4a();
     if (value_of(config.processing_mode) != K4ABT_TRACKER_PROCESSING_MODE_CPU) {
-      say_once("people are found on the processor; processing_mode and gpu_device_id are ignored");
+      kGuard.say_once("people are found on the processor; processing_mode and gpu_device_id are ignored");
     }
-    auto tracker = std::make_shared<BodyTracker>(shared_detector(config.model_path), std::move(reader));
+    auto tracker =
+        std::make_shared<BodyTracker>(standin::shared_detector(model_of(config.model_path)), std::move(reader));
     end_at_exit();
     *tracker_handle = trackers().add(std::move(tracker));
     return K4A_RESULT_SUCCEEDED;
@@ -100,11 +111,11 @@ k4a_result_t k4abt_tracker_create(const k4a_calibration_t* sensor_calibration, k
 }
 
 void k4abt_tracker_destroy(k4abt_tracker_t tracker_handle) {
-  guarded(__func__, [&] { trackers().release(tracker_handle)->end(); });
+  kGuard.run(__func__, [&] { trackers().release(tracker_handle)->end(); });
 }
 
 void k4abt_tracker_set_temporal_smoothing(k4abt_tracker_t tracker_handle, float smoothing_factor) {
-  guarded(__func__, [&] {
+  kGuard.run(__func__, [&] {
     const auto tracker = trackers().get(tracker_handle);
     if (std::isnan(smoothing_factor)) throw UsageError("smoothing_factor is no number, expected 0 to 1");
     tracker->set_smoothing(std::clamp(smoothing_factor, 0.F, 1.F));
@@ -113,7 +124,7 @@ void k4abt_tracker_set_temporal_smoothing(k4abt_tracker_t tracker_handle, float 
 
 k4a_wait_result_t k4abt_tracker_enqueue_capture(k4abt_tracker_t tracker_handle, k4a_capture_t sensor_capture_handle,
                                                 int32_t timeout_in_ms) {
-  return guarded(__func__, K4A_WAIT_RESULT_FAILED, [&] {
+  return kGuard.run(__func__, K4A_WAIT_RESULT_FAILED, [&] {
     const auto tracker = trackers().get(tracker_handle);
     return tracker->enqueue(&need(sensor_capture_handle, "sensor_capture_handle"), timeout_in_ms);
   });
@@ -121,7 +132,7 @@ k4a_wait_result_t k4abt_tracker_enqueue_capture(k4abt_tracker_t tracker_handle, 
 
 k4a_wait_result_t k4abt_tracker_pop_result(k4abt_tracker_t tracker_handle, k4abt_frame_t* body_frame_handle,
                                            int32_t timeout_in_ms) {
-  return guarded(__func__, K4A_WAIT_RESULT_FAILED, [&] {
+  return kGuard.run(__func__, K4A_WAIT_RESULT_FAILED, [&] {
     need(body_frame_handle, "body_frame_handle") = nullptr;
     std::shared_ptr<const BodyFrame> frame;
     const k4a_wait_result_t result = trackers().get(tracker_handle)->pop(frame, timeout_in_ms);
@@ -131,25 +142,25 @@ k4a_wait_result_t k4abt_tracker_pop_result(k4abt_tracker_t tracker_handle, k4abt
 }
 
 void k4abt_tracker_shutdown(k4abt_tracker_t tracker_handle) {
-  guarded(__func__, [&] { trackers().get(tracker_handle)->shut_down(); });
+  kGuard.run(__func__, [&] { trackers().get(tracker_handle)->shut_down(); });
 }
 
 void k4abt_frame_release(k4abt_frame_t body_frame_handle) {
-  guarded(__func__, [&] { frames().release(body_frame_handle); });
+  kGuard.run(__func__, [&] { frames().release(body_frame_handle); });
 }
 
 void k4abt_frame_reference(k4abt_frame_t body_frame_handle) {
-  guarded(__func__, [&] { frames().reference(body_frame_handle); });
+  kGuard.run(__func__, [&] { frames().reference(body_frame_handle); });
 }
 
 uint32_t k4abt_frame_get_num_bodies(k4abt_frame_t body_frame_handle) {
-  return guarded(__func__, uint32_t{0},
-                 [&] { return static_cast<uint32_t>(frames().get(body_frame_handle)->bodies().size()); });
+  return kGuard.run(__func__, uint32_t{0},
+                    [&] { return static_cast<uint32_t>(frames().get(body_frame_handle)->bodies().size()); });
 }
 
 k4a_result_t k4abt_frame_get_body_skeleton(k4abt_frame_t body_frame_handle, uint32_t index,
                                            k4abt_skeleton_t* skeleton) {
-  return guarded(__func__, K4A_RESULT_FAILED, [&] {
+  return kGuard.run(__func__, K4A_RESULT_FAILED, [&] {
     const auto frame = frames().get(body_frame_handle);
     need(skeleton, "skeleton") = body_of(*frame, index).skeleton;
     return K4A_RESULT_SUCCEEDED;
@@ -157,18 +168,18 @@ k4a_result_t k4abt_frame_get_body_skeleton(k4abt_frame_t body_frame_handle, uint
 }
 
 uint32_t k4abt_frame_get_body_id(k4abt_frame_t body_frame_handle, uint32_t index) {
-  return guarded(__func__, uint32_t{K4ABT_INVALID_BODY_ID}, [&] {
+  return kGuard.run(__func__, uint32_t{K4ABT_INVALID_BODY_ID}, [&] {
     const auto frame = frames().get(body_frame_handle);
     return body_of(*frame, index).id;
   });
 }
 
 uint64_t k4abt_frame_get_device_timestamp_usec(k4abt_frame_t body_frame_handle) {
-  return guarded(__func__, uint64_t{0}, [&] { return frames().get(body_frame_handle)->device_usec(); });
+  return kGuard.run(__func__, uint64_t{0}, [&] { return frames().get(body_frame_handle)->device_usec(); });
 }
 
 uint64_t k4abt_frame_get_system_timestamp_nsec(k4abt_frame_t body_frame_handle) {
-  return guarded(__func__, uint64_t{0}, [&] { return frames().get(body_frame_handle)->system_nsec(); });
+  return kGuard.run(__func__, uint64_t{0}, [&] { return frames().get(body_frame_handle)->system_nsec(); });
 }
 
 uint64_t k4abt_frame_get_timestamp_usec(k4abt_frame_t body_frame_handle) {
@@ -176,7 +187,7 @@ uint64_t k4abt_frame_get_timestamp_usec(k4abt_frame_t body_frame_handle) {
 }
 
 k4a_image_t k4abt_frame_get_body_index_map(k4abt_frame_t body_frame_handle) {
-  return guarded(__func__, k4a_image_t{}, [&] {
+  return kGuard.run(__func__, k4a_image_t{}, [&] {
     const auto frame = frames().get(body_frame_handle);
     const k4a_image_t picture = frame->index_map();
     k4a().image_reference(picture);
@@ -185,7 +196,7 @@ k4a_image_t k4abt_frame_get_body_index_map(k4abt_frame_t body_frame_handle) {
 }
 
 k4a_capture_t k4abt_frame_get_capture(k4abt_frame_t body_frame_handle) {
-  return guarded(__func__, k4a_capture_t{}, [&] {
+  return kGuard.run(__func__, k4a_capture_t{}, [&] {
     const auto frame = frames().get(body_frame_handle);
     k4a().capture_reference(frame->capture());
     return frame->capture();

@@ -81,7 +81,7 @@ CaptureReader::CaptureReader(const k4a_calibration_t& calibration, std::optional
     registration_.emplace(camera_.camera, camera_of(calibration.color_camera_calibration, "colour camera"),
                           transform_of(calibration.extrinsics[K4A_CALIBRATION_TYPE_DEPTH][K4A_CALIBRATION_TYPE_COLOR]));
   } catch (const Error& e) {
-    say_once(std::string("colour is left out: ") + e.what());
+    kGuard.say_once(std::string("colour is left out: ") + e.what());
   }
 }
 
@@ -134,7 +134,7 @@ ColourImage CaptureReader::colour_of(k4a_capture_t capture, const DepthImage& de
     if (colour.same_size(depth)) return rectified(rectification_, std::move(colour));
     if (registration_ && registration_->fits(colour)) return (*registration_)(depth, colour);
   } catch (const Error& e) {
-    say_once(std::string("colour is left out: ") + e.what());
+    kGuard.say_once(std::string("colour is left out: ") + e.what());
   }
   return {};
 }

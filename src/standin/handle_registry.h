@@ -11,7 +11,7 @@
 
 #include "vesalius/error.h"
 
-namespace vesalius::k4abt {
+namespace vesalius::standin {
 
 /// Objects behind the handles of an interface, counted by references. A handle is a number that is never used again, so
 /// that one of an object that is gone is told from all others. Any thread may call anything.
@@ -27,6 +27,12 @@ class HandleRegistry {
     last_ += kStep;
     entries_.emplace(last_, Entry{std::move(object), 1});
     return reinterpret_cast<Handle>(last_);  // NOLINT(performance-no-int-to-ptr): nobody looks behind it
+  }
+
+  /// The same for an object whose handle is its own address, where programs look at it.
+  void add(Handle handle, std::shared_ptr<T> object) {
+    const std::scoped_lock lock(mutex_);
+    entries_.emplace(reinterpret_cast<std::uintptr_t>(handle), Entry{std::move(object), 1});
   }
 
   /// Throws UsageError for what is no handle, here and below.
@@ -80,4 +86,4 @@ class HandleRegistry {
   std::unordered_map<std::uintptr_t, Entry> entries_;
 };
 
-}  // namespace vesalius::k4abt
+}  // namespace vesalius::standin
