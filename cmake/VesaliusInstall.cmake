@@ -43,6 +43,11 @@ if(TARGET vesalius_k4abt)
   install(FILES ${PROJECT_SOURCE_DIR}/src/k4abt/include/k4abt.h ${PROJECT_SOURCE_DIR}/src/k4abt/include/k4abttypes.h
           DESTINATION ${VESALIUS_INCLUDE_DIR}/k4abt)
 endif()
+# So does that for programs of NiTE 2.
+if(TARGET vesalius_nite2)
+  install(TARGETS vesalius_nite2 LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/vesalius/nite2 COMPONENT program)
+  install(FILES ${PROJECT_SOURCE_DIR}/src/nite2/include/NiteCAPI.h DESTINATION ${VESALIUS_INCLUDE_DIR}/nite2)
+endif()
 
 get_property(VESALIUS_OPTIONAL_PACKAGES GLOBAL PROPERTY VESALIUS_OPTIONAL_PACKAGES)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vesaliusConfig.cmake.in
@@ -59,7 +64,7 @@ install(FILES ${PROJECT_BINARY_DIR}/vesaliusConfig.cmake ${PROJECT_BINARY_DIR}/v
 # What the program and the C library find without being told where (src/io/model/default_model.h).
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 set(VESALIUS_DATA_DIR ${CMAKE_INSTALL_DATADIR}/vesalius)
-if(TARGET vesalius OR TARGET vesalius_c OR TARGET vesalius_k4abt)
+if(TARGET vesalius OR TARGET vesalius_c OR TARGET vesalius_k4abt OR TARGET vesalius_nite2)
   # All but the tests' own.
   install(FILES ${PROJECT_SOURCE_DIR}/data/models/default.model ${PROJECT_SOURCE_DIR}/data/models/default.forest
                 ${PROJECT_SOURCE_DIR}/data/models/small.forest ${PROJECT_SOURCE_DIR}/data/models/README.md
@@ -84,6 +89,7 @@ if(TARGET vesalius)
                 \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/THIRD-PARTY-NOTICES.gz ${CMAKE_MAKE_PROGRAM}
                 ${PROJECT_BINARY_DIR} $<TARGET_FILE:vesalius> $<$<TARGET_EXISTS:vesalius_c>:$<TARGET_FILE:vesalius_c>>
                 $<$<TARGET_EXISTS:vesalius_k4abt>:$<TARGET_FILE:vesalius_k4abt>>
+                $<$<TARGET_EXISTS:vesalius_nite2>:$<TARGET_FILE:vesalius_nite2>>
         RESULT_VARIABLE failed)
       if(failed)
         message(WARNING \"THIRD-PARTY-NOTICES.gz lacks what is named above\")

@@ -24,7 +24,7 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   # As dh_strip does.
   file(GLOB programs ${root}/bin/*)
   file(GLOB_RECURSE archives ${root}/lib/*.a)
-  file(GLOB libraries ${root}/lib/*/*.so.*.*.* ${root}/lib/*/vesalius/k4abt/*.so.*)
+  file(GLOB libraries ${root}/lib/*/*.so.*.*.* ${root}/lib/*/vesalius/k4abt/*.so.* ${root}/lib/*/vesalius/nite2/*.so)
   foreach(file IN LISTS programs libraries archives)
     execute_process(COMMAND strip --strip-debug --enable-deterministic-archives --remove-section=.comment --remove-section=.note
                             ${file} COMMAND_ERROR_IS_FATAL ANY)

@@ -68,7 +68,8 @@ def check_debian(deb, folder, epoch):
     with open(folder / "data.tar", "wb") as data:
         subprocess.run(["dpkg-deb", "--fsys-tarfile", str(deb)], check=True, stdout=data)
     names = check_entries(folder / "data.tar", epoch)
-    expect(any(name.endswith("/vesalius/k4abt/libk4abt.so.1.1") for name in names), f"{deb.name} lacks libk4abt.so")
+    for library in ("k4abt/libk4abt.so.1.1", "nite2/libNiTE2.so"):
+        expect(any(name.endswith(f"/vesalius/{library}") for name in names), f"{deb.name} lacks {library}")
     for name in HOLDS + HELD_BY_DEBIAN:
         expect(f"./usr/{name}" in names, f"{deb.name} lacks {name}")
     run("dpkg-deb", "--extract", deb, folder / "deb")
