@@ -49,7 +49,7 @@ T& need(T* pointer, const char* name) {
 /// Returns the model of a path that a program configures: null and what only Microsoft's library reads (.onnx) stand
 /// for the usual one.
 std::string model_of(const char* model_path) {
-  const std::string asked = model_path != nullptr ? model_path : "";
+  std::string asked = model_path != nullptr ? model_path : "";
   const bool is_theirs = asked.ends_with(".onnx") || asked.ends_with(".ONNX");
   if (is_theirs) kGuard.say_once("the model " + asked + " is not of vesalius; its own is used");
   if (!asked.empty() && !is_theirs) return asked;

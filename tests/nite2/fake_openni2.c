@@ -1,8 +1,6 @@
 /* See the header. A device that is opened plays the file that FAKE_OPENNI2 names, if it names one: a FakeView, then for
    each picture its time (uint64, microseconds) and its depth. */
 
-#define _POSIX_C_SOURCE 200809L
-
 #include "fake_openni2.h"
 
 #include <pthread.h>

@@ -24,6 +24,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+SOURCE = Path(__file__).resolve().parent.parent.parent
 RATE_HZ, STEP_USEC = 25.0, 40_000
 NAMES = ("head", "neck", "l_shoulder", "r_shoulder", "l_elbow", "r_elbow", "l_hand", "r_hand", "torso", "l_hip", "r_hip", "l_knee", "r_knee",
          "l_foot", "r_foot")
@@ -43,7 +44,23 @@ def make_openni(folder):
     drivers = folder / "OpenNI2/Drivers"
     drivers.mkdir(parents=True)
     subprocess.run([os.environ.get("CXX", "c++"), "-std=c++20", "-O1", "-fPIC", "-shared", "-I/usr/include/openni2",
-                    Path(__file__).with_name("openni_driver.cpp"), "-o", drivers / "libVesaliusPictures.so.0"], check=True)
+                    SOURCE / "tests/nite2/openni_driver.cpp", "-o", drivers / "libVesaliusPictures.so.0"], check=True)
+
+
+def compile_program(libraries):
+    (libraries / "libOpenNI2.so.0").symlink_to("libOpenNI2.so")
+    subprocess.run([os.environ.get("CXX", "c++"), "-std=c++11", "-isystem", "/usr/include/openni2", f"-I{SOURCE / 'src/nite2/include'}",
+                    SOURCE / "tests/nite2/openni_program.cpp", f"-L{libraries}", "-lNiTE2", "-lOpenNI2", f"-Wl,-rpath,{libraries}",
+                    "-Wl,--allow-shlib-undefined", "-o", libraries / "program"], check=True)
+
+
+def run_program(program, wanted, environment):
+    """A program in C++ with OpenNI's own classes, that shuts everything down or nothing."""
+    visible = [sum(person["state"] in ("new", "tracked") for person in people) for people, _, _ in wanted]
+    expected = "".join(f"{i * STEP_USEC} {visible[i]} {int((ids == people[0]['id']).sum())}\n" for i, (people, ids, _) in enumerate(wanted[:3]))
+    for more in ([], ["leave"]):
+        said = subprocess.run([program, *more], env=environment, check=True, capture_output=True, text=True).stdout
+        assert said == expected, f"{said}, expected {expected}"
 
 
 def write_pictures(folder, is_mirrored, work):
@@ -209,6 +226,7 @@ def main():
         libraries.mkdir()
         make_openni(libraries)
         (libraries / "libNiTE2.so").symlink_to(library)
+        compile_program(libraries)
         for folder in folders:
             for is_mirrored in (False, True):
                 work = Path(made) / f"{folder.name}_{is_mirrored}"
@@ -217,6 +235,7 @@ def main():
                 environment = {**os.environ, "VESALIUS_PICTURES": str(played), "VESALIUS": str(vesalius)}
                 subprocess.run([sys.executable, __file__, "--client", libraries / "libNiTE2.so", same, str(is_mirrored), work,
                                 str(count if folder == folders[0] and not is_mirrored else 0)], check=True, env=environment)
+                run_program(libraries / "program", detected(vesalius, same, work / "again"), environment)
                 shutil.rmtree(work)
     return 0
 
