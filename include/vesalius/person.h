@@ -16,6 +16,17 @@
 
 namespace vesalius {
 
+/// Why a joint or part is not observed.
+enum class Unseen {
+  none,              ///< it is observed
+  out_of_picture,    ///< it would be beyond the picture, or in a border of it that has no readings
+  behind_person,     ///< somebody's pixels are nearer, also the person's own: one side of the body hides the other
+  behind_something,  ///< something else is nearer
+  no_depth,          ///< the camera has no readings where it would be
+  not_sure           ///< nothing covers its place, or nobody knows the place: it may be elsewhere, or not be recognised
+};
+const char* to_string(Unseen unseen);
+
 /// One part of a found person.
 struct SkeletonPart {
   State state = State::none;
@@ -24,6 +35,8 @@ struct SkeletonPart {
   Eigen::Vector3f extent_m = Eigen::Vector3f::Zero();  ///< standard deviations along its own axes, largest first
   float error = 0.F;       ///< normalised distance to the part to which it is linked; 0 for the root
   float confidence = 0.F;  ///< 0-1
+  Unseen unseen = Unseen::none;
+  int behind = -1;  ///< as Joint::behind
 };
 
 /// A kinematic tree over part proposals (section 6).
@@ -41,6 +54,10 @@ struct Joint {
   State state = State::none;
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< metres, optical frame; NaN where state is none
   float confidence = 0.F;                              ///< 0-1
+  Unseen unseen = Unseen::none;
+  /// Whose pixels hide it, where unseen is behind_person: an index in the frame's list of people, the person's own
+  /// where it is behind the own body; -1 otherwise.
+  int behind = -1;
 };
 
 /// Which way a person faces (body_yaw), and how sure that is.

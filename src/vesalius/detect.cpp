@@ -16,6 +16,7 @@
 #include "vesalius/default_judge.h"
 #include "vesalius/derive_joints.h"
 #include "vesalius/error.h"
+#include "vesalius/explain_unseen.h"
 #include "vesalius/find_clusters.h"
 #include "vesalius/forest/facing.h"
 #include "vesalius/group_votes.h"
@@ -419,7 +420,7 @@ Detection Detector::detect(const Frame& given, const AskPrior& ask, Trace* trace
   StageClock clock(times);
   const std::optional<DepthImage> cleared = without_blended(given.depth, method_->options.blend);
   clock.lap(Stage::grid);
-  return on_grid(
+  Detection detection = on_grid(
       given, cleared ? *cleared : given.depth, method_->options.grid, times,
       [&](const Frame& grid, int step) {
         const bool has_person = trace != nullptr && trace->person != nullptr;
@@ -435,6 +436,8 @@ Detection Detector::detect(const Frame& given, const AskPrior& ask, Trace* trace
         for (Person& person : found.people) enlarge(guide, person);
         if (trace != nullptr) enlarge(guide, *trace);
       });
+  explain_unseen(given, method_->body, detection.people);
+  return detection;
 }
 
 std::vector<Person> Detector::detect(const Frame& frame, const Prior& prior, Trace* trace, StageTimes* times) const {

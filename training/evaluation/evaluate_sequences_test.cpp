@@ -122,6 +122,25 @@ TEST(EvaluateSequences, MeasuresTracksMotionAndSingleFrames) {
   EXPECT_THAT(summary_lines(set), ContainsRegex("\n  MOTA +97.50 % "));
 }
 
+TEST(EvaluateSequences, KnowsWhoHidesJointsAmongPeopleOfWhomSomeAreLost) {
+  const SetResult set = evaluate(1, [] {
+    return [tracker = TestTracker()](const Frame& f) mutable {
+      TrackedFrame tracked = tracker(f);
+      for (auto& joints : tracked.people[0].person.joints) {
+        for (Joint& joint : joints) joint = {State::predicted, joint.position, 0.5F, Unseen::behind_person, 1};
+      }
+      TrackedPerson lost = tracked.people[0];
+      lost.id = 99;
+      lost.state = TrackState::lost;
+      lost.person.mask = {};
+      tracked.people.insert(tracked.people.begin(), lost);
+      return tracked;
+    };
+  });
+  EXPECT_DOUBLE_EQ(value(set, Metric::unseen_given, "not_sure_as_behind_itself"), 1.0);
+  EXPECT_DOUBLE_EQ(value(set, Metric::unseen_right), 0.0);
+}
+
 TEST(EvaluateSequences, UsesSmoothedJointsWhereThereAreSome) {
   const SetResult set = evaluate(1, [] {
     return [tracker = TestTracker(), frame = 0](const Frame& f) mutable {

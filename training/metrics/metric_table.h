@@ -68,9 +68,12 @@ enum class Metric {
   joints_right_confidence,         ///< family
   joints_seen_right_confidence,    ///< family
   joints_hidden_right_confidence,  ///< family
-  joint_up,                        ///< family
-  joint_up_placed,                 ///< family
-  centre_at_10cm,                  ///< family
+  unseen_right,
+  unseen_right_confidence,  ///< family
+  unseen_given,             ///< family
+  joint_up,                 ///< family
+  joint_up_placed,          ///< family
+  centre_at_10cm,           ///< family
   centres_at_10cm,
   track_mota,
   track_missed,
@@ -173,6 +176,9 @@ inline constexpr auto kMetrics = [] {
       {M::joints_right_confidence, "joints.right_at.*", "joints right by confidence"},
       {M::joints_seen_right_confidence, "joints.seen.right_at.*", "seen joints right by confidence"},
       {M::joints_hidden_right_confidence, "joints.hidden.right_at.*", "hidden joints right by confidence"},
+      {M::unseen_right, "unseen.right", "reasons of unseen joints right"},
+      {M::unseen_right_confidence, "unseen.right_at.*", "reasons of unseen joints right by confidence"},
+      {M::unseen_given, "unseen.given.*", "reason given by the true one", share, higher_is_better, trials},
       {M::joint_up, "joint.*.up_mm", "too high", millimetres, nearer_zero_is_better},
       {M::joint_up_placed, "joint.*.placed_up_mm", "too high where placed", millimetres, nearer_zero_is_better},
       {M::centre_at_10cm, "centre.*.at_10cm", "centre within 10 cm", share, higher_is_better, trials},

@@ -12,6 +12,7 @@
 #include "metrics/match_people.h"
 #include "metrics/people_metrics.h"
 #include "metrics/side_metrics.h"
+#include "metrics/unseen_metrics.h"
 #include "vesalius/error.h"
 #include "vesalius/predict_parts.h"
 
@@ -238,12 +239,19 @@ void FrameScorer::judge_points(const TrueFrame& frame, const std::vector<const P
       judge(who, *known, pair, joints);
     }
   };
+  std::vector<int> found;
+  for (const Person* person : of_person) {
+    const auto same = [&](const Person& one) { return &one == person; };
+    const auto at = std::ranges::find_if(score.people, same);
+    found.push_back(at != score.people.end() ? int(at - score.people.begin()) : -1);
+  }
   const auto judge_joints = [&](std::size_t who, const KnownPoints& known, const JointPair& pair,
                                 const std::vector<Joint>& joints) {
     append(score.terms, joint_terms(pair, known.names));
     append(score.terms, joint_bias_terms(pair, known.names));
     append(score.terms, sight_terms(pair, confidences_by_name(known.names, *known.set, joints),
                                     joint_sight(frame, who, pair.truth)));
+    append(score.terms, unseen_terms(frame, who, known.names, pair.truth, *known.set, joints, found));
     const GivenPoints given = count_given(sided(known.names), pair.found, pair.truth, kJointTolerance_m);
     append(score.terms,
            given_terms(given, GivenKind::joints, heading_of(frame.truth, who, body()), frame.truth.parts.empty()));

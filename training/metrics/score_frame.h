@@ -48,9 +48,10 @@ class FrameScorer {
   FrameScore score(TrueFrame frame, bool fit_joints) const;
 
   /// Judges the people that something else found in a frame, such as a tracker, by the same metrics but those of the
-  /// labels and of proposals. Each needs a mask of the frame's size. `unseen` has for each true person, in the order of
-  /// put_visible_people_first, somebody who is known to be there without being seen, or null: if it is not empty, the
-  /// joints of all true people are judged. Throws Error if truth and frame do not fit together.
+  /// labels and of proposals. Each needs a mask of the frame's size; Joint::behind counts them by falling score.
+  /// `unseen` has for each true person, in the order of put_visible_people_first, somebody who is known to be there
+  /// without being seen, or null: if it is not empty, the joints of all true people are judged. Throws Error if truth
+  /// and frame do not fit together.
   FrameScore score_found(TrueFrame frame, std::vector<Person> people,
                          const std::vector<const Person*>& unseen = {}) const;
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <set>
@@ -44,6 +46,30 @@ void check_people(const TrackedFrame& tracked, const Frame& frame, const BodyMod
   }
 }
 
+/// Returns the indices of the people who are judged, the surest first, as score_found sorts them.
+std::vector<std::size_t> order_of_visible(const TrackedFrame& tracked) {
+  std::vector<std::size_t> order;
+  for (std::size_t p = 0; p < tracked.people.size(); ++p) {
+    if (tracked.people[p].state != TrackState::lost && has_pixels(tracked.people[p])) order.push_back(p);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater{},
+                           [&](std::size_t p) { return tracked.people[p].person.score; });
+  return order;
+}
+
+/// Lets Joint::behind count in another order of the people.
+void renumber(const std::vector<std::size_t>& order, TrackedFrame& tracked) {
+  std::vector<int> number(tracked.people.size(), -1);
+  for (std::size_t i = 0; i < order.size(); ++i) number[order[i]] = int(i);
+  for (TrackedPerson& person : tracked.people) {
+    for (std::vector<Joint>& joints : person.person.joints) {
+      for (Joint& joint : joints) {
+        if (joint.behind >= 0) joint.behind = number.at(static_cast<std::size_t>(joint.behind));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 FrameScore SequenceScorer::add(TrueFrame frame, TrackedFrame tracked) {
@@ -56,6 +82,8 @@ FrameScore SequenceScorer::add(TrueFrame frame, TrackedFrame tracked) {
     if (!person.smoothed.empty()) person.person.joints = person.smoothed;
     first_frame_.try_emplace(person.id, index);
   }
+  const std::vector<std::size_t> order = order_of_visible(tracked);
+  renumber(order, tracked);
   terms_.emplace_back();
   const std::optional<TrackPeople> people = track_people_of(frame, tracked, options_.hidden);
   TrackSample& sample = samples_.emplace_back();
@@ -73,9 +101,8 @@ FrameScore SequenceScorer::add(TrueFrame frame, TrackedFrame tracked) {
     }
   }
   std::vector<Person> visible;
-  for (const TrackedPerson& person : tracked.people) {
-    if (person.state != TrackState::lost && has_pixels(person)) visible.push_back(person.person);
-  }
+  visible.reserve(order.size());
+  for (const std::size_t p : order) visible.push_back(tracked.people[p].person);
   return judge_.score_found(std::move(frame), std::move(visible), unseen);
 }
 

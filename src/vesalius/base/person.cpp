@@ -27,6 +27,23 @@ LabelImage part_label_map(const std::vector<Person>& people, int width, int heig
   return map;
 }
 
+const char* to_string(Unseen unseen) {
+  switch (unseen) {
+    case Unseen::none:
+      return "none";
+    case Unseen::out_of_picture:
+      return "out_of_picture";
+    case Unseen::behind_person:
+      return "behind_person";
+    case Unseen::behind_something:
+      return "behind_something";
+    case Unseen::no_depth:
+      return "no_depth";
+    default:
+      return "not_sure";
+  }
+}
+
 const char* to_string(TrackState state) {
   switch (state) {
     case TrackState::seen:

@@ -8,6 +8,7 @@
 
 #include "vesalius/base/options.h"
 #include "vesalius/error.h"
+#include "vesalius/explain_unseen.h"
 #include "vesalius/fit/fit_body.h"
 #include "vesalius/fit/flesh_joints.h"
 #include "vesalius/fit/flesh_sections.h"
@@ -501,6 +502,7 @@ TrackedFrame PeopleTracker::update(const Frame& frame, std::vector<Person> peopl
   const std::vector<int> sighting_of = s.follow(frame, sightings, step.time_s, out);
   s.fit_bodies(frame, sighting_of, out, sightings);
   s.tell(frame, sighting_of, std::move(sightings), out);
+  explain_unseen(frame, s.body, out);
   return out;
 }
 
