@@ -1,5 +1,5 @@
 import { css, personColour } from './palette';
-import { Body, FoundPoint, Frame, Person } from './protocol';
+import { Body, Found, FoundPoint, Frame, Person } from './protocol';
 import { ToldEvent, isHidden, numberOf, shownPeople } from './track';
 
 function element<K extends keyof HTMLElementTagNameMap>(
@@ -47,6 +47,30 @@ function confidenceBar(point: FoundPoint): HTMLElement {
   return bar;
 }
 
+/** Why a point of a person is not observed, such as "behind person 2"; empty where that is not told. */
+function unseenText(point: FoundPoint, person: Person, found: Found): string {
+  if (point.unseen !== 'behind_person') return (point.unseen ?? '').replaceAll('_', ' ');
+  const other = found.people.find(({ index }) => index === point.behind);
+  return !other || other.index === person.index ? 'behind the own body' : `behind person ${numberOf(other)}`;
+}
+
+function stateText(point: FoundPoint, person: Person, found: Found): string {
+  return point.unseen ? `${point.state}, ${unseenText(point, person, found)}` : point.state;
+}
+
+/** The parts that are not observed, by why they are not. */
+function absentText(person: Person, body: Body, found: Found): string {
+  const byReason = new Map<string, string[]>();
+  for (const { name } of body.parts) {
+    const part = person.parts[name];
+    if (part.state === 'observed') continue;
+    const why = unseenText(part, person, found);
+    byReason.set(why, [...(byReason.get(why) ?? []), name]);
+  }
+  const texts = [...byReason].map(([why, names]) => (why ? `${why}: ` : '') + names.join(', '));
+  return texts.length === 0 ? '' : `not seen: ${texts.join('; ')}`;
+}
+
 const SMOOTHED = ', smoothed';
 
 /** The list of what happened, the newest first. `first_s` is when the source begins. */
@@ -65,6 +89,7 @@ export function showEvents(list: HTMLElement, events: ToldEvent[], clock: (secon
 /** The list of people, and the numbers of the one that is chosen. */
 export class PeopleList {
   private person: Person | null = null;
+  private found: Found | null = null;
 
   constructor(
     private readonly list: HTMLElement,
@@ -81,13 +106,13 @@ export class PeopleList {
   }
 
   show(frame: Frame, body: Body): void {
+    this.found = frame.found;
     const people = shownPeople(frame.found);
     this.nobody.hidden = people.length > 0;
     // Buttons stay as they are, so that the one with the focus keeps it from frame to frame.
     while (this.list.children.length > people.length) this.list.lastElementChild?.remove();
     while (this.list.children.length < people.length) this.list.append(this.makeItem());
-    const now_s = frame.found.track_time_s ?? 0;
-    people.forEach((person, i) => this.fill(this.list.children[i] as HTMLElement, person, body, now_s));
+    people.forEach((person, i) => this.fill(this.list.children[i] as HTMLElement, person, body, frame.found));
     this.person = people.find((person) => numberOf(person) === this.selected) ?? null;
     this.showDetails();
   }
@@ -102,7 +127,7 @@ export class PeopleList {
     return element('li', [button]);
   }
 
-  private fill(item: HTMLElement, person: Person, body: Body, now_s: number): void {
+  private fill(item: HTMLElement, person: Person, body: Body, found: Found): void {
     const button = item.firstElementChild as HTMLButtonElement;
     const [name, overTime, facts, missing] = button.children as unknown as HTMLElement[];
     const number = numberOf(person);
@@ -113,21 +138,20 @@ export class PeopleList {
     const z = distance(person);
     const seen = Object.values(person.parts).filter((part) => part.state === 'observed').length;
     name.textContent = `Person ${number}`;
-    overTime.textContent = person.state ? trackText(person, now_s) : '';
+    overTime.textContent = person.state ? trackText(person, found.track_time_s ?? 0) : '';
     facts.textContent = [
       `score ${person.score.toFixed(2)}`,
       z === null ? 'distance unknown' : `${z.toFixed(2)} m`,
       yawText(person),
       `${seen} of ${body.parts.length} parts`,
     ].join(' · ');
-    const absent = body.parts.filter((part) => person.parts[part.name].state !== 'observed').map((part) => part.name);
-    missing.textContent = absent.length === 0 || isHidden(person) ? '' : `not seen: ${absent.join(', ')}`;
+    missing.textContent = isHidden(person) ? '' : absentText(person, body, found);
   }
 
   private showDetails(): void {
-    const { person, details } = this;
+    const { person, found, details } = this;
     details.hidden = !person;
-    if (!person) return;
+    if (!person || !found) return;
     const smoothed = Object.keys(person.smoothed ?? {}).map((name) => name + SMOOTHED);
     const names = ['parts', ...Object.keys(person.joints), ...smoothed];
     const choice = details.querySelector('select') ?? this.makeDetails();
@@ -139,7 +163,7 @@ export class PeopleList {
     const points = this.points(person, choice.value);
     const rows = Object.entries(points).map(([name, point]) => {
       const xyz = point.xyz_m?.map((metres) => metres.toFixed(2)).join(', ') ?? '';
-      const row = element('tr', [element('th', [name]), element('td', [point.state]), element('td', [confidenceBar(point)]), element('td', [xyz])]);
+      const row = element('tr', [element('th', [name]), element('td', [stateText(point, person, found)]), element('td', [confidenceBar(point)]), element('td', [xyz])]);
       row.className = point.state;
       return row;
     });

@@ -7,11 +7,17 @@ export type Xyz = [number, number, number];
 export type Px = [number, number];
 export type State = 'none' | 'predicted' | 'observed';
 
+/** Why a point is not observed. */
+export type Unseen = 'out_of_picture' | 'behind_person' | 'behind_something' | 'no_depth' | 'not_sure';
+
 export interface FoundPoint {
   xyz_m: Xyz | null;
   px: Px | null;
   confidence: number;
   state: State;
+  unseen?: Unseen;
+  /** Index of the person who hides it, with behind_person. */
+  behind?: number;
 }
 
 /** How somebody is known who is followed over frames (docs/tracking.md). */

@@ -133,6 +133,10 @@ test('follows the people of a clip as detect does', async () => {
           const item = items[k];
           assert.equal(item.number, String(person.id));
           assert.match(item.text, new RegExp(`Person ${person.id}\\n.*${person.state}`));
+          const reasons = Object.values(person.parts).filter((part) => part.unseen && part.unseen !== 'behind_person');
+          for (const { unseen } of person.state === 'hidden' ? [] : reasons) {
+            assert.ok(item.text.includes(`${unseen.replaceAll('_', ' ')}: `), item.text);
+          }
           if (person.body) assert.ok(item.text.includes(`${person.body.stature_m.toFixed(2)} m tall`), item.text);
           if (person.stance !== 'unknown') assert.ok(item.text.includes(person.stance), item.text);
           assert.equal(item.dashed, person.state === 'hidden' ? 'dashed' : 'solid');
