@@ -131,6 +131,25 @@ std::vector<std::string> states(const std::vector<Point>& points) {
   return words;
 }
 
+template <class Point>
+std::vector<std::optional<std::string>> reasons(const std::vector<Point>& points) {
+  std::vector<std::optional<std::string>> words;
+  for (const Point& point : points) {
+    const bool seen = point.unseen == Unseen::none;
+    words.push_back(seen ? std::nullopt : std::optional<std::string>(to_string(point.unseen)));
+  }
+  return words;
+}
+
+template <class Point>
+std::vector<std::optional<int>> hiders(const std::vector<Point>& points) {
+  std::vector<std::optional<int>> people;
+  for (const Point& point : points) {
+    people.push_back(point.behind < 0 ? std::nullopt : std::optional(point.behind));
+  }
+  return people;
+}
+
 /// Returns the places of so many points of everybody.
 template <class PointsOf>
 Floats places_of_all(const PythonPeople& p, std::size_t count, const PointsOf& points_of) {
@@ -192,6 +211,14 @@ void bind_points(nb::class_<PythonPerson>& person) {
       "part_confidences", [](One p) { return confidences(p.parts()); }, copied, "float32 (parts,): 0 to 1.");
   person.def_prop_ro(
       "part_states", [](One p) { return states(p.parts()); }, "For each part: observed, predicted or none.");
+  person.def_prop_ro(
+      "part_unseen", [](One p) { return reasons(p.parts()); },
+      "For each part why it is not observed: out_of_picture, behind_person, behind_something, no_depth, not_sure; "
+      "None of those observed.");
+  person.def_prop_ro(
+      "part_behind", [](One p) { return hiders(p.parts()); },
+      "For each part that is behind_person the index in People of who hides it, the person's own behind the own body; "
+      "None of others.");
   person.def(
       "joints", [](One p, Set set) { return places(p.joints(set)); }, "set"_a = "k4abt32",
       "float32 (joints, 3): metres, optical frame (x right, y down, z away); NaN where unknown.");
@@ -201,6 +228,12 @@ void bind_points(nb::class_<PythonPerson>& person) {
   person.def(
       "states", [](One p, Set set) { return states(p.joints(set)); }, "set"_a = "k4abt32",
       "For each joint: observed, predicted or none.");
+  person.def(
+      "unseen", [](One p, Set set) { return reasons(p.joints(set)); }, "set"_a = "k4abt32",
+      "For each joint why it is not observed, as part_unseen.");
+  person.def(
+      "behind", [](One p, Set set) { return hiders(p.joints(set)); }, "set"_a = "k4abt32",
+      "For each joint who hides it, as part_behind.");
   person.def_prop_ro("bones", &bones, "The bones of the fitted body, parents first; empty without one.");
   person.def(
       "rotations", &rotations, "set"_a = "k4abt32",

@@ -22,6 +22,7 @@ namespace Vesalius
     public enum PersonState { Seen = 0, New = 1, Tracked = 2, Hidden = 3, Lost = 4 }
     public enum Stance { Unknown = 0, Standing = 1, Sitting = 2, Lying = 3, Fallen = 4 }
     public enum JointState { None = 0, Predicted = 1, Observed = 2 }
+    public enum UnseenReason { None = 0, OutOfPicture = 1, BehindPerson = 2, BehindSomething = 3, NoDepth = 4, NotSure = 5 }
 
     /// <summary>A joint: metres, x right, y down, z away from the camera; NaN where nothing is known of it.</summary>
     [StructLayout(LayoutKind.Sequential)]
@@ -41,6 +42,15 @@ namespace Vesalius
         public float Extent0, Extent1, Extent2;
         public float Confidence;
         public JointState State;
+    }
+
+    /// <summary>Why a joint or part is not observed; where a person hides it the index of that person, its own behind the
+    /// own body, otherwise -1.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Unseen
+    {
+        public UnseenReason Why;
+        public int Behind;
     }
 
     /// <summary>A bone of a fitted body: its ends, metres, and the unit quaternion from the bone's frame to the camera's.</summary>
@@ -388,6 +398,19 @@ namespace Vesalius
             return Native.Copy((Bone[] to, int capacity, out int count) => Native.vesalius_people_bones(people.Handle, index, to, capacity, out count));
         }
 
+        /// <summary>Why joints of a set are not observed, in the order of Joints.</summary>
+        public Unseen[] JointsUnseen(string set = "k4abt32")
+        {
+            var name = Native.Utf8(set);
+            return Native.Copy((Unseen[] to, int capacity, out int count) => Native.vesalius_people_joints_unseen(people.Handle, index, name, to, capacity, out count));
+        }
+
+        /// <summary>Why parts are not observed, in the order of Parts.</summary>
+        public Unseen[] PartsUnseen()
+        {
+            return Native.Copy((Unseen[] to, int capacity, out int count) => Native.vesalius_people_parts_unseen(people.Handle, index, to, capacity, out count));
+        }
+
         /// <summary>Rotations of a set's joints, by the fitted body; the set k4abt32 has some.</summary>
         public Rotation[] Rotations(string set = "k4abt32")
         {
@@ -563,6 +586,8 @@ namespace Vesalius
         [DllImport(Library)] internal static extern Status vesalius_people_get(PeopleHandle people, int index, ref Person person);
         [DllImport(Library)] internal static extern Status vesalius_people_joints(PeopleHandle people, int index, byte[] set, [Out] Joint[] joints, int capacity, out int count);
         [DllImport(Library)] internal static extern Status vesalius_people_parts(PeopleHandle people, int index, [Out] Part[] parts, int capacity, out int count);
+        [DllImport(Library)] internal static extern Status vesalius_people_joints_unseen(PeopleHandle people, int index, byte[] set, [Out] Unseen[] unseen, int capacity, out int count);
+        [DllImport(Library)] internal static extern Status vesalius_people_parts_unseen(PeopleHandle people, int index, [Out] Unseen[] unseen, int capacity, out int count);
         [DllImport(Library)] internal static extern Status vesalius_people_bones(PeopleHandle people, int index, [Out] Bone[] bones, int capacity, out int count);
         [DllImport(Library)] internal static extern Status vesalius_people_rotations(PeopleHandle people, int index, byte[] set, [Out] Rotation[] rotations, int capacity, out int count);
         [DllImport(Library)] internal static extern Status vesalius_people_mask(PeopleHandle people, int index, [Out] byte[] mask, int capacity, out int count);

@@ -14,7 +14,8 @@ namespace vesalius {
 /// How much frame_json tells of each person.
 struct JsonOptions {
   std::string joints;  ///< name of the joint set; empty = all
-  /// Leaves out what long lines are made of: body parts, fitted bodies, smoothed joints, and pixels of joints.
+  /// Leaves out what long lines are made of: body parts, fitted bodies, smoothed joints, and of joints pixels and why
+  /// they are not observed.
   bool brief = false;
 };
 
@@ -22,8 +23,9 @@ struct JsonOptions {
 /// people with their fields (stream/person_fields.h), parts and joints. Points are given in metres in the optical frame
 /// (xyz_m) and in pixels of the depth picture (px). A frame that a live source got also has the time of its arrival
 /// and, if `latency_ms` is given, how long its people took from then on; one that knows up has that. Every part and
-/// joint is listed; where the state is "none" xyz_m and px are null. Where people are followed (docs/tracking.md) the
-/// frame has the floor and what happened. Throws UsageError if the body has no such joint set.
+/// joint is listed; where the state is "none" xyz_m and px are null, and where it is not "observed" unseen says why.
+/// Where people are followed (docs/tracking.md) the frame has the floor and what happened. Throws UsageError if the
+/// body has no such joint set.
 std::string frame_json(const Frame& frame, const TrackedFrame& people, const BodyModel& body,
                        std::optional<double> latency_ms = {}, const JsonOptions& options = {});
 

@@ -296,6 +296,21 @@ typedef struct vesalius_part {
   int32_t state;        ///< VESALIUS_STATE_*
 } vesalius_part;
 
+/// Why a joint or part is not observed.
+enum {
+  VESALIUS_UNSEEN_NONE = 0,              ///< it is observed
+  VESALIUS_UNSEEN_OUT_OF_PICTURE = 1,    ///< it would be beyond the picture, or in a border of it without readings
+  VESALIUS_UNSEEN_BEHIND_PERSON = 2,     ///< somebody's pixels are nearer, also the person's own
+  VESALIUS_UNSEEN_BEHIND_SOMETHING = 3,  ///< something else is nearer
+  VESALIUS_UNSEEN_NO_DEPTH = 4,          ///< the camera has no readings where it would be
+  VESALIUS_UNSEEN_NOT_SURE = 5           ///< nothing covers its place, or nobody knows the place
+};
+
+typedef struct vesalius_unseen {
+  int32_t why;     ///< VESALIUS_UNSEEN_*; later versions may know more
+  int32_t behind;  ///< index of the person who hides it, the person's own behind the own body; otherwise -1
+} vesalius_unseen;
+
 /// A bone of the body that a tracker fits to a person.
 typedef struct vesalius_bone {
   float head_m[3];         ///< the joint about which it turns: metres, optical frame
@@ -328,6 +343,15 @@ VESALIUS_API vesalius_status vesalius_people_joints(const vesalius_people* peopl
 /// Parts; their names and number are those of the detector.
 VESALIUS_API vesalius_status vesalius_people_parts(const vesalius_people* people, int32_t index, vesalius_part* parts,
                                                    int32_t capacity, int32_t* count);
+
+/// Why joints of a joint set are not observed, in the order of vesalius_people_joints; NULL is the set "k4abt32".
+VESALIUS_API vesalius_status vesalius_people_joints_unseen(const vesalius_people* people, int32_t index,
+                                                           const char* joint_set, vesalius_unseen* unseen,
+                                                           int32_t capacity, int32_t* count);
+
+/// Why parts are not observed, in the order of vesalius_people_parts.
+VESALIUS_API vesalius_status vesalius_people_parts_unseen(const vesalius_people* people, int32_t index,
+                                                          vesalius_unseen* unseen, int32_t capacity, int32_t* count);
 
 /// Bones of the fitted body; their names and parents are those of the detector. None, which is no error, for people of
 /// a detector and where no body could be fitted.

@@ -113,6 +113,9 @@ class Package(unittest.TestCase):
             else:
                 numpy.testing.assert_allclose(mine, theirs["xyz_m"], atol=1e-4)
                 self.assertAlmostEqual(float(confidence), theirs["confidence"], places=3)
+        joints = expected["joints"]["k4abt32"].values()
+        self.assertEqual(person.unseen(), [joint.get("unseen") for joint in joints])
+        self.assertEqual(person.behind(), [joint.get("behind") for joint in joints])
 
     def test_finds_the_people_of_the_program(self):
         expected = people_of_program()
@@ -207,10 +210,13 @@ class Package(unittest.TestCase):
             self.assertEqual(people.parts.shape, (len(people), len(people.part_names), 3))
             numpy.testing.assert_array_equal((people.labels != 255) <= (people.masks == 1), True)
             for person, theirs in zip(people, expected[frame.name]["people"]):
+                self.assertEqual(person.part_unseen, [part.get("unseen") for part in theirs["parts"].values()])
+                self.assertEqual(person.part_behind, [part.get("behind") for part in theirs["parts"].values()])
                 for name, mine, confidence, state in zip(people.part_names, person.parts, person.part_confidences,
                                                          person.part_states):
                     part = theirs["parts"][name]
                     self.assertEqual(state, part["state"])
+                    self.assertEqual("unseen" in part, state != "observed")
                     if part["xyz_m"] is None:
                         self.assertTrue(numpy.isnan(mine).all())
                     else:

@@ -16,6 +16,12 @@ namespace {
 static_assert(int(State::none) == VESALIUS_STATE_NONE && int(State::predicted) == VESALIUS_STATE_PREDICTED &&
               int(State::observed) == VESALIUS_STATE_OBSERVED);
 
+static_assert(int(Unseen::none) == VESALIUS_UNSEEN_NONE &&
+              int(Unseen::out_of_picture) == VESALIUS_UNSEEN_OUT_OF_PICTURE &&
+              int(Unseen::behind_person) == VESALIUS_UNSEEN_BEHIND_PERSON &&
+              int(Unseen::behind_something) == VESALIUS_UNSEEN_BEHIND_SOMETHING &&
+              int(Unseen::no_depth) == VESALIUS_UNSEEN_NO_DEPTH && int(Unseen::not_sure) == VESALIUS_UNSEEN_NOT_SURE);
+
 static_assert(int(TrackState::seen) == VESALIUS_PERSON_SEEN && int(TrackState::fresh) == VESALIUS_PERSON_NEW &&
               int(TrackState::tracked) == VESALIUS_PERSON_TRACKED &&
               int(TrackState::hidden) == VESALIUS_PERSON_HIDDEN && int(TrackState::lost) == VESALIUS_PERSON_LOST);
@@ -68,6 +74,11 @@ vesalius_part to_part(const SkeletonPart& part) {
   return {place.x(),       place.y(),
           place.z(),       {extent.x(), extent.y(), extent.z()},
           part.confidence, static_cast<std::int32_t>(part.state)};
+}
+
+template <class Point>
+vesalius_unseen to_unseen(const Point& point) {
+  return {static_cast<std::int32_t>(point.unseen), point.behind};
 }
 
 vesalius_bone to_bone(const FittedBone& bone) {
@@ -129,6 +140,23 @@ vesalius_status vesalius_people_parts(const vesalius_people* people, int32_t ind
                                       int32_t capacity, int32_t* count) {
   return guarded(
       [&] { give(person_of(people, index).person.skeleton.parts, "parts", parts, capacity, count, to_part); });
+}
+
+vesalius_status vesalius_people_joints_unseen(const vesalius_people* people, int32_t index, const char* joint_set,
+                                              vesalius_unseen* unseen, int32_t capacity, int32_t* count) {
+  return guarded([&] {
+    const TrackedPerson& found = person_of(people, index);
+    const std::size_t set = find_joint_set(people->shared->detector.body(), set_or_usual(joint_set));
+    give(found.person.joints[set], "unseen", unseen, capacity, count, to_unseen<Joint>);
+  });
+}
+
+vesalius_status vesalius_people_parts_unseen(const vesalius_people* people, int32_t index, vesalius_unseen* unseen,
+                                             int32_t capacity, int32_t* count) {
+  return guarded([&] {
+    const std::vector<SkeletonPart>& parts = person_of(people, index).person.skeleton.parts;
+    give(parts, "unseen", unseen, capacity, count, to_unseen<SkeletonPart>);
+  });
 }
 
 vesalius_status vesalius_people_bones(const vesalius_people* people, int32_t index, vesalius_bone* bones,

@@ -49,7 +49,7 @@ Json fields_json(const Struct& of) {
 const Eigen::Vector3f& place_of(const Joint& joint) { return joint.position; }
 const Eigen::Vector3f& place_of(const SkeletonPart& part) { return part.centre; }
 
-/// Parts or joints by their names. Without a camera they have no pixels.
+/// Parts or joints by their names. Without a camera they have no pixels and no reasons.
 template <class Named, class Point>
 Json points_json(const std::vector<Named>& names, const std::vector<Point>& points, const Camera* camera) {
   Json all = Json::object();
@@ -65,6 +65,9 @@ Json points_json(const std::vector<Named>& names, const std::vector<Point>& poin
     if (camera != nullptr) json["px"] = px;
     json["confidence"] = point.state == State::none ? 0.0 : rounded(point.confidence);
     json["state"] = to_string(point.state);
+    if (camera == nullptr || point.unseen == Unseen::none) continue;
+    json["unseen"] = to_string(point.unseen);
+    if (point.behind >= 0) json["behind"] = point.behind;
   }
   return all;
 }

@@ -62,7 +62,7 @@ TEST(PersonJson, OfOneSetInBriefFitsTwoKilobytes) {
   tracked.followed = true;
   TrackedPerson& person = tracked.people[0];
   for (std::vector<Joint>& set : person.person.joints) {
-    for (Joint& joint : set) joint = {State::predicted, {-1.2345F, -0.9876F, 3.4567F}, 0.1234F};
+    for (Joint& joint : set) joint = {State::predicted, {-1.2345F, -0.9876F, 3.4567F}, 0.1234F, Unseen::no_depth};
   }
   person.smoothed = person.person.joints;
   const std::string line = frame_json(named("f"), tracked, body, 12.5, {"coco17", true});
@@ -72,6 +72,7 @@ TEST(PersonJson, OfOneSetInBriefFitsTwoKilobytes) {
   EXPECT_EQ(one.at("joints").size(), 1U);
   json nose = all.at("joints").at("coco17").at("nose");
   nose.erase("px");
+  nose.erase("unseen");
   EXPECT_EQ(one.at("joints").at("coco17").at("nose"), nose);
   for (const char* gone : {"parts", "body", "smoothed"}) EXPECT_FALSE(one.contains(gone)) << gone;
   for (const char* kept : {"id", "state", "position_m", "score", "yaw", "box_px"})
@@ -101,6 +102,22 @@ TEST(PersonJson, ListsEveryPartAndJoint) {
   EXPECT_EQ(person.at("joints").at("nite15").size(), 15U);
   EXPECT_EQ(person.at("joints").at("nite15").at("neck").at("xyz_m"), json({0.0, 0.5, 2.0}));
   EXPECT_TRUE(person.at("joints").at("coco17").at("nose").at("xyz_m").is_null());
+}
+
+TEST(PersonJson, SaysWhyWhatIsNotObservedIsNot) {
+  const BodyModel& body = paper_body();
+  Person person = half_seen(body);
+  SkeletonPart& hand = person.skeleton.parts[body.find_part("l_hand")];
+  hand.unseen = Unseen::behind_person;
+  hand.behind = 2;
+  person.joints[0][0].unseen = Unseen::out_of_picture;
+  const json read = json::parse(frame_json(named("f"), seen_people({person}), body)).at("people").at(0);
+  EXPECT_EQ(read.at("parts").at("l_hand").at("unseen"), "behind_person");
+  EXPECT_EQ(read.at("parts").at("l_hand").at("behind"), 2);
+  EXPECT_FALSE(read.at("parts").at("neck").contains("unseen"));
+  const json& head = read.at("joints").at("nite15").at("head");
+  EXPECT_EQ(head.at("unseen"), "out_of_picture");
+  EXPECT_FALSE(head.contains("behind"));
 }
 
 TEST(PersonJson, AYawIsGivenInDegrees) {

@@ -47,6 +47,9 @@ static void print_found(void) {
 }
 
 static void print_bodies(void) {
+  BEGIN("unseen", vesalius_unseen);
+  AT(vesalius_unseen, why), AT(vesalius_unseen, behind);
+  END();
   BEGIN("bone", vesalius_bone);
   AT(vesalius_bone, head_m[0]), AT(vesalius_bone, head_m[1]), AT(vesalius_bone, head_m[2]);
   AT(vesalius_bone, tail_m[0]), AT(vesalius_bone, tail_m[1]), AT(vesalius_bone, tail_m[2]);

@@ -162,6 +162,18 @@ void expect_picture(const Image<std::uint8_t>& expected, std::uint8_t outside, c
   EXPECT_TRUE(std::equal(whole.begin(), whole.end(), found.begin(), found.end()));
 }
 
+/// Expects why joints or parts are not observed.
+template <class Point>
+void expect_reasons(const std::vector<Point>& expected, const std::vector<vesalius_unseen>& given) {
+  ASSERT_EQ(given.size(), expected.size());
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    EXPECT_EQ(given[i].why, static_cast<int>(expected[i].unseen));
+    EXPECT_EQ(given[i].behind, expected[i].behind);
+    EXPECT_EQ(given[i].why == VESALIUS_UNSEEN_NONE, expected[i].state == State::observed);
+    EXPECT_EQ(given[i].why == VESALIUS_UNSEEN_BEHIND_PERSON, given[i].behind >= 0);
+  }
+}
+
 void expect_same(const Person& expected, const BodyModel& body, const Frame& frame, const CPeople& people, int index) {
   const vesalius_person person = person_at(people, index);
   EXPECT_TRUE(same_float(person.score, expected.score));
@@ -179,6 +191,11 @@ void expect_same(const Person& expected, const BodyModel& body, const Frame& fra
       EXPECT_TRUE(same_float(joints[j].confidence, joint.confidence));
       EXPECT_EQ(joints[j].state, static_cast<int>(joint.state));
     }
+    expect_reasons(expected.joints[s],
+                   array_of<vesalius_unseen>([&](vesalius_unseen* to, int32_t capacity, int32_t* count) {
+                     return vesalius_people_joints_unseen(people.get(), index, body.joint_sets[s].name.c_str(), to,
+                                                          capacity, count);
+                   }));
   }
   const auto parts = array_of<vesalius_part>([&](vesalius_part* to, int32_t capacity, int32_t* count) {
     return vesalius_people_parts(people.get(), index, to, capacity, count);
@@ -191,6 +208,10 @@ void expect_same(const Person& expected, const BodyModel& body, const Frame& fra
     EXPECT_TRUE(same_float(parts[p].confidence, part.confidence));
     EXPECT_EQ(parts[p].state, static_cast<int>(part.state));
   }
+  expect_reasons(expected.skeleton.parts,
+                 array_of<vesalius_unseen>([&](vesalius_unseen* to, int32_t capacity, int32_t* count) {
+                   return vesalius_people_parts_unseen(people.get(), index, to, capacity, count);
+                 }));
   expect_picture(expected.mask, 0, frame, picture_at(people, index, vesalius_people_mask));
   expect_picture(expected.labels, kBackground, frame, picture_at(people, index, vesalius_people_labels));
 }
@@ -691,6 +712,9 @@ TEST_F(CErrors, OfPeople) {
     expect_error(vesalius_people_joints(people.get(), index, nullptr, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT,
                  why);
     expect_error(vesalius_people_parts(people.get(), index, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT, why);
+    expect_error(vesalius_people_joints_unseen(people.get(), index, nullptr, nullptr, 0, &count),
+                 VESALIUS_ERROR_ARGUMENT, why);
+    expect_error(vesalius_people_parts_unseen(people.get(), index, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT, why);
     expect_error(vesalius_people_bones(people.get(), index, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT, why);
     expect_error(vesalius_people_rotations(people.get(), index, nullptr, nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT,
                  why);
@@ -708,6 +732,8 @@ TEST_F(CErrors, OfPeople) {
   person.struct_size = 4;
   expect_error(vesalius_people_get(people.get(), 0, &person), VESALIUS_ERROR_ARGUMENT, "person: struct_size is 4");
   expect_error(vesalius_people_joints(people.get(), 0, "feet", nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT,
+               "joint set \"feet\"");
+  expect_error(vesalius_people_joints_unseen(people.get(), 0, "feet", nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT,
                "joint set \"feet\"");
   expect_error(vesalius_people_rotations(people.get(), 0, "feet", nullptr, 0, &count), VESALIUS_ERROR_ARGUMENT,
                "joint set \"feet\"");

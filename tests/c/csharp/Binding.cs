@@ -57,6 +57,9 @@ static class Binding
         Expect(float.IsNaN(person.VelocityX) && person.Id == 0 && person.State == PersonState.Seen, "what a detector tells");
         Expect(person.Bones().Length == 0 && float.IsNaN(person.Stature) && float.IsNaN(person.Rotations()[0].W), "no body from a detector");
         Expect(detector.JointSets.Contains("coco17") && person.Joints("coco17").Length == 17, "joints of COCO");
+        var unseen = person.PartsUnseen();
+        Expect(parts.Select((part, i) => (part.State == JointState.Observed) == (unseen[i].Why == UnseenReason.None)).All(same => same), "reasons of unseen parts");
+        Expect(person.JointsUnseen().All(joint => (joint.Why == UnseenReason.BehindPerson) == (joint.Behind >= 0)), "who hides joints");
         ExpectError(Status.Argument, "joint set \"feet\"", () => person.Joints("feet"));
         ExpectError(Status.Argument, "joint set \"feet\"", () => detector.JointNames("feet"));
         ExpectError(Status.Argument, "is not there", () => Console.WriteLine(people[99]));

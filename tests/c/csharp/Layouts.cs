@@ -23,6 +23,7 @@ static class Layouts
         Print("person", typeof(Native.Person));
         Print("joint", typeof(Joint));
         Print("part", typeof(Part));
+        Print("unseen", typeof(Unseen));
         Print("bone", typeof(Bone));
         Print("rotation", typeof(Rotation));
     }
