@@ -111,6 +111,35 @@ TEST(ClipGenerator, MakesAnyFrameAgainInAnyOrder) {
   EXPECT_EQ(forwards[4].frame.time_s, 59 / 20.0);
 }
 
+TEST(ClipGenerator, ShowsTheSamePeopleToSeveralCameras) {
+  Recipe recipe = small_recipe();
+  recipe.clip.cameras = 3;
+  recipe.clip.apart_deg = 100.F;
+  std::vector<std::vector<LabelledFrame>> seen;
+  for (recipe.clip.seen_from = 0; recipe.clip.seen_from < 3; ++recipe.clip.seen_from) {
+    seen.push_back(frames_of(small_clips(recipe), 0));
+  }
+  const auto first = world_joints(seen[0]);
+  std::vector<int> with_people(3);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto joints = world_joints(seen[c]);
+    for (std::size_t k = 0; k < first.size(); ++k) {
+      for (std::size_t who = 0; who < 3; ++who) {
+        EXPECT_LT((joints[k][who][0] - first[k][who][0]).norm(), 1e-4F) << c << " " << k;
+      }
+      with_people[c] += std::ranges::any_of(seen[c][k].person, [](std::uint8_t p) { return p != kBackground; }) ? 1 : 0;
+      EXPECT_EQ(seen[c][k].frame.time_s, seen[0][k].frame.time_s);
+    }
+    EXPECT_GT(with_people[c], 30) << "all look at the middle";
+    // Cameras stand, at one height, each turned by 100 degrees from the one before.
+    const Eigen::Isometry3f pose = *seen[c][0].world_from_camera, before = *seen[(c + 2) % 3][0].world_from_camera;
+    EXPECT_EQ(pose.matrix(), seen[c].back().world_from_camera->matrix());
+    EXPECT_NEAR(pose.translation().y(), before.translation().y(), 1e-4F);
+    const float turn = Eigen::AngleAxisf(Eigen::Matrix3f(before.linear().transpose() * pose.linear())).angle();
+    EXPECT_NEAR(turn * 57.29578F, c == 0 ? 160.F : 100.F, 0.1F);
+  }
+}
+
 TEST(ClipGenerator, MovesTheSameBodiesContinuously) {
   const ClipGenerator clips = small_clips(small_recipe());
   const std::vector<LabelledFrame> frames = frames_of(clips, 0);

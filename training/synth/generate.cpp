@@ -229,8 +229,10 @@ LabelledFrame ClipGenerator::frame(std::uint64_t clip_number, int k) const {
   const std::shared_ptr<const ClipScene> scene = clip(clip_number);
   const double time_s = k / s.timing.rate_hz;
   const BuiltScene built = scene_at(*scene, s.photographer.camera(), s.recipe.scene.detail_px, float(time_s));
-  const PictureStreams streams{.frame = clip_stream(clip_number, static_cast<std::uint32_t>(k)),
-                               .camera = clip_stream(clip_number, kWholeClip),
+  // Another camera has errors of its own.
+  const auto camera = static_cast<std::uint32_t>(s.recipe.clip.seen_from);
+  const PictureStreams streams{.frame = clip_stream(clip_number, camera << 24U | static_cast<std::uint32_t>(k)),
+                               .camera = clip_stream(clip_number, kWholeClip + 16U * camera),
                                .is_clip = true};
   LabelledFrame frame = s.photographer.take(built, streams, fmt::format("{:04}_{:06}", clip_number, k));
   frame.frame.time_s = time_s;

@@ -104,6 +104,10 @@ void check(const Recipe& recipe) {
   if (!(p.none + p.one + p.two + p.three + p.four > 0.F)) {
     throw UsageError("options people.none to people.four are all 0, expected a weight above 0");
   }
+  if (recipe.clip.seen_from >= recipe.clip.cameras) {
+    throw UsageError(fmt::format("option clip.seen-from is {}, expected one below clip.cameras, {}",
+                                 recipe.clip.seen_from, recipe.clip.cameras));
+  }
   vesalius::check(sensor_of(recipe.sensor).camera);
 }
 

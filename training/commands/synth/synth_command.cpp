@@ -39,6 +39,7 @@ struct Arguments {
   ClipRequest clip;
   ClusterFlags cluster;
   int count = 0, preview = 0, first = 0, shard = 256, threads = 0;
+  int cameras = 0;  ///< folders of the same clips, each seen by another camera; 0 = one folder of its own
   std::uint64_t seed = 1;
   bool quiet = false;
 };
@@ -49,14 +50,26 @@ BodyModel body_of(const Arguments& arguments) {
 
 LabelledFrame as_it_is(std::uint64_t /*index*/, LabelledFrame frame) { return frame; }
 
-void write_folder(const Arguments& arguments, const FrameMaker& maker, const BodyModel& body) {
-  LabelledExporter exporter(arguments.out, body, synth::joint_names(), maker.clips);
+void write_folder(const Arguments& arguments, const std::string& folder, const FrameMaker& maker,
+                  const BodyModel& body) {
+  LabelledExporter exporter(folder, body, synth::joint_names(), maker.clips);
   const auto count = int(maker.frames_in(arguments.count));
   Progress progress(count, !arguments.quiet);
   make_frames(maker, maker.frames_in(arguments.first), count, progress, as_it_is,
               [&](std::uint64_t /*index*/, const LabelledFrame& frame) { exporter.write(frame); });
   progress.clear();
-  if (!arguments.quiet) say(fmt::format("{}: {} frames", arguments.out, progress.done()));
+  if (!arguments.quiet) say(fmt::format("{}: {} frames", folder, progress.done()));
+}
+
+/// Writes the same clips as each camera sees them, into camera_0 and so on.
+void write_cameras(const Arguments& arguments, synth::Recipe recipe, const LoadedAssets& loaded,
+                   const BodyModel& body) {
+  recipe.clip.cameras = arguments.cameras;
+  for (int i = 0; i < arguments.cameras; ++i) {
+    recipe.clip.seen_from = i;
+    const FrameMaker maker = make_frame_maker(recipe, loaded.assets, body, arguments.seed, arguments.clip);
+    write_folder(arguments, fmt::format("{}/camera_{}", arguments.out, i), maker, body);
+  }
 }
 
 /// Returns the numbers of a preview's frames: those from `first` on, or frames spread evenly over that clip.
@@ -94,6 +107,9 @@ void check(const Arguments& arguments) {
   if (!arguments.cluster.on.empty() && (arguments.count == 0 || arguments.format != "shards")) {
     throw UsageError("--on expects --count with --format shards");
   }
+  if (arguments.cameras > 0 && (arguments.count == 0 || arguments.format != "folder" || !arguments.clip.clip_s)) {
+    throw UsageError("--cameras expects --clip, and --count with --format folder");
+  }
   if (arguments.clip.rate_hz && !arguments.clip.clip_s)
     throw UsageError("--rate expects --clip, the seconds of each clip");
   if (!arguments.clip.clip_s) return;
@@ -119,10 +135,11 @@ void run(const Arguments& arguments) {
   if (!arguments.quiet) {
     for (const std::string& note : loaded.notes) say("note: " + note);
   }
-  const FrameMaker maker = make_frame_maker(recipe, loaded.assets, body, arguments.seed, arguments.clip);
   watch_interrupts();
+  if (arguments.cameras > 0) return write_cameras(arguments, recipe, loaded, body);
+  const FrameMaker maker = make_frame_maker(recipe, loaded.assets, body, arguments.seed, arguments.clip);
   if (arguments.preview > 0) return write_preview(arguments, maker, body);
-  if (arguments.format == "folder") return write_folder(arguments, maker, body);
+  if (arguments.format == "folder") return write_folder(arguments, arguments.out, maker, body);
   DatasetInfo info = rendered_info(recipe, loaded, body, arguments.seed, maker.frames_in(arguments.count));
   info.clips = maker.clips;
   info.frames_per_shard = arguments.shard;
@@ -168,6 +185,13 @@ void add_output_flags(CLI::App& command, Arguments& arguments) {
       .add_option("--rate", arguments.clip.rate_hz,
                   fmt::format("Frames a second of clips (default: {})", synth::ClipTiming{}.rate_hz))
       ->type_name("HZ")
+      ->group(group);
+  command
+      .add_option("--cameras", arguments.cameras,
+                  "With --clip and --format folder: folders camera_0, ... of the same clips, each seen by another "
+                  "camera, which stand; --clip.apart says how far apart")
+      ->type_name("N")
+      ->check(CLI::Range(1, synth::kMostClipCameras))
       ->group(group);
   command
       .add_option("--first", arguments.first, "Number of the first frame, or clip, for --preview and --format folder")

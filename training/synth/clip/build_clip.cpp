@@ -67,7 +67,7 @@ class Builder {
 
   ClipScene run() {
     place_sitters();
-    moves_ = asked(options_.moving_share, random_);
+    moves_ = asked(options_.moving_share, random_) && options_.cameras == 1;
     ground_.camera_reach_m = moves_ ? kCameraReach_m : 0.F;
     ground_.view.camera_from_world = stage_.camera.world_from_camera().inverse();
     ground_.solids = stage_.occupancy.solids();
@@ -107,11 +107,24 @@ class Builder {
     stage_.occupancy.set_eye({0.F, stage_.camera.height_m, 0.F});
   }
 
+  /// Returns how far from the camera the middle of the usual distances is, along the ground.
+  float middle_m(const CameraPose& pose) const {
+    const float far = 0.5F * (placement_.usual_min_m + placement_.usual_max_m), rise = pose.height_m - 0.95F;
+    return std::sqrt(std::max(0.F, far * far - rise * rise));
+  }
+
+  /// Returns the pose of a camera, world from camera: that of the first, turned about the middle of the scene.
+  Isometry3f pose_of(int camera) const {
+    const Vector3f middle(0.F, 0.F, -middle_m(stage_.camera));
+    const Eigen::AngleAxisf turn(float(camera) * options_.apart_deg * kPi / 180.F, Vector3f::UnitY());
+    const Isometry3f about = Eigen::Translation3f(middle) * turn * Eigen::Translation3f(-middle);
+    return camera == 0 ? stage_.camera.world_from_camera() : about * stage_.camera.world_from_camera();
+  }
+
   /// Returns whether knees and head of somebody in the middle of the usual distances are in the picture.
   bool sees_person(const CameraPose& pose) const {
     const Camera& camera = ground_.view.camera;
-    const float far = 0.5F * (placement_.usual_min_m + placement_.usual_max_m), rise = pose.height_m - 0.95F;
-    const float along = std::sqrt(std::max(0.F, far * far - rise * rise));
+    const float along = middle_m(pose);
     const Isometry3f camera_from_world = pose.world_from_camera().inverse();
     for (const float y : {0.5F, 1.65F}) {
       const Vector3f p = camera_from_world * Vector3f(0.F, y, -along);
@@ -229,9 +242,11 @@ class Builder {
   bool is_free(const std::vector<BodyOutline>& outlines) const {
     for (std::size_t t = 0; t < outlines.size(); ++t) {
       if (sinks_in(outlines[t], stage_.occupancy.solids())) return false;
-      const Vector3f eye(0.F, stage_.camera.height_m, 0.F);
       const float clear_m = 0.25F + ground_.camera_reach_m;
-      if (outlines[t].bounds.squaredExteriorDistance(eye) < clear_m * clear_m) return false;
+      for (int i = 0; i < options_.cameras; ++i) {
+        const Vector3f eye = pose_of(i).translation();
+        if (outlines[t].bounds.squaredExteriorDistance(eye) < clear_m * clear_m) return false;
+      }
       for (const std::vector<BodyOutline>& other : outlines_) {
         if (!other.empty() && sinks_in(outlines[t], other[t])) return false;
       }
@@ -248,7 +263,7 @@ class Builder {
   }
 
   CameraTrack camera_of(const ClipScene& clip) const {
-    if (!moves_) return {{stage_.camera.world_from_camera()}};
+    if (!moves_) return {{pose_of(options_.seen_from)}};
     std::vector<PersonTrack> tracks;
     for (const ClipPerson& person : clip.people) tracks.push_back(person.track);
     return move_camera(options_, stage_.camera, seconds_, tracks, random_);
@@ -257,7 +272,8 @@ class Builder {
   /// Builds room and furniture about everything that moves.
   void surround(ClipScene& clip) {
     std::vector<Vector3f> eyes;
-    for (float t = 0.F; t <= (moves_ ? seconds_ : 0.F); t += 0.5F) eyes.emplace_back(clip.camera.at(t).translation());
+    for (int i = 0; i < options_.cameras && !moves_; ++i) eyes.emplace_back(pose_of(i).translation());
+    for (float t = 0.F; moves_ && t <= seconds_; t += 0.5F) eyes.emplace_back(clip.camera.at(t).translation());
     const PlacedGroup* first = stage_.groups.empty() ? nullptr : stage_.groups.data();
     clip.room = draw_room(
         scene_, first, [&](const Isometry3f& room_from_world) { return extent_of(eyes, room_from_world); }, random_);

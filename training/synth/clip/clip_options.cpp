@@ -17,6 +17,12 @@ void visit_options(const std::string& prefix, ClipOptions& o, OptionVisitor& vis
   visitor.option(prefix + "moving-share", o.moving_share, {"", 0, 1, "Share of clips whose camera moves."});
   visitor.option(prefix + "speed-max", o.speed_max_m_s, {"m/s", 0, 2, "Greatest speed of such a camera."});
   visitor.option(prefix + "turn-max", o.turn_max_deg_s, {"deg/s", 0, 90, "Greatest turn of such a camera."});
+  visitor.option(prefix + "cameras", o.cameras,
+                 {"", 1, kMostClipCameras, "Cameras about the same people. Several of them stand."});
+  visitor.option(prefix + "seen-from", o.seen_from,
+                 {"", 0, kMostClipCameras - 1, "Number of the camera whose pictures are made, from 0."});
+  visitor.option(prefix + "apart", o.apart_deg,
+                 {"deg", -180, 180, "Angle about the middle of the scene from each camera to the next."});
 }
 
 }  // namespace vesalius::synth

@@ -6,6 +6,8 @@
 
 namespace vesalius::synth {
 
+inline constexpr int kMostClipCameras = 8;
+
 /// What people and camera do in clips. Single frames do not depend on it.
 struct ClipOptions {
   float walking_share = 0.75F;  ///< share of people who walk about; the others stay where they are
@@ -18,6 +20,9 @@ struct ClipOptions {
   float moving_share = 0.5F;    ///< share of clips whose camera moves
   float speed_max_m_s = 0.3F;   ///< greatest speed of the camera
   float turn_max_deg_s = 20.F;  ///< fastest turn of the camera
+  int cameras = 1;              ///< that see the same people; several of them stand
+  int seen_from = 0;            ///< the one of them whose pictures are made
+  float apart_deg = 90.F;       ///< angle about the middle of the scene from each camera to the next
 };
 
 void visit_options(const std::string& prefix, ClipOptions& options, OptionVisitor& visitor);
