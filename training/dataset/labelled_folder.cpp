@@ -14,6 +14,7 @@
 #include "io/files/atomic_file.h"
 #include "io/files/byte_stream.h"
 #include "io/files/data_file.h"
+#include "io/files/extrinsics_file.h"
 #include "io/sources/folder_source.h"
 #include "vesalius/error.h"
 #include "vesalius/image_file.h"
@@ -64,20 +65,6 @@ double number_of(const Json& json, const std::string& what) {
   return json.get<double>();
 }
 
-Eigen::Isometry3f pose_of(const Json& json) {
-  constexpr const char* kExpected = "world_from_camera: expected three rows of four numbers";
-  Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
-  if (!json.is_array() || json.size() != 3) throw Error(kExpected);
-  for (int row = 0; row < 3; ++row) {
-    if (!json[row].is_array() || json[row].size() != 4) throw Error(kExpected);
-    for (int column = 0; column < 4; ++column) {
-      if (!json[row][column].is_number()) throw Error(kExpected);
-      pose.matrix()(row, column) = json[row][column].get<float>();
-    }
-  }
-  return pose;
-}
-
 /// Reads what is known about time and camera.
 void read_circumstances(const Json& json, LabelledFrame& labelled) {
   const auto with = [&](const char* key, const auto& use) {
@@ -88,7 +75,8 @@ void read_circumstances(const Json& json, LabelledFrame& labelled) {
   with("time_s", [&](const Json& time) { labelled.frame.time_s = number_of(time, "time_s"); });
   with("camera_height_m",
        [&](const Json& height) { labelled.camera_height_m = float(number_of(height, "camera_height_m")); });
-  with("world_from_camera", [&](const Json& pose) { labelled.world_from_camera = pose_of(pose); });
+  with("world_from_camera",
+       [&](const Json& pose) { labelled.world_from_camera = parse_pose(pose, "world_from_camera"); });
 }
 
 /// Reads clips.json, if it is there.
@@ -155,16 +143,6 @@ Json parts_json(const std::vector<Eigen::Vector3f>& parts, const BodyModel& body
     json[body.parts[p].name] = parts[p].hasNaN() ? Json() : point_json(parts[p]);  // null: the body lacks the part
   }
   return json;
-}
-
-/// Returns the rows of [turn | place], in full precision: distances grow with errors of the turn.
-Json pose_json(const Eigen::Isometry3f& pose) {
-  Json rows = Json::array();
-  for (int row = 0; row < 3; ++row) {
-    const Eigen::Vector4f r = pose.matrix().row(row);
-    rows.push_back({r[0], r[1], r[2], r[3]});
-  }
-  return rows;
 }
 
 std::string truth_json(const LabelledFrame& labelled, const BodyModel& body, const std::vector<std::string>& joints) {
