@@ -183,6 +183,13 @@ const char* to_string(TrackState state);
 enum class Stance { unknown, standing, sitting, lying, fallen };
 const char* to_string(Stance stance);
 
+/// Whom one of several cameras has somebody for (docs/cameras.md).
+struct SeenBy {
+  int camera = 0;  ///< its number, from 0
+  int id = 0;      ///< the person's id there
+  TrackState state = TrackState::tracked;
+};
+
 /// Somebody in a frame, followed over frames or seen in this one alone.
 struct TrackedPerson {
   int id = 0;  ///< from 1; the same for one person over a run, never used for two; of those only seen the index
@@ -200,6 +207,7 @@ struct TrackedPerson {
   double seen_s = 0.0;   ///< time of the last frame in which the person was found
   /// [joint set][joint]: joints smoothed over time, if that was asked for; otherwise empty.
   std::vector<std::vector<Joint>> smoothed;
+  std::vector<SeenBy> seen_by;  ///< by camera, where the people of several are one list; otherwise empty
 };
 
 /// The floor and how the camera stands over it.
